@@ -1,0 +1,1 @@
+//! Learning potential-based policies from constrained motion by aligning local potentials.

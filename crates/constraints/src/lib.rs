@@ -1,0 +1,1 @@
+//! Pfaffian constraints on motion and their null-space projectors.

@@ -1,0 +1,1 @@
+//! Simulated demonstrations under constraints, with the truth kept beside what is observed.

@@ -1,0 +1,1 @@
+//! Forward kinematics, Jacobians and self-collision of robots described by URDF.

@@ -1,0 +1,1 @@
+//! Locally weighted projection regression.

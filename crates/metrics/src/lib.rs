@@ -1,0 +1,1 @@
+//! Errors of learnt policies and potentials, and their summaries.

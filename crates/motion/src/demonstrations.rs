@@ -1,0 +1,65 @@
+use nalgebra::DMatrix;
+
+use crate::{MotionError, Trajectory};
+
+/// K observed movements of one system, all with the same state dimension; lengths may differ.
+///
+/// Nothing here says which constraint held: a learner that is given `Demonstrations` cannot know it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Demonstrations {
+    trajectories: Vec<Trajectory>,
+}
+
+impl Demonstrations {
+    /// Movements of one system.
+    ///
+    /// # Errors
+    /// [`MotionError::Empty`] or [`MotionError::Dimensions`].
+    pub fn new(trajectories: Vec<Trajectory>) -> Result<Self, MotionError> {
+        let expected = trajectories.first().ok_or(MotionError::Empty)?.n_states();
+        match trajectories.iter().position(|trajectory| trajectory.n_states() != expected) {
+            None => Ok(Demonstrations { trajectories }),
+            Some(trajectory) => Err(MotionError::Dimensions {
+                trajectory,
+                found: trajectories[trajectory].n_states(),
+                expected,
+            }),
+        }
+    }
+
+    /// Movements of which only the states are known: each matrix (n, N_k), one column a sample, all `time_step`
+    /// seconds apart.
+    ///
+    /// # Errors
+    /// [`MotionError::InTrajectory`] with the trajectory at fault, otherwise as [`Demonstrations::new`].
+    pub fn from_positions(
+        positions: impl IntoIterator<Item = DMatrix<f64>>,
+        time_step: f64,
+    ) -> Result<Self, MotionError> {
+        let trajectories = positions.into_iter().enumerate().map(|(trajectory, positions)| {
+            Trajectory::new(positions, time_step)
+                .map_err(|source| MotionError::InTrajectory { trajectory, source: Box::new(source) })
+        });
+        Self::new(trajectories.collect::<Result<_, _>>()?)
+    }
+
+    /// The movements, in the order given.
+    pub fn trajectories(&self) -> &[Trajectory] {
+        &self.trajectories
+    }
+
+    /// Number of movements K.
+    pub fn n_trajectories(&self) -> usize {
+        self.trajectories.len()
+    }
+
+    /// Dimension n of the state.
+    pub fn n_states(&self) -> usize {
+        self.trajectories[0].n_states()
+    }
+
+    /// Number of samples of all movements together, M = Σ_k N_k.
+    pub fn n_samples(&self) -> usize {
+        self.trajectories.iter().map(Trajectory::n_samples).sum()
+    }
+}

@@ -1,0 +1,88 @@
+use thiserror::Error;
+
+/// Which of a trajectory's two series a value belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Series {
+    /// The states x.
+    Positions,
+    /// The recorded velocities or commands u.
+    Velocities,
+}
+
+impl std::fmt::Display for Series {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Series::Positions => "positions",
+            Series::Velocities => "velocities",
+        })
+    }
+}
+
+/// Why observed movements cannot be used. All numbers count from 0.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum MotionError {
+    /// A value is NaN or infinite.
+    #[error(
+        "{series}, sample {sample}, dimension {dimension}: {value} is not a finite number; drop or interpolate the sample"
+    )]
+    NotFinite {
+        /// Positions or velocities.
+        series: Series,
+        /// Column of the value.
+        sample: usize,
+        /// Row of the value.
+        dimension: usize,
+        /// The value itself.
+        value: f64,
+    },
+    /// A trajectory has fewer than two samples, so nothing moved.
+    #[error("the trajectory has {samples} sample(s), at least 2 are needed to see a movement; leave it out")]
+    TooShort {
+        /// How many samples there are.
+        samples: usize,
+    },
+    /// The state has no dimension.
+    #[error("the states have no dimension (0 rows); samples are columns, one row a dimension")]
+    NoDimension,
+    /// The time step is not a positive, finite number of seconds.
+    #[error("time step {time_step} s: it must be a positive, finite number of seconds between two samples")]
+    TimeStep {
+        /// The time step given, in seconds.
+        time_step: f64,
+    },
+    /// Velocities do not have the positions' shape.
+    #[error(
+        "velocities have shape ({}, {}), positions ({}, {}): record one velocity a position",
+        velocities.0, velocities.1, positions.0, positions.1
+    )]
+    VelocityShape {
+        /// Rows and columns of the positions.
+        positions: (usize, usize),
+        /// Rows and columns of the velocities.
+        velocities: (usize, usize),
+    },
+    /// No trajectory was given.
+    #[error("there is no trajectory; give at least one")]
+    Empty,
+    /// Two trajectories live in spaces of different dimension.
+    #[error(
+        "trajectory {trajectory} has {found} dimensions, trajectory 0 has {expected}; all must share one state space"
+    )]
+    Dimensions {
+        /// The first trajectory that differs.
+        trajectory: usize,
+        /// Its number of dimensions.
+        found: usize,
+        /// The number of dimensions of trajectory 0.
+        expected: usize,
+    },
+    /// One of several trajectories is not valid.
+    #[error("trajectory {trajectory}: {source}")]
+    InTrajectory {
+        /// Which trajectory.
+        trajectory: usize,
+        /// What is wrong with it.
+        source: Box<MotionError>,
+    },
+}

@@ -1,0 +1,26 @@
+//! The vocabulary that the other crates share: what was observed ([`Trajectory`], [`Demonstrations`]) and what is
+//! sought ([`Policy`], [`Potential`]).
+//!
+//! Samples are **columns**: a movement of `N` samples of an `n`-dimensional state is an (n, N) matrix, so that a state
+//! is a contiguous view. Times are seconds; a state has whatever unit its dimensions have (radians, metres).
+//!
+//! ```
+//! use motion::{Demonstrations, Trajectory};
+//! use nalgebra::DMatrix;
+//!
+//! let falling = DMatrix::from_row_slice(2, 3, &[0.0, 0.1, 0.2, 1.0, 0.9, 0.7]);
+//! let rising = DMatrix::from_row_slice(2, 3, &[0.0, 0.1, 0.2, 0.0, 0.2, 0.3]);
+//! let demonstrations = Demonstrations::from_positions([falling, rising], 0.02)?;
+//! assert_eq!(demonstrations.n_states(), 2);
+//! # Ok::<(), motion::MotionError>(())
+//! ```
+
+mod demonstrations;
+mod error;
+mod policy;
+mod trajectory;
+
+pub use demonstrations::Demonstrations;
+pub use error::{MotionError, Series};
+pub use policy::{NegativeGradient, Policy, Potential};
+pub use trajectory::Trajectory;

@@ -1,0 +1,79 @@
+use nalgebra::{DVector, DVectorView, DVectorViewMut};
+
+/// An autonomous movement policy u = π(x) (1): the velocity that is wanted at a state.
+///
+/// Where a method takes a vector of another length than [`Policy::n_states`], it panics.
+pub trait Policy: Send + Sync {
+    /// Dimension n of state and action.
+    fn n_states(&self) -> usize;
+
+    /// Writes π(x), (n), into `action`, in units of the state per second. Allocates nothing.
+    fn action_into(&self, state: DVectorView<'_, f64>, action: DVectorViewMut<'_, f64>);
+
+    /// π(x), (n), in units of the state per second.
+    fn action(&self, state: DVectorView<'_, f64>) -> DVector<f64> {
+        let mut action = DVector::zeros(self.n_states());
+        self.action_into(state, action.as_view_mut());
+        action
+    }
+}
+
+/// A scalar potential φ(x) whose negative gradient is a policy (4).
+///
+/// Where a method takes a vector of another length than [`Potential::n_states`], it panics.
+pub trait Potential: Send + Sync {
+    /// Dimension n of the state.
+    fn n_states(&self) -> usize;
+
+    /// φ(x), in units of the state squared per second.
+    fn value(&self, state: DVectorView<'_, f64>) -> f64;
+
+    /// Writes ∇φ(x), (n), into `gradient`, in units of the state per second. Allocates nothing.
+    fn gradient_into(&self, state: DVectorView<'_, f64>, gradient: DVectorViewMut<'_, f64>);
+
+    /// ∇φ(x), (n), in units of the state per second.
+    fn gradient(&self, state: DVectorView<'_, f64>) -> DVector<f64> {
+        let mut gradient = DVector::zeros(self.n_states());
+        self.gradient_into(state, gradient.as_view_mut());
+        gradient
+    }
+}
+
+/// The policy π(x) = −∇φ(x) of a potential (4).
+#[derive(Debug, Clone, PartialEq)]
+pub struct NegativeGradient<P>(pub P);
+
+impl<P: Potential> Policy for NegativeGradient<P> {
+    fn n_states(&self) -> usize {
+        self.0.n_states()
+    }
+
+    fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
+        self.0.gradient_into(state, action.as_view_mut());
+        action.neg_mut();
+    }
+}
+
+impl<P: Policy + ?Sized> Policy for &P {
+    fn n_states(&self) -> usize {
+        (**self).n_states()
+    }
+
+    fn action_into(&self, state: DVectorView<'_, f64>, action: DVectorViewMut<'_, f64>) {
+        (**self).action_into(state, action);
+    }
+}
+
+impl<P: Potential + ?Sized> Potential for &P {
+    fn n_states(&self) -> usize {
+        (**self).n_states()
+    }
+
+    fn value(&self, state: DVectorView<'_, f64>) -> f64 {
+        (**self).value(state)
+    }
+
+    fn gradient_into(&self, state: DVectorView<'_, f64>, gradient: DVectorViewMut<'_, f64>) {
+        (**self).gradient_into(state, gradient);
+    }
+}
