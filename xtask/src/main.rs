@@ -1,2 +1,49 @@
 //! Runs the experiments of the paper and the checks of the workspace.
-fn main() {}
+
+mod experiments;
+mod measure;
+mod paper;
+mod progress;
+mod records;
+mod report;
+mod reproduce;
+mod results;
+mod runner;
+mod seed;
+mod table;
+mod tidy;
+mod verdict;
+
+use clap::{Parser, Subcommand};
+
+/// Reproduces the paper's tables and checks the workspace.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask", version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run the paper's experiments and show the tables beside the printed ones
+    ///
+    /// Every finished data set is kept at once: after Ctrl-C or a crash the same command goes on where it stopped and
+    /// ends with the identical result.
+    ///
+    /// Examples:
+    ///   cargo xtask reproduce                        everything
+    ///   cargo xtask reproduce --quick                a first look
+    ///   cargo xtask reproduce --only table1 --seed 2 one table, from another seed
+    #[command(verbatim_doc_comment)]
+    Reproduce(reproduce::Reproduce),
+    /// Check manifests and sources against the architecture
+    Tidy,
+}
+
+fn main() -> anyhow::Result<()> {
+    match Cli::parse().command {
+        Command::Reproduce(reproduce) => reproduce.execute(),
+        Command::Tidy => tidy::execute(),
+    }
+}

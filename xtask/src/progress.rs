@@ -1,0 +1,92 @@
+//! Progress on standard error: a bar with the time left on a terminal, plain lines elsewhere.
+
+use std::io::{IsTerminal as _, Write as _};
+use std::sync::Mutex;
+use std::sync::PoisonError;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// How often a plain line is written at most.
+const LINE_INTERVAL: Duration = Duration::from_secs(5);
+
+/// Counts finished data sets and the work they stand for.
+pub(crate) struct Progress {
+    display: Display,
+}
+
+enum Display {
+    Bar(ProgressBar),
+    Lines(Mutex<Lines>),
+}
+
+struct Lines {
+    started: Instant,
+    last: Option<Instant>,
+    jobs: usize,
+    finished: usize,
+    work: u64,
+    work_done: u64,
+}
+
+impl Progress {
+    /// Starts counting `jobs` of altogether `total` data sets, the others being finished already.
+    pub(crate) fn start(total: usize, jobs: usize, work: u64) -> Progress {
+        if jobs < total {
+            say(&format!("{} of {total} data sets were finished by earlier runs, {jobs} to go", total - jobs));
+        }
+        if !std::io::stderr().is_terminal() {
+            let started = Instant::now();
+            let lines = Lines { started, last: None, jobs, finished: 0, work, work_done: 0 };
+            return Progress { display: Display::Lines(Mutex::new(lines)) };
+        }
+        let bar = ProgressBar::new(work);
+        let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {elapsed} gone, {eta} left  {msg}");
+        bar.set_style(style.unwrap_or_else(|_| unreachable!("the template is valid")));
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Progress { display: Display::Bar(bar) }
+    }
+
+    /// A data set is done.
+    pub(crate) fn finished(&self, experiment: &str, row: &str, work: u64) {
+        match &self.display {
+            Display::Bar(bar) => {
+                bar.set_message(format!("{experiment} {row}"));
+                bar.inc(work);
+            }
+            Display::Lines(lines) => {
+                let mut lines = lines.lock().unwrap_or_else(PoisonError::into_inner);
+                lines.finished += 1;
+                lines.work_done += work;
+                if lines.finished == lines.jobs || lines.last.is_none_or(|last| last.elapsed() >= LINE_INTERVAL) {
+                    lines.last = Some(Instant::now());
+                    say(&lines.line(experiment, row));
+                }
+            }
+        }
+    }
+
+    /// All data sets are done.
+    pub(crate) fn done(&self) {
+        if let Display::Bar(bar) = &self.display {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl Lines {
+    fn line(&self, experiment: &str, row: &str) -> String {
+        let elapsed = self.started.elapsed().as_secs_f64();
+        let left = elapsed * (self.work - self.work_done) as f64 / self.work_done as f64;
+        let percent = 100.0 * self.work_done as f64 / self.work as f64;
+        format!(
+            "[{}/{}] {percent:.0} % of the work after {elapsed:.0} s, about {left:.0} s left ({experiment} {row})",
+            self.finished, self.jobs
+        )
+    }
+}
+
+/// Writes a line to standard error; a closed standard error stops nothing.
+pub(crate) fn say(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
+}

@@ -1,0 +1,206 @@
+//! Finished data sets, kept one JSON line each so that nothing but what is in flight is ever lost.
+
+use std::collections::{BTreeMap, HashMap};
+use std::fs::{File, OpenOptions};
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use anyhow::Context as _;
+use serde::{Deserialize, Serialize};
+
+use crate::measure::Measure;
+
+/// What one data set of one row gave.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Outcome {
+    /// The measures.
+    Measured(BTreeMap<Measure, f64>),
+    /// Why there are none.
+    Failed(String),
+}
+
+/// One line of the file.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Record {
+    key: String,
+    experiment: String,
+    row: String,
+    data_set: u32,
+    outcome: Outcome,
+}
+
+/// Names one data set of one row of an experiment.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct DataSet<'a> {
+    /// The experiment's id.
+    pub(crate) experiment: &'a str,
+    /// The row's id.
+    pub(crate) row: &'a str,
+    /// All parameters of the row.
+    pub(crate) definition: &'a str,
+    /// The seed of the run.
+    pub(crate) seed: u64,
+    /// The repetition, from 0.
+    pub(crate) data_set: u32,
+}
+
+/// The file of finished data sets, open for appending.
+#[derive(Debug)]
+pub(crate) struct Records {
+    path: PathBuf,
+    code: u64,
+    finished: HashMap<String, Outcome>,
+    file: Mutex<File>,
+}
+
+/// Whether the outcomes of earlier runs are used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Earlier {
+    /// Pick up what is finished.
+    Resume,
+    /// Forget it.
+    Forget,
+}
+
+impl Records {
+    /// Opens the records at `path`, creating them where there are none. Lines that cannot be read, such as the torn
+    /// last line of a killed run, are passed over; their data sets are computed again.
+    pub(crate) fn open(path: &Path, earlier: Earlier) -> anyhow::Result<Records> {
+        let read = || -> anyhow::Result<(File, HashMap<String, Outcome>)> {
+            let mut file = OpenOptions::new().read(true).append(true).create(true).open(path)?;
+            if earlier == Earlier::Forget {
+                file.set_len(0)?;
+            }
+            let mut bytes = Vec::new();
+            file.seek(SeekFrom::Start(0))?;
+            file.read_to_end(&mut bytes)?;
+            if bytes.last().is_some_and(|&last| last != b'\n') {
+                file.write_all(b"\n")?;
+            }
+            let finished = bytes
+                .split(|&byte| byte == b'\n')
+                .filter_map(|line| serde_json::from_slice::<Record>(line).ok())
+                .map(|record| (record.key, record.outcome))
+                .collect();
+            Ok((file, finished))
+        };
+        let (file, finished) =
+            read().with_context(|| format!("cannot open the records {}; choose another --out", path.display()))?;
+        Ok(Records { path: path.to_owned(), code: code_identity()?, finished, file: Mutex::new(file) })
+    }
+
+    /// The outcome of a data set that an earlier run finished, with the same parameters, seed and program.
+    pub(crate) fn finished(&self, data_set: &DataSet<'_>) -> Option<&Outcome> {
+        self.finished.get(&self.key(data_set))
+    }
+
+    /// Writes a finished data set to the disk at once.
+    pub(crate) fn append(&self, data_set: &DataSet<'_>, outcome: &Outcome) -> anyhow::Result<()> {
+        let record = Record {
+            key: self.key(data_set),
+            experiment: data_set.experiment.to_owned(),
+            row: data_set.row.to_owned(),
+            data_set: data_set.data_set,
+            outcome: outcome.clone(),
+        };
+        let mut line = serde_json::to_vec(&record)?;
+        line.push(b'\n');
+        self.writing().write_all(&line).with_context(|| format!("cannot write to {}", self.path.display()))
+    }
+
+    /// Holds back every write while the guard lives, so that a process may end without tearing a line.
+    pub(crate) fn writing(&self) -> MutexGuard<'_, File> {
+        self.file.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn key(&self, data_set: &DataSet<'_>) -> String {
+        let mut hasher = DefaultHasher::new();
+        self.code.hash(&mut hasher);
+        data_set.seed.hash(&mut hasher);
+        data_set.definition.hash(&mut hasher);
+        let definition = hasher.finish();
+        format!("{}/{}/{}/{definition:016x}", data_set.experiment, data_set.row, data_set.data_set)
+    }
+}
+
+/// A hash of the running program itself: whatever changes the program, be it a source line, a dependency or a compiler
+/// flag, starts new records.
+fn code_identity() -> anyhow::Result<u64> {
+    let bytes = std::env::current_exe().and_then(std::fs::read).context("cannot read the running program")?;
+    let mut hasher = DefaultHasher::new();
+    bytes.hash(&mut hasher);
+    Ok(hasher.finish())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DATA_SET: DataSet<'static> =
+        DataSet { experiment: "table1", row: "narrow", definition: "K = 40", seed: 1, data_set: 7 };
+
+    fn measured(value: f64) -> Outcome {
+        Outcome::Measured(BTreeMap::from([(Measure::Nupe, value)]))
+    }
+
+    #[test]
+    fn what_was_written_is_found_again_bit_for_bit() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("records.jsonl");
+        let outcome = measured(0.1 + 0.2);
+        let records = Records::open(&path, Earlier::Resume).unwrap();
+        assert_eq!(records.finished(&DATA_SET), None);
+        records.append(&DATA_SET, &outcome).unwrap();
+        assert_eq!(Records::open(&path, Earlier::Resume).unwrap().finished(&DATA_SET), Some(&outcome));
+    }
+
+    #[test]
+    fn another_seed_definition_row_or_program_finds_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("records.jsonl");
+        Records::open(&path, Earlier::Resume).unwrap().append(&DATA_SET, &measured(1.0)).unwrap();
+        let mut records = Records::open(&path, Earlier::Resume).unwrap();
+        for other in [
+            DataSet { seed: 2, ..DATA_SET },
+            DataSet { definition: "K = 41", ..DATA_SET },
+            DataSet { row: "wide", ..DATA_SET },
+            DataSet { experiment: "table1-literal", ..DATA_SET },
+            DataSet { data_set: 8, ..DATA_SET },
+        ] {
+            assert_eq!(records.finished(&other), None, "{other:?}");
+        }
+        records.code ^= 1;
+        assert_eq!(records.finished(&DATA_SET), None);
+    }
+
+    #[test]
+    fn a_torn_last_line_costs_only_itself() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("records.jsonl");
+        let records = Records::open(&path, Earlier::Resume).unwrap();
+        records.append(&DATA_SET, &measured(1.0)).unwrap();
+        records.append(&DataSet { data_set: 8, ..DATA_SET }, &measured(2.0)).unwrap();
+        drop(records);
+        let length = std::fs::metadata(&path).unwrap().len();
+        OpenOptions::new().write(true).open(&path).unwrap().set_len(length - 5).unwrap();
+
+        let records = Records::open(&path, Earlier::Resume).unwrap();
+        assert_eq!(records.finished(&DATA_SET), Some(&measured(1.0)));
+        assert_eq!(records.finished(&DataSet { data_set: 8, ..DATA_SET }), None);
+        records.append(&DataSet { data_set: 9, ..DATA_SET }, &measured(3.0)).unwrap();
+        let records = Records::open(&path, Earlier::Resume).unwrap();
+        assert_eq!(records.finished(&DataSet { data_set: 9, ..DATA_SET }), Some(&measured(3.0)));
+    }
+
+    #[test]
+    fn a_fresh_start_forgets() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("records.jsonl");
+        Records::open(&path, Earlier::Resume).unwrap().append(&DATA_SET, &measured(1.0)).unwrap();
+        assert_eq!(Records::open(&path, Earlier::Forget).unwrap().finished(&DATA_SET), None);
+        assert_eq!(Records::open(&path, Earlier::Resume).unwrap().finished(&DATA_SET), None);
+    }
+}

@@ -1,0 +1,155 @@
+//! `cargo xtask reproduce`: runs experiments, keeps every finished data set, and ends with the tables.
+
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use cpu_time::ProcessTime;
+
+use crate::experiments::{Experiment, registry};
+use crate::progress::say;
+use crate::records::{Earlier, Records};
+use crate::report::{report, tally};
+use crate::results::{Results, Run, summarise};
+use crate::runner::{Plan, run};
+
+/// Data sets a row with `--quick`.
+const QUICK_DATA_SETS: u32 = 3;
+
+/// Version of the form of `results.json`.
+const SCHEMA: u32 = 1;
+
+/// Exit status after Ctrl-C.
+const INTERRUPTED: i32 = 130;
+
+#[derive(Debug, Args)]
+pub(crate) struct Reproduce {
+    /// Show the experiments and their rows, and stop
+    #[arg(long)]
+    list: bool,
+    /// Run these only: experiments (table1), rows (sinusoidal-40x40-wide), or rows of one experiment (table1/..)
+    #[arg(long, value_name = "ID,..", value_delimiter = ',')]
+    only: Vec<String>,
+    /// Data sets a row [default: as many as the paper]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    data_sets: Option<u32>,
+    /// Three data sets a row: a first look within a minute
+    #[arg(long, conflicts_with = "data_sets")]
+    quick: bool,
+    /// Seed of all random numbers
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// Worker threads; they change the time, never the results [default: one a core]
+    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Folder for results.json, report.md and the records of finished data sets
+    #[arg(long, value_name = "DIR", default_value = "target/reproduce")]
+    out: PathBuf,
+    /// Start over: forget the data sets that earlier runs into the same folder finished
+    #[arg(long)]
+    fresh: bool,
+}
+
+impl Reproduce {
+    pub(crate) fn execute(&self) -> anyhow::Result<()> {
+        let experiments = select(registry()?, &self.only)?;
+        if self.list {
+            return print(&list(&experiments));
+        }
+        let started = Instant::now();
+        fs::create_dir_all(&self.out).with_context(|| format!("cannot make the folder {}", self.out.display()))?;
+        let earlier = if self.fresh { Earlier::Forget } else { Earlier::Resume };
+        let records = Arc::new(Records::open(&self.out.join("records.jsonl"), earlier)?);
+        stop_cleanly_on_ctrl_c(&records)?;
+        let plan = Plan { data_sets: self.data_sets.or(self.quick.then_some(QUICK_DATA_SETS)), seed: self.seed };
+        let threads = self.threads.map_or(0, usize::from);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+        let outcomes = pool.install(|| run(&experiments, plan, &records))?;
+        let results = Results {
+            schema: SCHEMA,
+            seed: self.seed,
+            quick: self.quick,
+            run: Run {
+                threads: pool.current_num_threads(),
+                wall_seconds: started.elapsed().as_secs_f64(),
+                cpu_seconds: ProcessTime::now().as_duration().as_secs_f64(),
+                version: env!("CARGO_PKG_VERSION").to_owned(),
+            },
+            experiments: summarise(&experiments, &outcomes)?,
+        };
+        write(&self.out.join("results.json"), &(serde_json::to_string_pretty(&results)? + "\n"))?;
+        let report = report(&experiments, &results, None);
+        write(&self.out.join("report.md"), &report)?;
+        print(&report)?;
+        conclude(&results, &self.out);
+        Ok(())
+    }
+}
+
+/// Keeps the experiments and rows that are asked for; all where nothing is.
+fn select(mut experiments: Vec<Experiment>, only: &[String]) -> anyhow::Result<Vec<Experiment>> {
+    if only.is_empty() {
+        return Ok(experiments);
+    }
+    let matches = |wanted: &str, experiment: &str, row: &str| {
+        wanted == experiment || wanted == row || wanted.split_once('/') == Some((experiment, row))
+    };
+    for wanted in only {
+        let known = |e: &Experiment| e.rows.iter().any(|row| matches(wanted, e.id, &row.id));
+        if !experiments.iter().any(known) {
+            bail!("--only {wanted}: no such experiment or row; `cargo xtask reproduce --list` shows them all");
+        }
+    }
+    for experiment in &mut experiments {
+        let id = experiment.id;
+        experiment.rows.retain(|row| only.iter().any(|wanted| matches(wanted, id, &row.id)));
+    }
+    experiments.retain(|experiment| !experiment.rows.is_empty());
+    Ok(experiments)
+}
+
+fn list(experiments: &[Experiment]) -> String {
+    let line = |e: &Experiment| {
+        let rows: Vec<String> = e.rows.iter().map(|row| format!("    {}\n", row.id)).collect();
+        format!("{}: {} (Section {}), {} data sets a row\n{}", e.id, e.title, e.section, e.data_sets, rows.concat())
+    };
+    experiments.iter().map(line).collect()
+}
+
+/// Ctrl-C waits for a line that is being written, says what is kept, and leaves.
+fn stop_cleanly_on_ctrl_c(records: &Arc<Records>) -> anyhow::Result<()> {
+    let records = Arc::clone(records);
+    let stop = move || {
+        let _no_more_writes = records.writing();
+        say("\nstopped: what was finished is kept; the same command goes on from there");
+        std::process::exit(INTERRUPTED);
+    };
+    ctrlc::set_handler(stop).context("cannot watch for Ctrl-C")
+}
+
+fn conclude(results: &Results, out: &Path) {
+    for experiment in &results.experiments {
+        say(&format!("{}: {}", experiment.id, tally(experiment)));
+    }
+    let Run { threads, wall_seconds, cpu_seconds, .. } = &results.run;
+    say(&format!(
+        "{wall_seconds:.1} s on {threads} thread(s), {cpu_seconds:.1} s of processor time; written to {}: results.json, report.md",
+        out.display()
+    ));
+}
+
+/// Writes a whole file or nothing.
+pub(crate) fn write(path: &Path, text: &str) -> anyhow::Result<()> {
+    let draft = path.with_extension("part");
+    fs::write(&draft, text)
+        .and_then(|()| fs::rename(&draft, path))
+        .with_context(|| format!("cannot write {}", path.display()))
+}
+
+fn print(text: &str) -> anyhow::Result<()> {
+    std::io::stdout().write_all(text.as_bytes()).context("cannot write to standard output")
+}

@@ -1,0 +1,119 @@
+//! The results of a run, as written to `results.json`.
+
+use std::collections::BTreeMap;
+
+use metrics::Summary;
+use serde::{Deserialize, Serialize};
+
+use crate::experiments::{Experiment, Row};
+use crate::measure::Measure;
+use crate::paper::Printed;
+use crate::records::Outcome;
+use crate::runner::RowOutcomes;
+use crate::verdict::{Verdict, verdict};
+
+/// The whole file. All but `run` is the same to the bit for the same seed and program.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Results {
+    /// Version of this form.
+    pub(crate) schema: u32,
+    /// Seed of all random numbers.
+    pub(crate) seed: u64,
+    /// Whether only few data sets a row were asked for.
+    pub(crate) quick: bool,
+    /// What differs between two runs of the same thing.
+    pub(crate) run: Run,
+    /// Tables and figures.
+    pub(crate) experiments: Vec<ExperimentResult>,
+}
+
+/// Circumstances of the run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Run {
+    /// Worker threads.
+    pub(crate) threads: usize,
+    /// Elapsed seconds.
+    pub(crate) wall_seconds: f64,
+    /// Processor seconds of all threads.
+    pub(crate) cpu_seconds: f64,
+    /// Version of the program.
+    pub(crate) version: String,
+}
+
+/// One table or figure.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ExperimentResult {
+    /// Identifier.
+    pub(crate) id: String,
+    /// Section of the paper.
+    pub(crate) section: String,
+    /// Rows, in the table's order.
+    pub(crate) rows: Vec<RowResult>,
+}
+
+/// One row of a table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct RowResult {
+    /// Identifier.
+    pub(crate) id: String,
+    /// Data sets asked for.
+    pub(crate) data_sets: usize,
+    /// Data sets that could not be measured; they are counted here and left out of the measures.
+    pub(crate) failed: usize,
+    /// Summaries over the other data sets.
+    pub(crate) measures: BTreeMap<Measure, Cell>,
+}
+
+/// One figure: ours, the paper's, and how they compare.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Cell {
+    /// Mean over data sets.
+    pub(crate) mean: f64,
+    /// Sample standard deviation over data sets; null for a single data set.
+    pub(crate) sd: Option<f64>,
+    /// Median over data sets.
+    pub(crate) median: f64,
+    /// The printed figure, where there is one.
+    pub(crate) paper: Option<Printed>,
+    /// The comparison, where there is one.
+    pub(crate) verdict: Option<Verdict>,
+}
+
+/// Sums up the outcomes of every row, which stand in the order of `experiments`.
+pub(crate) fn summarise(
+    experiments: &[Experiment],
+    outcomes: &[Vec<RowOutcomes>],
+) -> anyhow::Result<Vec<ExperimentResult>> {
+    let experiment = |(experiment, outcomes): (&Experiment, &Vec<RowOutcomes>)| {
+        let rows = experiment.rows.iter().zip(outcomes).map(|(row, outcomes)| summarise_row(row, outcomes));
+        Ok(ExperimentResult {
+            id: experiment.id.to_owned(),
+            section: experiment.section.to_owned(),
+            rows: rows.collect::<anyhow::Result<_>>()?,
+        })
+    };
+    experiments.iter().zip(outcomes).map(experiment).collect()
+}
+
+fn summarise_row(row: &Row, outcomes: &RowOutcomes) -> anyhow::Result<RowResult> {
+    let mut values: BTreeMap<Measure, Vec<f64>> = BTreeMap::new();
+    let mut failed = 0;
+    for outcome in outcomes {
+        match outcome {
+            Outcome::Failed(_) => failed += 1,
+            Outcome::Measured(measures) => {
+                for (&measure, &value) in measures {
+                    values.entry(measure).or_default().push(value);
+                }
+            }
+        }
+    }
+    let cell = |(measure, values): (Measure, Vec<f64>)| {
+        let Summary { mean, sd, median, .. } = Summary::of(&values)?;
+        let paper = row.paper.get(&measure).copied();
+        let verdict = paper.map(|paper| verdict(measure.kind(), mean, paper));
+        Ok((measure, Cell { mean, sd, median, paper, verdict }))
+    };
+    let measures = values.into_iter().map(cell).collect::<anyhow::Result<_>>()?;
+    Ok(RowResult { id: row.id.clone(), data_sets: outcomes.len(), failed, measures })
+}

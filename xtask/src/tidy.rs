@@ -1,0 +1,141 @@
+//! `cargo xtask tidy`: holds the manifests and the source tree against the architecture.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail};
+use serde::Deserialize;
+
+use crate::progress::say;
+
+/// Names that say nothing about what is inside.
+const EMPTY_NAMES: [&str; 4] = ["utils", "common", "helpers", "prelude"];
+
+/// Lines beyond which a source file holds more than one idea.
+const LONGEST_FILE: usize = 300;
+
+/// What a crate's `[dependencies]` may name.
+#[derive(Debug, Deserialize)]
+struct Allowed {
+    siblings: Vec<String>,
+    third_party: Vec<String>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Manifest {
+    package: Package,
+    #[serde(default)]
+    dependencies: BTreeMap<String, toml::Value>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Package {
+    name: String,
+}
+
+/// Fails with a list of everything that breaks the rules.
+pub(crate) fn execute() -> anyhow::Result<()> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut faults = Vec::new();
+    let allowed: BTreeMap<String, Allowed> = toml::from_str(&read(&root.join("xtask/dependencies.toml"))?)
+        .context("xtask/dependencies.toml cannot be read")?;
+    let manifests = manifests(&root)?;
+    for manifest in &manifests {
+        faults.extend(dependency_faults(manifest, &allowed));
+    }
+    for name in allowed.keys().filter(|name| !manifests.iter().any(|manifest| manifest.package.name == **name)) {
+        faults.push(format!("xtask/dependencies.toml: there is no crate {name}; delete its entry"));
+    }
+    for folder in ["crates", "xtask", "benches"] {
+        source_faults(&root.join(folder), &mut faults)?;
+    }
+    if faults.is_empty() {
+        say("tidy: manifests and sources follow the architecture");
+        return Ok(());
+    }
+    bail!("{} fault(s):\n{}", faults.len(), faults.join("\n"))
+}
+
+fn manifests(root: &Path) -> anyhow::Result<Vec<Manifest>> {
+    let mut folders: Vec<PathBuf> = entries(&root.join("crates"))?;
+    folders.extend([root.join("xtask"), root.join("benches")]);
+    let parse = |folder: &PathBuf| {
+        let path = folder.join("Cargo.toml");
+        toml::from_str(&read(&path)?).with_context(|| format!("{} cannot be read", path.display()))
+    };
+    folders.iter().map(parse).collect()
+}
+
+fn dependency_faults(manifest: &Manifest, allowed: &BTreeMap<String, Allowed>) -> Vec<String> {
+    let name = &manifest.package.name;
+    let Some(own) = allowed.get(name) else {
+        return vec![format!("crate {name} has no entry in xtask/dependencies.toml; decide what it may depend on")];
+    };
+    let fault = |dependency: &String| {
+        let sibling = allowed.contains_key(dependency);
+        let list = if sibling { &own.siblings } else { &own.third_party };
+        let what = if sibling { "the sibling" } else { "the third-party crate" };
+        (!list.contains(dependency)).then(|| format!("crate {name} may not depend on {what} {dependency}"))
+    };
+    manifest.dependencies.keys().filter_map(fault).collect()
+}
+
+fn source_faults(folder: &Path, faults: &mut Vec<String>) -> anyhow::Result<()> {
+    for path in entries(folder)? {
+        let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+        if path.is_dir() {
+            source_faults(&path, faults)?;
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            if EMPTY_NAMES.contains(&stem) {
+                faults.push(format!("{}: name the file after what is in it", path.display()));
+            }
+            let text = read(&path)?;
+            let lines = text.lines().take_while(|line| !line.starts_with("#[cfg(test)]")).count();
+            if lines > LONGEST_FILE && !path.components().any(|part| part.as_os_str() == "tests") {
+                faults.push(format!("{}: {lines} lines; one idea a file, {LONGEST_FILE} at most", path.display()));
+            }
+            if text.contains("allow(unsafe_code)") && !path.components().any(|part| part.as_os_str() == "simd") && stem != "simd" {
+                faults.push(format!("{}: unsafe code belongs in a module named simd", path.display()));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn entries(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let entries = fs::read_dir(folder).with_context(|| format!("cannot list {}", folder.display()))?;
+    let mut paths = entries.map(|entry| Ok(entry?.path())).collect::<anyhow::Result<Vec<_>>>()?;
+    paths.sort();
+    Ok(paths)
+}
+
+fn read(path: &Path) -> anyhow::Result<String> {
+    fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn this_workspace_is_tidy() {
+        execute().unwrap();
+    }
+
+    #[test]
+    fn a_learner_that_names_the_truth_is_found() {
+        let allowed = toml::from_str(
+            "align = { siblings = ['motion'], third_party = ['faer'] }\n\
+             motion = { siblings = [], third_party = [] }\n\
+             metrics = { siblings = [], third_party = [] }",
+        )
+        .unwrap();
+        let manifest = "package.name = 'align'\ndependencies = { motion = '1', metrics = '1', faer = '1', libc = '1' }";
+        let faults = dependency_faults(&toml::from_str(manifest).unwrap(), &allowed);
+        assert_eq!(
+            faults,
+            ["crate align may not depend on the third-party crate libc", "crate align may not depend on the sibling metrics"]
+        );
+    }
+}

@@ -1,0 +1,78 @@
+//! The one rule by which a figure of ours is held against the paper's.
+
+use serde::{Deserialize, Serialize};
+
+use crate::measure::Kind;
+use crate::paper::Printed;
+
+/// How our mean compares with the printed one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Verdict {
+    /// Within the band around the printed mean.
+    Agrees,
+    /// An error below the band.
+    Better,
+    /// An error above the band.
+    Worse,
+    /// Outside the band, where neither direction is better.
+    Differs,
+}
+
+/// A printed share of 0 ± 0 agrees with anything that would be printed so: below .005 percent.
+const PRINTED_ZERO: f64 = 0.005;
+
+/// Judges our mean: errors of the learner and shares agree within one printed s.d.
+pub(crate) fn verdict(kind: Kind, ours: f64, paper: Printed) -> Verdict {
+    let difference = ours - paper.mean;
+    let band = match kind {
+        Kind::Share if paper.mean == 0.0 && paper.sd == 0.0 => PRINTED_ZERO,
+        _ => paper.sd,
+    };
+    match kind {
+        _ if difference.abs() <= band => Verdict::Agrees,
+        Kind::Share => Verdict::Differs,
+        Kind::LearnerError if difference < 0.0 => Verdict::Better,
+        Kind::LearnerError => Verdict::Worse,
+    }
+}
+
+impl Verdict {
+    /// The word in tables and records.
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Verdict::Agrees => "agrees",
+            Verdict::Better => "better",
+            Verdict::Worse => "worse",
+            Verdict::Differs => "differs",
+        }
+    }
+
+    /// Whether the figure is at least as good as the paper's.
+    pub(crate) fn reached(self) -> bool {
+        matches!(self, Verdict::Agrees | Verdict::Better)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_and_shares_are_judged_by_their_own_band() {
+        let printed = |mean, sd| Printed { mean, sd };
+        for (kind, ours, paper, expected) in [
+            (Kind::LearnerError, 0.05, printed(0.04, 0.01), Verdict::Agrees),
+            (Kind::LearnerError, 0.0625, printed(0.0625, 0.0), Verdict::Agrees),
+            (Kind::LearnerError, 0.0501, printed(0.04, 0.01), Verdict::Worse),
+            (Kind::LearnerError, 0.0299, printed(0.04, 0.01), Verdict::Better),
+            (Kind::Share, 12.0, printed(10.0, 2.0), Verdict::Agrees),
+            (Kind::Share, 7.9, printed(10.0, 2.0), Verdict::Differs),
+            (Kind::Share, 12.1, printed(10.0, 2.0), Verdict::Differs),
+            (Kind::Share, 0.004, printed(0.0, 0.0), Verdict::Agrees),
+            (Kind::Share, 0.006, printed(0.0, 0.0), Verdict::Differs),
+        ] {
+            assert_eq!(verdict(kind, ours, paper), expected, "{kind:?} {ours} against {paper:?}");
+        }
+    }
+}
