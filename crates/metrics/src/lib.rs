@@ -1,1 +1,38 @@
-//! Errors of learnt policies and potentials, and their summaries.
+//! How far a learnt policy or potential is from the true one, (A1)–(A4), and how to sum up many such errors.
+//!
+//! All four are mean squared errors divided by the variance of the truth, so that 0 is perfect and 1 is as bad as the
+//! best constant. Samples are columns: a policy at N test states is an (n, N) matrix, a potential a vector (N).
+//!
+//! - [`nupe`]: how wrong the policy is where nothing constrains it (A1).
+//! - [`ncpe`]: how wrong it is as far as given constraints let it show (A2).
+//! - [`potential_nmse`], [`alignment_nmse`]: how wrong a potential is, up to a constant (A3), (A4).
+//! - [`Summary`]: mean, standard deviation and median over data sets.
+//!
+//! ```
+//! use metrics::{Summary, ncpe, nupe, potential_nmse};
+//! use nalgebra::{dmatrix, dvector};
+//!
+//! let truth = dmatrix![1.0, -1.0, 0.0; 0.0, 1.0, -1.0];
+//! let learnt = dmatrix![1.0, -1.0, 0.0; 0.5, 1.5, -0.5];
+//! // Wrong by 0.5 in the second dimension; the truth has variance 2/3 in each.
+//! assert!((nupe(&truth, &learnt)? - 0.25 / (4.0 / 3.0)).abs() < 1e-15);
+//! // Under constraints that let only the first dimension move, nothing of that shows.
+//! assert_eq!(ncpe(&truth, &learnt, |_sample, mut difference| difference[1] = 0.0)?, 0.0);
+//! // A potential is known up to a constant only.
+//! assert!(potential_nmse(&dvector![0.0, 1.0, 4.0], &dvector![7.0, 8.0, 11.0])? < 1e-30);
+//!
+//! let summary = Summary::of(&[0.02, 0.03, 0.07])?;
+//! assert_eq!(summary.median, 0.03);
+//! # Ok::<(), metrics::MetricsError>(())
+//! ```
+
+mod error;
+mod policy;
+mod potential;
+mod spread;
+mod summary;
+
+pub use error::{MetricsError, Series};
+pub use policy::{ncpe, nupe};
+pub use potential::{alignment_nmse, potential_nmse};
+pub use summary::Summary;

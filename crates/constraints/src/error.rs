@@ -1,0 +1,57 @@
+use thiserror::Error;
+
+/// Why a constraint cannot be used. All numbers count from 0.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ConstraintError {
+    /// An entry of A is NaN or infinite.
+    #[error(
+        "constraint matrix, row {row}, column {column}: {value} is not a finite number; mend what computes A(x, t)"
+    )]
+    NotFinite {
+        /// Row of the entry: which of the k constraints.
+        row: usize,
+        /// Column of the entry: which dimension of the state.
+        column: usize,
+        /// The entry itself.
+        value: f64,
+    },
+    /// A does not have one column for each dimension of the state.
+    #[error("the constraint matrix has {found} columns, the state {expected} dimensions; A is (k, n)")]
+    Columns {
+        /// Columns of A.
+        found: usize,
+        /// Dimension n of the state.
+        expected: usize,
+    },
+    /// The rank tolerance is out of range.
+    #[error(
+        "rank tolerance {tolerance}: it is the sine of an angle and must lie between {} and 1; 1e-12 is usual",
+        f64::EPSILON
+    )]
+    Tolerance {
+        /// The tolerance given.
+        tolerance: f64,
+    },
+    /// A switching constraint was given nothing to switch between.
+    #[error("there is no constraint to switch between; give at least one, or use `Unconstrained`")]
+    NoPhase,
+    /// The start times of a switching constraint are not finite or do not rise.
+    #[error("phase {phase} starts at {start} s: start times must be finite and each later than the one before")]
+    StartTime {
+        /// The first phase at fault.
+        phase: usize,
+        /// Its start time, in seconds.
+        start: f64,
+    },
+    /// Two phases of a switching constraint live in spaces of different dimension.
+    #[error("phase {phase} constrains {found} dimensions, phase 0 {expected}; all must share one state space")]
+    PhaseDimension {
+        /// The first phase that differs.
+        phase: usize,
+        /// Its number of dimensions.
+        found: usize,
+        /// The number of dimensions of phase 0.
+        expected: usize,
+    },
+}

@@ -1,0 +1,78 @@
+use thiserror::Error;
+
+/// Which of the series handed in a value belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Series {
+    /// The true policy or potential.
+    Truth,
+    /// The learnt policy or potential.
+    Learnt,
+    /// The difference of the two after the caller's projection.
+    Projected,
+    /// The errors to be summed up.
+    Errors,
+}
+
+impl std::fmt::Display for Series {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Series::Truth => "truth",
+            Series::Learnt => "learnt",
+            Series::Projected => "projected difference",
+            Series::Errors => "errors",
+        })
+    }
+}
+
+/// Why an error has no value. All numbers count from 0; a potential or a list counts as one dimension.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum MetricsError {
+    /// There is nothing to judge.
+    #[error("there is no sample ({rows} rows, {columns} columns); give at least one")]
+    Empty {
+        /// Dimensions given.
+        rows: usize,
+        /// Samples given.
+        columns: usize,
+    },
+    /// Truth and learnt do not have the same shape.
+    #[error(
+        "the truth has shape ({}, {}), the learnt one ({}, {}): evaluate both at the same states",
+        truth.0, truth.1, learnt.0, learnt.1
+    )]
+    Shape {
+        /// Dimensions and samples of the truth.
+        truth: (usize, usize),
+        /// Dimensions and samples of what was learnt.
+        learnt: (usize, usize),
+    },
+    /// A value is NaN or infinite.
+    #[error("{series}, sample {sample}, dimension {dimension}: {value} is not a finite number; mend what computed it")]
+    NotFinite {
+        /// Where the value stands.
+        series: Series,
+        /// Its sample.
+        sample: usize,
+        /// Its dimension.
+        dimension: usize,
+        /// The value itself.
+        value: f64,
+    },
+    /// The truth does not vary beyond rounding, so that no error can be measured against it.
+    #[error(
+        "the truth is constant over the {samples} sample(s) (about {magnitude:e}, deviation {deviation:e}); \
+         test at states where it differs"
+    )]
+    ConstantTruth {
+        /// Number of samples.
+        samples: usize,
+        /// Root mean square of the truth.
+        magnitude: f64,
+        /// Root mean square of its deviation from the mean.
+        deviation: f64,
+    },
+    /// All values are finite, but the result is beyond the largest number.
+    #[error("the result is larger than the largest number; the values given differ beyond all measure")]
+    Overflow,
+}

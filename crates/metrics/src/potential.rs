@@ -1,0 +1,37 @@
+use nalgebra::{DMatrixView, DVector};
+
+use crate::MetricsError;
+use crate::spread::{representable, spread};
+
+/// Normalised error of a learnt potential (A3): `Σ_n (f_n − φ_n − µ)² / (N σ²_φ)`, where µ is the mean of f − φ, since a
+/// potential is known up to a constant only.
+///
+/// `truth` φ and `learnt` f hold the potentials at N test states. `σ²_φ` is the variance (divided by N) of φ over them.
+///
+/// # Errors
+/// [`MetricsError::Shape`], [`MetricsError::Empty`], [`MetricsError::NotFinite`], or [`MetricsError::ConstantTruth`]
+/// when σ is at most 1e-12 of the potential's root mean square.
+pub fn potential_nmse(truth: &DVector<f64>, learnt: &DVector<f64>) -> Result<f64, MetricsError> {
+    let n_samples = truth.len();
+    let spread = spread(one_row(truth), one_row(learnt))?;
+    let difference = learnt.zip_map(truth, |f, phi| f / spread.unit - phi / spread.unit);
+    let first = difference.mean();
+    let offset = first + difference.map(|d| d - first).mean();
+    let squares = difference.map(|d| (d - offset).powi(2));
+    representable(squares.sum() / (n_samples as f64 * spread.variance))
+}
+
+/// Normalised error of aligned local potentials (A4): `Σ_n (φ̂_n + b_n − φ_n − µ)² / (N σ²_φ)`, with µ the mean of
+/// φ̂ + b − φ; the form of [`potential_nmse`] with the samples' own values φ̂ + b, their trajectory's offset added, in
+/// place of a model's.
+///
+/// # Errors
+/// As [`potential_nmse`].
+pub fn alignment_nmse(truth: &DVector<f64>, aligned: &DVector<f64>) -> Result<f64, MetricsError> {
+    potential_nmse(truth, aligned)
+}
+
+/// A scalar series (N) as samples in columns, (1, N).
+fn one_row(series: &DVector<f64>) -> DMatrixView<'_, f64> {
+    DMatrixView::from_slice(series.as_slice(), 1, series.len())
+}
