@@ -4,6 +4,7 @@ mod experiments;
 mod measure;
 mod paper;
 mod progress;
+mod publish;
 mod records;
 mod report;
 mod reproduce;
@@ -37,6 +38,8 @@ enum Command {
     ///   cargo xtask reproduce --only table1 --seed 2 one table, from another seed
     #[command(verbatim_doc_comment)]
     Reproduce(reproduce::Reproduce),
+    /// Write the tables in README.md and docs/reproduction.md from the committed results
+    Report,
     /// Check manifests and sources against the architecture
     Tidy,
 }
@@ -44,6 +47,7 @@ enum Command {
 fn main() -> anyhow::Result<()> {
     match Cli::parse().command {
         Command::Reproduce(reproduce) => reproduce.execute(),
+        Command::Report => publish::execute(),
         Command::Tidy => tidy::execute(),
     }
 }

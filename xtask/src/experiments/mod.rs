@@ -24,6 +24,18 @@ pub(crate) struct Experiment {
     pub(crate) remark: &'static str,
     /// The rows, in the table's order.
     pub(crate) rows: Vec<Row>,
+    /// Why single cells stand out, by row and measure: `xtask/paper/*.toml`.
+    pub(crate) explanations: Explanations,
+}
+
+/// Sentences on single cells, by row and measure.
+pub(crate) type Explanations = BTreeMap<String, BTreeMap<Measure, String>>;
+
+impl Experiment {
+    /// Why a cell stands out, if that is known.
+    pub(crate) fn explain(&self, row: &str, measure: Measure) -> Option<&str> {
+        self.explanations.get(row)?.get(&measure).map(String::as_str)
+    }
 }
 
 /// One row of a table.

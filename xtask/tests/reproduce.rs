@@ -1,0 +1,132 @@
+//! `cargo xtask reproduce` as a user meets it: the same bits at any number of threads, after a kill, and for a part.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+const ROW: &str = "table1/parabola-40x40-narrow";
+
+fn reproduce(out: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));
+    command.arg("reproduce").arg("--out").arg(out).args(arguments);
+    command
+}
+
+fn run(out: &Path, arguments: &[&str]) -> Output {
+    let output = reproduce(out, arguments).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    output
+}
+
+/// The results without the one object that tells of the run itself.
+fn results(out: &Path) -> Value {
+    let mut results: Value = serde_json::from_slice(&fs::read(out.join("results.json")).unwrap()).unwrap();
+    assert!(results.as_object_mut().unwrap().remove("run").is_some());
+    results
+}
+
+fn lines(out: &Path) -> usize {
+    fs::read_to_string(out.join("records.jsonl")).map_or(0, |text| text.lines().count())
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |threads: &str| {
+        let out = folder.path().join(threads);
+        run(&out, &["--only", ROW, "--data-sets", "4", "--threads", threads]);
+        results(&out)
+    };
+    let one = of("1");
+    assert_eq!(one, of("2"));
+    assert_eq!(one, of("4"));
+    assert_eq!(one["experiments"][0]["rows"][0]["data_sets"], 4);
+}
+
+#[test]
+fn a_killed_run_goes_on_and_ends_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let (killed, whole) = (folder.path().join("killed"), folder.path().join("whole"));
+    let arguments = ["--only", ROW, "--data-sets", "12", "--threads", "1"];
+
+    let mut first = reproduce(&killed, &arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let started = Instant::now();
+    while lines(&killed) < 2 && started.elapsed() < Duration::from_secs(120) {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    first.kill().unwrap();
+    first.wait().unwrap();
+    let kept = lines(&killed);
+    assert!((2..12).contains(&kept), "killed with {kept} of 12 data sets finished");
+    assert!(!killed.join("results.json").exists());
+
+    let second = run(&killed, &arguments);
+    let said = String::from_utf8_lossy(&second.stderr).into_owned();
+    assert!(said.contains("of 12 data sets were finished by earlier runs"), "{said}");
+    run(&whole, &arguments);
+    assert_eq!(results(&killed), results(&whole));
+}
+
+#[test]
+fn one_row_alone_equals_that_row_among_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let (alone, among) = (folder.path().join("alone"), folder.path().join("among"));
+    run(&alone, &["--only", ROW, "--data-sets", "2"]);
+    run(&among, &["--only", &format!("table1/parabola-40x40-wide,{ROW}"), "--data-sets", "2"]);
+    let (alone, among) = (results(&alone), results(&among));
+    assert_eq!(alone["experiments"][0]["rows"][0], among["experiments"][0]["rows"][0]);
+    assert_eq!(among["experiments"][0]["rows"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn a_fresh_run_starts_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["--only", ROW, "--data-sets", "2"];
+    run(folder.path(), &arguments);
+    let before = results(folder.path());
+    let again = run(folder.path(), &arguments);
+    assert!(String::from_utf8_lossy(&again.stderr).contains("2 of 2 data sets were finished"));
+    let fresh = run(folder.path(), &["--only", ROW, "--data-sets", "2", "--fresh"]);
+    assert!(!String::from_utf8_lossy(&fresh.stderr).contains("were finished by earlier runs"));
+    assert_eq!(results(folder.path()), before);
+}
+
+#[test]
+fn the_form_is_the_documented_one() {
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), &["--only", ROW, "--data-sets", "2", "--seed", "5"]);
+    let results = results(folder.path());
+    assert_eq!((&results["schema"], &results["seed"], &results["quick"]), (&1.into(), &5.into(), &false.into()));
+    let row = &results["experiments"][0]["rows"][0];
+    assert_eq!((&row["id"], &row["failed"]), (&"parabola-40x40-narrow".into(), &0.into()));
+    for measure in ["potential_nmse", "alignment_nmse", "nupe", "ncpe", "disc"] {
+        let cell = &row["measures"][measure];
+        for key in ["mean", "sd", "median"] {
+            assert!(cell[key].is_number(), "{measure} {key}: {cell}");
+        }
+        let printed = measure != "alignment_nmse";
+        assert_eq!((cell["paper"].is_null(), cell["verdict"].is_null()), (!printed, !printed), "{measure}: {cell}");
+    }
+}
+
+#[test]
+fn an_unknown_name_says_where_the_known_ones_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = reproduce(folder.path(), &["--only", "table9"]).output().unwrap();
+    assert!(!output.status.success());
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("table9") && said.contains("--list"), "{said}");
+}
+
+#[test]
+fn the_list_names_every_row() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run(folder.path(), &["--list"]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    for name in ["table1:", "table1-literal:", "parabola-40x40-narrow", "sinusoidal-100x100-wide"] {
+        assert!(said.contains(name), "{said}");
+    }
+}
