@@ -19,11 +19,9 @@ impl Demonstrations {
         let expected = trajectories.first().ok_or(MotionError::Empty)?.n_states();
         match trajectories.iter().position(|trajectory| trajectory.n_states() != expected) {
             None => Ok(Demonstrations { trajectories }),
-            Some(trajectory) => Err(MotionError::Dimensions {
-                trajectory,
-                found: trajectories[trajectory].n_states(),
-                expected,
-            }),
+            Some(trajectory) => {
+                Err(MotionError::Dimensions { trajectory, found: trajectories[trajectory].n_states(), expected })
+            }
         }
     }
 
