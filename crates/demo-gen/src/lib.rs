@@ -1,1 +1,43 @@
-//! Simulated demonstrations under constraints, with the truth kept beside what is observed.
+//! Demonstrations made by simulation: a system that follows a known potential under constraints, with the truth kept
+//! beside what an observer sees.
+//!
+//! - [`Parabola`] (24), [`Sinusoidal`] (26): potentials φ; the demonstrated policy is π = −∇φ.
+//! - [`RollOut`]: follows u = N(x,t) π(x) (3) from one start and yields a [`Recording`].
+//! - [`Recording`]: `observed`, a trajectory, and [`Truth`], what only a judge may see.
+//! - [`demonstrations`]: the observed part of many recordings; a learner is given nothing else.
+//! - [`ToySystem`]: the paper's two-dimensional toy, many recordings from one generator.
+//! - [`with_position_noise`]: the same recordings through noisy eyes.
+//!
+//! ```
+//! use constraints::LinearConstraint;
+//! use demo_gen::{Parabola, RollOut, demonstrations};
+//! use nalgebra::{dmatrix, dvector};
+//!
+//! let potential = Parabola { weight: 0.05, centre: dvector![0.0, 0.0] };
+//! let constraint = LinearConstraint::new(dmatrix![1.0, 1.0])?;
+//! let roll_out = RollOut { time_step: 1.0, n_samples: 40, ..RollOut::default() };
+//! let recording = roll_out.record(&potential, &constraint, dvector![1.0, 0.0].as_view())?;
+//!
+//! // The constraint stops the system on the line x₁ + x₂ = 1, where it comes nearest to the centre.
+//! let last = recording.observed.state(39);
+//! assert!((last - dvector![0.5, 0.5]).norm() < 0.02);
+//! // The unconstrained policy would still go on to the centre.
+//! assert!((recording.truth.actions.column(39) + 0.1 * last).norm() < 1e-15);
+//! assert_eq!(demonstrations(&[recording])?.n_samples(), 40);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod error;
+mod instant;
+mod noise;
+mod potentials;
+mod recording;
+mod roll_out;
+mod toy;
+
+pub use error::{DemoGenError, Part, Quantity};
+pub use noise::with_position_noise;
+pub use potentials::{Parabola, Sinusoidal};
+pub use recording::{Recording, Truth, demonstrations};
+pub use roll_out::RollOut;
+pub use toy::{Redraw, ToyPotential, ToySystem};

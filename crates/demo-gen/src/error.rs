@@ -1,0 +1,125 @@
+use std::fmt;
+
+use constraints::ConstraintError;
+use motion::MotionError;
+use thiserror::Error;
+
+/// What must share the potential's state space.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// The start state.
+    Start,
+    /// The constraint.
+    Constraint,
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Part::Start => "start state",
+            Part::Constraint => "constraint",
+        })
+    }
+}
+
+/// What of a simulated system left the finite numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// The state x.
+    State,
+    /// The potential φ(x).
+    Potential,
+    /// The policy π(x).
+    Policy,
+    /// The velocity N π(x).
+    Velocity,
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Quantity::State => "state",
+            Quantity::Potential => "potential",
+            Quantity::Policy => "policy",
+            Quantity::Velocity => "velocity",
+        })
+    }
+}
+
+/// Why no demonstration could be made. All numbers count from 0.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum DemoGenError {
+    /// The time step is not a positive, finite number of seconds.
+    #[error("time step {time_step} s: it must be a positive, finite number of seconds between two samples")]
+    TimeStep {
+        /// The time step given, in seconds.
+        time_step: f64,
+    },
+    /// A movement needs two samples.
+    #[error("{n_samples} sample(s) asked for; a movement has at least 2")]
+    TooFewSamples {
+        /// The number asked for.
+        n_samples: usize,
+    },
+    /// A step cannot be made of no step.
+    #[error("0 sub-steps asked for; 1 is the plain Euler step")]
+    NoSubStep,
+    /// Potential, constraint and start do not live in one space.
+    #[error("the {part} has {found} dimensions, the potential {expected}; all must share one state space")]
+    Dimensions {
+        /// What differs from the potential.
+        part: Part,
+        /// Its number of dimensions.
+        found: usize,
+        /// The potential's number of dimensions.
+        expected: usize,
+    },
+    /// The movement left the finite numbers.
+    #[error(
+        "sample {sample}: the {quantity} is not finite; start inside the potential's domain, \
+         or take a smaller time step or more sub-steps"
+    )]
+    Diverged {
+        /// The first sample at fault.
+        sample: usize,
+        /// What is not finite there.
+        quantity: Quantity,
+    },
+    /// The constraint could not be evaluated.
+    #[error("constraint at sample {sample}: {source}")]
+    Constraint {
+        /// The sample at which, or on the way from which, it was evaluated.
+        sample: usize,
+        /// What is wrong with it.
+        source: ConstraintError,
+    },
+    /// No trajectory was asked for, or no recording given.
+    #[error("there is no trajectory; ask for or give at least one")]
+    NoTrajectory,
+    /// Some constraint would hold for no sample.
+    #[error("{redraw:?} with {n_samples} samples: each constraint must hold for at least one")]
+    Redraw {
+        /// The rule given.
+        redraw: crate::Redraw,
+        /// Samples of a trajectory.
+        n_samples: usize,
+    },
+    /// The noise is not a share.
+    #[error("noise share {share}: it must be a finite number, 0 or more, of each dimension's standard deviation")]
+    NoiseShare {
+        /// The share given.
+        share: f64,
+    },
+    /// One of several trajectories cannot be made.
+    #[error("trajectory {trajectory}: {source}")]
+    InTrajectory {
+        /// Which trajectory.
+        trajectory: usize,
+        /// What is wrong with it.
+        source: Box<DemoGenError>,
+    },
+    /// What was recorded is not a valid set of movements.
+    #[error(transparent)]
+    Motion(#[from] MotionError),
+}

@@ -1,0 +1,53 @@
+use motion::{MotionError, Trajectory};
+use nalgebra::{DMatrix, DVector};
+use rand::{Rng, RngExt};
+use rand_distr::StandardNormal;
+
+use crate::{DemoGenError, Recording};
+
+/// The same movements, seen through Gaussian noise: to each dimension of each true state is added noise of `share` times
+/// that dimension's standard deviation (divided by the number of samples) over all true states. Velocities stay as they
+/// were observed, and the truth stays true.
+///
+/// The generator is asked once for each number, trajectory after trajectory and sample after sample, whatever the share:
+/// the same seed gives the same noise, scaled.
+///
+/// # Errors
+/// [`DemoGenError::NoiseShare`], [`DemoGenError::NoTrajectory`], or [`DemoGenError::Motion`] when the recordings do not
+/// share one state space.
+pub fn with_position_noise<R: Rng + ?Sized>(
+    recordings: &[Recording],
+    share: f64,
+    rng: &mut R,
+) -> Result<Vec<Recording>, DemoGenError> {
+    if !(share.is_finite() && share >= 0.0) {
+        return Err(DemoGenError::NoiseShare { share });
+    }
+    let deviation = share * standard_deviation(recordings)?;
+    let noisy = recordings.iter().map(|recording| {
+        let states = &recording.truth.states;
+        let noise = DMatrix::from_fn(states.nrows(), states.ncols(), |dimension, _| {
+            deviation[dimension] * rng.sample::<f64, _>(StandardNormal)
+        });
+        let mut observed = Trajectory::new(states + noise, recording.observed.time_step())?;
+        if let Some(velocities) = recording.observed.velocities() {
+            observed = observed.with_velocities(velocities.clone())?;
+        }
+        Ok(Recording { observed, truth: recording.truth.clone() })
+    });
+    noisy.collect()
+}
+
+/// The standard deviation of each dimension over all true states of a data set, (n).
+fn standard_deviation(recordings: &[Recording]) -> Result<DVector<f64>, DemoGenError> {
+    let expected = recordings.first().ok_or(DemoGenError::NoTrajectory)?.truth.states.nrows();
+    let found = recordings.iter().map(|recording| recording.truth.states.nrows());
+    if let Some((trajectory, found)) = found.enumerate().find(|&(_, found)| found != expected) {
+        return Err(MotionError::Dimensions { trajectory, found, expected }.into());
+    }
+    let states = || recordings.iter().flat_map(|recording| recording.truth.states.column_iter());
+    let n_samples = states().count() as f64;
+    let mean = states().fold(DVector::zeros(expected), |sum, state| sum + state) / n_samples;
+    let squares = states().fold(DVector::zeros(expected), |sum, state| sum + (state - &mean).map(|d| d * d));
+    Ok((squares / n_samples).map(f64::sqrt))
+}

@@ -1,0 +1,56 @@
+use motion::Potential;
+use nalgebra::{DVector, DVectorView, DVectorViewMut};
+
+/// `φ(x) = w‖x − x_c‖²` (24): a bowl, whose policy `−2w(x − x_c)` goes straight to its centre.
+///
+/// The paper has w = 0.05 throughout.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parabola {
+    /// w, in 1/s.
+    pub weight: f64,
+    /// `x_c`, (n).
+    pub centre: DVector<f64>,
+}
+
+impl Potential for Parabola {
+    fn n_states(&self) -> usize {
+        self.centre.len()
+    }
+
+    fn value(&self, state: DVectorView<'_, f64>) -> f64 {
+        assert_eq!(state.len(), self.n_states(), "a state has the dimension of the potential");
+        let distances = state.iter().zip(&self.centre).map(|(x, centre)| x - centre);
+        self.weight * distances.map(|distance| distance * distance).sum::<f64>()
+    }
+
+    fn gradient_into(&self, state: DVectorView<'_, f64>, mut gradient: DVectorViewMut<'_, f64>) {
+        state.sub_to(&self.centre, &mut gradient);
+        gradient *= 2.0 * self.weight;
+    }
+}
+
+/// φ(x) = a sin(x₁) cos(x₂) (26) on the plane: hills, hollows and saddles without end.
+///
+/// The paper has a = 0.1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sinusoidal {
+    /// a, in units of the state squared per second.
+    pub amplitude: f64,
+}
+
+impl Potential for Sinusoidal {
+    fn n_states(&self) -> usize {
+        2
+    }
+
+    fn value(&self, state: DVectorView<'_, f64>) -> f64 {
+        assert_eq!(state.len(), 2, "the sinusoidal potential lives on the plane");
+        self.amplitude * state[0].sin() * state[1].cos()
+    }
+
+    fn gradient_into(&self, state: DVectorView<'_, f64>, mut gradient: DVectorViewMut<'_, f64>) {
+        assert_eq!((state.len(), gradient.len()), (2, 2), "the sinusoidal potential lives on the plane");
+        gradient[0] = self.amplitude * state[0].cos() * state[1].cos();
+        gradient[1] = -self.amplitude * state[0].sin() * state[1].sin();
+    }
+}

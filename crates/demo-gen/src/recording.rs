@@ -1,0 +1,33 @@
+use constraints::NullSpaceProjector;
+use motion::{Demonstrations, MotionError, Trajectory};
+use nalgebra::{DMatrix, DVector};
+
+/// One simulated movement: what is seen of it, and what is true of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// States and velocities as an observer records them, noise included.
+    pub observed: Trajectory,
+    /// What led to them. For judges only.
+    pub truth: Truth,
+}
+
+/// What an observer cannot see, at each of the N samples of a movement. Always free of noise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Truth {
+    /// The states `x_i`, (n, N).
+    pub states: DMatrix<f64>,
+    /// The potential `φ(x_i)`, (N).
+    pub potential: DVector<f64>,
+    /// The unconstrained policy `π(x_i) = −∇φ(x_i)`, (n, N), in units of the state per second.
+    pub actions: DMatrix<f64>,
+    /// The projectors `N(x_i, t_i)` (3) that held.
+    pub projectors: Vec<NullSpaceProjector>,
+}
+
+/// All that a learner is given: the observed part of the recordings, in their order.
+///
+/// # Errors
+/// [`MotionError::Empty`] or [`MotionError::Dimensions`].
+pub fn demonstrations(recordings: &[Recording]) -> Result<Demonstrations, MotionError> {
+    Demonstrations::new(recordings.iter().map(|recording| recording.observed.clone()).collect())
+}

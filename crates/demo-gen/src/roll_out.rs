@@ -1,0 +1,95 @@
+use constraints::PfaffianConstraint;
+use motion::Potential;
+use nalgebra::{DVector, DVectorView};
+
+use crate::instant::{Instant, System};
+use crate::{DemoGenError, Part, Recording};
+
+/// How a movement is simulated: x ← x + δt N(x,t) π(x), with π = −∇φ, from time 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RollOut {
+    /// Time δt between two samples, in seconds. Default 1.
+    pub time_step: f64,
+    /// Number of samples N, the start included. Default 40.
+    pub n_samples: usize,
+    /// Euler steps from one sample to the next. Default 1, the paper's plain Euler; more come nearer to the flow of the
+    /// policy in continuous time.
+    pub sub_steps: usize,
+}
+
+impl Default for RollOut {
+    fn default() -> Self {
+        RollOut { time_step: 1.0, n_samples: 40, sub_steps: 1 }
+    }
+}
+
+impl RollOut {
+    /// The movement from `start` (n): N states, and at each of them, the last included, the velocity
+    /// `u_i = N(x_i, t_i) π(x_i)`, with `t_i = i δt`.
+    ///
+    /// # Errors
+    /// [`DemoGenError::TimeStep`], [`DemoGenError::TooFewSamples`], [`DemoGenError::NoSubStep`],
+    /// [`DemoGenError::Dimensions`], [`DemoGenError::Constraint`], or [`DemoGenError::Diverged`] with the first sample
+    /// that is not finite.
+    pub fn record<P, C>(
+        &self,
+        potential: &P,
+        constraint: &C,
+        start: DVectorView<'_, f64>,
+    ) -> Result<Recording, DemoGenError>
+    where
+        P: Potential + ?Sized,
+        C: PfaffianConstraint + ?Sized,
+    {
+        self.check()?;
+        let expected = potential.n_states();
+        for (part, found) in [(Part::Start, start.len()), (Part::Constraint, constraint.n_states())] {
+            if found != expected {
+                return Err(DemoGenError::Dimensions { part, found, expected });
+            }
+        }
+
+        let system = System { potential, constraint };
+        let mut instants = vec![system.instant(start.into_owned(), 0.0, 0)?];
+        for sample in 1..self.n_samples {
+            let state = self.advance(&system, &instants[sample - 1], sample - 1)?;
+            instants.push(system.instant(state, self.time_step * sample as f64, sample)?);
+        }
+        Recording::of(instants, self.time_step)
+    }
+
+    /// The state one time step after `sample`.
+    fn advance<P, C>(
+        &self,
+        system: &System<'_, P, C>,
+        from: &Instant,
+        sample: usize,
+    ) -> Result<DVector<f64>, DemoGenError>
+    where
+        P: Potential + ?Sized,
+        C: PfaffianConstraint + ?Sized,
+    {
+        let step = self.time_step / self.sub_steps as f64;
+        let mut state = &from.state + step * &from.velocity;
+        for sub_step in 1..self.sub_steps {
+            let time = self.time_step * sample as f64 + step * sub_step as f64;
+            let between = system.instant(state, time, sample)?;
+            state = between.state + step * between.velocity;
+        }
+        Ok(state)
+    }
+
+    pub(crate) fn check(&self) -> Result<(), DemoGenError> {
+        let RollOut { time_step, n_samples, sub_steps } = *self;
+        if !(time_step.is_finite() && time_step > 0.0) {
+            return Err(DemoGenError::TimeStep { time_step });
+        }
+        if n_samples < 2 {
+            return Err(DemoGenError::TooFewSamples { n_samples });
+        }
+        if sub_steps == 0 {
+            return Err(DemoGenError::NoSubStep);
+        }
+        Ok(())
+    }
+}

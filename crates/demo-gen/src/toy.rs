@@ -1,0 +1,137 @@
+use constraints::{LinearConstraint, Switching};
+use motion::Potential;
+use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut};
+use rand::{Rng, RngExt};
+use rand_distr::StandardNormal;
+
+use crate::{DemoGenError, Parabola, Recording, RollOut, Sinusoidal};
+
+/// The potentials of the toy system.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ToyPotential {
+    /// (24)
+    Parabola(Parabola),
+    /// (26)
+    Sinusoidal(Sinusoidal),
+}
+
+impl ToyPotential {
+    /// The paper's parabola on the plane: w = 0.05, centre 0.
+    pub fn parabola() -> Self {
+        ToyPotential::Parabola(Parabola { weight: 0.05, centre: DVector::zeros(2) })
+    }
+
+    /// The paper's sinusoidal potential: a = 0.1.
+    pub fn sinusoidal() -> Self {
+        ToyPotential::Sinusoidal(Sinusoidal { amplitude: 0.1 })
+    }
+}
+
+impl Potential for ToyPotential {
+    fn n_states(&self) -> usize {
+        match self {
+            ToyPotential::Parabola(potential) => potential.n_states(),
+            ToyPotential::Sinusoidal(potential) => potential.n_states(),
+        }
+    }
+
+    fn value(&self, state: DVectorView<'_, f64>) -> f64 {
+        match self {
+            ToyPotential::Parabola(potential) => potential.value(state),
+            ToyPotential::Sinusoidal(potential) => potential.value(state),
+        }
+    }
+
+    fn gradient_into(&self, state: DVectorView<'_, f64>, gradient: DVectorViewMut<'_, f64>) {
+        match self {
+            ToyPotential::Parabola(potential) => potential.gradient_into(state, gradient),
+            ToyPotential::Sinusoidal(potential) => potential.gradient_into(state, gradient),
+        }
+    }
+}
+
+/// When a trajectory of the toy system gets a new constraint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Redraw {
+    /// At every so many samples, the first draw at sample 0.
+    Every(usize),
+    /// At the start of each of so many segments, which are as equal in length as whole samples allow.
+    Segments(usize),
+}
+
+impl Redraw {
+    /// The samples from which a new constraint holds.
+    fn first_samples(self, n_samples: usize) -> Result<Vec<usize>, DemoGenError> {
+        match self {
+            Redraw::Every(samples) if samples > 0 => Ok((0..n_samples).step_by(samples).collect()),
+            Redraw::Segments(segments) if (1..=n_samples).contains(&segments) => {
+                Ok((0..segments).map(|segment| segment * n_samples / segments).collect())
+            }
+            redraw => Err(DemoGenError::Redraw { redraw, n_samples }),
+        }
+    }
+}
+
+/// The toy system of Section 4.1: a point on the plane that follows a potential, each trajectory under random linear
+/// constraints αᵀu = 0, α ~ N(0, I₂), that change on the way (25).
+#[derive(Debug, Clone, PartialEq)]
+pub struct ToySystem {
+    /// φ. Default [`ToyPotential::parabola`].
+    pub potential: ToyPotential,
+    /// Number of trajectories K. Default 40.
+    pub n_trajectories: usize,
+    /// Samples of each trajectory, N, one second apart. Default 40.
+    pub n_samples: usize,
+    /// When the constraint changes. Default every 20 samples.
+    pub redraw: Redraw,
+}
+
+impl Default for ToySystem {
+    fn default() -> Self {
+        ToySystem { potential: ToyPotential::parabola(), n_trajectories: 40, n_samples: 40, redraw: Redraw::Every(20) }
+    }
+}
+
+impl ToySystem {
+    /// One data set: K movements from starts uniform in [−2, 2)².
+    ///
+    /// Trajectory after trajectory, the generator is asked for the start x₁, x₂ and then for the α of each constraint
+    /// in order of time, so that the same seed gives the same bits, and a longer data set begins like a shorter one.
+    ///
+    /// # Errors
+    /// [`DemoGenError::NoTrajectory`], [`DemoGenError::TooFewSamples`], [`DemoGenError::Redraw`], or
+    /// [`DemoGenError::InTrajectory`] with what [`RollOut::record`] says.
+    pub fn record<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<Recording>, DemoGenError> {
+        if self.n_trajectories == 0 {
+            return Err(DemoGenError::NoTrajectory);
+        }
+        let roll_out = RollOut { n_samples: self.n_samples, ..RollOut::default() };
+        roll_out.check()?;
+        let first_samples = self.redraw.first_samples(self.n_samples)?;
+        let recordings = (0..self.n_trajectories).map(|trajectory| {
+            self.record_one(&roll_out, &first_samples, rng)
+                .map_err(|source| DemoGenError::InTrajectory { trajectory, source: Box::new(source) })
+        });
+        recordings.collect()
+    }
+
+    fn record_one<R: Rng + ?Sized>(
+        &self,
+        roll_out: &RollOut,
+        first_samples: &[usize],
+        rng: &mut R,
+    ) -> Result<Recording, DemoGenError> {
+        let start = DVector::from_fn(2, |_, _| rng.random_range(-2.0..2.0));
+        let phases = first_samples.iter().map(|&sample| {
+            let alpha = DMatrix::from_fn(1, 2, |_, _| rng.sample(StandardNormal));
+            let constraint = LinearConstraint::new(alpha);
+            Ok((
+                roll_out.time_step * sample as f64,
+                constraint.map_err(|source| DemoGenError::Constraint { sample, source })?,
+            ))
+        });
+        let phases = phases.collect::<Result<_, DemoGenError>>()?;
+        let constraint = Switching::new(phases).map_err(|source| DemoGenError::Constraint { sample: 0, source })?;
+        roll_out.record(&self.potential, &constraint, start.as_view())
+    }
+}
