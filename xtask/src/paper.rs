@@ -23,3 +23,11 @@ pub(crate) type PaperTable = BTreeMap<String, BTreeMap<Measure, Printed>>;
 pub(crate) fn paper_table(text: &str) -> anyhow::Result<PaperTable> {
     toml::from_str(text).context("the paper's figures (xtask/paper/*.toml) cannot be read")
 }
+
+/// Sentences on single cells, by row and measure.
+pub(crate) type Explanations = BTreeMap<String, BTreeMap<Measure, String>>;
+
+/// Reads why single cells stand out, from one of the files in `xtask/paper`.
+pub(crate) fn explanations(text: &str) -> anyhow::Result<Explanations> {
+    toml::from_str(text).context("the explanations (xtask/paper/*-explained.toml) cannot be read")
+}

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use rand_chacha::ChaCha8Rng;
 
 use crate::measure::Measure;
-use crate::paper::Printed;
+use crate::paper::{Explanations, Printed};
 
 /// A table or figure: a list of rows, each measured on independent data sets.
 pub(crate) struct Experiment {
@@ -27,9 +27,6 @@ pub(crate) struct Experiment {
     /// Why single cells stand out, by row and measure: `xtask/paper/*.toml`.
     pub(crate) explanations: Explanations,
 }
-
-/// Sentences on single cells, by row and measure.
-pub(crate) type Explanations = BTreeMap<String, BTreeMap<Measure, String>>;
 
 impl Experiment {
     /// Why a cell stands out, if that is known.

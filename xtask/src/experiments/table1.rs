@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use super::scoring::score;
 use super::{Experiment, Row, Trial};
 use crate::measure::Measure;
-use crate::paper::paper_table;
+use crate::paper::{explanations, paper_table};
 
 /// Share of the kept samples that is held out for testing.
 const HELD_OUT: f64 = 0.1;
@@ -25,6 +25,7 @@ pub(crate) fn table1() -> anyhow::Result<Experiment> {
         remark: "The constraint is drawn anew every 20 samples, two draws at 40 samples and five at 100, which makes the printed discard \
                  rates come out. Regression, the same in all rows: init_D 10, w_gen .5, penalty 1e-5, adaptive diagonal metric, 10 passes.",
         rows: rows(Redraw::Every(20), 0)?,
+        explanations: explanations(include_str!("../../paper/table1-explained.toml"))?,
     })
 }
 
@@ -37,18 +38,19 @@ pub(crate) fn table1_literal() -> anyhow::Result<Experiment> {
         data_sets: 100,
         remark: "As Table 1, but the constraint is \"re-sampled twice\" during each movement to the letter: three segments of equal length.",
         rows: rows(Redraw::Segments(3), 100)?,
+        explanations: explanations(include_str!("../../paper/table1-literal-explained.toml"))?,
     })
 }
 
 fn rows(redraw: Redraw, first_system: u32) -> anyhow::Result<Vec<Row>> {
     let mut paper = paper_table(include_str!("../../paper/table1.toml"))?;
-    let setups = [("parabola", 40, ToyPotential::PARABOLA), ("sinusoidal", 40, ToyPotential::SINUSOIDAL), ("sinusoidal", 100, ToyPotential::SINUSOIDAL)];
+    let setups = [("parabola", 40, ToyPotential::parabola()), ("sinusoidal", 40, ToyPotential::sinusoidal()), ("sinusoidal", 100, ToyPotential::sinusoidal())];
     let bandwidths = [("narrow", Bandwidth::Narrow), ("medium", Bandwidth::Medium), ("wide", Bandwidth::Wide)];
     let mut rows = Vec::new();
     for (number, (name, size, potential)) in (first_system..).zip(setups) {
         for (bandwidth_name, bandwidth) in bandwidths {
             let id = format!("{name}-{size}x{size}-{bandwidth_name}");
-            let system = ToySystem { potential, n_trajectories: size, n_samples: size, redraw };
+            let system = ToySystem { potential: potential.clone(), n_trajectories: size, n_samples: size, redraw };
             let paper = paper.remove(&id).unwrap_or_default();
             rows.push(Row { id, paper, trial: Box::new(ToyTrial { number, system, bandwidth }) });
         }
