@@ -1,1 +1,28 @@
 //! Locally weighted projection regression.
+
+// Code under `pulp::Arch::dispatch` is compiled for the processor at hand only where it is inlined.
+#![allow(clippy::inline_always)]
+// Several rows run in step, and lanes are numbered.
+#![allow(clippy::needless_range_loop)]
+
+mod activation;
+mod error;
+mod field;
+mod kernel;
+mod local_model;
+mod metric;
+mod model;
+mod params;
+mod predictor;
+mod receptive_field;
+mod regression;
+mod settings;
+mod sub_model;
+mod vector;
+
+pub use error::{LwprError, Side};
+pub use kernel::Kernel;
+pub use model::Lwpr;
+pub use params::{LwprParams, Metric, MetricAdaptation, Pruning};
+pub use predictor::{Prediction, Predictor};
+pub use receptive_field::ReceptiveField;

@@ -1,0 +1,148 @@
+use thiserror::Error;
+
+/// Which numbers of a call an error speaks of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// The inputs x.
+    Input,
+    /// The targets y.
+    Output,
+}
+
+impl std::fmt::Display for Side {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Side::Input => "input",
+            Side::Output => "output",
+        })
+    }
+}
+
+/// Why a model cannot be built, trained, asked or read back. All numbers count from 0.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum LwprError {
+    /// A model needs at least one input and one output.
+    #[error("a model of {n_in} input(s) and {n_out} output(s): at least one of each is needed")]
+    NoDimension {
+        /// Number of inputs asked for.
+        n_in: usize,
+        /// Number of outputs asked for.
+        n_out: usize,
+    },
+    /// A parameter is outside its range.
+    #[error("parameter {name} is {value}: it must be {range}")]
+    Parameter {
+        /// Name of the field of [`LwprParams`](crate::LwprParams).
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// What is allowed, in words.
+        range: &'static str,
+    },
+    /// `init_metric` does not have one row and one column for each input.
+    #[error("init_metric has shape ({}, {}), the model has {n_in} input(s): give a square matrix, one row an input", shape.0, shape.1)]
+    MetricShape {
+        /// Rows and columns given.
+        shape: (usize, usize),
+        /// Number of inputs.
+        n_in: usize,
+    },
+    /// `init_metric` is not symmetric.
+    #[error("init_metric is not symmetric: element ({row}, {column}) differs from ({column}, {row}); use (D + Dᵀ)/2")]
+    MetricAsymmetric {
+        /// Row of the worst element.
+        row: usize,
+        /// Column of the worst element.
+        column: usize,
+    },
+    /// `init_metric` is not positive definite, so that some direction would have no finite width.
+    #[error("init_metric is not positive definite (or not finite); all its eigenvalues must be positive")]
+    MetricNotPositiveDefinite,
+    /// `init_metric` has an off-diagonal element, but the diagonal mode would never adapt it.
+    #[error(
+        "init_metric has {value} at ({row}, {column}), which a diagonal metric cannot hold; choose Metric::Full or drop it"
+    )]
+    MetricNotDiagonal {
+        /// Row of the element.
+        row: usize,
+        /// Column of the element.
+        column: usize,
+        /// The element.
+        value: f64,
+    },
+    /// `norm_in` or `norm_out` has not one element for each dimension.
+    #[error("the norm of the {side}s has {found} element(s), the model {expected} {side}(s)")]
+    NormLength {
+        /// Inputs or outputs.
+        side: Side,
+        /// Elements given.
+        found: usize,
+        /// Elements needed.
+        expected: usize,
+    },
+    /// A norm is not a positive finite number.
+    #[error("the norm of {side} {dimension} is {value}: it must be positive and finite (a typical size or spread)")]
+    Norm {
+        /// Inputs or outputs.
+        side: Side,
+        /// Which element.
+        dimension: usize,
+        /// The value given.
+        value: f64,
+    },
+    /// A vector or matrix has not one row for each dimension.
+    #[error("the {side}s have {found} dimension(s), the model {expected}; samples are columns")]
+    Dimension {
+        /// Inputs or outputs.
+        side: Side,
+        /// Rows given.
+        found: usize,
+        /// Rows needed.
+        expected: usize,
+    },
+    /// A value is NaN or infinite, or so large against its norm (over 1e50) that its powers would be.
+    #[error(
+        "{side} {dimension} of sample {sample} is {value}: not finite, or over 1e50 times its norm; mend or drop the sample"
+    )]
+    BadValue {
+        /// Inputs or outputs.
+        side: Side,
+        /// Column of the value; 0 for a single sample.
+        sample: usize,
+        /// Row of the value.
+        dimension: usize,
+        /// The value itself.
+        value: f64,
+    },
+    /// Inputs and targets do not come in pairs.
+    #[error("{inputs} input sample(s) but {outputs} target(s): give one target a sample")]
+    SampleCount {
+        /// Columns of the inputs.
+        inputs: usize,
+        /// Columns of the targets.
+        outputs: usize,
+    },
+    /// A batch has no sample.
+    #[error("the batch has no sample (0 columns)")]
+    EmptyBatch,
+    /// A sample needs a new receptive field, but there are `max_receptive_fields` already.
+    #[error(
+        "sample {sample} needs another receptive field for output {output}, which has its {limit} already: \
+         widen the fields (smaller init_d or w_gen) or raise max_receptive_fields; the model is unchanged"
+    )]
+    TooManyReceptiveFields {
+        /// Column of the sample (in the order given; 0 for a single one).
+        sample: usize,
+        /// Which output.
+        output: usize,
+        /// The limit.
+        limit: usize,
+    },
+    /// A serialised model or predictor is not consistent.
+    #[error("the stored model is not consistent: {reason}")]
+    Corrupt {
+        /// What is wrong with it.
+        reason: String,
+    },
+}

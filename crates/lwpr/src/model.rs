@@ -1,0 +1,234 @@
+use nalgebra::{DMatrix, DVectorView};
+use rand::Rng;
+use rand::seq::SliceRandom;
+
+use crate::error::Side;
+use crate::settings::Settings;
+use crate::sub_model::{Reach, SubModel, Workspace};
+use crate::{LwprError, LwprParams, Predictor, ReceptiveField};
+
+/// A model that learns; make one with [`LwprParams::build`].
+#[derive(Debug, Clone)]
+pub struct Lwpr {
+    pub(crate) settings: Settings,
+    pub(crate) outputs: Vec<SubModel>,
+    pub(crate) inputs: InputStatistics,
+    online: Online,
+}
+
+/// Running mean and variance of the raw inputs; for information only.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct InputStatistics {
+    pub(crate) n_data: usize,
+    pub(crate) mean: Vec<f64>,
+    pub(crate) variance: Vec<f64>,
+}
+
+/// What a single update works in, kept so that it allocates nothing.
+#[derive(Debug, Clone)]
+struct Online {
+    x: Vec<f64>,
+    workspace: Workspace,
+    reach: Vec<Reach>,
+}
+
+impl InputStatistics {
+    pub(crate) fn see(&mut self, x: &[f64]) {
+        let n = self.n_data as f64;
+        self.n_data += 1;
+        for ((mean, variance), x) in self.mean.iter_mut().zip(&mut self.variance).zip(x) {
+            *mean = (n * *mean + x) / (n + 1.0);
+            *variance = (n * *variance + (x - *mean) * (x - *mean)) / (n + 1.0);
+        }
+    }
+}
+
+impl Lwpr {
+    pub(crate) fn new(settings: Settings) -> Self {
+        let (n_in, n_out) = (settings.n_in, settings.n_out);
+        let inputs = InputStatistics { n_data: 0, mean: vec![0.0; n_in], variance: vec![0.0; n_in] };
+        Self::from_parts(settings, vec![SubModel::default(); n_out], inputs)
+    }
+
+    pub(crate) fn from_parts(settings: Settings, outputs: Vec<SubModel>, inputs: InputStatistics) -> Self {
+        let online = Online {
+            x: vec![0.0; settings.width],
+            workspace: Workspace::new(&settings),
+            reach: vec![Reach::default(); settings.n_out],
+        };
+        Lwpr { settings, outputs, inputs, online }
+    }
+
+    /// Learns from one sample x (`n_in`), y (`n_out`). Allocates nothing, except when a receptive field is born or
+    /// grows by a projection.
+    ///
+    /// # Errors
+    /// [`LwprError::Dimension`], [`LwprError::BadValue`] or [`LwprError::TooManyReceptiveFields`]; the model is then
+    /// unchanged.
+    pub fn update(&mut self, x: DVectorView<'_, f64>, y: DVectorView<'_, f64>) -> Result<(), LwprError> {
+        let (x, y) = (x.as_slice(), y.as_slice());
+        self.settings.check(x, Side::Input, 0)?;
+        self.settings.check(y, Side::Output, 0)?;
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || self.update_checked(x, y),
+        )
+    }
+
+    #[inline(always)]
+    fn update_checked(&mut self, x: &[f64], y: &[f64]) -> Result<(), LwprError> {
+        let Lwpr { settings, outputs, inputs, online } = self;
+        let width = settings.width;
+        for ((normalised, x), norm) in online.x.iter_mut().zip(x).zip(&settings.norm_in) {
+            *normalised = x / norm;
+        }
+        let limit = settings.params.max_receptive_fields.unwrap_or(usize::MAX);
+        for (k, (sub_model, reach)) in outputs.iter().zip(&mut online.reach).enumerate() {
+            sub_model.activate(settings, width, &online.x, &mut online.workspace, reach);
+            if reach.strongest.asks_for_field(settings) && sub_model.fields.len() >= limit {
+                return Err(LwprError::TooManyReceptiveFields { sample: 0, output: k, limit });
+            }
+        }
+        for (k, sub_model) in outputs.iter_mut().enumerate() {
+            let y = y[k] / settings.norm_out[k];
+            sub_model.learn(settings, width, &online.x, y, &mut online.workspace, &online.reach[k]);
+        }
+        inputs.see(x);
+        Ok(())
+    }
+
+    /// Learns from all columns of `xs` (`n_in`, N) and `ys` (`n_out`, N) in the order given, `passes` times; the same,
+    /// bit for bit, as as many calls of [`update`](Self::update).
+    ///
+    /// # Errors
+    /// [`LwprError::EmptyBatch`], [`LwprError::SampleCount`], [`LwprError::Dimension`], [`LwprError::BadValue`] or
+    /// [`LwprError::TooManyReceptiveFields`]; the model is then unchanged.
+    pub fn fit_in_order(&mut self, xs: &DMatrix<f64>, ys: &DMatrix<f64>, passes: usize) -> Result<(), LwprError> {
+        self.check_batch(xs, ys)?;
+        let order: Vec<usize> = (0..xs.ncols()).collect();
+        self.fit(xs, ys, (0..passes).map(|_| order.clone()))
+    }
+
+    /// Learns from all columns of `xs` (`n_in`, N) and `ys` (`n_out`, N) in a fresh random order each pass.
+    ///
+    /// # Errors
+    /// As [`fit_in_order`](Self::fit_in_order).
+    pub fn fit_batch(
+        &mut self,
+        xs: &DMatrix<f64>,
+        ys: &DMatrix<f64>,
+        passes: usize,
+        rng: &mut impl Rng,
+    ) -> Result<(), LwprError> {
+        self.check_batch(xs, ys)?;
+        let mut order: Vec<usize> = (0..xs.ncols()).collect();
+        self.fit(
+            xs,
+            ys,
+            (0..passes).map(|_| {
+                order.shuffle(rng);
+                order.clone()
+            }),
+        )
+    }
+
+    fn fit(
+        &mut self,
+        xs: &DMatrix<f64>,
+        ys: &DMatrix<f64>,
+        orders: impl Iterator<Item = Vec<usize>>,
+    ) -> Result<(), LwprError> {
+        let before = self.settings.params.max_receptive_fields.map(|_| self.clone());
+        for order in orders {
+            for sample in order {
+                let result = self.update(xs.column(sample).as_view(), ys.column(sample).as_view());
+                if let Err(error) = result {
+                    if let Some(before) = before {
+                        *self = before;
+                    }
+                    return Err(match error {
+                        LwprError::TooManyReceptiveFields { output, limit, .. } => {
+                            LwprError::TooManyReceptiveFields { sample, output, limit }
+                        }
+                        other => other,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn check_batch(&self, xs: &DMatrix<f64>, ys: &DMatrix<f64>) -> Result<(), LwprError> {
+        if xs.ncols() != ys.ncols() {
+            return Err(LwprError::SampleCount { inputs: xs.ncols(), outputs: ys.ncols() });
+        }
+        if xs.ncols() == 0 {
+            return Err(LwprError::EmptyBatch);
+        }
+        for (sample, (x, y)) in xs.column_iter().zip(ys.column_iter()).enumerate() {
+            self.settings.check(x.as_slice(), Side::Input, sample)?;
+            self.settings.check(y.as_slice(), Side::Output, sample)?;
+        }
+        Ok(())
+    }
+
+    /// An immutable snapshot that predicts. Fields whose activation is at most `cutoff` do not take part: 0.001 is a
+    /// good choice, 0 uses every field however far.
+    pub fn predictor(&self, cutoff: f64) -> Predictor {
+        Predictor::new(self, cutoff)
+    }
+
+    /// The parameters, as given.
+    pub fn params(&self) -> &LwprParams {
+        &self.settings.params
+    }
+
+    /// Number of inputs.
+    pub fn n_in(&self) -> usize {
+        self.settings.n_in
+    }
+
+    /// Number of outputs.
+    pub fn n_out(&self) -> usize {
+        self.settings.n_out
+    }
+
+    /// How many samples have been learnt.
+    pub fn n_data(&self) -> usize {
+        self.inputs.n_data
+    }
+
+    /// Mean of the inputs so far (`n_in`), in their own units.
+    pub fn input_mean(&self) -> &[f64] {
+        &self.inputs.mean
+    }
+
+    /// Running variance of the inputs so far (`n_in`), in their own units squared.
+    pub fn input_variance(&self) -> &[f64] {
+        &self.inputs.variance
+    }
+
+    /// How many receptive fields `output` has.
+    ///
+    /// # Panics
+    /// If there is no such output.
+    pub fn n_receptive_fields(&self, output: usize) -> usize {
+        self.outputs[output].fields.len()
+    }
+
+    /// How many receptive fields of `output` were removed by pruning.
+    ///
+    /// # Panics
+    /// If there is no such output.
+    pub fn n_pruned(&self, output: usize) -> usize {
+        self.outputs[output].n_pruned
+    }
+
+    /// The receptive fields of `output`.
+    ///
+    /// # Panics
+    /// If there is no such output.
+    pub fn receptive_fields(&self, output: usize) -> impl ExactSizeIterator<Item = ReceptiveField<'_>> {
+        self.outputs[output].fields.iter().map(|field| ReceptiveField::new(field, &self.settings))
+    }
+}

@@ -1,0 +1,167 @@
+use nalgebra::{DMatrix, DVector};
+
+use crate::error::Side;
+use crate::{LwprError, LwprParams, Metric, MetricAdaptation};
+
+/// Activation below which a field does not learn from a sample.
+pub(crate) const TRAINING_FLOOR: f64 = 0.001;
+
+/// Normalised values above this are refused: fourth powers must stay finite.
+const LARGEST: f64 = 1e50;
+
+/// Checked parameters and what follows from them.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Settings {
+    pub(crate) params: LwprParams,
+    pub(crate) n_in: usize,
+    pub(crate) n_out: usize,
+    /// Length of a row of state: `n_in` padded for vector instructions.
+    pub(crate) width: usize,
+    pub(crate) norm_in: Vec<f64>,
+    pub(crate) norm_out: Vec<f64>,
+    /// M with D = MᵀM: its diagonal (one row), or its columns (`n_in` rows).
+    pub(crate) init_m: Vec<f64>,
+    /// Squared distance beyond which a field matters neither for learning nor for making fields.
+    pub(crate) reach: f64,
+}
+
+impl Settings {
+    pub(crate) fn new(params: LwprParams, n_in: usize, n_out: usize) -> Result<Self, LwprError> {
+        if n_in == 0 || n_out == 0 {
+            return Err(LwprError::NoDimension { n_in, n_out });
+        }
+        check_scalars(&params)?;
+        let width = padded(n_in);
+        let init_m = match &params.init_metric {
+            Some(metric) => factor(metric, params.metric, width, n_in)?,
+            None => isotropic(params.init_d, params.metric, width, n_in),
+        };
+        Ok(Settings {
+            norm_in: norm(params.norm_in.as_ref(), n_in, Side::Input)?,
+            norm_out: norm(params.norm_out.as_ref(), n_out, Side::Output)?,
+            reach: params.kernel.reach(TRAINING_FLOOR.min(0.1 * params.w_gen)),
+            params,
+            n_in,
+            n_out,
+            width,
+            init_m,
+        })
+    }
+
+    /// Whether learning rates are learnt too.
+    pub(crate) fn meta(&self) -> bool {
+        matches!(self.params.adaptation, MetricAdaptation::Meta { .. })
+    }
+
+    /// Number of rows that M takes.
+    pub(crate) fn metric_rows(&self) -> usize {
+        match self.params.metric {
+            Metric::Diagonal => 1,
+            Metric::Full => self.n_in,
+        }
+    }
+
+    /// Refuses what is not finite, or so large that its powers would not be.
+    pub(crate) fn check(&self, values: &[f64], side: Side, sample: usize) -> Result<(), LwprError> {
+        let norm = match side {
+            Side::Input => &self.norm_in,
+            Side::Output => &self.norm_out,
+        };
+        if values.len() != norm.len() {
+            return Err(LwprError::Dimension { side, found: values.len(), expected: norm.len() });
+        }
+        match values.iter().zip(norm).position(|(value, norm)| !is_usable(value / norm)) {
+            None => Ok(()),
+            Some(dimension) => Err(LwprError::BadValue { side, sample, dimension, value: values[dimension] }),
+        }
+    }
+}
+
+/// Whether a normalised value is finite and its powers will be.
+fn is_usable(value: f64) -> bool {
+    value.abs() <= LARGEST
+}
+
+/// `n` rounded up so that rows fill whole vector registers without wasting many lanes.
+pub(crate) fn padded(n: usize) -> usize {
+    if n <= 8 { n.next_power_of_two() } else { n.next_multiple_of(8) }
+}
+
+fn check_scalars(p: &LwprParams) -> Result<(), LwprError> {
+    let positive = |v: f64| v > 0.0 && v.is_finite();
+    let non_negative = |v: f64| v >= 0.0 && v.is_finite();
+    let unit = |v: f64| v > 0.0 && v <= 1.0;
+    let rate = match p.adaptation {
+        MetricAdaptation::Meta { rate } => rate,
+        MetricAdaptation::Fixed | MetricAdaptation::Gradient => 0.0,
+    };
+    let limit = p.max_receptive_fields.map_or(1.0, |limit| limit as f64);
+    let checks = [
+        ("init_d", p.init_d, positive(p.init_d), "positive and finite"),
+        ("init_alpha", p.init_alpha, non_negative(p.init_alpha), "finite and not negative"),
+        ("adaptation.rate", rate, non_negative(rate), "finite and not negative"),
+        ("penalty", p.penalty, non_negative(p.penalty), "finite and not negative"),
+        ("w_gen", p.w_gen, p.w_gen > 0.0 && p.w_gen < 1.0, "between 0 and 1, both excluded"),
+        ("w_prune", p.w_prune, unit(p.w_prune), "in (0, 1]"),
+        ("init_lambda", p.init_lambda, unit(p.init_lambda), "in (0, 1]"),
+        ("final_lambda", p.final_lambda, unit(p.final_lambda), "in (0, 1]"),
+        ("tau_lambda", p.tau_lambda, unit(p.tau_lambda), "in (0, 1]"),
+        ("add_threshold", p.add_threshold, non_negative(p.add_threshold), "finite and not negative"),
+        ("init_s2", p.init_s2, positive(p.init_s2), "positive and finite"),
+        ("max_receptive_fields", limit, limit >= 1.0, "at least 1"),
+    ];
+    match checks.into_iter().find(|(_, _, fine, _)| !fine) {
+        None => Ok(()),
+        Some((name, value, _, range)) => Err(LwprError::Parameter { name, value, range }),
+    }
+}
+
+fn norm(given: Option<&DVector<f64>>, n: usize, side: Side) -> Result<Vec<f64>, LwprError> {
+    let Some(norm) = given else { return Ok(vec![1.0; n]) };
+    if norm.len() != n {
+        return Err(LwprError::NormLength { side, found: norm.len(), expected: n });
+    }
+    match norm.iter().position(|&value| !(value > 0.0 && value.is_finite())) {
+        None => Ok(norm.iter().copied().collect()),
+        Some(dimension) => Err(LwprError::Norm { side, dimension, value: norm[dimension] }),
+    }
+}
+
+fn isotropic(d: f64, metric: Metric, width: usize, n: usize) -> Vec<f64> {
+    let mut m = vec![0.0; width * if metric == Metric::Full { n } else { 1 }];
+    for i in 0..n {
+        let row = if metric == Metric::Full { i } else { 0 };
+        m[row * width + i] = d.sqrt();
+    }
+    m
+}
+
+/// The upper factor M of D = MᵀM, in rows as the fields hold it.
+fn factor(metric: &DMatrix<f64>, shape: Metric, width: usize, n: usize) -> Result<Vec<f64>, LwprError> {
+    if metric.shape() != (n, n) {
+        return Err(LwprError::MetricShape { shape: metric.shape(), n_in: n });
+    }
+    if !metric.iter().all(|value| value.is_finite()) {
+        return Err(LwprError::MetricNotPositiveDefinite);
+    }
+    let largest = metric.amax();
+    for column in 0..n {
+        for row in 0..column {
+            if (metric[(row, column)] - metric[(column, row)]).abs() > 1e-12 * largest {
+                return Err(LwprError::MetricAsymmetric { row, column });
+            }
+            if shape == Metric::Diagonal && metric[(row, column)] != 0.0 {
+                return Err(LwprError::MetricNotDiagonal { row, column, value: metric[(row, column)] });
+            }
+        }
+    }
+    let lower = metric.clone().cholesky().ok_or(LwprError::MetricNotPositiveDefinite)?.unpack();
+    let mut m = vec![0.0; width * if shape == Metric::Full { n } else { 1 }];
+    for column in 0..n {
+        match shape {
+            Metric::Diagonal => m[column] = lower[(column, column)],
+            Metric::Full => (0..=column).for_each(|row| m[column * width + row] = lower[(column, row)]),
+        }
+    }
+    Ok(m)
+}
