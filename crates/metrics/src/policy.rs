@@ -9,8 +9,8 @@ use crate::{MetricsError, Series};
 /// covariance (divided by N) of the true policy over these states.
 ///
 /// # Errors
-/// [`MetricsError::Shape`], [`MetricsError::Empty`], [`MetricsError::NotFinite`], or [`MetricsError::ConstantTruth`]
-/// when σ is at most 1e-12 of the policy's root mean square.
+/// [`MetricsError::Shape`], [`MetricsError::Empty`], [`MetricsError::NotFinite`], [`MetricsError::Overflow`], or
+/// [`MetricsError::ConstantTruth`] when σ is at most 1e-12 of the policy's root mean square.
 pub fn nupe(truth: &DMatrix<f64>, learnt: &DMatrix<f64>) -> Result<f64, MetricsError> {
     ncpe(truth, learnt, |_sample, _difference| {})
 }
@@ -18,8 +18,8 @@ pub fn nupe(truth: &DMatrix<f64>, learnt: &DMatrix<f64>) -> Result<f64, MetricsE
 /// Normalised constrained policy error (A2): `Σ_n ‖N_n (π_n − π̂_n)‖² / (N σ²_π)`, with σ² as in [`nupe`]: of the true
 /// policy without any constraint.
 ///
-/// `project(sample, difference)` replaces a vector (n) by its projection through the constraint at that sample; it is
-/// called once for each sample, in order.
+/// `project(sample, difference)` replaces a vector (n) by its projection through the constraint at that sample. It is called
+/// once for each sample, in order, and must be linear: the difference comes in units of the largest true value.
 ///
 /// # Errors
 /// As [`nupe`], and [`MetricsError::NotFinite`] for what `project` leaves.

@@ -9,14 +9,13 @@ use crate::spread::{representable, spread};
 /// `truth` φ and `learnt` f hold the potentials at N test states. `σ²_φ` is the variance (divided by N) of φ over them.
 ///
 /// # Errors
-/// [`MetricsError::Shape`], [`MetricsError::Empty`], [`MetricsError::NotFinite`], or [`MetricsError::ConstantTruth`]
-/// when σ is at most 1e-12 of the potential's root mean square.
+/// [`MetricsError::Shape`], [`MetricsError::Empty`], [`MetricsError::NotFinite`], [`MetricsError::Overflow`], or
+/// [`MetricsError::ConstantTruth`] when σ is at most 1e-12 of the potential's root mean square.
 pub fn potential_nmse(truth: &DVector<f64>, learnt: &DVector<f64>) -> Result<f64, MetricsError> {
     let n_samples = truth.len();
     let spread = spread(one_row(truth), one_row(learnt))?;
     let difference = learnt.zip_map(truth, |f, phi| f / spread.unit - phi / spread.unit);
-    let first = difference.mean();
-    let offset = first + difference.map(|d| d - first).mean();
+    let offset = difference.mean();
     let squares = difference.map(|d| (d - offset).powi(2));
     representable(squares.sum() / (n_samples as f64 * spread.variance))
 }
