@@ -1,1 +1,57 @@
 //! Forward kinematics, Jacobians and self-collision of robots described by URDF.
+//!
+//! Conventions, everywhere: poses are in the root link's frame; metres and radians; Jacobian rows are vx vy vz wx wy
+//! wz at the frame's origin, in root axes; configurations and columns follow the active joints in document order. No
+//! call allocates after the first with a [`Workspace`].
+//!
+//! ```
+//! use kinematics::{RobotModel, Workspace};
+//! use nalgebra::{DVector, Matrix6xX};
+//!
+//! let robot = RobotModel::from_urdf(
+//!     r#"<robot name="door"><link name="frame"/><link name="leaf"/><link name="handle"/>
+//!          <joint name="hinge" type="revolute"><parent link="frame"/><child link="leaf"/>
+//!            <axis xyz="0 0 1"/><limit lower="0" upper="1.6"/></joint>
+//!          <joint name="screw" type="fixed"><parent link="leaf"/><child link="handle"/>
+//!            <origin xyz="0.8 0 1"/></joint></robot>"#,
+//! )?;
+//! let handle = robot.link("handle")?;
+//! let mut workspace = Workspace::new();
+//! let q = DVector::from_element(robot.n_joints(), std::f64::consts::FRAC_PI_2);
+//! let poses = robot.forward_kinematics(q.as_view(), &mut workspace)?;
+//! assert!((poses.position(handle).y - 0.8).abs() < 1e-15);
+//!
+//! let mut jacobian = Matrix6xX::zeros(robot.n_joints());
+//! poses.jacobian(handle, &mut jacobian)?;
+//! assert!((jacobian[(0, 0)] + 0.8).abs() < 1e-15);
+//! # Ok::<(), kinematics::KinematicsError>(())
+//! ```
+//!
+//! Where to look: `urdf` text to tags, `tree` and `mimic` tags to a model, `node` and `workspace` the motion of
+//! one link and of all, `jacobian`, `chain` and `forward` what is asked, `sin_cos` the vector trigonometry.
+
+#![allow(clippy::inline_always, reason = "vector dispatch compiles for a newer machine only what is inlined into it")]
+
+mod build;
+mod chain;
+mod error;
+mod forward;
+mod jacobian;
+mod joint;
+mod mimic;
+mod model;
+mod names;
+mod node;
+mod placement;
+mod sin_cos;
+mod tree;
+mod urdf;
+mod workspace;
+
+pub use chain::Chain;
+pub use error::KinematicsError;
+pub use forward::LinkPoses;
+pub use joint::Joint;
+pub use model::{LinkId, RobotModel};
+pub use urdf::{Element, JointKind, UrdfProblem, UrdfWarning};
+pub use workspace::Workspace;

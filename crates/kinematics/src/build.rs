@@ -1,0 +1,78 @@
+use nalgebra::IsometryMatrix3;
+
+use crate::{
+    Joint, JointKind, KinematicsError, RobotModel,
+    mimic::{self, is_active},
+    node::{Motion, Node},
+    placement::lanes,
+    tree,
+    urdf::{self, Freedom, UrdfJoint, UrdfRobot},
+    workspace::Motor,
+};
+
+impl RobotModel {
+    /// Builds a robot from the text of a URDF, version 1.0, 1.1 or 1.2. Tags that say nothing about kinematics are
+    /// passed over, whatever is in them.
+    ///
+    /// # Errors
+    /// [`KinematicsError::NotXml`], or [`KinematicsError::Urdf`] with the link or joint that breaks a rule.
+    pub fn from_urdf(text: &str) -> Result<Self, KinematicsError> {
+        Self::assemble(urdf::read(text)?)
+    }
+
+    fn assemble(urdf: UrdfRobot) -> Result<Self, KinematicsError> {
+        let branches = tree::ordered(&urdf)?;
+        let by_joint = mimic::motors(&urdf.joints)?;
+        let mut robot = RobotModel {
+            links: branches.iter().map(|branch| urdf.links[branch.link].clone()).collect(),
+            nodes: Vec::with_capacity(branches.len()),
+            origins: Vec::with_capacity(branches.len()),
+            motors: Vec::new(),
+            joints: urdf.joints.iter().filter_map(active).collect(),
+            name: urdf.name,
+            warnings: urdf.warnings,
+        };
+        for branch in branches {
+            match branch.joint {
+                Some(joint) => robot.push(branch.parent, &urdf.joints[joint], by_joint[joint]),
+                None => robot.push_node(
+                    Node::new(0, None, Motion::Fixed, &IsometryMatrix3::identity()),
+                    IsometryMatrix3::identity(),
+                ),
+            }
+        }
+        Ok(robot)
+    }
+
+    fn push(&mut self, parent: usize, joint: &UrdfJoint, motor: Option<Motor>) {
+        let (motion, sign) = motion(&joint.freedom);
+        let index = motor.map(|Motor { column, multiplier, offset }| {
+            self.motors.push(Motor { column, multiplier: sign * multiplier, offset: sign * offset });
+            self.motors.len() - 1
+        });
+        self.push_node(Node::new(parent, index, motion, &joint.origin), joint.origin);
+    }
+
+    fn push_node(&mut self, node: Node, origin: IsometryMatrix3<f64>) {
+        self.nodes.push(node);
+        self.origins.push(origin);
+    }
+}
+
+/// A joint's motion, and the sign that its value changes by.
+fn motion(freedom: &Freedom) -> (Motion, f64) {
+    match freedom {
+        Freedom::Fixed => (Motion::Fixed, 1.0),
+        Freedom::Moving { kind: JointKind::Prismatic, axis, .. } => (Motion::Slide(lanes(axis)), 1.0),
+        Freedom::Moving { axis, .. } => Motion::turn(*axis),
+    }
+}
+
+fn active(joint: &UrdfJoint) -> Option<Joint> {
+    match joint.freedom {
+        Freedom::Moving { kind, lower, upper, .. } if is_active(joint) => {
+            Some(Joint { name: joint.name.clone(), kind, lower, upper })
+        }
+        _ => None,
+    }
+}

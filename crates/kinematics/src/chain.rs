@@ -1,0 +1,109 @@
+use std::sync::Arc;
+
+use nalgebra::{DVectorView, IsometryMatrix3, Matrix3xX, Matrix6xX, Point3};
+
+use crate::{
+    KinematicsError, LinkId, RobotModel, Workspace,
+    forward::require_columns,
+    jacobian::add_column,
+    joint::{Joint, checked},
+    node::{Motion, Node},
+    placement::Placement,
+    workspace::Motor,
+};
+
+/// The joints between the root and one link, and nothing else: the cheap way to one hand. Fixed joints are folded
+/// into the joints after them. Configurations and Jacobians keep the size of the whole robot; columns of joints off
+/// the chain are zero.
+#[derive(Debug, Clone)]
+pub struct Chain {
+    joints: Arc<[Joint]>,
+    nodes: Vec<Node>,
+    motors: Vec<Motor>,
+}
+
+impl Chain {
+    pub(crate) fn new(robot: &RobotModel, link: LinkId) -> Self {
+        let mut nodes = vec![robot.nodes[0].clone()];
+        let mut motors = Vec::new();
+        let mut folded = IsometryMatrix3::identity();
+        for index in robot.path(link) {
+            let node = &robot.nodes[index];
+            folded *= robot.origins[index];
+            if let Some(motor) = node.motor {
+                nodes.push(Node::new(nodes.len() - 1, Some(motors.len()), node.motion, &folded));
+                motors.push(robot.motors[motor]);
+                folded = IsometryMatrix3::identity();
+            }
+        }
+        if folded != IsometryMatrix3::identity() {
+            nodes.push(Node::new(nodes.len() - 1, None, Motion::Fixed, &folded));
+        }
+        Chain { joints: Arc::clone(&robot.joints), nodes, motors }
+    }
+
+    /// The link's pose in the root link's frame, metres. `q` (n) is a configuration of the whole robot.
+    ///
+    /// # Errors
+    /// [`KinematicsError::ConfigurationLength`] or [`KinematicsError::NotFinite`].
+    pub fn pose(
+        &self,
+        q: DVectorView<'_, f64>,
+        workspace: &mut Workspace,
+    ) -> Result<IsometryMatrix3<f64>, KinematicsError> {
+        let q = checked(&q, &self.joints)?;
+        let placements = workspace.place(&self.nodes, &self.motors, q);
+        Ok(placements[self.nodes.len() - 1].isometry())
+    }
+
+    /// Writes the geometric Jacobian (6, n) of the link's frame, rows vx vy vz wx wy wz at the frame's origin in root
+    /// axes, and gives the link's pose. `q` (n) is a configuration of the whole robot.
+    ///
+    /// # Errors
+    /// [`KinematicsError::ConfigurationLength`], [`KinematicsError::NotFinite`] or
+    /// [`KinematicsError::JacobianColumns`].
+    pub fn jacobian(
+        &self,
+        q: DVectorView<'_, f64>,
+        workspace: &mut Workspace,
+        jacobian: &mut Matrix6xX<f64>,
+    ) -> Result<IsometryMatrix3<f64>, KinematicsError> {
+        let q = checked(&q, &self.joints)?;
+        require_columns(jacobian.ncols(), &self.joints)?;
+        Ok(self.fill::<6>(q, workspace, jacobian.as_mut_slice()).isometry())
+    }
+
+    /// Writes the upper three rows (3, n) of [`Chain::jacobian`], vx vy vz of the frame's origin in root axes, and
+    /// gives that origin. `q` (n) is a configuration of the whole robot.
+    ///
+    /// # Errors
+    /// [`KinematicsError::ConfigurationLength`], [`KinematicsError::NotFinite`] or
+    /// [`KinematicsError::JacobianColumns`].
+    pub fn position_jacobian(
+        &self,
+        q: DVectorView<'_, f64>,
+        workspace: &mut Workspace,
+        jacobian: &mut Matrix3xX<f64>,
+    ) -> Result<Point3<f64>, KinematicsError> {
+        let q = checked(&q, &self.joints)?;
+        require_columns(jacobian.ncols(), &self.joints)?;
+        Ok(self.fill::<3>(q, workspace, jacobian.as_mut_slice()).position())
+    }
+
+    fn fill<const ROWS: usize>(&self, q: &[f64], workspace: &mut Workspace, jacobian: &mut [f64]) -> Placement {
+        workspace.fit(self.nodes.len(), self.motors.len());
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                let placements = workspace.place_inline(&self.nodes, &self.motors, q);
+                let end = placements[self.nodes.len() - 1];
+                jacobian.fill(0.0);
+                let (columns, _) = jacobian.as_chunks_mut::<ROWS>();
+                for (node, placement) in self.nodes.iter().zip(placements) {
+                    add_column(node, &self.motors, placement, end.origin, columns);
+                }
+                end
+            },
+        )
+    }
+}

@@ -1,0 +1,89 @@
+use nalgebra::{DVectorView, IsometryMatrix3, Matrix3xX, Matrix6xX, Point3};
+
+use crate::{
+    KinematicsError, LinkId, RobotModel, Workspace,
+    jacobian::add_column,
+    joint::{Joint, checked},
+    placement::Placement,
+};
+
+/// Where every link is in one configuration: what [`RobotModel::forward_kinematics`] found.
+#[derive(Debug, Clone, Copy)]
+pub struct LinkPoses<'a> {
+    robot: &'a RobotModel,
+    placements: &'a [Placement],
+}
+
+impl RobotModel {
+    /// Places all links. `q` (n) holds one value for each of [`RobotModel::joints`], in radians or metres.
+    ///
+    /// # Errors
+    /// [`KinematicsError::ConfigurationLength`] or [`KinematicsError::NotFinite`]. Values beyond the limits are
+    /// accepted.
+    pub fn forward_kinematics<'a>(
+        &'a self,
+        q: DVectorView<'_, f64>,
+        workspace: &'a mut Workspace,
+    ) -> Result<LinkPoses<'a>, KinematicsError> {
+        let q = checked(&q, &self.joints)?;
+        Ok(LinkPoses { robot: self, placements: workspace.place(&self.nodes, &self.motors, q) })
+    }
+}
+
+impl LinkPoses<'_> {
+    /// The link's pose in the root link's frame, metres.
+    pub fn pose(&self, link: LinkId) -> IsometryMatrix3<f64> {
+        self.placements[link.0].isometry()
+    }
+
+    /// The origin of the link's frame in the root link's frame, metres.
+    pub fn position(&self, link: LinkId) -> Point3<f64> {
+        self.placements[link.0].position()
+    }
+
+    /// Writes the geometric Jacobian (6, n) of the link's frame: rows vx vy vz wx wy wz, the velocity of the frame's
+    /// origin and the angular velocity, both in root axes; column j for joint j, in metres and radians per unit of
+    /// that joint.
+    ///
+    /// # Errors
+    /// [`KinematicsError::JacobianColumns`].
+    pub fn jacobian(&self, link: LinkId, jacobian: &mut Matrix6xX<f64>) -> Result<(), KinematicsError> {
+        require_columns(jacobian.ncols(), &self.robot.joints)?;
+        self.fill::<6>(link, jacobian.as_mut_slice());
+        Ok(())
+    }
+
+    /// Writes the upper three rows (3, n) of [`LinkPoses::jacobian`]: the velocity vx vy vz of the frame's origin in
+    /// root axes.
+    ///
+    /// # Errors
+    /// [`KinematicsError::JacobianColumns`].
+    pub fn position_jacobian(&self, link: LinkId, jacobian: &mut Matrix3xX<f64>) -> Result<(), KinematicsError> {
+        require_columns(jacobian.ncols(), &self.robot.joints)?;
+        self.fill::<3>(link, jacobian.as_mut_slice());
+        Ok(())
+    }
+
+    fn fill<const ROWS: usize>(&self, link: LinkId, jacobian: &mut [f64]) {
+        let RobotModel { nodes, motors, .. } = self.robot;
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                jacobian.fill(0.0);
+                let (columns, _) = jacobian.as_chunks_mut::<ROWS>();
+                let tip = self.placements[link.0].origin;
+                let mut index = link.0;
+                while index != 0 {
+                    let node = &nodes[index];
+                    add_column(node, motors, &self.placements[index], tip, columns);
+                    index = node.parent;
+                }
+            },
+        );
+    }
+}
+
+pub(crate) fn require_columns(found: usize, joints: &[Joint]) -> Result<(), KinematicsError> {
+    let expected = joints.len();
+    if found == expected { Ok(()) } else { Err(KinematicsError::JacobianColumns { found, expected }) }
+}

@@ -1,0 +1,34 @@
+//! The geometric Jacobian, column by column: a turning joint moves the frame's origin by axis × lever and turns it
+//! about the axis; a sliding joint moves it along the axis.
+
+use crate::{
+    node::{Motion, Node},
+    placement::{Lanes, Placement, cross},
+    workspace::Motor,
+};
+
+/// Adds a joint's column, for a frame with its origin at `tip`; 3 rows are vx vy vz, 6 rows vx vy vz wx wy wz. Joints
+/// that follow one another share a column, therefore "adds".
+#[inline(always)]
+pub(crate) fn add_column<const ROWS: usize>(
+    node: &Node,
+    motors: &[Motor],
+    placement: &Placement,
+    tip: Lanes,
+    columns: &mut [[f64; ROWS]],
+) {
+    let Some(motor) = node.motor else { return };
+    let Motor { column, multiplier, .. } = motors[motor];
+    let axis = node.axis(placement);
+    let (linear, angular) = match node.motion {
+        Motion::Slide(_) => (axis, [0.0; 4]),
+        _ => (cross(axis, std::array::from_fn(|i| tip[i] - placement.origin[i])), axis),
+    };
+    let column = &mut columns[column];
+    for row in 0..3 {
+        column[row] += multiplier * linear[row];
+    }
+    for row in 3..ROWS {
+        column[row] += multiplier * angular[row - 3];
+    }
+}

@@ -1,0 +1,108 @@
+use std::sync::Arc;
+
+use nalgebra::IsometryMatrix3;
+
+use crate::{Chain, Joint, KinematicsError, UrdfWarning, names::near_names, node::Node, workspace::Motor};
+
+/// A link of one robot; its frame is the frame of the joint that carries it, moved along by it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct LinkId(pub(crate) usize);
+
+/// A robot: a tree of links and joints, checked and immutable.
+///
+/// Poses are in the root link's frame, in metres; angles in radians. Configurations q (n) and the columns of Jacobians
+/// follow the active joints in document order; mimic joints have no coordinate of their own, their part of a Jacobian
+/// is added to the column of the joint they follow.
+#[derive(Debug, Clone)]
+pub struct RobotModel {
+    pub(crate) name: String,
+    /// Names of the links, in the order of the nodes: a parent comes before its children, the root first.
+    pub(crate) links: Vec<String>,
+    pub(crate) nodes: Vec<Node>,
+    /// Origins of the nodes' joints in their parents' frames.
+    pub(crate) origins: Vec<IsometryMatrix3<f64>>,
+    pub(crate) motors: Vec<Motor>,
+    pub(crate) joints: Arc<[Joint]>,
+    pub(crate) warnings: Vec<UrdfWarning>,
+}
+
+impl RobotModel {
+    /// The robot's name; empty where the file gives none.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The active joints, in the order of a configuration's values.
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// Number n of active joints.
+    pub fn n_joints(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// The place of an active joint in a configuration.
+    ///
+    /// # Errors
+    /// [`KinematicsError::UnknownJoint`].
+    pub fn joint(&self, name: &str) -> Result<usize, KinematicsError> {
+        self.joints.iter().position(|joint| joint.name == name).ok_or_else(|| KinematicsError::UnknownJoint {
+            name: name.to_owned(),
+            near: near_names(name, self.joints.iter().map(Joint::name)),
+        })
+    }
+
+    /// All links, the root first and every link after its parent.
+    pub fn links(&self) -> impl ExactSizeIterator<Item = LinkId> + use<> {
+        (0..self.links.len()).map(LinkId)
+    }
+
+    /// The root link, in whose frame all poses are.
+    pub fn root(&self) -> LinkId {
+        LinkId(0)
+    }
+
+    /// The link of this name.
+    ///
+    /// # Errors
+    /// [`KinematicsError::UnknownLink`].
+    pub fn link(&self, name: &str) -> Result<LinkId, KinematicsError> {
+        self.links.iter().position(|link| link == name).map(LinkId).ok_or_else(|| KinematicsError::UnknownLink {
+            name: name.to_owned(),
+            near: near_names(name, self.links.iter().map(String::as_str)),
+        })
+    }
+
+    /// A link's name.
+    pub fn link_name(&self, link: LinkId) -> &str {
+        &self.links[link.0]
+    }
+
+    /// The link that a link hangs on; `None` for the root.
+    pub fn parent(&self, link: LinkId) -> Option<LinkId> {
+        (link.0 != 0).then(|| LinkId(self.nodes[link.0].parent))
+    }
+
+    /// The joints from the root to one link, prepared for repeated use.
+    pub fn chain(&self, link: LinkId) -> Chain {
+        Chain::new(self, link)
+    }
+
+    /// What the file says that was passed over.
+    pub fn warnings(&self) -> &[UrdfWarning] {
+        &self.warnings
+    }
+
+    /// Nodes from the root's child down to a link.
+    pub(crate) fn path(&self, link: LinkId) -> Vec<usize> {
+        let mut path = Vec::new();
+        let mut index = link.0;
+        while index != 0 {
+            path.push(index);
+            index = self.nodes[index].parent;
+        }
+        path.reverse();
+        path
+    }
+}

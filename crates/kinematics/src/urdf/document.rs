@@ -1,0 +1,101 @@
+use roxmltree::{Document, Error, Node, ParsingOptions};
+
+use super::{Element, UrdfJoint, UrdfProblem, UrdfWarning, joint, tag::children};
+use crate::KinematicsError;
+
+/// What a URDF says about kinematics, in document order. Every number is finite; names are not looked up yet.
+#[derive(Debug, Clone)]
+pub(crate) struct UrdfRobot {
+    pub(crate) name: String,
+    pub(crate) links: Vec<String>,
+    pub(crate) joints: Vec<UrdfJoint>,
+    pub(crate) warnings: Vec<UrdfWarning>,
+}
+
+/// The URDF version, which decides what two tags mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Version {
+    V1_0,
+    V1_1,
+    V1_2,
+}
+
+impl Version {
+    fn read(robot: Node<'_, '_>) -> Result<Self, KinematicsError> {
+        match robot.attribute("version").map(str::trim) {
+            None | Some("1" | "1.0") => Ok(Version::V1_0),
+            Some("1.1") => Ok(Version::V1_1),
+            Some("1.2") => Ok(Version::V1_2),
+            Some(found) => Err(KinematicsError::urdf(Element::Robot, UrdfProblem::Version { found: found.to_owned() })),
+        }
+    }
+
+    pub(super) fn has_quaternions(self) -> bool {
+        self >= Version::V1_1
+    }
+
+    pub(super) fn has_optional_bounds(self) -> bool {
+        self < Version::V1_2
+    }
+}
+
+/// Reads the kinematic tags and passes over all others.
+pub(crate) fn read(text: &str) -> Result<UrdfRobot, KinematicsError> {
+    let text = with_declared_prefixes(text);
+    let options = ParsingOptions { allow_dtd: true, ..Default::default() };
+    let document = Document::parse_with_options(&text, options).map_err(|fault| KinematicsError::NotXml {
+        line: fault.pos().row,
+        column: fault.pos().col,
+        message: fault.to_string(),
+    })?;
+    read_robot(document.root_element())
+}
+
+fn read_robot(robot: Node<'_, '_>) -> Result<UrdfRobot, KinematicsError> {
+    if robot.tag_name().name() != "robot" {
+        let found = robot.tag_name().name().to_owned();
+        return Err(KinematicsError::urdf(Element::Robot, UrdfProblem::RootTag { found }));
+    }
+    let version = Version::read(robot)?;
+    let links: Vec<String> = children(robot, "link")
+        .enumerate()
+        .map(|(index, link)| name_of(link, || Element::UnnamedLink(index), "link.name"))
+        .collect::<Result<_, _>>()?;
+    if links.is_empty() {
+        return Err(KinematicsError::urdf(Element::Robot, UrdfProblem::NoLinks));
+    }
+    let mut warnings = Vec::new();
+    let joints = children(robot, "joint")
+        .enumerate()
+        .map(|(index, node)| joint::read(node, index, version, &mut warnings))
+        .collect::<Result<_, _>>()?;
+    Ok(UrdfRobot { name: robot.attribute("name").unwrap_or_default().to_owned(), links, joints, warnings })
+}
+
+pub(super) fn name_of(
+    node: Node<'_, '_>,
+    unnamed: impl FnOnce() -> Element,
+    attribute: &'static str,
+) -> Result<String, KinematicsError> {
+    match node.attribute("name") {
+        Some(name) if !name.is_empty() => Ok(name.to_owned()),
+        _ => Err(KinematicsError::urdf(unnamed(), UrdfProblem::MissingAttribute { attribute })),
+    }
+}
+
+/// URDF readers without name spaces accept prefixes that nobody declared, and such files are about: declare them at
+/// the outermost tag, so that a strict reader takes them for the foreign tags they are.
+fn with_declared_prefixes(text: &str) -> String {
+    let mut text = text.to_owned();
+    let mut declared: Vec<String> = Vec::new();
+    loop {
+        let options = ParsingOptions { allow_dtd: true, ..Default::default() };
+        let prefix = match Document::parse_with_options(&text, options) {
+            Err(Error::UnknownNamespace(prefix, _)) if !declared.contains(&prefix) => prefix,
+            _ => return text,
+        };
+        let Some(robot) = text.find("<robot") else { return text };
+        text.insert_str(robot + "<robot".len(), &format!(" xmlns:{prefix}=\"undeclared:{prefix}\""));
+        declared.push(prefix);
+    }
+}

@@ -1,0 +1,115 @@
+use nalgebra::{IsometryMatrix3, Unit, Vector3};
+use roxmltree::Node;
+
+use super::{
+    Element, UrdfProblem, UrdfWarning,
+    document::{Version, name_of},
+    origin,
+    tag::Tag,
+};
+use crate::KinematicsError;
+
+/// A joint as the file describes it; links and mimic targets are names that nobody has looked up yet.
+#[derive(Debug, Clone)]
+pub(crate) struct UrdfJoint {
+    pub(crate) name: String,
+    pub(crate) parent: String,
+    pub(crate) child: String,
+    pub(crate) origin: IsometryMatrix3<f64>,
+    pub(crate) freedom: Freedom,
+}
+
+/// What a joint can do.
+#[derive(Debug, Clone)]
+pub(crate) enum Freedom {
+    Fixed,
+    Moving { kind: JointKind, axis: Unit<Vector3<f64>>, lower: f64, upper: f64, mimic: Option<Mimic> },
+}
+
+/// q = multiplier · q(target) + offset.
+#[derive(Debug, Clone)]
+pub(crate) struct Mimic {
+    pub(crate) target: String,
+    pub(crate) multiplier: f64,
+    pub(crate) offset: f64,
+}
+
+/// How an active joint moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum JointKind {
+    /// A rotation between two limits, in radians.
+    Revolute,
+    /// A rotation without limits, one angle in radians that may pass ±π.
+    Continuous,
+    /// A displacement between two limits, in metres.
+    Prismatic,
+}
+
+pub(super) fn read(
+    node: Node<'_, '_>,
+    index: usize,
+    version: Version,
+    warnings: &mut Vec<UrdfWarning>,
+) -> Result<UrdfJoint, KinematicsError> {
+    let name = name_of(node, || Element::UnnamedJoint(index), "joint.name")?;
+    let owner = Element::Joint(name.clone());
+    let joint = Tag { node, owner: &owner };
+    let freedom = match joint.text("joint.type")?.as_str() {
+        "fixed" => Freedom::Fixed,
+        "revolute" => moving(joint, JointKind::Revolute, version)?,
+        "continuous" => moving(joint, JointKind::Continuous, version)?,
+        "prismatic" => moving(joint, JointKind::Prismatic, version)?,
+        "floating" => return Err(joint.error(UrdfProblem::UnsupportedJoint { kind: "floating" })),
+        "planar" => return Err(joint.error(UrdfProblem::UnsupportedJoint { kind: "planar" })),
+        found => return Err(joint.error(UrdfProblem::JointType { found: found.to_owned() })),
+    };
+    let link = |tag: &'static str, attribute| match joint.child(tag) {
+        Some(link) => link.text(attribute),
+        None => Err(joint.error(UrdfProblem::MissingTag { tag })),
+    };
+    Ok(UrdfJoint {
+        parent: link("parent", "parent.link")?,
+        child: link("child", "child.link")?,
+        origin: origin::read(joint, version, warnings)?,
+        freedom,
+        name,
+    })
+}
+
+fn moving(joint: Tag<'_>, kind: JointKind, version: Version) -> Result<Freedom, KinematicsError> {
+    let axis = axis(joint)?;
+    let (lower, upper) = match kind {
+        JointKind::Continuous => (f64::NEG_INFINITY, f64::INFINITY),
+        JointKind::Revolute | JointKind::Prismatic => limits(joint, version)?,
+    };
+    Ok(Freedom::Moving { kind, axis, lower, upper, mimic: mimic(joint)? })
+}
+
+/// The axis, made a unit vector; x where none is given.
+fn axis(joint: Tag<'_>) -> Result<Unit<Vector3<f64>>, KinematicsError> {
+    let Some(axis) = joint.child("axis") else { return Ok(Vector3::x_axis()) };
+    let xyz = axis.numbers::<3>("axis.xyz")?.map_or_else(Vector3::x, Vector3::from);
+    // Scaled first, so that no square overflows or vanishes.
+    Unit::try_new(xyz / xyz.amax(), 0.0).ok_or_else(|| joint.error(UrdfProblem::ZeroAxis))
+}
+
+/// Lower and upper limit. Up to version 1.1 a bound that is not given is 0.
+fn limits(joint: Tag<'_>, version: Version) -> Result<(f64, f64), KinematicsError> {
+    let limit = joint.child("limit").ok_or_else(|| joint.error(UrdfProblem::MissingLimit))?;
+    let bound = |attribute, bound| match limit.number(attribute)? {
+        Some(value) => Ok(value),
+        None if version.has_optional_bounds() => Ok(0.0),
+        None => Err(joint.error(UrdfProblem::MissingBound { bound })),
+    };
+    let (lower, upper) = (bound("limit.lower", "lower")?, bound("limit.upper", "upper")?);
+    if lower > upper { Err(joint.error(UrdfProblem::LimitsInverted { lower, upper })) } else { Ok((lower, upper)) }
+}
+
+fn mimic(joint: Tag<'_>) -> Result<Option<Mimic>, KinematicsError> {
+    let Some(mimic) = joint.child("mimic") else { return Ok(None) };
+    Ok(Some(Mimic {
+        target: mimic.text("mimic.joint")?,
+        multiplier: mimic.number("mimic.multiplier")?.unwrap_or(1.0),
+        offset: mimic.number("mimic.offset")?.unwrap_or(0.0),
+    }))
+}

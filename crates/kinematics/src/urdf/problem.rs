@@ -1,0 +1,193 @@
+use std::fmt;
+
+use thiserror::Error;
+
+use crate::names::proposal;
+
+/// The part of a URDF that an error or a warning speaks of. Numbers count from 0, in document order.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Element {
+    /// The robot as a whole.
+    Robot,
+    /// The link of this name.
+    Link(String),
+    /// The joint of this name.
+    Joint(String),
+    /// A link without a name.
+    UnnamedLink(usize),
+    /// A joint without a name.
+    UnnamedJoint(usize),
+}
+
+impl fmt::Display for Element {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Element::Robot => f.write_str("robot"),
+            Element::Link(name) => write!(f, "link \"{name}\""),
+            Element::Joint(name) => write!(f, "joint \"{name}\""),
+            Element::UnnamedLink(index) => write!(f, "link {index}"),
+            Element::UnnamedJoint(index) => write!(f, "joint {index}"),
+        }
+    }
+}
+
+/// The rule of URDF that a file breaks. Attributes are written `tag.attribute`.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum UrdfProblem {
+    /// The outermost tag is not `robot`.
+    #[error("the outermost tag is <{found}>, a URDF starts with <robot>; expand xacro files first")]
+    RootTag {
+        /// The tag found.
+        found: String,
+    },
+    /// The version is not one of 1.0, 1.1 and 1.2.
+    #[error("URDF version \"{found}\" is not supported; 1.0, 1.1 and 1.2 are")]
+    Version {
+        /// The version found.
+        found: String,
+    },
+    /// There is no link at all.
+    #[error("it has no links; a robot has at least one")]
+    NoLinks,
+    /// Two links, or two joints, share one name.
+    #[error("its name is used twice; names of links are unique, and so are names of joints")]
+    DuplicateName,
+    /// A tag that must be there is not.
+    #[error("<{tag}> is missing")]
+    MissingTag {
+        /// The tag.
+        tag: &'static str,
+    },
+    /// An attribute that must be there is not.
+    #[error("attribute {attribute} is missing")]
+    MissingAttribute {
+        /// The attribute.
+        attribute: &'static str,
+    },
+    /// Text where a number should be.
+    #[error("{attribute}: \"{text}\" is not a number (numbers have a decimal point and are separated by spaces)")]
+    Number {
+        /// The attribute.
+        attribute: &'static str,
+        /// The text.
+        text: String,
+    },
+    /// A NaN or an infinity.
+    #[error("{attribute}: \"{text}\" is not a finite number")]
+    NotFinite {
+        /// The attribute.
+        attribute: &'static str,
+        /// The text.
+        text: String,
+    },
+    /// Too few or too many numbers.
+    #[error("{attribute} has {found} numbers, it needs {expected}")]
+    NumberCount {
+        /// The attribute.
+        attribute: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        expected: usize,
+    },
+    /// The axis has no direction.
+    #[error("axis.xyz is zero and has no direction")]
+    ZeroAxis,
+    /// The quaternion is zero and is no rotation.
+    #[error("origin.quat_xyzw is zero and is no rotation")]
+    ZeroQuaternion,
+    /// A type that URDF does not know.
+    #[error("unknown joint type \"{found}\"; types are revolute, continuous, prismatic and fixed")]
+    JointType {
+        /// The type found.
+        found: String,
+    },
+    /// A joint with several degrees of freedom.
+    #[error(
+        "{kind} joints are not supported; model the base by single joints, or make the joint fixed and place the base outside"
+    )]
+    UnsupportedJoint {
+        /// `floating` or `planar`.
+        kind: &'static str,
+    },
+    /// A joint names a link that is not there.
+    #[error("its {role} link \"{link}\" does not exist{}", proposal(near))]
+    UnknownLink {
+        /// `parent` or `child`.
+        role: &'static str,
+        /// The name.
+        link: String,
+        /// Link names like it, nearest first.
+        near: Vec<String>,
+    },
+    /// A revolute or prismatic joint without `<limit>`.
+    #[error("<limit> is missing; revolute and prismatic joints need one (an unlimited rotation is \"continuous\")")]
+    MissingLimit,
+    /// A `<limit>` without lower or upper, which URDF 1.2 asks for.
+    #[error("limit.{bound} is missing; URDF 1.2 asks for it")]
+    MissingBound {
+        /// `lower` or `upper`.
+        bound: &'static str,
+    },
+    /// The lower limit lies above the upper.
+    #[error("its lower limit {lower} is above its upper limit {upper}")]
+    LimitsInverted {
+        /// Lower limit, in radians or metres.
+        lower: f64,
+        /// Upper limit, in radians or metres.
+        upper: f64,
+    },
+    /// A mimic joint follows a joint that is not there.
+    #[error("it mimics joint \"{target}\", which does not exist{}", proposal(near))]
+    MimicTarget {
+        /// The name.
+        target: String,
+        /// Joint names like it, nearest first.
+        near: Vec<String>,
+    },
+    /// A mimic joint follows a joint that cannot move.
+    #[error("it mimics joint \"{target}\", which is fixed")]
+    MimicOfFixed {
+        /// The fixed joint.
+        target: String,
+    },
+    /// Mimic joints follow each other in a ring, or one follows itself.
+    #[error("it mimics itself: {}", path.join(" follows "))]
+    MimicCycle {
+        /// The joints of the ring; first and last are the same.
+        path: Vec<String>,
+    },
+    /// A link hangs on two joints.
+    #[error("it is the child of joints \"{first}\" and \"{second}\"; loops cannot be modelled, cut one")]
+    TwoParents {
+        /// The joint that comes first in the file.
+        first: String,
+        /// The other.
+        second: String,
+    },
+    /// Joints lead from a link back to itself.
+    #[error("joints form a cycle that hangs on no root: {}", joints.join(", "))]
+    Cycle {
+        /// The joints of the cycle.
+        joints: Vec<String>,
+    },
+    /// Several links are nobody's child.
+    #[error("it has several roots: {}; exactly one link may be without a parent joint", roots.join(", "))]
+    SeveralRoots {
+        /// The links that are nobody's child.
+        roots: Vec<String>,
+    },
+}
+
+/// Something in a URDF that was passed over; the robot is what the rest of the file says.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum UrdfWarning {
+    /// `quat_xyzw` counts from URDF version 1.1 on.
+    #[error("{element}: quat_xyzw is ignored in URDF 1.0; write rpy, or version=\"1.1\" at the robot")]
+    QuaternionIgnored {
+        /// Where it stands.
+        element: Element,
+    },
+}

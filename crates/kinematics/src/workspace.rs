@@ -1,0 +1,75 @@
+use crate::{
+    node::{Node, Position},
+    placement::Placement,
+    sin_cos::{LANES, sin_cos_all},
+};
+
+/// Memory that the computations write to; after the first use with a robot nothing is allocated any more. One
+/// workspace serves any number of robots and chains, one at a time.
+#[derive(Debug, Clone, Default)]
+pub struct Workspace {
+    values: Vec<[f64; LANES]>,
+    sines: Vec<[f64; LANES]>,
+    cosines: Vec<[f64; LANES]>,
+    placements: Vec<Placement>,
+}
+
+/// How a moving joint gets its value from the configuration: multiplier · q[column] + offset. A mimic joint has the
+/// column of the joint it follows in the end.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Motor {
+    pub(crate) column: usize,
+    pub(crate) multiplier: f64,
+    pub(crate) offset: f64,
+}
+
+impl Workspace {
+    /// An empty workspace; it grows at the first use.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Makes room. Lanes that no joint owns hold some finite number.
+    pub(crate) fn fit(&mut self, n_nodes: usize, n_motors: usize) {
+        let chunks = n_motors.div_ceil(LANES);
+        for lanes in [&mut self.values, &mut self.sines, &mut self.cosines] {
+            lanes.resize(chunks, [0.0; LANES]);
+        }
+        self.placements.resize(n_nodes, Placement::IDENTITY);
+    }
+
+    /// Places every node of a tree, parents before children, node 0 at the root.
+    pub(crate) fn place(&mut self, nodes: &[Node], motors: &[Motor], q: &[f64]) -> &[Placement] {
+        self.fit(nodes.len(), motors.len());
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                self.place_inline(nodes, motors, q);
+            },
+        );
+        &self.placements
+    }
+
+    /// [`Workspace::place`], after [`Workspace::fit`], for a caller that has dispatched already.
+    #[inline(always)]
+    pub(crate) fn place_inline(&mut self, nodes: &[Node], motors: &[Motor], q: &[f64]) -> &[Placement] {
+        for (value, motor) in self.values.as_flattened_mut().iter_mut().zip(motors) {
+            *value = motor.multiplier * q[motor.column] + motor.offset;
+        }
+        sin_cos_all(&self.values, &mut self.sines, &mut self.cosines);
+        let (values, sines, cosines) =
+            (self.values.as_flattened(), self.sines.as_flattened(), self.cosines.as_flattened());
+        let mut previous = Placement::IDENTITY;
+        for (index, node) in nodes.iter().enumerate().skip(1) {
+            // Most links hang on the link before them, which is still at hand.
+            let parent = if node.parent + 1 == index { previous } else { self.placements[node.parent] };
+            let position = match node.motor {
+                Some(motor) => Position { value: values[motor], sine: sines[motor], cosine: cosines[motor] },
+                None => Position::ZERO,
+            };
+            previous = node.placed(parent, position);
+            self.placements[index] = previous;
+        }
+        &self.placements
+    }
+}
