@@ -1,1 +1,40 @@
 //! Learning potential-based policies from constrained motion by aligning local potentials.
+//!
+mod algorithm;
+mod aligned;
+mod bandwidth;
+mod bipartition;
+mod block_search;
+mod centred_model;
+mod direct_policy;
+mod eigen;
+mod error;
+mod exponential;
+mod global_potential;
+mod integration;
+mod laplacian;
+mod linear_term;
+mod local_potential;
+mod lwpr_regressor;
+mod nearest;
+mod objective;
+mod offsets;
+mod regress;
+mod responsibilities;
+mod samples;
+mod two_means;
+mod warning;
+
+pub use algorithm::PolicyAlign;
+pub use aligned::Aligned;
+pub use bandwidth::Bandwidth;
+pub use direct_policy::{DirectPolicy, DirectPolicyLearning};
+pub use error::AlignError;
+pub use global_potential::GlobalPotential;
+pub use integration::Integration;
+pub use local_potential::LocalPotential;
+pub use lwpr_regressor::LwprRegressor;
+pub use objective::AlignmentObjective;
+pub use regress::{Learnt, Regressor};
+pub use samples::{SampleIndex, SampleIter, Samples};
+pub use warning::Warning;

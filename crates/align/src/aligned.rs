@@ -1,0 +1,157 @@
+use lwpr::LwprParams;
+use motion::Demonstrations;
+use nalgebra::{DVector, DVectorView};
+use rand::Rng;
+
+use crate::bipartition::Partition;
+use crate::{
+    AlignError, AlignmentObjective, GlobalPotential, Learnt, LocalPotential, LwprRegressor, PolicyAlign, Regressor,
+    SampleIndex, Samples, Warning,
+};
+
+/// Local potentials brought to one level: what [`PolicyAlign::align`] found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Aligned {
+    demonstrations: Demonstrations,
+    potentials: Vec<Vec<f64>>,
+    sigma_squared: f64,
+    objective: AlignmentObjective,
+    partition: Partition,
+    discarded: Vec<usize>,
+    offsets: DVector<f64>,
+    warnings: Vec<Warning>,
+}
+
+impl Aligned {
+    pub(crate) fn new(
+        parameters: &PolicyAlign,
+        demonstrations: &Demonstrations,
+        potentials: Vec<Vec<f64>>,
+        sigma_squared: f64,
+        objective: AlignmentObjective,
+        partition: Partition,
+        offsets: DVector<f64>,
+    ) -> Self {
+        let mut discarded = partition.groups[1..].concat();
+        discarded.sort_unstable();
+        Aligned {
+            warnings: Warning::about(&partition, parameters.eigenvalue_threshold),
+            demonstrations: demonstrations.clone(),
+            potentials,
+            sigma_squared,
+            objective,
+            partition,
+            discarded,
+            offsets,
+        }
+    }
+
+    /// The trajectories that take part, ascending: the largest group whose offsets the data determine.
+    pub fn kept(&self) -> &[usize] {
+        &self.partition.groups[0]
+    }
+
+    /// All other trajectories, ascending.
+    pub fn discarded(&self) -> &[usize] {
+        &self.discarded
+    }
+
+    /// All groups, each ascending: the largest (kept) first, equally large ones by lowest trajectory.
+    pub fn groups(&self) -> &[Vec<usize>] {
+        &self.partition.groups
+    }
+
+    /// Offsets b (17), one for each of [`Aligned::kept`] in that order, in units of the potential; their sum is 0.
+    pub fn offsets(&self) -> &DVector<f64> {
+        &self.offsets
+    }
+
+    /// The offset of one trajectory; none if it was discarded.
+    pub fn offset(&self, trajectory: usize) -> Option<f64> {
+        self.kept().binary_search(&trajectory).ok().map(|at| self.offsets[at])
+    }
+
+    /// The bandwidth σ² (18)–(22), in units of the state squared.
+    pub fn sigma_squared(&self) -> f64 {
+        self.sigma_squared
+    }
+
+    /// The second smallest eigenvalue of H among the kept trajectories: how firmly their weakest part hangs on.
+    /// None if one trajectory is all that was kept.
+    pub fn lambda_2(&self) -> Option<f64> {
+        self.partition.lambda_2
+    }
+
+    /// What gives reason to doubt the result.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// The objective of all trajectories, kept and discarded.
+    pub fn objective(&self) -> &AlignmentObjective {
+        &self.objective
+    }
+
+    /// The movements that were aligned.
+    pub fn demonstrations(&self) -> &Demonstrations {
+        &self.demonstrations
+    }
+
+    /// The local potential of every trajectory, without its offset.
+    pub fn local_potentials(&self) -> impl ExactSizeIterator<Item = LocalPotential<'_>> {
+        let trajectories = self.demonstrations.trajectories().iter();
+        trajectories.zip(&self.potentials).map(|(trajectory, values)| LocalPotential::new(trajectory, values))
+    }
+
+    /// How far each local model speaks for a state: q(x) (12), (K).
+    pub fn responsibilities(&self, state: DVectorView<'_, f64>) -> DVector<f64> {
+        let distances: Vec<f64> = self.local_potentials().map(|local| local.nearest(state).1).collect();
+        let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
+        let weight = |distance: f64| ((nearest - distance) / (2.0 * self.sigma_squared)).exp();
+        let weights = DVector::from_iterator(distances.len(), distances.into_iter().map(weight));
+        &weights / weights.sum()
+    }
+
+    /// The samples (x_kn, φ̂_kn + b_k) of the kept trajectories (23).
+    pub fn samples(&self) -> Samples<'_> {
+        let of = |&trajectory: &usize| {
+            let samples = 0..self.potentials[trajectory].len();
+            samples.map(move |sample| SampleIndex { trajectory, sample })
+        };
+        Samples::new(self, self.kept().iter().flat_map(of).collect())
+    }
+
+    /// State and levelled potential of one sample of a kept trajectory.
+    pub(crate) fn sample(&self, index: SampleIndex) -> (DVectorView<'_, f64>, f64) {
+        let offset = self.offset(index.trajectory).expect("samples are of kept trajectories");
+        let state = self.demonstrations.trajectories()[index.trajectory].state(index.sample);
+        (state, self.potentials[index.trajectory][index.sample] + offset)
+    }
+
+    /// Learns the global potential from all samples by LWPR with these parameters; the rest as in
+    /// [`LwprRegressor::default`].
+    ///
+    /// # Errors
+    /// [`AlignError::Lwpr`] for parameters that LWPR refuses.
+    pub fn learn<R: Rng + ?Sized>(
+        &self,
+        params: &LwprParams,
+        rng: &mut R,
+    ) -> Result<Learnt<GlobalPotential>, AlignError> {
+        let regressor = LwprRegressor { params: params.clone(), ..LwprRegressor::default() };
+        self.regress(&regressor, &self.samples(), rng)
+    }
+
+    /// Learns the global potential (23) from all or some of the samples.
+    ///
+    /// # Errors
+    /// Those of the regressor.
+    pub fn regress<G: Regressor, R: Rng + ?Sized>(
+        &self,
+        regressor: &G,
+        samples: &Samples<'_>,
+        rng: &mut R,
+    ) -> Result<Learnt<G::Fitted>, G::Error> {
+        regressor.fit(&samples.states(), &samples.values(), rng).map(Learnt::new)
+    }
+}

@@ -1,0 +1,88 @@
+use nalgebra::DMatrix;
+
+use crate::AlignError;
+
+/// How far a local model speaks beyond its own trajectory: the rule for σ² in (11), from the squared distances
+/// d_kj = min over samples ‖x_kn − x_jm‖² of trajectories (18).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub enum Bandwidth {
+    /// σ² = median_k min_{j≠k} d_kj (19), (20): the usual distance to the nearest other trajectory.
+    #[default]
+    Narrow,
+    /// The geometric mean of the two others, σ² = √(σ²_nar σ²_wid) (22).
+    Medium,
+    /// σ² = median_{j≠k} d_jk (21): the usual distance between two trajectories.
+    Wide,
+    /// This σ², in units of the state squared.
+    Fixed(f64),
+}
+
+impl Bandwidth {
+    /// σ² from the squared distances (K, K) between trajectories; the diagonal is not read.
+    ///
+    /// # Errors
+    /// [`AlignError::SingleTrajectory`], [`AlignError::ZeroBandwidth`] or, for `Fixed`, [`AlignError::Parameter`].
+    pub fn sigma_squared(self, distances: &DMatrix<f64>) -> Result<f64, AlignError> {
+        self.check()?;
+        if let Bandwidth::Fixed(sigma_squared) = self {
+            return Ok(sigma_squared);
+        }
+        if distances.ncols() < 2 {
+            return Err(AlignError::SingleTrajectory);
+        }
+        let sigma_squared = match self {
+            Bandwidth::Narrow => narrow(distances),
+            Bandwidth::Wide => wide(distances),
+            // Two roots, so that the product can neither overflow nor underflow.
+            _ => narrow(distances).sqrt() * wide(distances).sqrt(),
+        };
+        if sigma_squared > 0.0 {
+            Ok(sigma_squared)
+        } else {
+            Err(AlignError::ZeroBandwidth { pairs: touching(distances) })
+        }
+    }
+
+    pub(crate) fn check(self) -> Result<(), AlignError> {
+        match self {
+            Bandwidth::Fixed(value) if !(value.is_finite() && value > 0.0) => Err(AlignError::Parameter {
+                name: "bandwidth Fixed(sigma_squared)",
+                value,
+                requirement: "be positive and finite",
+            }),
+            _ => Ok(()),
+        }
+    }
+}
+
+fn narrow(distances: &DMatrix<f64>) -> f64 {
+    let nearest = distances.column_iter().enumerate().map(|(k, column)| {
+        let others = column.iter().enumerate().filter(|&(j, _)| j != k);
+        others.map(|(_, &distance)| distance).fold(f64::INFINITY, f64::min)
+    });
+    median(nearest.collect())
+}
+
+/// Each pair counts once: d is symmetric, and the median of a list and of its doubled self are the same.
+fn wide(distances: &DMatrix<f64>) -> f64 {
+    median(pairs(distances).map(|(_, _, distance)| distance).collect())
+}
+
+fn touching(distances: &DMatrix<f64>) -> Vec<(usize, usize)> {
+    pairs(distances).filter(|&(.., distance)| distance == 0.0).map(|(k, j, _)| (k, j)).collect()
+}
+
+/// (k, j, d_kj) for all k < j, in order of k.
+fn pairs(distances: &DMatrix<f64>) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+    let count = distances.ncols();
+    (0..count).flat_map(move |k| (k + 1..count).map(move |j| (k, j, distances[(j, k)])))
+}
+
+/// The middle value, or the mean of the middle two.
+fn median(mut values: Vec<f64>) -> f64 {
+    let half = values.len() / 2;
+    let even = values.len() % 2 == 0;
+    let (below, &mut upper, _) = values.select_nth_unstable_by(half, f64::total_cmp);
+    if even { 0.5 * below.iter().copied().fold(f64::NEG_INFINITY, f64::max) + 0.5 * upper } else { upper }
+}

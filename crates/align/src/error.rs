@@ -1,0 +1,89 @@
+use thiserror::Error;
+
+/// Why nothing could be learnt. All numbers count from 0.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum AlignError {
+    /// A parameter lies outside its range.
+    #[error("{name} is {value}: it must {requirement}")]
+    Parameter {
+        /// Name of the field.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// What the value must satisfy.
+        requirement: &'static str,
+    },
+    /// The integration rule needs velocities that were not recorded.
+    #[error(
+        "trajectory {trajectory} has no recorded velocities, which this integration rule needs; add them with Trajectory::with_velocities or use Integration::Displacement"
+    )]
+    NoVelocities {
+        /// The first trajectory without velocities.
+        trajectory: usize,
+    },
+    /// The potential along a trajectory leaves the range of f64.
+    #[error(
+        "trajectory {trajectory}: the potential overflows at sample {sample}; use larger units of length or smaller ones of time"
+    )]
+    PotentialOverflow {
+        /// The trajectory.
+        trajectory: usize,
+        /// The first sample whose potential is not finite.
+        sample: usize,
+    },
+    /// Squared distances between samples leave the range of f64.
+    #[error(
+        "the samples span {span:e} in dimension {dimension}, so squared distances overflow; use larger units of length"
+    )]
+    SpanOverflow {
+        /// The dimension with the widest span.
+        dimension: usize,
+        /// Largest minus smallest coordinate there.
+        span: f64,
+    },
+    /// The bandwidth rule compares trajectories, and there is one only.
+    #[error(
+        "a single trajectory has no distance to others, so its bandwidth is undefined; give more or use Bandwidth::Fixed"
+    )]
+    SingleTrajectory,
+    /// The bandwidth is zero because trajectories share points.
+    #[error(
+        "the bandwidth is 0 since trajectories touch exactly, {}; drop duplicated trajectories or use Bandwidth::Fixed",
+        name_pairs(pairs)
+    )]
+    ZeroBandwidth {
+        /// All pairs of trajectories at squared distance zero, lower index first.
+        pairs: Vec<(usize, usize)>,
+    },
+    /// The eigenvalues of the alignment graph were not found.
+    #[error("the eigenvalues of H did not converge; try another bandwidth")]
+    NoConvergence,
+    /// The offsets leave the range of f64.
+    #[error(
+        "the offset of trajectory {trajectory} is not finite: potentials differ by too much; use larger units of length"
+    )]
+    OffsetOverflow {
+        /// The first such trajectory.
+        trajectory: usize,
+    },
+    /// The share to be held out is not within (0, 1).
+    #[error("cannot hold out a share of {fraction}: it must be more than 0 and less than 1")]
+    Fraction {
+        /// The share asked for.
+        fraction: f64,
+    },
+    /// No sample is left to learn from.
+    #[error("no sample is left to learn from; hold out fewer or give more trajectories")]
+    NoSamples,
+    /// The regression refused its parameters or data.
+    #[error("LWPR: {0}")]
+    Lwpr(#[from] lwpr::LwprError),
+}
+
+fn name_pairs(pairs: &[(usize, usize)]) -> String {
+    const SHOWN: usize = 5;
+    let named: Vec<_> = pairs.iter().take(SHOWN).map(|(k, j)| format!("{k} and {j}")).collect();
+    let more = pairs.len().saturating_sub(SHOWN);
+    if more == 0 { named.join(", ") } else { format!("{} and {more} more pairs", named.join(", ")) }
+}

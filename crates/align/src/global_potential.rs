@@ -1,0 +1,69 @@
+use lwpr::Lwpr;
+use motion::Potential;
+use nalgebra::{DMatrix, DVectorView, DVectorViewMut};
+
+use crate::AlignError;
+use crate::centred_model::CentredModel;
+
+/// The potential f (23) that LWPR learnt from levelled samples.
+///
+/// Far from the data no receptive field takes part: the value is then the mean of the training values, and the gradient
+/// zero.
+#[derive(Debug, Clone)]
+pub struct GlobalPotential {
+    learnt: CentredModel,
+}
+
+impl GlobalPotential {
+    pub(crate) fn new(learnt: CentredModel) -> Self {
+        GlobalPotential { learnt }
+    }
+
+    /// Whether a receptive field takes part in the prediction at this state, (n).
+    pub fn supports(&self, state: DVectorView<'_, f64>) -> bool {
+        self.learnt.predictor.value(state, 0).is_some()
+    }
+
+    /// The share of states (n, M), one column each, without support; 0 for no states.
+    pub fn unsupported_share(&self, states: &DMatrix<f64>) -> f64 {
+        let unsupported = states.column_iter().filter(|state| !self.supports(state.as_view())).count();
+        unsupported as f64 / states.ncols().max(1) as f64
+    }
+
+    /// The same potential, of which receptive fields take part as soon as their activation exceeds `cutoff`. Roll-outs
+    /// that leave the data want a tiny one, 1e-9.
+    ///
+    /// # Errors
+    /// [`AlignError::Parameter`] if `cutoff` is not at least 0 and less than 1.
+    pub fn with_cutoff(&self, cutoff: f64) -> Result<Self, AlignError> {
+        self.learnt.with_cutoff(cutoff).map(GlobalPotential::new)
+    }
+
+    /// The mean of the training values, in units of the state squared per second.
+    pub fn mean(&self) -> f64 {
+        self.learnt.mean[0]
+    }
+
+    /// The regression beneath, which learnt value − mean.
+    pub fn model(&self) -> &Lwpr {
+        &self.learnt.model
+    }
+}
+
+impl Potential for GlobalPotential {
+    fn n_states(&self) -> usize {
+        self.learnt.model.n_in()
+    }
+
+    fn value(&self, state: DVectorView<'_, f64>) -> f64 {
+        assert_eq!(state.len(), self.n_states(), "a state has as many dimensions as the potential");
+        self.mean() + self.learnt.predictor.value(state, 0).unwrap_or(0.0)
+    }
+
+    fn gradient_into(&self, state: DVectorView<'_, f64>, mut gradient: DVectorViewMut<'_, f64>) {
+        assert_eq!(state.len(), self.n_states(), "a state has as many dimensions as the potential");
+        if self.learnt.predictor.value_and_gradient_into(state, 0, gradient.as_view_mut()).is_none() {
+            gradient.fill(0.0);
+        }
+    }
+}

@@ -1,0 +1,104 @@
+use faer::linalg::matmul::triangular::{BlockStructure, matmul};
+use faer::{Accum, MatMut, MatRef, Par};
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use crate::laplacian::Elimination;
+use crate::linear_term::linear_term;
+use crate::responsibilities::{Block, Responsibilities};
+
+/// H is summed in this many parts, each in the order of its samples, so that no number of threads changes a bit.
+const PARTS: usize = 8;
+
+/// The alignment objective (13), (14) of the offsets b, (K),
+/// E(b) = ½ Σ_m Σ_k Σ_j q_km q_jm ((f_km + b_k) − (f_jm + b_j))² = E₀ + 2aᵀb + bᵀHb,
+/// in the paper's scaling: its gradient is 2(a + Hb), its Hessian 2H.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AlignmentObjective {
+    /// H = diag_k(Σ_m q_km) − Σ_m q_m q_mᵀ (15), (K, K): the Laplacian of a graph whose weights tell how much two
+    /// trajectories speak for the same samples.
+    pub laplacian: DMatrix<f64>,
+    /// a_k = Σ_m q_km (f_km − Σ_j q_jm f_jm) (16), (K), in units of the potential.
+    pub linear: DVector<f64>,
+    /// E₀ = E(0), in units of the potential squared.
+    pub constant: f64,
+}
+
+impl AlignmentObjective {
+    pub(crate) fn new(responsibilities: &Responsibilities) -> Self {
+        let laplacian = laplacian(responsibilities);
+        let unaligned = vec![Some(0.0); responsibilities.n_trajectories()];
+        let (linear, constant) = linear_term(responsibilities, &unaligned);
+        AlignmentObjective { laplacian, linear: linear.into(), constant }
+    }
+
+    /// E(b), in units of the potential squared.
+    pub fn value(&self, offsets: &DVector<f64>) -> f64 {
+        self.constant + offsets.dot(&(2.0 * &self.linear + &self.laplacian * offsets))
+    }
+
+    /// ∇E(b) = 2(a + Hb), (K).
+    pub fn gradient(&self, offsets: &DVector<f64>) -> DVector<f64> {
+        2.0 * (&self.linear + &self.laplacian * offsets)
+    }
+
+    /// The minimiser b = −H⁺a (17), (K), whose sum over each connected component of the graph is 0.
+    ///
+    /// Its rounding error is about 1e-16 / λ₂. `laplacian` must be one: square, symmetric, rows summing to 0, nothing
+    /// positive off the diagonal.
+    pub fn minimiser(&self) -> DVector<f64> {
+        Elimination::new(&self.laplacian).solve((-&self.linear).as_slice()).into()
+    }
+}
+
+/// H (15): the off-diagonal −Σ_m q_km q_jm as they are, the diagonal from them, since Σ_j q_jm = 1.
+fn laplacian(responsibilities: &Responsibilities) -> DMatrix<f64> {
+    let count = responsibilities.n_trajectories();
+    let parts: Vec<_> =
+        responsibilities.blocks.par_chunks(count.div_ceil(PARTS)).map(|part| mutual(part, count)).collect();
+    let mut laplacian = DMatrix::zeros(count, count);
+    for weights in parts {
+        laplacian -= weights;
+    }
+    laplacian.fill_diagonal(0.0);
+    laplacian.fill_upper_triangle_with_lower_triangle();
+    for k in 0..count {
+        laplacian[(k, k)] = -laplacian.column(k).sum();
+    }
+    laplacian
+}
+
+/// Σ_m q_m q_mᵀ (K, K) over the samples of some blocks; the lower triangle counts.
+fn mutual(blocks: &[Block], count: usize) -> DMatrix<f64> {
+    let mut weights = DMatrix::zeros(count, count);
+    for block in blocks {
+        let local = gram(block);
+        for (at, &k) in block.models.iter().enumerate() {
+            for (below, &j) in block.models.iter().enumerate().skip(at + 1) {
+                weights[(j, k)] += local[(below, at)];
+            }
+        }
+    }
+    weights
+}
+
+/// QᵀQ over the samples of one block, for its models only; the lower triangle counts.
+fn gram(block: &Block) -> DMatrix<f64> {
+    let count = block.models.len();
+    let mut gram = DMatrix::zeros(count, count);
+    let shares = MatRef::from_column_major_slice(&block.shares, block.n_samples, count);
+    let lower = BlockStructure::TriangularLower;
+    let whole = BlockStructure::Rectangular;
+    matmul(
+        MatMut::from_column_major_slice_mut(gram.as_mut_slice(), count, count),
+        lower,
+        Accum::Replace,
+        shares.transpose(),
+        whole,
+        shares,
+        whole,
+        1.0,
+        Par::Seq,
+    );
+    gram
+}

@@ -1,0 +1,121 @@
+use nalgebra::{DMatrix, DVector, DVectorView};
+use rand::Rng;
+
+use crate::{AlignError, Aligned};
+
+/// Which sample of which trajectory, both counted from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SampleIndex {
+    /// The trajectory.
+    pub trajectory: usize,
+    /// Its sample.
+    pub sample: usize,
+}
+
+/// Some samples (x_kn, φ̂_kn + b_k) of the kept trajectories (23), in ascending order.
+#[derive(Debug, Clone)]
+pub struct Samples<'a> {
+    aligned: &'a Aligned,
+    indices: Vec<SampleIndex>,
+}
+
+impl<'a> Samples<'a> {
+    pub(crate) fn new(aligned: &'a Aligned, indices: Vec<SampleIndex>) -> Self {
+        Samples { aligned, indices }
+    }
+
+    /// Where each sample is from.
+    pub fn indices(&self) -> &[SampleIndex] {
+        &self.indices
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.indices.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.indices.is_empty()
+    }
+
+    /// States (n, M), one column a sample.
+    pub fn states(&self) -> DMatrix<f64> {
+        let mut states = DMatrix::zeros(self.aligned.demonstrations().n_states(), self.len());
+        states.column_iter_mut().zip(self).for_each(|(mut column, (state, _))| column.copy_from(&state));
+        states
+    }
+
+    /// Levelled potentials φ̂_kn + b_k, (M), in units of the state squared per second.
+    pub fn values(&self) -> DVector<f64> {
+        DVector::from_iterator(self.len(), self.iter().map(|(_, value)| value))
+    }
+
+    /// State x_kn, (n), and levelled potential φ̂_kn + b_k of each sample.
+    pub fn iter(&self) -> SampleIter<'a, std::iter::Copied<std::slice::Iter<'_, SampleIndex>>> {
+        SampleIter { aligned: self.aligned, indices: self.indices.iter().copied() }
+    }
+
+    /// The rest and, second, a random share `fraction` of the samples: rounded down, at least one.
+    ///
+    /// # Errors
+    /// [`AlignError::Fraction`] if the share is not more than 0 and less than 1.
+    pub fn split<R: Rng + ?Sized>(&self, fraction: f64, rng: &mut R) -> Result<(Self, Self), AlignError> {
+        if !(fraction > 0.0 && fraction < 1.0) {
+            return Err(AlignError::Fraction { fraction });
+        }
+        let count = ((self.len() as f64 * fraction) as usize).max(1).min(self.len());
+        let mut positions = rand::seq::index::sample(rng, self.len(), count).into_vec();
+        positions.sort_unstable();
+        let held_out = Samples::new(self.aligned, positions.iter().map(|&at| self.indices[at]).collect());
+        Ok((self.without(held_out.indices()), held_out))
+    }
+
+    /// All samples but these; those that are not here are ignored.
+    #[must_use]
+    pub fn without(&self, held_out: &[SampleIndex]) -> Self {
+        let mut held_out = held_out.to_vec();
+        held_out.sort_unstable();
+        let rest = self.indices.iter().copied().filter(|index| held_out.binary_search(index).is_err());
+        Samples::new(self.aligned, rest.collect())
+    }
+}
+
+/// Walks through samples: the state x_kn, (n), and the levelled potential φ̂_kn + b_k of each.
+#[derive(Debug, Clone)]
+pub struct SampleIter<'a, I> {
+    aligned: &'a Aligned,
+    indices: I,
+}
+
+impl<'a, I: Iterator<Item = SampleIndex>> Iterator for SampleIter<'a, I> {
+    type Item = (DVectorView<'a, f64>, f64);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.indices.next().map(|index| self.aligned.sample(index))
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        self.indices.size_hint()
+    }
+}
+
+impl<I: ExactSizeIterator<Item = SampleIndex>> ExactSizeIterator for SampleIter<'_, I> {}
+
+impl<'a> IntoIterator for Samples<'a> {
+    type Item = (DVectorView<'a, f64>, f64);
+    type IntoIter = SampleIter<'a, std::vec::IntoIter<SampleIndex>>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        SampleIter { aligned: self.aligned, indices: self.indices.into_iter() }
+    }
+}
+
+impl<'a, 's> IntoIterator for &'s Samples<'a> {
+    type Item = (DVectorView<'a, f64>, f64);
+    type IntoIter = SampleIter<'a, std::iter::Copied<std::slice::Iter<'s, SampleIndex>>>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
