@@ -34,10 +34,12 @@ mod potentials;
 mod recording;
 mod roll_out;
 mod toy;
+mod toy_potential;
 
 pub use error::{DemoGenError, Part, Quantity};
 pub use noise::with_position_noise;
 pub use potentials::{Parabola, Sinusoidal};
 pub use recording::{Recording, Truth, demonstrations};
 pub use roll_out::RollOut;
-pub use toy::{Redraw, ToyPotential, ToySystem};
+pub use toy::{Redraw, ToySystem};
+pub use toy_potential::ToyPotential;

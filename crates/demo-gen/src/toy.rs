@@ -1,54 +1,9 @@
 use constraints::{LinearConstraint, Switching};
-use motion::Potential;
-use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut};
+use nalgebra::{DMatrix, DVector};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-use crate::{DemoGenError, Parabola, Recording, RollOut, Sinusoidal};
-
-/// The potentials of the toy system.
-#[derive(Debug, Clone, PartialEq)]
-pub enum ToyPotential {
-    /// (24)
-    Parabola(Parabola),
-    /// (26)
-    Sinusoidal(Sinusoidal),
-}
-
-impl ToyPotential {
-    /// The paper's parabola on the plane: w = 0.05, centre 0.
-    pub fn parabola() -> Self {
-        ToyPotential::Parabola(Parabola { weight: 0.05, centre: DVector::zeros(2) })
-    }
-
-    /// The paper's sinusoidal potential: a = 0.1.
-    pub fn sinusoidal() -> Self {
-        ToyPotential::Sinusoidal(Sinusoidal { amplitude: 0.1 })
-    }
-}
-
-impl Potential for ToyPotential {
-    fn n_states(&self) -> usize {
-        match self {
-            ToyPotential::Parabola(potential) => potential.n_states(),
-            ToyPotential::Sinusoidal(potential) => potential.n_states(),
-        }
-    }
-
-    fn value(&self, state: DVectorView<'_, f64>) -> f64 {
-        match self {
-            ToyPotential::Parabola(potential) => potential.value(state),
-            ToyPotential::Sinusoidal(potential) => potential.value(state),
-        }
-    }
-
-    fn gradient_into(&self, state: DVectorView<'_, f64>, gradient: DVectorViewMut<'_, f64>) {
-        match self {
-            ToyPotential::Parabola(potential) => potential.gradient_into(state, gradient),
-            ToyPotential::Sinusoidal(potential) => potential.gradient_into(state, gradient),
-        }
-    }
-}
+use crate::{DemoGenError, Recording, RollOut, ToyPotential};
 
 /// When a trajectory of the toy system gets a new constraint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,7 +28,18 @@ impl Redraw {
 }
 
 /// The toy system of Section 4.1: a point on the plane that follows a potential, each trajectory under random linear
-/// constraints αᵀu = 0, α ~ N(0, I₂), that change on the way (25).
+/// constraints αᵀu = 0, α ~ N(0, I₂), that change on the way.
+///
+/// ```
+/// use demo_gen::{ToyPotential, ToySystem, demonstrations};
+/// use rand::SeedableRng;
+///
+/// let system = ToySystem { potential: ToyPotential::sinusoidal(), n_samples: 100, ..ToySystem::default() };
+/// let recordings = system.record(&mut rand_chacha::ChaCha8Rng::seed_from_u64(1))?;
+/// let demonstrations = demonstrations(&recordings)?;
+/// assert_eq!((demonstrations.n_trajectories(), demonstrations.n_samples()), (40, 4000));
+/// # Ok::<(), demo_gen::DemoGenError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ToySystem {
     /// φ. Default [`ToyPotential::parabola`].
@@ -122,16 +88,14 @@ impl ToySystem {
         rng: &mut R,
     ) -> Result<Recording, DemoGenError> {
         let start = DVector::from_fn(2, |_, _| rng.random_range(-2.0..2.0));
+        let in_constraint = |sample| move |source| DemoGenError::Constraint { sample, source };
         let phases = first_samples.iter().map(|&sample| {
             let alpha = DMatrix::from_fn(1, 2, |_, _| rng.sample(StandardNormal));
-            let constraint = LinearConstraint::new(alpha);
-            Ok((
-                roll_out.time_step * sample as f64,
-                constraint.map_err(|source| DemoGenError::Constraint { sample, source })?,
-            ))
+            let constraint = LinearConstraint::new(alpha).map_err(in_constraint(sample))?;
+            Ok((roll_out.time_step * sample as f64, constraint))
         });
         let phases = phases.collect::<Result<_, DemoGenError>>()?;
-        let constraint = Switching::new(phases).map_err(|source| DemoGenError::Constraint { sample: 0, source })?;
+        let constraint = Switching::new(phases).map_err(in_constraint(0))?;
         roll_out.record(&self.potential, &constraint, start.as_view())
     }
 }

@@ -1,0 +1,48 @@
+use motion::Potential;
+use nalgebra::{DVector, DVectorView, DVectorViewMut};
+
+use crate::{Parabola, Sinusoidal};
+
+/// The potentials of the toy system.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ToyPotential {
+    /// (24)
+    Parabola(Parabola),
+    /// (26)
+    Sinusoidal(Sinusoidal),
+}
+
+impl ToyPotential {
+    /// The paper's parabola on the plane: w = 0.05, centre 0.
+    pub fn parabola() -> Self {
+        ToyPotential::Parabola(Parabola { weight: 0.05, centre: DVector::zeros(2) })
+    }
+
+    /// The paper's sinusoidal potential: a = 0.1.
+    pub fn sinusoidal() -> Self {
+        ToyPotential::Sinusoidal(Sinusoidal { amplitude: 0.1 })
+    }
+}
+
+impl Potential for ToyPotential {
+    fn n_states(&self) -> usize {
+        match self {
+            ToyPotential::Parabola(potential) => potential.n_states(),
+            ToyPotential::Sinusoidal(potential) => potential.n_states(),
+        }
+    }
+
+    fn value(&self, state: DVectorView<'_, f64>) -> f64 {
+        match self {
+            ToyPotential::Parabola(potential) => potential.value(state),
+            ToyPotential::Sinusoidal(potential) => potential.value(state),
+        }
+    }
+
+    fn gradient_into(&self, state: DVectorView<'_, f64>, gradient: DVectorViewMut<'_, f64>) {
+        match self {
+            ToyPotential::Parabola(potential) => potential.gradient_into(state, gradient),
+            ToyPotential::Sinusoidal(potential) => potential.gradient_into(state, gradient),
+        }
+    }
+}
