@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
 use nalgebra::{DVectorView, IsometryMatrix3, Matrix3xX, Matrix6xX, Point3};
+use pulp::{Simd, WithSimd};
 
 use crate::{
     KinematicsError, LinkId, RobotModel, Workspace,
@@ -92,18 +93,31 @@ impl Chain {
 
     fn fill<const ROWS: usize>(&self, q: &[f64], workspace: &mut Workspace, jacobian: &mut [f64]) -> Placement {
         workspace.fit(self.nodes.len(), self.motors.len());
-        pulp::Arch::new().dispatch(
-            #[inline(always)]
-            || {
-                let placements = workspace.place_inline(&self.nodes, &self.motors, q);
-                let end = placements[self.nodes.len() - 1];
-                jacobian.fill(0.0);
-                let (columns, _) = jacobian.as_chunks_mut::<ROWS>();
-                for (node, placement) in self.nodes.iter().zip(placements) {
-                    add_column(node, &self.motors, placement, end.origin, columns);
-                }
-                end
-            },
-        )
+        let (columns, _) = jacobian.as_chunks_mut::<ROWS>();
+        pulp::Arch::new().dispatch(Fill { chain: self, q, workspace, columns })
+    }
+}
+
+/// Places the chain and fills a Jacobian, compiled for the machine it runs on.
+struct Fill<'a, const ROWS: usize> {
+    chain: &'a Chain,
+    q: &'a [f64],
+    workspace: &'a mut Workspace,
+    columns: &'a mut [[f64; ROWS]],
+}
+
+impl<const ROWS: usize> WithSimd for Fill<'_, ROWS> {
+    type Output = Placement;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Placement {
+        let Fill { chain: Chain { nodes, motors, .. }, q, workspace, columns } = self;
+        let placements = workspace.place_inline(nodes, motors, q);
+        let end = placements[nodes.len() - 1];
+        columns.fill([0.0; ROWS]);
+        for (node, placement) in nodes.iter().zip(placements) {
+            add_column(node, motors, placement, end.origin, columns);
+        }
+        end
     }
 }

@@ -1,4 +1,5 @@
 use nalgebra::{DVectorView, IsometryMatrix3, Matrix3xX, Matrix6xX, Point3};
+use pulp::{Simd, WithSimd};
 
 use crate::{
     KinematicsError, LinkId, RobotModel, Workspace,
@@ -65,21 +66,32 @@ impl LinkPoses<'_> {
     }
 
     fn fill<const ROWS: usize>(&self, link: LinkId, jacobian: &mut [f64]) {
-        let RobotModel { nodes, motors, .. } = self.robot;
-        pulp::Arch::new().dispatch(
-            #[inline(always)]
-            || {
-                jacobian.fill(0.0);
-                let (columns, _) = jacobian.as_chunks_mut::<ROWS>();
-                let tip = self.placements[link.0].origin;
-                let mut index = link.0;
-                while index != 0 {
-                    let node = &nodes[index];
-                    add_column(node, motors, &self.placements[index], tip, columns);
-                    index = node.parent;
-                }
-            },
-        );
+        let (columns, _) = jacobian.as_chunks_mut::<ROWS>();
+        pulp::Arch::new().dispatch(Fill { poses: self, link, columns });
+    }
+}
+
+/// Fills a Jacobian, compiled for the machine it runs on.
+struct Fill<'a, const ROWS: usize> {
+    poses: &'a LinkPoses<'a>,
+    link: LinkId,
+    columns: &'a mut [[f64; ROWS]],
+}
+
+impl<const ROWS: usize> WithSimd for Fill<'_, ROWS> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Fill { poses: LinkPoses { robot, placements }, link, columns } = self;
+        columns.fill([0.0; ROWS]);
+        let tip = placements[link.0].origin;
+        let mut index = link.0;
+        while index != 0 {
+            let node = &robot.nodes[index];
+            add_column(node, &robot.motors, &placements[index], tip, columns);
+            index = node.parent;
+        }
     }
 }
 

@@ -44,13 +44,11 @@ const COS: [f64; 6] = [
 /// sin and cos of every angle, in radians; all angles must be finite.
 #[inline(always)]
 pub(crate) fn sin_cos_all(angles: &[[f64; LANES]], sines: &mut [[f64; LANES]], cosines: &mut [[f64; LANES]]) {
-    let mut far = false;
-    for ((angle, sine), cosine) in angles.iter().zip(&mut *sines).zip(&mut *cosines) {
-        for lane in 0..LANES {
-            (sine[lane], cosine[lane]) = near(angle[lane]);
-            far |= angle[lane].abs() > FAR;
-        }
+    let lanes = angles.as_flattened().iter().zip(sines.as_flattened_mut()).zip(cosines.as_flattened_mut());
+    for ((angle, sine), cosine) in lanes {
+        (*sine, *cosine) = near(*angle);
     }
+    let far = angles.as_flattened().iter().fold(false, |far, angle| far | (angle.abs() > FAR));
     if far {
         far_ones(angles.as_flattened(), sines.as_flattened_mut(), cosines.as_flattened_mut());
     }
@@ -72,12 +70,12 @@ fn near(angle: f64) -> (f64, f64) {
     let rounded = angle * std::f64::consts::FRAC_2_PI + ROUND;
     let quadrant = rounded.to_bits();
     let (x, tail) = reduced(angle, rounded - ROUND);
-    let (sine, cosine) = (sine(x, tail), cosine(x, tail));
-    let swapped = quadrant & 1 != 0;
-    let (a, b) = if swapped { (cosine, sine) } else { (sine, cosine) };
+    let (sine, cosine) = (sine(x, tail).to_bits(), cosine(x, tail).to_bits());
+    // In odd quadrants the two change places; by masks, because a choice would become a branch.
+    let swap = (sine ^ cosine) & (quadrant & 1).wrapping_neg();
     let sine_sign = (quadrant & 2) << 62;
     let cosine_sign = (quadrant.wrapping_add(1) & 2) << 62;
-    (f64::from_bits(a.to_bits() ^ sine_sign), f64::from_bits(b.to_bits() ^ cosine_sign))
+    (f64::from_bits(sine ^ swap ^ sine_sign), f64::from_bits(cosine ^ swap ^ cosine_sign))
 }
 
 /// angle − turns · π/2 as a sum of a value and its rounding error.
@@ -130,14 +128,26 @@ mod tests {
         line(a).abs_diff(line(b))
     }
 
+    struct SinCos<'a> {
+        angles: &'a [[f64; LANES]],
+        sines: &'a mut [[f64; LANES]],
+        cosines: &'a mut [[f64; LANES]],
+    }
+
+    impl pulp::WithSimd for SinCos<'_> {
+        type Output = ();
+
+        #[inline(always)]
+        fn with_simd<S: pulp::Simd>(self, _: S) {
+            sin_cos_all(self.angles, self.sines, self.cosines);
+        }
+    }
+
     /// Every lane in turn gets the angle; the others get neighbours.
     fn in_lanes(angle: f64) -> [(f64, f64); LANES] {
         let angles = [std::array::from_fn(|lane| if lane % 2 == 0 { angle } else { -angle })];
         let (mut sines, mut cosines) = ([[0.0; LANES]], [[0.0; LANES]]);
-        pulp::Arch::new().dispatch(
-            #[inline(always)]
-            || sin_cos_all(&angles, &mut sines, &mut cosines),
-        );
+        pulp::Arch::new().dispatch(SinCos { angles: &angles, sines: &mut sines, cosines: &mut cosines });
         std::array::from_fn(|lane| (if lane % 2 == 0 { sines[0][lane] } else { -sines[0][lane] }, cosines[0][lane]))
     }
 

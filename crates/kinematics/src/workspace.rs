@@ -1,3 +1,5 @@
+use pulp::{Simd, WithSimd};
+
 use crate::{
     node::{Node, Position},
     placement::Placement,
@@ -41,12 +43,7 @@ impl Workspace {
     /// Places every node of a tree, parents before children, node 0 at the root.
     pub(crate) fn place(&mut self, nodes: &[Node], motors: &[Motor], q: &[f64]) -> &[Placement] {
         self.fit(nodes.len(), motors.len());
-        pulp::Arch::new().dispatch(
-            #[inline(always)]
-            || {
-                self.place_inline(nodes, motors, q);
-            },
-        );
+        pulp::Arch::new().dispatch(PlaceAll { workspace: self, nodes, motors, q });
         &self.placements
     }
 
@@ -71,5 +68,23 @@ impl Workspace {
             self.placements[index] = previous;
         }
         &self.placements
+    }
+}
+
+/// [`Workspace::place_inline`], compiled for the machine it runs on. A closure would do, were it not called through a
+/// shim that is compiled for the oldest machine.
+struct PlaceAll<'a> {
+    workspace: &'a mut Workspace,
+    nodes: &'a [Node],
+    motors: &'a [Motor],
+    q: &'a [f64],
+}
+
+impl WithSimd for PlaceAll<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.workspace.place_inline(self.nodes, self.motors, self.q);
     }
 }
