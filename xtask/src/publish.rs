@@ -50,14 +50,12 @@ fn generated() -> anyhow::Result<[(PathBuf, String); 2]> {
     ensure!(first.seed != second.seed, "docs/records holds the same seed twice; run another");
     let readme = root.join("README.md");
     let text = fs::read_to_string(&readme).context("cannot read README.md")?;
-    let (before, rest) = text.split_once(BEGIN).context("README.md has lost the line that begins the generated part")?;
+    let (before, rest) =
+        text.split_once(BEGIN).context("README.md has lost the line that begins the generated part")?;
     let (_, after) = rest.split_once(END).context("README.md has lost the line that ends the generated part")?;
     let page = PREFACE.to_owned() + report(&experiments, &first, Some(&second)).trim_end() + "\n";
     let table = first.experiments.first().map_or(String::new(), |table| summary(&experiments, table));
-    Ok([
-        (root.join("docs/reproduction.md"), page),
-        (readme.clone(), format!("{before}{BEGIN}\n{table}\n{END}{after}")),
-    ])
+    Ok([(root.join("docs/reproduction.md"), page), (readme.clone(), format!("{before}{BEGIN}\n{table}\n{END}{after}"))])
 }
 
 fn results(path: &Path) -> anyhow::Result<Results> {

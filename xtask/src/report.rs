@@ -99,7 +99,9 @@ pub(crate) fn tally(result: &ExperimentResult) -> String {
 fn explanations(experiment: &Experiment, result: &ExperimentResult) -> String {
     let mut text = String::new();
     for row in &result.rows {
-        for (&measure, cell) in row.measures.iter().filter(|(measure, cell)| needs_a_word(**measure, cell)) {
+        for &measure in
+            row.measures.iter().filter(|(measure, cell)| needs_a_word(**measure, cell)).map(|(measure, _)| measure)
+        {
             let word = experiment.explain(&row.id, measure).unwrap_or("no explanation has been found yet.");
             let _ = writeln!(text, "- `{}`, {}: {word}", row.id, measure.name());
         }

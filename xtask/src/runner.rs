@@ -39,11 +39,16 @@ struct Job<'a> {
 /// Measures every data set of every row, skipping what `records` already holds.
 ///
 /// The result depends only on experiments, plan and program: not on the number of threads, nor on what was resumed.
-pub(crate) fn run(experiments: &[Experiment], plan: Plan, records: &Arc<Records>) -> anyhow::Result<Vec<Vec<RowOutcomes>>> {
+pub(crate) fn run(
+    experiments: &[Experiment],
+    plan: Plan,
+    records: &Arc<Records>,
+) -> anyhow::Result<Vec<Vec<RowOutcomes>>> {
     let mut slots: Vec<Vec<Vec<Option<Outcome>>>> = experiments
         .iter()
         .map(|experiment| {
-            let row = |row: &Row| (0..plan.data_sets(experiment)).map(|n| find(records, experiment, row, plan, n)).collect();
+            let row =
+                |row: &Row| (0..plan.data_sets(experiment)).map(|n| find(records, experiment, row, plan, n)).collect();
             experiment.rows.iter().map(row).collect()
         })
         .collect();

@@ -95,7 +95,10 @@ fn source_faults(folder: &Path, faults: &mut Vec<String>) -> anyhow::Result<()> 
             if lines > LONGEST_FILE && !path.components().any(|part| part.as_os_str() == "tests") {
                 faults.push(format!("{}: {lines} lines; one idea a file, {LONGEST_FILE} at most", path.display()));
             }
-            if text.contains("allow(unsafe_code)") && !path.components().any(|part| part.as_os_str() == "simd") && stem != "simd" {
+            if text.contains("allow(unsafe_code)")
+                && !path.components().any(|part| part.as_os_str() == "simd")
+                && stem != "simd"
+            {
                 faults.push(format!("{}: unsafe code belongs in a module named simd", path.display()));
             }
         }
@@ -135,7 +138,10 @@ mod tests {
         let faults = dependency_faults(&toml::from_str(manifest).unwrap(), &allowed);
         assert_eq!(
             faults,
-            ["crate align may not depend on the third-party crate libc", "crate align may not depend on the sibling metrics"]
+            [
+                "crate align may not depend on the third-party crate libc",
+                "crate align may not depend on the sibling metrics"
+            ]
         );
     }
 }

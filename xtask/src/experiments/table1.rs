@@ -44,7 +44,11 @@ pub(crate) fn table1_literal() -> anyhow::Result<Experiment> {
 
 fn rows(redraw: Redraw, first_system: u32) -> anyhow::Result<Vec<Row>> {
     let mut paper = paper_table(include_str!("../../paper/table1.toml"))?;
-    let setups = [("parabola", 40, ToyPotential::parabola()), ("sinusoidal", 40, ToyPotential::sinusoidal()), ("sinusoidal", 100, ToyPotential::sinusoidal())];
+    let setups = [
+        ("parabola", 40, ToyPotential::parabola()),
+        ("sinusoidal", 40, ToyPotential::sinusoidal()),
+        ("sinusoidal", 100, ToyPotential::sinusoidal()),
+    ];
     let bandwidths = [("narrow", Bandwidth::Narrow), ("medium", Bandwidth::Medium), ("wide", Bandwidth::Wide)];
     let mut rows = Vec::new();
     for (number, (name, size, potential)) in (first_system..).zip(setups) {
@@ -90,7 +94,8 @@ impl Trial for ToyTrial {
 
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<BTreeMap<Measure, f64>> {
         let recordings = self.system.record(rng)?;
-        let aligned = PolicyAlign { bandwidth: self.bandwidth, ..PolicyAlign::default() }.align(&demonstrations(&recordings)?)?;
+        let aligned =
+            PolicyAlign { bandwidth: self.bandwidth, ..PolicyAlign::default() }.align(&demonstrations(&recordings)?)?;
         let (training, held_out) = aligned.samples().split(HELD_OUT, rng)?;
         let learnt = aligned.regress(&Self::regressor(), &training, rng)?;
         score(&recordings, &aligned, &held_out, learnt.potential(), learnt.policy())
