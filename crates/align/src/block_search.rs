@@ -4,48 +4,60 @@
 use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
 
-/// Samples are padded to a multiple of the widest vector.
-const WIDTH: usize = 8;
+use crate::lanes::{LANES, Lanes, groups_of};
+
 /// Rows that share one load of the other trajectory's coordinates.
 const ROWS: usize = 4;
 
-/// The states of one trajectory, one dimension after the other, each padded with infinity, which is nobody's nearest.
+/// The states of one trajectory in tiles of as many samples as a vector has lanes: a tile holds one vector for each
+/// dimension. The last tile is filled up with infinity, which is nobody's nearest.
 #[derive(Debug)]
-pub(crate) struct Lanes {
+pub(crate) struct Tiles {
     coordinates: Vec<f64>,
     n_samples: usize,
-    padded: usize,
 }
 
-impl Lanes {
+impl Tiles {
     pub(crate) fn new(positions: &DMatrix<f64>) -> Self {
-        let n_samples = positions.ncols();
-        let padded = n_samples.next_multiple_of(WIDTH);
-        let mut coordinates = vec![f64::INFINITY; padded * positions.nrows()];
-        for (row, lane) in positions.row_iter().zip(coordinates.chunks_exact_mut(padded)) {
-            lane.iter_mut().zip(row.iter()).for_each(|(lane, &value)| *lane = value);
+        let (n_states, n_samples) = positions.shape();
+        let lanes = Arch::new().dispatch(LaneCount);
+        let padded = n_samples.next_multiple_of(lanes);
+        let mut coordinates = vec![f64::INFINITY; padded * n_states];
+        for (sample, state) in positions.column_iter().enumerate() {
+            let first = (sample / lanes) * lanes * n_states + sample % lanes;
+            let places = coordinates[first..].iter_mut().step_by(lanes);
+            places.zip(state.iter()).for_each(|(place, &value)| *place = value);
         }
-        Lanes { coordinates, n_samples, padded }
+        Tiles { coordinates, n_samples }
     }
 }
 
-/// For each of some samples, the nearest sample of one trajectory.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Nearest {
-    /// Squared distance to it.
-    pub(crate) squared_distances: Vec<f64>,
-    /// Its index; the lowest of those equally near.
-    pub(crate) samples: Vec<u32>,
+struct LaneCount;
+
+impl WithSimd for LaneCount {
+    type Output = usize;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) -> usize {
+        S::F64_LANES
+    }
 }
 
-impl Nearest {
-    fn new(squared_distances: &[f64], samples: &[u64]) -> Self {
-        Nearest { squared_distances: squared_distances.to_vec(), samples: samples.iter().map(|&i| i as u32).collect() }
-    }
+/// The nearest samples found so far; indices are exact in f64, and compare and blend like the distances.
+#[derive(Debug, Default)]
+pub(crate) struct Minima {
+    /// Squared distances, filled up with infinity.
+    pub(crate) distances: Vec<Lanes>,
+    /// Whole numbers.
+    pub(crate) samples: Vec<Lanes>,
+}
 
-    /// The smallest squared distance of all.
-    pub(crate) fn smallest(&self) -> f64 {
-        self.squared_distances.iter().copied().fold(f64::INFINITY, f64::min)
+impl Minima {
+    fn reset(&mut self, count: usize) {
+        self.distances.clear();
+        self.distances.resize(groups_of(count), [f64::INFINITY; LANES]);
+        self.samples.clear();
+        self.samples.resize(groups_of(count), [0.0; LANES]);
     }
 }
 
@@ -54,131 +66,125 @@ impl Nearest {
 pub(crate) struct BlockSearch<'a> {
     rows: &'a DMatrix<f64>,
     arch: Arch,
-    row_minimum: Vec<f64>,
-    row_sample: Vec<u64>,
-    column_minimum: Vec<f64>,
-    column_sample: Vec<u64>,
+    /// For the samples of this trajectory, the nearest of the other.
+    pub(crate) of_rows: Minima,
+    /// For the samples of the other trajectory, the nearest of this.
+    pub(crate) of_columns: Minima,
 }
 
 impl<'a> BlockSearch<'a> {
     pub(crate) fn new(rows: &'a DMatrix<f64>) -> Self {
-        let n = rows.ncols();
-        BlockSearch {
-            rows,
-            arch: Arch::new(),
-            row_minimum: vec![0.0; n],
-            row_sample: vec![0; n],
-            column_minimum: Vec::new(),
-            column_sample: Vec::new(),
-        }
+        BlockSearch { rows, arch: Arch::new(), of_rows: Minima::default(), of_columns: Minima::default() }
     }
 
-    /// What is nearest in `other` to the samples of this trajectory, and in this trajectory to those of `other`.
-    pub(crate) fn run(&mut self, other: &Lanes) -> (Nearest, Nearest) {
-        self.column_minimum.clear();
-        self.column_minimum.resize(other.padded, f64::INFINITY);
-        self.column_sample.clear();
-        self.column_sample.resize(other.padded, 0);
+    /// Finds what is nearest for the samples of both trajectories, and the smallest squared distance of all.
+    pub(crate) fn run(&mut self, other: &Tiles) -> f64 {
+        self.of_rows.reset(self.rows.ncols());
+        self.of_columns.reset(other.n_samples);
         self.arch.dispatch(Block {
-            rows: self.rows.as_slice(),
-            n_states: self.rows.nrows(),
+            rows: self.rows,
             other: &other.coordinates,
-            row_minimum: &mut self.row_minimum,
-            row_sample: &mut self.row_sample,
-            column_minimum: &mut self.column_minimum,
-            column_sample: &mut self.column_sample,
-        });
-        (
-            Nearest::new(&self.row_minimum, &self.row_sample),
-            Nearest::new(&self.column_minimum[..other.n_samples], &self.column_sample[..other.n_samples]),
-        )
+            of_rows: &mut self.of_rows,
+            of_columns: &mut self.of_columns,
+        })
     }
 }
 
 /// One pair of trajectories: rows are samples of the one, vector lanes samples of the other.
 struct Block<'a> {
-    rows: &'a [f64],
-    n_states: usize,
+    rows: &'a DMatrix<f64>,
     other: &'a [f64],
-    row_minimum: &'a mut [f64],
-    row_sample: &'a mut [u64],
-    column_minimum: &'a mut [f64],
-    column_sample: &'a mut [u64],
+    of_rows: &'a mut Minima,
+    of_columns: &'a mut Minima,
 }
 
 impl WithSimd for Block<'_> {
-    type Output = ();
+    type Output = f64;
 
+    /// The smallest squared distance of the block.
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        // A known number of dimensions unrolls the innermost loop.
-        match self.n_states {
-            1 => self.search::<S, 1>(simd),
-            2 => self.search::<S, 2>(simd),
-            3 => self.search::<S, 3>(simd),
-            6 => self.search::<S, 6>(simd),
-            _ => self.search::<S, 0>(simd),
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        // Few dimensions stay in registers; many are a loop whose start and end no longer matter.
+        match self.rows.nrows() {
+            1 => self.search(simd, |rows, tile| squared_distances::<S, 1>(simd, rows, tile)),
+            2 => self.search(simd, |rows, tile| squared_distances::<S, 2>(simd, rows, tile)),
+            3 => self.search(simd, |rows, tile| squared_distances::<S, 3>(simd, rows, tile)),
+            6 => self.search(simd, |rows, tile| squared_distances::<S, 6>(simd, rows, tile)),
+            _ => self.search(simd, |rows, tile| any_squared_distances(simd, rows, tile)),
         }
     }
 }
 
 impl Block<'_> {
-    /// `N` is the number of dimensions, or 0 where it is known at run time only.
     #[inline(always)]
-    fn search<S: Simd, const N: usize>(self, simd: S) {
-        let n_states = if N == 0 { self.n_states } else { N };
-        let n_rows = self.row_minimum.len();
-        let other = S::as_simd_f64s(self.other).0;
-        let (column_minimum, column_sample) =
-            (S::as_mut_simd_f64s(self.column_minimum).0, S::as_mut_simd_u64s(self.column_sample).0);
-        let n_vectors = column_minimum.len();
-        let other: &[S::f64s] = &other[..n_vectors * n_states];
-        let column_sample = &mut column_sample[..n_vectors];
+    fn search<S: Simd>(self, simd: S, distances: impl Fn(&[[f64; ROWS]], &[S::f64s]) -> [S::f64s; ROWS]) -> f64 {
+        let (n_states, n_rows) = self.rows.shape();
+        let (row_distances, row_samples) =
+            (self.of_rows.distances.as_flattened_mut(), self.of_rows.samples.as_flattened_mut());
+        let tiles = S::as_simd_f64s(self.other).0;
+        let column_distances = S::as_mut_simd_f64s(self.of_columns.distances.as_flattened_mut()).0;
+        let column_samples = S::as_mut_simd_f64s(self.of_columns.samples.as_flattened_mut()).0;
+        let lanes: Lanes = std::array::from_fn(|lane| lane as f64);
+        let lanes = S::as_simd_f64s(&lanes).0[0];
+        let infinity = simd.splat_f64s(f64::INFINITY);
+        let mut smallest = infinity;
+        let mut rows = vec![[0.0; ROWS]; n_states];
 
         for first in (0..n_rows).step_by(ROWS) {
             // Rows beyond the last repeat it: a repeated row is never strictly nearer.
             let index: [usize; ROWS] = std::array::from_fn(|r| (first + r).min(n_rows - 1));
-            let row: [&[f64]; ROWS] = index.map(|i| &self.rows[i * n_states..(i + 1) * n_states]);
-            let name = index.map(|i| simd.splat_u64s(i as u64));
-            let mut minimum = [simd.splat_f64s(f64::INFINITY); ROWS];
-            let mut vector_of = [simd.splat_u64s(0); ROWS];
-            for v in 0..n_vectors {
-                let mut distance = [simd.splat_f64s(0.0); ROWS];
-                for c in 0..n_states {
-                    let y = other[c * n_vectors + v];
-                    for r in 0..ROWS {
-                        let difference = simd.sub_f64s(simd.splat_f64s(row[r][c]), y);
-                        distance[r] = simd.add_f64s(distance[r], simd.mul_f64s(difference, difference));
-                    }
-                }
-                let here = simd.splat_u64s(v as u64);
-                let (mut nearest, mut sample) = (column_minimum[v], column_sample[v]);
+            for (c, row) in rows.iter_mut().enumerate() {
+                *row = index.map(|i| self.rows[(c, i)]);
+            }
+            let names = index.map(|i| simd.splat_f64s(i as f64));
+            let mut nearest = [infinity; ROWS];
+            let mut samples = [infinity; ROWS];
+            let mut here = lanes;
+            let columns = column_distances.iter_mut().zip(column_samples.iter_mut());
+            for (tile, (column_distance, column_sample)) in tiles.chunks_exact(n_states).zip(columns) {
+                let distance = distances(&rows, tile);
+                // Held in registers: a masked store that is read again at once would wait for memory.
+                let (mut column_nearest, mut column_row) = (*column_distance, *column_sample);
                 for r in 0..ROWS {
-                    let nearer = simd.less_than_f64s(distance[r], nearest);
-                    nearest = simd.select_f64s(nearer, distance[r], nearest);
-                    sample = simd.select_u64s(nearer, name[r], sample);
-                    let nearer = simd.less_than_f64s(distance[r], minimum[r]);
-                    minimum[r] = simd.select_f64s(nearer, distance[r], minimum[r]);
-                    vector_of[r] = simd.select_u64s(nearer, here, vector_of[r]);
+                    let nearer = simd.less_than_f64s(distance[r], nearest[r]);
+                    nearest[r] = simd.min_f64s(distance[r], nearest[r]);
+                    samples[r] = simd.select_f64s(nearer, here, samples[r]);
+                    let nearer = simd.less_than_f64s(distance[r], column_nearest);
+                    column_nearest = simd.min_f64s(distance[r], column_nearest);
+                    column_row = simd.select_f64s(nearer, names[r], column_row);
                 }
-                column_minimum[v] = nearest;
-                column_sample[v] = sample;
+                (*column_distance, *column_sample) = (column_nearest, column_row);
+                here = simd.add_f64s(here, simd.splat_f64s(S::F64_LANES as f64));
             }
             for r in 0..ROWS {
-                (self.row_minimum[index[r]], self.row_sample[index[r]]) = first_minimum::<S>(minimum[r], vector_of[r]);
+                let least = simd.reduce_min_f64s(nearest[r]);
+                let attained = simd.equal_f64s(nearest[r], simd.splat_f64s(least));
+                row_distances[index[r]] = least;
+                row_samples[index[r]] = simd.reduce_min_f64s(simd.select_f64s(attained, samples[r], infinity));
+                smallest = simd.min_f64s(smallest, nearest[r]);
             }
         }
+        simd.reduce_min_f64s(smallest)
     }
 }
 
-/// The smallest of all lanes, and the lowest sample that attains it.
+/// Of each of `ROWS` rows to each sample of a tile, in `N` dimensions.
 #[inline(always)]
-fn first_minimum<S: Simd>(minimum: S::f64s, vector_of: S::u64s) -> (f64, u64) {
-    let minimum: &[f64] = pulp::bytemuck::cast_slice(std::slice::from_ref(&minimum));
-    let vector_of: &[u64] = pulp::bytemuck::cast_slice(std::slice::from_ref(&vector_of));
-    let lanes = minimum.iter().zip(vector_of).enumerate();
-    lanes.fold((f64::INFINITY, u64::MAX), |best, (lane, (&distance, &vector))| {
-        let sample = vector * S::F64_LANES as u64 + lane as u64;
-        if distance < best.0 || (distance == best.0 && sample < best.1) { (distance, sample) } else { best }
-    })
+fn squared_distances<S: Simd, const N: usize>(simd: S, rows: &[[f64; ROWS]], tile: &[S::f64s]) -> [S::f64s; ROWS] {
+    let rows: &[[f64; ROWS]; N] = rows.try_into().expect("N is the number of dimensions");
+    let tile: &[S::f64s; N] = tile.try_into().expect("N is the number of dimensions");
+    any_squared_distances(simd, rows, tile)
+}
+
+/// Of each of `ROWS` rows to each sample of a tile.
+#[inline(always)]
+fn any_squared_distances<S: Simd>(simd: S, rows: &[[f64; ROWS]], tile: &[S::f64s]) -> [S::f64s; ROWS] {
+    let mut sum = [simd.splat_f64s(0.0); ROWS];
+    for (row, &other) in rows.iter().zip(tile) {
+        for r in 0..ROWS {
+            let difference = simd.sub_f64s(simd.splat_f64s(row[r]), other);
+            sum[r] = simd.add_f64s(sum[r], simd.mul_f64s(difference, difference));
+        }
+    }
+    sum
 }

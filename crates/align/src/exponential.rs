@@ -1,5 +1,7 @@
 //! An exponential that vectorises: the library's is a call per number.
 
+use pulp::{Arch, Simd, WithSimd};
+
 /// exp of anything below −`LARGEST` is not worth its bits, and above it is a normal number.
 const LARGEST: f64 = 708.0;
 /// 1.5 · 2^52: adding it rounds to an integer, which then stands in the low bits.
@@ -9,13 +11,25 @@ const LN_2: [f64; 2] = [6.931471803691238e-1, 1.9082149292705877e-10];
 
 /// Replaces each squared distance d by exp(−d / 2σ²), or by 0 where d > `reach`.
 pub(crate) fn to_weights(squared_distances: &mut [f64], sigma_squared: f64, reach: f64) {
-    let scale = 2.0 * sigma_squared;
-    pulp::Arch::new().dispatch(|| {
-        for value in squared_distances {
-            let weight = exp_negative(*value / scale);
-            *value = if *value <= reach { weight } else { 0.0 };
+    Arch::new().dispatch(ToWeights { squared_distances, scale: 2.0 * sigma_squared, reach });
+}
+
+struct ToWeights<'a> {
+    squared_distances: &'a mut [f64],
+    scale: f64,
+    reach: f64,
+}
+
+impl WithSimd for ToWeights<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        for value in self.squared_distances {
+            let weight = exp_negative(*value / self.scale);
+            *value = if *value <= self.reach { weight } else { 0.0 };
         }
-    });
+    }
 }
 
 /// exp(−t) for t ≥ 0 to within one unit in the last place; 0 where t > 708.

@@ -1,57 +1,109 @@
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
+use crate::compensated::CompensatedSum;
+use crate::lanes::{LANES, Lanes};
 use crate::responsibilities::{Block, Responsibilities};
 
 /// a (16), (K), and E₀ of the objective among a group of trajectories, once each of them is raised by its offset.
-/// Trajectories without an offset are outside: their entries are 0 and their models take no part.
+/// Trajectories without an offset are outside: their entries are 0, and their models take no part.
 ///
-/// Raised by b, a group of all trajectories has a + Hb: half the gradient of the objective at b.
+/// Raised by b, all trajectories together have a + Hb: half the gradient of the objective at b.
 pub(crate) fn linear_term(responsibilities: &Responsibilities, offsets: &[Option<f64>]) -> (Vec<f64>, f64) {
     let blocks = responsibilities.blocks.par_iter().enumerate();
     let terms: Vec<_> = blocks.map(|(owner, block)| block_term(block, owner, offsets)).collect();
-    let mut linear = vec![0.0; offsets.len()];
-    let mut constant = 0.0;
-    for (block, (flows, misfit)) in responsibilities.blocks.iter().zip(terms) {
-        block.models.iter().zip(flows).for_each(|(&model, flow)| linear[model] += flow);
-        constant += misfit;
+    let mut linear = vec![CompensatedSum::default(); offsets.len()];
+    let mut constant = CompensatedSum::default();
+    for (block, term) in responsibilities.blocks.iter().zip(terms) {
+        let Some(BlockTerm { hub, flows, misfit }) = term else { continue };
+        // What flows to a model flows from the hub: whatever rounding does to it, both agree, and a weak link is not
+        // drowned by the rounding of strong ones.
+        for (&model, flow) in block.models.iter().zip(flows).filter(|&(&model, _)| model != hub) {
+            linear[model].add(flow);
+            linear[hub].add(-flow);
+        }
+        constant.add(misfit);
     }
-    (linear, constant)
+    (linear.iter().map(CompensatedSum::value).collect(), constant.value())
 }
 
-/// What the samples of one trajectory add: one number for each model of its block, and the constant.
-///
-/// With s = Σ_j q_j over the group, v = f + b and v̄ = Σ_j q_j v_j / s: Σ_j q_k q_j (v_k − v_j) = s q_k (v_k − v̄),
-/// and ½ Σ_k Σ_j q_k q_j (v_k − v_j)² = s Σ_k q_k (v_k − v̄)². Values are taken relative to the trajectory's own model,
-/// which nearly always has most of the weight, so that what weak links say is not lost in rounding.
-fn block_term(block: &Block, owner: usize, offsets: &[Option<f64>]) -> (Vec<f64>, f64) {
-    let member = |&(model, ..): &(usize, &[f64], &[f64])| offsets[model].is_some();
-    let mut flows = vec![0.0; block.models.len()];
-    let Some(reference) = block.models().filter(member).max_by_key(|&(model, ..)| model == owner) else {
-        return (flows, 0.0);
-    };
-    let (_, _, origin) = reference;
-    let origin_offset = offsets[reference.0].unwrap_or(0.0);
+/// What the samples of one trajectory add.
+struct BlockTerm {
+    /// The trajectory itself, or the first member of the group if it is outside.
+    hub: usize,
+    /// Σ_m Σ_j q_km q_jm (v_km − v_jm) for each model k of the block, 0 for those outside.
+    flows: Vec<f64>,
+    /// ½ Σ_m Σ_k Σ_j q_km q_jm (v_km − v_jm)².
+    misfit: f64,
+}
 
-    let mut total = vec![0.0; block.n_samples];
-    let mut mean = vec![0.0; block.n_samples];
-    for (model, shares, values) in block.models().filter(member) {
-        let rise = offsets[model].unwrap_or(0.0) - origin_offset;
-        for m in 0..block.n_samples {
-            total[m] += shares[m];
-            mean[m] += shares[m] * (values[m] - origin[m] + rise);
+fn block_term(block: &Block, owner: usize, offsets: &[Option<f64>]) -> Option<BlockTerm> {
+    let first = block.models.iter().copied().find(|&model| offsets[model].is_some())?;
+    let hub = if offsets[owner].is_some() { owner } else { first };
+    // Values are relative to those of the trajectory itself, which has most of the weight.
+    let level = offsets[owner].unwrap_or(0.0);
+    let (flows, misfit) = Arch::new().dispatch(Flows { block, offsets, level });
+    Some(BlockTerm { hub, flows, misfit })
+}
+
+/// With v = f + b, s = Σ_j q_j over the group and v̄ = Σ_j q_j v_j / s,
+/// Σ_j q_k q_j (v_k − v_j) = s q_k (v_k − v̄) and ½ Σ_k Σ_j q_k q_j (v_k − v_j)² = s Σ_k q_k (v_k − v̄)².
+struct Flows<'a> {
+    block: &'a Block,
+    offsets: &'a [Option<f64>],
+    level: f64,
+}
+
+impl WithSimd for Flows<'_> {
+    type Output = (Vec<f64>, f64);
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) -> Self::Output {
+        let mut share = vec![[0.0; LANES]; self.block.groups];
+        let mut mean = vec![[0.0; LANES]; self.block.groups];
+        for (model, q, rises) in self.block.models() {
+            if let Some(offset) = self.offsets[model] {
+                add_to_mean(q, rises, offset - self.level, &mut share, &mut mean);
+            }
+        }
+        for (mean, share) in mean.as_flattened_mut().iter_mut().zip(share.as_flattened()) {
+            *mean /= if *share > 0.0 { *share } else { 1.0 };
+        }
+        let mut flows = vec![0.0; self.block.models.len()];
+        let mut misfit = 0.0;
+        for ((model, q, rises), flow) in self.block.models().zip(&mut flows) {
+            if let Some(offset) = self.offsets[model] {
+                let (sum, square) = deviation(q, rises, offset - self.level, &share, &mean);
+                *flow = sum;
+                misfit += square;
+            }
+        }
+        (flows, misfit)
+    }
+}
+
+#[inline(always)]
+fn add_to_mean(q: &[Lanes], rises: &[Lanes], rise: f64, share: &mut [Lanes], mean: &mut [Lanes]) {
+    for (((q, rises), share), mean) in q.iter().zip(rises).zip(share).zip(mean) {
+        for lane in 0..LANES {
+            share[lane] += q[lane];
+            mean[lane] += q[lane] * (rises[lane] + rise);
         }
     }
-    mean.iter_mut().zip(&total).filter(|(_, total)| **total > 0.0).for_each(|(mean, total)| *mean /= total);
+}
 
-    let mut misfit = 0.0;
-    for (flow, (model, shares, values)) in flows.iter_mut().zip(block.models()) {
-        let Some(offset) = offsets[model] else { continue };
-        for m in 0..block.n_samples {
-            let deviation = values[m] - origin[m] + (offset - origin_offset) - mean[m];
-            let weighted = total[m] * shares[m] * deviation;
-            *flow += weighted;
-            misfit += weighted * deviation;
+/// Σ s q (v − v̄) and Σ s q (v − v̄)².
+#[inline(always)]
+fn deviation(q: &[Lanes], rises: &[Lanes], rise: f64, share: &[Lanes], mean: &[Lanes]) -> (f64, f64) {
+    let mut flow = [0.0; LANES];
+    let mut misfit = [0.0; LANES];
+    for (((q, rises), share), mean) in q.iter().zip(rises).zip(share).zip(mean) {
+        for lane in 0..LANES {
+            let deviation = rises[lane] + rise - mean[lane];
+            let weighted = share[lane] * q[lane] * deviation;
+            flow[lane] += weighted;
+            misfit[lane] += weighted * deviation;
         }
     }
-    (flows, misfit)
+    (flow.iter().sum(), misfit.iter().sum())
 }

@@ -3,7 +3,8 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::AlignError;
-use crate::block_search::{BlockSearch, Lanes, Nearest};
+use crate::block_search::{BlockSearch, Minima, Tiles};
+use crate::lanes::{LANES, Lanes, groups_of};
 
 /// For every sample of every trajectory, its nearest sample in each trajectory: the search behind (10) and (11).
 ///
@@ -11,10 +12,21 @@ use crate::block_search::{BlockSearch, Lanes, Nearest};
 /// nearest in the other. Distances are sums of squared differences, exact to rounding even for distant clouds.
 #[derive(Debug)]
 pub(crate) struct NearestSamples {
-    /// `toward_later[i][k - i]`: for the samples of trajectory i, the nearest ones of trajectory k, where k >= i.
-    toward_later: Vec<Vec<Nearest>>,
-    /// `toward_earlier[i][j - i]`: for the samples of trajectory j, the nearest ones of trajectory i, where j >= i.
-    toward_earlier: Vec<Vec<Nearest>>,
+    /// At i, for the samples of trajectory i: the nearest of trajectories i, i + 1, …
+    toward_later: Vec<NearestList>,
+    /// At i, for the samples of trajectories i, i + 1, …: the nearest of trajectory i.
+    toward_earlier: Vec<NearestList>,
+}
+
+/// For the samples of one trajectory, the nearest ones of another.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Nearest<'a> {
+    /// Squared distances, filled up with infinity.
+    pub(crate) squared_distances: &'a [Lanes],
+    /// Indices, filled up with 0; the lowest of those equally near.
+    pub(crate) samples: &'a [[u32; LANES]],
+    /// The smallest squared distance of all.
+    pub(crate) smallest: f64,
 }
 
 impl NearestSamples {
@@ -24,15 +36,21 @@ impl NearestSamples {
     /// [`AlignError::SpanOverflow`] when squared distances could overflow.
     pub(crate) fn search(demonstrations: &Demonstrations) -> Result<Self, AlignError> {
         check_span(demonstrations)?;
-        let lanes: Vec<_> = demonstrations.trajectories().iter().map(|t| Lanes::new(t.positions())).collect();
-        let blocks: Vec<_> = (0..lanes.len())
-            .into_par_iter()
-            .map(|i| {
-                let mut search = BlockSearch::new(demonstrations.trajectories()[i].positions());
-                lanes[i..].iter().map(|later| search.run(later)).unzip()
-            })
-            .collect();
-        let (toward_later, toward_earlier) = blocks.into_iter().unzip();
+        let trajectories = demonstrations.trajectories();
+        let tiles: Vec<_> = trajectories.iter().map(|t| Tiles::new(t.positions())).collect();
+        let groups: Vec<_> = trajectories.iter().map(|t| groups_of(t.n_samples())).collect();
+        let blocks = (0..trajectories.len()).into_par_iter().map(|i| {
+            let mut search = BlockSearch::new(trajectories[i].positions());
+            let mut of_rows = NearestList::with_capacity(groups[i] * (groups.len() - i));
+            let mut of_columns = NearestList::with_capacity(groups[i..].iter().sum());
+            for later in &tiles[i..] {
+                let smallest = search.run(later);
+                of_rows.push(&search.of_rows, smallest);
+                of_columns.push(&search.of_columns, smallest);
+            }
+            (of_rows, of_columns)
+        });
+        let (toward_later, toward_earlier) = blocks.unzip();
         Ok(NearestSamples { toward_later, toward_earlier })
     }
 
@@ -42,19 +60,60 @@ impl NearestSamples {
     }
 
     /// The nearest samples in trajectory `model` to each sample of trajectory `owner`.
-    pub(crate) fn of(&self, owner: usize, model: usize) -> &Nearest {
+    pub(crate) fn of(&self, owner: usize, model: usize) -> Nearest<'_> {
         if model >= owner {
-            &self.toward_later[owner][model - owner]
+            self.toward_later[owner].get(model - owner)
         } else {
-            &self.toward_earlier[model][owner - model]
+            self.toward_earlier[model].get(owner - model)
         }
     }
 
     /// d_kj = min_{n,m} ‖x_kn − x_jm‖² (18), shape (K, K), zero on the diagonal.
     pub(crate) fn trajectory_distances(&self) -> DMatrix<f64> {
         let count = self.n_trajectories();
-        DMatrix::from_fn(count, count, |j, k| self.of(k.min(j), k.max(j)).smallest())
+        DMatrix::from_fn(count, count, |j, k| self.of(k.min(j), k.max(j)).smallest)
     }
+}
+
+/// The minima of several blocks, one after the other.
+#[derive(Debug)]
+struct NearestList {
+    squared_distances: Vec<Lanes>,
+    samples: Vec<[u32; LANES]>,
+    smallest: Vec<f64>,
+    ends: Vec<usize>,
+}
+
+impl NearestList {
+    fn with_capacity(groups: usize) -> Self {
+        NearestList {
+            squared_distances: Vec::with_capacity(groups),
+            samples: Vec::with_capacity(groups),
+            smallest: Vec::new(),
+            ends: Vec::new(),
+        }
+    }
+
+    fn push(&mut self, minima: &Minima, smallest: f64) {
+        self.squared_distances.extend_from_slice(&minima.distances);
+        self.samples.extend(minima.samples.iter().map(|samples| samples.map(whole)));
+        self.smallest.push(smallest);
+        self.ends.push(self.samples.len());
+    }
+
+    fn get(&self, at: usize) -> Nearest<'_> {
+        let range = if at == 0 { 0 } else { self.ends[at - 1] }..self.ends[at];
+        Nearest {
+            squared_distances: &self.squared_distances[range.clone()],
+            samples: &self.samples[range],
+            smallest: self.smallest[at],
+        }
+    }
+}
+
+/// A whole number below 2^32 from its f64: added to 2^52 it stands in the low bits, and that vectorises on any machine.
+fn whole(number: f64) -> u32 {
+    (number + 4503599627370496.0).to_bits() as u32
 }
 
 /// Squared distances are finite if the diagonal of the data's bounding box is.

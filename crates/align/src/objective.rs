@@ -3,6 +3,7 @@ use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::lanes::LANES;
 use crate::laplacian::Elimination;
 use crate::linear_term::linear_term;
 use crate::responsibilities::{Block, Responsibilities};
@@ -86,7 +87,7 @@ fn mutual(blocks: &[Block], count: usize) -> DMatrix<f64> {
 fn gram(block: &Block) -> DMatrix<f64> {
     let count = block.models.len();
     let mut gram = DMatrix::zeros(count, count);
-    let shares = MatRef::from_column_major_slice(&block.shares, block.n_samples, count);
+    let shares = MatRef::from_column_major_slice(block.shares.as_flattened(), LANES * block.groups, count);
     let lower = BlockStructure::TriangularLower;
     let whole = BlockStructure::Rectangular;
     matmul(

@@ -5,8 +5,8 @@ use crate::laplacian::{Elimination, of_group};
 use crate::linear_term::linear_term;
 use crate::responsibilities::Responsibilities;
 
-/// The first solution is good to 1e-16 / λ₂, and each round of the same on what is left gains as many digits again.
-const ROUNDS: usize = 3;
+/// The first solution is good to 1e-16 / λ₂; the second levels what that left.
+const ROUNDS: usize = 2;
 
 /// The offsets b = −H⁺a (17) of a group of trajectories, in the order of the group and with sum 0, by the mutual
 /// weights of its members.

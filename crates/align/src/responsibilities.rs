@@ -1,6 +1,8 @@
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::exponential::to_weights;
+use crate::lanes::{LANES, Lanes, groups_of};
 use crate::nearest::NearestSamples;
 
 /// The responsibilities q_km (12) of the local models for all samples, and what those models say there.
@@ -12,15 +14,16 @@ pub(crate) struct Responsibilities {
 }
 
 /// The samples of one trajectory, as all local models see them.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Block {
     /// The models with a responsibility above the floor at some sample, ascending.
     pub(crate) models: Vec<usize>,
-    /// q_km: for each model in turn, one value a sample.
-    pub(crate) shares: Vec<f64>,
-    /// f_km, φ̂ of the model's nearest sample (10), in the same order.
-    pub(crate) values: Vec<f64>,
-    pub(crate) n_samples: usize,
+    /// For each model in turn q_km, one a sample, filled up with 0.
+    pub(crate) shares: Vec<Lanes>,
+    /// For each model in turn f_km − f_om, where o is the trajectory itself: φ̂ of the nearest samples (10).
+    pub(crate) rises: Vec<Lanes>,
+    /// Groups of samples.
+    pub(crate) groups: usize,
 }
 
 impl Responsibilities {
@@ -43,32 +46,64 @@ impl Responsibilities {
 
 impl Block {
     fn new(owner: usize, nearest: &NearestSamples, potentials: &[Vec<f64>], sigma_squared: f64, reach: f64) -> Self {
-        let n_samples = potentials[owner].len();
-        let mut block = Block { n_samples, ..Block::default() };
-        let mut total = vec![0.0; n_samples];
-        for (model, potential) in potentials.iter().enumerate() {
+        let models: Vec<usize> =
+            (0..potentials.len()).filter(|&model| nearest.of(owner, model).smallest <= reach).collect();
+        let groups = groups_of(potentials[owner].len());
+        let mut shares = Vec::with_capacity(groups * models.len());
+        let mut rises = Vec::with_capacity(groups * models.len());
+        let own: Vec<Lanes> = nearest.of(owner, owner).samples.iter().map(|s| look_up(&potentials[owner], s)).collect();
+        for &model in &models {
             let nearest = nearest.of(owner, model);
-            if nearest.smallest() > reach {
-                continue;
-            }
-            let start = block.shares.len();
-            block.models.push(model);
-            block.values.extend(nearest.samples.iter().map(|&sample| potential[sample as usize]));
-            block.shares.extend_from_slice(&nearest.squared_distances);
-            let weights = &mut block.shares[start..];
-            to_weights(weights, sigma_squared, reach);
-            total.iter_mut().zip(weights).for_each(|(total, weight)| *total += *weight);
+            let values = nearest.samples.iter().map(|samples| look_up(&potentials[model], samples));
+            rises.extend(values.zip(&own).map(|(value, own)| std::array::from_fn(|lane| value[lane] - own[lane])));
+            shares.extend_from_slice(nearest.squared_distances);
         }
-        for shares in block.shares.chunks_exact_mut(n_samples) {
-            shares.iter_mut().zip(&total).for_each(|(share, total)| *share /= total);
-        }
-        block
+        to_weights(shares.as_flattened_mut(), sigma_squared, reach);
+        Arch::new().dispatch(Normalise { weights: &mut shares, groups });
+        Block { models, shares, rises, groups }
     }
 
-    /// (model, q_m, f_m) for each model of the block, with one share and one value a sample.
-    pub(crate) fn models(&self) -> impl Iterator<Item = (usize, &[f64], &[f64])> {
-        let shares = self.shares.chunks_exact(self.n_samples);
-        let values = self.values.chunks_exact(self.n_samples);
-        self.models.iter().zip(shares.zip(values)).map(|(&model, (shares, values))| (model, shares, values))
+    /// (model, q, f − f of the own trajectory) for each model of the block.
+    pub(crate) fn models(&self) -> impl Iterator<Item = (usize, &[Lanes], &[Lanes])> {
+        let shares = self.shares.chunks_exact(self.groups);
+        let rises = self.rises.chunks_exact(self.groups);
+        self.models.iter().zip(shares.zip(rises)).map(|(&model, (shares, rises))| (model, shares, rises))
+    }
+}
+
+fn look_up(potential: &[f64], samples: &[u32; LANES]) -> Lanes {
+    samples.map(|sample| potential[sample as usize])
+}
+
+/// Divides the weights of all models at a sample by their sum (12).
+struct Normalise<'a> {
+    weights: &'a mut [Lanes],
+    groups: usize,
+}
+
+impl WithSimd for Normalise<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let mut total = vec![[0.0; LANES]; self.groups];
+        for model in self.weights.chunks_exact(self.groups) {
+            for (total, weight) in total.iter_mut().zip(model) {
+                for lane in 0..LANES {
+                    total[lane] += weight[lane];
+                }
+            }
+        }
+        // Where the samples are filled up nobody has weight, and 0 / 1 keeps it so.
+        for total in total.as_flattened_mut() {
+            *total = if *total > 0.0 { *total } else { 1.0 };
+        }
+        for model in self.weights.chunks_exact_mut(self.groups) {
+            for (weight, total) in model.iter_mut().zip(&total) {
+                for lane in 0..LANES {
+                    weight[lane] /= total[lane];
+                }
+            }
+        }
     }
 }

@@ -1,0 +1,31 @@
+/// A sum that keeps what rounding drops (Neumaier): as if added in twice the precision.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct CompensatedSum {
+    sum: f64,
+    dropped: f64,
+}
+
+impl CompensatedSum {
+    pub(crate) fn add(&mut self, term: f64) {
+        let sum = self.sum + term;
+        let taken = sum - self.sum;
+        self.dropped += (self.sum - (sum - taken)) + (term - taken);
+        self.sum = sum;
+    }
+
+    pub(crate) fn value(&self) -> f64 {
+        self.sum + self.dropped
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keeps_what_rounding_drops() {
+        let mut sum = CompensatedSum::default();
+        [1.0, 1e-30, 1e20, -1e20, -1.0].into_iter().for_each(|term| sum.add(term));
+        assert_eq!(sum.value(), 1e-30);
+    }
+}
