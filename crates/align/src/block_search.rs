@@ -65,6 +65,7 @@ impl Minima {
 #[derive(Debug)]
 pub(crate) struct BlockSearch<'a> {
     rows: &'a DMatrix<f64>,
+    row_groups: Vec<[f64; ROWS]>,
     arch: Arch,
     /// For the samples of this trajectory, the nearest of the other.
     pub(crate) of_rows: Minima,
@@ -74,7 +75,8 @@ pub(crate) struct BlockSearch<'a> {
 
 impl<'a> BlockSearch<'a> {
     pub(crate) fn new(rows: &'a DMatrix<f64>) -> Self {
-        BlockSearch { rows, arch: Arch::new(), of_rows: Minima::default(), of_columns: Minima::default() }
+        let (of_rows, of_columns) = (Minima::default(), Minima::default());
+        BlockSearch { rows, row_groups: row_groups(rows), arch: Arch::new(), of_rows, of_columns }
     }
 
     /// Finds what is nearest for the samples of both trajectories, and the smallest squared distance of all.
@@ -82,7 +84,9 @@ impl<'a> BlockSearch<'a> {
         self.of_rows.reset(self.rows.ncols());
         self.of_columns.reset(other.n_samples);
         self.arch.dispatch(Block {
-            rows: self.rows,
+            n_states: self.rows.nrows(),
+            n_rows: self.rows.ncols(),
+            row_groups: &self.row_groups,
             other: &other.coordinates,
             of_rows: &mut self.of_rows,
             of_columns: &mut self.of_columns,
@@ -90,9 +94,19 @@ impl<'a> BlockSearch<'a> {
     }
 }
 
+/// The states in groups of `ROWS`, for each group and each dimension one coordinate a row. The last group is filled up
+/// with its last state: a repeated row is never strictly nearer.
+fn row_groups(states: &DMatrix<f64>) -> Vec<[f64; ROWS]> {
+    let last = states.ncols() - 1;
+    let group = |first| (0..states.nrows()).map(move |c| std::array::from_fn(|r| states[(c, last.min(first + r))]));
+    (0..=last).step_by(ROWS).flat_map(group).collect()
+}
+
 /// One pair of trajectories: rows are samples of the one, vector lanes samples of the other.
 struct Block<'a> {
-    rows: &'a DMatrix<f64>,
+    n_states: usize,
+    n_rows: usize,
+    row_groups: &'a [[f64; ROWS]],
     other: &'a [f64],
     of_rows: &'a mut Minima,
     of_columns: &'a mut Minima,
@@ -105,7 +119,7 @@ impl WithSimd for Block<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         // Few dimensions stay in registers; many are a loop whose start and end no longer matter.
-        match self.rows.nrows() {
+        match self.n_states {
             1 => self.search(simd, |rows, tile| squared_distances::<S, 1>(simd, rows, tile)),
             2 => self.search(simd, |rows, tile| squared_distances::<S, 2>(simd, rows, tile)),
             3 => self.search(simd, |rows, tile| squared_distances::<S, 3>(simd, rows, tile)),
@@ -118,7 +132,6 @@ impl WithSimd for Block<'_> {
 impl Block<'_> {
     #[inline(always)]
     fn search<S: Simd>(self, simd: S, distances: impl Fn(&[[f64; ROWS]], &[S::f64s]) -> [S::f64s; ROWS]) -> f64 {
-        let (n_states, n_rows) = self.rows.shape();
         let (row_distances, row_samples) =
             (self.of_rows.distances.as_flattened_mut(), self.of_rows.samples.as_flattened_mut());
         let tiles = S::as_simd_f64s(self.other).0;
@@ -128,21 +141,16 @@ impl Block<'_> {
         let lanes = S::as_simd_f64s(&lanes).0[0];
         let infinity = simd.splat_f64s(f64::INFINITY);
         let mut smallest = infinity;
-        let mut rows = vec![[0.0; ROWS]; n_states];
 
-        for first in (0..n_rows).step_by(ROWS) {
-            // Rows beyond the last repeat it: a repeated row is never strictly nearer.
-            let index: [usize; ROWS] = std::array::from_fn(|r| (first + r).min(n_rows - 1));
-            for (c, row) in rows.iter_mut().enumerate() {
-                *row = index.map(|i| self.rows[(c, i)]);
-            }
+        for (group, rows) in self.row_groups.chunks_exact(self.n_states).enumerate() {
+            let index: [usize; ROWS] = std::array::from_fn(|r| (ROWS * group + r).min(self.n_rows - 1));
             let names = index.map(|i| simd.splat_f64s(i as f64));
             let mut nearest = [infinity; ROWS];
             let mut samples = [infinity; ROWS];
             let mut here = lanes;
             let columns = column_distances.iter_mut().zip(column_samples.iter_mut());
-            for (tile, (column_distance, column_sample)) in tiles.chunks_exact(n_states).zip(columns) {
-                let distance = distances(&rows, tile);
+            for (tile, (column_distance, column_sample)) in tiles.chunks_exact(self.n_states).zip(columns) {
+                let distance = distances(rows, tile);
                 // Held in registers: a masked store that is read again at once would wait for memory.
                 let (mut column_nearest, mut column_row) = (*column_distance, *column_sample);
                 for r in 0..ROWS {
