@@ -16,6 +16,10 @@ pub(crate) enum Measure {
     Disc,
     /// Error of the aligned local potentials (A4).
     AlignmentNmse,
+    /// Error of direct policy learning under the row's constraint (A2).
+    Naive,
+    /// Error of PolicyAlign under the row's constraint (A2).
+    PolicyAlign,
 }
 
 /// By which rule ours and the paper's figure are compared.
@@ -23,8 +27,19 @@ pub(crate) enum Measure {
 pub(crate) enum Kind {
     /// An error of the learner: lower is better.
     LearnerError,
+    /// An error of the baseline: it is to be as bad as the paper's.
+    BaselineError,
     /// A share of trajectories: neither direction is better.
     Share,
+}
+
+/// Whose errors stand in a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum RowOf {
+    /// A learner that is to be as good as it can.
+    Learner,
+    /// The baseline.
+    Baseline,
 }
 
 impl Measure {
@@ -36,14 +51,17 @@ impl Measure {
             Measure::Ncpe => "ncpe",
             Measure::Disc => "disc",
             Measure::AlignmentNmse => "alignment_nmse",
+            Measure::Naive => "naive",
+            Measure::PolicyAlign => "policy_align",
         }
     }
 
-    /// How it is judged.
-    pub(crate) fn kind(self) -> Kind {
-        match self {
-            Measure::Disc => Kind::Share,
-            _ => Kind::LearnerError,
+    /// How it is judged in a row.
+    pub(crate) fn kind(self, row: RowOf) -> Kind {
+        match (self, row) {
+            (Measure::Disc, _) => Kind::Share,
+            (Measure::Naive, _) | (_, RowOf::Baseline) => Kind::BaselineError,
+            (_, RowOf::Learner) => Kind::LearnerError,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Finished data sets, kept one JSON line each so that nothing but what is in flight is ever lost.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
@@ -10,14 +10,14 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use anyhow::Context as _;
 use serde::{Deserialize, Serialize};
 
-use crate::measure::Measure;
+use crate::experiments::Measures;
 
-/// What one data set of one row gave.
+/// What one data set of one setup gave.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Outcome {
-    /// The measures.
-    Measured(BTreeMap<Measure, f64>),
+    /// The measures of each row.
+    Measured(Measures),
     /// Why there are none.
     Failed(String),
 }
@@ -27,19 +27,19 @@ pub(crate) enum Outcome {
 struct Record {
     key: String,
     experiment: String,
-    row: String,
+    setup: String,
     data_set: u32,
     outcome: Outcome,
 }
 
-/// Names one data set of one row of an experiment.
+/// Names one data set of one setup of an experiment.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DataSet<'a> {
     /// The experiment's id.
     pub(crate) experiment: &'a str,
-    /// The row's id.
-    pub(crate) row: &'a str,
-    /// All parameters of the row.
+    /// The setup's id.
+    pub(crate) setup: &'a str,
+    /// All parameters of the setup.
     pub(crate) definition: &'a str,
     /// The seed of the run.
     pub(crate) seed: u64,
@@ -102,7 +102,7 @@ impl Records {
         let record = Record {
             key: self.key(data_set),
             experiment: data_set.experiment.to_owned(),
-            row: data_set.row.to_owned(),
+            setup: data_set.setup.to_owned(),
             data_set: data_set.data_set,
             outcome: outcome.clone(),
         };
@@ -122,7 +122,7 @@ impl Records {
         data_set.seed.hash(&mut hasher);
         data_set.definition.hash(&mut hasher);
         let definition = hasher.finish();
-        format!("{}/{}/{}/{definition:016x}", data_set.experiment, data_set.row, data_set.data_set)
+        format!("{}/{}/{}/{definition:016x}", data_set.experiment, data_set.setup, data_set.data_set)
     }
 }
 
@@ -137,13 +137,16 @@ fn code_identity() -> anyhow::Result<u64> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
+    use crate::measure::Measure;
 
     const DATA_SET: DataSet<'static> =
-        DataSet { experiment: "table1", row: "narrow", definition: "K = 40", seed: 1, data_set: 7 };
+        DataSet { experiment: "table1", setup: "narrow", definition: "K = 40", seed: 1, data_set: 7 };
 
     fn measured(value: f64) -> Outcome {
-        Outcome::Measured(BTreeMap::from([(Measure::Nupe, value)]))
+        Outcome::Measured(vec![BTreeMap::from([(Measure::Nupe, value)])])
     }
 
     #[test]
@@ -158,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn another_seed_definition_row_or_program_finds_nothing() {
+    fn another_seed_definition_setup_or_program_finds_nothing() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("records.jsonl");
         Records::open(&path, Earlier::Resume).unwrap().append(&DATA_SET, &measured(1.0)).unwrap();
@@ -166,7 +169,7 @@ mod tests {
         for other in [
             DataSet { seed: 2, ..DATA_SET },
             DataSet { definition: "K = 41", ..DATA_SET },
-            DataSet { row: "wide", ..DATA_SET },
+            DataSet { setup: "wide", ..DATA_SET },
             DataSet { experiment: "table1-literal", ..DATA_SET },
             DataSet { data_set: 8, ..DATA_SET },
         ] {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use crate::experiments::Experiment;
-use crate::measure::{Kind, Measure};
+use crate::measure::Measure;
 use crate::results::{Cell, ExperimentResult, Results};
 use crate::table::markdown_table;
 use crate::verdict::Verdict;
@@ -112,6 +112,6 @@ fn explanations(experiment: &Experiment, result: &ExperimentResult) -> String {
 /// Figures that are not reached, and errors that are better by far, must be explained.
 fn needs_a_word(measure: Measure, cell: &Cell) -> bool {
     let (Some(paper), Some(verdict)) = (cell.paper, cell.verdict) else { return false };
-    let far_better = measure.kind() == Kind::LearnerError && paper.mean - cell.mean > REMARKABLY_BETTER * paper.sd;
+    let far_better = verdict == Verdict::Better && paper.mean - cell.mean > REMARKABLY_BETTER * paper.sd;
     !verdict.reached() || far_better
 }

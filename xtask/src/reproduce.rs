@@ -10,7 +10,7 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use cpu_time::ProcessTime;
 
-use crate::experiments::{Experiment, registry};
+use crate::experiments::{Experiment, Setup, registry};
 use crate::progress::say;
 use crate::records::{Earlier, Records};
 use crate::report::{report, tally};
@@ -90,31 +90,34 @@ impl Reproduce {
     }
 }
 
-/// Keeps the experiments and rows that are asked for; all where nothing is.
+/// Keeps the experiments, setups and rows that are asked for; all where nothing is. Rows that are measured on the same
+/// data sets stay together.
 fn select(mut experiments: Vec<Experiment>, only: &[String]) -> anyhow::Result<Vec<Experiment>> {
     if only.is_empty() {
         return Ok(experiments);
     }
-    let matches = |wanted: &str, experiment: &str, row: &str| {
-        wanted == experiment || wanted == row || wanted.split_once('/') == Some((experiment, row))
+    let matches = |wanted: &str, experiment: &str, setup: &Setup| {
+        let (within, name) = wanted.split_once('/').unwrap_or((experiment, wanted));
+        within == experiment && (name == experiment || name == setup.id || setup.rows.iter().any(|row| name == row.id))
     };
     for wanted in only {
-        let known = |e: &Experiment| e.rows.iter().any(|row| matches(wanted, e.id, &row.id));
+        let known = |e: &Experiment| e.setups.iter().any(|setup| matches(wanted, e.id, setup));
         if !experiments.iter().any(known) {
             bail!("--only {wanted}: no such experiment or row; `cargo xtask reproduce --list` shows them all");
         }
     }
     for experiment in &mut experiments {
         let id = experiment.id;
-        experiment.rows.retain(|row| only.iter().any(|wanted| matches(wanted, id, &row.id)));
+        experiment.setups.retain(|setup| only.iter().any(|wanted| matches(wanted, id, setup)));
     }
-    experiments.retain(|experiment| !experiment.rows.is_empty());
+    experiments.retain(|experiment| !experiment.setups.is_empty());
     Ok(experiments)
 }
 
 fn list(experiments: &[Experiment]) -> String {
     let line = |e: &Experiment| {
-        let rows: Vec<String> = e.rows.iter().map(|row| format!("    {}\n", row.id)).collect();
+        let rows = e.setups.iter().flat_map(|setup| &setup.rows);
+        let rows: Vec<String> = rows.map(|row| format!("    {}\n", row.id)).collect();
         format!("{}: {} (Section {}), {} data sets a row\n{}", e.id, e.title, e.section, e.data_sets, rows.concat())
     };
     experiments.iter().map(line).collect()

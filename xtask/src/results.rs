@@ -9,7 +9,7 @@ use crate::experiments::{Experiment, Row};
 use crate::measure::Measure;
 use crate::paper::Printed;
 use crate::records::Outcome;
-use crate::runner::RowOutcomes;
+use crate::runner::Outcomes;
 use crate::verdict::{Verdict, verdict};
 
 /// The whole file. All but `run` is the same to the bit for the same seed and program.
@@ -79,30 +79,32 @@ pub(crate) struct Cell {
     pub(crate) verdict: Option<Verdict>,
 }
 
-/// Sums up the outcomes of every row, which stand in the order of `experiments`.
+/// Sums up the outcomes of every setup, which stand in the order of `experiments`.
 pub(crate) fn summarise(
     experiments: &[Experiment],
-    outcomes: &[Vec<RowOutcomes>],
+    outcomes: &[Vec<Outcomes>],
 ) -> anyhow::Result<Vec<ExperimentResult>> {
-    let experiment = |(experiment, outcomes): (&Experiment, &Vec<RowOutcomes>)| {
-        let rows = experiment.rows.iter().zip(outcomes).map(|(row, outcomes)| summarise_row(row, outcomes));
-        Ok(ExperimentResult {
-            id: experiment.id.to_owned(),
-            section: experiment.section.to_owned(),
-            rows: rows.collect::<anyhow::Result<_>>()?,
-        })
+    let experiment = |(experiment, outcomes): (&Experiment, &Vec<Outcomes>)| {
+        let mut rows = Vec::new();
+        for (setup, outcomes) in experiment.setups.iter().zip(outcomes) {
+            for (at, row) in setup.rows.iter().enumerate() {
+                rows.push(summarise_row(row, at, outcomes)?);
+            }
+        }
+        Ok(ExperimentResult { id: experiment.id.to_owned(), section: experiment.section.to_owned(), rows })
     };
     experiments.iter().zip(outcomes).map(experiment).collect()
 }
 
-fn summarise_row(row: &Row, outcomes: &RowOutcomes) -> anyhow::Result<RowResult> {
+/// Sums up the row that stands at `at` in its setup.
+fn summarise_row(row: &Row, at: usize, outcomes: &Outcomes) -> anyhow::Result<RowResult> {
     let mut values: BTreeMap<Measure, Vec<f64>> = BTreeMap::new();
     let mut failed = 0;
     for outcome in outcomes {
         match outcome {
             Outcome::Failed(_) => failed += 1,
-            Outcome::Measured(measures) => {
-                for (&measure, &value) in measures {
+            Outcome::Measured(rows) => {
+                for (&measure, &value) in &rows[at] {
                     values.entry(measure).or_default().push(value);
                 }
             }
@@ -111,7 +113,7 @@ fn summarise_row(row: &Row, outcomes: &RowOutcomes) -> anyhow::Result<RowResult>
     let cell = |(measure, values): (Measure, Vec<f64>)| {
         let Summary { mean, sd, median, .. } = Summary::of(&values)?;
         let paper = row.paper.get(&measure).copied();
-        let verdict = paper.map(|paper| verdict(measure.kind(), mean, paper));
+        let verdict = paper.map(|paper| verdict(measure.kind(row.of), mean, paper));
         Ok((measure, Cell { mean, sd, median, paper, verdict }))
     };
     let measures = values.into_iter().map(cell).collect::<anyhow::Result<_>>()?;

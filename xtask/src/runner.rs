@@ -1,18 +1,18 @@
-//! Runs the selected rows over their data sets, in parallel, keeping every finished one.
+//! Runs the selected setups over their data sets, in parallel, keeping every finished one.
 
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::experiments::{Experiment, Row};
+use crate::experiments::{Experiment, Setup};
 use crate::progress::Progress;
 use crate::records::{DataSet, Outcome, Records};
 use crate::seed::generator;
 
-/// The outcomes of one row, by data set.
-pub(crate) type RowOutcomes = Vec<Outcome>;
+/// The outcomes of one setup, by data set.
+pub(crate) type Outcomes = Vec<Outcome>;
 
-/// What to run: how many data sets a row, from which seed.
+/// What to run: how many data sets a setup, from which seed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Plan {
     /// Overrides each experiment's own number of data sets.
@@ -22,74 +22,82 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    /// Repetitions of each row of an experiment.
+    /// Repetitions of each setup of an experiment.
     pub(crate) fn data_sets(&self, experiment: &Experiment) -> u32 {
         self.data_sets.unwrap_or(experiment.data_sets)
     }
 }
 
-/// One data set of one row that is still to be measured, and where its outcome goes.
+/// One data set of one setup that is still to be measured, and where its outcome goes.
 struct Job<'a> {
     experiment: &'a Experiment,
-    row: &'a Row,
+    setup: &'a Setup,
     data_set: u32,
     slot: &'a mut Option<Outcome>,
 }
 
-/// Measures every data set of every row, skipping what `records` already holds.
+/// Measures every data set of every setup, skipping what `records` already holds.
 ///
 /// The result depends only on experiments, plan and program: not on the number of threads, nor on what was resumed.
 pub(crate) fn run(
     experiments: &[Experiment],
     plan: Plan,
     records: &Arc<Records>,
-) -> anyhow::Result<Vec<Vec<RowOutcomes>>> {
+) -> anyhow::Result<Vec<Vec<Outcomes>>> {
     let mut slots: Vec<Vec<Vec<Option<Outcome>>>> = experiments
         .iter()
         .map(|experiment| {
-            let row =
-                |row: &Row| (0..plan.data_sets(experiment)).map(|n| find(records, experiment, row, plan, n)).collect();
-            experiment.rows.iter().map(row).collect()
+            let setup = |setup: &Setup| {
+                (0..plan.data_sets(experiment)).map(|n| find(records, experiment, setup, plan, n)).collect()
+            };
+            experiment.setups.iter().map(setup).collect()
         })
         .collect();
     let total: usize = slots.iter().flatten().map(Vec::len).sum();
     let mut jobs = Vec::new();
     for (experiment, slots) in experiments.iter().zip(&mut slots) {
-        for (row, slots) in experiment.rows.iter().zip(slots) {
+        for (setup, slots) in experiment.setups.iter().zip(slots) {
             for (data_set, slot) in (0..).zip(slots).filter(|(_, slot)| slot.is_none()) {
-                jobs.push(Job { experiment, row, data_set, slot });
+                jobs.push(Job { experiment, setup, data_set, slot });
             }
         }
     }
-    let progress = Progress::start(total, jobs.len(), jobs.iter().map(|job| job.row.trial.cost()).sum());
-    // One job at a time to each thread: data sets of different rows differ a hundredfold in work.
+    let progress = Progress::start(total, jobs.len(), jobs.iter().map(|job| job.setup.trial.cost()).sum());
+    // One job at a time to each thread: data sets of different setups differ a hundredfold in work.
     jobs.into_par_iter().with_max_len(1).try_for_each(|job| -> anyhow::Result<()> {
         let outcome = measure(&job, plan);
-        records.append(&name(job.experiment, job.row, &job.row.trial.definition(), plan, job.data_set), &outcome)?;
+        records
+            .append(&name(job.experiment, job.setup, &job.setup.trial.definition(), plan, job.data_set), &outcome)?;
         *job.slot = Some(outcome);
-        progress.finished(job.experiment.id, &job.row.id, job.row.trial.cost());
+        progress.finished(job.experiment.id, &job.setup.id, job.setup.trial.cost());
         Ok(())
     })?;
     progress.done();
     let take = |slot: Option<Outcome>| slot.unwrap_or_else(|| unreachable!("every slot is resumed or measured"));
     Ok(slots
         .into_iter()
-        .map(|rows| rows.into_iter().map(|row| row.into_iter().map(take).collect()).collect())
+        .map(|setups| setups.into_iter().map(|setup| setup.into_iter().map(take).collect()).collect())
         .collect())
 }
 
 fn measure(job: &Job<'_>, plan: Plan) -> Outcome {
-    let mut rng = generator(plan.seed, job.row.trial.system(), job.data_set);
-    match job.row.trial.run(&mut rng) {
+    let mut rng = generator(plan.seed, job.setup.trial.system(), job.data_set);
+    match job.setup.trial.run(&mut rng) {
         Ok(measures) => Outcome::Measured(measures),
         Err(error) => Outcome::Failed(format!("{error:#}")),
     }
 }
 
-fn find(records: &Records, experiment: &Experiment, row: &Row, plan: Plan, data_set: u32) -> Option<Outcome> {
-    records.finished(&name(experiment, row, &row.trial.definition(), plan, data_set)).cloned()
+fn find(records: &Records, experiment: &Experiment, setup: &Setup, plan: Plan, data_set: u32) -> Option<Outcome> {
+    records.finished(&name(experiment, setup, &setup.trial.definition(), plan, data_set)).cloned()
 }
 
-fn name<'a>(experiment: &'a Experiment, row: &'a Row, definition: &'a str, plan: Plan, data_set: u32) -> DataSet<'a> {
-    DataSet { experiment: experiment.id, row: &row.id, definition, seed: plan.seed, data_set }
+fn name<'a>(
+    experiment: &'a Experiment,
+    setup: &'a Setup,
+    definition: &'a str,
+    plan: Plan,
+    data_set: u32,
+) -> DataSet<'a> {
+    DataSet { experiment: experiment.id, setup: &setup.id, definition, seed: plan.seed, data_set }
 }

@@ -22,16 +22,17 @@ pub(crate) enum Verdict {
 /// A printed share of 0 ± 0 agrees with anything that would be printed so: below .005 percent.
 const PRINTED_ZERO: f64 = 0.005;
 
-/// Judges our mean: errors of the learner and shares agree within one printed s.d.
+/// Judges our mean: errors of the learner and shares agree within one printed s.d., errors of the baseline within two.
 pub(crate) fn verdict(kind: Kind, ours: f64, paper: Printed) -> Verdict {
     let difference = ours - paper.mean;
     let band = match kind {
         Kind::Share if paper.mean == 0.0 && paper.sd == 0.0 => PRINTED_ZERO,
-        _ => paper.sd,
+        Kind::BaselineError => 2.0 * paper.sd,
+        Kind::Share | Kind::LearnerError => paper.sd,
     };
     match kind {
         _ if difference.abs() <= band => Verdict::Agrees,
-        Kind::Share => Verdict::Differs,
+        Kind::Share | Kind::BaselineError => Verdict::Differs,
         Kind::LearnerError if difference < 0.0 => Verdict::Better,
         Kind::LearnerError => Verdict::Worse,
     }
@@ -69,6 +70,9 @@ mod tests {
             (Kind::Share, 12.0, printed(10.0, 2.0), Verdict::Agrees),
             (Kind::Share, 7.9, printed(10.0, 2.0), Verdict::Differs),
             (Kind::Share, 12.1, printed(10.0, 2.0), Verdict::Differs),
+            (Kind::BaselineError, 0.9, printed(0.75, 0.125), Verdict::Agrees),
+            (Kind::BaselineError, 1.1, printed(0.75, 0.125), Verdict::Differs),
+            (Kind::BaselineError, 0.4, printed(0.75, 0.125), Verdict::Differs),
             (Kind::Share, 0.004, printed(0.0, 0.0), Verdict::Agrees),
             (Kind::Share, 0.006, printed(0.0, 0.0), Verdict::Differs),
         ] {

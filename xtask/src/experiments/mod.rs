@@ -7,10 +7,10 @@ use std::collections::BTreeMap;
 
 use rand_chacha::ChaCha8Rng;
 
-use crate::measure::Measure;
+use crate::measure::{Measure, RowOf};
 use crate::paper::{Explanations, Printed};
 
-/// A table or figure: a list of rows, each measured on independent data sets.
+/// A table or figure.
 pub(crate) struct Experiment {
     /// Identifier on the command line and in the results.
     pub(crate) id: &'static str,
@@ -18,12 +18,12 @@ pub(crate) struct Experiment {
     pub(crate) section: &'static str,
     /// One line for people.
     pub(crate) title: &'static str,
-    /// Repetitions of each row in the paper.
+    /// Repetitions of each setup in the paper.
     pub(crate) data_sets: u32,
     /// What is fitted or left open by the paper, in a sentence or two.
     pub(crate) remark: &'static str,
-    /// The rows, in the table's order.
-    pub(crate) rows: Vec<Row>,
+    /// What is measured, in the table's order.
+    pub(crate) setups: Vec<Setup>,
     /// Why single cells stand out, by row and measure: `xtask/paper/*.toml`.
     pub(crate) explanations: Explanations,
 }
@@ -35,17 +35,30 @@ impl Experiment {
     }
 }
 
+/// Independent data sets, each of which gives one value for every measure of every row.
+pub(crate) struct Setup {
+    /// Identifier, unique within the experiment.
+    pub(crate) id: String,
+    /// The rows, in the order of what [`Trial::run`] returns.
+    pub(crate) rows: Vec<Row>,
+    /// How a data set is made, learnt and scored.
+    pub(crate) trial: Box<dyn Trial>,
+}
+
 /// One row of a table.
 pub(crate) struct Row {
     /// Identifier, unique within the experiment.
     pub(crate) id: String,
+    /// Whose errors stand in it.
+    pub(crate) of: RowOf,
     /// The paper's figures for this row.
     pub(crate) paper: BTreeMap<Measure, Printed>,
-    /// How a data set of this row is made, learnt and scored.
-    pub(crate) trial: Box<dyn Trial>,
 }
 
-/// Everything that one data set of one row needs.
+/// What one data set gives: the measures of each row of its setup.
+pub(crate) type Measures = Vec<BTreeMap<Measure, f64>>;
+
+/// Everything that one data set of a setup needs.
 pub(crate) trait Trial: Send + Sync {
     /// The system whose random stream is used: equal numbers see equal data sets.
     fn system(&self) -> u32;
@@ -56,8 +69,8 @@ pub(crate) trait Trial: Send + Sync {
     /// Work of one data set, in any unit that all trials share; used for the time left.
     fn cost(&self) -> u64;
 
-    /// Makes a data set, learns from it and scores what was learnt.
-    fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<BTreeMap<Measure, f64>>;
+    /// Makes a data set, learns from it and scores what was learnt, row by row.
+    fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures>;
 }
 
 /// All experiments, in the paper's order.

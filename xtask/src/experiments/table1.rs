@@ -1,15 +1,13 @@
 //! Table 1 (Section 4.1): the toy system, three set-ups by three bandwidths.
 
-use std::collections::BTreeMap;
-
 use align::{Bandwidth, LwprRegressor, PolicyAlign};
 use demo_gen::{Redraw, ToyPotential, ToySystem, demonstrations};
 use lwpr::LwprParams;
 use rand_chacha::ChaCha8Rng;
 
 use super::scoring::score;
-use super::{Experiment, Row, Trial};
-use crate::measure::Measure;
+use super::{Experiment, Measures, Row, Setup, Trial};
+use crate::measure::RowOf;
 use crate::paper::{explanations, paper_table};
 
 /// Share of the kept samples that is held out for testing.
@@ -24,7 +22,7 @@ pub(crate) fn table1() -> anyhow::Result<Experiment> {
         data_sets: 100,
         remark: "The constraint is drawn anew every 20 samples, two draws at 40 samples and five at 100, which makes the printed discard \
                  rates come out. Regression, the same in all rows: init_D 10, w_gen .5, penalty 1e-5, adaptive diagonal metric, 10 passes.",
-        rows: rows(Redraw::Every(20), 0)?,
+        setups: setups(Redraw::Every(20), 0)?,
         explanations: explanations(include_str!("../../paper/table1-explained.toml"))?,
     })
 }
@@ -37,29 +35,29 @@ pub(crate) fn table1_literal() -> anyhow::Result<Experiment> {
         title: "Table 1, read literally",
         data_sets: 100,
         remark: "As Table 1, but the constraint is \"re-sampled twice\" during each movement to the letter: three segments of equal length.",
-        rows: rows(Redraw::Segments(3), 100)?,
+        setups: setups(Redraw::Segments(3), 100)?,
         explanations: explanations(include_str!("../../paper/table1-literal-explained.toml"))?,
     })
 }
 
-fn rows(redraw: Redraw, first_system: u32) -> anyhow::Result<Vec<Row>> {
+fn setups(redraw: Redraw, first_system: u32) -> anyhow::Result<Vec<Setup>> {
     let mut paper = paper_table(include_str!("../../paper/table1.toml"))?;
-    let setups = [
+    let systems = [
         ("parabola", 40, ToyPotential::parabola()),
         ("sinusoidal", 40, ToyPotential::sinusoidal()),
         ("sinusoidal", 100, ToyPotential::sinusoidal()),
     ];
     let bandwidths = [("narrow", Bandwidth::Narrow), ("medium", Bandwidth::Medium), ("wide", Bandwidth::Wide)];
-    let mut rows = Vec::new();
-    for (number, (name, size, potential)) in (first_system..).zip(setups) {
+    let mut setups = Vec::new();
+    for (number, (name, size, potential)) in (first_system..).zip(systems) {
         for (bandwidth_name, bandwidth) in bandwidths {
             let id = format!("{name}-{size}x{size}-{bandwidth_name}");
             let system = ToySystem { potential: potential.clone(), n_trajectories: size, n_samples: size, redraw };
-            let paper = paper.remove(&id).unwrap_or_default();
-            rows.push(Row { id, paper, trial: Box::new(ToyTrial { number, system, bandwidth }) });
+            let row = Row { id: id.clone(), of: RowOf::Learner, paper: paper.remove(&id).unwrap_or_default() };
+            setups.push(Setup { id, rows: vec![row], trial: Box::new(ToyTrial { number, system, bandwidth }) });
         }
     }
-    Ok(rows)
+    Ok(setups)
 }
 
 /// One row of the table.
@@ -92,12 +90,12 @@ impl Trial for ToyTrial {
         samples * (self.system.n_trajectories as u64 + 100)
     }
 
-    fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<BTreeMap<Measure, f64>> {
+    fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.system.record(rng)?;
         let aligned =
             PolicyAlign { bandwidth: self.bandwidth, ..PolicyAlign::default() }.align(&demonstrations(&recordings)?)?;
         let (training, held_out) = aligned.samples().split(HELD_OUT, rng)?;
         let learnt = aligned.regress(&Self::regressor(), &training, rng)?;
-        score(&recordings, &aligned, &held_out, learnt.potential(), learnt.policy())
+        Ok(vec![score(&recordings, &aligned, &held_out, learnt.potential(), learnt.policy())?])
     }
 }
