@@ -1,12 +1,12 @@
 use nalgebra::IsometryMatrix3;
 
 use crate::{
-    Joint, JointKind, KinematicsError, RobotModel,
+    CollisionShape, Joint, JointKind, KinematicsError, LinkId, RobotModel,
     mimic::{self, is_active},
     node::{Motion, Node},
     placement::lanes,
-    tree,
-    urdf::{self, Freedom, UrdfJoint, UrdfRobot},
+    tree::{self, Branch},
+    urdf::{self, Freedom, UrdfCollision, UrdfJoint, UrdfRobot},
     workspace::Motor,
 };
 
@@ -29,6 +29,7 @@ impl RobotModel {
             origins: Vec::with_capacity(branches.len()),
             motors: Vec::new(),
             joints: urdf.joints.iter().filter_map(active).collect(),
+            collision_shapes: urdf.collisions.map(|shapes| placed_shapes(shapes, &branches)),
             name: urdf.name,
             warnings: urdf.warnings,
         };
@@ -57,6 +58,16 @@ impl RobotModel {
         self.nodes.push(node);
         self.origins.push(origin);
     }
+}
+
+/// Collision shapes with their links in the order of the tree.
+fn placed_shapes(shapes: Vec<UrdfCollision>, branches: &[Branch]) -> Vec<CollisionShape> {
+    let mut places = vec![LinkId(0); branches.len()];
+    for (place, branch) in branches.iter().enumerate() {
+        places[branch.link] = LinkId(place);
+    }
+    let placed = |UrdfCollision { link, origin, geometry }| CollisionShape { link: places[link], origin, geometry };
+    shapes.into_iter().map(placed).collect()
 }
 
 /// A joint's motion, and the sign that its value changes by.

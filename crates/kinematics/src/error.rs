@@ -69,6 +69,54 @@ pub enum KinematicsError {
         /// The number of active joints.
         expected: usize,
     },
+    /// Collision geometry was asked for, and the resolver does not have these meshes.
+    #[error(
+        "{} mesh(es) are missing: {}; resolve them, or leave them out on purpose",
+        meshes.len(),
+        meshes.iter().map(|(link, file)| format!("\"{file}\" of link \"{link}\"")).collect::<Vec<_>>().join(", ")
+    )]
+    MissingMeshes {
+        /// Links, and the files as the URDF names them.
+        meshes: Vec<(String, String)>,
+    },
+    /// A mesh is not a shape.
+    #[error("mesh \"{filename}\" of link \"{link}\": {reason}")]
+    BadMesh {
+        /// The link.
+        link: String,
+        /// The file, as the URDF names it.
+        filename: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The damping of a resolved-rate step is not a number from 0 up.
+    #[error("damping {damping}: it must be a finite number, 0 or more")]
+    Damping {
+        /// The damping given.
+        damping: f64,
+    },
+    /// Jacobian, task velocity, pull and joint velocity do not fit together.
+    #[error(
+        "a task of {task} rows and a velocity of {velocity} joints do not fit a Jacobian of shape ({}, {}) and a pull of {pull} joints",
+        jacobian.0, jacobian.1
+    )]
+    TaskShape {
+        /// Rows and columns of the Jacobian.
+        jacobian: (usize, usize),
+        /// Rows of the task velocity.
+        task: usize,
+        /// Rows of the null-space pull.
+        pull: usize,
+        /// Rows of the joint velocity to be written.
+        velocity: usize,
+    },
+    /// The damped task has no solution: the task's rows depend on one another and there is no damping, or a value is
+    /// not finite.
+    #[error("the task is singular with damping {damping}; give a positive damping, and finite values")]
+    SingularTask {
+        /// The damping.
+        damping: f64,
+    },
 }
 
 impl KinematicsError {

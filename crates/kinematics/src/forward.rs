@@ -5,7 +5,7 @@ use crate::{
     KinematicsError, LinkId, RobotModel, Workspace,
     jacobian::add_column,
     joint::{Joint, checked},
-    placement::Placement,
+    placement::{Placement, lanes},
 };
 
 /// Where every link is in one configuration: what [`RobotModel::forward_kinematics`] found.
@@ -40,6 +40,11 @@ impl LinkPoses<'_> {
     /// The origin of the link's frame in the root link's frame, metres.
     pub fn position(&self, link: LinkId) -> Point3<f64> {
         self.placements[link.0].position()
+    }
+
+    /// A point given in the link's frame, in the root link's frame, metres.
+    pub fn transform_point(&self, link: LinkId, point: &Point3<f64>) -> Point3<f64> {
+        self.placements[link.0].translated(lanes(&point.coords)).position()
     }
 
     /// Writes the geometric Jacobian (6, n) of the link's frame: rows vx vy vz wx wy wz, the velocity of the frame's

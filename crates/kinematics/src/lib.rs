@@ -34,24 +34,29 @@
 
 mod build;
 mod chain;
+mod collision;
 mod error;
 mod forward;
 mod jacobian;
 mod joint;
+mod limits;
 mod mimic;
 mod model;
 mod names;
 mod node;
 mod placement;
+mod resolved_rate;
 mod sin_cos;
 mod tree;
 mod urdf;
 mod workspace;
 
 pub use chain::Chain;
+pub use collision::{Clearance, MeshShape, SelfCollision};
 pub use error::KinematicsError;
 pub use forward::LinkPoses;
 pub use joint::Joint;
-pub use model::{LinkId, RobotModel};
-pub use urdf::{Element, JointKind, UrdfProblem, UrdfWarning};
+pub use model::{CollisionShape, LinkId, RobotModel};
+pub use resolved_rate::ResolvedRate;
+pub use urdf::{Element, Geometry, JointKind, UrdfProblem, UrdfWarning};
 pub use workspace::Workspace;

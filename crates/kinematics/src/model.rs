@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use nalgebra::IsometryMatrix3;
 
-use crate::{Chain, Joint, KinematicsError, UrdfWarning, names::near_names, node::Node, workspace::Motor};
+use crate::{Chain, Geometry, Joint, KinematicsError, UrdfWarning, names::near_names, node::Node, workspace::Motor};
 
 /// A link of one robot; its frame is the frame of the joint that carries it, moved along by it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -17,13 +17,25 @@ pub struct LinkId(pub(crate) usize);
 pub struct RobotModel {
     pub(crate) name: String,
     /// Names of the links, in the order of the nodes: a parent comes before its children, the root first.
-    pub(crate) links: Vec<String>,
+    pub(crate) links: Arc<[String]>,
     pub(crate) nodes: Vec<Node>,
     /// Origins of the nodes' joints in their parents' frames.
     pub(crate) origins: Vec<IsometryMatrix3<f64>>,
     pub(crate) motors: Vec<Motor>,
     pub(crate) joints: Arc<[Joint]>,
+    pub(crate) collision_shapes: Result<Vec<CollisionShape>, KinematicsError>,
     pub(crate) warnings: Vec<UrdfWarning>,
+}
+
+/// A shape that a link fills, for collision.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CollisionShape {
+    /// The link.
+    pub link: LinkId,
+    /// The shape's pose in the link's frame, metres.
+    pub origin: IsometryMatrix3<f64>,
+    /// The shape in its own frame.
+    pub geometry: Geometry,
 }
 
 impl RobotModel {
@@ -68,10 +80,7 @@ impl RobotModel {
     /// # Errors
     /// [`KinematicsError::UnknownLink`].
     pub fn link(&self, name: &str) -> Result<LinkId, KinematicsError> {
-        self.links.iter().position(|link| link == name).map(LinkId).ok_or_else(|| KinematicsError::UnknownLink {
-            name: name.to_owned(),
-            near: near_names(name, self.links.iter().map(String::as_str)),
-        })
+        find_link(name, &self.links)
     }
 
     /// A link's name.
@@ -87,6 +96,14 @@ impl RobotModel {
     /// The joints from the root to one link, prepared for repeated use.
     pub fn chain(&self, link: LinkId) -> Chain {
         Chain::new(self, link)
+    }
+
+    /// The collision shapes of all links.
+    ///
+    /// # Errors
+    /// [`KinematicsError::Urdf`] with the link whose `<collision>` is at fault; kinematics works all the same.
+    pub fn collision_shapes(&self) -> Result<&[CollisionShape], KinematicsError> {
+        self.collision_shapes.as_deref().map_err(Clone::clone)
     }
 
     /// What the file says that was passed over.
@@ -105,4 +122,11 @@ impl RobotModel {
         path.reverse();
         path
     }
+}
+
+pub(crate) fn find_link(name: &str, links: &[String]) -> Result<LinkId, KinematicsError> {
+    links.iter().position(|link| link == name).map(LinkId).ok_or_else(|| KinematicsError::UnknownLink {
+        name: name.to_owned(),
+        near: near_names(name, links.iter().map(String::as_str)),
+    })
 }

@@ -1,6 +1,6 @@
 use roxmltree::{Document, Error, Node, ParsingOptions};
 
-use super::{Element, UrdfJoint, UrdfProblem, UrdfWarning, joint, tag::children};
+use super::{Element, UrdfCollision, UrdfJoint, UrdfProblem, UrdfWarning, geometry, joint, tag::children};
 use crate::KinematicsError;
 
 /// What a URDF says about kinematics, in document order. Every number is finite; names are not looked up yet.
@@ -9,6 +9,8 @@ pub(crate) struct UrdfRobot {
     pub(crate) name: String,
     pub(crate) links: Vec<String>,
     pub(crate) joints: Vec<UrdfJoint>,
+    /// Faults here are for those who ask for collision shapes; kinematics does not need them.
+    pub(crate) collisions: Result<Vec<UrdfCollision>, KinematicsError>,
     pub(crate) warnings: Vec<UrdfWarning>,
 }
 
@@ -39,23 +41,35 @@ impl Version {
     }
 }
 
-/// Reads the kinematic tags and passes over all others.
+/// Reads the tags of kinematics and collision and passes over all others.
 pub(crate) fn read(text: &str) -> Result<UrdfRobot, KinematicsError> {
+    parsed(text, read_robot)
+}
+
+/// What `read` makes of the outermost tag of a text, which must be `<robot>`.
+pub(crate) fn parsed<T>(
+    text: &str,
+    read: impl FnOnce(Node<'_, '_>) -> Result<T, KinematicsError>,
+) -> Result<T, KinematicsError> {
     let text = with_declared_prefixes(text);
-    let options = ParsingOptions { allow_dtd: true, ..Default::default() };
-    let document = Document::parse_with_options(&text, options).map_err(|fault| KinematicsError::NotXml {
+    let document = strict(&text).map_err(|fault| KinematicsError::NotXml {
         line: fault.pos().row,
         column: fault.pos().col,
         message: fault.to_string(),
     })?;
-    read_robot(document.root_element())
-}
-
-fn read_robot(robot: Node<'_, '_>) -> Result<UrdfRobot, KinematicsError> {
+    let robot = document.root_element();
     if robot.tag_name().name() != "robot" {
         let found = robot.tag_name().name().to_owned();
         return Err(KinematicsError::urdf(Element::Robot, UrdfProblem::RootTag { found }));
     }
+    read(robot)
+}
+
+fn strict(text: &str) -> Result<Document<'_>, Error> {
+    Document::parse_with_options(text, ParsingOptions { allow_dtd: true, ..Default::default() })
+}
+
+fn read_robot(robot: Node<'_, '_>) -> Result<UrdfRobot, KinematicsError> {
     let version = Version::read(robot)?;
     let links: Vec<String> = children(robot, "link")
         .enumerate()
@@ -69,7 +83,13 @@ fn read_robot(robot: Node<'_, '_>) -> Result<UrdfRobot, KinematicsError> {
         .enumerate()
         .map(|(index, node)| joint::read(node, index, version, &mut warnings))
         .collect::<Result<_, _>>()?;
-    Ok(UrdfRobot { name: robot.attribute("name").unwrap_or_default().to_owned(), links, joints, warnings })
+    let collisions = children(robot, "link")
+        .enumerate()
+        .map(|(index, node)| geometry::read(node, index, &links[index], version, &mut warnings))
+        .collect::<Result<Vec<_>, _>>()
+        .map(|links| links.concat());
+    let name = robot.attribute("name").unwrap_or_default().to_owned();
+    Ok(UrdfRobot { name, links, joints, collisions, warnings })
 }
 
 pub(super) fn name_of(
@@ -89,8 +109,7 @@ fn with_declared_prefixes(text: &str) -> String {
     let mut text = text.to_owned();
     let mut declared: Vec<String> = Vec::new();
     loop {
-        let options = ParsingOptions { allow_dtd: true, ..Default::default() };
-        let prefix = match Document::parse_with_options(&text, options) {
+        let prefix = match strict(&text) {
             Err(Error::UnknownNamespace(prefix, _)) if !declared.contains(&prefix) => prefix,
             _ => return text,
         };

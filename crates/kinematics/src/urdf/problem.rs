@@ -1,35 +1,6 @@
-use std::fmt;
-
 use thiserror::Error;
 
 use crate::names::proposal;
-
-/// The part of a URDF that an error or a warning speaks of. Numbers count from 0, in document order.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Element {
-    /// The robot as a whole.
-    Robot,
-    /// The link of this name.
-    Link(String),
-    /// The joint of this name.
-    Joint(String),
-    /// A link without a name.
-    UnnamedLink(usize),
-    /// A joint without a name.
-    UnnamedJoint(usize),
-}
-
-impl fmt::Display for Element {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Element::Robot => f.write_str("robot"),
-            Element::Link(name) => write!(f, "link \"{name}\""),
-            Element::Joint(name) => write!(f, "joint \"{name}\""),
-            Element::UnnamedLink(index) => write!(f, "link {index}"),
-            Element::UnnamedJoint(index) => write!(f, "joint {index}"),
-        }
-    }
-}
 
 /// The rule of URDF that a file breaks. Attributes are written `tag.attribute`.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -172,22 +143,21 @@ pub enum UrdfProblem {
         /// The joints of the cycle.
         joints: Vec<String>,
     },
+    /// A `<geometry>` without a shape that is known.
+    #[error("its collision geometry has no shape; shapes are box, sphere, cylinder, capsule and mesh")]
+    UnknownShape,
+    /// A length below zero.
+    #[error("{attribute}: {value} is negative; lengths are not")]
+    NegativeSize {
+        /// The attribute.
+        attribute: &'static str,
+        /// The length, in metres.
+        value: f64,
+    },
     /// Several links are nobody's child.
     #[error("it has several roots: {}; exactly one link may be without a parent joint", roots.join(", "))]
     SeveralRoots {
         /// The links that are nobody's child.
         roots: Vec<String>,
-    },
-}
-
-/// Something in a URDF that was passed over; the robot is what the rest of the file says.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum UrdfWarning {
-    /// `quat_xyzw` counts from URDF version 1.1 on.
-    #[error("{element}: quat_xyzw is ignored in URDF 1.0; write rpy, or version=\"1.1\" at the robot")]
-    QuaternionIgnored {
-        /// Where it stands.
-        element: Element,
     },
 }

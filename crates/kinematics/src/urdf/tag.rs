@@ -5,18 +5,18 @@ use crate::KinematicsError;
 
 /// A tag inside a link or joint, and whose it is.
 #[derive(Clone, Copy)]
-pub(super) struct Tag<'a> {
-    pub(super) node: Node<'a, 'a>,
-    pub(super) owner: &'a Element,
+pub(crate) struct Tag<'a> {
+    pub(crate) node: Node<'a, 'a>,
+    pub(crate) owner: &'a Element,
 }
 
 impl Tag<'_> {
-    pub(super) fn error(&self, problem: UrdfProblem) -> KinematicsError {
+    pub(crate) fn error(&self, problem: UrdfProblem) -> KinematicsError {
         KinematicsError::urdf(self.owner.clone(), problem)
     }
 
     /// The N numbers of an attribute, or `None` where the attribute is missing. `name` is `tag.attribute`.
-    pub(super) fn numbers<const N: usize>(&self, name: &'static str) -> Result<Option<[f64; N]>, KinematicsError> {
+    pub(crate) fn numbers<const N: usize>(&self, name: &'static str) -> Result<Option<[f64; N]>, KinematicsError> {
         let Some(text) = self.node.attribute(attribute_of(name)) else { return Ok(None) };
         let numbers: Vec<f64> = text
             .split_whitespace()
@@ -29,24 +29,24 @@ impl Tag<'_> {
     }
 
     /// The single number of an attribute, or `None` where the attribute is missing. `name` is `tag.attribute`.
-    pub(super) fn number(&self, name: &'static str) -> Result<Option<f64>, KinematicsError> {
+    pub(crate) fn number(&self, name: &'static str) -> Result<Option<f64>, KinematicsError> {
         Ok(self.numbers::<1>(name)?.map(|[number]| number))
     }
 
     /// An attribute that must be there. `name` is `tag.attribute`.
-    pub(super) fn text(&self, name: &'static str) -> Result<String, KinematicsError> {
+    pub(crate) fn text(&self, name: &'static str) -> Result<String, KinematicsError> {
         let text = self.node.attribute(attribute_of(name));
         text.map(str::to_owned).ok_or_else(|| self.error(UrdfProblem::MissingAttribute { attribute: name }))
     }
 
     /// The first child tag of this name.
-    pub(super) fn child(&self, tag: &'static str) -> Option<Self> {
+    pub(crate) fn child(&self, tag: &'static str) -> Option<Self> {
         children(self.node, tag).next().map(|node| Tag { node, owner: self.owner })
     }
 }
 
 /// The child elements of this name; elements of a foreign name space do not count.
-pub(super) fn children<'a>(node: Node<'a, 'a>, tag: &'static str) -> impl Iterator<Item = Node<'a, 'a>> {
+pub(crate) fn children<'a>(node: Node<'a, 'a>, tag: &'static str) -> impl Iterator<Item = Node<'a, 'a>> {
     let space = node.tag_name().namespace();
     node.children().filter(move |child| child.tag_name().name() == tag && child.tag_name().namespace() == space)
 }

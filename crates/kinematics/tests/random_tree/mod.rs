@@ -1,5 +1,7 @@
 //! Random robots: trees with every kind of joint, oblique axes, any origins, and mimic chains, in any document order.
 
+#![allow(dead_code, reason = "each test file uses its part of this")]
+
 use std::fmt::Write;
 
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
@@ -84,7 +86,7 @@ impl RandomTree {
             let numbers = |v: &[f64; 3]| format!("{:?} {:?} {:?}", v[0], v[1], v[2]);
             write!(
                 text,
-                r#"<joint name="j{i}" type="{kind}"><axis xyz="{}"/><limit lower="-1.5" upper="2"/>
+                r#"<joint name="j{i}" type="{kind}"><axis xyz="{}"/><limit lower="-1.5" upper="2" effort="1" velocity="1"/>
                    <origin xyz="{}" rpy="{}"/><child link="l{}"/><parent link="l{parent}"/>"#,
                 numbers(axis),
                 numbers(xyz),

@@ -1,0 +1,108 @@
+//! The only place that knows the collision library, and its vector types.
+
+use nalgebra::{IsometryMatrix3, Point3, UnitQuaternion, Vector3};
+use parry3d_f64::{
+    glamx::DQuat,
+    math::{Pose, Vector},
+    query,
+    shape::SharedShape,
+};
+
+use super::mesh::MeshShape;
+use crate::Geometry;
+
+/// A shape, fixed in a link's frame.
+#[derive(Clone)]
+pub(super) struct PlacedShape {
+    shape: SharedShape,
+    pose: Pose,
+}
+
+impl std::fmt::Debug for PlacedShape {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("PlacedShape").field("shape", &self.shape.shape_type()).field("pose", &self.pose).finish()
+    }
+}
+
+impl PlacedShape {
+    /// A shape that is no mesh.
+    pub(super) fn primitive(geometry: &Geometry, origin: &IsometryMatrix3<f64>) -> Option<Self> {
+        let pose = pose(origin);
+        let shape = match *geometry {
+            Geometry::Box { size } => SharedShape::cuboid(size.x / 2.0, size.y / 2.0, size.z / 2.0),
+            Geometry::Sphere { radius } => SharedShape::ball(radius),
+            Geometry::Capsule { radius, length } => SharedShape::capsule_z(length / 2.0, radius),
+            // A cylinder is along y there and along z here.
+            Geometry::Cylinder { radius, length } => {
+                let upright = Pose::from_parts(Vector::ZERO, DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2));
+                return Some(PlacedShape { shape: SharedShape::cylinder(length / 2.0, radius), pose: pose * upright });
+            }
+            Geometry::Mesh { .. } => return None,
+        };
+        Some(PlacedShape { shape, pose })
+    }
+
+    /// A mesh, or why it is none.
+    pub(super) fn mesh(
+        mesh: MeshShape,
+        scale: &Vector3<f64>,
+        origin: &IsometryMatrix3<f64>,
+    ) -> Result<Option<Self>, String> {
+        let scaled = |vertices: Vec<Point3<f64>>| -> Result<Vec<Vector>, String> {
+            let scaled = vertices.into_iter().map(|vertex| vertex.coords.component_mul(scale));
+            let finite = |v: Vector3<f64>| v.iter().all(|part| part.is_finite()).then(|| Vector::new(v.x, v.y, v.z));
+            scaled.map(finite).collect::<Option<_>>().ok_or_else(|| "a vertex is not finite".to_owned())
+        };
+        let shape = match mesh {
+            MeshShape::LeftOut => return Ok(None),
+            MeshShape::ConvexHull { vertices } => {
+                SharedShape::convex_hull(&scaled(vertices)?).ok_or("its points span no volume")?
+            }
+            MeshShape::Surface { vertices, triangles } => {
+                if triangles.iter().flatten().any(|&vertex| vertex as usize >= vertices.len()) {
+                    return Err("a triangle names a vertex that is not there".to_owned());
+                }
+                SharedShape::trimesh(scaled(vertices)?, triangles).map_err(|error| error.to_string())?
+            }
+        };
+        Ok(Some(PlacedShape { shape, pose: pose(origin) }))
+    }
+
+    /// A sphere in the link's frame that holds the shape.
+    pub(super) fn bounding_sphere(&self) -> (Point3<f64>, f64) {
+        let sphere = self.shape.compute_bounding_sphere(&self.pose);
+        let Vector { x, y, z } = sphere.center();
+        (Point3::new(x, y, z), sphere.radius())
+    }
+}
+
+/// Two shapes, each with its link's pose: whether they touch.
+pub(super) fn touch(first: (&PlacedShape, &LinkPose), second: (&PlacedShape, &LinkPose)) -> bool {
+    let ((a, at_a), (b, at_b)) = (first, second);
+    query::intersection_test(&(at_a.0 * a.pose), &*a.shape, &(at_b.0 * b.pose), &*b.shape)
+        .expect("the collision library knows every pair of these shapes")
+        .intersecting
+}
+
+/// Two shapes, each with its link's pose: their distance in metres, 0 where they touch.
+pub(super) fn distance(first: (&PlacedShape, &LinkPose), second: (&PlacedShape, &LinkPose)) -> f64 {
+    let ((a, at_a), (b, at_b)) = (first, second);
+    query::distance(&(at_a.0 * a.pose), &*a.shape, &(at_b.0 * b.pose), &*b.shape)
+        .expect("the collision library knows every pair of these shapes")
+        .distance
+}
+
+/// A link's pose in the library's type.
+pub(super) struct LinkPose(Pose);
+
+impl LinkPose {
+    pub(super) fn new(isometry: &IsometryMatrix3<f64>) -> Self {
+        LinkPose(pose(isometry))
+    }
+}
+
+fn pose(isometry: &IsometryMatrix3<f64>) -> Pose {
+    let t = isometry.translation.vector;
+    let q = UnitQuaternion::from_rotation_matrix(&isometry.rotation);
+    Pose::from_parts(Vector::new(t.x, t.y, t.z), DQuat::from_xyzw(q.i, q.j, q.k, q.w))
+}

@@ -1,0 +1,77 @@
+//! After the first call with a workspace, no question about a configuration allocates.
+#![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
+
+use std::{
+    alloc::{GlobalAlloc, Layout, System},
+    cell::Cell,
+};
+
+use kinematics::{ResolvedRate, RobotModel, SelfCollision, Workspace};
+use nalgebra::{DVector, Matrix3xX, Matrix6xX};
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+
+thread_local! {
+    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+}
+
+/// The system's allocator, with a count for each thread.
+struct Counting;
+
+// SAFETY: every call is handed on unchanged to the system's allocator, which keeps the contract; the count is a plain
+// cell of the calling thread and allocates nothing itself.
+#[allow(unsafe_code, reason = "an allocator cannot be written without")]
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        let _ = ALLOCATIONS.try_with(|count| count.set(count.get() + 1));
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn allocations(mut of: impl FnMut()) -> usize {
+    of(); // The first call may make room.
+    let before = ALLOCATIONS.get();
+    of();
+    ALLOCATIONS.get() - before
+}
+
+#[test]
+fn nothing_is_allocated_per_call() {
+    let robot = RobotModel::from_urdf(include_str!("../../../robots/asimo_upper_body.urdf")).unwrap();
+    let hand = robot.link("r_palm").unwrap();
+    let chain = robot.chain(hand);
+    let collision = SelfCollision::new(&robot, |_| None).unwrap();
+    let mut control = ResolvedRate::new(0.1).unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(2);
+    let (mut workspace, mut in_chain) = (Workspace::new(), Workspace::new());
+    let (mut six, mut three) = (Matrix6xX::zeros(22), Matrix3xX::zeros(22));
+    let (mut q, mut velocity) = (robot.random_configuration(&mut rng), DVector::zeros(22));
+    let task = DVector::from_column_slice(&[0.1, 0.2, 0.3]);
+
+    assert!(allocations(|| drop(std::hint::black_box(vec![0_u8; 9]))) > 0, "the count is broken");
+    assert_eq!(allocations(|| robot.random_configuration_into(&mut rng, q.as_view_mut()).unwrap()), 0);
+    let count = allocations(|| {
+        let poses = robot.forward_kinematics(q.as_view(), &mut workspace).unwrap();
+        poses.jacobian(hand, &mut six).unwrap();
+        poses.position_jacobian(hand, &mut three).unwrap();
+        std::hint::black_box((poses.pose(hand), collision.collides(&poses), collision.clearance(&poses)));
+    });
+    assert_eq!(count, 0, "all links");
+    let count = allocations(|| {
+        chain.jacobian(q.as_view(), &mut in_chain, &mut six).unwrap();
+        chain.position_jacobian(q.as_view(), &mut in_chain, &mut three).unwrap();
+        std::hint::black_box(chain.pose(q.as_view(), &mut in_chain).unwrap());
+    });
+    assert_eq!(count, 0, "chain");
+    let count = allocations(|| {
+        control.velocity(&three, task.as_view(), q.as_view(), velocity.as_view_mut()).unwrap();
+        robot.clip(q.as_view_mut()).unwrap();
+    });
+    assert_eq!(count, 0, "resolved rate");
+}
