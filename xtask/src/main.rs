@@ -1,6 +1,7 @@
 //! Runs the experiments of the paper and the checks of the workspace.
 
 mod experiments;
+mod learners;
 mod measure;
 mod paper;
 mod progress;

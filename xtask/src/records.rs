@@ -28,7 +28,7 @@ struct Record {
     key: String,
     experiment: String,
     setup: String,
-    data_set: u32,
+    number: u32,
     outcome: Outcome,
 }
 
@@ -44,7 +44,7 @@ pub(crate) struct DataSet<'a> {
     /// The seed of the run.
     pub(crate) seed: u64,
     /// The repetition, from 0.
-    pub(crate) data_set: u32,
+    pub(crate) number: u32,
 }
 
 /// The file of finished data sets, open for appending.
@@ -103,7 +103,7 @@ impl Records {
             key: self.key(data_set),
             experiment: data_set.experiment.to_owned(),
             setup: data_set.setup.to_owned(),
-            data_set: data_set.data_set,
+            number: data_set.number,
             outcome: outcome.clone(),
         };
         let mut line = serde_json::to_vec(&record)?;
@@ -122,7 +122,7 @@ impl Records {
         data_set.seed.hash(&mut hasher);
         data_set.definition.hash(&mut hasher);
         let definition = hasher.finish();
-        format!("{}/{}/{}/{definition:016x}", data_set.experiment, data_set.setup, data_set.data_set)
+        format!("{}/{}/{}/{definition:016x}", data_set.experiment, data_set.setup, data_set.number)
     }
 }
 
@@ -143,7 +143,7 @@ mod tests {
     use crate::measure::Measure;
 
     const DATA_SET: DataSet<'static> =
-        DataSet { experiment: "table1", setup: "narrow", definition: "K = 40", seed: 1, data_set: 7 };
+        DataSet { experiment: "table1", setup: "narrow", definition: "K = 40", seed: 1, number: 7 };
 
     fn measured(value: f64) -> Outcome {
         Outcome::Measured(vec![BTreeMap::from([(Measure::Nupe, value)])])
@@ -171,7 +171,7 @@ mod tests {
             DataSet { definition: "K = 41", ..DATA_SET },
             DataSet { setup: "wide", ..DATA_SET },
             DataSet { experiment: "table1-literal", ..DATA_SET },
-            DataSet { data_set: 8, ..DATA_SET },
+            DataSet { number: 8, ..DATA_SET },
         ] {
             assert_eq!(records.finished(&other), None, "{other:?}");
         }
@@ -185,17 +185,17 @@ mod tests {
         let path = folder.path().join("records.jsonl");
         let records = Records::open(&path, Earlier::Resume).unwrap();
         records.append(&DATA_SET, &measured(1.0)).unwrap();
-        records.append(&DataSet { data_set: 8, ..DATA_SET }, &measured(2.0)).unwrap();
+        records.append(&DataSet { number: 8, ..DATA_SET }, &measured(2.0)).unwrap();
         drop(records);
         let length = std::fs::metadata(&path).unwrap().len();
         OpenOptions::new().write(true).open(&path).unwrap().set_len(length - 5).unwrap();
 
         let records = Records::open(&path, Earlier::Resume).unwrap();
         assert_eq!(records.finished(&DATA_SET), Some(&measured(1.0)));
-        assert_eq!(records.finished(&DataSet { data_set: 8, ..DATA_SET }), None);
-        records.append(&DataSet { data_set: 9, ..DATA_SET }, &measured(3.0)).unwrap();
+        assert_eq!(records.finished(&DataSet { number: 8, ..DATA_SET }), None);
+        records.append(&DataSet { number: 9, ..DATA_SET }, &measured(3.0)).unwrap();
         let records = Records::open(&path, Earlier::Resume).unwrap();
-        assert_eq!(records.finished(&DataSet { data_set: 9, ..DATA_SET }), Some(&measured(3.0)));
+        assert_eq!(records.finished(&DataSet { number: 9, ..DATA_SET }), Some(&measured(3.0)));
     }
 
     #[test]

@@ -99,9 +99,7 @@ pub(crate) fn tally(result: &ExperimentResult) -> String {
 fn explanations(experiment: &Experiment, result: &ExperimentResult) -> String {
     let mut text = String::new();
     for row in &result.rows {
-        for &measure in
-            row.measures.iter().filter(|(measure, cell)| needs_a_word(**measure, cell)).map(|(measure, _)| measure)
-        {
+        for &measure in row.measures.iter().filter(|(_, cell)| needs_a_word(cell)).map(|(measure, _)| measure) {
             let word = experiment.explain(&row.id, measure).unwrap_or("no explanation has been found yet.");
             let _ = writeln!(text, "- `{}`, {}: {word}", row.id, measure.name());
         }
@@ -110,7 +108,7 @@ fn explanations(experiment: &Experiment, result: &ExperimentResult) -> String {
 }
 
 /// Figures that are not reached, and errors that are better by far, must be explained.
-fn needs_a_word(measure: Measure, cell: &Cell) -> bool {
+fn needs_a_word(cell: &Cell) -> bool {
     let (Some(paper), Some(verdict)) = (cell.paper, cell.verdict) else { return false };
     let far_better = verdict == Verdict::Better && paper.mean - cell.mean > REMARKABLY_BETTER * paper.sd;
     !verdict.reached() || far_better

@@ -99,5 +99,5 @@ fn name<'a>(
     plan: Plan,
     data_set: u32,
 ) -> DataSet<'a> {
-    DataSet { experiment: experiment.id, setup: &setup.id, definition, seed: plan.seed, data_set }
+    DataSet { experiment: experiment.id, setup: &setup.id, definition, seed: plan.seed, number: data_set }
 }

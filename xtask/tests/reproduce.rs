@@ -1,5 +1,7 @@
 //! `cargo xtask reproduce` as a user meets it: the same bits at any number of threads, after a kill, and for a part.
 
+#![allow(clippy::unwrap_used)]
+
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};

@@ -1,6 +1,6 @@
 //! The registry: every table and figure of the paper that can be reproduced, one file each.
 
-mod scoring;
+mod judge;
 mod table1;
 
 use std::collections::BTreeMap;

@@ -1,13 +1,16 @@
 //! Table 1 (Section 4.1): the toy system, three set-ups by three bandwidths.
 
+use std::collections::BTreeMap;
+
 use align::{Bandwidth, LwprRegressor, PolicyAlign};
 use demo_gen::{Redraw, ToyPotential, ToySystem, demonstrations};
 use lwpr::LwprParams;
 use rand_chacha::ChaCha8Rng;
 
-use super::scoring::score;
+use super::judge::{Judge, discarded_percent};
 use super::{Experiment, Measures, Row, Setup, Trial};
-use crate::measure::RowOf;
+use crate::learners::{Learner as _, Lesson};
+use crate::measure::{Measure, RowOf};
 use crate::paper::{explanations, paper_table};
 
 /// Share of the kept samples that is held out for testing.
@@ -94,8 +97,12 @@ impl Trial for ToyTrial {
         let recordings = self.system.record(rng)?;
         let aligned =
             PolicyAlign { bandwidth: self.bandwidth, ..PolicyAlign::default() }.align(&demonstrations(&recordings)?)?;
-        let (training, held_out) = aligned.samples().split(HELD_OUT, rng)?;
-        let learnt = aligned.regress(&Self::regressor(), &training, rng)?;
-        Ok(vec![score(&recordings, &aligned, &held_out, learnt.potential(), learnt.policy())?])
+        let (_, held_out) = aligned.samples().split(HELD_OUT, rng)?;
+        let learnt = Self::regressor().learn(&Lesson { aligned: &aligned, held_out: &held_out }, rng)?;
+        let judge = Judge::new(&recordings, &held_out);
+        let mut measures = judge.policy(&*learnt.policy)?;
+        measures.extend(learnt.potential.map_or(Ok(BTreeMap::new()), |potential| judge.potential(&*potential))?);
+        measures.insert(Measure::Disc, discarded_percent(&aligned));
+        Ok(vec![measures])
     }
 }

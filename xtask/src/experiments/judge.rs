@@ -1,0 +1,69 @@
+//! Scores what was learnt from one data set against the truth (A1)–(A4).
+
+use std::collections::BTreeMap;
+
+use align::{Aligned, Samples};
+use constraints::NullSpaceProjector;
+use demo_gen::Recording;
+use metrics::{alignment_nmse, ncpe, nupe, potential_nmse};
+use motion::{Policy, Potential};
+use nalgebra::{DMatrix, DVector};
+
+use crate::measure::Measure;
+
+/// The truth at the test samples: samples of kept trajectories that the regression did not see.
+pub(crate) struct Judge<'a> {
+    states: DMatrix<f64>,
+    levelled: DVector<f64>,
+    potential: DVector<f64>,
+    actions: DMatrix<f64>,
+    projectors: Vec<&'a NullSpaceProjector>,
+}
+
+impl<'a> Judge<'a> {
+    /// Looks up the truth of the held-out samples.
+    pub(crate) fn new(recordings: &'a [Recording], held_out: &Samples<'_>) -> Self {
+        let truth = || held_out.indices().iter().map(|at| (&recordings[at.trajectory].truth, at.sample));
+        let columns = |of: fn(&demo_gen::Truth) -> &DMatrix<f64>| {
+            DMatrix::from_columns(&truth().map(|(truth, n)| of(truth).column(n)).collect::<Vec<_>>())
+        };
+        Judge {
+            states: columns(|truth| &truth.states),
+            levelled: held_out.values(),
+            potential: DVector::from_iterator(held_out.len(), truth().map(|(truth, n)| truth.potential[n])),
+            actions: columns(|truth| &truth.actions),
+            projectors: truth().map(|(truth, n)| &truth.projectors[n]).collect(),
+        }
+    }
+
+    /// Errors of a policy, unconstrained (A1) and under the constraints of the demonstrations (A2).
+    pub(crate) fn policy(&self, policy: &dyn Policy) -> anyhow::Result<BTreeMap<Measure, f64>> {
+        let learnt = self.actions_of(policy);
+        let under_training = ncpe(&self.actions, &learnt, |n, v| self.projectors[n].project_into(v))?;
+        Ok(BTreeMap::from([(Measure::Nupe, nupe(&self.actions, &learnt)?), (Measure::Ncpe, under_training)]))
+    }
+
+    /// Errors of a learnt potential (A3) and of the aligned local potentials (A4).
+    pub(crate) fn potential(&self, potential: &dyn Potential) -> anyhow::Result<BTreeMap<Measure, f64>> {
+        let values = self.states.column_iter().map(|state| potential.value(state));
+        let learnt = DVector::from_iterator(self.states.ncols(), values);
+        Ok(BTreeMap::from([
+            (Measure::PotentialNmse, potential_nmse(&self.potential, &learnt)?),
+            (Measure::AlignmentNmse, alignment_nmse(&self.potential, &self.levelled)?),
+        ]))
+    }
+
+    /// The actions of a policy at the test samples.
+    fn actions_of(&self, policy: &dyn Policy) -> DMatrix<f64> {
+        let mut actions = DMatrix::zeros(self.states.nrows(), self.states.ncols());
+        for (state, mut action) in self.states.column_iter().zip(actions.column_iter_mut()) {
+            policy.action_into(state, action.as_view_mut());
+        }
+        actions
+    }
+}
+
+/// Share of the trajectories that alignment left out, percent.
+pub(crate) fn discarded_percent(aligned: &Aligned) -> f64 {
+    100.0 * aligned.discarded().len() as f64 / aligned.demonstrations().n_trajectories() as f64
+}
