@@ -82,7 +82,7 @@ fn pairs(distances: &DMatrix<f64>) -> impl Iterator<Item = (usize, usize, f64)> 
 /// The middle value, or the mean of the middle two.
 fn median(mut values: Vec<f64>) -> f64 {
     let half = values.len() / 2;
-    let even = values.len() % 2 == 0;
+    let even = values.len().is_multiple_of(2);
     let (below, &mut upper, _) = values.select_nth_unstable_by(half, f64::total_cmp);
     if even { 0.5 * below.iter().copied().fold(f64::NEG_INFINITY, f64::max) + 0.5 * upper } else { upper }
 }

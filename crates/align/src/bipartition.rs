@@ -40,3 +40,80 @@ pub(crate) fn bipartition(laplacian: &DMatrix<f64>, threshold: f64) -> Result<Pa
     let lambda_2 = closed[0].1;
     Ok(Partition { groups: closed.into_iter().map(|(group, _)| group).collect(), lambda_2 })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    /// The Laplacian of the graph with these links (k, j, weight).
+    fn graph(count: usize, links: &[(usize, usize, f64)]) -> DMatrix<f64> {
+        let mut laplacian = DMatrix::zeros(count, count);
+        for &(k, j, weight) in links {
+            laplacian[(k, k)] += weight;
+            laplacian[(j, j)] += weight;
+            laplacian[(k, j)] -= weight;
+            laplacian[(j, k)] -= weight;
+        }
+        laplacian
+    }
+
+    #[test]
+    fn connected_graphs_stay_whole() {
+        let path = graph(4, &[(0, 1, 1.0), (1, 2, 1.0), (2, 3, 1.0)]);
+        let partition = bipartition(&path, 1e-8).unwrap();
+        assert_eq!(partition.groups, [[0, 1, 2, 3]]);
+        assert!((partition.lambda_2.unwrap() - (2.0 - 2.0_f64.sqrt())).abs() < 1e-14);
+    }
+
+    #[test]
+    fn parts_come_apart_and_the_largest_is_first() {
+        let parts = graph(8, &[(1, 4, 2.0), (4, 6, 0.5), (0, 3, 1.0), (2, 7, 1.0)]);
+        let partition = bipartition(&parts, 1e-8).unwrap();
+        assert_eq!(partition.groups, [vec![1, 4, 6], vec![0, 3], vec![2, 7], vec![5]]);
+    }
+
+    #[test]
+    fn weak_links_do_not_hold() {
+        // Two pairs joined by w have λ₂ ≈ w.
+        let pairs = |weight| graph(4, &[(0, 2, 1.0), (1, 3, 1.0), (2, 3, weight)]);
+        assert_eq!(bipartition(&pairs(0.9e-8), 1e-8).unwrap().groups, [[0, 2], [1, 3]]);
+        assert_eq!(bipartition(&pairs(1.1e-8), 1e-8).unwrap().groups, [[0, 1, 2, 3]]);
+    }
+
+    #[test]
+    fn a_single_trajectory_is_a_group() {
+        let partition = bipartition(&DMatrix::zeros(1, 1), 1e-8).unwrap();
+        assert_eq!(partition, Partition { groups: vec![vec![0]], lambda_2: None });
+    }
+
+    #[test]
+    fn trajectories_without_links_are_all_alone() {
+        let partition = bipartition(&DMatrix::zeros(4, 4), 1e-8).unwrap();
+        assert_eq!(partition.groups, [[0], [1], [2], [3]]);
+    }
+
+    proptest! {
+        #[test]
+        fn blocks_are_found_under_any_numbering(
+            blocks in vec(1usize..6, 1..6), weights in vec(0.01..1.0, 400),
+            order in Just((0..25).collect::<Vec<usize>>()).prop_shuffle(),
+        ) {
+            let count: usize = blocks.iter().sum();
+            let order: Vec<usize> = order.into_iter().filter(|&k| k < count).collect();
+            let mut weights = weights.into_iter();
+            let (mut links, mut expected, mut first) = (vec![], vec![], 0);
+            for size in blocks {
+                let members: Vec<usize> = order[first..first + size].to_vec();
+                for (at, &k) in members.iter().enumerate() {
+                    links.extend(members[..at].iter().map(|&j| (k, j, weights.next().unwrap())));
+                }
+                expected.push({ let mut sorted = members; sorted.sort_unstable(); sorted });
+                first += size;
+            }
+            expected.sort_by_key(|group| (Reverse(group.len()), group[0]));
+            prop_assert_eq!(bipartition(&graph(count, &links), 1e-8).unwrap().groups, expected);
+        }
+    }
+}

@@ -1,47 +1,13 @@
 //! The innermost loop of the alignment: all squared distances between the samples of two trajectories, of which only
 //! the smallest of every row and every column is kept.
 
+#![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
+
 use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::lanes::{LANES, Lanes, groups_of};
-
-/// Rows that share one load of the other trajectory's coordinates.
-const ROWS: usize = 4;
-
-/// The states of one trajectory in tiles of as many samples as a vector has lanes: a tile holds one vector for each
-/// dimension. The last tile is filled up with infinity, which is nobody's nearest.
-#[derive(Debug)]
-pub(crate) struct Tiles {
-    coordinates: Vec<f64>,
-    n_samples: usize,
-}
-
-impl Tiles {
-    pub(crate) fn new(positions: &DMatrix<f64>) -> Self {
-        let (n_states, n_samples) = positions.shape();
-        let lanes = Arch::new().dispatch(LaneCount);
-        let padded = n_samples.next_multiple_of(lanes);
-        let mut coordinates = vec![f64::INFINITY; padded * n_states];
-        for (sample, state) in positions.column_iter().enumerate() {
-            let first = (sample / lanes) * lanes * n_states + sample % lanes;
-            let places = coordinates[first..].iter_mut().step_by(lanes);
-            places.zip(state.iter()).for_each(|(place, &value)| *place = value);
-        }
-        Tiles { coordinates, n_samples }
-    }
-}
-
-struct LaneCount;
-
-impl WithSimd for LaneCount {
-    type Output = usize;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) -> usize {
-        S::F64_LANES
-    }
-}
+use crate::tiles::{ROWS, Tiles, row_groups};
 
 /// The nearest samples found so far; indices are exact in f64, and compare and blend like the distances.
 #[derive(Debug, Default)]
@@ -63,43 +29,38 @@ impl Minima {
 
 /// Compares one trajectory, sample by sample, with others.
 #[derive(Debug)]
-pub(crate) struct BlockSearch<'a> {
-    rows: &'a DMatrix<f64>,
-    row_groups: Vec<[f64; ROWS]>,
+pub(crate) struct BlockSearch {
     arch: Arch,
+    n_states: usize,
+    n_rows: usize,
+    row_groups: Vec<[f64; ROWS]>,
     /// For the samples of this trajectory, the nearest of the other.
     pub(crate) of_rows: Minima,
     /// For the samples of the other trajectory, the nearest of this.
     pub(crate) of_columns: Minima,
 }
 
-impl<'a> BlockSearch<'a> {
-    pub(crate) fn new(rows: &'a DMatrix<f64>) -> Self {
+impl BlockSearch {
+    /// A search with the vectors of one kind of machine, for which the other trajectories' tiles must be made.
+    pub(crate) fn new(states: &DMatrix<f64>, arch: Arch) -> Self {
+        let (n_states, n_rows) = states.shape();
         let (of_rows, of_columns) = (Minima::default(), Minima::default());
-        BlockSearch { rows, row_groups: row_groups(rows), arch: Arch::new(), of_rows, of_columns }
+        BlockSearch { arch, n_states, n_rows, row_groups: row_groups(states), of_rows, of_columns }
     }
 
     /// Finds what is nearest for the samples of both trajectories, and the smallest squared distance of all.
     pub(crate) fn run(&mut self, other: &Tiles) -> f64 {
-        self.of_rows.reset(self.rows.ncols());
+        self.of_rows.reset(self.n_rows);
         self.of_columns.reset(other.n_samples);
         self.arch.dispatch(Block {
-            n_states: self.rows.nrows(),
-            n_rows: self.rows.ncols(),
+            n_states: self.n_states,
+            n_rows: self.n_rows,
             row_groups: &self.row_groups,
             other: &other.coordinates,
             of_rows: &mut self.of_rows,
             of_columns: &mut self.of_columns,
         })
     }
-}
-
-/// The states in groups of `ROWS`, for each group and each dimension one coordinate a row. The last group is filled up
-/// with its last state: a repeated row is never strictly nearer.
-fn row_groups(states: &DMatrix<f64>) -> Vec<[f64; ROWS]> {
-    let last = states.ncols() - 1;
-    let group = |first| (0..states.nrows()).map(move |c| std::array::from_fn(|r| states[(c, last.min(first + r))]));
-    (0..=last).step_by(ROWS).flat_map(group).collect()
 }
 
 /// One pair of trajectories: rows are samples of the one, vector lanes samples of the other.
@@ -195,4 +156,66 @@ fn any_squared_distances<S: Simd>(simd: S, rows: &[[f64; ROWS]], tile: &[S::f64s
         }
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    /// Few different coordinates, so that many samples are equally near; or arbitrary ones.
+    fn states(n_states: usize) -> impl Strategy<Value = DMatrix<f64>> {
+        let coordinate = prop_oneof![(-2..3).prop_map(f64::from), -1.0..1.0];
+        (1usize..40).prop_flat_map(move |n| {
+            vec(coordinate.clone(), n * n_states).prop_map(move |values| DMatrix::from_vec(n_states, n, values))
+        })
+    }
+
+    fn two_trajectories() -> impl Strategy<Value = (DMatrix<f64>, DMatrix<f64>)> {
+        (1usize..9).prop_flat_map(|n_states| (states(n_states), states(n_states)))
+    }
+
+    /// Every kind of vector that this machine has.
+    fn kinds() -> Vec<Arch> {
+        let kinds = vec![Arch::Scalar, Arch::new()];
+        #[cfg(target_arch = "x86_64")]
+        let kinds = kinds.into_iter().chain(pulp::x86::V3::try_new().map(Arch::V3)).collect();
+        kinds
+    }
+
+    fn nearest(states: &DMatrix<f64>, to: &DMatrix<f64>) -> Vec<(f64, f64)> {
+        let distance = |i: usize, m: usize| {
+            let (x, y) = (states.column(i), to.column(m));
+            x.iter().zip(y.iter()).map(|(x, y)| (x - y) * (x - y)).sum()
+        };
+        let of = |m: usize| {
+            let all: Vec<f64> = (0..states.ncols()).map(|i| distance(i, m)).collect();
+            let least = all.iter().copied().fold(f64::INFINITY, f64::min);
+            (least, all.iter().position(|&d| d == least).unwrap() as f64)
+        };
+        (0..to.ncols()).map(of).collect()
+    }
+
+    fn found(minima: &Minima, count: usize) -> Vec<(f64, f64)> {
+        let samples = minima.samples.as_flattened().iter().copied();
+        let distances = minima.distances.as_flattened().iter().copied();
+        assert!(distances.clone().skip(count).all(|distance| distance == f64::INFINITY));
+        distances.zip(samples).take(count).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn finds_the_first_of_the_nearest((one, other) in two_trajectories()) {
+            for arch in kinds() {
+                let mut search = BlockSearch::new(&one, arch);
+                let smallest = search.run(&Tiles::new(&other, arch));
+                // All bits, for the sums have one order on every machine.
+                let of_one = nearest(&other, &one);
+                prop_assert_eq!(&found(&search.of_rows, one.ncols()), &of_one);
+                prop_assert_eq!(found(&search.of_columns, other.ncols()), nearest(&one, &other));
+                prop_assert_eq!(smallest, of_one.iter().fold(f64::INFINITY, |least, (d, _)| least.min(*d)));
+            }
+        }
+    }
 }

@@ -26,7 +26,9 @@ mod tests {
     fn keeps_what_rounding_drops() {
         let sum = |terms: &[f64]| {
             let mut sum = CompensatedSum::default();
-            terms.iter().for_each(|&term| sum.add(term));
+            for &term in terms {
+                sum.add(term);
+            }
             sum.value()
         };
         assert_eq!(sum(&[1.0, 1e-20, -1.0]), 1e-20);

@@ -1,5 +1,7 @@
 //! An exponential that vectorises: the library's is a call per number.
 
+#![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
+
 use pulp::{Arch, Simd, WithSimd};
 
 /// exp of anything below −`LARGEST` is not worth its bits, and above it is a normal number.

@@ -30,12 +30,13 @@ impl Elimination {
     pub(crate) fn new(laplacian: &DMatrix<f64>) -> Self {
         let count = laplacian.ncols();
         let mut weights = -laplacian;
-        let mut degrees = vec![0.0; count];
+        let mut degrees = Vec::with_capacity(count);
         for p in 0..count {
             let links = weights.column(p).rows_range(p + 1..).clone_owned();
-            degrees[p] = links.sum();
+            let degree = links.sum();
+            degrees.push(degree);
             for (later, &link) in links.iter().enumerate().filter(|&(_, &link)| link > 0.0) {
-                let share = link / degrees[p];
+                let share = link / degree;
                 weights.column_mut(p + 1 + later).rows_range_mut(p + 2 + later..).axpy(
                     share,
                     &links.rows_range(later + 1..),
@@ -84,6 +85,68 @@ impl Elimination {
         }
         for (value, &component) in x.iter_mut().zip(&self.component) {
             *value -= sums[component].0 / sums[component].1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::DVector;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    fn laplacian(count: usize, weights: &[f64]) -> DMatrix<f64> {
+        let mut laplacian = DMatrix::zeros(count, count);
+        for (k, j) in (0..count).flat_map(|k| (0..k).map(move |j| (k, j))) {
+            laplacian[(k, j)] = -weights[k * count + j];
+            laplacian[(j, k)] = -weights[k * count + j];
+        }
+        of_group(&laplacian, &(0..count).collect::<Vec<_>>())
+    }
+
+    proptest! {
+        #[test]
+        fn solves_as_the_pseudo_inverse_does(
+            count in 1usize..9, weights in vec(prop_oneof![Just(0.0), 0.1..1.0], 81), right in vec(-1.0..1.0, 9),
+        ) {
+            let laplacian = laplacian(count, &weights);
+            let elimination = Elimination::new(&laplacian);
+            let x = DVector::from_vec(elimination.solve(&right[..count]));
+            // Lx is r less its part along the null vectors, the ones of each component, and x has no such part.
+            let mut solvable = right[..count].to_vec();
+            elimination.centre(&mut solvable);
+            prop_assert!((&laplacian * &x - DVector::from_vec(solvable)).amax() < 1e-13);
+            let mut centred = x.as_slice().to_vec();
+            elimination.centre(&mut centred);
+            prop_assert!((x - DVector::from_vec(centred)).amax() < 1e-13);
+        }
+
+        #[test]
+        fn knows_the_components(
+            count in 1usize..12, links in vec((0usize..12, 0usize..12), 0..12),
+        ) {
+            let mut weights = vec![0.0; count * count];
+            let mut label: Vec<usize> = (0..count).collect();
+            for (k, j) in links.into_iter().map(|(k, j)| (k % count, j % count)).filter(|(k, j)| k != j) {
+                weights[k.max(j) * count + k.min(j)] = 0.5;
+                let (old, new) = (label[k], label[j]);
+                label.iter_mut().filter(|label| **label == old).for_each(|label| *label = new);
+            }
+            let found = Elimination::new(&laplacian(count, &weights)).component;
+            for (k, j) in (0..count).flat_map(|k| (0..count).map(move |j| (k, j))) {
+                prop_assert_eq!(found[k] == found[j], label[k] == label[j]);
+            }
+        }
+
+        #[test]
+        fn weak_links_lose_no_digits(exponent in -200..0, weight in 0.1..1.0, flow in -1.0..1.0) {
+            // Two pairs joined by a weak link that must carry all of the flow: the step across it is flow / weight.
+            let link = weight * 10.0_f64.powi(exponent);
+            let mut weights = vec![0.0; 16];
+            (weights[4], weights[14], weights[9]) = (1.0, 1.0, link);
+            let x = Elimination::new(&laplacian(4, &weights)).solve(&[flow, 0.0, 0.0, -flow]);
+            prop_assert!(((x[1] - x[2]) * link - flow).abs() <= 1e-14 * flow.abs());
         }
     }
 }

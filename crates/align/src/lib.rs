@@ -72,6 +72,7 @@ mod offsets;
 mod regress;
 mod responsibilities;
 mod samples;
+mod tiles;
 mod two_means;
 mod warning;
 

@@ -1,10 +1,12 @@
 use motion::Demonstrations;
 use nalgebra::DMatrix;
+use pulp::Arch;
 use rayon::prelude::*;
 
 use crate::AlignError;
-use crate::block_search::{BlockSearch, Minima, Tiles};
+use crate::block_search::{BlockSearch, Minima};
 use crate::lanes::{LANES, Lanes, groups_of};
+use crate::tiles::Tiles;
 
 /// For every sample of every trajectory, its nearest sample in each trajectory: the search behind (10) and (11).
 ///
@@ -37,10 +39,11 @@ impl NearestSamples {
     pub(crate) fn search(demonstrations: &Demonstrations) -> Result<Self, AlignError> {
         check_span(demonstrations)?;
         let trajectories = demonstrations.trajectories();
-        let tiles: Vec<_> = trajectories.iter().map(|t| Tiles::new(t.positions())).collect();
+        let arch = Arch::new();
+        let tiles: Vec<_> = trajectories.iter().map(|t| Tiles::new(t.positions(), arch)).collect();
         let groups: Vec<_> = trajectories.iter().map(|t| groups_of(t.n_samples())).collect();
         let blocks = (0..trajectories.len()).into_par_iter().map(|i| {
-            let mut search = BlockSearch::new(trajectories[i].positions());
+            let mut search = BlockSearch::new(trajectories[i].positions(), arch);
             let mut of_rows = NearestList::with_capacity(groups[i] * (groups.len() - i));
             let mut of_columns = NearestList::with_capacity(groups[i..].iter().sum());
             for later in &tiles[i..] {

@@ -20,7 +20,9 @@ pub(crate) fn group_offsets(
 ) -> Result<DVector<f64>, AlignError> {
     let elimination = Elimination::new(&of_group(laplacian, group));
     let mut offsets = vec![None; laplacian.ncols()];
-    group.iter().for_each(|&k| offsets[k] = Some(0.0));
+    for &k in group {
+        offsets[k] = Some(0.0);
+    }
     for _ in 0..ROUNDS {
         let (linear, _) = linear_term(responsibilities, &offsets);
         let left: Vec<f64> = group.iter().map(|&k| -linear[k]).collect();
@@ -32,5 +34,73 @@ pub(crate) fn group_offsets(
     match offsets.iter().position(|offset| !offset.is_finite()) {
         None => Ok(offsets.into()),
         Some(at) => Err(AlignError::OffsetOverflow { trajectory: group[at] }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::AlignmentObjective;
+    use crate::bipartition::bipartition;
+    use crate::nearest::NearestSamples;
+    use motion::Demonstrations;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    /// Trajectories of 2 to 9 samples in two dimensions, with any values of the potential.
+    fn movements() -> impl Strategy<Value = (Vec<DMatrix<f64>>, Vec<Vec<f64>>)> {
+        let movement = (2usize..10).prop_flat_map(|n| {
+            (vec(-1.0..1.0, 2 * n).prop_map(move |x| DMatrix::from_vec(2, n, x)), vec(-5.0..5.0, n))
+        });
+        vec(movement, 1..8).prop_map(|movements| movements.into_iter().unzip())
+    }
+
+    /// The kept group, its offsets and λ₂.
+    fn level(
+        positions: &[DMatrix<f64>],
+        potentials: &[Vec<f64>],
+        sigma_squared: f64,
+    ) -> (Vec<usize>, DVector<f64>, f64) {
+        let demonstrations = Demonstrations::from_positions(positions.to_vec(), 1.0).unwrap();
+        let nearest = NearestSamples::search(&demonstrations).unwrap();
+        let responsibilities = Responsibilities::new(&nearest, potentials, sigma_squared, 1e-20);
+        let laplacian = AlignmentObjective::new(&responsibilities).laplacian;
+        let partition = bipartition(&laplacian, 1e-8).unwrap();
+        let offsets = group_offsets(&responsibilities, &laplacian, &partition.groups[0]).unwrap();
+        (partition.groups[0].clone(), offsets, partition.lambda_2.unwrap_or(1.0))
+    }
+
+    proptest! {
+        #[test]
+        fn a_raised_potential_is_lowered_again(
+            (positions, potentials) in movements(), rises in vec(-100.0_f64..100.0, 8), exponent in -3.0_f64..0.0,
+        ) {
+            let sigma_squared = 10.0_f64.powf(exponent);
+            let (group, offsets, _) = level(&positions, &potentials, sigma_squared);
+            let raised: Vec<Vec<f64>> =
+                potentials.iter().zip(&rises).map(|(p, rise)| p.iter().map(|value| value + rise).collect()).collect();
+            let (same_group, lowered, _) = level(&positions, &raised, sigma_squared);
+            prop_assert_eq!(&group, &same_group);
+            let mean = group.iter().map(|&k| rises[k]).sum::<f64>() / group.len() as f64;
+            for (at, &k) in group.iter().enumerate() {
+                let expected = offsets[at] - (rises[k] - mean);
+                // Adding 100 costs the potentials themselves 1e-14, and weak links pass that on 1e8-fold at most.
+                prop_assert!((lowered[at] - expected).abs() < 1e-10, "{} {expected}", lowered[at]);
+            }
+        }
+
+        #[test]
+        fn weak_links_lose_no_digits(distance in 5.9..6.05, value in -1.0_f64..1.0) {
+            // Two pairs at one place each, joined by the weight exp(−d²/2) ≈ 1e-8 of the values at their ends only:
+            // whatever the strong links carry, the step between the pairs is what the ends say.
+            let at = |x: f64| DMatrix::from_row_slice(1, 2, &[x, x]);
+            let positions = [at(0.0), at(0.0), at(distance), at(distance)];
+            let potentials = [vec![0.0, 0.0], vec![value; 2], vec![3.0; 2], vec![1000.0 * value; 2]];
+            let (group, offsets, lambda_2) = level(&positions, &potentials, 1.0);
+            prop_assert_eq!(group.len(), 4);
+            prop_assert!(lambda_2 < 1e-6);
+            let levels: Vec<f64> = (0..4).map(|k| potentials[k][0] + offsets[k]).collect();
+            prop_assert!(levels.iter().all(|level| (level - levels[0]).abs() < 1e-11), "{levels:?}");
+        }
     }
 }

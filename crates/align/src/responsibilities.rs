@@ -1,3 +1,5 @@
+#![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
+
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 

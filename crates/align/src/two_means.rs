@@ -3,6 +3,12 @@ use nalgebra::DMatrix;
 /// Lloyd's iteration ends by itself, since the cost falls each time; this only guards against rounding.
 const MOST_ROUNDS: usize = 100;
 
+/// Distances that differ by less than this share of the distance between the starts are equal.
+///
+/// Parts without links have equal rows up to rounding, and parts of equal size are equally far from each other: without
+/// a margin, rounding would cut right through a third one that lies in the middle between two starts.
+const MARGIN: f64 = 1e-6;
+
 /// Splits rows into two clusters: true for the rows of the second.
 ///
 /// Deterministic: the first cluster starts at the row farthest from the mean, the second at the row farthest from
@@ -10,11 +16,12 @@ const MOST_ROUNDS: usize = 100;
 pub(crate) fn two_means(rows: &DMatrix<f64>) -> Vec<bool> {
     let first = farthest_from(rows, &mean(rows, |_| true));
     let second = farthest_from(rows, &row(rows, first));
+    let margin = MARGIN * squared_distance(rows, first, &row(rows, second));
     let mut centres = [row(rows, first), row(rows, second)];
     let mut in_second = Vec::new();
     for _ in 0..MOST_ROUNDS {
         let assigned: Vec<bool> = (0..rows.nrows())
-            .map(|i| squared_distance(rows, i, &centres[1]) < squared_distance(rows, i, &centres[0]))
+            .map(|i| squared_distance(rows, i, &centres[1]) < squared_distance(rows, i, &centres[0]) - margin)
             .collect();
         if assigned == in_second {
             break;
@@ -42,4 +49,30 @@ fn farthest_from(rows: &DMatrix<f64>, centre: &[f64]) -> usize {
     let distances = (0..rows.nrows()).map(|i| squared_distance(rows, i, centre));
     let farther = |best: (usize, f64), (i, distance)| if distance > best.1 { (i, distance) } else { best };
     distances.enumerate().fold((0, f64::NEG_INFINITY), farther).0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_two_clusters_whatever_the_order() {
+        let rows = DMatrix::from_row_slice(5, 2, &[0.0, 0.1, 5.0, 5.0, 0.1, 0.0, 5.1, 5.0, 0.0, 0.0]);
+        // The row farthest from the mean is 3, so that the first cluster is about it.
+        assert_eq!(two_means(&rows), [true, false, true, false, true]);
+    }
+
+    #[test]
+    fn rounding_does_not_cut_what_lies_in_the_middle() {
+        // The third point is seen four times, a hair to this side or that.
+        let hair = 1e-15;
+        let x = [-1.0, 1.0, hair, -hair, 0.0, 2.0 * hair];
+        let rows = DMatrix::from_fn(6, 2, |i, column| if column == 0 { x[i] } else { f64::from(i > 1) });
+        assert_eq!(two_means(&rows)[2..], [false; 4]);
+    }
+
+    #[test]
+    fn equal_rows_are_one_cluster() {
+        assert_eq!(two_means(&DMatrix::from_element(4, 3, 0.5)), [false; 4]);
+    }
 }
