@@ -45,20 +45,31 @@ fn resolve(
     columns: &[Option<usize>],
 ) -> Result<Motor, KinematicsError> {
     let (mut at, mut multiplier, mut offset) = (start, 1.0, 0.0);
-    let mut path = vec![start];
+    let mut steps = 0;
     while let Freedom::Moving { mimic: Some(mimic), .. } = &joints[at].freedom {
         offset += multiplier * mimic.offset;
         multiplier *= mimic.multiplier;
         at = target(&joints[at], mimic, joints, by_name)?;
-        if let Some(entry) = path.iter().position(|&seen| seen == at) {
-            path.push(at);
-            let path: Vec<String> = path[entry..].iter().map(|&joint| joints[joint].name.clone()).collect();
-            return Err(KinematicsError::urdf(Element::Joint(path[0].clone()), UrdfProblem::MimicCycle { path }));
+        steps += 1;
+        if steps > joints.len() {
+            return Err(ring(at, joints, by_name));
         }
-        path.push(at);
     }
     let column = columns[at].expect("a mimic chain ends at an active joint");
     Ok(Motor { column, multiplier, offset })
+}
+
+/// Names the ring that a joint is part of, from its first joint in the file.
+fn ring(member: usize, joints: &[UrdfJoint], by_name: &HashMap<&str, usize>) -> KinematicsError {
+    let follows = |at: usize| match &joints[at].freedom {
+        Freedom::Moving { mimic: Some(mimic), .. } => by_name[mimic.target.as_str()],
+        _ => unreachable!("every joint of a ring follows another"),
+    };
+    let members = std::iter::successors(Some(follows(member)), |&at| (at != member).then(|| follows(at)));
+    let first = members.min().expect("a ring has a member");
+    let rest = std::iter::successors(Some(follows(first)), |&at| (at != first).then(|| follows(at)));
+    let path: Vec<String> = std::iter::once(first).chain(rest).map(|joint| joints[joint].name.clone()).collect();
+    KinematicsError::urdf(Element::Joint(path[0].clone()), UrdfProblem::MimicCycle { path })
 }
 
 fn target(

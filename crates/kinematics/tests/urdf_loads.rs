@@ -125,6 +125,23 @@ fn odd_single_joints_that_load() {
             z(Q),
         ),
         (
+            "comments that XML forbids, before the declaration too",
+            format!(
+                "\u{feff}<!-- -- <robot> -- -->\n<?xml version=\"1.0\"?>\n{}",
+                single("revolute", &format!(r#"<!--- a ---->{ORIGIN}<axis xyz="0 0 1"/>{LIMIT}<!-- <limit/> -->"#)),
+            ),
+            z(Q),
+        ),
+        (
+            "a name space for everything",
+            single("revolute", &format!(r#"{ORIGIN}<axis xyz="0 0 1"/>{LIMIT}"#)).replacen(
+                "<robot ",
+                "<robot xmlns=\"http://www.ros.org\" ",
+                1,
+            ),
+            z(Q),
+        ),
+        (
             "visual tags that are no URDF",
             format!(
                 r#"<robot name="r"><link name="a"><visual><geometry><mesh filename="x"><y/></mesh></geometry>

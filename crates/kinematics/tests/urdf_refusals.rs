@@ -198,6 +198,8 @@ fn text_that_is_not_xml_is_refused_with_its_line() {
         ("<robot>\n<link a/></robot>", 2),
         ("robot", 1),
         ("<robot>\n</link>", 2),
+        ("<!-- \n\n --><?xml?>\n<robot></link>", 4),
+        ("<robot><!-- \n</robot>", 2),
     ] {
         match RobotModel::from_urdf(text) {
             Err(KinematicsError::NotXml { line, .. }) => assert_eq!(line, fault, "{text}"),

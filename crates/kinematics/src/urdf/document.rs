@@ -1,6 +1,6 @@
-use roxmltree::{Document, Error, Node, ParsingOptions};
+use roxmltree::Node;
 
-use super::{Element, UrdfCollision, UrdfJoint, UrdfProblem, UrdfWarning, geometry, joint, tag::children};
+use super::{Element, UrdfCollision, UrdfJoint, UrdfProblem, UrdfWarning, geometry, joint, lenient, tag::children};
 use crate::KinematicsError;
 
 /// What a URDF says about kinematics, in document order. Every number is finite; names are not looked up yet.
@@ -51,8 +51,8 @@ pub(crate) fn parsed<T>(
     text: &str,
     read: impl FnOnce(Node<'_, '_>) -> Result<T, KinematicsError>,
 ) -> Result<T, KinematicsError> {
-    let text = with_declared_prefixes(text);
-    let document = strict(&text).map_err(|fault| KinematicsError::NotXml {
+    let text = lenient::well_formed(text);
+    let document = lenient::strict(&text).map_err(|fault| KinematicsError::NotXml {
         line: fault.pos().row,
         column: fault.pos().col,
         message: fault.to_string(),
@@ -63,10 +63,6 @@ pub(crate) fn parsed<T>(
         return Err(KinematicsError::urdf(Element::Robot, UrdfProblem::RootTag { found }));
     }
     read(robot)
-}
-
-fn strict(text: &str) -> Result<Document<'_>, Error> {
-    Document::parse_with_options(text, ParsingOptions { allow_dtd: true, ..Default::default() })
 }
 
 fn read_robot(robot: Node<'_, '_>) -> Result<UrdfRobot, KinematicsError> {
@@ -100,21 +96,5 @@ pub(super) fn name_of(
     match node.attribute("name") {
         Some(name) if !name.is_empty() => Ok(name.to_owned()),
         _ => Err(KinematicsError::urdf(unnamed(), UrdfProblem::MissingAttribute { attribute })),
-    }
-}
-
-/// URDF readers without name spaces accept prefixes that nobody declared, and such files are about: declare them at
-/// the outermost tag, so that a strict reader takes them for the foreign tags they are.
-fn with_declared_prefixes(text: &str) -> String {
-    let mut text = text.to_owned();
-    let mut declared: Vec<String> = Vec::new();
-    loop {
-        let prefix = match strict(&text) {
-            Err(Error::UnknownNamespace(prefix, _)) if !declared.contains(&prefix) => prefix,
-            _ => return text,
-        };
-        let Some(robot) = text.find("<robot") else { return text };
-        text.insert_str(robot + "<robot".len(), &format!(" xmlns:{prefix}=\"undeclared:{prefix}\""));
-        declared.push(prefix);
     }
 }

@@ -5,6 +5,7 @@ mod document;
 mod element;
 mod geometry;
 mod joint;
+mod lenient;
 mod origin;
 mod problem;
 pub(crate) mod tag;

@@ -1,0 +1,46 @@
+//! The usual readers of URDF are no strict XML readers, and files that only they accept are about. What is mended here
+//! says nothing about a robot: comments with two hyphens in them, text before the XML declaration, undeclared prefixes.
+
+use roxmltree::{Document, Error, ParsingOptions};
+
+/// Prefixes that are declared before a text is given up; each costs a reading.
+const MOST_PREFIXES: usize = 50;
+
+pub(super) fn strict(text: &str) -> Result<Document<'_>, Error> {
+    Document::parse_with_options(text, ParsingOptions { allow_dtd: true, ..Default::default() })
+}
+
+/// The text, mended where it can be; lines stay where they are.
+pub(super) fn well_formed(text: &str) -> String {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    declared_prefixes(blanked(&blanked(text, "<!--", "-->"), "<?xml", "?>"))
+}
+
+/// The text with everything between two marks, and the marks, replaced by blanks.
+fn blanked(text: &str, start: &str, end: &str) -> String {
+    let mut kept = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(from) = rest.find(start) {
+        let Some(length) = rest[from + start.len()..].find(end) else { break };
+        let to = from + start.len() + length + end.len();
+        kept.push_str(&rest[..from]);
+        kept.extend(rest[from..to].chars().map(|c| if c == '\n' { '\n' } else { ' ' }));
+        rest = &rest[to..];
+    }
+    kept + rest
+}
+
+/// The text with prefixes that nobody declared declared at the outermost tag: foreign tags they are.
+fn declared_prefixes(mut text: String) -> String {
+    let mut declared: Vec<String> = Vec::new();
+    while declared.len() < MOST_PREFIXES {
+        let prefix = match strict(&text) {
+            Err(Error::UnknownNamespace(prefix, _)) if !declared.contains(&prefix) => prefix,
+            _ => break,
+        };
+        let Some(robot) = text.find("<robot") else { break };
+        text.insert_str(robot + "<robot".len(), &format!(" xmlns:{prefix}=\"undeclared:{prefix}\""));
+        declared.push(prefix);
+    }
+    text
+}
