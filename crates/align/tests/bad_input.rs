@@ -1,0 +1,279 @@
+//! What cannot be aligned is refused with an error that says where and why; what looks odd but can, gives finite numbers.
+
+use align::{AlignError, Aligned, Bandwidth, DirectPolicyLearning, Integration, LwprRegressor, PolicyAlign, Warning};
+use lwpr::LwprParams;
+use motion::{Demonstrations, Policy, Potential, Trajectory};
+use nalgebra::{DMatrix, DVector};
+use rand::{SeedableRng, rngs::StdRng};
+
+fn line(from: [f64; 2], to: [f64; 2], samples: usize) -> DMatrix<f64> {
+    DMatrix::from_fn(2, samples, |c, i| from[c] + (to[c] - from[c]) * i as f64 / (samples - 1) as f64)
+}
+
+/// Three lines side by side.
+fn sound() -> Vec<DMatrix<f64>> {
+    (0..3).map(|k| line([0.0, f64::from(k)], [1.0, f64::from(k) + 0.2], 10)).collect()
+}
+
+fn observed(positions: Vec<DMatrix<f64>>) -> Demonstrations {
+    Demonstrations::from_positions(positions, 0.1).unwrap()
+}
+
+fn with(change: impl Fn(&mut PolicyAlign)) -> PolicyAlign {
+    let mut learner = PolicyAlign::default();
+    change(&mut learner);
+    learner
+}
+
+#[test]
+fn what_is_refused() {
+    let touching =
+        || vec![line([0.0, 0.0], [1.0, 1.0], 5), line([0.0, 0.0], [1.0, 1.0], 5), line([9.0, 0.0], [8.0, 0.0], 5)];
+    let half_recorded = {
+        let velocities = DMatrix::from_element(2, 10, 0.5);
+        let mut trajectories: Vec<_> = sound().into_iter().map(|x| Trajectory::new(x, 0.1).unwrap()).collect();
+        trajectories[0] = trajectories[0].clone().with_velocities(velocities).unwrap();
+        Demonstrations::new(trajectories).unwrap()
+    };
+    let steep = || Demonstrations::from_positions([line([0.0, 0.0], [1e5, 0.0], 4)], 1e-300).unwrap();
+    let single = || observed(vec![line([0.0, 0.0], [1.0, 1.0], 5)]);
+    let duplicates = |pairs| AlignError::ZeroBandwidth { pairs };
+    let parameter = |name, value, requirement| AlignError::Parameter { name, value, requirement };
+    let sigma = "bandwidth Fixed(sigma_squared)";
+    let positive = "be positive and finite";
+
+    let cases: Vec<(&str, PolicyAlign, Demonstrations, AlignError)> = vec![
+        ("one trajectory, narrow", with(|_| {}), single(), AlignError::SingleTrajectory),
+        ("one trajectory, medium", with(|p| p.bandwidth = Bandwidth::Medium), single(), AlignError::SingleTrajectory),
+        ("one trajectory, wide", with(|p| p.bandwidth = Bandwidth::Wide), single(), AlignError::SingleTrajectory),
+        ("duplicates, narrow", with(|_| {}), observed(touching()), duplicates(vec![(0, 1)])),
+        (
+            "duplicates, medium",
+            with(|p| p.bandwidth = Bandwidth::Medium),
+            observed(touching()),
+            duplicates(vec![(0, 1)]),
+        ),
+        (
+            "all points equal",
+            with(|p| p.bandwidth = Bandwidth::Wide),
+            observed(vec![line([1.0, 2.0], [1.0, 2.0], 4); 3]),
+            duplicates(vec![(0, 1), (0, 2), (1, 2)]),
+        ),
+        (
+            "bandwidth 0",
+            with(|p| p.bandwidth = Bandwidth::Fixed(0.0)),
+            observed(sound()),
+            parameter(sigma, 0.0, positive),
+        ),
+        (
+            "bandwidth −1",
+            with(|p| p.bandwidth = Bandwidth::Fixed(-1.0)),
+            observed(sound()),
+            parameter(sigma, -1.0, positive),
+        ),
+        (
+            "bandwidth ∞",
+            with(|p| p.bandwidth = Bandwidth::Fixed(f64::INFINITY)),
+            observed(sound()),
+            parameter(sigma, f64::INFINITY, positive),
+        ),
+        (
+            "threshold 0",
+            with(|p| p.eigenvalue_threshold = 0.0),
+            observed(sound()),
+            parameter("eigenvalue_threshold", 0.0, positive),
+        ),
+        (
+            "floor 1",
+            with(|p| p.responsibility_floor = 1.0),
+            observed(sound()),
+            parameter("responsibility_floor", 1.0, "be at least 0 and less than 1"),
+        ),
+        (
+            "floor −1e-20",
+            with(|p| p.responsibility_floor = -1e-20),
+            observed(sound()),
+            parameter("responsibility_floor", -1e-20, "be at least 0 and less than 1"),
+        ),
+        (
+            "no velocities",
+            with(|p| p.integration = Integration::Velocity),
+            half_recorded.clone(),
+            AlignError::NoVelocities { trajectory: 1 },
+        ),
+        (
+            "no velocities for the work",
+            with(|p| p.integration = Integration::Work),
+            half_recorded,
+            AlignError::NoVelocities { trajectory: 1 },
+        ),
+        ("steps too fast", with(|_| {}), steep(), AlignError::PotentialOverflow { trajectory: 0, sample: 1 }),
+        (
+            "too far apart",
+            with(|_| {}),
+            Demonstrations::from_positions(
+                [line([0.0, -1e200], [1.0, -1e200], 3), line([0.0, 1e200], [1.0, 1e200], 3)],
+                1.0,
+            )
+            .unwrap(),
+            AlignError::SpanOverflow { dimension: 1, span: 2e200 },
+        ),
+        (
+            "as far apart as can be",
+            with(|_| {}),
+            Demonstrations::from_positions(
+                [line([0.0, -1e308], [1.0, -1e308], 3), line([0.0, 1e308], [1.0, 1e308], 3)],
+                1.0,
+            )
+            .unwrap(),
+            AlignError::SpanOverflow { dimension: 1, span: f64::INFINITY },
+        ),
+    ];
+    for (name, learner, demonstrations, expected) in cases {
+        assert_eq!(learner.align(&demonstrations).unwrap_err(), expected, "{name}");
+    }
+    for learner in [
+        with(|p| p.bandwidth = Bandwidth::Fixed(f64::NAN)),
+        with(|p| p.eigenvalue_threshold = f64::NAN),
+        with(|p| p.responsibility_floor = f64::NAN),
+    ] {
+        let error = learner.align(&observed(sound())).unwrap_err();
+        assert!(matches!(error, AlignError::Parameter { value, .. } if value.is_nan()), "{error}");
+    }
+}
+
+#[test]
+fn what_the_regression_refuses() {
+    let aligned = PolicyAlign::default().align(&observed(sound())).unwrap();
+    let mut rng = StdRng::seed_from_u64(1);
+    let cutoff = |value| AlignError::Parameter { name: "cutoff", value, requirement: "be at least 0 and less than 1" };
+    let passes = AlignError::Parameter { name: "passes", value: 0.0, requirement: "be at least 1" };
+    let bad_metric = LwprParams { init_d: -1.0, ..Default::default() };
+
+    let cases = [
+        ("cutoff −1", LwprRegressor { cutoff: -1.0, ..Default::default() }, Some(cutoff(-1.0))),
+        ("cutoff 1", LwprRegressor { cutoff: 1.0, ..Default::default() }, Some(cutoff(1.0))),
+        ("no pass", LwprRegressor { passes: 0, ..Default::default() }, Some(passes)),
+        ("metric", LwprRegressor { params: bad_metric, ..Default::default() }, None),
+    ];
+    for (name, regressor, expected) in cases {
+        let LwprRegressor { params, passes, cutoff } = regressor.clone();
+        let naive = DirectPolicyLearning { params, passes, cutoff };
+        let errors = [
+            aligned.regress(&regressor, &aligned.samples(), &mut rng).unwrap_err(),
+            naive.learn(aligned.demonstrations(), &mut rng).unwrap_err(),
+        ];
+        for error in errors {
+            match &expected {
+                Some(expected) => assert_eq!(&error, expected, "{name}"),
+                None => assert!(matches!(error, AlignError::Lwpr(_)), "{name}: {error}"),
+            }
+        }
+    }
+    for fraction in [0.0, 1.0, -0.5, f64::INFINITY] {
+        assert_eq!(aligned.samples().split(fraction, &mut rng).unwrap_err(), AlignError::Fraction { fraction });
+    }
+    assert!(matches!(aligned.samples().split(f64::NAN, &mut rng), Err(AlignError::Fraction { .. })));
+
+    let everything = aligned.samples();
+    let nothing = everything.without(everything.indices());
+    assert!(nothing.is_empty());
+    assert_eq!(aligned.regress(&LwprRegressor::default(), &nothing, &mut rng).unwrap_err(), AlignError::NoSamples);
+    let potential = aligned.learn(&LwprParams::default(), &mut rng).unwrap().into_potential();
+    assert_eq!(potential.with_cutoff(2.0).unwrap_err(), cutoff(2.0));
+}
+
+/// Everything that a learner can be asked, and that none of it is NaN.
+fn assert_finite(name: &str, aligned: &Aligned) {
+    let size = aligned.samples().states().amax().max(f64::MIN_POSITIVE);
+    let norm_in = Some(DVector::from_element(aligned.demonstrations().n_states(), size));
+    let params = LwprParams { norm_in, ..Default::default() };
+    let learnt = aligned.learn(&params, &mut StdRng::seed_from_u64(1)).unwrap();
+    assert!(aligned.offsets().iter().all(|offset| offset.is_finite()), "{name}");
+    assert!(aligned.sigma_squared().is_finite() && aligned.lambda_2().is_none_or(f64::is_finite), "{name}");
+    assert!(aligned.objective().laplacian.iter().all(|entry| entry.is_finite()), "{name}");
+    for (x, value) in aligned.samples() {
+        assert!(value.is_finite() && aligned.responsibilities(x).iter().all(|q| q.is_finite()), "{name}");
+        assert!(learnt.potential().value(x).is_finite(), "{name}");
+        assert!(learnt.policy().action(x).iter().all(|u| u.is_finite()), "{name}");
+    }
+}
+
+#[test]
+fn what_looks_odd_and_is_fine() {
+    let still = || line([0.5, 0.5], [0.5, 0.5], 6);
+    let fixed = |sigma_squared| with(move |p| p.bandwidth = Bandwidth::Fixed(sigma_squared));
+    let one_still = {
+        let mut all = sound();
+        all.push(still());
+        all
+    };
+    let one_duplicate = {
+        let mut all = sound();
+        all.push(all[0].clone());
+        all
+    };
+    let tiny: Vec<_> = sound().into_iter().map(|x| x * 1e-150).collect();
+    let huge: Vec<_> = sound().into_iter().map(|x| x * 1e150).collect();
+    let far: Vec<_> = sound().into_iter().map(|x| x.add_scalar(1e9)).collect();
+    let lengths = (2..6).map(|n| line([0.0, n as f64], [1.0, n as f64], n)).collect();
+
+    let cases: Vec<(&str, PolicyAlign, Vec<DMatrix<f64>>, usize)> = vec![
+        ("one trajectory, fixed bandwidth", fixed(0.1), vec![sound().remove(0)], 1),
+        ("a trajectory that never moves", with(|_| {}), one_still, 4),
+        ("all points equal, fixed bandwidth", fixed(0.1), vec![still(); 3], 3),
+        ("one duplicate, wide", with(|p| p.bandwidth = Bandwidth::Wide), one_duplicate, 4),
+        ("a bandwidth that underflows", fixed(5e-324), sound(), 1),
+        ("a bandwidth beyond all bounds", fixed(f64::MAX), sound(), 3),
+        ("tiny coordinates", with(|_| {}), tiny, 3),
+        ("huge coordinates", with(|_| {}), huge, 3),
+        ("far from the origin", with(|_| {}), far, 3),
+        ("different lengths", with(|_| {}), lengths, 4),
+        ("nothing dropped", with(|p| p.responsibility_floor = 0.0), sound(), 3),
+        ("a threshold that nothing reaches", with(|p| p.eigenvalue_threshold = 1e300), sound(), 1),
+    ];
+    for (name, learner, positions, kept) in cases {
+        let aligned = learner.align(&observed(positions)).unwrap();
+        assert_eq!(aligned.kept().len(), kept, "{name}");
+        assert_eq!(
+            aligned.kept().len() + aligned.discarded().len(),
+            aligned.demonstrations().n_trajectories(),
+            "{name}"
+        );
+        assert!(aligned.offsets().sum().abs() <= 1e-12 * (1.0 + aligned.offsets().amax()), "{name}");
+        assert_finite(name, &aligned);
+    }
+}
+
+#[test]
+fn what_gives_reason_for_doubt() {
+    let apart: Vec<_> = (0..4).map(|k| line([0.0, 10.0_f64.powi(k)], [1.0, 10.0_f64.powi(k)], 5)).collect();
+    let aligned = with(|p| p.bandwidth = Bandwidth::Fixed(0.1)).align(&observed(apart)).unwrap();
+    assert_eq!(aligned.warnings(), [Warning::ManyDiscarded { discarded: 3, of: 4 }]);
+    assert_eq!((aligned.kept(), aligned.discarded()), (&[0][..], &[1, 2, 3][..]));
+    assert_eq!((aligned.offset(0), aligned.offset(1), aligned.lambda_2()), (Some(0.0), None, None));
+
+    let aligned = PolicyAlign::default().align(&observed(sound())).unwrap();
+    assert_eq!(aligned.warnings(), []);
+    let lambda_2 = aligned.lambda_2().unwrap();
+    let strict = with(|p| p.eigenvalue_threshold = lambda_2 / 2.0).align(&observed(sound())).unwrap();
+    assert_eq!(strict.warnings(), [Warning::BarelyConnected { lambda_2, threshold: lambda_2 / 2.0 }]);
+    assert!(strict.warnings()[0].to_string().contains("barely connected"));
+}
+
+#[test]
+fn errors_say_what_next() {
+    let pairs = (0..7).map(|k| (k, k + 1)).collect();
+    let message = AlignError::ZeroBandwidth { pairs }.to_string();
+    assert!(message.contains("0 and 1, 1 and 2") && message.contains("2 more") && message.contains("Bandwidth::Fixed"));
+    assert!(AlignError::SingleTrajectory.to_string().contains("Bandwidth::Fixed"));
+    assert!(AlignError::NoVelocities { trajectory: 3 }.to_string().contains("trajectory 3"));
+}
+
+#[test]
+#[should_panic(expected = "as many dimensions as the potential")]
+fn a_state_of_another_dimension_is_a_bug() {
+    let aligned = PolicyAlign::default().align(&observed(sound())).unwrap();
+    let learnt = aligned.learn(&LwprParams::default(), &mut StdRng::seed_from_u64(1)).unwrap();
+    learnt.potential().value(DVector::zeros(3).as_view());
+}
