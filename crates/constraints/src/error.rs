@@ -54,4 +54,31 @@ pub enum ConstraintError {
         /// The number of dimensions of phase 0.
         expected: usize,
     },
+    /// A barrier was given no point to stop.
+    #[error("a barrier acts on at least one point; a state of n points has 3n coordinates")]
+    NoPoint,
+    /// The reach of a barrier is not a positive, finite length.
+    #[error("a barrier's reach is {reach} m; it must be positive and finite")]
+    Reach {
+        /// The reach given, in metres.
+        reach: f64,
+    },
+    /// A plate has no place in space.
+    #[error(
+        "plate {plate}: the normal and the direction along it must be of length 1 and perpendicular, the distance finite"
+    )]
+    PlateInSpace {
+        /// Which plate.
+        plate: usize,
+    },
+    /// A plate has its edges in the wrong order, in one place or at NaN.
+    #[error("plate {plate}: its edges are at {from} m and {to} m; the first must be below the second")]
+    PlateEdges {
+        /// Which plate.
+        plate: usize,
+        /// The edge given first, in metres.
+        from: f64,
+        /// The edge given second, in metres.
+        to: f64,
+    },
 }

@@ -6,6 +6,7 @@
 //!
 //! - [`PfaffianConstraint`]: what a constraint is; implement it for your own.
 //! - [`LinearConstraint`], [`Unconstrained`], [`Switching`]: the same A everywhere, none, and one after another in time.
+//! - [`Barrier`]: plates that stop points in space, felt only where they are near.
 //! - [`NullSpaceProjector`]: N, applied without being formed.
 //!
 //! ```
@@ -25,12 +26,14 @@
 //! # Ok::<(), constraints::ConstraintError>(())
 //! ```
 
+mod barrier;
 mod constraint;
 mod error;
 mod linear;
 mod projector;
 mod switching;
 
+pub use barrier::{Barrier, Plate};
 pub use constraint::{PfaffianConstraint, Unconstrained};
 pub use error::ConstraintError;
 pub use linear::LinearConstraint;

@@ -1,0 +1,114 @@
+use nalgebra::{DMatrix, DVectorView, Point3, UnitVector3, Vector3};
+
+use crate::{ConstraintError, PfaffianConstraint};
+
+/// Cosine up to which two directions count as perpendicular, and deviation from 1 up to which a length counts as 1.
+const DIRECTION_TOLERANCE: f64 = 1e-9;
+
+/// A thin flat plate: a strip of the plane `normal`·p = `distance`, between two parallel edges and endless along them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plate {
+    /// Across the plate. Motion in this direction, to and fro, is what the plate blocks.
+    pub normal: UnitVector3<f64>,
+    /// Signed distance of the plane from the origin, in metres.
+    pub distance: f64,
+    /// In the plate, from one edge to the other; perpendicular to `normal`.
+    pub along: UnitVector3<f64>,
+    /// Where the two edges are, `along`·p in metres. Either may be infinite.
+    pub edges: [f64; 2],
+}
+
+impl Plate {
+    /// Whether a point is nearer to the plane than `reach` and strictly between the edges.
+    pub fn blocks(&self, point: &Point3<f64>, reach: f64) -> bool {
+        let from_plane = self.normal.dot(&point.coords) - self.distance;
+        let across = self.along.dot(&point.coords);
+        from_plane.abs() < reach && self.edges[0] < across && across < self.edges[1]
+    }
+
+    fn check(&self, plate: usize) -> Result<(), ConstraintError> {
+        let Plate { normal, distance, along, edges: [from, to] } = *self;
+        let unit = |direction: Vector3<f64>| (direction.norm() - 1.0).abs() <= DIRECTION_TOLERANCE;
+        let square = normal.dot(&along).abs() <= DIRECTION_TOLERANCE;
+        if !(unit(*normal) && unit(*along) && square && distance.is_finite()) {
+            return Err(ConstraintError::PlateInSpace { plate });
+        }
+        if from < to { Ok(()) } else { Err(ConstraintError::PlateEdges { plate, from, to }) }
+    }
+}
+
+/// Plates that stop points from passing: while a plate blocks a point, the point may not move along the plate's normal,
+/// `nᵀ ṗ = 0`. Where nothing is blocked, nothing is constrained, so that the rank switches with the state.
+///
+/// The state is the positions of all points one below the other, (3·points), in metres; A has one row for each point
+/// and plate that blocks it, points in order. A wall with a gap is two plates:
+///
+/// ```
+/// use constraints::{Barrier, PfaffianConstraint, Plate};
+/// use nalgebra::{Vector3, dvector};
+///
+/// let beside = |edges| Plate { normal: Vector3::x_axis(), distance: 0.4, along: Vector3::y_axis(), edges };
+/// let plates = vec![beside([f64::NEG_INFINITY, -0.1]), beside([0.1, f64::INFINITY])];
+/// let two_hands = Barrier::new(plates, 0.05, 2)?;
+///
+/// // The left hand is in front of a plate, the right hand in front of the gap.
+/// let hands = dvector![0.38, 0.3, 0.7, 0.38, -0.05, 0.7];
+/// let free = two_hands.null_space_projector(hands.as_view(), 0.0)?.project(dvector![1.0, 2.0, 3.0, 4.0, 5.0, 6.0].as_view());
+/// assert_eq!(free, dvector![0.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+/// # Ok::<(), constraints::ConstraintError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Barrier {
+    plates: Vec<Plate>,
+    reach: f64,
+    n_points: usize,
+}
+
+impl Barrier {
+    /// `plates` that act on each of `n_points` points while these are nearer to them than `reach`, in metres.
+    ///
+    /// # Errors
+    /// [`ConstraintError::NoPoint`], [`ConstraintError::Reach`], [`ConstraintError::PlateInSpace`] or
+    /// [`ConstraintError::PlateEdges`].
+    pub fn new(plates: Vec<Plate>, reach: f64, n_points: usize) -> Result<Self, ConstraintError> {
+        if n_points == 0 {
+            return Err(ConstraintError::NoPoint);
+        }
+        if !(reach.is_finite() && reach > 0.0) {
+            return Err(ConstraintError::Reach { reach });
+        }
+        plates.iter().enumerate().try_for_each(|(at, plate)| plate.check(at))?;
+        Ok(Barrier { plates, reach, n_points })
+    }
+
+    /// The plates.
+    pub fn plates(&self) -> &[Plate] {
+        &self.plates
+    }
+
+    /// From which distance to its plane a plate is felt, in metres.
+    pub fn reach(&self) -> f64 {
+        self.reach
+    }
+}
+
+impl PfaffianConstraint for Barrier {
+    fn n_states(&self) -> usize {
+        3 * self.n_points
+    }
+
+    fn matrix(&self, state: DVectorView<'_, f64>, _time: f64) -> DMatrix<f64> {
+        assert_eq!(state.len(), self.n_states(), "a state has three coordinates for each point");
+        let position = |point: usize| Point3::new(state[3 * point], state[3 * point + 1], state[3 * point + 2]);
+        let blocked: Vec<(usize, Vector3<f64>)> = (0..self.n_points)
+            .flat_map(|point| self.plates.iter().map(move |plate| (point, plate)))
+            .filter(|&(point, plate)| plate.blocks(&position(point), self.reach))
+            .map(|(point, plate)| (point, *plate.normal))
+            .collect();
+        let mut matrix = DMatrix::zeros(blocked.len(), self.n_states());
+        for (row, (point, normal)) in blocked.into_iter().enumerate() {
+            matrix.fixed_view_mut::<1, 3>(row, 3 * point).tr_copy_from(&normal);
+        }
+        matrix
+    }
+}
