@@ -1,5 +1,7 @@
 //! What cannot be aligned is refused with an error that says where and why; what looks odd but can, gives finite numbers.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 use align::{AlignError, Aligned, Bandwidth, DirectPolicyLearning, Integration, LwprRegressor, PolicyAlign, Warning};
 use lwpr::LwprParams;
 use motion::{Demonstrations, Policy, Potential, Trajectory};
@@ -26,6 +28,7 @@ fn with(change: impl Fn(&mut PolicyAlign)) -> PolicyAlign {
 }
 
 #[test]
+#[allow(clippy::too_many_lines, reason = "a table, one case a row")]
 fn what_is_refused() {
     let touching =
         || vec![line([0.0, 0.0], [1.0, 1.0], 5), line([0.0, 0.0], [1.0, 1.0], 5), line([9.0, 0.0], [8.0, 0.0], 5)];

@@ -1,5 +1,7 @@
 //! What must not matter to the alignment, and what must scale with the data.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 mod drawn;
 
 use align::{AlignError, Aligned, Bandwidth, Integration, PolicyAlign};

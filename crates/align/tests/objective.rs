@@ -1,5 +1,7 @@
 //! The alignment, stage by stage, beside the paper's formulas.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 mod drawn;
 mod literal;
 
