@@ -5,6 +5,7 @@ use pulp::{Simd, WithSimd};
 
 use crate::{
     KinematicsError, LinkId, RobotModel, Workspace,
+    dispatch::dispatch,
     forward::require_columns,
     jacobian::add_column,
     joint::{Joint, checked},
@@ -94,7 +95,7 @@ impl Chain {
     fn fill<const ROWS: usize>(&self, q: &[f64], workspace: &mut Workspace, jacobian: &mut [f64]) -> Placement {
         workspace.fit(self.nodes.len(), self.motors.len());
         let (columns, _) = jacobian.as_chunks_mut::<ROWS>();
-        pulp::Arch::new().dispatch(Fill { chain: self, q, workspace, columns })
+        dispatch(Fill { chain: self, q, workspace, columns })
     }
 }
 

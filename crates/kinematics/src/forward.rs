@@ -3,6 +3,7 @@ use pulp::{Simd, WithSimd};
 
 use crate::{
     KinematicsError, LinkId, RobotModel, Workspace,
+    dispatch::dispatch,
     jacobian::add_column,
     joint::{Joint, checked},
     placement::{Placement, lanes},
@@ -72,7 +73,7 @@ impl LinkPoses<'_> {
 
     fn fill<const ROWS: usize>(&self, link: LinkId, jacobian: &mut [f64]) {
         let (columns, _) = jacobian.as_chunks_mut::<ROWS>();
-        pulp::Arch::new().dispatch(Fill { poses: self, link, columns });
+        dispatch(Fill { poses: self, link, columns });
     }
 }
 

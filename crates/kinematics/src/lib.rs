@@ -35,6 +35,7 @@
 mod build;
 mod chain;
 mod collision;
+mod dispatch;
 mod error;
 mod forward;
 mod jacobian;

@@ -120,6 +120,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::dispatch::dispatch;
 
     /// Distance in units in the last place, across zero too.
     fn ulps(a: f64, b: f64) -> u64 {
@@ -147,7 +148,7 @@ mod tests {
     fn in_lanes(angle: f64) -> [(f64, f64); LANES] {
         let angles = [std::array::from_fn(|lane| if lane % 2 == 0 { angle } else { -angle })];
         let (mut sines, mut cosines) = ([[0.0; LANES]], [[0.0; LANES]]);
-        pulp::Arch::new().dispatch(SinCos { angles: &angles, sines: &mut sines, cosines: &mut cosines });
+        dispatch(SinCos { angles: &angles, sines: &mut sines, cosines: &mut cosines });
         std::array::from_fn(|lane| (if lane % 2 == 0 { sines[0][lane] } else { -sines[0][lane] }, cosines[0][lane]))
     }
 

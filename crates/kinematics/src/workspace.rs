@@ -1,6 +1,7 @@
 use pulp::{Simd, WithSimd};
 
 use crate::{
+    dispatch::dispatch,
     node::{Node, Position},
     placement::Placement,
     sin_cos::{LANES, sin_cos_all},
@@ -43,7 +44,7 @@ impl Workspace {
     /// Places every node of a tree, parents before children, node 0 at the root.
     pub(crate) fn place(&mut self, nodes: &[Node], motors: &[Motor], q: &[f64]) -> &[Placement] {
         self.fit(nodes.len(), motors.len());
-        pulp::Arch::new().dispatch(PlaceAll { workspace: self, nodes, motors, q });
+        dispatch(PlaceAll { workspace: self, nodes, motors, q });
         &self.placements
     }
 
@@ -71,8 +72,7 @@ impl Workspace {
     }
 }
 
-/// [`Workspace::place_inline`], compiled for the machine it runs on. A closure would do, were it not called through a
-/// shim that is compiled for the oldest machine.
+/// [`Workspace::place_inline`], compiled for the machine it runs on.
 struct PlaceAll<'a> {
     workspace: &'a mut Workspace,
     nodes: &'a [Node],
