@@ -1,8 +1,8 @@
 //! Forward kinematics, Jacobians and self-collision of robots described by URDF.
 //!
 //! Conventions, everywhere: poses are in the root link's frame; metres and radians; Jacobian rows are vx vy vz wx wy
-//! wz at the frame's origin, in root axes; configurations and columns follow the active joints in document order. No
-//! call allocates after the first with a [`Workspace`].
+//! wz at the frame's origin, in root axes; configurations and columns follow the active joints in document order. What
+//! takes a [`Workspace`] allocates nothing after the first call with it.
 //!
 //! ```
 //! use kinematics::{RobotModel, Workspace};
@@ -27,8 +27,8 @@
 //! # Ok::<(), kinematics::KinematicsError>(())
 //! ```
 //!
-//! Where to look: `urdf` text to tags, `tree` and `mimic` tags to a model, `node` and `workspace` the motion of
-//! one link and of all, `jacobian`, `chain` and `forward` what is asked, `sin_cos` the vector trigonometry.
+//! Where to look: `urdf` text to tags; `tree`, `mimic` and `build` tags to a model; `node` and `workspace` the motion
+//! of one link and of all; `forward`, `chain` and `jacobian` what is asked; `sin_cos` and `dispatch` what makes it fast.
 
 #![allow(clippy::inline_always, reason = "vector dispatch compiles for a newer machine only what is inlined into it")]
 

@@ -4,7 +4,8 @@ use nalgebra::IsometryMatrix3;
 
 use crate::{Chain, Geometry, Joint, KinematicsError, UrdfWarning, names::near_names, node::Node, workspace::Motor};
 
-/// A link of one robot; its frame is the frame of the joint that carries it, moved along by it.
+/// A link of one robot; its frame is the frame of the joint that carries it, moved along by it. Asked of another robot,
+/// it is another link or a panic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LinkId(pub(crate) usize);
 

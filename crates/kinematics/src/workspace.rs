@@ -88,3 +88,29 @@ impl WithSimd for PlaceAll<'_> {
         self.workspace.place_inline(self.nodes, self.motors, self.q);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+
+    use super::*;
+    use crate::RobotModel;
+
+    /// The vector code and its plain twin give the same bits.
+    #[test]
+    fn dispatch_changes_no_bit() {
+        let robot = RobotModel::from_urdf(include_str!("../../../robots/asimo_upper_body.urdf"))
+            .expect("the robot of this project loads");
+        let mut rng = ChaCha8Rng::seed_from_u64(4);
+        let (mut fast, mut plain) = (Workspace::new(), Workspace::new());
+        plain.fit(robot.nodes.len(), robot.motors.len());
+        for _ in 0..100 {
+            let q = robot.random_configuration(&mut rng);
+            let fast = fast.place(&robot.nodes, &robot.motors, q.as_slice());
+            let plain = plain.place_inline(&robot.nodes, &robot.motors, q.as_slice());
+            for (a, b) in fast.iter().zip(plain) {
+                assert_eq!((a.axes, a.origin), (b.axes, b.origin));
+            }
+        }
+    }
+}

@@ -23,6 +23,12 @@ fn unknown_names_get_near_ones() {
 }
 
 #[test]
+fn models_can_be_shared_between_threads() {
+    fn shared<T: Send + Sync>() {}
+    shared::<(RobotModel, kinematics::Chain, kinematics::SelfCollision, Workspace, kinematics::ResolvedRate)>();
+}
+
+#[test]
 fn bad_configurations_and_jacobians_are_refused_everywhere() {
     let robot = RobotModel::from_urdf(UPPER_BODY).unwrap();
     let hand = robot.link("l_palm").unwrap();

@@ -1,7 +1,7 @@
 //! The robots of this project are what their README says.
 #![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
 
-use kinematics::{JointKind, RobotModel, SelfCollision, Workspace};
+use kinematics::{Geometry, JointKind, RobotModel, SelfCollision, Workspace};
 use nalgebra::{DVector, Matrix3xX, Point3};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 
@@ -62,6 +62,25 @@ fn the_upper_body_has_22_joints_in_groups() {
     let sliding = robot.joints().iter().filter(|joint| joint.kind() == JointKind::Prismatic).count();
     assert_eq!(sliding, 3);
     assert!(robot.joints().iter().all(|joint| joint.lower() <= 0.0 && joint.upper() >= 0.0));
+}
+
+/// The height and the width over the upper arms that the README gives.
+#[test]
+fn the_upper_body_is_as_large_as_asimo() {
+    let (robot, _) = upper_body();
+    let mut workspace = Workspace::new();
+    let zero = DVector::zeros(22);
+    let poses = robot.forward_kinematics(zero.as_view(), &mut workspace).unwrap();
+    let mut top: f64 = 0.0;
+    let mut width: f64 = 0.0;
+    for shape in robot.collision_shapes().unwrap() {
+        if let Geometry::Sphere { radius } = shape.geometry {
+            let centre = poses.pose(shape.link) * Point3::from(shape.origin.translation.vector);
+            top = top.max(centre.z + radius);
+            width = width.max(2.0 * (centre.y + radius));
+        }
+    }
+    assert!((top - 1.3).abs() < 1e-12 && (width - 0.45).abs() < 1e-12, "{top} {width}");
 }
 
 #[test]
