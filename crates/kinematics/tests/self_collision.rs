@@ -1,42 +1,11 @@
-//! Collision shapes: distances of known places, which pairs count, and what is asked of meshes.
+//! Self-collision: distances of known places, and which pairs count.
 #![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
 
-use kinematics::{Element, Geometry, KinematicsError, MeshShape, RobotModel, SelfCollision, UrdfProblem, Workspace};
-use nalgebra::{DVector, Point3};
+mod two_shapes;
 
-/// Link "a" with one shape, link "b" with another; "b" slides away along x, past a link without a shape.
-fn two_shapes(first: &str, second: &str) -> RobotModel {
-    let collision = |shape: &str| format!("<collision><geometry>{shape}</geometry></collision>");
-    RobotModel::from_urdf(&format!(
-        r#"<robot name="r"><link name="a">{}</link><link name="between"/><link name="b">{}</link>
-           <joint name="j" type="prismatic"><parent link="a"/><child link="between"/><axis xyz="1 0 0"/>
-             <limit lower="-9" upper="9"/></joint>
-           <joint name="k" type="prismatic"><parent link="between"/><child link="b"/><axis xyz="0 1 0"/>
-             <limit lower="-9" upper="9"/></joint></robot>"#,
-        collision(first),
-        collision(second),
-    ))
-    .unwrap()
-}
-
-/// A cube of half edge 1, by triangles.
-fn cube() -> (Vec<Point3<f64>>, Vec<[u32; 3]>) {
-    let corner = |i: u32| Point3::from([i & 1, (i >> 1) & 1, i >> 2].map(|bit| 2.0 * f64::from(bit) - 1.0));
-    let squares = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    ((0..8).map(corner).collect(), squares.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect())
-}
-
-fn resolver(filename: &str) -> Option<MeshShape> {
-    let (vertices, triangles) = cube();
-    match filename {
-        "surface" => Some(MeshShape::Surface { vertices, triangles }),
-        "hull" => Some(MeshShape::ConvexHull { vertices }),
-        "left out" => Some(MeshShape::LeftOut),
-        "flat" => Some(MeshShape::ConvexHull { vertices: vertices[..2].to_vec() }),
-        "no such vertex" => Some(MeshShape::Surface { vertices, triangles: vec![[0, 1, 99]] }),
-        _ => None,
-    }
-}
+use kinematics::{Element, KinematicsError, RobotModel, SelfCollision, UrdfProblem, Workspace};
+use nalgebra::DVector;
+use two_shapes::{resolver, two_shapes};
 
 #[test]
 fn every_pair_of_shapes_at_a_known_distance() {
@@ -174,58 +143,4 @@ fn bad_pairs_are_refused() {
     );
     assert!(matches!(collision.disable_srdf("<robot>"), Err(KinematicsError::NotXml { .. })));
     assert_eq!(collision.pairs().count(), 1);
-}
-
-#[test]
-fn meshes_are_asked_for_only_by_collision() {
-    let mesh = |name: &str| format!(r#"<mesh filename="{name}" scale="1 1 1"><foreign/></mesh>"#);
-    let new = |first: &str, second: &str| SelfCollision::new(&two_shapes(&mesh(first), &mesh(second)), resolver);
-    let missing = KinematicsError::MissingMeshes {
-        meshes: vec![("a".into(), "package://gone.stl".into()), ("b".into(), "gone.dae".into())],
-    };
-    assert_eq!(new("package://gone.stl", "gone.dae").unwrap_err(), missing);
-    assert!(missing.to_string().contains("\"gone.dae\" of link \"b\""), "{missing}");
-    assert_eq!(new("left out", "hull").unwrap().pairs().count(), 0);
-    for bad in ["flat", "no such vertex"] {
-        match new("hull", bad).unwrap_err() {
-            KinematicsError::BadMesh { link, filename, .. } => {
-                assert_eq!((link.as_str(), filename.as_str()), ("b", bad));
-            }
-            other => panic!("{bad}: {other:?}"),
-        }
-    }
-}
-
-#[test]
-fn faulty_shapes_stop_collision_alone() {
-    let j = |attribute| UrdfProblem::MissingAttribute { attribute };
-    for (shape, problem) in [
-        ("", UrdfProblem::UnknownShape),
-        ("<cone radius=\"1\"/>", UrdfProblem::UnknownShape),
-        ("<sphere/>", j("sphere.radius")),
-        ("<mesh/>", j("mesh.filename")),
-        ("<sphere radius=\"-1\"/>", UrdfProblem::NegativeSize { attribute: "sphere.radius", value: -1.0 }),
-        ("<box size=\"1 2\"/>", UrdfProblem::NumberCount { attribute: "box.size", found: 2, expected: 3 }),
-        ("<box size=\"1 2 x\"/>", UrdfProblem::Number { attribute: "box.size", text: "x".into() }),
-    ] {
-        let robot = two_shapes(shape, "<sphere radius=\"1\"/>");
-        assert_eq!(robot.n_joints(), 2);
-        let error = KinematicsError::Urdf { element: Element::Link("a".into()), problem };
-        assert_eq!(robot.collision_shapes(), Err(error.clone()));
-        assert_eq!(SelfCollision::new(&robot, |_| None).unwrap_err(), error);
-    }
-}
-
-#[test]
-fn shapes_are_told_as_the_file_has_them() {
-    let robot = two_shapes(r#"<capsule radius="0.1" length="0.8"/>"#, r#"<mesh filename="x" scale="1 2 3"/>"#);
-    let shapes = robot.collision_shapes().unwrap();
-    assert_eq!(shapes[0].geometry, Geometry::Capsule { radius: 0.1, length: 0.8 });
-    assert_eq!(
-        (shapes[1].link, &shapes[1].geometry),
-        (
-            robot.link("b").unwrap(),
-            &Geometry::Mesh { filename: "x".into(), scale: nalgebra::Vector3::new(1.0, 2.0, 3.0) },
-        )
-    );
 }

@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use kinematics::{Element, JointKind, RobotModel, UrdfWarning, Workspace};
 use nalgebra::{DVector, IsometryMatrix3, Rotation3, Translation3, Vector3};
-use urdf_text::{LIMIT, ORIGIN, double, joint, robot, robot_of_version, single};
+use urdf_text::{LIMIT, ORIGIN, joint, robot, robot_of_version, single};
 
 /// The pose of a link, all coordinates at `q`.
 fn pose(robot: &RobotModel, link: &str, q: f64) -> IsometryMatrix3<f64> {
@@ -179,96 +179,6 @@ fn odd_limits_that_load() {
         let robot = RobotModel::from_urdf(&text).unwrap();
         let joint = &robot.joints()[0];
         assert_eq!((joint.kind(), joint.lower(), joint.upper()), (kind, lower, upper), "{text}");
-    }
-}
-
-#[test]
-#[allow(clippy::too_many_lines, reason = "one table")]
-fn odd_mimic_joints_that_load() {
-    const Q: f64 = 0.4;
-    let sliding = r#"<axis xyz="0 0 1"/><limit lower="-1" upper="2"/>"#;
-    let third = joint(
-        "j3",
-        "revolute",
-        "c",
-        "d",
-        &format!(r#"<axis xyz="0 0 1"/>{LIMIT}<mimic joint="j2" multiplier="3" offset="0.2"/>"#),
-    );
-    let of_mimic = double("revolute", "revolute", r#"<mimic joint="j1" multiplier="2" offset="0.1"/>"#)
-        .replace("</robot>", &format!("<link name=\"d\"/>{third}</robot>"));
-    let upside_down = robot(
-        "a b c",
-        &(joint(
-            "j1",
-            "revolute",
-            "a",
-            "b",
-            &format!(r#"<axis xyz="0 0 1"/>{LIMIT}<mimic joint="j2" multiplier="2"/>"#),
-        ) + &joint("j2", "revolute", "b", "c", &format!(r#"<axis xyz="0 0 1"/>{LIMIT}"#))),
-    );
-    let forward = robot(
-        "a b c",
-        &(joint(
-            "j2",
-            "revolute",
-            "b",
-            "c",
-            &format!(r#"<axis xyz="0 0 1"/>{LIMIT}<mimic joint="j1" multiplier="2"/>"#),
-        ) + &joint("j1", "revolute", "a", "b", &format!(r#"<axis xyz="0 0 1"/>{LIMIT}"#))),
-    );
-    let sibling = robot(
-        "a b c",
-        &(joint(
-            "ja",
-            "revolute",
-            "a",
-            "c",
-            &format!(r#"<axis xyz="0 0 1"/>{LIMIT}<mimic joint="jz" multiplier="2"/>"#),
-        ) + &joint("jz", "revolute", "a", "b", &format!(r#"<axis xyz="0 0 1"/>{LIMIT}"#))),
-    );
-    let of_slide = robot(
-        "a b c",
-        &(joint("j1", "prismatic", "a", "b", sliding)
-            + &joint(
-                "j2",
-                "revolute",
-                "b",
-                "c",
-                &format!(r#"<axis xyz="0 0 1"/>{LIMIT}<mimic joint="j1" multiplier="2"/>"#),
-            )),
-    );
-    let cases = [
-        (
-            "multiplier and offset",
-            double("revolute", "revolute", r#"<mimic joint="j1" multiplier="-0.5" offset="0.25"/>"#),
-            "c",
-            0.5 * Q + 0.25,
-        ),
-        ("neither", double("revolute", "revolute", r#"<mimic joint="j1"/>"#), "c", 2.0 * Q),
-        (
-            "of a continuous joint",
-            double("continuous", "revolute", r#"<mimic joint="j1" multiplier="0.5"/>"#),
-            "c",
-            1.5 * Q,
-        ),
-        (
-            "continuous of continuous",
-            double("continuous", "continuous", r#"<mimic joint="j1" multiplier="0.5" offset="0.1"/>"#),
-            "c",
-            1.5 * Q + 0.1,
-        ),
-        ("of a mimic joint", of_mimic, "d", Q + (2.0 * Q + 0.1) + (3.0 * (2.0 * Q + 0.1) + 0.2)),
-        ("of a descendant", upside_down, "c", 3.0 * Q),
-        ("of a joint later in the file", forward, "c", 3.0 * Q),
-        ("of a sibling later in the file", sibling, "c", 2.0 * Q),
-        ("revolute of prismatic", of_slide, "c", 2.0 * Q),
-        ("at a fixed joint, passed over", double("revolute", "fixed", r#"<mimic joint="nobody"/>"#), "c", Q),
-    ];
-    for (odd, text, link, angle) in cases {
-        let robot = RobotModel::from_urdf(&text).unwrap_or_else(|error| panic!("{odd}: {error}"));
-        assert_eq!(robot.n_joints(), 1, "{odd}");
-        let difference = pose(&robot, link, Q).rotation.matrix() - about([0.0, 0.0, 1.0], angle).matrix();
-        assert!(difference.amax() < 1e-14, "{odd}: {difference}");
     }
 }
 

@@ -5,7 +5,7 @@ mod urdf_text;
 
 use Element::{Joint, Link, Robot, UnnamedLink};
 use kinematics::{Element, KinematicsError, RobotModel, UrdfProblem};
-use urdf_text::{LIMIT, double, joint, robot, robot_of_version, single};
+use urdf_text::{LIMIT, joint, robot, robot_of_version, single};
 
 #[test]
 #[allow(clippy::too_many_lines, reason = "one table")]
@@ -149,40 +149,6 @@ fn broken_rules_are_refused_by_name() {
             UrdfProblem::Version { found: "2.0".into() },
         ),
         ("not a robot", "<model/>".to_owned(), Robot, UrdfProblem::RootTag { found: "model".into() }),
-        (
-            "mimic of nobody",
-            double("revolute", "revolute", r#"<mimic joint="j0"/>"#),
-            Joint("j2".into()),
-            UrdfProblem::MimicTarget { target: "j0".into(), near: vec!["j1".into(), "j2".into()] },
-        ),
-        (
-            "mimic of a fixed joint",
-            double("fixed", "revolute", r#"<mimic joint="j1" offset="0.3"/>"#),
-            Joint("j2".into()),
-            UrdfProblem::MimicOfFixed { target: "j1".into() },
-        ),
-        (
-            "mimic of itself",
-            double("revolute", "revolute", r#"<mimic joint="j2"/>"#),
-            Joint("j2".into()),
-            UrdfProblem::MimicCycle { path: vec!["j2".into(), "j2".into()] },
-        ),
-        (
-            "mimic in a ring",
-            double("revolute", "revolute", r#"<mimic joint="j1"/>"#).replacen(
-                LIMIT,
-                &format!("{LIMIT}<mimic joint=\"j2\"/>"),
-                1,
-            ),
-            Joint("j1".into()),
-            UrdfProblem::MimicCycle { path: vec!["j1".into(), "j2".into(), "j1".into()] },
-        ),
-        (
-            "mimic without a target",
-            double("revolute", "revolute", "<mimic/>"),
-            Joint("j2".into()),
-            UrdfProblem::MissingAttribute { attribute: "mimic.joint" },
-        ),
     ];
     for (odd, text, element, problem) in cases {
         let error = RobotModel::from_urdf(&text).map(|robot| robot.name().to_owned()).unwrap_err();
