@@ -1,6 +1,7 @@
 use std::fmt;
 
 use constraints::ConstraintError;
+use kinematics::KinematicsError;
 use motion::MotionError;
 use thiserror::Error;
 
@@ -119,6 +120,24 @@ pub enum DemoGenError {
         /// What is wrong with it.
         source: Box<DemoGenError>,
     },
+    /// The variance of start states is not a number from 0 up.
+    #[error("start variance {variance}: it must be a finite number, 0 or more, in units of the coordinates squared")]
+    StartVariance {
+        /// The variance given.
+        variance: f64,
+    },
+    /// No start state was found that is free of collisions.
+    #[error(
+        "{draws} start states drawn around the posture, all in self-collision; take a freer posture, or an SRDF that \
+         disables pairs of links which may overlap"
+    )]
+    NoFreeStart {
+        /// How many were drawn.
+        draws: usize,
+    },
+    /// The robot is not what the scenario needs, or refuses a configuration.
+    #[error(transparent)]
+    Robot(#[from] KinematicsError),
     /// What was recorded is not a valid set of movements.
     #[error(transparent)]
     Motion(#[from] MotionError),

@@ -6,6 +6,7 @@
 //! - [`Recording`]: `observed`, a trajectory, and [`Truth`], what only a judge may see.
 //! - [`demonstrations`]: the observed part of many recordings; a learner is given nothing else.
 //! - [`ToySystem`]: the paper's two-dimensional toy, many recordings from one generator.
+//! - [`UpperBody`]: the paper's humanoid, its posture "ready" and start states around it.
 //! - [`with_position_noise`]: the same recordings through noisy eyes.
 //!
 //! ```
@@ -35,6 +36,7 @@ mod recording;
 mod roll_out;
 mod toy;
 mod toy_potential;
+mod upper_body;
 
 pub use error::{DemoGenError, Part, Quantity};
 pub use noise::with_position_noise;
@@ -43,3 +45,4 @@ pub use recording::{Recording, Truth, demonstrations};
 pub use roll_out::RollOut;
 pub use toy::{Redraw, ToySystem};
 pub use toy_potential::ToyPotential;
+pub use upper_body::{Side, UpperBody};

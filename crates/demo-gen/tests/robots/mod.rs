@@ -1,0 +1,10 @@
+//! The robots of the paper's experiments, from the project's own files.
+
+use demo_gen::UpperBody;
+
+pub(crate) const UPPER_BODY: &str = include_str!("../../../../robots/asimo_upper_body.urdf");
+pub(crate) const UPPER_BODY_SRDF: &str = include_str!("../../../../robots/asimo_upper_body.srdf");
+
+pub(crate) fn upper_body() -> UpperBody {
+    UpperBody::new(UPPER_BODY, UPPER_BODY_SRDF).expect("the project's own robot")
+}
