@@ -4,39 +4,34 @@ use crate::{ConstraintError, NullSpaceProjector};
 
 /// A constraint A(x,t) u = 0 on the velocity u (2), which may change with state and time, in number of rows too.
 ///
-/// A hand on a plane is the one row nᵀJ(x), an obstacle a row that is there only where it touches: both are a type
-/// that holds what it needs (a Jacobian function, a position) and answers [`PfaffianConstraint::matrix`]:
+/// An obstacle is a row that is there only where it touches: a type that holds what it needs and answers
+/// [`PfaffianConstraint::matrix`]. For a hand in a plane or on a line there is
+/// [`PointConstraint`](crate::PointConstraint).
 ///
 /// ```
 /// use constraints::PfaffianConstraint;
-/// use nalgebra::{DMatrix, DVectorView, dmatrix, dvector};
+/// use nalgebra::{DMatrix, DVectorView, dvector};
 ///
-/// /// A hand that must stay at its height: the second row of its Jacobian.
-/// struct AtItsHeight<J> {
-///     n_joints: usize,
-///     hand_jacobian: J,
+/// /// A point on the plane that slides along a wall from the moment it is there.
+/// struct Wall {
+///     at: f64,
 /// }
 ///
-/// impl<J: Fn(DVectorView<'_, f64>) -> DMatrix<f64> + Send + Sync> PfaffianConstraint for AtItsHeight<J> {
+/// impl PfaffianConstraint for Wall {
 ///     fn n_states(&self) -> usize {
-///         self.n_joints
+///         2
 ///     }
 ///
 ///     fn matrix(&self, state: DVectorView<'_, f64>, _time: f64) -> DMatrix<f64> {
-///         (self.hand_jacobian)(state).rows(1, 1).into_owned()
+///         let n_rows = usize::from(state[0] >= self.at);
+///         DMatrix::from_fn(n_rows, 2, |_, column| if column == 0 { 1.0 } else { 0.0 })
 ///     }
 /// }
 ///
-/// // Two links of length 1 in the plane.
-/// let hand_jacobian = |q: DVectorView<'_, f64>| {
-///     let (a, b) = (q[0], q[0] + q[1]);
-///     dmatrix![-a.sin() - b.sin(), -b.sin(); a.cos() + b.cos(), b.cos()]
-/// };
-/// let constraint = AtItsHeight { n_joints: 2, hand_jacobian };
-/// let q = dvector![0.4, 0.9];
-/// let free = constraint.null_space_projector(q.as_view(), 0.0)?.project(dvector![1.0, 0.0].as_view());
-/// let hand_velocity = hand_jacobian(q.as_view()) * free;
-/// assert!(hand_velocity[1].abs() < 1e-15 && hand_velocity[0].abs() > 0.1);
+/// let (wall, wanted) = (Wall { at: 1.0 }, dvector![2.0, 3.0]);
+/// let before = wall.null_space_projector(dvector![0.5, 0.0].as_view(), 0.0)?.project(wanted.as_view());
+/// let there = wall.null_space_projector(dvector![1.0, 0.0].as_view(), 0.0)?.project(wanted.as_view());
+/// assert_eq!((before, there), (dvector![2.0, 3.0], dvector![0.0, 3.0]));
 /// # Ok::<(), constraints::ConstraintError>(())
 /// ```
 pub trait PfaffianConstraint: Send + Sync {

@@ -33,6 +33,17 @@ pub enum ConstraintError {
         /// The tolerance given.
         tolerance: f64,
     },
+    /// A point was given no direction in which it may not move.
+    #[error("the point has no normal; give at least one row of 2 or 3 coordinates, or use `Unconstrained`")]
+    NoNormal,
+    /// A normal of a point is zero, or not finite.
+    #[error("normal {row} is {normal:?}; a direction is finite and not zero")]
+    Normal {
+        /// The first row at fault.
+        row: usize,
+        /// Its coordinates.
+        normal: Vec<f64>,
+    },
     /// A switching constraint was given nothing to switch between.
     #[error("there is no constraint to switch between; give at least one, or use `Unconstrained`")]
     NoPhase,

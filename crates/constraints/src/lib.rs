@@ -7,6 +7,7 @@
 //! - [`PfaffianConstraint`]: what a constraint is; implement it for your own.
 //! - [`LinearConstraint`], [`Unconstrained`], [`Switching`]: the same A everywhere, none, and one after another in time.
 //! - [`Barrier`]: plates that stop points in space, felt only where they are near.
+//! - [`PointConstraint`]: a hand in a plane or on a line, by the Jacobian of its position.
 //! - [`NullSpaceProjector`]: N, applied without being formed.
 //!
 //! ```
@@ -30,6 +31,7 @@ mod barrier;
 mod constraint;
 mod error;
 mod linear;
+mod point;
 mod projector;
 mod switching;
 
@@ -37,5 +39,6 @@ pub use barrier::{Barrier, Plate};
 pub use constraint::{PfaffianConstraint, Unconstrained};
 pub use error::ConstraintError;
 pub use linear::LinearConstraint;
+pub use point::PointConstraint;
 pub use projector::NullSpaceProjector;
 pub use switching::Switching;

@@ -1,0 +1,76 @@
+use nalgebra::{DMatrix, DMatrixViewMut, DVectorView};
+
+use crate::{ConstraintError, PfaffianConstraint};
+
+/// A point of a robot, such as a hand, that may not move along given directions: A(x) = nᵀJ(x) (27), where J(x) is the
+/// Jacobian of the point's position with respect to the state.
+///
+/// In space one normal keeps the point in a plane, two keep it on a line; on the plane one normal keeps it on a line.
+/// Planes and lines go through wherever the point is: the constraint is on its velocity.
+///
+/// The Jacobian is a function, so that this works for any robot library and any mechanism. It is given a state x (n)
+/// and a matrix (m, n) to fill. What it leaves unfilled is NaN, and refused when the constraint is used: a function
+/// that cannot answer just returns.
+///
+/// ```
+/// use constraints::{PfaffianConstraint, PointConstraint};
+/// use nalgebra::{DMatrixViewMut, DVectorView, dmatrix, dvector};
+///
+/// // The tip of two links of length 1 on the plane, which must stay at its height.
+/// let tip = |q: DVectorView<'_, f64>, mut jacobian: DMatrixViewMut<'_, f64>| {
+///     let (a, b) = (q[0], q[0] + q[1]);
+///     jacobian.copy_from(&dmatrix![-a.sin() - b.sin(), -b.sin(); a.cos() + b.cos(), b.cos()]);
+/// };
+/// let at_its_height = PointConstraint::new(dmatrix![0.0, 1.0], 2, tip)?;
+/// let q = dvector![0.4, 0.9];
+/// let free = at_its_height.null_space_projector(q.as_view(), 0.0)?.project(dvector![1.0, 0.0].as_view());
+/// let mut jacobian = dmatrix![0.0, 0.0; 0.0, 0.0];
+/// tip(q.as_view(), jacobian.as_view_mut());
+/// let velocity = jacobian * free;
+/// assert!(velocity[1].abs() < 1e-15 && velocity[0].abs() > 0.1);
+/// # Ok::<(), constraints::ConstraintError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct PointConstraint<J> {
+    normals: DMatrix<f64>,
+    n_states: usize,
+    jacobian: J,
+}
+
+impl<J: Fn(DVectorView<'_, f64>, DMatrixViewMut<'_, f64>) + Send + Sync> PointConstraint<J> {
+    /// The constraint that forbids motion along the rows of `normals` (k, m), of any length, to a point in m dimensions
+    /// (2 or 3) whose `jacobian` (m, n) belongs to a state of dimension n = `n_states`.
+    ///
+    /// # Errors
+    /// [`ConstraintError::NoNormal`] without a row, [`ConstraintError::Normal`] for a row that is zero or not finite.
+    pub fn new(normals: DMatrix<f64>, n_states: usize, jacobian: J) -> Result<Self, ConstraintError> {
+        if normals.is_empty() {
+            return Err(ConstraintError::NoNormal);
+        }
+        let is_direction = |entries: &[f64]| {
+            entries.iter().all(|entry| entry.is_finite()) && entries.iter().any(|&entry| entry != 0.0)
+        };
+        let bad = normals.row_iter().position(|row| !is_direction(row.transpose().as_slice()));
+        if let Some(row) = bad {
+            return Err(ConstraintError::Normal { row, normal: normals.row(row).iter().copied().collect() });
+        }
+        Ok(PointConstraint { normals, n_states, jacobian })
+    }
+
+    /// The directions in which the point may not move, (k, m).
+    pub fn normals(&self) -> &DMatrix<f64> {
+        &self.normals
+    }
+}
+
+impl<J: Fn(DVectorView<'_, f64>, DMatrixViewMut<'_, f64>) + Send + Sync> PfaffianConstraint for PointConstraint<J> {
+    fn n_states(&self) -> usize {
+        self.n_states
+    }
+
+    fn matrix(&self, state: DVectorView<'_, f64>, _time: f64) -> DMatrix<f64> {
+        let mut jacobian = DMatrix::from_element(self.normals.ncols(), self.n_states, f64::NAN);
+        (self.jacobian)(state, jacobian.as_view_mut());
+        &self.normals * jacobian
+    }
+}
