@@ -4,6 +4,8 @@ mod experiments;
 mod learners;
 mod measure;
 mod paper;
+mod picture;
+mod plot;
 mod progress;
 mod publish;
 mod records;
@@ -39,7 +41,7 @@ enum Command {
     ///   cargo xtask reproduce --only table1 --seed 2 one table, from another seed
     #[command(verbatim_doc_comment)]
     Reproduce(reproduce::Reproduce),
-    /// Write the tables in README.md and docs/reproduction.md from the committed results
+    /// Write the README's picture, and its tables and docs/reproduction.md from the committed results
     Report,
     /// Check manifests and sources against the architecture
     Tidy,

@@ -1,6 +1,5 @@
 //! Pictures in the plane. The only place that knows the plotting crate.
 
-use kuva::backend::raster::RasterBackend;
 use kuva::backend::svg::SvgBackend;
 use kuva::plot::{ContourPlot, LinePlot, MarkerShape, QuiverPlot, ScatterPlot};
 use kuva::render::figure::Figure;
@@ -84,11 +83,6 @@ impl Picture {
     pub(crate) fn svg(&self) -> String {
         SvgBackend::new().render_scene(&self.0)
     }
-
-    /// As PNG, two pixels a unit.
-    pub(crate) fn png(&self) -> anyhow::Result<Vec<u8>> {
-        RasterBackend::new().with_scale(2.0).render_scene(&self.0).map_err(anyhow::Error::msg)
-    }
 }
 
 fn layout(panel: &Panel) -> Layout {
@@ -115,10 +109,12 @@ fn plot(layer: &Layer) -> Plot {
         Layer::Path { points, color, width } => {
             Plot::Line(LinePlot::new().with_data(points).with_color(color).with_stroke_width(width))
         }
-        Layer::Crosses { points, color } => {
-            Plot::Scatter(ScatterPlot::new().with_data(points).with_color(color).with_size(2.5).with_marker(MarkerShape::Cross))
+        Layer::Crosses { points, color } => Plot::Scatter(
+            ScatterPlot::new().with_data(points).with_color(color).with_size(2.5).with_marker(MarkerShape::Cross),
+        ),
+        Layer::Dots { points, color } => {
+            Plot::Scatter(ScatterPlot::new().with_data(points).with_color(color).with_size(2.5))
         }
-        Layer::Dots { points, color } => Plot::Scatter(ScatterPlot::new().with_data(points).with_color(color).with_size(2.5)),
         Layer::Arrows { arrows, color, scale, width } => {
             let quiver = QuiverPlot::new().with_arrows(arrows).with_color(color).with_scale(scale);
             Plot::Quiver(quiver.with_shaft_width(width).with_clip_to_plot_area())

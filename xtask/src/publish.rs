@@ -7,6 +7,7 @@ use anyhow::{Context as _, ensure};
 
 use crate::experiments::{Experiment, registry};
 use crate::measure::Measure;
+use crate::picture::toy;
 use crate::report::{report, tally};
 use crate::reproduce::write;
 use crate::results::{ExperimentResult, Results};
@@ -38,7 +39,7 @@ pub(crate) fn execute() -> anyhow::Result<()> {
     for (path, text) in generated()? {
         write(&path, &text)?;
     }
-    Ok(())
+    write(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/pictures/toy.svg"), &toy()?.svg())
 }
 
 /// Every generated page with its text.

@@ -3,6 +3,8 @@
 mod judge;
 mod table1;
 
+pub(crate) use table1::toy_regressor;
+
 use std::collections::BTreeMap;
 
 use rand_chacha::ChaCha8Rng;

@@ -71,11 +71,10 @@ struct ToyTrial {
     bandwidth: Bandwidth,
 }
 
-impl ToyTrial {
-    fn regressor() -> LwprRegressor {
-        let params = LwprParams { init_d: 10.0, w_gen: 0.5, penalty: 1e-5, ..LwprParams::default() };
-        LwprRegressor { params, passes: 10, ..LwprRegressor::default() }
-    }
+/// The regression of all rows.
+pub(crate) fn toy_regressor() -> LwprRegressor {
+    let params = LwprParams { init_d: 10.0, w_gen: 0.5, penalty: 1e-5, ..LwprParams::default() };
+    LwprRegressor { params, passes: 10, ..LwprRegressor::default() }
 }
 
 impl Trial for ToyTrial {
@@ -84,7 +83,7 @@ impl Trial for ToyTrial {
     }
 
     fn definition(&self) -> String {
-        format!("{self:?} {:?} held out {HELD_OUT}", Self::regressor())
+        format!("{self:?} {:?} held out {HELD_OUT}", toy_regressor())
     }
 
     fn cost(&self) -> u64 {
@@ -98,7 +97,7 @@ impl Trial for ToyTrial {
         let aligned =
             PolicyAlign { bandwidth: self.bandwidth, ..PolicyAlign::default() }.align(&demonstrations(&recordings)?)?;
         let (_, held_out) = aligned.samples().split(HELD_OUT, rng)?;
-        let learnt = Self::regressor().learn(&Lesson { aligned: &aligned, held_out: &held_out }, rng)?;
+        let learnt = toy_regressor().learn(&Lesson { aligned: &aligned, held_out: &held_out }, rng)?;
         let judge = Judge::new(&recordings, &held_out);
         let mut measures = judge.policy(&*learnt.policy)?;
         measures.extend(learnt.potential.map_or(Ok(BTreeMap::new()), |potential| judge.potential(&*potential))?);
