@@ -41,15 +41,19 @@ impl PolicyAlign {
     /// # Errors
     /// [`AlignError`] for parameters out of range, missing velocities, an undefined bandwidth or overflow.
     pub fn align(&self, demonstrations: &Demonstrations) -> Result<Aligned, AlignError> {
-        self.check()?;
-        let potentials = self.integration.potentials(demonstrations)?;
-        let nearest = NearestSamples::search(demonstrations)?;
-        let sigma_squared = self.bandwidth.sigma_squared(&nearest.trajectory_distances())?;
-        let responsibilities = Responsibilities::new(&nearest, &potentials, sigma_squared, self.responsibility_floor);
-        let objective = AlignmentObjective::new(&responsibilities);
-        let partition = bipartition(&objective.laplacian, self.eigenvalue_threshold)?;
-        let offsets = group_offsets(&responsibilities, &objective.laplacian, &partition.groups[0])?;
-        Ok(Aligned::new(self, demonstrations, potentials, sigma_squared, objective, partition, offsets))
+        // One visit to the thread pool for all steps.
+        rayon::scope(|_| {
+            self.check()?;
+            let potentials = self.integration.potentials(demonstrations)?;
+            let nearest = NearestSamples::search(demonstrations)?;
+            let sigma_squared = self.bandwidth.sigma_squared(&nearest.trajectory_distances())?;
+            let responsibilities =
+                Responsibilities::new(&nearest, &potentials, sigma_squared, self.responsibility_floor);
+            let objective = AlignmentObjective::new(&responsibilities);
+            let partition = bipartition(&objective.laplacian, self.eigenvalue_threshold)?;
+            let offsets = group_offsets(&responsibilities, &objective, &partition.groups[0])?;
+            Ok(Aligned::new(self, demonstrations, potentials, sigma_squared, objective, partition, offsets))
+        })
     }
 
     fn check(&self) -> Result<(), AlignError> {

@@ -1,9 +1,9 @@
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
-use crate::AlignError;
 use crate::laplacian::{Elimination, of_group};
 use crate::linear_term::linear_term;
 use crate::responsibilities::Responsibilities;
+use crate::{AlignError, AlignmentObjective};
 
 /// The first solution is good to 1e-16 / λ₂; the second levels what that left.
 const ROUNDS: usize = 2;
@@ -15,16 +15,18 @@ const ROUNDS: usize = 2;
 /// levelled is small there, and so is its rounding error.
 pub(crate) fn group_offsets(
     responsibilities: &Responsibilities,
-    laplacian: &DMatrix<f64>,
+    objective: &AlignmentObjective,
     group: &[usize],
 ) -> Result<DVector<f64>, AlignError> {
-    let elimination = Elimination::new(&of_group(laplacian, group));
-    let mut offsets = vec![None; laplacian.ncols()];
+    let elimination = Elimination::new(&of_group(&objective.laplacian, group));
+    let mut offsets = vec![None; objective.linear.len()];
     for &k in group {
         offsets[k] = Some(0.0);
     }
-    for _ in 0..ROUNDS {
-        let (linear, _) = linear_term(responsibilities, &offsets);
+    for round in 0..ROUNDS {
+        let known = round == 0 && group.len() == offsets.len();
+        let linear =
+            if known { objective.linear.as_slice().to_vec() } else { linear_term(responsibilities, &offsets).0 };
         let left: Vec<f64> = group.iter().map(|&k| -linear[k]).collect();
         for (&k, step) in group.iter().zip(elimination.solve(&left)) {
             offsets[k] = offsets[k].map(|offset| offset + step);
@@ -40,10 +42,10 @@ pub(crate) fn group_offsets(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::AlignmentObjective;
     use crate::bipartition::bipartition;
     use crate::nearest::NearestSamples;
     use motion::Demonstrations;
+    use nalgebra::DMatrix;
     use proptest::collection::vec;
     use proptest::prelude::*;
 
@@ -64,9 +66,9 @@ mod tests {
         let demonstrations = Demonstrations::from_positions(positions.to_vec(), 1.0).unwrap();
         let nearest = NearestSamples::search(&demonstrations).unwrap();
         let responsibilities = Responsibilities::new(&nearest, potentials, sigma_squared, 1e-20);
-        let laplacian = AlignmentObjective::new(&responsibilities).laplacian;
-        let partition = bipartition(&laplacian, 1e-8).unwrap();
-        let offsets = group_offsets(&responsibilities, &laplacian, &partition.groups[0]).unwrap();
+        let objective = AlignmentObjective::new(&responsibilities);
+        let partition = bipartition(&objective.laplacian, 1e-8).unwrap();
+        let offsets = group_offsets(&responsibilities, &objective, &partition.groups[0]).unwrap();
         (partition.groups[0].clone(), offsets, partition.lambda_2.unwrap_or(1.0))
     }
 
