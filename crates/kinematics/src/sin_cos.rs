@@ -89,12 +89,13 @@ fn reduced(angle: f64, turns: f64) -> (f64, f64) {
     (x, (third - x) - rest)
 }
 
-/// a − b and its rounding error, exactly (Knuth).
+/// a − b and its rounding error, exactly (Dekker), if a is a multiple of b's last place. So it is in [`reduced`]: with
+/// `turns` not 0, the angle and turns · A are multiples of 2⁻⁵³ and turns · B of 2⁻⁶⁶, while the last places of
+/// turns · B and turns · C are below 2⁻⁶⁹ and 2⁻¹⁰⁴.
 #[inline(always)]
 fn difference(a: f64, b: f64) -> (f64, f64) {
     let difference = a - b;
-    let minus_b = difference - a;
-    (difference, (a - (difference - minus_b)) - (b + minus_b))
+    (difference, (a - difference) - b)
 }
 
 #[inline(always)]
