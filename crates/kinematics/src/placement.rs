@@ -15,7 +15,7 @@ impl Placement {
     pub(crate) const IDENTITY: Placement =
         Placement { axes: [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]], origin: [0.0; 4] };
 
-    /// Σ axes[i] · part[i]: a vector given in this frame's axes, in root axes.
+    /// `Σ axes[i] · part[i]`: a vector given in this frame's axes, in root axes.
     #[inline(always)]
     pub(crate) fn direction(&self, part: Lanes) -> Lanes {
         let [x, y, z] = self.axes;

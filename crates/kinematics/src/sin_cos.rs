@@ -21,7 +21,7 @@ const PI_2_D: f64 = f64::from_bits(0x397B_839A_2520_49C1);
 /// Adding this rounds to a whole number and leaves that number in the lowest bits.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// Coefficients of sin x = x + Σ SIN[i] x^(2i+3).
+/// Coefficients of `sin x = x + Σ SIN[i] x^(2i+3)`.
 const SIN: [f64; 6] = [
     -1.666_666_666_666_663_2e-1,
     8.333_333_333_322_49e-3,
@@ -31,7 +31,7 @@ const SIN: [f64; 6] = [
     1.589_690_995_211_55e-10,
 ];
 
-/// Coefficients of cos x = 1 − x²/2 + Σ COS[i] x^(2i+4).
+/// Coefficients of `cos x = 1 − x²/2 + Σ COS[i] x^(2i+4)`.
 const COS: [f64; 6] = [
     4.166_666_666_666_66e-2,
     -1.388_888_888_887_411e-3,
