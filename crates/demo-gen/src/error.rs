@@ -120,6 +120,12 @@ pub enum DemoGenError {
         /// What is wrong with it.
         source: Box<DemoGenError>,
     },
+    /// The range of start states is not an angle from 0 up.
+    #[error("start range {range}: it must be a finite angle, 0 or more, in radians")]
+    StartRange {
+        /// The range given.
+        range: f64,
+    },
     /// The variance of start states is not a number from 0 up.
     #[error("start variance {variance}: it must be a finite number, 0 or more, in units of the coordinates squared")]
     StartVariance {

@@ -6,7 +6,10 @@
 //! - [`Recording`]: `observed`, a trajectory, and [`Truth`], what only a judge may see.
 //! - [`demonstrations`]: the observed part of many recordings; a learner is given nothing else.
 //! - [`ToySystem`]: the paper's two-dimensional toy, many recordings from one generator.
-//! - [`UpperBody`]: the paper's humanoid, its posture "ready" and start states around it.
+//! - [`ThreeLinkArm`]: a planar arm whose hand stays on a line.
+//! - [`UpperBody`]: the paper's humanoid, its posture "ready" and start states around it; [`HandInPlane`]: it moves with
+//!   one hand in a plane.
+//! - [`hand_jacobian`]: a robot's hand for a constraint; [`n_leaving_limits`]: movements that a real one would not make.
 //! - [`with_position_noise`]: the same recordings through noisy eyes.
 //!
 //! ```
@@ -29,20 +32,28 @@
 //! ```
 
 mod error;
+mod hand;
+mod hand_in_plane;
 mod instant;
+mod limits;
 mod noise;
 mod potentials;
 mod recording;
 mod roll_out;
+mod three_link_arm;
 mod toy;
 mod toy_potential;
 mod upper_body;
 
 pub use error::{DemoGenError, Part, Quantity};
+pub use hand::hand_jacobian;
+pub use hand_in_plane::HandInPlane;
+pub use limits::n_leaving_limits;
 pub use noise::with_position_noise;
 pub use potentials::{Parabola, Sinusoidal};
 pub use recording::{Recording, Truth, demonstrations};
 pub use roll_out::RollOut;
+pub use three_link_arm::ThreeLinkArm;
 pub use toy::{Redraw, ToySystem};
 pub use toy_potential::ToyPotential;
 pub use upper_body::{Side, UpperBody};

@@ -2,6 +2,8 @@ use constraints::NullSpaceProjector;
 use motion::{Demonstrations, MotionError, Trajectory};
 use nalgebra::{DMatrix, DVector};
 
+use crate::DemoGenError;
+
 /// One simulated movement: what is seen of it, and what is true of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
@@ -30,4 +32,16 @@ pub struct Truth {
 /// [`MotionError::Empty`] or [`MotionError::Dimensions`].
 pub fn demonstrations(recordings: &[Recording]) -> Result<Demonstrations, MotionError> {
     Demonstrations::new(recordings.iter().map(|recording| recording.observed.clone()).collect())
+}
+
+/// K recordings, one after the other; errors name the trajectory.
+pub(crate) fn record_each(
+    n_trajectories: usize,
+    mut record: impl FnMut() -> Result<Recording, DemoGenError>,
+) -> Result<Vec<Recording>, DemoGenError> {
+    if n_trajectories == 0 {
+        return Err(DemoGenError::NoTrajectory);
+    }
+    let in_trajectory = |trajectory| move |source| DemoGenError::InTrajectory { trajectory, source: Box::new(source) };
+    (0..n_trajectories).map(|trajectory| record().map_err(in_trajectory(trajectory))).collect()
 }

@@ -3,6 +3,7 @@ use nalgebra::{DMatrix, DVector};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
+use crate::recording::record_each;
 use crate::{DemoGenError, Recording, RollOut, ToyPotential};
 
 /// When a trajectory of the toy system gets a new constraint.
@@ -68,17 +69,10 @@ impl ToySystem {
     /// [`DemoGenError::NoTrajectory`], [`DemoGenError::TooFewSamples`], [`DemoGenError::Redraw`], or
     /// [`DemoGenError::InTrajectory`] with what [`RollOut::record`] says.
     pub fn record<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<Recording>, DemoGenError> {
-        if self.n_trajectories == 0 {
-            return Err(DemoGenError::NoTrajectory);
-        }
         let roll_out = RollOut { n_samples: self.n_samples, ..RollOut::default() };
         roll_out.check()?;
         let first_samples = self.redraw.first_samples(self.n_samples)?;
-        let recordings = (0..self.n_trajectories).map(|trajectory| {
-            self.record_one(&roll_out, &first_samples, rng)
-                .map_err(|source| DemoGenError::InTrajectory { trajectory, source: Box::new(source) })
-        });
-        recordings.collect()
+        record_each(self.n_trajectories, || self.record_one(&roll_out, &first_samples, rng))
     }
 
     fn record_one<R: Rng + ?Sized>(
