@@ -1,1 +1,5 @@
 //! Data for the benchmarks.
+
+mod toy_data;
+
+pub use toy_data::toy_demonstrations;
