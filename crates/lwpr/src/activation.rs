@@ -1,7 +1,10 @@
 //! Which fields a sample reaches: squared distances to all centres, eight at a time.
 
 use crate::Metric;
-use crate::field::Field;
+use crate::field::{Field, Layout};
+use crate::full_metric::add_scaled;
+use crate::kernel::Activation;
+use crate::number::Element;
 use crate::settings::Settings;
 
 /// Fields that are looked at together.
@@ -15,11 +18,12 @@ pub(crate) struct ActivationTable {
     blocks: Vec<[f64; LANES]>,
 }
 
-/// A field within reach of a sample, and its squared distance.
+/// A field within reach of a sample, its squared distance and activation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Reached {
     pub(crate) field: usize,
     pub(crate) q: f64,
+    pub(crate) activation: Activation<f64>,
 }
 
 impl ActivationTable {
@@ -37,7 +41,7 @@ impl ActivationTable {
             }
         }
         let block = &mut self.blocks[k / LANES * 2 * n..][..2 * n];
-        for (i, &c) in field.centre(settings)[..n].iter().enumerate() {
+        for (i, &c) in field.centre(settings).iter().enumerate() {
             block[2 * i][k % LANES] = c;
         }
         self.set_metric(settings, k, field);
@@ -70,9 +74,9 @@ impl ActivationTable {
         }
     }
 
-    /// Appends to `reached` every field whose squared distance from `x` is below `reach`, in list order.
+    /// Reports every field whose squared distance from `x` is below `reach`, and that distance, in list order.
     #[inline(always)]
-    pub(crate) fn reached(&self, n: usize, x: &[f64], reach: f64, reached: &mut Vec<Reached>) {
+    pub(crate) fn reached(&self, n: usize, x: &[f64], reach: f64, mut found: impl FnMut(usize, f64)) {
         for (b, block) in self.blocks.chunks_exact(2 * n).enumerate() {
             let mut q = [0.0; LANES];
             for (pair, &x) in block.as_chunks::<2>().0.iter().zip(x) {
@@ -85,10 +89,21 @@ impl ActivationTable {
             if q.iter().any(|&q| q < reach) {
                 for (lane, &q) in q.iter().enumerate() {
                     if q < reach {
-                        reached.push(Reached { field: b * LANES + lane, q });
+                        found(b * LANES + lane, q);
                     }
                 }
             }
         }
     }
+}
+
+/// Squared distance q = (x − c)ᵀD(x − c) with full metric: |M(x − c)|². `t` is a row of scratch.
+#[inline(always)]
+pub(crate) fn full_distance(field: &Field, layout: Layout, x: &[f64], t: &mut [f64]) -> f64 {
+    t.fill(0.0);
+    let columns = field.rows[2 * layout.width..][..layout.metric].chunks_exact(layout.width);
+    for ((column, &c), &x) in columns.zip(&field.rows).zip(x) {
+        add_scaled::<f64, f64>((), t, x - c, column);
+    }
+    f64::dot((), t, t)
 }

@@ -1,185 +1,144 @@
-//! The state of one receptive field.
+//! The state of one receptive field, or of several side by side.
 
 use crate::Metric;
 use crate::settings::Settings;
 
 /// One direction of the projection regression: its scalars. Its vectors are rows of the field.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Direction {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Direction<T = f64> {
     /// Regression coefficient along the direction.
-    pub(crate) beta: f64,
-    /// Σ w s², Σ w s t.
-    pub(crate) ss2: f64,
-    pub(crate) ss_y: f64,
+    pub(crate) beta: T,
+    /// Σ w s² and Σ w s t.
+    pub(crate) ss2: T,
+    pub(crate) ss_y: T,
     /// Memory of the leave-one-out derivative.
-    pub(crate) h: f64,
-    pub(crate) r: f64,
-    pub(crate) sum_w: f64,
+    pub(crate) h: T,
+    pub(crate) r: T,
+    pub(crate) sum_w: T,
     /// Σ w e² of the leave-one-out errors.
-    pub(crate) sum_e_cv2: f64,
-    pub(crate) n_data: f64,
-    pub(crate) lambda: f64,
-    /// Loading of the current sample, the same over Σ w s², and its leave-one-out error. Not state.
-    pub(crate) s: f64,
-    pub(crate) s_scaled: f64,
-    pub(crate) e_cv: f64,
+    pub(crate) sum_e_cv2: T,
+    pub(crate) n_data: T,
+    pub(crate) lambda: T,
+    /// Loading of the current sample; not state.
+    pub(crate) s: T,
 }
 
-/// A receptive field. Its vectors lie in one buffer of rows of equal, padded length; padding is zero for ever.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Field {
-    pub(crate) beta0: f64,
-    pub(crate) sum_e2: f64,
-    pub(crate) ss_p: f64,
-    pub(crate) trustworthy: bool,
-    pub(crate) directions: Vec<Direction>,
+/// A receptive field. Its vectors lie in one buffer of rows of equal length; padding is zero for ever.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Field<T = f64> {
+    pub(crate) beta0: T,
+    pub(crate) sum_e2: T,
+    /// Σ w² s²/Σ w s² over all directions: the degrees of freedom that the regression has used up.
+    pub(crate) ss_p: T,
+    /// 1 once the field has learnt enough to predict, 0 before.
+    pub(crate) trust: T,
+    pub(crate) directions: Vec<Direction<T>>,
+    /// Centre; mean; M with D = MᵀM (its diagonal, or its columns); learning rates; with meta learning their logarithms
+    /// and memory; then for each direction Σ w t x, Σ w s x, U, P.
     pub(crate) rows: Vec<f64>,
 }
 
-/// The rows of a field, apart.
-pub(crate) struct Rows<'a> {
-    pub(crate) mean: &'a mut [f64],
-    /// M with D = MᵀM (its diagonal, or its columns), learning rates, and with meta learning their logarithms and memory.
+/// Where the rows of a field are; a row has `width` numbers: those of the padded inputs, or of
+/// several fields side by side.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Layout {
+    pub(crate) width: usize,
+    /// Length of M.
+    pub(crate) metric: usize,
+    /// Length of the blocks that only meta learning has.
+    pub(crate) meta: usize,
+}
+
+/// The rows of M, its learning rates, and with meta learning their logarithms and memory.
+pub(crate) struct MetricRows<'a> {
     pub(crate) m: &'a mut [f64],
     pub(crate) alpha: &'a mut [f64],
     pub(crate) log_alpha: &'a mut [f64],
     pub(crate) memory: &'a mut [f64],
 }
 
-/// What a new field takes over from a neighbour.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Template<'a>(pub(crate) &'a Field);
+/// The rows of one direction.
+pub(crate) struct DirectionRows<'a> {
+    pub(crate) covariance: &'a mut [f64],
+    pub(crate) ss_x: &'a mut [f64],
+    pub(crate) u: &'a mut [f64],
+    pub(crate) p: &'a mut [f64],
+}
 
-/// What the metric's learning rates are floored by before their logarithm.
-const ALPHA_FLOOR: f64 = 1e-10;
+/// Rows that a direction takes.
+pub(crate) const DIRECTION_ROWS: usize = 4;
 
-/// Weight that an empty statistic starts with.
-const NO_WEIGHT: f64 = 1e-10;
+impl Layout {
+    /// `width` is passed apart so that it can be a constant.
+    #[inline(always)]
+    pub(crate) fn new(settings: &Settings, width: usize) -> Self {
+        let metric = match settings.params.metric {
+            Metric::Diagonal => width,
+            Metric::Full => settings.n_in * width,
+        };
+        Layout { width, metric, meta: if settings.meta() { metric } else { 0 } }
+    }
+
+    /// Where the rows of the directions begin.
+    #[inline(always)]
+    pub(crate) fn directions(self) -> usize {
+        2 * self.width + 2 * self.metric + 2 * self.meta
+    }
+}
+
+impl<T> Field<T> {
+    /// The metric's rows by name.
+    #[inline(always)]
+    pub(crate) fn metric_rows(&mut self, layout: Layout) -> MetricRows<'_> {
+        let rest = &mut self.rows[2 * layout.width..];
+        let (m, rest) = rest.split_at_mut(layout.metric);
+        let (alpha, rest) = rest.split_at_mut(layout.metric);
+        let (log_alpha, rest) = rest.split_at_mut(layout.meta);
+        MetricRows { m, alpha, log_alpha, memory: &mut rest[..layout.meta] }
+    }
+
+    /// Every direction with its rows.
+    #[inline(always)]
+    pub(crate) fn directions_mut(
+        &mut self,
+        layout: Layout,
+    ) -> impl Iterator<Item = (&mut Direction<T>, DirectionRows<'_>)> {
+        let rows = self.rows[layout.directions()..].chunks_exact_mut(DIRECTION_ROWS * layout.width);
+        self.directions.iter_mut().zip(rows).map(move |(direction, rows)| {
+            let (covariance, rows) = rows.split_at_mut(layout.width);
+            let (ss_x, rows) = rows.split_at_mut(layout.width);
+            let (u, p) = rows.split_at_mut(layout.width);
+            (direction, DirectionRows { covariance, ss_x, u, p })
+        })
+    }
+}
 
 impl Field {
-    /// A field at the normalised sample (x, y), shaped by the parameters or by its nearest neighbour.
-    pub(crate) fn new(settings: &Settings, x: &[f64], y: f64, template: Option<Template<'_>>) -> Self {
-        let (n, w) = (settings.n_in, settings.width);
-        let metric_len = metric_len(settings, w);
-        let n_directions = template.map_or(n.min(2), |Template(field)| field.directions.len());
-        let mut field = Field {
-            beta0: template.map_or(y, |Template(field)| field.beta0),
-            sum_e2: 0.0,
-            ss_p: 0.0,
-            trustworthy: false,
-            directions: Vec::with_capacity(n_directions),
-            rows: vec![0.0; fixed_len(settings, w)],
-        };
-        field.rows[..n].copy_from_slice(&x[..n]);
-        if let Some(Template(other)) = template {
-            // M and alpha are neighbours in the buffer.
-            field.rows[2 * w..2 * w + 2 * metric_len].copy_from_slice(&other.rows[2 * w..2 * w + 2 * metric_len]);
-        } else {
-            let rows = field.split(settings, w);
-            rows.m.copy_from_slice(&settings.init_m);
-            upper(settings, w, rows.alpha, |alpha| *alpha = settings.params.init_alpha);
-        }
-        if settings.meta() {
-            let rows = field.split(settings, w);
-            for (log_alpha, &alpha) in rows.log_alpha.iter_mut().zip(&*rows.alpha) {
-                *log_alpha = (alpha + ALPHA_FLOOR).ln();
-            }
-        }
-        for _ in 0..n_directions {
-            field.add_direction(settings, NO_WEIGHT);
-        }
-        field
-    }
-
-    /// Appends a direction along the next axis, as if it had seen `n_data` samples.
-    pub(crate) fn add_direction(&mut self, settings: &Settings, n_data: f64) {
-        let (w, k) = (settings.width, self.directions.len());
-        self.directions.push(Direction {
-            ss2: settings.params.init_s2,
-            sum_w: NO_WEIGHT,
-            n_data,
-            lambda: settings.params.init_lambda,
-            ..Direction::default()
-        });
-        let start = self.rows.len();
-        self.rows.resize(start + 4 * w, 0.0);
-        self.rows[start + 2 * w + k] = 1.0;
-        self.rows[start + 3 * w + k] = 1.0;
-    }
-
-    /// The rows by name; `w` is the row length, passed apart so that it can be a constant.
-    #[inline(always)]
-    pub(crate) fn split(&mut self, settings: &Settings, w: usize) -> Rows<'_> {
-        let metric_len = metric_len(settings, w);
-        let meta_len = if settings.meta() { metric_len } else { 0 };
-        let rest = &mut self.rows[w..];
-        let (mean, rest) = rest.split_at_mut(w);
-        let (m, rest) = rest.split_at_mut(metric_len);
-        let (alpha, rest) = rest.split_at_mut(metric_len);
-        let (log_alpha, rest) = rest.split_at_mut(meta_len);
-        let memory = &mut rest[..meta_len];
-        Rows { mean, m, alpha, log_alpha, memory }
-    }
-
     /// How many directions take part in predictions: the last only once it has seen enough.
-    #[inline(always)]
     pub(crate) fn n_usable(&self, n_in: usize) -> usize {
         let r = self.directions.len();
         if self.directions[r - 1].n_data > 2.0 * n_in as f64 { r } else { r - 1 }
     }
 
-    /// The centre c, padded.
-    pub(crate) fn centre(&self, settings: &Settings) -> &[f64] {
-        &self.rows[..settings.width]
+    pub(crate) fn is_trustworthy(&self) -> bool {
+        self.trust > 0.0
     }
 
-    /// M, padded, in the layout of [`Rows::m`].
+    /// The centre c (`n_in`).
+    #[inline(always)]
+    pub(crate) fn centre(&self, settings: &Settings) -> &[f64] {
+        &self.rows[..settings.n_in]
+    }
+
+    /// M, padded: its diagonal, or its columns.
+    #[inline(always)]
     pub(crate) fn m(&self, settings: &Settings) -> &[f64] {
-        &self.rows[2 * settings.width..][..settings.metric_rows() * settings.width]
+        let layout = Layout::new(settings, settings.width);
+        &self.rows[2 * layout.width..][..layout.metric]
     }
 
     /// Trace of D = MᵀM.
     pub(crate) fn trace(&self, settings: &Settings) -> f64 {
         self.m(settings).iter().map(|m| m * m).sum()
-    }
-
-    /// Squared distance q = (x − c)ᵀD(x − c) with full metric: |M(x − c)|². `dx` and `t` receive x − c and M(x − c).
-    #[inline(always)]
-    pub(crate) fn full_distance(&self, settings: &Settings, w: usize, x: &[f64], dx: &mut [f64], t: &mut [f64]) -> f64 {
-        let m = &self.rows[2 * w..][..settings.n_in * w];
-        for i in 0..w {
-            dx[i] = x[i] - self.rows[i];
-            t[i] = 0.0;
-        }
-        for (column, &dx) in m.chunks_exact(w).zip(&*dx) {
-            crate::vector::add_scaled(t, dx, column);
-        }
-        crate::vector::dot(t, t)
-    }
-}
-
-/// Length of everything before the directions.
-#[inline(always)]
-pub(crate) fn fixed_len(settings: &Settings, w: usize) -> usize {
-    2 * w + metric_len(settings, w) * if settings.meta() { 4 } else { 2 }
-}
-
-#[inline(always)]
-fn metric_len(settings: &Settings, w: usize) -> usize {
-    match settings.params.metric {
-        Metric::Diagonal => w,
-        Metric::Full => settings.n_in * w,
-    }
-}
-
-/// Visits the elements of a metric-shaped block that are adapted: the diagonal, or the upper triangle.
-fn upper(settings: &Settings, w: usize, block: &mut [f64], mut visit: impl FnMut(&mut f64)) {
-    match settings.params.metric {
-        Metric::Diagonal => block[..settings.n_in].iter_mut().for_each(visit),
-        Metric::Full => {
-            for (column, elements) in block.chunks_exact_mut(w).enumerate() {
-                elements[..=column].iter_mut().for_each(&mut visit);
-            }
-        }
     }
 }

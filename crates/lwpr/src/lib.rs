@@ -6,19 +6,31 @@
 #![allow(clippy::needless_range_loop)]
 
 mod activation;
+mod batch;
+mod batch_fit;
+mod birth;
+mod chunk;
+mod contribution;
 mod error;
+mod exponential;
 mod field;
+mod field_table;
+mod full_metric;
 mod kernel;
+mod lane_block;
 mod local_model;
 mod metric;
 mod model;
+mod model_record;
+mod number;
 mod params;
 mod predictor;
+mod predictor_record;
 mod receptive_field;
 mod regression;
 mod settings;
 mod sub_model;
-mod vector;
+mod training;
 
 pub use error::{LwprError, Side};
 pub use kernel::Kernel;

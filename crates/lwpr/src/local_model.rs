@@ -2,9 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::field::{Field, fixed_len};
+use crate::field::{DIRECTION_ROWS, Field, Layout};
+use crate::full_metric::add_scaled;
+use crate::number::Element;
 use crate::settings::Settings;
-use crate::vector::{add_scaled, dot};
 
 /// A receptive field, frozen. Vectors are not padded; everything is in normalised units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -32,18 +33,29 @@ impl LocalModel {
     /// `None` where learning has run into numbers that are not finite, so that the field is of no use.
     pub(crate) fn new(field: &Field, settings: &Settings) -> Option<Self> {
         let n = settings.n_in;
-        let centre = field.centre(settings)[..n].to_vec();
+        let centre = field.centre(settings).to_vec();
         let d = crate::receptive_field::metric_of(field.m(settings), settings.params.metric, n);
         let metric = match settings.params.metric {
             crate::Metric::Diagonal => d.diagonal().as_slice().to_vec(),
             crate::Metric::Full => d.as_slice().to_vec(),
         };
-        let affine = field.trustworthy.then(|| Affine::new(field, settings));
+        let affine = field.is_trustworthy().then(|| Affine::new(field, settings));
         let model = LocalModel { centre, metric, affine };
         model.is_finite().then_some(model)
     }
 
-    fn is_finite(&self) -> bool {
+    /// Whether all vectors fit `n` inputs.
+    pub(crate) fn has_shape(&self, n: usize) -> bool {
+        let affine_has = |affine: &Affine| {
+            affine.slope.len() == n && affine.mean.len() == n && affine.loadings.len().is_multiple_of(n)
+        };
+        self.centre.len() == n
+            && (self.metric.len() == n || self.metric.len() == n * n)
+            && self.affine.as_ref().is_none_or(affine_has)
+    }
+
+    /// Whether every number is finite.
+    pub(crate) fn is_finite(&self) -> bool {
         let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
         let affine_is = |affine: &Affine| {
             affine.offset.is_finite()
@@ -60,20 +72,24 @@ impl Affine {
     fn new(field: &Field, settings: &Settings) -> Self {
         let (n, w) = (settings.n_in, settings.width);
         let usable = field.n_usable(n);
-        let rows = &field.rows[fixed_len(settings, w)..];
-        let (u, p) = (|j: usize| &rows[(4 * j + 2) * w..][..w], |j: usize| &rows[(4 * j + 3) * w..][..w]);
-        // sⱼ = aⱼᵀz with a = Uⱼ run back through the deflations: a ← a − Pᵢ... of all earlier directions.
+        let rows = &field.rows[Layout::new(settings, w).directions()..];
+        let (u, p) = (
+            |j: usize| &rows[(DIRECTION_ROWS * j + 2) * w..][..w],
+            |j: usize| &rows[(DIRECTION_ROWS * j + 3) * w..][..w],
+        );
+        // Slope Σⱼ βⱼ ∂sⱼ/∂x by the adjoint of the deflations x ← x − P s, O(n) a direction.
         let mut slope = vec![0.0; w];
         for j in (0..usable).rev() {
-            let factor = field.directions[j].beta - dot(p(j), &slope);
-            add_scaled(&mut slope, factor, u(j));
+            let factor = field.directions[j].beta - f64::dot((), p(j), &slope);
+            add_scaled::<f64, f64>((), &mut slope, factor, u(j));
         }
+        // ∂sⱼ/∂x likewise, each alone.
         let mut loadings = Vec::with_capacity(usable * n);
         for j in 0..usable {
             let mut loading = u(j).to_vec();
             for i in (0..j).rev() {
-                let factor = -dot(p(i), &loading);
-                add_scaled(&mut loading, factor, u(i));
+                let factor = -f64::dot((), p(i), &loading);
+                add_scaled::<f64, f64>((), &mut loading, factor, u(i));
             }
             let scale = 1.0 / field.directions[j].ss2.sqrt();
             loadings.extend(loading[..n].iter().map(|a| a * scale));

@@ -1,299 +1,203 @@
 //! One step of gradient descent on a field's metric (Vijayakumar, D'Souza, Schaal 2005, table 2 and appendix).
 
-use crate::field::{Direction, Field, Rows};
+use crate::field::{Direction, Field, Layout, MetricRows};
+use crate::full_metric::{FullScratch, full_step};
 use crate::kernel::Activation;
-use crate::regression::Errors;
+use crate::number::{Element, Number};
+use crate::regression::{Absorbed, settled};
 use crate::settings::Settings;
-use crate::vector::{add_scaled, dot};
 use crate::{Metric, MetricAdaptation};
 
-/// What the step of every element of M shares: derivatives of the cost by the activation, and weights.
-#[derive(Debug, Clone, Copy)]
-struct Step {
-    /// ∂J₁/∂w and ∂²J₁/∂w² of the leave-one-out cost.
-    j1: f64,
-    j1_second: f64,
+/// What the steps of all elements of M share.
+pub(crate) struct Step<T: Number> {
+    activation: Activation<T>,
+    /// ∂J₁/∂w and ∂²J₁/∂w² of the weighted leave-one-out cost J₁.
+    j1: T,
+    j1_second: T,
     /// Weight w/W of the penalty, and its factor 2γ/n.
-    omega: f64,
-    gamma: f64,
-    /// Damping of the step while the leave-one-out error is not yet well known.
-    transient: f64,
-    /// No element grows down by more than this.
-    limit: f64,
-    activation: Activation,
+    omega: T,
+    pub(crate) gamma: f64,
+    /// Damping while the leave-one-out error is not well known.
+    transient: T,
+    /// A step down of more than this is not made.
+    limit: T,
+    /// Lanes that move at all.
+    settled: T::Mask,
+    /// Learning rate of the learning rates.
+    pub(crate) rate: Option<f64>,
 }
 
-/// An adaptive element of M with its learning rate; the last two only with meta learning.
-struct Element<'a> {
-    m: &'a mut f64,
-    alpha: &'a mut f64,
-    log_alpha: &'a mut f64,
-    memory: &'a mut f64,
-}
-
-/// First and second derivatives of q and of the penalty by one element of M.
+/// Derivatives of q and of the penalty by one element of M.
 #[derive(Debug, Clone, Copy)]
-struct Derivatives {
-    dq: f64,
-    d2q: f64,
-    penalty: f64,
-    penalty_second: f64,
+pub(crate) struct Derivatives<E> {
+    pub(crate) dq: E,
+    pub(crate) d2q: E,
+    pub(crate) penalty: E,
+    pub(crate) penalty_second: E,
 }
 
-/// Adapts M after the regression has absorbed a sample; x − c in `dx`, `scratch` as long as a row.
+/// Adapts M after the regression has absorbed a sample; x − c in `dx`.
 #[inline(always)]
-pub(crate) fn update_metric(
-    field: &mut Field,
+pub(crate) fn update_metric<T: Element<T>, E: Element<T>>(
+    tokens: (T::Token, E::Token),
+    field: &mut Field<T>,
     settings: &Settings,
-    width: usize,
-    activation: Activation,
-    errors: Errors,
+    activation: Activation<T>,
+    sample: &Absorbed<T>,
     dx: &[f64],
-    scratch: &mut MetricScratch<'_>,
+    scratch: &mut FullScratch<'_>,
 ) {
-    let lambda0 = field.directions[0].lambda;
-    if settings.params.adaptation == MetricAdaptation::Fixed || !settled(&field.directions[0], lambda0) {
+    let rate = match settings.params.adaptation {
+        MetricAdaptation::Fixed => return,
+        MetricAdaptation::Gradient => None,
+        MetricAdaptation::Meta { rate } => Some(rate),
+    };
+    if !T::any(tokens.0, sample.settled) {
         return;
     }
-    let rate = match settings.params.adaptation {
-        MetricAdaptation::Meta { rate } => Some(rate),
-        MetricAdaptation::Fixed | MetricAdaptation::Gradient => None,
-    };
-    let (mut step, h_bar) = cost_derivatives(field, settings, activation, errors, rate.is_some());
-    let mut rows = field.split(settings, width);
-    step.limit = 0.1 * largest(rows.m);
+    let mut step = Step::new(field, settings, activation, sample, rate);
+    let mut rows = field.metric_rows(Layout::new(settings, dx.len()));
+    step.limit = E::largest(tokens.1, rows.m) * 0.1;
     match settings.params.metric {
-        Metric::Diagonal => diagonal_step(&mut rows, width, settings.n_in, &step, rate, dx),
-        Metric::Full => full_step(&mut rows, width, settings.n_in, &step, rate, dx, scratch),
+        Metric::Diagonal => diagonal_step::<T, E>(tokens.1, &mut rows, &step, dx),
+        Metric::Full => full_step::<T, E>(tokens, &mut rows, &step, dx, scratch),
     }
-    remember(&mut field.directions, lambda0, activation.w, errors.e_cv, step.transient, h_bar);
+    let rest = activation.w.like(1.0) - activation.w * sample.leverage;
+    remember(&mut field.directions, sample, activation.w, activation.w * rest.recip() * step.transient);
 }
 
-/// Scratch rows of the full metric: M(x − c), a column of MD, and M Mᵀ (`n_in` rows). Unused by the diagonal one.
-pub(crate) struct MetricScratch<'a> {
-    pub(crate) t: &'a mut [f64],
-    pub(crate) md: &'a mut [f64],
-    pub(crate) mmt: &'a mut [f64],
-}
-
-/// Whether a direction has seen enough for derivatives. The library asks with the first direction's λ everywhere.
+/// Padding has M = learning rate = 0 and keeps M = 0.
 #[inline(always)]
-fn settled(direction: &Direction, lambda0: f64) -> bool {
-    direction.n_data * (1.0 - lambda0) > 0.1
-}
-
-/// Derivatives of the weighted leave-one-out cost by the activation, and the leverage h̄ of the sample.
-#[inline(always)]
-fn cost_derivatives(
-    field: &Field,
-    settings: &Settings,
-    activation: Activation,
-    errors: Errors,
-    second: bool,
-) -> (Step, f64) {
-    let Errors { e, e_cv, usable } = errors;
-    let (lambda0, w) = (field.directions[0].lambda, activation.w);
-    let inverse_w = 1.0 / field.directions[0].sum_w;
-    let error_sum = field.directions[usable.max(1) - 1].sum_e_cv2;
-    let ratio = field.sum_e2 / (error_sum + 1e-10);
-    let square = ratio * ratio;
-
-    let (mut leverage, mut cross, mut sigma) = (0.0, 0.0, 0.0);
-    for direction in field.directions.iter().filter(|direction| settled(direction, lambda0)) {
-        let p = direction.s_scaled;
-        leverage += direction.s * p;
-        cross += p * (e * direction.h + p * direction.r);
-        sigma += direction.s * e * p;
-    }
-    let h_bar = w * leverage;
-    let mut curvature = 0.0;
-    if second {
-        for direction in field.directions.iter().filter(|direction| settled(direction, lambda0)) {
-            let p = direction.s_scaled;
-            curvature += (e * p * inverse_w + p * sigma) * direction.h;
-        }
-        curvature =
-            (2.0 * (e * e * leverage - e_cv * e_cv * inverse_w) + error_sum * inverse_w * inverse_w + 4.0 * curvature)
-                * inverse_w;
-    }
-    let step = Step {
-        j1: (e_cv * e_cv - error_sum * inverse_w - 2.0 * cross) * inverse_w,
-        j1_second: curvature,
-        omega: w * inverse_w,
-        gamma: 2.0 * settings.params.penalty / settings.n_in as f64,
-        transient: (square * square).min(1.0),
-        limit: 0.0,
-        activation,
-    };
-    (step, h_bar)
-}
-
-/// Largest |M_nm|.
-#[inline(always)]
-fn largest(m: &[f64]) -> f64 {
-    if let (chunks, []) = m.as_chunks::<8>() {
-        let mut lanes = [0.0_f64; 8];
-        for chunk in chunks {
-            for lane in 0..8 {
-                let candidate = chunk[lane].abs();
-                lanes[lane] = if candidate > lanes[lane] { candidate } else { lanes[lane] };
-            }
-        }
-        lanes.into_iter().fold(0.0, f64::max)
-    } else {
-        m.iter().fold(0.0, |max, m| if m.abs() > max { m.abs() } else { max })
-    }
-}
-
-#[inline(always)]
-fn diagonal_step(rows: &mut Rows<'_>, width: usize, n: usize, step: &Step, rate: Option<f64>, dx: &[f64]) {
-    let derivatives = |m: f64, dx: f64| {
-        let square = dx * dx;
-        Derivatives {
-            dq: 2.0 * m * square,
-            d2q: 2.0 * square,
-            penalty: step.gamma * 2.0 * (m * m) * m,
-            penalty_second: step.gamma * (2.0 * m * m + 4.0 * m * m),
-        }
-    };
-    match rate {
-        // Padding has m = alpha = 0 and stays so.
-        None => {
-            for i in 0..width {
-                let by = derivatives(rows.m[i], dx[i]);
-                step.descend(&mut rows.m[i], &mut rows.alpha[i], by);
-            }
-        }
-        Some(rate) => {
-            for i in 0..n {
-                let derivatives = derivatives(rows.m[i], dx[i]);
-                step.descend_meta(
-                    &mut element(&mut rows.m[i], &mut rows.alpha[i], &mut rows.log_alpha[i], &mut rows.memory[i]),
-                    rate,
-                    derivatives,
-                );
-            }
-        }
-    }
-}
-
-fn element<'a>(m: &'a mut f64, alpha: &'a mut f64, log_alpha: &'a mut f64, memory: &'a mut f64) -> Element<'a> {
-    Element { m, alpha, log_alpha, memory }
-}
-
-/// With t = M(x − c): ∂q/∂M_nm = 2 (x − c)_m t_n; the penalty's gradient needs MD = (M Mᵀ) M.
-#[inline(always)]
-fn full_step(
-    rows: &mut Rows<'_>,
-    width: usize,
-    n: usize,
-    step: &Step,
-    rate: Option<f64>,
-    dx: &[f64],
-    scratch: &mut MetricScratch<'_>,
-) {
-    let MetricScratch { t, md, mmt } = scratch;
-    t.fill(0.0);
-    mmt.fill(0.0);
-    for (column, &dx) in rows.m.chunks_exact(width).zip(dx) {
-        add_scaled(t, dx, column);
-    }
-    for (m, column) in rows.m.chunks_exact(width).enumerate() {
-        for (k, row) in mmt.chunks_exact_mut(width).enumerate().take(m + 1) {
-            add_scaled(row, column[k], column);
-        }
-    }
-    for m in 0..n {
-        // Column m of MD, from the old M: columns to its left have changed, but M Mᵀ has not.
-        md.fill(0.0);
-        let column = &mut rows.m[m * width..][..width];
-        for (row, &weight) in mmt.chunks_exact(width).zip(&*column).take(m + 1) {
-            add_scaled(md, weight, row);
-        }
-        let d_mm = dot(column, column);
-        let alpha = &mut rows.alpha[m * width..][..width];
-        let derivatives = |i: usize, tail: f64| Derivatives {
-            dq: 2.0 * dx[m] * t[i],
-            d2q: 2.0 * dx[m] * dx[m],
-            penalty: 2.0 * step.gamma * md[i],
-            penalty_second: 2.0 * step.gamma * (d_mm + tail),
+fn diagonal_step<T: Number, E: Element<T>>(token: E::Token, rows: &mut MetricRows<'_>, step: &Step<T>, dx: &[f64]) {
+    let mut rows = ElementRows::<E>::new(rows);
+    for (i, &dx) in E::elements(dx).iter().enumerate() {
+        let (m, dx) = (E::of(token, rows.m[i]), E::of(token, dx));
+        let (square, m2) = (dx * dx, m * m);
+        let by = Derivatives {
+            dq: m * square * 2.0,
+            d2q: square * 2.0,
+            penalty: m2 * m * (2.0 * step.gamma),
+            penalty_second: m2 * (6.0 * step.gamma),
         };
-        match rate {
-            // Below the diagonal alpha = 0, so that M stays zero there.
-            None => {
-                for i in 0..width {
-                    step.descend(&mut column[i], &mut alpha[i], derivatives(i, 0.0));
-                }
-            }
-            Some(rate) => {
-                let log_alpha = &mut rows.log_alpha[m * width..][..width];
-                let memory = &mut rows.memory[m * width..][..width];
-                // Σ_{i ≥ n} M_ni² (1 + [i = m]) runs along row n, to the right of column n: all of it from old M.
-                for i in 0..=m {
-                    let tail = scratch_tail(mmt, i, column[i], width);
-                    let derivatives = derivatives(i, tail);
-                    step.descend_meta(
-                        &mut element(&mut column[i], &mut alpha[i], &mut log_alpha[i], &mut memory[i]),
-                        rate,
-                        derivatives,
-                    );
-                }
-            }
+        match step.rate {
+            None => step.descend(&mut rows, i, by),
+            Some(rate) => step.descend_meta(&mut rows, i, rate, by),
         }
     }
 }
 
-/// |row n of M|² = (M Mᵀ)_nn, and the element itself once more.
-#[inline(always)]
-fn scratch_tail(mmt: &[f64], n: usize, element: f64, width: usize) -> f64 {
-    mmt[n * width + n] + element * element
+/// The metric's rows as elements.
+pub(crate) struct ElementRows<'a, E: Number> {
+    pub(crate) m: &'a mut [E::Raw],
+    alpha: &'a mut [E::Raw],
+    log_alpha: &'a mut [E::Raw],
+    memory: &'a mut [E::Raw],
 }
 
-impl Step {
-    /// Gradient of the cost by one element.
+impl<'a, E: Number> ElementRows<'a, E> {
     #[inline(always)]
-    fn gradient(&self, by: Derivatives) -> f64 {
-        self.omega * by.penalty + self.activation.slope * by.dq * self.j1
+    pub(crate) fn new(rows: &'a mut MetricRows<'_>) -> Self {
+        ElementRows {
+            m: E::elements_mut(rows.m),
+            alpha: E::elements_mut(rows.alpha),
+            log_alpha: E::elements_mut(rows.log_alpha),
+            memory: E::elements_mut(rows.memory),
+        }
+    }
+}
+
+impl<T: Number> Step<T> {
+    #[inline(always)]
+    fn new(
+        field: &Field<T>,
+        settings: &Settings,
+        activation: Activation<T>,
+        sample: &Absorbed<T>,
+        rate: Option<f64>,
+    ) -> Self {
+        let &Absorbed { e, e_cv, error_sum, leverage, sum_p_h, sum_pp_r, .. } = sample;
+        let inverse = field.directions[0].sum_w.recip();
+        let ratio = field.sum_e2 * (error_sum + 1e-10).recip();
+        let square = ratio * ratio;
+        let cross = e * sum_p_h + sum_pp_r;
+        let j1_second = if rate.is_some() {
+            let memory = (e * inverse + e * leverage) * sum_p_h;
+            let errors = (e * e * leverage - e_cv * e_cv * inverse) * 2.0;
+            (errors + error_sum * inverse * inverse + memory * 4.0) * inverse
+        } else {
+            e.like(0.0)
+        };
+        Step {
+            activation,
+            j1: (e_cv * e_cv - error_sum * inverse - cross * 2.0) * inverse,
+            j1_second,
+            omega: activation.w * inverse,
+            gamma: 2.0 * settings.params.penalty / settings.n_in as f64,
+            transient: (square * square).smaller(e.like(1.0)),
+            limit: e.like(0.0),
+            settled: sample.settled,
+            rate,
+        }
     }
 
-    /// A plain step; one that is too large halves the learning rate instead.
+    /// Gradient of the cost by one element, damped.
     #[inline(always)]
-    fn descend(&self, m: &mut f64, alpha: &mut f64, by: Derivatives) {
-        let delta = *alpha * (self.transient * self.gradient(by));
-        let too_large = delta > self.limit;
-        *alpha = if too_large { 0.5 * *alpha } else { *alpha };
-        *m = if too_large { *m } else { *m - delta };
+    fn gradient<E: Element<T>>(&self, by: Derivatives<E>) -> E {
+        (by.penalty * self.omega + by.dq * self.activation.slope * self.j1) * self.transient
     }
 
-    /// A step whose learning rate first follows the correlation of past and present gradients (IDBD).
+    /// A plain step of element `i`; one that is too large halves the learning rate instead.
     #[inline(always)]
-    fn descend_meta(&self, element: &mut Element<'_>, rate: f64, by: Derivatives) {
+    pub(crate) fn descend<E: Element<T>>(&self, rows: &mut ElementRows<'_, E>, i: usize, by: Derivatives<E>) {
+        let token = by.dq.token();
+        let (m, alpha) = (E::of(token, rows.m[i]), E::of(token, rows.alpha[i]));
+        let delta = alpha * self.gradient(by);
+        let too_large = delta.above(E::spread(token, self.limit));
+        let settled = E::spread_mask(token, self.settled);
+        rows.m[i] = m.or_else(too_large, m - delta).or_else(settled, m).raw();
+        rows.alpha[i] = (alpha * 0.5).or_else(too_large, alpha).or_else(settled, alpha).raw();
+    }
+
+    /// A step of element `i` whose learning rate first follows the correlation of past and present gradients (IDBD).
+    #[inline(always)]
+    pub(crate) fn descend_meta<E: Element<T>>(
+        &self,
+        rows: &mut ElementRows<'_, E>,
+        i: usize,
+        rate: f64,
+        by: Derivatives<E>,
+    ) {
+        let token = by.dq.token();
+        let (m, alpha) = (E::of(token, rows.m[i]), E::of(token, rows.alpha[i]));
+        let (log_alpha, memory) = (E::of(token, rows.log_alpha[i]), E::of(token, rows.memory[i]));
         let Activation { slope, curvature, .. } = self.activation;
         let gradient = self.gradient(by);
-        let dw = slope * by.dq;
-        let d2w = curvature * by.dq * by.dq + slope * by.d2q;
-        let hessian = self.omega * by.penalty_second + d2w * self.j1 + dw * dw * self.j1_second;
-        let change = (rate * self.transient * gradient * *element.memory).clamp(-0.1, 0.1);
-        *element.log_alpha = (*element.log_alpha - change).clamp(-10.0, 10.0);
-        *element.alpha = element.log_alpha.exp();
-        let delta = *element.alpha * self.transient * gradient;
-        let keep = (1.0 - *element.alpha * hessian * self.transient).max(0.0);
-        *element.memory = *element.memory * keep - delta;
-        if delta > self.limit {
-            *element.alpha *= 0.5;
-        } else {
-            *element.m -= delta;
-        }
+        let dw = by.dq * slope;
+        let d2w = by.dq * by.dq * curvature + by.d2q * slope;
+        let hessian = by.penalty_second * self.omega + d2w * self.j1 + dw * dw * self.j1_second;
+
+        let new_log_alpha = (log_alpha - (gradient * memory * rate).clip(0.1)).clip(10.0);
+        let new_alpha = new_log_alpha.exp();
+        let delta = new_alpha * gradient;
+        let keep = (m.like(1.0) - new_alpha * hessian * self.transient).larger(m.like(0.0));
+        let too_large = delta.above(E::spread(token, self.limit));
+        let settled = E::spread_mask(token, self.settled);
+        rows.m[i] = m.or_else(too_large, m - delta).or_else(settled, m).raw();
+        rows.alpha[i] = (new_alpha * 0.5).or_else(too_large, new_alpha).or_else(settled, alpha).raw();
+        rows.log_alpha[i] = new_log_alpha.or_else(settled, log_alpha).raw();
+        rows.memory[i] = (memory * keep - delta).or_else(settled, memory).raw();
     }
 }
 
-/// Updates the memories H and r of the leave-one-out derivative.
+/// Updates the memories H and r of the leave-one-out derivative; `share` is w/(1 − h̄), damped.
 #[inline(always)]
-fn remember(directions: &mut [Direction], lambda0: f64, w: f64, e_cv: f64, transient: f64, h_bar: f64) {
-    let share = w / (1.0 - h_bar) * transient;
-    for direction in directions.iter_mut().filter(|direction| settled(direction, lambda0)) {
-        let (lambda, s) = (direction.lambda, direction.s);
-        direction.h = lambda * direction.h + share * e_cv * s;
-        direction.r = lambda * direction.r + share * w * e_cv * e_cv * s * s;
+fn remember<T: Number>(directions: &mut [Direction<T>], sample: &Absorbed<T>, w: T, share: T) {
+    let lambda0 = directions[0].lambda;
+    for direction in directions {
+        let (lambda, step) = (direction.lambda, share * sample.e_cv * direction.s);
+        let active = T::both(w.token(), sample.settled, settled(direction, lambda0));
+        let (h, r) = (lambda * direction.h + step, lambda * direction.r + step * w * sample.e_cv * direction.s);
+        direction.h = h.or_else(active, direction.h);
+        direction.r = r.or_else(active, direction.r);
     }
 }

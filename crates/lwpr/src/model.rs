@@ -1,14 +1,22 @@
 use nalgebra::{DMatrix, DVectorView};
 use rand::Rng;
 use rand::seq::SliceRandom;
+use serde::{Deserialize, Serialize};
 
+use crate::Metric;
+use crate::batch_fit::BatchFit;
 use crate::error::Side;
+use crate::model_record::ModelRecord;
 use crate::settings::Settings;
-use crate::sub_model::{Reach, SubModel, Workspace};
+use crate::sub_model::{Reach, SubModel};
+use crate::training::Workspace;
 use crate::{LwprError, LwprParams, Predictor, ReceptiveField};
 
 /// A model that learns; make one with [`LwprParams::build`].
-#[derive(Debug, Clone)]
+///
+/// It can be stored with serde and goes on learning afterwards as if nothing had happened, bit for bit.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(try_from = "ModelRecord", into = "ModelRecord")]
 pub struct Lwpr {
     pub(crate) settings: Settings,
     pub(crate) outputs: Vec<SubModel>,
@@ -17,7 +25,8 @@ pub struct Lwpr {
 }
 
 /// Running mean and variance of the raw inputs; for information only.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(crate) struct InputStatistics {
     pub(crate) n_data: usize,
     pub(crate) mean: Vec<f64>,
@@ -43,6 +52,22 @@ impl InputStatistics {
     }
 }
 
+/// [`Lwpr::update_checked`], compiled for the processor at hand.
+struct UpdateChecked<'a> {
+    model: &'a mut Lwpr,
+    x: &'a [f64],
+    y: &'a [f64],
+}
+
+impl pulp::WithSimd for UpdateChecked<'_> {
+    type Output = Result<(), LwprError>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> Self::Output {
+        self.model.update_checked(simd, self.x, self.y)
+    }
+}
+
 impl Lwpr {
     pub(crate) fn new(settings: Settings) -> Self {
         let (n_in, n_out) = (settings.n_in, settings.n_out);
@@ -53,7 +78,7 @@ impl Lwpr {
     pub(crate) fn from_parts(settings: Settings, outputs: Vec<SubModel>, inputs: InputStatistics) -> Self {
         let online = Online {
             x: vec![0.0; settings.width],
-            workspace: Workspace::new(&settings),
+            workspace: Workspace::new(&settings, settings.width),
             reach: vec![Reach::default(); settings.n_out],
         };
         Lwpr { settings, outputs, inputs, online }
@@ -69,29 +94,25 @@ impl Lwpr {
         let (x, y) = (x.as_slice(), y.as_slice());
         self.settings.check(x, Side::Input, 0)?;
         self.settings.check(y, Side::Output, 0)?;
-        pulp::Arch::new().dispatch(
-            #[inline(always)]
-            || self.update_checked(x, y),
-        )
+        pulp::Arch::new().dispatch(UpdateChecked { model: self, x, y })
     }
 
     #[inline(always)]
-    fn update_checked(&mut self, x: &[f64], y: &[f64]) -> Result<(), LwprError> {
+    fn update_checked<S: pulp::Simd>(&mut self, simd: S, x: &[f64], y: &[f64]) -> Result<(), LwprError> {
         let Lwpr { settings, outputs, inputs, online } = self;
-        let width = settings.width;
         for ((normalised, x), norm) in online.x.iter_mut().zip(x).zip(&settings.norm_in) {
             *normalised = x / norm;
         }
         let limit = settings.params.max_receptive_fields.unwrap_or(usize::MAX);
         for (k, (sub_model, reach)) in outputs.iter().zip(&mut online.reach).enumerate() {
-            sub_model.activate(settings, width, &online.x, &mut online.workspace, reach);
+            sub_model.activate(settings, &online.x, &mut online.workspace, reach);
             if reach.strongest.asks_for_field(settings) && sub_model.fields.len() >= limit {
                 return Err(LwprError::TooManyReceptiveFields { sample: 0, output: k, limit });
             }
         }
         for (k, sub_model) in outputs.iter_mut().enumerate() {
             let y = y[k] / settings.norm_out[k];
-            sub_model.learn(settings, width, &online.x, y, &mut online.workspace, &online.reach[k]);
+            sub_model.learn(simd, settings, &online.x, y, &mut online.workspace, &online.reach[k]);
         }
         inputs.see(x);
         Ok(())
@@ -132,30 +153,37 @@ impl Lwpr {
         )
     }
 
+    /// One pass over each order. Field by field where that is the same as sample by sample, which it is unless fields
+    /// are pruned; a full metric has little to gain.
     fn fit(
         &mut self,
         xs: &DMatrix<f64>,
         ys: &DMatrix<f64>,
-        orders: impl Iterator<Item = Vec<usize>>,
+        mut orders: impl Iterator<Item = Vec<usize>>,
     ) -> Result<(), LwprError> {
-        let before = self.settings.params.max_receptive_fields.map(|_| self.clone());
-        for order in orders {
-            for sample in order {
-                let result = self.update(xs.column(sample).as_view(), ys.column(sample).as_view());
-                if let Err(error) = result {
-                    if let Some(before) = before {
-                        *self = before;
-                    }
-                    return Err(match error {
-                        LwprError::TooManyReceptiveFields { output, limit, .. } => {
-                            LwprError::TooManyReceptiveFields { sample, output, limit }
-                        }
-                        other => other,
-                    });
-                }
-            }
+        let params = &self.settings.params;
+        let before = params.max_receptive_fields.map(|_| self.clone());
+        let result = if params.w_prune < 1.0 || params.metric == Metric::Full {
+            orders.try_for_each(|order| self.fit_by_sample(xs, ys, &order))
+        } else {
+            let mut fit = BatchFit::new(self);
+            orders.try_for_each(|order| fit.pass(self, xs, ys, &order))
+        };
+        if let (Err(_), Some(before)) = (&result, before) {
+            *self = before;
         }
-        Ok(())
+        result
+    }
+
+    fn fit_by_sample(&mut self, xs: &DMatrix<f64>, ys: &DMatrix<f64>, order: &[usize]) -> Result<(), LwprError> {
+        order.iter().try_for_each(|&sample| {
+            self.update(xs.column(sample).as_view(), ys.column(sample).as_view()).map_err(|error| match error {
+                LwprError::TooManyReceptiveFields { output, limit, .. } => {
+                    LwprError::TooManyReceptiveFields { sample, output, limit }
+                }
+                other => other,
+            })
+        })
     }
 
     fn check_batch(&self, xs: &DMatrix<f64>, ys: &DMatrix<f64>) -> Result<(), LwprError> {

@@ -46,7 +46,7 @@ impl<'a> ReceptiveField<'a> {
 
     /// Whether it has learnt enough (more than 2 `n_in` samples) to take part in predictions.
     pub fn is_trustworthy(&self) -> bool {
-        self.field.trustworthy
+        self.field.is_trustworthy()
     }
 }
 

@@ -1,39 +1,61 @@
-//! Incremental partial least squares inside one receptive field (Vijayakumar, D'Souza, Schaal 2005, table 1).
+//! Incremental partial least squares inside a receptive field (Vijayakumar, D'Souza, Schaal 2005, table 1).
 
-use crate::field::{Direction, Field, fixed_len};
+use crate::field::{Direction, DirectionRows, Field, Layout};
+use crate::number::{Element, Number};
 use crate::settings::Settings;
-use crate::vector::dot;
 
-/// Error of a sample with the updated regression, and before it was absorbed (leave-one-out).
+/// A normalised sample, and how strongly it activates the field.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Errors {
-    pub(crate) e: f64,
-    pub(crate) e_cv: f64,
-    /// How many directions the prediction used.
-    pub(crate) usable: usize,
+pub(crate) struct Sample<'a, T> {
+    pub(crate) x: &'a [f64],
+    pub(crate) y: T,
+    pub(crate) w: T,
+}
+
+/// What the metric needs to know of a sample that the regression has absorbed.
+pub(crate) struct Absorbed<T: Number> {
+    /// Error after the sample was absorbed, and before (leave-one-out).
+    pub(crate) e: T,
+    pub(crate) e_cv: T,
+    /// Σ w e² of the leave-one-out errors.
+    pub(crate) error_sum: T,
+    /// Σⱼ sⱼ pⱼ, Σⱼ pⱼ Hⱼ and Σⱼ pⱼ² rⱼ over settled directions, with pⱼ = sⱼ/Σ w sⱼ².
+    pub(crate) leverage: T,
+    pub(crate) sum_p_h: T,
+    pub(crate) sum_pp_r: T,
+    /// Mean squared leave-one-out errors' numerators and weights of the last direction but one, and of the last.
+    pub(crate) errors: [(T, T); 2],
+    /// Whether the field has seen enough for its errors to count: about a hundred samples by default.
+    pub(crate) settled: T::Mask,
+}
+
+/// Whether a direction has seen enough for derivatives. The library asks with the first direction's λ everywhere.
+#[inline(always)]
+pub(crate) fn settled<T: Number>(direction: &Direction<T>, lambda0: T) -> T::Mask {
+    (direction.n_data * (lambda0.like(1.0) - lambda0)).above(lambda0.like(0.1))
 }
 
 /// Shifts the weighted means by the sample; `z` receives x − mean. Returns y − mean.
 #[inline(always)]
-pub(crate) fn update_means(
-    field: &mut Field,
-    settings: &Settings,
-    width: usize,
-    x: &[f64],
-    y: f64,
-    w: f64,
+pub(crate) fn update_means<T: Number, E: Element<T>>(
+    token: E::Token,
+    field: &mut Field<T>,
+    sample: Sample<'_, T>,
     z: &mut [f64],
-) -> f64 {
-    let old_weight = field.directions[0].sum_w * field.directions[0].lambda;
-    let share = 1.0 / (old_weight + w);
-    let (keep, take) = (old_weight * share, w * share);
-    field.beta0 = keep * field.beta0 + take * y;
-    let rows = field.split(settings, width);
-    for i in 0..width {
-        rows.mean[i] = keep * rows.mean[i] + take * x[i];
-        z[i] = x[i] - rows.mean[i];
+) -> T {
+    let width = z.len();
+    let old = field.directions[0].sum_w * field.directions[0].lambda;
+    let share = (old + sample.w).recip();
+    let (keep, take) = (old * share, sample.w * share);
+    field.beta0 = keep * field.beta0 + take * sample.y;
+    let means = E::elements_mut(&mut field.rows[width..2 * width]);
+    for ((mean, z), &x) in means.iter_mut().zip(E::elements_mut(z)).zip(E::elements(sample.x)) {
+        let x = E::of(token, x);
+        let new_mean = E::of(token, *mean) * keep + x * take;
+        *mean = new_mean.raw();
+        *z = (x - new_mean).raw();
     }
-    y - field.beta0
+    sample.y - field.beta0
 }
 
 /// Absorbs the centred sample (z, t) with weight `w`. `residual` enters as z; `fresh` is scratch.
@@ -41,109 +63,152 @@ pub(crate) fn update_means(
 /// The directions' old loadings drive the statistics, the new ones (kept in `s`) the prediction and the metric; both
 /// run through the directions together, so that each direction's state is touched once.
 #[inline(always)]
-pub(crate) fn update_regression(
-    field: &mut Field,
+pub(crate) fn update_regression<T: Number, E: Element<T>>(
+    token: E::Token,
+    field: &mut Field<T>,
     settings: &Settings,
-    width: usize,
-    t: f64,
-    w: f64,
+    layout: Layout,
+    (t, w): (T, T),
     residual: &mut [f64],
     fresh: &mut [f64],
-) -> Errors {
-    let usable = field.n_usable(settings.n_in);
-    let last_lambda = field.directions[field.directions.len() - 1].lambda;
+) -> Absorbed<T> {
+    let zero = t.like(0.0);
+    let r = field.directions.len();
+    let enough = t.like(2.0 * settings.n_in as f64);
+    let (first, last) = (&field.directions[0], &field.directions[r - 1]);
+    let (lambda0, last_lambda) = (first.lambda, last.lambda);
+    let (trusted, last_counts, first_settled) =
+        (first.n_data.above(enough), last.n_data.above(enough), settled(first, lambda0));
+    field.trust = t.like(1.0).or_else(trusted, field.trust);
+
     fresh.copy_from_slice(residual);
-    let (mut old_sum, mut target) = (0.0, t);
-    let (mut prediction, mut e_cv, mut leverage) = (0.0, 0.0, 0.0);
-
-    let start = fixed_len(settings, width);
-    let (directions, rows) = (&mut field.directions, &mut field.rows[start..]);
-    for (j, (direction, rows)) in directions.iter_mut().zip(rows.chunks_exact_mut(4 * width)).enumerate() {
-        let (covariance, rows) = rows.split_at_mut(width);
-        let (ss_x, rows) = rows.split_at_mut(width);
-        let (u, p) = rows.split_at_mut(width);
-
-        let s = dot(u, residual);
+    let (mut old_sum, mut target, mut prediction, mut used_up) = (zero, t, zero, zero);
+    let mut sample = Absorbed {
+        e: t,
+        e_cv: zero,
+        error_sum: zero,
+        leverage: zero,
+        sum_p_h: zero,
+        sum_pp_r: zero,
+        errors: [(zero, zero); 2],
+        settled: first_settled,
+    };
+    for (j, (direction, mut rows)) in field.directions_mut(layout).enumerate() {
+        let s = E::dot(token, rows.u, residual);
         old_sum += direction.beta * s;
-        direction.e_cv = t - old_sum;
-        let (lambda, ws, wt) = (direction.lambda, w * s, w * target);
-        direction.sum_w = lambda * direction.sum_w + w;
-        direction.ss2 = lambda * direction.ss2 + ws * s;
-        direction.ss_y = lambda * direction.ss_y + ws * target;
-        let inverse = 1.0 / direction.ss2;
-        direction.beta = direction.ss_y * inverse;
-        leverage += ws * ws * inverse;
+        let e_cv = t - old_sum;
+        let inverse = update_scalars(direction, (s, target), w);
+        update_rows::<T, E>(token, &mut rows, [direction.lambda, s, w * s, w * target, inverse], residual);
 
-        let slow = 0.9 + 0.1 * lambda;
-        for i in 0..width {
-            covariance[i] = slow * covariance[i] + wt * residual[i];
-            ss_x[i] = lambda * ss_x[i] + ws * residual[i];
-            residual[i] -= p[i] * s;
-            p[i] = ss_x[i] * inverse;
+        direction.s = E::dot(token, rows.u, fresh);
+        for (fresh, &p) in E::elements_mut(fresh).iter_mut().zip(E::elements(rows.p)) {
+            *fresh = (E::of(token, *fresh) - E::of(token, p) * direction.s).raw();
         }
-        let square = dot(covariance, covariance);
-        if square > 1e-24 {
-            let scale = 1.0 / square.sqrt();
-            for i in 0..width {
-                u[i] = covariance[i] * scale;
-            }
-        }
+        used_up += (w * s) * (w * s) * inverse;
+        target = e_cv;
 
-        direction.s = dot(u, fresh);
-        direction.s_scaled = direction.s * inverse;
-        for i in 0..width {
-            fresh[i] -= p[i] * direction.s;
+        let errors = direction.lambda * direction.sum_e_cv2 + w * e_cv * e_cv;
+        direction.sum_e_cv2 = errors.or_else(first_settled, direction.sum_e_cv2);
+        sample.errors = [sample.errors[1], (direction.sum_e_cv2, direction.sum_w)];
+        let next = prediction + direction.beta * direction.s;
+        if j + 1 < r {
+            (prediction, sample.e_cv, sample.error_sum) = (next, e_cv, direction.sum_e_cv2);
+        } else {
+            // A last direction that has seen little is trained, but not used; a single one lends its errors anyway.
+            prediction = next.or_else(last_counts, prediction);
+            sample.e_cv = e_cv.or_else(last_counts, sample.e_cv);
+            let errors = direction.sum_e_cv2.or_else(last_counts, sample.error_sum);
+            sample.error_sum = if r == 1 { direction.sum_e_cv2 } else { errors };
         }
-        target = direction.e_cv;
-        if j < usable {
-            prediction += direction.beta * direction.s;
-            e_cv = direction.e_cv;
-        }
+        let p = (direction.s * inverse).or_else(settled(direction, lambda0), zero);
+        sample.leverage += direction.s * p;
+        sample.sum_p_h += p * direction.h;
+        sample.sum_pp_r += p * p * direction.r;
     }
-    field.ss_p = last_lambda * field.ss_p + leverage;
-    let errors = Errors { e: t - prediction, e_cv, usable };
-    accumulate_errors(field, settings, w, &errors, last_lambda);
-    errors
+    field.ss_p = last_lambda * field.ss_p + used_up;
+    sample.e = t - prediction;
+    let errors = last_lambda * field.sum_e2 + w * sample.e * sample.e;
+    field.sum_e2 = errors.or_else(first_settled, field.sum_e2);
+    sample
 }
 
-/// Sums of squared errors start once the field has seen about a hundred samples (with the default forgetting).
+/// A direction's sums take in loading s and target t. Returns 1/Σ w s².
 #[inline(always)]
-fn accumulate_errors(field: &mut Field, settings: &Settings, w: f64, errors: &Errors, last_lambda: f64) {
-    let first = field.directions[0];
-    if first.n_data * (1.0 - first.lambda) > 0.1 {
-        field.sum_e2 = last_lambda * field.sum_e2 + w * errors.e * errors.e;
-        for direction in &mut field.directions {
-            direction.sum_e_cv2 = direction.lambda * direction.sum_e_cv2 + w * direction.e_cv * direction.e_cv;
-        }
-    }
-    field.trustworthy |= first.n_data > 2.0 * settings.n_in as f64;
+fn update_scalars<T: Number>(direction: &mut Direction<T>, (s, t): (T, T), w: T) -> T {
+    let (lambda, ws) = (direction.lambda, w * s);
+    direction.sum_w = lambda * direction.sum_w + w;
+    direction.ss2 = lambda * direction.ss2 + ws * s;
+    direction.ss_y = lambda * direction.ss_y + ws * t;
+    let inverse = direction.ss2.recip();
+    direction.beta = direction.ss_y * inverse;
+    inverse
 }
 
-/// Adds a direction where the last one still paid and has settled, then ages all of them.
+/// A direction's U and P follow the sample's residual, from which the old P is then taken out. Given are λ, s, ws, wt and
+/// 1/Σ w s².
 #[inline(always)]
-pub(crate) fn grow_and_age(field: &mut Field, settings: &Settings) {
-    if wants_direction(&field.directions, settings) {
-        field.add_direction(settings, 0.0);
-        field.ss_p = 0.0;
+fn update_rows<T: Number, E: Element<T>>(
+    token: E::Token,
+    rows: &mut DirectionRows<'_>,
+    [lambda, s, ws, wt, inverse]: [T; 5],
+    residual: &mut [f64],
+) {
+    let slow = lambda * 0.1 + 0.9;
+    let statistics = E::elements_mut(rows.covariance).iter_mut().zip(E::elements_mut(rows.ss_x));
+    let residuals = E::elements_mut(residual).iter_mut().zip(E::elements_mut(rows.p));
+    for ((covariance, ss_x), (residual, p)) in statistics.zip(residuals) {
+        let x = E::of(token, *residual);
+        let new_ss_x = E::of(token, *ss_x) * lambda + x * ws;
+        *covariance = (E::of(token, *covariance) * slow + x * wt).raw();
+        *ss_x = new_ss_x.raw();
+        *residual = (x - E::of(token, *p) * s).raw();
+        *p = (new_ss_x * inverse).raw();
     }
+    let square = E::dot(token, rows.covariance, rows.covariance);
+    let points = E::spread_mask(token, square.above(s.like(1e-24)));
+    let scale = square.sqrt().recip();
+    for (u, &covariance) in E::elements_mut(rows.u).iter_mut().zip(E::elements(rows.covariance)) {
+        *u = (E::of(token, covariance) * scale).or_else(points, E::of(token, *u)).raw();
+    }
+}
+
+/// Ages all directions. Returns where the last one still paid and has settled, so that another is worth adding; the
+/// caller adds it.
+#[inline(always)]
+pub(crate) fn age<T: Number>(
+    directions: &mut [Direction<T>],
+    settings: &Settings,
+    sample: &Absorbed<T>,
+) -> Option<T::Mask> {
+    let wanted = wants_direction(directions, settings, sample);
     let (tau, goal) = (settings.params.tau_lambda, settings.params.final_lambda);
-    let shift = goal * (1.0 - tau);
-    for direction in &mut field.directions {
+    for direction in directions {
         direction.n_data = direction.n_data * direction.lambda + 1.0;
-        direction.lambda = tau * direction.lambda + shift;
+        direction.lambda = direction.lambda * tau + goal * (1.0 - tau);
     }
+    wanted
 }
 
 #[inline(always)]
-fn wants_direction(directions: &[Direction], settings: &Settings) -> bool {
+fn wants_direction<T: Number>(
+    directions: &[Direction<T>],
+    settings: &Settings,
+    sample: &Absorbed<T>,
+) -> Option<T::Mask> {
     let r = directions.len();
     if r < 2 || r == settings.n_in {
-        return false;
+        return None;
     }
-    let (first, before, last) = (&directions[0], &directions[r - 2], &directions[r - 1]);
-    // The cheap conditions first: they fail for most samples, and spare two divisions.
-    last.n_data > 0.99 * first.n_data && last.n_data * (1.0 - last.lambda) > 0.5 && {
-        let error = |direction: &Direction| direction.sum_e_cv2 / direction.sum_w + 1e-10;
-        error(last) < settings.params.add_threshold * error(before)
+    let (first, last) = (&directions[0], &directions[r - 1]);
+    let (one, token) = (last.lambda.like(1.0), last.lambda.token());
+    let caught_up = last.n_data.above(first.n_data * 0.99);
+    let settled = (last.n_data * (one - last.lambda)).above(one * 0.5);
+    let ready = T::both(token, caught_up, settled);
+    if !T::any(token, ready) {
+        return None;
     }
+    let [before, last] = sample.errors;
+    let (before, last) = (before.0 * before.1.recip() + 1e-10, last.0 * last.1.recip() + 1e-10);
+    let wanted = T::both(token, ready, (before * settings.params.add_threshold).above(last));
+    T::any(token, wanted).then_some(wanted)
 }

@@ -4,7 +4,7 @@ use crate::error::Side;
 use crate::{LwprError, LwprParams, Metric, MetricAdaptation};
 
 /// Activation below which a field does not learn from a sample.
-pub(crate) const TRAINING_FLOOR: f64 = 0.001;
+const TRAINING_FLOOR: f64 = 0.001;
 
 /// Normalised values above this are refused: fourth powers must stay finite.
 const LARGEST: f64 = 1e50;
@@ -21,6 +21,8 @@ pub(crate) struct Settings {
     pub(crate) norm_out: Vec<f64>,
     /// M with D = MᵀM: its diagonal (one row), or its columns (`n_in` rows).
     pub(crate) init_m: Vec<f64>,
+    /// Squared distance within which a field learns from a sample.
+    pub(crate) training_reach: f64,
     /// Squared distance beyond which a field matters neither for learning nor for making fields.
     pub(crate) reach: f64,
 }
@@ -39,6 +41,7 @@ impl Settings {
         Ok(Settings {
             norm_in: norm(params.norm_in.as_ref(), n_in, Side::Input)?,
             norm_out: norm(params.norm_out.as_ref(), n_out, Side::Output)?,
+            training_reach: params.kernel.reach(TRAINING_FLOOR),
             reach: params.kernel.reach(TRAINING_FLOOR.min(0.1 * params.w_gen)),
             params,
             n_in,
@@ -51,14 +54,6 @@ impl Settings {
     /// Whether learning rates are learnt too.
     pub(crate) fn meta(&self) -> bool {
         matches!(self.params.adaptation, MetricAdaptation::Meta { .. })
-    }
-
-    /// Number of rows that M takes.
-    pub(crate) fn metric_rows(&self) -> usize {
-        match self.params.metric {
-            Metric::Diagonal => 1,
-            Metric::Full => self.n_in,
-        }
     }
 
     /// Refuses what is not finite, or so large that its powers would not be.
@@ -74,6 +69,15 @@ impl Settings {
             None => Ok(()),
             Some(dimension) => Err(LwprError::BadValue { side, sample, dimension, value: values[dimension] }),
         }
+    }
+}
+
+/// `n` rounded up to a number of dimensions that several fields side by side are trained with: few enough of them, so
+/// that each can be compiled apart.
+pub(crate) fn padded_for_lanes(n: usize) -> usize {
+    match n {
+        3 | 6 => n,
+        n => padded(n),
     }
 }
 

@@ -1,11 +1,9 @@
 //! The fields of one output, and how they learn from one sample.
 
-use crate::activation::{ActivationTable, Reached};
-use crate::field::{Field, Template};
-use crate::kernel::Activation;
-use crate::metric::{MetricScratch, update_metric};
-use crate::regression::{grow_and_age, update_means, update_regression};
-use crate::settings::{Settings, TRAINING_FLOOR};
+use crate::activation::{ActivationTable, Reached, full_distance};
+use crate::field::{Field, Layout};
+use crate::settings::Settings;
+use crate::training::{Workspace, train_one, with_width};
 use crate::{Metric, Pruning};
 
 /// The receptive fields of one output.
@@ -14,13 +12,6 @@ pub(crate) struct SubModel {
     pub(crate) fields: Vec<Field>,
     pub(crate) table: ActivationTable,
     pub(crate) n_pruned: usize,
-}
-
-/// Rows that an update works in; `rows` many of `width` numbers, one after the other.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Workspace {
-    rows: Vec<f64>,
-    mmt: Vec<f64>,
 }
 
 /// The fields in reach of a sample, in list order, and the strongest of them.
@@ -51,6 +42,14 @@ impl Strongest {
         }
     }
 
+    /// The same where fields come in any order; only the strongest is kept.
+    #[inline(always)]
+    pub(crate) fn see_unordered(&mut self, field: usize, w: f64) {
+        if w > self.first || (w >= self.first && field < self.first_field) {
+            (self.first, self.first_field) = (w, field);
+        }
+    }
+
     /// Whether the sample needs a field of its own.
     #[inline(always)]
     pub(crate) fn asks_for_field(&self, settings: &Settings) -> bool {
@@ -58,64 +57,52 @@ impl Strongest {
     }
 }
 
-impl Workspace {
-    pub(crate) fn new(settings: &Settings) -> Self {
-        let mmt = if settings.params.metric == Metric::Full { settings.n_in * settings.width } else { 0 };
-        Workspace { rows: vec![0.0; 5 * settings.width], mmt: vec![0.0; mmt] }
-    }
-}
-
 impl SubModel {
     /// Finds the fields in reach of the normalised sample `x` and their activations.
     #[inline(always)]
-    pub(crate) fn activate(
-        &self,
-        settings: &Settings,
-        width: usize,
-        x: &[f64],
-        workspace: &mut Workspace,
-        reach: &mut Reach,
-    ) {
-        let reached = &mut reach.fields;
-        reached.clear();
+    pub(crate) fn activate(&self, settings: &Settings, x: &[f64], workspace: &mut Workspace, reach: &mut Reach) {
+        let mut strongest = Strongest::default();
+        reach.fields.clear();
+        let mut found = |field, q| {
+            let activation = settings.params.kernel.at(q);
+            strongest.see(field, activation.w);
+            reach.fields.push(Reached { field, q, activation });
+        };
         match settings.params.metric {
-            Metric::Diagonal => self.table.reached(settings.n_in, x, settings.reach, reached),
+            Metric::Diagonal => self.table.reached(settings.n_in, x, settings.reach, found),
             Metric::Full => {
-                let (dx, t) = workspace.rows.split_at_mut(width);
+                let layout = Layout::new(settings, settings.width);
                 for (k, field) in self.fields.iter().enumerate() {
-                    let q = field.full_distance(settings, width, x, dx, &mut t[..width]);
+                    let q = full_distance(field, layout, x, &mut workspace.rows[..layout.width]);
                     if q < settings.reach {
-                        reached.push(Reached { field: k, q });
+                        found(k, q);
                     }
                 }
             }
-        }
-        let mut strongest = Strongest::default();
-        for reached in reached {
-            strongest.see(reached.field, settings.params.kernel.at(reached.q).w);
         }
         reach.strongest = strongest;
     }
 
     /// One step of learning from the normalised sample (x, y): 1.4 of the algorithm for one output.
     #[inline(always)]
-    pub(crate) fn learn(
+    pub(crate) fn learn<S: pulp::Simd>(
         &mut self,
+        simd: S,
         settings: &Settings,
-        width: usize,
         x: &[f64],
         y: f64,
         workspace: &mut Workspace,
         reach: &Reach,
     ) {
-        let &Reach { ref fields, strongest } = reach;
-        for &Reached { field: k, q } in fields {
-            let activation = settings.params.kernel.at(q);
-            if activation.w > TRAINING_FLOOR {
-                train(&mut self.fields[k], settings, width, x, y, activation, workspace);
-                self.table.set_metric(settings, k, &self.fields[k]);
+        let Workspace { rows, mmt } = workspace;
+        with_width!(settings.width, [1, 2, 4, 8, 16, 24, 32], rows, |width, scratch| {
+            for reached in reach.fields.iter().filter(|reached| reached.q < settings.training_reach) {
+                let field = &mut self.fields[reached.field];
+                train_one(simd, field, settings, (&x[..width], y), reached.activation, scratch, mmt);
+                self.table.set_metric(settings, reached.field, field);
             }
-        }
+        });
+        let strongest = reach.strongest;
         if strongest.asks_for_field(settings) {
             self.create(settings, x, y, strongest);
         } else if strongest.second > settings.params.w_prune {
@@ -125,7 +112,7 @@ impl SubModel {
 
     fn create(&mut self, settings: &Settings, x: &[f64], y: f64, strongest: Strongest) {
         let template = self.fields.get(strongest.first_field).filter(|field| is_template(settings, strongest, field));
-        let field = Field::new(settings, x, y, template.map(Template));
+        let field = Field::new(settings, x, y, template);
         self.table.set(settings, self.fields.len(), &field);
         self.fields.push(field);
     }
@@ -152,30 +139,5 @@ impl SubModel {
 
 /// Whether a new field takes its shape from the strongest one.
 pub(crate) fn is_template(settings: &Settings, strongest: Strongest, field: &Field) -> bool {
-    strongest.first > 0.1 * settings.params.w_gen && field.trustworthy
-}
-
-/// One field learns from a normalised sample that activates it.
-#[inline(always)]
-pub(crate) fn train(
-    field: &mut Field,
-    settings: &Settings,
-    width: usize,
-    x: &[f64],
-    y: f64,
-    activation: Activation,
-    workspace: &mut Workspace,
-) {
-    let (dx, rest) = workspace.rows.split_at_mut(width);
-    let (residual, rest) = rest.split_at_mut(width);
-    let (fresh, rest) = rest.split_at_mut(width);
-    let (t, md) = rest.split_at_mut(width);
-    for i in 0..width {
-        dx[i] = x[i] - field.rows[i];
-    }
-    let target = update_means(field, settings, width, x, y, activation.w, residual);
-    let errors = update_regression(field, settings, width, target, activation.w, residual, fresh);
-    let mut scratch = MetricScratch { t, md: &mut md[..width], mmt: &mut workspace.mmt };
-    update_metric(field, settings, width, activation, errors, dx, &mut scratch);
-    grow_and_age(field, settings);
+    strongest.first > 0.1 * settings.params.w_gen && field.is_trustworthy()
 }

@@ -108,7 +108,6 @@ fn check(path: &Path) {
     }
     assert!(unsupported > 0 && unsupported < x_test.ncols() / 2, "{name}: {unsupported} points without support");
     let worst = [value.relative(), gradient.relative(), activation.relative()];
-    println!("{name}: value, gradient, activation {worst:?}, confidence {:.1e}", confidence.relative());
     assert!(worst.into_iter().all(|difference| difference <= TOLERANCE), "{name}: {worst:?}");
     assert!(name == "d2_young" || confidence.relative() <= TOLERANCE, "{name}: {}", confidence.relative());
 }

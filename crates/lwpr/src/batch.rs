@@ -1,0 +1,273 @@
+//! Exact training on many samples, field by field.
+//!
+//! A field learns from the samples and its own past alone. So each may run through a whole [`Chunk`] before the next one
+//! starts, its state at hand in the processor's nearest memory, or several may run side by side in the lanes of vector
+//! registers ([`LaneBlock`]). The fields meet only where a sample turns out to activate none of them: then one is born,
+//! shaped by the strongest as it was at that moment, which is found by running that one again.
+
+use std::cmp::Reverse;
+
+use pulp::Simd;
+
+use crate::chunk::{Axis, Chunk};
+use crate::field::Field;
+use crate::lane_block::LaneBlock;
+use crate::settings::Settings;
+use crate::sub_model::{Strongest, SubModel, is_template};
+use crate::training::{Workspace, train_one, with_width};
+
+/// Training of one output on one chunk.
+pub(crate) struct BatchTraining<'a> {
+    pub(crate) settings: &'a Settings,
+    pub(crate) chunk: &'a Chunk,
+    /// Normalised targets.
+    pub(crate) y: &'a [f64],
+    pub(crate) sub_model: &'a mut SubModel,
+    pub(crate) scratch: &'a mut BatchScratch,
+}
+
+/// What training one output works in.
+#[derive(Debug, Clone)]
+pub(crate) struct BatchScratch {
+    strongest: Vec<Strongest>,
+    /// The fields as they were at the start of the chunk, or at their birth in it, and where that was.
+    before: Vec<Field>,
+    start: Vec<usize>,
+    /// How many samples each field learnt from in the chunk before: the busiest go first, so that no lane is left with a
+    /// long one at the end.
+    load: Vec<usize>,
+    workspace: Workspace,
+}
+
+/// A sample needs a field, but there are enough.
+pub(crate) struct TooMany {
+    pub(crate) sample: usize,
+}
+
+/// What a lane is at: a field, and the sample it learns from next.
+#[derive(Debug, Clone, Copy)]
+struct Task {
+    field: usize,
+    sample: usize,
+}
+
+impl BatchScratch {
+    pub(crate) fn new(settings: &Settings) -> Self {
+        BatchScratch {
+            strongest: Vec::new(),
+            before: Vec::new(),
+            start: Vec::new(),
+            load: Vec::new(),
+            workspace: Workspace::new(settings, settings.width),
+        }
+    }
+}
+
+impl pulp::WithSimd for BatchTraining<'_> {
+    /// The number of fields born.
+    type Output = Result<usize, TooMany>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) -> Self::Output {
+        self.run(simd)
+    }
+}
+
+impl BatchTraining<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(&mut self, simd: S) -> Result<usize, TooMany> {
+        let n_fields = self.sub_model.fields.len();
+        self.scratch.strongest.clear();
+        self.scratch.strongest.resize(self.chunk.n, Strongest::default());
+        self.scratch.before.clone_from(&self.sub_model.fields);
+        self.scratch.start.clear();
+        self.scratch.start.resize(n_fields, 0);
+
+        self.scratch.load.resize(n_fields, 0);
+        let fields = self.sub_model.fields.iter().zip(&mut self.scratch.load).enumerate();
+        let mut order: Vec<(usize, Reverse<usize>, usize)> =
+            fields.map(|(k, (field, load))| (field.directions.len(), Reverse(std::mem::take(load)), k)).collect();
+        order.sort_unstable();
+        for group in order.chunk_by(|a, b| a.0 == b.0) {
+            self.train_group(simd, group);
+        }
+        self.make_fields(simd)?;
+        for (k, field) in self.sub_model.fields.iter().enumerate() {
+            self.sub_model.table.set(self.settings, k, field);
+        }
+        Ok(self.sub_model.fields.len() - n_fields)
+    }
+
+    /// Trains fields with equally many directions side by side. Lanes that run out of samples take the next field;
+    /// stragglers finish alone.
+    #[inline(always)]
+    fn train_group<S: Simd>(&mut self, simd: S, group: &[(usize, Reverse<usize>, usize)]) {
+        let mut queue = group.iter().map(|&(_, _, k)| k);
+        if group.len() * 2 < S::F64_LANES || S::F64_LANES == 1 {
+            queue.for_each(|k| self.train_rest(simd, k, 0));
+            return;
+        }
+        let mut block = LaneBlock::new(simd, self.settings, group[0].0);
+        let mut tasks = vec![None; S::F64_LANES];
+        for (lane, task) in tasks.iter_mut().enumerate() {
+            *task = self.next_field(&mut block, lane, &mut queue);
+        }
+        while 3 * tasks.iter().flatten().count() > S::F64_LANES {
+            let (w, wanted) = block.train(self.settings);
+            for lane in 0..S::F64_LANES {
+                let Some(Task { field: k, sample }) = tasks[lane] else { continue };
+                self.see(sample, k, w.get(lane));
+                let grows = wanted.is_some_and(|wanted| wanted.get(lane) > 0.0);
+                let next = if grows { None } else { self.next_sample(&mut block, lane, k, sample + 1) };
+                tasks[lane] = next;
+                if next.is_none() {
+                    let field = &mut self.sub_model.fields[k];
+                    block.store(self.settings, lane, field);
+                    if grows {
+                        field.grow(self.settings);
+                        self.train_rest(simd, k, sample + 1);
+                    }
+                    tasks[lane] = self.next_field(&mut block, lane, &mut queue);
+                }
+            }
+        }
+        for (lane, task) in tasks.into_iter().enumerate() {
+            if let Some(Task { field: k, sample }) = task {
+                block.store(self.settings, lane, &mut self.sub_model.fields[k]);
+                self.train_rest(simd, k, sample);
+            }
+        }
+        queue.for_each(|k| self.train_rest(simd, k, 0));
+    }
+
+    /// Fills a lane with the next field that has anything to learn here.
+    #[inline(always)]
+    fn next_field<S: Simd>(
+        &mut self,
+        block: &mut LaneBlock<S>,
+        lane: usize,
+        queue: &mut impl Iterator<Item = usize>,
+    ) -> Option<Task> {
+        loop {
+            let k = queue.next()?;
+            block.load(self.settings, lane, &mut self.sub_model.fields[k]);
+            if let Some(task) = self.next_sample(block, lane, k, 0) {
+                return Some(task);
+            }
+        }
+    }
+
+    /// Gives a lane the next sample that its field learns from.
+    #[inline(always)]
+    fn next_sample<S: Simd>(&mut self, block: &mut LaneBlock<S>, lane: usize, k: usize, start: usize) -> Option<Task> {
+        let (sample, q) = self.find(block.simd(), block.axes(lane), k, (start, self.chunk.n))?;
+        block.set_sample(lane, self.chunk, sample, self.y[sample], q);
+        Some(Task { field: k, sample })
+    }
+
+    /// The next sample that field `k` learns from; takes note of those that are only near.
+    #[inline(always)]
+    fn find<S: Simd>(
+        &mut self,
+        simd: S,
+        axes: &[Axis],
+        k: usize,
+        (mut start, end): (usize, usize),
+    ) -> Option<(usize, f64)> {
+        loop {
+            let (sample, q) = self.chunk.find(simd, axes, (start, end), self.settings.reach)?;
+            if q < self.settings.training_reach {
+                return Some((sample, q));
+            }
+            self.see(sample, k, self.settings.params.kernel.at(q).w);
+            start = sample + 1;
+        }
+    }
+
+    #[inline(always)]
+    fn see(&mut self, sample: usize, field: usize, w: f64) {
+        self.scratch.strongest[sample].see_unordered(field, w);
+        self.scratch.load[field] += 1;
+    }
+
+    /// Field `k` learns alone from the samples from `start` on.
+    #[inline(always)]
+    fn train_rest<S: Simd>(&mut self, simd: S, k: usize, start: usize) {
+        let mut field = std::mem::take(&mut self.sub_model.fields[k]);
+        self.train_alone(simd, &mut field, k, start, self.chunk.n);
+        self.sub_model.fields[k] = field;
+    }
+
+    fn train_alone<S: Simd>(&mut self, simd: S, field: &mut Field, k: usize, start: usize, end: usize) {
+        simd.vectorize(Alone { training: self, field, k, start, end });
+    }
+
+    /// Makes a field at every sample that has activated none enough.
+    fn make_fields<S: Simd>(&mut self, simd: S) -> Result<(), TooMany> {
+        let limit = self.settings.params.max_receptive_fields.unwrap_or(usize::MAX);
+        let mut next = 0;
+        while let Some(sample) =
+            (next..self.chunk.n).find(|&sample| self.scratch.strongest[sample].asks_for_field(self.settings))
+        {
+            if self.sub_model.fields.len() >= limit {
+                return Err(TooMany { sample });
+            }
+            let template = self.template(simd, sample);
+            let field = Field::new(self.settings, self.chunk.row(sample), self.y[sample], template.as_ref());
+            next = sample + 1;
+            self.scratch.before.push(field.clone());
+            self.scratch.start.push(next);
+            self.scratch.load.push(0);
+            self.sub_model.fields.push(field);
+            self.train_rest(simd, self.sub_model.fields.len() - 1, next);
+        }
+        Ok(())
+    }
+
+    /// The strongest field at `sample`, as it was after learning from that sample, if it is fit for a template.
+    fn template<S: Simd>(&mut self, simd: S, sample: usize) -> Option<Field> {
+        let strongest = self.scratch.strongest[sample];
+        if strongest.first <= 0.1 * self.settings.params.w_gen {
+            return None;
+        }
+        let k = strongest.first_field;
+        let mut field = self.scratch.before[k].clone();
+        self.train_alone(simd, &mut field, k, self.scratch.start[k], sample + 1);
+        is_template(self.settings, strongest, &field).then_some(field)
+    }
+}
+
+/// One field learns from a range of samples.
+struct Alone<'a, 'b> {
+    training: &'a mut BatchTraining<'b>,
+    field: &'a mut Field,
+    k: usize,
+    start: usize,
+    end: usize,
+}
+
+impl pulp::WithSimd for Alone<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Alone { training, field, k, start, end } = self;
+        let (settings, width) = (training.settings, training.settings.width);
+        let mut axes: Vec<Axis> = field.centre(settings).iter().map(|&c| Axis { c, d: 0.0 }).collect();
+        let mut next = start;
+        loop {
+            for (axis, &m) in axes.iter_mut().zip(field.m(settings)) {
+                axis.d = m * m;
+            }
+            let Some((sample, q)) = training.find(simd, &axes, k, (next, end)) else { break };
+            let activation = settings.params.kernel.at(q);
+            training.see(sample, k, activation.w);
+            let Workspace { rows, mmt } = &mut training.scratch.workspace;
+            let (x, y) = (training.chunk.row(sample), training.y[sample]);
+            with_width!(width, [1, 2, 4, 8, 16, 24, 32], rows, |width, scratch| {
+                train_one(simd, field, settings, (&x[..width], y), activation, scratch, mmt);
+            });
+            next = sample + 1;
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! A stretch of samples that all fields of an output learn from, one field after the other.
+
+use pulp::Simd;
+
+use crate::number::{Lanes, Number};
+use crate::settings::Settings;
+
+/// Samples that are looked at together.
+const LANES: usize = 8;
+
+/// Normalised inputs, sample by sample and eight samples side by side.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Chunk {
+    pub(crate) n: usize,
+    width: usize,
+    rows: Vec<f64>,
+    /// For each block of eight samples, one array a dimension; beyond the end everything is infinitely far away.
+    blocks: Vec<[f64; LANES]>,
+}
+
+/// Centre and diagonal D of a field.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Axis {
+    pub(crate) c: f64,
+    pub(crate) d: f64,
+}
+
+impl Chunk {
+    /// Takes in other samples, columns of length `n_in`.
+    pub(crate) fn fill<'a>(&mut self, settings: &Settings, columns: impl ExactSizeIterator<Item = &'a [f64]>) {
+        let (n_in, width) = (settings.n_in, settings.width);
+        self.n = columns.len();
+        self.width = width;
+        self.rows.clear();
+        self.rows.resize(self.n * width, 0.0);
+        self.blocks.clear();
+        self.blocks.resize(self.n.div_ceil(LANES) * n_in, [f64::INFINITY; LANES]);
+        for (sample, x) in columns.enumerate() {
+            for (i, (x, norm)) in x.iter().zip(&settings.norm_in).enumerate() {
+                self.rows[sample * width + i] = x / norm;
+                self.blocks[sample / LANES * n_in + i][sample % LANES] = x / norm;
+            }
+        }
+    }
+
+    /// The padded sample.
+    #[inline(always)]
+    pub(crate) fn row(&self, sample: usize) -> &[f64] {
+        &self.rows[sample * self.width..][..self.width]
+    }
+
+    /// The first sample from `start` on, before `end`, that is closer than `reach`, and its squared distance.
+    #[inline(always)]
+    pub(crate) fn find<S: Simd>(
+        &self,
+        simd: S,
+        axes: &[Axis],
+        (start, end): (usize, usize),
+        reach: f64,
+    ) -> Option<(usize, f64)> {
+        let n = S::F64_LANES;
+        let mut first = start / n * n;
+        let near = Lanes::splat(simd, reach);
+        while first < end {
+            let block = &self.blocks[first / LANES * axes.len()..][..axes.len()];
+            let q = distances(simd, block, first % LANES / n, axes);
+            let lane = q.first_below(near, start.saturating_sub(first));
+            if lane < n {
+                let sample = first + lane;
+                return (sample < end).then(|| (sample, q.get(lane)));
+            }
+            first += n;
+        }
+        None
+    }
+}
+
+/// Squared distances of the samples of a part of a block; the order of the sum is the activation table's.
+#[inline(always)]
+fn distances<S: Simd>(simd: S, block: &[[f64; LANES]], part: usize, axes: &[Axis]) -> Lanes<S> {
+    let mut q = Lanes::splat(simd, 0.0);
+    for (x, axis) in block.iter().zip(axes) {
+        let dx = Lanes::of(simd, Lanes::<S>::elements(x)[part]) - axis.c;
+        q += dx * dx * axis.d;
+    }
+    q
+}

@@ -1,0 +1,83 @@
+//! The gradient of a full metric.
+
+use crate::field::MetricRows;
+use crate::metric::{Derivatives, ElementRows, Step};
+use crate::number::{Element, Number};
+
+/// Scratch rows: M(x − c), a column of MD, and M Mᵀ (`n_in` rows; empty for a diagonal metric).
+pub(crate) struct FullScratch<'a> {
+    pub(crate) t: &'a mut [f64],
+    pub(crate) md: &'a mut [f64],
+    pub(crate) mmt: &'a mut [f64],
+}
+
+/// y ← y + a·x for rows.
+#[inline(always)]
+pub(crate) fn add_scaled<T: Number, E: Element<T>>(token: E::Token, y: &mut [f64], a: T, x: &[f64]) {
+    for (y, &x) in E::elements_mut(y).iter_mut().zip(E::elements(x)) {
+        *y = (E::of(token, *y) + E::of(token, x) * a).raw();
+    }
+}
+
+/// Steps every element of the upper triangle. With t = M(x − c), ∂q/∂M_nm = 2 (x − c)_m t_n; the penalty's gradient needs
+/// MD = (M Mᵀ) M, whose columns come one at a time.
+#[inline(always)]
+pub(crate) fn full_step<T: Element<T>, E: Element<T>>(
+    (scalar, token): (T::Token, E::Token),
+    rows: &mut MetricRows<'_>,
+    step: &Step<T>,
+    dx: &[f64],
+    scratch: &mut FullScratch<'_>,
+) {
+    let FullScratch { t, md, mmt } = scratch;
+    let width = dx.len();
+    t.fill(0.0);
+    mmt.fill(0.0);
+    for (m, column) in rows.m.chunks_exact(width).enumerate() {
+        add_scaled::<T, E>(token, t, T::of(scalar, T::elements(dx)[m]), column);
+        for (k, row) in mmt.chunks_exact_mut(width).enumerate().take(m + 1) {
+            add_scaled::<T, E>(token, row, T::of(scalar, T::elements(column)[k]), column);
+        }
+    }
+    for m in 0..rows.m.len() / width {
+        let column = &rows.m[m * width..][..width];
+        md.fill(0.0);
+        for (k, row) in mmt.chunks_exact(width).enumerate().take(m + 1) {
+            add_scaled::<T, E>(token, md, T::of(scalar, T::elements(column)[k]), row);
+        }
+        let (dx, diagonal) = (T::of(scalar, T::elements(dx)[m]), E::dot(token, column, column));
+        match step.rate {
+            // Below the diagonal the learning rate is zero, so that M stays zero there.
+            None => {
+                let mut rows = ElementRows::<E>::new(rows);
+                let from = m * E::elements(t).len();
+                for (i, (&t, &md)) in E::elements(t).iter().zip(E::elements(md)).enumerate() {
+                    let (t, md) = (E::of(token, t), E::of(token, md));
+                    step.descend(&mut rows, from + i, derivatives(step, E::spread(token, dx), t, md, t));
+                }
+            }
+            Some(rate) => {
+                let mut rows = ElementRows::<T>::new(rows);
+                let (t, md, mmt) = (T::elements(t), T::elements(md), T::elements(mmt));
+                for i in 0..=m {
+                    let element = T::of(scalar, rows.m[m * t.len() + i]);
+                    // Row i of M squared, from the diagonal on, and the element itself once more.
+                    let row = T::of(scalar, mmt[i * t.len() + i]);
+                    let curvature = diagonal + row + element * element;
+                    let by = derivatives(step, dx, T::of(scalar, t[i]), T::of(scalar, md[i]), curvature);
+                    step.descend_meta(&mut rows, m * t.len() + i, rate, by);
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn derivatives<T: Number, E: Element<T>>(step: &Step<T>, dx: E, t: E, md: E, curvature: E) -> Derivatives<E> {
+    Derivatives {
+        dq: dx * t * 2.0,
+        d2q: dx * dx * 2.0,
+        penalty: md * (2.0 * step.gamma),
+        penalty_second: curvature * (2.0 * step.gamma),
+    }
+}

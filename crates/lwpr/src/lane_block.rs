@@ -1,0 +1,148 @@
+//! Fields side by side: one in each lane of a vector register.
+
+use pulp::Simd;
+
+use crate::chunk::{Axis, Chunk};
+use crate::field::{DIRECTION_ROWS, Direction, Field, Layout};
+use crate::kernel::Activation;
+use crate::number::{Lanes, Number};
+use crate::settings::{Settings, padded_for_lanes};
+use crate::training::{Workspace, train, with_width};
+
+/// As many fields as a vector register has lanes, all with the same number of directions, and a sample for each.
+pub(crate) struct LaneBlock<S: Simd> {
+    simd: S,
+    field: Field<Lanes<S>>,
+    /// Centre and D of each lane.
+    axes: Vec<Vec<Axis>>,
+    x: Vec<f64>,
+    y: Lanes<S>,
+    q: Lanes<S>,
+    workspace: Workspace,
+}
+
+impl<T> Direction<T> {
+    fn numbers(&mut self) -> [&mut T; 9] {
+        let Direction { beta, ss2, ss_y, h, r, sum_w, sum_e_cv2, n_data, lambda, s: _ } = self;
+        [beta, ss2, ss_y, h, r, sum_w, sum_e_cv2, n_data, lambda]
+    }
+}
+
+impl<T> Field<T> {
+    fn numbers(&mut self) -> impl Iterator<Item = &mut T> {
+        let Field { beta0, sum_e2, ss_p, trust, directions, rows: _ } = self;
+        [beta0, sum_e2, ss_p, trust].into_iter().chain(directions.iter_mut().flat_map(Direction::numbers))
+    }
+}
+
+impl<S: Simd> LaneBlock<S> {
+    /// For fields of `n_directions`. Lanes that have not been filled hold something whose learning is harmless.
+    pub(crate) fn new(simd: S, settings: &Settings, n_directions: usize) -> Self {
+        let one = Lanes::splat(simd, 1.0);
+        let width = padded_for_lanes(settings.n_in) * S::F64_LANES;
+        let direction = Direction {
+            beta: one,
+            ss2: one,
+            ss_y: one,
+            h: one,
+            r: one,
+            sum_w: one,
+            sum_e_cv2: one,
+            n_data: one,
+            lambda: one,
+            s: one,
+        };
+        let len = Layout::new(settings, width).directions() + n_directions * DIRECTION_ROWS * width;
+        LaneBlock {
+            simd,
+            field: Field {
+                beta0: one,
+                sum_e2: one,
+                ss_p: one,
+                trust: one,
+                directions: vec![direction; n_directions],
+                rows: vec![0.0; len],
+            },
+            axes: vec![vec![Axis { c: 0.0, d: 1.0 }; settings.n_in]; S::F64_LANES],
+            x: vec![0.0; width],
+            y: one,
+            q: one,
+            workspace: Workspace::new(settings, width),
+        }
+    }
+
+    pub(crate) fn simd(&self) -> S {
+        self.simd
+    }
+
+    /// Puts a field into a lane.
+    pub(crate) fn load(&mut self, settings: &Settings, lane: usize, field: &mut Field) {
+        for (ours, theirs) in self.field.numbers().zip(field.numbers()) {
+            ours.set(lane, *theirs);
+        }
+        for (axis, &c) in self.axes[lane].iter_mut().zip(field.centre(settings)) {
+            axis.c = c;
+        }
+        let rows = self.field.rows.chunks_exact_mut(self.x.len());
+        for (ours, theirs) in rows.zip(field.rows.chunks_exact(settings.width)) {
+            for (ours, theirs) in ours[lane..].iter_mut().step_by(S::F64_LANES).zip(theirs) {
+                *ours = *theirs;
+            }
+        }
+    }
+
+    /// Takes the field of a lane out again.
+    pub(crate) fn store(&mut self, settings: &Settings, lane: usize, field: &mut Field) {
+        for (ours, theirs) in self.field.numbers().zip(field.numbers()) {
+            *theirs = ours.get(lane);
+        }
+        let rows = self.field.rows.chunks_exact(self.x.len());
+        for (ours, theirs) in rows.zip(field.rows.chunks_exact_mut(settings.width)) {
+            for (ours, theirs) in ours[lane..].iter().step_by(S::F64_LANES).zip(theirs) {
+                *theirs = *ours;
+            }
+        }
+    }
+
+    /// Centre and metric of a lane's field.
+    #[inline(always)]
+    pub(crate) fn axes(&mut self, lane: usize) -> &[Axis] {
+        let width = self.x.len();
+        let m = self.field.rows[2 * width + lane..3 * width].iter().step_by(S::F64_LANES);
+        for (axis, &m) in self.axes[lane].iter_mut().zip(m) {
+            axis.d = m * m;
+        }
+        &self.axes[lane]
+    }
+
+    /// Gives a lane the sample it learns from next.
+    #[inline(always)]
+    pub(crate) fn set_sample(&mut self, lane: usize, chunk: &Chunk, sample: usize, y: f64, q: f64) {
+        for (ours, x) in self.x[lane..].iter_mut().step_by(S::F64_LANES).zip(chunk.row(sample)) {
+            *ours = *x;
+        }
+        self.y.set(lane, y);
+        self.q.set(lane, q);
+    }
+
+    /// All lanes learn from their samples. Returns the activations, and which lanes call for another direction.
+    #[inline(always)]
+    pub(crate) fn train(&mut self, settings: &Settings) -> (Lanes<S>, Option<Lanes<S>>) {
+        let activation: Activation<Lanes<S>> = settings.params.kernel.at(self.q);
+        let Workspace { rows, mmt } = &mut self.workspace;
+        let wanted = with_width!(self.x.len(), [4, 8, 12, 16, 24, 32, 48, 64], rows, |width, scratch| {
+            let sample = (&self.x[..width], self.y);
+            train::<Lanes<S>, Lanes<S>>(
+                (self.simd, self.simd),
+                &mut self.field,
+                settings,
+                sample,
+                activation,
+                scratch,
+                mmt,
+            )
+        });
+        let marks = |mask| Lanes::splat(self.simd, 1.0).or_else(mask, Lanes::splat(self.simd, 0.0));
+        (activation.w, wanted.map(marks))
+    }
+}

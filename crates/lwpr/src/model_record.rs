@@ -1,0 +1,209 @@
+//! A model as it is stored: complete, so that training goes on as if it had never stopped.
+
+use serde::{Deserialize, Serialize};
+
+use crate::activation::ActivationTable;
+use crate::field::{DIRECTION_ROWS, Direction, Field, Layout};
+use crate::model::InputStatistics;
+use crate::settings::Settings;
+use crate::sub_model::SubModel;
+use crate::{Lwpr, LwprError, LwprParams, Metric};
+
+/// A [`Lwpr`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ModelRecord {
+    params: LwprParams,
+    n_in: usize,
+    n_out: usize,
+    inputs: InputStatistics,
+    outputs: Vec<OutputRecord>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OutputRecord {
+    n_pruned: usize,
+    fields: Vec<FieldRecord>,
+}
+
+/// A receptive field; vectors without padding, matrices column after column.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FieldRecord {
+    beta0: f64,
+    sum_e2: f64,
+    ss_p: f64,
+    trustworthy: bool,
+    centre: Vec<f64>,
+    mean: Vec<f64>,
+    m: Vec<f64>,
+    alpha: Vec<f64>,
+    log_alpha: Vec<f64>,
+    memory: Vec<f64>,
+    directions: Vec<DirectionRecord>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DirectionRecord {
+    beta: f64,
+    ss2: f64,
+    ss_y: f64,
+    h: f64,
+    r: f64,
+    sum_w: f64,
+    sum_e_cv2: f64,
+    n_data: f64,
+    lambda: f64,
+    covariance: Vec<f64>,
+    ss_x: Vec<f64>,
+    u: Vec<f64>,
+    p: Vec<f64>,
+}
+
+/// Rows without their padding.
+fn unpad(rows: &[f64], settings: &Settings) -> Vec<f64> {
+    rows.chunks_exact(settings.width).flat_map(|row| &row[..settings.n_in]).copied().collect()
+}
+
+/// Appends `n_rows` rows with their padding; `None` if there are more or fewer numbers, or one is not finite.
+fn pad(rows: &mut Vec<f64>, numbers: &[f64], n_rows: usize, settings: &Settings) -> Option<()> {
+    if numbers.len() != n_rows * settings.n_in || !numbers.iter().all(|number| number.is_finite()) {
+        return None;
+    }
+    for row in numbers.chunks_exact(settings.n_in) {
+        rows.extend_from_slice(row);
+        rows.resize(rows.len() + settings.width - settings.n_in, 0.0);
+    }
+    Some(())
+}
+
+impl FieldRecord {
+    fn new(field: &Field, settings: &Settings) -> Self {
+        let layout = Layout::new(settings, settings.width);
+        let (fixed, rest) = field.rows.split_at(layout.directions());
+        let mut fixed = fixed;
+        let mut take = |len: usize| {
+            let (head, tail) = fixed.split_at(len);
+            fixed = tail;
+            unpad(head, settings)
+        };
+        FieldRecord {
+            beta0: field.beta0,
+            sum_e2: field.sum_e2,
+            ss_p: field.ss_p,
+            trustworthy: field.is_trustworthy(),
+            centre: take(layout.width),
+            mean: take(layout.width),
+            m: take(layout.metric),
+            alpha: take(layout.metric),
+            log_alpha: take(layout.meta),
+            memory: take(layout.meta),
+            directions: field
+                .directions
+                .iter()
+                .zip(rest.chunks_exact(DIRECTION_ROWS * layout.width))
+                .map(|(direction, rows)| DirectionRecord::new(direction, rows, settings))
+                .collect(),
+        }
+    }
+
+    fn restore(&self, settings: &Settings) -> Option<Field> {
+        let n = settings.n_in;
+        let metric = if settings.params.metric == Metric::Full { n } else { 1 };
+        let meta = if settings.meta() { metric } else { 0 };
+        let &FieldRecord { beta0, sum_e2, ss_p, trustworthy, .. } = self;
+        let fine = (n.min(2)..=n).contains(&self.directions.len())
+            && [beta0, sum_e2, ss_p].iter().all(|number| number.is_finite());
+        if !fine {
+            return None;
+        }
+        let mut rows = Vec::new();
+        let blocks = [&self.centre, &self.mean, &self.m, &self.alpha, &self.log_alpha, &self.memory];
+        for (numbers, n_rows) in blocks.into_iter().zip([1, 1, metric, metric, meta, meta]) {
+            pad(&mut rows, numbers, n_rows, settings)?;
+        }
+        let directions: Option<_> =
+            self.directions.iter().map(|direction| direction.restore(settings, &mut rows)).collect();
+        Some(Field { beta0, sum_e2, ss_p, trust: if trustworthy { 1.0 } else { 0.0 }, directions: directions?, rows })
+    }
+}
+
+impl DirectionRecord {
+    fn new(direction: &Direction, rows: &[f64], settings: &Settings) -> Self {
+        let &Direction { beta, ss2, ss_y, h, r, sum_w, sum_e_cv2, n_data, lambda, s: _ } = direction;
+        let row = |k: usize| unpad(&rows[k * settings.width..][..settings.width], settings);
+        let (covariance, ss_x, u, p) = (row(0), row(1), row(2), row(3));
+        DirectionRecord { beta, ss2, ss_y, h, r, sum_w, sum_e_cv2, n_data, lambda, covariance, ss_x, u, p }
+    }
+
+    fn restore(&self, settings: &Settings, rows: &mut Vec<f64>) -> Option<Direction> {
+        let &DirectionRecord { beta, ss2, ss_y, h, r, sum_w, sum_e_cv2, n_data, lambda, .. } = self;
+        for row in [&self.covariance, &self.ss_x, &self.u, &self.p] {
+            pad(rows, row, 1, settings)?;
+        }
+        let finite = [beta, ss_y, h, r, sum_e_cv2, n_data, lambda].iter().all(|number| number.is_finite());
+        let positive = [ss2, sum_w].iter().all(|&number| number > 0.0 && number.is_finite());
+        (finite && positive && n_data >= 0.0 && lambda > 0.0 && lambda <= 1.0).then_some(Direction {
+            beta,
+            ss2,
+            ss_y,
+            h,
+            r,
+            sum_w,
+            sum_e_cv2,
+            n_data,
+            lambda,
+            s: 0.0,
+        })
+    }
+}
+
+impl From<Lwpr> for ModelRecord {
+    fn from(model: Lwpr) -> Self {
+        let settings = &model.settings;
+        let output = |sub_model: &SubModel| OutputRecord {
+            n_pruned: sub_model.n_pruned,
+            fields: sub_model.fields.iter().map(|field| FieldRecord::new(field, settings)).collect(),
+        };
+        ModelRecord {
+            n_in: settings.n_in,
+            n_out: settings.n_out,
+            outputs: model.outputs.iter().map(output).collect(),
+            params: settings.params.clone(),
+            inputs: model.inputs,
+        }
+    }
+}
+
+impl TryFrom<ModelRecord> for Lwpr {
+    type Error = LwprError;
+
+    fn try_from(record: ModelRecord) -> Result<Self, LwprError> {
+        let corrupt = |reason: String| LwprError::Corrupt { reason };
+        let settings = Settings::new(record.params, record.n_in, record.n_out)?;
+        let inputs = record.inputs;
+        let finite = inputs.mean.iter().chain(&inputs.variance).all(|number| number.is_finite());
+        if inputs.mean.len() != record.n_in || inputs.variance.len() != record.n_in || !finite {
+            return Err(corrupt("the input statistics do not fit the inputs".to_owned()));
+        }
+        if record.outputs.len() != record.n_out {
+            return Err(corrupt(format!("{} lists of fields for {} outputs", record.outputs.len(), record.n_out)));
+        }
+        let mut outputs = Vec::new();
+        for (o, output) in record.outputs.iter().enumerate() {
+            let mut sub_model = SubModel { n_pruned: output.n_pruned, ..SubModel::default() };
+            let mut table = ActivationTable::default();
+            for (k, field) in output.fields.iter().enumerate() {
+                let field = field.restore(&settings).ok_or_else(|| {
+                    corrupt(format!("output {o}, field {k}: a wrong number of numbers, or one that cannot be"))
+                })?;
+                table.set(&settings, k, &field);
+                sub_model.fields.push(field);
+            }
+            outputs.push(SubModel { table, ..sub_model });
+        }
+        Ok(Lwpr::from_parts(settings, outputs, inputs))
+    }
+}

@@ -1,0 +1,50 @@
+//! A predictor as it is stored.
+
+use serde::{Deserialize, Serialize};
+
+use crate::local_model::LocalModel;
+use crate::{Kernel, LwprError, Predictor};
+
+/// Everything a [`Predictor`] is made from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PredictorRecord {
+    pub(crate) kernel: Kernel,
+    pub(crate) cutoff: f64,
+    pub(crate) norm_in: Vec<f64>,
+    pub(crate) norm_out: Vec<f64>,
+    pub(crate) outputs: Vec<Vec<LocalModel>>,
+}
+
+impl PredictorRecord {
+    fn check(&self) -> Result<(), &'static str> {
+        let n = self.norm_in.len();
+        let positive = |norm: &[f64]| !norm.is_empty() && norm.iter().all(|&norm| norm > 0.0 && norm.is_finite());
+        let models = || self.outputs.iter().flatten();
+        let checks = [
+            (self.cutoff >= 0.0, "the cutoff is not a number from 0 on"),
+            (positive(&self.norm_in) && positive(&self.norm_out), "a norm is not positive and finite"),
+            (self.outputs.len() == self.norm_out.len(), "there is not one list of fields an output"),
+            (models().all(|model| model.has_shape(n)), "a field has not the shape of the inputs"),
+            (models().all(LocalModel::is_finite), "a field has a number that is not finite"),
+        ];
+        checks.into_iter().find(|(fine, _)| !fine).map_or(Ok(()), |(_, reason)| Err(reason))
+    }
+}
+
+impl TryFrom<PredictorRecord> for Predictor {
+    type Error = LwprError;
+
+    fn try_from(record: PredictorRecord) -> Result<Self, LwprError> {
+        match record.check() {
+            Ok(()) => Ok(Predictor::from_record(record)),
+            Err(reason) => Err(LwprError::Corrupt { reason: reason.to_owned() }),
+        }
+    }
+}
+
+impl From<Predictor> for PredictorRecord {
+    fn from(predictor: Predictor) -> Self {
+        predictor.record()
+    }
+}
