@@ -1,4 +1,43 @@
-//! Locally weighted projection regression.
+//! Locally weighted projection regression (LWPR): learns a smooth function from samples as they come.
+//!
+//! A model is a set of *receptive fields*, each a Gaussian bump somewhere in the input space with a small linear model of
+//! its own. A prediction is the mean of the local models, weighted by how strongly the input activates their fields. A
+//! sample that activates no field makes a new one; all others learn from it by incremental least squares along a few
+//! projections of the input, and shrink or stretch their bumps by gradient descent on a leave-one-out error. Nothing is
+//! stored but the fields, so that time and memory do not grow with the number of samples. The algorithm is Vijayakumar,
+//! D'Souza and Schaal, "Incremental online learning in high dimensions", Neural Computation 17 (2005).
+//!
+//! ```
+//! use lwpr::LwprParams;
+//! use nalgebra::{DMatrix, DVector};
+//!
+//! let xs = DMatrix::from_fn(1, 500, |_, i| (i * 211 % 500) as f64 / 250.0 - 1.0); // Samples are columns.
+//! let ys = xs.map(|x| (3.0 * x).sin());
+//!
+//! let mut model = LwprParams { init_d: 50.0, ..LwprParams::default() }.build(1, 1)?;
+//! model.fit_in_order(&xs, &ys, 10)?; // A batch …
+//! model.update(xs.column(7), ys.column(7))?; // … or one sample at a time.
+//!
+//! let predictor = model.predictor(0.001); // An immutable snapshot, to be shared between threads.
+//! let p = predictor.predict(DVector::from_element(1, 0.5).as_view()).expect("trained here");
+//! assert!((p.value[0] - 1.5_f64.sin()).abs() < 0.02);
+//! assert!((p.gradient[(0, 0)] - 3.0 * 1.5_f64.cos()).abs() < 0.5);
+//! assert!(predictor.predict(DVector::from_element(1, 40.0).as_view()).is_none()); // Nothing was learnt there.
+//! # Ok::<(), lwpr::LwprError>(())
+//! ```
+//!
+//! # What to choose
+//!
+//! - `norm_in`, `norm_out`: the spread of each dimension. All other numbers speak of data divided by these.
+//! - `init_d`: the one that matters most. A field reaches about 2/√`init_d`; start with a few tens in 2 dimensions, less in
+//!   more, double it while a validation error falls. Too small, and one field covers everything; too large, and fields
+//!   multiply until each knows only a few samples.
+//! - [`Metric::Diagonal`] is right nearly always. [`Metric::Full`] turns fields along valleys, at O(n³) a sample and field.
+//! - [`MetricAdaptation::Gradient`] adapts the fields' shapes; [`Meta`](MetricAdaptation::Meta) also their learning rates,
+//!   which then may start low (`init_alpha` of a few); [`Fixed`](MetricAdaptation::Fixed) suits data that are dense and even.
+//! - Samples in random order learn better than along trajectories: [`Lwpr::fit_batch`] shuffles every pass.
+//!
+//! A batch gives the same model as its samples one by one, bit for bit, at any number of threads, faster.
 
 // Code under `pulp::Arch::dispatch` is compiled for the processor at hand only where it is inlined.
 #![allow(clippy::inline_always)]

@@ -1,0 +1,44 @@
+//! Gradient and Hessian of the prediction against central differences.
+
+#![allow(clippy::unwrap_used)] // A panic is how a test fails.
+
+mod support;
+
+use nalgebra::{DMatrix, DVector};
+use proptest::prelude::*;
+use support::case;
+
+const STEP: f64 = 1e-5;
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(150))]
+
+    #[test]
+    fn gradient_and_hessian_are_derivatives(case in case(250), at in 0_usize..250, output in 0_usize..3) {
+        let (n, output) = (case.n_in, output % case.n_out);
+        // With no cutoff the prediction is smooth (the bisquare kernel's second derivative jumps at its border).
+        let predictor = case.trained(2).predictor(0.0);
+        let x = case.xs.column(at).into_owned();
+        let gradient_at = |x: &DVector<f64>| {
+            let mut gradient = DVector::zeros(n);
+            predictor.value_and_gradient_into(x.as_view(), output, gradient.as_view_mut()).map(|_| gradient)
+        };
+        let Some(gradient) = gradient_at(&x) else { return Ok(()) };
+        let hessian = predictor.hessian(x.as_view(), output).unwrap();
+        prop_assert_eq!(predictor.predict(x.as_view()).map(|p| p.gradient.row(output).transpose()), Some(gradient.clone()));
+
+        let (mut slope, mut curvature) = (DVector::zeros(n), DMatrix::zeros(n, n));
+        for i in 0..n {
+            let step = DVector::from_fn(n, |k, _| if k == i { STEP } else { 0.0 });
+            let (right, left) = (&x + &step, &x - &step);
+            let value = |x: &DVector<f64>| predictor.value(x.as_view(), output).unwrap();
+            slope[i] = (value(&right) - value(&left)) / (2.0 * STEP);
+            let change = gradient_at(&right).unwrap() - gradient_at(&left).unwrap();
+            curvature.set_column(i, &(change / (2.0 * STEP)));
+        }
+        prop_assert!((&slope - &gradient).amax() <= 1e-5 * (1.0 + gradient.amax()), "{slope} {gradient}");
+        let smooth = case.params.kernel == lwpr::Kernel::Gaussian;
+        let error = (&curvature - &hessian).amax();
+        prop_assert!(!smooth || error <= 1e-4 * (1.0 + hessian.amax()), "{curvature} {hessian}");
+    }
+}

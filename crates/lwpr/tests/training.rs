@@ -1,0 +1,107 @@
+//! Batch = online, storing, threads, units, order of outputs.
+
+#![allow(clippy::unwrap_used)] // A panic is how a test fails.
+
+mod support;
+
+use lwpr::Lwpr;
+use nalgebra::DMatrix;
+use proptest::prelude::*;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use support::{Case, case};
+
+/// The whole state; equal texts are equal bits.
+fn state(model: &Lwpr) -> String {
+    serde_json::to_string(model).unwrap()
+}
+
+fn train_online(case: &Case, samples: std::ops::Range<usize>, model: &mut Lwpr) {
+    for i in samples {
+        model.update(case.xs.column(i).as_view(), case.ys.column(i).as_view()).unwrap();
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(150))]
+
+    #[test]
+    fn a_batch_is_its_samples_one_by_one(case in case(400)) {
+        let mut online = case.model();
+        for _ in 0..2 {
+            train_online(&case, 0..case.xs.ncols(), &mut online);
+        }
+        prop_assert_eq!(state(&case.trained(2)), state(&online));
+    }
+
+    #[test]
+    fn a_stored_model_goes_on_as_if_nothing_had_happened(case in case(300), at in 1_usize..299) {
+        let mut whole = case.model();
+        train_online(&case, 0..300, &mut whole);
+        let mut first = case.model();
+        train_online(&case, 0..at, &mut first);
+        let mut resumed: Lwpr = serde_json::from_str(&state(&first)).unwrap();
+        train_online(&case, at..300, &mut resumed);
+        prop_assert_eq!(state(&resumed), state(&whole));
+        let predictor = whole.predictor(0.001);
+        let stored: lwpr::Predictor = serde_json::from_str(&serde_json::to_string(&predictor).unwrap()).unwrap();
+        prop_assert_eq!(stored, predictor);
+    }
+
+    #[test]
+    fn threads_and_seed_decide_nothing_and_everything(case in case(200)) {
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut model = case.model();
+                model.fit_batch(&case.xs, &case.ys, 2, &mut ChaCha8Rng::seed_from_u64(case.seed)).unwrap();
+                let predictions = model.predictor(0.001).predict_batch(&case.xs).unwrap();
+                (state(&model), predictions)
+            })
+        };
+        prop_assert_eq!(run(1), run(3));
+    }
+
+    #[test]
+    fn units_do_not_matter(case in case(200), exponent in -8_i32..8) {
+        let scale = 2.0_f64.powi(exponent);
+        let mut other = case.clone();
+        other.xs *= scale;
+        other.params.norm_in = case.params.norm_in.clone().map(|norm| norm * scale);
+        let (plain, scaled) = (case.trained(1).predictor(0.001), other.trained(1).predictor(0.001));
+        for i in 0..case.xs.ncols() {
+            let (a, b) = (plain.predict(case.xs.column(i).as_view()), scaled.predict(other.xs.column(i).as_view()));
+            prop_assert_eq!(a.map(|p| (p.value, p.gradient)), b.map(|p| (p.value, p.gradient * scale)));
+        }
+    }
+
+    #[test]
+    fn outputs_do_not_know_each_other(case in case(200)) {
+        let together = case.trained(1).predictor(0.001);
+        for output in 0..case.n_out {
+            let mut alone = case.clone();
+            alone.n_out = 1;
+            alone.ys = DMatrix::from_rows(&[case.ys.row(output)]);
+            alone.params.norm_out = alone.params.norm_out.map(|norm| norm.rows(output, 1).into_owned());
+            let alone = alone.trained(1).predictor(0.001);
+            for x in case.xs.column_iter() {
+                prop_assert_eq!(together.value(x, output), alone.value(x, 0));
+            }
+        }
+    }
+
+    #[test]
+    fn metrics_stay_positive_definite_and_activations_shares(case in case(300)) {
+        let model = case.trained(2);
+        let predictor = model.predictor(0.0);
+        for output in 0..case.n_out {
+            for field in model.receptive_fields(output) {
+                prop_assert!(field.distance_metric().cholesky().is_some());
+                prop_assert!((1..=case.n_in).contains(&field.n_projections()));
+            }
+            for x in case.xs.column_iter() {
+                prop_assert!((0.0..=1.0).contains(&predictor.max_activation(x, output)));
+            }
+        }
+    }
+}
