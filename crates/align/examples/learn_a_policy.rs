@@ -14,7 +14,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for warning in aligned.warnings() {
         println!("warning: {warning}");
     }
-    let learnt = aligned.learn(&LwprParams { init_d: 10.0, ..Default::default() }, &mut StdRng::seed_from_u64(1))?;
+    let learnt =
+        aligned.learn(&LwprParams { init_d: 10.0, w_gen: 0.5, ..Default::default() }, &mut StdRng::seed_from_u64(1))?;
 
     let x = DVector::from_vec(vec![0.5, -0.2]);
     let u = learnt.policy().action(x.as_view());
@@ -26,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// Stands in for your own data: one matrix a movement, one column a sample. Here something rolls down φ = ‖x‖²/20, each
 /// time on another straight rail.
 fn recorded_movements() -> impl Iterator<Item = DMatrix<f64>> {
-    (0..30).map(|k| {
+    (0..60).map(|k| {
         let angle = 0.7 * f64::from(k);
         let rail = DVector::from_vec(vec![angle.cos(), angle.sin()]);
         let mut x = DVector::from_vec(vec![(2.1 * angle).sin(), (1.3 * angle).cos()]);
