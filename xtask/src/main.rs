@@ -1,5 +1,6 @@
 //! Runs the experiments of the paper and the checks of the workspace.
 
+mod conformance;
 mod experiments;
 mod learners;
 mod measure;
@@ -17,6 +18,8 @@ mod seed;
 mod table;
 mod tidy;
 mod verdict;
+
+use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
@@ -43,14 +46,24 @@ enum Command {
     Reproduce(reproduce::Reproduce),
     /// Write the README's picture, and its tables and docs/reproduction.md from the committed results
     Report,
+    /// Compare kinematics and LWPR with reference cases that other libraries computed
+    Conformance(conformance::Conformance),
     /// Check manifests and sources against the architecture
     Tidy,
 }
 
-fn main() -> anyhow::Result<()> {
-    match Cli::parse().command {
+fn main() -> ExitCode {
+    let outcome = match Cli::parse().command {
         Command::Reproduce(reproduce) => reproduce.execute(),
         Command::Report => publish::execute(),
+        Command::Conformance(conformance) => conformance.execute(),
         Command::Tidy => tidy::execute(),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            progress::say(&format!("error: {error:#}"));
+            ExitCode::FAILURE
+        }
     }
 }

@@ -1,0 +1,86 @@
+//! `cargo xtask conformance`: kinematics and LWPR against reference cases that other libraries computed.
+
+mod kinematics_cases;
+mod lwpr_cases;
+mod urdf_cases;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail, ensure};
+use clap::Args;
+use serde::de::DeserializeOwned;
+
+use crate::progress::say;
+
+#[derive(Debug, Args)]
+pub(crate) struct Conformance {
+    /// Folder with lwpr/*.json, kinematics/*.json and their robots, urdf_traps/expected.json and its files
+    #[arg(long, value_name = "DIR")]
+    vectors: PathBuf,
+}
+
+/// One reference file and how far we are from it.
+struct Checked {
+    file: PathBuf,
+    /// Largest difference, in the unit that the tolerance is in.
+    worst: f64,
+}
+
+/// Largest difference that counts as agreement: absolute for robots (metres, radians), for LWPR relative to the largest
+/// reference value of the same kind.
+const TOLERANCE: f64 = 1e-10;
+
+impl Conformance {
+    /// Fails if a file disagrees, or if there is none.
+    pub(crate) fn execute(&self) -> anyhow::Result<()> {
+        let mut disagreeing = 0;
+        let mut files = 0;
+        for (folder, check) in
+            [("lwpr", lwpr_cases::check as fn(&Path) -> anyhow::Result<f64>), ("kinematics", kinematics_cases::check)]
+        {
+            for file in json_files(&self.vectors.join(folder))? {
+                let worst = check(&file).with_context(|| format!("{} cannot be compared", file.display()))?;
+                disagreeing += usize::from(Checked { file, worst }.report() > TOLERANCE);
+                files += 1;
+            }
+        }
+        let odd = urdf_cases::check(&self.vectors.join("urdf_traps/expected.json"))?;
+        ensure!(files + odd.files > 0, "there is no reference file in {}", self.vectors.display());
+        for fault in &odd.faults {
+            say(fault);
+        }
+        let wrong = disagreeing + odd.faults.len();
+        if wrong > 0 {
+            bail!("{wrong} of {} reference files disagree (tolerance {TOLERANCE:.0e})", files + odd.files);
+        }
+        say(&format!("conformance: {} reference files agree (tolerance {TOLERANCE:.0e})", files + odd.files));
+        Ok(())
+    }
+}
+
+impl Checked {
+    /// Says the difference and returns it; NaN counts as infinitely far.
+    fn report(&self) -> f64 {
+        let worst = if self.worst.is_nan() { f64::INFINITY } else { self.worst };
+        say(&format!("{worst:9.1e}  {}", self.file.display()));
+        worst
+    }
+}
+
+/// The JSON files of a folder, in order; none if there is no such folder.
+fn json_files(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    if !folder.is_dir() {
+        return Ok(Vec::new());
+    }
+    let entries = fs::read_dir(folder).with_context(|| format!("cannot list {}", folder.display()))?;
+    let mut files = entries.map(|entry| Ok(entry?.path())).collect::<anyhow::Result<Vec<_>>>()?;
+    files.retain(|file| file.extension().is_some_and(|extension| extension == "json"));
+    files.sort();
+    Ok(files)
+}
+
+fn read_json<T: DeserializeOwned>(file: &Path) -> anyhow::Result<T> {
+    let text = fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
+    serde_json::from_str(&text).with_context(|| format!("{} has another form than expected", file.display()))
+}
