@@ -27,18 +27,25 @@ pub(crate) fn bipartition(laplacian: &DMatrix<f64>, threshold: f64) -> Result<Pa
         }
         let (values, vectors) = symmetric_eigen(&laplacian.select_rows(&group).select_columns(&group))?;
         let weak = values.iter().take_while(|&&value| value < threshold).count();
-        let in_second = if weak > 1 { two_means(&vectors.columns(0, weak).into_owned()) } else { vec![] };
-        let side = |second: bool| group.iter().zip(&in_second).filter(move |(_, s)| **s == second).map(|(&k, _)| k);
-        let (first, second): (Vec<_>, Vec<_>) = (side(false).collect(), side(true).collect());
-        if first.is_empty() || second.is_empty() {
-            closed.push((group, Some(values[1])));
-        } else {
-            open.extend([first, second]);
+        match split(&group, &vectors.columns(0, weak).into_owned()) {
+            Some(sides) => open.extend(sides),
+            None => closed.push((group, Some(values[1]))),
         }
     }
     closed.sort_by_key(|(group, _)| (Reverse(group.len()), group[0]));
     let lambda_2 = closed[0].1;
     Ok(Partition { groups: closed.into_iter().map(|(group, _)| group).collect(), lambda_2 })
+}
+
+/// The two sides of a group by the rows of its weak eigenvectors; none if it holds together.
+fn split(group: &[usize], weak_vectors: &DMatrix<f64>) -> Option<[Vec<usize>; 2]> {
+    if weak_vectors.ncols() <= 1 {
+        return None;
+    }
+    let in_second = two_means(weak_vectors);
+    let side = |second| group.iter().zip(&in_second).filter(move |&(_, &at)| at == second).map(|(&k, _)| k).collect();
+    let sides: [Vec<usize>; 2] = [side(false), side(true)];
+    sides.iter().all(|side| !side.is_empty()).then_some(sides)
 }
 
 #[cfg(test)]

@@ -6,26 +6,9 @@
 use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::lanes::{LANES, Lanes, groups_of};
+use crate::lanes::Lanes;
+use crate::minima::Minima;
 use crate::tiles::{ROWS, Tiles, row_groups};
-
-/// The nearest samples found so far; indices are exact in f64, and compare and blend like the distances.
-#[derive(Debug, Default)]
-pub(crate) struct Minima {
-    /// Squared distances, filled up with infinity.
-    pub(crate) distances: Vec<Lanes>,
-    /// Whole numbers.
-    pub(crate) samples: Vec<Lanes>,
-}
-
-impl Minima {
-    fn reset(&mut self, count: usize) {
-        self.distances.clear();
-        self.distances.resize(groups_of(count), [f64::INFINITY; LANES]);
-        self.samples.clear();
-        self.samples.resize(groups_of(count), [0.0; LANES]);
-    }
-}
 
 /// Compares one trajectory, sample by sample, with others.
 #[derive(Debug)]

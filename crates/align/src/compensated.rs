@@ -13,8 +13,9 @@ impl CompensatedSum {
         self.sum = sum;
     }
 
+    /// The sum; infinite once it has overflowed.
     pub(crate) fn value(&self) -> f64 {
-        self.sum + self.dropped
+        if self.sum.is_finite() { self.sum + self.dropped } else { self.sum }
     }
 }
 
@@ -33,5 +34,6 @@ mod tests {
         };
         assert_eq!(sum(&[1.0, 1e-20, -1.0]), 1e-20);
         assert_eq!(sum(&[1.0, 1e20, -1e20, -0.5]), 0.5);
+        assert_eq!(sum(&[1.0, f64::MAX, f64::MAX, 1.0]), f64::INFINITY);
     }
 }

@@ -66,6 +66,7 @@ mod laplacian;
 mod linear_term;
 mod local_potential;
 mod lwpr_regressor;
+mod minima;
 mod nearest;
 mod objective;
 mod offsets;

@@ -4,8 +4,9 @@ use pulp::Arch;
 use rayon::prelude::*;
 
 use crate::AlignError;
-use crate::block_search::{BlockSearch, Minima};
+use crate::block_search::BlockSearch;
 use crate::lanes::{LANES, Lanes, groups_of};
+use crate::minima::Minima;
 use crate::tiles::Tiles;
 
 /// For every sample of every trajectory, its nearest sample in each trajectory: the search behind (10) and (11).

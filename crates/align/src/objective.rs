@@ -21,7 +21,7 @@ pub struct AlignmentObjective {
     pub laplacian: DMatrix<f64>,
     /// a_k = Σ_m q_km (f_km − Σ_j q_jm f_jm) (16), (K), in units of the potential.
     pub linear: DVector<f64>,
-    /// E₀ = E(0), in units of the potential squared.
+    /// E₀ = E(0), in units of the potential squared; infinite where squares of potentials overflow.
     pub constant: f64,
 }
 

@@ -32,10 +32,10 @@ pub(crate) fn group_offsets(
             offsets[k] = offsets[k].map(|offset| offset + step);
         }
     }
-    let offsets: Vec<f64> = group.iter().filter_map(|&k| offsets[k]).collect();
-    match offsets.iter().position(|offset| !offset.is_finite()) {
-        None => Ok(offsets.into()),
-        Some(at) => Err(AlignError::OffsetOverflow { trajectory: group[at] }),
+    let finite = |k: usize| objective.linear[k].is_finite() && offsets[k].is_none_or(f64::is_finite);
+    match (0..offsets.len()).find(|&k| !finite(k)) {
+        None => Ok(DVector::from_iterator(group.len(), group.iter().filter_map(|&k| offsets[k]))),
+        Some(trajectory) => Err(AlignError::OffsetOverflow { trajectory }),
     }
 }
 

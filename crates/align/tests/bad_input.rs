@@ -122,6 +122,20 @@ fn what_is_refused() {
             AlignError::SpanOverflow { dimension: 1, span: 2e200 },
         ),
         (
+            "potentials too different",
+            with(|p| {
+                p.integration = Integration::Work;
+                p.bandwidth = Bandwidth::Fixed(1.0);
+            }),
+            {
+                let x = || line([0.0, 0.0], [3.0, 0.0], 4);
+                let u = |sign: f64| DMatrix::from_element(2, 4, sign * 5e307);
+                let recorded = |sign| Trajectory::new(x(), 1.0).unwrap().with_velocities(u(sign)).unwrap();
+                Demonstrations::new(vec![recorded(1.0), recorded(-1.0)]).unwrap()
+            },
+            AlignError::OffsetOverflow { trajectory: 0 },
+        ),
+        (
             "as far apart as can be",
             with(|_| {}),
             Demonstrations::from_positions(
@@ -195,6 +209,7 @@ fn assert_finite(name: &str, aligned: &Aligned) {
     assert!(aligned.offsets().iter().all(|offset| offset.is_finite()), "{name}");
     assert!(aligned.sigma_squared().is_finite() && aligned.lambda_2().is_none_or(f64::is_finite), "{name}");
     assert!(aligned.objective().laplacian.iter().all(|entry| entry.is_finite()), "{name}");
+    assert!(!aligned.objective().constant.is_nan(), "{name}");
     for (x, value) in aligned.samples() {
         assert!(value.is_finite() && aligned.responsibilities(x).iter().all(|q| q.is_finite()), "{name}");
         assert!(learnt.potential().value(x).is_finite(), "{name}");
