@@ -3,3 +3,5 @@
 mod toy_data;
 
 pub use toy_data::toy_demonstrations;
+
+pub mod lwpr_data;

@@ -1,0 +1,75 @@
+//! LWPR: training sample by sample and in batch, prediction with gradient; d = 2, 6, 22, diagonal metric.
+#![allow(missing_docs, reason = "a benchmark")]
+
+use std::hint::black_box;
+
+use benches::lwpr_data::{PotentialSamples, potential_samples};
+use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use lwpr::{Lwpr, LwprParams};
+use nalgebra::DVector;
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+
+/// Samples in random order, as training wants them.
+fn shuffled(d: usize) -> PotentialSamples {
+    let mut rng = ChaCha8Rng::seed_from_u64(d as u64);
+    let samples = potential_samples(d, &mut rng);
+    let mut order: Vec<usize> = (0..samples.xs.ncols()).collect();
+    order.shuffle(&mut rng);
+    PotentialSamples {
+        xs: samples.xs.select_columns(&order),
+        ys: samples.ys.select_columns(&order),
+        init_d: samples.init_d,
+    }
+}
+
+/// A model that has seen all samples once, so that its fields are all there.
+fn model(samples: &PotentialSamples) -> Lwpr {
+    let params = LwprParams {
+        init_d: samples.init_d,
+        norm_out: Some(DVector::from_element(1, samples.spread())),
+        ..LwprParams::default()
+    };
+    let mut model = params.build(samples.xs.nrows(), 1).expect("the parameters are in range");
+    model.fit_in_order(&samples.xs, &samples.ys, 1).expect("the samples are finite");
+    model
+}
+
+fn bench(criterion: &mut Criterion) {
+    for d in [2, 6, 22] {
+        let samples = shuffled(d);
+        let model = model(&samples);
+        let mut group = criterion.benchmark_group(format!("lwpr d={d}"));
+        group.sample_size(10).throughput(Throughput::Elements(samples.xs.ncols() as u64));
+        group.bench_function("train online", |bencher| {
+            let train = |mut model: Lwpr| {
+                for (x, y) in samples.xs.column_iter().zip(samples.ys.column_iter()) {
+                    model.update(x, y).expect("the samples are finite");
+                }
+                model
+            };
+            bencher.iter_batched(|| model.clone(), train, BatchSize::LargeInput);
+        });
+        group.bench_function("train batch", |bencher| {
+            let train = |mut model: Lwpr| {
+                model.fit_in_order(&samples.xs, &samples.ys, 1).expect("the samples are finite");
+                model
+            };
+            bencher.iter_batched(|| model.clone(), train, BatchSize::LargeInput);
+        });
+        let predictor = model.predictor(0.001);
+        let mut gradient = DVector::zeros(d);
+        group.bench_function("predict with gradient", |bencher| {
+            bencher.iter(|| {
+                for x in samples.xs.column_iter() {
+                    black_box(predictor.value_and_gradient_into(x, 0, gradient.as_view_mut()));
+                }
+            });
+        });
+        group.finish();
+    }
+}
+
+criterion_group!(lwpr_benches, bench);
+criterion_main!(lwpr_benches);
