@@ -20,6 +20,8 @@ pub(crate) enum Measure {
     Naive,
     /// Error of PolicyAlign under the row's constraint (A2).
     PolicyAlign,
+    /// Demonstrated movements that leave the robot's joint limits somewhere, percent.
+    BeyondLimits,
 }
 
 /// By which rule ours and the paper's figure are compared.
@@ -53,13 +55,14 @@ impl Measure {
             Measure::AlignmentNmse => "alignment_nmse",
             Measure::Naive => "naive",
             Measure::PolicyAlign => "policy_align",
+            Measure::BeyondLimits => "beyond_limits",
         }
     }
 
     /// How it is judged in a row.
     pub(crate) fn kind(self, row: RowOf) -> Kind {
         match (self, row) {
-            (Measure::Disc, _) => Kind::Share,
+            (Measure::Disc | Measure::BeyondLimits, _) => Kind::Share,
             (Measure::Naive, _) | (_, RowOf::Baseline) => Kind::BaselineError,
             (_, RowOf::Learner) => Kind::LearnerError,
         }
@@ -68,7 +71,7 @@ impl Measure {
     /// A value as tables print it.
     pub(crate) fn show(self, value: f64) -> String {
         match self {
-            Measure::Disc => format!("{value:.2}"),
+            Measure::Disc | Measure::BeyondLimits => format!("{value:.2}"),
             _ => format!("{value:.4}"),
         }
     }

@@ -1,7 +1,10 @@
 //! The registry: every table and figure of the paper that can be reproduced, one file each.
 
+mod asimo22;
+mod exam;
 mod judge;
 mod table1;
+mod three_link;
 
 pub(crate) use table1::toy_regressor;
 
@@ -77,5 +80,5 @@ pub(crate) trait Trial: Send + Sync {
 
 /// All experiments, in the paper's order.
 pub(crate) fn registry() -> anyhow::Result<Vec<Experiment>> {
-    Ok(vec![table1::table1()?, table1::table1_literal()?])
+    Ok(vec![table1::table1()?, table1::table1_literal()?, asimo22::asimo22()?, three_link::three_link()?])
 }

@@ -1,20 +1,14 @@
 //! Table 1 (Section 4.1): the toy system, three set-ups by three bandwidths.
 
-use std::collections::BTreeMap;
-
 use align::{Bandwidth, LwprRegressor, PolicyAlign};
-use demo_gen::{Redraw, ToyPotential, ToySystem, demonstrations};
+use demo_gen::{Redraw, ToyPotential, ToySystem};
 use lwpr::LwprParams;
 use rand_chacha::ChaCha8Rng;
 
-use super::judge::{Judge, discarded_percent};
+use super::exam::{HELD_OUT, examine};
 use super::{Experiment, Measures, Row, Setup, Trial};
-use crate::learners::{Learner as _, Lesson};
-use crate::measure::{Measure, RowOf};
+use crate::measure::RowOf;
 use crate::paper::{explanations, paper_table};
-
-/// Share of the kept samples that is held out for testing.
-const HELD_OUT: f64 = 0.1;
 
 /// The table with constraints that are drawn anew every 20 samples.
 pub(crate) fn table1() -> anyhow::Result<Experiment> {
@@ -94,14 +88,7 @@ impl Trial for ToyTrial {
 
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.system.record(rng)?;
-        let aligned =
-            PolicyAlign { bandwidth: self.bandwidth, ..PolicyAlign::default() }.align(&demonstrations(&recordings)?)?;
-        let (_, held_out) = aligned.samples().split(HELD_OUT, rng)?;
-        let learnt = toy_regressor().learn(&Lesson { aligned: &aligned, held_out: &held_out }, rng)?;
-        let judge = Judge::new(&recordings, &held_out);
-        let mut measures = judge.policy(&*learnt.policy)?;
-        measures.extend(learnt.potential.map_or(Ok(BTreeMap::new()), |potential| judge.potential(&*potential))?);
-        measures.insert(Measure::Disc, discarded_percent(&aligned));
-        Ok(vec![measures])
+        let algorithm = PolicyAlign { bandwidth: self.bandwidth, ..PolicyAlign::default() };
+        examine(&recordings, &algorithm, &[Box::new(toy_regressor())], rng)
     }
 }

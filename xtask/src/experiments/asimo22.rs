@@ -1,0 +1,70 @@
+//! Section 4.3: 22 joints of a humanoid, one hand in a plane.
+
+use align::{LwprRegressor, PolicyAlign};
+use demo_gen::{HandInPlane, UpperBody, n_leaving_limits};
+use lwpr::{LwprParams, MetricAdaptation};
+use rand_chacha::ChaCha8Rng;
+
+use super::exam::{HELD_OUT, examine};
+use super::{Experiment, Measures, Row, Setup, Trial};
+use crate::learners::Learner;
+use crate::measure::{Measure, RowOf};
+use crate::paper::{explanations, paper_table};
+
+/// The experiment.
+pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
+    let mut paper = paper_table(include_str!("../../paper/asimo22.toml"))?;
+    let id = "policy_align";
+    let row = Row { id: id.to_owned(), of: RowOf::Learner, paper: paper.remove(id).unwrap_or_default() };
+    let body = UpperBody::new(
+        include_str!("../../../robots/asimo_upper_body.urdf"),
+        include_str!("../../../robots/asimo_upper_body.srdf"),
+    )?;
+    let trial = BodyTrial { scenario: HandInPlane::new(body), algorithm: PolicyAlign::default(), learners: learners() };
+    Ok(Experiment {
+        id: "asimo22",
+        section: "4.3",
+        title: "22 joints of a humanoid, a hand in a plane",
+        data_sets: 50,
+        remark: "The robot, its posture \"ready\" (shoulder pitch .3, roll ±.3, elbow -1.6) and the attractor (upright, arms hanging) \
+                 are fitted; starts from N(ready, .1 I), δt = .5 s, plain Euler, narrow bandwidth. Regression with a fixed diagonal \
+                 metric, D = 40, 12 passes.",
+        setups: vec![Setup { id: id.to_owned(), rows: vec![row], trial: Box::new(trial) }],
+        explanations: explanations(include_str!("../../paper/asimo22-explained.toml"))?,
+    })
+}
+
+/// In the order of the rows.
+fn learners() -> Vec<Box<dyn Learner>> {
+    let params = LwprParams { init_d: 40.0, adaptation: MetricAdaptation::Fixed, ..LwprParams::default() };
+    vec![Box::new(LwprRegressor { params, passes: 12, ..LwprRegressor::default() })]
+}
+
+#[derive(Debug)]
+struct BodyTrial {
+    scenario: HandInPlane,
+    algorithm: PolicyAlign,
+    learners: Vec<Box<dyn Learner>>,
+}
+
+impl Trial for BodyTrial {
+    fn system(&self) -> u32 {
+        430
+    }
+
+    fn definition(&self) -> String {
+        format!("{self:?} held out {HELD_OUT}")
+    }
+
+    fn cost(&self) -> u64 {
+        20_000_000
+    }
+
+    fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
+        let recordings = self.scenario.record(rng)?;
+        let mut rows = examine(&recordings, &self.algorithm, &self.learners, rng)?;
+        let leaving = n_leaving_limits(self.scenario.body.robot(), &recordings)?;
+        rows[0].insert(Measure::BeyondLimits, 100.0 * leaving as f64 / recordings.len() as f64);
+        Ok(rows)
+    }
+}

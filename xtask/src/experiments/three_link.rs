@@ -1,0 +1,69 @@
+//! Section 4.4: a planar arm under constraints that always hide the same direction.
+
+use align::{DirectPolicyLearning, LwprRegressor, PolicyAlign};
+use demo_gen::{ThreeLinkArm, n_leaving_limits};
+use lwpr::{LwprParams, MetricAdaptation};
+use rand_chacha::ChaCha8Rng;
+
+use super::exam::{HELD_OUT, examine};
+use super::{Experiment, Measures, Row, Setup, Trial};
+use crate::learners::Learner;
+use crate::measure::{Measure, RowOf};
+use crate::paper::{explanations, paper_table};
+
+/// The experiment.
+pub(crate) fn three_link() -> anyhow::Result<Experiment> {
+    let mut paper = paper_table(include_str!("../../paper/three_link.toml"))?;
+    let rows = [("policy_align", RowOf::Learner), ("naive", RowOf::Baseline)];
+    let rows = rows.map(|(id, of)| Row { id: id.to_owned(), of, paper: paper.remove(id).unwrap_or_default() });
+    let arm = ThreeLinkArm::new(include_str!("../../../robots/planar_three_link.urdf"))?;
+    let trial = ArmTrial { arm, algorithm: PolicyAlign::default(), learners: learners() };
+    Ok(Experiment {
+        id: "three_link",
+        section: "4.4",
+        title: "The three-link arm, pathological constraints",
+        data_sets: 50,
+        remark: "Unit links, starts uniform in [-1, 1]^3, δt = .5 s, plain Euler, narrow bandwidth. Regression with fixed diagonal \
+                 metrics, 10 passes: D = 20 for PolicyAlign, 50 for the naive baseline.",
+        setups: vec![Setup { id: "three_link".to_owned(), rows: rows.into(), trial: Box::new(trial) }],
+        explanations: explanations(include_str!("../../paper/three_link-explained.toml"))?,
+    })
+}
+
+/// In the order of the rows.
+fn learners() -> Vec<Box<dyn Learner>> {
+    let params = |init_d| LwprParams { init_d, adaptation: MetricAdaptation::Fixed, ..LwprParams::default() };
+    vec![
+        Box::new(LwprRegressor { params: params(20.0), ..LwprRegressor::default() }),
+        Box::new(DirectPolicyLearning { params: params(50.0), ..DirectPolicyLearning::default() }),
+    ]
+}
+
+#[derive(Debug)]
+struct ArmTrial {
+    arm: ThreeLinkArm,
+    algorithm: PolicyAlign,
+    learners: Vec<Box<dyn Learner>>,
+}
+
+impl Trial for ArmTrial {
+    fn system(&self) -> u32 {
+        440
+    }
+
+    fn definition(&self) -> String {
+        format!("{self:?} held out {HELD_OUT}")
+    }
+
+    fn cost(&self) -> u64 {
+        2_000_000
+    }
+
+    fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
+        let recordings = self.arm.record(rng)?;
+        let mut rows = examine(&recordings, &self.algorithm, &self.learners, rng)?;
+        let leaving = n_leaving_limits(&self.arm.robot, &recordings)?;
+        rows[0].insert(Measure::BeyondLimits, 100.0 * leaving as f64 / recordings.len() as f64);
+        Ok(rows)
+    }
+}
