@@ -9,7 +9,7 @@ use std::cmp::Reverse;
 
 use pulp::Simd;
 
-use crate::chunk::{Axis, Chunk};
+use crate::chunk::{Chunk, Shape};
 use crate::field::Field;
 use crate::lane_block::LaneBlock;
 use crate::settings::Settings;
@@ -160,7 +160,7 @@ impl BatchTraining<'_> {
     /// Gives a lane the next sample that its field learns from.
     #[inline(always)]
     fn next_sample<S: Simd>(&mut self, block: &mut LaneBlock<S>, lane: usize, k: usize, start: usize) -> Option<Task> {
-        let (sample, q) = self.find(block.simd(), block.axes(lane), k, (start, self.chunk.n))?;
+        let (sample, q) = self.find(block.simd(), block.shape(lane), k, (start, self.chunk.n))?;
         block.set_sample(lane, self.chunk, sample, self.y[sample], q);
         Some(Task { field: k, sample })
     }
@@ -170,12 +170,12 @@ impl BatchTraining<'_> {
     fn find<S: Simd>(
         &mut self,
         simd: S,
-        axes: &[Axis],
+        shape: &Shape,
         k: usize,
         (mut start, end): (usize, usize),
     ) -> Option<(usize, f64)> {
         loop {
-            let (sample, q) = self.chunk.find(simd, axes, (start, end), self.settings.reach)?;
+            let (sample, q) = self.chunk.find(simd, shape, (start, end), self.settings.reach)?;
             if q < self.settings.training_reach {
                 return Some((sample, q));
             }
@@ -253,13 +253,11 @@ impl pulp::WithSimd for Alone<'_, '_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Alone { training, field, k, start, end } = self;
         let (settings, width) = (training.settings, training.settings.width);
-        let mut axes: Vec<Axis> = field.centre(settings).iter().map(|&c| Axis { c, d: 0.0 }).collect();
+        let mut shape = Shape::new(&field.rows[..width]);
         let mut next = start;
         loop {
-            for (axis, &m) in axes.iter_mut().zip(field.m(settings)) {
-                axis.d = m * m;
-            }
-            let Some((sample, q)) = training.find(simd, &axes, k, (next, end)) else { break };
+            shape.set_metric(field.m(settings).iter());
+            let Some((sample, q)) = training.find(simd, &shape, k, (next, end)) else { break };
             let activation = settings.params.kernel.at(q);
             training.see(sample, k, activation.w);
             let Workspace { rows, mmt } = &mut training.scratch.workspace;

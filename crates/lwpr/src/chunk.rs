@@ -12,17 +12,33 @@ const LANES: usize = 8;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Chunk {
     pub(crate) n: usize,
+    n_in: usize,
     width: usize,
     rows: Vec<f64>,
     /// For each block of eight samples, one array a dimension; beyond the end everything is infinitely far away.
     blocks: Vec<[f64; LANES]>,
 }
 
-/// Centre and diagonal D of a field.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Axis {
-    pub(crate) c: f64,
-    pub(crate) d: f64,
+/// Centre and diagonal D of a field, padded.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Shape {
+    pub(crate) centre: Vec<f64>,
+    pub(crate) d: Vec<f64>,
+}
+
+impl Shape {
+    /// A row of `width`; D is yet to come.
+    pub(crate) fn new(centre: &[f64]) -> Self {
+        Shape { centre: centre.to_vec(), d: vec![0.0; centre.len()] }
+    }
+
+    /// Takes over D = M².
+    #[inline(always)]
+    pub(crate) fn set_metric<'a>(&mut self, m: impl Iterator<Item = &'a f64>) {
+        for (d, &m) in self.d.iter_mut().zip(m) {
+            *d = m * m;
+        }
+    }
 }
 
 impl Chunk {
@@ -30,6 +46,7 @@ impl Chunk {
     pub(crate) fn fill<'a>(&mut self, settings: &Settings, columns: impl ExactSizeIterator<Item = &'a [f64]>) {
         let (n_in, width) = (settings.n_in, settings.width);
         self.n = columns.len();
+        self.n_in = n_in;
         self.width = width;
         self.rows.clear();
         self.rows.resize(self.n * width, 0.0);
@@ -54,7 +71,23 @@ impl Chunk {
     pub(crate) fn find<S: Simd>(
         &self,
         simd: S,
-        axes: &[Axis],
+        shape: &Shape,
+        range: (usize, usize),
+        reach: f64,
+    ) -> Option<(usize, f64)> {
+        if self.width > LANES && S::F64_LANES > 1 {
+            self.find_one_by_one(simd, shape, range, reach)
+        } else {
+            self.find_in_blocks(simd, shape, range, reach)
+        }
+    }
+
+    /// In few dimensions fields are reached by few samples: looks at several samples at a time.
+    #[inline(always)]
+    fn find_in_blocks<S: Simd>(
+        &self,
+        simd: S,
+        shape: &Shape,
         (start, end): (usize, usize),
         reach: f64,
     ) -> Option<(usize, f64)> {
@@ -62,8 +95,12 @@ impl Chunk {
         let mut first = start / n * n;
         let near = Lanes::splat(simd, reach);
         while first < end {
-            let block = &self.blocks[first / LANES * axes.len()..][..axes.len()];
-            let q = distances(simd, block, first % LANES / n, axes);
+            let block = &self.blocks[first / LANES * self.n_in..][..self.n_in];
+            let mut q = Lanes::splat(simd, 0.0);
+            for ((x, &c), &d) in block.iter().zip(&shape.centre).zip(&shape.d) {
+                let dx = Lanes::of(simd, Lanes::<S>::elements(x)[first % LANES / n]) - c;
+                q += dx * dx * d;
+            }
             let lane = q.first_below(near, start.saturating_sub(first));
             if lane < n {
                 let sample = first + lane;
@@ -73,15 +110,46 @@ impl Chunk {
         }
         None
     }
+
+    /// In many dimensions every other sample is in reach: looks at several dimensions of one sample at a time. That sum
+    /// has another order, so that it only tells whether the exact one is worth while.
+    #[inline(always)]
+    fn find_one_by_one<S: Simd>(
+        &self,
+        simd: S,
+        shape: &Shape,
+        (start, end): (usize, usize),
+        reach: f64,
+    ) -> Option<(usize, f64)> {
+        let (centre, d) = (Lanes::<S>::elements(&shape.centre), Lanes::<S>::elements(&shape.d));
+        for sample in start..end {
+            let x = self.row(sample);
+            let mut q = Lanes::splat(simd, 0.0);
+            for ((&x, &c), &d) in Lanes::<S>::elements(x).iter().zip(centre).zip(d) {
+                let dx = Lanes::of(simd, x) - Lanes::of(simd, c);
+                q += dx * dx * Lanes::of(simd, d);
+            }
+            if q.total() < reach + SLACK * reach {
+                let q = exact_distance(&x[..self.n_in], shape);
+                if q < reach {
+                    return Some((sample, q));
+                }
+            }
+        }
+        None
+    }
 }
 
-/// Squared distances of the samples of a part of a block; the order of the sum is the activation table's.
+/// Relative difference that the order of a sum can make, and more.
+const SLACK: f64 = 1e-9;
+
+/// Squared distance; the order of the sum is the activation table's.
 #[inline(always)]
-fn distances<S: Simd>(simd: S, block: &[[f64; LANES]], part: usize, axes: &[Axis]) -> Lanes<S> {
-    let mut q = Lanes::splat(simd, 0.0);
-    for (x, axis) in block.iter().zip(axes) {
-        let dx = Lanes::of(simd, Lanes::<S>::elements(x)[part]) - axis.c;
-        q += dx * dx * axis.d;
+fn exact_distance(x: &[f64], shape: &Shape) -> f64 {
+    let mut q = 0.0;
+    for ((x, c), d) in x.iter().zip(&shape.centre).zip(&shape.d) {
+        let dx = x - c;
+        q += dx * dx * d;
     }
     q
 }

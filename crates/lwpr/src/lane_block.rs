@@ -2,7 +2,7 @@
 
 use pulp::Simd;
 
-use crate::chunk::{Axis, Chunk};
+use crate::chunk::{Chunk, Shape};
 use crate::field::{DIRECTION_ROWS, Direction, Field, Layout};
 use crate::kernel::Activation;
 use crate::number::{Lanes, Number};
@@ -14,7 +14,7 @@ pub(crate) struct LaneBlock<S: Simd> {
     simd: S,
     field: Field<Lanes<S>>,
     /// Centre and D of each lane.
-    axes: Vec<Vec<Axis>>,
+    shapes: Vec<Shape>,
     x: Vec<f64>,
     y: Lanes<S>,
     q: Lanes<S>,
@@ -63,7 +63,7 @@ impl<S: Simd> LaneBlock<S> {
                 directions: vec![direction; n_directions],
                 rows: vec![0.0; len],
             },
-            axes: vec![vec![Axis { c: 0.0, d: 1.0 }; settings.n_in]; S::F64_LANES],
+            shapes: vec![Shape::new(&vec![0.0; settings.width]); S::F64_LANES],
             x: vec![0.0; width],
             y: one,
             q: one,
@@ -80,9 +80,7 @@ impl<S: Simd> LaneBlock<S> {
         for (ours, theirs) in self.field.numbers().zip(field.numbers()) {
             ours.set(lane, *theirs);
         }
-        for (axis, &c) in self.axes[lane].iter_mut().zip(field.centre(settings)) {
-            axis.c = c;
-        }
+        self.shapes[lane].centre.copy_from_slice(&field.rows[..settings.width]);
         let rows = self.field.rows.chunks_exact_mut(self.x.len());
         for (ours, theirs) in rows.zip(field.rows.chunks_exact(settings.width)) {
             for (ours, theirs) in ours[lane..].iter_mut().step_by(S::F64_LANES).zip(theirs) {
@@ -106,13 +104,11 @@ impl<S: Simd> LaneBlock<S> {
 
     /// Centre and metric of a lane's field.
     #[inline(always)]
-    pub(crate) fn axes(&mut self, lane: usize) -> &[Axis] {
+    pub(crate) fn shape(&mut self, lane: usize) -> &Shape {
         let width = self.x.len();
-        let m = self.field.rows[2 * width + lane..3 * width].iter().step_by(S::F64_LANES);
-        for (axis, &m) in self.axes[lane].iter_mut().zip(m) {
-            axis.d = m * m;
-        }
-        &self.axes[lane]
+        let shape = &mut self.shapes[lane];
+        shape.set_metric(self.field.rows[2 * width + lane..3 * width].iter().step_by(S::F64_LANES));
+        shape
     }
 
     /// Gives a lane the sample it learns from next.

@@ -222,6 +222,12 @@ impl<S: Simd> Lanes<S> {
         pulp::bytemuck::cast_slice_mut(std::slice::from_mut(&mut self.value))
     }
 
+    /// The sum over lanes.
+    #[inline(always)]
+    pub(crate) fn total(self) -> f64 {
+        self.simd.reduce_sum_f64s(self.value)
+    }
+
     /// The first lane from `start` on that is below `limit`; past the end if there is none.
     #[inline(always)]
     pub(crate) fn first_below(mut self, limit: Self, start: usize) -> usize {
