@@ -262,7 +262,7 @@ impl pulp::WithSimd for Alone<'_, '_> {
             training.see(sample, k, activation.w);
             let Workspace { rows, mmt } = &mut training.scratch.workspace;
             let (x, y) = (training.chunk.row(sample), training.y[sample]);
-            with_width!(width, [1, 2, 4, 8, 16, 24, 32], rows, |width, scratch| {
+            with_width!(width, [1, 2, 4, 8], rows, |width, scratch| {
                 train_one(simd, field, settings, (&x[..width], y), activation, scratch, mmt);
             });
             next = sample + 1;

@@ -66,25 +66,10 @@ impl Chunk {
         &self.rows[sample * self.width..][..self.width]
     }
 
-    /// The first sample from `start` on, before `end`, that is closer than `reach`, and its squared distance.
+    /// The first sample from `start` on, before `end`, that is closer than `reach`, and its squared distance. The order of
+    /// the sum is the activation table's.
     #[inline(always)]
     pub(crate) fn find<S: Simd>(
-        &self,
-        simd: S,
-        shape: &Shape,
-        range: (usize, usize),
-        reach: f64,
-    ) -> Option<(usize, f64)> {
-        if self.width > LANES && S::F64_LANES > 1 {
-            self.find_one_by_one(simd, shape, range, reach)
-        } else {
-            self.find_in_blocks(simd, shape, range, reach)
-        }
-    }
-
-    /// In few dimensions fields are reached by few samples: looks at several samples at a time.
-    #[inline(always)]
-    fn find_in_blocks<S: Simd>(
         &self,
         simd: S,
         shape: &Shape,
@@ -110,46 +95,4 @@ impl Chunk {
         }
         None
     }
-
-    /// In many dimensions every other sample is in reach: looks at several dimensions of one sample at a time. That sum
-    /// has another order, so that it only tells whether the exact one is worth while.
-    #[inline(always)]
-    fn find_one_by_one<S: Simd>(
-        &self,
-        simd: S,
-        shape: &Shape,
-        (start, end): (usize, usize),
-        reach: f64,
-    ) -> Option<(usize, f64)> {
-        let (centre, d) = (Lanes::<S>::elements(&shape.centre), Lanes::<S>::elements(&shape.d));
-        for sample in start..end {
-            let x = self.row(sample);
-            let mut q = Lanes::splat(simd, 0.0);
-            for ((&x, &c), &d) in Lanes::<S>::elements(x).iter().zip(centre).zip(d) {
-                let dx = Lanes::of(simd, x) - Lanes::of(simd, c);
-                q += dx * dx * Lanes::of(simd, d);
-            }
-            if q.total() < reach + SLACK * reach {
-                let q = exact_distance(&x[..self.n_in], shape);
-                if q < reach {
-                    return Some((sample, q));
-                }
-            }
-        }
-        None
-    }
-}
-
-/// Relative difference that the order of a sum can make, and more.
-const SLACK: f64 = 1e-9;
-
-/// Squared distance; the order of the sum is the activation table's.
-#[inline(always)]
-fn exact_distance(x: &[f64], shape: &Shape) -> f64 {
-    let mut q = 0.0;
-    for ((x, c), d) in x.iter().zip(&shape.centre).zip(&shape.d) {
-        let dx = x - c;
-        q += dx * dx * d;
-    }
-    q
 }

@@ -126,7 +126,7 @@ impl<S: Simd> LaneBlock<S> {
     pub(crate) fn train(&mut self, settings: &Settings) -> (Lanes<S>, Option<Lanes<S>>) {
         let activation: Activation<Lanes<S>> = settings.params.kernel.at(self.q);
         let Workspace { rows, mmt } = &mut self.workspace;
-        let wanted = with_width!(self.x.len(), [4, 8, 12, 16, 24, 32, 48, 64], rows, |width, scratch| {
+        let wanted = with_width!(self.x.len(), [8, 12, 16, 24, 32, 48, 64], rows, |width, scratch| {
             let sample = (&self.x[..width], self.y);
             train::<Lanes<S>, Lanes<S>>(
                 (self.simd, self.simd),

@@ -154,7 +154,7 @@ impl Lwpr {
     }
 
     /// One pass over each order. Field by field where that is the same as sample by sample, which it is unless fields
-    /// are pruned; a full metric has little to gain.
+    /// are pruned, and faster: many dimensions or a full metric keep vector registers busy by themselves.
     fn fit(
         &mut self,
         xs: &DMatrix<f64>,
@@ -163,7 +163,7 @@ impl Lwpr {
     ) -> Result<(), LwprError> {
         let params = &self.settings.params;
         let before = params.max_receptive_fields.map(|_| self.clone());
-        let result = if params.w_prune < 1.0 || params.metric == Metric::Full {
+        let result = if params.w_prune < 1.0 || params.metric == Metric::Full || self.settings.width > 8 {
             orders.try_for_each(|order| self.fit_by_sample(xs, ys, &order))
         } else {
             let mut fit = BatchFit::new(self);

@@ -222,25 +222,18 @@ impl<S: Simd> Lanes<S> {
         pulp::bytemuck::cast_slice_mut(std::slice::from_mut(&mut self.value))
     }
 
-    /// The sum over lanes.
-    #[inline(always)]
-    pub(crate) fn total(self) -> f64 {
-        self.simd.reduce_sum_f64s(self.value)
-    }
-
     /// The first lane from `start` on that is below `limit`; past the end if there is none.
     #[inline(always)]
     pub(crate) fn first_below(mut self, limit: Self, start: usize) -> usize {
+        if const { size_of::<S::m64s>() == 1 } {
+            // One bit a lane, the first lane lowest (`first_true_m64s` takes it for the highest).
+            let below = u32::from(pulp::bytemuck::cast::<S::m64s, u8>(limit.above(self)));
+            return (below >> start << start).trailing_zeros() as usize;
+        }
         if start > 0 {
             self.numbers()[..start].fill(f64::INFINITY);
         }
-        let below = limit.above(self);
-        if const { size_of::<S::m64s>() == 1 } {
-            // One bit a lane, the first lane lowest (`first_true_m64s` takes it for the highest).
-            pulp::bytemuck::cast::<S::m64s, u8>(below).trailing_zeros() as usize
-        } else {
-            self.simd.first_true_m64s(below)
-        }
+        self.simd.first_true_m64s(limit.above(self))
     }
 
     /// The number of lane `lane`.
@@ -438,8 +431,14 @@ impl<S: Simd> Element<Lanes<S>> for Lanes<S> {
     fn dot(simd: S, a: &[f64], b: &[f64]) -> Self {
         let (a, b) = (Self::elements(a), Self::elements(b));
         let mut sums = [Self::splat(simd, 0.0); 8];
-        for lane in 0..a.len().min(8) {
-            sums[lane] = Self::of(simd, a[lane]) * Self::of(simd, b[lane]);
+        if a.len() < 8 {
+            for lane in 0..a.len() {
+                sums[lane] = Self::of(simd, a[lane]) * Self::of(simd, b[lane]);
+            }
+        } else {
+            for lane in 0..8 {
+                sums[lane] = Self::of(simd, a[lane]) * Self::of(simd, b[lane]);
+            }
         }
         for (a, b) in a.as_chunks::<8>().0.iter().zip(b.as_chunks::<8>().0).skip(1) {
             for lane in 0..8 {

@@ -25,15 +25,19 @@ proptest! {
         };
         let Some(gradient) = gradient_at(&x) else { return Ok(()) };
         let hessian = predictor.hessian(x.as_view(), output).unwrap();
-        prop_assert_eq!(predictor.predict(x.as_view()).map(|p| p.gradient.row(output).transpose()), Some(gradient.clone()));
+        // All outputs together answer only where each has support.
+        if let Some(p) = predictor.predict(x.as_view()) {
+            prop_assert_eq!(p.gradient.row(output).transpose(), gradient.clone());
+        }
 
         let (mut slope, mut curvature) = (DVector::zeros(n), DMatrix::zeros(n, n));
         for i in 0..n {
             let step = DVector::from_fn(n, |k, _| if k == i { STEP } else { 0.0 });
             let (right, left) = (&x + &step, &x - &step);
+            let (Some(up), Some(down)) = (gradient_at(&right), gradient_at(&left)) else { return Ok(()) };
             let value = |x: &DVector<f64>| predictor.value(x.as_view(), output).unwrap();
             slope[i] = (value(&right) - value(&left)) / (2.0 * STEP);
-            let change = gradient_at(&right).unwrap() - gradient_at(&left).unwrap();
+            let change = up - down;
             curvature.set_column(i, &(change / (2.0 * STEP)));
         }
         prop_assert!((&slope - &gradient).amax() <= 1e-5 * (1.0 + gradient.amax()), "{slope} {gradient}");
