@@ -68,6 +68,9 @@ pub(crate) fn run(
         let outcome = measure(&job, plan);
         records
             .append(&name(job.experiment, job.setup, &job.setup.trial.definition(), plan, job.data_set), &outcome)?;
+        if let Outcome::Failed(why) = &outcome {
+            progress.say(&format!("{} {}, data set {} failed: {why}", job.experiment.id, job.setup.id, job.data_set));
+        }
         *job.slot = Some(outcome);
         progress.finished(job.experiment.id, &job.setup.id, job.setup.trial.cost());
         Ok(())
