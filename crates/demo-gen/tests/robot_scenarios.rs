@@ -62,6 +62,7 @@ proptest! {
         for recording in &recordings {
             prop_assert!(recording.truth.states.column(0).amax() <= start_range);
             obeys(recording, &hand, 2, roll_out)?;
+            descends(recording, weight, roll_out)?;
             for (q, action) in recording.truth.states.column_iter().zip(recording.truth.actions.column_iter()) {
                 prop_assert!((action + 2.0 * weight * q).amax() < 1e-15);
             }
@@ -89,6 +90,7 @@ proptest! {
             let chains = Side::BOTH.map(|side| scenario.body.palm(side));
             let still = chains.map(|chain| still_direction(recording, chain, 3).1);
             obeys(recording, chains[usize::from(still[1] < still[0])], 3, roll_out)?;
+            descends(recording, 0.05, roll_out)?;
         }
         let leaving = recordings.iter().filter(|recording| {
             recording.truth.states.column_iter().any(|q| robot.n_beyond_limits(q).unwrap() > 0)
@@ -120,6 +122,20 @@ fn obeys(recording: &Recording, hand: &Chain, axes: usize, roll_out: RollOut) ->
         let action = truth.actions.column(sample);
         let literal = action - a.transpose() * ((&a * action)[0] / a.norm_squared());
         prop_assert!((literal - u).amax() < 1e-6, "sample {sample}");
+    }
+    Ok(())
+}
+
+/// With one Euler step a sample, rule (9) finds the true potential along the movement, up to its factor 1/(1 − wδt): the
+/// step never leaves the constraint, though that turns with the state.
+fn descends(recording: &Recording, weight: f64, roll_out: RollOut) -> Result<(), TestCaseError> {
+    let (states, potential) = (&recording.truth.states, &recording.truth.potential);
+    if roll_out.sub_steps == 1 {
+        for sample in 1..roll_out.n_samples {
+            let step = (states.column(sample) - states.column(sample - 1)).norm_squared();
+            let descent = step / roll_out.time_step * (1.0 - weight * roll_out.time_step);
+            prop_assert!((potential[sample - 1] - potential[sample] - descent).abs() < 1e-13 * potential[0]);
+        }
     }
     Ok(())
 }
