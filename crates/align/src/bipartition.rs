@@ -3,7 +3,7 @@ use std::cmp::Reverse;
 use nalgebra::DMatrix;
 
 use crate::AlignError;
-use crate::eigen::symmetric_eigen;
+use crate::eigen::{symmetric_eigen, symmetric_eigenvalues};
 use crate::two_means::two_means;
 
 /// The trajectories in groups whose offsets to each other the data do not determine (Sec. 3.3, App. B).
@@ -25,16 +25,32 @@ pub(crate) fn bipartition(laplacian: &DMatrix<f64>, threshold: f64) -> Result<Pa
             closed.push((group, None));
             continue;
         }
-        let (values, vectors) = symmetric_eigen(&laplacian.select_rows(&group).select_columns(&group))?;
-        let weak = values.iter().take_while(|&&value| value < threshold).count();
-        match split(&group, &vectors.columns(0, weak).into_owned()) {
+        let matrix = laplacian.select_rows(&group).select_columns(&group);
+        let (lambda_2, weak_vectors) = weak_part(&matrix, threshold)?;
+        match split(&group, &weak_vectors) {
             Some(sides) => open.extend(sides),
-            None => closed.push((group, Some(values[1]))),
+            None => closed.push((group, Some(lambda_2))),
         }
     }
     closed.sort_by_key(|(group, _)| (Reverse(group.len()), group[0]));
     let lambda_2 = closed[0].1;
     Ok(Partition { groups: closed.into_iter().map(|(group, _)| group).collect(), lambda_2 })
+}
+
+/// The second eigenvalue of a group's matrix, and all eigenvectors below the threshold, or none if at most one is.
+///
+/// Most groups hold together, and eigenvalues alone cost half as much. Vectors are asked for right away where a weak
+/// trajectory is in sight: its unit vector has the Rayleigh quotient H_kk.
+fn weak_part(matrix: &DMatrix<f64>, threshold: f64) -> Result<(f64, DMatrix<f64>), AlignError> {
+    let weak = |values: &[f64]| values.iter().take_while(|&&value| value < threshold).count();
+    if matrix.diagonal().min() >= threshold {
+        let values = symmetric_eigenvalues(matrix)?;
+        if weak(&values) <= 1 {
+            return Ok((values[1], DMatrix::zeros(matrix.ncols(), 0)));
+        }
+    }
+    let (values, vectors) = symmetric_eigen(matrix)?;
+    Ok((values[1], vectors.columns(0, weak(&values)).into_owned()))
 }
 
 /// The two sides of a group by the rows of its weak eigenvectors; none if it holds together.
