@@ -1,18 +1,22 @@
-//! Which fields a sample reaches: squared distances to all centres, eight at a time.
+//! Which fields a sample reaches, and how strongly it activates them.
+
+use pulp::Simd;
 
 use crate::Metric;
 use crate::field::{Field, Layout};
 use crate::full_metric::add_scaled;
 use crate::kernel::Activation;
-use crate::number::Element;
+use crate::lanes::Lanes;
+use crate::number::{Element, Number};
 use crate::settings::Settings;
+use crate::training::with_width;
 
 /// Fields that are looked at together.
 pub(crate) const LANES: usize = 8;
 
 /// Centres and diagonal metrics of all fields, in blocks of eight: for each dimension eight centres, then eight D.
 ///
-/// With a full metric the table is empty: M is read from the fields themselves.
+/// With a full metric or many dimensions the table is empty: M is read from the fields themselves.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct ActivationTable {
     blocks: Vec<[f64; LANES]>,
@@ -29,7 +33,7 @@ pub(crate) struct Reached {
 impl ActivationTable {
     /// Puts field `k` in, as a new last one or in place of the old.
     pub(crate) fn set(&mut self, settings: &Settings, k: usize, field: &Field) {
-        if settings.params.metric == Metric::Full {
+        if !settings.narrow() {
             return;
         }
         let n = settings.n_in;
@@ -50,7 +54,7 @@ impl ActivationTable {
     /// Takes over the metric of field `k` after it has learnt.
     #[inline(always)]
     pub(crate) fn set_metric(&mut self, settings: &Settings, k: usize, field: &Field) {
-        if settings.params.metric == Metric::Full {
+        if !settings.narrow() {
             return;
         }
         let n = settings.n_in;
@@ -62,7 +66,7 @@ impl ActivationTable {
 
     /// Forgets the last field, number `k`.
     pub(crate) fn pop(&mut self, settings: &Settings, k: usize) {
-        if settings.params.metric == Metric::Full {
+        if !settings.narrow() {
             return;
         }
         let n = settings.n_in;
@@ -74,9 +78,9 @@ impl ActivationTable {
         }
     }
 
-    /// Reports every field whose squared distance from `x` is below `reach`, and that distance, in list order.
+    /// Takes note of every field whose squared distance from `x` is below `reach`, in list order.
     #[inline(always)]
-    pub(crate) fn reached(&self, n: usize, x: &[f64], reach: f64, mut found: impl FnMut(usize, f64)) {
+    fn look(&self, n: usize, x: &[f64], reach: f64, near: &mut Near) {
         for (b, block) in self.blocks.chunks_exact(2 * n).enumerate() {
             let mut q = [0.0; LANES];
             for (pair, &x) in block.as_chunks::<2>().0.iter().zip(x) {
@@ -88,21 +92,119 @@ impl ActivationTable {
             }
             if q.iter().any(|&q| q < reach) {
                 for (lane, &q) in q.iter().enumerate() {
-                    if q < reach {
-                        found(b * LANES + lane, q);
-                    }
+                    near.see(b * LANES + lane, q, reach);
                 }
             }
         }
     }
 }
 
+/// The fields within reach of a sample, in list order, with what belongs to each at the same place.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Near {
+    len: usize,
+    fields: Vec<usize>,
+    q: Vec<f64>,
+    activation: Activation<Vec<f64>>,
+}
+
+impl Near {
+    /// Looks for the fields closer than `reach` to the normalised sample `x`.
+    #[inline(always)]
+    pub(crate) fn find<S: Simd>(
+        &mut self,
+        simd: S,
+        settings: &Settings,
+        (fields, table): (&[Field], &ActivationTable),
+        x: &[f64],
+        scratch: &mut [f64],
+    ) {
+        self.clear(fields.len());
+        let reach = settings.reach;
+        if settings.narrow() {
+            table.look(settings.n_in, x, reach, self);
+        } else if settings.params.metric == Metric::Diagonal {
+            with_width!(settings.width, [16, 24, 32], scratch, |width, scratch| {
+                for (k, field) in fields.iter().enumerate() {
+                    self.see(k, diagonal_distance(simd, field, &x[..width], &mut scratch[..width]), reach);
+                }
+            });
+        } else {
+            let layout = Layout::new(settings, settings.width);
+            for (k, field) in fields.iter().enumerate() {
+                self.see(k, full_distance(field, layout, x, &mut scratch[..layout.width]), reach);
+            }
+        }
+        self.activate(simd, settings);
+    }
+
+    fn clear(&mut self, n_fields: usize) {
+        self.len = 0;
+        let room = n_fields.next_multiple_of(LANES);
+        if self.q.len() < room {
+            self.fields.resize(room, 0);
+            let Activation { w, slope, curvature } = &mut self.activation;
+            for numbers in [&mut self.q, w, slope, curvature] {
+                numbers.resize(room, 0.0);
+            }
+        }
+    }
+
+    /// Keeps field and distance if it is below `reach`, without a branch: which fields are near cannot be predicted.
+    #[inline(always)]
+    fn see(&mut self, field: usize, q: f64, reach: f64) {
+        self.fields[self.len] = field;
+        self.q[self.len] = q;
+        self.len += usize::from(q < reach);
+    }
+
+    /// Distances become activations, several at a time; what lies beyond the end is never looked at.
+    #[inline(always)]
+    fn activate<S: Simd>(&mut self, simd: S, settings: &Settings) {
+        let room = self.len.next_multiple_of(LANES);
+        let Activation { w, slope, curvature } = &mut self.activation;
+        let out = Lanes::<S>::elements_mut(&mut w[..room]).iter_mut();
+        let out = out.zip(Lanes::<S>::elements_mut(&mut slope[..room]));
+        let out = out.zip(Lanes::<S>::elements_mut(&mut curvature[..room]));
+        for (&q, ((w, slope), curvature)) in Lanes::<S>::elements(&self.q[..room]).iter().zip(out) {
+            let activation = settings.params.kernel.at(Lanes::of(simd, q));
+            *w = activation.w.raw();
+            *slope = activation.slope.raw();
+            *curvature = activation.curvature.raw();
+        }
+    }
+
+    /// Field, squared distance and activation of each.
+    #[inline(always)]
+    pub(crate) fn iter(&self) -> impl Iterator<Item = Reached> {
+        let Activation { w, slope, curvature } = &self.activation;
+        let numbers = self.q.iter().zip(w).zip(slope).zip(curvature);
+        self.fields[..self.len].iter().zip(numbers).map(|(&field, (((&q, &w), &slope), &curvature))| Reached {
+            field,
+            q,
+            activation: Activation { w, slope, curvature },
+        })
+    }
+}
+
+/// Squared distance q = |M(x − c)|² with diagonal metric. `t` is a row of scratch.
+#[inline(always)]
+fn diagonal_distance<S: Simd>(simd: S, field: &Field, x: &[f64], t: &mut [f64]) -> f64 {
+    let width = x.len();
+    let (centre, m) =
+        (Lanes::<S>::elements(&field.rows[..width]), Lanes::<S>::elements(&field.rows[2 * width..3 * width]));
+    for (((t, &x), &c), &m) in Lanes::<S>::elements_mut(t).iter_mut().zip(Lanes::<S>::elements(x)).zip(centre).zip(m) {
+        *t = ((Lanes::of(simd, x) - Lanes::of(simd, c)) * Lanes::of(simd, m)).raw();
+    }
+    <Lanes<S> as Element<f64>>::dot(simd, t, t)
+}
+
 /// Squared distance q = (x − c)ᵀD(x − c) with full metric: |M(x − c)|². `t` is a row of scratch.
 #[inline(always)]
-pub(crate) fn full_distance(field: &Field, layout: Layout, x: &[f64], t: &mut [f64]) -> f64 {
+fn full_distance(field: &Field, layout: Layout, x: &[f64], t: &mut [f64]) -> f64 {
     t.fill(0.0);
     let columns = field.rows[2 * layout.width..][..layout.metric].chunks_exact(layout.width);
-    for ((column, &c), &x) in columns.zip(&field.rows).zip(x) {
+    for ((column, &c), &x) in columns.zip(&*field.rows).zip(x) {
         add_scaled::<f64, f64>((), t, x - c, column);
     }
     f64::dot((), t, t)

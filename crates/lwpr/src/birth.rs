@@ -2,6 +2,7 @@
 
 use crate::Metric;
 use crate::field::{DIRECTION_ROWS, Direction, Field, Layout};
+use crate::rows::Rows;
 use crate::settings::Settings;
 
 /// What the learning rates are floored by before their logarithm.
@@ -21,7 +22,7 @@ impl Field {
             ss_p: 0.0,
             trust: 0.0,
             directions: Vec::new(),
-            rows: vec![0.0; layout.directions()],
+            rows: Rows::zeros(layout.directions()),
         };
         field.rows[..n].copy_from_slice(&x[..n]);
         if let Some(other) = template {
@@ -67,10 +68,10 @@ impl Field {
             lambda,
             s: 0.0,
         });
-        let start = self.rows.len();
-        self.rows.resize(start + DIRECTION_ROWS * width, 0.0);
-        self.rows[start + 2 * width + k] = 1.0;
-        self.rows[start + 3 * width + k] = 1.0;
+        let mut rows = vec![0.0; DIRECTION_ROWS * width];
+        rows[2 * width + k] = 1.0;
+        rows[3 * width + k] = 1.0;
+        self.rows = Rows::from(&[&self.rows[..], &rows].concat()[..]);
     }
 }
 

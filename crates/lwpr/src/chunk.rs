@@ -2,7 +2,8 @@
 
 use pulp::Simd;
 
-use crate::number::{Lanes, Number};
+use crate::lanes::Lanes;
+use crate::number::Number;
 use crate::settings::Settings;
 
 /// Samples that are looked at together.

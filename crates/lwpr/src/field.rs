@@ -1,6 +1,7 @@
 //! The state of one receptive field, or of several side by side.
 
 use crate::Metric;
+use crate::rows::Rows;
 use crate::settings::Settings;
 
 /// One direction of the projection regression: its scalars. Its vectors are rows of the field.
@@ -35,7 +36,7 @@ pub(crate) struct Field<T = f64> {
     pub(crate) directions: Vec<Direction<T>>,
     /// Centre; mean; M with D = MᵀM (its diagonal, or its columns); learning rates; with meta learning their logarithms
     /// and memory; then for each direction Σ w t x, Σ w s x, U, P.
-    pub(crate) rows: Vec<f64>,
+    pub(crate) rows: Rows,
 }
 
 /// Where the rows of a field are; a row has `width` numbers: those of the padded inputs, or of

@@ -13,7 +13,7 @@ pub enum Kernel {
 }
 
 /// An activation and its first two derivatives by q.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Activation<T> {
     pub(crate) w: T,
     pub(crate) slope: T,

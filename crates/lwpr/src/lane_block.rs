@@ -5,7 +5,9 @@ use pulp::Simd;
 use crate::chunk::{Chunk, Shape};
 use crate::field::{DIRECTION_ROWS, Direction, Field, Layout};
 use crate::kernel::Activation;
-use crate::number::{Lanes, Number};
+use crate::lanes::Lanes;
+use crate::number::Number;
+use crate::rows::Rows;
 use crate::settings::{Settings, padded_for_lanes};
 use crate::training::{Workspace, train, with_width};
 
@@ -15,7 +17,7 @@ pub(crate) struct LaneBlock<S: Simd> {
     field: Field<Lanes<S>>,
     /// Centre and D of each lane.
     shapes: Vec<Shape>,
-    x: Vec<f64>,
+    x: Rows,
     y: Lanes<S>,
     q: Lanes<S>,
     workspace: Workspace,
@@ -61,10 +63,10 @@ impl<S: Simd> LaneBlock<S> {
                 ss_p: one,
                 trust: one,
                 directions: vec![direction; n_directions],
-                rows: vec![0.0; len],
+                rows: Rows::zeros(len),
             },
             shapes: vec![Shape::new(&vec![0.0; settings.width]); S::F64_LANES],
-            x: vec![0.0; width],
+            x: Rows::zeros(width),
             y: one,
             q: one,
             workspace: Workspace::new(settings, width),

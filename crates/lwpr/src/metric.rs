@@ -36,6 +36,20 @@ pub(crate) struct Derivatives<E> {
     pub(crate) penalty_second: E,
 }
 
+impl<E: Number> Derivatives<E> {
+    /// By an element of a diagonal M.
+    #[inline(always)]
+    fn diagonal(gamma: f64, m: E, dx: E) -> Self {
+        let (square, m2) = (dx * dx, m * m);
+        Derivatives {
+            dq: m * square * 2.0,
+            d2q: square * 2.0,
+            penalty: m2 * m * (2.0 * gamma),
+            penalty_second: m2 * (6.0 * gamma),
+        }
+    }
+}
+
 /// Adapts M after the regression has absorbed a sample; x − c in `dx`.
 #[inline(always)]
 pub(crate) fn update_metric<T: Element<T>, E: Element<T>>(
@@ -69,19 +83,19 @@ pub(crate) fn update_metric<T: Element<T>, E: Element<T>>(
 /// Padding has M = learning rate = 0 and keeps M = 0.
 #[inline(always)]
 fn diagonal_step<T: Number, E: Element<T>>(token: E::Token, rows: &mut MetricRows<'_>, step: &Step<T>, dx: &[f64]) {
-    let mut rows = ElementRows::<E>::new(rows);
-    for (i, &dx) in E::elements(dx).iter().enumerate() {
-        let (m, dx) = (E::of(token, rows.m[i]), E::of(token, dx));
-        let (square, m2) = (dx * dx, m * m);
-        let by = Derivatives {
-            dq: m * square * 2.0,
-            d2q: square * 2.0,
-            penalty: m2 * m * (2.0 * step.gamma),
-            penalty_second: m2 * (6.0 * step.gamma),
-        };
-        match step.rate {
-            None => step.descend(&mut rows, i, by),
-            Some(rate) => step.descend_meta(&mut rows, i, rate, by),
+    let (mut rows, dx) = (ElementRows::<E>::new(rows), E::elements(dx));
+    match step.rate {
+        None => {
+            for i in 0..dx.len() {
+                let by = Derivatives::diagonal(step.gamma, E::of(token, rows.m[i]), E::of(token, dx[i]));
+                step.descend(&mut rows, i, by);
+            }
+        }
+        Some(rate) => {
+            for i in 0..dx.len() {
+                let by = Derivatives::diagonal(step.gamma, E::of(token, rows.m[i]), E::of(token, dx[i]));
+                step.descend_meta(&mut rows, i, rate, by);
+            }
         }
     }
 }

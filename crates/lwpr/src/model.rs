@@ -3,10 +3,10 @@ use rand::Rng;
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
-use crate::Metric;
 use crate::batch_fit::BatchFit;
 use crate::error::Side;
 use crate::model_record::ModelRecord;
+use crate::rows::Rows;
 use crate::settings::Settings;
 use crate::sub_model::{Reach, SubModel};
 use crate::training::Workspace;
@@ -36,7 +36,7 @@ pub(crate) struct InputStatistics {
 /// What a single update works in, kept so that it allocates nothing.
 #[derive(Debug, Clone)]
 struct Online {
-    x: Vec<f64>,
+    x: Rows,
     workspace: Workspace,
     reach: Vec<Reach>,
 }
@@ -52,11 +52,12 @@ impl InputStatistics {
     }
 }
 
-/// [`Lwpr::update_checked`], compiled for the processor at hand.
+/// [`Lwpr::update_checked`] for the samples of `order`, one after the other, compiled for the processor at hand.
 struct UpdateChecked<'a> {
     model: &'a mut Lwpr,
-    x: &'a [f64],
-    y: &'a [f64],
+    xs: &'a [f64],
+    ys: &'a [f64],
+    order: &'a [usize],
 }
 
 impl pulp::WithSimd for UpdateChecked<'_> {
@@ -64,7 +65,12 @@ impl pulp::WithSimd for UpdateChecked<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) -> Self::Output {
-        self.model.update_checked(simd, self.x, self.y)
+        let UpdateChecked { model, xs, ys, order } = self;
+        let (n_in, n_out) = (model.n_in(), model.n_out());
+        for &sample in order {
+            model.update_checked(simd, &xs[sample * n_in..][..n_in], &ys[sample * n_out..][..n_out], sample)?;
+        }
+        Ok(())
     }
 }
 
@@ -77,7 +83,7 @@ impl Lwpr {
 
     pub(crate) fn from_parts(settings: Settings, outputs: Vec<SubModel>, inputs: InputStatistics) -> Self {
         let online = Online {
-            x: vec![0.0; settings.width],
+            x: Rows::zeros(settings.width),
             workspace: Workspace::new(&settings, settings.width),
             reach: vec![Reach::default(); settings.n_out],
         };
@@ -94,20 +100,20 @@ impl Lwpr {
         let (x, y) = (x.as_slice(), y.as_slice());
         self.settings.check(x, Side::Input, 0)?;
         self.settings.check(y, Side::Output, 0)?;
-        pulp::Arch::new().dispatch(UpdateChecked { model: self, x, y })
+        pulp::Arch::new().dispatch(UpdateChecked { model: self, xs: x, ys: y, order: &[0] })
     }
 
     #[inline(always)]
-    fn update_checked<S: pulp::Simd>(&mut self, simd: S, x: &[f64], y: &[f64]) -> Result<(), LwprError> {
+    fn update_checked<S: pulp::Simd>(&mut self, simd: S, x: &[f64], y: &[f64], sample: usize) -> Result<(), LwprError> {
         let Lwpr { settings, outputs, inputs, online } = self;
         for ((normalised, x), norm) in online.x.iter_mut().zip(x).zip(&settings.norm_in) {
             *normalised = x / norm;
         }
         let limit = settings.params.max_receptive_fields.unwrap_or(usize::MAX);
         for (k, (sub_model, reach)) in outputs.iter().zip(&mut online.reach).enumerate() {
-            sub_model.activate(settings, &online.x, &mut online.workspace, reach);
+            sub_model.activate(simd, settings, &online.x, &mut online.workspace, reach);
             if reach.strongest.asks_for_field(settings) && sub_model.fields.len() >= limit {
-                return Err(LwprError::TooManyReceptiveFields { sample: 0, output: k, limit });
+                return Err(LwprError::TooManyReceptiveFields { sample, output: k, limit });
             }
         }
         for (k, sub_model) in outputs.iter_mut().enumerate() {
@@ -163,8 +169,10 @@ impl Lwpr {
     ) -> Result<(), LwprError> {
         let params = &self.settings.params;
         let before = params.max_receptive_fields.map(|_| self.clone());
-        let result = if params.w_prune < 1.0 || params.metric == Metric::Full || self.settings.width > 8 {
-            orders.try_for_each(|order| self.fit_by_sample(xs, ys, &order))
+        let result = if params.w_prune < 1.0 || !self.settings.narrow() {
+            let (xs, ys) = (xs.as_slice(), ys.as_slice());
+            orders
+                .try_for_each(|order| pulp::Arch::new().dispatch(UpdateChecked { model: self, xs, ys, order: &order }))
         } else {
             let mut fit = BatchFit::new(self);
             orders.try_for_each(|order| fit.pass(self, xs, ys, &order))
@@ -173,17 +181,6 @@ impl Lwpr {
             *self = before;
         }
         result
-    }
-
-    fn fit_by_sample(&mut self, xs: &DMatrix<f64>, ys: &DMatrix<f64>, order: &[usize]) -> Result<(), LwprError> {
-        order.iter().try_for_each(|&sample| {
-            self.update(xs.column(sample).as_view(), ys.column(sample).as_view()).map_err(|error| match error {
-                LwprError::TooManyReceptiveFields { output, limit, .. } => {
-                    LwprError::TooManyReceptiveFields { sample, output, limit }
-                }
-                other => other,
-            })
-        })
     }
 
     fn check_batch(&self, xs: &DMatrix<f64>, ys: &DMatrix<f64>) -> Result<(), LwprError> {

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::activation::ActivationTable;
 use crate::field::{DIRECTION_ROWS, Direction, Field, Layout};
 use crate::model::InputStatistics;
+use crate::rows::Rows;
 use crate::settings::Settings;
 use crate::sub_model::SubModel;
 use crate::{Lwpr, LwprError, LwprParams, Metric};
@@ -126,7 +127,14 @@ impl FieldRecord {
         }
         let directions: Option<_> =
             self.directions.iter().map(|direction| direction.restore(settings, &mut rows)).collect();
-        Some(Field { beta0, sum_e2, ss_p, trust: if trustworthy { 1.0 } else { 0.0 }, directions: directions?, rows })
+        Some(Field {
+            beta0,
+            sum_e2,
+            ss_p,
+            trust: if trustworthy { 1.0 } else { 0.0 },
+            directions: directions?,
+            rows: Rows::from(&rows[..]),
+        })
     }
 }
 

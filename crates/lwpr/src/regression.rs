@@ -100,7 +100,7 @@ pub(crate) fn update_regression<T: Number, E: Element<T>>(
         let inverse = update_scalars(direction, (s, target), w);
         update_rows::<T, E>(token, &mut rows, [direction.lambda, s, w * s, w * target, inverse], residual);
 
-        direction.s = E::dot(token, rows.u, fresh);
+        direction.s = turn::<T, E>(token, &mut rows, fresh);
         for (fresh, &p) in E::elements_mut(fresh).iter_mut().zip(E::elements(rows.p)) {
             *fresh = (E::of(token, *fresh) - E::of(token, p) * direction.s).raw();
         }
@@ -164,12 +164,25 @@ fn update_rows<T: Number, E: Element<T>>(
         *residual = (x - E::of(token, *p) * s).raw();
         *p = (new_ss_x * inverse).raw();
     }
+}
+
+/// U turns to where Σ w t x now points, if it points anywhere. Returns Uᵀx for the row `x`, whose sum need not wait for
+/// the norm.
+#[inline(always)]
+fn turn<T: Number, E: Element<T>>(token: E::Token, rows: &mut DirectionRows<'_>, x: &[f64]) -> T {
     let square = E::dot(token, rows.covariance, rows.covariance);
-    let points = E::spread_mask(token, square.above(s.like(1e-24)));
+    let along = E::dot(token, rows.covariance, x);
     let scale = square.sqrt().recip();
-    for (u, &covariance) in E::elements_mut(rows.u).iter_mut().zip(E::elements(rows.covariance)) {
-        *u = (E::of(token, covariance) * scale).or_else(points, E::of(token, *u)).raw();
+    let stays = square.like(1e-24).above(square);
+    let mut s = along * scale;
+    if T::any(square.token(), stays) {
+        s = E::dot(token, rows.u, x).or_else(stays, s);
     }
+    let stays = E::spread_mask(token, stays);
+    for (u, &covariance) in E::elements_mut(rows.u).iter_mut().zip(E::elements(rows.covariance)) {
+        *u = E::of(token, *u).or_else(stays, E::of(token, covariance) * scale).raw();
+    }
+    s
 }
 
 /// Ages all directions. Returns where the last one still paid and has settled, so that another is worth adding; the

@@ -56,6 +56,13 @@ impl Settings {
         matches!(self.params.adaptation, MetricAdaptation::Meta { .. })
     }
 
+    /// Whether the rows of a field are too short to keep vector registers busy, so that fields are best looked at several
+    /// at a time.
+    #[inline(always)]
+    pub(crate) fn narrow(&self) -> bool {
+        self.params.metric == Metric::Diagonal && self.width <= 8
+    }
+
     /// Refuses what is not finite, or so large that its powers would not be.
     pub(crate) fn check(&self, values: &[f64], side: Side, sample: usize) -> Result<(), LwprError> {
         let norm = match side {

@@ -1,10 +1,10 @@
 //! The fields of one output, and how they learn from one sample.
 
-use crate::activation::{ActivationTable, Reached, full_distance};
-use crate::field::{Field, Layout};
+use crate::Pruning;
+use crate::activation::{ActivationTable, Near, Reached};
+use crate::field::Field;
 use crate::settings::Settings;
 use crate::training::{Workspace, train_one, with_width};
-use crate::{Metric, Pruning};
 
 /// The receptive fields of one output.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -14,10 +14,10 @@ pub(crate) struct SubModel {
     pub(crate) n_pruned: usize,
 }
 
-/// The fields in reach of a sample, in list order, and the strongest of them.
-#[derive(Debug, Clone, PartialEq, Default)]
+/// The fields in reach of a sample, and the strongest of them.
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Reach {
-    pub(crate) fields: Vec<Reached>,
+    near: Near,
     pub(crate) strongest: Strongest,
 }
 
@@ -60,27 +60,19 @@ impl Strongest {
 impl SubModel {
     /// Finds the fields in reach of the normalised sample `x` and their activations.
     #[inline(always)]
-    pub(crate) fn activate(&self, settings: &Settings, x: &[f64], workspace: &mut Workspace, reach: &mut Reach) {
-        let mut strongest = Strongest::default();
-        reach.fields.clear();
-        let mut found = |field, q| {
-            let activation = settings.params.kernel.at(q);
-            strongest.see(field, activation.w);
-            reach.fields.push(Reached { field, q, activation });
-        };
-        match settings.params.metric {
-            Metric::Diagonal => self.table.reached(settings.n_in, x, settings.reach, found),
-            Metric::Full => {
-                let layout = Layout::new(settings, settings.width);
-                for (k, field) in self.fields.iter().enumerate() {
-                    let q = full_distance(field, layout, x, &mut workspace.rows[..layout.width]);
-                    if q < settings.reach {
-                        found(k, q);
-                    }
-                }
-            }
+    pub(crate) fn activate<S: pulp::Simd>(
+        &self,
+        simd: S,
+        settings: &Settings,
+        x: &[f64],
+        workspace: &mut Workspace,
+        reach: &mut Reach,
+    ) {
+        reach.near.find(simd, settings, (&self.fields, &self.table), x, &mut workspace.rows);
+        reach.strongest = Strongest::default();
+        for Reached { field, activation, .. } in reach.near.iter() {
+            reach.strongest.see(field, activation.w);
         }
-        reach.strongest = strongest;
     }
 
     /// One step of learning from the normalised sample (x, y): 1.4 of the algorithm for one output.
@@ -96,10 +88,12 @@ impl SubModel {
     ) {
         let Workspace { rows, mmt } = workspace;
         with_width!(settings.width, [1, 2, 4, 8, 16, 24, 32], rows, |width, scratch| {
-            for reached in reach.fields.iter().filter(|reached| reached.q < settings.training_reach) {
-                let field = &mut self.fields[reached.field];
-                train_one(simd, field, settings, (&x[..width], y), reached.activation, scratch, mmt);
-                self.table.set_metric(settings, reached.field, field);
+            for Reached { field: k, q, activation } in reach.near.iter() {
+                if q < settings.training_reach {
+                    let field = &mut self.fields[k];
+                    train_one(simd, field, settings, (&x[..width], y), activation, scratch, mmt);
+                    self.table.set_metric(settings, k, field);
+                }
             }
         });
         let strongest = reach.strongest;

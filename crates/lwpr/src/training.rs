@@ -4,8 +4,9 @@ use crate::Metric;
 use crate::field::{Field, Layout};
 use crate::full_metric::FullScratch;
 use crate::kernel::Activation;
+use crate::lanes::Lanes;
 use crate::metric::update_metric;
-use crate::number::{Element, Lanes};
+use crate::number::Element;
 use crate::regression::{Sample, age, update_means, update_regression};
 use crate::settings::Settings;
 
@@ -19,7 +20,8 @@ macro_rules! with_width {
         match $width {
             $($length => {
                 let $w: usize = $length;
-                let $scratch: &mut [f64] = &mut [0.0; $length * $crate::training::SCRATCH_ROWS];
+                let $scratch: &mut [f64] =
+                    &mut $crate::rows::Aligned([0.0; $length * $crate::training::SCRATCH_ROWS]).0;
                 $body
             })*
             $w => {
