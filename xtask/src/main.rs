@@ -13,6 +13,7 @@ mod records;
 mod report;
 mod reproduce;
 mod results;
+mod robots;
 mod runner;
 mod seed;
 mod table;

@@ -12,6 +12,8 @@ pub(crate) enum Measure {
     Nupe,
     /// Error of the policy under the training constraints (A2).
     Ncpe,
+    /// Error of the policy under a constraint that no demonstration shows (A2).
+    NcpeUnseen,
     /// Discarded trajectories, percent.
     Disc,
     /// Error of the aligned local potentials (A4).
@@ -51,6 +53,7 @@ impl Measure {
             Measure::PotentialNmse => "potential_nmse",
             Measure::Nupe => "nupe",
             Measure::Ncpe => "ncpe",
+            Measure::NcpeUnseen => "ncpe_unseen",
             Measure::Disc => "disc",
             Measure::AlignmentNmse => "alignment_nmse",
             Measure::Naive => "naive",

@@ -128,7 +128,7 @@ fn the_list_names_every_row() {
     let folder = tempfile::tempdir().unwrap();
     let output = run(folder.path(), &["--list"]);
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
-    for name in ["table1:", "table1-literal:", "parabola-40x40-narrow", "sinusoidal-100x100-wide"] {
+    for name in ["table1:", "table1-literal:", "table2:", "parabola-40x40-narrow", "sinusoidal-100x100-wide"] {
         assert!(said.contains(name), "{said}");
     }
 }

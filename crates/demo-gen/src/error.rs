@@ -141,6 +141,44 @@ pub enum DemoGenError {
         /// How many were drawn.
         draws: usize,
     },
+    /// The gap of a wall cannot be drawn.
+    #[error(
+        "gap {mean} m with standard deviation {deviation} m, at least {least} m: all must be finite, \
+         the last two 0 or more"
+    )]
+    Gap {
+        /// The mean given, in metres.
+        mean: f64,
+        /// The standard deviation given, in metres.
+        deviation: f64,
+        /// The least gap given, in metres.
+        least: f64,
+    },
+    /// No start posture was found with both palms where a grasp begins.
+    #[error(
+        "{draws} start postures drawn, none with both palms before the body and each on its side; \
+         widen `start_depth`, lower `start_side`, or move the table"
+    )]
+    NoNaturalStart {
+        /// How many were drawn.
+        draws: usize,
+    },
+    /// A posture cannot be pulled or corrected so.
+    #[error(
+        "pull {pull}, {corrections} corrections a sample: the pull must be from 0 to 1, the corrections at least 1"
+    )]
+    Tracking {
+        /// The pull given.
+        pull: f64,
+        /// The number of corrections given.
+        corrections: usize,
+    },
+    /// A movement that hands are to follow is not one of two points in space.
+    #[error("the movement has {found} dimensions; those of a left and a right palm are 6")]
+    Palms {
+        /// Its number of dimensions.
+        found: usize,
+    },
     /// The robot is not what the scenario needs, or refuses a configuration.
     #[error(transparent)]
     Robot(#[from] KinematicsError),

@@ -1,7 +1,7 @@
 //! Section 4.3: 22 joints of a humanoid, one hand in a plane.
 
 use align::{LwprRegressor, PolicyAlign};
-use demo_gen::{HandInPlane, UpperBody, n_leaving_limits};
+use demo_gen::{HandInPlane, n_leaving_limits};
 use lwpr::{LwprParams, MetricAdaptation};
 use rand_chacha::ChaCha8Rng;
 
@@ -10,17 +10,18 @@ use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::learners::Learner;
 use crate::measure::{Measure, RowOf};
 use crate::paper::{explanations, paper_table};
+use crate::robots::upper_body;
 
 /// The experiment.
 pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
     let mut paper = paper_table(include_str!("../../paper/asimo22.toml"))?;
     let id = "policy_align";
     let row = Row { id: id.to_owned(), of: RowOf::Learner, paper: paper.remove(id).unwrap_or_default() };
-    let body = UpperBody::new(
-        include_str!("../../../robots/asimo_upper_body.urdf"),
-        include_str!("../../../robots/asimo_upper_body.srdf"),
-    )?;
-    let trial = BodyTrial { scenario: HandInPlane::new(body), algorithm: PolicyAlign::default(), learners: learners() };
+    let trial = BodyTrial {
+        scenario: HandInPlane::new(upper_body()?),
+        algorithm: PolicyAlign::default(),
+        learners: learners(),
+    };
     Ok(Experiment {
         id: "asimo22",
         section: "4.3",
@@ -63,7 +64,7 @@ impl Trial for BodyTrial {
 
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.scenario.record(rng)?;
-        let mut rows = examine(&recordings, &self.algorithm, &self.learners, rng)?;
+        let mut rows = examine(&recordings, &self.algorithm, &self.learners, None, rng)?;
         let leaving = n_leaving_limits(self.scenario.body.robot(), &recordings)?;
         rows[0].insert(Measure::BeyondLimits, 100.0 * leaving as f64 / recordings.len() as f64);
         Ok(rows)

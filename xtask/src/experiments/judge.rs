@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use align::{Aligned, Samples};
-use constraints::NullSpaceProjector;
+use constraints::{NullSpaceProjector, PfaffianConstraint};
 use demo_gen::Recording;
 use metrics::{alignment_nmse, ncpe, nupe, potential_nmse};
 use motion::{Policy, Potential};
@@ -41,6 +41,13 @@ impl<'a> Judge<'a> {
         let learnt = self.actions_of(policy);
         let under_training = ncpe(&self.actions, &learnt, |n, v| self.projectors[n].project_into(v))?;
         Ok(BTreeMap::from([(Measure::Nupe, nupe(&self.actions, &learnt)?), (Measure::Ncpe, under_training)]))
+    }
+
+    /// Error of a policy under a constraint that holds at time 0 (A2), seen in the demonstrations or not.
+    pub(crate) fn policy_under(&self, policy: &dyn Policy, constraint: &dyn PfaffianConstraint) -> anyhow::Result<f64> {
+        let projectors = self.states.column_iter().map(|state| constraint.null_space_projector(state, 0.0));
+        let projectors = projectors.collect::<Result<Vec<_>, _>>()?;
+        Ok(ncpe(&self.actions, &self.actions_of(policy), |n, v| projectors[n].project_into(v))?)
     }
 
     /// Errors of a learnt potential (A3) and of the aligned local potentials (A4).

@@ -4,6 +4,7 @@ mod asimo22;
 mod exam;
 mod judge;
 mod table1;
+mod table2;
 mod three_link;
 
 pub(crate) use table1::toy_regressor;
@@ -80,5 +81,11 @@ pub(crate) trait Trial: Send + Sync {
 
 /// All experiments, in the paper's order.
 pub(crate) fn registry() -> anyhow::Result<Vec<Experiment>> {
-    Ok(vec![table1::table1()?, table1::table1_literal()?, asimo22::asimo22()?, three_link::three_link()?])
+    Ok(vec![
+        table1::table1()?,
+        table1::table1_literal()?,
+        table2::table2()?,
+        asimo22::asimo22()?,
+        three_link::three_link()?,
+    ])
 }

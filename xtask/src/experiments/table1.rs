@@ -89,6 +89,6 @@ impl Trial for ToyTrial {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.system.record(rng)?;
         let algorithm = PolicyAlign { bandwidth: self.bandwidth, ..PolicyAlign::default() };
-        examine(&recordings, &algorithm, &[Box::new(toy_regressor())], rng)
+        examine(&recordings, &algorithm, &[Box::new(toy_regressor())], None, rng)
     }
 }

@@ -61,7 +61,7 @@ impl Trial for ArmTrial {
 
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.arm.record(rng)?;
-        let mut rows = examine(&recordings, &self.algorithm, &self.learners, rng)?;
+        let mut rows = examine(&recordings, &self.algorithm, &self.learners, None, rng)?;
         let leaving = n_leaving_limits(&self.arm.robot, &recordings)?;
         rows[0].insert(Measure::BeyondLimits, 100.0 * leaving as f64 / recordings.len() as f64);
         Ok(rows)
