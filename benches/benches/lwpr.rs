@@ -1,7 +1,8 @@
-//! LWPR: training sample by sample and in batch, prediction with gradient; d = 2, 6, 22, diagonal metric.
+//! LWPR: training sample by sample and in batch, prediction with gradient; d = 2, 6, 22, diagonal metric. Under a minute.
 #![allow(missing_docs, reason = "a benchmark")]
 
 use std::hint::black_box;
+use std::time::Duration;
 
 use benches::lwpr_data::{PotentialSamples, potential_samples};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
@@ -42,6 +43,7 @@ fn bench(criterion: &mut Criterion) {
         let model = model(&samples);
         let mut group = criterion.benchmark_group(format!("lwpr d={d}"));
         group.sample_size(10).throughput(Throughput::Elements(samples.xs.ncols() as u64));
+        group.warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(3));
         group.bench_function("train online", |bencher| {
             let train = |mut model: Lwpr| {
                 for (x, y) in samples.xs.column_iter().zip(samples.ys.column_iter()) {
