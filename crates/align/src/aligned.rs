@@ -107,7 +107,7 @@ impl Aligned {
     pub fn responsibilities(&self, state: DVectorView<'_, f64>) -> DVector<f64> {
         let distances: Vec<f64> = self.local_potentials().map(|local| local.nearest(state).1).collect();
         let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
-        let weight = |distance: f64| ((nearest - distance) / (2.0 * self.sigma_squared)).exp();
+        let weight = |distance: f64| (0.5 * ((nearest - distance) / self.sigma_squared)).exp();
         let weights = DVector::from_iterator(distances.len(), distances.into_iter().map(weight));
         &weights / weights.sum()
     }

@@ -13,12 +13,12 @@ const LN_2: [f64; 2] = [6.931471803691238e-1, 1.9082149292705877e-10];
 
 /// Replaces each squared distance d by exp(−d / 2σ²), or by 0 where d > `reach`.
 pub(crate) fn to_weights(squared_distances: &mut [f64], sigma_squared: f64, reach: f64) {
-    Arch::new().dispatch(ToWeights { squared_distances, scale: 2.0 * sigma_squared, reach });
+    Arch::new().dispatch(ToWeights { squared_distances, sigma_squared, reach });
 }
 
 struct ToWeights<'a> {
     squared_distances: &'a mut [f64],
-    scale: f64,
+    sigma_squared: f64,
     reach: f64,
 }
 
@@ -28,13 +28,14 @@ impl WithSimd for ToWeights<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
         for value in self.squared_distances {
-            let weight = exp_negative(*value / self.scale);
+            // Halved last: 2σ² may overflow.
+            let weight = exp_negative(0.5 * (*value / self.sigma_squared));
             *value = if *value <= self.reach { weight } else { 0.0 };
         }
     }
 }
 
-/// exp(−t) for t ≥ 0 to within one unit in the last place; 0 where t > 708.
+/// exp(−t) for t ≥ 0 to within one unit in the last place; 0 where t > 708 or not a number.
 #[inline(always)]
 fn exp_negative(t: f64) -> f64 {
     let x = -(if t < LARGEST { t } else { LARGEST });
@@ -48,7 +49,7 @@ fn exp_negative(t: f64) -> f64 {
     }
     let two_to_the_power = f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52);
     let value = (1.0 + (r + r * r * tail)) * two_to_the_power;
-    if t > LARGEST { 0.0 } else { value }
+    if t <= LARGEST { value } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -80,9 +81,17 @@ mod tests {
     }
 
     #[test]
+    fn the_widest_bandwidth_gives_weight_to_samples_only() {
+        let mut weights = [0.0, 1e308, f64::MAX, f64::INFINITY];
+        to_weights(&mut weights, f64::MAX, f64::INFINITY);
+        assert_eq!(weights, [1.0, exp_negative(0.5 * (1e308 / f64::MAX)), exp_negative(0.5), 0.0]);
+    }
+
+    #[test]
     fn ends_are_exact() {
         assert_eq!(exp_negative(0.0), 1.0);
         assert_eq!(exp_negative(f64::INFINITY), 0.0);
+        assert_eq!(exp_negative(f64::NAN), 0.0);
         assert!(exp_negative(LARGEST) > 0.0);
     }
 }

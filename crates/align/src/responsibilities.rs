@@ -34,7 +34,8 @@ impl Responsibilities {
     /// At a sample of the data the own trajectory has weight 1, the largest there can be: weights below `floor` are
     /// dropped.
     pub(crate) fn new(nearest: &NearestSamples, potentials: &[Vec<f64>], sigma_squared: f64, floor: f64) -> Self {
-        let reach = 2.0 * sigma_squared * -floor.ln();
+        // Not 2σ² first, which may overflow.
+        let reach = sigma_squared * (-2.0 * floor.ln());
         let owners = (0..nearest.n_trajectories()).into_par_iter();
         let blocks = owners.map(|owner| Block::new(owner, nearest, potentials, sigma_squared, reach)).collect();
         Responsibilities { blocks }

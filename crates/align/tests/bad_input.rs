@@ -2,7 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+#[allow(dead_code, reason = "H is all that is compared")]
+mod literal;
+
 use align::{AlignError, Aligned, Bandwidth, DirectPolicyLearning, Integration, LwprRegressor, PolicyAlign, Warning};
+use literal::Literal;
 use lwpr::LwprParams;
 use motion::{Demonstrations, Policy, Potential, Trajectory};
 use nalgebra::{DMatrix, DVector};
@@ -233,6 +237,8 @@ fn what_looks_odd_and_is_fine() {
     };
     let tiny: Vec<_> = sound().into_iter().map(|x| x * 1e-150).collect();
     let huge: Vec<_> = sound().into_iter().map(|x| x * 1e150).collect();
+    // 2σ² overflows, σ² does not.
+    let at_the_limit = || [0.0, 1.2e154].map(|y| line([0.0, y], [1e153, y], 10)).to_vec();
     let far: Vec<_> = sound().into_iter().map(|x| x.add_scalar(1e9)).collect();
     let lengths = (2..6).map(|n| line([0.0, n as f64], [1.0, n as f64], n)).collect();
 
@@ -245,14 +251,20 @@ fn what_looks_odd_and_is_fine() {
         ("a bandwidth beyond all bounds", fixed(f64::MAX), sound(), 3),
         ("tiny coordinates", with(|_| {}), tiny, 3),
         ("huge coordinates", with(|_| {}), huge, 3),
+        ("as far apart as squares allow", with(|_| {}), at_the_limit(), 2),
         ("far from the origin", with(|_| {}), far, 3),
         ("different lengths", with(|_| {}), lengths, 4),
         ("nothing dropped", with(|p| p.responsibility_floor = 0.0), sound(), 3),
         ("a threshold that nothing reaches", with(|p| p.eigenvalue_threshold = 1e300), sound(), 1),
     ];
     for (name, learner, positions, kept) in cases {
-        let aligned = learner.align(&observed(positions)).unwrap();
+        let demonstrations = observed(positions);
+        let aligned = learner.align(&demonstrations).unwrap();
         assert_eq!(aligned.kept().len(), kept, "{name}");
+        let PolicyAlign { integration, bandwidth, responsibility_floor: floor, .. } = learner;
+        let (laplacian, _) = Literal::new(&demonstrations, integration, bandwidth, floor).laplacian_and_linear();
+        let miss = (&aligned.objective().laplacian - laplacian).amax();
+        assert!(miss <= 1e-14 * demonstrations.n_samples() as f64, "{name}: {miss:e}");
         assert_eq!(
             aligned.kept().len() + aligned.discarded().len(),
             aligned.demonstrations().n_trajectories(),

@@ -22,11 +22,13 @@ proptest! {
     #[test]
     fn every_stage_is_the_papers(
         demonstrations in drawn::demonstrations(2), integration in drawn::integration(), bandwidth in drawn::bandwidth(),
-        floor in prop_oneof![Just(0.0), Just(1e-20), Just(1e-30)],
+        floor in prop_oneof![
+            Just(0.0), Just(1e-20), Just(1e-30), (-6.0_f64..-1.0).prop_map(|exponent| 10.0_f64.powf(exponent)),
+        ],
     ) {
         let learner = PolicyAlign { integration, bandwidth, responsibility_floor: floor, ..Default::default() };
         let aligned = learner.align(&demonstrations).unwrap();
-        let literal = Literal::new(&demonstrations, integration, bandwidth);
+        let literal = Literal::new(&demonstrations, integration, bandwidth, floor);
         let (laplacian, linear) = literal.laplacian_and_linear();
         let size = 1.0 + literal.potentials.iter().flatten().fold(0.0_f64, |size, value| size.max(value.abs()));
         let samples = literal.shares.len() as f64;
@@ -51,7 +53,7 @@ proptest! {
         offsets in vec(-3.0..3.0, 8), direction in vec(-1.0..1.0, 8),
     ) {
         let aligned = PolicyAlign { integration, bandwidth, ..Default::default() }.align(&demonstrations).unwrap();
-        let literal = Literal::new(&demonstrations, integration, bandwidth);
+        let literal = Literal::new(&demonstrations, integration, bandwidth, 0.0);
         let all: Vec<usize> = (0..demonstrations.n_trajectories()).collect();
         let b = DVector::from_column_slice(&offsets[..all.len()]);
         let step = DVector::from_column_slice(&direction[..all.len()]);
@@ -78,7 +80,7 @@ proptest! {
         direction in vec(-1.0..1.0, 8),
     ) {
         let aligned = PolicyAlign { integration, bandwidth, ..Default::default() }.align(&demonstrations).unwrap();
-        let literal = Literal::new(&demonstrations, integration, bandwidth);
+        let literal = Literal::new(&demonstrations, integration, bandwidth, 0.0);
         let least = literal.objective(aligned.kept(), aligned.offsets().as_slice());
         let elsewhere: Vec<f64> = aligned.offsets().iter().zip(&direction).map(|(b, d)| b + d).collect();
         prop_assert!(least <= literal.objective(aligned.kept(), &elsewhere) * (1.0 + 1e-12) + 1e-12);
@@ -114,7 +116,7 @@ proptest! {
         prop_assert!((shares.sum() - 1.0).abs() < 1e-12);
 
         // At the samples they are those of the literal formula.
-        let literal = Literal::new(&demonstrations, Integration::Displacement, bandwidth);
+        let literal = Literal::new(&demonstrations, Integration::Displacement, bandwidth, 0.0);
         let states = demonstrations.trajectories().iter().flat_map(|t| t.positions().column_iter());
         for (state, expected) in states.zip(&literal.shares) {
             let shares = aligned.responsibilities(state.as_view());

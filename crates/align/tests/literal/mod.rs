@@ -13,7 +13,13 @@ pub(crate) struct Literal {
 }
 
 impl Literal {
-    pub(crate) fn new(demonstrations: &Demonstrations, integration: Integration, bandwidth: Bandwidth) -> Self {
+    /// With weights below `floor` dropped: the largest at any sample is 1, that of its own trajectory.
+    pub(crate) fn new(
+        demonstrations: &Demonstrations,
+        integration: Integration,
+        bandwidth: Bandwidth,
+        floor: f64,
+    ) -> Self {
         let trajectories = demonstrations.trajectories();
         let potentials: Vec<_> = trajectories.iter().map(|t| potential(t, integration)).collect();
         let sigma_squared = sigma_squared(trajectories, bandwidth);
@@ -21,7 +27,8 @@ impl Literal {
         for owner in trajectories {
             for m in 0..owner.n_samples() {
                 let nearest: Vec<_> = trajectories.iter().map(|t| nearest(owner, m, t)).collect();
-                let weights: Vec<f64> = nearest.iter().map(|(_, d)| (-d / (2.0 * sigma_squared)).exp()).collect();
+                let weights: Vec<f64> = nearest.iter().map(|(_, d)| (-0.5 * (d / sigma_squared)).exp()).collect();
+                let weights: Vec<f64> = weights.into_iter().map(|w| if w < floor { 0.0 } else { w }).collect();
                 let total: f64 = weights.iter().sum();
                 shares.push(weights.iter().map(|w| w / total).collect());
                 values.push(nearest.iter().zip(&potentials).map(|((i, _), potential)| potential[*i]).collect());
@@ -125,5 +132,5 @@ fn sigma_squared(trajectories: &[Trajectory], bandwidth: Bandwidth) -> f64 {
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let half = values.len() / 2;
-    if values.len() % 2 == 1 { values[half] } else { 0.5 * (values[half - 1] + values[half]) }
+    if values.len() % 2 == 1 { values[half] } else { 0.5 * values[half - 1] + 0.5 * values[half] }
 }
