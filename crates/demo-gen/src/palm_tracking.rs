@@ -35,8 +35,8 @@ impl PalmTracking {
     /// The joint path that follows `palms`, a movement of left and right palm (6 dimensions, metres in the heel's frame),
     /// from `posture` (n), which is clipped to the joints' limits and kept as the first configuration.
     ///
-    /// What is out of reach is missed, and the errors say by how much. Collisions are not looked for: reaching forwards,
-    /// the upper arms graze the torso.
+    /// What is out of reach is missed, and the errors say by how much. Collisions are not looked for, and there are some:
+    /// see `docs/decisions/table2.md`.
     ///
     /// # Errors
     /// [`DemoGenError::Tracking`], [`DemoGenError::Palms`], or [`DemoGenError::Robot`] for a damping out of range, a
