@@ -104,10 +104,18 @@ impl Aligned {
     }
 
     /// How far each local model speaks for a state: q(x) (12), (K).
+    ///
+    /// Trajectories that are equally near have equal shares. To a state so far that its squared distances overflow, all
+    /// whose distances do are equally near. A state with a NaN has NaN shares.
+    ///
+    /// # Panics
+    /// If the state has another dimension than the trajectories.
     pub fn responsibilities(&self, state: DVectorView<'_, f64>) -> DVector<f64> {
         let distances: Vec<f64> = self.local_potentials().map(|local| local.nearest(state).1).collect();
         let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
-        let weight = |distance: f64| (0.5 * ((nearest - distance) / self.sigma_squared)).exp();
+        // The nearest of all may be at infinity, and its excess NaN.
+        let excess = |distance: f64| if distance == nearest { 0.0 } else { distance - nearest };
+        let weight = |distance| (-0.5 * (excess(distance) / self.sigma_squared)).exp();
         let weights = DVector::from_iterator(distances.len(), distances.into_iter().map(weight));
         &weights / weights.sum()
     }

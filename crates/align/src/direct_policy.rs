@@ -128,6 +128,7 @@ impl Policy for DirectPolicy {
 
     fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
         assert_eq!(state.len(), self.n_states(), "a state has as many dimensions as the policy");
+        assert_eq!(action.len(), self.n_states(), "an action has as many dimensions as the policy");
         for output in 0..self.n_states() {
             action[output] = self.learnt.mean[output] + self.learnt.predictor.value(state, output).unwrap_or(0.0);
         }

@@ -19,9 +19,10 @@ pub struct AlignmentObjective {
     /// H = diag_k(Σ_m q_km) − Σ_m q_m q_mᵀ (15), (K, K): the Laplacian of a graph whose weights tell how much two
     /// trajectories speak for the same samples.
     pub laplacian: DMatrix<f64>,
-    /// a_k = Σ_m q_km (f_km − Σ_j q_jm f_jm) (16), (K), in units of the potential.
+    /// a_k = Σ_m q_km (f_km − Σ_j q_jm f_jm) (16), (K), in units of the potential; not finite where differences of
+    /// potentials overflow.
     pub linear: DVector<f64>,
-    /// E₀ = E(0), in units of the potential squared; infinite where squares of potentials overflow.
+    /// E₀ = E(0), in units of the potential squared; infinite if it overflows.
     pub constant: f64,
 }
 
@@ -30,6 +31,8 @@ impl AlignmentObjective {
         let laplacian = laplacian(responsibilities);
         let unaligned = vec![Some(0.0); responsibilities.n_trajectories()];
         let (linear, constant) = linear_term(responsibilities, &unaligned);
+        // What overflows on its way gives ∞ − ∞.
+        let constant = if constant.is_nan() { f64::INFINITY } else { constant };
         AlignmentObjective { laplacian, linear: linear.into(), constant }
     }
 

@@ -32,11 +32,9 @@ pub(crate) fn group_offsets(
             offsets[k] = offsets[k].map(|offset| offset + step);
         }
     }
-    let finite = |k: usize| objective.linear[k].is_finite() && offsets[k].is_none_or(f64::is_finite);
-    match (0..offsets.len()).find(|&k| !finite(k)) {
-        None => Ok(DVector::from_iterator(group.len(), group.iter().filter_map(|&k| offsets[k]))),
-        Some(trajectory) => Err(AlignError::OffsetOverflow { trajectory }),
-    }
+    let finite =
+        |&k: &usize| offsets[k].filter(|offset| offset.is_finite()).ok_or(AlignError::OffsetOverflow { trajectory: k });
+    group.iter().map(finite).collect::<Result<Vec<f64>, _>>().map(DVector::from)
 }
 
 #[cfg(test)]

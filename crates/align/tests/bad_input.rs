@@ -307,3 +307,34 @@ fn a_state_of_another_dimension_is_a_bug() {
     let learnt = aligned.learn(&LwprParams::default(), &mut StdRng::seed_from_u64(1)).unwrap();
     learnt.potential().value(DVector::zeros(3).as_view());
 }
+
+#[test]
+#[should_panic(expected = "as many dimensions as the trajectory")]
+fn responsibilities_for_a_state_of_another_dimension_are_a_bug() {
+    let aligned = PolicyAlign::default().align(&observed(sound())).unwrap();
+    aligned.responsibilities(DVector::zeros(3).as_view());
+}
+
+#[test]
+#[should_panic(expected = "an action has as many dimensions as the policy")]
+fn an_action_of_another_dimension_is_a_bug() {
+    let policy = DirectPolicyLearning::default().learn(&observed(sound()), &mut StdRng::seed_from_u64(1)).unwrap();
+    policy.action_into(DVector::zeros(2).as_view(), DVector::zeros(3).as_view_mut());
+}
+
+#[test]
+fn what_overflows_among_the_discarded_does_no_harm() {
+    // Three that agree; far away two that meet, with potentials too different for f64.
+    let still = |y| (line([0.0, y], [3.0, y], 4), DMatrix::from_element(2, 4, 0.1));
+    let steep = |sign: f64| (line([100.0, 0.0], [103.0, 0.0], 4), DMatrix::from_element(2, 4, sign * 5e307));
+    let movements = [still(0.0), still(1.0), still(2.0), steep(1.0), steep(-1.0)];
+    let recorded = |(x, u)| Trajectory::new(x, 1.0).unwrap().with_velocities(u).unwrap();
+    let demonstrations = Demonstrations::new(movements.into_iter().map(recorded).collect()).unwrap();
+    let learner =
+        PolicyAlign { integration: Integration::Work, bandwidth: Bandwidth::Fixed(1.0), ..Default::default() };
+    let aligned = learner.align(&demonstrations).unwrap();
+    assert_eq!((aligned.kept(), aligned.discarded()), (&[0, 1, 2][..], &[3, 4][..]));
+    assert!(aligned.offsets().amax() < 1e-14);
+    assert!(!aligned.objective().linear[3].is_finite());
+    assert_eq!(aligned.objective().constant, f64::INFINITY);
+}

@@ -115,6 +115,15 @@ proptest! {
         prop_assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)));
         prop_assert!((shares.sum() - 1.0).abs() < 1e-12);
 
+        // Where squared distances overflow, all are equally far.
+        let beyond = DVector::from_element(demonstrations.n_states(), 1e200_f64.copysign(far));
+        let equal = 1.0 / demonstrations.n_trajectories() as f64;
+        let shares = aligned.responsibilities(beyond.as_view());
+        prop_assert!(shares.iter().all(|share| close(*share, equal, 1.0)));
+        let mut unknown = state;
+        unknown[0] = f64::NAN;
+        prop_assert!(aligned.responsibilities(unknown.as_view()).iter().all(|share| share.is_nan()));
+
         // At the samples they are those of the literal formula.
         let literal = Literal::new(&demonstrations, Integration::Displacement, bandwidth, 0.0);
         let states = demonstrations.trajectories().iter().flat_map(|t| t.positions().column_iter());
