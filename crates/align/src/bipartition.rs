@@ -17,8 +17,10 @@ pub(crate) struct Partition {
 
 /// Recursive bi-partition: as long as the sub-matrix of H of a group has more than one eigenvalue below `threshold`,
 /// its trajectories fall in two clusters by their entries in those eigenvectors.
+///
+/// Parts without any link between them come apart beforehand, by exact zeros of H.
 pub(crate) fn bipartition(laplacian: &DMatrix<f64>, threshold: f64) -> Result<Partition, AlignError> {
-    let mut open: Vec<Vec<usize>> = vec![(0..laplacian.ncols()).collect()];
+    let mut open = components(laplacian, (0..laplacian.ncols()).collect());
     let mut closed = Vec::new();
     while let Some(group) = open.pop() {
         if group.len() == 1 {
@@ -28,7 +30,7 @@ pub(crate) fn bipartition(laplacian: &DMatrix<f64>, threshold: f64) -> Result<Pa
         let matrix = laplacian.select_rows(&group).select_columns(&group);
         let (lambda_2, weak_vectors) = weak_part(&matrix, threshold)?;
         match split(&group, &weak_vectors) {
-            Some(sides) => open.extend(sides),
+            Some(parts) => open.extend(parts.into_iter().flat_map(|part| components(laplacian, part))),
             None => closed.push((group, Some(lambda_2))),
         }
     }
@@ -53,14 +55,39 @@ fn weak_part(matrix: &DMatrix<f64>, threshold: f64) -> Result<(f64, DMatrix<f64>
     Ok((values[1], vectors.columns(0, weak(&values)).into_owned()))
 }
 
+/// The parts of a group that any links connect, each ascending: a flood from each lowest member yet dry.
+fn components(laplacian: &DMatrix<f64>, group: Vec<usize>) -> Vec<Vec<usize>> {
+    let mut dry = group;
+    let mut parts = Vec::new();
+    while !dry.is_empty() {
+        let mut part = vec![dry.remove(0)];
+        let mut at = 0;
+        while at < part.len() {
+            let links = laplacian.column(part[at]);
+            let reached;
+            (reached, dry) = dry.into_iter().partition(|&k| links[k] != 0.0);
+            part.extend::<Vec<usize>>(reached);
+            at += 1;
+        }
+        part.sort_unstable();
+        parts.push(part);
+    }
+    parts
+}
+
 /// The two sides of a group by the rows of its weak eigenvectors; none if it holds together.
-fn split(group: &[usize], weak_vectors: &DMatrix<f64>) -> Option<[Vec<usize>; 2]> {
+///
+/// Where all eigenvalues are weak, so are those of every part (they interlace): its members are alone at once.
+fn split(group: &[usize], weak_vectors: &DMatrix<f64>) -> Option<Vec<Vec<usize>>> {
     if weak_vectors.ncols() <= 1 {
         return None;
     }
+    if weak_vectors.ncols() == group.len() {
+        return Some(group.iter().map(|&k| vec![k]).collect());
+    }
     let in_second = two_means(weak_vectors);
     let side = |second| group.iter().zip(&in_second).filter(move |&(_, &at)| at == second).map(|(&k, _)| k).collect();
-    let sides: [Vec<usize>; 2] = [side(false), side(true)];
+    let sides: Vec<Vec<usize>> = vec![side(false), side(true)];
     sides.iter().all(|side| !side.is_empty()).then_some(sides)
 }
 
@@ -117,7 +144,35 @@ mod tests {
         assert_eq!(partition.groups, [[0], [1], [2], [3]]);
     }
 
+    #[test]
+    fn many_lonely_trajectories_take_no_time() {
+        // Peeled off one at a time, each by a decomposition, they would take minutes.
+        let alone: Vec<Vec<usize>> = (0..300).map(|k| vec![k]).collect();
+        let links: Vec<_> = (1..300).map(|k| (k - 1, k, 1e-12)).collect();
+        for links in [&[], &links[..]] {
+            let start = std::time::Instant::now();
+            let partition = bipartition(&graph(300, links), 1e-8).unwrap();
+            assert_eq!(partition, Partition { groups: alone.clone(), lambda_2: None });
+            assert!(start.elapsed().as_secs() < 10);
+        }
+    }
+
     proptest! {
+        #[test]
+        fn links_hold_every_group_together(
+            count in 1usize..14, links in vec((0usize..14, 0usize..14, -20.0..0.0_f64), 0..30),
+        ) {
+            let links = links.into_iter().map(|(k, j, exponent)| (k % count, j % count, 10.0_f64.powf(exponent)));
+            let laplacian = graph(count, &links.filter(|(k, j, _)| k != j).collect::<Vec<_>>());
+            let groups = bipartition(&laplacian, 1e-8).unwrap().groups;
+            let mut members = groups.concat();
+            members.sort_unstable();
+            prop_assert_eq!(members, (0..count).collect::<Vec<_>>());
+            for group in groups {
+                prop_assert_eq!(components(&laplacian, group.clone()), [group]);
+            }
+        }
+
         #[test]
         fn blocks_are_found_under_any_numbering(
             blocks in vec(1usize..6, 1..6), weights in vec(0.01..1.0, 400),
