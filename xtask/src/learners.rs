@@ -21,6 +21,8 @@ pub(crate) struct Learnt {
     pub(crate) policy: Box<dyn Policy>,
     /// The potential it descends, if it is known to have one.
     pub(crate) potential: Option<Box<dyn Potential>>,
+    /// Share of the samples kept for testing where it has nothing to go by.
+    pub(crate) unsupported: f64,
 }
 
 /// A way to learn. `Debug` names all its parameters: they are part of the records' keys.
@@ -34,8 +36,9 @@ impl Learner for LwprRegressor {
     fn learn(&self, lesson: &Lesson<'_>, rng: &mut ChaCha8Rng) -> anyhow::Result<Learnt> {
         let training = lesson.aligned.samples().without(lesson.held_out.indices());
         let learnt = lesson.aligned.regress(self, &training, rng)?;
+        let unsupported = learnt.potential().unsupported_share(&lesson.held_out.states());
         let potential = Box::new(learnt.potential().clone());
-        Ok(Learnt { policy: Box::new(learnt.into_policy()), potential: Some(potential) })
+        Ok(Learnt { policy: Box::new(learnt.into_policy()), potential: Some(potential), unsupported })
     }
 }
 
@@ -43,6 +46,7 @@ impl Learner for LwprRegressor {
 impl Learner for DirectPolicyLearning {
     fn learn(&self, lesson: &Lesson<'_>, rng: &mut ChaCha8Rng) -> anyhow::Result<Learnt> {
         let policy = self.learn_without(lesson.held_out.indices(), lesson.aligned.demonstrations(), rng)?;
-        Ok(Learnt { policy: Box::new(policy), potential: None })
+        let unsupported = policy.unsupported_share(&lesson.held_out.states());
+        Ok(Learnt { policy: Box::new(policy), potential: None, unsupported })
     }
 }

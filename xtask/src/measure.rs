@@ -22,6 +22,8 @@ pub(crate) enum Measure {
     Naive,
     /// Error of PolicyAlign under the row's constraint (A2).
     PolicyAlign,
+    /// Test samples where no receptive field speaks, percent; they count with the mean.
+    Unsupported,
     /// Demonstrated movements that leave the robot's joint limits somewhere, percent.
     BeyondLimits,
 }
@@ -58,6 +60,7 @@ impl Measure {
             Measure::AlignmentNmse => "alignment_nmse",
             Measure::Naive => "naive",
             Measure::PolicyAlign => "policy_align",
+            Measure::Unsupported => "unsupported",
             Measure::BeyondLimits => "beyond_limits",
         }
     }
@@ -65,7 +68,7 @@ impl Measure {
     /// How it is judged in a row.
     pub(crate) fn kind(self, row: RowOf) -> Kind {
         match (self, row) {
-            (Measure::Disc | Measure::BeyondLimits, _) => Kind::Share,
+            (Measure::Disc | Measure::Unsupported | Measure::BeyondLimits, _) => Kind::Share,
             (Measure::Naive, _) | (_, RowOf::Baseline) => Kind::BaselineError,
             (_, RowOf::Learner) => Kind::LearnerError,
         }
@@ -74,7 +77,7 @@ impl Measure {
     /// A value as tables print it.
     pub(crate) fn show(self, value: f64) -> String {
         match self {
-            Measure::Disc | Measure::BeyondLimits => format!("{value:.2}"),
+            Measure::Disc | Measure::Unsupported | Measure::BeyondLimits => format!("{value:.2}"),
             _ => format!("{value:.4}"),
         }
     }

@@ -66,14 +66,6 @@ impl Progress {
         }
     }
 
-    /// Writes a line beside the bar.
-    pub(crate) fn say(&self, line: &str) {
-        match &self.display {
-            Display::Bar(bar) => bar.suspend(|| say(line)),
-            Display::Lines(_) => say(line),
-        }
-    }
-
     /// All data sets are done.
     pub(crate) fn done(&self) {
         if let Display::Bar(bar) = &self.display {

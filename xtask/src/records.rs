@@ -71,6 +71,7 @@ impl Records {
     pub(crate) fn open(path: &Path, earlier: Earlier) -> anyhow::Result<Records> {
         let read = || -> anyhow::Result<(File, HashMap<String, Outcome>)> {
             let mut file = OpenOptions::new().read(true).append(true).create(true).open(path)?;
+            file.try_lock().context("another run is writing there")?;
             if earlier == Earlier::Forget {
                 file.set_len(0)?;
             }
@@ -87,8 +88,9 @@ impl Records {
                 .collect();
             Ok((file, finished))
         };
-        let (file, finished) =
-            read().with_context(|| format!("cannot open the records {}; choose another --out", path.display()))?;
+        let (file, finished) = read().with_context(|| {
+            format!("cannot open the records {}; wait for it, or choose another --out", path.display())
+        })?;
         Ok(Records { path: path.to_owned(), code: code_identity()?, finished, file: Mutex::new(file) })
     }
 
@@ -97,7 +99,7 @@ impl Records {
         self.finished.get(&self.key(data_set))
     }
 
-    /// Writes a finished data set to the disk at once.
+    /// Writes a finished data set to the file at once.
     pub(crate) fn append(&self, data_set: &DataSet<'_>, outcome: &Outcome) -> anyhow::Result<()> {
         let record = Record {
             key: self.key(data_set),
@@ -157,6 +159,7 @@ mod tests {
         let records = Records::open(&path, Earlier::Resume).unwrap();
         assert_eq!(records.finished(&DATA_SET), None);
         records.append(&DATA_SET, &outcome).unwrap();
+        drop(records);
         assert_eq!(Records::open(&path, Earlier::Resume).unwrap().finished(&DATA_SET), Some(&outcome));
     }
 
@@ -194,8 +197,18 @@ mod tests {
         assert_eq!(records.finished(&DATA_SET), Some(&measured(1.0)));
         assert_eq!(records.finished(&DataSet { number: 8, ..DATA_SET }), None);
         records.append(&DataSet { number: 9, ..DATA_SET }, &measured(3.0)).unwrap();
+        drop(records);
         let records = Records::open(&path, Earlier::Resume).unwrap();
         assert_eq!(records.finished(&DataSet { number: 9, ..DATA_SET }), Some(&measured(3.0)));
+    }
+
+    #[test]
+    fn two_runs_cannot_write_to_one_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("records.jsonl");
+        let _first = Records::open(&path, Earlier::Resume).unwrap();
+        let error = format!("{:#}", Records::open(&path, Earlier::Forget).unwrap_err());
+        assert!(error.contains("another run") && error.contains("--out"), "{error}");
     }
 
     #[test]

@@ -12,10 +12,10 @@ use cpu_time::ProcessTime;
 
 use crate::experiments::{Experiment, Setup, registry};
 use crate::progress::say;
-use crate::records::{Earlier, Records};
+use crate::records::{Earlier, Outcome, Records};
 use crate::report::{report, tally};
 use crate::results::{Results, Run, summarise};
-use crate::runner::{Plan, run};
+use crate::runner::{Outcomes, Plan, run};
 
 /// Data sets a row with `--quick`.
 const QUICK_DATA_SETS: u32 = 3;
@@ -85,8 +85,8 @@ impl Reproduce {
         let report = report(&experiments, &results, None);
         write(&self.out.join("report.md"), &report)?;
         print(&report)?;
-        conclude(&results, &self.out);
-        Ok(())
+        say_failures(&experiments, &outcomes);
+        conclude(&results, &self.out)
     }
 }
 
@@ -116,8 +116,7 @@ fn select(mut experiments: Vec<Experiment>, only: &[String]) -> anyhow::Result<V
 
 fn list(experiments: &[Experiment]) -> String {
     let line = |e: &Experiment| {
-        let rows = e.setups.iter().flat_map(|setup| &setup.rows);
-        let rows: Vec<String> = rows.map(|row| format!("    {}\n", row.id)).collect();
+        let rows: Vec<String> = e.rows().map(|row| format!("    {}\n", row.id)).collect();
         format!("{}: {} (Section {}), {} data sets a row\n{}", e.id, e.title, e.section, e.data_sets, rows.concat())
     };
     experiments.iter().map(line).collect()
@@ -128,13 +127,27 @@ fn stop_cleanly_on_ctrl_c(records: &Arc<Records>) -> anyhow::Result<()> {
     let records = Arc::clone(records);
     let stop = move || {
         let _no_more_writes = records.writing();
-        say("\nstopped: what was finished is kept; the same command goes on from there");
+        say("\nstopped: what was finished is kept; the same command, without --fresh, goes on from there");
         std::process::exit(INTERRUPTED);
     };
     ctrlc::set_handler(stop).context("cannot watch for Ctrl-C")
 }
 
-fn conclude(results: &Results, out: &Path) {
+/// Why data sets could not be measured, in this run or an earlier one.
+fn say_failures(experiments: &[Experiment], outcomes: &[Vec<Outcomes>]) {
+    for (experiment, outcomes) in experiments.iter().zip(outcomes) {
+        for (setup, outcomes) in experiment.setups.iter().zip(outcomes) {
+            for (data_set, outcome) in outcomes.iter().enumerate() {
+                if let Outcome::Failed(why) = outcome {
+                    say(&format!("{} {}, data set {data_set} failed: {why}", experiment.id, setup.id));
+                }
+            }
+        }
+    }
+}
+
+/// Says how it went; a row of which nothing could be measured is an error.
+fn conclude(results: &Results, out: &Path) -> anyhow::Result<()> {
     for experiment in &results.experiments {
         say(&format!("{}: {}", experiment.id, tally(experiment)));
     }
@@ -143,6 +156,12 @@ fn conclude(results: &Results, out: &Path) {
         "{wall_seconds:.1} s on {threads} thread(s), {cpu_seconds:.1} s of processor time; written to {}: results.json, report.md",
         out.display()
     ));
+    let rows =
+        results.experiments.iter().flat_map(|experiment| experiment.rows.iter().map(move |row| (experiment, row)));
+    if let Some((experiment, row)) = rows.into_iter().find(|(_, row)| row.failed == row.data_sets) {
+        bail!("{} {}: every data set failed", experiment.id, row.id);
+    }
+    Ok(())
 }
 
 /// Writes a whole file or nothing.

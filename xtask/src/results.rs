@@ -88,7 +88,7 @@ pub(crate) fn summarise(
         let mut rows = Vec::new();
         for (setup, outcomes) in experiment.setups.iter().zip(outcomes) {
             for (at, row) in setup.rows.iter().enumerate() {
-                rows.push(summarise_row(row, at, outcomes)?);
+                rows.push(summarise_row(experiment, row, at, outcomes)?);
             }
         }
         Ok(ExperimentResult { id: experiment.id.to_owned(), section: experiment.section.to_owned(), rows })
@@ -97,7 +97,7 @@ pub(crate) fn summarise(
 }
 
 /// Sums up the row that stands at `at` in its setup.
-fn summarise_row(row: &Row, at: usize, outcomes: &Outcomes) -> anyhow::Result<RowResult> {
+fn summarise_row(experiment: &Experiment, row: &Row, at: usize, outcomes: &Outcomes) -> anyhow::Result<RowResult> {
     let mut values: BTreeMap<Measure, Vec<f64>> = BTreeMap::new();
     let mut failed = 0;
     for outcome in outcomes {
@@ -112,7 +112,7 @@ fn summarise_row(row: &Row, at: usize, outcomes: &Outcomes) -> anyhow::Result<Ro
     }
     let cell = |(measure, values): (Measure, Vec<f64>)| {
         let Summary { mean, sd, median, .. } = Summary::of(&values)?;
-        let paper = row.paper.get(&measure).copied();
+        let paper = experiment.paper(&row.id, measure);
         let verdict = paper.map(|paper| verdict(measure.kind(row.of), mean, paper));
         Ok((measure, Cell { mean, sd, median, paper, verdict }))
     };

@@ -66,11 +66,7 @@ pub(crate) fn run(
     // One job at a time to each thread: data sets of different setups differ a hundredfold in work.
     jobs.into_par_iter().with_max_len(1).try_for_each(|job| -> anyhow::Result<()> {
         let outcome = measure(&job, plan);
-        records
-            .append(&name(job.experiment, job.setup, &job.setup.trial.definition(), plan, job.data_set), &outcome)?;
-        if let Outcome::Failed(why) = &outcome {
-            progress.say(&format!("{} {}, data set {} failed: {why}", job.experiment.id, job.setup.id, job.data_set));
-        }
+        records.append(&name(job.experiment, job.setup, &definition(job.setup), plan, job.data_set), &outcome)?;
         *job.slot = Some(outcome);
         progress.finished(job.experiment.id, &job.setup.id, job.setup.trial.cost());
         Ok(())
@@ -92,7 +88,12 @@ fn measure(job: &Job<'_>, plan: Plan) -> Outcome {
 }
 
 fn find(records: &Records, experiment: &Experiment, setup: &Setup, plan: Plan, data_set: u32) -> Option<Outcome> {
-    records.finished(&name(experiment, setup, &setup.trial.definition(), plan, data_set)).cloned()
+    records.finished(&name(experiment, setup, &definition(setup), plan, data_set)).cloned()
+}
+
+/// All that determines what a data set of a setup gives.
+fn definition(setup: &Setup) -> String {
+    format!("system {} {}", setup.trial.system(), setup.trial.definition())
 }
 
 fn name<'a>(

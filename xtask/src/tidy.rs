@@ -1,6 +1,6 @@
 //! `cargo xtask tidy`: holds the manifests and the source tree against the architecture.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -25,8 +25,30 @@ struct Allowed {
 #[derive(Debug, Deserialize)]
 struct Manifest {
     package: Package,
+    #[serde(flatten)]
+    tables: Tables,
+    /// Tables for single platforms.
+    #[serde(default)]
+    target: BTreeMap<String, Tables>,
+}
+
+/// What a crate is built with.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+struct Tables {
     #[serde(default)]
     dependencies: BTreeMap<String, toml::Value>,
+    #[serde(default)]
+    build_dependencies: BTreeMap<String, toml::Value>,
+}
+
+impl Manifest {
+    /// Every crate that it names, but for tests.
+    fn dependencies(&self) -> BTreeSet<&str> {
+        let tables = self.target.values().chain([&self.tables]);
+        let names = tables.flat_map(|tables| tables.dependencies.keys().chain(tables.build_dependencies.keys()));
+        names.map(String::as_str).collect()
+    }
 }
 
 #[derive(Debug, Deserialize)]
@@ -72,13 +94,17 @@ fn dependency_faults(manifest: &Manifest, allowed: &BTreeMap<String, Allowed>) -
     let Some(own) = allowed.get(name) else {
         return vec![format!("crate {name} has no entry in xtask/dependencies.toml; decide what it may depend on")];
     };
-    let fault = |dependency: &String| {
+    let named = manifest.dependencies();
+    let unused = own.siblings.iter().chain(&own.third_party).filter(|allowed| !named.contains(allowed.as_str()));
+    let unused = unused.map(|allowed| format!("crate {name} does not use {allowed}; delete it from its entry"));
+    let fault = |dependency: &str| {
         let sibling = allowed.contains_key(dependency);
         let list = if sibling { &own.siblings } else { &own.third_party };
         let what = if sibling { "the sibling" } else { "the third-party crate" };
-        (!list.contains(dependency)).then(|| format!("crate {name} may not depend on {what} {dependency}"))
+        (!list.iter().any(|allowed| allowed == dependency))
+            .then(|| format!("crate {name} may not depend on {what} {dependency}"))
     };
-    manifest.dependencies.keys().filter_map(fault).collect()
+    named.iter().copied().filter_map(fault).chain(unused).collect()
 }
 
 fn source_faults(folder: &Path, faults: &mut Vec<String>) -> anyhow::Result<()> {
@@ -95,13 +121,17 @@ fn source_faults(folder: &Path, faults: &mut Vec<String>) -> anyhow::Result<()> 
             if lines > LONGEST_FILE && !path.components().any(|part| part.as_os_str() == "tests") {
                 faults.push(format!("{}: {lines} lines; one idea a file, {LONGEST_FILE} at most", path.display()));
             }
-            let unsafe_allowed = text.lines().any(|line| line.trim_start().starts_with("#[allow(unsafe_code"));
+            let unsafe_allowed = text.lines().any(|line| is_attribute(line) && line.contains("unsafe_code"));
             if unsafe_allowed && !path.components().any(|part| part.as_os_str() == "simd") && stem != "simd" {
                 faults.push(format!("{}: unsafe code belongs in a module named simd", path.display()));
             }
         }
     }
     Ok(())
+}
+
+fn is_attribute(line: &str) -> bool {
+    line.trim_start().starts_with("#[") || line.trim_start().starts_with("#![")
 }
 
 fn entries(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
@@ -127,18 +157,20 @@ mod tests {
     #[test]
     fn a_learner_that_names_the_truth_is_found() {
         let allowed = toml::from_str(
-            "align = { siblings = ['motion'], third_party = ['faer'] }\n\
+            "align = { siblings = ['motion'], third_party = ['faer', 'rayon'] }\n\
              motion = { siblings = [], third_party = [] }\n\
              metrics = { siblings = [], third_party = [] }",
         )
         .unwrap();
-        let manifest = "package.name = 'align'\ndependencies = { motion = '1', metrics = '1', faer = '1', libc = '1' }";
+        let manifest = "package.name = 'align'\ndependencies = { motion = '1', faer = '1', libc = '1' }\n\
+                        target.'cfg(unix)'.dependencies = { metrics = '1' }";
         let faults = dependency_faults(&toml::from_str(manifest).unwrap(), &allowed);
         assert_eq!(
             faults,
             [
                 "crate align may not depend on the third-party crate libc",
-                "crate align may not depend on the sibling metrics"
+                "crate align may not depend on the sibling metrics",
+                "crate align does not use rayon; delete it from its entry",
             ]
         );
     }

@@ -12,6 +12,9 @@ use super::read_json;
 /// Confidence from here on means that no receptive field was in reach.
 const NO_SUPPORT: f64 = 1e18;
 
+/// Confidence up to here is the rounding noise of fields that have collected no errors yet.
+const NOISE: f64 = 1e-6;
+
 #[derive(Debug, Deserialize)]
 struct Case {
     n_in: usize,
@@ -89,8 +92,9 @@ impl Case {
                     gradient.see(prediction.gradient[(output, k)], self.gradient[i][output][k]);
                 }
                 // Ours is infinite while a field is too young to tell; there the reference holds rounding noise.
-                if prediction.confidence[output].is_finite() {
-                    confidence.see(prediction.confidence[output], self.confidence[i][output]);
+                let (ours, theirs) = (prediction.confidence[output], self.confidence[i][output]);
+                if ours.is_finite() || theirs > NOISE {
+                    confidence.see(ours, theirs);
                 }
             }
         }

@@ -14,9 +14,8 @@ use crate::robots::upper_body;
 
 /// The experiment.
 pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
-    let mut paper = paper_table(include_str!("../../paper/asimo22.toml"))?;
     let id = "policy_align";
-    let row = Row { id: id.to_owned(), of: RowOf::Learner, paper: paper.remove(id).unwrap_or_default() };
+    let row = Row { id: id.to_owned(), of: RowOf::Learner };
     let trial = BodyTrial {
         scenario: HandInPlane::new(upper_body()?),
         algorithm: PolicyAlign::default(),
@@ -32,6 +31,7 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
                  metric, D = 50, 20 passes; receptive fields speak down to an activation of 1e-9, because a single start far from all \
                  others, for which none speaks above .001, would rule the error of the potential.",
         setups: vec![Setup { id: id.to_owned(), rows: vec![row], trial: Box::new(trial) }],
+        paper: paper_table(include_str!("../../paper/asimo22.toml"))?,
         explanations: explanations(include_str!("../../paper/asimo22-explained.toml"))?,
     })
 }

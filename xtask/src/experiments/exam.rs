@@ -31,6 +31,7 @@ pub(crate) fn examine(
     for learner in learners {
         let learnt = learner.learn(&lesson, rng)?;
         let mut row = judge.policy(&*learnt.policy)?;
+        row.insert(Measure::Unsupported, 100.0 * learnt.unsupported);
         if let Some(constraint) = unseen {
             row.insert(Measure::NcpeUnseen, judge.policy_under(&*learnt.policy, constraint)?);
         }

@@ -11,10 +11,11 @@ pub(crate) use table1::toy_regressor;
 
 use std::collections::BTreeMap;
 
+use anyhow::ensure;
 use rand_chacha::ChaCha8Rng;
 
 use crate::measure::{Measure, RowOf};
-use crate::paper::{Explanations, Printed};
+use crate::paper::{Explanations, PaperTable, Printed};
 
 /// A table or figure.
 pub(crate) struct Experiment {
@@ -30,11 +31,34 @@ pub(crate) struct Experiment {
     pub(crate) remark: &'static str,
     /// What is measured, in the table's order.
     pub(crate) setups: Vec<Setup>,
-    /// Why single cells stand out, by row and measure: `xtask/paper/*.toml`.
+    /// The printed figures: `xtask/paper/*.toml`.
+    pub(crate) paper: PaperTable,
+    /// Why single cells stand out: `xtask/paper/*-explained.toml`.
     pub(crate) explanations: Explanations,
 }
 
 impl Experiment {
+    /// All rows, in the table's order.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = &Row> {
+        self.setups.iter().flat_map(|setup| &setup.rows)
+    }
+
+    /// The printed figure of a cell.
+    pub(crate) fn paper(&self, row: &str, measure: Measure) -> Option<Printed> {
+        self.paper.get(row)?.get(&measure).copied()
+    }
+
+    /// Fails if the printed figures and the rows do not belong together, as after a slip in a name.
+    fn checked(self) -> anyhow::Result<Self> {
+        for row in self.rows() {
+            ensure!(self.paper.contains_key(&row.id), "{}: xtask/paper has no row {}", self.id, row.id);
+        }
+        for id in self.paper.keys().chain(self.explanations.keys()) {
+            ensure!(self.rows().any(|row| row.id == *id), "{}: xtask/paper has a row {id} that is not run", self.id);
+        }
+        Ok(self)
+    }
+
     /// Why a cell stands out, if that is known.
     pub(crate) fn explain(&self, row: &str, measure: Measure) -> Option<&str> {
         self.explanations.get(row)?.get(&measure).map(String::as_str)
@@ -57,8 +81,6 @@ pub(crate) struct Row {
     pub(crate) id: String,
     /// Whose errors stand in it.
     pub(crate) of: RowOf,
-    /// The paper's figures for this row.
-    pub(crate) paper: BTreeMap<Measure, Printed>,
 }
 
 /// What one data set gives: the measures of each row of its setup.
@@ -81,11 +103,12 @@ pub(crate) trait Trial: Send + Sync {
 
 /// All experiments, in the paper's order.
 pub(crate) fn registry() -> anyhow::Result<Vec<Experiment>> {
-    Ok(vec![
+    let experiments = [
         table1::table1()?,
         table1::table1_literal()?,
         table2::table2()?,
         asimo22::asimo22()?,
         three_link::three_link()?,
-    ])
+    ];
+    experiments.into_iter().map(Experiment::checked).collect()
 }

@@ -19,7 +19,8 @@ pub(crate) fn table1() -> anyhow::Result<Experiment> {
         data_sets: 100,
         remark: "The constraint is drawn anew every 20 samples, two draws at 40 samples and five at 100, which makes the printed discard \
                  rates come out. Regression, the same in all rows: init_D 10, w_gen .5, penalty 1e-5, adaptive diagonal metric, 10 passes.",
-        setups: setups(Redraw::Every(20), 0)?,
+        setups: setups(Redraw::Every(20), 0),
+        paper: paper_table(include_str!("../../paper/table1.toml"))?,
         explanations: explanations(include_str!("../../paper/table1-explained.toml"))?,
     })
 }
@@ -32,13 +33,13 @@ pub(crate) fn table1_literal() -> anyhow::Result<Experiment> {
         title: "Table 1, read literally",
         data_sets: 100,
         remark: "As Table 1, but the constraint is \"re-sampled twice\" during each movement to the letter: three segments of equal length.",
-        setups: setups(Redraw::Segments(3), 100)?,
+        setups: setups(Redraw::Segments(3), 100),
+        paper: paper_table(include_str!("../../paper/table1.toml"))?,
         explanations: explanations(include_str!("../../paper/table1-literal-explained.toml"))?,
     })
 }
 
-fn setups(redraw: Redraw, first_system: u32) -> anyhow::Result<Vec<Setup>> {
-    let mut paper = paper_table(include_str!("../../paper/table1.toml"))?;
+fn setups(redraw: Redraw, first_system: u32) -> Vec<Setup> {
     let systems = [
         ("parabola", 40, ToyPotential::parabola()),
         ("sinusoidal", 40, ToyPotential::sinusoidal()),
@@ -50,11 +51,12 @@ fn setups(redraw: Redraw, first_system: u32) -> anyhow::Result<Vec<Setup>> {
         for (bandwidth_name, bandwidth) in bandwidths {
             let id = format!("{name}-{size}x{size}-{bandwidth_name}");
             let system = ToySystem { potential: potential.clone(), n_trajectories: size, n_samples: size, redraw };
-            let row = Row { id: id.clone(), of: RowOf::Learner, paper: paper.remove(&id).unwrap_or_default() };
-            setups.push(Setup { id, rows: vec![row], trial: Box::new(ToyTrial { number, system, bandwidth }) });
+            let row = Row { id: id.clone(), of: RowOf::Learner };
+            let algorithm = PolicyAlign { bandwidth, ..PolicyAlign::default() };
+            setups.push(Setup { id, rows: vec![row], trial: Box::new(ToyTrial { number, system, algorithm }) });
         }
     }
-    Ok(setups)
+    setups
 }
 
 /// One row of the table.
@@ -62,7 +64,7 @@ fn setups(redraw: Redraw, first_system: u32) -> anyhow::Result<Vec<Setup>> {
 struct ToyTrial {
     number: u32,
     system: ToySystem,
-    bandwidth: Bandwidth,
+    algorithm: PolicyAlign,
 }
 
 /// The regression of all rows.
@@ -88,7 +90,6 @@ impl Trial for ToyTrial {
 
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.system.record(rng)?;
-        let algorithm = PolicyAlign { bandwidth: self.bandwidth, ..PolicyAlign::default() };
-        examine(&recordings, &algorithm, &[Box::new(toy_regressor())], None, rng)
+        examine(&recordings, &self.algorithm, &[Box::new(toy_regressor())], None, rng)
     }
 }

@@ -13,9 +13,8 @@ use crate::paper::{explanations, paper_table};
 
 /// The experiment.
 pub(crate) fn three_link() -> anyhow::Result<Experiment> {
-    let mut paper = paper_table(include_str!("../../paper/three_link.toml"))?;
     let rows = [("policy_align", RowOf::Learner), ("naive", RowOf::Baseline)];
-    let rows = rows.map(|(id, of)| Row { id: id.to_owned(), of, paper: paper.remove(id).unwrap_or_default() });
+    let rows = rows.map(|(id, of)| Row { id: id.to_owned(), of });
     let arm = ThreeLinkArm::new(include_str!("../../../robots/planar_three_link.urdf"))?;
     let trial = ArmTrial { arm, algorithm: PolicyAlign::default(), learners: learners() };
     Ok(Experiment {
@@ -26,6 +25,7 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
         remark: "Unit links, starts uniform in [-1, 1]^3, δt = .5 s, plain Euler, narrow bandwidth. Regression with fixed diagonal \
                  metrics, 10 passes: D = 20 for PolicyAlign, 50 for the naive baseline.",
         setups: vec![Setup { id: "three_link".to_owned(), rows: rows.into(), trial: Box::new(trial) }],
+        paper: paper_table(include_str!("../../paper/three_link.toml"))?,
         explanations: explanations(include_str!("../../paper/three_link-explained.toml"))?,
     })
 }
