@@ -78,6 +78,8 @@ impl Measure {
     pub(crate) fn show(self, value: f64) -> String {
         match self {
             Measure::Disc | Measure::Unsupported | Measure::BeyondLimits => format!("{value:.2}"),
+            // Table 2 has errors below a thousandth.
+            _ if value.abs() < 1e-3 => format!("{value:.6}"),
             _ => format!("{value:.4}"),
         }
     }

@@ -22,12 +22,8 @@ const PREFACE: &str = "\
 # The paper's tables, reproduced
 
 Written by `cargo xtask report` from [records/](records/), the results of `cargo xtask reproduce --seed 1` and `--seed 2`.
-
-\"ours\" is the mean ± the sample standard deviation over data sets, \"n\" how many there are, \"paper\" what is printed. \"z\" is the
-difference of the two means over its standard error (both spreads count). An error **agrees** if it is within one printed standard deviation
-of the printed mean, else it is **better** (lower) or **worse**; a discard rate agrees within one printed standard deviation (printed
-0 ± 0: below .005 %), and an error of the naive baseline within two, else it **differs**. One function decides ([`verdict.rs`](../xtask/src/verdict.rs)). The last column is the same
-experiment from another seed.
+The last column of each table is the same experiment from another seed. One function decides the verdicts
+([`verdict.rs`](../xtask/src/verdict.rs)).
 
 The paper leaves many settings open. What is used here was *fitted*: settings under which the printed figures come out, the
 same for all rows of a table; they are listed with each table and argued for in [decisions/](decisions/).

@@ -12,9 +12,32 @@ use crate::verdict::Verdict;
 /// Standard deviations by which an error must undercut the paper's before the report has to say why.
 const REMARKABLY_BETTER: f64 = 2.0;
 
+/// What stands in the columns.
+const LEGEND: &str = "\
+\"ours\" is the mean ± the sample standard deviation over data sets, \"n\" how many there are, \"paper\" what is printed. \"z\" is the
+difference of the two means over its standard error (both spreads count): how sure it is that there is a difference, not how large it is.
+An error **agrees** if it is within one printed standard deviation of the printed mean, else it is **better** (lower) or **worse**. A discard
+rate agrees within one printed standard deviation (printed 0 ± 0: below .005 %), an error of the naive baseline within two; else they
+**differ**.
+
+| measure | is |
+| --- | --- |
+| potential_nmse | error of the learnt potential (A3) |
+| nupe, ncpe | error of the learnt policy, unconstrained (A1) and under the constraints of the demonstrations (A2) |
+| naive, policy_align | error of that learner's policy under the constraint of the row |
+| alignment_nmse | error of the aligned local potentials (A4) |
+| disc | trajectories left out, % |
+| unsupported | test samples where no receptive field speaks, % |
+| beyond_limits | movements that leave the robot's joint limits somewhere, % |
+
+";
+
+/// Data sets below which single cells are not worth an explanation.
+const FEW: usize = 20;
+
 /// All tables of `results`; `second`, a run from another seed, adds its means as a column.
 pub(crate) fn report(experiments: &[Experiment], results: &Results, second: Option<&Results>) -> String {
-    let mut text = String::new();
+    let mut text = LEGEND.to_owned();
     for result in &results.experiments {
         let Some(experiment) = experiments.iter().find(|experiment| experiment.id == result.id) else { continue };
         let second = second.and_then(|second| {
@@ -92,12 +115,17 @@ pub(crate) fn tally(result: &ExperimentResult) -> String {
         *counts.entry(verdict).or_default() += 1;
     }
     let total: usize = counts.values().sum();
-    let words: Vec<String> = counts.iter().map(|(verdict, count)| format!("{count} {}", verdict.word())).collect();
-    format!("Of {total} printed cells: {}.", words.join(", "))
+    let word = |verdict: Verdict, count| if count == 1 { verdict.singular() } else { verdict.plural() };
+    let words = counts.into_iter().map(|(verdict, count)| format!("{count} {}", word(verdict, count)));
+    let words: Vec<String> = words.collect();
+    format!("Of {total} printed cells {}.", words.join(", "))
 }
 
 fn explanations(experiment: &Experiment, result: &ExperimentResult) -> String {
     let mut text = String::new();
+    if result.rows.iter().any(|row| row.data_sets < FEW) {
+        return format!("With fewer than {FEW} data sets single cells mean little.\n\n");
+    }
     for row in &result.rows {
         for &measure in row.measures.iter().filter(|(_, cell)| needs_a_word(cell)).map(|(measure, _)| measure) {
             let word = experiment.explain(&row.id, measure).unwrap_or("no explanation has been found yet.");

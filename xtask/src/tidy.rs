@@ -122,7 +122,9 @@ fn source_faults(folder: &Path, faults: &mut Vec<String>) -> anyhow::Result<()> 
                 faults.push(format!("{}: {lines} lines; one idea a file, {LONGEST_FILE} at most", path.display()));
             }
             let unsafe_allowed = text.lines().any(|line| is_attribute(line) && line.contains("unsafe_code"));
-            if unsafe_allowed && !path.components().any(|part| part.as_os_str() == "simd") && stem != "simd" {
+            let may = |part: &str| stem == part || path.components().any(|component| component.as_os_str() == part);
+            // A counting allocator, in a test, cannot be written without.
+            if unsafe_allowed && !may("simd") && !may("tests") {
                 faults.push(format!("{}: unsafe code belongs in a module named simd", path.display()));
             }
         }

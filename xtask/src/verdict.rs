@@ -39,13 +39,33 @@ pub(crate) fn verdict(kind: Kind, ours: f64, paper: Printed) -> Verdict {
 }
 
 impl Verdict {
-    /// The word in tables and records.
+    /// The word beside one cell.
     pub(crate) fn word(self) -> &'static str {
         match self {
             Verdict::Agrees => "agrees",
             Verdict::Better => "better",
             Verdict::Worse => "worse",
             Verdict::Differs => "differs",
+        }
+    }
+
+    /// The words after one cell.
+    pub(crate) fn singular(self) -> &'static str {
+        match self {
+            Verdict::Agrees => "agrees",
+            Verdict::Better => "is better",
+            Verdict::Worse => "is worse",
+            Verdict::Differs => "differs",
+        }
+    }
+
+    /// The words after a number of cells.
+    pub(crate) fn plural(self) -> &'static str {
+        match self {
+            Verdict::Agrees => "agree",
+            Verdict::Better => "are better",
+            Verdict::Worse => "are worse",
+            Verdict::Differs => "differ",
         }
     }
 
