@@ -2,8 +2,12 @@
 
 use std::cell::RefCell;
 
+use pulp::Simd;
+
 use crate::Kernel;
+use crate::lanes::Lanes;
 use crate::local_model::LocalModel;
+use crate::number::Number as _;
 
 /// Fields that are looked at together.
 const LANES: usize = 8;
@@ -33,7 +37,7 @@ pub(crate) struct Query<'a> {
     /// Squared distance beyond which activations are below the cutoff.
     pub(crate) reach: f64,
     pub(crate) x: &'a [f64],
-    pub(crate) norm_in: &'a [f64],
+    pub(crate) per_norm_in: &'a [f64],
 }
 
 /// A block with fields in reach: activations, 2 dw/dq, and local predictions, which then become the factors of D(x − c).
@@ -86,62 +90,86 @@ impl FieldTable {
     }
 
     /// Finds the blocks in reach. Returns Σ w and Σ w y.
+    ///
+    /// A block is one vector or several, `part` after `part`; left to the compiler it would be four of two lanes.
     #[inline(always)]
-    fn activate(&self, query: Query<'_>, x: &[f64], active: &mut Vec<ActiveBlock>) -> (f64, f64) {
+    fn activate<S: Simd>(&self, simd: S, query: Query<'_>, x: &[f64], active: &mut Vec<ActiveBlock>) -> (f64, f64) {
+        let [reach, cutoff, zero] = [query.reach, query.cutoff, 0.0].map(|value| Lanes::splat(simd, value));
         let (mut sum_w, mut sum_wy) = ([0.0; LANES], [0.0; LANES]);
         let size = HEAD + AXIS * self.n_in;
         active.clear();
         for (b, block) in self.blocks.chunks_exact(size).enumerate() {
-            let (mut q, mut y) = ([0.0; LANES], block[OFFSET]);
-            for ([c, d, s], &x) in block[HEAD..].as_chunks::<AXIS>().0.iter().zip(x) {
-                for lane in 0..LANES {
-                    let dx = x - c[lane];
-                    q[lane] += d[lane] * (dx * dx);
-                    y[lane] += s[lane] * dx;
+            let mut found = ActiveBlock { at: b * size + HEAD, w: [0.0; LANES], slope: [0.0; LANES], y: block[OFFSET] };
+            let mut distance = [0.0; LANES];
+            let mut in_reach = false;
+            for part in 0..parts::<S>() {
+                let (mut q, mut y) = (zero, load(simd, &found.y, part));
+                for ([c, d, s], &x) in block[HEAD..].as_chunks::<AXIS>().0.iter().zip(x) {
+                    let dx = Lanes::splat(simd, x) - load(simd, c, part);
+                    q += load(simd, d, part) * (dx * dx);
+                    y += load(simd, s, part) * dx;
                 }
+                in_reach |= Lanes::any(simd, reach.above(q));
+                store(&mut distance, part, q);
+                store(&mut found.y, part, y);
             }
-            let mut nearest = f64::INFINITY;
-            for q in q {
-                nearest = if q < nearest { q } else { nearest };
-            }
-            if nearest > query.reach {
+            if !in_reach {
                 continue;
             }
-            let (mut w, mut slope) = ([0.0; LANES], [0.0; LANES]);
-            for lane in 0..LANES {
-                let activation = query.kernel.at(q[lane]);
-                let counts = if activation.w > query.cutoff { block[LIVE][lane] } else { 0.0 };
-                w[lane] = activation.w * counts;
-                slope[lane] = 2.0 * activation.slope * counts;
+            for part in 0..parts::<S>() {
+                let activation = query.kernel.at(load(simd, &distance, part));
+                let counts = load(simd, &block[LIVE], part).or_else(activation.w.above(cutoff), zero);
+                let w = activation.w * counts;
+                store(&mut found.w, part, w);
+                store(&mut found.slope, part, activation.slope * 2.0 * counts);
+                let (so_far, so_far_y) = (load(simd, &sum_w, part), load(simd, &sum_wy, part));
+                store(&mut sum_w, part, so_far + w);
+                store(&mut sum_wy, part, so_far_y + w * load(simd, &found.y, part));
             }
-            for lane in 0..LANES {
-                sum_w[lane] += w[lane];
-                sum_wy[lane] += w[lane] * y[lane];
-            }
-            active.push(ActiveBlock { at: b * size + HEAD, w, slope, y });
+            active.push(found);
         }
         (total(sum_w), total(sum_wy))
     }
 
     /// Σ w ∂y/∂x + Σ ∂w/∂x (y − `value`), dimension by dimension.
     #[inline(always)]
-    fn gradient(&self, x: &[f64], active: &mut [ActiveBlock], value: f64, gradient: &mut [f64]) {
+    fn gradient<S: Simd>(&self, simd: S, x: &[f64], active: &mut [ActiveBlock], value: f64, gradient: &mut [f64]) {
         for block in &mut *active {
-            for lane in 0..LANES {
-                block.y[lane] = block.slope[lane] * (block.y[lane] - value);
+            for part in 0..parts::<S>() {
+                let factor = load(simd, &block.slope, part) * (load(simd, &block.y, part) - Lanes::splat(simd, value));
+                store(&mut block.y, part, factor);
             }
         }
         for (i, (gradient, &x)) in gradient.iter_mut().zip(x).enumerate() {
-            let mut sum = [0.0; LANES];
-            for block in &*active {
-                let [c, d, s] = &self.blocks[block.at..].as_chunks::<AXIS>().0[i];
-                for lane in 0..LANES {
-                    sum[lane] += block.w[lane] * s[lane] + block.y[lane] * (d[lane] * (x - c[lane]));
+            let mut sums = [0.0; LANES];
+            for part in 0..parts::<S>() {
+                let mut sum = Lanes::splat(simd, 0.0);
+                for block in &*active {
+                    let [c, d, s] = &self.blocks[block.at..].as_chunks::<AXIS>().0[i];
+                    let v = load(simd, d, part) * (Lanes::splat(simd, x) - load(simd, c, part));
+                    sum += load(simd, &block.w, part) * load(simd, s, part) + load(simd, &block.y, part) * v;
                 }
+                store(&mut sums, part, sum);
             }
-            *gradient = total(sum);
+            *gradient = total(sums);
         }
     }
+}
+
+/// Vectors that make up a row.
+#[inline(always)]
+fn parts<S: Simd>() -> usize {
+    Lanes::<S>::elements(&[0.0; LANES]).len()
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, row: &Row, part: usize) -> Lanes<S> {
+    Lanes::of(simd, Lanes::<S>::elements(row)[part])
+}
+
+#[inline(always)]
+fn store<S: Simd>(row: &mut Row, part: usize, value: Lanes<S>) {
+    Lanes::<S>::elements_mut(row)[part] = value.raw();
 }
 
 /// The sum over lanes, in halves.
@@ -162,20 +190,21 @@ impl pulp::WithSimd for Predict<'_> {
     type Output = Option<f64>;
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) -> Option<f64> {
+    fn with_simd<S: Simd>(self, simd: S) -> Option<f64> {
         let Predict { table, query, gradient, scratch } = self;
         let Scratch { x, active } = scratch;
         x.clear();
-        x.extend(query.x.iter().zip(query.norm_in).map(|(x, norm)| x / norm));
-        let (sum_w, sum_wy) = table.activate(query, x, active);
+        x.extend(query.x.iter().zip(query.per_norm_in).map(|(x, per_norm)| x * per_norm));
+        let (sum_w, sum_wy) = table.activate(simd, query, x, active);
         if sum_w <= 0.0 {
             return None;
         }
         let value = sum_wy / sum_w;
         if let Some(gradient) = gradient {
-            table.gradient(x, active, value, gradient);
+            table.gradient(simd, x, active, value, gradient);
+            let per_sum = 1.0 / sum_w;
             for gradient in gradient {
-                *gradient /= sum_w;
+                *gradient *= per_sum;
             }
         }
         Some(value)
