@@ -139,5 +139,7 @@ fn explanations(experiment: &Experiment, result: &ExperimentResult) -> String {
 fn needs_a_word(cell: &Cell) -> bool {
     let (Some(paper), Some(verdict)) = (cell.paper, cell.verdict) else { return false };
     let far_better = verdict == Verdict::Better && paper.mean - cell.mean > REMARKABLY_BETTER * paper.sd;
-    !verdict.reached() || far_better
+    // The baseline's band is twice as wide: what it alone lets pass is worth a word too.
+    let barely = verdict == Verdict::Agrees && paper.sd > 0.0 && (cell.mean - paper.mean).abs() > paper.sd;
+    !verdict.reached() || far_better || barely
 }

@@ -12,8 +12,8 @@ use super::read_json;
 /// Confidence from here on means that no receptive field was in reach.
 const NO_SUPPORT: f64 = 1e18;
 
-/// Confidence up to here is the rounding noise of fields that have collected no errors yet.
-const NOISE: f64 = 1e-6;
+/// Samples times 1 − λ from which a field collects errors.
+const ERRORS_FROM: f64 = 0.1;
 
 #[derive(Debug, Deserialize)]
 struct Case {
@@ -74,6 +74,12 @@ impl Case {
         Ok(())
     }
 
+    /// Whether no field can have collected errors yet: ours then has no confidence, the reference one of little meaning.
+    fn is_young(&self) -> bool {
+        let samples = self.passes * self.x_train.len();
+        samples as f64 * (1.0 - self.params.init_lambda) < ERRORS_FROM
+    }
+
     fn compare(&self, predictor: &Predictor) -> f64 {
         let [mut value, mut gradient, mut confidence, mut activation] = [Difference::default(); 4];
         for (i, x) in columns(&self.x_test).column_iter().enumerate() {
@@ -91,9 +97,8 @@ impl Case {
                 for k in 0..self.n_in {
                     gradient.see(prediction.gradient[(output, k)], self.gradient[i][output][k]);
                 }
-                // Ours is infinite while a field is too young to tell; there the reference holds rounding noise.
                 let (ours, theirs) = (prediction.confidence[output], self.confidence[i][output]);
-                if ours.is_finite() || theirs > NOISE {
+                if ours.is_finite() || !self.is_young() {
                     confidence.see(ours, theirs);
                 }
             }
