@@ -76,38 +76,27 @@ impl PfaffianConstraint for Unconstrained {
     }
 }
 
-impl<C: PfaffianConstraint + ?Sized> PfaffianConstraint for &C {
-    fn n_states(&self) -> usize {
-        (**self).n_states()
-    }
+/// A pointer to a constraint is that constraint.
+macro_rules! behind {
+    ($($pointer:ty),*) => {$(
+        impl<C: PfaffianConstraint + ?Sized> PfaffianConstraint for $pointer {
+            fn n_states(&self) -> usize {
+                (**self).n_states()
+            }
 
-    fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> DMatrix<f64> {
-        (**self).matrix(state, time)
-    }
+            fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> DMatrix<f64> {
+                (**self).matrix(state, time)
+            }
 
-    fn null_space_projector(
-        &self,
-        state: DVectorView<'_, f64>,
-        time: f64,
-    ) -> Result<NullSpaceProjector, ConstraintError> {
-        (**self).null_space_projector(state, time)
-    }
+            fn null_space_projector(
+                &self,
+                state: DVectorView<'_, f64>,
+                time: f64,
+            ) -> Result<NullSpaceProjector, ConstraintError> {
+                (**self).null_space_projector(state, time)
+            }
+        }
+    )*};
 }
 
-impl<C: PfaffianConstraint + ?Sized> PfaffianConstraint for Box<C> {
-    fn n_states(&self) -> usize {
-        (**self).n_states()
-    }
-
-    fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> DMatrix<f64> {
-        (**self).matrix(state, time)
-    }
-
-    fn null_space_projector(
-        &self,
-        state: DVectorView<'_, f64>,
-        time: f64,
-    ) -> Result<NullSpaceProjector, ConstraintError> {
-        (**self).null_space_projector(state, time)
-    }
-}
+behind!(&C, Box<C>);
