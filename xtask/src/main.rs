@@ -2,10 +2,11 @@
 
 mod conformance;
 mod experiments;
+mod figures;
+mod files;
 mod learners;
 mod measure;
 mod paper;
-mod picture;
 mod plot;
 mod progress;
 mod publish;
@@ -45,8 +46,10 @@ enum Command {
     ///   cargo xtask reproduce --only table1 --seed 2 one table, from another seed
     #[command(verbatim_doc_comment)]
     Reproduce(reproduce::Reproduce),
-    /// Write the README's picture, and its tables and docs/reproduction.md from the committed results
-    Report,
+    /// Draw the figures and write the report of a finished run again
+    Report(report::Report),
+    /// Write the README's tables, docs/reproduction.md and docs/pictures from the committed records
+    Publish(publish::Publish),
     /// Compare kinematics and LWPR with reference cases that other libraries computed
     Conformance(conformance::Conformance),
     /// Check manifests and sources against the architecture
@@ -56,7 +59,8 @@ enum Command {
 fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Reproduce(reproduce) => reproduce.execute(),
-        Command::Report => publish::execute(),
+        Command::Report(report) => report.execute(),
+        Command::Publish(publish) => publish.execute(),
         Command::Conformance(conformance) => conformance.execute(),
         Command::Tidy => tidy::execute(),
     };

@@ -1,6 +1,6 @@
 //! Finished data sets, kept one JSON line each so that nothing but what is in flight is ever lost.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fs::{File, OpenOptions};
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
@@ -11,6 +11,7 @@ use anyhow::Context as _;
 use serde::{Deserialize, Serialize};
 
 use crate::experiments::Measures;
+use crate::measure::Measure;
 
 /// What one data set of one setup gave.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -20,6 +21,16 @@ pub(crate) enum Outcome {
     Measured(Measures),
     /// Why there are none.
     Failed(String),
+}
+
+impl Outcome {
+    /// The measures of the row that stands at `at` in its setup, where there are any.
+    pub(crate) fn row(&self, at: usize) -> Option<&BTreeMap<Measure, f64>> {
+        match self {
+            Outcome::Measured(rows) => Some(&rows[at]),
+            Outcome::Failed(_) => None,
+        }
+    }
 }
 
 /// One line of the file.
@@ -139,10 +150,7 @@ fn code_identity() -> anyhow::Result<u64> {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
     use super::*;
-    use crate::measure::Measure;
 
     const DATA_SET: DataSet<'static> =
         DataSet { experiment: "table1", setup: "narrow", definition: "K = 40", seed: 1, number: 7 };

@@ -1,5 +1,6 @@
 //! `cargo xtask reproduce`: runs experiments, keeps every finished data set, and ends with the tables.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
@@ -9,11 +10,14 @@ use std::time::Instant;
 use anyhow::{Context as _, bail};
 use clap::Args;
 use cpu_time::ProcessTime;
+use serde_json::Value;
 
 use crate::experiments::{Experiment, Setup, registry};
+use crate::figures::{Sources, compute};
+use crate::files::write;
 use crate::progress::say;
 use crate::records::{Earlier, Outcome, Records};
-use crate::report::{report, tally};
+use crate::report::{markdown, tally, write_report, written};
 use crate::results::{Results, Run, summarise};
 use crate::runner::{Outcomes, Plan, run};
 
@@ -27,6 +31,7 @@ const SCHEMA: u32 = 1;
 const INTERRUPTED: i32 = 130;
 
 #[derive(Debug, Args)]
+#[allow(clippy::struct_excessive_bools, reason = "switches of a command line")]
 pub(crate) struct Reproduce {
     /// Show the experiments and their rows, and stop
     #[arg(long)]
@@ -46,12 +51,15 @@ pub(crate) struct Reproduce {
     /// Worker threads; they change the time, never the results [default: one a core]
     #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
-    /// Folder for results.json, report.md and the records of finished data sets
+    /// Folder for report.html, report.md, results.json, figures/ and the records of finished data sets
     #[arg(long, value_name = "DIR", default_value = "target/reproduce")]
     out: PathBuf,
     /// Start over: forget the data sets that earlier runs into the same folder finished
     #[arg(long)]
     fresh: bool,
+    /// Leave out report.html and the figures: results.json and report.md only
+    #[arg(long)]
+    no_figures: bool,
 }
 
 impl Reproduce {
@@ -81,13 +89,27 @@ impl Reproduce {
             },
             experiments: summarise(&experiments, &outcomes)?,
         };
-        write(&self.out.join("results.json"), &(serde_json::to_string_pretty(&results)? + "\n"))?;
-        let report = report(&experiments, &results, None);
-        write(&self.out.join("report.md"), &report)?;
-        print(&report)?;
+        write(&self.out.join("results.json"), results.json()?)?;
+        print(&markdown(&experiments, &results, None))?;
         say_failures(&experiments, &outcomes);
-        conclude(&results, &self.out)
+        if self.no_figures {
+            write(&self.out.join("report.md"), markdown(&experiments, &results, None))?;
+            return conclude(&results, &self.out);
+        }
+        say("computing what the figures show, and drawing them ..");
+        let documents = pool.install(|| compute(&experiments, self.seed))?;
+        keep(&documents, &self.out)?;
+        let sources = Sources { results, documents };
+        pool.install(|| write_report(&experiments, &sources, None, &self.out))?;
+        conclude(&sources.results, &self.out)
     }
+}
+
+/// Writes what the figures are drawn from.
+fn keep(documents: &BTreeMap<String, Value>, out: &Path) -> anyhow::Result<()> {
+    let folder = out.join("figures");
+    fs::create_dir_all(&folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    documents.iter().try_for_each(|(id, document)| write(&folder.join(format!("{id}.json")), document.to_string()))
 }
 
 /// Keeps the experiments, setups and rows that are asked for; all where nothing is. Rows that are measured on the same
@@ -152,24 +174,14 @@ fn conclude(results: &Results, out: &Path) -> anyhow::Result<()> {
         say(&format!("{}: {}", experiment.id, tally(experiment)));
     }
     let Run { threads, wall_seconds, cpu_seconds, .. } = &results.run;
-    say(&format!(
-        "{wall_seconds:.1} s on {threads} thread(s), {cpu_seconds:.1} s of processor time; written to {}: results.json, report.md",
-        out.display()
-    ));
+    say(&format!("{wall_seconds:.1} s on {threads} thread(s), {cpu_seconds:.1} s of processor time for the tables"));
+    say(&written(out));
     let rows =
         results.experiments.iter().flat_map(|experiment| experiment.rows.iter().map(move |row| (experiment, row)));
     if let Some((experiment, row)) = rows.into_iter().find(|(_, row)| row.failed == row.data_sets) {
         bail!("{} {}: every data set failed", experiment.id, row.id);
     }
     Ok(())
-}
-
-/// Writes a whole file or nothing.
-pub(crate) fn write(path: &Path, text: &str) -> anyhow::Result<()> {
-    let draft = path.with_extension("part");
-    fs::write(&draft, text)
-        .and_then(|()| fs::rename(&draft, path))
-        .with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// Writes to standard output; a reader that has seen enough (`| head`) is no error.

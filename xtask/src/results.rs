@@ -1,14 +1,15 @@
 //! The results of a run, as written to `results.json`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
+use anyhow::Context as _;
 use metrics::Summary;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer, ser::Error as _};
 
 use crate::experiments::{Experiment, Row};
 use crate::measure::Measure;
 use crate::paper::Printed;
-use crate::records::Outcome;
 use crate::runner::Outcomes;
 use crate::verdict::{Verdict, verdict};
 
@@ -25,6 +26,24 @@ pub(crate) struct Results {
     pub(crate) run: Run,
     /// Tables and figures.
     pub(crate) experiments: Vec<ExperimentResult>,
+}
+
+impl Results {
+    /// Reads a `results.json`.
+    pub(crate) fn read(path: &Path) -> anyhow::Result<Results> {
+        let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+        serde_json::from_str(&text).with_context(|| format!("{} is not a results.json", path.display()))
+    }
+
+    /// As written to `results.json`.
+    pub(crate) fn json(&self) -> anyhow::Result<String> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+}
+
+/// Hundreds of numbers in a row are for machines.
+fn on_one_line<S: Serializer>(values: &Vec<Option<f64>>, serializer: S) -> Result<S::Ok, S::Error> {
+    serde_json::value::to_raw_value(values).map_err(S::Error::custom)?.serialize(serializer)
 }
 
 /// Circumstances of the run.
@@ -73,6 +92,9 @@ pub(crate) struct Cell {
     pub(crate) sd: Option<f64>,
     /// Median over data sets.
     pub(crate) median: f64,
+    /// The value of each data set, in their order; null where it could not be measured.
+    #[serde(serialize_with = "on_one_line")]
+    pub(crate) values: Vec<Option<f64>>,
     /// The printed figure, where there is one.
     pub(crate) paper: Option<Printed>,
     /// The comparison, where there is one.
@@ -98,24 +120,16 @@ pub(crate) fn summarise(
 
 /// Sums up the row that stands at `at` in its setup.
 fn summarise_row(experiment: &Experiment, row: &Row, at: usize, outcomes: &Outcomes) -> anyhow::Result<RowResult> {
-    let mut values: BTreeMap<Measure, Vec<f64>> = BTreeMap::new();
-    let mut failed = 0;
-    for outcome in outcomes {
-        match outcome {
-            Outcome::Failed(_) => failed += 1,
-            Outcome::Measured(rows) => {
-                for (&measure, &value) in &rows[at] {
-                    values.entry(measure).or_default().push(value);
-                }
-            }
-        }
-    }
-    let cell = |(measure, values): (Measure, Vec<f64>)| {
-        let Summary { mean, sd, median, .. } = Summary::of(&values)?;
+    let rows: Vec<Option<&BTreeMap<Measure, f64>>> = outcomes.iter().map(|outcome| outcome.row(at)).collect();
+    let failed = rows.iter().filter(|row| row.is_none()).count();
+    let measures: BTreeSet<Measure> = rows.iter().flatten().flat_map(|row| row.keys().copied()).collect();
+    let cell = |measure: Measure| {
+        let values: Vec<Option<f64>> = rows.iter().map(|row| (*row)?.get(&measure).copied()).collect();
+        let Summary { mean, sd, median, .. } = Summary::of(&values.iter().flatten().copied().collect::<Vec<_>>())?;
         let paper = experiment.paper(&row.id, measure);
         let verdict = paper.map(|paper| verdict(measure.kind(row.of), mean, paper));
-        Ok((measure, Cell { mean, sd, median, paper, verdict }))
+        Ok((measure, Cell { mean, sd, median, values, paper, verdict }))
     };
-    let measures = values.into_iter().map(cell).collect::<anyhow::Result<_>>()?;
+    let measures = measures.into_iter().map(cell).collect::<anyhow::Result<_>>()?;
     Ok(RowResult { id: row.id.clone(), data_sets: outcomes.len(), failed, measures })
 }

@@ -39,7 +39,7 @@ fn the_number_of_threads_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let of = |threads: &str| {
         let out = folder.path().join(threads);
-        run(&out, &["--only", ROW, "--data-sets", "4", "--threads", threads]);
+        run(&out, &["--only", ROW, "--no-figures", "--data-sets", "4", "--threads", threads]);
         results(&out)
     };
     let one = of("1");
@@ -52,7 +52,7 @@ fn the_number_of_threads_changes_nothing() {
 fn a_killed_run_goes_on_and_ends_the_same() {
     let folder = tempfile::tempdir().unwrap();
     let (killed, whole) = (folder.path().join("killed"), folder.path().join("whole"));
-    let arguments = ["--only", ROW, "--data-sets", "12", "--threads", "1"];
+    let arguments = ["--only", ROW, "--no-figures", "--data-sets", "12", "--threads", "1"];
 
     let mut first = reproduce(&killed, &arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     let started = Instant::now();
@@ -76,8 +76,8 @@ fn a_killed_run_goes_on_and_ends_the_same() {
 fn one_row_alone_equals_that_row_among_others() {
     let folder = tempfile::tempdir().unwrap();
     let (alone, among) = (folder.path().join("alone"), folder.path().join("among"));
-    run(&alone, &["--only", ROW, "--data-sets", "2"]);
-    run(&among, &["--only", &format!("table1/parabola-40x40-wide,{ROW}"), "--data-sets", "2"]);
+    run(&alone, &["--only", ROW, "--no-figures", "--data-sets", "2"]);
+    run(&among, &["--only", &format!("table1/parabola-40x40-wide,{ROW}"), "--no-figures", "--data-sets", "2"]);
     let (alone, among) = (results(&alone), results(&among));
     assert_eq!(alone["experiments"][0]["rows"][0], among["experiments"][0]["rows"][0]);
     assert_eq!(among["experiments"][0]["rows"].as_array().unwrap().len(), 2);
@@ -86,12 +86,12 @@ fn one_row_alone_equals_that_row_among_others() {
 #[test]
 fn a_fresh_run_starts_over() {
     let folder = tempfile::tempdir().unwrap();
-    let arguments = ["--only", ROW, "--data-sets", "2"];
+    let arguments = ["--only", ROW, "--no-figures", "--data-sets", "2"];
     run(folder.path(), &arguments);
     let before = results(folder.path());
     let again = run(folder.path(), &arguments);
     assert!(String::from_utf8_lossy(&again.stderr).contains("2 of 2 data sets were finished"));
-    let fresh = run(folder.path(), &["--only", ROW, "--data-sets", "2", "--fresh"]);
+    let fresh = run(folder.path(), &["--only", ROW, "--no-figures", "--data-sets", "2", "--fresh"]);
     assert!(!String::from_utf8_lossy(&fresh.stderr).contains("were finished by earlier runs"));
     assert_eq!(results(folder.path()), before);
 }
@@ -99,7 +99,7 @@ fn a_fresh_run_starts_over() {
 #[test]
 fn the_form_is_the_documented_one() {
     let folder = tempfile::tempdir().unwrap();
-    run(folder.path(), &["--only", ROW, "--data-sets", "2", "--seed", "5"]);
+    run(folder.path(), &["--only", ROW, "--no-figures", "--data-sets", "2", "--seed", "5"]);
     let results = results(folder.path());
     assert_eq!((&results["schema"], &results["seed"], &results["quick"]), (&1.into(), &5.into(), &false.into()));
     let row = &results["experiments"][0]["rows"][0];

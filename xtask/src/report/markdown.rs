@@ -36,7 +36,7 @@ rate agrees within one printed standard deviation (printed 0 ± 0: below .005 %)
 const FEW: usize = 20;
 
 /// All tables of `results`; `second`, a run from another seed, adds its means as a column.
-pub(crate) fn report(experiments: &[Experiment], results: &Results, second: Option<&Results>) -> String {
+pub(crate) fn markdown(experiments: &[Experiment], results: &Results, second: Option<&Results>) -> String {
     let mut text = LEGEND.to_owned();
     for result in &results.experiments {
         let Some(experiment) = experiments.iter().find(|experiment| experiment.id == result.id) else { continue };

@@ -1,0 +1,121 @@
+//! The paper's figures. A run computes documents, plain numbers kept as `figures/*.json`; figures are drawn from these
+//! and from the results, and from nothing else, so that they can be drawn again without a run.
+
+mod overview;
+
+use std::collections::BTreeMap;
+
+use anyhow::Context as _;
+use rayon::prelude::*;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+use crate::experiments::Experiment;
+use crate::plot::Picture;
+use crate::results::{ExperimentResult, Results};
+
+/// What a run computes for the figures, from fixed data sets.
+pub(crate) struct Document {
+    /// Names the file.
+    pub(crate) id: &'static str,
+    /// The experiment whose run it goes with; without one every run computes it.
+    pub(crate) experiment: Option<&'static str>,
+    /// Computes it from a seed.
+    compute: fn(u64) -> anyhow::Result<Value>,
+}
+
+/// A figure of the paper.
+pub(crate) struct Figure {
+    /// Names the files.
+    pub(crate) id: &'static str,
+    /// As over the figure in the report.
+    pub(crate) title: &'static str,
+    /// What is to be seen, and what the paper's shows where ours is different.
+    pub(crate) caption: &'static str,
+    /// The experiment it stands beside in the report.
+    #[allow(dead_code, reason = "the page is being built")]
+    pub(crate) experiment: Option<&'static str>,
+    /// Documents and experiments that it is drawn from.
+    needs: &'static [&'static str],
+    draw: fn(&Sources) -> anyhow::Result<Drawing>,
+}
+
+/// A picture, and the numbers of its curves.
+pub(crate) struct Drawing {
+    pub(crate) picture: Picture,
+    /// Written as `figures/<figure>-<name>.csv`.
+    pub(crate) tables: Vec<Csv>,
+}
+
+/// A table of numbers for other programs.
+pub(crate) struct Csv {
+    pub(crate) name: &'static str,
+    pub(crate) header: Vec<String>,
+    pub(crate) rows: Vec<Vec<f64>>,
+}
+
+/// All that figures may be drawn from.
+pub(crate) struct Sources {
+    pub(crate) results: Results,
+    pub(crate) documents: BTreeMap<String, Value>,
+}
+
+/// All documents.
+pub(crate) fn documents() -> Vec<Document> {
+    vec![overview::document()]
+}
+
+/// All figures, in the paper's order.
+pub(crate) fn figures() -> Vec<Figure> {
+    vec![overview::figure()]
+}
+
+/// Computes the documents that go with these experiments.
+pub(crate) fn compute(experiments: &[Experiment], seed: u64) -> anyhow::Result<BTreeMap<String, Value>> {
+    let mut wanted = documents();
+    wanted.retain(|document| document.experiment.is_none_or(|id| experiments.iter().any(|e| e.id == id)));
+    let document = |document: &Document| {
+        let value = (document.compute)(seed).with_context(|| format!("figure data {}", document.id))?;
+        Ok((document.id.to_owned(), value))
+    };
+    wanted.par_iter().with_max_len(1).map(document).collect()
+}
+
+impl Figure {
+    /// Draws it; nothing where what it needs was not run.
+    pub(crate) fn draw(&self, sources: &Sources) -> anyhow::Result<Option<Drawing>> {
+        let there = |id: &&str| sources.documents.contains_key(*id) || sources.experiment(id).is_some();
+        if !self.needs.iter().all(there) {
+            return Ok(None);
+        }
+        (self.draw)(sources).with_context(|| format!("{} cannot be drawn", self.id)).map(Some)
+    }
+}
+
+impl Sources {
+    /// The results of one experiment.
+    pub(crate) fn experiment(&self, id: &str) -> Option<&ExperimentResult> {
+        self.results.experiments.iter().find(|result| result.id == id)
+    }
+
+    /// A document, which has to be there.
+    fn document<D: DeserializeOwned>(&self, id: &str) -> anyhow::Result<D> {
+        let value = self.documents.get(id).with_context(|| format!("figure data {id} is missing"))?;
+        D::deserialize(value).with_context(|| format!("figure data {id} has another form; run `cargo xtask reproduce`"))
+    }
+}
+
+impl Csv {
+    /// As comma-separated values; what is not a number is an empty cell.
+    pub(crate) fn text(&self) -> String {
+        let cell = |value: &f64| if value.is_finite() { value.to_string() } else { String::new() };
+        let row = |row: &Vec<f64>| row.iter().map(cell).collect::<Vec<_>>().join(",") + "\n";
+        self.header.join(",") + "\n" + &self.rows.iter().map(row).collect::<String>()
+    }
+}
+
+/// Rounds to so many decimals: documents hold what can be seen, not what can be computed.
+fn rounded(value: f64, decimals: i32) -> f64 {
+    let scale = 10_f64.powi(decimals);
+    (value * scale).round() / scale
+}

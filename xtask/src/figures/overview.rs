@@ -1,0 +1,142 @@
+//! What it is about, in one picture: what was shown, what averaging makes of it, what alignment finds.
+
+use align::{Bandwidth, DirectPolicyLearning, PolicyAlign};
+use demo_gen::{ToySystem, demonstrations};
+use motion::{NegativeGradient, Policy, Potential};
+use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
+
+use super::{Document, Drawing, Figure, Sources, rounded};
+use crate::experiments::toy_regressor;
+use crate::learners::{Learner, Lesson};
+use crate::plot::{Field, Layer, Picture, Plane, Who};
+use crate::seed::generator;
+
+/// Starts of the movements are drawn from [−2, 2]².
+const EXTENT: f64 = 2.0;
+
+/// Arrows are drawn as long as this many seconds of movement.
+const ARROW_SECONDS: f64 = 2.0;
+
+pub(crate) fn document() -> Document {
+    Document { id: "overview", experiment: None, compute: |seed| Ok(serde_json::to_value(overview(seed)?)?) }
+}
+
+pub(crate) fn figure() -> Figure {
+    Figure {
+        id: "overview",
+        title: "What it is about",
+        caption: "Left: forty movements of a point that wants to go to the centre, each under constraints that change on the way and \
+                  that nobody tells, over lines of equal potential. Centre: regression of \
+                  what was seen gets directions and speeds wrong. Right: aligned potentials give the policy, without having seen it.",
+        experiment: None,
+        needs: &["overview"],
+        draw,
+    }
+}
+
+/// The first data set of the toy system, and what is learnt from it.
+#[derive(Serialize, Deserialize)]
+struct Overview {
+    movements: Vec<Movement>,
+    contours: Field,
+    /// (x₁, x₂, u₁, u₂).
+    expert: Vec<(f64, f64, f64, f64)>,
+    naive: Vec<(f64, f64, f64, f64)>,
+    policy_align: Vec<(f64, f64, f64, f64)>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Movement {
+    kept: bool,
+    points: Vec<(f64, f64)>,
+}
+
+fn overview(seed: u64) -> anyhow::Result<Overview> {
+    let mut rng = generator(seed, 0, 0);
+    let system = ToySystem::default();
+    let recordings = system.record(&mut rng)?;
+    let align = PolicyAlign { bandwidth: Bandwidth::Medium, ..PolicyAlign::default() };
+    let aligned = align.align(&demonstrations(&recordings)?)?;
+    let (_, held_out) = aligned.samples().split(0.1, &mut rng)?;
+    let lesson = Lesson { aligned: &aligned, held_out: &held_out };
+    let regressor = toy_regressor();
+    let naive = DirectPolicyLearning { params: regressor.params.clone(), ..DirectPolicyLearning::default() };
+    let mut learnt = |learner: &dyn Learner| learner.learn(&lesson, &mut rng).map(|learnt| learnt.policy);
+    let (naive, learnt) = (learnt(&naive)?, learnt(&regressor)?);
+    let movement = |(trajectory, recording): (usize, &demo_gen::Recording)| {
+        let states = recording.observed.positions().column_iter();
+        Movement {
+            kept: aligned.offset(trajectory).is_some(),
+            points: states.map(|x| (rounded(x[0], 4), rounded(x[1], 4))).collect(),
+        }
+    };
+    Ok(Overview {
+        movements: recordings.iter().enumerate().map(movement).collect(),
+        contours: contours(&system.potential),
+        expert: arrows(&NegativeGradient(&system.potential)),
+        naive: arrows(&*naive),
+        policy_align: arrows(&*learnt),
+    })
+}
+
+fn contours(potential: &dyn Potential) -> Field {
+    let grid: Vec<f64> = (-40..=40).map(|i| EXTENT * f64::from(i) / 40.0).collect();
+    let value = |x: f64, y: f64| rounded(potential.value(DVector::from_vec(vec![x, y]).as_view()), 5);
+    let values = grid.iter().map(|&y| grid.iter().map(|&x| value(x, y)).collect()).collect();
+    Field { x: grid.clone(), y: grid, values }
+}
+
+/// The unconstrained actions of a policy on a grid.
+fn arrows(policy: &dyn Policy) -> Vec<(f64, f64, f64, f64)> {
+    let grid = (0..81).map(|i| (f64::from(i % 9 - 4) * 0.45, f64::from(i / 9 - 4) * 0.45));
+    let arrow = |(x, y): (f64, f64)| {
+        let action = policy.action(DVector::from_vec(vec![x, y]).as_view());
+        (rounded(x, 4), rounded(y, 4), rounded(action[0], 5), rounded(action[1], 5))
+    };
+    grid.map(arrow).collect()
+}
+
+fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+    let overview: Overview = sources.document("overview")?;
+    let [shown, naive, learnt] = [
+        shown(&overview),
+        compared("Direct learning (green) and the truth", &overview, Who::Naive),
+        compared("policy-align (orange) and the truth", &overview, Who::PolicyAlign),
+    ];
+    Ok(Drawing { picture: Picture::rows(&[&[&shown, &naive, &learnt]]), tables: vec![] })
+}
+
+fn plane(title: &str, layers: Vec<Layer>) -> Plane {
+    let range = [-EXTENT, EXTENT];
+    Plane { title: title.to_owned(), x_label: "x₁", y_label: "x₂", x: range, y: range, layers, size: Plane::SQUARE }
+}
+
+/// The demonstrations over lines of equal potential; discarded ones as crosses.
+fn shown(overview: &Overview) -> Plane {
+    let color = Who::Demonstration.color();
+    let mut layers = vec![Layer::Contours(overview.contours.clone())];
+    for Movement { kept, points } in &overview.movements {
+        let (points, start) = (points.clone(), vec![points[0]]);
+        layers.push(if *kept {
+            Layer::Path { points, stroke: Who::Demonstration.stroke(1.6), label: None }
+        } else {
+            Layer::Crosses { points, color: "#8fc1e3" }
+        });
+        layers.push(Layer::Dots { points: start, color, radius: 2.5 });
+    }
+    plane("Forty movements under unknown constraints", layers)
+}
+
+/// The unconstrained actions of the expert and of a learner.
+fn compared(title: &str, overview: &Overview, who: Who) -> Plane {
+    let learner = if who == Who::Naive { &overview.naive } else { &overview.policy_align };
+    let layer = |arrows: &[_], who: Who, width| Layer::Arrows {
+        arrows: arrows.to_vec(),
+        color: who.color(),
+        scale: ARROW_SECONDS,
+        width,
+        label: None,
+    };
+    plane(title, vec![layer(&overview.expert, Who::Expert, 2.6), layer(learner, who, 1.4)])
+}

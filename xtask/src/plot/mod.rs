@@ -1,0 +1,95 @@
+//! Pictures: rows of panels, written as SVG and PNG. The only place that knows the plotting crate.
+//!
+//! - [`Plane`]: things in the plane, both axes alike.
+//! - [`Curves`]: quantities against a quantity, linear or logarithmic, with bands.
+//! - [`Surface`]: a scalar field in perspective.
+//!
+//! [`Who`] and [`Stroke`] give every picture the same colours and lines.
+
+#![allow(dead_code, unused_imports, reason = "the figures that need them are being drawn")]
+
+mod curves;
+mod plane;
+mod style;
+mod surface;
+
+use kuva::backend::raster::RasterBackend;
+use kuva::backend::svg::SvgBackend;
+use kuva::render::render::{Primitive, Scene};
+
+pub(crate) use curves::{Axis, Curve, Curves};
+pub(crate) use plane::{Layer, Plane};
+pub(crate) use style::{Dash, Stroke, Who};
+pub(crate) use surface::Surface;
+
+/// A scalar field on a grid: `values[row][column]` at (`x[column]`, `y[row]`).
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Field {
+    pub(crate) x: Vec<f64>,
+    pub(crate) y: Vec<f64>,
+    pub(crate) values: Vec<Vec<f64>>,
+}
+
+/// One part of a picture.
+pub(crate) trait Panel {
+    /// Draws it on a sheet of its own.
+    fn scene(&self) -> Scene;
+}
+
+/// Pixels between panels.
+const GAP: f64 = 10.0;
+
+/// Dots of the PNG for each pixel of the SVG.
+const PNG_SCALE: f32 = 2.0;
+
+/// A picture, ready to be written in either form.
+pub(crate) struct Picture(Scene);
+
+impl Picture {
+    /// Rows of panels, one below the other.
+    pub(crate) fn rows(rows: &[&[&dyn Panel]]) -> Picture {
+        let mut sheet = Scene::new(0.0, GAP);
+        let mut number = 0;
+        for row in rows {
+            let (mut x, mut height) = (GAP, 0.0_f64);
+            for panel in *row {
+                let scene = panel.scene();
+                let (width, panel_height) = (scene.width, scene.height);
+                let corner = (x, sheet.height);
+                place(&mut sheet, scene, corner, number);
+                number += 1;
+                x += width + GAP;
+                height = height.max(panel_height);
+            }
+            sheet.width = sheet.width.max(x);
+            sheet.height += height + GAP;
+        }
+        Picture(sheet)
+    }
+
+    /// As scalable vector graphics.
+    pub(crate) fn svg(&self) -> String {
+        SvgBackend::new().render_scene(&self.0)
+    }
+
+    /// As pixels.
+    pub(crate) fn png(&self) -> anyhow::Result<Vec<u8>> {
+        RasterBackend::new().with_scale(PNG_SCALE).render_scene(&self.0).map_err(anyhow::Error::msg)
+    }
+}
+
+/// Puts a panel's scene on the sheet. Names that it gives to clipping areas are made its own: every panel counts them
+/// from 0, and a picture stands beside others in one page.
+fn place(sheet: &mut Scene, scene: Scene, (x, y): (f64, f64), number: usize) {
+    let own = |name: &str| name.replace("kuva-", &format!("kuva-{number}-"));
+    sheet.font_family = scene.font_family.or(sheet.font_family.take());
+    sheet.defs.extend(scene.defs.iter().map(|def| own(def)));
+    sheet.add(Primitive::GroupStart { transform: Some(format!("translate({x},{y})")), title: None, extra_attrs: None });
+    for mut element in scene.elements {
+        if let Primitive::ClipStart { id, .. } = &mut element {
+            *id = own(id);
+        }
+        sheet.add(element);
+    }
+    sheet.add(Primitive::GroupEnd);
+}
