@@ -132,3 +132,30 @@ fn the_list_names_every_row() {
         assert!(said.contains(name), "{said}");
     }
 }
+
+#[test]
+fn the_committed_records_are_of_this_code() {
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), &["--only", &format!("{ROW},three_link,table2"), "--data-sets", "1", "--no-figures"]);
+    let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/records/seed-1");
+    let (ours, committed) = (results(folder.path()), results(&committed));
+    let find = |list: &Value, id: &Value| {
+        let found = list.as_array().unwrap().iter().find(|entry| entry["id"] == *id);
+        found.unwrap_or_else(|| panic!("docs/records has no {id}")).clone()
+    };
+    let mut compared = 0;
+    for experiment in ours["experiments"].as_array().unwrap() {
+        let rows = &find(&committed["experiments"], &experiment["id"])["rows"];
+        for row in experiment["rows"].as_array().unwrap() {
+            let measures = &find(rows, &row["id"])["measures"];
+            for (name, cell) in row["measures"].as_object().unwrap() {
+                // As printed: the last digits may be the machine's.
+                let [now, then] = [&cell["values"][0], &measures[name]["values"][0]].map(|v| v.as_f64().unwrap());
+                let place = format!("{} {} {name}", experiment["id"], row["id"]);
+                assert!((now - then).abs() <= 1e-3 * then.abs(), "{place}: {now}, docs/records has {then}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 20);
+}
