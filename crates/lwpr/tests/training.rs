@@ -4,7 +4,7 @@
 
 mod support;
 
-use lwpr::Lwpr;
+use lwpr::{Lwpr, Pruning};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 use rand::SeedableRng;
@@ -87,6 +87,40 @@ proptest! {
             for x in case.xs.column_iter() {
                 prop_assert_eq!(together.value(x, output), alone.value(x, 0));
             }
+        }
+    }
+
+    #[test]
+    fn of_two_fields_the_chosen_one_is_pruned(case in case(300), at in 0_usize..300) {
+        // Fields that were never pruned, of many shapes; then the same sample three times over.
+        let mut case = Case { n_out: 1, ..case };
+        case.ys = DMatrix::from_rows(&[case.ys.row(0)]);
+        case.params.norm_out = case.params.norm_out.map(|norm| norm.rows(0, 1).into_owned());
+        case.params.w_prune = 1.0;
+        let grown: serde_json::Value = serde_json::from_str(&state(&case.trained(2))).unwrap();
+        let after = |w_prune: f64, pruning: Pruning| {
+            let mut stored = grown.clone();
+            stored["params"]["w_prune"] = serde_json::to_value(w_prune).unwrap();
+            stored["params"]["pruning"] = serde_json::to_value(pruning).unwrap();
+            let mut model: Lwpr = serde_json::from_value(stored).unwrap();
+            train_online(&case, at..at + 1, &mut model);
+            let shape = |field: lwpr::ReceptiveField<'_>| (field.centre(), field.distance_metric().trace());
+            let mut fields: Vec<_> = model.receptive_fields(0).map(shape).collect();
+            fields.sort_by(|a, b| a.0.as_slice().partial_cmp(b.0.as_slice()).unwrap());
+            (model.n_pruned(0), fields)
+        };
+        let (_, all) = after(1.0, Pruning::Wider);
+        let low = case.params.w_gen * 1.01;
+        let [(n_wider, without_wider), (n_narrower, without_narrower)] =
+            [Pruning::Wider, Pruning::Narrower].map(|pruning| after(low, pruning));
+        prop_assert_eq!(n_wider, n_narrower);
+        prop_assert!(n_wider <= 1);
+        let gone = |rest: &Vec<_>| all.iter().filter(|field| !rest.contains(*field)).cloned().collect::<Vec<_>>();
+        let (wider, narrower) = (gone(&without_wider), gone(&without_narrower));
+        prop_assert_eq!((wider.len(), narrower.len()), (n_wider, n_wider));
+        if let ([wider], [narrower]) = (&wider[..], &narrower[..]) {
+            prop_assert!(wider.0 != narrower.0);
+            prop_assert!(wider.1 <= narrower.1, "the wider one has the smaller trace: {wider:?} {narrower:?}");
         }
     }
 

@@ -2,7 +2,7 @@
 
 #![allow(dead_code, unreachable_pub)] // Each test file uses its part.
 
-use lwpr::{Kernel, Lwpr, LwprParams, Metric, MetricAdaptation};
+use lwpr::{Kernel, Lwpr, LwprParams, Metric, MetricAdaptation, Pruning};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
@@ -46,18 +46,46 @@ fn shape() -> impl Strategy<Value = (Metric, Kernel, MetricAdaptation, f64)> {
     (metric, kernel, adaptation(), w_prune)
 }
 
+/// Few inputs, as a rule; sometimes more than any vector register holds.
+fn n_in() -> impl Strategy<Value = usize> {
+    prop_oneof![6 => 1_usize..=9, 1 => 10_usize..=34]
+}
+
+/// Pruning, smallest variance of a projection, last forgetting factor, limit of fields, and whether the metric is given
+/// as a matrix.
+fn rest() -> impl Strategy<Value = (Pruning, f64, f64, Option<usize>, bool)> {
+    let pruning = prop_oneof![Just(Pruning::Wider), Just(Pruning::Narrower)];
+    // As many as there may be samples: the limit itself is tested with the bad input.
+    let limit = prop_oneof![Just(None), (400_usize..1000).prop_map(Some)];
+    (pruning, -12.0..-6.0, 0.999..=1.0, limit, any::<bool>())
+        .prop_map(|(pruning, exponent, last, limit, matrix)| (pruning, 10_f64.powf(exponent), last, limit, matrix))
+}
+
+/// A metric (n, n) that is not a multiple of the unit matrix.
+fn metric_matrix(metric: Metric, n: usize, width: f64, rng: &mut ChaCha8Rng) -> DMatrix<f64> {
+    let mut diagonal = DMatrix::from_fn(n, n, |i, j| if i == j { width * rng.random_range(0.5..1.5) } else { 0.0 });
+    if metric == Metric::Full {
+        let turn = DMatrix::from_fn(n, n, |_, _| rng.random_range(-0.3..0.3) * (width / n as f64).sqrt());
+        diagonal += &turn * turn.transpose();
+    }
+    diagonal
+}
+
 /// Every parameter is drawn. The targets are smooth functions with noise.
 pub fn case(samples: usize) -> impl Strategy<Value = Case> {
-    let sizes = (1_usize..=9, 1_usize..=3, any::<u64>());
+    let sizes = (n_in(), 1_usize..=3, any::<u64>());
     let speeds = (1.0..200.0, 1e-8..1e-3, 0.002..0.4, 0.2..0.99, 0.98..0.9995, 0.9..0.9999);
-    (sizes, shape(), speeds, 0.5..4.0, 0.3..3.0).prop_map(
-        move |((n_in, n_out, seed), (metric, kernel, adaptation, w_prune), speeds, width, norm)| {
+    (sizes, shape(), speeds, rest(), 0.5..4.0, 0.3..3.0).prop_map(
+        move |((n_in, n_out, seed), (metric, kernel, adaptation, w_prune), speeds, rest, width, norm)| {
             let (init_alpha, penalty, w_gen, add_threshold, init_lambda, tau_lambda) = speeds;
+            let (pruning, init_s2, final_lambda, max_receptive_fields, matrix) = rest;
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let xs = DMatrix::from_fn(n_in, samples, |_, _| rng.random_range(-1.0..1.0));
             let waves = DMatrix::from_fn(n_out, n_in, |_, _| rng.random_range(-2.0..2.0));
             let ys = (&waves * &xs).map(|z: f64| z.sin() + rng.random_range(-0.05..0.05));
+            let init_metric = matrix.then(|| metric_matrix(metric, n_in, width / n_in as f64, &mut rng));
             let params = LwprParams {
+                init_metric,
                 init_d: width / n_in as f64,
                 init_alpha,
                 metric,
@@ -67,12 +95,14 @@ pub fn case(samples: usize) -> impl Strategy<Value = Case> {
                 w_gen,
                 w_prune,
                 init_lambda,
-                final_lambda: 0.9999,
+                final_lambda,
+                pruning,
+                init_s2,
+                max_receptive_fields,
                 tau_lambda,
                 add_threshold,
                 norm_in: Some(DVector::from_fn(n_in, |i, _| norm + 0.1 * i as f64)),
                 norm_out: Some(DVector::from_element(n_out, norm)),
-                ..LwprParams::default()
             };
             Case { n_in, n_out, params, xs, ys, seed }
         },
