@@ -125,7 +125,11 @@ fn select(mut experiments: Vec<Experiment>, only: &[String]) -> anyhow::Result<V
     for wanted in only {
         let known = |e: &Experiment| e.setups.iter().any(|setup| matches(wanted, e.id, setup));
         if !experiments.iter().any(known) {
-            bail!("--only {wanted}: no such experiment or row; `cargo xtask reproduce --list` shows them all");
+            let ids: Vec<&str> = experiments.iter().map(|experiment| experiment.id).collect();
+            let ids = ids.join(", ");
+            bail!(
+                "--only {wanted}: no such experiment or row; experiments are {ids}; `cargo xtask reproduce --list` shows the rows"
+            );
         }
     }
     for experiment in &mut experiments {
