@@ -6,7 +6,7 @@ use rand::Rng;
 use crate::bipartition::Partition;
 use crate::{
     AlignError, AlignmentObjective, GlobalPotential, Learnt, LocalPotential, LwprRegressor, PolicyAlign, Regressor,
-    SampleIndex, Samples, Warning,
+    SampleIndex, Samples, Split, Warning,
 };
 
 /// Local potentials brought to one level: what [`PolicyAlign::align`] found.
@@ -59,6 +59,12 @@ impl Aligned {
     /// All groups, each ascending: the largest (kept) first, equally large ones by lowest trajectory.
     pub fn groups(&self) -> &[Vec<usize>] {
         &self.partition.groups
+    }
+
+    /// How the groups came about, step by step: first all trajectories come apart, then parts of theirs, a group always
+    /// before its parts. Parts that no later split takes further are the [`Aligned::groups`]; none if all hold together.
+    pub fn splits(&self) -> &[Split] {
+        &self.partition.splits
     }
 
     /// Offsets b (17), one for each of [`Aligned::kept`] in that order, in units of the potential; their sum is 0.

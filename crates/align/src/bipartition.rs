@@ -2,15 +2,17 @@ use std::cmp::Reverse;
 
 use nalgebra::DMatrix;
 
-use crate::AlignError;
 use crate::eigen::{symmetric_eigen, symmetric_eigenvalues};
 use crate::two_means::two_means;
+use crate::{AlignError, Split, SplitCause};
 
 /// The trajectories in groups whose offsets to each other the data do not determine (Sec. 3.3, App. B).
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Partition {
     /// Each ascending; the largest first, equally large ones by lowest trajectory.
     pub(crate) groups: Vec<Vec<usize>>,
+    /// How they came about, a group always before its parts.
+    pub(crate) splits: Vec<Split>,
     /// λ₂ of the first group: how firmly its weakest part hangs on; none for a single trajectory.
     pub(crate) lambda_2: Option<f64>,
 }
@@ -20,7 +22,8 @@ pub(crate) struct Partition {
 ///
 /// Parts without any link between them come apart beforehand, by exact zeros of H.
 pub(crate) fn bipartition(laplacian: &DMatrix<f64>, threshold: f64) -> Result<Partition, AlignError> {
-    let mut open = components(laplacian, (0..laplacian.ncols()).collect());
+    let mut splits = Vec::new();
+    let mut open = linked_parts(laplacian, (0..laplacian.ncols()).collect(), &mut splits);
     let mut closed = Vec::new();
     while let Some(group) = open.pop() {
         if group.len() == 1 {
@@ -29,14 +32,17 @@ pub(crate) fn bipartition(laplacian: &DMatrix<f64>, threshold: f64) -> Result<Pa
         }
         let matrix = laplacian.select_rows(&group).select_columns(&group);
         let (lambda_2, weak_vectors) = weak_part(&matrix, threshold)?;
-        match split(&group, &weak_vectors) {
-            Some(parts) => open.extend(parts.into_iter().flat_map(|part| components(laplacian, part))),
-            None => closed.push((group, Some(lambda_2))),
-        }
+        let Some(parts) = cut(&group, &weak_vectors) else {
+            closed.push((group, Some(lambda_2)));
+            continue;
+        };
+        let cause = SplitCause::WeakEigenvalues(weak_vectors.ncols());
+        splits.push(Split { group, parts: parts.clone(), cause });
+        open.extend(parts.into_iter().flat_map(|part| linked_parts(laplacian, part, &mut splits)));
     }
     closed.sort_by_key(|(group, _)| (Reverse(group.len()), group[0]));
     let lambda_2 = closed[0].1;
-    Ok(Partition { groups: closed.into_iter().map(|(group, _)| group).collect(), lambda_2 })
+    Ok(Partition { groups: closed.into_iter().map(|(group, _)| group).collect(), splits, lambda_2 })
 }
 
 /// The second eigenvalue of a group's matrix, and all eigenvectors below the threshold, or none if at most one is.
@@ -53,6 +59,15 @@ fn weak_part(matrix: &DMatrix<f64>, threshold: f64) -> Result<(f64, DMatrix<f64>
     }
     let (values, vectors) = symmetric_eigen(matrix)?;
     Ok((values[1], vectors.columns(0, weak(&values)).into_owned()))
+}
+
+/// The parts of a group that any links connect; a split if there are several.
+fn linked_parts(laplacian: &DMatrix<f64>, group: Vec<usize>, splits: &mut Vec<Split>) -> Vec<Vec<usize>> {
+    let parts = components(laplacian, group.clone());
+    if parts.len() > 1 {
+        splits.push(Split { group, parts: parts.clone(), cause: SplitCause::NoLink });
+    }
+    parts
 }
 
 /// The parts of a group that any links connect, each ascending: a flood from each lowest member yet dry.
@@ -78,7 +93,7 @@ fn components(laplacian: &DMatrix<f64>, group: Vec<usize>) -> Vec<Vec<usize>> {
 /// The two sides of a group by the rows of its weak eigenvectors; none if it holds together.
 ///
 /// Where all eigenvalues are weak, so are those of every part (they interlace): its members are alone at once.
-fn split(group: &[usize], weak_vectors: &DMatrix<f64>) -> Option<Vec<Vec<usize>>> {
+fn cut(group: &[usize], weak_vectors: &DMatrix<f64>) -> Option<Vec<Vec<usize>>> {
     if weak_vectors.ncols() <= 1 {
         return None;
     }
@@ -125,6 +140,21 @@ mod tests {
     }
 
     #[test]
+    fn splits_tell_how_groups_came_about() {
+        // Two trios, of which one hangs together by a link that is too weak, and one without any.
+        let links = [(0, 1, 1.0), (1, 4, 1e-12), (2, 3, 1.0), (3, 5, 1.0)];
+        let partition = bipartition(&graph(6, &links), 1e-8).unwrap();
+        assert_eq!(partition.groups, [vec![2, 3, 5], vec![0, 1], vec![4]]);
+        let [apart, cut] = &partition.splits[..] else { panic!("{:?}", partition.splits) };
+        assert_eq!((&apart.group, apart.cause), (&vec![0, 1, 2, 3, 4, 5], SplitCause::NoLink));
+        assert_eq!(apart.parts, [[0, 1, 4], [2, 3, 5]]);
+        assert_eq!((&cut.group, cut.cause), (&vec![0, 1, 4], SplitCause::WeakEigenvalues(2)));
+        let mut parts = cut.parts.clone();
+        parts.sort();
+        assert_eq!(parts, [vec![0, 1], vec![4]]);
+    }
+
+    #[test]
     fn weak_links_do_not_hold() {
         // Two pairs joined by w have λ₂ ≈ w.
         let pairs = |weight| graph(4, &[(0, 2, 1.0), (1, 3, 1.0), (2, 3, weight)]);
@@ -135,7 +165,7 @@ mod tests {
     #[test]
     fn a_single_trajectory_is_a_group() {
         let partition = bipartition(&DMatrix::zeros(1, 1), 1e-8).unwrap();
-        assert_eq!(partition, Partition { groups: vec![vec![0]], lambda_2: None });
+        assert_eq!(partition, Partition { groups: vec![vec![0]], splits: vec![], lambda_2: None });
     }
 
     #[test]
@@ -152,22 +182,56 @@ mod tests {
         for links in [&[], &links[..]] {
             let start = std::time::Instant::now();
             let partition = bipartition(&graph(300, links), 1e-8).unwrap();
-            assert_eq!(partition, Partition { groups: alone.clone(), lambda_2: None });
+            assert_eq!((partition.groups, partition.lambda_2), (alone.clone(), None));
+            assert_eq!(partition.splits.len(), 1);
             assert!(start.elapsed().as_secs() < 10);
         }
     }
 
+    /// Links of any strength, many of them too weak.
+    fn weak_graphs() -> impl Strategy<Value = DMatrix<f64>> {
+        (1usize..14, vec((0usize..14, 0usize..14, -20.0..0.0_f64), 0..30)).prop_map(|(count, links)| {
+            let links = links.into_iter().map(|(k, j, exponent)| (k % count, j % count, 10.0_f64.powf(exponent)));
+            graph(count, &links.filter(|(k, j, _)| k != j).collect::<Vec<_>>())
+        })
+    }
+
+    /// Whether a split is what its cause makes of its group.
+    fn follows_from_its_cause(split: &Split, laplacian: &DMatrix<f64>) -> bool {
+        let SplitCause::WeakEigenvalues(weak) = split.cause else {
+            return components(laplacian, split.group.clone()) == split.parts;
+        };
+        let matrix = laplacian.select_rows(&split.group).select_columns(&split.group);
+        let (values, vectors) = symmetric_eigen(&matrix).unwrap();
+        let found = values.iter().filter(|&&value| value < 1e-8).count();
+        found == weak && cut(&split.group, &vectors.columns(0, weak).into_owned()).as_ref() == Some(&split.parts)
+    }
+
     proptest! {
         #[test]
-        fn links_hold_every_group_together(
-            count in 1usize..14, links in vec((0usize..14, 0usize..14, -20.0..0.0_f64), 0..30),
-        ) {
-            let links = links.into_iter().map(|(k, j, exponent)| (k % count, j % count, 10.0_f64.powf(exponent)));
-            let laplacian = graph(count, &links.filter(|(k, j, _)| k != j).collect::<Vec<_>>());
+        fn the_leaves_of_all_splits_are_the_groups(laplacian in weak_graphs()) {
+            let Partition { groups, splits, .. } = bipartition(&laplacian, 1e-8).unwrap();
+            let mut leaves = vec![(0..laplacian.ncols()).collect::<Vec<_>>()];
+            for split in &splits {
+                // A group is split once, after the split that it is a part of.
+                let at = leaves.iter().position(|leaf| *leaf == split.group);
+                leaves.remove(at.unwrap());
+                leaves.extend(split.parts.clone());
+                let mut members = split.parts.concat();
+                members.sort_unstable();
+                prop_assert_eq!(&members, &split.group);
+                prop_assert!(follows_from_its_cause(split, &laplacian), "{:?}", split);
+            }
+            leaves.sort_by_key(|group| (Reverse(group.len()), group[0]));
+            prop_assert_eq!(leaves, groups);
+        }
+
+        #[test]
+        fn links_hold_every_group_together(laplacian in weak_graphs()) {
             let groups = bipartition(&laplacian, 1e-8).unwrap().groups;
             let mut members = groups.concat();
             members.sort_unstable();
-            prop_assert_eq!(members, (0..count).collect::<Vec<_>>());
+            prop_assert_eq!(members, (0..laplacian.ncols()).collect::<Vec<_>>());
             for group in groups {
                 prop_assert_eq!(components(&laplacian, group.clone()), [group]);
             }

@@ -55,6 +55,24 @@ fn the_policy_is_recovered_where_the_naive_one_is_not() {
 }
 
 #[test]
+fn the_parts_that_no_split_takes_further_are_the_groups() {
+    let mut most = 0;
+    for seed in 0..10 {
+        let aligned = align_toy(Bandwidth::Narrow, seed);
+        let splits = aligned.splits();
+        let all: Vec<usize> = (0..aligned.demonstrations().n_trajectories()).collect();
+        let parts = splits.iter().flat_map(|split| &split.parts).chain([&all]);
+        let mut leaves: Vec<_> = parts.filter(|part| splits.iter().all(|split| split.group != **part)).collect();
+        leaves.sort();
+        let mut groups: Vec<_> = aligned.groups().iter().collect();
+        groups.sort();
+        assert_eq!(leaves, groups);
+        most = most.max(splits.len());
+    }
+    assert!(most > 2);
+}
+
+#[test]
 fn what_is_true_does_not_leak() {
     let recordings = recordings(3);
     let forged: Vec<Recording> = recordings

@@ -1,0 +1,20 @@
+/// One step of the recursive bi-partition (Sec. 3.3, App. B): a group of trajectories that fell apart.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Split {
+    /// The trajectories before, ascending.
+    pub group: Vec<usize>,
+    /// The same trajectories after: two parts or more, each ascending.
+    pub parts: Vec<Vec<usize>>,
+    /// What took them apart.
+    pub cause: SplitCause,
+}
+
+/// What takes a group of trajectories apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SplitCause {
+    /// No link connects the parts: their entries of H are exactly zero.
+    NoLink,
+    /// So many eigenvalues of the group's part of H are below the threshold. The group is cut in two by their
+    /// eigenvectors; if all are, every trajectory is a part of its own.
+    WeakEigenvalues(usize),
+}
