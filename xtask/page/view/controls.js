@@ -1,0 +1,105 @@
+"use strict";
+// Buttons, sliders and words around the picture.
+
+/** An element with attributes, listeners ("onclick") and children. */
+function make(tag, attributes = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+    else if (value !== false) element.setAttribute(name, value);
+  }
+  element.append(...children);
+  return element;
+}
+
+/** Several options of which one is chosen; each is `{ value, label, swatch }`. */
+class Options {
+  constructor(title, options, choose) {
+    // Two views on a page must not share their options.
+    const name = `view-${Options.number = (Options.number ?? 0) + 1}`;
+    this.inputs = new Map();
+    const labels = options.map(({ value, label, swatch }) => {
+      const input = make("input", { type: "radio", name, onchange: () => choose(value) });
+      this.inputs.set(value, input);
+      return make("label", {}, input, ...(swatch ? [make("span", { class: `view-swatch ${swatch}` })] : []), label);
+    });
+    this.element = make("fieldset", { class: "view-options" }, make("legend", {}, title), ...labels);
+  }
+
+  show(value) {
+    this.inputs.get(value).checked = true;
+  }
+}
+
+const SPEEDS = [1, 2, 5, 10, 20];
+
+/** What the view is told by its reader: `actions` has a function for each thing that can be asked for. */
+class Controls {
+  constructor(playback, actions) {
+    const { document: data } = playback;
+    const named = (list) => list.map(({ id, label }) => ({ value: id, label }));
+    const learners = data.learners.map(({ id, label }) => ({ value: id, label, swatch: id }));
+    const starts = playback.options.start.map((value) => ({ value, label: `${value + 1}` }));
+    this.options = {
+      learner: new Options("Who moves the robot", learners, (learner) => actions.select({ learner })),
+      constraint: new Options("What is in the way", named(data.constraints), (constraint) => (
+        actions.select({ constraint })
+      )),
+      start: new Options("Start", starts, (start) => actions.select({ start })),
+    };
+    this.all = make("input", { type: "checkbox", onchange: () => actions.select({ all: this.all.checked }) });
+    this.options.learner.element.append(make("label", {}, this.all, "paths of all"));
+    this.play = make("button", { type: "button", class: "view-play", onclick: actions.toggle });
+    this.slider = make("input", {
+      type: "range", min: 0, step: 1, "aria-label": "Time", oninput: () => actions.seek(this.slider.valueAsNumber),
+    });
+    this.time = make("output", { class: "view-time" });
+    const speeds = SPEEDS.map((speed) => make("option", { value: speed }, `${speed} ×`));
+    this.speed = make("select", { onchange: () => actions.setSpeed(Number(this.speed.value)) }, ...speeds);
+    this.words = make("p", { class: "view-words" });
+    const { learner, constraint, start } = this.options;
+    this.element = make("div", { class: "view-controls" },
+      make("div", { class: "view-times" }, this.play, this.slider, this.time, make("label", {}, "Speed ", this.speed)),
+      make("div", { class: "view-choices" }, learner.element, constraint.element, start.element),
+      this.words);
+  }
+
+  /** Shows the present state. */
+  show(playback) {
+    for (const [name, options] of Object.entries(this.options)) options.show(playback.choice[name]);
+    this.all.checked = playback.all;
+    this.speed.value = playback.speed;
+    this.play.textContent = playback.playing ? "❚❚ Pause" : "▶ Play";
+    const { sample, lastSample, document: { time_step: step } } = playback;
+    const seconds = (count) => (count * step).toFixed(1);
+    this.slider.max = lastSample;
+    // While it plays the thumb glides; a key moves it by a sample.
+    this.slider.step = playback.playing ? "any" : 1;
+    this.slider.value = sample;
+    this.slider.setAttribute("aria-valuetext", `${seconds(sample)} of ${seconds(lastSample)} seconds`);
+    this.time.textContent = `${seconds(sample)} s of ${seconds(lastSample)} s`;
+    this.words.setAttribute("aria-live", playback.playing ? "off" : "polite");
+    this.words.textContent = Controls.distancesInWords(playback);
+  }
+
+  static distancesInWords(playback) {
+    const one = (metres) => `${(100 * metres).toFixed(1)} cm`;
+    const both = ([left, right]) => `${one(left)} (left) and ${one(right)} (right)`;
+    const line = (learner) => {
+      const { label } = playback.document.learners.find(({ id }) => id === learner);
+      const [now, end] = [playback.sample, playback.lastSample].map((sample) => playback.distances(learner, sample));
+      return `${label}: now ${both(now)}, at the end ${both(end)}.`;
+    };
+    return ["From the hands to their places at the ball:", ...playback.learners.map(line)].join("\n");
+  }
+}
+
+/** Buttons over the picture: views, nearer, farther. */
+function viewButtons(look, zoom) {
+  const views = Object.entries(VIEWS).map(([name, { label }]) => (
+    make("button", { type: "button", onclick: () => look(name) }, label)
+  ));
+  const nearer = make("button", { type: "button", "aria-label": "Nearer", onclick: () => zoom(1 / 1.2) }, "+");
+  const farther = make("button", { type: "button", "aria-label": "Farther", onclick: () => zoom(1.2) }, "−");
+  return make("div", { class: "view-buttons", role: "group", "aria-label": "Camera" }, ...views, nearer, farther);
+}

@@ -1,0 +1,94 @@
+"use strict";
+// Which movement is shown, and where in time it is. Knows nothing of drawing.
+
+class Playback {
+  constructor(document) {
+    this.document = document;
+    this.robot = new Robot(document.robot);
+    const ids = (options) => options.map(({ id }) => id);
+    this.options = {
+      learner: ids(document.learners),
+      constraint: ids(document.constraints),
+      start: Array.from({ length: document.starts }, (_, i) => i),
+    };
+    this.choice = { learner: this.options.learner.at(-1), constraint: this.options.constraint[0], start: 0 };
+    this.all = true;
+    this.speed = 5;
+    this.playing = false;
+    // The last picture says most: hands at the ball, their paths behind them.
+    this.sample = this.lastSample;
+  }
+
+  /** Changes some of learner, constraint, start; the learner "all" shows everybody's paths. */
+  select({ all = this.all, ...choice }) {
+    if (choice.learner === "all") {
+      all = true;
+      delete choice.learner;
+    }
+    for (const [name, value] of Object.entries(choice)) {
+      if (!this.options[name]?.includes(value)) throw new RangeError(`no ${name} is called ${value}`);
+    }
+    Object.assign(this.choice, choice);
+    this.all = all;
+  }
+
+  /** The movement chosen, or that of another learner from the same start. */
+  movement(learner = this.choice.learner) {
+    const wanted = { ...this.choice, learner };
+    const names = Object.keys(wanted);
+    return this.document.movements.find((movement) => names.every((name) => movement[name] === wanted[name]));
+  }
+
+  /** Whose paths are shown. */
+  get learners() {
+    return this.all ? this.options.learner : [this.choice.learner];
+  }
+
+  get lastSample() {
+    return this.movement().joints.length - 1;
+  }
+
+  /** Starts; at the end, from the beginning. */
+  play() {
+    if (this.sample >= this.lastSample) this.sample = 0;
+    this.playing = true;
+  }
+
+  pause() {
+    this.playing = false;
+  }
+
+  seek(sample) {
+    this.sample = Math.min(Math.max(sample, 0), this.lastSample);
+  }
+
+  /** So many seconds go by in front of the screen. */
+  advance(seconds) {
+    this.seek(this.sample + seconds * this.speed / this.document.time_step);
+    if (this.sample === this.lastSample) this.pause();
+  }
+
+  /** A row of a movement at a time, between samples on a straight line. */
+  static at(rows, sample) {
+    const before = Math.floor(sample);
+    return mix(rows[before], rows[Math.min(before + 1, rows.length - 1)], sample - before);
+  }
+
+  /** Joint positions of the robot, or those that another learner would give it, at a sample. */
+  joints(learner = this.choice.learner, sample = this.sample) {
+    return Playback.at(this.movement(learner).joints, sample);
+  }
+
+  /** Palms of a learner's own path, left and right, metres. */
+  palms(learner) {
+    const row = Playback.at(this.movement(learner).palms, this.sample);
+    return [row.slice(0, 3), row.slice(3)];
+  }
+
+  /** How far a learner's hands are from their places at the ball, left and right, metres. */
+  distances(learner, sample) {
+    const target = this.document.scene.target;
+    const hands = this.robot.hands(this.joints(learner, sample));
+    return hands.map((hand, i) => length(minus(hand, target.slice(3 * i, 3 * i + 3))));
+  }
+}

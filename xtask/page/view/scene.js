@@ -1,0 +1,133 @@
+"use strict";
+// The things in the picture: what stands there for good, what changes with the choice, what moves.
+
+/** How each learner's path is broken: metres from dash to dash, and the share that is drawn. As in the figures. */
+const DASHES = { expert: [1, 1], naive: [0.016, 0.5], policy_align: [0.045, 0.66] };
+const PATH_RADIUS = 0.0055;
+const PLATE_TOP = 1.02;
+const PLATE_THICKNESS = 0.008;
+
+class Scene {
+  constructor(renderer, playback) {
+    this.renderer = renderer;
+    this.playback = playback;
+    const upload = (mesh) => renderer.upload(mesh);
+    const { robot, document: { scene } } = playback;
+    this.scene = scene;
+    this.floor = upload(square(3));
+    this.table = upload(Scene.tableMesh(scene.table));
+    this.ball = upload(sphere(scene.ball.diameter / 2));
+    this.dot = upload(sphere(0.011));
+    this.links = robot.links.map((_, link) => {
+      const shapes = robot.shapes.filter((shape) => shape.link === link);
+      if (shapes.length === 0) return null;
+      const mesh = new Mesh();
+      for (const shape of shapes) mesh.add(primitive(shape), shape);
+      return upload(mesh);
+    });
+    // A palm is a point; the hand around it is the nearest link with a body.
+    this.handLinks = robot.handLinks.map((link) => {
+      while (!this.links[link]) link = robot.links[link].parent;
+      return link;
+    });
+    this.chosen = { meshes: [] };
+  }
+
+  /** Builds what goes with a choice: plates and paths. */
+  choose() {
+    this.chosen.meshes.forEach((mesh) => this.renderer.forget(mesh));
+    const meshes = [];
+    const upload = (mesh) => {
+      meshes.push(this.renderer.upload(mesh));
+      return meshes.at(-1);
+    };
+    const { playback } = this;
+    const plates = playback.movement().plates.map((plate) => {
+      const [plain, zone, edges] = Scene.plateMeshes(plate, this.scene).map(upload);
+      return { plain, zone, edges };
+    });
+    const paths = playback.learners.flatMap((learner) => [0, 3].map((hand) => {
+      const points = playback.movement(learner).palms.map((row) => row.slice(hand, hand + 3));
+      return { learner, mesh: upload(tube(points, PATH_RADIUS)) };
+    }));
+    this.chosen = { meshes, plates, paths };
+  }
+
+  /** All things at the present time. */
+  things(palette) {
+    return [
+      { mesh: this.floor, color: palette.floor, kind: KIND.floor, shadow: false },
+      { mesh: this.table, color: palette.table },
+      { mesh: this.ball, pose: Scene.at(this.scene.ball.centre), color: palette.ball },
+      ...this.robotThings(palette),
+      ...this.pathThings(palette),
+      ...this.plateThings(palette),
+    ];
+  }
+
+  robotThings(palette) {
+    const { robot, choice: { learner } } = this.playback;
+    const poses = robot.poses(this.playback.joints());
+    const color = (link) => this.handLinks.includes(link) ? palette[learner] : palette.robot;
+    const things = this.links.map((mesh, link) => ({ mesh, pose: poses[link], color: color(link) }));
+    return things.filter(({ mesh }) => mesh);
+  }
+
+  /**
+   * Each path, faint, as if bodies were glass, and solid up to now; a dot where each learner's palms are, and where
+   * they should go.
+   */
+  pathThings(palette) {
+    const { playback } = this;
+    const dot = (place, color) => ({ mesh: this.dot, pose: Scene.at(place), color, shadow: false });
+    const target = playback.document.scene.target;
+    const dots = playback.learners.flatMap((learner) => playback.palms(learner).map((at) => dot(at, palette[learner])));
+    const paths = this.chosen.paths.flatMap(({ learner, mesh }) => {
+      const look = { color: palette[learner], dash: DASHES[learner], kind: KIND.path, shadow: false };
+      const path = { ...look, mesh, now: playback.sample };
+      return [path, { ...path, opacity: 0.25, through: true }];
+    });
+    return [dot(target.slice(0, 3), palette.target), dot(target.slice(3), palette.target), ...dots, ...paths];
+  }
+
+  plateThings(palette) {
+    const look = { color: palette.plate, shadow: false };
+    return this.chosen.plates.flatMap(({ plain, zone, edges }) => [
+      { ...look, mesh: edges },
+      { ...look, mesh: zone, opacity: 0.07 },
+      { ...look, mesh: plain, opacity: 0.3 },
+    ]);
+  }
+
+  static at(translation) {
+    return { rotation: IDENTITY.rotation, translation };
+  }
+
+  /** A top on four legs. */
+  static tableMesh({ top, near, far, half_width: side }) {
+    const [mesh, thick, leg] = [new Mesh(), 0.03, 0.045];
+    mesh.add(box([far - near, 2 * side, thick]), Scene.at([(near + far) / 2, 0, top - thick / 2]));
+    const high = top - thick;
+    for (const x of [near + leg, far - leg]) {
+      for (const y of [leg - side, side - leg]) mesh.add(box([leg, leg, high]), Scene.at([x, y, high / 2]));
+    }
+    return mesh;
+  }
+
+  /** A plate, the space in which it is felt, and its edges. An open end (null) ends with the table and has no edge. */
+  static plateMeshes([from, to], { wall, table }) {
+    const side = table.half_width;
+    const [left, right] = [from ?? -side, to ?? side];
+    const slab = (thickness) => {
+      const mesh = new Mesh();
+      mesh.add(box([thickness, right - left, PLATE_TOP]), Scene.at([wall.x, (left + right) / 2, PLATE_TOP / 2]));
+      return mesh;
+    };
+    const [edges, bar] = [new Mesh(), 1.6 * PLATE_THICKNESS];
+    edges.add(box([bar, right - left, bar]), Scene.at([wall.x, (left + right) / 2, PLATE_TOP]));
+    for (const y of [from, to].filter((end) => end !== null)) {
+      edges.add(box([bar, bar, PLATE_TOP]), Scene.at([wall.x, y, PLATE_TOP / 2]));
+    }
+    return [slab(PLATE_THICKNESS), slab(2 * wall.reach), edges];
+  }
+}

@@ -1,0 +1,180 @@
+"use strict";
+// The interactive view: a robot reaches for a ball, and one can walk around it. It wants the figure data
+// "grasp_playback" and an element, and is made of matrix.js, robot.js, meshes.js, shaders.js, renderer.js, camera.js,
+// gestures.js, playback.js, scene.js, controls.js and this file, in this order in one script; view.css is its style.
+
+const COLOR_NAMES = [
+  "background", "sky", "ground", "floor", "grid", "robot", "table", "ball", "plate", "target",
+  "expert", "naive", "policy_align",
+];
+const HELP = "Drag or arrow keys: turn. Pinch, wheel (after a click) or + and −: nearer, farther. "
+  + "Space: play, pause. Home: reset.";
+const LEGEND = "A path is strong up to now and faint ahead; dots are the places of the palms at the ball. Blue plates "
+  + "are in the way: in the pale space around them a hand moves neither forwards nor back. They have no end upwards, "
+  + "and none where no edge is drawn.";
+
+/** Builds the view in an element. Where nothing can be drawn it says so and points to `data-still`, a still picture. */
+function startView(element, data) {
+  element.classList.add("view");
+  const canvas = make("canvas", {
+    tabindex: 0, role: "application", "aria-roledescription": "3-D view", "aria-label": `The robot and the ball. ${HELP}`,
+  });
+  let renderer;
+  try {
+    renderer = new Renderer(canvas);
+  } catch (error) {
+    element.replaceChildren(noteInstead(error, element.dataset.still));
+    return;
+  }
+  window.policyAlignView = new View(element, canvas, renderer, data).handle();
+}
+
+/** Says why there is no picture. */
+function noteInstead(error, still) {
+  const note = make("p", { class: "view-note" }, `The moving picture cannot be drawn here: ${error.message}. `);
+  if (still) note.append("A ", make("a", { href: still }, "still picture"), " shows the same.");
+  return note;
+}
+
+class View {
+  constructor(element, canvas, renderer, data) {
+    Object.assign(this, { element, canvas, playback: new Playback(data), camera: new Camera() });
+    this.restful = matchMedia("(prefers-reduced-motion: reduce)");
+    this.last = null;
+    this.build(renderer);
+    this.controls = new Controls(this.playback, {
+      select: (choice) => this.select(choice),
+      toggle: () => (this.playback.playing ? this.pause() : this.play()),
+      seek: (sample) => this.seek(sample),
+      setSpeed: (speed) => { this.playback.speed = speed; },
+    });
+    const look = (name) => this.look(name);
+    const zoom = (factor) => { this.camera.zoom(factor); this.ask(); };
+    const stage = make("div", { class: "view-stage" }, canvas, viewButtons(look, zoom));
+    element.replaceChildren(stage, this.controls.element, make("p", { class: "view-help" }, LEGEND, make("br"), HELP));
+    this.listen();
+    this.ask();
+  }
+
+  /** All that lives on the graphics processor, which may lose it. */
+  build(renderer) {
+    this.renderer = renderer;
+    this.scene = new Scene(renderer, this.playback);
+    this.scene.choose();
+  }
+
+  listen() {
+    const { canvas } = this;
+    const repaint = () => { this.palette = null; this.ask(); };
+    listen(canvas, this.camera, () => this.ask());
+    canvas.addEventListener("keydown", (event) => {
+      if (event.key !== " ") return;
+      event.preventDefault();
+      this.controls.play.click();
+    });
+    canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+    canvas.addEventListener("webglcontextrestored", () => { this.build(new Renderer(canvas)); this.ask(); });
+    new ResizeObserver(() => this.ask()).observe(canvas);
+    new IntersectionObserver(([entry]) => { this.visible = entry.isIntersecting; this.ask(); }).observe(canvas);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
+    window.addEventListener("beforeprint", () => this.print(true));
+    window.addEventListener("afterprint", () => this.print(false));
+  }
+
+  /** Paper is light, and takes a still picture: browsers do not print what the graphics processor drew. */
+  print(starts) {
+    this.element.classList.toggle("view-printing", starts);
+    this.palette = null;
+    this.render();
+    this.element.querySelector(".view-paper")?.remove();
+    if (starts) this.canvas.after(make("img", { class: "view-paper", alt: "", src: this.canvas.toDataURL() }));
+  }
+
+  // What the reader, and tests, may do.
+
+  select(choice) {
+    this.playback.select(choice);
+    this.scene.choose();
+    this.ask();
+  }
+
+  play() {
+    this.playback.play();
+    this.ask();
+  }
+
+  pause() {
+    this.playback.pause();
+    this.ask();
+  }
+
+  seek(sample) {
+    this.playback.seek(sample);
+    this.ask();
+  }
+
+  look(name) {
+    this.camera.look(name);
+    if (this.restful.matches) this.camera.arrive();
+    this.ask();
+  }
+
+  // Drawing: only when something was asked for, and only what can be seen.
+
+  ask() {
+    this.asked ??= requestAnimationFrame((now) => this.frame(now));
+  }
+
+  frame(now) {
+    this.asked = null;
+    // After a pause the first step is a usual one, not the pause's length.
+    const seconds = this.last === null ? 1 / 60 : Math.min((now - this.last) / 1000, 0.25);
+    if (this.playback.playing) this.playback.advance(seconds);
+    const moving = this.camera.advance(seconds);
+    this.render();
+    const again = (this.playback.playing || moving) && this.visible !== false;
+    this.last = again ? now : null;
+    if (again) this.ask();
+  }
+
+  /** Draws the present state at once. */
+  render() {
+    const { canvas, playback } = this;
+    const ratio = Math.min(window.devicePixelRatio, 2);
+    const size = [canvas.clientWidth, canvas.clientHeight].map((pixels) => Math.max(Math.round(pixels * ratio), 1));
+    if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
+    this.palette ??= this.readPalette();
+    this.renderer.draw(this.scene.things(this.palette), this.camera, this.palette);
+    this.controls.show(playback);
+  }
+
+  /** The colours of the style sheet, as light: CSS has them as the eye sees them. */
+  readPalette() {
+    const style = getComputedStyle(this.element);
+    const color = (name) => {
+      const hex = style.getPropertyValue(`--view-${name.replace("_", "-")}`).trim();
+      return [1, 3, 5].map((at) => (parseInt(hex.slice(at, at + 2), 16) / 255) ** 2.2);
+    };
+    return Object.fromEntries(COLOR_NAMES.map((name) => [name, color(name)]));
+  }
+
+  /** For tests and the curious. Angles in radians, places in metres. */
+  handle() {
+    const { playback, camera } = this;
+    return {
+      select: (choice) => this.select(choice),
+      play: () => this.play(),
+      pause: () => this.pause(),
+      seek: (sample) => this.seek(sample),
+      orbit: (dx, dy) => { camera.orbit(dx, dy); this.ask(); },
+      look: (name) => this.look(name),
+      render: () => this.render(),
+      hands: () => playback.robot.hands(playback.joints()),
+      state: () => {
+        const { choice, all, sample, playing, speed } = playback;
+        const { azimuth, elevation, distance } = camera;
+        return { ...choice, all, sample, playing, speed, azimuth, elevation, distance };
+      },
+    };
+  }
+}
