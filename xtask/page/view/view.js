@@ -9,11 +9,11 @@ const COLOR_NAMES = [
 ];
 const HELP = "Drag or arrow keys: turn. Pinch, wheel (after a click) or + and −: nearer, farther. "
   + "Space: play, pause. Home: reset.";
-const LEGEND = "A path is strong up to now and faint ahead; dots are the places of the palms at the ball. Blue plates "
+const LEGEND = "A path is strong up to now and faint ahead; dots are the palms and their places at the ball. Blue plates "
   + "are in the way: in the pale space around them a hand moves neither forwards nor back. They have no end upwards, "
   + "and none where no edge is drawn.";
 
-/** Builds the view in an element. Where nothing can be drawn it says so and points to `data-still`, a still picture. */
+/** Builds the view in an element. Where nothing can be drawn it says so, with a link to `data-still`. */
 function startView(element, data) {
   element.classList.add("view");
   const canvas = make("canvas", {
@@ -45,7 +45,7 @@ class View {
     this.controls = new Controls(this.playback, {
       select: (choice) => this.select(choice),
       toggle: () => (this.playback.playing ? this.pause() : this.play()),
-      seek: (sample) => this.seek(sample),
+      seek: (sample) => { this.playback.pause(); this.seek(sample); },
       setSpeed: (speed) => { this.playback.speed = speed; },
     });
     const look = (name) => this.look(name);
@@ -87,7 +87,7 @@ class View {
     this.palette = null;
     this.render();
     this.element.querySelector(".view-paper")?.remove();
-    if (starts) this.canvas.after(make("img", { class: "view-paper", alt: "", src: this.canvas.toDataURL() }));
+    if (starts) this.canvas.after(make("img", { class: "view-paper", alt: "The robot and the ball", src: this.canvas.toDataURL() }));
   }
 
   // What the reader, and tests, may do.
