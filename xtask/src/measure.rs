@@ -65,6 +65,22 @@ impl Measure {
         }
     }
 
+    /// The measure's name for readers.
+    pub(crate) fn label(self) -> &'static str {
+        match self {
+            Measure::PotentialNmse => "potential nMSE",
+            Measure::Nupe => "nUPE",
+            Measure::Ncpe => "nCPE",
+            Measure::NcpeUnseen => "nCPE, unseen",
+            Measure::Disc => "discarded %",
+            Measure::AlignmentNmse => "alignment nMSE",
+            Measure::Naive => "naive",
+            Measure::PolicyAlign => "PolicyAlign",
+            Measure::Unsupported => "unsupported %",
+            Measure::BeyondLimits => "beyond limits %",
+        }
+    }
+
     /// How it is judged in a row.
     pub(crate) fn kind(self, row: RowOf) -> Kind {
         match (self, row) {

@@ -11,7 +11,7 @@ use crate::experiments::{Experiment, registry};
 use crate::figures::Sources;
 use crate::files::{folder_of_records, repository, write};
 use crate::measure::Measure;
-use crate::report::{draw, markdown, sources, tally};
+use crate::report::{Tally, draw, markdown, sources};
 use crate::results::{ExperimentResult, Results};
 use crate::table::markdown_table;
 
@@ -125,11 +125,12 @@ fn complete(experiments: &[Experiment], results: &Results) -> anyhow::Result<()>
     Ok(())
 }
 
-/// One line an experiment: how many printed figures are reached.
+/// One line an experiment with printed figures: how many printed figures are reached.
 fn verdicts(experiments: &[Experiment], results: &Results) -> String {
     let line = |experiment: &Experiment| {
-        let result = results.experiments.iter().find(|result| result.id == experiment.id)?;
-        Some(vec![experiment.title.to_owned(), experiment.section.to_owned(), tally(result)])
+        let tally = Tally::of(results.experiments.iter().filter(|result| result.id == experiment.id));
+        let words = vec![experiment.title.to_owned(), experiment.section.to_owned(), tally.sentence()];
+        (tally.total() > 0).then_some(words)
     };
     let rows: Vec<_> = experiments.iter().filter_map(line).collect();
     markdown_table(&["all experiments", "section", "how they compare"], &rows)
@@ -152,7 +153,7 @@ fn summary(experiments: &[Experiment], result: &ExperimentResult) -> String {
         .collect();
     let title = experiments.iter().find(|experiment| experiment.id == result.id).map_or("", |e| e.title);
     let table = markdown_table(&["row", "potential nMSE", "nUPE", "nCPE", "discarded %"], &rows);
-    format!("{title}: ours, and in brackets the paper's. {}\n\n{table}", tally(result))
+    format!("{title}: ours, and in brackets the paper's. {}\n\n{table}", Tally::of([result]).sentence())
 }
 
 #[cfg(test)]

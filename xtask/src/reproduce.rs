@@ -17,7 +17,7 @@ use crate::figures::{Sources, compute};
 use crate::files::write;
 use crate::progress::say;
 use crate::records::{Earlier, Outcome, Records};
-use crate::report::{markdown, tally, write_report, written};
+use crate::report::{Tally, markdown, write_report, written};
 use crate::results::{Results, Run, summarise};
 use crate::runner::{Outcomes, Plan, run};
 
@@ -175,7 +175,10 @@ fn say_failures(experiments: &[Experiment], outcomes: &[Vec<Outcomes>]) {
 /// Says how it went; a row of which nothing could be measured is an error.
 fn conclude(results: &Results, out: &Path) -> anyhow::Result<()> {
     for experiment in &results.experiments {
-        say(&format!("{}: {}", experiment.id, tally(experiment)));
+        let tally = Tally::of([experiment]);
+        if tally.total() > 0 {
+            say(&format!("{}: {}", experiment.id, tally.sentence()));
+        }
     }
     let Run { threads, wall_seconds, cpu_seconds, .. } = &results.run;
     say(&format!("{wall_seconds:.1} s on {threads} thread(s), {cpu_seconds:.1} s of processor time for the tables"));

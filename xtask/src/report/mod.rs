@@ -1,7 +1,10 @@
 //! `cargo xtask report`: draws the figures of a finished run and writes its report, from what the run left behind.
 
+mod compared;
+mod legend;
 mod markdown;
 mod page;
+mod tally;
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -17,7 +20,8 @@ use crate::files::{folder_of_records, write};
 use crate::progress::say;
 use crate::results::Results;
 
-pub(crate) use markdown::{markdown, tally};
+pub(crate) use markdown::markdown;
+pub(crate) use tally::Tally;
 
 #[derive(Debug, Args)]
 pub(crate) struct Report {

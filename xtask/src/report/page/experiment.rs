@@ -1,0 +1,138 @@
+//! An experiment: its tables, what stands out, what the paper leaves open, its figures.
+
+use maud::{Markup, html};
+
+use super::emphasis::emphasised;
+use super::figure;
+use super::strip::key;
+use super::table::{columns, grid, is_printed, list, scales};
+use super::verdict_bar::{bar, words};
+use crate::figures::Figure;
+use crate::report::compared::{Compared, FEW};
+use crate::report::tally::Tally;
+
+/// The section of an experiment.
+pub(super) fn section(compared: &Compared<'_>, figures: &[(&Figure, String)]) -> Markup {
+    let experiment = compared.experiment;
+    let tally = Tally::of([compared.result]);
+    let own = figures.iter().filter(|(figure, _)| figure.experiment == Some(experiment.id));
+    html! {
+        header {
+            h2 { (experiment.title) }
+            p .where { "Section " (experiment.section) " of the paper · " code { (experiment.id) } }
+            @if tally.total() > 0 { (bar(&tally)) (words(&tally)) }
+        }
+        @for (row, what) in compared.failures() { p .notice { code { (row) } ": " (what) "." } }
+        @if compared.is_printed() { (printed(compared)) (standing_out(compared)) }
+        (left_open(compared))
+        @for (figure, svg) in own { (figure::card(figure, svg)) }
+        @if !compared.is_printed() { (curves(compared)) }
+    }
+}
+
+/// The printed cells, and folded away what more there is to know.
+fn printed(compared: &Compared<'_>) -> Markup {
+    let scales = scales(compared);
+    let columns = columns(compared);
+    html! {
+        @match columns {
+            Some(columns) => {
+                (grid(compared, &columns, &scales))
+                (key())
+                details {
+                    summary { "Every cell: median, z, second seed, and what the paper does not print" }
+                    (list(compared, &scales, |_| true))
+                }
+            }
+            None => {
+                (list(compared, &scales, is_printed))
+                (key())
+                @if compared.lines().any(|line| !is_printed(&line)) {
+                    details {
+                        summary { "What the paper does not print" }
+                        (list(compared, &scales, |line| !is_printed(line)))
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The numbers behind curves.
+fn curves(compared: &Compared<'_>) -> Markup {
+    html! {
+        details {
+            summary { "The numbers behind the curves" }
+            (list(compared, &scales(compared), |_| true))
+            (key())
+        }
+    }
+}
+
+fn standing_out(compared: &Compared<'_>) -> Markup {
+    let cells = compared.standing_out();
+    html! {
+        @if compared.is_glimpse() {
+            p { "With fewer than " (FEW) " data sets single cells mean little." }
+        } @else if !cells.is_empty() {
+            h3 { "What stands out" }
+            dl .reasons {
+                @for (line, word) in cells {
+                    div .{ "is-" (line.verdict()) } {
+                        dt { code { (line.row.id) } " " (line.measure.label()) }
+                        dd { (emphasised(&sentence(word))) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// With a capital.
+pub(super) fn sentence(word: &str) -> String {
+    let mut letters = word.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+fn left_open(compared: &Compared<'_>) -> Markup {
+    let experiment = compared.experiment;
+    html! {
+        h3 { "What the paper leaves open, and what is used here" }
+        p {
+            (emphasised(experiment.remark))
+            @if let Some(page) = decision(experiment.id) { " More in " code { "docs/decisions/" (page) } "." }
+        }
+    }
+}
+
+/// The page on why it is done so.
+fn decision(experiment: &str) -> Option<&'static str> {
+    Some(match experiment {
+        "table1" | "table1-literal" => "table1.md",
+        "table2" => "table2.md",
+        "asimo22" => "asimo22.md",
+        "three_link" | "figure9" => "three-link.md",
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiments::registry;
+    use crate::files::repository;
+
+    #[test]
+    fn pages_that_are_named_are_there() {
+        for experiment in registry().unwrap() {
+            if let Some(page) = decision(experiment.id) {
+                assert!(repository().join("docs/decisions").join(page).exists(), "{}: {page}", experiment.id);
+            }
+        }
+    }
+
+    #[test]
+    fn a_sentence_begins_with_a_capital() {
+        assert_eq!(["as in", "Über", ""].map(sentence), ["As in", "Über", ""]);
+    }
+}

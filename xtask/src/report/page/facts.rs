@@ -1,0 +1,62 @@
+//! What is to be known of the run: seed, number of data sets, time.
+
+use maud::{Markup, html};
+
+use super::Contents;
+use crate::report::compared::Compared;
+
+/// Seconds from which a time is told in minutes.
+const MINUTES_FROM: f64 = 120.0;
+
+/// Seconds from which a time is told in hours.
+const HOURS_FROM: f64 = 7200.0;
+
+/// A line of facts.
+pub(super) fn facts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
+    let results = &contents.sources.results;
+    let run = &results.run;
+    let threads = if run.threads == 1 { "one thread".to_owned() } else { format!("{} threads", run.threads) };
+    html! {
+        dl .facts {
+            div { dt { "Seed" } dd { (results.seed) } }
+            div { dt { "Data sets" } dd { (all.iter().map(data_sets).sum::<usize>()) } }
+            div { dt { "Time" } dd { (time(run.wall_seconds)) " on " (threads) } }
+            @if let Some(second) = contents.second { div { dt { "Held against" } dd { "seed " (second.seed) } } }
+        }
+        @if results.quick {
+            p .notice { "A quick run: a few data sets a row show that everything works, not how well." }
+        }
+    }
+}
+
+/// Rows of a setup are measured on the same data sets.
+fn data_sets(compared: &Compared<'_>) -> usize {
+    let rows = &compared.result.rows;
+    let of_setup = |setup: &crate::experiments::Setup| {
+        let row = rows.iter().find(|row| setup.rows.iter().any(|other| other.id == row.id));
+        row.map_or(0, |row| row.data_sets)
+    };
+    compared.experiment.setups.iter().map(of_setup).sum()
+}
+
+/// A time as people tell it.
+fn time(seconds: f64) -> String {
+    if seconds < MINUTES_FROM {
+        format!("{seconds:.0} s")
+    } else if seconds < HOURS_FROM {
+        format!("{:.0} min", seconds / 60.0)
+    } else {
+        format!("{:.1} h", seconds / 3600.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_told_in_fitting_units() {
+        let told = [0.4, 98.9, 119.0, 120.0, 3599.0, 9000.0].map(time);
+        assert_eq!(told, ["0 s", "99 s", "119 s", "2 min", "60 min", "2.5 h"]);
+    }
+}

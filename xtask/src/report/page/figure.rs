@@ -1,0 +1,59 @@
+//! A figure on a card of its own.
+
+use std::fmt::Write as _;
+
+use maud::{Markup, html};
+
+use super::emphasis::emphasised;
+use crate::figures::Figure;
+
+/// A picture with title and caption. It is an image, not a part of the page, so that names in it are its own.
+pub(super) fn card(figure: &Figure, svg: &str) -> Markup {
+    let (width, height) = size(svg);
+    html! {
+        figure id={ "figure-" (figure.id) } {
+            button .enlarge type="button" aria-label={ "Enlarge: " (figure.title) } {
+                img src=(data_uri(svg)) alt=(figure.title) width=[width] height=[height];
+            }
+            figcaption { strong { (figure.title) "." } " " (emphasised(figure.caption)) }
+        }
+    }
+}
+
+/// The picture as an address that holds it.
+fn data_uri(svg: &str) -> String {
+    let mut uri = String::with_capacity(svg.len() * 5 / 4) + "data:image/svg+xml,";
+    for byte in svg.bytes() {
+        match byte {
+            // What ends an address or an attribute, or may not stand in one.
+            b'"' | b'#' | b'%' | b'&' | b'<' | b'>' | b'`' | 0..=b' ' | 127.. => {
+                let _ = write!(uri, "%{byte:02X}");
+            }
+            _ => uri.push(char::from(byte)),
+        }
+    }
+    uri
+}
+
+/// Width and height of the drawing, pixels, so that the page does not jump when it appears.
+fn size(svg: &str) -> (Option<&str>, Option<&str>) {
+    let root = svg.split_once("<svg").and_then(|(_, rest)| rest.split_once('>')).map_or("", |(root, _)| root);
+    let attribute = |name: &str| {
+        let (_, rest) = root.split_once(&format!(" {name}=\""))?;
+        rest.split_once('"').map(|(value, _)| value)
+    };
+    (attribute("width"), attribute("height"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_is_one_address_with_its_size() {
+        let svg = "<svg xmlns=\"x\" width=\"12\" height=\"7.5\"><path stroke=\"#000\" width=\"3\"/>é 5%</svg>";
+        assert_eq!(size(svg), (Some("12"), Some("7.5")));
+        let inside = "%3Csvg%20xmlns=%22x%22%20width=%2212%22%20height=%227.5%22%3E%3Cpath%20stroke=%22%23000%22%20width=%223%22/%3E";
+        assert_eq!(data_uri(svg), format!("data:image/svg+xml,{inside}%C3%A9%205%25%3C/svg%3E"));
+    }
+}

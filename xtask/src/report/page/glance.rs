@@ -1,0 +1,90 @@
+//! The opening: what was asked and how it went.
+
+use maud::{Markup, html};
+
+use super::emphasis::emphasised;
+use super::experiment::sentence;
+use super::facts::facts;
+use super::verdict_bar::{bar, words};
+use super::{Contents, OVERVIEW, figure};
+use crate::report::compared::{Compared, Line};
+use crate::report::tally::Tally;
+use crate::verdict::Verdict;
+
+pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
+    let overview = contents.figures.iter().find(|(figure, _)| figure.id == OVERVIEW);
+    html! {
+        header #glance {
+            h1 { "Learn the movement, not the constraint" }
+            p .lead {
+                "Demonstrations made under constraints that nobody tells, and that change from one to the next, hide the policy behind \
+                 them. Howard, Klanke, Gienger, Goerick and Vijayakumar showed how to recover it ("
+                cite { "Behaviour Generation in Humanoids by Learning Potential-based Policies from Constrained Motion" }
+                "). policy-align computes their experiments anew; this page holds the outcome against what the paper prints."
+            }
+            (how_it_went(all))
+            (facts(contents, all))
+            (not_reached(all))
+        }
+        @if let Some((figure, svg)) = overview { (figure::card(figure, svg)) }
+    }
+}
+
+/// How many cells are reached: in total, and for each experiment.
+fn how_it_went(all: &[Compared<'_>]) -> Markup {
+    let total = Tally::of(all.iter().map(|compared| compared.result));
+    html! {
+        @if total.total() > 0 {
+            div .total {
+                p .asked { "Of " b { (total.total()) } " figures that the paper prints" }
+                (words(&total))
+                (bar(&total))
+            }
+            table .tallies {
+                thead { tr { th scope="col" { "Experiment" } th scope="col" { "Section" } th scope="col" colspan="2" { "Printed figures" } } }
+                tbody { @for compared in all { (tally_of(compared)) } }
+            }
+        }
+    }
+}
+
+fn tally_of(compared: &Compared<'_>) -> Markup {
+    let experiment = compared.experiment;
+    let tally = Tally::of([compared.result]);
+    html! {
+        @if tally.total() > 0 {
+            tr {
+                th scope="row" { a href={ "#" (experiment.id) } { (experiment.title) } }
+                td { (experiment.section) }
+                td { (bar(&tally)) }
+                td { (words(&tally)) }
+            }
+        }
+    }
+}
+
+/// The cells that are worse than printed or otherwise off, each with what is known of it.
+fn not_reached(all: &[Compared<'_>]) -> Markup {
+    let missed = |line: &Line<'_>| line.cell.verdict.is_some_and(|verdict: Verdict| !verdict.reached());
+    let cells: Vec<_> = all
+        .iter()
+        .flat_map(|compared| compared.lines().filter(missed).map(move |line| (compared.experiment, line)))
+        .collect();
+    html! {
+        h2 .small { "Not reached" }
+        @if cells.is_empty() { p { "Nothing: every printed figure is reached or bettered." } }
+        @else {
+            dl .reasons {
+                @for (experiment, line) in cells {
+                    div .{ "is-" (line.verdict()) } {
+                        dt { a href={ "#" (experiment.id) } { (experiment.title) } ", " code { (line.row.id) } " " (line.measure.label()) }
+                        dd {
+                            b { (line.ours()) } ", printed " (line.paper()) ". "
+                            @if let Some(word) = experiment.explain(&line.row.id, line.measure) { (emphasised(&sentence(word))) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! How it was measured, and how to measure it again.
+
+use maud::html;
+
+use super::Part;
+use super::emphasis::emphasised;
+use crate::report::legend::{MEASURES, RULE};
+use crate::results::Results;
+
+/// The last part of the page.
+pub(super) fn part(results: &Results) -> Part {
+    let title = "How it was measured".to_owned();
+    let quick = if results.quick { " --quick" } else { "" };
+    let body = html! {
+        h2 { (title) }
+        p { (emphasised(RULE)) }
+        dl .measures {
+            @for (names, meaning) in MEASURES { div { dt { (names) } dd { (meaning) } } }
+        }
+        h3 { "Again, on your machine" }
+        pre tabindex="0" { code {
+            "cargo xtask reproduce" (quick) " --seed " (results.seed) "    # these numbers, to the last bit\n"
+            "cargo xtask reproduce --list      # experiments and rows, for --only\n"
+            "cargo xtask report                # this page from a finished run"
+        } }
+        p .versions { "policy-align " (results.run.version) ", results.json of form " (results.schema) ", seed " (results.seed) "." }
+    };
+    Part { id: "method".to_owned(), title, body }
+}

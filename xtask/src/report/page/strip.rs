@@ -1,0 +1,96 @@
+//! A strip: every data set of a cell as a dot, over what the paper prints, so that outliers are seen.
+
+use maud::{Markup, html};
+
+use super::scale::Scale;
+use crate::report::compared::Line;
+
+/// Pixels of the drawing.
+const WIDTH: f64 = 190.0;
+const HEIGHT: f64 = 24.0;
+const AXIS_HEIGHT: f64 = 16.0;
+
+/// Pixels at either end, so that whole dots and labels are seen.
+const INSET: f64 = 8.0;
+
+/// Dots keep clear of the upper and lower edge by so many pixels.
+const EDGE: f64 = 4.0;
+
+/// Turn by which dots that follow each other are set apart: no two of them meet for long.
+const GOLDEN: f64 = 0.618_033_988_749_895;
+
+/// The dots of a cell.
+pub(super) fn strip(line: &Line<'_>, scale: Scale) -> Markup {
+    let at = |value: f64| pixels(INSET + scale.place(value) * (WIDTH - 2.0 * INSET));
+    let cell = line.cell;
+    let values = cell.values.iter().enumerate().filter_map(|(i, value)| Some((i, (*value)?)));
+    html! {
+        svg .strip viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } width=(WIDTH) height=(HEIGHT) role="img" aria-label=(summary(line)) {
+            @if let Some(paper) = cell.paper {
+                @let (from, to) = (at(paper.mean - paper.sd), at(paper.mean + paper.sd));
+                rect .band x=(from) width=(pixels(width(&from, &to))) height=(HEIGHT) {}
+                (tick("printed", &at(paper.mean), 0.0))
+            }
+            @for (i, value) in values {
+                circle cx=(at(value)) cy=(pixels(height(i))) r="2" { title { "data set " (i) ": " (line.measure.show(value)) } }
+            }
+            (tick("median", &at(cell.median), HEIGHT * 0.6))
+            (tick("mean", &at(cell.mean), 0.0))
+        }
+    }
+}
+
+/// The scale of the strips above or below.
+pub(super) fn axis(scale: Scale) -> Markup {
+    let at = |value: f64| pixels(INSET + scale.place(value) * (WIDTH - 2.0 * INSET));
+    html! {
+        svg .axis viewBox={ "0 0 " (WIDTH) " " (AXIS_HEIGHT) } width=(WIDTH) height=(AXIS_HEIGHT) aria-hidden="true" {
+            path d={ "M" (INSET) " .5H" (WIDTH - INSET) } {}
+            @for (value, label) in scale.ticks() {
+                path d={ "M" (at(value)) " 0v4" } {}
+                text x=(at(value)) y="14" { (label) }
+            }
+        }
+    }
+}
+
+/// What the dots and lines are.
+pub(super) fn key() -> Markup {
+    let sample = |drawing: Markup| html! { svg width="22" height="16" aria-hidden="true" { (drawing) } };
+    html! {
+        p .key {
+            span { (sample(html! { circle cx="11" cy="8" r="2.5" {} })) "one data set" }
+            span { (sample(html! { rect .band width="22" height="16" {} path .printed d="M11 0V16" {} })) "the paper’s mean ± s.d." }
+            span { (sample(html! { path .mean d="M11 0V16" {} })) "our mean" }
+            span { (sample(html! { path .median d="M11 8V16" {} })) "our median" }
+        }
+    }
+}
+
+fn tick(class: &str, x: &str, from: f64) -> Markup {
+    html! { path class=(class) d={ "M" (x) " " (pixels(from)) "V" (HEIGHT) } {} }
+}
+
+/// How far down the dot of a data set is drawn.
+fn height(data_set: usize) -> f64 {
+    EDGE + (GOLDEN * (data_set + 1) as f64).fract() * (HEIGHT - 2.0 * EDGE)
+}
+
+fn width(from: &str, to: &str) -> f64 {
+    let number = |text: &str| text.parse::<f64>().unwrap_or(0.0);
+    number(to) - number(from)
+}
+
+/// A tenth of a pixel is enough.
+fn pixels(value: f64) -> String {
+    let text = format!("{value:.1}");
+    text.strip_suffix(".0").unwrap_or(&text).to_owned()
+}
+
+/// The strip in words.
+fn summary(line: &Line<'_>) -> String {
+    let values = line.cell.values.iter().flatten();
+    let (least, most) = values.fold((f64::INFINITY, 0.0_f64), |(least, most), &v| (least.min(v), most.max(v)));
+    let show = |value| line.measure.show(value);
+    format!("{} data sets between {} and {}, median {}", line.n(), show(least), show(most), line.median())
+}

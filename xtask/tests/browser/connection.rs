@@ -1,0 +1,90 @@
+//! The debugging protocol: numbered calls and events, as JSON over a web socket.
+
+use std::net::TcpStream;
+use std::path::Path;
+
+use serde_json::{Value, json};
+use tungstenite::{Message, WebSocket, client};
+
+use super::PATIENCE;
+use super::program::Program;
+
+/// A browser with one page.
+pub(super) struct Connection {
+    socket: WebSocket<TcpStream>,
+    /// Of the page; empty for calls to the browser itself.
+    session: String,
+    calls: u64,
+    events: Vec<Value>,
+    program: Program,
+}
+
+impl Connection {
+    /// Starts a browser and opens an empty page in it.
+    pub(super) fn open(browser: &Path) -> Connection {
+        let program = Program::start(browser);
+        let (port, path) = program.address();
+        let stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
+        stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        let (socket, _) = client(format!("ws://127.0.0.1:{port}{path}"), stream).unwrap();
+        let mut connection = Connection { socket, session: String::new(), calls: 0, events: Vec::new(), program };
+        let target = connection.call("Target.createTarget", &json!({ "url": "about:blank" }))["targetId"].clone();
+        let attached = connection.call("Target.attachToTarget", &json!({ "targetId": target, "flatten": true }));
+        attached["sessionId"].as_str().unwrap().clone_into(&mut connection.session);
+        connection
+    }
+
+    /// Calls a method and gives its result.
+    pub(super) fn call(&mut self, method: &str, arguments: &Value) -> Value {
+        self.send(method, arguments);
+        loop {
+            let mut message = self.receive();
+            if message["id"] == self.calls {
+                assert!(message.get("error").is_none(), "{method}: {}", message["error"]);
+                return message["result"].take();
+            }
+            self.events.push(message);
+        }
+    }
+
+    /// Waits for an event that has not come yet, or came since the page was opened.
+    pub(super) fn wait_for(&mut self, event: &str) {
+        while !self.events.iter().any(|seen| seen["method"] == event) {
+            let message = self.receive();
+            self.events.push(message);
+        }
+    }
+
+    /// All events so far.
+    pub(super) fn events(&self) -> &[Value] {
+        &self.events
+    }
+
+    fn send(&mut self, method: &str, arguments: &Value) {
+        self.calls += 1;
+        let mut call = json!({ "id": self.calls, "method": method, "params": arguments });
+        if !self.session.is_empty() {
+            call["sessionId"] = self.session.as_str().into();
+        }
+        self.socket.send(Message::text(call.to_string())).unwrap();
+    }
+
+    fn receive(&mut self) -> Value {
+        loop {
+            if let Message::Text(text) = self.socket.read().expect("the browser has stopped answering") {
+                return serde_json::from_str(&text).unwrap();
+            }
+        }
+    }
+}
+
+impl Drop for Connection {
+    /// Asks the browser to end, so that it takes its processes with it.
+    fn drop(&mut self) {
+        self.session.clear();
+        let close = json!({ "id": 0, "method": "Browser.close" });
+        if self.socket.send(Message::text(close.to_string())).is_ok() {
+            self.program.wait();
+        }
+    }
+}

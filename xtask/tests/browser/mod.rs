@@ -1,0 +1,184 @@
+//! A page in a real browser: Chromium without a window, spoken to by its debugging protocol.
+//!
+//! [`Page::open`] gives a page, or none where no browser is installed: the test is then skipped, loudly. With
+//! `POLICY_ALIGN_BROWSER=required` it fails instead.
+
+#![allow(dead_code, reason = "each test uses a part")]
+
+mod connection;
+mod program;
+mod report;
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+
+use connection::Connection;
+pub(crate) use report::report;
+
+/// How long a page may take for what is awaited.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Where the page is in the window, CSS pixels.
+pub(crate) type Point = (f64, f64);
+
+/// An open page.
+pub(crate) struct Page {
+    connection: Connection,
+    address: String,
+}
+
+impl Page {
+    /// Opens a file and waits until it is loaded; none where there is no browser.
+    pub(crate) fn open(file: &Path) -> Option<Page> {
+        let program = program::find()?;
+        let mut page = Page {
+            connection: Connection::open(&program),
+            address: format!("file://{}", file.canonicalize().unwrap().display()),
+        };
+        for domain in ["Page", "Runtime", "Log", "Network"] {
+            page.call(&format!("{domain}.enable"), &json!({}));
+        }
+        page.resize(1280, 900);
+        let address = page.address.clone();
+        let failure = page.call("Page.navigate", &json!({ "url": address }))["errorText"].clone();
+        assert!(failure.is_null(), "{address}: {failure}");
+        page.connection.wait_for("Page.loadEventFired");
+        // As the browser writes it.
+        page.address = page.evaluate("location.href");
+        Some(page)
+    }
+
+    /// The value of an expression, after the promise where it is one.
+    pub(crate) fn evaluate<T: DeserializeOwned>(&mut self, expression: &str) -> T {
+        let arguments = json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
+        let answer = self.call("Runtime.evaluate", &arguments);
+        assert!(answer.get("exceptionDetails").is_none(), "{expression}: {}", answer["exceptionDetails"]);
+        serde_json::from_value(answer["result"]["value"].clone()).unwrap_or_else(|e| panic!("{expression}: {e}"))
+    }
+
+    /// Waits until a condition holds.
+    pub(crate) fn wait_until(&mut self, condition: &str) {
+        let started = Instant::now();
+        while !self.evaluate::<bool>(condition) {
+            assert!(started.elapsed() < PATIENCE, "waited in vain for {condition}");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    /// Gives the window another size, CSS pixels.
+    pub(crate) fn resize(&mut self, width: u32, height: u32) {
+        let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        self.call("Emulation.setDeviceMetricsOverride", &size);
+    }
+
+    /// Answers a media query: `("prefers-color-scheme", "dark")`.
+    pub(crate) fn prefer(&mut self, feature: &str, value: &str) {
+        self.call("Emulation.setEmulatedMedia", &json!({ "features": [{ "name": feature, "value": value }] }));
+    }
+
+    /// Presses and lets go of a key that has a name: Tab, Enter, Escape, ArrowLeft, ..
+    pub(crate) fn press(&mut self, key: &str) {
+        let code = match key {
+            "Tab" => 9,
+            "Enter" => 13,
+            "Escape" => 27,
+            "ArrowLeft" => 37,
+            "ArrowUp" => 38,
+            "ArrowRight" => 39,
+            "ArrowDown" => 40,
+            _ => 0,
+        };
+        let text = if key == "Enter" { "\r" } else { "" };
+        let event =
+            |kind| json!({ "type": kind, "key": key, "code": key, "text": text, "windowsVirtualKeyCode": code });
+        self.call("Input.dispatchKeyEvent", &event(if text.is_empty() { "rawKeyDown" } else { "keyDown" }));
+        self.call("Input.dispatchKeyEvent", &event("keyUp"));
+    }
+
+    /// Types a character.
+    pub(crate) fn type_character(&mut self, character: char) {
+        let event = |kind| json!({ "type": kind, "key": character.to_string(), "text": character.to_string() });
+        self.call("Input.dispatchKeyEvent", &event("keyDown"));
+        self.call("Input.dispatchKeyEvent", &event("keyUp"));
+    }
+
+    /// Clicks with the left button.
+    pub(crate) fn click(&mut self, at: Point) {
+        self.drag(at, at);
+    }
+
+    /// Presses the left button in one place and lets it go in another.
+    pub(crate) fn drag(&mut self, from: Point, to: Point) {
+        let middle = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
+        for (kind, at, buttons) in [
+            ("mouseMoved", from, 0),
+            ("mousePressed", from, 1),
+            ("mouseMoved", middle, 1),
+            ("mouseMoved", to, 1),
+            ("mouseReleased", to, 0),
+        ] {
+            let button = if kind == "mouseMoved" && buttons == 0 { "none" } else { "left" };
+            let event =
+                json!({ "type": kind, "x": at.0, "y": at.1, "button": button, "buttons": buttons, "clickCount": 1 });
+            self.call("Input.dispatchMouseEvent", &event);
+        }
+    }
+
+    /// Turns the wheel.
+    pub(crate) fn wheel(&mut self, at: Point, turn: f64) {
+        let event = json!({ "type": "mouseWheel", "x": at.0, "y": at.1, "deltaX": 0, "deltaY": turn });
+        self.call("Input.dispatchMouseEvent", &event);
+    }
+
+    /// The middle of the first element that a selector names, scrolled into sight.
+    pub(crate) fn middle_of(&mut self, selector: &str) -> Point {
+        self.evaluate(&format!(
+            "(() => {{ const element = document.querySelector({selector:?});
+                element.scrollIntoView({{ block: 'center', behavior: 'instant' }});
+                const box = element.getBoundingClientRect();
+                return [box.x + box.width / 2, box.y + box.height / 2]; }})()"
+        ))
+    }
+
+    /// What is seen, as PNG in base 64.
+    pub(crate) fn screenshot(&mut self) -> String {
+        self.call("Page.captureScreenshot", &json!({}))["data"].as_str().unwrap().to_owned()
+    }
+
+    /// Errors and warnings on the console, exceptions that nobody caught, and what else the browser had to say.
+    pub(crate) fn complaints(&mut self) -> Vec<String> {
+        self.settle();
+        let complaint = |event: &Value| match event["method"].as_str()? {
+            "Runtime.exceptionThrown" | "Log.entryAdded" => Some(event["params"].to_string()),
+            "Runtime.consoleAPICalled" => {
+                let kind = event["params"]["type"].as_str()?;
+                ["error", "warning", "assert"].contains(&kind).then(|| event["params"].to_string())
+            }
+            _ => None,
+        };
+        self.connection.events().iter().filter_map(complaint).collect()
+    }
+
+    /// Addresses that were asked for, besides the page's own and data within it.
+    pub(crate) fn requests(&mut self) -> Vec<String> {
+        self.settle();
+        let sent = self.connection.events().iter().filter(|event| event["method"] == "Network.requestWillBeSent");
+        let addresses = sent.filter_map(|event| event["params"]["request"]["url"].as_str());
+        addresses
+            .filter(|address| *address != self.address && !address.starts_with("data:"))
+            .map(str::to_owned)
+            .collect()
+    }
+
+    /// Lets come in what the browser has sent so far.
+    fn settle(&mut self) {
+        self.evaluate::<u32>("new Promise(done => requestAnimationFrame(() => setTimeout(() => done(0), 50)))");
+    }
+
+    fn call(&mut self, method: &str, arguments: &Value) -> Value {
+        self.connection.call(method, arguments)
+    }
+}

@@ -1,0 +1,102 @@
+//! The browser as a program: where it is, how it is started, and its end.
+
+use std::env;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
+
+use super::PATIENCE;
+
+/// Names under which the system's packages install it.
+const NAMES: [&str; 5] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"];
+
+/// No window, no questions, no talk with its maker; the sandbox cannot be had in containers, and the page is our own.
+const ARGUMENTS: [&str; 14] = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--enable-unsafe-swiftshader",
+    "--disable-dev-shm-usage",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-default-apps",
+    "--disable-extensions",
+    "--disable-quic",
+    "--disable-sync",
+    "--no-first-run",
+    "--hide-scrollbars",
+    "--remote-debugging-port=0",
+];
+
+/// How long a browser may take to end.
+const FAREWELL: Duration = Duration::from_secs(5);
+
+/// The browser to test with: `CHROME`, or the first on the path.
+pub(super) fn find() -> Option<PathBuf> {
+    let named = env::var_os("CHROME").map(PathBuf::from);
+    let path = env::var_os("PATH").unwrap_or_default();
+    let on_path = || {
+        let folders: Vec<PathBuf> = env::split_paths(&path).collect();
+        NAMES.iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name))).find(|file| file.is_file())
+    };
+    let found = named.or_else(on_path);
+    if found.is_none() {
+        let required = env::var("POLICY_ALIGN_BROWSER").is_ok_and(|policy| policy == "required");
+        assert!(!required, "POLICY_ALIGN_BROWSER=required, but there is no Chromium on the path or in CHROME");
+        // Not by a printing macro: the test harness would keep it to itself.
+        let test = std::thread::current().name().unwrap_or("?").to_owned();
+        let _ = writeln!(std::io::stderr(), "\n=== SKIPPED: {test}. No Chromium on the path or in CHROME.");
+    }
+    found
+}
+
+/// A running browser.
+pub(super) struct Program {
+    process: Child,
+    profile: TempDir,
+}
+
+impl Program {
+    pub(super) fn start(browser: &Path) -> Program {
+        let profile = tempfile::tempdir().unwrap();
+        let mut command = Command::new(browser);
+        command.args(ARGUMENTS).arg(format!("--user-data-dir={}", profile.path().display())).arg("about:blank");
+        let process = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
+        Program { process: process.unwrap_or_else(|e| panic!("{}: {e}", browser.display())), profile }
+    }
+
+    /// Port and path under which it listens, which it writes into its profile.
+    pub(super) fn address(&self) -> (u16, String) {
+        let file = self.profile.path().join("DevToolsActivePort");
+        let started = Instant::now();
+        loop {
+            let text = fs::read_to_string(&file).unwrap_or_default();
+            if let Some((port, path)) = text.split_once('\n').filter(|(_, path)| !path.is_empty()) {
+                return (port.parse().unwrap(), path.trim().to_owned());
+            }
+            assert!(started.elapsed() < PATIENCE, "the browser was started but does not listen");
+            sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Waits for its end.
+    pub(super) fn wait(&mut self) {
+        let asked = Instant::now();
+        while asked.elapsed() < FAREWELL && self.process.try_wait().is_ok_and(|status| status.is_none()) {
+            sleep(Duration::from_millis(10));
+        }
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        // Both fail where it has ended already, which is what is wanted.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}

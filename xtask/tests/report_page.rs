@@ -1,0 +1,32 @@
+//! The report in a real browser.
+
+#![allow(clippy::unwrap_used)]
+
+mod browser;
+
+use browser::{Page, report};
+
+/// The page, unless there is no browser.
+fn page() -> Option<Page> {
+    Page::open(&report().join("report.html"))
+}
+
+#[test]
+fn nothing_is_complained_about_and_nothing_is_fetched() {
+    let Some(mut page) = page() else { return };
+    assert_eq!(page.complaints(), Vec::<String>::new());
+    assert_eq!(page.requests(), Vec::<String>::new());
+}
+
+#[test]
+fn what_is_wrong_with_a_page_is_noticed() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a page.html");
+    let script = "console.error('said'); fetch('http://127.0.0.1:9/x').catch(() => {}); throw new Error('thrown')";
+    std::fs::write(&file, format!("<!DOCTYPE html><script>{script}</script>")).unwrap();
+    let Some(mut page) = Page::open(&file) else { return };
+    page.wait_until("document.readyState == 'complete'");
+    let complaints = page.complaints().join("\n");
+    assert!(complaints.contains("said") && complaints.contains("thrown"), "{complaints}");
+    assert_eq!(page.requests(), ["http://127.0.0.1:9/x"]);
+}
