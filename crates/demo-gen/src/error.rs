@@ -173,6 +173,12 @@ pub enum DemoGenError {
         /// The number of corrections given.
         corrections: usize,
     },
+    /// Links cannot be kept that far apart.
+    #[error("clearance {clearance} m: it must be a finite number of metres, 0 or more")]
+    Clearance {
+        /// The clearance given, in metres.
+        clearance: f64,
+    },
     /// A movement that hands are to follow is not one of two points in space.
     #[error("the movement has {found} dimensions; those of a left and a right palm are 6")]
     Palms {

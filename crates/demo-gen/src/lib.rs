@@ -41,6 +41,7 @@ mod hand_in_plane;
 mod instant;
 mod limits;
 mod noise;
+mod palm_control;
 mod palm_tracking;
 mod potentials;
 mod recording;

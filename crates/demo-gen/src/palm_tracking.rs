@@ -1,24 +1,28 @@
-use kinematics::{ResolvedRate, Workspace};
+use kinematics::Workspace;
 use motion::Trajectory;
-use nalgebra::{DMatrix, DVector, DVectorView, Matrix3xX, Point3};
+use nalgebra::{DMatrix, DVector, DVectorView, Point3};
 
-use crate::{DemoGenError, Side, UpperBody};
+use crate::palm_control::PalmControl;
+use crate::{DemoGenError, UpperBody};
 
-/// Carries out a movement of both palms with all joints: damped resolved-rate control, whose freedom is used to stay near
-/// the posture "ready" and whose every step ends within the joints' limits.
+/// Carries out a movement of both palms with all joints: damped resolved-rate control, whose freedom is used to keep the
+/// body's links apart and the arms in a posture for reaching, and whose every step ends within the joints' limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PalmTracking {
     /// Damping of the pseudo-inverse, metres per radian. Default 0.02.
     pub damping: f64,
-    /// Share of the way to "ready" that each correction would go were the palms not in the way, 0 to 1. Default 0.02.
+    /// Share of the way to the posture for reaching that each correction would go were the palms not in the way, 0 to 1.
+    /// Default 0.01.
     pub pull: f64,
+    /// Links that must not touch are kept at least this far apart, metres. Default 0.005.
+    pub clearance: f64,
     /// Corrections for each sample. Default 10.
     pub corrections: usize,
 }
 
 impl Default for PalmTracking {
     fn default() -> Self {
-        PalmTracking { damping: 0.02, pull: 0.02, corrections: 10 }
+        PalmTracking { damping: 0.02, pull: 0.01, clearance: 0.005, corrections: 10 }
     }
 }
 
@@ -29,111 +33,69 @@ pub struct JointPath {
     pub configurations: DMatrix<f64>,
     /// How far the left palm (first row) and the right one are from where they should be, (2, N), metres.
     pub errors: DMatrix<f64>,
+    /// The narrowest gap between links that must not touch, (N), metres; 0 where some do.
+    pub clearances: DVector<f64>,
 }
 
 impl PalmTracking {
     /// The joint path that follows `palms`, a movement of left and right palm (6 dimensions, metres in the heel's frame),
     /// from `posture` (n), which is clipped to the joints' limits and kept as the first configuration.
     ///
-    /// What is out of reach is missed, and the errors say by how much. Collisions are not looked for, and there are some:
-    /// see `docs/decisions/table2.md`.
+    /// What is out of reach is missed, and the errors say by how much. Palms that are to go where the body is take their
+    /// links with them: the clearances tell. See `docs/decisions/table2.md`.
     ///
     /// # Errors
-    /// [`DemoGenError::Tracking`], [`DemoGenError::Palms`], or [`DemoGenError::Robot`] for a damping out of range, a
-    /// posture of another length, or a step that cannot be made without damping.
+    /// [`DemoGenError::Tracking`], [`DemoGenError::Clearance`], [`DemoGenError::Palms`], or [`DemoGenError::Robot`] for a
+    /// damping out of range, a posture of another length, a body without joints `{l,r}_shoulder_yaw`, or a step that
+    /// cannot be made without damping.
     pub fn follow(
         &self,
         body: &UpperBody,
         palms: &Trajectory,
         posture: DVectorView<'_, f64>,
     ) -> Result<JointPath, DemoGenError> {
-        let PalmTracking { damping, pull, corrections } = *self;
-        if !((0.0..=1.0).contains(&pull) && corrections > 0) {
-            return Err(DemoGenError::Tracking { pull, corrections });
-        }
+        self.check()?;
         if palms.n_states() != 6 {
             return Err(DemoGenError::Palms { found: palms.n_states() });
         }
         let mut q = posture.into_owned();
         body.robot().clip(q.as_view_mut())?;
-        let mut hands = Hands::new(body, damping)?;
-        let mut path = JointPath {
-            configurations: DMatrix::zeros(q.len(), palms.n_samples()),
-            errors: DMatrix::zeros(2, palms.n_samples()),
-        };
+        let mut control = PalmControl::new(body, *self)?;
+        let mut configurations = DMatrix::zeros(q.len(), palms.n_samples());
         for sample in 0..palms.n_samples() {
-            let wanted = palms.state(sample);
-            for _ in 0..if sample == 0 { 0 } else { corrections } {
-                hands.step(&mut q, wanted, pull)?;
+            for _ in 0..if sample == 0 { 0 } else { self.corrections } {
+                control.correct(&mut q, palms.state(sample))?;
             }
-            path.configurations.set_column(sample, &q);
-            path.errors.set_column(sample, &DVector::from_column_slice(&hands.errors(&q, wanted)?));
+            configurations.set_column(sample, &q);
         }
-        Ok(path)
+        JointPath::judged(body, palms, configurations)
+    }
+
+    fn check(&self) -> Result<(), DemoGenError> {
+        let PalmTracking { pull, clearance, corrections, .. } = *self;
+        if !((0.0..=1.0).contains(&pull) && corrections > 0) {
+            return Err(DemoGenError::Tracking { pull, corrections });
+        }
+        if clearance.is_finite() && clearance >= 0.0 { Ok(()) } else { Err(DemoGenError::Clearance { clearance }) }
     }
 }
 
-/// Both palms of a body, under control.
-struct Hands<'a> {
-    body: &'a UpperBody,
-    control: ResolvedRate,
-    workspace: Workspace,
-    palm: Matrix3xX<f64>,
-    jacobian: DMatrix<f64>,
-    velocity: DVector<f64>,
-}
-
-impl<'a> Hands<'a> {
-    fn new(body: &'a UpperBody, damping: f64) -> Result<Self, DemoGenError> {
-        let n = body.robot().n_joints();
-        Ok(Hands {
-            body,
-            control: ResolvedRate::new(damping)?,
-            workspace: Workspace::new(),
-            palm: Matrix3xX::zeros(n),
-            jacobian: DMatrix::zeros(6, n),
-            velocity: DVector::zeros(n),
-        })
-    }
-
-    /// One correction of `q` towards the wanted palms (6).
-    fn step(&mut self, q: &mut DVector<f64>, wanted: DVectorView<'_, f64>, pull: f64) -> Result<(), DemoGenError> {
-        let mut task = wanted.into_owned();
-        for (hand, side) in Side::BOTH.into_iter().enumerate() {
-            let palm = self.body.palm(side).position_jacobian(q.as_view(), &mut self.workspace, &mut self.palm)?;
-            self.jacobian.rows_mut(3 * hand, 3).copy_from(&self.palm);
-            let mut task = task.fixed_rows_mut::<3>(3 * hand);
-            task -= palm.coords;
-        }
-        let mut home = (self.body.ready() - &*q) * pull;
-        // A joint that would leave its range goes to the limit and stays there; the others make up for the rest.
-        loop {
-            self.control.velocity(&self.jacobian, task.as_view(), home.as_view(), self.velocity.as_view_mut())?;
-            if !self.stop_at_limits(q, &mut task, &mut home) {
-                *q += &self.velocity;
-                return Ok(());
+impl JointPath {
+    /// The path with what forward kinematics says of it.
+    fn judged(body: &UpperBody, palms: &Trajectory, configurations: DMatrix<f64>) -> Result<Self, DemoGenError> {
+        let n_samples = palms.n_samples();
+        let (mut errors, mut clearances) = (DMatrix::zeros(2, n_samples), DVector::zeros(n_samples));
+        let mut workspace = Workspace::new();
+        for (sample, q) in configurations.column_iter().enumerate() {
+            let reached = body.palms(q)?;
+            for hand in 0..2 {
+                let wanted = Point3::from(palms.state(sample).fixed_rows::<3>(3 * hand).into_owned());
+                errors[(hand, sample)] = (reached[hand] - wanted).norm();
             }
+            let poses = body.robot().forward_kinematics(q, &mut workspace)?;
+            let narrowest = body.collision().clearance(&poses);
+            clearances[sample] = narrowest.map_or(f64::INFINITY, |narrowest| narrowest.distance);
         }
-    }
-
-    /// Takes the joints that a step would carry beyond a limit out of the task, and says whether there were any.
-    fn stop_at_limits(&mut self, q: &mut DVector<f64>, task: &mut DVector<f64>, home: &mut DVector<f64>) -> bool {
-        let mut any = false;
-        for (at, joint) in self.body.robot().joints().iter().enumerate() {
-            let stop = (q[at] + self.velocity[at]).clamp(joint.lower(), joint.upper());
-            if stop != q[at] + self.velocity[at] {
-                task.axpy(q[at] - stop, &self.jacobian.column(at), 1.0);
-                (q[at], home[at], any) = (stop, 0.0, true);
-                self.jacobian.column_mut(at).fill(0.0);
-            }
-        }
-        any
-    }
-
-    /// How far both palms are from where they should be, metres.
-    fn errors(&self, q: &DVector<f64>, wanted: DVectorView<'_, f64>) -> Result<[f64; 2], DemoGenError> {
-        let [left, right] = self.body.palms(q.as_view())?;
-        let goal = |hand: usize| Point3::from(wanted.fixed_rows::<3>(3 * hand).into_owned());
-        Ok([(left - goal(0)).norm(), (right - goal(1)).norm()])
+        Ok(JointPath { configurations, errors, clearances })
     }
 }

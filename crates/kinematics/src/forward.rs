@@ -6,7 +6,7 @@ use crate::{
     dispatch::dispatch,
     jacobian::add_column,
     joint::{Joint, checked},
-    placement::{Placement, lanes},
+    placement::{Lanes, Placement, lanes},
 };
 
 /// Where every link is in one configuration: what [`RobotModel::forward_kinematics`] found.
@@ -71,9 +71,18 @@ impl LinkPoses<'_> {
         Ok(())
     }
 
+    pub(crate) fn n_joints(&self) -> usize {
+        self.robot.n_joints()
+    }
+
     fn fill<const ROWS: usize>(&self, link: LinkId, jacobian: &mut [f64]) {
+        self.fill_at::<ROWS>(link, &self.position(link), jacobian);
+    }
+
+    /// Fills the Jacobian (ROWS, n) of a point that moves with a link, given in the root link's frame.
+    pub(crate) fn fill_at<const ROWS: usize>(&self, link: LinkId, tip: &Point3<f64>, jacobian: &mut [f64]) {
         let (columns, _) = jacobian.as_chunks_mut::<ROWS>();
-        dispatch(Fill { poses: self, link, columns });
+        dispatch(Fill { poses: self, link, tip: lanes(&tip.coords), columns });
     }
 }
 
@@ -81,6 +90,7 @@ impl LinkPoses<'_> {
 struct Fill<'a, const ROWS: usize> {
     poses: &'a LinkPoses<'a>,
     link: LinkId,
+    tip: Lanes,
     columns: &'a mut [[f64; ROWS]],
 }
 
@@ -89,9 +99,8 @@ impl<const ROWS: usize> WithSimd for Fill<'_, ROWS> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Fill { poses: LinkPoses { robot, placements }, link, columns } = self;
+        let Fill { poses: LinkPoses { robot, placements }, link, tip, columns } = self;
         columns.fill([0.0; ROWS]);
-        let tip = placements[link.0].origin;
         let mut index = link.0;
         while index != 0 {
             let node = &robot.nodes[index];

@@ -32,6 +32,7 @@
 
 #![allow(clippy::inline_always, reason = "vector dispatch compiles for a newer machine only what is inlined into it")]
 
+mod attachment;
 mod build;
 mod chain;
 mod collision;
@@ -52,8 +53,9 @@ mod tree;
 mod urdf;
 mod workspace;
 
+pub use attachment::{Attachment, Drive, DriveKind};
 pub use chain::Chain;
-pub use collision::{Clearance, MeshShape, SelfCollision};
+pub use collision::{Clearance, MeshShape, Nearby, SelfCollision};
 pub use error::KinematicsError;
 pub use forward::LinkPoses;
 pub use joint::Joint;

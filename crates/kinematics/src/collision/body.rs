@@ -11,14 +11,14 @@ use crate::{CollisionShape, KinematicsError, LinkId, LinkPoses};
 #[derive(Debug, Clone)]
 pub(super) struct Body {
     pub(super) link: LinkId,
-    solids: Vec<Solid>,
+    pub(super) solids: Vec<Solid>,
     /// A sphere that holds all of it, in the link's frame.
     centre: Point3<f64>,
     radius: f64,
 }
 
 #[derive(Debug, Clone)]
-enum Solid {
+pub(super) enum Solid {
     /// Capsules and spheres, for which distances have a closed form; kept as a shape too, to meet the others.
     Round(Capsule, PlacedShape),
     Other(PlacedShape),
@@ -71,7 +71,7 @@ impl Body {
 }
 
 impl Solid {
-    fn shape(&self) -> &PlacedShape {
+    pub(super) fn shape(&self) -> &PlacedShape {
         match self {
             Solid::Round(_, shape) | Solid::Other(shape) => shape,
         }
@@ -79,14 +79,14 @@ impl Solid {
 }
 
 /// A body's link in one configuration.
-struct Placed<'a> {
+pub(super) struct Placed<'a> {
     poses: &'a LinkPoses<'a>,
     link: LinkId,
-    pose: LinkPose,
+    pub(super) pose: LinkPose,
 }
 
 impl<'a> Placed<'a> {
-    fn new(body: &Body, poses: &'a LinkPoses<'a>) -> Self {
+    pub(super) fn new(body: &Body, poses: &'a LinkPoses<'a>) -> Self {
         Placed { poses, link: body.link, pose: LinkPose::new(&poses.pose(body.link)) }
     }
 

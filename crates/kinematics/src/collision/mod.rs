@@ -1,8 +1,10 @@
 //! Self-collision: which links overlap ([`SelfCollision`]), from bodies of one link each (`body`), capsules (`round`)
-//! by closed form (`segment`), everything else by a library (`parry`); pairs left out by an SRDF (`srdf`).
+//! by closed form (`segment`), everything else by a library (`parry`); pairs left out by an SRDF (`srdf`); and which
+//! are near each other, and which way apart is (`nearby`).
 
 mod body;
 mod mesh;
+mod nearby;
 mod parry;
 mod round;
 mod segment;
@@ -13,6 +15,7 @@ use std::sync::Arc;
 use body::Body;
 pub use mesh::MeshShape;
 use nalgebra::DVector;
+pub use nearby::Nearby;
 use parry::PlacedShape;
 
 use crate::{CollisionShape, Geometry, KinematicsError, LinkId, LinkPoses, RobotModel, Workspace, model::find_link};

@@ -1,6 +1,6 @@
 //! The only place that knows the collision library, and its vector types.
 
-use nalgebra::{IsometryMatrix3, Point3, UnitQuaternion, Vector3};
+use nalgebra::{IsometryMatrix3, Point3, UnitQuaternion, UnitVector3, Vector3};
 use parry3d_f64::{
     glamx::DQuat,
     math::{Pose, Vector},
@@ -90,6 +90,31 @@ pub(super) fn distance(first: (&PlacedShape, &LinkPose), second: (&PlacedShape, 
     query::distance(&(at_a.0 * a.pose), &*a.shape, &(at_b.0 * b.pose), &*b.shape)
         .expect("the collision library knows every pair of these shapes")
         .distance
+}
+
+/// The narrowest place between two shapes, or the deepest.
+pub(super) struct Contact {
+    /// Negative where they overlap.
+    pub(super) distance: f64,
+    pub(super) points: (Point3<f64>, Point3<f64>),
+    /// From the first to the second.
+    pub(super) normal: UnitVector3<f64>,
+}
+
+/// Two shapes, each with its link's pose, that are nearer than `within` metres; `None` where the library finds no way
+/// out of an overlap.
+pub(super) fn contact(
+    first: (&PlacedShape, &LinkPose),
+    second: (&PlacedShape, &LinkPose),
+    within: f64,
+) -> Option<Contact> {
+    let ((a, at_a), (b, at_b)) = (first, second);
+    let contact = query::contact(&(at_a.0 * a.pose), &*a.shape, &(at_b.0 * b.pose), &*b.shape, within)
+        .expect("the collision library knows every pair of these shapes")?;
+    let vector = |v: Vector| Vector3::new(v.x, v.y, v.z);
+    let normal = UnitVector3::try_new(vector(contact.normal1), f64::EPSILON)?;
+    let points = (vector(contact.point1).into(), vector(contact.point2).into());
+    Some(Contact { distance: contact.dist, points, normal })
 }
 
 /// A link's pose in the library's type.

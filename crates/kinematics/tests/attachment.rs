@@ -1,0 +1,95 @@
+//! A robot's tree, taken apart and put together again by hand.
+#![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
+
+mod random_tree;
+
+use kinematics::{Attachment, Drive, DriveKind, RobotModel, Workspace};
+use nalgebra::{DVector, IsometryMatrix3, Rotation3, Translation3, Vector3};
+use proptest::prelude::*;
+use random_tree::tree;
+
+/// What the joint does at a configuration.
+fn motion(drive: &Drive, q: &DVector<f64>) -> IsometryMatrix3<f64> {
+    let value = drive.multiplier * q[drive.column] + drive.offset;
+    match drive.kind {
+        DriveKind::Turn => {
+            IsometryMatrix3::from_parts(Translation3::identity(), Rotation3::from_axis_angle(&drive.axis, value))
+        }
+        DriveKind::Slide => IsometryMatrix3::from_parts(Translation3::from(*drive.axis * value), Rotation3::identity()),
+    }
+}
+
+/// All poses, from nothing but attachments.
+fn by_hand(robot: &RobotModel, q: &DVector<f64>) -> Vec<IsometryMatrix3<f64>> {
+    let links: Vec<_> = robot.links().collect();
+    let mut poses: Vec<IsometryMatrix3<f64>> = Vec::new();
+    for &link in &links {
+        poses.push(match robot.attachment(link) {
+            None => IsometryMatrix3::identity(),
+            Some(Attachment { parent, origin, drive }) => {
+                let parent = poses[links.iter().position(|&link| link == parent).unwrap()];
+                parent * origin * drive.map_or(IsometryMatrix3::identity(), |drive| motion(&drive, q))
+            }
+        });
+    }
+    poses
+}
+
+fn largest_difference(robot: &RobotModel, q: &DVector<f64>) -> f64 {
+    let mut workspace = Workspace::new();
+    let poses = robot.forward_kinematics(q.as_view(), &mut workspace).unwrap();
+    let pairs = robot.links().zip(by_hand(robot, q));
+    let difference =
+        |(link, pose): (_, IsometryMatrix3<f64>)| poses.pose(link).to_homogeneous() - pose.to_homogeneous();
+    pairs.map(|pair| difference(pair).amax()).fold(0.0, f64::max)
+}
+
+proptest! {
+    #[test]
+    fn the_tree_by_hand_is_forward_kinematics(
+        (tree, q) in tree().prop_flat_map(|tree| {
+            let n = tree.active().len();
+            (Just(tree), proptest::collection::vec(-4.0..4.0f64, n))
+        }),
+    ) {
+        let robot = RobotModel::from_urdf(&tree.urdf()).unwrap();
+        prop_assert!(largest_difference(&robot, &DVector::from_vec(q)) < 1e-12);
+        for link in robot.links() {
+            let attachment = robot.attachment(link);
+            prop_assert_eq!(attachment.as_ref().map(|attachment| attachment.parent), robot.parent(link));
+            let Some(drive) = attachment.and_then(|attachment| attachment.drive) else { continue };
+            prop_assert!((drive.axis.norm() - 1.0).abs() < 1e-12 && drive.multiplier >= 0.0);
+        }
+    }
+
+    #[test]
+    fn the_upper_body_by_hand_is_forward_kinematics(q in proptest::collection::vec(-2.0..2.0f64, 22)) {
+        let robot = RobotModel::from_urdf(include_str!("../../../robots/asimo_upper_body.urdf")).unwrap();
+        prop_assert!(largest_difference(&robot, &DVector::from_vec(q)) < 1e-13);
+    }
+}
+
+/// A joint about −z that is followed backwards, and one that does not move.
+#[test]
+fn drives_are_told_as_the_file_has_them() {
+    let robot = RobotModel::from_urdf(
+        r#"<robot name="r"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
+             <joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 -2"/>
+               <origin xyz="1 2 3"/><limit lower="-1" upper="1"/></joint>
+             <joint name="k" type="prismatic"><parent link="b"/><child link="c"/><axis xyz="1 0 0"/>
+               <limit lower="-1" upper="1"/><mimic joint="j" multiplier="-3" offset="0.5"/></joint>
+             <joint name="l" type="fixed"><parent link="c"/><child link="d"/></joint></robot>"#,
+    )
+    .unwrap();
+    let drive = |name: &str| robot.attachment(robot.link(name).unwrap()).unwrap().drive;
+    let turn = drive("b").unwrap();
+    assert_eq!((turn.kind, *turn.axis, turn.column), (DriveKind::Turn, -Vector3::z(), 0));
+    assert_eq!((turn.multiplier, turn.offset), (1.0, 0.0));
+    let slide = drive("c").unwrap();
+    assert_eq!((slide.kind, *slide.axis, slide.column), (DriveKind::Slide, -Vector3::x(), 0));
+    assert_eq!((slide.multiplier, slide.offset), (3.0, -0.5));
+    assert_eq!(drive("d"), None);
+    assert_eq!(robot.attachment(robot.root()), None);
+    let b = robot.attachment(robot.link("b").unwrap()).unwrap();
+    assert_eq!((b.parent, b.origin.translation.vector), (robot.root(), Vector3::new(1.0, 2.0, 3.0)));
+}
