@@ -3,6 +3,7 @@
 //! - [`Plane`]: things in the plane, both axes alike.
 //! - [`Curves`]: quantities against a quantity, linear or logarithmic, with bands.
 //! - [`Surface`]: a scalar field in perspective.
+//! - [`Space`]: things in space, the nearer ones before the others.
 //!
 //! [`Who`] and [`Stroke`] give every picture the same colours and lines.
 
@@ -10,6 +11,7 @@
 
 mod curves;
 mod plane;
+mod space;
 mod style;
 mod surface;
 
@@ -19,6 +21,7 @@ use kuva::render::render::{Primitive, Scene};
 
 pub(crate) use curves::{Axis, Curve, Curves};
 pub(crate) use plane::{Layer, Plane};
+pub(crate) use space::{Camera, Frame, Item, Paint, Space};
 pub(crate) use style::{Dash, Stroke, Who};
 pub(crate) use surface::Surface;
 

@@ -1,0 +1,40 @@
+//! Light and shadow: light falls from the left, from above and from behind the viewer.
+
+use kuva::render::color::Color;
+use nalgebra::Vector3;
+
+/// What is in full shadow keeps this share of its lightness.
+const SHADOW: f64 = 0.62;
+
+/// Towards the light, on the panel: right, down, towards the viewer.
+pub(super) fn light() -> Vector3<f64> {
+    Vector3::new(-0.5, -0.62, 0.6).normalize()
+}
+
+/// How much light a face gets, from 0 to 1: `normal` points out of the body.
+pub(super) fn lit(normal: &Vector3<f64>) -> f64 {
+    f64::midpoint(normal.normalize().dot(&light()), 1.0)
+}
+
+/// A colour, `#rrggbb`, in so much light.
+pub(super) fn shade(color: &str, lit: f64) -> Color {
+    let share = SHADOW + (1.0 - SHADOW) * lit;
+    match Color::from(color) {
+        Color::Rgb(r, g, b) => {
+            let [r, g, b] = [r, g, b].map(|part| (f64::from(part) * share).round() as u8);
+            Color::Rgb(r, g, b)
+        }
+        other => other,
+    }
+}
+
+/// The colour of outlines around this one.
+pub(super) fn dark(color: &str) -> Color {
+    match Color::from(color) {
+        Color::Rgb(r, g, b) => {
+            let [r, g, b] = [r, g, b].map(|part| (f64::from(part) * 0.3).round() as u8);
+            Color::Rgb(r, g, b)
+        }
+        other => other,
+    }
+}

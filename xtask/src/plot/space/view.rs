@@ -1,0 +1,99 @@
+use nalgebra::{Matrix3, Point3, Vector3};
+
+use super::Camera;
+
+/// Pixels around a point that something there takes: a word, a dot.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Room {
+    pub(super) left: f64,
+    pub(super) right: f64,
+    pub(super) up: f64,
+    pub(super) down: f64,
+}
+
+/// What has to be on the panel: a point, with room around it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Reach {
+    pub(super) at: Point3<f64>,
+    pub(super) room: Room,
+}
+
+impl Reach {
+    pub(super) fn bare(at: Point3<f64>) -> Self {
+        Reach { at, room: Room::default() }
+    }
+}
+
+/// A part of a panel, pixels, y downwards.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Area {
+    pub(super) x: [f64; 2],
+    pub(super) y: [f64; 2],
+}
+
+/// From space to the panel. A point on the panel has three coordinates, in pixels: to the right, down, and towards the
+/// viewer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct View {
+    /// Rows: right, down, towards the viewer.
+    axes: Matrix3<f64>,
+    scale: f64,
+    shift: Vector3<f64>,
+}
+
+/// Halvings of the interval in which the scale is looked for.
+const HALVINGS: usize = 60;
+
+impl View {
+    /// The largest view that has everything in an area, in its middle.
+    pub(super) fn fit(camera: &Camera, reaches: &[Reach], area: Area) -> Self {
+        let mut axes = camera.axes();
+        axes.row_mut(1).neg_mut();
+        let spans = |scale| {
+            let across = reaches.iter().map(|r| ((axes.row(0) * r.at.coords)[0] * scale, r.room.left, r.room.right));
+            let down = reaches.iter().map(|r| ((axes.row(1) * r.at.coords)[0] * scale, r.room.up, r.room.down));
+            [span(across), span(down)]
+        };
+        let sides = [area.x[1] - area.x[0], area.y[1] - area.y[0]];
+        let fits = |scale: f64| spans(scale).iter().zip(sides).all(|([low, high], side)| high - low <= side);
+        let size = reaches.iter().map(|r| (r.at - reaches[0].at).norm()).fold(0.0, f64::max);
+        let [mut scale, mut above] = [0.0, 4.0 * (sides[0] + sides[1]) / size.max(1e-9)];
+        for _ in 0..HALVINGS {
+            let middle = f64::midpoint(scale, above);
+            if fits(middle) { scale = middle } else { above = middle }
+        }
+        let [across, down] = spans(scale);
+        let shift = |area: [f64; 2], span: [f64; 2]| f64::midpoint(area[0], area[1]) - f64::midpoint(span[0], span[1]);
+        View { axes, scale, shift: Vector3::new(shift(area.x, across), shift(area.y, down), 0.0) }
+    }
+
+    /// Where a point of space is on the panel.
+    pub(super) fn place(&self, point: &Point3<f64>) -> Point3<f64> {
+        Point3::from(self.direction(&point.coords) * self.scale + self.shift)
+    }
+
+    /// A direction of space on the panel, as long as it is.
+    pub(super) fn direction(&self, direction: &Vector3<f64>) -> Vector3<f64> {
+        self.axes * direction
+    }
+
+    /// Pixels of a length across the line of sight.
+    pub(super) fn length(&self, length: f64) -> f64 {
+        length * self.scale
+    }
+}
+
+/// From where to where things reach: (place, room before, room after).
+fn span(things: impl Iterator<Item = (f64, f64, f64)>) -> [f64; 2] {
+    let reach =
+        |[low, high]: [f64; 2], (at, before, after): (f64, f64, f64)| [low.min(at - before), high.max(at + after)];
+    let [low, high] = things.fold([f64::INFINITY, f64::NEG_INFINITY], reach);
+    if low <= high { [low, high] } else { [0.0, 0.0] }
+}
+
+/// The corners of a box between its lowest and highest; bits of the index say on which side: x, y, z.
+pub(super) fn corners([low, high]: [Point3<f64>; 2]) -> [Point3<f64>; 8] {
+    std::array::from_fn(|corner| {
+        Point3::from(Vector3::from_fn(|i, _| if corner >> i & 1 == 0 { low[i] } else { high[i] }))
+    })
+}
