@@ -5,7 +5,7 @@ use kinematics::KinematicsError;
 use motion::MotionError;
 use thiserror::Error;
 
-/// What must share the potential's state space.
+/// What must share the state space of the potential or policy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
     /// The start state.
@@ -66,14 +66,14 @@ pub enum DemoGenError {
     /// A step cannot be made of no step.
     #[error("0 sub-steps asked for; 1 is the plain Euler step")]
     NoSubStep,
-    /// Potential, constraint and start do not live in one space.
-    #[error("the {part} has {found} dimensions, the potential {expected}; all must share one state space")]
+    /// Potential or policy, constraint and start do not live in one space.
+    #[error("the {part} has {found} dimensions, the potential or policy {expected}; all must share one state space")]
     Dimensions {
-        /// What differs from the potential.
+        /// What differs from the potential or policy.
         part: Part,
         /// Its number of dimensions.
         found: usize,
-        /// The potential's number of dimensions.
+        /// The number of dimensions of the potential or policy.
         expected: usize,
     },
     /// The movement left the finite numbers.

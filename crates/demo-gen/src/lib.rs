@@ -2,7 +2,7 @@
 //! beside what an observer sees.
 //!
 //! - [`Parabola`] (24), [`Sinusoidal`] (26): potentials φ; the demonstrated policy is π = −∇φ.
-//! - [`RollOut`]: follows u = N(x,t) π(x) (3) from one start and yields a [`Recording`].
+//! - [`RollOut`]: follows u = N(x,t) π(x) (3) from one start and yields a [`Recording`]; any policy too, without its truth.
 //! - [`Recording`]: `observed`, a trajectory, and [`Truth`], what only a judge may see.
 //! - [`demonstrations`]: the observed part of many recordings; a learner is given nothing else.
 //! - [`ToySystem`]: the paper's two-dimensional toy, many recordings from one generator.

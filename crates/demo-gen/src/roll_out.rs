@@ -1,11 +1,11 @@
 use constraints::PfaffianConstraint;
-use motion::Potential;
+use motion::{Policy, Potential, Trajectory};
 use nalgebra::{DVector, DVectorView};
 
-use crate::instant::{Instant, System};
+use crate::instant::{AsTold, Downhill, Driver, Instant, System, observed};
 use crate::{DemoGenError, Part, Recording};
 
-/// How a movement is simulated: x ← x + δt N(x,t) π(x), with π = −∇φ, from time 0.
+/// How a movement is simulated: x ← x + δt N(x,t) π(x), from time 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RollOut {
     /// Time δt between two samples, in seconds. Default 1.
@@ -24,7 +24,7 @@ impl Default for RollOut {
 }
 
 impl RollOut {
-    /// The movement from `start` (n): N states, and at each of them, the last included, the velocity
+    /// The movement of the policy π = −∇φ from `start` (n): N states, and at each of them, the last included, the velocity
     /// `u_i = N(x_i, t_i) π(x_i)`, with `t_i = i δt`.
     ///
     /// # Errors
@@ -41,32 +41,86 @@ impl RollOut {
         P: Potential + ?Sized,
         C: PfaffianConstraint + ?Sized,
     {
+        Recording::of(self.instants(&System { driver: Downhill(potential), constraint }, start)?, self.time_step)
+    }
+
+    /// The movement of any policy from `start` (n), as [`RollOut::record`] makes that of a potential: N states with their
+    /// velocities `N(x_i, t_i) π(x_i)`.
+    ///
+    /// ```
+    /// use constraints::LinearConstraint;
+    /// use demo_gen::RollOut;
+    /// use motion::Policy;
+    /// use nalgebra::{DVectorView, DVectorViewMut, dmatrix, dvector};
+    ///
+    /// /// Round and round: the policy of no potential.
+    /// struct Whirl;
+    ///
+    /// impl Policy for Whirl {
+    ///     fn n_states(&self) -> usize {
+    ///         2
+    ///     }
+    ///
+    ///     fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
+    ///         (action[0], action[1]) = (-state[1], state[0]);
+    ///     }
+    /// }
+    ///
+    /// let rail = LinearConstraint::new(dmatrix![1.0, 0.0])?;
+    /// let movement = RollOut::default().follow(&Whirl, &rail, dvector![2.0, 1.0].as_view())?;
+    /// assert_eq!(movement.state(3).into_owned(), dvector![2.0, 7.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`RollOut::record`].
+    pub fn follow<P, C>(
+        &self,
+        policy: &P,
+        constraint: &C,
+        start: DVectorView<'_, f64>,
+    ) -> Result<Trajectory, DemoGenError>
+    where
+        P: Policy + ?Sized,
+        C: PfaffianConstraint + ?Sized,
+    {
+        observed(&self.instants(&System { driver: AsTold(policy), constraint }, start)?, self.time_step)
+    }
+
+    /// All samples of a movement.
+    fn instants<D, C>(
+        &self,
+        system: &System<'_, D, C>,
+        start: DVectorView<'_, f64>,
+    ) -> Result<Vec<Instant<D::Told>>, DemoGenError>
+    where
+        D: Driver,
+        C: PfaffianConstraint + ?Sized,
+    {
         self.check()?;
-        let expected = potential.n_states();
-        for (part, found) in [(Part::Start, start.len()), (Part::Constraint, constraint.n_states())] {
+        let expected = system.driver.n_states();
+        for (part, found) in [(Part::Start, start.len()), (Part::Constraint, system.constraint.n_states())] {
             if found != expected {
                 return Err(DemoGenError::Dimensions { part, found, expected });
             }
         }
-
-        let system = System { potential, constraint };
         let mut instants = vec![system.instant(start.into_owned(), 0.0, 0)?];
         for sample in 1..self.n_samples {
-            let state = self.advance(&system, &instants[sample - 1], sample - 1)?;
+            let state = self.advance(system, &instants[sample - 1], sample - 1)?;
             instants.push(system.instant(state, self.time_step * sample as f64, sample)?);
         }
-        Recording::of(instants, self.time_step)
+        Ok(instants)
     }
 
     /// The state one time step after `sample`.
-    fn advance<P, C>(
+    fn advance<D, C>(
         &self,
-        system: &System<'_, P, C>,
-        from: &Instant,
+        system: &System<'_, D, C>,
+        from: &Instant<D::Told>,
         sample: usize,
     ) -> Result<DVector<f64>, DemoGenError>
     where
-        P: Potential + ?Sized,
+        D: Driver,
         C: PfaffianConstraint + ?Sized,
     {
         let step = self.time_step / self.sub_steps as f64;

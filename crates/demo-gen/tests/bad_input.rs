@@ -2,7 +2,7 @@
 
 use constraints::{ConstraintError, PfaffianConstraint, Unconstrained};
 use demo_gen::{DemoGenError, Parabola, Part, Quantity, Redraw, RollOut, ToyPotential, ToySystem};
-use motion::Potential;
+use motion::{NegativeGradient, Policy, Potential};
 use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut, dvector};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -124,6 +124,64 @@ fn roll_outs() {
         refused(RollOut { time_step: f64::NAN, ..default }, &bowl(0.1), &free, &start),
         DemoGenError::TimeStep { .. }
     ));
+}
+
+/// Acts the same everywhere.
+struct Steady {
+    action: f64,
+}
+
+impl Policy for Steady {
+    fn n_states(&self) -> usize {
+        2
+    }
+
+    fn action_into(&self, _state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
+        action.fill(self.action);
+    }
+}
+
+#[test]
+fn roll_outs_of_policies() {
+    let (free, start, default) = (Unconstrained { n_states: 2 }, dvector![1.0, 0.0], RollOut::default());
+    let inf = f64::INFINITY;
+    let refused =
+        |roll_out: RollOut, policy: &dyn Policy, constraint: &dyn PfaffianConstraint, start: &DVector<f64>| {
+            roll_out.follow(policy, constraint, start.as_view()).expect_err("this must be refused")
+        };
+    let still = Steady { action: 0.0 };
+    let diverged = |sample, quantity| DemoGenError::Diverged { sample, quantity };
+    let dimensions = |part, found| DemoGenError::Dimensions { part, found, expected: 2 };
+    let not_finite = ConstraintError::NotFinite { row: 0, column: 0, value: inf };
+    let refusals = [
+        (
+            refused(RollOut { time_step: -1.0, ..default }, &still, &free, &start),
+            DemoGenError::TimeStep { time_step: -1.0 },
+        ),
+        (
+            refused(RollOut { n_samples: 1, ..default }, &still, &free, &start),
+            DemoGenError::TooFewSamples { n_samples: 1 },
+        ),
+        (refused(RollOut { sub_steps: 0, ..default }, &still, &free, &start), DemoGenError::NoSubStep),
+        (refused(default, &still, &free, &dvector![1.0]), dimensions(Part::Start, 1)),
+        (refused(default, &still, &Unconstrained { n_states: 3 }, &start), dimensions(Part::Constraint, 3)),
+        (refused(default, &still, &free, &dvector![0.0, inf]), diverged(0, Quantity::State)),
+        (refused(default, &Steady { action: inf }, &free, &start), diverged(0, Quantity::Policy)),
+        // A step of 1.5e308 is possible once.
+        (refused(default, &Steady { action: 1.5e308 }, &free, &start), diverged(2, Quantity::State)),
+        // A policy's potential is not asked for: the steps end with the numbers, not with their squares.
+        (
+            refused(RollOut { n_samples: 500, ..default }, &NegativeGradient(bowl(5.5)), &free, &start),
+            diverged(308, Quantity::Policy),
+        ),
+        (
+            refused(default, &still, &Later { time: 7.0, entry: inf, columns: 2 }, &start),
+            DemoGenError::Constraint { sample: 7, source: not_finite },
+        ),
+    ];
+    for (found, expected) in refusals {
+        assert_eq!(found, expected);
+    }
 }
 
 #[test]

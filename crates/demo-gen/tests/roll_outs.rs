@@ -2,8 +2,8 @@
 
 use constraints::{LinearConstraint, PfaffianConstraint, Switching, Unconstrained};
 use demo_gen::{Parabola, Recording, RollOut, Sinusoidal, demonstrations};
-use motion::Potential;
-use nalgebra::{DMatrix, DVector, DVectorView, dvector};
+use motion::{NegativeGradient, Policy, Potential};
+use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut, dvector};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -26,19 +26,27 @@ impl PfaffianConstraint for Turning {
     }
 }
 
+/// π(x) = M x: the policy of no potential, unless M is symmetric.
+struct Linear(DMatrix<f64>);
+
+impl Policy for Linear {
+    fn n_states(&self) -> usize {
+        self.0.nrows()
+    }
+
+    fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
+        action.gemv(1.0, &self.0, &state, 0.0);
+    }
+}
+
 /// x ← x + h (I − aᵀa / ‖a‖²) π(x), as one would write it down.
-fn literal(
-    roll_out: RollOut,
-    potential: &impl Potential,
-    constraint: &Turning,
-    start: &DVector<f64>,
-) -> Vec<DVector<f64>> {
+fn literal(roll_out: RollOut, policy: &dyn Policy, constraint: &Turning, start: &DVector<f64>) -> Vec<DVector<f64>> {
     let step = roll_out.time_step / roll_out.sub_steps as f64;
     let mut states = vec![start.clone()];
     let mut state = start.clone();
     for count in 0..roll_out.sub_steps * (roll_out.n_samples - 1) {
         let matrix = constraint.matrix(state.as_view(), step * count as f64);
-        let action = -potential.gradient(state.as_view());
+        let action = policy.action(state.as_view());
         let mut free = DMatrix::identity(state.len(), state.len());
         if matrix.nrows() == 1 {
             free -= matrix.transpose() * &matrix / matrix.norm_squared();
@@ -112,12 +120,40 @@ proptest! {
         let (roll_out, potential) = (RollOut { time_step, n_samples, sub_steps }, Sinusoidal { amplitude });
         let (constraint, start) = (Turning { n_states: 2, rate }, DVector::from_vec(start));
         let recording = roll_out.record(&potential, &constraint, start.as_view()).unwrap();
-        let expected = literal(roll_out, &potential, &constraint, &start);
+        let expected = literal(roll_out, &NegativeGradient(&potential), &constraint, &start);
         prop_assert_eq!(recording.observed.n_samples(), n_samples);
         prop_assert_eq!(recording.observed.time_step(), time_step);
         for (sample, state) in expected.iter().enumerate() {
             prop_assert!((recording.observed.state(sample) - state).amax() < 1e-10);
         }
+    }
+
+    #[test]
+    fn any_policy_follows_the_literal_loop(
+        (start, entries) in (1..5usize).prop_flat_map(|n| (vec(-2.0..2.0f64, n), vec(-0.1..0.1f64, n * n))),
+        rate in -1.0..1.0f64, time_step in 0.05..1.0f64, n_samples in 2..20usize, sub_steps in 1..5usize,
+    ) {
+        let (n_states, start) = (start.len(), DVector::from_vec(start));
+        // Towards the middle all in all: elsewhere rounding would grow until the constraint switches at another sample.
+        let policy = Linear(DMatrix::from_vec(n_states, n_states, entries) - DMatrix::identity(n_states, n_states) * 0.5);
+        let (roll_out, constraint) = (RollOut { time_step, n_samples, sub_steps }, Turning { n_states, rate });
+        let movement = roll_out.follow(&policy, &constraint, start.as_view()).unwrap();
+        prop_assert_eq!((movement.n_samples(), movement.time_step()), (n_samples, time_step));
+        for (sample, state) in literal(roll_out, &policy, &constraint, &start).iter().enumerate() {
+            prop_assert!((movement.state(sample) - state).amax() < 1e-10);
+            let time = time_step * sample as f64;
+            let projector = constraint.null_space_projector(movement.state(sample), time).unwrap();
+            let velocity = projector.project(policy.action(movement.state(sample)).as_view());
+            prop_assert_eq!(movement.velocities().unwrap().column(sample), velocity.column(0));
+        }
+    }
+
+    /// A potential's movement and that of its policy are one, to the last bit.
+    #[test]
+    fn the_policy_of_a_potential_moves_as_the_potential_does(case in case()) {
+        let policy = NegativeGradient(&case.potential);
+        let movement = case.roll_out.follow(&policy, &case.constraint, case.start.as_view()).unwrap();
+        prop_assert_eq!(movement, case.record().observed);
     }
 
     #[test]
