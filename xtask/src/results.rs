@@ -79,7 +79,7 @@ pub(crate) struct RowResult {
     pub(crate) data_sets: usize,
     /// Data sets that could not be measured; they are counted here and left out of the measures.
     pub(crate) failed: usize,
-    /// Summaries over the other data sets.
+    /// Summaries over the other data sets, as far as they have values.
     pub(crate) measures: BTreeMap<Measure, Cell>,
 }
 
@@ -92,13 +92,20 @@ pub(crate) struct Cell {
     pub(crate) sd: Option<f64>,
     /// Median over data sets.
     pub(crate) median: f64,
-    /// The value of each data set, in their order; null where it could not be measured.
+    /// The value of each data set, in their order; null where it could not be measured or has no value.
     #[serde(serialize_with = "on_one_line")]
     pub(crate) values: Vec<Option<f64>>,
     /// The printed figure, where there is one.
     pub(crate) paper: Option<Printed>,
     /// The comparison, where there is one.
     pub(crate) verdict: Option<Verdict>,
+}
+
+impl Cell {
+    /// How many data sets gave a value.
+    pub(crate) fn n(&self) -> usize {
+        self.values.iter().flatten().count()
+    }
 }
 
 /// Sums up the outcomes of every setup, which stand in the order of `experiments`.

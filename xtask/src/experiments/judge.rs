@@ -7,7 +7,7 @@ use constraints::{NullSpaceProjector, PfaffianConstraint};
 use demo_gen::Recording;
 use metrics::{alignment_nmse, ncpe, nupe, potential_nmse};
 use motion::{Policy, Potential};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, DVectorView};
 
 use crate::measure::Measure;
 
@@ -34,6 +34,23 @@ impl<'a> Judge<'a> {
             actions: columns(|truth| &truth.actions),
             projectors: truth().map(|(truth, n)| &truth.projectors[n]).collect(),
         }
+    }
+
+    /// The same test at some of the states: variances are then of these alone.
+    pub(crate) fn among(&self, wanted: impl Fn(DVectorView<'_, f64>) -> bool) -> Judge<'a> {
+        let kept: Vec<usize> = (0..self.n_samples()).filter(|&sample| wanted(self.states.column(sample))).collect();
+        Judge {
+            states: self.states.select_columns(&kept),
+            levelled: self.levelled.select_rows(&kept),
+            potential: self.potential.select_rows(&kept),
+            actions: self.actions.select_columns(&kept),
+            projectors: kept.iter().map(|&sample| self.projectors[sample]).collect(),
+        }
+    }
+
+    /// How many states are tested.
+    pub(crate) fn n_samples(&self) -> usize {
+        self.states.ncols()
     }
 
     /// Errors of a policy, unconstrained (A1) and under the constraints of the demonstrations (A2).
@@ -73,4 +90,37 @@ impl<'a> Judge<'a> {
 /// Share of the trajectories that alignment left out, percent.
 pub(crate) fn discarded_percent(aligned: &Aligned) -> f64 {
     100.0 * aligned.discarded().len() as f64 / aligned.demonstrations().n_trajectories() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use align::PolicyAlign;
+    use demo_gen::{ToySystem, demonstrations};
+    use motion::{NegativeGradient, Potential as _};
+
+    use super::*;
+
+    /// Tested on two movements alone, the judge gives what the measures give for the truth of these.
+    #[test]
+    fn a_part_of_the_test_samples_is_judged_by_its_own_variance() {
+        let system = ToySystem { n_trajectories: 6, ..ToySystem::default() };
+        let recordings = system.record(&mut crate::seed::generator(1, 0, 0)).unwrap();
+        let align = PolicyAlign { bandwidth: align::Bandwidth::Wide, ..PolicyAlign::default() };
+        let aligned = align.align(&demonstrations(&recordings).unwrap()).unwrap();
+        let judge = Judge::new(&recordings, &aligned.samples());
+        assert_eq!((judge.n_samples(), judge.among(|_| true).n_samples()), (240, 240));
+
+        let learnt = demo_gen::ToyPotential::sinusoidal();
+        let near = judge.among(|state| state.norm() < 1.0);
+        let truth = recordings.iter().flat_map(|r| r.truth.states.column_iter().zip(&r.truth.potential));
+        let (states, truth): (Vec<_>, Vec<f64>) = truth.filter(|(state, _)| state.norm() < 1.0).unzip();
+        assert!((20..220).contains(&near.n_samples()) && near.n_samples() == states.len());
+        let values = DVector::from_iterator(states.len(), states.iter().map(|state| learnt.value(*state)));
+        let expected = potential_nmse(&DVector::from_vec(truth), &values).unwrap();
+        assert_eq!(near.potential(&learnt).unwrap()[&Measure::PotentialNmse], expected);
+
+        let errors = [&near, &judge].map(|judge| judge.policy(&NegativeGradient(&learnt)).unwrap());
+        assert!(errors[0][&Measure::Ncpe] < errors[0][&Measure::Nupe]);
+        assert_ne!(errors[0], errors[1]);
+    }
 }

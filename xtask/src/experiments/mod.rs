@@ -2,6 +2,8 @@
 
 mod asimo22;
 mod exam;
+mod figure6;
+mod figure9;
 mod judge;
 mod table1;
 mod table2;
@@ -106,9 +108,12 @@ pub(crate) fn registry() -> anyhow::Result<Vec<Experiment>> {
     let experiments = [
         table1::table1()?,
         table1::table1_literal()?,
+        figure6::figure6_left(),
+        figure6::figure6_right(),
         table2::table2()?,
         asimo22::asimo22()?,
         three_link::three_link()?,
+        figure9::figure9()?,
     ];
     experiments.into_iter().map(Experiment::checked).collect()
 }

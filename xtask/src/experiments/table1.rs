@@ -73,6 +73,12 @@ pub(crate) fn toy_regressor() -> LwprRegressor {
     LwprRegressor { params, passes: 10, ..LwprRegressor::default() }
 }
 
+/// Work of aligning and regression, in the unit of [`Trial::cost`].
+pub(super) fn learning_cost(n_trajectories: usize, n_samples: usize) -> u64 {
+    // Measured: regression takes about as long as 100 distance evaluations a sample.
+    (n_trajectories * n_samples * (n_trajectories + 100)) as u64
+}
+
 impl Trial for ToyTrial {
     fn system(&self) -> u32 {
         self.number
@@ -83,9 +89,7 @@ impl Trial for ToyTrial {
     }
 
     fn cost(&self) -> u64 {
-        let samples = (self.system.n_trajectories * self.system.n_samples) as u64;
-        // Measured: regression takes about as long as 100 distance evaluations a sample.
-        samples * (self.system.n_trajectories as u64 + 100)
+        learning_cost(self.system.n_trajectories, self.system.n_samples)
     }
 
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {

@@ -11,12 +11,14 @@ use crate::learners::Learner;
 use crate::measure::{Measure, RowOf};
 use crate::paper::{explanations, paper_table};
 
+/// The system whose random stream is used.
+pub(crate) const SYSTEM: u32 = 440;
+
 /// The experiment.
 pub(crate) fn three_link() -> anyhow::Result<Experiment> {
     let rows = [("policy_align", RowOf::Learner), ("naive", RowOf::Baseline)];
     let rows = rows.map(|(id, of)| Row { id: id.to_owned(), of });
-    let arm = ThreeLinkArm::new(include_str!("../../../robots/planar_three_link.urdf"))?;
-    let trial = ArmTrial { arm, algorithm: PolicyAlign::default(), learners: learners() };
+    let trial = ArmTrial { arm: arm()?, algorithm: PolicyAlign::default(), learners: learners() };
     Ok(Experiment {
         id: "three_link",
         section: "4.4",
@@ -30,13 +32,24 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
     })
 }
 
+/// The arm of Section 4.4.
+pub(crate) fn arm() -> anyhow::Result<ThreeLinkArm> {
+    Ok(ThreeLinkArm::new(include_str!("../../../robots/planar_three_link.urdf"))?)
+}
+
+/// Learns the aligned potential.
+pub(super) fn regressor() -> LwprRegressor {
+    LwprRegressor { params: params(20.0), ..LwprRegressor::default() }
+}
+
 /// In the order of the rows.
 fn learners() -> Vec<Box<dyn Learner>> {
-    let params = |init_d| LwprParams { init_d, adaptation: MetricAdaptation::Fixed, ..LwprParams::default() };
-    vec![
-        Box::new(LwprRegressor { params: params(20.0), ..LwprRegressor::default() }),
-        Box::new(DirectPolicyLearning { params: params(50.0), ..DirectPolicyLearning::default() }),
-    ]
+    let naive = DirectPolicyLearning { params: params(50.0), ..DirectPolicyLearning::default() };
+    vec![Box::new(regressor()), Box::new(naive)]
+}
+
+fn params(init_d: f64) -> LwprParams {
+    LwprParams { init_d, adaptation: MetricAdaptation::Fixed, ..LwprParams::default() }
 }
 
 #[derive(Debug)]
@@ -48,7 +61,7 @@ struct ArmTrial {
 
 impl Trial for ArmTrial {
     fn system(&self) -> u32 {
-        440
+        SYSTEM
     }
 
     fn definition(&self) -> String {

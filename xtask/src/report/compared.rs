@@ -101,9 +101,9 @@ impl<'a> Compared<'a> {
 }
 
 impl Line<'_> {
-    /// Data sets that were measured.
+    /// Data sets that have a value.
     pub(super) fn n(&self) -> usize {
-        self.row.data_sets - self.row.failed
+        self.cell.n()
     }
 
     /// Our mean ± standard deviation.

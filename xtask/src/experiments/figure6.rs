@@ -1,0 +1,159 @@
+//! Fig. 6 (Section 4.1): errors on the parabola against the amount of data and against noise on the recorded positions.
+
+use align::{Bandwidth, Integration, PolicyAlign};
+use anyhow::Context as _;
+use demo_gen::{Recording, ToySystem, with_position_noise};
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+
+use super::exam::{HELD_OUT, examine};
+use super::table1::{learning_cost, toy_regressor};
+use super::{Experiment, Measures, Row, Setup, Trial};
+use crate::measure::RowOf;
+
+/// Table 1's parabola, 40 by 40: the same data sets.
+const SYSTEM: u32 = 0;
+
+/// What is learnt from, percent of the trajectories.
+pub(crate) const TRAJECTORIES_PERCENT: [f64; 6] = [10.0, 20.0, 40.0, 60.0, 80.0, 100.0];
+
+/// Noise, percent of each dimension's standard deviation.
+pub(crate) const NOISE_PERCENT: [f64; 6] = [0.0, 2.5, 5.0, 10.0, 15.0, 20.0];
+
+/// Names in rows.
+pub(crate) const BANDWIDTHS: [(&str, Bandwidth); 2] = [("narrow", Bandwidth::Narrow), ("medium", Bandwidth::Medium)];
+
+/// Names in rows.
+pub(crate) const RULES: [(&str, Integration); 2] =
+    [("velocity", Integration::Velocity), ("displacement", Integration::Displacement)];
+
+/// The left panel: errors against the amount of data.
+pub(crate) fn figure6_left() -> Experiment {
+    let setup = |(name, bandwidth)| {
+        let algorithm = PolicyAlign { bandwidth, ..PolicyAlign::default() };
+        setup(name, &TRAJECTORIES_PERCENT, algorithm, Against::Trajectories)
+    };
+    Experiment {
+        id: "figure6_left",
+        title: "Fig. 6, left: error against the amount of data",
+        remark: "The first so many percent of the trajectories of Table 1's parabola, 40 trajectories of 40 samples. Regression as in \
+                 Table 1; test samples from the trajectories that are kept of those used.",
+        setups: BANDWIDTHS.map(setup).into(),
+        ..curves()
+    }
+}
+
+/// The right panel: errors against noise, by two rules of integration.
+pub(crate) fn figure6_right() -> Experiment {
+    let setup = |(rule, integration): (&str, Integration), (name, bandwidth): (&str, Bandwidth)| {
+        let algorithm = PolicyAlign { integration, bandwidth, ..PolicyAlign::default() };
+        setup(&format!("{rule}-{name}"), &NOISE_PERCENT, algorithm, Against::Noise)
+    };
+    Experiment {
+        id: "figure6_right",
+        title: "Fig. 6, right: error against noise",
+        remark: "Gaussian noise, in percent of each dimension's standard deviation, on the recorded positions of Table 1's parabola; \
+                 recorded velocities are clean. Potentials are integrated from velocities, or from displacements (9). \
+                 Regression as in Table 1; errors are against the truth at the true states.",
+        setups: RULES.into_iter().flat_map(|rule| BANDWIDTHS.map(|bandwidth| setup(rule, bandwidth))).collect(),
+        ..curves()
+    }
+}
+
+/// What both panels share.
+fn curves() -> Experiment {
+    let (paper, explanations) = Default::default();
+    Experiment { id: "", section: "4.1", title: "", data_sets: 20, remark: "", setups: vec![], paper, explanations }
+}
+
+fn setup(id: &str, percent: &[f64], algorithm: PolicyAlign, against: Against) -> Setup {
+    let row = |percent: &f64| Row { id: format!("{id}-{percent}"), of: RowOf::Learner };
+    let trial = CurveTrial { system: ToySystem::default(), algorithm, against, percent: percent.to_vec() };
+    Setup { id: id.to_owned(), rows: percent.iter().map(row).collect(), trial: Box::new(trial) }
+}
+
+/// What changes along a curve.
+#[derive(Debug, Clone, Copy)]
+enum Against {
+    Trajectories,
+    Noise,
+}
+
+/// One curve: all its points come from the same data set.
+#[derive(Debug)]
+struct CurveTrial {
+    system: ToySystem,
+    algorithm: PolicyAlign,
+    against: Against,
+    percent: Vec<f64>,
+}
+
+impl CurveTrial {
+    /// The data of one point of the curve.
+    fn at(&self, percent: f64, recordings: &[Recording], noise: &ChaCha8Rng) -> anyhow::Result<Vec<Recording>> {
+        match self.against {
+            Against::Trajectories => Ok(recordings[..self.trajectories(percent)].to_vec()),
+            Against::Noise => Ok(with_position_noise(recordings, percent / 100.0, &mut noise.clone())?),
+        }
+    }
+
+    fn trajectories(&self, percent: f64) -> usize {
+        match self.against {
+            Against::Trajectories => (self.system.n_trajectories as f64 * percent / 100.0).round() as usize,
+            Against::Noise => self.system.n_trajectories,
+        }
+    }
+}
+
+impl Trial for CurveTrial {
+    fn system(&self) -> u32 {
+        SYSTEM
+    }
+
+    fn definition(&self) -> String {
+        format!("{self:?} {:?} held out {HELD_OUT}", toy_regressor())
+    }
+
+    fn cost(&self) -> u64 {
+        let of = |&percent: &f64| learning_cost(self.trajectories(percent), self.system.n_samples);
+        self.percent.iter().map(of).sum()
+    }
+
+    /// Every point starts from the same random numbers, so that a curve shows what it is against and nothing else, and
+    /// where nothing is changed it shows Table 1's own figures.
+    fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
+        let recordings = self.system.record(rng)?;
+        let learning = rng.clone();
+        let noise = ChaCha8Rng::from_rng(rng);
+        let mut rows = Vec::new();
+        for &percent in &self.percent {
+            let seen = self.at(percent, &recordings, &noise)?;
+            let errors = examine(&seen, &self.algorithm, &[Box::new(toy_regressor())], None, &mut learning.clone());
+            rows.extend(errors.with_context(|| format!("{:?}, {percent} %", self.against))?);
+        }
+        Ok(rows)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiments::table1::table1;
+    use crate::seed::generator;
+
+    fn run(experiment: &Experiment, id: &str) -> Measures {
+        let setup = experiment.setups.iter().find(|setup| setup.id == id).unwrap();
+        let measures = setup.trial.run(&mut generator(1, setup.trial.system(), 3)).unwrap();
+        assert_eq!(measures.len(), setup.rows.len());
+        measures
+    }
+
+    #[test]
+    fn where_nothing_is_changed_the_curves_show_table_1() {
+        let table = run(&table1().unwrap(), "parabola-40x40-medium").remove(0);
+        let [left, right] = [run(&figure6_left(), "medium"), run(&figure6_right(), "displacement-medium")];
+        assert_eq!(left.last(), Some(&table));
+        assert_eq!(right.first(), Some(&table));
+        assert!(left[..5].iter().chain(&right[1..]).all(|row| *row != table));
+    }
+}

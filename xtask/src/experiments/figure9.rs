@@ -1,0 +1,157 @@
+//! Fig. 9 (d), (e) (Section 4.4): how the errors on the three-link arm grow along and away from the line where its
+//! movements end.
+
+use std::collections::BTreeMap;
+
+use align::{GlobalPotential, Learnt, LwprRegressor, PolicyAlign};
+use demo_gen::{ThreeLinkArm, demonstrations};
+use nalgebra::{DVectorView, Vector3};
+use rand_chacha::ChaCha8Rng;
+
+use super::exam::HELD_OUT;
+use super::judge::Judge;
+use super::three_link::{SYSTEM, arm, regressor};
+use super::{Experiment, Measures, Row, Setup, Trial};
+use crate::measure::{Measure, RowOf};
+
+/// Bounds on the distance, in tenths of a radian.
+pub(crate) const TENTHS: std::ops::RangeInclusive<u32> = 1..=10;
+
+/// Fewer test samples than this give no value: the variance that errors are divided by would be chance.
+const FEWEST_SAMPLES: usize = 10;
+
+/// The experiment.
+pub(crate) fn figure9() -> anyhow::Result<Experiment> {
+    let rows = Distance::BOTH.into_iter().flat_map(|distance| TENTHS.map(move |tenths| distance.row(tenths)));
+    let rows = rows.map(|id| Row { id, of: RowOf::Learner }).collect();
+    let trial = DistanceTrial { arm: arm()?, algorithm: PolicyAlign::default(), regressor: regressor() };
+    let (paper, explanations) = Default::default();
+    Ok(Experiment {
+        id: "figure9",
+        section: "4.4",
+        title: "Fig. 9: error along and around the line where movements end",
+        data_sets: 50,
+        remark: "Data sets, learner and test samples of the three-link arm; of the samples only those nearer than c radians to the posture \
+                 along the line (rows d-c), or nearer than c to the line (rows r-c). The variances in (A1)–(A3) are of \
+                 these samples too. A data set with fewer than 10 of them has no value there.",
+        setups: vec![Setup { id: "distances".to_owned(), rows, trial: Box::new(trial) }],
+        paper,
+        explanations,
+    })
+}
+
+/// How far a posture is from the one that the policy aims at, in two parts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Distance {
+    /// d = |q·l|.
+    Along,
+    /// r = ‖q − (q·l) l‖.
+    Around,
+}
+
+impl Distance {
+    pub(crate) const BOTH: [Distance; 2] = [Distance::Along, Distance::Around];
+
+    /// Its letter in the paper.
+    pub(crate) fn letter(self) -> &'static str {
+        match self {
+            Distance::Along => "d",
+            Distance::Around => "r",
+        }
+    }
+
+    /// The row of the samples nearer than so many tenths.
+    pub(crate) fn row(self, tenths: u32) -> String {
+        format!("{}-{}.{}", self.letter(), tenths / 10, tenths % 10)
+    }
+
+    /// Of a posture, in radians.
+    pub(crate) fn of(self, posture: DVectorView<'_, f64>) -> f64 {
+        let along = posture.fixed_rows::<3>(0).dot(&line());
+        match self {
+            Distance::Along => along.abs(),
+            Distance::Around => (posture.fixed_rows::<3>(0) - along * line()).norm(),
+        }
+    }
+}
+
+/// The direction l of the line through 0 where movements end: at the stretched posture the hand is 3, 2 and 1 links away
+/// from the joints, so that every constraint that holds there at all holds q₁, q₂, q₃ back along (3, 2, 1).
+pub(crate) fn line() -> Vector3<f64> {
+    Vector3::new(3.0, 2.0, 1.0).normalize()
+}
+
+#[derive(Debug)]
+struct DistanceTrial {
+    arm: ThreeLinkArm,
+    algorithm: PolicyAlign,
+    regressor: LwprRegressor,
+}
+
+impl Trial for DistanceTrial {
+    fn system(&self) -> u32 {
+        SYSTEM
+    }
+
+    fn definition(&self) -> String {
+        format!("{self:?} held out {HELD_OUT}, at least {FEWEST_SAMPLES} samples")
+    }
+
+    fn cost(&self) -> u64 {
+        1_500_000
+    }
+
+    fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
+        let recordings = self.arm.record(rng)?;
+        let aligned = self.algorithm.align(&demonstrations(&recordings)?)?;
+        let (training, held_out) = aligned.samples().split(HELD_OUT, rng)?;
+        let learnt = aligned.regress(&self.regressor, &training, rng)?;
+        let judge = Judge::new(&recordings, &held_out);
+        let mut rows = Vec::new();
+        for distance in Distance::BOTH {
+            for tenths in TENTHS {
+                rows.push(errors(&judge.among(|state| distance.of(state) < f64::from(tenths) / 10.0), &learnt)?);
+            }
+        }
+        Ok(rows)
+    }
+}
+
+/// Errors of what was learnt; none where there are too few samples.
+fn errors(judge: &Judge<'_>, learnt: &Learnt<GlobalPotential>) -> anyhow::Result<BTreeMap<Measure, f64>> {
+    let mut errors = BTreeMap::new();
+    if judge.n_samples() >= FEWEST_SAMPLES {
+        errors.extend(judge.policy(learnt.policy())?);
+        errors.extend(judge.potential(learnt.potential())?);
+    }
+    Ok(errors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::dvector;
+
+    #[test]
+    fn distances_are_the_two_parts_of_a_posture() {
+        let posture = dvector![0.7, -0.2, 0.4];
+        let [along, around] = Distance::BOTH.map(|distance| distance.of(posture.as_view()));
+        assert!((along.hypot(around) - posture.norm()).abs() < 1e-15);
+        assert!((along - 2.1 / 14.0_f64.sqrt()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn movements_end_on_the_line_and_not_at_its_middle() {
+        let arm = ThreeLinkArm { n_trajectories: 40, ..arm().unwrap() };
+        let recordings = arm.record(&mut crate::seed::generator(1, SYSTEM, 0)).unwrap();
+        let median = |distance: Distance, sample: usize| {
+            let of = |recording: &demo_gen::Recording| distance.of(recording.truth.states.column(sample));
+            let mut distances: Vec<f64> = recordings.iter().map(of).collect();
+            distances.sort_by(f64::total_cmp);
+            distances[20]
+        };
+        let [start, end] = [0, 99].map(|sample| Distance::BOTH.map(|distance| median(distance, sample)));
+        assert!(start.iter().all(|&distance| distance > 0.4), "{start:?}");
+        assert!(end[0] > 0.3 && end[1] < 0.05, "{end:?}");
+    }
+}
