@@ -1,7 +1,9 @@
 //! The paper's figures. A run computes documents, plain numbers kept as `figures/*.json`; figures are drawn from these
 //! and from the results, and from nothing else, so that they can be drawn again without a run.
 
+mod figure1;
 mod overview;
+mod shapes;
 
 use std::collections::BTreeMap;
 
@@ -62,12 +64,12 @@ pub(crate) struct Sources {
 
 /// All documents.
 pub(crate) fn documents() -> Vec<Document> {
-    vec![overview::document()]
+    vec![overview::document(), figure1::document()]
 }
 
 /// All figures, in the paper's order.
 pub(crate) fn figures() -> Vec<Figure> {
-    vec![overview::figure()]
+    vec![overview::figure(), figure1::figure()]
 }
 
 /// Computes the documents that go with these experiments.

@@ -54,7 +54,11 @@ pub(super) fn words(item: &Item, view: &View, scene: &mut Scene) {
             if shift.0.hypot(shift.1) > FAR {
                 scene.add(polyline(&[at, to], Color::from(*color), 0.8));
             }
-            let (gap, anchor) = if shift.0 < 0.0 { (-3.0, TextAnchor::End) } else { (3.0, TextAnchor::Start) };
+            let (gap, anchor) = match shift.0 {
+                0.0 => (0.0, TextAnchor::Middle),
+                right if right < 0.0 => (-3.0, TextAnchor::End),
+                _ => (3.0, TextAnchor::Start),
+            };
             scene.add(legend::text((to.x + gap, to.y + 4.0), text, anchor, color, None));
         }
         Item::Mark { at, text, color } => {
@@ -77,7 +81,7 @@ pub(super) fn area(fill: &Fill, opacity: f64) -> Primitive {
     let mut d = String::new();
     for (i, point) in fill.outline.iter().enumerate() {
         let command = if i == 0 { 'M' } else { 'L' };
-        let _ = write!(d, "{command}{:.1} {:.1}", point.x, point.y);
+        let _ = write!(d, "{command}{:.2} {:.2}", point.x, point.y);
     }
     Primitive::Path(Box::new(PathData {
         d: d + "Z",

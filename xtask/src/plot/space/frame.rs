@@ -121,14 +121,17 @@ impl Frame {
     }
 }
 
-/// Round values from low to high, about so many.
+/// Round values from low to high, about so many, and at least two.
 fn ticks(low: f64, high: f64, about: f64) -> Vec<f64> {
-    let rough = (high - low) / about;
-    let power = 10_f64.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|step| step * power).find(|step| *step >= rough * 0.999);
-    let step = step.unwrap_or(10.0 * power);
-    let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
-    (first..=last).map(|i| i as f64 * step).collect()
+    let power = 10_f64.powf(((high - low) / about).log10().floor());
+    let every = |step: f64| {
+        let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
+        (first..=last).map(|i| i as f64 * step).collect::<Vec<_>>()
+    };
+    let enough = |ticks: &Vec<f64>| ticks.len() >= 2;
+    let coarsest = [10.0, 5.0, 2.0, 1.0, 0.5].map(|step| step * power);
+    let not_finer = coarsest.iter().rposition(|step| step * about >= 0.999 * (high - low)).unwrap_or(0);
+    coarsest[not_finer..].iter().map(|&step| every(step)).find(enough).unwrap_or_else(|| vec![low, high])
 }
 
 /// Digits after the point that tell the ticks apart.
@@ -158,7 +161,7 @@ mod tests {
         fn ticks_are_round_and_within(low in -1e3..1e3, length in 1e-3..1e4, about in 2.0..12.0) {
             let high = low + length;
             let ticks = ticks(low, high, about);
-            prop_assert!(!ticks.is_empty() && ticks.len() as f64 <= about + 2.0);
+            prop_assert!(ticks.len() >= 2 && ticks.len() as f64 <= 2.0 * about + 2.0);
             let slack = 1e-6 * length;
             prop_assert!(ticks.iter().all(|tick| (low - slack..=high + slack).contains(tick)));
             let text = |tick: &f64| format!("{:.*}", decimals(&ticks), tick);

@@ -68,7 +68,8 @@ pub(crate) enum Item {
         size: Vector3<f64>,
         paint: Paint,
     },
-    /// A word, this many pixels right of and below a point, with a line to the point where it is far.
+    /// A word, this many pixels right of and below a point, with a line to the point where it is far; its middle is
+    /// there where it is neither to the right nor to the left.
     Note {
         at: Point3<f64>,
         text: String,
@@ -125,6 +126,10 @@ fn square(centre: &Point3<f64>, radius: f64, camera: &Camera) -> [Point3<f64>; 4
 
 fn note_room(text: &str, (right, down): (f64, f64)) -> Room {
     let (width, height) = (legend::width(text, WORDS), f64::from(WORDS));
-    let (left, right) = if right < 0.0 { (width - right, 0.0) } else { (0.0, width + right) };
+    let (left, right) = match right {
+        0.0 => (width / 2.0, width / 2.0),
+        _ if right < 0.0 => (width - right, 0.0),
+        _ => (0.0, width + right),
+    };
     Room { left, right, up: (height / 2.0 - down).max(0.0), down: (height / 2.0 + down).max(0.0) }
 }

@@ -4,7 +4,7 @@ use kuva::render::color::Color;
 use nalgebra::Vector3;
 
 /// What is in full shadow keeps this share of its lightness.
-const SHADOW: f64 = 0.62;
+const SHADOW: f64 = 0.66;
 
 /// Towards the light, on the panel: right, down, towards the viewer.
 pub(super) fn light() -> Vector3<f64> {

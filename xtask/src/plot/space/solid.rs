@@ -17,7 +17,7 @@ const RIBS: usize = 36;
 /// Great circles of a ball.
 const MERIDIANS: usize = 12;
 /// Steps of shading on a round body: how far each is drawn together, and how much light it gets.
-const STEPS: [(f64, f64); 4] = [(0.0, 0.2), (0.2, 0.45), (0.42, 0.7), (0.66, 0.95)];
+const STEPS: [(f64, f64); 6] = [(0.0, 0.25), (0.13, 0.42), (0.27, 0.58), (0.42, 0.73), (0.58, 0.87), (0.75, 1.0)];
 
 /// All points nearer than `radius` to the line between two points; all in pixels.
 pub(super) fn capsule(ends: [Point3<f64>; 2], radius: f64, paint: &Paint) -> Body {

@@ -46,7 +46,18 @@ const HALVINGS: usize = 60;
 
 impl View {
     /// The largest view that has everything in an area, in its middle.
+    ///
+    /// Words too long for the area are cut off, and the scene is as large as without them.
     pub(super) fn fit(camera: &Camera, reaches: &[Reach], area: Area) -> Self {
+        let view = Self::fit_all(camera, reaches, area);
+        if view.scale > 0.0 {
+            return view;
+        }
+        let bare: Vec<_> = reaches.iter().map(|reach| Reach::bare(reach.at)).collect();
+        Self::fit_all(camera, &bare, area)
+    }
+
+    fn fit_all(camera: &Camera, reaches: &[Reach], area: Area) -> Self {
         let mut axes = camera.axes();
         axes.row_mut(1).neg_mut();
         let spans = |scale| {

@@ -1,0 +1,134 @@
+//! Robots as pictures show them: posed shapes, limbs in one piece.
+
+use anyhow::bail;
+use kinematics::{CollisionShape, Geometry, LinkPoses, RobotModel};
+use nalgebra::{IsometryMatrix3, Matrix3, Point3, Rotation3, Translation3, Vector3};
+use serde::{Deserialize, Serialize};
+
+use super::rounded;
+use crate::plot::{Item, Paint};
+
+/// A shape of a link and its pose in the frame of the root, metres.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Shape {
+    pub(super) link: String,
+    pub(super) kind: Kind,
+    /// \[radius\], \[radius, length along z\], or whole lengths along x, y, z.
+    pub(super) size: Vec<f64>,
+    pub(super) translation: [f64; 3],
+    /// By rows.
+    pub(super) rotation: [f64; 9],
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Kind {
+    Sphere,
+    Cylinder,
+    Box,
+}
+
+/// Two spheres and a cylinder whose ends and radii differ by less than this are one limb, metres.
+const SAME: f64 = 1e-4;
+
+/// All collision shapes of a robot in these poses.
+pub(super) fn posed(robot: &RobotModel, poses: &LinkPoses<'_>) -> anyhow::Result<Vec<Shape>> {
+    let shape = |CollisionShape { link, origin, geometry }: &CollisionShape| {
+        let (kind, size) = match geometry {
+            Geometry::Sphere { radius } => (Kind::Sphere, vec![*radius]),
+            Geometry::Cylinder { radius, length } => (Kind::Cylinder, vec![*radius, *length]),
+            Geometry::Box { size } => (Kind::Box, size.iter().copied().collect()),
+            other => bail!("link {:?} has a shape that is not drawn: {other:?}", robot.link_name(*link)),
+        };
+        let pose = poses.pose(*link) * origin;
+        let (translation, rotation) = numbers(&pose);
+        Ok(Shape { link: robot.link_name(*link).to_owned(), kind, size, translation, rotation })
+    };
+    robot.collision_shapes()?.iter().map(shape).collect()
+}
+
+/// A pose as documents hold it.
+pub(super) fn numbers(pose: &IsometryMatrix3<f64>) -> ([f64; 3], [f64; 9]) {
+    let rotation = pose.rotation.matrix();
+    let place = |i: usize| rounded(pose.translation.vector[i], 5);
+    (std::array::from_fn(place), std::array::from_fn(|i| rounded(rotation[(i / 3, i % 3)], 6)))
+}
+
+/// A pose that a document holds.
+pub(super) fn pose(translation: &[f64; 3], rotation: &[f64; 9]) -> IsometryMatrix3<f64> {
+    let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_row_slice(rotation));
+    IsometryMatrix3::from_parts(Translation3::from(Vector3::from(*translation)), rotation)
+}
+
+/// The shapes as things in space, each painted after its link; a cylinder with a sphere at either end is a limb.
+pub(super) fn items(shapes: &[Shape], paint: impl Fn(&str) -> Paint) -> Vec<Item> {
+    let limbs: Vec<(&Shape, [usize; 2])> =
+        shapes.iter().filter_map(|shape| Some((shape, caps(shape, shapes)?))).collect();
+    let is_cap = |index: usize| limbs.iter().any(|(_, caps)| caps.contains(&index));
+    let item = |(index, shape): (usize, &Shape)| {
+        let paint = paint(&shape.link);
+        let limb = limbs.iter().any(|(cylinder, _)| std::ptr::eq(*cylinder, shape));
+        let pose = pose(&shape.translation, &shape.rotation);
+        match (shape.kind, &shape.size[..]) {
+            (Kind::Sphere, _) if is_cap(index) => None,
+            (Kind::Sphere, &[radius]) => Some(Item::Ball { centre: pose * Point3::origin(), radius, paint }),
+            (Kind::Cylinder, &[radius, length]) if limb => {
+                Some(Item::Capsule { ends: ends(&pose, length), radius, paint })
+            }
+            (Kind::Cylinder, &[radius, length]) => Some(Item::Cylinder { ends: ends(&pose, length), radius, paint }),
+            (Kind::Box, &[x, y, z]) => Some(Item::Block { pose, size: Vector3::new(x, y, z), paint }),
+            _ => None,
+        }
+    };
+    shapes.iter().enumerate().filter_map(item).collect()
+}
+
+/// The spheres of the same link and radius at the ends of a cylinder.
+fn caps(shape: &Shape, shapes: &[Shape]) -> Option<[usize; 2]> {
+    let (Kind::Cylinder, &[radius, length]) = (shape.kind, &shape.size[..]) else { return None };
+    let [bottom, top] = ends(&pose(&shape.translation, &shape.rotation), length);
+    let at = |end: Point3<f64>| {
+        shapes.iter().position(|other| {
+            let near = (Point3::from(other.translation) - end).norm() < SAME;
+            other.kind == Kind::Sphere && other.link == shape.link && near && (other.size[0] - radius).abs() < SAME
+        })
+    };
+    Some([at(bottom)?, at(top)?])
+}
+
+fn ends(pose: &IsometryMatrix3<f64>, length: f64) -> [Point3<f64>; 2] {
+    [-0.5, 0.5].map(|share| pose * Point3::new(0.0, 0.0, share * length))
+}
+
+#[cfg(test)]
+mod tests {
+    use kinematics::Workspace;
+
+    use super::*;
+    use crate::robots::upper_body;
+
+    #[test]
+    fn limbs_are_in_one_piece() {
+        let body = upper_body().unwrap();
+        let mut workspace = Workspace::new();
+        let poses = body.robot().forward_kinematics(body.ready().as_view(), &mut workspace).unwrap();
+        let shapes = posed(body.robot(), &poses).unwrap();
+        let items = items(&shapes, |_| Paint::opaque("#ffffff"));
+        let count = |is: fn(&Item) -> bool| items.iter().filter(|item| is(item)).count();
+        // Two legs, two upper arms, two forearms; the head; the neck; feet, body in three, hands.
+        assert_eq!(count(|item| matches!(item, Item::Capsule { .. })), 6);
+        assert_eq!(count(|item| matches!(item, Item::Ball { .. })), 1);
+        assert_eq!(count(|item| matches!(item, Item::Cylinder { .. })), 1);
+        assert_eq!(count(|item| matches!(item, Item::Block { .. })), 7);
+        assert_eq!(items.len(), 15);
+    }
+
+    #[test]
+    fn a_document_keeps_a_pose_to_a_hundredth_of_a_millimetre() {
+        let rotation = Rotation3::from_euler_angles(0.3, -1.2, 2.5);
+        let whole = IsometryMatrix3::from_parts(Translation3::new(0.123456789, -4.0, 0.7), rotation);
+        let (translation, rotation) = numbers(&whole);
+        let point = Point3::new(0.3, -0.2, 0.5);
+        assert!((pose(&translation, &rotation) * point - whole * point).norm() < 1e-5);
+    }
+}
