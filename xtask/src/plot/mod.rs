@@ -10,6 +10,7 @@
 #![allow(dead_code, unused_imports, reason = "the figures that need them are being drawn")]
 
 mod curves;
+mod dashes;
 mod plane;
 mod space;
 mod style;
@@ -22,7 +23,7 @@ use kuva::render::render::{Primitive, Scene};
 pub(crate) use curves::{Axis, Curve, Curves};
 pub(crate) use plane::{Layer, Plane};
 pub(crate) use space::{Camera, Frame, Item, Paint, Space};
-pub(crate) use style::{Dash, Stroke, Who};
+pub(crate) use style::{Dash, Mark, Stroke, Who};
 pub(crate) use surface::Surface;
 
 /// A scalar field on a grid: `values[row][column]` at (`x[column]`, `y[row]`).
@@ -77,7 +78,10 @@ impl Picture {
 
     /// As pixels.
     pub(crate) fn png(&self) -> anyhow::Result<Vec<u8>> {
-        RasterBackend::new().with_scale(PNG_SCALE).render_scene(&self.0).map_err(anyhow::Error::msg)
+        let mut sheet = Scene::new(self.0.width, self.0.height);
+        sheet.font_family.clone_from(&self.0.font_family);
+        sheet.elements = self.0.elements.iter().flat_map(dashes::drawn).collect();
+        RasterBackend::new().with_scale(PNG_SCALE).render_scene(&sheet).map_err(anyhow::Error::msg)
     }
 }
 

@@ -1,21 +1,33 @@
-use kuva::plot::{ContourPlot, LegendPosition, LinePlot, MarkerShape, QuiverPlot, ScatterPlot};
+use kuva::plot::{
+    BandPlot, ColorMap, ContourPlot, Heatmap, LegendPosition, LinePlot, MarkerShape, QuiverPlot, ScatterPlot,
+};
+use kuva::render::annotations::TextAnnotation;
 use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
 use kuva::render::render::{Scene, render_multiple};
 
-use super::{Field, Panel, Stroke};
+use super::style::heights;
+use super::{Field, Mark, Panel, Stroke};
 
 /// One thing drawn in the plane; later layers lie on top.
 #[derive(Debug, Clone)]
 pub(crate) enum Layer {
     /// Lines of equal value.
     Contours(Field),
+    /// A field in colours, light where it is high, with a scale.
+    Colors(Field),
+    /// A filled polygon that is in one piece on every vertical line.
+    Region { corners: Vec<(f64, f64)>, color: &'static str, opacity: f64 },
     /// A line through points. A label puts it in the legend.
     Path { points: Vec<(f64, f64)>, stroke: Stroke, label: Option<&'static str> },
     /// Crosses.
     Crosses { points: Vec<(f64, f64)>, color: &'static str },
     /// Dots with this radius in pixels.
     Dots { points: Vec<(f64, f64)>, color: &'static str, radius: f64 },
+    /// Marks of this size in pixels. A label puts them in the legend.
+    Marks { points: Vec<(f64, f64)>, mark: Mark, color: &'static str, size: f64, label: Option<&'static str> },
+    /// Words centred just above a point, on top of all layers.
+    Words { at: (f64, f64), text: String },
     /// Arrows (x, y, u, v), in data units, `scale` times as long as they are. A label puts them in the legend.
     Arrows {
         arrows: Vec<(f64, f64, f64, f64)>,
@@ -47,8 +59,8 @@ impl Plane {
 
 impl Panel for Plane {
     fn scene(&self) -> Scene {
-        let plots: Vec<Plot> = self.layers.iter().map(plot).collect();
-        let layout = Layout::auto_from_plots(&plots)
+        let plots: Vec<Plot> = self.layers.iter().filter_map(plot).collect();
+        let mut layout = Layout::auto_from_plots(&plots)
             .with_title(self.title.clone())
             .with_title_size(15)
             .with_x_label(self.x_label)
@@ -59,19 +71,24 @@ impl Panel for Plane {
             .with_y_axis_max(self.y[1])
             .with_show_grid(false)
             .with_legend_position(LegendPosition::OutsideBottomColumns)
+            .with_legend_box(false)
             .with_equal_aspect()
             .with_width(self.size.0)
             .with_height(self.size.1);
+        layout.annotations = self.layers.iter().filter_map(words).collect();
         render_multiple(plots, layout)
     }
 }
 
-fn plot(layer: &Layer) -> Plot {
-    match layer.clone() {
+fn plot(layer: &Layer) -> Option<Plot> {
+    Some(match layer.clone() {
+        Layer::Words { .. } => return None,
         Layer::Contours(Field { x, y, values }) => {
             let contours = ContourPlot::new().with_grid(values, x, y).with_n_levels(12);
             Plot::Contour(contours.with_line_color("#b8b8b8").with_line_width(0.8))
         }
+        Layer::Colors(field) => Plot::Heatmap(colors(&field)),
+        Layer::Region { corners, color, opacity } => Plot::Band(band(&corners).with_color(color).with_opacity(opacity)),
         Layer::Path { points, stroke, label } => {
             let line = LinePlot::new().with_data(points).with_color(stroke.color).with_stroke_width(stroke.width);
             let line = line.with_line_style(stroke.dash.into());
@@ -83,10 +100,68 @@ fn plot(layer: &Layer) -> Plot {
         Layer::Dots { points, color, radius } => {
             Plot::Scatter(ScatterPlot::new().with_data(points).with_color(color).with_size(radius))
         }
+        Layer::Marks { points, mark, color, size, label } => {
+            let marks = ScatterPlot::new().with_data(points).with_color(color).with_size(size).with_marker(mark.into());
+            Plot::Scatter(if let Some(label) = label { marks.with_legend(label) } else { marks })
+        }
         Layer::Arrows { arrows, color, scale, width, label } => {
             let quiver = QuiverPlot::new().with_arrows(arrows).with_color(color).with_scale(scale);
             let quiver = quiver.with_shaft_width(width).with_clip_to_plot_area();
             Plot::Quiver(if let Some(label) = label { quiver.with_legend(label) } else { quiver })
         }
+    })
+}
+
+/// A field as squares between four places of its grid each, with their mean.
+fn colors(field: &Field) -> Heatmap {
+    let mean = |low: &[f64], high: &[f64]| (low[0] + low[1] + high[0] + high[1]) / 4.0;
+    let row = |rows: &[Vec<f64>]| {
+        rows[0].windows(2).zip(rows[1].windows(2)).map(|(low, high)| mean(low, high)).collect::<Vec<_>>()
+    };
+    let cells: Vec<_> = field.values.windows(2).map(row).collect();
+    let (x, y) = (&field.x, &field.y);
+    Heatmap::new()
+        .with_data(cells)
+        .with_x_range(x[0], x[x.len() - 1])
+        .with_y_range(y[0], y[y.len() - 1])
+        .with_cell_size(1.0)
+        .with_color_map(heights())
+}
+
+fn words(layer: &Layer) -> Option<TextAnnotation> {
+    let Layer::Words { at, text } = layer else { return None };
+    Some(TextAnnotation::new(text, at.0, at.1).with_font_size(13))
+}
+
+/// The strip between the lower and the upper edges of a polygon.
+fn band(corners: &[(f64, f64)]) -> BandPlot {
+    let mut x: Vec<f64> = corners.iter().map(|corner| corner.0).collect();
+    x.sort_by(f64::total_cmp);
+    x.dedup();
+    let edges = || corners.iter().zip(corners.iter().cycle().skip(1));
+    // Where edges meet the vertical through x; a vertical edge meets it in both ends.
+    let heights = |at: f64| {
+        edges().filter(move |(a, b)| (a.0.min(b.0)..=a.0.max(b.0)).contains(&at)).flat_map(move |(a, b)| {
+            let share = (at - a.0) / (b.0 - a.0);
+            if a.0 == b.0 { [a.1, b.1] } else { [a.1 + share * (b.1 - a.1); 2] }
+        })
+    };
+    let lower: Vec<f64> = x.iter().map(|&at| heights(at).fold(f64::INFINITY, f64::min)).collect();
+    let upper: Vec<f64> = x.iter().map(|&at| heights(at).fold(f64::NEG_INFINITY, f64::max)).collect();
+    BandPlot::new(x, lower, upper)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polygon_is_filled_between_its_lower_and_upper_edges() {
+        let kite = band(&[(0.0, 0.0), (1.0, -1.0), (4.0, 0.0), (1.0, 1.0)]);
+        assert_eq!(kite.x, [0.0, 1.0, 4.0]);
+        assert_eq!((kite.y_lower, kite.y_upper), (vec![0.0, -1.0, 0.0], vec![0.0, 1.0, 0.0]));
+        let slanted = band(&[(0.0, 0.0), (0.0, 2.0), (2.0, 4.0), (4.0, 2.0)]);
+        assert_eq!((slanted.x, slanted.y_lower), (vec![0.0, 2.0, 4.0], vec![0.0, 1.0, 2.0]));
+        assert_eq!(slanted.y_upper, [2.0, 4.0, 2.0]);
     }
 }

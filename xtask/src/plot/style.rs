@@ -1,4 +1,6 @@
-use kuva::plot::LineStyle;
+use std::sync::Arc;
+
+use kuva::plot::{ColorMap, LineStyle, MarkerShape};
 
 /// Who moves: one colour and line each in every picture, distinct in grey and for colour-blind people.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,4 +79,39 @@ pub(crate) struct Stroke {
     /// Pixels.
     pub(crate) width: f64,
     pub(crate) dash: Dash,
+}
+
+/// The shape of a mark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Mark {
+    Circle,
+    Square,
+    Diamond,
+    /// A triangle that points upwards.
+    Up,
+    /// A triangle that points downwards.
+    Down,
+    Cross,
+}
+
+impl From<Mark> for MarkerShape {
+    fn from(mark: Mark) -> Self {
+        match mark {
+            Mark::Circle => MarkerShape::Circle,
+            Mark::Square => MarkerShape::Square,
+            Mark::Diamond => MarkerShape::Diamond,
+            Mark::Up => MarkerShape::Triangle,
+            Mark::Down => MarkerShape::TriangleDown,
+            Mark::Cross => MarkerShape::Cross,
+        }
+    }
+}
+
+/// Colours of heights: from blue by grey to yellow, the higher the lighter, on all of which black can be seen.
+pub(super) fn heights() -> ColorMap {
+    ColorMap::Custom(Arc::new(|height| {
+        let (r, g, b) = ColorMap::Cividis.map_rgb(height).unwrap_or_default();
+        let [r, g, b] = [r, g, b].map(|channel| 255 - (255 - channel) / 5 * 3);
+        format!("#{r:02x}{g:02x}{b:02x}")
+    }))
 }

@@ -2,6 +2,7 @@
 
 use nalgebra::Point3;
 
+use super::super::dashes::dashed;
 use super::super::{Dash, Stroke};
 use super::body::Slab;
 
@@ -50,37 +51,6 @@ fn straightened(points: &[Point3<f64>]) -> Vec<Point3<f64>> {
         }
         _ => vec![first, last],
     }
-}
-
-/// The parts of a line that a pattern draws; its lengths are measured on the panel.
-fn dashed(points: &[Point3<f64>], pattern: &[f64]) -> Vec<Vec<Point3<f64>>> {
-    if pattern.is_empty() {
-        return vec![points.to_vec()];
-    }
-    let mut dashes = vec![vec![points[0]]];
-    let (mut part, mut left) = (0, pattern[0]);
-    for pair in points.windows(2) {
-        let (mut from, to) = (pair[0], pair[1]);
-        let mut length = (to.xy() - from.xy()).norm();
-        while length > left {
-            from += (to - from) * (left / length);
-            length -= left;
-            part = (part + 1) % pattern.len();
-            left = pattern[part];
-            if part % 2 == 0 {
-                dashes.push(vec![from]);
-            } else if let Some(dash) = dashes.last_mut() {
-                dash.push(from);
-            }
-        }
-        left -= length;
-        if part % 2 == 0
-            && let Some(dash) = dashes.last_mut()
-        {
-            dash.push(to);
-        }
-    }
-    dashes
 }
 
 /// With points in between, so that no piece is long or passes through a plate.
