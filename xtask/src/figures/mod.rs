@@ -2,6 +2,9 @@
 //! and from the results, and from nothing else, so that they can be drawn again without a run.
 
 mod figure1;
+mod figure2;
+mod figure4;
+mod figure_b1;
 mod overview;
 mod shapes;
 
@@ -64,12 +67,12 @@ pub(crate) struct Sources {
 
 /// All documents.
 pub(crate) fn documents() -> Vec<Document> {
-    vec![overview::document(), figure1::document()]
+    vec![overview::document(), figure1::document(), figure2::document(), figure4::document(), figure_b1::document()]
 }
 
 /// All figures, in the paper's order.
 pub(crate) fn figures() -> Vec<Figure> {
-    vec![overview::figure(), figure1::figure()]
+    vec![overview::figure(), figure1::figure(), figure2::figure(), figure4::figure(), figure_b1::figure()]
 }
 
 /// Computes the documents that go with these experiments.

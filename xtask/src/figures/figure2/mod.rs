@@ -1,0 +1,164 @@
+//! Fig. 2: a finger that stretches, free and along a box, and what both are in the space of its joints.
+
+mod contact;
+
+use constraints::{PfaffianConstraint, Unconstrained};
+use motion::Policy;
+use nalgebra::dvector;
+use serde::{Deserialize, Serialize};
+
+use self::contact::{FACE, Finger, Movement, touching};
+use super::{Csv, Document, Drawing, Figure, Sources, rounded};
+use crate::plot::{Dash, Layer, Mark, Picture, Plane, Stroke};
+
+/// Seconds at which postures are drawn, and the colours, ever darker, of the free and of the stopped finger.
+const POSTURES: [(f64, &str, &str, &str); 5] = [
+    (0.0, "at 0 s", "#f3c6a5", "#d0d0d0"),
+    (0.35, "0.35 s", "#e8a070", "#a8a8a8"),
+    (0.8, "0.8 s", "#dd7a38", "#808080"),
+    (1.5, "1.5 s", "#d55e00", "#505050"),
+    (8.0, "8 s", "#7a3600", "#000000"),
+];
+
+const FREE: &str = "#d55e00";
+const STOPPED: &str = "#000000";
+const BOX: &str = "#3c3c3c";
+
+/// Arrows are drawn as long as so many seconds of movement.
+const ARROW_SECONDS: f64 = 0.17;
+
+pub(crate) fn document() -> Document {
+    Document { id: "figure2", experiment: None, compute: |_| Ok(serde_json::to_value(shown()?)?) }
+}
+
+pub(crate) fn figure() -> Figure {
+    Figure {
+        id: "figure2",
+        title: "Figure 2: one policy, two movements",
+        caption: "A finger of two joints stretches: its policy takes both angles to zero. (a) Nothing is in its way. (b) The same \
+                  policy, but a box stops the tip, which slides along it to where the policy presses straight against it; the later, the \
+                  darker. (c) The same in the space of the angles: red the policy and the free movement; in the grey region the \
+                  tip would be in the box, and on its edge the box leaves of the policy what the black arrows show. The paper's \
+                  finger and box are of unknown size; here both movements are simulated, with contact between the tip and one \
+                  face of the box.",
+        experiment: None,
+        needs: &["figure2"],
+        draw,
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+struct Shown {
+    free: Movement,
+    stopped: Movement,
+    /// Angles at which the tip touches the box, all around those at which it would be inside.
+    touching: Vec<(f64, f64)>,
+    /// (q₁, q₂, u₁, u₂).
+    unconstrained: Vec<(f64, f64, f64, f64)>,
+    constrained: Vec<(f64, f64, f64, f64)>,
+}
+
+fn shown() -> anyhow::Result<Shown> {
+    let finger = Finger::new()?;
+    let contact = finger.contact()?;
+    let touching: Vec<_> = touching(72).into_iter().map(|(a, b)| (rounded(a, 4), rounded(b, 4))).collect();
+    let action = |(a, b): (f64, f64), constraint: &dyn PfaffianConstraint| {
+        let q = dvector![a, b];
+        let action = finger.policy.action(q.as_view());
+        let left = constraint.null_space_projector(q.as_view(), 0.0)?.project(action.as_view());
+        anyhow::Ok((rounded(a, 4), rounded(b, 4), rounded(left[0], 4), rounded(left[1], 4)))
+    };
+    let grid = (0..81).map(|i| (f64::from(i % 9 - 4) * 0.45, f64::from(i / 9) * 0.45 - 2.35));
+    // A thousandth inside, so that the tip touches whatever the rounding.
+    let pressed = touching.iter().step_by(3).map(|(a, b)| (0.999 * a, 0.999 * b));
+    Ok(Shown {
+        unconstrained: grid.map(|q| action(q, &Unconstrained { n_states: 2 })).collect::<anyhow::Result<_>>()?,
+        constrained: pressed.map(|q| action(q, &contact)).collect::<anyhow::Result<_>>()?,
+        free: finger.movement(&Unconstrained { n_states: 2 })?,
+        stopped: finger.movement(&contact)?,
+        touching,
+    })
+}
+
+fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+    let shown: Shown = sources.document("figure2")?;
+    let free = POSTURES.map(|(time, label, color, _)| (time, label, color));
+    let stopped = POSTURES.map(|(time, label, _, color)| (time, label, color));
+    let corners = vec![(FACE, -0.065), (0.108, -0.065), (0.108, 0.06), (FACE, 0.06)];
+    let the_box = Layer::Region { corners, color: BOX, opacity: 1.0 };
+    let (free, stopped) = (postures(&shown.free, free), postures(&shown.stopped, stopped));
+    let panels = [
+        place("(a) free", free),
+        place("(b) along a box", [the_box].into_iter().chain(stopped).collect()),
+        angles(&shown),
+    ];
+    let [a, b, c] = &panels;
+    let tables = vec![table("free", &shown.free), table("along_box", &shown.stopped)];
+    Ok(Drawing { picture: Picture::rows(&[&[a, b, c]]), tables })
+}
+
+/// Where the finger is, metres.
+fn place(title: &str, layers: Vec<Layer>) -> Plane {
+    let (x, y) = ([-0.015, 0.115], [-0.07, 0.065]);
+    Plane { title: title.to_owned(), x_label: "x [m]", y_label: "y [m]", x, y, layers, size: (390.0, 440.0) }
+}
+
+/// The finger at a few times, and the way of its tip.
+fn postures(movement: &Movement, times: [(f64, &'static str, &'static str); 5]) -> Vec<Layer> {
+    let tip = movement.places.iter().map(|places| places[2]).collect();
+    let way = Layer::Path {
+        points: tip,
+        stroke: Stroke { color: "#0072b2", width: 1.4, dash: Dash::Dotted },
+        label: Some("tip"),
+    };
+    let posture = |(time, label, color): (f64, &'static str, &'static str)| {
+        let points = movement.places[Movement::sample(time)].to_vec();
+        let stroke = Stroke { color, width: 3.5, dash: Dash::Solid };
+        [Layer::Path { points: points.clone(), stroke, label: Some(label) }, Layer::Dots { points, color, radius: 3.5 }]
+    };
+    times.into_iter().flat_map(posture).chain([way]).collect()
+}
+
+/// Both movements in the space of the angles, radians.
+fn angles(shown: &Shown) -> Plane {
+    let arrows = |arrows: &[_], color, width, seconds, label| Layer::Arrows {
+        arrows: arrows.to_vec(),
+        color,
+        scale: seconds,
+        width,
+        label: Some(label),
+    };
+    let path = |movement: &Movement, color, width, dash| Layer::Path {
+        points: movement.angles.clone(),
+        stroke: Stroke { color, width, dash },
+        label: None,
+    };
+    let start = Layer::Marks {
+        points: vec![shown.free.angles[0]],
+        mark: Mark::Circle,
+        color: "#0072b2",
+        size: 4.0,
+        label: Some("start"),
+    };
+    let inside = Layer::Region { corners: shown.touching.clone(), color: BOX, opacity: 0.25 };
+    let layers = vec![
+        inside,
+        arrows(&shown.unconstrained, FREE, 1.0, ARROW_SECONDS, "policy, free"),
+        path(&shown.free, FREE, 2.0, Dash::Dashed),
+        path(&shown.stopped, STOPPED, 3.0, Dash::Solid),
+        arrows(&shown.constrained, STOPPED, 1.8, 2.0 * ARROW_SECONDS, "at the box (× 2)"),
+        start,
+        Layer::Words { at: (-0.32, 0.6), text: "in the box".to_owned() },
+    ];
+    let (title, x, y) = ("(c) both, in joint space".to_owned(), [-2.0, 2.0], [-2.5, 1.5]);
+    Plane { title, x_label: "q₁ [rad]", y_label: "q₂ [rad]", x, y, layers, size: (390.0, 440.0) }
+}
+
+fn table(name: &'static str, movement: &Movement) -> Csv {
+    let header = ["seconds", "q1", "q2", "tip_x", "tip_y"].map(str::to_owned).to_vec();
+    let row = |sample: usize| {
+        let ((a, b), [.., tip]) = (movement.angles[sample], movement.places[sample]);
+        vec![Movement::time(sample), a, b, tip.0, tip.1]
+    };
+    Csv { name, header, rows: (0..movement.angles.len()).map(row).collect() }
+}
