@@ -106,10 +106,19 @@ impl Line<'_> {
         self.cell.n()
     }
 
+    /// Our mean.
+    pub(super) fn mean(&self) -> String {
+        self.measure.show(self.cell.mean)
+    }
+
+    /// Our standard deviation.
+    pub(super) fn spread(&self) -> String {
+        self.cell.sd.map_or(NOTHING.to_owned(), |sd| self.measure.show(sd))
+    }
+
     /// Our mean ± standard deviation.
     pub(super) fn ours(&self) -> String {
-        let spread = self.cell.sd.map_or(NOTHING.to_owned(), |sd| self.measure.show(sd));
-        format!("{} ± {spread}", self.measure.show(self.cell.mean))
+        format!("{} ± {}", self.mean(), self.spread())
     }
 
     /// Our median.
@@ -137,11 +146,14 @@ impl Line<'_> {
         self.cell.verdict.map_or(NOTHING, Verdict::word)
     }
 
-    /// The other seed's mean and verdict.
+    /// The other seed's mean.
     pub(super) fn second(&self) -> String {
-        let Some(cell) = self.second else { return NOTHING.to_owned() };
-        let verdict = cell.verdict.map_or(String::new(), |verdict| format!(" {}", verdict.word()));
-        format!("{}{verdict}", self.measure.show(cell.mean))
+        self.second.map_or(NOTHING.to_owned(), |cell| self.measure.show(cell.mean))
+    }
+
+    /// The other seed's verdict, where there is one.
+    pub(super) fn second_verdict(&self) -> &'static str {
+        self.second.and_then(|cell| cell.verdict).map_or("", Verdict::word)
     }
 }
 

@@ -51,7 +51,9 @@ fn table<'a>(compared: &Compared<'a>) -> String {
             column("verdict", |line| line.verdict().to_owned()),
         ]);
     }
-    columns.extend(compared.second.map(|second| column(&format!("seed {}", second.seed), Line::second)));
+    let second: fn(&Line<'a>) -> String =
+        |line| format!("{} {}", line.second(), line.second_verdict()).trim_end().to_owned();
+    columns.extend(compared.second.map(|other| column(&format!("seed {}", other.seed), second)));
     let header: Vec<&str> = ["row"].into_iter().chain(columns.iter().map(|(name, _)| name.as_str())).collect();
     let mut rows = Vec::new();
     for row in &compared.result.rows {
@@ -70,4 +72,45 @@ fn explanations(compared: &Compared<'_>) -> String {
     let word = |(line, word): &(Line<'_>, &str)| format!("- `{}`, {}: {word}\n", line.row.id, line.measure.name());
     let words: String = compared.standing_out().iter().map(word).collect();
     if words.is_empty() { words } else { format!("What stands out:\n\n{words}\n") }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::experiments::registry;
+    use crate::measure::Measure;
+    use crate::results::{Cell, ExperimentResult, RowResult, Run};
+
+    #[test]
+    fn what_the_paper_shows_as_curves_has_no_columns_for_printed_figures() {
+        let experiments = registry().unwrap();
+        let curves = experiments.iter().find(|experiment| experiment.paper.is_empty()).unwrap();
+        let cell = Cell {
+            mean: 0.25,
+            sd: Some(0.125),
+            median: 0.5,
+            values: vec![Some(0.25), None, Some(0.5)],
+            paper: None,
+            verdict: None,
+        };
+        let measures = BTreeMap::from([(Measure::Nupe, cell)]);
+        let row = RowResult { id: "a-row".to_owned(), data_sets: 3, failed: 1, measures };
+        let result = ExperimentResult { id: curves.id.to_owned(), section: "9".to_owned(), rows: vec![row] };
+        let run = Run { threads: 1, wall_seconds: 1.0, cpu_seconds: 1.0, version: "1".to_owned() };
+        let results = Results { schema: 1, seed: 3, quick: false, run, experiments: vec![result] };
+        let text = markdown(&experiments, &results, None);
+        let (_, section) = text.split_once("## ").unwrap();
+        let lines: Vec<&str> = section.lines().filter(|line| !line.is_empty()).skip(2).collect();
+        let expected = [
+            "Seed 3.",
+            "**`a-row`: 1 of 3 data sets failed.**",
+            "| row     | measure | ours            | median | n |",
+            "| ------- | ------- | --------------- | ------ | - |",
+            "| `a-row` | nupe    | 0.2500 ± 0.1250 | 0.5000 | 2 |",
+            "With fewer than 20 data sets single cells mean little.",
+        ];
+        assert_eq!(lines, expected);
+    }
 }

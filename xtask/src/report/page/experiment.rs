@@ -3,19 +3,20 @@
 use maud::{Markup, html};
 
 use super::emphasis::emphasised;
-use super::figure;
 use super::strip::key;
 use super::table::{columns, grid, is_printed, list, scales};
 use super::verdict_bar::{bar, words};
-use crate::figures::Figure;
-use crate::report::compared::{Compared, FEW};
+use super::{Contents, figure, view};
+use crate::report::compared::{Compared, FEW, Line};
 use crate::report::tally::Tally;
+use crate::verdict::Verdict;
 
 /// The section of an experiment.
-pub(super) fn section(compared: &Compared<'_>, figures: &[(&Figure, String)]) -> Markup {
+pub(super) fn section(compared: &Compared<'_>, contents: &Contents<'_>) -> Markup {
     let experiment = compared.experiment;
     let tally = Tally::of([compared.result]);
-    let own = figures.iter().filter(|(figure, _)| figure.experiment == Some(experiment.id));
+    let figures: Vec<_> =
+        contents.figures.iter().filter(|(figure, _)| figure.experiment == Some(experiment.id)).collect();
     html! {
         header {
             h2 { (experiment.title) }
@@ -25,7 +26,8 @@ pub(super) fn section(compared: &Compared<'_>, figures: &[(&Figure, String)]) ->
         @for (row, what) in compared.failures() { p .notice { code { (row) } ": " (what) "." } }
         @if compared.is_printed() { (printed(compared)) (standing_out(compared)) }
         (left_open(compared))
-        @for (figure, svg) in own { (figure::card(figure, svg)) }
+        @if experiment.id == view::EXPERIMENT { (view::view(contents.sources, &figures)) }
+        @for (figure, svg) in &figures { (figure::card(figure, svg)) }
         @if !compared.is_printed() { (curves(compared)) }
     }
 }
@@ -77,15 +79,21 @@ fn standing_out(compared: &Compared<'_>) -> Markup {
         } @else if !cells.is_empty() {
             h3 { "What stands out" }
             dl .reasons {
-                @for (line, word) in cells {
-                    div .{ "is-" (line.verdict()) } {
-                        dt { code { (line.row.id) } " " (line.measure.label()) }
-                        dd { (emphasised(&sentence(word))) }
+                // Neighbours of which the same is to be said stand together.
+                @for alike in cells.chunk_by(|(_, a), (_, b)| a == b) {
+                    div .{ "is-" (worst(alike)) } {
+                        @for (line, _) in alike { dt { code { (line.row.id) } " " (line.measure.label()) } }
+                        dd { (emphasised(&sentence(alike[0].1))) }
                     }
                 }
             }
         }
     }
+}
+
+/// The word of the worst verdict among cells.
+fn worst(cells: &[(Line<'_>, &str)]) -> &'static str {
+    cells.iter().filter_map(|(line, _)| line.cell.verdict).max().map_or("", Verdict::word)
 }
 
 /// With a capital.
@@ -111,7 +119,9 @@ fn decision(experiment: &str) -> Option<&'static str> {
         "table1" | "table1-literal" => "table1.md",
         "table2" => "table2.md",
         "asimo22" => "asimo22.md",
-        "three_link" | "figure9" => "three-link.md",
+        "figure6_left" | "figure6_right" => "figure6.md",
+        "three_link" => "three-link.md",
+        "figure9" => "figure9.md",
         _ => return None,
     })
 }

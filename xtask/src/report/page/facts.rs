@@ -21,7 +21,7 @@ pub(super) fn facts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
             div { dt { "Seed" } dd { (results.seed) } }
             div { dt { "Data sets" } dd { (all.iter().map(data_sets).sum::<usize>()) } }
             div { dt { "Time" } dd { (time(run.wall_seconds)) " on " (threads) } }
-            @if let Some(second) = contents.second { div { dt { "Held against" } dd { "seed " (second.seed) } } }
+            @if let Some(second) = contents.second { div { dt { "Second seed" } dd { (second.seed) } } }
         }
         @if results.quick {
             p .notice { "A quick run: a few data sets a row show that everything works, not how well." }

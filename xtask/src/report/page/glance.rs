@@ -36,12 +36,16 @@ fn how_it_went(all: &[Compared<'_>]) -> Markup {
     html! {
         @if total.total() > 0 {
             div .total {
-                p .asked { "Of " b { (total.total()) } " figures that the paper prints" }
+                p .asked { "Of " b { (total.total()) } " numbers that the paper prints" }
                 (words(&total))
                 (bar(&total))
+                p .rule {
+                    "Agree: our mean is within one printed standard deviation of the printed mean. Better: a lower error than that. "
+                    a href="#method" { "The rule in full" }
+                }
             }
             table .tallies {
-                thead { tr { th scope="col" { "Experiment" } th scope="col" { "Section" } th scope="col" colspan="2" { "Printed figures" } } }
+                thead { tr { th scope="col" { "Experiment" } th scope="col" { "Section" } th scope="col" colspan="2" { "Printed numbers" } } }
                 tbody { @for compared in all { (tally_of(compared)) } }
             }
         }
@@ -72,7 +76,7 @@ fn not_reached(all: &[Compared<'_>]) -> Markup {
         .collect();
     html! {
         h2 .small { "Not reached" }
-        @if cells.is_empty() { p { "Nothing: every printed figure is reached or bettered." } }
+        @if cells.is_empty() { p { "Nothing: every printed number is reached or bettered." } }
         @else {
             dl .reasons {
                 @for (experiment, line) in cells {

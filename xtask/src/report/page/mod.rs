@@ -10,6 +10,7 @@ mod scale;
 mod strip;
 mod table;
 mod verdict_bar;
+mod view;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -60,7 +61,7 @@ pub(crate) fn page(contents: &Contents<'_>) -> String {
                 meta http-equiv="Content-Security-Policy" content=(POLICY);
                 title { (title) }
                 link rel="icon" href="data:,";
-                style { (PreEscaped(STYLE)) }
+                style { (PreEscaped(STYLE)) (PreEscaped(view::STYLE)) }
             }
             body {
                 a .skip href="#main" { "Skip to the results" }
@@ -70,7 +71,7 @@ pub(crate) fn page(contents: &Contents<'_>) -> String {
                     @for part in &parts { section id=(part.id) { (part.body) } }
                 }
                 dialog #enlarged aria-label="Enlarged figure" {}
-                script { (PreEscaped(SCRIPT)) }
+                script type="module" { (PreEscaped(SCRIPT)) }
             }
         }
     };
@@ -82,7 +83,7 @@ fn parts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Vec<Part> {
     let experiment = |compared: &Compared<'_>| Part {
         id: compared.experiment.id.to_owned(),
         title: compared.experiment.title.to_owned(),
-        body: experiment::section(compared, &contents.figures),
+        body: experiment::section(compared, contents),
     };
     let mut parts: Vec<Part> = all.iter().map(experiment).collect();
     let shown = |id: Option<&str>| id.is_some_and(|id| all.iter().any(|compared| compared.experiment.id == id));

@@ -8,8 +8,11 @@ const WIDE: f64 = 30.0;
 /// Room beyond the outermost values, as a share of the scale.
 const MARGIN: f64 = 0.03;
 
-/// About so many ticks.
-const TICKS: f64 = 3.0;
+/// Ticks at most.
+const TICKS: f64 = 4.2;
+
+/// Letters that the labels of all ticks may have without touching.
+const LETTERS: usize = 22;
 
 /// Decades from which only whole ones are ticked.
 const MANY_DECADES: f64 = 1.7;
@@ -67,7 +70,7 @@ impl Scale {
 
     /// Round values on it, as they are to be read.
     pub(super) fn ticks(self) -> Vec<(f64, String)> {
-        match self.step {
+        let ticks: Vec<_> = match self.step {
             Step::Linear => {
                 let step = round_step((self.to - self.from) / TICKS);
                 let first = (self.from / step).ceil() as i32;
@@ -81,7 +84,9 @@ impl Scale {
                 let inside = values.filter(|value| (self.from..=self.to).contains(&value.log10()));
                 inside.map(|value| (value, short(value, value))).collect()
             }
-        }
+        };
+        let letters: usize = ticks.iter().map(|(_, label)| label.len()).sum();
+        ticks.into_iter().step_by(letters.div_ceil(LETTERS).max(1)).collect()
     }
 }
 
@@ -133,9 +138,9 @@ mod tests {
 
     #[test]
     fn ticks_are_round() {
-        assert_eq!(ticks(Scale { step: Step::Linear, from: 0.0, to: 82.0 }), ["0", "50"]);
-        assert_eq!(ticks(Scale { step: Step::Linear, from: 0.00064, to: 0.00072 }), ["6.5e-4", "7.0e-4"]);
-        assert_eq!(ticks(Scale { step: Step::Linear, from: 0.0, to: 0.031 }), ["0.00", "0.02"]);
+        assert_eq!(ticks(Scale { step: Step::Linear, from: 0.0, to: 82.0 }), ["0", "20", "40", "60", "80"]);
+        assert_eq!(ticks(Scale { step: Step::Linear, from: 0.00064, to: 0.00072 }), ["6.4e-4", "6.8e-4", "7.2e-4"]);
+        assert_eq!(ticks(Scale { step: Step::Linear, from: 0.0, to: 0.031 }), ["0.00", "0.01", "0.02", "0.03"]);
         assert_eq!(ticks(Scale { step: Step::Logarithmic, from: -3.2, to: 0.2 }), ["0.001", "0.01", "0.1", "1"]);
         assert_eq!(ticks(Scale { step: Step::Logarithmic, from: -2.2, to: -0.7 }), ["0.01", "0.03", "0.1"]);
         assert_eq!(ticks(Scale { step: Step::Logarithmic, from: -5.5, to: -3.0 }), ["1e-5", "0.0001", "0.001"]);

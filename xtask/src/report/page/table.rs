@@ -7,8 +7,7 @@ use maud::{Markup, html};
 use super::scale::Scale;
 use super::strip::{axis, strip};
 use crate::measure::Measure;
-use crate::report::compared::{Compared, Line, NOTHING};
-use crate::results::RowResult;
+use crate::report::compared::{Compared, Line, NOTHING, Second};
 
 /// Rows from which the paper's layout is easier to read than a list.
 const MANY_ROWS: usize = 4;
@@ -49,10 +48,11 @@ pub(super) fn grid(compared: &Compared<'_>, columns: &[Measure], scales: &Scales
                     tr {
                         th scope="row" { (row.id) }
                         @for line in compared.lines_of(row).filter(|line| columns.contains(&line.measure)) {
-                            td .{ "is-" (line.verdict()) } data-measure=(line.measure.name()) data-label=(line.measure.label()) {
-                                span .ours { (line.ours()) } " " (verdict(&line))
-                                span .paper { "paper " (line.paper()) }
+                            td data-row=(row.id) data-measure=(line.measure.name()) data-label=(line.measure.label()) {
+                                (verdict(&line)) (ours(&line))
+                                span .minor { "paper " span .paper { (line.paper()) } }
                                 (strip(&line, scales[&line.measure]))
+                                (axis(scales[&line.measure]))
                             }
                         }
                     }
@@ -62,9 +62,17 @@ pub(super) fn grid(compared: &Compared<'_>, columns: &[Measure], scales: &Scales
     }
 }
 
+/// Whether a list has columns for what is printed.
+#[derive(Clone, Copy, PartialEq)]
+enum Columns {
+    BesidePaper,
+    Alone,
+}
+
 /// A line for each cell that is wanted.
 pub(super) fn list(compared: &Compared<'_>, scales: &Scales, wanted: fn(&Line<'_>) -> bool) -> Markup {
-    let second = compared.second.map(|second| format!("Seed {}", second.seed));
+    let with_paper = compared.lines().any(|line| wanted(&line) && is_printed(&line));
+    let columns = if with_paper { Columns::BesidePaper } else { Columns::Alone };
     html! {
         table .list {
             thead {
@@ -72,42 +80,27 @@ pub(super) fn list(compared: &Compared<'_>, scales: &Scales, wanted: fn(&Line<'_
                     th scope="col" { "Row" }
                     th scope="col" { "Measure" }
                     th scope="col" .number { "Ours" }
-                    th scope="col" .number { "Median" }
-                    th scope="col" .number { "n" }
-                    @if compared.is_printed() {
+                    @if columns == Columns::BesidePaper {
                         th scope="col" .number { "Paper" }
-                        th scope="col" .number { abbr title="difference of the means over its standard error" { "z" } }
                         th scope="col" { "Verdict" }
                     }
-                    @if let Some(second) = &second { th scope="col" .number { (second) } }
+                    @if let Some(second) = compared.second { th scope="col" .number { "Seed " (second.seed) } }
                     th scope="col" { "Each data set" }
                 }
             }
-            @for row in &compared.result.rows { (lines(compared, row, scales, wanted)) }
-        }
-    }
-}
-
-fn lines<'a>(compared: &Compared<'a>, row: &'a RowResult, scales: &Scales, wanted: fn(&Line<'_>) -> bool) -> Markup {
-    let lines: Vec<Line<'_>> = compared.lines_of(row).filter(wanted).collect();
-    let second = compared.second.map(|second| format!("Seed {}", second.seed));
-    html! {
-        @if !lines.is_empty() {
-            tbody data-row=(row.id) {
-                @for (i, line) in lines.iter().enumerate() {
-                    tr .{ "is-" (word_or(line, "unprinted")) } data-row=(row.id) data-measure=(line.measure.name()) {
-                        @if i == 0 { th scope="rowgroup" rowspan=(lines.len()) { (row.id) } }
-                        th scope="row" { (line.measure.label()) }
-                        td .number data-label="Ours" { (line.ours()) }
-                        td .number data-label="Median" { (line.median()) }
-                        td .number data-label="n" { (line.n()) }
-                        @if compared.is_printed() {
-                            td .number data-label="Paper" { (line.paper()) }
-                            td .number data-label="z" { (line.z()) }
-                            td data-label="Verdict" { (verdict(line)) }
+            @for row in &compared.result.rows {
+                @let lines: Vec<Line<'_>> = compared.lines_of(row).filter(wanted).collect();
+                @if !lines.is_empty() {
+                    tbody {
+                        @for (i, line) in lines.iter().enumerate() {
+                            tr data-row=(row.id) data-measure=(line.measure.name()) {
+                                @if i == 0 { th scope="rowgroup" rowspan=(lines.len()) { (row.id) } }
+                                th scope="row" { (line.measure.label()) }
+                                (cells(line, columns))
+                                @if let Some(second) = compared.second { (beside(second, line)) }
+                                td .dots data-label="Each data set" { (strip(line, scales[&line.measure])) (axis(scales[&line.measure])) }
+                            }
                         }
-                        @if let Some(second) = &second { td .number data-label=(second) { (line.second()) } }
-                        td .dots data-label="Each data set" { (strip(line, scales[&line.measure])) (axis(scales[&line.measure])) }
                     }
                 }
             }
@@ -115,8 +108,36 @@ fn lines<'a>(compared: &Compared<'a>, row: &'a RowResult, scales: &Scales, wante
     }
 }
 
-fn word_or<'a>(line: &Line<'_>, otherwise: &'a str) -> &'a str {
-    if line.cell.verdict.is_some() { line.verdict() } else { otherwise }
+/// Ours, and the paper's where there is any.
+fn cells(line: &Line<'_>, columns: Columns) -> Markup {
+    html! {
+        td .number data-label="Ours" {
+            (ours(line))
+            span .minor { "median " span .median { (line.median()) } ", n " span .n { (line.n()) } }
+        }
+        @if columns == Columns::BesidePaper {
+            td .number data-label="Paper" {
+                span .paper { (line.paper()) }
+                @if is_printed(line) { span .minor { "z " span .z { (line.z().replace('-', "−")) } } }
+            }
+            td data-label="Verdict" { (verdict(line)) }
+        }
+    }
+}
+
+/// The same from another seed.
+fn beside(second: Second<'_>, line: &Line<'_>) -> Markup {
+    html! {
+        td .number data-label={ "Seed " (second.seed) } {
+            span .second { (line.second()) }
+            span .minor { (line.second_verdict()) }
+        }
+    }
+}
+
+/// Our mean ± standard deviation.
+fn ours(line: &Line<'_>) -> Markup {
+    html! { span .ours { b { (line.mean()) } " ± " (line.spread()) } }
 }
 
 /// The verdict as a word in its colour.

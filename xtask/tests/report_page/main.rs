@@ -2,9 +2,17 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "../browser/mod.rs"]
 mod browser;
 
+mod keyboard;
+mod looks;
+mod tables;
+
 use browser::{Page, report};
+
+/// Bytes that the page may have.
+const LARGEST: u64 = 10_000_000;
 
 /// The page, unless there is no browser.
 fn page() -> Option<Page> {
@@ -29,4 +37,10 @@ fn what_is_wrong_with_a_page_is_noticed() {
     let complaints = page.complaints().join("\n");
     assert!(complaints.contains("said") && complaints.contains("thrown"), "{complaints}");
     assert_eq!(page.requests(), ["http://127.0.0.1:9/x"]);
+}
+
+#[test]
+fn the_page_is_not_too_large() {
+    let size = std::fs::metadata(report().join("report.html")).unwrap().len();
+    assert!(size < LARGEST, "{size} bytes");
 }

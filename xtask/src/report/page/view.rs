@@ -1,0 +1,65 @@
+//! The grasp to walk around in: the robot, the wall and everybody's hand paths, drawn by a script of the page.
+
+use maud::{Markup, PreEscaped, html};
+
+use crate::figures::{Figure, Sources};
+
+/// The experiment beside which it stands.
+pub(super) const EXPERIMENT: &str = "table2";
+
+/// The figure data that it plays.
+const DOCUMENT: &str = "grasp_playback";
+
+pub(super) const STYLE: &str = include_str!("../../../page/view/view.css");
+
+/// In this order one script.
+const SCRIPT: [&str; 11] = [
+    include_str!("../../../page/view/matrix.js"),
+    include_str!("../../../page/view/robot.js"),
+    include_str!("../../../page/view/meshes.js"),
+    include_str!("../../../page/view/shaders.js"),
+    include_str!("../../../page/view/renderer.js"),
+    include_str!("../../../page/view/camera.js"),
+    include_str!("../../../page/view/gestures.js"),
+    include_str!("../../../page/view/playback.js"),
+    include_str!("../../../page/view/scene.js"),
+    include_str!("../../../page/view/controls.js"),
+    include_str!("../../../page/view/view.js"),
+];
+
+const START: &str = "startView(document.getElementById(\"view\"), \
+                     JSON.parse(document.getElementById(\"grasp-playback\").textContent));";
+
+/// The view; nothing where a run has not computed what it plays. `figures` are those beside it: the first is what is
+/// pointed to where it cannot be drawn.
+pub(super) fn view(sources: &Sources, figures: &[&(&Figure, String)]) -> Markup {
+    let still = figures.first().map(|(figure, _)| format!("#figure-{}", figure.id));
+    html! {
+        @if let Some(playback) = sources.documents.get(DOCUMENT) {
+            h3 #walk { "Walk around it" }
+            div #view data-still=[still] {
+                noscript { "The moving picture needs JavaScript; nothing else here does." }
+            }
+            script type="application/json" id="grasp-playback" { (PreEscaped(within_script(&playback.to_string()))) }
+            script type="module" { (PreEscaped(SCRIPT.concat())) (PreEscaped(START)) }
+        }
+    }
+}
+
+/// JSON that cannot end the element that it stands in.
+fn within_script(json: &str) -> String {
+    json.replace('<', "\\u003c")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn data_cannot_end_their_element() {
+        let data = serde_json::json!({ "name": "</script><!--", "x": [1.5, -2e-9] });
+        let text = within_script(&data.to_string());
+        assert!(!text.contains('<'), "{text}");
+        assert_eq!(serde_json::from_str::<serde_json::Value>(&text).unwrap(), data);
+    }
+}

@@ -1,0 +1,114 @@
+//! The page in the light, in the dark, on a phone and on paper; its pictures.
+
+use std::fs;
+
+use crate::browser::report;
+use crate::page;
+
+/// Widths of windows, CSS pixels: a small phone, a phone, a tablet, a laptop.
+const WIDTHS: [u32; 4] = [320, 390, 768, 1280];
+
+/// Contrast that small text needs at least (WCAG, level AA).
+const CONTRAST: f64 = 4.5;
+
+#[test]
+fn every_figure_is_shown_and_can_be_decoded() {
+    let Some(mut page) = page() else { return };
+    let drawn = fs::read_dir(report().join("figures")).unwrap().map(|entry| entry.unwrap().path());
+    let drawn: Vec<String> = drawn
+        .filter(|path| path.extension().is_some_and(|ending| ending == "svg"))
+        .map(|path| format!("figure-{}", path.file_stem().unwrap().display()))
+        .collect();
+    assert!(!drawn.is_empty());
+    for id in drawn {
+        let image = format!("document.querySelector('#{id} img')");
+        page.wait_until(&format!("{image} && {image}.complete"));
+        let (width, alt): (f64, String) = page.evaluate(&format!("[{image}.naturalWidth, {image}.alt]"));
+        assert!(width > 0.0 && !alt.is_empty(), "{id}: {width} pixels wide, called {alt:?}");
+    }
+}
+
+#[test]
+fn no_window_is_so_narrow_that_the_page_scrolls_sideways() {
+    let Some(mut page) = page() else { return };
+    page.evaluate::<()>("document.querySelectorAll('details').forEach(details => { details.open = true; })");
+    for width in WIDTHS {
+        page.resize(width, 800);
+        let needed: u32 = page.evaluate("document.documentElement.scrollWidth");
+        assert!(needed <= width, "the page needs {needed} of {width} pixels");
+    }
+}
+
+#[test]
+fn light_and_dark_are_readable() {
+    let Some(mut page) = page() else { return };
+    let mut backgrounds = Vec::new();
+    for scheme in ["light", "dark"] {
+        page.prefer("prefers-color-scheme", scheme);
+        backgrounds.push(page.evaluate::<String>("getComputedStyle(document.body).backgroundColor"));
+        for what in [
+            "main p",
+            "nav a",
+            ".minor",
+            ".verdict.is-agrees",
+            ".verdict.is-better",
+            ".verdict.is-worse",
+            "figcaption",
+            "a",
+        ] {
+            let contrast = page.evaluate::<f64>(&format!("{CONTRAST_OF}('main, body', {what:?})"));
+            assert!(contrast >= CONTRAST, "{what} in {scheme}: contrast {contrast:.2}");
+        }
+    }
+    assert_ne!(backgrounds[0], backgrounds[1]);
+}
+
+/// Contrast of an element's letters with what is behind them, by the formula of WCAG 2.
+const CONTRAST_OF: &str = r"((_, selector) => {
+    const channels = (color) => color.match(/[\d.]+/g).map(Number);
+    const opaque = (element) => {
+        for (; element; element = element.parentElement) {
+            const color = channels(getComputedStyle(element).backgroundColor);
+            if ((color[3] ?? 1) === 1) return color;
+        }
+        return [255, 255, 255];
+    };
+    const light = (color) => color.slice(0, 3).map((c) => c / 255)
+        .map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4))
+        .reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0);
+    const element = document.querySelector(selector);
+    const [a, b] = [channels(getComputedStyle(element).color), opaque(element)].map(light);
+    return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+})";
+
+#[test]
+fn paper_shows_what_is_folded() {
+    let Some(mut page) = page() else { return };
+    let open = "document.querySelectorAll('details[open]').length";
+    let all: u32 = page.evaluate("document.querySelectorAll('details').length");
+    assert!(all > 0);
+    assert_eq!(page.evaluate::<u32>(open), 0);
+    page.evaluate::<bool>("dispatchEvent(new Event('beforeprint'))");
+    assert_eq!(page.evaluate::<u32>(open), all);
+    page.evaluate::<bool>("dispatchEvent(new Event('afterprint'))");
+    assert_eq!(page.evaluate::<u32>(open), 0);
+}
+
+#[test]
+fn the_contents_lead_to_every_part_and_tell_where_one_is() {
+    let Some(mut page) = page() else { return };
+    page.prefer("prefers-reduced-motion", "reduce");
+    let parts: Vec<String> = page.evaluate("[...document.querySelectorAll('nav a')].map(a => a.hash)");
+    let sections: Vec<String> = page.evaluate("[...document.querySelectorAll('main > section')].map(s => '#' + s.id)");
+    assert_eq!(parts[1..], sections);
+    for part in parts {
+        let link = page.middle_of(&format!("nav a[href='{part}']"));
+        page.click(link);
+        page.wait_until(&format!("document.querySelector('nav a[aria-current]').hash == '{part}'"));
+        assert!(
+            page.evaluate::<bool>(&format!(
+                "document.querySelector('{part}').getBoundingClientRect().top < innerHeight"
+            ))
+        );
+    }
+}
