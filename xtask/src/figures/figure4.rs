@@ -31,7 +31,7 @@ pub(crate) fn figure() -> Figure {
     Figure {
         id: "figure4",
         title: "Figure 4: a potential and its policy",
-        caption: "A potential with three maxima, which repel, and two minima, which attract: (a) in perspective, (b) from above. \
+        caption: "A potential with three maxima, which repel, and two minima, which attract: (a) as a surface, (b) from above, with triangles at the five. \
                   Thin black arrows are the unconstrained policy, the negative gradient; broad red ones what is left of \
                   it when motion along x₁ is blocked. The minima still attract from above and below, but no more from the sides. The paper \
                   does not print its potential: this one is a sum of five Gaussians.",
@@ -94,7 +94,7 @@ fn hills() -> anyhow::Result<Shown> {
     }
     let [maxima, minima] = extrema();
     Ok(Shown {
-        potential: field(80, |value| rounded(value, 4)),
+        potential: field(60, |value| rounded(value, 4)),
         unconstrained: arrows.0,
         constrained: arrows.1,
         maxima,
@@ -131,7 +131,7 @@ fn extrema() -> [Vec<(f64, f64)>; 2] {
 fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let shown: Shown = sources.document("figure4")?;
     let surface = Surface {
-        title: "(a) φ in perspective".to_owned(),
+        title: "(a) φ as a surface".to_owned(),
         x_label: "x₁",
         y_label: "x₂",
         z_label: "φ",

@@ -3,6 +3,7 @@
 
 mod figure1;
 mod figure2;
+mod figure3;
 mod figure4;
 mod figure_b1;
 mod overview;
@@ -67,12 +68,26 @@ pub(crate) struct Sources {
 
 /// All documents.
 pub(crate) fn documents() -> Vec<Document> {
-    vec![overview::document(), figure1::document(), figure2::document(), figure4::document(), figure_b1::document()]
+    vec![
+        overview::document(),
+        figure1::document(),
+        figure2::document(),
+        figure3::document(),
+        figure4::document(),
+        figure_b1::document(),
+    ]
 }
 
 /// All figures, in the paper's order.
 pub(crate) fn figures() -> Vec<Figure> {
-    vec![overview::figure(), figure1::figure(), figure2::figure(), figure4::figure(), figure_b1::figure()]
+    vec![
+        overview::figure(),
+        figure1::figure(),
+        figure2::figure(),
+        figure3::figure(),
+        figure4::figure(),
+        figure_b1::figure(),
+    ]
 }
 
 /// Computes the documents that go with these experiments.

@@ -37,10 +37,10 @@ pub(crate) fn figure() -> Figure {
         title: "Figure 2: one policy, two movements",
         caption: "A finger of two joints stretches: its policy takes both angles to zero. (a) Nothing is in its way. (b) The same \
                   policy, but a box stops the tip, which slides along it to where the policy presses straight against it; the later, the \
-                  darker. (c) The same in the space of the angles: red the policy and the free movement; in the grey region the \
-                  tip would be in the box, and on its edge the box leaves of the policy what the black arrows show. The paper's \
-                  finger and box are of unknown size; here both movements are simulated, with contact between the tip and one \
-                  face of the box.",
+                  darker. (c) Both in the space of the angles: thin red arrows are the policy, the broken line is the free movement. In \
+                  the grey region the tip would be in the box; on its edge the box leaves of the policy what the broad black arrows \
+                  show, drawn twice as long, and the black line is the movement along it. The paper's finger and box are of unknown size; \
+                  here both movements are simulated, with contact between the tip and one face of the box.",
         experiment: None,
         needs: &["figure2"],
         draw,
