@@ -11,6 +11,7 @@
 
 mod curves;
 mod dashes;
+mod decimals;
 mod plane;
 mod space;
 mod style;
@@ -73,7 +74,7 @@ impl Picture {
 
     /// As scalable vector graphics.
     pub(crate) fn svg(&self) -> String {
-        SvgBackend::new().render_scene(&self.0)
+        decimals::shortened(&SvgBackend::new().render_scene(&self.0))
     }
 
     /// As pixels.

@@ -1,7 +1,10 @@
 //! How to read the tables.
 
+use crate::measure::Measure;
+
 /// What stands in the columns and how cells are judged; `**` is about what is emphasised.
 pub(super) const RULE: &str = "\
+Errors are mean squared errors as a share of the variance of the true policy or potential: 0 is perfect.
 \"ours\" is the mean ± the sample standard deviation over data sets, \"n\" how many there are, \"paper\" what is printed. \"z\" is the
 difference of the two means over its standard error (both spreads count): how sure it is that there is a difference, not how large it is.
 An error **agrees** if it is within one printed standard deviation of the printed mean, else it is **better** (lower) or **worse**. A discard
@@ -9,15 +12,20 @@ rate agrees within one printed standard deviation (printed 0 ± 0: below .005 %)
 **differ**.";
 
 /// Measures and what they are.
-pub(super) const MEASURES: [(&str, &str); 7] = [
-    ("potential_nmse", "error of the learnt potential (A3)"),
+pub(super) const MEASURES: [(&[Measure], &str); 7] = [
+    (&[Measure::PotentialNmse], "error of the learnt potential (A3)"),
     (
-        "nupe, ncpe",
+        &[Measure::Nupe, Measure::Ncpe],
         "error of the learnt policy, unconstrained (A1) and under the constraints of the demonstrations (A2)",
     ),
-    ("naive, policy_align", "error of that learner's policy under the constraint of the row"),
-    ("alignment_nmse", "error of the aligned local potentials (A4)"),
-    ("disc", "trajectories left out, %"),
-    ("unsupported", "test samples where no receptive field speaks, %"),
-    ("beyond_limits", "movements that leave the robot's joint limits somewhere, %"),
+    (&[Measure::Naive, Measure::PolicyAlign], "error of that learner's policy under the constraint of the row"),
+    (&[Measure::AlignmentNmse], "error of the aligned local potentials (A4)"),
+    (&[Measure::Disc], "trajectories left out, %"),
+    (&[Measure::Unsupported], "test samples where no receptive field speaks, %"),
+    (&[Measure::BeyondLimits], "movements that leave the robot's joint limits somewhere, %"),
 ];
+
+/// Names of measures, one after the other.
+pub(super) fn names(measures: &[Measure], name: fn(Measure) -> &'static str) -> String {
+    measures.iter().map(|&measure| name(measure)).collect::<Vec<_>>().join(", ")
+}

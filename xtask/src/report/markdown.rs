@@ -3,15 +3,17 @@
 use std::fmt::Write as _;
 
 use super::compared::{Compared, FEW, Line, compared};
-use super::legend::{MEASURES, RULE};
+use super::legend::{MEASURES, RULE, names};
 use super::tally::Tally;
 use crate::experiments::Experiment;
+use crate::measure::Measure;
 use crate::results::Results;
 use crate::table::markdown_table;
 
 /// All tables of `results`; `second`, a run from another seed, adds its means as a column.
 pub(crate) fn markdown(experiments: &[Experiment], results: &Results, second: Option<&Results>) -> String {
-    let measures = MEASURES.map(|(names, meaning)| format!("| {names} | {meaning} |\n")).concat();
+    let measures =
+        MEASURES.map(|(measures, meaning)| format!("| {} | {meaning} |\n", names(measures, Measure::name))).concat();
     let mut text = format!("{RULE}\n\n| measure | is |\n| --- | --- |\n{measures}\n");
     for compared in compared(experiments, results, second) {
         text += &section(&compared, results.seed);

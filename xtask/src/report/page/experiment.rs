@@ -24,11 +24,14 @@ pub(super) fn section(compared: &Compared<'_>, contents: &Contents<'_>) -> Marku
             @if tally.total() > 0 { (bar(&tally)) (words(&tally)) }
         }
         @for (row, what) in compared.failures() { p .notice { code { (row) } ": " (what) "." } }
-        @if compared.is_printed() { (printed(compared)) (standing_out(compared)) }
-        (left_open(compared))
-        @if experiment.id == view::EXPERIMENT { (view::view(contents.sources, &figures)) }
-        @for (figure, svg) in &figures { (figure::card(figure, svg)) }
-        @if !compared.is_printed() { (curves(compared)) }
+        @if compared.is_printed() {
+            (printed(compared)) (standing_out(compared)) (left_open(compared))
+            @if experiment.id == view::EXPERIMENT { (view::view(contents.sources, &figures)) }
+            @for (figure, svg) in &figures { (figure::card(figure, svg)) }
+        } @else {
+            @for (figure, svg) in &figures { (figure::card(figure, svg)) }
+            (left_open(compared)) (curves(compared))
+        }
     }
 }
 

@@ -20,19 +20,30 @@ pub(super) fn card(figure: &Figure, svg: &str) -> Markup {
     }
 }
 
-/// The picture as an address that holds it.
+/// The picture as an address that holds it, hardly longer than the picture: browsers take spaces in such an address, and
+/// the quotes of attributes may be single ones, which need no writing around.
 fn data_uri(svg: &str) -> String {
     let mut uri = String::with_capacity(svg.len() * 5 / 4) + "data:image/svg+xml,";
-    for byte in svg.bytes() {
+    for part in svg.split_inclusive('>') {
+        let (words, element) = part.split_at(part.find('<').unwrap_or(part.len()));
+        add(words, &mut uri);
+        let quotes = if element.contains('\'') { "\"" } else { "'" };
+        add(&element.replace('"', quotes), &mut uri);
+    }
+    uri
+}
+
+/// Appends a piece of a picture to an address.
+fn add(piece: &str, uri: &mut String) {
+    for byte in piece.bytes() {
         match byte {
             // What ends an address or an attribute, or may not stand in one.
-            b'"' | b'#' | b'%' | b'&' | b'<' | b'>' | b'`' | 0..=b' ' | 127.. => {
+            b'"' | b'#' | b'%' | b'&' | b'<' | b'>' | 0..b' ' | 127.. => {
                 let _ = write!(uri, "%{byte:02X}");
             }
             _ => uri.push(char::from(byte)),
         }
     }
-    uri
 }
 
 /// Width and height of the drawing, pixels, so that the page does not jump when it appears.
@@ -51,9 +62,10 @@ mod tests {
 
     #[test]
     fn a_picture_is_one_address_with_its_size() {
-        let svg = "<svg xmlns=\"x\" width=\"12\" height=\"7.5\"><path stroke=\"#000\" width=\"3\"/>é 5%</svg>";
+        let svg = "<svg xmlns=\"x\" width=\"12\" height=\"7.5\"><path stroke=\"#000\" width=\"3\"/>\"é\" isn't 5%\n<g id=\"a'\"/></svg>";
         assert_eq!(size(svg), (Some("12"), Some("7.5")));
-        let inside = "%3Csvg%20xmlns=%22x%22%20width=%2212%22%20height=%227.5%22%3E%3Cpath%20stroke=%22%23000%22%20width=%223%22/%3E";
-        assert_eq!(data_uri(svg), format!("data:image/svg+xml,{inside}%C3%A9%205%25%3C/svg%3E"));
+        let expected = "data:image/svg+xml,%3Csvg xmlns='x' width='12' height='7.5'%3E%3Cpath stroke='%23000' width='3'/%3E\
+                        %22%C3%A9%22 isn't 5%25%0A%3Cg id=%22a'%22/%3E%3C/svg%3E";
+        assert_eq!(data_uri(svg), expected);
     }
 }

@@ -4,7 +4,8 @@ use maud::html;
 
 use super::Part;
 use super::emphasis::emphasised;
-use crate::report::legend::{MEASURES, RULE};
+use crate::measure::Measure;
+use crate::report::legend::{MEASURES, RULE, names};
 use crate::results::Results;
 
 /// The last part of the page.
@@ -15,7 +16,7 @@ pub(super) fn part(results: &Results) -> Part {
         h2 { (title) }
         p { (emphasised(RULE)) }
         dl .measures {
-            @for (names, meaning) in MEASURES { div { dt { (names) } dd { (meaning) } } }
+            @for (measures, meaning) in MEASURES { div { dt { (names(measures, Measure::label)) } dd { (meaning) } } }
         }
         h3 { "Again, on your machine" }
         pre tabindex="0" { code {
