@@ -83,14 +83,13 @@ class Controls {
   }
 
   static distancesInWords(playback) {
-    const one = (metres) => `${(100 * metres).toFixed(1)} cm`;
-    const both = ([left, right]) => `${one(left)} (left) and ${one(right)} (right)`;
+    const both = (distances) => `${distances.map((metres) => (100 * metres).toFixed(1)).join(" and ")} cm`;
     const line = (learner) => {
       const { label } = playback.document.learners.find(({ id }) => id === learner);
       const [now, end] = [playback.sample, playback.lastSample].map((sample) => playback.distances(learner, sample));
       return `${label}: now ${both(now)}, at the end ${both(end)}.`;
     };
-    return ["From the hands to their places at the ball:", ...playback.learners.map(line)].join("\n");
+    return ["From the left and the right hand to their places at the ball:", ...playback.learners.map(line)].join("\n");
   }
 }
 

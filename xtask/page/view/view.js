@@ -65,7 +65,6 @@ class View {
 
   listen() {
     const { canvas } = this;
-    const repaint = () => { this.palette = null; this.ask(); };
     listen(canvas, this.camera, () => this.ask());
     canvas.addEventListener("keydown", (event) => {
       if (event.key !== " ") return;
@@ -76,7 +75,7 @@ class View {
     canvas.addEventListener("webglcontextrestored", () => { this.build(new Renderer(canvas)); this.ask(); });
     new ResizeObserver(() => this.ask()).observe(canvas);
     new IntersectionObserver(([entry]) => { this.visible = entry.isIntersecting; this.ask(); }).observe(canvas);
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.ask());
     window.addEventListener("beforeprint", () => this.print(true));
     window.addEventListener("afterprint", () => this.print(false));
   }
@@ -84,7 +83,6 @@ class View {
   /** Paper is light, and takes a still picture: browsers do not print what the graphics processor drew. */
   print(starts) {
     this.element.classList.toggle("view-printing", starts);
-    this.palette = null;
     this.render();
     this.element.querySelector(".view-paper")?.remove();
     if (starts) this.canvas.after(make("img", { class: "view-paper", alt: "The robot and the ball", src: this.canvas.toDataURL() }));
@@ -143,8 +141,8 @@ class View {
     const ratio = Math.min(window.devicePixelRatio, 2);
     const size = [canvas.clientWidth, canvas.clientHeight].map((pixels) => Math.max(Math.round(pixels * ratio), 1));
     if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
-    this.palette ??= this.readPalette();
-    this.renderer.draw(this.scene.things(this.palette), this.camera, this.palette);
+    const palette = this.readPalette();
+    this.renderer.draw(this.scene.things(palette), this.camera, palette);
     this.controls.show(playback);
   }
 
