@@ -9,7 +9,9 @@ mod table1;
 mod table2;
 mod three_link;
 
+pub(crate) use exam::HELD_OUT;
 pub(crate) use table1::toy_regressor;
+pub(crate) use table2::{GRASP_SYSTEM, grasp, grasp_naive, grasp_regressor};
 
 use std::collections::BTreeMap;
 

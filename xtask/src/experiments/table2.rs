@@ -15,6 +15,9 @@ use crate::measure::{Measure, RowOf};
 use crate::paper::{explanations, paper_table};
 use crate::robots::upper_body;
 
+/// The system that data sets are drawn for.
+pub(crate) const GRASP_SYSTEM: u32 = 420;
+
 /// Typical spread of a palm's coordinates, metres: the divisor of all inputs of the regressions.
 const SPREAD: f64 = 0.3;
 
@@ -22,8 +25,9 @@ const SPREAD: f64 = 0.3;
 pub(crate) fn table2() -> anyhow::Result<Experiment> {
     let row = |id: &str| Row { id: id.to_owned(), of: RowOf::Learner };
     let rows = ["training", "unseen_barrier", "unconstrained", "alignment"].map(row).into();
-    let grasp = Grasp::new(upper_body()?);
-    let trial = GraspTrial { grasp, algorithm: PolicyAlign::default(), learners: learners() };
+    // In the order of [`MEASURES`].
+    let learners: Vec<Box<dyn Learner>> = vec![Box::new(grasp_regressor()), Box::new(grasp_naive())];
+    let trial = GraspTrial { grasp: grasp()?, algorithm: PolicyAlign::default(), learners };
     Ok(Experiment {
         id: "table2",
         section: "4.2",
@@ -38,16 +42,24 @@ pub(crate) fn table2() -> anyhow::Result<Experiment> {
     })
 }
 
-/// In the order of [`MEASURES`].
-fn learners() -> Vec<Box<dyn Learner>> {
-    let params = |init_d| {
-        let norm_in = Some(DVector::repeat(6, SPREAD));
-        LwprParams { init_d, norm_in, adaptation: MetricAdaptation::Fixed, ..LwprParams::default() }
-    };
-    vec![
-        Box::new(LwprRegressor { params: params(22.0), passes: 10, ..LwprRegressor::default() }),
-        Box::new(DirectPolicyLearning { params: params(10.0), passes: 4, ..DirectPolicyLearning::default() }),
-    ]
+/// What is demonstrated.
+pub(crate) fn grasp() -> anyhow::Result<Grasp> {
+    Ok(Grasp::new(upper_body()?))
+}
+
+/// The regression on aligned potentials.
+pub(crate) fn grasp_regressor() -> LwprRegressor {
+    LwprRegressor { params: params(22.0), passes: 10, ..LwprRegressor::default() }
+}
+
+/// The naive learner.
+pub(crate) fn grasp_naive() -> DirectPolicyLearning {
+    DirectPolicyLearning { params: params(10.0), passes: 4, ..DirectPolicyLearning::default() }
+}
+
+fn params(init_d: f64) -> LwprParams {
+    let norm_in = Some(DVector::repeat(6, SPREAD));
+    LwprParams { init_d, norm_in, adaptation: MetricAdaptation::Fixed, ..LwprParams::default() }
 }
 
 /// Where the table has each learner's errors.
@@ -63,7 +75,7 @@ struct GraspTrial {
 
 impl Trial for GraspTrial {
     fn system(&self) -> u32 {
-        420
+        GRASP_SYSTEM
     }
 
     fn definition(&self) -> String {

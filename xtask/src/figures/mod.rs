@@ -6,6 +6,7 @@ mod figure2;
 mod figure3;
 mod figure4;
 mod figure_b1;
+mod grasp_playback;
 mod overview;
 mod shapes;
 
@@ -75,6 +76,7 @@ pub(crate) fn documents() -> Vec<Document> {
         figure3::document(),
         figure4::document(),
         figure_b1::document(),
+        grasp_playback::document(),
     ]
 }
 

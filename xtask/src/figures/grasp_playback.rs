@@ -1,0 +1,70 @@
+//! Grasping as all joints carry it out, for figures 7 and 8 and the view in space: expert, naive learner and PolicyAlign
+//! from the same starts, under the constraint of the demonstrations, under one that they do not show, and under none.
+
+mod constraint;
+mod movements;
+mod policies;
+mod robot;
+mod scene;
+mod starts;
+
+use serde::{Deserialize, Serialize};
+
+use constraint::Constraint;
+use movements::{Movement, movements};
+use policies::LEARNERS;
+use robot::{Robot, robot};
+use scene::{Scene, scene};
+
+use super::Document;
+use crate::experiments::grasp;
+
+/// Start postures that are shown.
+const STARTS: usize = 4;
+
+pub(crate) fn document() -> Document {
+    Document {
+        id: "grasp_playback",
+        experiment: Some("table2"),
+        compute: |seed| Ok(serde_json::to_value(grasp_playback(seed)?)?),
+    }
+}
+
+/// Lengths in metres, angles in radians, all in the heel's frame: x forward, y left, z up.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct GraspPlayback {
+    pub(crate) robot: Robot,
+    pub(crate) scene: Scene,
+    /// Seconds from one sample to the next.
+    pub(crate) time_step: f64,
+    pub(crate) constraints: Vec<Choice>,
+    pub(crate) learners: Vec<Choice>,
+    /// Number of start postures.
+    pub(crate) starts: usize,
+    /// Each constraint with each learner and each start.
+    pub(crate) movements: Vec<Movement>,
+}
+
+/// One thing to choose.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Choice {
+    pub(crate) id: String,
+    pub(crate) label: String,
+}
+
+fn grasp_playback(seed: u64) -> anyhow::Result<GraspPlayback> {
+    let grasp = grasp()?;
+    let choice = |id: &str, label: &str| Choice { id: id.to_owned(), label: label.to_owned() };
+    Ok(GraspPlayback {
+        robot: robot(&grasp.body)?,
+        scene: scene(&grasp.scene),
+        time_step: grasp.roll_out.time_step,
+        constraints: Constraint::ALL.map(|constraint| choice(constraint.id(), constraint.label())).into(),
+        learners: LEARNERS.map(|(id, who)| choice(id, who.name())).into(),
+        starts: STARTS,
+        movements: movements(&grasp, seed)?,
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,115 @@
+//! The robot as a tree that a few lines of any language can move.
+
+use anyhow::{Context as _, bail};
+use demo_gen::UpperBody;
+use kinematics::{CollisionShape, Drive, DriveKind, Geometry, LinkId, RobotModel};
+use nalgebra::IsometryMatrix3;
+use serde::{Deserialize, Serialize};
+
+/// Links and what they look like.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Robot {
+    /// A parent comes before its children.
+    pub(crate) links: Vec<Link>,
+    pub(crate) shapes: Vec<Shape>,
+    /// Places of the left palm and of the right one in `links`.
+    pub(crate) hands: [usize; 2],
+    /// Names, in the order of a configuration.
+    pub(crate) joints: Vec<String>,
+}
+
+/// A link's pose is its parent's, then translation and rotation, then the motion of its joint.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Link {
+    pub(crate) name: String,
+    /// Place in `links`; none for the first.
+    pub(crate) parent: Option<usize>,
+    pub(crate) translation: [f64; 3],
+    /// By rows.
+    pub(crate) rotation: [f64; 9],
+    pub(crate) motion: Motion,
+    /// Of length 1, in the joint's frame.
+    pub(crate) axis: [f64; 3],
+    /// Place in a configuration.
+    pub(crate) joint: Option<usize>,
+}
+
+/// What a joint does, about or along its axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Motion {
+    Fixed,
+    Turn,
+    Slide,
+}
+
+/// A body in a link's frame.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Shape {
+    /// Place in `links`.
+    pub(crate) link: usize,
+    pub(crate) kind: Kind,
+    /// Radius; or radius and length, along z; or whole lengths along x, y, z.
+    pub(crate) size: Vec<f64>,
+    pub(crate) translation: [f64; 3],
+    /// By rows.
+    pub(crate) rotation: [f64; 9],
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Kind {
+    Sphere,
+    Cylinder,
+    Box,
+}
+
+pub(super) fn robot(body: &UpperBody) -> anyhow::Result<Robot> {
+    let robot = body.robot();
+    let links: Vec<LinkId> = robot.links().collect();
+    let place = |link: LinkId| links.iter().position(|other| *other == link).context("a link of another robot");
+    let hand = |name: &str| place(robot.link(name)?);
+    Ok(Robot {
+        links: links.iter().map(|link| self::link(robot, *link, place)).collect::<anyhow::Result<_>>()?,
+        shapes: robot
+            .collision_shapes()?
+            .iter()
+            .map(|shape| self::shape(shape, place))
+            .collect::<anyhow::Result<_>>()?,
+        hands: [hand("l_palm")?, hand("r_palm")?],
+        joints: robot.joints().iter().map(|joint| joint.name().to_owned()).collect(),
+    })
+}
+
+fn link(robot: &RobotModel, link: LinkId, place: impl Fn(LinkId) -> anyhow::Result<usize>) -> anyhow::Result<Link> {
+    let name = robot.link_name(link).to_owned();
+    let attachment = robot.attachment(link);
+    let origin = attachment.as_ref().map_or(IsometryMatrix3::identity(), |attachment| attachment.origin);
+    let parent = attachment.as_ref().map(|attachment| place(attachment.parent)).transpose()?;
+    let drive = attachment.and_then(|attachment| attachment.drive);
+    if drive.is_some_and(|drive| (drive.multiplier, drive.offset) != (1.0, 0.0)) {
+        bail!("link {name} follows another joint, which the form of the figure data has no words for");
+    }
+    let (motion, axis) = drive.map_or((Motion::Fixed, [0.0, 0.0, 1.0]), |Drive { kind, axis, .. }| {
+        (if kind == DriveKind::Turn { Motion::Turn } else { Motion::Slide }, axis.into_inner().into())
+    });
+    let (translation, rotation) = numbers(&origin);
+    Ok(Link { name, parent, translation, rotation, motion, axis, joint: drive.map(|drive| drive.column) })
+}
+
+fn shape(shape: &CollisionShape, place: impl Fn(LinkId) -> anyhow::Result<usize>) -> anyhow::Result<Shape> {
+    let (kind, size) = match &shape.geometry {
+        Geometry::Sphere { radius } => (Kind::Sphere, vec![*radius]),
+        Geometry::Cylinder { radius, length } => (Kind::Cylinder, vec![*radius, *length]),
+        Geometry::Box { size } => (Kind::Box, size.iter().copied().collect()),
+        other => bail!("the form of the figure data has no words for {other:?}"),
+    };
+    let (translation, rotation) = numbers(&shape.origin);
+    Ok(Shape { link: place(shape.link)?, kind, size, translation, rotation })
+}
+
+/// Translation, and rotation by rows.
+fn numbers(pose: &IsometryMatrix3<f64>) -> ([f64; 3], [f64; 9]) {
+    let rotation = pose.rotation.matrix();
+    (pose.translation.vector.into(), std::array::from_fn(|at| rotation[(at / 3, at % 3)]))
+}

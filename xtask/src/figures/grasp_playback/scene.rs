@@ -1,0 +1,46 @@
+//! What stands around the robot.
+
+use demo_gen::GraspScene;
+use serde::{Deserialize, Serialize};
+
+/// Ball, table, the plane in which plates stand, and where the palms hold the ball.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Scene {
+    pub(crate) ball: Ball,
+    pub(crate) table: Table,
+    pub(crate) wall: Wall,
+    /// Left palm, then right.
+    pub(crate) target: Vec<f64>,
+}
+
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Ball {
+    pub(crate) centre: [f64; 3],
+    pub(crate) diameter: f64,
+}
+
+/// A board from x = `near` to `far`, and to either side.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Table {
+    pub(crate) top: f64,
+    pub(crate) near: f64,
+    pub(crate) far: f64,
+    pub(crate) half_width: f64,
+}
+
+/// Plates stand in the plane of this x, and are felt within `reach` of it.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Wall {
+    pub(crate) x: f64,
+    pub(crate) reach: f64,
+}
+
+pub(super) fn scene(scene: &GraspScene) -> Scene {
+    let [near, far] = scene.table_depth;
+    Scene {
+        ball: Ball { centre: scene.ball.coords.into(), diameter: scene.ball_diameter },
+        table: Table { top: scene.table_top, near, far, half_width: scene.table_half_width },
+        wall: Wall { x: scene.wall, reach: scene.wall_reach },
+        target: scene.target().iter().copied().collect(),
+    }
+}

@@ -1,0 +1,72 @@
+use kinematics::{LinkId, Workspace};
+use nalgebra::{DVector, Isometry3, Matrix3, Rotation3, Translation3, Unit, Vector3};
+
+use super::robot::{Link, Motion};
+use super::*;
+
+/// Poses of all links, by nothing but what the document says.
+fn poses(links: &[Link], q: &[f64]) -> Vec<Isometry3<f64>> {
+    let mut poses: Vec<Isometry3<f64>> = Vec::new();
+    for link in links {
+        let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_row_slice(&link.rotation));
+        let origin = Isometry3::from_parts(Translation3::from(Vector3::from(link.translation)), rotation.into());
+        let value = link.joint.map_or(0.0, |joint| q[joint]);
+        let axis = Vector3::from(link.axis);
+        let motion = match link.motion {
+            Motion::Fixed => Isometry3::identity(),
+            Motion::Turn => Isometry3::rotation(axis * value),
+            Motion::Slide => Isometry3::from_parts((axis * value).into(), nalgebra::UnitQuaternion::identity()),
+        };
+        let parent = link.parent.map_or(Isometry3::identity(), |parent| poses[parent]);
+        poses.push(parent * origin * motion);
+    }
+    poses
+}
+
+#[test]
+fn the_document_says_where_the_hands_are() {
+    let grasp = grasp().unwrap();
+    let robot = grasp.body.robot();
+    let playback = grasp_playback(1).unwrap();
+    assert_eq!(playback.movements.len(), 3 * 3 * STARTS);
+    let links: Vec<LinkId> = robot.links().collect();
+    let mut workspace = Workspace::new();
+    for movement in &playback.movements {
+        let place = format!("{} {} {}", movement.constraint, movement.learner, movement.start);
+        assert_eq!((movement.joints.len(), movement.palms.len()), (100, 100), "{place}");
+        let mut worst = 0.0_f64;
+        for (q, palms) in movement.joints.iter().zip(&movement.palms) {
+            let poses = poses(&playback.robot.links, q);
+            let configuration = DVector::from_column_slice(q);
+            let expected = robot.forward_kinematics(configuration.as_view(), &mut workspace).unwrap();
+            for (pose, link) in poses.iter().zip(&links) {
+                assert!((pose.translation.vector - expected.position(*link).coords).norm() < 1e-12, "{place}");
+            }
+            for (hand, link) in playback.robot.hands.into_iter().enumerate() {
+                let wanted = Vector3::from_column_slice(&palms[3 * hand..3 * hand + 3]);
+                worst = worst.max((poses[link].translation.vector - wanted).norm());
+            }
+        }
+        assert!(1e3 * worst <= movement.error_mm && movement.error_mm < 1e3 * worst + 2e-3, "{place}: {worst}");
+    }
+    for link in &playback.robot.links {
+        assert!((Unit::new_normalize(Vector3::from(link.axis)).into_inner() - Vector3::from(link.axis)).norm() < 1e-12);
+    }
+}
+
+#[test]
+fn the_demonstrated_movements_touch_nothing() {
+    let grasp = grasp().unwrap();
+    let robot = grasp.body.robot();
+    let playback = grasp_playback(1).unwrap();
+    let mut workspace = Workspace::new();
+    for movement in playback.movements.iter().filter(|m| m.learner == "expert") {
+        assert!(movement.error_mm < 1.0, "{} {}: {} mm", movement.constraint, movement.start, movement.error_mm);
+        for q in &movement.joints {
+            let q = DVector::from_column_slice(q);
+            assert_eq!(robot.n_beyond_limits(q.as_view()).unwrap(), 0);
+            let poses = robot.forward_kinematics(q.as_view(), &mut workspace).unwrap();
+            assert!(!grasp.body.collision().collides(&poses), "{} {}", movement.constraint, movement.start);
+        }
+    }
+}
