@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::exam::HELD_OUT;
 use super::judge::Judge;
-use super::three_link::{SYSTEM, arm, regressor};
+use super::three_link::{ARM_SYSTEM, arm, regressor};
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::{Measure, RowOf};
 
@@ -90,7 +90,7 @@ struct DistanceTrial {
 
 impl Trial for DistanceTrial {
     fn system(&self) -> u32 {
-        SYSTEM
+        ARM_SYSTEM
     }
 
     fn definition(&self) -> String {
@@ -143,7 +143,7 @@ mod tests {
     #[test]
     fn movements_end_on_the_line_and_not_at_its_middle() {
         let arm = ThreeLinkArm { n_trajectories: 40, ..arm().unwrap() };
-        let recordings = arm.record(&mut crate::seed::generator(1, SYSTEM, 0)).unwrap();
+        let recordings = arm.record(&mut crate::seed::generator(1, ARM_SYSTEM, 0)).unwrap();
         let median = |distance: Distance, sample: usize| {
             let of = |recording: &demo_gen::Recording| distance.of(recording.truth.states.column(sample));
             let mut distances: Vec<f64> = recordings.iter().map(of).collect();

@@ -10,8 +10,12 @@ mod table2;
 mod three_link;
 
 pub(crate) use exam::HELD_OUT;
+pub(crate) use figure6::{BANDWIDTHS, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
+pub(crate) use figure9::{Distance, TENTHS, line};
+pub(crate) use judge::Judge;
 pub(crate) use table1::toy_regressor;
 pub(crate) use table2::{GRASP_SYSTEM, grasp, grasp_naive, grasp_regressor};
+pub(crate) use three_link::{ARM_SYSTEM, arm};
 
 use std::collections::BTreeMap;
 

@@ -12,7 +12,7 @@ use crate::measure::{Measure, RowOf};
 use crate::paper::{explanations, paper_table};
 
 /// The system whose random stream is used.
-pub(crate) const SYSTEM: u32 = 440;
+pub(crate) const ARM_SYSTEM: u32 = 440;
 
 /// The experiment.
 pub(crate) fn three_link() -> anyhow::Result<Experiment> {
@@ -61,7 +61,7 @@ struct ArmTrial {
 
 impl Trial for ArmTrial {
     fn system(&self) -> u32 {
-        SYSTEM
+        ARM_SYSTEM
     }
 
     fn definition(&self) -> String {

@@ -6,7 +6,7 @@ use nalgebra::{DVector, DVectorView, DVectorViewMut, dmatrix};
 use serde::{Deserialize, Serialize};
 
 use super::{Csv, Document, Drawing, Figure, Sources, rounded};
-use crate::plot::{Field, Layer, Mark, Picture, Plane, Surface};
+use crate::plot::{Field, Layer, Mark, Picture, Plane, Relief};
 
 /// Drawn is [−2, 2]².
 const EXTENT: f64 = 2.0;
@@ -130,12 +130,14 @@ fn extrema() -> [Vec<(f64, f64)>; 2] {
 
 fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let shown: Shown = sources.document("figure4")?;
-    let surface = Surface {
+    let surface = Relief {
         title: "(a) φ as a surface".to_owned(),
         x_label: "x₁",
         y_label: "x₂",
         z_label: "φ",
-        field: coarse(&shown.potential),
+        extent: None,
+        surface: Some(coarse(&shown.potential)),
+        dots: vec![],
         size: (430.0, 408.0),
     };
     let range = [-EXTENT, EXTENT];

@@ -1,10 +1,14 @@
 //! The paper's figures. A run computes documents, plain numbers kept as `figures/*.json`; figures are drawn from these
 //! and from the results, and from nothing else, so that they can be drawn again without a run.
 
+mod errors;
 mod figure1;
 mod figure2;
 mod figure3;
 mod figure4;
+mod figure5;
+mod figure6;
+mod figure9;
 mod figure_b1;
 mod grasp_playback;
 mod overview;
@@ -75,6 +79,8 @@ pub(crate) fn documents() -> Vec<Document> {
         figure2::document(),
         figure3::document(),
         figure4::document(),
+        figure5::document(),
+        figure9::document(),
         figure_b1::document(),
         grasp_playback::document(),
     ]
@@ -88,6 +94,10 @@ pub(crate) fn figures() -> Vec<Figure> {
         figure2::figure(),
         figure3::figure(),
         figure4::figure(),
+        figure5::figure(),
+        figure6::left(),
+        figure6::right(),
+        figure9::figure(),
         figure_b1::figure(),
     ]
 }

@@ -1,8 +1,8 @@
 //! Pictures: rows of panels, written as SVG and PNG. The only place that knows the plotting crate.
 //!
 //! - [`Plane`]: things in the plane, both axes alike.
-//! - [`Curves`]: quantities against a quantity, linear or logarithmic, with bands.
-//! - [`Surface`]: a scalar field in perspective.
+//! - [`Curves`]: quantities against a quantity, linear or logarithmic, with bands; [`Key`] names them.
+//! - [`Relief`]: a scalar field or dots in perspective.
 //! - [`Space`]: things in space, the nearer ones before the others.
 //!
 //! [`Who`] and [`Stroke`] give every picture the same colours and lines.
@@ -12,20 +12,24 @@
 mod curves;
 mod dashes;
 mod decimals;
+mod key;
 mod plane;
+mod relief;
+mod sign;
 mod space;
 mod style;
-mod surface;
 
 use kuva::backend::raster::RasterBackend;
 use kuva::backend::svg::SvgBackend;
 use kuva::render::render::{Primitive, Scene};
 
 pub(crate) use curves::{Axis, Curve, Curves};
+pub(crate) use key::{Entry, Key};
 pub(crate) use plane::{Layer, Plane};
+pub(crate) use relief::Relief;
+pub(crate) use sign::{Filling, Sign};
 pub(crate) use space::{Camera, Frame, Item, Paint, Space};
 pub(crate) use style::{Dash, Mark, Stroke, Who};
-pub(crate) use surface::Surface;
 
 /// A scalar field on a grid: `values[row][column]` at (`x[column]`, `y[row]`).
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
@@ -86,18 +90,58 @@ impl Picture {
     }
 }
 
-/// Puts a panel's scene on the sheet. Names that it gives to clipping areas are made its own: every panel counts them
-/// from 0, and a picture stands beside others in one page.
+/// Puts a panel's scene on the sheet. Clipping areas get names of their own: the crate counts them over all pictures of
+/// the program, in whatever order they are drawn, and a picture stands beside others in one page.
 fn place(sheet: &mut Scene, scene: Scene, (x, y): (f64, f64), number: usize) {
-    let own = |name: &str| name.replace("kuva-", &format!("kuva-{number}-"));
+    let names: Vec<String> = scene.defs.iter().filter_map(|def| name(def)).map(str::to_owned).collect();
+    let own = |name: &str| names.iter().position(|other| other == name).map(|at| format!("panel-{number}-clip-{at}"));
     sheet.font_family = scene.font_family.or(sheet.font_family.take());
-    sheet.defs.extend(scene.defs.iter().map(|def| own(def)));
+    let renamed = |def: &String| name(def).and_then(|name| Some(def.replace(name, &own(name)?)));
+    sheet.defs.extend(scene.defs.iter().map(|def| renamed(def).unwrap_or_else(|| def.clone())));
     sheet.add(Primitive::GroupStart { transform: Some(format!("translate({x},{y})")), title: None, extra_attrs: None });
     for mut element in scene.elements {
-        if let Primitive::ClipStart { id, .. } = &mut element {
-            *id = own(id);
+        if let Primitive::ClipStart { id, .. } = &mut element
+            && let Some(own) = own(id)
+        {
+            *id = own;
         }
         sheet.add(element);
     }
     sheet.add(Primitive::GroupEnd);
+}
+
+/// The name that a definition gives.
+fn name(definition: &str) -> Option<&str> {
+    definition.split_once("id=\"")?.1.split_once('"').map(|(name, _)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_is_the_same_whatever_was_drawn_before() {
+        let plane = || Plane {
+            title: String::new(),
+            x_label: "x",
+            y_label: "y",
+            x: [0.0, 1.0],
+            y: [0.0, 1.0],
+            layers: vec![Layer::Arrows {
+                arrows: vec![(0.2, 0.2, 0.5, 0.5)],
+                color: "#000000",
+                scale: 1.0,
+                width: 1.0,
+                label: None,
+            }],
+            size: Plane::SQUARE,
+        };
+        let [first, second] = [0, 1].map(|_| Picture::rows(&[&[&plane(), &plane()]]).svg());
+        assert_eq!(first, second);
+        for clip in ["panel-0-clip-0", "panel-1-clip-0"] {
+            assert_eq!(first.matches(&format!("id=\"{clip}\"")).count(), 1);
+            assert!(first.contains(&format!("url(#{clip})")));
+        }
+        assert!(!first.contains("kuva-"), "{first}");
+    }
 }

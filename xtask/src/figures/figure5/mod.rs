@@ -1,0 +1,61 @@
+//! Fig. 5: one data set of the parabola, from what is seen of it to the learnt surface.
+
+mod compute;
+mod draw;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Document, Figure};
+use crate::plot::Field;
+
+pub(super) fn document() -> Document {
+    Document { id: "figure5", experiment: None, compute: |seed| Ok(serde_json::to_value(compute::levels(seed)?)?) }
+}
+
+pub(super) fn figure() -> Figure {
+    Figure {
+        id: "figure5",
+        title: "Fig. 5: local potentials, aligned and learnt",
+        caption: "(a) Forty movements over lines of equal potential; they turn where their constraint changes. Alignment leaves out the \
+                  three drawn as light crosses. (b) Along each movement the potential follows but for a constant; starting all at one height, movements \
+                  disagree where they meet. (c) The same after alignment: one bowl. (d) What LWPR learns from it, as far as its receptive fields reach, beside (e) the truth. \
+                  All heights are on one scale; (c) and (d) have the mean height of the truth, since a potential is known up to a constant. The paper's panels \
+                  show the same. Ours is the first data set from which alignment leaves out three movements, as many as in the paper's picture.",
+        experiment: Some("table1"),
+        needs: &["figure5"],
+        draw: draw::draw,
+    }
+}
+
+/// What the figure shows.
+#[derive(Serialize, Deserialize)]
+struct Levels {
+    /// Which data set of the system it is.
+    data_set: u32,
+    movements: Vec<Movement>,
+    truth: Field,
+    /// At the places of `truth`; nothing where no receptive field speaks.
+    learnt: Vec<Vec<Option<f64>>>,
+    /// Errors at samples that the regression did not see, (A4) and (A3).
+    alignment_nmse: f64,
+    potential_nmse: f64,
+}
+
+impl Levels {
+    fn learnt(&self) -> Field {
+        let row = |row: &Vec<Option<f64>>| row.iter().map(|value| value.unwrap_or(f64::NAN)).collect();
+        Field { values: self.learnt.iter().map(row).collect(), ..self.truth.clone() }
+    }
+}
+
+/// One movement, sample by sample.
+#[derive(Serialize, Deserialize)]
+struct Movement {
+    /// (x₁, x₂).
+    points: Vec<(f64, f64)>,
+    truth: Vec<f64>,
+    /// The local potential, with the same constant for all movements.
+    before: Vec<f64>,
+    /// The aligned local potential; nothing if alignment leaves the movement out.
+    after: Option<Vec<f64>>,
+}

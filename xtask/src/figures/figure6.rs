@@ -1,0 +1,113 @@
+//! Fig. 6: errors on the parabola against the amount of data, and against noise.
+
+use anyhow::Context as _;
+
+use super::errors::{ERRORS, FIRST, SECOND, Series, Style};
+use super::{Csv, Drawing, Figure, Sources};
+use crate::experiments::{BANDWIDTHS, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
+use crate::plot::{Axis, Curves, Key, Picture};
+
+/// In the order of [`BANDWIDTHS`].
+const STYLES: [Style; 2] = [FIRST, SECOND];
+
+/// Pixels.
+const SIZE: (f64, f64) = (600.0, 430.0);
+
+pub(super) fn left() -> Figure {
+    Figure {
+        id: "figure6_left",
+        title: "Fig. 6, left: error against the amount of data",
+        caption: "Errors of the policy π, of what constraints let through of it, Nπ, and of the potential φ, when only so many percent of 40 \
+                  movements are learnt from: means over 20 data sets, with bands of one standard deviation up and by the same factor down. \
+                  As in the paper, whose axis begins at 20 %, errors fall and π is on top. There φ is lowest throughout; here it is lowest only with \
+                  many movements, with the narrow bandwidth from 40 % on. With fewer, alignment goes wrong in some data sets, \
+                  and these make the means (medians are in the CSV files). The paper does not say which bandwidth it shows.",
+        experiment: Some("figure6_left"),
+        needs: &["figure6_left"],
+        draw: draw_left,
+    }
+}
+
+pub(super) fn right() -> Figure {
+    Figure {
+        id: "figure6_right",
+        title: "Fig. 6, right: error against noise",
+        caption: "The same errors when recorded positions are noisy, against the truth without noise. Left: potentials integrated from recorded \
+                  velocities, which are clean. As in the paper, errors grow with the noise and stay below 1, with π on top; φ, lowest there, is \
+                  lowest here only up to 5 % and then level with Nπ. Right, on another scale: potentials \
+                  integrated from displacements, by the paper's rule (9). To it noise looks like a steady descent, and at 5 % nothing is left to \
+                  learn, so the paper's curves cannot come from it. Without noise both rules are the same here.",
+        experiment: Some("figure6_right"),
+        needs: &["figure6_right"],
+        draw: draw_right,
+    }
+}
+
+fn draw_left(sources: &Sources) -> anyhow::Result<Drawing> {
+    let series = series(sources, "figure6_left", "", &TRAJECTORIES_PERCENT)?;
+    let panel = Curves {
+        x_label: "Trajectories learnt from (% of 40)",
+        x: [0.0, 105.0],
+        x_step: 20.0,
+        y: [1e-3, 10.0],
+        ..panel("Learning from fewer movements", &series)
+    };
+    let tables = tables(&series, ["narrow", "medium"], "trajectories_percent");
+    Ok(Drawing { picture: Picture::rows(&[&[&panel], &[&key(SIZE.0)]]), tables })
+}
+
+fn draw_right(sources: &Sources) -> anyhow::Result<Drawing> {
+    let [velocity, displacement] = RULES.map(|(rule, _)| series(sources, "figure6_right", rule, &NOISE_PERCENT));
+    let (velocity, displacement) = (velocity?, displacement?);
+    let panel = |title, series, y| Curves {
+        x_label: "Noise on positions (% of their standard deviation)",
+        x: [-0.8, 20.8],
+        x_step: 5.0,
+        y,
+        ..panel(title, series)
+    };
+    let panels = [
+        panel("Potentials from recorded velocities", &velocity, [1e-3, 1.0]),
+        panel("Potentials from displacements (9)", &displacement, [1e-3, 1e4]),
+    ];
+    let mut all = tables(&velocity, ["velocity-narrow", "velocity-medium"], "noise_percent");
+    all.extend(tables(&displacement, ["displacement-narrow", "displacement-medium"], "noise_percent"));
+    let key = key(2.0 * SIZE.0);
+    Ok(Drawing { picture: Picture::rows(&[&[&panels[0], &panels[1]], &[&key]]), tables: all })
+}
+
+/// One series for each bandwidth.
+fn series<'a>(sources: &'a Sources, id: &str, rule: &str, percent: &[f64]) -> anyhow::Result<Vec<Series<'a>>> {
+    let result = sources.experiment(id).with_context(|| format!("{id} was not run"))?;
+    let prefix = if rule.is_empty() { String::new() } else { format!("{rule}-") };
+    let series = BANDWIDTHS.iter().zip(STYLES).map(|((bandwidth, _), style)| Series {
+        result,
+        rows: percent.iter().map(|&x| (x, format!("{prefix}{bandwidth}-{x}"))).collect(),
+        style,
+    });
+    Ok(series.collect())
+}
+
+fn panel(title: &str, series: &[Series<'_>]) -> Curves {
+    Curves {
+        title: title.to_owned(),
+        x_label: "",
+        y_label: "Normalised error",
+        y_axis: Axis::Logarithmic,
+        x: [0.0; 2],
+        y: [0.0; 2],
+        x_step: 0.0,
+        lines: series.iter().flat_map(Series::curves).collect(),
+        size: SIZE,
+    }
+}
+
+fn key(width: f64) -> Key {
+    let row =
+        |((name, _), style): (&(&str, _), Style)| ERRORS.map(|error| error.entry(&format!(", {name}"), style)).into();
+    Key { rows: BANDWIDTHS.iter().zip(STYLES).map(row).collect(), width }
+}
+
+fn tables(series: &[Series<'_>], names: [&'static str; 2], varied: &str) -> Vec<Csv> {
+    series.iter().zip(names).map(|(series, name)| series.table(name, varied)).collect()
+}

@@ -1,0 +1,49 @@
+//! Errors among the samples near the goal along the line, and near the line.
+
+use anyhow::Context as _;
+
+use crate::experiments::{Distance, TENTHS};
+use crate::figures::errors::{ERRORS, FIRST, Series};
+use crate::figures::{Csv, Sources};
+use crate::plot::{Axis, Curves, Key};
+
+/// Pixels.
+const SIZE: (f64, f64) = (620.0, 400.0);
+
+/// (d) and (e), their key, and their numbers.
+pub(super) struct Panels {
+    pub(super) along: Curves,
+    pub(super) around: Curves,
+    pub(super) key: Key,
+    pub(super) tables: Vec<Csv>,
+}
+
+pub(super) fn panels(sources: &Sources) -> anyhow::Result<Panels> {
+    let result = sources.experiment("figure9").context("figure9 was not run")?;
+    let series = |distance: Distance| Series {
+        result,
+        rows: TENTHS.map(|tenths| (f64::from(tenths) / 10.0, distance.row(tenths))).collect(),
+        style: FIRST,
+    };
+    let [along, around] = Distance::BOTH.map(series);
+    Ok(Panels {
+        along: panel("(d) Samples within d of the goal along the line", "d (rad)", &along),
+        around: panel("(e) Samples within r of the line", "r (rad)", &around),
+        key: Key { rows: vec![ERRORS.map(|error| error.entry("", FIRST)).into()], width: 2.0 * SIZE.0 },
+        tables: vec![along.table("d", "d"), around.table("r", "r")],
+    })
+}
+
+fn panel(title: &str, x_label: &'static str, series: &Series<'_>) -> Curves {
+    Curves {
+        title: title.to_owned(),
+        x_label,
+        y_label: "Normalised error, cumulative",
+        y_axis: Axis::Linear,
+        x: [0.0, 1.05],
+        x_step: 0.2,
+        y: [0.0, 1.1],
+        lines: series.curves().collect(),
+        size: SIZE,
+    }
+}

@@ -1,0 +1,55 @@
+//! Fig. 9: where the three-link arm's movements end, and what can be learnt there.
+
+mod curves;
+mod scenes;
+
+use curves::Panels;
+use serde::{Deserialize, Serialize};
+
+use super::{Document, Drawing, Figure, Sources, rounded};
+use crate::experiments::{ARM_SYSTEM, arm};
+use crate::plot::Picture;
+use crate::seed::generator;
+
+pub(super) fn document() -> Document {
+    Document {
+        id: "figure9_movements",
+        experiment: Some("figure9"),
+        compute: |seed| Ok(serde_json::to_value(movements(seed)?)?),
+    }
+}
+
+pub(super) fn figure() -> Figure {
+    Figure {
+        id: "figure9",
+        title: "Fig. 9: movements that end on a line",
+        caption: "(a) Movements of the three-link arm in joint space; dots are where they end. They run to a line and not to the goal of the \
+                  policy, q = 0 (disc), because on that line every constraint blocks the direction to it. (b), (c) The same seen along q₃, with planes at a distance d from the \
+                  goal along the line and a cylinder of radius r around it. (d), (e) Errors of policy-align at the test samples between the planes or within the \
+                  cylinder: mean and standard deviation over 50 data sets. As in the paper, φ and π start low and rise with d, are high close to the line \
+                  already, and Nπ is low everywhere: what is unknown is the potential along the line. What differs: the paper's φ and π rise to .6–.7 with d, ours to \
+                  less than .3 and .45, about the errors of all samples, as they must where nearly all are counted (printed: .17 and .35); ours fall with r; and Nπ, flat in the paper, falls a little with d.",
+        experiment: Some("figure9"),
+        needs: &["figure9_movements", "figure9"],
+        draw,
+    }
+}
+
+/// Movements of the first data set, (q₁, q₂, q₃) in radians.
+#[derive(Serialize, Deserialize)]
+struct Movements(Vec<Vec<(f64, f64, f64)>>);
+
+fn movements(seed: u64) -> anyhow::Result<Movements> {
+    let recordings = arm()?.record(&mut generator(seed, ARM_SYSTEM, 0))?;
+    let posture = |q: nalgebra::DVectorView<'_, f64>| (rounded(q[0], 4), rounded(q[1], 4), rounded(q[2], 4));
+    let movement = |recording: &demo_gen::Recording| recording.truth.states.column_iter().map(posture).collect();
+    Ok(Movements(recordings.iter().map(movement).collect()))
+}
+
+fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+    let Movements(movements) = sources.document("figure9_movements")?;
+    let [joint_space, planes, cylinder] = scenes::scenes(&movements);
+    let Panels { along, around, key, tables } = curves::panels(sources)?;
+    let picture = Picture::rows(&[&[&joint_space, &planes, &cylinder], &[&along, &around], &[&key]]);
+    Ok(Drawing { picture, tables })
+}

@@ -1,0 +1,88 @@
+use kuva::plot::{ColorMap, Scatter3DPlot, Surface3DPlot};
+use kuva::render::layout::Layout;
+use kuva::render::plots::Plot;
+use kuva::render::render::{Scene, render_multiple};
+
+use super::style::heights;
+use super::{Field, Panel};
+
+/// Heights above the plane in perspective, x to the right and y away from the reader; light is high.
+#[derive(Debug, Clone)]
+pub(crate) struct Relief {
+    pub(crate) title: String,
+    pub(crate) x_label: &'static str,
+    pub(crate) y_label: &'static str,
+    pub(crate) z_label: &'static str,
+    /// Lowest and highest corner of the box; without it the box is as large as what is in it.
+    pub(crate) extent: Option<[(f64, f64, f64); 2]>,
+    pub(crate) surface: Option<Field>,
+    pub(crate) dots: Vec<(f64, f64, f64)>,
+    /// Pixels.
+    pub(crate) size: (f64, f64),
+}
+
+/// Radius of dots, pixels.
+const DOT: f64 = 2.0;
+
+/// Pixels beside and below the box, and above it.
+const ROOM: (f64, f64) = (24.0, 18.0);
+const TITLE: f64 = 36.0;
+
+impl Panel for Relief {
+    // The crate's axes are left-handed from this side: with x and y exchanged the picture is no mirror image.
+    fn scene(&self) -> Scene {
+        let points = |points: &[(f64, f64, f64)]| points.iter().map(|&(x, y, z)| (y, x, z)).collect::<Vec<_>>();
+        // The crate fits its box to what is in it: corners without size hold it open.
+        let corners = points(self.extent.as_ref().map_or(&[], |corners| &corners[..]));
+        let corners = Scatter3DPlot::new().with_data(corners).with_size(0.0);
+        let corners = corners.with_x_label(self.y_label).with_y_label(self.x_label).with_z_label(self.z_label);
+        let mut plots = vec![Plot::Scatter3D(corners)];
+        if let Some(Field { x, y, values }) = &self.surface {
+            let columns = (0..x.len()).map(|column| values.iter().map(|row| row[column]).collect()).collect();
+            let surface = Surface3DPlot::new(columns).with_x_coords(y.clone()).with_y_coords(x.clone());
+            plots.push(Plot::Surface3D(surface.with_z_colormap(heights()).with_wireframe_width(0.25)));
+        }
+        if !self.dots.is_empty() {
+            let dots = Scatter3DPlot::new().with_data(points(&self.dots)).with_size(DOT);
+            plots.push(Plot::Scatter3D(dots.with_z_colormap(ColorMap::Cividis)));
+        }
+        let mut layout = Layout::auto_from_plots(&plots)
+            .with_title(self.title.clone())
+            .with_title_size(15)
+            .with_width(self.size.0)
+            .with_height(self.size.1)
+            .with_force_margins(ROOM.0, ROOM.0)
+            .with_force_margins_y(TITLE, ROOM.1);
+        // Heights are at the axis.
+        layout.show_colorbar = false;
+        render_multiple(plots, layout)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use kuva::render::render::Primitive;
+
+    use super::*;
+
+    #[test]
+    fn it_is_no_mirror_image_and_up_is_up() {
+        let dots = vec![(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)];
+        let extent = [(-1.0, -2.0, -1.0), (3.0, 2.0, 1.0)];
+        let [x_label, y_label, z_label] = ["x", "y", "z"];
+        let (title, surface, size) = (String::new(), None, (400.0, 400.0));
+        let scene = Relief { title, x_label, y_label, z_label, extent: Some(extent), surface, dots, size }.scene();
+        // The farthest is drawn first: find each by its radius and distance to the others.
+        let circle = |element: &Primitive| match element {
+            Primitive::Circle { cx, cy, r, .. } if *r > 0.0 => Some((*cx, -*cy)),
+            _ => None,
+        };
+        let mut places: Vec<(f64, f64)> = scene.elements.iter().filter_map(circle).collect();
+        places.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let [x, origin, y, z] = places[..] else { panic!("{places:?}") };
+        let from_origin = |(right, up): (f64, f64)| (right - origin.0, up - origin.1);
+        let (x, y, z) = (from_origin(x), from_origin(y), from_origin(z));
+        assert!(x.0 > 1.0 && y.0 > 1.0 && z.0.abs() < 0.1 && z.1 > 1.0, "{x:?} {y:?} {z:?}");
+        assert!(x.0 * y.1 - x.1 * y.0 > 1.0, "seen from above y is to the left of x: {x:?} {y:?}");
+    }
+}
