@@ -36,7 +36,7 @@ pub(super) fn right() -> Figure {
                   velocities, which are clean. As in the paper, errors grow with the noise and stay below 1, with π on top; φ, lowest there, is \
                   lowest here only up to 5 % and then level with Nπ. Right, on another scale: potentials \
                   integrated from displacements, by the paper's rule (9). To it noise looks like a steady descent, and at 5 % nothing is left to \
-                  learn, so the paper's curves cannot come from it. Without noise both rules are the same here.",
+                  learn: the paper's curves can hardly come from it. Without noise both rules are the same here.",
         experiment: Some("figure6_right"),
         needs: &["figure6_right"],
         draw: draw_right,
