@@ -25,9 +25,10 @@ pub(super) fn section(compared: &Compared<'_>, contents: &Contents<'_>) -> Marku
         }
         @for (row, what) in compared.failures() { p .notice { code { (row) } ": " (what) "." } }
         @if compared.is_printed() {
-            (printed(compared)) (standing_out(compared)) (left_open(compared))
+            (printed(compared))
             @if experiment.id == view::EXPERIMENT { (view::view(contents.sources, &figures)) }
             @for (figure, svg) in &figures { (figure::card(figure, svg)) }
+            (standing_out(compared)) (left_open(compared))
         } @else {
             @for (figure, svg) in &figures { (figure::card(figure, svg)) }
             (left_open(compared)) (curves(compared))

@@ -6,7 +6,7 @@ use super::emphasis::emphasised;
 use super::experiment::sentence;
 use super::facts::facts;
 use super::verdict_bar::{bar, words};
-use super::{Contents, OVERVIEW, figure};
+use super::{Contents, OVERVIEW, figure, view};
 use crate::report::compared::{Compared, Line};
 use crate::report::tally::Tally;
 use crate::verdict::Verdict;
@@ -27,6 +27,7 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
             (not_reached(all))
         }
         @if let Some((figure, svg)) = overview { (figure::card(figure, svg)) }
+        (view::way(contents.sources))
     }
 }
 

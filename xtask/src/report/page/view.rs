@@ -10,6 +10,9 @@ pub(super) const EXPERIMENT: &str = "table2";
 /// The figure data that it plays.
 const DOCUMENT: &str = "grasp_playback";
 
+/// Where on the page it is.
+const PLACE: &str = "walk";
+
 pub(super) const STYLE: &str = include_str!("../../../page/view/view.css");
 
 /// In this order one script.
@@ -36,12 +39,25 @@ pub(super) fn view(sources: &Sources, figures: &[&(&Figure, String)]) -> Markup 
     let still = figures.first().map(|(figure, _)| format!("#figure-{}", figure.id));
     html! {
         @if let Some(playback) = sources.documents.get(DOCUMENT) {
-            h3 #walk { "Walk around it" }
+            h3 #(PLACE) { "Walk around the robot" }
+            p {
+                "Both hands reach for the ball, led by the expert’s policy or by one that was learnt from demonstrations: past \
+                 the wall that was in their way, past an obstacle that no demonstration shows, and with nothing in the way."
+            }
             div #view data-still=[still] {
                 noscript { "The moving picture needs JavaScript; nothing else here does." }
             }
             script type="application/json" id="grasp-playback" { (PreEscaped(within_script(&playback.to_string()))) }
             script type="module" { (PreEscaped(SCRIPT.concat())) (PreEscaped(START)) }
+        }
+    }
+}
+
+/// A way to the view, for the opening.
+pub(super) fn way(sources: &Sources) -> Markup {
+    html! {
+        @if sources.documents.contains_key(DOCUMENT) {
+            p .way { a href={ "#" (PLACE) } { "See the robot move, and walk around it" } }
         }
     }
 }
