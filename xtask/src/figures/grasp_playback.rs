@@ -11,13 +11,16 @@ mod starts;
 use serde::{Deserialize, Serialize};
 
 use constraint::Constraint;
-use movements::{Movement, movements};
-use policies::LEARNERS;
-use robot::{Robot, robot};
-use scene::{Scene, scene};
+use movements::movements;
+use scene::scene;
 
 use super::Document;
 use crate::experiments::grasp;
+
+pub(crate) use movements::Movement;
+pub(crate) use policies::LEARNERS;
+pub(crate) use robot::{Motion, Robot, robot};
+pub(crate) use scene::Scene;
 
 /// Start postures that are shown.
 const STARTS: usize = 4;

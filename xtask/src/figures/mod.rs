@@ -8,11 +8,14 @@ mod figure3;
 mod figure4;
 mod figure5;
 mod figure6;
+mod figure7;
+mod figure8;
 mod figure9;
 mod figure_b1;
 mod grasp_playback;
 mod overview;
 mod shapes;
+mod stage;
 
 use std::collections::BTreeMap;
 
@@ -97,6 +100,8 @@ pub(crate) fn figures() -> Vec<Figure> {
         figure5::figure(),
         figure6::left(),
         figure6::right(),
+        figure7::figure(),
+        figure8::figure(),
         figure9::figure(),
         figure_b1::figure(),
     ]

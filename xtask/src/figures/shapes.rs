@@ -22,7 +22,7 @@ pub(super) struct Shape {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     Sphere,
     Cylinder,
     Box,
@@ -34,17 +34,22 @@ const SAME: f64 = 1e-4;
 /// All collision shapes of a robot in these poses.
 pub(super) fn posed(robot: &RobotModel, poses: &LinkPoses<'_>) -> anyhow::Result<Vec<Shape>> {
     let shape = |CollisionShape { link, origin, geometry }: &CollisionShape| {
-        let (kind, size) = match geometry {
-            Geometry::Sphere { radius } => (Kind::Sphere, vec![*radius]),
-            Geometry::Cylinder { radius, length } => (Kind::Cylinder, vec![*radius, *length]),
-            Geometry::Box { size } => (Kind::Box, size.iter().copied().collect()),
-            other => bail!("link {:?} has a shape that is not drawn: {other:?}", robot.link_name(*link)),
-        };
+        let (kind, size) = form(geometry)?;
         let pose = poses.pose(*link) * origin;
         let (translation, rotation) = numbers(&pose);
         Ok(Shape { link: robot.link_name(*link).to_owned(), kind, size, translation, rotation })
     };
     robot.collision_shapes()?.iter().map(shape).collect()
+}
+
+/// A shape as documents hold it.
+pub(super) fn form(geometry: &Geometry) -> anyhow::Result<(Kind, Vec<f64>)> {
+    Ok(match geometry {
+        Geometry::Sphere { radius } => (Kind::Sphere, vec![*radius]),
+        Geometry::Cylinder { radius, length } => (Kind::Cylinder, vec![*radius, *length]),
+        Geometry::Box { size } => (Kind::Box, size.iter().copied().collect()),
+        other => bail!("the form of the figure data has no words for {other:?}"),
+    })
 }
 
 /// A pose as documents hold it.

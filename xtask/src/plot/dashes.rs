@@ -6,8 +6,14 @@ use nalgebra::Point3;
 /// An element of a scene as pixels need it: the plotting crate begins its dashes anew at each point of a line there,
 /// which leaves none where points are close.
 pub(super) fn drawn(element: &Primitive) -> Vec<Primitive> {
-    let Primitive::PolyLine { points, stroke, stroke_width, stroke_dasharray: Some(pattern) } = element else {
-        return vec![element.clone()];
+    let (points, stroke, stroke_width, pattern) = match element {
+        Primitive::PolyLine { points, stroke, stroke_width, stroke_dasharray: Some(pattern) } => {
+            (points.clone(), stroke, stroke_width, pattern)
+        }
+        Primitive::Line { x1, y1, x2, y2, stroke, stroke_width, stroke_dasharray: Some(pattern) } => {
+            (vec![(*x1, *y1), (*x2, *y2)], stroke, stroke_width, pattern)
+        }
+        _ => return vec![element.clone()],
     };
     let pattern: Vec<f64> = pattern.split(' ').filter_map(|length| length.parse().ok()).collect();
     let points: Vec<_> = points.iter().map(|&(x, y)| Point3::new(x, y, 0.0)).collect();

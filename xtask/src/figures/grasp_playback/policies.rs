@@ -13,7 +13,7 @@ use crate::plot::Who;
 const CUTOFF: f64 = 1e-9;
 
 /// Who is shown, each with its id.
-pub(super) const LEARNERS: [(&str, Who); 3] =
+pub(crate) const LEARNERS: [(&str, Who); 3] =
     [("expert", Who::Expert), ("naive", Who::Naive), ("policy_align", Who::PolicyAlign)];
 
 /// The policies, in the order of [`LEARNERS`]; learnt as for the table, from what is left of its random numbers.

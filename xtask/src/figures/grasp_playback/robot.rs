@@ -2,9 +2,11 @@
 
 use anyhow::{Context as _, bail};
 use demo_gen::UpperBody;
-use kinematics::{CollisionShape, Drive, DriveKind, Geometry, LinkId, RobotModel};
+use kinematics::{CollisionShape, Drive, DriveKind, LinkId, RobotModel};
 use nalgebra::IsometryMatrix3;
 use serde::{Deserialize, Serialize};
+
+use crate::figures::shapes::{Kind, form};
 
 /// Links and what they look like.
 #[derive(Serialize, Deserialize)]
@@ -56,15 +58,7 @@ pub(crate) struct Shape {
     pub(crate) rotation: [f64; 9],
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Kind {
-    Sphere,
-    Cylinder,
-    Box,
-}
-
-pub(super) fn robot(body: &UpperBody) -> anyhow::Result<Robot> {
+pub(crate) fn robot(body: &UpperBody) -> anyhow::Result<Robot> {
     let robot = body.robot();
     let links: Vec<LinkId> = robot.links().collect();
     let place = |link: LinkId| links.iter().position(|other| *other == link).context("a link of another robot");
@@ -98,12 +92,7 @@ fn link(robot: &RobotModel, link: LinkId, place: impl Fn(LinkId) -> anyhow::Resu
 }
 
 fn shape(shape: &CollisionShape, place: impl Fn(LinkId) -> anyhow::Result<usize>) -> anyhow::Result<Shape> {
-    let (kind, size) = match &shape.geometry {
-        Geometry::Sphere { radius } => (Kind::Sphere, vec![*radius]),
-        Geometry::Cylinder { radius, length } => (Kind::Cylinder, vec![*radius, *length]),
-        Geometry::Box { size } => (Kind::Box, size.iter().copied().collect()),
-        other => bail!("the form of the figure data has no words for {other:?}"),
-    };
+    let (kind, size) = form(&shape.geometry)?;
     let (translation, rotation) = numbers(&shape.origin);
     Ok(Shape { link: place(shape.link)?, kind, size, translation, rotation })
 }

@@ -3,6 +3,8 @@
 use kuva::render::color::Color;
 use nalgebra::Vector3;
 
+use super::Paint;
+
 /// What is in full shadow keeps this share of its lightness.
 const SHADOW: f64 = 0.66;
 
@@ -18,21 +20,18 @@ pub(super) fn lit(normal: &Vector3<f64>) -> f64 {
 
 /// A colour, `#rrggbb`, in so much light.
 pub(super) fn shade(color: &str, lit: f64) -> Color {
-    let share = SHADOW + (1.0 - SHADOW) * lit;
+    scaled(color, SHADOW + (1.0 - SHADOW) * lit)
+}
+
+/// The colour of outlines: dark, or where things behind can be seen less so.
+pub(super) fn ink(paint: &Paint) -> Color {
+    scaled(paint.color, if paint.opacity < 1.0 { 0.6 } else { 0.3 })
+}
+
+fn scaled(color: &str, share: f64) -> Color {
     match Color::from(color) {
         Color::Rgb(r, g, b) => {
             let [r, g, b] = [r, g, b].map(|part| (f64::from(part) * share).round() as u8);
-            Color::Rgb(r, g, b)
-        }
-        other => other,
-    }
-}
-
-/// The colour of outlines around this one.
-pub(super) fn dark(color: &str) -> Color {
-    match Color::from(color) {
-        Color::Rgb(r, g, b) => {
-            let [r, g, b] = [r, g, b].map(|part| (f64::from(part) * 0.3).round() as u8);
             Color::Rgb(r, g, b)
         }
         other => other,

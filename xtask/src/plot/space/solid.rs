@@ -9,7 +9,7 @@ use super::Paint;
 use super::body::{Body, Fill, Slab};
 use super::front::{Front, Half, Round};
 use super::outline::{edges, hull};
-use super::shade::{dark, light, lit, shade};
+use super::shade::{ink, light, lit, shade};
 use super::view::corners;
 
 /// Lines along a round body.
@@ -124,7 +124,7 @@ fn body(
     creases: Vec<[Point2<f64>; 2]>,
     paint: &Paint,
 ) -> Body {
-    Body { wires, front, fills, creases, opacity: paint.opacity, ink: dark(paint.color), cuts: vec![] }
+    Body { wires, front, fills, creases, opacity: paint.opacity, ink: ink(paint), cuts: vec![] }
 }
 
 fn flat(outline: &[Point3<f64>]) -> Vec<Point2<f64>> {

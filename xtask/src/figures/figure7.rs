@@ -1,0 +1,88 @@
+//! The robot reaches through the gap and grasps the ball.
+
+use anyhow::Context as _;
+use nalgebra::Point3;
+
+use super::grasp_playback::{GraspPlayback, Movement};
+use super::{Drawing, Figure, Sources, stage};
+use crate::plot::{Camera, Paint, Panel, Picture, Space, Who};
+
+/// Postures that are shown.
+const FRAMES: usize = 5;
+
+pub(crate) fn figure() -> Figure {
+    Figure {
+        id: "figure7",
+        title: "Figure 7: grasping a ball through a gap",
+        caption: "A demonstration: with its hands at its sides at first, the robot reaches between two plates and takes the ball \
+                  between its palms. From frame to frame the hands go on by a quarter of their way, which is drawn; a hand \
+                  beside the gap cannot go forward and moves along its plate. Only the hands are taught and feel the plates: all joints \
+                  follow them by resolved-rate control, and the trunk may lean through a plate. Times are the simulation's, \
+                  0.5 s from sample to sample; the paper's movements last 2 s. Its figure shows ASIMO before two barriers; the measures of that scene are \
+                  not published, ours are fitted.",
+        experiment: Some("table2"),
+        needs: &["grasp_playback"],
+        draw,
+    }
+}
+
+fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+    let playback: GraspPlayback = sources.document("grasp_playback")?;
+    let shown = playback.movements.iter().find(|m| m.constraint == "gap" && m.learner == "expert" && m.start == 0);
+    let shown = shown.context("no movement of the expert through the gap")?;
+    let frames: Vec<Space> = stages(&shown.palms).into_iter().map(|sample| frame(&playback, shown, sample)).collect();
+    let panels: Vec<&dyn Panel> = frames.iter().map(|frame| frame as &dyn Panel).collect();
+    Ok(Drawing { picture: Picture::rows(&[&panels]), tables: vec![] })
+}
+
+/// Samples at which the hands have gone equal shares of their way.
+fn stages(palms: &[Vec<f64>]) -> Vec<usize> {
+    let step = |pair: &[Vec<f64>]| pair[0].iter().zip(&pair[1]).map(|(a, b)| (b - a).powi(2)).sum::<f64>().sqrt();
+    let mut gone = vec![0.0];
+    for pair in palms.windows(2) {
+        gone.push(gone[gone.len() - 1] + step(pair));
+    }
+    let whole = gone[gone.len() - 1];
+    let at = |frame: usize| whole * frame as f64 / (FRAMES - 1) as f64;
+    let nearest = |way: f64| (0..gone.len()).min_by(|&a, &b| (gone[a] - way).abs().total_cmp(&(gone[b] - way).abs()));
+    (0..FRAMES).filter_map(|frame| nearest(at(frame))).collect()
+}
+
+fn frame(playback: &GraspPlayback, movement: &Movement, sample: usize) -> Space {
+    let mut items = stage::robot(&playback.robot, &movement.joints[sample], paint);
+    items.extend(stage::ball_and_table(&playback.scene));
+    items.extend(stage::plates(&playback.scene, &movement.plates));
+    let side = playback.scene.table.half_width;
+    Space {
+        title: format!("t = {} s", sample as f64 * playback.time_step),
+        camera: Camera { azimuth: 30.0, elevation: 25.0 },
+        items,
+        over: stage::ways(&movement.palms[..=sample], Who::Demonstration.stroke(1.6)).to_vec(),
+        frame: None,
+        extent: Some([Point3::new(-0.2, -side, 0.0), Point3::new(playback.scene.table.far, side, 1.08)]),
+        size: (252.0, 310.0),
+    }
+}
+
+fn paint(link: &str) -> Paint {
+    Paint::opaque(match link {
+        "l_hand" | "r_hand" => "#9cc3e0",
+        _ if link.starts_with("l_") || link.starts_with("r_") => "#dbe9f4",
+        _ => "#f4f4f0",
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_share_the_way_not_the_time() {
+        // Half of the way in one step, then slower and slower.
+        let palms: Vec<Vec<f64>> = (0..60).map(|i| vec![1.0 - 0.5_f64.powi(i), 0.0, 0.0, 0.0, 0.0, 0.0]).collect();
+        let stages = stages(&palms);
+        assert_eq!((stages[0], stages[2]), (0, 1));
+        assert_eq!(stages.len(), FRAMES);
+        assert!(stages.is_sorted() && stages[4] > 40);
+    }
+}

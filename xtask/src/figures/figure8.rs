@@ -1,0 +1,257 @@
+//! Reaching with nothing in the way: expert, naive learner and PolicyAlign.
+
+use nalgebra::{Point3, Translation3, Vector3};
+
+use super::grasp_playback::{GraspPlayback, LEARNERS, Movement};
+use super::{Csv, Drawing, Figure, Sources, rounded, stage};
+use crate::plot::{
+    Axis, Camera, Curve, Curves, Entry, Filling, Frame, Item, Key, Mark, Paint, Picture, Sign, Space, Who,
+};
+
+pub(crate) fn figure() -> Figure {
+    Figure {
+        id: "figure8",
+        title: "Figure 8: reaching with nothing in the way",
+        caption: "Both hands reach for the ball from four starts, without plates. Grey: where hands beside the gap were stopped in the \
+                  demonstrations, here at the mean gap of these four; discs: where the hands are at the end. The expert goes straight. The naive \
+                  learner has averaged hands that were stopped and hands that passed: it moves aside, as if the plates were there, \
+                  before it goes on, and arrives late. The learnt policy sets off as the expert does and passes where the plates stood; \
+                  but the regression displaces the minimum of its potential, so that its hands run past the ball and do not \
+                  stop there. In the paper's figure its ways lie close to the expert's. Right: how far hands are \
+                  from the sides of the ball, mean and standard deviation of the eight.",
+        experiment: Some("table2"),
+        needs: &["grasp_playback"],
+        draw,
+    }
+}
+
+/// From mark to mark on a curve, seconds.
+const EVERY: f64 = 5.0;
+
+fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+    let playback: GraspPlayback = sources.document("grasp_playback")?;
+    let frame = frame(&playback);
+    let above = view("From above", Camera { azimuth: 180.0, elevation: 90.0 }, &playback, &frame);
+    let behind = view("From behind", Camera { azimuth: 180.0, elevation: 0.0 }, &playback, &frame);
+    let distances = distances(&playback);
+    let key = Key { rows: vec![LEARNERS.iter().map(|&learner| entry(&playback, learner)).collect()], width: 1240.0 };
+    let picture = Picture::rows(&[&[&above, &behind, &distances], &[&key]]);
+    Ok(Drawing { picture, tables: vec![ends(&playback), over_time(&playback)] })
+}
+
+fn movements<'p>(playback: &'p GraspPlayback, learner: &'p str) -> impl Iterator<Item = &'p Movement> {
+    playback.movements.iter().filter(move |movement| movement.constraint == "none" && movement.learner == learner)
+}
+
+/// Where the left palm is over time, or the right one.
+fn palm(movement: &Movement, hand: usize) -> impl Iterator<Item = Point3<f64>> {
+    movement.palms.iter().map(move |palms| Point3::from_slice(&palms[3 * hand..3 * hand + 3]))
+}
+
+/// How far a palm is from where it should take the ball, over time.
+fn distance(playback: &GraspPlayback, movement: &Movement, hand: usize) -> impl Iterator<Item = f64> {
+    let target = Point3::from_slice(&playback.scene.target[3 * hand..3 * hand + 3]);
+    palm(movement, hand).map(move |palm| (palm - target).norm())
+}
+
+/// All ways and the ball, to the next tenth of a metre.
+fn frame(playback: &GraspPlayback) -> Frame {
+    let ball = &playback.scene.ball;
+    let radius = Vector3::repeat(ball.diameter / 2.0);
+    let (mut lowest, mut highest) = (Point3::from(ball.centre) - radius, Point3::from(ball.centre) + radius);
+    for movement in LEARNERS.iter().flat_map(|(id, _)| movements(playback, id)) {
+        for palm in [0, 1].into_iter().flat_map(|hand| palm(movement, hand)) {
+            (lowest, highest) = (lowest.inf(&palm), highest.sup(&palm));
+        }
+    }
+    Frame {
+        lowest: lowest.map(|value| (value * 10.0).floor() / 10.0),
+        highest: highest.map(|value| (value * 10.0).ceil() / 10.0),
+        labels: ["x (m)", "y (m)", "z (m)"],
+    }
+}
+
+fn view(title: &str, camera: Camera, playback: &GraspPlayback, frame: &Frame) -> Space {
+    let ball = &playback.scene.ball;
+    let (centre, radius) = (Point3::from(ball.centre), ball.diameter / 2.0);
+    let mut items = walls(playback, frame);
+    items.push(Item::Ball { centre, radius, paint: Paint { color: "#f0e442", opacity: 0.45 } });
+    let mut over = vec![];
+    for (id, who) in LEARNERS {
+        for movement in movements(playback, id) {
+            over.extend(stage::ways(&movement.palms, who.stroke(1.8)));
+            let points = [0, 1].iter().filter_map(|&hand| palm(movement, hand).last()).collect();
+            over.push(Item::Dots { points, color: who.color(), radius: 3.2 });
+        }
+    }
+    let (title, frame) = (title.to_owned(), Some(frame.clone()));
+    Space { title, camera, items, over, frame, extent: None, size: (400.0, 440.0) }
+}
+
+/// Where hands were stopped in the demonstrations: beside a gap as wide as those of the shown ones on average.
+fn walls(playback: &GraspPlayback, frame: &Frame) -> Vec<Item> {
+    let edges = playback.movements.iter().filter(|m| m.constraint == "gap").flat_map(|m| m.plates.iter().flatten());
+    let edges: Vec<f64> = edges.flatten().map(|edge| edge.abs()).collect();
+    let edge = edges.iter().sum::<f64>() / edges.len() as f64;
+    let wall = &playback.scene.wall;
+    let block = |from: f64, to: f64| {
+        let low = Vector3::new(wall.x - wall.reach, from, frame.lowest.z);
+        let high = Vector3::new(wall.x + wall.reach, to, frame.highest.z);
+        let paint = Paint { color: "#a8a8a8", opacity: 0.25 };
+        Item::Block { pose: Translation3::from((low + high) / 2.0).into(), size: high - low, paint }
+    };
+    let sides = [(frame.lowest.y, -edge), (edge, frame.highest.y)];
+    sides.into_iter().filter(|(from, to)| from < to).map(|(from, to)| block(from, to)).collect()
+}
+
+/// (time, mean, standard deviation) of all hands' distances.
+fn spread(playback: &GraspPlayback, learner: &str) -> Vec<(f64, f64, f64)> {
+    let hands = movements(playback, learner).flat_map(|movement| [(movement, 0), (movement, 1)]);
+    let hands: Vec<Vec<f64>> = hands.map(|(movement, hand)| distance(playback, movement, hand).collect()).collect();
+    let n = hands.len() as f64;
+    let at = |sample: usize| {
+        let mean = hands.iter().map(|hand| hand[sample]).sum::<f64>() / n;
+        let variance = hands.iter().map(|hand| (hand[sample] - mean).powi(2)).sum::<f64>() / (n - 1.0);
+        (sample as f64 * playback.time_step, mean, variance.sqrt())
+    };
+    (0..hands.first().map_or(0, Vec::len)).map(at).collect()
+}
+
+fn distances(playback: &GraspPlayback) -> Curves {
+    let curve = |&(id, who): &(&str, Who)| {
+        let every = (EVERY / playback.time_step).round().max(1.0) as usize;
+        let all = spread(playback, id);
+        let marked = |at: usize| at.is_multiple_of(every) || at + 1 == all.len();
+        let points = (0..all.len()).filter(|&at| marked(at)).map(|at| all[at]).collect();
+        Curve { points, stroke: who.stroke(1.8), sign: sign(who) }
+    };
+    let end = spread(playback, LEARNERS[0].0).last().map_or(0.0, |last| last.0);
+    Curves {
+        title: "Distance from the ball's sides".to_owned(),
+        x_label: "time (s)",
+        y_label: "distance (m)",
+        y_axis: Axis::Linear,
+        x: [0.0, 1.02 * end],
+        y: [0.0, 0.8],
+        x_step: 10.0,
+        lines: LEARNERS.iter().map(curve).collect(),
+        size: (400.0, 440.0),
+    }
+}
+
+fn sign(who: Who) -> Sign {
+    let mark = match who {
+        Who::Naive => Mark::Square,
+        Who::PolicyAlign => Mark::Up,
+        _ => Mark::Circle,
+    };
+    Sign { mark, filling: Filling::Full }
+}
+
+/// In the key: who, and how far the hands are away at the end.
+fn entry(playback: &GraspPlayback, (id, who): (&str, Who)) -> Entry {
+    let end = spread(playback, id).last().map_or(f64::NAN, |last| last.1);
+    let name = format!("{}: at the end {:.1} cm away", who.name(), 100.0 * end);
+    Entry { name, stroke: who.stroke(1.8), sign: sign(who) }
+}
+
+/// Metres, rounded.
+fn micrometres(value: f64) -> f64 {
+    rounded(value, 6)
+}
+
+/// How far each hand is at the end, metres; hand 0 is the left one.
+fn ends(playback: &GraspPlayback) -> Csv {
+    let far = |learner: &str, start: usize, hand: usize| {
+        let movement = movements(playback, learner).find(|movement| movement.start == start);
+        movement.and_then(|movement| distance(playback, movement, hand).last()).map_or(f64::NAN, micrometres)
+    };
+    let row = |(start, hand): (usize, usize)| {
+        let learners = LEARNERS.iter().map(|(id, _)| far(id, start, hand));
+        [start as f64, hand as f64].into_iter().chain(learners).collect()
+    };
+    let header = ["start", "hand"].into_iter().chain(LEARNERS.map(|(id, _)| id)).map(str::to_owned).collect();
+    let rows = (0..playback.starts).flat_map(|start| [(start, 0), (start, 1)]).map(row).collect();
+    Csv { name: "ends", header, rows }
+}
+
+/// The curves: time in seconds, then mean and standard deviation of each in metres.
+fn over_time(playback: &GraspPlayback) -> Csv {
+    let header = LEARNERS.iter().flat_map(|(id, _)| [format!("{id}_mean"), format!("{id}_sd")]);
+    let all = LEARNERS.map(|(id, _)| spread(playback, id));
+    let row = |sample: usize| {
+        let values = all.iter().flat_map(move |curve| [curve[sample].1, curve[sample].2]).map(micrometres);
+        std::iter::once(all[0][sample].0).chain(values).collect()
+    };
+    let rows = (0..all.iter().map(Vec::len).min().unwrap_or(0)).map(row).collect();
+    Csv { name: "distance", header: std::iter::once("time".to_owned()).chain(header).collect(), rows }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Value, json};
+
+    use super::*;
+
+    /// One start; the right hand never moves, the left one goes along x, and ends this far behind its target.
+    fn playback(behind: [f64; 3]) -> GraspPlayback {
+        let palms = |x: f64| vec![x, 0.1, 0.6, 0.7, -0.1, 0.6];
+        let movement = |constraint: &str, learner: &str, end: f64, plates: Value| {
+            json!({ "constraint": constraint, "learner": learner, "start": 0, "plates": plates, "joints": [],
+                    "palms": [palms(0.0), palms(end / 2.0), palms(end)], "error_mm": 0.0 })
+        };
+        let mut movements: Vec<Value> = std::iter::zip(LEARNERS, behind)
+            .map(|((id, _), behind)| movement("none", id, 0.7 - behind, json!([])))
+            .collect();
+        movements.push(movement("gap", "expert", 0.7, json!([[0.1, null], [null, -0.2]])));
+        let value = json!({
+            "robot": { "links": [], "shapes": [], "hands": [0, 0], "joints": [] },
+            "scene": { "ball": { "centre": [0.7, 0.0, 0.6], "diameter": 0.2 }, "wall": { "x": 0.35, "reach": 0.09 },
+                       "table": { "top": 0.5, "near": 0.4, "far": 1.0, "half_width": 0.5 }, "target": palms(0.7) },
+            "time_step": 0.5, "constraints": [], "learners": [], "starts": 1, "movements": movements
+        });
+        serde_json::from_value(value).unwrap()
+    }
+
+    #[test]
+    fn distances_are_those_of_both_hands() {
+        let playback = playback([0.0, 0.1, -0.2]);
+        let ends = ends(&playback);
+        assert_eq!(ends.header, ["start", "hand", "expert", "naive", "policy_align"]);
+        let expected = [[0.0, 0.0, 0.0, 0.1, 0.2], [0.0, 1.0, 0.0, 0.0, 0.0]];
+        for (row, expected) in ends.rows.iter().zip(expected) {
+            assert!(row.iter().zip(expected).all(|(value, expected)| (value - expected).abs() < 1e-12), "{row:?}");
+        }
+        let (time, mean, sd) = spread(&playback, "policy_align")[2];
+        assert!((time - 1.0).abs() + (mean - 0.1).abs() + (sd - 0.02_f64.sqrt()).abs() < 1e-12);
+        assert_eq!(entry(&playback, LEARNERS[2]).name, "policy-align: at the end 10.0 cm away");
+        assert_eq!(over_time(&playback).rows[2].len(), 7);
+    }
+
+    #[test]
+    fn the_frame_holds_all_ways_and_the_ball() {
+        let playback = playback([0.0, 0.1, -0.25]);
+        let Frame { lowest, highest, .. } = frame(&playback);
+        assert!((lowest - Point3::new(0.0, -0.1, 0.5)).norm() < 1e-12, "{lowest}");
+        assert!((highest - Point3::new(1.0, 0.1, 0.7)).norm() < 1e-12, "{highest}");
+    }
+
+    #[test]
+    fn walls_stand_beside_the_mean_gap() {
+        let playback = playback([0.0; 3]);
+        let mut frame = frame(&playback);
+        (frame.lowest.y, frame.highest.y) = (-0.4, 0.5);
+        let across: Vec<_> = walls(&playback, &frame)
+            .into_iter()
+            .map(
+                |item| {
+                    if let Item::Block { pose, size, .. } = item { (pose.translation.y, size.y) } else { (0.0, 0.0) }
+                },
+            )
+            .collect();
+        let expected = [(-0.275, 0.25), (0.325, 0.35)];
+        assert!(across.iter().zip(expected).all(|(a, b)| (a.0 - b.0).abs() + (a.1 - b.1).abs() < 1e-12), "{across:?}");
+        frame.lowest.y = -0.1;
+        assert_eq!(walls(&playback, &frame).len(), 1);
+    }
+}
