@@ -7,7 +7,7 @@ use super::strip::key;
 use super::table::{columns, grid, is_printed, list, scales};
 use super::verdict_bar::{bar, words};
 use super::{Contents, figure, view};
-use crate::report::compared::{Compared, FEW, Line};
+use crate::report::compared::{Compared, Line};
 use crate::report::tally::Tally;
 use crate::verdict::Verdict;
 
@@ -78,9 +78,7 @@ fn curves(compared: &Compared<'_>) -> Markup {
 fn standing_out(compared: &Compared<'_>) -> Markup {
     let cells = compared.standing_out();
     html! {
-        @if compared.is_glimpse() {
-            p { "With fewer than " (FEW) " data sets single cells mean little." }
-        } @else if !cells.is_empty() {
+        @if !compared.is_glimpse() && !cells.is_empty() {
             h3 { "What stands out" }
             dl .reasons {
                 // Neighbours of which the same is to be said stand together.

@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 
 use super::Contents;
+use crate::experiments::Setup;
 use crate::report::compared::Compared;
 
 /// Seconds from which a time is told in minutes.
@@ -23,16 +24,13 @@ pub(super) fn facts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
             div { dt { "Time" } dd { (time(run.wall_seconds)) " on " (threads) } }
             @if let Some(second) = contents.second { div { dt { "Second seed" } dd { (second.seed) } } }
         }
-        @if results.quick {
-            p .notice { "A quick run: a few data sets a row show that everything works, not how well." }
-        }
     }
 }
 
 /// Rows of a setup are measured on the same data sets.
 fn data_sets(compared: &Compared<'_>) -> usize {
     let rows = &compared.result.rows;
-    let of_setup = |setup: &crate::experiments::Setup| {
+    let of_setup = |setup: &Setup| {
         let row = rows.iter().find(|row| setup.rows.iter().any(|other| other.id == row.id));
         row.map_or(0, |row| row.data_sets)
     };

@@ -7,9 +7,8 @@ use super::experiment::sentence;
 use super::facts::facts;
 use super::verdict_bar::{bar, words};
 use super::{Contents, OVERVIEW, figure, view};
-use crate::report::compared::{Compared, Line};
+use crate::report::compared::{Compared, FEW, Line};
 use crate::report::tally::Tally;
-use crate::verdict::Verdict;
 
 pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
     let overview = contents.figures.iter().find(|(figure, _)| figure.id == OVERVIEW);
@@ -24,7 +23,9 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
             }
             (how_it_went(all))
             (facts(contents, all))
-            (not_reached(all))
+            @if all.iter().any(Compared::is_glimpse) {
+                p .notice { "With fewer than " (FEW) " data sets a row single numbers mean little." }
+            } @else if all.iter().any(Compared::is_printed) { (not_reached(all)) }
         }
         @if let Some((figure, svg)) = overview { (figure::card(figure, svg)) }
         (view::way(contents.sources))
@@ -70,7 +71,7 @@ fn tally_of(compared: &Compared<'_>) -> Markup {
 
 /// The cells that are worse than printed or otherwise off, each with what is known of it.
 fn not_reached(all: &[Compared<'_>]) -> Markup {
-    let missed = |line: &Line<'_>| line.cell.verdict.is_some_and(|verdict: Verdict| !verdict.reached());
+    let missed = |line: &Line<'_>| line.cell.verdict.is_some_and(|verdict| !verdict.reached());
     let cells: Vec<_> = all
         .iter()
         .flat_map(|compared| compared.lines().filter(missed).map(move |line| (compared.experiment, line)))

@@ -21,21 +21,21 @@ const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// The dots of a cell.
 pub(super) fn strip(line: &Line<'_>, scale: Scale) -> Markup {
-    let at = |value: f64| pixels(INSET + scale.place(value) * (WIDTH - 2.0 * INSET));
+    let x = |value: f64| INSET + scale.place(value) * (WIDTH - 2.0 * INSET);
     let cell = line.cell;
     let values = cell.values.iter().enumerate().filter_map(|(i, value)| Some((i, (*value)?)));
     html! {
         svg .strip viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } width=(WIDTH) height=(HEIGHT) role="img" aria-label=(summary(line)) {
             @if let Some(paper) = cell.paper {
-                @let (from, to) = (at(paper.mean - paper.sd), at(paper.mean + paper.sd));
-                rect .band x=(from) width=(pixels(width(&from, &to))) height=(HEIGHT) {}
-                (tick("printed", &at(paper.mean), 0.0))
+                @let (from, to) = (x(paper.mean - paper.sd), x(paper.mean + paper.sd));
+                rect .band x=(pixels(from)) width=(pixels(to - from)) height=(HEIGHT) {}
+                (tick("printed", x(paper.mean), 0.0))
             }
             @for (i, value) in values {
-                circle cx=(at(value)) cy=(pixels(height(i))) r="2" { title { "data set " (i) ": " (line.measure.show(value)) } }
+                circle cx=(pixels(x(value))) cy=(pixels(y(i))) r="2" { title { "data set " (i) ": " (line.measure.show(value)) } }
             }
-            (tick("median", &at(cell.median), HEIGHT * 0.6))
-            (tick("mean", &at(cell.mean), 0.0))
+            (tick("median", x(cell.median), HEIGHT * 0.6))
+            (tick("mean", x(cell.mean), 0.0))
         }
     }
 }
@@ -67,18 +67,13 @@ pub(super) fn key() -> Markup {
     }
 }
 
-fn tick(class: &str, x: &str, from: f64) -> Markup {
-    html! { path class=(class) d={ "M" (x) " " (pixels(from)) "V" (HEIGHT) } {} }
+fn tick(class: &str, x: f64, from: f64) -> Markup {
+    html! { path class=(class) d={ "M" (pixels(x)) " " (pixels(from)) "V" (HEIGHT) } {} }
 }
 
 /// How far down the dot of a data set is drawn.
-fn height(data_set: usize) -> f64 {
+fn y(data_set: usize) -> f64 {
     EDGE + (GOLDEN * (data_set + 1) as f64).fract() * (HEIGHT - 2.0 * EDGE)
-}
-
-fn width(from: &str, to: &str) -> f64 {
-    let number = |text: &str| text.parse::<f64>().unwrap_or(0.0);
-    number(to) - number(from)
 }
 
 /// A tenth of a pixel is enough.
