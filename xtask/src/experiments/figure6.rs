@@ -63,7 +63,17 @@ pub(crate) fn figure6_right() -> Experiment {
 /// What both panels share.
 fn curves() -> Experiment {
     let (paper, explanations) = Default::default();
-    Experiment { id: "", section: "4.1", title: "", data_sets: 20, remark: "", setups: vec![], paper, explanations }
+    Experiment {
+        id: "",
+        section: "4.1",
+        title: "",
+        data_sets: 20,
+        remark: "",
+        another_reading_of: None,
+        setups: vec![],
+        paper,
+        explanations,
+    }
 }
 
 fn setup(id: &str, percent: &[f64], algorithm: PolicyAlign, against: Against) -> Setup {

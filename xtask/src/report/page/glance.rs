@@ -34,7 +34,8 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
 
 /// How many cells are reached: in total, and for each experiment.
 fn how_it_went(all: &[Compared<'_>]) -> Markup {
-    let total = Tally::of(all.iter().map(|compared| compared.result));
+    let first_readings = all.iter().filter(|compared| compared.experiment.another_reading_of.is_none());
+    let total = Tally::of(first_readings.map(|compared| compared.result));
     html! {
         @if total.total() > 0 {
             div .total {
@@ -60,7 +61,10 @@ fn tally_of(compared: &Compared<'_>) -> Markup {
     html! {
         @if tally.total() > 0 {
             tr {
-                th scope="row" { a href={ "#" (experiment.id) } { (experiment.title) } }
+                th scope="row" {
+                    a href={ "#" (experiment.id) } { (experiment.title) }
+                    @if experiment.another_reading_of.is_some() { " (another reading; not in the total)" }
+                }
                 td { (experiment.section) }
                 td { (bar(&tally)) }
                 td { (words(&tally)) }
