@@ -15,7 +15,7 @@ pub(crate) fn figure() -> Figure {
         caption: "Both hands reach for the ball from four starts, without plates. Grey: where hands beside the gap were stopped in the \
                   demonstrations, here at the mean gap of these four; discs: where the hands are at the end. The expert goes straight. The naive \
                   learner has averaged hands that were stopped and hands that passed: it moves aside, as if the plates were there, \
-                  before it goes on, and arrives late. The learnt policy sets off as the expert does and passes where the plates stood; \
+                  before it goes on. The learnt policy sets off as the expert does and passes where the plates stood; \
                   but the regression displaces the minimum of its potential, so that its hands run past the ball and do not \
                   stop there. In the paper's figure its ways lie close to the expert's. Right: how far hands are \
                   from the sides of the ball, mean and standard deviation of the eight.",
@@ -31,8 +31,8 @@ const EVERY: f64 = 5.0;
 fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let playback: GraspPlayback = sources.document("grasp_playback")?;
     let frame = frame(&playback);
-    let above = view("From above", Camera { azimuth: 180.0, elevation: 90.0 }, &playback, &frame);
-    let behind = view("From behind", Camera { azimuth: 180.0, elevation: 0.0 }, &playback, &frame);
+    let above = view("From above", Camera::ABOVE, &playback, &frame);
+    let behind = view("From behind", Camera::BEHIND, &playback, &frame);
     let distances = distances(&playback);
     let key = Key { rows: vec![LEARNERS.iter().map(|&learner| entry(&playback, learner)).collect()], width: 1240.0 };
     let picture = Picture::rows(&[&[&above, &behind, &distances], &[&key]]);

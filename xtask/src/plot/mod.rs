@@ -7,8 +7,6 @@
 //!
 //! [`Who`] and [`Stroke`] give every picture the same colours and lines.
 
-#![allow(dead_code, unused_imports, reason = "the figures that need them are being drawn")]
-
 mod curves;
 mod dashes;
 mod decimals;

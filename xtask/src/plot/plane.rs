@@ -1,6 +1,4 @@
-use kuva::plot::{
-    BandPlot, ColorMap, ContourPlot, Heatmap, LegendPosition, LinePlot, MarkerShape, QuiverPlot, ScatterPlot,
-};
+use kuva::plot::{BandPlot, ContourPlot, Heatmap, LegendPosition, LinePlot, MarkerShape, QuiverPlot, ScatterPlot};
 use kuva::render::annotations::TextAnnotation;
 use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;

@@ -59,7 +59,6 @@ fn shape(mark: Mark, (cx, cy): (f64, f64), color: &str, size: f64) -> Primitive 
             return Primitive::Circle { cx, cy, r: size, fill, fill_opacity: None, stroke: None, stroke_width: None };
         }
         Mark::Square => &[(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)],
-        Mark::Diamond => &[(0.0, -1.3), (1.3, 0.0), (0.0, 1.3), (-1.3, 0.0)],
         Mark::Up => &[(0.0, -1.02), (-1.0, 0.68), (1.0, 0.68)],
         Mark::Down => &[(0.0, 1.02), (-1.0, -0.68), (1.0, -0.68)],
         Mark::Cross => {

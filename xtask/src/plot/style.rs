@@ -57,7 +57,6 @@ pub(crate) enum Dash {
     Solid,
     Dashed,
     Dotted,
-    Alternating,
 }
 
 impl From<Dash> for LineStyle {
@@ -66,7 +65,6 @@ impl From<Dash> for LineStyle {
             Dash::Solid => LineStyle::Solid,
             Dash::Dashed => LineStyle::Dashed,
             Dash::Dotted => LineStyle::Dotted,
-            Dash::Alternating => LineStyle::DashDot,
         }
     }
 }
@@ -86,7 +84,6 @@ pub(crate) struct Stroke {
 pub(crate) enum Mark {
     Circle,
     Square,
-    Diamond,
     /// A triangle that points upwards.
     Up,
     /// A triangle that points downwards.
@@ -99,7 +96,6 @@ impl From<Mark> for MarkerShape {
         match mark {
             Mark::Circle => MarkerShape::Circle,
             Mark::Square => MarkerShape::Square,
-            Mark::Diamond => MarkerShape::Diamond,
             Mark::Up => MarkerShape::Triangle,
             Mark::Down => MarkerShape::TriangleDown,
             Mark::Cross => MarkerShape::Cross,

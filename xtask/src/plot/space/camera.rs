@@ -10,12 +10,10 @@ pub(crate) struct Camera {
 }
 
 impl Camera {
-    /// Looking along −x: y to the right, z up.
-    pub(crate) const FRONT: Camera = Camera { azimuth: 0.0, elevation: 0.0 };
-    /// Looking along −y, x to the left, z up.
-    pub(crate) const LEFT: Camera = Camera { azimuth: 90.0, elevation: 0.0 };
-    /// Looking along y: x to the right, z up.
-    pub(crate) const RIGHT: Camera = Camera { azimuth: -90.0, elevation: 0.0 };
+    /// Looking along x: y to the left, z up.
+    pub(crate) const BEHIND: Camera = Camera { azimuth: 180.0, elevation: 0.0 };
+    /// Looking down: y to the left, x up.
+    pub(crate) const ABOVE: Camera = Camera { azimuth: 180.0, elevation: 90.0 };
 
     /// Rows: what is to the right, up, and towards the viewer; orthonormal.
     pub(super) fn axes(&self) -> Matrix3<f64> {
@@ -52,11 +50,17 @@ mod tests {
     }
 
     #[test]
-    fn from_the_front_left_is_right() {
-        let seen = |camera: Camera, point: Vector3<f64>| camera.axes() * point;
-        assert!((seen(Camera::FRONT, Vector3::y()) - Vector3::x()).norm() < 1e-15);
-        assert!((seen(Camera::FRONT, Vector3::x()) - Vector3::z()).norm() < 1e-15);
-        assert!((seen(Camera::LEFT, Vector3::x()) + Vector3::x()).norm() < 1e-15);
-        assert!((seen(Camera::RIGHT, Vector3::x()) - Vector3::x()).norm() < 1e-15);
+    fn named_views_are_as_said() {
+        let seen = |azimuth, elevation, point: Vector3<f64>| Camera { azimuth, elevation }.axes() * point;
+        let near = |a: Vector3<f64>, b: Vector3<f64>| (a - b).norm() < 1e-15;
+        let Camera { azimuth, elevation } = Camera::BEHIND;
+        assert!(near(seen(azimuth, elevation, Vector3::y()), -Vector3::x()));
+        assert!(near(seen(azimuth, elevation, Vector3::z()), Vector3::y()));
+        assert!(near(seen(azimuth, elevation, Vector3::x()), -Vector3::z()));
+        let Camera { azimuth, elevation } = Camera::ABOVE;
+        assert!(near(seen(azimuth, elevation, Vector3::y()), -Vector3::x()));
+        assert!(near(seen(azimuth, elevation, Vector3::x()), Vector3::y()));
+        // Who looks along −x has y at the right.
+        assert!(near(seen(0.0, 0.0, Vector3::y()), Vector3::x()));
     }
 }

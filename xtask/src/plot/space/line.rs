@@ -28,7 +28,6 @@ fn pattern(stroke: &Stroke) -> Vec<f64> {
         Dash::Solid => &[],
         Dash::Dashed => &[4.0, 3.2],
         Dash::Dotted => &[0.05, 2.4],
-        Dash::Alternating => &[5.0, 2.6, 0.05, 2.6],
     };
     lengths.iter().map(|length| length * stroke.width.max(1.0)).collect()
 }

@@ -92,6 +92,7 @@ pub(super) fn inside([a, b]: [Point2<f64>; 2], within: &[Point2<f64>]) -> Option
 }
 
 /// Whether a point is inside a convex outline that turns as hulls do.
+#[cfg(test)]
 pub(super) fn holds(outline: &[Point2<f64>], point: &Point2<f64>) -> bool {
     edges(outline).all(|[a, b]| (b - a).perp(&(point - a)) >= -1e-9)
 }
