@@ -79,17 +79,22 @@ class Controls {
     this.slider.setAttribute("aria-valuetext", `${seconds(sample)} of ${seconds(lastSample)} seconds`);
     this.time.textContent = `${seconds(sample)} s of ${seconds(lastSample)} s`;
     this.words.setAttribute("aria-live", playback.playing ? "off" : "polite");
-    this.words.textContent = Controls.distancesInWords(playback);
+    this.words.textContent = Controls.inWords(playback);
   }
 
-  static distancesInWords(playback) {
+  static inWords(playback) {
     const both = (distances) => `${distances.map((metres) => (100 * metres).toFixed(1)).join(" and ")} cm`;
     const line = (learner) => {
       const { label } = playback.document.learners.find(({ id }) => id === learner);
       const [now, end] = [playback.sample, playback.lastSample].map((sample) => playback.distances(learner, sample));
       return `${label}: now ${both(now)}, at the end ${both(end)}.`;
     };
-    return ["From the left and the right hand to their places at the ball:", ...playback.learners.map(line)].join("\n");
+    const tracking = playback.movement().error_mm.toFixed(1);
+    return [
+      "From the left and the right hand to their places at the ball:",
+      ...playback.learners.map(line),
+      `The robot follows the palms of its policy to within ${tracking} mm.`,
+    ].join("\n");
   }
 }
 

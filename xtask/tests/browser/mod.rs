@@ -148,11 +148,17 @@ impl Page {
         self.call("Page.captureScreenshot", &json!({}))["data"].as_str().unwrap().to_owned()
     }
 
-    /// Errors and warnings on the console, exceptions that nobody caught, and what else the browser had to say.
+    /// Errors and warnings on the console, exceptions that nobody caught, and what else the browser had to say, but for
+    /// how slowly it draws without a graphics card.
     pub(crate) fn complaints(&mut self) -> Vec<String> {
         self.settle();
         let complaint = |event: &Value| match event["method"].as_str()? {
-            "Runtime.exceptionThrown" | "Log.entryAdded" => Some(event["params"].to_string()),
+            "Runtime.exceptionThrown" => Some(event["params"].to_string()),
+            "Log.entryAdded" => {
+                let slow =
+                    event["params"]["entry"]["text"].as_str()?.contains("GL Driver Message (OpenGL, Performance");
+                (!slow).then(|| event["params"].to_string())
+            }
             "Runtime.consoleAPICalled" => {
                 let kind = event["params"]["type"].as_str()?;
                 ["error", "warning", "assert"].contains(&kind).then(|| event["params"].to_string())

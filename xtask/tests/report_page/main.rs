@@ -8,6 +8,7 @@ mod browser;
 mod keyboard;
 mod looks;
 mod tables;
+mod view;
 
 use browser::{Page, report};
 
