@@ -8,7 +8,7 @@ use anyhow::{Context as _, ensure};
 use clap::Args;
 
 use crate::experiments::{Experiment, registry};
-use crate::figures::Sources;
+use crate::figures::{Figure, Sources, figures};
 use crate::files::{folder_of_records, repository, write};
 use crate::measure::Measure;
 use crate::report::{Tally, draw, markdown, sources};
@@ -96,7 +96,8 @@ impl Records {
         let (before, rest) =
             text.split_once(BEGIN).context("README.md has lost the line that begins the generated part")?;
         let (_, after) = rest.split_once(END).context("README.md has lost the line that ends the generated part")?;
-        let page = PREFACE.to_owned() + markdown(experiments, results, Some(&self.second)).trim_end() + "\n";
+        let tables = markdown(experiments, results, Some(&self.second));
+        let page = format!("{PREFACE}{}\n\n{}\n", tables.trim_end(), pictured(&self.first).trim_end());
         let table = results.experiments.first().map_or(String::new(), |table| summary(experiments, table));
         let table = format!("{table}\n{}", verdicts(experiments, results));
         let page = (repository().join("docs/reproduction.md"), page);
@@ -123,6 +124,16 @@ fn complete(experiments: &[Experiment], results: &Results) -> anyhow::Result<()>
         }
     }
     Ok(())
+}
+
+/// Every figure with its caption.
+fn pictured(sources: &Sources) -> String {
+    let drawn = figures().into_iter().filter(|figure| figure.can_be_drawn(sources));
+    let picture = |figure: Figure| {
+        let Figure { id, title, caption, .. } = figure;
+        format!("### {title}\n\n![{title}](pictures/{id}.svg)\n\n{caption}\n\n")
+    };
+    format!("## The figures\n\n{}", drawn.map(picture).collect::<String>())
 }
 
 /// One line an experiment with printed figures: how many printed figures are reached.

@@ -119,10 +119,15 @@ pub(crate) fn compute(experiments: &[Experiment], seed: u64) -> anyhow::Result<B
 }
 
 impl Figure {
+    /// Whether all that it needs was run.
+    pub(crate) fn can_be_drawn(&self, sources: &Sources) -> bool {
+        let there = |id: &&str| sources.documents.contains_key(*id) || sources.experiment(id).is_some();
+        self.needs.iter().all(there)
+    }
+
     /// Draws it; nothing where what it needs was not run.
     pub(crate) fn draw(&self, sources: &Sources) -> anyhow::Result<Option<Drawing>> {
-        let there = |id: &&str| sources.documents.contains_key(*id) || sources.experiment(id).is_some();
-        if !self.needs.iter().all(there) {
+        if !self.can_be_drawn(sources) {
             return Ok(None);
         }
         (self.draw)(sources).with_context(|| format!("{} cannot be drawn", self.id)).map(Some)
