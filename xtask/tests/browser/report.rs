@@ -9,6 +9,10 @@ pub(crate) fn report() -> &'static Path {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     FOLDER.get_or_init(|| {
         let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(env!("CARGO_CRATE_NAME"));
+        // What an earlier run left is none of this one's.
+        if out.exists() {
+            std::fs::remove_dir_all(&out).unwrap();
+        }
         let records = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/records/seed-1");
         let mut program = Command::new(env!("CARGO_BIN_EXE_xtask"));
         let output = program.arg("report").arg("--from").arg(records).arg("--out").arg(&out).output().unwrap();

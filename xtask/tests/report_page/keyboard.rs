@@ -44,6 +44,8 @@ fn the_first_stop_skips_the_contents() {
 #[test]
 fn a_figure_is_enlarged_and_left_again() {
     let Some(mut page) = page() else { return };
+    // A page that still scrolls is clicked beside what was meant.
+    page.prefer("prefers-reduced-motion", "reduce");
     page.evaluate::<()>("document.querySelector('.enlarge').focus()");
     page.press("Enter");
     page.wait_until("document.getElementById('enlarged').open");

@@ -148,7 +148,8 @@ fn holds_in_full(cell: &Cell, place: &Shown, second: Option<&Value>) {
 fn the_opening_counts_every_printed_cell() {
     let Some(mut page) = page() else { return };
     let mut counted: BTreeMap<String, u32> = BTreeMap::new();
-    for cell in cells(&results(1)) {
+    // The literal reading is held against numbers that are counted already.
+    for cell in cells(&results(1)).iter().filter(|cell| cell.name[0] != "table1-literal") {
         if let Some(verdict) = cell.value["verdict"].as_str() {
             *counted.entry(verdict.to_owned()).or_default() += 1;
         }
