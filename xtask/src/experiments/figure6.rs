@@ -35,7 +35,7 @@ pub(crate) fn figure6_left() -> Experiment {
     };
     Experiment {
         id: "figure6_left",
-        title: "Fig. 6, left: error against the amount of data",
+        title: "Figure 6, left: error against the amount of data",
         remark: "The first so many percent of the trajectories of Table 1's parabola, 40 trajectories of 40 samples. Regression as in \
                  Table 1; test samples from the trajectories that are kept of those used.",
         setups: BANDWIDTHS.map(setup).into(),
@@ -51,7 +51,7 @@ pub(crate) fn figure6_right() -> Experiment {
     };
     Experiment {
         id: "figure6_right",
-        title: "Fig. 6, right: error against noise",
+        title: "Figure 6, right: error against noise",
         remark: "Gaussian noise, in percent of each dimension's standard deviation, on the recorded positions of Table 1's parabola; \
                  recorded velocities are clean. Potentials are integrated from velocities, or from displacements (9). \
                  Regression as in Table 1; errors are against the truth at the true states.",

@@ -29,7 +29,7 @@ pub(crate) fn figure9() -> anyhow::Result<Experiment> {
     Ok(Experiment {
         id: "figure9",
         section: "4.4",
-        title: "Fig. 9: error along and around the line where movements end",
+        title: "Figure 9: error along and around the line where movements end",
         data_sets: 50,
         remark: "Data sets, learner and test samples of the three-link arm; of the samples only those nearer than c radians to the posture \
                  along the line (rows d-c), or nearer than c to the line (rows r-c). The variances in (A1)–(A3) are of \

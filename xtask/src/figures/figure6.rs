@@ -16,7 +16,7 @@ const SIZE: (f64, f64) = (600.0, 430.0);
 pub(super) fn left() -> Figure {
     Figure {
         id: "figure6_left",
-        title: "Fig. 6, left: error against the amount of data",
+        title: "Figure 6, left: error against the amount of data",
         caption: "Errors of the policy π, of what constraints let through of it, Nπ, and of the potential φ, when only so many percent of 40 \
                   movements are learnt from: means over 20 data sets, with bands of one standard deviation up and by the same factor down. \
                   As in the paper, whose axis begins at 20 %, errors fall and π is on top. There φ is lowest throughout; here it is lowest only with \
@@ -31,7 +31,7 @@ pub(super) fn left() -> Figure {
 pub(super) fn right() -> Figure {
     Figure {
         id: "figure6_right",
-        title: "Fig. 6, right: error against noise",
+        title: "Figure 6, right: error against noise",
         caption: "The same errors when recorded positions are noisy, against the truth without noise. Left: potentials integrated from recorded \
                   velocities, which are clean. As in the paper, errors grow with the noise and stay below 1, with π on top; φ, lowest there, is \
                   lowest here only up to 5 % and then level with Nπ. Right, on another scale: potentials \

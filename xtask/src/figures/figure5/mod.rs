@@ -15,7 +15,7 @@ pub(super) fn document() -> Document {
 pub(super) fn figure() -> Figure {
     Figure {
         id: "figure5",
-        title: "Fig. 5: local potentials, aligned and learnt",
+        title: "Figure 5: local potentials, aligned and learnt",
         caption: "(a) Forty movements over lines of equal potential; they turn where their constraint changes. Alignment leaves out the \
                   three drawn as light crosses. (b) Along each movement the potential follows but for a constant; starting all at one height, movements \
                   disagree where they meet. (c) The same after alignment: one bowl. (d) What LWPR learns from it, as far as its receptive fields reach, beside (e) the truth. \

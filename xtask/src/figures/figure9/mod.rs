@@ -22,7 +22,7 @@ pub(super) fn document() -> Document {
 pub(super) fn figure() -> Figure {
     Figure {
         id: "figure9",
-        title: "Fig. 9: movements that end on a line",
+        title: "Figure 9: movements that end on a line",
         caption: "(a) Movements of the three-link arm in joint space; dots are where they end. They run to a line and not to the goal of the \
                   policy, q = 0 (disc), because on that line every constraint blocks the direction to it. (b), (c) The same seen along q₃, with planes at a distance d from the \
                   goal along the line and a cylinder of radius r around it. (d), (e) Errors of policy-align at the test samples between the planes or within the \
