@@ -30,6 +30,8 @@ pub enum MetricAdaptation {
 }
 
 /// Which of two overlapping receptive fields is removed when the activation of both exceeds `w_prune`.
+///
+/// Width is the trace of the metric D of *normalised* inputs, not of inputs in their own units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Pruning {
     /// The wider one (smaller trace of D), as the C library does.

@@ -104,7 +104,10 @@ proptest! {
             stored["params"]["pruning"] = serde_json::to_value(pruning).unwrap();
             let mut model: Lwpr = serde_json::from_value(stored).unwrap();
             train_online(&case, at..at + 1, &mut model);
-            let shape = |field: lwpr::ReceptiveField<'_>| (field.centre(), field.distance_metric().trace());
+            // Fields are compared by the trace of D for normalised inputs.
+            let norm = case.params.norm_in.as_ref().unwrap();
+            let trace = |d: DMatrix<f64>| d.diagonal().component_mul(norm).dot(norm);
+            let shape = |field: lwpr::ReceptiveField<'_>| (field.centre(), trace(field.distance_metric()));
             let mut fields: Vec<_> = model.receptive_fields(0).map(shape).collect();
             fields.sort_by(|a, b| a.0.as_slice().partial_cmp(b.0.as_slice()).unwrap());
             (model.n_pruned(0), fields)
