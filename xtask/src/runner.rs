@@ -62,13 +62,13 @@ pub(crate) fn run(
             }
         }
     }
-    let progress = Progress::start(total, jobs.len(), jobs.iter().map(|job| job.setup.trial.cost()).sum());
+    let progress = Progress::start(total, jobs.len(), jobs.iter().map(|job| job.setup.cost).sum());
     // One job at a time to each thread: data sets of different setups differ a hundredfold in work.
     jobs.into_par_iter().with_max_len(1).try_for_each(|job| -> anyhow::Result<()> {
         let outcome = measure(&job, plan);
         records.append(&name(job.experiment, job.setup, &definition(job.setup), plan, job.data_set), &outcome)?;
         *job.slot = Some(outcome);
-        progress.finished(job.experiment.id, &job.setup.id, job.setup.trial.cost());
+        progress.finished(job.experiment.id, &job.setup.id, job.setup.cost);
         Ok(())
     })?;
     progress.done();
@@ -80,7 +80,7 @@ pub(crate) fn run(
 }
 
 fn measure(job: &Job<'_>, plan: Plan) -> Outcome {
-    let mut rng = generator(plan.seed, job.setup.trial.system(), job.data_set);
+    let mut rng = generator(plan.seed, job.setup.system, job.data_set);
     match job.setup.trial.run(&mut rng) {
         Ok(measures) => Outcome::Measured(measures),
         Err(error) => Outcome::Failed(format!("{error:#}")),
@@ -93,7 +93,7 @@ fn find(records: &Records, experiment: &Experiment, setup: &Setup, plan: Plan, d
 
 /// All that determines what a data set of a setup gives.
 fn definition(setup: &Setup) -> String {
-    format!("system {} {}", setup.trial.system(), setup.trial.definition())
+    format!("system {} {:?}", setup.system, setup.trial)
 }
 
 fn name<'a>(

@@ -5,12 +5,15 @@ use demo_gen::{HandInPlane, n_leaving_limits};
 use lwpr::{LwprParams, MetricAdaptation};
 use rand_chacha::ChaCha8Rng;
 
-use super::exam::{HELD_OUT, examine};
+use super::exam::examine;
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::learners::Learner;
 use crate::measure::{Measure, RowOf};
 use crate::paper::{explanations, paper_table};
 use crate::robots::upper_body;
+
+/// The system whose random stream is used.
+const BODY_SYSTEM: u32 = 430;
 
 /// The experiment.
 pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
@@ -31,7 +34,13 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
                  metric, D = 50, 20 passes; receptive fields speak down to an activation of 1e-9, because a single start far from all \
                  others, for which none speaks above .001, would rule the error of the potential.",
         another_reading_of: None,
-        setups: vec![Setup { id: id.to_owned(), rows: vec![row], trial: Box::new(trial) }],
+        setups: vec![Setup {
+            id: id.to_owned(),
+            rows: vec![row],
+            system: BODY_SYSTEM,
+            cost: 20_000_000,
+            trial: Box::new(trial),
+        }],
         paper: paper_table(include_str!("../../paper/asimo22.toml"))?,
         explanations: explanations(include_str!("../../paper/asimo22-explained.toml"))?,
     })
@@ -51,18 +60,6 @@ struct BodyTrial {
 }
 
 impl Trial for BodyTrial {
-    fn system(&self) -> u32 {
-        430
-    }
-
-    fn definition(&self) -> String {
-        format!("{self:?} held out {HELD_OUT}")
-    }
-
-    fn cost(&self) -> u64 {
-        20_000_000
-    }
-
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.scenario.record(rng)?;
         let mut rows = examine(&recordings, &self.algorithm, &self.learners, None, rng)?;

@@ -6,13 +6,10 @@ use demo_gen::{Recording, ToySystem, with_position_noise};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
-use super::exam::{HELD_OUT, examine};
-use super::table1::{learning_cost, toy_regressor};
+use super::exam::examine;
+use super::table1::{PARABOLA_SYSTEM, learning_cost, toy_regressor};
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::RowOf;
-
-/// Table 1's parabola, 40 by 40: the same data sets.
-const SYSTEM: u32 = 0;
 
 /// What is learnt from, percent of the trajectories.
 pub(crate) const TRAJECTORIES_PERCENT: [f64; 6] = [10.0, 20.0, 40.0, 60.0, 80.0, 100.0];
@@ -79,7 +76,9 @@ fn curves() -> Experiment {
 fn setup(id: &str, percent: &[f64], algorithm: PolicyAlign, against: Against) -> Setup {
     let row = |percent: &f64| Row { id: format!("{id}-{percent}"), of: RowOf::Learner };
     let trial = CurveTrial { system: ToySystem::default(), algorithm, against, percent: percent.to_vec() };
-    Setup { id: id.to_owned(), rows: percent.iter().map(row).collect(), trial: Box::new(trial) }
+    let cost = percent.iter().map(|&percent| learning_cost(trial.trajectories(percent), trial.system.n_samples)).sum();
+    let rows = percent.iter().map(row).collect();
+    Setup { id: id.to_owned(), rows, system: PARABOLA_SYSTEM, cost, trial: Box::new(trial) }
 }
 
 /// What changes along a curve.
@@ -116,19 +115,6 @@ impl CurveTrial {
 }
 
 impl Trial for CurveTrial {
-    fn system(&self) -> u32 {
-        SYSTEM
-    }
-
-    fn definition(&self) -> String {
-        format!("{self:?} {:?} held out {HELD_OUT}", toy_regressor())
-    }
-
-    fn cost(&self) -> u64 {
-        let of = |&percent: &f64| learning_cost(self.trajectories(percent), self.system.n_samples);
-        self.percent.iter().map(of).sum()
-    }
-
     /// Every point starts from the same random numbers, so that a curve shows what it is against and nothing else, and
     /// where nothing is changed it shows Table 1's own figures.
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
@@ -153,7 +139,7 @@ mod tests {
 
     fn run(experiment: &Experiment, id: &str) -> Measures {
         let setup = experiment.setups.iter().find(|setup| setup.id == id).unwrap();
-        let measures = setup.trial.run(&mut generator(1, setup.trial.system(), 3)).unwrap();
+        let measures = setup.trial.run(&mut generator(1, setup.system, 3)).unwrap();
         assert_eq!(measures.len(), setup.rows.len());
         measures
     }

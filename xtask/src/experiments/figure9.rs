@@ -35,7 +35,13 @@ pub(crate) fn figure9() -> anyhow::Result<Experiment> {
                  along the line (rows d-c), or nearer than c to the line (rows r-c). The variances in (A1)–(A3) are of \
                  these samples too. A data set with fewer than 10 of them has no value there.",
         another_reading_of: None,
-        setups: vec![Setup { id: "distances".to_owned(), rows, trial: Box::new(trial) }],
+        setups: vec![Setup {
+            id: "distances".to_owned(),
+            rows,
+            system: ARM_SYSTEM,
+            cost: 1_500_000,
+            trial: Box::new(trial),
+        }],
         paper,
         explanations,
     })
@@ -90,18 +96,6 @@ struct DistanceTrial {
 }
 
 impl Trial for DistanceTrial {
-    fn system(&self) -> u32 {
-        ARM_SYSTEM
-    }
-
-    fn definition(&self) -> String {
-        format!("{self:?} held out {HELD_OUT}, at least {FEWEST_SAMPLES} samples")
-    }
-
-    fn cost(&self) -> u64 {
-        1_500_000
-    }
-
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.arm.record(rng)?;
         let aligned = self.algorithm.align(&demonstrations(&recordings)?)?;

@@ -13,11 +13,12 @@ pub(crate) use exam::HELD_OUT;
 pub(crate) use figure6::{BANDWIDTHS, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
 pub(crate) use figure9::{Distance, TENTHS, line};
 pub(crate) use judge::Judge;
-pub(crate) use table1::toy_regressor;
+pub(crate) use table1::{PARABOLA_SYSTEM, SINUSOIDAL_SYSTEM, toy_regressor};
 pub(crate) use table2::{GRASP_SYSTEM, grasp, grasp_naive, grasp_regressor};
 pub(crate) use three_link::{ARM_SYSTEM, arm};
 
 use std::collections::BTreeMap;
+use std::fmt::Debug;
 
 use anyhow::ensure;
 use rand_chacha::ChaCha8Rng;
@@ -81,6 +82,10 @@ pub(crate) struct Setup {
     pub(crate) id: String,
     /// The rows, in the order of what [`Trial::run`] returns.
     pub(crate) rows: Vec<Row>,
+    /// The system whose random stream is used: equal numbers see equal data sets.
+    pub(crate) system: u32,
+    /// Work of one data set, in any unit that all setups share; used for the time left.
+    pub(crate) cost: u64,
     /// How a data set is made, learnt and scored.
     pub(crate) trial: Box<dyn Trial>,
 }
@@ -96,17 +101,9 @@ pub(crate) struct Row {
 /// What one data set gives: the measures of each row of its setup.
 pub(crate) type Measures = Vec<BTreeMap<Measure, f64>>;
 
-/// Everything that one data set of a setup needs.
-pub(crate) trait Trial: Send + Sync {
-    /// The system whose random stream is used: equal numbers see equal data sets.
-    fn system(&self) -> u32;
-
-    /// All parameters that determine the outcome, besides seed and code.
-    fn definition(&self) -> String;
-
-    /// Work of one data set, in any unit that all trials share; used for the time left.
-    fn cost(&self) -> u64;
-
+/// Everything that one data set of a setup needs. `Debug` names all parameters that are not code: they are part of the
+/// records' keys.
+pub(crate) trait Trial: Debug + Send + Sync {
     /// Makes a data set, learns from it and scores what was learnt, row by row.
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures>;
 }

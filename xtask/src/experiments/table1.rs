@@ -5,10 +5,16 @@ use demo_gen::{Redraw, ToyPotential, ToySystem};
 use lwpr::LwprParams;
 use rand_chacha::ChaCha8Rng;
 
-use super::exam::{HELD_OUT, examine};
+use super::exam::examine;
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::RowOf;
 use crate::paper::{explanations, paper_table};
+
+/// The systems of the table, by their random streams; those of the literal reading follow from 100.
+pub(crate) const PARABOLA_SYSTEM: u32 = 0;
+pub(crate) const SINUSOIDAL_SYSTEM: u32 = 1;
+const LONG_SINUSOIDAL_SYSTEM: u32 = 2;
+const LITERAL: u32 = 100;
 
 /// The table with constraints that are drawn anew every 20 samples.
 pub(crate) fn table1() -> anyhow::Result<Experiment> {
@@ -35,7 +41,7 @@ pub(crate) fn table1_literal() -> anyhow::Result<Experiment> {
         data_sets: 100,
         remark: "As Table 1, but the constraint is \"re-sampled twice\" during each movement to the letter: three segments of equal length.",
         another_reading_of: Some("table1"),
-        setups: setups(Redraw::Segments(3), 100),
+        setups: setups(Redraw::Segments(3), LITERAL),
         paper: paper_table(include_str!("../../paper/table1.toml"))?,
         explanations: explanations(include_str!("../../paper/table1-literal-explained.toml"))?,
     })
@@ -43,19 +49,21 @@ pub(crate) fn table1_literal() -> anyhow::Result<Experiment> {
 
 fn setups(redraw: Redraw, first_system: u32) -> Vec<Setup> {
     let systems = [
-        ("parabola", 40, ToyPotential::parabola()),
-        ("sinusoidal", 40, ToyPotential::sinusoidal()),
-        ("sinusoidal", 100, ToyPotential::sinusoidal()),
+        (PARABOLA_SYSTEM, "parabola", 40, ToyPotential::parabola()),
+        (SINUSOIDAL_SYSTEM, "sinusoidal", 40, ToyPotential::sinusoidal()),
+        (LONG_SINUSOIDAL_SYSTEM, "sinusoidal", 100, ToyPotential::sinusoidal()),
     ];
     let bandwidths = [("narrow", Bandwidth::Narrow), ("medium", Bandwidth::Medium), ("wide", Bandwidth::Wide)];
     let mut setups = Vec::new();
-    for (number, (name, size, potential)) in (first_system..).zip(systems) {
+    for (number, name, size, potential) in systems {
         for (bandwidth_name, bandwidth) in bandwidths {
             let id = format!("{name}-{size}x{size}-{bandwidth_name}");
             let system = ToySystem { potential: potential.clone(), n_trajectories: size, n_samples: size, redraw };
             let row = Row { id: id.clone(), of: RowOf::Learner };
             let algorithm = PolicyAlign { bandwidth, ..PolicyAlign::default() };
-            setups.push(Setup { id, rows: vec![row], trial: Box::new(ToyTrial { number, system, algorithm }) });
+            let cost = learning_cost(size, size);
+            let trial = Box::new(ToyTrial { system, algorithm });
+            setups.push(Setup { id, rows: vec![row], system: first_system + number, cost, trial });
         }
     }
     setups
@@ -64,7 +72,6 @@ fn setups(redraw: Redraw, first_system: u32) -> Vec<Setup> {
 /// One row of the table.
 #[derive(Debug)]
 struct ToyTrial {
-    number: u32,
     system: ToySystem,
     algorithm: PolicyAlign,
 }
@@ -75,25 +82,13 @@ pub(crate) fn toy_regressor() -> LwprRegressor {
     LwprRegressor { params, passes: 10, ..LwprRegressor::default() }
 }
 
-/// Work of aligning and regression, in the unit of [`Trial::cost`].
+/// Work of aligning and regression, in the unit of [`Setup::cost`].
 pub(super) fn learning_cost(n_trajectories: usize, n_samples: usize) -> u64 {
     // Measured: regression takes about as long as 100 distance evaluations a sample.
     (n_trajectories * n_samples * (n_trajectories + 100)) as u64
 }
 
 impl Trial for ToyTrial {
-    fn system(&self) -> u32 {
-        self.number
-    }
-
-    fn definition(&self) -> String {
-        format!("{self:?} {:?} held out {HELD_OUT}", toy_regressor())
-    }
-
-    fn cost(&self) -> u64 {
-        learning_cost(self.system.n_trajectories, self.system.n_samples)
-    }
-
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.system.record(rng)?;
         examine(&recordings, &self.algorithm, &[Box::new(toy_regressor())], None, rng)

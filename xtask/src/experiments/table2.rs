@@ -8,7 +8,7 @@ use lwpr::{LwprParams, MetricAdaptation};
 use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
 
-use super::exam::{HELD_OUT, examine};
+use super::exam::examine;
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::learners::Learner;
 use crate::measure::{Measure, RowOf};
@@ -37,7 +37,13 @@ pub(crate) fn table2() -> anyhow::Result<Experiment> {
                  half-width of the unseen obstacle (.13), no gap narrower than .17 m, regressions. δt = .5 s, plain Euler, narrow \
                  bandwidth. Fixed diagonal metrics, inputs divided by .3 m: PolicyAlign D = 22, 10 passes; naive D = 10, 4 passes.",
         another_reading_of: None,
-        setups: vec![Setup { id: "grasp".to_owned(), rows, trial: Box::new(trial) }],
+        setups: vec![Setup {
+            id: "grasp".to_owned(),
+            rows,
+            system: GRASP_SYSTEM,
+            cost: 2_000_000,
+            trial: Box::new(trial),
+        }],
         paper: paper_table(include_str!("../../paper/table2.toml"))?,
         explanations: explanations(include_str!("../../paper/table2-explained.toml"))?,
     })
@@ -75,18 +81,6 @@ struct GraspTrial {
 }
 
 impl Trial for GraspTrial {
-    fn system(&self) -> u32 {
-        GRASP_SYSTEM
-    }
-
-    fn definition(&self) -> String {
-        format!("{self:?} held out {HELD_OUT}")
-    }
-
-    fn cost(&self) -> u64 {
-        2_000_000
-    }
-
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.grasp.record(rng)?;
         let obstacle = self.grasp.scene.central_obstacle()?;

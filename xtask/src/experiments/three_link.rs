@@ -5,7 +5,7 @@ use demo_gen::{ThreeLinkArm, n_leaving_limits};
 use lwpr::{LwprParams, MetricAdaptation};
 use rand_chacha::ChaCha8Rng;
 
-use super::exam::{HELD_OUT, examine};
+use super::exam::examine;
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::learners::Learner;
 use crate::measure::{Measure, RowOf};
@@ -27,7 +27,13 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
         remark: "Unit links, starts uniform in [-1, 1]^3, δt = .5 s, plain Euler, narrow bandwidth. Regression with fixed diagonal \
                  metrics, 10 passes: D = 20 for PolicyAlign, 50 for the naive baseline.",
         another_reading_of: None,
-        setups: vec![Setup { id: "three_link".to_owned(), rows: rows.into(), trial: Box::new(trial) }],
+        setups: vec![Setup {
+            id: "three_link".to_owned(),
+            rows: rows.into(),
+            system: ARM_SYSTEM,
+            cost: 2_000_000,
+            trial: Box::new(trial),
+        }],
         paper: paper_table(include_str!("../../paper/three_link.toml"))?,
         explanations: explanations(include_str!("../../paper/three_link-explained.toml"))?,
     })
@@ -61,18 +67,6 @@ struct ArmTrial {
 }
 
 impl Trial for ArmTrial {
-    fn system(&self) -> u32 {
-        ARM_SYSTEM
-    }
-
-    fn definition(&self) -> String {
-        format!("{self:?} held out {HELD_OUT}")
-    }
-
-    fn cost(&self) -> u64 {
-        2_000_000
-    }
-
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.arm.record(rng)?;
         let mut rows = examine(&recordings, &self.algorithm, &self.learners, None, rng)?;

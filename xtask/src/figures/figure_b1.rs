@@ -6,11 +6,9 @@ use demo_gen::{ToyPotential, ToySystem, demonstrations};
 use serde::{Deserialize, Serialize};
 
 use super::{Csv, Document, Drawing, Figure, Sources, rounded};
+use crate::experiments::SINUSOIDAL_SYSTEM;
 use crate::plot::{Dash, Layer, Mark, Panel, Picture, Plane, Stroke};
 use crate::seed::generator;
-
-/// The system of Table 1 with the sinusoidal potential, 40 movements of 40 samples.
-const SYSTEM: u32 = 1;
 
 /// Data sets of Table 1 among which one is chosen.
 const DATA_SETS: u32 = 30;
@@ -68,7 +66,7 @@ fn coming_apart(seed: u64) -> anyhow::Result<ComingApart> {
     let mut best = None;
     for data_set in 0..DATA_SETS {
         let system = ToySystem { potential: ToyPotential::sinusoidal(), ..ToySystem::default() };
-        let recordings = system.record(&mut generator(seed, SYSTEM, data_set))?;
+        let recordings = system.record(&mut generator(seed, SINUSOIDAL_SYSTEM, data_set))?;
         let aligned = PolicyAlign::default().align(&demonstrations(&recordings)?)?;
         let steps: Vec<Step> = aligned.splits().iter().map(Step::new).collect();
         let parted: usize = steps.iter().map(|step| step.group.len() - step.parts[0].len()).sum();

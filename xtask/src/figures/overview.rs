@@ -7,7 +7,7 @@ use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
 use super::{Document, Drawing, Figure, Sources, rounded};
-use crate::experiments::toy_regressor;
+use crate::experiments::{HELD_OUT, PARABOLA_SYSTEM, toy_regressor};
 use crate::learners::{Learner, Lesson};
 use crate::plot::{Field, Layer, Picture, Plane, Who};
 use crate::seed::generator;
@@ -53,12 +53,12 @@ struct Movement {
 }
 
 fn overview(seed: u64) -> anyhow::Result<Overview> {
-    let mut rng = generator(seed, 0, 0);
+    let mut rng = generator(seed, PARABOLA_SYSTEM, 0);
     let system = ToySystem::default();
     let recordings = system.record(&mut rng)?;
     let align = PolicyAlign { bandwidth: Bandwidth::Medium, ..PolicyAlign::default() };
     let aligned = align.align(&demonstrations(&recordings)?)?;
-    let (_, held_out) = aligned.samples().split(0.1, &mut rng)?;
+    let (_, held_out) = aligned.samples().split(HELD_OUT, &mut rng)?;
     let lesson = Lesson { aligned: &aligned, held_out: &held_out };
     let regressor = toy_regressor();
     let naive = DirectPolicyLearning { params: regressor.params.clone(), ..DirectPolicyLearning::default() };

@@ -6,14 +6,11 @@ use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
 
 use super::{Levels, Movement};
-use crate::experiments::{HELD_OUT, Judge, toy_regressor};
+use crate::experiments::{HELD_OUT, Judge, PARABOLA_SYSTEM, toy_regressor};
 use crate::figures::rounded;
 use crate::measure::Measure;
 use crate::plot::Field;
 use crate::seed::generator;
-
-/// Table 1's parabola, 40 by 40, narrow bandwidth.
-const SYSTEM: u32 = 0;
 
 /// Movements that alignment leaves out in the paper's picture.
 const LEFT_OUT: usize = 3;
@@ -53,10 +50,10 @@ pub(super) fn levels(seed: u64) -> anyhow::Result<Levels> {
     })
 }
 
-/// The first data set from which alignment leaves out as many movements as in the paper's picture.
+/// The first data set of Table 1's parabola, narrow bandwidth, from which alignment leaves out as many movements as in the paper's picture.
 fn like_the_paper(system: &ToySystem, seed: u64) -> anyhow::Result<Found> {
     for data_set in 0..CANDIDATES {
-        let mut rng = generator(seed, SYSTEM, data_set);
+        let mut rng = generator(seed, PARABOLA_SYSTEM, data_set);
         let recordings = system.record(&mut rng)?;
         let aligned = PolicyAlign::default().align(&demonstrations(&recordings)?)?;
         if aligned.discarded().len() == LEFT_OUT {
