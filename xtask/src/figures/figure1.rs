@@ -10,7 +10,7 @@ use crate::plot::{Camera, Dash, Item, Paint, Picture, Space, Stroke};
 use crate::robots::upper_body;
 
 pub(crate) fn document() -> Document {
-    Document { id: "figure1", experiment: None, compute: |_| Ok(serde_json::to_value(ready()?)?) }
+    Document::new("figure1", None, |_| ready())
 }
 
 pub(crate) fn figure() -> Figure {

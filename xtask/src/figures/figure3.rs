@@ -23,7 +23,7 @@ const GREY: &str = "#5a5a5a";
 const PURPLE: &str = "#9a4a7c";
 
 pub(crate) fn document() -> Document {
-    Document { id: "figure3", experiment: None, compute: |_| Ok(serde_json::to_value(vectors()?)?) }
+    Document::new("figure3", None, |_| vectors())
 }
 
 pub(crate) fn figure() -> Figure {

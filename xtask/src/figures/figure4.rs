@@ -24,7 +24,7 @@ const BUMPS: [(f64, [f64; 2], f64); 5] = [
 const ARROW_SECONDS: f64 = 0.25;
 
 pub(crate) fn document() -> Document {
-    Document { id: "figure4", experiment: None, compute: |_| Ok(serde_json::to_value(hills()?)?) }
+    Document::new("figure4", None, |_| hills())
 }
 
 pub(crate) fn figure() -> Figure {

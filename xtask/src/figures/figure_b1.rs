@@ -21,11 +21,7 @@ const REST: Look = Look { color: "#d55e00", dash: Dash::Dashed, width: 1.8, mark
 const ELSEWHERE: Look = Look { color: "#c4c4c4", dash: Dash::Solid, width: 0.9, mark: Mark::Circle };
 
 pub(crate) fn document() -> Document {
-    Document {
-        id: "figureB1",
-        experiment: Some("table1"),
-        compute: |seed| Ok(serde_json::to_value(coming_apart(seed)?)?),
-    }
+    Document::new("figureB1", Some("table1"), coming_apart)
 }
 
 pub(crate) fn figure() -> Figure {

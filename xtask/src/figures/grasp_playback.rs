@@ -26,11 +26,7 @@ pub(crate) use scene::Scene;
 const STARTS: usize = 4;
 
 pub(crate) fn document() -> Document {
-    Document {
-        id: "grasp_playback",
-        experiment: Some("table2"),
-        compute: |seed| Ok(serde_json::to_value(grasp_playback(seed)?)?),
-    }
+    Document::new("grasp_playback", Some("table2"), grasp_playback)
 }
 
 /// Lengths in metres, angles in radians, all in the heel's frame: x forward, y left, z up.

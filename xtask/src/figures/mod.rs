@@ -21,6 +21,7 @@ use std::collections::BTreeMap;
 
 use anyhow::Context as _;
 use rayon::prelude::*;
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
@@ -34,8 +35,7 @@ pub(crate) struct Document {
     pub(crate) id: &'static str,
     /// The experiment whose run it goes with; without one every run computes it.
     pub(crate) experiment: Option<&'static str>,
-    /// Computes it from a seed.
-    compute: fn(u64) -> anyhow::Result<Value>,
+    compute: Box<dyn Fn(u64) -> anyhow::Result<Value> + Sync>,
 }
 
 /// A figure of the paper.
@@ -47,7 +47,6 @@ pub(crate) struct Figure {
     /// What is to be seen, and what the paper's shows where ours is different.
     pub(crate) caption: &'static str,
     /// The experiment it stands beside in the report.
-    #[allow(dead_code, reason = "the page is being built")]
     pub(crate) experiment: Option<&'static str>,
     /// Documents and experiments that it is drawn from.
     needs: &'static [&'static str],
@@ -116,6 +115,17 @@ pub(crate) fn compute(experiments: &[Experiment], seed: u64) -> anyhow::Result<B
         Ok((document.id.to_owned(), value))
     };
     wanted.par_iter().with_max_len(1).map(document).collect()
+}
+
+impl Document {
+    /// A document that `compute` makes from a seed.
+    fn new<D: Serialize + 'static>(
+        id: &'static str,
+        experiment: Option<&'static str>,
+        compute: fn(u64) -> anyhow::Result<D>,
+    ) -> Document {
+        Document { id, experiment, compute: Box::new(move |seed| Ok(serde_json::to_value(compute(seed)?)?)) }
+    }
 }
 
 impl Figure {

@@ -19,7 +19,7 @@ const EXTENT: f64 = 2.0;
 const ARROW_SECONDS: f64 = 2.0;
 
 pub(crate) fn document() -> Document {
-    Document { id: "overview", experiment: None, compute: |seed| Ok(serde_json::to_value(overview(seed)?)?) }
+    Document::new("overview", None, overview)
 }
 
 pub(crate) fn figure() -> Figure {

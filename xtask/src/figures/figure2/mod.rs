@@ -28,7 +28,7 @@ const BOX: &str = "#3c3c3c";
 const ARROW_SECONDS: f64 = 0.17;
 
 pub(crate) fn document() -> Document {
-    Document { id: "figure2", experiment: None, compute: |_| Ok(serde_json::to_value(shown()?)?) }
+    Document::new("figure2", None, |_| shown())
 }
 
 pub(crate) fn figure() -> Figure {

@@ -9,7 +9,7 @@ use super::{Document, Figure};
 use crate::plot::Field;
 
 pub(super) fn document() -> Document {
-    Document { id: "figure5", experiment: None, compute: |seed| Ok(serde_json::to_value(compute::levels(seed)?)?) }
+    Document::new("figure5", None, compute::levels)
 }
 
 pub(super) fn figure() -> Figure {

@@ -12,11 +12,7 @@ use crate::plot::Picture;
 use crate::seed::generator;
 
 pub(super) fn document() -> Document {
-    Document {
-        id: "figure9_movements",
-        experiment: Some("figure9"),
-        compute: |seed| Ok(serde_json::to_value(movements(seed)?)?),
-    }
+    Document::new("figure9_movements", Some("figure9"), movements)
 }
 
 pub(super) fn figure() -> Figure {
