@@ -182,7 +182,7 @@ fn conclude(results: &Results, out: &Path) -> anyhow::Result<()> {
     }
     let Run { threads, wall_seconds, cpu_seconds, .. } = &results.run;
     say(&format!("{wall_seconds:.1} s on {threads} thread(s), {cpu_seconds:.1} s of processor time for the tables"));
-    say(&written(out));
+    say(&written(out, &["report.md", "results.json", "figures/"]));
     let rows =
         results.experiments.iter().flat_map(|experiment| experiment.rows.iter().map(move |row| (experiment, row)));
     if let Some((experiment, row)) = rows.into_iter().find(|(_, row)| row.failed == row.data_sets) {

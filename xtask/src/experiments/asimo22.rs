@@ -33,6 +33,7 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
                  are fitted; starts from N(ready, .1 I), δt = .5 s, plain Euler, narrow bandwidth. Regression with a fixed diagonal \
                  metric, D = 50, 20 passes; receptive fields speak down to an activation of 1e-9, because a single start far from all \
                  others, for which none speaks above .001, would rule the error of the potential.",
+        decisions: "asimo22.md",
         another_reading_of: None,
         setups: vec![Setup {
             id: id.to_owned(),

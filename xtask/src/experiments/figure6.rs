@@ -66,6 +66,7 @@ fn curves() -> Experiment {
         title: "",
         data_sets: 20,
         remark: "",
+        decisions: "figure6.md",
         another_reading_of: None,
         setups: vec![],
         paper,

@@ -34,6 +34,7 @@ pub(crate) fn figure9() -> anyhow::Result<Experiment> {
         remark: "Data sets, learner and test samples of the three-link arm; of the samples only those nearer than c radians to the posture \
                  along the line (rows d-c), or nearer than c to the line (rows r-c). The variances in (A1)–(A3) are of \
                  these samples too. A data set with fewer than 10 of them has no value there.",
+        decisions: "figure9.md",
         another_reading_of: None,
         setups: vec![Setup {
             id: "distances".to_owned(),

@@ -38,6 +38,8 @@ pub(crate) struct Experiment {
     pub(crate) data_sets: u32,
     /// What is fitted or left open by the paper, in a sentence or two.
     pub(crate) remark: &'static str,
+    /// The page of `docs/decisions` on why it is done so.
+    pub(crate) decisions: &'static str,
     /// The experiment of which it is another reading: its cells are no further figures of the paper.
     pub(crate) another_reading_of: Option<&'static str>,
     /// What is measured, in the table's order.

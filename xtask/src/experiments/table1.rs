@@ -25,6 +25,7 @@ pub(crate) fn table1() -> anyhow::Result<Experiment> {
         data_sets: 100,
         remark: "The constraint is drawn anew every 20 samples, two draws at 40 samples and five at 100, which makes the printed discard \
                  rates come out. Regression, the same in all rows: init_D 10, w_gen .5, penalty 1e-5, adaptive diagonal metric, 10 passes.",
+        decisions: "table1.md",
         another_reading_of: None,
         setups: setups(Redraw::Every(20), 0),
         paper: paper_table(include_str!("../../paper/table1.toml"))?,
@@ -40,6 +41,7 @@ pub(crate) fn table1_literal() -> anyhow::Result<Experiment> {
         title: "Table 1, read literally",
         data_sets: 100,
         remark: "As Table 1, but the constraint is \"re-sampled twice\" during each movement to the letter: three segments of equal length.",
+        decisions: "table1.md",
         another_reading_of: Some("table1"),
         setups: setups(Redraw::Segments(3), LITERAL),
         paper: paper_table(include_str!("../../paper/table1.toml"))?,

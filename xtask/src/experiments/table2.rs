@@ -36,6 +36,7 @@ pub(crate) fn table2() -> anyhow::Result<Experiment> {
         remark: "Fitted, because the paper does not give them: the robot's posture, ball (x = .7), wall (x = .35, felt from .09 m), \
                  half-width of the unseen obstacle (.13), no gap narrower than .17 m, regressions. δt = .5 s, plain Euler, narrow \
                  bandwidth. Fixed diagonal metrics, inputs divided by .3 m: PolicyAlign D = 22, 10 passes; naive D = 10, 4 passes.",
+        decisions: "table2.md",
         another_reading_of: None,
         setups: vec![Setup {
             id: "grasp".to_owned(),

@@ -26,6 +26,7 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
         data_sets: 50,
         remark: "Unit links, starts uniform in [-1, 1]^3, δt = .5 s, plain Euler, narrow bandwidth. Regression with fixed diagonal \
                  metrics, 10 passes: D = 20 for PolicyAlign, 50 for the naive baseline.",
+        decisions: "three-link.md",
         another_reading_of: None,
         setups: vec![Setup {
             id: "three_link".to_owned(),

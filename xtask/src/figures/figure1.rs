@@ -1,7 +1,7 @@
 //! The robot: what it is made of, and where its 22 joints are.
 
-use kinematics::{JointKind, LinkId, Workspace};
-use nalgebra::{Matrix6xX, Point3, Vector3};
+use kinematics::{DriveKind, LinkId, Workspace};
+use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::shapes::{self, Shape};
@@ -49,22 +49,15 @@ fn ready() -> anyhow::Result<Robot> {
     let robot = body.robot();
     let mut workspace = Workspace::new();
     let poses = robot.forward_kinematics(body.ready().as_view(), &mut workspace)?;
-    let mut jacobians: Vec<(LinkId, Matrix6xX<f64>)> = vec![];
-    for link in robot.links() {
-        let mut jacobian = Matrix6xX::zeros(robot.n_joints());
-        poses.jacobian(link, &mut jacobian)?;
-        jacobians.push((link, jacobian));
-    }
     let joint = |(index, joint): (usize, &kinematics::Joint)| {
-        // The first link that a joint moves hangs on it; parents come first.
-        let moved = jacobians.iter().find(|(_, jacobian)| jacobian.column(index).norm() > 0.0)?;
-        let at = poses.position(moved.0);
-        let slides = joint.kind() == JointKind::Prismatic;
-        let axis = moved.1.column(index).fixed_rows::<3>(if slides { 0 } else { 3 }).into_owned();
+        let hangs_on_it =
+            |link: LinkId| Some((link, robot.attachment(link)?.drive.filter(|drive| drive.column == index)?));
+        let (link, drive) = robot.links().find_map(hangs_on_it)?;
+        let axis = poses.pose(link).rotation * drive.axis;
         Some(Joint {
             name: joint.name().to_owned(),
-            slides,
-            at: at.coords.map(|value| rounded(value, 5)).into(),
+            slides: drive.kind == DriveKind::Slide,
+            at: poses.position(link).coords.map(|value| rounded(value, 5)).into(),
             axis: axis.map(|value| rounded(value, 6)).into(),
         })
     };

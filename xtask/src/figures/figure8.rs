@@ -1,5 +1,6 @@
 //! Reaching with nothing in the way: expert, naive learner and PolicyAlign.
 
+use metrics::Summary;
 use nalgebra::{Point3, Translation3, Vector3};
 
 use super::grasp_playback::{GraspPlayback, LEARNERS, Movement};
@@ -33,10 +34,12 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let frame = frame(&playback);
     let above = view("From above", Camera::ABOVE, &playback, &frame);
     let behind = view("From behind", Camera::BEHIND, &playback, &frame);
-    let distances = distances(&playback);
-    let key = Key { rows: vec![LEARNERS.iter().map(|&learner| entry(&playback, learner)).collect()], width: 1240.0 };
-    let picture = Picture::rows(&[&[&above, &behind, &distances], &[&key]]);
-    Ok(Drawing { picture, tables: vec![ends(&playback), over_time(&playback)] })
+    let distances =
+        LEARNERS.iter().map(|&learner| Distances::of(&playback, learner)).collect::<anyhow::Result<Vec<_>>>()?;
+    let curves = curves(&distances, playback.time_step);
+    let key = Key { rows: vec![distances.iter().map(Distances::entry).collect()], width: 1240.0 };
+    let picture = Picture::rows(&[&[&above, &behind, &curves], &[&key]]);
+    Ok(Drawing { picture, tables: vec![ends(&playback), over_time(&distances)] })
 }
 
 fn movements<'p>(playback: &'p GraspPlayback, learner: &'p str) -> impl Iterator<Item = &'p Movement> {
@@ -104,28 +107,50 @@ fn walls(playback: &GraspPlayback, frame: &Frame) -> Vec<Item> {
     sides.into_iter().filter(|(from, to)| from < to).map(|(from, to)| block(from, to)).collect()
 }
 
-/// (time, mean, standard deviation) of all hands' distances.
-fn spread(playback: &GraspPlayback, learner: &str) -> Vec<(f64, f64, f64)> {
-    let hands = movements(playback, learner).flat_map(|movement| [(movement, 0), (movement, 1)]);
-    let hands: Vec<Vec<f64>> = hands.map(|(movement, hand)| distance(playback, movement, hand).collect()).collect();
-    let n = hands.len() as f64;
-    let at = |sample: usize| {
-        let mean = hands.iter().map(|hand| hand[sample]).sum::<f64>() / n;
-        let variance = hands.iter().map(|hand| (hand[sample] - mean).powi(2)).sum::<f64>() / (n - 1.0);
-        (sample as f64 * playback.time_step, mean, variance.sqrt())
-    };
-    (0..hands.first().map_or(0, Vec::len)).map(at).collect()
+/// How far the hands of a learner are from where they should take the ball.
+struct Distances {
+    id: &'static str,
+    who: Who,
+    /// (time in seconds, mean, standard deviation) over all hands, metres.
+    over_time: Vec<(f64, f64, f64)>,
 }
 
-fn distances(playback: &GraspPlayback) -> Curves {
-    let curve = |&(id, who): &(&str, Who)| {
-        let every = (EVERY / playback.time_step).round().max(1.0) as usize;
-        let all = spread(playback, id);
-        let marked = |at: usize| at.is_multiple_of(every) || at + 1 == all.len();
-        let points = (0..all.len()).filter(|&at| marked(at)).map(|at| all[at]).collect();
-        Curve { points, stroke: who.stroke(1.8), sign: sign(who) }
-    };
-    let end = spread(playback, LEARNERS[0].0).last().map_or(0.0, |last| last.0);
+impl Distances {
+    fn of(playback: &GraspPlayback, (id, who): (&'static str, Who)) -> anyhow::Result<Self> {
+        let hands = movements(playback, id).flat_map(|movement| [(movement, 0), (movement, 1)]);
+        let hands: Vec<Vec<f64>> = hands.map(|(movement, hand)| distance(playback, movement, hand).collect()).collect();
+        let at = |sample: usize| {
+            let all: Vec<f64> = hands.iter().map(|hand| hand[sample]).collect();
+            let Summary { mean, sd, .. } = Summary::of(&all)?;
+            Ok((sample as f64 * playback.time_step, mean, sd.unwrap_or(0.0)))
+        };
+        let n_samples = hands.iter().map(Vec::len).min().unwrap_or(0);
+        Ok(Distances { id, who, over_time: (0..n_samples).map(at).collect::<anyhow::Result<_>>()? })
+    }
+
+    /// The mean at the end, metres.
+    fn at_end(&self) -> f64 {
+        self.over_time.last().map_or(f64::NAN, |last| last.1)
+    }
+
+    /// With a mark every few seconds and at the end.
+    fn curve(&self, time_step: f64) -> Curve {
+        let every = (EVERY / time_step).round().max(1.0) as usize;
+        let last = self.over_time.len().saturating_sub(1);
+        let marked = self.over_time.iter().enumerate().filter(|(at, _)| at.is_multiple_of(every) || *at == last);
+        let points = marked.map(|(_, point)| *point).collect();
+        Curve { points, stroke: self.who.stroke(1.8), sign: sign(self.who) }
+    }
+
+    /// In the key: who, and how far the hands are away at the end.
+    fn entry(&self) -> Entry {
+        let name = format!("{}: at the end {:.1} cm away", self.who.name(), 100.0 * self.at_end());
+        Entry { name, stroke: self.who.stroke(1.8), sign: sign(self.who) }
+    }
+}
+
+fn curves(distances: &[Distances], time_step: f64) -> Curves {
+    let end = distances[0].over_time.last().map_or(0.0, |last| last.0);
     Curves {
         title: "Distance from the ball's sides".to_owned(),
         x_label: "time (s)",
@@ -134,7 +159,7 @@ fn distances(playback: &GraspPlayback) -> Curves {
         x: [0.0, 1.02 * end],
         y: [0.0, 0.8],
         x_step: 10.0,
-        lines: LEARNERS.iter().map(curve).collect(),
+        lines: distances.iter().map(|distances| distances.curve(time_step)).collect(),
         size: (400.0, 440.0),
     }
 }
@@ -146,13 +171,6 @@ fn sign(who: Who) -> Sign {
         _ => Mark::Circle,
     };
     Sign { mark, filling: Filling::Full }
-}
-
-/// In the key: who, and how far the hands are away at the end.
-fn entry(playback: &GraspPlayback, (id, who): (&str, Who)) -> Entry {
-    let end = spread(playback, id).last().map_or(f64::NAN, |last| last.1);
-    let name = format!("{}: at the end {:.1} cm away", who.name(), 100.0 * end);
-    Entry { name, stroke: who.stroke(1.8), sign: sign(who) }
 }
 
 /// Metres, rounded.
@@ -176,15 +194,16 @@ fn ends(playback: &GraspPlayback) -> Csv {
 }
 
 /// The curves: time in seconds, then mean and standard deviation of each in metres.
-fn over_time(playback: &GraspPlayback) -> Csv {
-    let header = LEARNERS.iter().flat_map(|(id, _)| [format!("{id}_mean"), format!("{id}_sd")]);
-    let all = LEARNERS.map(|(id, _)| spread(playback, id));
+fn over_time(distances: &[Distances]) -> Csv {
+    let header = distances.iter().flat_map(|Distances { id, .. }| [format!("{id}_mean"), format!("{id}_sd")]);
     let row = |sample: usize| {
-        let values = all.iter().flat_map(move |curve| [curve[sample].1, curve[sample].2]).map(micrometres);
-        std::iter::once(all[0][sample].0).chain(values).collect()
+        let at = |distances: &Distances| distances.over_time[sample];
+        let values = distances.iter().flat_map(|distances| [at(distances).1, at(distances).2]).map(micrometres);
+        std::iter::once(at(&distances[0]).0).chain(values).collect()
     };
-    let rows = (0..all.iter().map(Vec::len).min().unwrap_or(0)).map(row).collect();
-    Csv { name: "distance", header: std::iter::once("time".to_owned()).chain(header).collect(), rows }
+    let n_samples = distances.iter().map(|distances| distances.over_time.len()).min().unwrap_or(0);
+    let header = std::iter::once("time".to_owned()).chain(header).collect();
+    Csv { name: "distance", header, rows: (0..n_samples).map(row).collect() }
 }
 
 #[cfg(test)]
@@ -222,10 +241,11 @@ mod tests {
         for (row, expected) in ends.rows.iter().zip(expected) {
             assert!(row.iter().zip(expected).all(|(value, expected)| (value - expected).abs() < 1e-12), "{row:?}");
         }
-        let (time, mean, sd) = spread(&playback, "policy_align")[2];
+        let distances = LEARNERS.map(|learner| Distances::of(&playback, learner).unwrap());
+        let (time, mean, sd) = distances[2].over_time[2];
         assert!((time - 1.0).abs() + (mean - 0.1).abs() + (sd - 0.02_f64.sqrt()).abs() < 1e-12);
-        assert_eq!(entry(&playback, LEARNERS[2]).name, "policy-align: at the end 10.0 cm away");
-        assert_eq!(over_time(&playback).rows[2].len(), 7);
+        assert_eq!(distances[2].entry().name, "policy-align: at the end 10.0 cm away");
+        assert_eq!(over_time(&distances).rows[2].len(), 7);
     }
 
     #[test]

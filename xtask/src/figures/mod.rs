@@ -1,6 +1,7 @@
 //! The paper's figures. A run computes documents, plain numbers kept as `figures/*.json`; figures are drawn from these
 //! and from the results, and from nothing else, so that they can be drawn again without a run.
 
+mod demonstrated;
 mod errors;
 mod figure1;
 mod figure2;

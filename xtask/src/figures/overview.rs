@@ -6,7 +6,7 @@ use motion::{NegativeGradient, Policy, Potential};
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
-use super::{Document, Drawing, Figure, Sources, rounded};
+use super::{Document, Drawing, Figure, Sources, demonstrated, rounded};
 use crate::experiments::{HELD_OUT, PARABOLA_SYSTEM, toy_regressor};
 use crate::learners::{Learner, Lesson};
 use crate::plot::{Field, Layer, Picture, Plane, Who};
@@ -99,8 +99,10 @@ fn arrows(policy: &dyn Policy) -> Vec<(f64, f64, f64, f64)> {
 
 fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let overview: Overview = sources.document("overview")?;
+    let movements = overview.movements.iter().map(|movement| (&movement.points[..], movement.kept));
+    let shown = demonstrated::layers(&overview.contours, movements, 1.6);
     let [shown, naive, learnt] = [
-        shown(&overview),
+        plane("Forty movements under unknown constraints", shown),
         compared("Direct learning (green) and the truth", &overview, Who::Naive),
         compared("policy-align (orange) and the truth", &overview, Who::PolicyAlign),
     ];
@@ -110,22 +112,6 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
 fn plane(title: &str, layers: Vec<Layer>) -> Plane {
     let range = [-EXTENT, EXTENT];
     Plane { title: title.to_owned(), x_label: "x₁", y_label: "x₂", x: range, y: range, layers, size: Plane::SQUARE }
-}
-
-/// The demonstrations over lines of equal potential; discarded ones as crosses.
-fn shown(overview: &Overview) -> Plane {
-    let color = Who::Demonstration.color();
-    let mut layers = vec![Layer::Contours(overview.contours.clone())];
-    for Movement { kept, points } in &overview.movements {
-        let (points, start) = (points.clone(), vec![points[0]]);
-        layers.push(if *kept {
-            Layer::Path { points, stroke: Who::Demonstration.stroke(1.6), label: None }
-        } else {
-            Layer::Crosses { points, color: "#8fc1e3" }
-        });
-        layers.push(Layer::Dots { points: start, color, radius: 2.5 });
-    }
-    plane("Forty movements under unknown constraints", layers)
 }
 
 /// The unconstrained actions of the expert and of a learner.

@@ -1,10 +1,11 @@
 use std::sync::Arc;
 
 use kuva::plot::{BandPlot, LinePlot};
-use kuva::render::layout::{Layout, TickFormat};
+use kuva::render::layout::TickFormat;
 use kuva::render::plots::Plot;
 use kuva::render::render::{Scene, render_multiple};
 
+use super::sheet::{Edge, titled, with_axes};
 use super::{Panel, Sign, Stroke};
 
 /// How values are spaced on an axis.
@@ -62,19 +63,9 @@ impl Panel for Curves {
         let bands = self.lines.iter().map(|curve| self.band(curve));
         let lines = self.lines.iter().flat_map(|curve| std::iter::once(line(curve)).chain(marks(curve)));
         let plots: Vec<Plot> = bands.chain(lines).collect();
-        let mut layout = Layout::auto_from_plots(&plots)
-            .with_title(self.title.clone())
-            .with_title_size(15)
-            .with_x_label(self.x_label)
-            .with_y_label(self.y_label)
-            .with_x_axis_min(self.x[0])
-            .with_x_axis_max(self.x[1])
-            .with_x_tick_step(self.x_step)
-            .with_y_axis_min(self.y[0])
-            .with_y_axis_max(self.y[1])
-            .with_width(self.size.0)
-            .with_height(self.size.1)
-            .with_grid_line_width(0.6);
+        let (x, y) = (Edge { label: self.x_label, range: self.x }, Edge { label: self.y_label, range: self.y });
+        let layout = with_axes(titled(&plots, &self.title, self.size), &x, &y);
+        let mut layout = layout.with_x_tick_step(self.x_step).with_grid_line_width(0.6);
         if self.y_axis == Axis::Logarithmic {
             let plainly = TickFormat::Custom(Arc::new(|tick| tick.to_string()));
             layout = layout.with_log_y().with_y_tick_format(plainly);

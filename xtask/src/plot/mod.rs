@@ -13,6 +13,7 @@ mod decimals;
 mod key;
 mod plane;
 mod relief;
+mod sheet;
 mod sign;
 mod space;
 mod style;

@@ -1,9 +1,9 @@
 use kuva::plot::{BandPlot, ContourPlot, Heatmap, LegendPosition, LinePlot, MarkerShape, QuiverPlot, ScatterPlot};
 use kuva::render::annotations::TextAnnotation;
-use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
 use kuva::render::render::{Scene, render_multiple};
 
+use super::sheet::{Edge, titled, with_axes};
 use super::style::heights;
 use super::{Field, Mark, Panel, Stroke};
 
@@ -58,21 +58,12 @@ impl Plane {
 impl Panel for Plane {
     fn scene(&self) -> Scene {
         let plots: Vec<Plot> = self.layers.iter().filter_map(plot).collect();
-        let mut layout = Layout::auto_from_plots(&plots)
-            .with_title(self.title.clone())
-            .with_title_size(15)
-            .with_x_label(self.x_label)
-            .with_y_label(self.y_label)
-            .with_x_axis_min(self.x[0])
-            .with_x_axis_max(self.x[1])
-            .with_y_axis_min(self.y[0])
-            .with_y_axis_max(self.y[1])
+        let (x, y) = (Edge { label: self.x_label, range: self.x }, Edge { label: self.y_label, range: self.y });
+        let mut layout = with_axes(titled(&plots, &self.title, self.size), &x, &y)
             .with_show_grid(false)
             .with_legend_position(LegendPosition::OutsideBottomColumns)
             .with_legend_box(false)
-            .with_equal_aspect()
-            .with_width(self.size.0)
-            .with_height(self.size.1);
+            .with_equal_aspect();
         layout.annotations = self.layers.iter().filter_map(words).collect();
         render_multiple(plots, layout)
     }

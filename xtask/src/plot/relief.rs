@@ -1,8 +1,8 @@
 use kuva::plot::{ColorMap, Scatter3DPlot, Surface3DPlot};
-use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
 use kuva::render::render::{Scene, render_multiple};
 
+use super::sheet::titled;
 use super::style::heights;
 use super::{Field, Panel};
 
@@ -46,13 +46,8 @@ impl Panel for Relief {
             let dots = Scatter3DPlot::new().with_data(points(&self.dots)).with_size(DOT);
             plots.push(Plot::Scatter3D(dots.with_z_colormap(ColorMap::Cividis)));
         }
-        let mut layout = Layout::auto_from_plots(&plots)
-            .with_title(self.title.clone())
-            .with_title_size(15)
-            .with_width(self.size.0)
-            .with_height(self.size.1)
-            .with_force_margins(ROOM.0, ROOM.0)
-            .with_force_margins_y(TITLE, ROOM.1);
+        let layout = titled(&plots, &self.title, self.size);
+        let mut layout = layout.with_force_margins(ROOM.0, ROOM.0).with_force_margins_y(TITLE, ROOM.1);
         // Heights are at the axis.
         layout.show_colorbar = false;
         render_multiple(plots, layout)

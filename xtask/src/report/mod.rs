@@ -40,7 +40,7 @@ impl Report {
         let sources = sources(&from)?;
         let second = results_of_another_seed(&sources.results)?;
         write_report(&experiments, &sources, second.as_ref(), &out)?;
-        say(&format!("from {}: {}", from.display(), written(&out)));
+        say(&format!("from {}: {}", from.display(), written(&out, &["report.md", "figures/"])));
         Ok(())
     }
 
@@ -62,9 +62,9 @@ impl Report {
     }
 }
 
-/// What to look at, for the end of a run.
-pub(crate) fn written(out: &Path) -> String {
-    format!("written to {}: report.html (open it in a browser), report.md, results.json, figures/", out.display())
+/// Where to find the report and what else was written.
+pub(crate) fn written(out: &Path, besides: &[&str]) -> String {
+    format!("written to {}: report.html (open it in a browser), {}", out.display(), besides.join(", "))
 }
 
 /// Reads what a run left in its folder.
@@ -108,17 +108,17 @@ pub(crate) fn write_report(
 ) -> anyhow::Result<()> {
     let folder = out.join("figures");
     fs::create_dir_all(&folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    let drawn = draw(sources)?;
-    drawn.par_iter().try_for_each(|(figure, drawing)| -> anyhow::Result<()> {
+    let written = |(figure, drawing): (Figure, Drawing)| {
         let path = |ending: &str| folder.join(format!("{}{ending}", figure.id));
-        write(&path(".svg"), drawing.picture.svg())?;
+        let svg = drawing.picture.svg();
+        write(&path(".svg"), &svg)?;
         write(&path(".png"), drawing.picture.png()?)?;
         for table in &drawing.tables {
             write(&path(&format!("-{}.csv", table.name)), table.text())?;
         }
-        Ok(())
-    })?;
-    let figures = drawn.iter().map(|(figure, drawing)| (figure, drawing.picture.svg())).collect();
+        Ok((figure, svg))
+    };
+    let figures = draw(sources)?.into_par_iter().map(written).collect::<anyhow::Result<_>>()?;
     let contents = page::Contents { experiments, sources, second, figures };
     write(&out.join("report.html"), page::page(&contents))?;
     write(&out.join("report.md"), markdown(experiments, &sources.results, second))

@@ -1,6 +1,6 @@
 use super::{Levels, Movement};
-use crate::figures::{Csv, Drawing, Sources};
-use crate::plot::{Field, Layer, Picture, Plane, Relief, Who};
+use crate::figures::{Csv, Drawing, Sources, demonstrated};
+use crate::plot::{Field, Picture, Plane, Relief};
 
 /// The box of all heights.
 const EXTENT: f64 = 2.0;
@@ -30,17 +30,8 @@ pub(super) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
 
 /// The demonstrations over lines of equal potential; discarded ones as crosses.
 fn seen(levels: &Levels) -> Plane {
-    let color = Who::Demonstration.color();
-    let mut layers = vec![Layer::Contours(levels.truth.clone())];
-    for Movement { points, after, .. } in &levels.movements {
-        let (points, start) = (points.clone(), vec![points[0]]);
-        layers.push(if after.is_some() {
-            Layer::Path { points, stroke: Who::Demonstration.stroke(1.4), label: None }
-        } else {
-            Layer::Crosses { points, color: "#8fc1e3" }
-        });
-        layers.push(Layer::Dots { points: start, color, radius: 2.3 });
-    }
+    let movements = levels.movements.iter().map(|movement| (&movement.points[..], movement.after.is_some()));
+    let layers = demonstrated::layers(&levels.truth, movements, 1.4);
     let range = [-EXTENT, EXTENT];
     let title = "(a) Movements; light crosses: left out".to_owned();
     Plane { title, x_label: "x₁", y_label: "x₂", x: range, y: range, layers, size: (420.0, 430.0) }

@@ -1,27 +1,8 @@
 use kinematics::{LinkId, Workspace};
-use nalgebra::{DVector, Isometry3, Matrix3, Rotation3, Translation3, Unit, Vector3};
+use nalgebra::{DVector, Unit, Vector3};
 
-use super::robot::{Link, Motion};
 use super::*;
-
-/// Poses of all links, by nothing but what the document says.
-fn poses(links: &[Link], q: &[f64]) -> Vec<Isometry3<f64>> {
-    let mut poses: Vec<Isometry3<f64>> = Vec::new();
-    for link in links {
-        let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_row_slice(&link.rotation));
-        let origin = Isometry3::from_parts(Translation3::from(Vector3::from(link.translation)), rotation.into());
-        let value = link.joint.map_or(0.0, |joint| q[joint]);
-        let axis = Vector3::from(link.axis);
-        let motion = match link.motion {
-            Motion::Fixed => Isometry3::identity(),
-            Motion::Turn => Isometry3::rotation(axis * value),
-            Motion::Slide => Isometry3::from_parts((axis * value).into(), nalgebra::UnitQuaternion::identity()),
-        };
-        let parent = link.parent.map_or(Isometry3::identity(), |parent| poses[parent]);
-        poses.push(parent * origin * motion);
-    }
-    poses
-}
+use crate::figures::stage;
 
 #[test]
 fn the_document_says_where_the_hands_are() {
@@ -36,7 +17,7 @@ fn the_document_says_where_the_hands_are() {
         assert_eq!((movement.joints.len(), movement.palms.len()), (100, 100), "{place}");
         let mut worst = 0.0_f64;
         for (q, palms) in movement.joints.iter().zip(&movement.palms) {
-            let poses = poses(&playback.robot.links, q);
+            let poses = stage::poses(&playback.robot, q);
             let configuration = DVector::from_column_slice(q);
             let expected = robot.forward_kinematics(configuration.as_view(), &mut workspace).unwrap();
             for (pose, link) in poses.iter().zip(&links) {

@@ -110,38 +110,14 @@ fn left_open(compared: &Compared<'_>) -> Markup {
         h3 { "What the paper leaves open, and what is used here" }
         p {
             (emphasised(experiment.remark))
-            @if let Some(page) = decision(experiment.id) { " More in " code { "docs/decisions/" (page) } "." }
+            " More in " code { "docs/decisions/" (experiment.decisions) } "."
         }
     }
-}
-
-/// The page on why it is done so.
-fn decision(experiment: &str) -> Option<&'static str> {
-    Some(match experiment {
-        "table1" | "table1-literal" => "table1.md",
-        "table2" => "table2.md",
-        "asimo22" => "asimo22.md",
-        "figure6_left" | "figure6_right" => "figure6.md",
-        "three_link" => "three-link.md",
-        "figure9" => "figure9.md",
-        _ => return None,
-    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiments::registry;
-    use crate::files::repository;
-
-    #[test]
-    fn pages_that_are_named_are_there() {
-        for experiment in registry().unwrap() {
-            if let Some(page) = decision(experiment.id) {
-                assert!(repository().join("docs/decisions").join(page).exists(), "{}: {page}", experiment.id);
-            }
-        }
-    }
 
     #[test]
     fn a_sentence_begins_with_a_capital() {

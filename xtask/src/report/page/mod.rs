@@ -35,7 +35,7 @@ pub(crate) struct Contents<'a> {
     /// The same from another seed.
     pub(crate) second: Option<&'a Results>,
     /// Every figure that could be drawn, as SVG.
-    pub(crate) figures: Vec<(&'a Figure, String)>,
+    pub(crate) figures: Vec<(Figure, String)>,
 }
 
 /// A part of the page that can be gone to.

@@ -35,7 +35,7 @@ const START: &str = "startView(document.getElementById(\"view\"), \
 
 /// The view; nothing where a run has not computed what it plays. `figures` are those beside it: the first is what is
 /// pointed to where it cannot be drawn.
-pub(super) fn view(sources: &Sources, figures: &[&(&Figure, String)]) -> Markup {
+pub(super) fn view(sources: &Sources, figures: &[&(Figure, String)]) -> Markup {
     let still = figures.first().map(|(figure, _)| format!("#figure-{}", figure.id));
     html! {
         @if let Some(playback) = sources.documents.get(DOCUMENT) {
