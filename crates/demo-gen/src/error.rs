@@ -179,6 +179,12 @@ pub enum DemoGenError {
         /// The clearance given, in metres.
         clearance: f64,
     },
+    /// Joints cannot move so far from one sample to the next.
+    #[error("stride {stride}: it must be a number of radians above 0")]
+    Stride {
+        /// The stride given, in radians, or metres where a joint slides.
+        stride: f64,
+    },
     /// A movement that hands are to follow is not one of two points in space.
     #[error("the movement has {found} dimensions; those of a left and a right palm are 6")]
     Palms {

@@ -40,6 +40,7 @@ mod hand;
 mod hand_in_plane;
 mod instant;
 mod limits;
+mod link_gaps;
 mod noise;
 mod palm_control;
 mod palm_tracking;
@@ -50,6 +51,7 @@ mod three_link_arm;
 mod toy;
 mod toy_potential;
 mod upper_body;
+mod wishes;
 
 pub use error::{DemoGenError, Part, Quantity};
 pub use grasp::{Grasp, GraspStart};

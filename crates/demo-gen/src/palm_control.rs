@@ -1,6 +1,8 @@
 use kinematics::{ResolvedRate, Workspace};
 use nalgebra::{DMatrix, DVector, DVectorView, Matrix3xX};
 
+use crate::link_gaps::LinkGaps;
+use crate::wishes::Wishes;
 use crate::{DemoGenError, PalmTracking, Side, UpperBody};
 
 /// The posture that reaching arms are pulled to: before the body, elbows bent and a little outwards. All other joints are
@@ -16,30 +18,24 @@ const REACHING: [(&str, f64); 8] = [
     ("r_elbow", -0.8),
 ];
 
-/// Links are watched while they are less than this beyond the clearance asked for, metres.
-const WATCHED: f64 = 0.045;
+/// How strongly a palm's way bends as joints turn, metres per radian squared. This times the palms' distance from where
+/// they should be is what a linear step leaves out, as a damping's square: with it a stretched arm does not flutter after
+/// what is out of reach, and palms in reach, whose distance vanishes, end as exactly as without.
+const BEND: f64 = 0.2;
 
-/// Share of their way to the clearance that two links may come nearer in one correction, or, too near, go back.
-const CLOSING: f64 = 0.3;
-
-/// Weight of a gap between links beside that of a palm. Less than 1: where both cannot be had, as for a palm that is to
-/// be inside a leg, the palm nearly is where it should.
-const GAP_WEIGHT: f64 = 0.5;
+/// Steps that are tried in one correction, each avoiding where those before it brought links too near.
+const TRIES: usize = 7;
 
 /// Both palms of a body, under control: small corrections of a configuration towards where they should be.
 pub(crate) struct PalmControl<'a> {
     body: &'a UpperBody,
     tracking: PalmTracking,
     reaching: DVector<f64>,
-    rate: ResolvedRate,
+    /// Where the joints may go until the next sample.
+    lowest: DVector<f64>,
+    highest: DVector<f64>,
     workspace: Workspace,
     velocity: DVector<f64>,
-}
-
-/// Wished velocities of quantities that depend on the configuration: `jacobian` (m, n) times q̇ should be `rates` (m).
-struct Wishes {
-    jacobian: DMatrix<f64>,
-    rates: DVector<f64>,
 }
 
 impl<'a> PalmControl<'a> {
@@ -49,21 +45,59 @@ impl<'a> PalmControl<'a> {
         for (joint, value) in REACHING {
             reaching[body.robot().joint(joint)?] = value;
         }
-        let rate = ResolvedRate::new(tracking.damping)?;
-        Ok(PalmControl { body, tracking, reaching, rate, workspace: Workspace::new(), velocity: DVector::zeros(n) })
+        let [lowest, highest, velocity] = [(); 3].map(|()| DVector::zeros(n));
+        Ok(PalmControl { body, tracking, reaching, lowest, highest, workspace: Workspace::new(), velocity })
     }
 
-    /// One correction of `q` towards the wanted palms (6).
-    pub(crate) fn correct(&mut self, q: &mut DVector<f64>, wanted: DVectorView<'_, f64>) -> Result<(), DemoGenError> {
-        let mut palms = self.palms(q, wanted)?;
+    /// Corrects `q` towards the wanted palms (6) of the next sample.
+    pub(crate) fn follow(&mut self, q: &mut DVector<f64>, wanted: DVectorView<'_, f64>) -> Result<(), DemoGenError> {
+        let stride = self.tracking.stride;
+        for (at, joint) in self.body.robot().joints().iter().enumerate() {
+            self.lowest[at] = joint.lower().max(q[at] - stride);
+            self.highest[at] = joint.upper().min(q[at] + stride);
+        }
         let mut gaps = self.gaps(q)?;
-        let mut home = (&self.reaching - &*q) * self.tracking.pull;
-        // A joint that would leave its range goes to the limit and stays there; the others make up for the rest.
+        for _ in 0..self.tracking.corrections {
+            let Some((corrected, found)) = self.corrected(q, wanted, &gaps)? else { return Ok(()) };
+            (*q, gaps) = (corrected, found);
+        }
+        Ok(())
+    }
+
+    /// `q`, whose gaps these are, after one correction, and the gaps there; nothing where no step was found that keeps
+    /// links apart.
+    fn corrected(
+        &mut self,
+        q: &DVector<f64>,
+        wanted: DVectorView<'_, f64>,
+        gaps: &LinkGaps,
+    ) -> Result<Option<(DVector<f64>, LinkGaps)>, DemoGenError> {
+        let palms = self.palms(q, wanted)?;
+        let mut widening = gaps.widening().clone();
+        for _ in 0..TRIES {
+            let corrected = self.step(q.clone(), palms.clone(), widening.clone())?;
+            let found = self.gaps(&corrected)?;
+            if gaps.allow(&found) {
+                return Ok(Some((corrected, found)));
+            }
+            let instead = gaps.instead(&found, &(corrected - q));
+            let rows: Vec<usize> = (0..instead.rates.len()).collect();
+            widening = widening.and(&instead, &rows);
+        }
+        Ok(None)
+    }
+
+    /// Where a step from `q` leads that does what palms and gaps wish.
+    fn step(&mut self, mut q: DVector<f64>, mut palms: Wishes, mut gaps: Wishes) -> Result<DVector<f64>, DemoGenError> {
+        let damping = self.tracking.damping;
+        let mut control = ResolvedRate::new((damping * damping + BEND * palms.rates.norm()).sqrt())?;
+        let mut home = (&self.reaching - &q) * self.tracking.pull;
+        // A joint that would go too far goes as far as it may and stays there; the others make up for the rest.
         loop {
-            self.solve(&palms, &gaps, &home)?;
+            self.solve(&mut control, &palms, &gaps, &home)?;
             let mut free = true;
-            for (at, joint) in self.body.robot().joints().iter().enumerate() {
-                let stop = (q[at] + self.velocity[at]).clamp(joint.lower(), joint.upper());
+            for at in 0..q.len() {
+                let stop = (q[at] + self.velocity[at]).clamp(self.lowest[at], self.highest[at]);
                 if stop != q[at] + self.velocity[at] {
                     palms.settle(at, stop - q[at]);
                     gaps.settle(at, stop - q[at]);
@@ -71,8 +105,7 @@ impl<'a> PalmControl<'a> {
                 }
             }
             if free {
-                *q += &self.velocity;
-                return Ok(());
+                return Ok(q + &self.velocity);
             }
         }
     }
@@ -90,27 +123,23 @@ impl<'a> PalmControl<'a> {
         Ok(palms)
     }
 
-    /// How fast the gaps between links that are near each other must at least widen; less than 0 is how fast they may
-    /// narrow.
-    fn gaps(&mut self, q: &DVector<f64>) -> Result<Wishes, DemoGenError> {
-        let clearance = self.tracking.clearance;
-        let poses = self.body.robot().forward_kinematics(q.as_view(), &mut self.workspace)?;
-        let near = self.body.collision().nearby(&poses, clearance + WATCHED);
-        let mut gaps = Wishes { jacobian: DMatrix::zeros(near.len(), q.len()), rates: DVector::zeros(near.len()) };
-        for (row, near) in near.iter().enumerate() {
-            gaps.jacobian.row_mut(row).tr_copy_from(&(near.gradient(&poses) * GAP_WEIGHT));
-            gaps.rates[row] = CLOSING * (clearance - near.distance.max(0.0)) * GAP_WEIGHT;
-        }
-        Ok(gaps)
+    fn gaps(&mut self, q: &DVector<f64>) -> Result<LinkGaps, DemoGenError> {
+        LinkGaps::at(q, self.body, self.tracking.clearance, &mut self.workspace)
     }
 
     /// The velocity that follows the palms and goes `home` as far as they leave it free. A gap that would narrow too
     /// fast becomes part of the task.
-    fn solve(&mut self, palms: &Wishes, gaps: &Wishes, home: &DVector<f64>) -> Result<(), DemoGenError> {
+    fn solve(
+        &mut self,
+        control: &mut ResolvedRate,
+        palms: &Wishes,
+        gaps: &Wishes,
+        home: &DVector<f64>,
+    ) -> Result<(), DemoGenError> {
         let mut kept = Vec::new();
         loop {
             let Wishes { jacobian, rates } = palms.and(gaps, &kept);
-            self.rate.velocity(&jacobian, rates.as_view(), home.as_view(), self.velocity.as_view_mut())?;
+            control.velocity(&jacobian, rates.as_view(), home.as_view(), self.velocity.as_view_mut())?;
             let found = &gaps.jacobian * &self.velocity;
             let narrowing = (0..found.len()).filter(|gap| found[*gap] < gaps.rates[*gap] && !kept.contains(gap));
             let narrowing: Vec<usize> = narrowing.collect();
@@ -119,24 +148,5 @@ impl<'a> PalmControl<'a> {
             }
             kept.extend(narrowing);
         }
-    }
-}
-
-impl Wishes {
-    /// Takes a joint out that has moved by `way` and moves no more.
-    fn settle(&mut self, joint: usize, way: f64) {
-        self.rates.axpy(-way, &self.jacobian.column(joint), 1.0);
-        self.jacobian.column_mut(joint).fill(0.0);
-    }
-
-    /// These wishes, and some `rows` of others below.
-    fn and(&self, others: &Wishes, rows: &[usize]) -> Wishes {
-        let (own, n) = self.jacobian.shape();
-        let jacobian = self.jacobian.clone().resize_vertically(own + rows.len(), 0.0);
-        let rates = self.rates.clone().resize_vertically(own + rows.len(), 0.0);
-        let mut both = Wishes { jacobian, rates };
-        both.jacobian.view_mut((own, 0), (rows.len(), n)).copy_from(&others.jacobian.select_rows(rows));
-        both.rates.rows_mut(own, rows.len()).copy_from(&others.rates.select_rows(rows));
-        both
     }
 }

@@ -1,15 +1,17 @@
-use kinematics::Workspace;
+use kinematics::{ResolvedRate, Workspace};
 use motion::Trajectory;
 use nalgebra::{DMatrix, DVector, DVectorView, Point3};
 
 use crate::palm_control::PalmControl;
 use crate::{DemoGenError, UpperBody};
 
-/// Carries out a movement of both palms with all joints: damped resolved-rate control, whose freedom is used to keep the
-/// body's links apart and the arms in a posture for reaching, and whose every step ends within the joints' limits.
+/// Carries out a movement of both palms with all joints: damped resolved-rate control that keeps the body's links apart
+/// first, follows the palms second, and uses what freedom is left for a posture for reaching. Every step ends within the
+/// joints' limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PalmTracking {
-    /// Damping of the pseudo-inverse, metres per radian. Default 0.02.
+    /// Damping of the pseudo-inverse where palms are where they should be, metres per radian; it grows with their
+    /// distance. Default 0.02.
     pub damping: f64,
     /// Share of the way to the posture for reaching that each correction would go were the palms not in the way, 0 to 1.
     /// Default 0.01.
@@ -18,11 +20,14 @@ pub struct PalmTracking {
     pub clearance: f64,
     /// Corrections for each sample. Default 10.
     pub corrections: usize,
+    /// How far a joint moves at most from one sample to the next, radians, or metres where it slides. Default 0.35, more
+    /// than demonstrations of [`Grasp`](crate::Grasp) need; infinite is no bound.
+    pub stride: f64,
 }
 
 impl Default for PalmTracking {
     fn default() -> Self {
-        PalmTracking { damping: 0.02, pull: 0.01, clearance: 0.005, corrections: 10 }
+        PalmTracking { damping: 0.02, pull: 0.01, clearance: 0.005, corrections: 10, stride: 0.35 }
     }
 }
 
@@ -41,13 +46,13 @@ impl PalmTracking {
     /// The joint path that follows `palms`, a movement of left and right palm (6 dimensions, metres in the heel's frame),
     /// from `posture` (n), which is clipped to the joints' limits and kept as the first configuration.
     ///
-    /// What is out of reach is missed, and the errors say by how much. Palms that are to go where the body is take their
-    /// links with them: the clearances tell. See `docs/decisions/table2.md`.
+    /// What cannot be done - out of reach, where the body is, or too fast - is missed, and the errors say by how much. At the
+    /// samples no two links touch that did not in `posture`. See `docs/decisions/table2.md`.
     ///
     /// # Errors
-    /// [`DemoGenError::Tracking`], [`DemoGenError::Clearance`], [`DemoGenError::Palms`], or [`DemoGenError::Robot`] for a
-    /// damping out of range, a posture of another length, a body without joints `{l,r}_shoulder_yaw`, or a step that
-    /// cannot be made without damping.
+    /// [`DemoGenError::Tracking`], [`DemoGenError::Clearance`], [`DemoGenError::Stride`], [`DemoGenError::Palms`], or
+    /// [`DemoGenError::Robot`] for a damping out of range, a posture of another length, a body without joints
+    /// `{l,r}_shoulder_yaw`, or a step that cannot be made without damping.
     pub fn follow(
         &self,
         body: &UpperBody,
@@ -63,8 +68,8 @@ impl PalmTracking {
         let mut control = PalmControl::new(body, *self)?;
         let mut configurations = DMatrix::zeros(q.len(), palms.n_samples());
         for sample in 0..palms.n_samples() {
-            for _ in 0..if sample == 0 { 0 } else { self.corrections } {
-                control.correct(&mut q, palms.state(sample))?;
+            if sample > 0 {
+                control.follow(&mut q, palms.state(sample))?;
             }
             configurations.set_column(sample, &q);
         }
@@ -72,11 +77,15 @@ impl PalmTracking {
     }
 
     fn check(&self) -> Result<(), DemoGenError> {
-        let PalmTracking { pull, clearance, corrections, .. } = *self;
+        let PalmTracking { damping, pull, clearance, corrections, stride } = *self;
+        ResolvedRate::new(damping)?;
         if !((0.0..=1.0).contains(&pull) && corrections > 0) {
             return Err(DemoGenError::Tracking { pull, corrections });
         }
-        if clearance.is_finite() && clearance >= 0.0 { Ok(()) } else { Err(DemoGenError::Clearance { clearance }) }
+        if !(clearance.is_finite() && clearance >= 0.0) {
+            return Err(DemoGenError::Clearance { clearance });
+        }
+        if stride > 0.0 { Ok(()) } else { Err(DemoGenError::Stride { stride }) }
     }
 }
 

@@ -1,3 +1,4 @@
+use demo_gen::PalmTracking;
 use kinematics::{LinkId, Workspace};
 use nalgebra::{DVector, Unit, Vector3};
 
@@ -36,18 +37,24 @@ fn the_document_says_where_the_hands_are() {
 }
 
 #[test]
-fn the_demonstrated_movements_touch_nothing() {
+fn no_movement_touches_or_jumps_and_the_demonstrated_are_exact() {
     let grasp = grasp().unwrap();
     let robot = grasp.body.robot();
     let playback = grasp_playback(1).unwrap();
     let mut workspace = Workspace::new();
-    for movement in playback.movements.iter().filter(|m| m.learner == "expert") {
-        assert!(movement.error_mm < 1.0, "{} {}: {} mm", movement.constraint, movement.start, movement.error_mm);
+    for movement in &playback.movements {
+        let place = format!("{} {} {}", movement.constraint, movement.learner, movement.start);
+        assert!(movement.learner != "expert" || movement.error_mm < 1.0, "{place}: {} mm", movement.error_mm);
         for q in &movement.joints {
             let q = DVector::from_column_slice(q);
             assert_eq!(robot.n_beyond_limits(q.as_view()).unwrap(), 0);
             let poses = robot.forward_kinematics(q.as_view(), &mut workspace).unwrap();
-            assert!(!grasp.body.collision().collides(&poses), "{} {}", movement.constraint, movement.start);
+            assert!(!grasp.body.collision().collides(&poses), "{place}");
+        }
+        for pair in movement.joints.windows(2) {
+            let step = pair[0].iter().zip(&pair[1]).map(|(a, b)| (b - a).abs()).fold(0.0, f64::max);
+            // Each value is rounded by at most half of the last decimal.
+            assert!(step <= PalmTracking::default().stride + 1.01e-4, "{place}: {step}");
         }
     }
 }
