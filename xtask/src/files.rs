@@ -7,12 +7,15 @@ use anyhow::Context as _;
 
 /// The root of the repository.
 pub(crate) fn repository() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+    let xtask = Path::new(env!("CARGO_MANIFEST_DIR"));
+    xtask.parent().unwrap_or(xtask).to_owned()
 }
 
-/// Where the committed run from a seed is.
-pub(crate) fn folder_of_records(seed: u64) -> PathBuf {
-    repository().join(format!("docs/records/seed-{seed}"))
+/// A path as one would write it in the current folder.
+pub(crate) fn told(path: &Path) -> String {
+    let here = std::env::current_dir().unwrap_or_default();
+    let path = path.strip_prefix(here).unwrap_or(path);
+    if path.as_os_str().is_empty() { ".".to_owned() } else { path.display().to_string() }
 }
 
 /// Writes a whole file or nothing.
@@ -21,5 +24,5 @@ pub(crate) fn write(path: &Path, contents: impl AsRef<[u8]>) -> anyhow::Result<(
     draft.push(".part");
     fs::write(&draft, contents)
         .and_then(|()| fs::rename(&draft, path))
-        .with_context(|| format!("cannot write {}", path.display()))
+        .with_context(|| format!("cannot write {}", told(path)))
 }

@@ -15,6 +15,7 @@ mod report;
 mod reproduce;
 mod results;
 mod robots;
+mod run_folder;
 mod runner;
 mod seed;
 mod table;

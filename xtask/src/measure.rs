@@ -81,19 +81,30 @@ impl Measure {
         }
     }
 
+    /// Whether it is in percent.
+    fn is_share(self) -> bool {
+        matches!(self, Measure::Disc | Measure::Unsupported | Measure::BeyondLimits)
+    }
+
     /// How it is judged in a row.
     pub(crate) fn kind(self, row: RowOf) -> Kind {
         match (self, row) {
-            (Measure::Disc | Measure::Unsupported | Measure::BeyondLimits, _) => Kind::Share,
+            _ if self.is_share() => Kind::Share,
             (Measure::Naive, _) | (_, RowOf::Baseline) => Kind::BaselineError,
             (_, RowOf::Learner) => Kind::LearnerError,
         }
     }
 
+    /// A figure of the paper: with the digits that it was printed with, as far as they say something.
+    pub(crate) fn show_printed(self, value: f64) -> String {
+        let shown = format!("{value:.4}");
+        if self.is_share() || shown.parse() != Ok(value) { self.show(value) } else { shown }
+    }
+
     /// A value as tables print it.
     pub(crate) fn show(self, value: f64) -> String {
         match self {
-            Measure::Disc | Measure::Unsupported | Measure::BeyondLimits => format!("{value:.2}"),
+            _ if self.is_share() => format!("{value:.2}"),
             // Table 2 has errors below a thousandth.
             _ if value.abs() < 1e-3 => format!("{value:.6}"),
             _ => format!("{value:.4}"),

@@ -9,11 +9,14 @@ use clap::Args;
 
 use crate::experiments::{Experiment, registry};
 use crate::figures::{Figure, Sources, figures};
-use crate::files::{folder_of_records, repository, write};
+use crate::files::{repository, told, write};
 use crate::measure::Measure;
-use crate::report::{Tally, draw, markdown, sources};
+use crate::progress::say;
+use crate::report::{Tally, draw, markdown};
 use crate::results::{ExperimentResult, Results};
+use crate::run_folder::RunFolder;
 use crate::table::markdown_table;
+use crate::verdict::Verdict;
 
 /// Seeds of the committed runs.
 const FIRST_SEED: u64 = 1;
@@ -54,22 +57,25 @@ impl Publish {
         for (path, svg) in records.pictures()? {
             write(&path, svg)?;
         }
+        say("written: README.md, docs/reproduction.md, docs/pictures");
         Ok(())
     }
 }
 
 /// Copies a run to the committed records.
 fn take(experiments: &[Experiment], run: &Path) -> anyhow::Result<()> {
-    let Sources { results, documents } = sources(run)?;
-    complete(experiments, &results).with_context(|| format!("{} is no full run", run.display()))?;
-    let folder = folder_of_records(results.seed);
-    fs::create_dir_all(folder.join("figures")).with_context(|| format!("cannot make {}", folder.display()))?;
-    write(&folder.join("results.json"), results.json()?)?;
+    let mut sources = RunFolder::at(run).sources()?;
+    let seed = sources.results.seed;
+    complete(experiments, &sources.results).with_context(|| format!("{} is no full run", told(run)))?;
+    ensure!([FIRST_SEED, SECOND_SEED].contains(&seed), "{} is of seed {seed}, not 1 or 2", told(run));
     // The pages show the figures of the first seed only.
-    for (id, document) in documents.iter().filter(|_| results.seed == FIRST_SEED) {
-        write(&folder.join(format!("figures/{id}.json")), document.to_string())?;
+    if seed == FIRST_SEED {
+        ensure!(sources.missing.is_empty(), "{} has no figure data {}", told(run), sources.missing.join(", "));
+    } else {
+        sources.documents.clear();
     }
-    Ok(())
+    say(&format!("docs/records/seed-{seed} is now the run in {}", told(run)));
+    RunFolder::committed(seed).keep(&sources)
 }
 
 /// The committed runs.
@@ -80,8 +86,8 @@ struct Records {
 
 impl Records {
     fn read(experiments: &[Experiment]) -> anyhow::Result<Records> {
-        let first = sources(&folder_of_records(FIRST_SEED))?;
-        let second = Results::read(&folder_of_records(SECOND_SEED).join("results.json"))?;
+        let first = RunFolder::committed(FIRST_SEED).sources()?;
+        let second = RunFolder::committed(SECOND_SEED).results()?;
         for results in [&first.results, &second] {
             complete(experiments, results).with_context(|| format!("docs/records/seed-{}", results.seed))?;
         }
@@ -156,15 +162,22 @@ fn summary(experiments: &[Experiment], result: &ExperimentResult) -> String {
         .map(|row| {
             let cell = |measure: &Measure| {
                 let Some(cell) = row.measures.get(measure) else { return "–".to_owned() };
-                let paper = cell.paper.map_or(String::new(), |paper| format!(" ({})", measure.show(paper.mean)));
-                format!("{}{paper}", measure.show(cell.mean))
+                let paper =
+                    cell.paper.map_or(String::new(), |paper| format!(" ({})", measure.show_printed(paper.mean)));
+                let ours = measure.show(cell.mean);
+                match cell.verdict {
+                    Some(Verdict::Better) => format!("**{ours}**{paper}"),
+                    Some(verdict) if !verdict.reached() => format!("{ours}{paper} {}", verdict.word()),
+                    _ => format!("{ours}{paper}"),
+                }
             };
             [row.id.clone()].into_iter().chain(measures.iter().map(cell)).collect()
         })
         .collect();
     let title = experiments.iter().find(|experiment| experiment.id == result.id).map_or("", |e| e.title);
     let table = markdown_table(&["row", "potential nMSE", "nUPE", "nCPE", "discarded %"], &rows);
-    format!("{title}: ours, and in brackets the paper's. {}\n\n{table}", Tally::of([result]).sentence())
+    let tally = Tally::of([result]).sentence();
+    format!("{title}: ours, and in brackets the paper's; bold where ours is better. {tally}\n\n{table}")
 }
 
 #[cfg(test)]

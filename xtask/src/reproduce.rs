@@ -1,31 +1,28 @@
 //! `cargo xtask reproduce`: runs experiments, keeps every finished data set, and ends with the tables.
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::io::{ErrorKind, Write as _};
-use std::path::{Path, PathBuf};
+use std::fmt::Write as _;
+use std::io::{self, ErrorKind};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::{Context as _, bail};
 use clap::Args;
 use cpu_time::ProcessTime;
-use serde_json::Value;
 
 use crate::experiments::{Experiment, Setup, registry};
 use crate::figures::{Sources, compute};
-use crate::files::write;
+use crate::files::told;
 use crate::progress::say;
 use crate::records::{Earlier, Outcome, Records};
-use crate::report::{Tally, markdown, write_report, written};
-use crate::results::{Results, Run, summarise};
-use crate::runner::{Outcomes, Plan, run};
+use crate::report::{Tally, tables, write_report, write_tables, written};
+use crate::results::{Results, Run, SCHEMA, summarise};
+use crate::run_folder::RunFolder;
+use crate::runner::{Measured, Outcomes, Plan, run};
 
 /// Data sets a row with `--quick`.
 const QUICK_DATA_SETS: u32 = 3;
-
-/// Version of the form of `results.json`.
-const SCHEMA: u32 = 1;
 
 /// Exit status after Ctrl-C.
 const INTERRUPTED: i32 = 130;
@@ -51,9 +48,10 @@ pub(crate) struct Reproduce {
     /// Worker threads; they change the time, never the results [default: one a core]
     #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
-    /// Folder for report.html, report.md, results.json, figures/ and the records of finished data sets
-    #[arg(long, value_name = "DIR", default_value = "target/reproduce")]
-    out: PathBuf,
+    /// Folder for report.html, report.md, results.json, figures/ and the records of finished data sets [default:
+    /// target/reproduce in the repository]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
     /// Start over: forget the data sets that earlier runs into the same folder finished
     #[arg(long)]
     fresh: bool,
@@ -69,47 +67,83 @@ impl Reproduce {
             return print(&list(&experiments));
         }
         let started = Instant::now();
-        fs::create_dir_all(&self.out).with_context(|| format!("cannot make the folder {}", self.out.display()))?;
+        let folder = self.out.as_deref().map_or_else(RunFolder::of_latest_run, RunFolder::at);
+        folder.make()?;
         let earlier = if self.fresh { Earlier::Forget } else { Earlier::Resume };
-        let records = Arc::new(Records::open(&self.out.join("records.jsonl"), earlier)?);
+        let records = Arc::new(Records::open(&folder.join("records.jsonl"), earlier)?);
         stop_cleanly_on_ctrl_c(&records)?;
         let plan = Plan { data_sets: self.data_sets.or(self.quick.then_some(QUICK_DATA_SETS)), seed: self.seed };
         let threads = self.threads.map_or(0, usize::from);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-        let outcomes = pool.install(|| run(&experiments, plan, &records))?;
+        let Measured { outcomes, resumed } = pool.install(|| run(&experiments, plan, &records))?;
         let results = Results {
             schema: SCHEMA,
             seed: self.seed,
             quick: self.quick,
             run: Run {
+                command: self.command(),
                 threads: pool.current_num_threads(),
+                resumed,
                 wall_seconds: started.elapsed().as_secs_f64(),
                 cpu_seconds: ProcessTime::now().as_duration().as_secs_f64(),
                 version: env!("CARGO_PKG_VERSION").to_owned(),
             },
             experiments: summarise(&experiments, &outcomes)?,
         };
-        write(&self.out.join("results.json"), results.json()?)?;
-        print(&markdown(&experiments, &results, None))?;
+        print(&tables(&experiments, &results))?;
         say_failures(&experiments, &outcomes);
+        let mut sources = Sources { results, documents: BTreeMap::new(), missing: vec![] };
         if self.no_figures {
-            write(&self.out.join("report.md"), markdown(&experiments, &results, None))?;
-            return conclude(&results, &self.out);
+            folder.keep(&sources)?;
+            write_tables(&experiments, &sources.results, &folder)?;
+        } else {
+            say("computing what the figures show, and drawing them ..");
+            sources.documents = pool.install(|| compute(&experiments, self.seed))?;
+            folder.keep(&sources)?;
+            pool.install(|| write_report(&experiments, &sources, &folder))?;
         }
-        say("computing what the figures show, and drawing them ..");
-        let documents = pool.install(|| compute(&experiments, self.seed))?;
-        keep(&documents, &self.out)?;
-        let sources = Sources { results, documents };
-        pool.install(|| write_report(&experiments, &sources, None, &self.out))?;
-        conclude(&sources.results, &self.out)
+        self.conclude(&sources.results, &folder)
     }
-}
 
-/// Writes what the figures are drawn from.
-fn keep(documents: &BTreeMap<String, Value>, out: &Path) -> anyhow::Result<()> {
-    let folder = out.join("figures");
-    fs::create_dir_all(&folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    documents.iter().try_for_each(|(id, document)| write(&folder.join(format!("{id}.json")), document.to_string()))
+    /// What to type for the same again, without what changes no number.
+    fn command(&self) -> String {
+        let mut command = "cargo xtask reproduce".to_owned();
+        if self.quick {
+            command += " --quick";
+        }
+        if let Some(data_sets) = self.data_sets {
+            let _ = write!(command, " --data-sets {data_sets}");
+        }
+        if !self.only.is_empty() {
+            let _ = write!(command, " --only {}", self.only.join(","));
+        }
+        format!("{command} --seed {}", self.seed)
+    }
+
+    /// Says how it went; a row of which nothing could be measured is an error.
+    fn conclude(&self, results: &Results, folder: &RunFolder) -> anyhow::Result<()> {
+        for experiment in &results.experiments {
+            let tally = Tally::of([experiment]);
+            if tally.total() > 0 {
+                say(&format!("{}: {}", experiment.id, tally.sentence()));
+            }
+        }
+        let Run { threads, wall_seconds, cpu_seconds, .. } = &results.run;
+        say(&format!(
+            "{wall_seconds:.1} s on {threads} thread(s), {cpu_seconds:.1} s of processor time for the tables"
+        ));
+        say(&if self.no_figures {
+            format!("written: {} and results.json", told(&folder.join("report.md")))
+        } else {
+            written(folder)
+        });
+        let rows =
+            results.experiments.iter().flat_map(|experiment| experiment.rows.iter().map(move |row| (experiment, row)));
+        if let Some((experiment, row)) = rows.into_iter().find(|(_, row)| row.failed == row.data_sets) {
+            bail!("{} {}: every data set failed", experiment.id, row.id);
+        }
+        Ok(())
+    }
 }
 
 /// Keeps the experiments, setups and rows that are asked for; all where nothing is. Rows that are measured on the same
@@ -128,7 +162,7 @@ fn select(mut experiments: Vec<Experiment>, only: &[String]) -> anyhow::Result<V
             let ids: Vec<&str> = experiments.iter().map(|experiment| experiment.id).collect();
             let ids = ids.join(", ");
             bail!(
-                "--only {wanted}: no such experiment or row; experiments are {ids}; `cargo xtask reproduce --list` shows the rows"
+                "--only {wanted:?}: no such experiment or row; experiments are {ids}; `cargo xtask reproduce --list` shows the rows"
             );
         }
     }
@@ -172,28 +206,9 @@ fn say_failures(experiments: &[Experiment], outcomes: &[Vec<Outcomes>]) {
     }
 }
 
-/// Says how it went; a row of which nothing could be measured is an error.
-fn conclude(results: &Results, out: &Path) -> anyhow::Result<()> {
-    for experiment in &results.experiments {
-        let tally = Tally::of([experiment]);
-        if tally.total() > 0 {
-            say(&format!("{}: {}", experiment.id, tally.sentence()));
-        }
-    }
-    let Run { threads, wall_seconds, cpu_seconds, .. } = &results.run;
-    say(&format!("{wall_seconds:.1} s on {threads} thread(s), {cpu_seconds:.1} s of processor time for the tables"));
-    say(&written(out, &["report.md", "results.json", "figures/"]));
-    let rows =
-        results.experiments.iter().flat_map(|experiment| experiment.rows.iter().map(move |row| (experiment, row)));
-    if let Some((experiment, row)) = rows.into_iter().find(|(_, row)| row.failed == row.data_sets) {
-        bail!("{} {}: every data set failed", experiment.id, row.id);
-    }
-    Ok(())
-}
-
 /// Writes to standard output; a reader that has seen enough (`| head`) is no error.
 fn print(text: &str) -> anyhow::Result<()> {
-    match std::io::stdout().write_all(text.as_bytes()) {
+    match io::Write::write_all(&mut io::stdout(), text.as_bytes()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).context("cannot write to standard output"),
         _ => Ok(()),
     }

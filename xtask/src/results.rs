@@ -3,15 +3,19 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use anyhow::Context as _;
+use anyhow::{Context as _, bail, ensure};
 use metrics::Summary;
 use serde::{Deserialize, Serialize, Serializer, ser::Error as _};
 
 use crate::experiments::{Experiment, Row};
+use crate::files::told;
 use crate::measure::Measure;
 use crate::paper::Printed;
 use crate::runner::Outcomes;
 use crate::verdict::{Verdict, verdict};
+
+/// Version of the form of `results.json`.
+pub(crate) const SCHEMA: u32 = 2;
 
 /// The whole file. All but `run` is the same to the bit for the same seed and program.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -31,14 +35,32 @@ pub(crate) struct Results {
 impl Results {
     /// Reads a `results.json`.
     pub(crate) fn read(path: &Path) -> anyhow::Result<Results> {
-        let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-        serde_json::from_str(&text).with_context(|| format!("{} is not a results.json", path.display()))
+        let name = told(path);
+        let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {name}"))?;
+        let Form { schema } = serde_json::from_str(&text).with_context(|| format!("{name} is not a results.json"))?;
+        ensure!(schema == SCHEMA, "{name} is of form {schema}, which this version does not read (but form {SCHEMA})");
+        serde_json::from_str(&text).with_context(|| format!("{name} is damaged"))
+    }
+
+    /// Fails where there are results of other experiments than these.
+    pub(crate) fn check_known(&self, experiments: &[Experiment]) -> anyhow::Result<()> {
+        let known = |id: &str| experiments.iter().any(|experiment| experiment.id == id);
+        match self.experiments.iter().find(|result| !known(&result.id)) {
+            Some(result) => bail!("there is no experiment {:?}, but the run has results of it", result.id),
+            None => Ok(()),
+        }
     }
 
     /// As written to `results.json`.
     pub(crate) fn json(&self) -> anyhow::Result<String> {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }
+}
+
+/// What is read of a file of any version.
+#[derive(Deserialize)]
+struct Form {
+    schema: u32,
 }
 
 /// Hundreds of numbers in a row are for machines.
@@ -49,8 +71,12 @@ fn on_one_line<S: Serializer>(values: &Vec<Option<f64>>, serializer: S) -> Resul
 /// Circumstances of the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Run {
+    /// The command that gives the same again.
+    pub(crate) command: String,
     /// Worker threads.
     pub(crate) threads: usize,
+    /// Data sets that earlier calls of the command had finished; the times are without them.
+    pub(crate) resumed: usize,
     /// Elapsed seconds.
     pub(crate) wall_seconds: f64,
     /// Processor seconds of all threads.

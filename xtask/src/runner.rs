@@ -36,14 +36,18 @@ struct Job<'a> {
     slot: &'a mut Option<Outcome>,
 }
 
+/// What was measured.
+pub(crate) struct Measured {
+    /// By experiment and setup.
+    pub(crate) outcomes: Vec<Vec<Outcomes>>,
+    /// How many data sets were finished before.
+    pub(crate) resumed: usize,
+}
+
 /// Measures every data set of every setup, skipping what `records` already holds.
 ///
 /// The result depends only on experiments, plan and program: not on the number of threads, nor on what was resumed.
-pub(crate) fn run(
-    experiments: &[Experiment],
-    plan: Plan,
-    records: &Arc<Records>,
-) -> anyhow::Result<Vec<Vec<Outcomes>>> {
+pub(crate) fn run(experiments: &[Experiment], plan: Plan, records: &Arc<Records>) -> anyhow::Result<Measured> {
     let mut slots: Vec<Vec<Vec<Option<Outcome>>>> = experiments
         .iter()
         .map(|experiment| {
@@ -62,6 +66,7 @@ pub(crate) fn run(
             }
         }
     }
+    let resumed = total - jobs.len();
     let progress = Progress::start(total, jobs.len(), jobs.iter().map(|job| job.setup.cost).sum());
     // One job at a time to each thread: data sets of different setups differ a hundredfold in work.
     jobs.into_par_iter().with_max_len(1).try_for_each(|job| -> anyhow::Result<()> {
@@ -73,10 +78,11 @@ pub(crate) fn run(
     })?;
     progress.done();
     let take = |slot: Option<Outcome>| slot.unwrap_or_else(|| unreachable!("every slot is resumed or measured"));
-    Ok(slots
+    let outcomes = slots
         .into_iter()
         .map(|setups| setups.into_iter().map(|setup| setup.into_iter().map(take).collect()).collect())
-        .collect())
+        .collect();
+    Ok(Measured { outcomes, resumed })
 }
 
 fn measure(job: &Job<'_>, plan: Plan) -> Outcome {

@@ -101,7 +101,7 @@ fn the_form_is_the_documented_one() {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), &["--only", ROW, "--no-figures", "--data-sets", "2", "--seed", "5"]);
     let results = results(folder.path());
-    assert_eq!((&results["schema"], &results["seed"], &results["quick"]), (&1.into(), &5.into(), &false.into()));
+    assert_eq!((&results["schema"], &results["seed"], &results["quick"]), (&2.into(), &5.into(), &false.into()));
     let row = &results["experiments"][0]["rows"][0];
     assert_eq!((&row["id"], &row["failed"]), (&"parabola-40x40-narrow".into(), &0.into()));
     for measure in ["potential_nmse", "alignment_nmse", "nupe", "ncpe", "disc"] {

@@ -32,7 +32,8 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
         remark: "The robot, its posture \"ready\" (shoulder pitch .3, roll ±.3, elbow -1.6) and the attractor (upright, arms hanging) \
                  are fitted; starts from N(ready, .1 I), δt = .5 s, plain Euler, narrow bandwidth. Regression with a fixed diagonal \
                  metric, D = 50, 20 passes; receptive fields speak down to an activation of 1e-9, because a single start far from all \
-                 others, for which none speaks above .001, would rule the error of the potential.",
+                 others, for which none speaks above .001, would rule the error of the potential. Starts are within the joints' limits; \
+                 movements are not held there, and most leave them somewhere (beyond limits %).",
         decisions: "asimo22.md",
         another_reading_of: None,
         setups: vec![Setup {

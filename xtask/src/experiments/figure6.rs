@@ -33,8 +33,8 @@ pub(crate) fn figure6_left() -> Experiment {
     Experiment {
         id: "figure6_left",
         title: "Figure 6, left: error against the amount of data",
-        remark: "The first so many percent of the trajectories of Table 1's parabola, 40 trajectories of 40 samples. Regression as in \
-                 Table 1; test samples from the trajectories that are kept of those used.",
+        remark: "Only the first of the 40 trajectories of Table 1's parabola (40 samples each) are used, 10 to 100 percent of them. \
+                 Regression as in Table 1; test samples from the trajectories that are kept of those used.",
         setups: BANDWIDTHS.map(setup).into(),
         ..curves()
     }

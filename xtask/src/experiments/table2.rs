@@ -33,7 +33,7 @@ pub(crate) fn table2() -> anyhow::Result<Experiment> {
         section: "4.2",
         title: "Table 2: grasping a ball",
         data_sets: 50,
-        remark: "Fitted, because the paper does not give them: the robot's posture, ball (x = .7), wall (x = .35, felt from .09 m), \
+        remark: "Fitted, because the paper does not give them: the robot's posture, ball (x = .7), wall (x = .35, felt from .09 m before it), \
                  half-width of the unseen obstacle (.13), no gap narrower than .17 m, regressions. δt = .5 s, plain Euler, narrow \
                  bandwidth. Fixed diagonal metrics, inputs divided by .3 m: PolicyAlign D = 22, 10 passes; naive D = 10, 4 passes.",
         decisions: "table2.md",

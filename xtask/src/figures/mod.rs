@@ -72,6 +72,8 @@ pub(crate) struct Csv {
 pub(crate) struct Sources {
     pub(crate) results: Results,
     pub(crate) documents: BTreeMap<String, Value>,
+    /// Ids of documents that belong to the run and are not there.
+    pub(crate) missing: Vec<&'static str>,
 }
 
 /// All documents.
@@ -134,6 +136,11 @@ impl Figure {
     pub(crate) fn can_be_drawn(&self, sources: &Sources) -> bool {
         let there = |id: &&str| sources.documents.contains_key(*id) || sources.experiment(id).is_some();
         self.needs.iter().all(there)
+    }
+
+    /// Whether it cannot be drawn only because documents are missing.
+    pub(crate) fn misses(&self, sources: &Sources) -> bool {
+        !self.can_be_drawn(sources) && self.needs.iter().any(|id| sources.missing.contains(id))
     }
 
     /// Draws it; nothing where what it needs was not run.

@@ -128,7 +128,7 @@ impl Line<'_> {
 
     /// The printed mean ± standard deviation.
     pub(super) fn paper(&self) -> String {
-        let show = |value| self.measure.show(value);
+        let show = |value| self.measure.show_printed(value);
         self.cell.paper.map_or(NOTHING.to_owned(), |paper| format!("{} ± {}", show(paper.mean), show(paper.sd)))
     }
 

@@ -21,9 +21,25 @@ pub(crate) fn markdown(experiments: &[Experiment], results: &Results, second: Op
     text
 }
 
+/// What a run shows when it ends: the tables that the paper prints. Curves are in the report.
+pub(crate) fn tables(experiments: &[Experiment], results: &Results) -> String {
+    let shown = |compared: &Compared<'_>| {
+        if compared.is_printed() {
+            return section(compared, results.seed);
+        }
+        let n = compared.result.rows.len();
+        format!("## {}\n\n{n} rows: see the report.\n\n", title(compared.experiment))
+    };
+    compared(experiments, results, None).iter().map(shown).collect()
+}
+
+fn title(experiment: &Experiment) -> String {
+    format!("{} (Section {}): `{}`", experiment.title, experiment.section, experiment.id)
+}
+
 fn section(compared: &Compared<'_>, seed: u64) -> String {
     let Compared { experiment, result, .. } = compared;
-    let mut text = format!("## {} (Section {}): `{}`\n\n", experiment.title, experiment.section, experiment.id);
+    let mut text = format!("## {}\n\n", title(experiment));
     let _ = writeln!(text, "{}\n", experiment.remark);
     let _ = writeln!(text, "{}\n", format!("Seed {seed}. {}", Tally::of([*result]).sentence()).trim_end());
     for (row, what) in compared.failures() {
@@ -83,7 +99,7 @@ mod tests {
     use super::*;
     use crate::experiments::registry;
     use crate::measure::Measure;
-    use crate::results::{Cell, ExperimentResult, RowResult, Run};
+    use crate::results::{Cell, ExperimentResult, RowResult, Run, SCHEMA};
 
     #[test]
     fn what_the_paper_shows_as_curves_has_no_columns_for_printed_figures() {
@@ -100,8 +116,9 @@ mod tests {
         let measures = BTreeMap::from([(Measure::Nupe, cell)]);
         let row = RowResult { id: "a-row".to_owned(), data_sets: 3, failed: 1, measures };
         let result = ExperimentResult { id: curves.id.to_owned(), section: "9".to_owned(), rows: vec![row] };
-        let run = Run { threads: 1, wall_seconds: 1.0, cpu_seconds: 1.0, version: "1".to_owned() };
-        let results = Results { schema: 1, seed: 3, quick: false, run, experiments: vec![result] };
+        let (command, version) = (String::new(), "1".to_owned());
+        let run = Run { command, threads: 1, resumed: 0, wall_seconds: 1.0, cpu_seconds: 1.0, version };
+        let results = Results { schema: SCHEMA, seed: 3, quick: false, run, experiments: vec![result] };
         let text = markdown(&experiments, &results, None);
         let (_, section) = text.split_once("## ").unwrap();
         let lines: Vec<&str> = section.lines().filter(|line| !line.is_empty()).skip(2).collect();

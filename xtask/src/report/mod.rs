@@ -6,29 +6,28 @@ mod markdown;
 mod page;
 mod tally;
 
-use std::collections::BTreeMap;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use anyhow::{Context as _, bail};
 use clap::Args;
 use rayon::prelude::*;
 
 use crate::experiments::{Experiment, registry};
 use crate::figures::{Drawing, Figure, Sources, figures};
-use crate::files::{folder_of_records, write};
+use crate::files::{repository, told, write};
 use crate::progress::say;
 use crate::results::Results;
+use crate::run_folder::RunFolder;
 
-pub(crate) use markdown::markdown;
+pub(crate) use markdown::{markdown, tables};
 pub(crate) use tally::Tally;
 
 #[derive(Debug, Args)]
 pub(crate) struct Report {
-    /// Folder of a finished run [default: target/reproduce, or if nothing was run yet, the committed records]
+    /// Folder of a finished run [default: target/reproduce in the repository, or if nothing was run yet, the committed
+    /// records]
     #[arg(long, value_name = "DIR")]
     from: Option<PathBuf>,
-    /// Folder for report.html, report.md and figures/ [default: the run's own, for committed records target/report]
+    /// Folder for report.html, report.md and figures/ [default: the run's own; for committed records target/report]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -36,60 +35,66 @@ pub(crate) struct Report {
 impl Report {
     pub(crate) fn execute(&self) -> anyhow::Result<()> {
         let experiments = registry()?;
-        let (from, out) = self.folders()?;
-        let sources = sources(&from)?;
-        let second = results_of_another_seed(&sources.results)?;
-        write_report(&experiments, &sources, second.as_ref(), &out)?;
-        say(&format!("from {}: {}", from.display(), written(&out, &["report.md", "figures/"])));
+        let from = self.from();
+        let out = self.out(&from);
+        let sources = from.sources()?;
+        sources.results.check_known(&experiments)?;
+        if !sources.missing.is_empty() {
+            say(&missing(&sources));
+        }
+        write_report(&experiments, &sources, &out)?;
+        say(&written(&out));
         Ok(())
     }
 
-    /// Where to read and where to write.
-    fn folders(&self) -> anyhow::Result<(PathBuf, PathBuf)> {
-        let of_run = PathBuf::from("target/reproduce");
+    /// What to read.
+    fn from(&self) -> RunFolder {
         if let Some(from) = &self.from {
-            return Ok((from.clone(), self.out.clone().unwrap_or_else(|| from.clone())));
+            return RunFolder::at(from);
         }
-        if of_run.join("results.json").exists() {
-            return Ok((of_run.clone(), self.out.clone().unwrap_or(of_run)));
-        }
-        let committed = folder_of_records(1);
-        if !committed.join("results.json").exists() {
-            bail!("nothing was run yet; run `cargo xtask reproduce` first");
+        let latest = RunFolder::of_latest_run();
+        if latest.is_finished() {
+            return latest;
         }
         say("nothing was run here yet: this report is of the committed records");
-        Ok((committed, self.out.clone().unwrap_or_else(|| PathBuf::from("target/report"))))
+        RunFolder::committed(1)
     }
-}
 
-/// Where to find the report and what else was written.
-pub(crate) fn written(out: &Path, besides: &[&str]) -> String {
-    format!("written to {}: report.html (open it in a browser), {}", out.display(), besides.join(", "))
-}
-
-/// Reads what a run left in its folder.
-pub(crate) fn sources(folder: &Path) -> anyhow::Result<Sources> {
-    let results = Results::read(&folder.join("results.json"))?;
-    let mut documents = BTreeMap::new();
-    for document in crate::figures::documents() {
-        let path = folder.join(format!("figures/{}.json", document.id));
-        if path.exists() {
-            let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
-            let value = serde_json::from_str(&text).with_context(|| format!("{} is not JSON", path.display()))?;
-            documents.insert(document.id.to_owned(), value);
+    /// Where to write.
+    fn out(&self, from: &RunFolder) -> RunFolder {
+        match &self.out {
+            Some(out) => RunFolder::at(out),
+            None if from.is_committed() => RunFolder::at(&repository().join("target/report")),
+            None => from.clone(),
         }
     }
-    Ok(Sources { results, documents })
+}
+
+/// What to look at.
+pub(crate) fn written(out: &RunFolder) -> String {
+    let [page, text, figures] = ["report.html", "report.md", "figures"].map(|name| told(&out.join(name)));
+    format!("written: {page} (open it in a browser), {text}, {figures}")
+}
+
+/// What cannot be drawn, and what to do about it.
+fn missing(sources: &Sources) -> String {
+    let undrawn = figures().into_iter().filter(|figure| figure.misses(sources));
+    let undrawn: Vec<&str> = undrawn.map(|figure| figure.id).collect();
+    format!(
+        "not drawn, as the run has no figure data {}: {}; `{}` computes them",
+        sources.missing.join(", "),
+        undrawn.join(", "),
+        sources.results.run.command
+    )
 }
 
 /// The committed results of a seed other than this run's, to hold beside it; none for a quick run.
 fn results_of_another_seed(results: &Results) -> anyhow::Result<Option<Results>> {
-    let other = if results.seed == 2 { 1 } else { 2 };
-    let path = folder_of_records(other).join("results.json");
-    if results.quick || !path.exists() {
+    let other = RunFolder::committed(if results.seed == 2 { 1 } else { 2 });
+    if results.quick || !other.is_finished() {
         return Ok(None);
     }
-    Results::read(&path).map(Some)
+    other.results().map(Some)
 }
 
 /// Draws every figure that there are numbers for.
@@ -100,16 +105,11 @@ pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Vec<(Figure, Drawing)>> 
 }
 
 /// Writes `report.html`, `report.md` and `figures/`.
-pub(crate) fn write_report(
-    experiments: &[Experiment],
-    sources: &Sources,
-    second: Option<&Results>,
-    out: &Path,
-) -> anyhow::Result<()> {
-    let folder = out.join("figures");
-    fs::create_dir_all(&folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    let written = |(figure, drawing): (Figure, Drawing)| {
-        let path = |ending: &str| folder.join(format!("{}{ending}", figure.id));
+pub(crate) fn write_report(experiments: &[Experiment], sources: &Sources, out: &RunFolder) -> anyhow::Result<()> {
+    out.make()?;
+    figures().iter().filter(|figure| !figure.can_be_drawn(sources)).try_for_each(|figure| out.forget(figure))?;
+    let keep = |(figure, drawing): (Figure, Drawing)| {
+        let path = |ending: &str| out.join(&format!("figures/{}{ending}", figure.id));
         let svg = drawing.picture.svg();
         write(&path(".svg"), &svg)?;
         write(&path(".png"), drawing.picture.png()?)?;
@@ -118,8 +118,33 @@ pub(crate) fn write_report(
         }
         Ok((figure, svg))
     };
-    let figures = draw(sources)?.into_par_iter().map(written).collect::<anyhow::Result<_>>()?;
-    let contents = page::Contents { experiments, sources, second, figures };
+    let figures = draw(sources)?.into_par_iter().map(keep).collect::<anyhow::Result<_>>()?;
+    let second = results_of_another_seed(&sources.results)?;
+    let contents = page::Contents { experiments, sources, second: second.as_ref(), figures };
     write(&out.join("report.html"), page::page(&contents))?;
-    write(&out.join("report.md"), markdown(experiments, &sources.results, second))
+    write(&out.join("report.md"), markdown(experiments, &sources.results, second.as_ref()))
+}
+
+/// Writes `report.md` alone.
+pub(crate) fn write_tables(experiments: &[Experiment], results: &Results, out: &RunFolder) -> anyhow::Result<()> {
+    let second = results_of_another_seed(results)?;
+    write(&out.join("report.md"), markdown(experiments, results, second.as_ref()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn committed_records_are_never_written_to_unasked() {
+        let report = |from: PathBuf, out: Option<PathBuf>| {
+            let report = Report { from: Some(from), out };
+            report.out(&report.from())
+        };
+        let committed = repository().join("docs/records/seed-1");
+        assert_eq!(report(committed.clone(), None), RunFolder::at(&repository().join("target/report")));
+        assert_eq!(report(committed.join("../seed-2"), None), RunFolder::at(&repository().join("target/report")));
+        assert_eq!(report(committed.clone(), Some(committed.clone())), RunFolder::at(&committed));
+        assert_eq!(report("elsewhere".into(), None), RunFolder::at("elsewhere".as_ref()));
+    }
 }

@@ -82,6 +82,12 @@ fn printed(measure: &str, value: &Value) -> String {
     }
 }
 
+/// A figure of the paper: with no more digits than it was printed with.
+fn as_in_the_paper(measure: &str, value: &Value) -> String {
+    let text = printed(measure, value);
+    text.strip_suffix("00").filter(|short| short.len() == "0.1234".len()).map_or(text.clone(), str::to_owned)
+}
+
 #[test]
 fn every_cell_is_shown_as_it_is() {
     let Some(mut page) = page() else { return };
@@ -115,7 +121,8 @@ fn holds(cell: &Cell, place: &Shown) {
     if value["paper"].is_null() {
         assert!(place.verdict.is_none(), "{place:?}");
     } else {
-        assert_eq!(place.paper.as_deref(), Some(mean_sd(&value["paper"]).as_str()), "{:?}", cell.name);
+        let of = |key: &str| as_in_the_paper(measure, &value["paper"][key]);
+        assert_eq!(place.paper, Some(format!("{} ± {}", of("mean"), of("sd"))), "{:?}", cell.name);
         assert_eq!(place.verdict.as_deref(), value["verdict"].as_str(), "{:?}", cell.name);
     }
     let values = value["values"].as_array().unwrap().iter().enumerate().filter(|(_, value)| !value.is_null());

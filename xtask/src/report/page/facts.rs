@@ -5,6 +5,8 @@ use maud::{Markup, html};
 use super::Contents;
 use crate::experiments::Setup;
 use crate::report::compared::Compared;
+use crate::report::tally::Tally;
+use crate::results::Results;
 
 /// Seconds from which a time is told in minutes.
 const MINUTES_FROM: f64 = 120.0;
@@ -21,10 +23,32 @@ pub(super) fn facts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
         dl .facts {
             div { dt { "Seed" } dd { (results.seed) } }
             div { dt { "Data sets" } dd { (all.iter().map(data_sets).sum::<usize>()) } }
-            div { dt { "Time" } dd { (time(run.wall_seconds)) " on " (threads) } }
-            @if let Some(second) = contents.second { div { dt { "Second seed" } dd { (second.seed) } } }
+            div {
+                dt { "Time" }
+                dd {
+                    (time(run.wall_seconds)) " on " (threads)
+                    @if run.resumed > 0 { ", " (run.resumed) " data sets from earlier calls" }
+                }
+            }
+            @if let Some(second) = contents.second {
+                div { dt { "Beside it" } dd { "the committed run of seed " (second.seed) ". " (beside(second, all)) } }
+            }
+        }
+        @if !contents.sources.missing.is_empty() {
+            p .notice {
+                "Some figures are not drawn: the run has no figure data " (contents.sources.missing.join(", ")) ". "
+                code { (run.command) } " computes them."
+            }
         }
     }
+}
+
+/// How the other run went, in what was run here.
+fn beside(second: &Results, all: &[Compared<'_>]) -> String {
+    let here = |id: &str| {
+        all.iter().any(|compared| compared.experiment.id == id && compared.experiment.another_reading_of.is_none())
+    };
+    Tally::of(second.experiments.iter().filter(|result| here(&result.id))).sentence()
 }
 
 /// Rows of a setup are measured on the same data sets.

@@ -11,7 +11,6 @@ use crate::results::Results;
 /// The last part of the page.
 pub(super) fn part(results: &Results) -> Part {
     let title = "How it was measured".to_owned();
-    let quick = if results.quick { " --quick" } else { "" };
     let body = html! {
         h2 { (title) }
         p { (emphasised(RULE)) }
@@ -20,7 +19,7 @@ pub(super) fn part(results: &Results) -> Part {
         }
         h3 { "Again, on your machine" }
         pre tabindex="0" { code {
-            "cargo xtask reproduce" (quick) " --seed " (results.seed) "    # these numbers, to the last bit\n"
+            (results.run.command) "    # these numbers; on one machine, to the last bit\n"
             "cargo xtask reproduce --list      # experiments and rows, for --only\n"
             "cargo xtask report                # this page from a finished run"
         } }

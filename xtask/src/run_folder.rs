@@ -1,0 +1,139 @@
+//! The folder of a run: what is written there, and read again by whoever draws or publishes it.
+
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail};
+use serde_json::Value;
+
+use crate::figures::{Figure, Sources, documents};
+use crate::files::{repository, told, write};
+use crate::results::Results;
+
+/// A folder that a run writes to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct RunFolder(PathBuf);
+
+impl RunFolder {
+    /// A folder that may not be there yet.
+    pub(crate) fn at(path: &Path) -> RunFolder {
+        RunFolder(path.to_owned())
+    }
+
+    /// Where runs go unless told otherwise.
+    pub(crate) fn of_latest_run() -> RunFolder {
+        RunFolder(repository().join("target/reproduce"))
+    }
+
+    /// The committed run from a seed.
+    pub(crate) fn committed(seed: u64) -> RunFolder {
+        RunFolder(repository().join(format!("docs/records/seed-{seed}")))
+    }
+
+    /// Whether it is one of the committed ones.
+    pub(crate) fn is_committed(&self) -> bool {
+        let all = repository().join("docs/records").canonicalize();
+        matches!((self.0.canonicalize(), all), (Ok(folder), Ok(all)) if folder.starts_with(&all))
+    }
+
+    /// Whether a run ended there.
+    pub(crate) fn is_finished(&self) -> bool {
+        self.results_path().exists()
+    }
+
+    /// A file or folder in it.
+    pub(crate) fn join(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    /// Makes the folder, and in it the one of the figures.
+    pub(crate) fn make(&self) -> anyhow::Result<()> {
+        let figures = self.figures();
+        fs::create_dir_all(&figures).with_context(|| format!("cannot make the folder {}", told(&figures)))
+    }
+
+    fn results_path(&self) -> PathBuf {
+        self.0.join("results.json")
+    }
+
+    fn figures(&self) -> PathBuf {
+        self.0.join("figures")
+    }
+
+    fn document_path(&self, id: &str) -> PathBuf {
+        self.figures().join(format!("{id}.json"))
+    }
+
+    /// Writes what a run ends with: its results, and what its figures are drawn from. Figure data of an earlier run do
+    /// not stay beside the results of this one.
+    pub(crate) fn keep(&self, Sources { results, documents: kept, .. }: &Sources) -> anyhow::Result<()> {
+        self.make()?;
+        for document in documents().iter().filter(|document| !kept.contains_key(document.id)) {
+            remove(&self.document_path(document.id))?;
+        }
+        kept.iter().try_for_each(|(id, document)| write(&self.document_path(id), document.to_string()))?;
+        write(&self.results_path(), results.json()?)
+    }
+
+    /// Reads what a run ended with.
+    pub(crate) fn sources(&self) -> anyhow::Result<Sources> {
+        let results = self.results()?;
+        let (mut found, mut missing) = (BTreeMap::new(), vec![]);
+        for document in documents() {
+            let path = self.document_path(document.id);
+            if path.exists() {
+                found.insert(document.id.to_owned(), read_document(&path)?);
+            } else if document.experiment.is_none_or(|id| results.experiments.iter().any(|result| result.id == id)) {
+                missing.push(document.id);
+            }
+        }
+        Ok(Sources { results, documents: found, missing })
+    }
+
+    /// Reads the results alone.
+    pub(crate) fn results(&self) -> anyhow::Result<Results> {
+        let folder = told(&self.0);
+        if !self.is_finished() {
+            bail!(
+                "no run has ended in {folder}: `cargo xtask reproduce --out {folder}` makes one, or finishes one that was stopped"
+            );
+        }
+        Results::read(&self.results_path())
+            .with_context(|| format!("`cargo xtask reproduce --out {folder}` writes them again"))
+    }
+
+    /// Takes away what an earlier run drew of a figure.
+    pub(crate) fn forget(&self, figure: &Figure) -> anyhow::Result<()> {
+        let folder = self.figures();
+        let entries = fs::read_dir(&folder).with_context(|| format!("cannot read the folder {}", told(&folder)))?;
+        let table = format!("{}-", figure.id);
+        for path in entries.filter_map(|entry| Some(entry.ok()?.path())) {
+            let part = |part: Option<&OsStr>| part.and_then(OsStr::to_str).unwrap_or_default().to_owned();
+            match part(path.extension()).as_str() {
+                "svg" | "png" if part(path.file_stem()) == figure.id => remove(&path)?,
+                "csv" if part(path.file_stem()).starts_with(&table) => remove(&path)?,
+                _ => (),
+            }
+        }
+        Ok(())
+    }
+}
+
+fn read_document(path: &Path) -> anyhow::Result<Value> {
+    let text = fs::read_to_string(path).with_context(|| format!("cannot read {}", told(path)))?;
+    serde_json::from_str(&text)
+        .with_context(|| format!("{} is damaged; `cargo xtask reproduce` into this folder writes it again", told(path)))
+}
+
+/// Removes a file that may not be there.
+fn remove(path: &Path) -> anyhow::Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => {
+            Err(error).with_context(|| format!("cannot remove {}", told(path)))
+        }
+        _ => Ok(()),
+    }
+}

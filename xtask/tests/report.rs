@@ -1,0 +1,113 @@
+//! `cargo xtask report` on folders in every state: whole, of two runs, incomplete, damaged, empty.
+
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn xtask(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_xtask")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+/// What a command that is to succeed says on standard error.
+fn said(folder: &Path, arguments: &[&str]) -> String {
+    let output = xtask(folder, arguments);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{said}");
+    said
+}
+
+/// Why a report of `run` in this folder cannot be had.
+fn refused(folder: &Path) -> String {
+    let output = xtask(folder, &["report", "--from", "run"]);
+    assert!(!output.status.success());
+    String::from_utf8(output.stderr).unwrap()
+}
+
+/// A run of one row, with its figures.
+fn reproduce(folder: &Path, row: &str) {
+    said(folder, &["reproduce", "--out", "run", "--only", row, "--data-sets", "1"]);
+}
+
+#[test]
+fn a_folder_shows_its_last_run_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let figures = folder.path().join("run/figures");
+    reproduce(folder.path(), "table1/parabola-40x40-narrow");
+    let files = fs::read_dir(&figures).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let of_table1: Vec<String> = files.filter(|name| name.starts_with("figureB1")).collect();
+    for ending in [".json", ".svg", ".png", ".csv"] {
+        assert!(of_table1.iter().any(|name| name.ends_with(ending)), "{of_table1:?}");
+    }
+    fs::write(figures.join("mine.svg"), "").unwrap();
+    reproduce(folder.path(), "table1-literal/parabola-40x40-narrow");
+    assert!(of_table1.iter().all(|name| !figures.join(name).exists()));
+    assert!(["figure1.json", "figure1.svg", "mine.svg"].iter().all(|name| figures.join(name).exists()));
+}
+
+#[test]
+fn what_is_missing_is_said_and_not_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    reproduce(folder.path(), "table1/parabola-40x40-narrow");
+    let figures = folder.path().join("run/figures");
+    fs::remove_file(figures.join("figure1.json")).unwrap();
+    fs::remove_file(figures.join("figureB1.json")).unwrap();
+    let told = said(folder.path(), &["report", "--from", "run"]);
+    let command = "cargo xtask reproduce --data-sets 1 --only table1/parabola-40x40-narrow --seed 1";
+    let expected = format!("no figure data figure1, figureB1: figure1, figureB1; `{command}` computes them");
+    assert!(told.contains(&expected), "{told}");
+    assert!(told.contains("written: run/report.html"), "{told}");
+    assert!(figures.join("figure2.svg").exists() && !figures.join("figure1.svg").exists());
+    let page = fs::read_to_string(folder.path().join("run/report.html")).unwrap();
+    assert!(page.contains("no figure data figure1, figureB1.") && page.contains(command));
+
+    fs::write(figures.join("figure2.json"), "{").unwrap();
+    let told = refused(folder.path());
+    assert!(told.contains("run/figures/figure2.json is damaged") && told.contains("reproduce"), "{told}");
+    fs::write(figures.join("figure2.json"), "{}").unwrap();
+    let told = refused(folder.path());
+    assert!(told.contains("figure2") && told.contains("another form") && told.contains("reproduce"), "{told}");
+}
+
+#[test]
+fn results_that_cannot_be_used_are_refused_with_the_next_step() {
+    let folder = tempfile::tempdir().unwrap();
+    let next = "`cargo xtask reproduce --out run`";
+    let told = refused(folder.path());
+    assert!(told.contains("no run has ended in run") && told.contains(next), "{told}");
+
+    let row = "table1/parabola-40x40-narrow";
+    said(folder.path(), &["reproduce", "--out", "run", "--only", row, "--data-sets", "1", "--no-figures"]);
+    let path = folder.path().join("run/results.json");
+    let whole = fs::read_to_string(&path).unwrap();
+    let form = "\"schema\": 2";
+    assert!(whole.contains(form) && whole.contains("\"table1\""));
+    for (results, why) in [
+        (whole.replace(form, "\"schema\": 7"), "is of form 7"),
+        (whole.replace("\"threads\"", "\"treads\""), "damaged: missing field `threads`"),
+        (whole[..whole.len() / 2].to_owned(), "is not a results.json"),
+        ("{}".to_owned(), "is not a results.json"),
+    ] {
+        fs::write(&path, results).unwrap();
+        let told = refused(folder.path());
+        assert!(told.contains("run/results.json") && told.contains(why) && told.contains(next), "{why}: {told}");
+    }
+    fs::write(&path, whole.replace("\"table1\"", "\"table9\"")).unwrap();
+    let told = refused(folder.path());
+    assert!(told.contains("no experiment \"table9\""), "{told}");
+}
+
+#[test]
+fn a_run_that_left_its_figures_out_leaves_none_of_an_earlier_one() {
+    let folder = tempfile::tempdir().unwrap();
+    reproduce(folder.path(), "table1/parabola-40x40-narrow");
+    let row = "table1/parabola-40x40-medium";
+    let told = said(folder.path(), &["reproduce", "--out", "run", "--only", row, "--data-sets", "1", "--no-figures"]);
+    assert!(told.contains("written: run/report.md and results.json"), "{told}");
+    assert!(!folder.path().join("run/figures/overview.json").exists());
+    let told = said(folder.path(), &["report", "--from", "run", "--out", "elsewhere"]);
+    assert!(told.contains("not drawn") && told.contains("overview, figure1"), "{told}");
+    assert!(folder.path().join("elsewhere/report.html").exists());
+    assert!(!folder.path().join("elsewhere/results.json").exists());
+}
