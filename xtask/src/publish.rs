@@ -132,12 +132,13 @@ fn complete(experiments: &[Experiment], results: &Results) -> anyhow::Result<()>
     Ok(())
 }
 
-/// Every figure with its caption.
+/// Every figure with its caption, and how it compares.
 fn pictured(sources: &Sources) -> String {
     let drawn = figures().into_iter().filter(|figure| figure.can_be_drawn(sources));
     let picture = |figure: Figure| {
-        let Figure { id, title, caption, .. } = figure;
-        format!("### {title}\n\n![{title}](pictures/{id}.svg)\n\n{caption}\n\n")
+        let Figure { id, title, caption, beside_paper, .. } = figure;
+        let beside = beside_paper.map_or(String::new(), |text| format!("*Beside the paper's figure.* {text}\n\n"));
+        format!("### {title}\n\n![{title}](pictures/{id}.svg)\n\n{caption}\n\n{beside}")
     };
     format!("## The figures\n\n{}", drawn.map(picture).collect::<String>())
 }

@@ -11,6 +11,9 @@ use crate::plot::{Field, Layer, Mark, Picture, Plane, Relief};
 /// Drawn is [−2, 2]².
 const EXTENT: f64 = 2.0;
 
+/// The box around the surface, with some room beside it.
+const BOX: f64 = 2.2;
+
 /// The hills and hollows: height, place and breadth of each Gaussian.
 const BUMPS: [(f64, [f64; 2], f64); 5] = [
     (1.0, [-1.2, 0.5], 0.5),
@@ -31,10 +34,14 @@ pub(crate) fn figure() -> Figure {
     Figure {
         id: "figure4",
         title: "Figure 4: a potential and its policy",
-        caption: "A potential with three maxima, which repel, and two minima, which attract: (a) as a surface, (b) from above, with triangles at the five. \
-                  Thin black arrows are the unconstrained policy, the negative gradient; broad red ones what is left of \
-                  it when motion along x₁ is blocked. The minima still attract from above and below, but no more from the sides. The paper \
-                  does not print its potential: this one is a sum of five Gaussians.",
+        caption: "A potential with three maxima, which repel, and two minima, which attract: (a) as a surface, (b) from \
+                  above, with triangles at the five. Thin black arrows are the unconstrained policy, the negative \
+                  gradient; broad orange ones what is left of it when motion along x₁ is blocked. The minima still attract \
+                  from above and below, but no more from the sides.",
+        beside_paper: Some(
+            "The paper does not print its potential: this one is a sum of five Gaussians, with as many maxima and \
+                  minima.",
+        ),
         experiment: None,
         needs: &["figure4"],
         draw,
@@ -130,12 +137,14 @@ fn extrema() -> [Vec<(f64, f64)>; 2] {
 
 fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let shown: Shown = sources.document("figure4")?;
+    let heights = shown.potential.values.iter().flatten();
+    let (lowest, highest) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
     let surface = Relief {
         title: "(a) φ as a surface".to_owned(),
         x_label: "x₁",
         y_label: "x₂",
         z_label: "φ",
-        extent: None,
+        extent: [(-BOX, -BOX, lowest), (BOX, BOX, highest)],
         surface: Some(coarse(&shown.potential)),
         dots: vec![],
         size: (430.0, 408.0),
@@ -172,7 +181,7 @@ fn layers(shown: &Shown) -> Vec<Layer> {
     let marks =
         |points: &[_], mark| Layer::Marks { points: points.to_vec(), mark, color: "#000000", size: 6.0, label: None };
     vec![
-        Layer::Colors(shown.potential.clone()),
+        Layer::Colors { field: shown.potential.clone(), name: "φ" },
         Layer::Contours(shown.potential.clone()),
         marks(&shown.maxima, Mark::Up),
         marks(&shown.minima, Mark::Down),

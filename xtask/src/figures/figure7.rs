@@ -14,12 +14,15 @@ pub(crate) fn figure() -> Figure {
     Figure {
         id: "figure7",
         title: "Figure 7: grasping a ball through a gap",
-        caption: "A demonstration: with its hands at its sides at first, the robot reaches between two plates and takes the ball \
-                  between its palms. From frame to frame the hands go on by a quarter of their way, which is drawn; a hand \
-                  beside the gap cannot go forward and moves along its plate. Only the hands are taught and feel the plates: all joints \
-                  follow them by resolved-rate control, and the trunk may lean through a plate. Times are the simulation's, \
-                  0.5 s from sample to sample; the paper's movements last 2 s. Its figure shows ASIMO before two barriers; the measures of that scene are \
-                  not published, ours are fitted.",
+        caption: "A demonstration: with its hands at its sides at first, the robot reaches between two plates and takes \
+                  the ball between its palms. From frame to frame the hands go on by a quarter of their way, which is \
+                  drawn; a hand beside the gap cannot go forward and moves along its plate. Only the hands are taught and \
+                  feel the plates: all joints follow them by resolved-rate control, and the trunk may lean through a \
+                  plate. Times are the simulation's, 0.5 s from sample to sample.",
+        beside_paper: Some(
+            "The paper's shows ASIMO before two barriers; the measures of that scene are not published, ours are \
+                  fitted. Its movements last 2 s.",
+        ),
         experiment: Some("table2"),
         needs: &["grasp_playback"],
         draw,

@@ -1,6 +1,8 @@
 //! The paper's figures. A run computes documents, plain numbers kept as `figures/*.json`; figures are drawn from these
 //! and from the results, and from nothing else, so that they can be drawn again without a run.
 
+#[cfg(test)]
+mod beside_paper;
 mod demonstrated;
 mod errors;
 mod figure1;
@@ -45,8 +47,11 @@ pub(crate) struct Figure {
     pub(crate) id: &'static str,
     /// As over the figure in the report.
     pub(crate) title: &'static str,
-    /// What is to be seen, and what the paper's shows where ours is different.
+    /// What is drawn: true of every run.
     pub(crate) caption: &'static str,
+    /// How it compares with the paper's figure, where that has one. What depends on the run is said of the full run of
+    /// seed 1, by that name: it stands under the figures of all runs.
+    pub(crate) beside_paper: Option<&'static str>,
     /// The experiment it stands beside in the report.
     pub(crate) experiment: Option<&'static str>,
     /// Documents and experiments that it is drawn from.

@@ -26,9 +26,10 @@ pub(crate) fn figure() -> Figure {
     Figure {
         id: "overview",
         title: "What it is about",
-        caption: "Left: forty movements of a point that wants to go to the centre, each under constraints that change on the way and \
-                  that nobody tells, over lines of equal potential. Centre: regression of \
-                  what was seen gets directions and speeds wrong. Right: aligned potentials give the policy, without having seen it.",
+        caption: "Left: forty movements of a point that wants to go to the centre, each under constraints that change on \
+                  the way and that nobody tells, over lines of equal potential. Centre: regression of what was seen gets \
+                  directions and speeds wrong. Right: aligned potentials give the policy, without having seen it.",
+        beside_paper: None,
         experiment: None,
         needs: &["overview"],
         draw,

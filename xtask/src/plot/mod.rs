@@ -7,12 +7,14 @@
 //!
 //! [`Who`] and [`Stroke`] give every picture the same colours and lines.
 
+mod colour_scale;
 mod curves;
 mod dashes;
 mod decimals;
 mod key;
 mod plane;
 mod relief;
+mod samples;
 mod sheet;
 mod sign;
 mod space;

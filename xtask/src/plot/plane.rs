@@ -3,17 +3,18 @@ use kuva::render::annotations::TextAnnotation;
 use kuva::render::plots::Plot;
 use kuva::render::render::{Scene, render_multiple};
 
+use super::samples::{self, Sample};
 use super::sheet::{Edge, titled, with_axes};
 use super::style::heights;
-use super::{Field, Mark, Panel, Stroke};
+use super::{Field, Mark, Panel, Stroke, colour_scale};
 
 /// One thing drawn in the plane; later layers lie on top.
 #[derive(Debug, Clone)]
 pub(crate) enum Layer {
     /// Lines of equal value.
     Contours(Field),
-    /// A field in colours, light where it is high, with a scale.
-    Colors(Field),
+    /// A field in colours, light where it is high, with a scale of this name.
+    Colors { field: Field, name: &'static str },
     /// A filled polygon that is in one piece on every vertical line.
     Region { corners: Vec<(f64, f64)>, color: &'static str, opacity: f64 },
     /// A line through points. A label puts it in the legend.
@@ -53,6 +54,16 @@ pub(crate) struct Plane {
 impl Plane {
     /// Width and height in pixels that suit a square of the plane.
     pub(crate) const SQUARE: (f64, f64) = (400.0, 420.0);
+
+    /// The names of lines and arrows in the legend.
+    fn names(&self) -> Vec<(&'static str, Sample)> {
+        let name = |layer: &Layer| match layer {
+            Layer::Path { label, .. } => Some(((*label)?, Sample::Line)),
+            Layer::Arrows { label, .. } => Some(((*label)?, Sample::Arrow)),
+            _ => None,
+        };
+        self.layers.iter().filter_map(name).collect()
+    }
 }
 
 impl Panel for Plane {
@@ -65,7 +76,14 @@ impl Panel for Plane {
             .with_legend_box(false)
             .with_equal_aspect();
         layout.annotations = self.layers.iter().filter_map(words).collect();
-        render_multiple(plots, layout)
+        let mut scene = render_multiple(plots, layout);
+        for layer in &self.layers {
+            if let Layer::Colors { name, .. } = layer {
+                colour_scale::name(name, &mut scene);
+            }
+        }
+        samples::draw(&self.names(), &mut scene);
+        scene
     }
 }
 
@@ -76,7 +94,7 @@ fn plot(layer: &Layer) -> Option<Plot> {
             let contours = ContourPlot::new().with_grid(values, x, y).with_n_levels(12);
             Plot::Contour(contours.with_line_color("#b8b8b8").with_line_width(0.8))
         }
-        Layer::Colors(field) => Plot::Heatmap(colors(&field)),
+        Layer::Colors { field, .. } => Plot::Heatmap(colors(&field)),
         Layer::Region { corners, color, opacity } => Plot::Band(band(&corners).with_color(color).with_opacity(opacity)),
         Layer::Path { points, stroke, label } => {
             let line = LinePlot::new().with_data(points).with_color(stroke.color).with_stroke_width(stroke.width);
@@ -142,7 +160,10 @@ fn band(corners: &[(f64, f64)]) -> BandPlot {
 
 #[cfg(test)]
 mod tests {
+    use kuva::render::render::Primitive;
+
     use super::*;
+    use crate::plot::Dash;
 
     #[test]
     fn a_polygon_is_filled_between_its_lower_and_upper_edges() {
@@ -152,5 +173,26 @@ mod tests {
         let slanted = band(&[(0.0, 0.0), (0.0, 2.0), (2.0, 4.0), (4.0, 2.0)]);
         assert_eq!((slanted.x, slanted.y_lower), (vec![0.0, 2.0, 4.0], vec![0.0, 1.0, 2.0]));
         assert_eq!(slanted.y_upper, [2.0, 4.0, 2.0]);
+    }
+
+    #[test]
+    fn arrows_and_colours_are_named_as_they_are_drawn() {
+        let field = Field { x: vec![0.0, 1.0], y: vec![0.0, 1.0], values: vec![vec![0.0, 1.0], vec![1.0, 2.0]] };
+        let (color, width, scale) = ("#d55e00", 1.0, 1.0);
+        let arrows = Layer::Arrows { arrows: vec![(0.2, 0.2, 0.5, 0.5)], color, scale, width, label: Some("flow") };
+        let stroke = Stroke { color: "#000000", width, dash: Dash::Solid };
+        let path = Layer::Path { points: vec![(0.0, 0.0), (1.0, 1.0)], stroke, label: Some("way") };
+        let layers = vec![Layer::Colors { field, name: "φ" }, path, arrows];
+        let (title, size) = (String::new(), Plane::SQUARE);
+        let scene = Plane { title, x_label: "x", y_label: "y", x: [0.0, 1.0], y: [0.0, 1.0], layers, size }.scene();
+        let after = |name: &str| {
+            let named = |element: &Primitive| matches!(element, Primitive::Text { content, .. } if content == name);
+            let at = scene.elements.iter().position(named).unwrap();
+            [1, 2].map(|step| scene.elements.get(at + step))
+        };
+        assert!(matches!(after("flow"), [Some(Primitive::Line { .. }), Some(Primitive::Path(head))]
+            if head.fill == Some(color.into())));
+        assert!(!matches!(after("way"), [Some(Primitive::Line { .. }), Some(Primitive::Path(_))]));
+        after("φ");
     }
 }

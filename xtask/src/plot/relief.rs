@@ -1,6 +1,6 @@
 use kuva::plot::{ColorMap, Scatter3DPlot, Surface3DPlot};
 use kuva::render::plots::Plot;
-use kuva::render::render::{Scene, render_multiple};
+use kuva::render::render::{Primitive, Scene, render_multiple};
 
 use super::sheet::titled;
 use super::style::heights;
@@ -13,8 +13,8 @@ pub(crate) struct Relief {
     pub(crate) x_label: &'static str,
     pub(crate) y_label: &'static str,
     pub(crate) z_label: &'static str,
-    /// Lowest and highest corner of the box; without it the box is as large as what is in it.
-    pub(crate) extent: Option<[(f64, f64, f64); 2]>,
+    /// Lowest and highest corner of the box; colours are of its heights.
+    pub(crate) extent: [(f64, f64, f64); 2],
     pub(crate) surface: Option<Field>,
     pub(crate) dots: Vec<(f64, f64, f64)>,
     /// Pixels.
@@ -23,6 +23,9 @@ pub(crate) struct Relief {
 
 /// Radius of dots, pixels.
 const DOT: f64 = 2.0;
+
+/// Size of words along axes, pixels.
+const WORDS: u32 = 12;
 
 /// Pixels beside and below the box, and above it.
 const ROOM: (f64, f64) = (24.0, 18.0);
@@ -33,9 +36,9 @@ impl Panel for Relief {
     fn scene(&self) -> Scene {
         let points = |points: &[(f64, f64, f64)]| points.iter().map(|&(x, y, z)| (y, x, z)).collect::<Vec<_>>();
         // The crate fits its box to what is in it: corners without size hold it open.
-        let corners = points(self.extent.as_ref().map_or(&[], |corners| &corners[..]));
-        let corners = Scatter3DPlot::new().with_data(corners).with_size(0.0);
+        let corners = Scatter3DPlot::new().with_data(points(&self.extent)).with_size(0.0);
         let corners = corners.with_x_label(self.y_label).with_y_label(self.x_label).with_z_label(self.z_label);
+        let corners = corners.with_z_axis_right(false);
         let mut plots = vec![Plot::Scatter3D(corners)];
         if let Some(Field { x, y, values }) = &self.surface {
             let columns = (0..x.len()).map(|column| values.iter().map(|row| row[column]).collect()).collect();
@@ -50,14 +53,21 @@ impl Panel for Relief {
         let mut layout = layout.with_force_margins(ROOM.0, ROOM.0).with_force_margins_y(TITLE, ROOM.1);
         // Heights are at the axis.
         layout.show_colorbar = false;
-        render_multiple(plots, layout)
+        let mut scene = render_multiple(plots, layout);
+        scene.elements.iter_mut().for_each(upright);
+        scene
+    }
+}
+
+/// Words along axes as in [`super::Space`]: level, and none bolder than the others.
+fn upright(element: &mut Primitive) {
+    if let Primitive::Text { size, rotate: rotate @ Some(_), bold, .. } = element {
+        (*size, *rotate, *bold) = (WORDS, None, false);
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use kuva::render::render::Primitive;
-
     use super::*;
 
     #[test]
@@ -66,7 +76,7 @@ mod tests {
         let extent = [(-1.0, -2.0, -1.0), (3.0, 2.0, 1.0)];
         let [x_label, y_label, z_label] = ["x", "y", "z"];
         let (title, surface, size) = (String::new(), None, (400.0, 400.0));
-        let scene = Relief { title, x_label, y_label, z_label, extent: Some(extent), surface, dots, size }.scene();
+        let scene = Relief { title, x_label, y_label, z_label, extent, surface, dots, size }.scene();
         // The farthest is drawn first: find each by its radius and distance to the others.
         let circle = |element: &Primitive| match element {
             Primitive::Circle { cx, cy, r, .. } if *r > 0.0 => Some((*cx, -*cy)),
@@ -79,5 +89,8 @@ mod tests {
         let (x, y, z) = (from_origin(x), from_origin(y), from_origin(z));
         assert!(x.0 > 1.0 && y.0 > 1.0 && z.0.abs() < 0.1 && z.1 > 1.0, "{x:?} {y:?} {z:?}");
         assert!(x.0 * y.1 - x.1 * y.0 > 1.0, "seen from above y is to the left of x: {x:?} {y:?}");
+        let words = scene.elements.iter().filter(|element| matches!(element, Primitive::Text { .. }));
+        assert!(words.clone().count() > 10);
+        assert!(words.into_iter().all(|word| matches!(word, Primitive::Text { rotate: None, bold: false, .. })));
     }
 }

@@ -35,12 +35,16 @@ pub(crate) fn figure() -> Figure {
     Figure {
         id: "figure2",
         title: "Figure 2: one policy, two movements",
-        caption: "A finger of two joints stretches: its policy takes both angles to zero. (a) Nothing is in its way. (b) The same \
-                  policy, but a box stops the tip, which slides along it to where the policy presses straight against it; the later, the \
-                  darker. (c) Both in the space of the angles: thin red arrows are the policy, the broken line is the free movement. In \
-                  the grey region the tip would be in the box; on its edge the box leaves of the policy what the broad black arrows \
-                  show, drawn twice as long, and the black line is the movement along it. The paper's finger and box are of unknown size; \
-                  here both movements are simulated, with contact between the tip and one face of the box.",
+        caption: "A finger of two joints stretches: its policy takes both angles to zero. (a) Nothing is in its way. (b) \
+                  The same policy, but a box stops the tip, which slides along it to where the policy presses straight \
+                  against it; the later, the darker. (c) Both in the space of the angles: thin orange arrows are the \
+                  policy, the broken orange line is the free movement. In the grey region the tip would be in the box; on \
+                  its edge the box leaves of the policy what the broad black arrows show, drawn twice as long, and the \
+                  black line is the movement along it.",
+        beside_paper: Some(
+            "The paper's shows the same three things; its finger and box are of unknown size. Here both movements are \
+                  simulated, with contact between the tip and one face of the box.",
+        ),
         experiment: None,
         needs: &["figure2"],
         draw,
@@ -100,7 +104,7 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
 /// Where the finger is, metres.
 fn place(title: &str, layers: Vec<Layer>) -> Plane {
     let (x, y) = ([-0.015, 0.115], [-0.07, 0.065]);
-    Plane { title: title.to_owned(), x_label: "x [m]", y_label: "y [m]", x, y, layers, size: (390.0, 440.0) }
+    Plane { title: title.to_owned(), x_label: "x (m)", y_label: "y (m)", x, y, layers, size: (390.0, 440.0) }
 }
 
 /// The finger at a few times, and the way of its tip.
@@ -128,10 +132,10 @@ fn angles(shown: &Shown) -> Plane {
         width,
         label: Some(label),
     };
-    let path = |movement: &Movement, color, width, dash| Layer::Path {
+    let path = |movement: &Movement, color, width, dash, label| Layer::Path {
         points: movement.angles.clone(),
         stroke: Stroke { color, width, dash },
-        label: None,
+        label: Some(label),
     };
     let start = Layer::Marks {
         points: vec![shown.free.angles[0]],
@@ -143,15 +147,15 @@ fn angles(shown: &Shown) -> Plane {
     let inside = Layer::Region { corners: shown.touching.clone(), color: BOX, opacity: 0.25 };
     let layers = vec![
         inside,
-        arrows(&shown.unconstrained, FREE, 1.0, ARROW_SECONDS, "policy, free"),
-        path(&shown.free, FREE, 2.0, Dash::Dashed),
-        path(&shown.stopped, STOPPED, 3.0, Dash::Solid),
+        arrows(&shown.unconstrained, FREE, 1.0, ARROW_SECONDS, "policy"),
+        path(&shown.free, FREE, 2.0, Dash::Dashed, "free movement"),
+        path(&shown.stopped, STOPPED, 3.0, Dash::Solid, "along the box"),
         arrows(&shown.constrained, STOPPED, 1.8, 2.0 * ARROW_SECONDS, "at the box (× 2)"),
         start,
-        Layer::Words { at: (-0.32, 0.6), text: "in the box".to_owned() },
+        Layer::Words { at: (-0.3, 0.43), text: "in the box".to_owned() },
     ];
     let (title, x, y) = ("(c) both, in joint space".to_owned(), [-2.0, 2.0], [-2.5, 1.5]);
-    Plane { title, x_label: "q₁ [rad]", y_label: "q₂ [rad]", x, y, layers, size: (390.0, 440.0) }
+    Plane { title, x_label: "q₁ (rad)", y_label: "q₂ (rad)", x, y, layers, size: (390.0, 440.0) }
 }
 
 fn table(name: &'static str, movement: &Movement) -> Csv {

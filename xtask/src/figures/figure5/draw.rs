@@ -2,8 +2,11 @@ use super::{Levels, Movement};
 use crate::figures::{Csv, Drawing, Sources, demonstrated};
 use crate::plot::{Field, Picture, Plane, Relief};
 
-/// The box of all heights.
+/// What is seen from above: [−2, 2]².
 const EXTENT: f64 = 2.0;
+
+/// The box of all heights, with some room beside it.
+const BOX: f64 = 2.2;
 const HEIGHTS: [f64; 2] = [-0.04, 0.4];
 
 pub(super) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
@@ -43,7 +46,7 @@ fn relief(title: &str, size: (f64, f64)) -> Relief {
         x_label: "x₁",
         y_label: "x₂",
         z_label: "φ",
-        extent: Some([(-EXTENT, -EXTENT, HEIGHTS[0]), (EXTENT, EXTENT, HEIGHTS[1])]),
+        extent: [(-BOX, -BOX, HEIGHTS[0]), (BOX, BOX, HEIGHTS[1])],
         surface: None,
         dots: vec![],
         size,

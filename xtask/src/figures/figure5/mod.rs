@@ -16,11 +16,17 @@ pub(super) fn figure() -> Figure {
     Figure {
         id: "figure5",
         title: "Figure 5: local potentials, aligned and learnt",
-        caption: "(a) Forty movements over lines of equal potential; they turn where their constraint changes. Alignment leaves out the \
-                  three drawn as light crosses. (b) Along each movement the potential follows but for a constant; starting all at one height, movements \
-                  disagree where they meet. (c) The same after alignment: one bowl. (d) What LWPR learns from it, as far as its receptive fields reach, beside (e) the truth. \
-                  All heights are on one scale; (c) and (d) have the mean height of the truth, since a potential is known up to a constant. The paper's panels \
-                  show the same. Ours is the first data set from which alignment leaves out three movements, as many as in the paper's picture.",
+        caption: "(a) Forty movements over lines of equal potential; they turn where their constraint changes. Alignment \
+                  leaves out the three drawn as light crosses. (b) What the movements tell of the potential, each for \
+                  itself: how it falls on the way, but not how high it was at the start. With all starts at one height, \
+                  movements disagree where they meet. (c) The same after alignment: one bowl. (d) What LWPR learns from \
+                  it, as far as its receptive fields reach, beside (e) the truth. Axes and colours of (b) to (e) are on \
+                  one scale, colours of surfaces paler; (c) and (d) are raised to the mean height of the truth, since a \
+                  potential is known up to a constant.",
+        beside_paper: Some(
+            "The paper's panels show the same. In any run ours is the first data set from which alignment leaves out \
+                  three movements, as many as in the paper's picture.",
+        ),
         experiment: Some("table1"),
         needs: &["figure5"],
         draw: draw::draw,

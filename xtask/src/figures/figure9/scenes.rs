@@ -20,7 +20,7 @@ const HALF_SIDE: f64 = 0.75;
 
 const LINE: &str = "#1a1a1a";
 const BOUND: &str = "#e69f00";
-const GOAL: &str = "#d55e00";
+const GOAL: &str = "#cc79a7";
 
 /// Seen from the first two joints: q₁ to the right, q₂ upwards.
 const ABOVE: Camera = Camera { azimuth: -90.0, elevation: 90.0 };

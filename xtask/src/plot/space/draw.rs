@@ -10,7 +10,7 @@ use super::body::Fill;
 use super::item::{DISC, WORDS};
 use super::pieces::{Look, Piece};
 use super::view::View;
-use super::{Item, legend};
+use super::{Item, legend, shade};
 
 /// Width of outlines, pixels.
 const INK: f64 = 0.9;
@@ -64,7 +64,8 @@ pub(super) fn words(item: &Item, view: &View, scene: &mut Scene) {
         Item::Mark { at, text, color } => {
             let at = view.place(at).xy();
             scene.add(disc(&at, DISC, Color::from(*color), Some(Color::from("#ffffff"))));
-            scene.add(legend::text((at.x, at.y + 0.36 * f64::from(WORDS)), text, TextAnchor::Middle, "#ffffff", None));
+            let foot = (at.x, at.y + 0.36 * f64::from(WORDS));
+            scene.add(legend::text(foot, text, TextAnchor::Middle, shade::word_on(color), None));
         }
         _ => {}
     }

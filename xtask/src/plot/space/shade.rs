@@ -28,6 +28,14 @@ pub(super) fn ink(paint: &Paint) -> Color {
     scaled(paint.color, if paint.opacity < 1.0 { 0.6 } else { 0.3 })
 }
 
+/// Black or white, whichever can be read on a colour.
+pub(super) fn word_on(color: &str) -> &'static str {
+    let Color::Rgb(r, g, b) = Color::from(color) else { return "#000000" };
+    // As light as it looks.
+    let lightness = 0.3 * f64::from(r) + 0.59 * f64::from(g) + 0.11 * f64::from(b);
+    if lightness > 140.0 { "#000000" } else { "#ffffff" }
+}
+
 fn scaled(color: &str, share: f64) -> Color {
     match Color::from(color) {
         Color::Rgb(r, g, b) => {
@@ -35,5 +43,16 @@ fn scaled(color: &str, share: f64) -> Color {
             Color::Rgb(r, g, b)
         }
         other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_differ_from_what_is_behind_them() {
+        let behind = ["#000000", "#0072b2", "#cc79a7", "#f0e442", "#ffffff"];
+        assert_eq!(behind.map(word_on), ["#ffffff", "#ffffff", "#000000", "#000000", "#000000"]);
     }
 }

@@ -15,7 +15,12 @@ pub(super) fn card(figure: &Figure, svg: &str) -> Markup {
             button .enlarge type="button" aria-label={ "Enlarge: " (figure.title) } {
                 img src=(data_uri(svg)) alt=(figure.title) width=[width] height=[height];
             }
-            figcaption { strong { (figure.title) "." } " " (emphasised(figure.caption)) }
+            figcaption {
+                p { strong { (figure.title) "." } " " (emphasised(figure.caption)) }
+                @if let Some(text) = figure.beside_paper {
+                    p { strong { "Beside the paper's figure." } " " (emphasised(text)) }
+                }
+            }
         }
     }
 }

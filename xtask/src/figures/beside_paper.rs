@@ -1,0 +1,95 @@
+//! Tests: captions are true of every run, and what is said beside the paper's figures is what the committed records show.
+
+use super::{Figure, Sources, figures};
+use crate::measure::Measure::{self, Ncpe, Nupe, PotentialNmse};
+use crate::results::Cell;
+use crate::run_folder::RunFolder;
+
+/// The full run that the texts speak of.
+pub(super) fn records() -> Sources {
+    RunFolder::committed(1).sources().unwrap()
+}
+
+/// What stands beside a figure.
+pub(super) fn text(id: &str) -> &'static str {
+    figures().into_iter().find(|figure| figure.id == id).and_then(|figure| figure.beside_paper).unwrap()
+}
+
+fn cell<'s>(sources: &'s Sources, experiment: &str, row: &str, measure: Measure) -> &'s Cell {
+    let rows = &sources.experiment(experiment).unwrap().rows;
+    &rows.iter().find(|result| result.id == row).unwrap().measures[&measure]
+}
+
+/// Two digits that count, as texts have them: .0028, .43, 8.4.
+fn short(value: f64) -> String {
+    let decimals = (1.0 - value.log10().floor()).max(0.0) as usize;
+    format!("{value:.decimals$}").trim_start_matches('0').to_owned()
+}
+
+fn assert_says(id: &str, words: &str) {
+    let text = text(id);
+    assert!(text.contains(words), "{id} does not say {words:?}: {text}");
+}
+
+const ERRORS: [(&str, Measure); 3] = [("π", Nupe), ("Nπ", Ncpe), ("φ", PotentialNmse)];
+
+/// "π from .18 to .43", between two rows.
+fn assert_says_from_to(sources: &Sources, id: &str, [from, to]: [&str; 2], errors: &[(&str, Measure)]) {
+    for (name, measure) in errors {
+        let [from, to] = [from, to].map(|row| short(cell(sources, id, row, *measure).mean));
+        assert_says(id, &format!("{name} from {from} to {to}"));
+    }
+}
+
+#[test]
+fn captions_are_of_every_run_and_comparisons_of_one() {
+    for Figure { id, caption, beside_paper, needs, .. } in figures() {
+        assert!(!caption.contains("paper") && !caption.contains("seed"), "{id}: {caption}");
+        let of_results = needs.iter().any(|need| crate::experiments::registry().unwrap().iter().any(|e| e.id == *need));
+        let names_the_run = beside_paper.is_some_and(|text| text.starts_with("In the full run of seed 1"));
+        assert!(names_the_run || !(of_results || id == "figure8"), "{id}: {beside_paper:?}");
+    }
+}
+
+/// Whether φ has the lowest error, and whether π has the highest.
+fn order(sources: &Sources, experiment: &str, row: &str) -> (bool, bool) {
+    let [policy, seen, potential] = ERRORS.map(|(_, measure)| cell(sources, experiment, row, measure).mean);
+    (potential < seen.min(policy), policy > seen.max(potential))
+}
+
+#[test]
+fn figure_6_left_is_as_said() {
+    let (sources, id) = (records(), "figure6_left");
+    assert_says_from_to(&sources, id, ["narrow-20", "narrow-100"], &ERRORS);
+    let median = short(cell(&sources, id, "narrow-20", PotentialNmse).median);
+    assert_says(id, &format!("the median of φ is {median}"));
+    assert_says(id, "with the narrow bandwidth from 40 % on, with the medium one from 80 % on");
+    for (bandwidth, first) in [("narrow", 40), ("medium", 80)] {
+        for percent in [20, 40, 60, 80, 100] {
+            assert_eq!(order(&sources, id, &format!("{bandwidth}-{percent}")), (percent >= first, true));
+        }
+    }
+}
+
+#[test]
+fn figure_6_right_is_as_said() {
+    let (sources, id) = (records(), "figure6_right");
+    assert_says_from_to(&sources, id, ["velocity-narrow-2.5", "velocity-narrow-20"], &ERRORS);
+    assert_says(id, "with the narrow bandwidth up to 15 %, with the medium one up to 5 %");
+    for (bandwidth, last) in [("narrow", 15.0), ("medium", 5.0)] {
+        for percent in [2.5, 5.0, 10.0, 15.0, 20.0] {
+            let row = format!("velocity-{bandwidth}-{percent}");
+            assert_eq!(order(&sources, id, &row), (percent <= last, true), "{row}");
+        }
+    }
+    let [narrow, medium] =
+        ["displacement-narrow-5", "displacement-medium-5"].map(|row| short(cell(&sources, id, row, Nupe).mean));
+    assert_says(id, &format!("at 5 % the error of π is {narrow} and {medium}"));
+}
+
+#[test]
+fn figure_9_is_as_said() {
+    let (sources, id) = (records(), "figure9");
+    assert_says_from_to(&sources, id, ["d-0.1", "d-1.0"], &ERRORS);
+    assert_says_from_to(&sources, id, ["r-0.1", "r-1.0"], &[ERRORS[0], ERRORS[2]]);
+}
