@@ -156,7 +156,7 @@ impl ComingApart {
     fn plane(&self, title: String, layers: Vec<Layer>) -> Plane {
         let reach = self.movements.iter().flatten().fold(2.0_f64, |reach, (x, y)| reach.max(x.abs()).max(y.abs()));
         let range = [-1.06 * reach, 1.06 * reach];
-        Plane { title, x_label: "x₁", y_label: "x₂", x: range, y: range, layers, size: (300.0, 318.0) }
+        Plane { title, x_label: "x₁", y_label: "x₂", x: range, y: range, layers, size: (340.0, 358.0) }
     }
 
     fn table(&self) -> Csv {
