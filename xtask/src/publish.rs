@@ -12,7 +12,7 @@ use crate::figures::{Figure, Sources, figures};
 use crate::files::{repository, told, write};
 use crate::measure::Measure;
 use crate::progress::say;
-use crate::report::{Tally, draw, markdown};
+use crate::report::{Section, Tally, draw, key, sections};
 use crate::results::{ExperimentResult, Results};
 use crate::run_folder::RunFolder;
 use crate::table::markdown_table;
@@ -102,11 +102,9 @@ impl Records {
         let (before, rest) =
             text.split_once(BEGIN).context("README.md has lost the line that begins the generated part")?;
         let (_, after) = rest.split_once(END).context("README.md has lost the line that ends the generated part")?;
-        let tables = markdown(experiments, results, Some(&self.second));
-        let page = format!("{PREFACE}{}\n\n{}\n", tables.trim_end(), pictured(&self.first).trim_end());
         let table = results.experiments.first().map_or(String::new(), |table| summary(experiments, table));
         let table = format!("{table}\n{}", verdicts(experiments, results));
-        let page = (repository().join("docs/reproduction.md"), page);
+        let page = (repository().join("docs/reproduction.md"), reproduction(experiments, self));
         Ok([page, (readme, format!("{before}{BEGIN}\n{table}\n{END}{after}"))])
     }
 
@@ -132,15 +130,29 @@ fn complete(experiments: &[Experiment], results: &Results) -> anyhow::Result<()>
     Ok(())
 }
 
-/// Every figure with its caption, and how it compares.
-fn pictured(sources: &Sources) -> String {
-    let drawn = figures().into_iter().filter(|figure| figure.can_be_drawn(sources));
-    let picture = |figure: Figure| {
-        let Figure { id, title, caption, beside_paper, .. } = figure;
-        let beside = beside_paper.map_or(String::new(), |text| format!("*Beside the paper's figure.* {text}\n\n"));
-        format!("### {title}\n\n![{title}](pictures/{id}.svg)\n\n{caption}\n\n{beside}")
+/// Contents, key, and each experiment with its figures; last the figures that belong to none.
+fn reproduction(experiments: &[Experiment], records: &Records) -> String {
+    let Records { first, second } = records;
+    let figures: Vec<Figure> = figures().into_iter().filter(|figure| figure.can_be_drawn(first)).collect();
+    let of = |experiment: Option<&str>| {
+        figures.iter().filter(|figure| figure.experiment == experiment).map(pictured).collect::<String>()
     };
-    format!("## The figures\n\n{}", drawn.map(picture).collect::<String>())
+    let experiment = |Section { experiment: Experiment { id, title, .. }, text }: Section<'_>| {
+        (*id, *title, format!("{text}{}", of(Some(id))))
+    };
+    let mut parts: Vec<_> = sections(experiments, &first.results, Some(second)).map(experiment).collect();
+    let ideas = "The idea in pictures";
+    parts.push(("ideas", ideas, format!("## {ideas}\n\n{}", of(None))));
+    let contents: String = parts.iter().map(|(id, title, _)| format!("- [{title}](#{id})\n")).collect();
+    let body: String = parts.iter().map(|(id, _, text)| format!("<a id=\"{id}\"></a>\n\n{text}")).collect();
+    format!("{PREFACE}{contents}\n{}{}\n", key(), body.trim_end())
+}
+
+/// A figure with its caption, and how it compares.
+fn pictured(figure: &Figure) -> String {
+    let Figure { id, title, caption, beside_paper, .. } = figure;
+    let beside = beside_paper.map_or(String::new(), |text| format!("*Beside the paper's figure.* {text}\n\n"));
+    format!("### {title}\n\n![{title}](pictures/{id}.svg)\n\n{caption}\n\n{beside}")
 }
 
 /// One line an experiment with printed figures: how many printed figures are reached.

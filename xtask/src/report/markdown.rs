@@ -12,13 +12,31 @@ use crate::table::markdown_table;
 
 /// All tables of `results`; `second`, a run from another seed, adds its means as a column.
 pub(crate) fn markdown(experiments: &[Experiment], results: &Results, second: Option<&Results>) -> String {
+    let sections = sections(experiments, results, second).map(|section| section.text);
+    format!("{}{}", key(), sections.collect::<String>())
+}
+
+/// How to read the tables.
+pub(crate) fn key() -> String {
     let measures =
         MEASURES.map(|(measures, meaning)| format!("| {} | {meaning} |\n", names(measures, Measure::name))).concat();
-    let mut text = format!("{RULE}\n\n| measure | is |\n| --- | --- |\n{measures}\n");
-    for compared in compared(experiments, results, second) {
-        text += &section(&compared, results.seed);
-    }
-    text
+    format!("{RULE}\n\n| measure | is |\n| --- | --- |\n{measures}\n")
+}
+
+/// An experiment with its tables.
+pub(crate) struct Section<'a> {
+    pub(crate) experiment: &'a Experiment,
+    pub(crate) text: String,
+}
+
+/// What there is on each experiment.
+pub(crate) fn sections<'a>(
+    experiments: &'a [Experiment],
+    results: &'a Results,
+    second: Option<&'a Results>,
+) -> impl Iterator<Item = Section<'a>> {
+    let all = compared(experiments, results, second).into_iter();
+    all.map(|compared| Section { experiment: compared.experiment, text: section(&compared, results.seed) })
 }
 
 /// What a run shows when it ends: the tables that the paper prints. Curves are in the report.

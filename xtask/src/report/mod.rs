@@ -18,7 +18,7 @@ use crate::progress::say;
 use crate::results::Results;
 use crate::run_folder::RunFolder;
 
-pub(crate) use markdown::{markdown, tables};
+pub(crate) use markdown::{Section, key, markdown, sections, tables};
 pub(crate) use tally::Tally;
 
 #[derive(Debug, Args)]
