@@ -1,4 +1,4 @@
-// The report works without this; it adds where one is in the contents, enlarged figures, and whole prints.
+// The report works without this; it adds where one is in the contents, and enlarged figures.
 "use strict";
 
 // Marks the part that is being read in the contents.
@@ -17,22 +17,28 @@ addEventListener("scroll", mark, { passive: true });
 addEventListener("resize", mark);
 mark();
 
-// A figure fills the window until it is clicked or Escape is pressed.
+// A figure fills the window until it is closed: by its button, by Escape, or by a click beside the caption.
 const enlarged = document.getElementById("enlarged");
+const [frame, caption] = [enlarged.querySelector(".picture"), enlarged.querySelector(".caption")];
+let opener = null;
 for (const button of document.querySelectorAll(".enlarge")) {
   button.addEventListener("click", () => {
-    enlarged.replaceChildren(button.firstElementChild.cloneNode());
+    const figure = button.closest("figure");
+    const picture = button.querySelector("img").cloneNode();
+    // How large it may grow is up to the window, how small to what can be read.
+    picture.style.setProperty("--width", picture.getAttribute("width"));
+    picture.style.setProperty("--height", picture.getAttribute("height"));
+    frame.replaceChildren(picture);
+    caption.replaceChildren(...figure.querySelector("figcaption").cloneNode(true).childNodes);
+    caption.querySelector("strong").hidden = false;
+    enlarged.setAttribute("aria-label", figure.getAttribute("aria-label"));
+    opener = button;
     enlarged.showModal();
+    // Where another figure was left is not where this one begins.
+    for (const scrolled of [enlarged, frame, caption]) scrolled.scrollTo({ left: 0, top: 0, behavior: "instant" });
   });
 }
-enlarged.addEventListener("click", () => enlarged.close());
-
-// Paper cannot be unfolded.
-let folded = [];
-addEventListener("beforeprint", () => {
-  folded = [...document.querySelectorAll("details:not([open])")];
-  for (const details of folded) details.open = true;
+enlarged.addEventListener("click", (event) => {
+  if (!event.target.closest("form, .caption")) enlarged.close();
 });
-addEventListener("afterprint", () => {
-  for (const details of folded) details.open = false;
-});
+enlarged.addEventListener("close", () => opener?.focus({ preventScroll: true }));

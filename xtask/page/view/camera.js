@@ -8,11 +8,17 @@ const VIEWS = {
   top: { label: "Top", azimuth: Math.PI, elevation: Math.PI / 2 },
 };
 const ANGLE_OF_VIEW = 0.5;
-const CENTRE = [0.38, 0, 0.62];
-const DISTANCE = { least: 0.7, usual: 3.1, most: 7 };
+/** A picture narrower than this ratio of width to height is taken from farther away. */
+const NARROW = 1.15;
+const CENTRE = [0.45, 0, 0.42];
+const DISTANCE = { least: 0.7, most: 7 };
+/** Room around what is framed. */
+const MARGIN = 1.05;
 
 class Camera {
-  constructor() {
+  /** Frames these points, metres, in every named view. */
+  constructor(points) {
+    this.points = points;
     this.look("start");
     this.arrive();
   }
@@ -23,7 +29,19 @@ class Camera {
     const now = this.azimuth ?? azimuth;
     // The shorter way around.
     const turns = Math.round((now - azimuth) / (2 * Math.PI));
-    this.goal = { azimuth: azimuth + 2 * Math.PI * turns, elevation, distance: DISTANCE.usual };
+    this.goal = { azimuth: azimuth + 2 * Math.PI * turns, elevation, distance: this.framing(azimuth, elevation) };
+  }
+
+  /** The least distance from which all is in the picture. */
+  framing(azimuth, elevation) {
+    const { right, up, back } = Camera.axes(azimuth, elevation);
+    const slope = Math.tan(ANGLE_OF_VIEW / 2);
+    const distances = this.points.map((point) => {
+      const from = minus(point, CENTRE);
+      const [aside, above] = [Math.abs(dot(from, right)) / NARROW, Math.abs(dot(from, up))];
+      return MARGIN * Math.max(aside, above) / slope + dot(from, back);
+    });
+    return distances.reduce((a, b) => Math.max(a, b), DISTANCE.least);
   }
 
   /** Goes around by angles, at once. The eye stays above the floor. */
@@ -56,21 +74,25 @@ class Camera {
     return left >= 0.002;
   }
 
-  /** Where it is, unit vectors to its right, up, and from the centre to it. */
-  axes() {
-    const [ca, sa] = [Math.cos(this.azimuth), Math.sin(this.azimuth)];
-    const [ce, se] = [Math.cos(this.elevation), Math.sin(this.elevation)];
+  /** Of a camera there, unit vectors to its right, up, and from the centre to it. */
+  static axes(azimuth, elevation) {
+    const [ca, sa] = [Math.cos(azimuth), Math.sin(azimuth)];
+    const [ce, se] = [Math.cos(elevation), Math.sin(elevation)];
     return { right: [-sa, ca, 0], up: [-se * ca, -se * sa, ce], back: [ce * ca, ce * sa, se] };
+  }
+
+  axes() {
+    return Camera.axes(this.azimuth, this.elevation);
   }
 
   eye() {
     return plus(CENTRE, times(this.axes().back, this.distance));
   }
 
-  /** From the world to a picture of this ratio of width to height. A narrow picture is taken from farther away. */
+  /** From the world to a picture of this ratio of width to height. */
   matrix(aspect) {
     const { right, up, back } = this.axes();
-    const angle = 2 * Math.atan(Math.tan(ANGLE_OF_VIEW / 2) * Math.max(1, 1.15 / aspect));
+    const angle = 2 * Math.atan(Math.tan(ANGLE_OF_VIEW / 2) * Math.max(1, NARROW / aspect));
     return product(perspective(angle, aspect, 0.1, 30), worldToViewer(this.eye(), right, up, back));
   }
 }

@@ -12,6 +12,11 @@ function make(tag, attributes = {}, ...children) {
   return element;
 }
 
+/** Gives an element another text, if it is another: what is written anew is read out anew. */
+function write(element, text) {
+  if (element.textContent !== text) element.textContent = text;
+}
+
 /** Several options of which one is chosen; each is `{ value, label, swatch }`. */
 class Options {
   constructor(title, options, choose) {
@@ -31,6 +36,8 @@ class Options {
   }
 }
 
+/** Metres by which the robot has to miss what its policy wants for both to be told. */
+const WORTH_TELLING = 0.001;
 const SPEEDS = [1, 2, 5, 10, 20];
 
 /** What the view is told by its reader: `actions` has a function for each thing that can be asked for. */
@@ -50,10 +57,13 @@ class Controls {
     this.all = make("input", { type: "checkbox", onchange: () => actions.select({ all: this.all.checked }) });
     this.options.learner.element.append(make("label", {}, this.all, "paths of all"));
     this.play = make("button", { type: "button", class: "view-play", onclick: actions.toggle });
+    this.sliding = false;
     this.slider = make("input", {
-      type: "range", min: 0, step: 1, "aria-label": "Time", oninput: () => actions.seek(this.slider.valueAsNumber),
+      type: "range", min: 0, step: 1, "aria-label": "Time",
+      oninput: () => { this.sliding = true; actions.seek(this.slider.valueAsNumber); },
+      onchange: () => { this.sliding = false; actions.seek(this.slider.valueAsNumber); },
     });
-    this.time = make("output", { class: "view-time" });
+    this.time = make("span", { class: "view-time" });
     const speeds = SPEEDS.map((speed) => make("option", { value: speed }, `${speed} ×`));
     this.speed = make("select", { onchange: () => actions.setSpeed(Number(this.speed.value)) }, ...speeds);
     this.words = make("p", { class: "view-words" });
@@ -69,7 +79,8 @@ class Controls {
     for (const [name, options] of Object.entries(this.options)) options.show(playback.choice[name]);
     this.all.checked = playback.all;
     this.speed.value = playback.speed;
-    this.play.textContent = playback.playing ? "❚❚ Pause" : "▶ Play";
+    write(this.play, playback.playing ? "❚❚ Pause" : "▶ Play");
+    this.play.setAttribute("aria-label", playback.playing ? "Pause" : "Play");
     const { sample, lastSample, document: { time_step: step } } = playback;
     const seconds = (count) => (count * step).toFixed(1);
     this.slider.max = lastSample;
@@ -77,21 +88,24 @@ class Controls {
     this.slider.step = playback.playing ? "any" : 1;
     this.slider.value = sample;
     this.slider.setAttribute("aria-valuetext", `${seconds(sample)} of ${seconds(lastSample)} seconds`);
-    this.time.textContent = `${seconds(sample)} s of ${seconds(lastSample)} s`;
+    write(this.time, `${seconds(sample)} s of ${seconds(lastSample)} s`);
+    // Words are read out as they change: not at every step, and not while the thumb is on its way.
     this.words.setAttribute("aria-live", playback.playing ? "off" : "polite");
-    this.words.textContent = Controls.inWords(playback);
+    if (!this.sliding) write(this.words, Controls.inWords(playback));
   }
 
   static inWords(playback) {
-    const both = (distances) => `${distances.map((metres) => (100 * metres).toFixed(1)).join(" and ")} cm`;
+    const told = (distances) => `${distances.map((metres) => (100 * metres).toFixed(1)).join(" and ")} cm`;
     const line = (learner) => {
       const { label } = playback.document.learners.find(({ id }) => id === learner);
       const [now, end] = [playback.sample, playback.lastSample].map((sample) => playback.distances(learner, sample));
-      return `${label}: now ${both(now)}, at the end ${both(end)}.`;
+      const wanted = playback.wantedDistances(learner, playback.lastSample);
+      const short = wanted.some((distance, hand) => Math.abs(distance - end[hand]) > WORTH_TELLING);
+      return `${label}: now ${told(now)}, at the end ${told(end)}${short ? ` (its policy wants ${told(wanted)})` : ""}.`;
     };
     const tracking = playback.movement().error_mm.toFixed(1);
     return [
-      "From the left and the right hand to their places at the ball:",
+      "From the robot’s left and right palm to their places at the ball:",
       ...playback.learners.map(line),
       `The robot follows the palms of its policy to within ${tracking} mm.`,
     ].join("\n");

@@ -79,16 +79,24 @@ class Playback {
     return Playback.at(this.movement(learner).joints, sample);
   }
 
-  /** Palms of a learner's own path, left and right, metres. */
-  palms(learner) {
-    const row = Playback.at(this.movement(learner).palms, this.sample);
+  /** Where a learner's policy wants the palms, left and right, metres. */
+  palms(learner, sample = this.sample) {
+    const row = Playback.at(this.movement(learner).palms, sample);
     return [row.slice(0, 3), row.slice(3)];
   }
 
-  /** How far a learner's hands are from their places at the ball, left and right, metres. */
+  /** How far the robot's palms are from their places at the ball, left and right, metres. */
   distances(learner, sample) {
-    const target = this.document.scene.target;
-    const hands = this.robot.hands(this.joints(learner, sample));
-    return hands.map((hand, i) => length(minus(hand, target.slice(3 * i, 3 * i + 3))));
+    return this.toPlaces(this.robot.hands(this.joints(learner, sample)));
+  }
+
+  /** How far they would be if its joints could follow. */
+  wantedDistances(learner, sample) {
+    return this.toPlaces(this.palms(learner, sample));
+  }
+
+  toPlaces(palms) {
+    const { target } = this.document.scene;
+    return palms.map((palm, i) => length(minus(palm, target.slice(3 * i, 3 * i + 3))));
   }
 }

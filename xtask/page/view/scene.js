@@ -4,7 +4,6 @@
 /** How each learner's path is broken: metres from dash to dash, and the share that is drawn. As in the figures. */
 const DASHES = { expert: [1, 1], naive: [0.016, 0.5], policy_align: [0.045, 0.66] };
 const PATH_RADIUS = 0.0055;
-const PLATE_TOP = 1.02;
 const PLATE_THICKNESS = 0.008;
 
 class Scene {
@@ -15,7 +14,7 @@ class Scene {
     const { robot, document: { scene } } = playback;
     this.scene = scene;
     this.floor = upload(square(3));
-    this.table = upload(Scene.tableMesh(scene.table));
+    this.table = upload(Scene.tableMesh(scene));
     this.ball = upload(sphere(scene.ball.diameter / 2));
     this.dot = upload(sphere(0.011));
     this.links = robot.links.map((_, link) => {
@@ -25,12 +24,32 @@ class Scene {
       for (const shape of shapes) mesh.add(primitive(shape), shape);
       return upload(mesh);
     });
+    this.extent = this.corners();
     // A palm is a point; the hand around it is the nearest link with a body.
     this.handLinks = robot.handLinks.map((link) => {
       while (!this.links[link]) link = robot.links[link].parent;
       return link;
     });
     this.chosen = { meshes: [] };
+  }
+
+  /** Points between which all that ever stands here is: table, plates, and the robot as it starts, metres. */
+  corners() {
+    const { playback: { robot, document: { movements } }, scene: { table, wall, stage } } = this;
+    const box = ([x, y, z], [far, left, top]) => [x, far].flatMap((a) => [y, left].flatMap((b) => [z, top].map((c) => [a, b, c])));
+    const side = table.half_width;
+    const poses = robot.poses(movements[0].joints[0]);
+    const bodies = robot.shapes.flatMap((shape) => {
+      const { vertices } = primitive(shape);
+      const { rotation, translation } = composed(poses[shape.link], shape);
+      const corners = Array.from({ length: vertices.length / 8 }, (_, i) => vertices.slice(8 * i, 8 * i + 3));
+      return corners.map((corner) => plus(turned(rotation, corner), translation));
+    });
+    return [
+      ...box([table.near, -side, 0], [table.far, side, table.top]),
+      ...box([wall.x - wall.reach, -side, 0], [wall.x + wall.reach, side, stage.plate_top]),
+      ...bodies,
+    ];
   }
 
   /** Builds what goes with a choice: plates and paths. */
@@ -103,30 +122,30 @@ class Scene {
     return { rotation: IDENTITY.rotation, translation };
   }
 
-  /** A top on four legs. */
-  static tableMesh({ top, near, far, half_width: side }) {
-    const [mesh, thick, leg] = [new Mesh(), 0.03, 0.045];
+  /** A top on four legs, flush with its corners. */
+  static tableMesh({ table: { top, near, far, half_width: side }, stage: { board: thick, leg } }) {
+    const mesh = new Mesh();
     mesh.add(box([far - near, 2 * side, thick]), Scene.at([(near + far) / 2, 0, top - thick / 2]));
     const high = top - thick;
-    for (const x of [near + leg, far - leg]) {
-      for (const y of [leg - side, side - leg]) mesh.add(box([leg, leg, high]), Scene.at([x, y, high / 2]));
+    for (const x of [near + leg / 2, far - leg / 2]) {
+      for (const y of [leg / 2 - side, side - leg / 2]) mesh.add(box([leg, leg, high]), Scene.at([x, y, high / 2]));
     }
     return mesh;
   }
 
   /** A plate, the space in which it is felt, and its edges. An open end (null) ends with the table and has no edge. */
-  static plateMeshes([from, to], { wall, table }) {
+  static plateMeshes([from, to], { wall, table, stage: { plate_top: top } }) {
     const side = table.half_width;
     const [left, right] = [from ?? -side, to ?? side];
     const slab = (thickness) => {
       const mesh = new Mesh();
-      mesh.add(box([thickness, right - left, PLATE_TOP]), Scene.at([wall.x, (left + right) / 2, PLATE_TOP / 2]));
+      mesh.add(box([thickness, right - left, top]), Scene.at([wall.x, (left + right) / 2, top / 2]));
       return mesh;
     };
     const [edges, bar] = [new Mesh(), 1.6 * PLATE_THICKNESS];
-    edges.add(box([bar, right - left, bar]), Scene.at([wall.x, (left + right) / 2, PLATE_TOP]));
+    edges.add(box([bar, right - left, bar]), Scene.at([wall.x, (left + right) / 2, top]));
     for (const y of [from, to].filter((end) => end !== null)) {
-      edges.add(box([bar, bar, PLATE_TOP]), Scene.at([wall.x, y, PLATE_TOP / 2]));
+      edges.add(box([bar, bar, top]), Scene.at([wall.x, y, top / 2]));
     }
     return [slab(PLATE_THICKNESS), slab(2 * wall.reach), edges];
   }

@@ -10,14 +10,15 @@ const COLOR_NAMES = [
 const HELP = "Drag or arrow keys: turn. Pinch, wheel (after a click) or + and −: nearer, farther. "
   + "Space: play, pause. Home: reset.";
 const LEGEND = "A path is strong up to now and faint ahead; dots are the palms and their places at the ball. Blue plates "
-  + "are in the way: in the pale space around them a hand moves neither forwards nor back. They have no end upwards, "
-  + "and none where no edge is drawn.";
+  + "are in the way: in the pale space around them a hand moves neither forwards nor back. A plate goes on upwards beyond "
+  + "what is drawn; where its side has no dark edge, it goes on sideways too.";
 
 /** Builds the view in an element. Where nothing can be drawn it says so, with a link to `data-still`. */
 function startView(element, data) {
   element.classList.add("view");
   const canvas = make("canvas", {
-    tabindex: 0, role: "application", "aria-roledescription": "3-D view", "aria-label": `The robot and the ball. ${HELP}`,
+    tabindex: 0, role: "application", "aria-roledescription": "3-D view", "aria-label": "The robot and the ball",
+    "aria-describedby": "view-keys",
   });
   let renderer;
   try {
@@ -38,10 +39,11 @@ function noteInstead(error, still) {
 
 class View {
   constructor(element, canvas, renderer, data) {
-    Object.assign(this, { element, canvas, playback: new Playback(data), camera: new Camera() });
+    Object.assign(this, { element, canvas, playback: new Playback(data) });
     this.restful = matchMedia("(prefers-reduced-motion: reduce)");
     this.last = null;
     this.build(renderer);
+    this.camera = new Camera(this.scene.extent);
     this.controls = new Controls(this.playback, {
       select: (choice) => this.select(choice),
       toggle: () => (this.playback.playing ? this.pause() : this.play()),
@@ -51,7 +53,8 @@ class View {
     const look = (name) => this.look(name);
     const zoom = (factor) => { this.camera.zoom(factor); this.ask(); };
     const stage = make("div", { class: "view-stage" }, canvas, viewButtons(look, zoom));
-    element.replaceChildren(stage, this.controls.element, make("p", { class: "view-help" }, LEGEND, make("br"), HELP));
+    const help = make("p", { class: "view-help" }, LEGEND, make("br"), make("span", { id: "view-keys" }, HELP));
+    element.replaceChildren(stage, this.controls.element, help);
     this.listen();
     this.ask();
   }
@@ -146,6 +149,13 @@ class View {
     this.controls.show(playback);
   }
 
+  /** Where in the picture a place is: to the right and up, from −1 to 1. */
+  project(place) {
+    const m = this.camera.matrix(this.canvas.clientWidth / this.canvas.clientHeight);
+    const row = (i) => dot([m[i], m[i + 4], m[i + 8], m[i + 12]], [...place, 1]);
+    return [row(0) / row(3), row(1) / row(3)];
+  }
+
   /** The colours of the style sheet, as light: CSS has them as the eye sees them. */
   readPalette() {
     const style = getComputedStyle(this.element);
@@ -168,6 +178,7 @@ class View {
       look: (name) => this.look(name),
       render: () => this.render(),
       hands: () => playback.robot.hands(playback.joints()),
+      project: (place) => this.project(place),
       state: () => {
         const { choice, all, sample, playing, speed } = playback;
         const { azimuth, elevation, distance } = camera;

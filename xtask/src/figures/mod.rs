@@ -18,7 +18,7 @@ mod figure_b1;
 mod grasp_playback;
 mod overview;
 mod shapes;
-mod stage;
+pub(crate) mod stage;
 
 use std::collections::BTreeMap;
 
@@ -31,6 +31,8 @@ use serde_json::Value;
 use crate::experiments::Experiment;
 use crate::plot::Picture;
 use crate::results::{ExperimentResult, Results};
+
+pub(crate) use grasp_playback::LEARNERS;
 
 /// What a run computes for the figures, from fixed data sets.
 pub(crate) struct Document {

@@ -7,10 +7,14 @@ use super::shapes::{self, Shape};
 use crate::plot::{Item, Paint, Stroke};
 
 /// Plates reach from the ground to this height, metres.
-pub(super) const PLATE_TOP: f64 = 1.0;
+pub(crate) const PLATE_TOP: f64 = 1.0;
 /// The board of the table, and its legs, metres.
-const BOARD: f64 = 0.03;
-const LEG: f64 = 0.05;
+pub(crate) const BOARD: f64 = 0.03;
+pub(crate) const LEG: f64 = 0.05;
+/// Colours, as in HTML.
+pub(crate) const BALL: &str = "#f0e442";
+pub(crate) const TABLE: &str = "#efe6d6";
+pub(crate) const PLATE: &str = "#56b4e9";
 
 /// Poses of all links in a configuration.
 pub(super) fn poses(robot: &Robot, joints: &[f64]) -> Vec<IsometryMatrix3<f64>> {
@@ -44,7 +48,7 @@ pub(super) fn robot(robot: &Robot, joints: &[f64], paint: impl Fn(&str) -> Paint
 /// The ball, and the table that it lies on.
 pub(super) fn ball_and_table(scene: &Scene) -> Vec<Item> {
     let table = &scene.table;
-    let paint = Paint::opaque("#efe6d6");
+    let paint = Paint::opaque(TABLE);
     let block = |low: [f64; 3], high: [f64; 3]| {
         let (low, high) = (Vector3::from(low), Vector3::from(high));
         let pose = Translation3::from((low + high) / 2.0).into();
@@ -56,7 +60,7 @@ pub(super) fn ball_and_table(scene: &Scene) -> Vec<Item> {
     let board = block([table.near, -side, under], [table.far, side, table.top]);
     let ball = &scene.ball;
     let ball =
-        Item::Ball { centre: Point3::from(ball.centre), radius: ball.diameter / 2.0, paint: Paint::opaque("#f0e442") };
+        Item::Ball { centre: Point3::from(ball.centre), radius: ball.diameter / 2.0, paint: Paint::opaque(BALL) };
     legs.map(leg).into_iter().chain([board, ball]).collect()
 }
 
@@ -67,7 +71,7 @@ pub(super) fn plates(scene: &Scene, plates: &[[Option<f64>; 2]]) -> Vec<Item> {
         let (from, to) = (from.unwrap_or(-side).max(-side), to.unwrap_or(side).min(side));
         let corner = |(y, z)| Point3::new(scene.wall.x, y, z);
         let corners = [(from, 0.0), (to, 0.0), (to, PLATE_TOP), (from, PLATE_TOP)].map(corner).to_vec();
-        Item::Plate { corners, paint: Paint { color: "#56b4e9", opacity: 0.32 } }
+        Item::Plate { corners, paint: Paint { color: PLATE, opacity: 0.32 } }
     };
     plates.iter().map(plate).collect()
 }

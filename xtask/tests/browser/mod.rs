@@ -79,6 +79,19 @@ impl Page {
         self.call("Emulation.setEmulatedMedia", &json!({ "features": [{ "name": feature, "value": value }] }));
     }
 
+    /// Shows the page as it is printed.
+    pub(crate) fn show_as_printed(&mut self) {
+        self.call("Emulation.setEmulatedMedia", &json!({ "media": "print" }));
+    }
+
+    /// What a screen reader is told: role and name of everything, in order.
+    pub(crate) fn accessible(&mut self) -> Vec<(String, String)> {
+        let tree = self.call("Accessibility.getFullAXTree", &json!({}));
+        let nodes = tree["nodes"].as_array().unwrap().iter().filter(|node| node["ignored"] == false);
+        let text = |value: &Value| value["value"].as_str().unwrap_or_default().to_owned();
+        nodes.map(|node| (text(&node["role"]), text(&node["name"]))).collect()
+    }
+
     /// Presses and lets go of a key that has a name: Tab, Enter, Escape, ArrowLeft, ..
     pub(crate) fn press(&mut self, key: &str) {
         let code = match key {

@@ -15,6 +15,8 @@ fn tab_reaches_everything_in_order_and_it_is_seen() {
     );
     // One stop for a group of radio buttons.
     page.evaluate::<()>("void (all = all.filter(e => e.type != 'radio' || e.checked))");
+    // What is in a closed dialog is not there yet.
+    page.evaluate::<()>("void (all = all.filter(e => !e.closest('dialog')))");
     let stops: i64 = page.evaluate("all.length");
     assert!(stops > 10, "{stops} stops");
     for stop in 0..stops {
@@ -49,9 +51,17 @@ fn a_figure_is_enlarged_and_left_again() {
     page.evaluate::<()>("document.querySelector('.enlarge').focus()");
     page.press("Enter");
     page.wait_until("document.getElementById('enlarged').open");
+    assert!(page.evaluate::<bool>("document.activeElement.textContent.startsWith('Close')"), "Close has not the focus");
+    assert!(page.evaluate::<bool>(SAME_CAPTION), "the caption is not there");
+    assert!(page.evaluate::<bool>(CENTRED), "the picture is not in the middle, or cut off");
     let wide = "document.querySelector('#enlarged img').getBoundingClientRect().width";
     assert!(page.evaluate::<f64>(wide) > page.evaluate::<f64>("document.querySelector('.enlarge img').width"));
     page.press("Escape");
+    page.wait_until("!document.getElementById('enlarged').open");
+    assert!(page.evaluate::<bool>("document.activeElement == document.querySelector('.enlarge')"));
+    page.press("Enter");
+    page.wait_until("document.getElementById('enlarged').open");
+    page.press("Enter");
     page.wait_until("!document.getElementById('enlarged').open");
     assert!(page.evaluate::<bool>("document.activeElement == document.querySelector('.enlarge')"));
     let at = page.middle_of(".enlarge");
@@ -59,6 +69,36 @@ fn a_figure_is_enlarged_and_left_again() {
     page.wait_until("document.getElementById('enlarged').open");
     click_anywhere(&mut page);
     page.wait_until("!document.getElementById('enlarged').open");
+}
+
+const SAME_CAPTION: &str = "document.querySelector('#enlarged .caption').textContent ==
+    document.querySelector('.enlarge').closest('figure').querySelector('figcaption').textContent";
+
+/// Whether the picture is in the middle of a frame that holds it whole, to the pixel.
+const CENTRED: &str = "(() => {
+    const [frame, picture] = ['.picture', '.picture img'].map(name =>
+        document.querySelector('#enlarged ' + name).getBoundingClientRect());
+    const sides = [picture.left - frame.left, frame.right - picture.right];
+    const ends = [picture.top - frame.top, frame.bottom - picture.bottom];
+    return [sides, ends].every(([a, b]) => a > -1 && b > -1 && Math.abs(a - b) < 2);
+})()";
+
+#[test]
+fn a_figure_wider_than_the_window_begins_at_its_left() {
+    let Some(mut page) = page() else { return };
+    page.resize(390, 844);
+    for figure in ["figure7", "figure8", "figure6_left"] {
+        page.evaluate::<()>(&format!("document.querySelector('#figure-{figure} .enlarge').click()"));
+        page.evaluate::<()>("void (frame = document.querySelector('#enlarged .picture'))");
+        page.wait_until("frame.querySelector('img').complete");
+        assert!(page.evaluate::<bool>("frame.scrollWidth > frame.clientWidth"), "{figure} cannot be moved");
+        let left = "frame.querySelector('img').getBoundingClientRect().left - frame.getBoundingClientRect().left";
+        let left: f64 = page.evaluate(left);
+        assert!(left.abs() < 1.0, "{figure} begins {left} pixels off");
+        assert!(page.evaluate::<bool>("!document.querySelector('#enlarged .caption strong').hidden"), "{figure}");
+        // Left somewhere else, for the next one.
+        page.evaluate::<()>("frame.scrollLeft = 300; document.getElementById('enlarged').close()");
+    }
 }
 
 fn click_anywhere(page: &mut Page) {

@@ -1,4 +1,4 @@
-//! The page in the light, in the dark, on a phone and on paper; its pictures.
+//! The page in the light, in the dark and on a phone; its pictures.
 
 use std::fs;
 
@@ -36,8 +36,8 @@ fn every_figure_is_shown_and_can_be_decoded() {
     for id in drawn {
         let image = format!("document.querySelector('#{id} img')");
         page.wait_until(&format!("{image} && {image}.complete"));
-        let (width, alt): (f64, String) = page.evaluate(&format!("[{image}.naturalWidth, {image}.alt]"));
-        assert!(width > 0.0 && !alt.is_empty(), "{id}: {width} pixels wide, called {alt:?}");
+        let width: f64 = page.evaluate(&format!("{image}.naturalWidth"));
+        assert!(width > 0.0, "{id} is empty");
     }
 }
 
@@ -89,19 +89,6 @@ const CONTRAST_OF: &str = r"((selector) => {
     const [a, b] = [channels(getComputedStyle(element).color), opaque(element)].map(light);
     return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
 })";
-
-#[test]
-fn paper_shows_what_is_folded() {
-    let Some(mut page) = page() else { return };
-    let open = "document.querySelectorAll('details[open]').length";
-    let all: u32 = page.evaluate("document.querySelectorAll('details').length");
-    assert!(all > 0);
-    assert_eq!(page.evaluate::<u32>(open), 0);
-    page.evaluate::<bool>("dispatchEvent(new Event('beforeprint'))");
-    assert_eq!(page.evaluate::<u32>(open), all);
-    page.evaluate::<bool>("dispatchEvent(new Event('afterprint'))");
-    assert_eq!(page.evaluate::<u32>(open), 0);
-}
 
 #[test]
 fn the_contents_lead_to_every_part_and_tell_where_one_is() {

@@ -7,8 +7,10 @@ mod browser;
 
 mod keyboard;
 mod looks;
+mod paper;
 mod tables;
 mod view;
+mod words;
 
 use browser::{Page, report};
 

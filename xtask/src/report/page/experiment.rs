@@ -27,10 +27,10 @@ pub(super) fn section(compared: &Compared<'_>, contents: &Contents<'_>) -> Marku
         @if compared.is_printed() {
             (printed(compared))
             @if experiment.id == view::EXPERIMENT { (view::view(contents.sources, &figures)) }
-            @for (figure, svg) in &figures { (figure::card(figure, svg)) }
+            @for (figure, svg) in &figures { (figure::card(figure, svg, experiment.title)) }
             (standing_out(compared)) (left_open(compared))
         } @else {
-            @for (figure, svg) in &figures { (figure::card(figure, svg)) }
+            @for (figure, svg) in &figures { (figure::card(figure, svg, experiment.title)) }
             (left_open(compared)) (curves(compared))
         }
     }

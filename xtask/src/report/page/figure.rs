@@ -7,22 +7,40 @@ use maud::{Markup, html};
 use super::emphasis::emphasised;
 use crate::figures::Figure;
 
-/// A picture with title and caption. It is an image, not a part of the page, so that names in it are its own.
-pub(super) fn card(figure: &Figure, svg: &str) -> Markup {
+/// A picture with title and caption, under a heading that may have said the title already; the title is then shown only
+/// where the figure is enlarged. It is an image, not a part of the page, so that names in it are its own. What it shows
+/// is in the caption; it is not read out twice.
+pub(super) fn card(figure: &Figure, svg: &str, heading: &str) -> Markup {
     let (width, height) = size(svg);
     html! {
-        figure id={ "figure-" (figure.id) } {
-            button .enlarge type="button" aria-label={ "Enlarge: " (figure.title) } {
-                img src=(data_uri(svg)) alt=(figure.title) width=[width] height=[height];
+        figure id={ "figure-" (figure.id) } aria-label=(name(figure)) {
+            button .enlarge type="button" aria-label={ "Enlarge " (name(figure)) } {
+                img src=(data_uri(svg)) alt="" width=[width] height=[height];
             }
             figcaption {
-                p { strong { (figure.title) "." } " " (emphasised(figure.caption)) }
+                p { strong hidden[figure.title == heading] { (figure.title) "." } " " (emphasised(figure.caption)) }
                 @if let Some(text) = figure.beside_paper {
                     p { strong { "Beside the paper's figure." } " " (emphasised(text)) }
                 }
             }
         }
     }
+}
+
+/// Where a figure is shown as large as the window allows.
+pub(super) fn enlarged() -> Markup {
+    html! {
+        dialog #enlarged {
+            form method="dialog" { button { "Close " kbd aria-hidden="true" { "Esc" } } }
+            div .picture tabindex="0" role="group" aria-label="Picture" {}
+            div .caption {}
+        }
+    }
+}
+
+/// The title up to the colon: "Figure 8". What is no figure of the paper is called a picture.
+pub(super) fn name(figure: &Figure) -> &'static str {
+    figure.title.split_once(':').map_or("picture", |(name, _)| name)
 }
 
 /// The picture as an address that holds it, hardly longer than the picture: browsers take spaces in such an address, and

@@ -6,9 +6,10 @@ use super::emphasis::emphasised;
 use super::experiment::sentence;
 use super::facts::facts;
 use super::verdict_bar::{bar, words};
-use super::{Contents, OVERVIEW, figure, view};
+use super::{Contents, OVERVIEW, figure, pictures, view};
 use crate::report::compared::{Compared, FEW, Line};
 use crate::report::tally::Tally;
+use crate::verdict::Verdict;
 
 pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
     let overview = contents.figures.iter().find(|(figure, _)| figure.id == OVERVIEW);
@@ -25,9 +26,9 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
             (facts(contents, all))
             @if all.iter().any(Compared::is_glimpse) {
                 p .notice { "With fewer than " (FEW) " data sets a row single numbers mean little." }
-            } @else if all.iter().any(Compared::is_printed) { (not_reached(all)) }
+            } @else { (not_reached(all)) (pictures::otherwise(contents)) }
         }
-        @if let Some((figure, svg)) = overview { (figure::card(figure, svg)) }
+        @if let Some((figure, svg)) = overview { (figure::card(figure, svg, "")) }
         (view::way(contents.sources))
     }
 }
@@ -43,7 +44,7 @@ fn how_it_went(all: &[Compared<'_>]) -> Markup {
                 (words(&total))
                 (bar(&total))
                 p .rule {
-                    "Agree: our mean is within one printed standard deviation of the printed mean. Better: a lower error than that. "
+                    @for (verdict, _) in total.counts() { (meaning(verdict)) " " }
                     a href="#method" { "The rule in full" }
                 }
             }
@@ -52,6 +53,18 @@ fn how_it_went(all: &[Compared<'_>]) -> Markup {
                 tbody { @for compared in all { (tally_of(compared)) } }
             }
         }
+    }
+}
+
+/// What a verdict says, in short.
+fn meaning(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Agrees => {
+            "Agree: our mean is within one printed standard deviation of the printed mean (errors of the naive baseline: two)."
+        }
+        Verdict::Better => "Better: an error of ours below that.",
+        Verdict::Worse => "Worse: an error of ours above that.",
+        Verdict::Differs => "Differ: a discard rate or an error of the naive baseline outside that.",
     }
 }
 
@@ -75,15 +88,23 @@ fn tally_of(compared: &Compared<'_>) -> Markup {
 
 /// The cells that are worse than printed or otherwise off, each with what is known of it.
 fn not_reached(all: &[Compared<'_>]) -> Markup {
-    let missed = |line: &Line<'_>| line.cell.verdict.is_some_and(|verdict| !verdict.reached());
-    let cells: Vec<_> = all
-        .iter()
-        .flat_map(|compared| compared.lines().filter(missed).map(move |line| (compared.experiment, line)))
-        .collect();
+    let (others, first): (Vec<_>, Vec<_>) =
+        all.iter().partition(|compared| compared.experiment.another_reading_of.is_some());
     html! {
-        h2 .small { "Not reached" }
-        @if cells.is_empty() { p { "Nothing: every printed number is reached or bettered." } }
-        @else {
+        (missed("Not reached", &first))
+        (missed("Not reached in another reading, which is not in the total", &others))
+    }
+}
+
+fn missed(heading: &str, among: &[&Compared<'_>]) -> Markup {
+    let missed = |line: &Line<'_>| line.cell.verdict.is_some_and(|verdict| !verdict.reached());
+    let mut cells = vec![];
+    for compared in among {
+        cells.extend(compared.lines().filter(missed).map(|line| (compared.experiment, line)));
+    }
+    html! {
+        @if !cells.is_empty() {
+            h2 .small { (heading) }
             dl .reasons {
                 @for (experiment, line) in cells {
                     div .{ "is-" (line.verdict()) } {

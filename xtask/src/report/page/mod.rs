@@ -6,6 +6,7 @@ mod facts;
 mod figure;
 mod glance;
 mod method;
+mod pictures;
 mod scale;
 mod strip;
 mod table;
@@ -70,7 +71,7 @@ pub(crate) fn page(contents: &Contents<'_>) -> String {
                     (glance::opening(contents, &all))
                     @for part in &parts { section id=(part.id) { (part.body) } }
                 }
-                dialog #enlarged aria-label="Enlarged figure" {}
+                (figure::enlarged())
                 script type="module" { (PreEscaped(SCRIPT)) }
             }
         }
@@ -93,7 +94,7 @@ fn parts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Vec<Part> {
         let title = "The idea in pictures".to_owned();
         let body = html! {
             h2 { (title) }
-            @for (figure, svg) in others { (figure::card(figure, svg)) }
+            @for (figure, svg) in others { (figure::card(figure, svg, &title)) }
         };
         parts.push(Part { id: "ideas".to_owned(), title, body });
     }

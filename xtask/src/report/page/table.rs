@@ -46,10 +46,10 @@ pub(super) fn grid(compared: &Compared<'_>, columns: &[Measure], scales: &Scales
             tbody {
                 @for row in &compared.result.rows {
                     tr {
-                        th scope="row" { (row.id) }
+                        th scope="row" { (parts(&row.id)) }
                         @for line in compared.lines_of(row).filter(|line| columns.contains(&line.measure)) {
-                            td data-row=(row.id) data-measure=(line.measure.name()) data-label=(line.measure.label()) {
-                                (verdict(&line)) (ours(&line))
+                            td data-row=(row.id) data-measure=(line.measure.name()) {
+                                div .judged data-label=(line.measure.label()) { (verdict(&line)) (ours(&line)) }
                                 span .minor { "paper " span .paper { (line.paper()) } }
                                 (strip(&line, scales[&line.measure]))
                                 (axis(scales[&line.measure]))
@@ -60,6 +60,11 @@ pub(super) fn grid(compared: &Compared<'_>, columns: &[Measure], scales: &Scales
             }
         }
     }
+}
+
+/// A name that may be broken after each of its parts.
+fn parts(name: &str) -> Markup {
+    html! { @for part in name.split_inclusive('-') { (part) wbr; } }
 }
 
 /// Whether a list has columns for what is printed.
@@ -94,7 +99,7 @@ pub(super) fn list(compared: &Compared<'_>, scales: &Scales, wanted: fn(&Line<'_
                     tbody {
                         @for (i, line) in lines.iter().enumerate() {
                             tr data-row=(row.id) data-measure=(line.measure.name()) {
-                                @if i == 0 { th scope="rowgroup" rowspan=(lines.len()) { (row.id) } }
+                                @if i == 0 { th scope="rowgroup" rowspan=(lines.len()) { (parts(&row.id)) } }
                                 th scope="row" { (line.measure.label()) }
                                 (cells(line, columns))
                                 @if let Some(second) = compared.second { (beside(second, line)) }

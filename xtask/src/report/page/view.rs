@@ -1,8 +1,9 @@
 //! The grasp to walk around in: the robot, the wall and everybody's hand paths, drawn by a script of the page.
 
 use maud::{Markup, PreEscaped, html};
+use serde_json::{Value, json};
 
-use crate::figures::{Figure, Sources};
+use crate::figures::{Figure, LEARNERS, Sources, stage};
 
 /// The experiment beside which it stands.
 pub(super) const EXPERIMENT: &str = "table2";
@@ -44,16 +45,30 @@ pub(super) fn view(sources: &Sources, figures: &[&(Figure, String)]) -> Markup {
                 "Both hands reach for the ball, led by the expert’s policy or by one that was learnt from demonstrations: past \
                  the wall that was in their way, past an obstacle that no demonstration shows, and with nothing in the way. \
                  policy-align knows where to go from the first step on, but where the slope is nearly none its regression displaces the \
-                 goal: its hands drift past the ball in the end, sometimes farther than the robot's arms can follow. Table 2 compares \
+                 goal: its hands drift past the ball in the end, sometimes farther than the robot’s arms can follow. Table 2 compares \
                  actions at the samples of the demonstrations, not where movements end."
             }
-            div #view data-still=[still] {
+            div #view data-still=[still] style=(colors()) {
                 noscript { "The moving picture needs JavaScript; nothing else here does." }
             }
-            script type="application/json" id="grasp-playback" { (PreEscaped(within_script(&playback.to_string()))) }
+            script type="application/json" id="grasp-playback" { (PreEscaped(within_script(&staged(playback).to_string()))) }
             script type="module" { (PreEscaped(SCRIPT.concat())) (PreEscaped(START)) }
         }
     }
+}
+
+/// The figure data with the measures of what the figures draw around the robot, so that they are written once.
+fn staged(playback: &Value) -> Value {
+    let mut playback = playback.clone();
+    playback["scene"]["stage"] = json!({ "plate_top": stage::PLATE_TOP, "board": stage::BOARD, "leg": stage::LEG });
+    playback
+}
+
+/// The figures' colours, for the style sheet of the view.
+fn colors() -> String {
+    let things = [("ball", stage::BALL), ("table", stage::TABLE), ("plate", stage::PLATE)];
+    let all = things.into_iter().chain(LEARNERS.map(|(id, who)| (id, who.color())));
+    all.map(|(name, color)| format!("--figure-{}:{color}", name.replace('_', "-"))).collect::<Vec<_>>().join(";")
 }
 
 /// A way to the view, for the opening.

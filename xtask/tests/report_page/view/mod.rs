@@ -4,6 +4,8 @@ mod controls;
 mod drawing;
 mod hands;
 mod looks;
+mod scene;
+mod words;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,0 +1,47 @@
+//! The page as it is printed.
+
+use crate::page;
+
+/// Width of a sheet of A4 between its margins, CSS pixels.
+const SHEET: u32 = 688;
+
+#[test]
+fn what_is_folded_is_left_out() {
+    let Some(mut page) = page() else { return };
+    page.evaluate::<()>("document.querySelector('details').open = true, undefined");
+    page.show_as_printed();
+    let printed: Vec<bool> = page.evaluate(
+        "[...document.querySelectorAll('details')].map(details => details.getBoundingClientRect().height > 0)",
+    );
+    assert!(printed.len() > 2 && printed[0], "what was opened is not printed");
+    assert!(!printed[1..].contains(&true), "what is folded is printed");
+}
+
+#[test]
+fn nothing_stands_at_the_very_edge() {
+    let Some(mut page) = page() else { return };
+    page.resize(SHEET, 900);
+    page.show_as_printed();
+    let edge: f64 = page.evaluate(
+        "Math.max(...[...document.querySelectorAll('.enlarge, .verdict, pre')].map(e => e.getBoundingClientRect().right))",
+    );
+    assert!(edge > 500.0 && edge <= f64::from(SHEET) - 1.0, "something ends at {edge} of {SHEET}");
+}
+
+#[test]
+fn what_belongs_together_stays_together() {
+    let Some(mut page) = page() else { return };
+    page.show_as_printed();
+    let broken = |page: &mut crate::Page, what: &str, property: &str| -> Vec<String> {
+        page.evaluate(&format!(
+            "[...document.querySelectorAll('{what}')].filter(e => getComputedStyle(e).{property} != 'avoid').map(e => e.outerHTML.slice(0, 99))"
+        ))
+    };
+    for heading in ["h1", "h2", "h3", "section > header"] {
+        assert_eq!(broken(&mut page, heading, "breakInside"), Vec::<String>::new());
+        assert_eq!(broken(&mut page, heading, "breakAfter"), Vec::<String>::new());
+    }
+    for whole in ["main figure", "tr", ".total", "section > header .bar", "section > header .counts"] {
+        assert_eq!(broken(&mut page, whole, "breakInside"), Vec::<String>::new());
+    }
+}

@@ -1,0 +1,70 @@
+//! The words under the picture: whose distances they are, and when they are read out.
+
+use super::{page, view};
+
+/// Counts how often the words are written from now on.
+const COUNT: &str = "void (written = 0, new MutationObserver(changes => { written += changes.length; })
+    .observe(document.querySelector('.view-words'), { childList: true, characterData: true, subtree: true }))";
+
+/// Lets two frames go by, and gives how often words were written so far.
+const WRITTEN: &str = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(written))))";
+
+/// Moves the thumb.
+fn slide(to: u32, event: &str) -> String {
+    format!(
+        "(slider => {{ slider.value = {to}; slider.dispatchEvent(new Event('{event}')); }})(document.querySelector('.view-times input'))"
+    )
+}
+
+#[test]
+fn words_are_written_only_when_they_change() {
+    let Some(mut page) = page() else { return };
+    view::<()>(&mut page, "seek(3)");
+    page.evaluate::<u32>("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(0))))");
+    page.evaluate::<()>(COUNT);
+    for _ in 0..5 {
+        view::<()>(&mut page, "orbit(.1, .05)");
+        page.evaluate::<u32>(WRITTEN);
+    }
+    assert_eq!(page.evaluate::<u32>(WRITTEN), 0, "turning writes");
+    for to in [10, 20, 30] {
+        page.evaluate::<()>(&slide(to, "input"));
+        assert_eq!(page.evaluate::<u32>(WRITTEN), 0, "the thumb on its way writes");
+    }
+    page.evaluate::<()>(&slide(30, "change"));
+    let written: u32 = page.evaluate(WRITTEN);
+    assert!((1..=2).contains(&written), "letting go of the thumb writes {written} times");
+    let live = "[...document.querySelectorAll('#view [aria-live=polite], #view output')].length";
+    assert_eq!(page.evaluate::<u32>(live), 1);
+}
+
+#[test]
+fn what_the_policy_wants_is_told_where_the_robot_misses_it() {
+    let Some(mut page) = page() else { return };
+    let words = "document.querySelector('.view-words').textContent";
+    for constraint in ["gap", "obstacle", "none"] {
+        for start in 0..4 {
+            view::<()>(
+                &mut page,
+                &format!("select({{ learner: 'policy_align', constraint: '{constraint}', start: {start} }})"),
+            );
+            view::<()>(&mut page, "render()");
+            let told: String = page.evaluate(words);
+            assert!(told.starts_with("From the robot’s left and right palm"), "{told}");
+            let missed: bool = page.evaluate(MISSED);
+            let line = told.lines().find(|line| line.starts_with("policy-align")).unwrap().to_owned();
+            assert_eq!(line.contains("its policy wants"), missed, "{constraint}, start {start}: {line}");
+        }
+    }
+}
+
+/// Whether at the end a palm of the robot is more than a millimetre farther from its place, or nearer, than that of the policy.
+const MISSED: &str = "(() => {
+    const data = JSON.parse(document.getElementById('grasp-playback').textContent);
+    const { constraint, start } = policyAlignView.state();
+    policyAlignView.seek(1e9);
+    const { palms } = data.movements.find(m => m.learner == 'policy_align' && m.constraint == constraint && m.start == start);
+    const away = (palm, hand) => Math.hypot(...palm.map((x, i) => x - data.scene.target[3 * hand + i]));
+    return policyAlignView.hands().some((palm, hand) =>
+        Math.abs(away(palm, hand) - away(palms.at(-1).slice(3 * hand, 3 * hand + 3), hand)) > 0.001);
+})()";
