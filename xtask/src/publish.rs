@@ -143,8 +143,10 @@ fn reproduction(experiments: &[Experiment], records: &Records) -> String {
     let mut parts: Vec<_> = sections(experiments, &first.results, Some(second)).map(experiment).collect();
     let ideas = "The idea in pictures";
     parts.push(("ideas", ideas, format!("## {ideas}\n\n{}", of(None))));
-    let contents: String = parts.iter().map(|(id, title, _)| format!("- [{title}](#{id})\n")).collect();
-    let body: String = parts.iter().map(|(id, _, text)| format!("<a id=\"{id}\"></a>\n\n{text}")).collect();
+    let entry = |(id, title, _): &(&str, &str, String)| format!("- [{title}](#{id})\n");
+    let part = |(id, _, text): &(&str, &str, String)| format!("<a id=\"{id}\"></a>\n\n{text}");
+    let contents: String = parts.iter().map(entry).collect();
+    let body: String = parts.iter().map(part).collect();
     format!("{PREFACE}{contents}\n{}{}\n", key(), body.trim_end())
 }
 
