@@ -24,6 +24,7 @@ pub(crate) fn figure() -> Figure {
             "The paper's shows ASIMO. Its measures are not published; this is a robot like it, of the same joints and \
                   the same height, 1.3 m.",
         ),
+        differs: None,
         experiment: None,
         needs: &["figure1"],
         draw,

@@ -38,6 +38,7 @@ pub(crate) fn figure() -> Figure {
         beside_paper: Some(
             "The same three situations. Directions and lengths are ours; projections are computed, N = I − A⁺A.",
         ),
+        differs: None,
         experiment: None,
         needs: &["figure3"],
         draw,

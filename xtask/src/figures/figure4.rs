@@ -42,6 +42,7 @@ pub(crate) fn figure() -> Figure {
             "The paper does not print its potential: this one is a sum of five Gaussians, with as many maxima and \
                   minima.",
         ),
+        differs: None,
         experiment: None,
         needs: &["figure4"],
         draw,

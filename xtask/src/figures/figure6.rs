@@ -28,6 +28,7 @@ pub(super) fn left() -> Figure {
                   sets, and these make the means: at 20 %, narrow, the median of φ is .0071. The paper does not say which \
                   bandwidth it shows.",
         ),
+        differs: Some("the potential’s error φ is the lowest only with many movements, in the paper throughout."),
         experiment: Some("figure6_left"),
         needs: &["figure6_left"],
         draw: draw_left,
@@ -48,6 +49,9 @@ pub(super) fn right() -> Figure {
                   with the medium one up to 5 %. With displacements (right) noise looks like a steady descent, and soon \
                   nothing is left to learn: at 5 % the error of π is 8.4 and 4.2. The paper's curves can hardly come from \
                   that rule.",
+        ),
+        differs: Some(
+            "with much noise φ is no lower than Nπ; by the paper’s rule (9) 5\u{a0}% of noise leave nothing to learn.",
         ),
         experiment: Some("figure6_right"),
         needs: &["figure6_right"],

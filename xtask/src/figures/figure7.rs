@@ -23,6 +23,7 @@ pub(crate) fn figure() -> Figure {
             "The paper's shows ASIMO before two barriers; the measures of that scene are not published, ours are \
                   fitted. Its movements last 2 s.",
         ),
+        differs: None,
         experiment: Some("table2"),
         needs: &["grasp_playback"],
         draw,

@@ -26,6 +26,10 @@ pub(crate) fn figure() -> Figure {
              one side of a parabola slopes on beyond its minimum. Neither narrower fields nor adaptive ones nor a cutoff \
              mend that (`docs/decisions/table2.md`). The naive learner's planes are velocities, which do vanish at the ball.",
         ),
+        differs: Some(
+            "in the full run the hands of policy-align run past the ball and end 20\u{a0}cm from where they should take it (naive 2\u{a0}cm); \
+             the paper’s stay close to the expert’s.",
+        ),
         experiment: Some("table2"),
         needs: &["grasp_playback"],
         draw,

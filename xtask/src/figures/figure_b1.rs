@@ -38,6 +38,7 @@ pub(crate) fn figure() -> Figure {
             "The paper's data set is another. In any run ours is the one, of the first 30, that comes apart in most \
                   steps, though in no more than six.",
         ),
+        differs: None,
         experiment: Some("table1"),
         needs: &["figureB1"],
         draw,

@@ -54,6 +54,8 @@ pub(crate) struct Figure {
     /// How it compares with the paper's figure, where that has one. What depends on the run is said of the full run of
     /// seed 1, by that name: it stands under the figures of all runs.
     pub(crate) beside_paper: Option<&'static str>,
+    /// What the full run shows otherwise than the paper's figure, in a line.
+    pub(crate) differs: Option<&'static str>,
     /// The experiment it stands beside in the report.
     pub(crate) experiment: Option<&'static str>,
     /// Documents and experiments that it is drawn from.

@@ -30,6 +30,7 @@ pub(crate) fn figure() -> Figure {
                   the way and that nobody tells, over lines of equal potential. Centre: regression of what was seen gets \
                   directions and speeds wrong. Right: aligned potentials give the policy, without having seen it.",
         beside_paper: None,
+        differs: None,
         experiment: None,
         needs: &["overview"],
         draw,

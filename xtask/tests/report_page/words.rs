@@ -41,7 +41,7 @@ fn pictures_that_differ_are_named() {
         assert!(named.iter().any(|(other, _)| *other == hash), "{id}: {named:?}");
         assert!(page.evaluate::<bool>(&format!("document.querySelector('{hash}') != null")), "{id}");
     }
-    // Where hands end, from the numbers of the figure.
+    // Where hands end: this run is the full one that the words speak of.
     let ends = fs::read_to_string(report().join("figures/figure8-ends.csv")).unwrap();
     let rows: Vec<Vec<&str>> = ends.lines().map(|line| line.split(',').collect()).collect();
     let words = &named.iter().find(|(hash, _)| hash == "#figure-figure8").unwrap().1;

@@ -45,6 +45,7 @@ pub(crate) fn figure() -> Figure {
             "The paper's shows the same three things; its finger and box are of unknown size. Here both movements are \
                   simulated, with contact between the tip and one face of the box.",
         ),
+        differs: None,
         experiment: None,
         needs: &["figure2"],
         draw,

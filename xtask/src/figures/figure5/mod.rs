@@ -27,6 +27,7 @@ pub(super) fn figure() -> Figure {
             "The paper's panels show the same. In any run ours is the first data set from which alignment leaves out \
                   three movements, as many as in the paper's picture.",
         ),
+        differs: None,
         experiment: Some("table1"),
         needs: &["figure5"],
         draw: draw::draw,

@@ -31,6 +31,9 @@ pub(super) fn figure() -> Figure {
                   where nearly all are counted (printed: .17 and .35); with r ours fall, φ from .48 to .29 and π from .62 \
                   to .44; and Nπ, flat in the paper, falls with d: Nπ from .099 to .052.",
         ),
+        differs: Some(
+            "in (d) φ and π rise with the distance to less than the paper’s, in (e) they fall with the radius.",
+        ),
         experiment: Some("figure9"),
         needs: &["figure9_movements", "figure9"],
         draw,
