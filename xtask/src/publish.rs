@@ -49,7 +49,13 @@ pub(crate) struct Publish {
 impl Publish {
     pub(crate) fn execute(&self) -> anyhow::Result<()> {
         let experiments = registry()?;
-        self.runs.iter().try_for_each(|run| take(&experiments, run))?;
+        // All or none.
+        let runs: Vec<Sources> = self.runs.iter().map(|run| fit(&experiments, run)).collect::<anyhow::Result<_>>()?;
+        for (run, path) in runs.iter().zip(&self.runs) {
+            let seed = run.results.seed;
+            RunFolder::committed(seed).keep(run)?;
+            say(&format!("docs/records/seed-{seed} is now the run in {}", told(path)));
+        }
         let records = Records::read(&experiments)?;
         for (path, text) in records.pages(&experiments)? {
             write(&path, text)?;
@@ -62,8 +68,8 @@ impl Publish {
     }
 }
 
-/// Copies a run to the committed records.
-fn take(experiments: &[Experiment], run: &Path) -> anyhow::Result<()> {
+/// A run that may become the committed one of its seed: a full one, with the figure data that the pages show.
+fn fit(experiments: &[Experiment], run: &Path) -> anyhow::Result<Sources> {
     let mut sources = RunFolder::at(run).sources()?;
     let seed = sources.results.seed;
     complete(experiments, &sources.results).with_context(|| format!("{} is no full run", told(run)))?;
@@ -74,8 +80,7 @@ fn take(experiments: &[Experiment], run: &Path) -> anyhow::Result<()> {
     } else {
         sources.documents.clear();
     }
-    say(&format!("docs/records/seed-{seed} is now the run in {}", told(run)));
-    RunFolder::committed(seed).keep(&sources)
+    Ok(sources)
 }
 
 /// The committed runs.
@@ -102,8 +107,8 @@ impl Records {
         let (before, rest) =
             text.split_once(BEGIN).context("README.md has lost the line that begins the generated part")?;
         let (_, after) = rest.split_once(END).context("README.md has lost the line that ends the generated part")?;
-        let table = results.experiments.first().map_or(String::new(), |table| summary(experiments, table));
-        let table = format!("{table}\n{}", verdicts(experiments, results));
+        let table1 = self.first.experiment("table1").context("docs/records/seed-1 has no table1")?;
+        let table = format!("{}\n{}", summary(experiments, table1), verdicts(experiments, results));
         let page = (repository().join("docs/reproduction.md"), reproduction(experiments, self));
         Ok([page, (readme, format!("{before}{BEGIN}\n{table}\n{END}{after}"))])
     }

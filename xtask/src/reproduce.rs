@@ -95,6 +95,7 @@ impl Reproduce {
         let mut sources = Sources { results, documents: BTreeMap::new(), missing: vec![] };
         if self.no_figures {
             folder.keep(&sources)?;
+            folder.forget_report()?;
             write_tables(&experiments, &sources.results, &folder)?;
         } else {
             say("computing what the figures show, and drawing them ..");

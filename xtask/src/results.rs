@@ -3,9 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use anyhow::{Context as _, bail, ensure};
+use anyhow::{Context as _, anyhow, bail, ensure};
 use metrics::Summary;
 use serde::{Deserialize, Serialize, Serializer, ser::Error as _};
+use serde_json::Value;
 
 use crate::experiments::{Experiment, Row};
 use crate::files::told;
@@ -37,9 +38,13 @@ impl Results {
     pub(crate) fn read(path: &Path) -> anyhow::Result<Results> {
         let name = told(path);
         let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {name}"))?;
-        let Form { schema } = serde_json::from_str(&text).with_context(|| format!("{name} is not a results.json"))?;
-        ensure!(schema == SCHEMA, "{name} is of form {schema}, which this version does not read (but form {SCHEMA})");
-        serde_json::from_str(&text).with_context(|| format!("{name} is damaged"))
+        let value: Value = serde_json::from_str(&text).map_err(|error| anyhow!("{name} is damaged ({error})"))?;
+        let schema = value["schema"].as_u64().with_context(|| format!("{name} is not a results.json"))?;
+        ensure!(
+            schema == u64::from(SCHEMA),
+            "{name} is of form {schema}, which this version does not read (but form {SCHEMA})"
+        );
+        serde_json::from_value(value).map_err(|error| anyhow!("{name} is damaged ({error})"))
     }
 
     /// Fails where there are results of other experiments than these.
@@ -55,12 +60,6 @@ impl Results {
     pub(crate) fn json(&self) -> anyhow::Result<String> {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }
-}
-
-/// What is read of a file of any version.
-#[derive(Deserialize)]
-struct Form {
-    schema: u32,
 }
 
 /// Hundreds of numbers in a row are for machines.

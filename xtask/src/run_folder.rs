@@ -6,10 +6,10 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, anyhow, bail};
 use serde_json::Value;
 
-use crate::figures::{Figure, Sources, documents};
+use crate::figures::{Figure, Sources, documents, figures};
 use crate::files::{repository, told, write};
 use crate::results::Results;
 
@@ -78,6 +78,12 @@ impl RunFolder {
         write(&self.results_path(), results.json()?)
     }
 
+    /// What to type for the same run again, into the same folder.
+    pub(crate) fn command(&self, results: &Results) -> String {
+        let command = &results.run.command;
+        if *self == RunFolder::of_latest_run() { command.clone() } else { format!("{command} --out {}", told(&self.0)) }
+    }
+
     /// Reads what a run ended with.
     pub(crate) fn sources(&self) -> anyhow::Result<Sources> {
         let results = self.results()?;
@@ -96,13 +102,19 @@ impl RunFolder {
     /// Reads the results alone.
     pub(crate) fn results(&self) -> anyhow::Result<Results> {
         let folder = told(&self.0);
+        let again = format!("`cargo xtask reproduce --out {folder}`");
         if !self.is_finished() {
             bail!(
-                "no run has ended in {folder}: `cargo xtask reproduce --out {folder}` makes one, or finishes one that was stopped"
+                "no run has ended in {folder}: where one was stopped, the same command goes on, with the same --out; else {again} makes one"
             );
         }
-        Results::read(&self.results_path())
-            .with_context(|| format!("`cargo xtask reproduce --out {folder}` writes them again"))
+        Results::read(&self.results_path()).map_err(|error| anyhow!("{error:#}; {again} makes another"))
+    }
+
+    /// Takes away the page and the pictures of an earlier run.
+    pub(crate) fn forget_report(&self) -> anyhow::Result<()> {
+        remove(&self.join("report.html"))?;
+        figures().iter().try_for_each(|figure| self.forget(figure))
     }
 
     /// Takes away what an earlier run drew of a figure.
@@ -125,7 +137,7 @@ impl RunFolder {
 fn read_document(path: &Path) -> anyhow::Result<Value> {
     let text = fs::read_to_string(path).with_context(|| format!("cannot read {}", told(path)))?;
     serde_json::from_str(&text)
-        .with_context(|| format!("{} is damaged; `cargo xtask reproduce` into this folder writes it again", told(path)))
+        .map_err(|error| anyhow!("{} is damaged ({error}); the command of its run writes it again", told(path)))
 }
 
 /// Removes a file that may not be there.

@@ -55,19 +55,21 @@ fn what_is_missing_is_said_and_not_drawn() {
     fs::remove_file(figures.join("figureB1.json")).unwrap();
     let told = said(folder.path(), &["report", "--from", "run"]);
     let command = "cargo xtask reproduce --data-sets 1 --only table1/parabola-40x40-narrow --seed 1";
-    let expected = format!("no figure data figure1, figureB1: figure1, figureB1; `{command}` computes them");
+    let expected = format!(
+        "not drawn: figure1, figureB1, as the run has no figure data figure1, figureB1; `{command} --out run` computes"
+    );
     assert!(told.contains(&expected), "{told}");
     assert!(told.contains("written: run/report.html"), "{told}");
     assert!(figures.join("figure2.svg").exists() && !figures.join("figure1.svg").exists());
     let page = fs::read_to_string(folder.path().join("run/report.html")).unwrap();
-    assert!(page.contains("no figure data figure1, figureB1.") && page.contains(command));
+    assert!(page.contains("figure data are missing: Figure 1; Figure B1.") && page.contains(command));
 
     fs::write(figures.join("figure2.json"), "{").unwrap();
     let told = refused(folder.path());
-    assert!(told.contains("run/figures/figure2.json is damaged") && told.contains("reproduce"), "{told}");
+    assert!(told.contains("run/figures/figure2.json is damaged") && told.contains("the command of its run"), "{told}");
     fs::write(figures.join("figure2.json"), "{}").unwrap();
     let told = refused(folder.path());
-    assert!(told.contains("figure2") && told.contains("another form") && told.contains("reproduce"), "{told}");
+    assert!(told.contains("figure2") && told.contains("another form") && told.contains("the command of its run"), "{told}");
 }
 
 #[test]
@@ -85,8 +87,8 @@ fn results_that_cannot_be_used_are_refused_with_the_next_step() {
     assert!(whole.contains(form) && whole.contains("\"table1\""));
     for (results, why) in [
         (whole.replace(form, "\"schema\": 7"), "is of form 7"),
-        (whole.replace("\"threads\"", "\"treads\""), "damaged: missing field `threads`"),
-        (whole[..whole.len() / 2].to_owned(), "is not a results.json"),
+        (whole.replace("\"threads\"", "\"treads\""), "damaged (missing field `threads`)"),
+        (whole[..whole.len() / 2].to_owned(), "is damaged (EOF"),
         ("{}".to_owned(), "is not a results.json"),
     ] {
         fs::write(&path, results).unwrap();
@@ -102,12 +104,15 @@ fn results_that_cannot_be_used_are_refused_with_the_next_step() {
 fn a_run_that_left_its_figures_out_leaves_none_of_an_earlier_one() {
     let folder = tempfile::tempdir().unwrap();
     reproduce(folder.path(), "table1/parabola-40x40-narrow");
+    assert!(folder.path().join("run/figures/figure5-local.csv").exists());
     let row = "table1/parabola-40x40-medium";
     let told = said(folder.path(), &["reproduce", "--out", "run", "--only", row, "--data-sets", "1", "--no-figures"]);
     assert!(told.contains("written: run/report.md and results.json"), "{told}");
-    assert!(!folder.path().join("run/figures/overview.json").exists());
+    for name in ["figures/overview.json", "figures/overview.svg", "figures/figure5-local.csv", "report.html"] {
+        assert!(!folder.path().join("run").join(name).exists(), "{name}");
+    }
     let told = said(folder.path(), &["report", "--from", "run", "--out", "elsewhere"]);
-    assert!(told.contains("not drawn") && told.contains("overview, figure1"), "{told}");
+    assert!(told.contains("not drawn: overview, figure1"), "{told}");
     assert!(folder.path().join("elsewhere/report.html").exists());
     assert!(!folder.path().join("elsewhere/results.json").exists());
 }

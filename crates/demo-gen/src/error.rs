@@ -179,7 +179,7 @@ pub enum DemoGenError {
         /// The clearance given, in metres.
         clearance: f64,
     },
-    /// Joints cannot move so far from one sample to the next.
+    /// No joint can move by that from one sample to the next.
     #[error("stride {stride}: it must be a number of radians above 0")]
     Stride {
         /// The stride given, in radians, or metres where a joint slides.

@@ -52,8 +52,8 @@ impl LinkGaps {
         &self.widening
     }
 
-    /// Whether a step that leads to the gaps `after` is allowed: nothing touches that did not, and no gap but one that
-    /// was an overlap is too narrow.
+    /// Whether a step that leads to the gaps `after` is allowed: nothing touches that did not, and no gap but one of
+    /// links that touched is too narrow.
     pub(crate) fn allow(&self, after: &LinkGaps) -> bool {
         after.touching.iter().all(|pair| self.touching.contains(pair)) && self.too_narrow(after).is_empty()
     }
@@ -77,9 +77,8 @@ impl LinkGaps {
     fn too_narrow(&self, after: &LinkGaps) -> Vec<usize> {
         let narrow = |row: &usize| {
             let (links, gap) = after.near[*row];
-            let overlapped = self.near.iter().any(|(pair, gap)| *pair == links && *gap <= 0.0);
-            let touches_now = after.touching.contains(&links) && !self.touching.contains(&links);
-            !overlapped && (gap < LEAST * self.gap(links) || touches_now)
+            let touched = self.touching.contains(&links);
+            !touched && (gap < LEAST * self.gap(links) || after.touching.contains(&links))
         };
         (0..after.near.len()).filter(narrow).collect()
     }

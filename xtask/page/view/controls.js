@@ -36,7 +36,7 @@ class Options {
   }
 }
 
-/** Metres by which the robot has to miss what its policy wants for both to be told. */
+/** Metres by which the distances of robot and policy have to differ for both to be told. */
 const WORTH_TELLING = 0.001;
 const SPEEDS = [1, 2, 5, 10, 20];
 

@@ -51,7 +51,7 @@ pub(super) fn right() -> Figure {
                   that rule.",
         ),
         differs: Some(
-            "with much noise φ is no lower than Nπ; by the paper’s rule (9) 5\u{a0}% of noise leave nothing to learn.",
+            "with much noise φ is no lower than Nπ, in the paper it is throughout; by rule (9) 5 % of noise leave nothing to learn, where the paper’s errors stay below 1.",
         ),
         experiment: Some("figure6_right"),
         needs: &["figure6_right"],

@@ -27,7 +27,7 @@ pub(crate) fn figure() -> Figure {
              mend that (`docs/decisions/table2.md`). The naive learner's planes are velocities, which do vanish at the ball.",
         ),
         differs: Some(
-            "in the full run the hands of policy-align run past the ball and end 20\u{a0}cm from where they should take it (naive 2\u{a0}cm); \
+            "in the full run the hands of policy-align run past the ball and end 20 cm from where they should take it (naive 2 cm); \
              the paper’s stay close to the expert’s.",
         ),
         experiment: Some("table2"),

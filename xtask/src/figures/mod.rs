@@ -170,7 +170,8 @@ impl Sources {
     /// A document, which has to be there.
     fn document<D: DeserializeOwned>(&self, id: &str) -> anyhow::Result<D> {
         let value = self.documents.get(id).with_context(|| format!("figure data {id} is missing"))?;
-        D::deserialize(value).with_context(|| format!("figure data {id} has another form; run `cargo xtask reproduce`"))
+        D::deserialize(value)
+            .with_context(|| format!("figure data {id} has another form; the command of its run writes it again"))
     }
 }
 

@@ -107,7 +107,11 @@ fn explanations(compared: &Compared<'_>) -> String {
     }
     let word = |(line, word): &(Line<'_>, &str)| format!("- `{}`, {}: {word}\n", line.row.id, line.measure.name());
     let words: String = compared.standing_out().iter().map(word).collect();
-    if words.is_empty() { words } else { format!("What stands out:\n\n{words}\n") }
+    if words.is_empty() {
+        words
+    } else {
+        format!("What stands out (numbers quoted are of the full run of seed 1):\n\n{words}\n")
+    }
 }
 
 #[cfg(test)]

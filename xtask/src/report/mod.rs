@@ -40,7 +40,7 @@ impl Report {
         let sources = from.sources()?;
         sources.results.check_known(&experiments)?;
         if !sources.missing.is_empty() {
-            say(&missing(&sources));
+            say(&missing(&sources, &from));
         }
         write_report(&experiments, &sources, &out)?;
         say(&written(&out));
@@ -77,24 +77,29 @@ pub(crate) fn written(out: &RunFolder) -> String {
 }
 
 /// What cannot be drawn, and what to do about it.
-fn missing(sources: &Sources) -> String {
-    let undrawn = figures().into_iter().filter(|figure| figure.misses(sources));
-    let undrawn: Vec<&str> = undrawn.map(|figure| figure.id).collect();
+fn missing(sources: &Sources, from: &RunFolder) -> String {
+    let ids: Vec<&str> = undrawn(sources).iter().map(|figure| figure.id).collect();
     format!(
-        "not drawn, as the run has no figure data {}: {}; `{}` computes them",
+        "not drawn: {}, as the run has no figure data {}; `{}` computes them",
+        ids.join(", "),
         sources.missing.join(", "),
-        undrawn.join(", "),
-        sources.results.run.command
+        from.command(&sources.results)
     )
 }
 
+/// Figures that are not drawn only because their figure data are missing.
+fn undrawn(sources: &Sources) -> Vec<Figure> {
+    figures().into_iter().filter(|figure| figure.misses(sources)).collect()
+}
+
 /// The committed results of a seed other than this run's, to hold beside it; none for a quick run.
-fn results_of_another_seed(results: &Results) -> anyhow::Result<Option<Results>> {
+fn results_of_another_seed(results: &Results) -> Option<Results> {
     let other = RunFolder::committed(if results.seed == 2 { 1 } else { 2 });
     if results.quick || !other.is_finished() {
-        return Ok(None);
+        return None;
     }
-    other.results().map(Some)
+    let other = other.results().map_err(|error| say(&format!("shown without the committed run: {error:#}")));
+    other.ok()
 }
 
 /// Draws every figure that there are numbers for.
@@ -106,6 +111,7 @@ pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Vec<(Figure, Drawing)>> 
 
 /// Writes `report.html`, `report.md` and `figures/`.
 pub(crate) fn write_report(experiments: &[Experiment], sources: &Sources, out: &RunFolder) -> anyhow::Result<()> {
+    let drawn = draw(sources)?;
     out.make()?;
     figures().iter().filter(|figure| !figure.can_be_drawn(sources)).try_for_each(|figure| out.forget(figure))?;
     let keep = |(figure, drawing): (Figure, Drawing)| {
@@ -118,8 +124,8 @@ pub(crate) fn write_report(experiments: &[Experiment], sources: &Sources, out: &
         }
         Ok((figure, svg))
     };
-    let figures = draw(sources)?.into_par_iter().map(keep).collect::<anyhow::Result<_>>()?;
-    let second = results_of_another_seed(&sources.results)?;
+    let figures = drawn.into_par_iter().map(keep).collect::<anyhow::Result<_>>()?;
+    let second = results_of_another_seed(&sources.results);
     let contents = page::Contents { experiments, sources, second: second.as_ref(), figures };
     write(&out.join("report.html"), page::page(&contents))?;
     write(&out.join("report.md"), markdown(experiments, &sources.results, second.as_ref()))
@@ -127,7 +133,7 @@ pub(crate) fn write_report(experiments: &[Experiment], sources: &Sources, out: &
 
 /// Writes `report.md` alone.
 pub(crate) fn write_tables(experiments: &[Experiment], results: &Results, out: &RunFolder) -> anyhow::Result<()> {
-    let second = results_of_another_seed(results)?;
+    let second = results_of_another_seed(results);
     write(&out.join("report.md"), markdown(experiments, results, second.as_ref()))
 }
 

@@ -25,7 +25,7 @@ pub(super) fn figure() -> Figure {
                   cylinder of radius r around it. (d), (e) Errors of policy-align at the test samples between the planes \
                   or within the cylinder: mean and standard deviation over data sets.",
         beside_paper: Some(
-            "In the full run of seed 1, as in the paper, φ and π start low and rise with d, are high close to the line already, \
+            "In the full run of seed 1, as in the paper, φ and π start low and rise with d (d), are high close to the line already (e), \
                   and Nπ is low everywhere: what is unknown is the potential along the line. What differs: with d the paper's φ and \
                   π rise to .6–.7, ours φ from .013 to .26 and π from .18 to .43, about the errors of all samples, as they must \
                   where nearly all are counted (printed: .17 and .35); with r ours fall, φ from .48 to .29 and π from .62 \

@@ -25,7 +25,7 @@ fn coded(text: &str) -> Markup {
 
 /// Words, of which those that are terms are not broken.
 fn termed(text: &str) -> Markup {
-    let text = text.replace(" = ", "\u{a0}=\u{a0}");
+    let text = text.replace(" = ", "\u{a0}=\u{a0}").replace(" %", "\u{a0}%").replace(" cm", "\u{a0}cm");
     html! {
         @for word in words(&text) {
             @if is_term(word) { span .term { (powers(word.trim_end())) } @if word.ends_with(' ') { " " } }

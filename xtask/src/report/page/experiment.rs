@@ -1,4 +1,4 @@
-//! An experiment: its tables, what stands out, what the paper leaves open, its figures.
+//! An experiment: its tables, its figures, what stands out, what the paper leaves open.
 
 use maud::{Markup, html};
 
@@ -80,6 +80,7 @@ fn standing_out(compared: &Compared<'_>) -> Markup {
     html! {
         @if !compared.is_glimpse() && !cells.is_empty() {
             h3 { "What stands out" }
+            p .minor { "Numbers quoted here are of the full run of seed 1." }
             dl .reasons {
                 // Neighbours of which the same is to be said stand together.
                 @for alike in cells.chunk_by(|(_, a), (_, b)| a == b) {

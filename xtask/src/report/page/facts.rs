@@ -2,10 +2,11 @@
 
 use maud::{Markup, html};
 
-use super::Contents;
+use super::{Contents, figure};
 use crate::experiments::Setup;
 use crate::report::compared::Compared;
 use crate::report::tally::Tally;
+use crate::report::undrawn;
 use crate::results::Results;
 
 /// Seconds from which a time is told in minutes.
@@ -34,10 +35,18 @@ pub(super) fn facts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
                 div { dt { "Beside it" } dd { "the committed run of seed " (second.seed) ". " (beside(second, all)) } }
             }
         }
-        @if !contents.sources.missing.is_empty() {
+        (missing(contents))
+    }
+}
+
+/// Figures that would be here if their data were.
+fn missing(contents: &Contents<'_>) -> Markup {
+    let names: Vec<&str> = undrawn(contents.sources).iter().map(figure::name).collect();
+    html! {
+        @if !names.is_empty() {
             p .notice {
-                "Some figures are not drawn: the run has no figure data " (contents.sources.missing.join(", ")) ". "
-                code { (run.command) } " computes them."
+                "Not drawn, as their figure data are missing: " (names.join("; ")) ". " code { (contents.sources.results.run.command) }
+                " computes them."
             }
         }
     }

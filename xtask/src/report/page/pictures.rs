@@ -2,18 +2,26 @@
 
 use maud::{Markup, html};
 
+use super::emphasis::emphasised;
 use super::{Contents, figure};
+use crate::report::undrawn;
 
-/// The figures that are drawn and differ, each with what differs. A quick run is too coarse to tell.
+/// The figures of this run that differ, each with what differs. A quick run is too coarse to tell.
 pub(super) fn otherwise(contents: &Contents<'_>) -> Markup {
-    let differ = contents.figures.iter().filter_map(|(figure, _)| Some((figure, figure.differs?)));
-    let differ: Vec<_> = differ.collect();
+    let undrawn = undrawn(contents.sources);
+    let drawn = contents.figures.iter().map(|(figure, _)| (figure, true));
+    let all = drawn.chain(undrawn.iter().map(|figure| (figure, false)));
+    let differ: Vec<_> = all.filter_map(|(figure, drawn)| Some((figure, drawn, figure.differs?))).collect();
     html! {
         @if !contents.sources.results.quick && !differ.is_empty() {
             h2 .small { "Pictures that differ from the paper’s" }
             ul .differ {
-                @for (figure, words) in differ {
-                    li { a href={ "#figure-" (figure.id) } { (figure::name(figure)) } ": " (words) }
+                @for (figure, drawn, words) in differ {
+                    @let name = figure::name(figure);
+                    li {
+                        @if drawn { a href={ "#figure-" (figure.id) } { (name) } } @else { (name) }
+                        ": " (emphasised(words))
+                    }
                 }
             }
         }
