@@ -69,7 +69,10 @@ fn what_is_missing_is_said_and_not_drawn() {
     assert!(told.contains("run/figures/figure2.json is damaged") && told.contains("the command of its run"), "{told}");
     fs::write(figures.join("figure2.json"), "{}").unwrap();
     let told = refused(folder.path());
-    assert!(told.contains("figure2") && told.contains("another form") && told.contains("the command of its run"), "{told}");
+    assert!(
+        told.contains("figure2") && told.contains("another form") && told.contains("the command of its run"),
+        "{told}"
+    );
 }
 
 #[test]
