@@ -51,7 +51,8 @@ pub(super) fn right() -> Figure {
                   that rule.",
         ),
         differs: Some(
-            "with much noise φ is no lower than Nπ, in the paper it is throughout; by rule (9) 5 % of noise leave nothing to learn, where the paper’s errors stay below 1.",
+            "with much noise φ is no lower than Nπ, in the paper it is throughout; by rule (9) 5 % of noise leave nothing to \
+             learn, where the paper’s errors stay below 1.",
         ),
         experiment: Some("figure6_right"),
         needs: &["figure6_right"],

@@ -88,7 +88,7 @@ fn view(title: &str, camera: Camera, playback: &GraspPlayback, frame: &Frame) ->
     let ball = &playback.scene.ball;
     let (centre, radius) = (Point3::from(ball.centre), ball.diameter / 2.0);
     let mut items = walls(playback, frame);
-    items.push(Item::Ball { centre, radius, paint: Paint { color: "#f0e442", opacity: 0.45 } });
+    items.push(Item::Ball { centre, radius, paint: Paint { color: stage::BALL, opacity: 0.45 } });
     let mut over = vec![];
     for (id, who) in LEARNERS {
         for movement in movements(playback, id) {

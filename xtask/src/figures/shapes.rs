@@ -36,7 +36,7 @@ pub(super) fn posed(robot: &RobotModel, poses: &LinkPoses<'_>) -> anyhow::Result
     let shape = |CollisionShape { link, origin, geometry }: &CollisionShape| {
         let (kind, size) = form(geometry)?;
         let pose = poses.pose(*link) * origin;
-        let (translation, rotation) = numbers(&pose);
+        let (translation, rotation) = seen(&pose);
         Ok(Shape { link: robot.link_name(*link).to_owned(), kind, size, translation, rotation })
     };
     robot.collision_shapes()?.iter().map(shape).collect()
@@ -52,11 +52,16 @@ pub(super) fn form(geometry: &Geometry) -> anyhow::Result<(Kind, Vec<f64>)> {
     })
 }
 
-/// A pose as documents hold it.
+/// Translation, and rotation by rows.
 pub(super) fn numbers(pose: &IsometryMatrix3<f64>) -> ([f64; 3], [f64; 9]) {
     let rotation = pose.rotation.matrix();
-    let place = |i: usize| rounded(pose.translation.vector[i], 5);
-    (std::array::from_fn(place), std::array::from_fn(|i| rounded(rotation[(i / 3, i % 3)], 6)))
+    (pose.translation.vector.into(), std::array::from_fn(|at| rotation[(at / 3, at % 3)]))
+}
+
+/// The same, to a hundredth of a millimetre: what can be seen.
+pub(super) fn seen(pose: &IsometryMatrix3<f64>) -> ([f64; 3], [f64; 9]) {
+    let (translation, rotation) = numbers(pose);
+    (translation.map(|value| rounded(value, 5)), rotation.map(|value| rounded(value, 6)))
 }
 
 /// A pose that a document holds.
@@ -132,7 +137,7 @@ mod tests {
     fn a_document_keeps_a_pose_to_a_hundredth_of_a_millimetre() {
         let rotation = Rotation3::from_euler_angles(0.3, -1.2, 2.5);
         let whole = IsometryMatrix3::from_parts(Translation3::new(0.123456789, -4.0, 0.7), rotation);
-        let (translation, rotation) = numbers(&whole);
+        let (translation, rotation) = seen(&whole);
         let point = Point3::new(0.3, -0.2, 0.5);
         assert!((pose(&translation, &rotation) * point - whole * point).norm() < 1e-5);
     }

@@ -38,7 +38,7 @@ pub(super) fn robot(robot: &Robot, joints: &[f64], paint: impl Fn(&str) -> Paint
     let poses = poses(robot, joints);
     let posed = robot.shapes.iter().map(|shape| {
         let pose = poses[shape.link] * shapes::pose(&shape.translation, &shape.rotation);
-        let (translation, rotation) = shapes::numbers(&pose);
+        let (translation, rotation) = shapes::seen(&pose);
         let link = robot.links[shape.link].name.clone();
         Shape { link, kind: shape.kind, size: shape.size.clone(), translation, rotation }
     });

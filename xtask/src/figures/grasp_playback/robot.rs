@@ -6,7 +6,7 @@ use kinematics::{CollisionShape, Drive, DriveKind, LinkId, RobotModel};
 use nalgebra::IsometryMatrix3;
 use serde::{Deserialize, Serialize};
 
-use crate::figures::shapes::{Kind, form};
+use crate::figures::shapes::{Kind, form, numbers};
 
 /// Links and what they look like.
 #[derive(Serialize, Deserialize)]
@@ -95,10 +95,4 @@ fn shape(shape: &CollisionShape, place: impl Fn(LinkId) -> anyhow::Result<usize>
     let (kind, size) = form(&shape.geometry)?;
     let (translation, rotation) = numbers(&shape.origin);
     Ok(Shape { link: place(shape.link)?, kind, size, translation, rotation })
-}
-
-/// Translation, and rotation by rows.
-fn numbers(pose: &IsometryMatrix3<f64>) -> ([f64; 3], [f64; 9]) {
-    let rotation = pose.rotation.matrix();
-    (pose.translation.vector.into(), std::array::from_fn(|at| rotation[(at / 3, at % 3)]))
 }
