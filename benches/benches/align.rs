@@ -9,11 +9,11 @@ use criterion::{Criterion, criterion_group, criterion_main};
 fn align(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("align");
     group.sample_size(20);
-    for (count, n_states) in [(40, 2), (40, 6), (40, 22), (100, 2), (100, 6), (100, 22)] {
-        let demonstrations = toy_demonstrations(1, count, count, n_states);
+    for (count, dim) in [(40, 2), (40, 6), (40, 22), (100, 2), (100, 6), (100, 22)] {
+        let demonstrations = toy_demonstrations(1, count, count, dim);
         for (name, bandwidth) in [("narrow", Bandwidth::Narrow), ("wide", Bandwidth::Wide)] {
             let learner = PolicyAlign { bandwidth, ..Default::default() };
-            group.bench_function(format!("{count}x{count} n={n_states} {name}"), |bencher| {
+            group.bench_function(format!("{count}x{count} n={dim} {name}"), |bencher| {
                 bencher.iter(|| learner.align(std::hint::black_box(&demonstrations)).expect("sound data"));
             });
         }

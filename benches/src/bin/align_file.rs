@@ -42,7 +42,7 @@ fn read(path: &str) -> (Demonstrations, Bandwidth, usize) {
     let states: Vec<f64> = states.collect();
     let trajectories =
         states.chunks_exact(number(1) * number(2)).map(|t| DMatrix::from_column_slice(number(2), number(1), t));
-    let demonstrations = Demonstrations::from_positions(trajectories, 1.0).expect("the trajectories are sound");
+    let demonstrations = Demonstrations::from_states(trajectories, 1.0).expect("the trajectories are sound");
     assert_eq!(demonstrations.n_trajectories(), number(0), "the file is complete");
     (demonstrations, bandwidth, number(3))
 }

@@ -8,7 +8,7 @@ use rand::{SeedableRng, rngs::StdRng};
 
 #[allow(clippy::print_stdout)]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let demonstrations = Demonstrations::from_positions(recorded_movements(), 0.5)?;
+    let demonstrations = Demonstrations::from_states(recorded_movements(), 0.5)?;
 
     let aligned = PolicyAlign { bandwidth: Bandwidth::Medium, ..Default::default() }.align(&demonstrations)?;
     for warning in aligned.warnings() {

@@ -14,7 +14,7 @@ use crate::tiles::{ROWS, Tiles, row_groups};
 #[derive(Debug)]
 pub(crate) struct BlockSearch {
     arch: Arch,
-    n_states: usize,
+    dim: usize,
     n_rows: usize,
     row_groups: Vec<[f64; ROWS]>,
     /// For the samples of this trajectory, the nearest of the other.
@@ -26,9 +26,9 @@ pub(crate) struct BlockSearch {
 impl BlockSearch {
     /// A search with the vectors of one kind of machine, for which the other trajectories' tiles must be made.
     pub(crate) fn new(states: &DMatrix<f64>, arch: Arch) -> Self {
-        let (n_states, n_rows) = states.shape();
+        let (dim, n_rows) = states.shape();
         let (of_rows, of_columns) = (Minima::default(), Minima::default());
-        BlockSearch { arch, n_states, n_rows, row_groups: row_groups(states), of_rows, of_columns }
+        BlockSearch { arch, dim, n_rows, row_groups: row_groups(states), of_rows, of_columns }
     }
 
     /// Finds what is nearest for the samples of both trajectories, and the smallest squared distance of all.
@@ -36,7 +36,7 @@ impl BlockSearch {
         self.of_rows.reset(self.n_rows);
         self.of_columns.reset(other.n_samples);
         self.arch.dispatch(Block {
-            n_states: self.n_states,
+            dim: self.dim,
             n_rows: self.n_rows,
             row_groups: &self.row_groups,
             other: &other.coordinates,
@@ -48,7 +48,7 @@ impl BlockSearch {
 
 /// One pair of trajectories: rows are samples of the one, vector lanes samples of the other.
 struct Block<'a> {
-    n_states: usize,
+    dim: usize,
     n_rows: usize,
     row_groups: &'a [[f64; ROWS]],
     other: &'a [f64],
@@ -63,7 +63,7 @@ impl WithSimd for Block<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         // Few dimensions stay in registers; many are a loop whose start and end no longer matter.
-        match self.n_states {
+        match self.dim {
             1 => self.search(simd, |rows, tile| squared_distances::<S, 1>(simd, rows, tile)),
             2 => self.search(simd, |rows, tile| squared_distances::<S, 2>(simd, rows, tile)),
             3 => self.search(simd, |rows, tile| squared_distances::<S, 3>(simd, rows, tile)),
@@ -86,14 +86,14 @@ impl Block<'_> {
         let infinity = simd.splat_f64s(f64::INFINITY);
         let mut smallest = infinity;
 
-        for (group, rows) in self.row_groups.chunks_exact(self.n_states).enumerate() {
+        for (group, rows) in self.row_groups.chunks_exact(self.dim).enumerate() {
             let index: [usize; ROWS] = std::array::from_fn(|r| (ROWS * group + r).min(self.n_rows - 1));
             let names = index.map(|i| simd.splat_f64s(i as f64));
             let mut nearest = [infinity; ROWS];
             let mut samples = [infinity; ROWS];
             let mut here = lanes;
             let columns = column_distances.iter_mut().zip(column_samples.iter_mut());
-            for (tile, (column_distance, column_sample)) in tiles.chunks_exact(self.n_states).zip(columns) {
+            for (tile, (column_distance, column_sample)) in tiles.chunks_exact(self.dim).zip(columns) {
                 let distance = distances(rows, tile);
                 // Held in registers: a masked store that is read again at once would wait for memory.
                 let (mut column_nearest, mut column_row) = (*column_distance, *column_sample);
@@ -148,15 +148,15 @@ mod tests {
     use proptest::prelude::*;
 
     /// Few different coordinates, so that many samples are equally near; or arbitrary ones.
-    fn states(n_states: usize) -> impl Strategy<Value = DMatrix<f64>> {
+    fn states(dim: usize) -> impl Strategy<Value = DMatrix<f64>> {
         let coordinate = prop_oneof![(-2..3).prop_map(f64::from), -1.0..1.0];
         (1usize..40).prop_flat_map(move |n| {
-            vec(coordinate.clone(), n * n_states).prop_map(move |values| DMatrix::from_vec(n_states, n, values))
+            vec(coordinate.clone(), n * dim).prop_map(move |values| DMatrix::from_vec(dim, n, values))
         })
     }
 
     fn two_trajectories() -> impl Strategy<Value = (DMatrix<f64>, DMatrix<f64>)> {
-        (1usize..9).prop_flat_map(|n_states| (states(n_states), states(n_states)))
+        (1usize..9).prop_flat_map(|dim| (states(dim), states(dim)))
     }
 
     /// Every kind of vector that this machine has.

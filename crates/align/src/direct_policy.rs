@@ -70,13 +70,13 @@ fn observed(demonstrations: &Demonstrations, held_out: &[SampleIndex]) -> (DMatr
             }
         }
     }
-    let n = demonstrations.n_states();
+    let n = demonstrations.dim();
     let samples = states.len() / n;
     (DMatrix::from_vec(n, samples, states), DMatrix::from_vec(n, samples, velocities))
 }
 
 fn velocities_of(trajectory: &Trajectory) -> DMatrix<f64> {
-    let x = trajectory.positions();
+    let x = trajectory.states();
     let steps = x.ncols() - 1;
     let differences = || (x.columns(1, steps) - x.columns(0, steps)) / trajectory.time_step();
     trajectory.velocities().cloned().unwrap_or_else(differences)
@@ -93,7 +93,7 @@ pub struct DirectPolicy {
 impl DirectPolicy {
     /// Whether receptive fields take part in the action at this state, (n), in every dimension.
     pub fn supports(&self, state: DVectorView<'_, f64>) -> bool {
-        (0..self.n_states()).all(|output| self.learnt.predictor.value(state, output).is_some())
+        (0..self.dim()).all(|output| self.learnt.predictor.value(state, output).is_some())
     }
 
     /// The share of states (n, M), one column each, without support; 0 for no states.
@@ -122,14 +122,14 @@ impl DirectPolicy {
 }
 
 impl Policy for DirectPolicy {
-    fn n_states(&self) -> usize {
+    fn dim(&self) -> usize {
         self.learnt.model.n_in()
     }
 
     fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
-        assert_eq!(state.len(), self.n_states(), "a state has as many dimensions as the policy");
-        assert_eq!(action.len(), self.n_states(), "an action has as many dimensions as the policy");
-        for output in 0..self.n_states() {
+        assert_eq!(state.len(), self.dim(), "a state has as many dimensions as the policy");
+        assert_eq!(action.len(), self.dim(), "an action has as many dimensions as the policy");
+        for output in 0..self.dim() {
             action[output] = self.learnt.mean[output] + self.learnt.predictor.value(state, output).unwrap_or(0.0);
         }
     }

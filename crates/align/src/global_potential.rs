@@ -51,17 +51,17 @@ impl GlobalPotential {
 }
 
 impl Potential for GlobalPotential {
-    fn n_states(&self) -> usize {
+    fn dim(&self) -> usize {
         self.learnt.model.n_in()
     }
 
     fn value(&self, state: DVectorView<'_, f64>) -> f64 {
-        assert_eq!(state.len(), self.n_states(), "a state has as many dimensions as the potential");
+        assert_eq!(state.len(), self.dim(), "a state has as many dimensions as the potential");
         self.mean() + self.learnt.predictor.value(state, 0).unwrap_or(0.0)
     }
 
     fn gradient_into(&self, state: DVectorView<'_, f64>, mut gradient: DVectorViewMut<'_, f64>) {
-        assert_eq!(state.len(), self.n_states(), "a state has as many dimensions as the potential");
+        assert_eq!(state.len(), self.dim(), "a state has as many dimensions as the potential");
         if self.learnt.predictor.value_and_gradient_into(state, 0, gradient.as_view_mut()).is_none() {
             gradient.fill(0.0);
         }

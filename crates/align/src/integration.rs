@@ -31,7 +31,7 @@ impl Integration {
     }
 
     fn along(self, index: usize, trajectory: &Trajectory) -> Result<Vec<f64>, AlignError> {
-        let x = trajectory.positions();
+        let x = trajectory.states();
         let time_step = trajectory.time_step();
         let velocities = || trajectory.velocities().ok_or(AlignError::NoVelocities { trajectory: index });
         let values = match self {

@@ -28,7 +28,7 @@
 //!     let angle = f64::from(k);
 //!     DMatrix::from_fn(2, 60, |row, i| 0.9_f64.powi(i as i32) * if row == 0 { angle.cos() } else { angle.sin() })
 //! });
-//! let demonstrations = Demonstrations::from_positions(movements, 1.0)?;
+//! let demonstrations = Demonstrations::from_states(movements, 1.0)?;
 //!
 //! let aligned = PolicyAlign { bandwidth: Bandwidth::Medium, ..Default::default() }.align(&demonstrations)?;
 //! assert_eq!(aligned.kept().len(), 8);

@@ -37,7 +37,7 @@ impl<'a> LocalPotential<'a> {
     /// # Panics
     /// If the state has another dimension than the trajectory.
     pub fn nearest(&self, state: DVectorView<'_, f64>) -> (usize, f64) {
-        assert_eq!(state.len(), self.trajectory.n_states(), "a state has as many dimensions as the trajectory");
+        assert_eq!(state.len(), self.trajectory.dim(), "a state has as many dimensions as the trajectory");
         let distance = |sample| {
             let other = self.trajectory.state(sample);
             state.iter().zip(other.iter()).map(|(x, y)| (x - y) * (x - y)).sum::<f64>()

@@ -41,10 +41,10 @@ impl NearestSamples {
         check_span(demonstrations)?;
         let trajectories = demonstrations.trajectories();
         let arch = Arch::new();
-        let tiles: Vec<_> = trajectories.iter().map(|t| Tiles::new(t.positions(), arch)).collect();
+        let tiles: Vec<_> = trajectories.iter().map(|t| Tiles::new(t.states(), arch)).collect();
         let groups: Vec<_> = trajectories.iter().map(|t| groups_of(t.n_samples())).collect();
         let blocks = (0..trajectories.len()).into_par_iter().map(|i| {
-            let mut search = BlockSearch::new(trajectories[i].positions(), arch);
+            let mut search = BlockSearch::new(trajectories[i].states(), arch);
             let mut of_rows = NearestList::with_capacity(groups[i] * (groups.len() - i));
             let mut of_columns = NearestList::with_capacity(groups[i..].iter().sum());
             for later in &tiles[i..] {
@@ -123,12 +123,12 @@ fn whole(number: f64) -> u32 {
 /// Squared distances are finite if the diagonal of the data's bounding box is.
 fn check_span(demonstrations: &Demonstrations) -> Result<(), AlignError> {
     let span = |dimension: usize| {
-        let states = demonstrations.trajectories().iter().flat_map(|t| t.positions().column_iter());
+        let states = demonstrations.trajectories().iter().flat_map(|t| t.states().column_iter());
         let extend = |(low, high): (f64, f64), x: f64| (low.min(x), high.max(x));
         let (low, high) = states.map(|state| state[dimension]).fold((f64::INFINITY, f64::NEG_INFINITY), extend);
         high - low
     };
-    let spans: Vec<f64> = (0..demonstrations.n_states()).map(span).collect();
+    let spans: Vec<f64> = (0..demonstrations.dim()).map(span).collect();
     if spans.iter().map(|span| span * span).sum::<f64>().is_finite() {
         return Ok(());
     }

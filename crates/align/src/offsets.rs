@@ -61,7 +61,7 @@ mod tests {
         potentials: &[Vec<f64>],
         sigma_squared: f64,
     ) -> (Vec<usize>, DVector<f64>, f64) {
-        let demonstrations = Demonstrations::from_positions(positions.to_vec(), 1.0).unwrap();
+        let demonstrations = Demonstrations::from_states(positions.to_vec(), 1.0).unwrap();
         let nearest = NearestSamples::search(&demonstrations).unwrap();
         let responsibilities = Responsibilities::new(&nearest, potentials, sigma_squared, 1e-20);
         let objective = AlignmentObjective::new(&responsibilities);

@@ -41,7 +41,7 @@ impl<'a> Samples<'a> {
 
     /// States (n, M), one column a sample.
     pub fn states(&self) -> DMatrix<f64> {
-        let mut states = DMatrix::zeros(self.aligned.demonstrations().n_states(), self.len());
+        let mut states = DMatrix::zeros(self.aligned.demonstrations().dim(), self.len());
         states.column_iter_mut().zip(self).for_each(|(mut column, (state, _))| column.copy_from(&state));
         states
     }

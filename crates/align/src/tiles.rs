@@ -17,11 +17,11 @@ pub(crate) struct Tiles {
 impl Tiles {
     /// Tiles for the vectors of one kind of machine.
     pub(crate) fn new(positions: &DMatrix<f64>, arch: Arch) -> Self {
-        let (n_states, n_samples) = positions.shape();
+        let (dim, n_samples) = positions.shape();
         let lanes = arch.dispatch(LaneCount);
-        let mut coordinates = vec![f64::INFINITY; n_samples.next_multiple_of(lanes) * n_states];
+        let mut coordinates = vec![f64::INFINITY; n_samples.next_multiple_of(lanes) * dim];
         for (sample, state) in positions.column_iter().enumerate() {
-            let first = (sample / lanes) * lanes * n_states + sample % lanes;
+            let first = (sample / lanes) * lanes * dim + sample % lanes;
             let places = coordinates[first..].iter_mut().step_by(lanes);
             places.zip(state.iter()).for_each(|(place, &value)| *place = value);
         }

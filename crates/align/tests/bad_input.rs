@@ -22,7 +22,7 @@ fn sound() -> Vec<DMatrix<f64>> {
 }
 
 fn observed(positions: Vec<DMatrix<f64>>) -> Demonstrations {
-    Demonstrations::from_positions(positions, 0.1).unwrap()
+    Demonstrations::from_states(positions, 0.1).unwrap()
 }
 
 fn with(change: impl Fn(&mut PolicyAlign)) -> PolicyAlign {
@@ -42,7 +42,7 @@ fn what_is_refused() {
         trajectories[0] = trajectories[0].clone().with_velocities(velocities).unwrap();
         Demonstrations::new(trajectories).unwrap()
     };
-    let steep = || Demonstrations::from_positions([line([0.0, 0.0], [1e5, 0.0], 4)], 1e-300).unwrap();
+    let steep = || Demonstrations::from_states([line([0.0, 0.0], [1e5, 0.0], 4)], 1e-300).unwrap();
     let single = || observed(vec![line([0.0, 0.0], [1.0, 1.0], 5)]);
     let duplicates = |pairs| AlignError::ZeroBandwidth { pairs };
     let parameter = |name, value, requirement| AlignError::Parameter { name, value, requirement };
@@ -118,7 +118,7 @@ fn what_is_refused() {
         (
             "too far apart",
             with(|_| {}),
-            Demonstrations::from_positions(
+            Demonstrations::from_states(
                 [line([0.0, -1e200], [1.0, -1e200], 3), line([0.0, 1e200], [1.0, 1e200], 3)],
                 1.0,
             )
@@ -142,7 +142,7 @@ fn what_is_refused() {
         (
             "as far apart as can be",
             with(|_| {}),
-            Demonstrations::from_positions(
+            Demonstrations::from_states(
                 [line([0.0, -1e308], [1.0, -1e308], 3), line([0.0, 1e308], [1.0, 1e308], 3)],
                 1.0,
             )
@@ -207,7 +207,7 @@ fn what_the_regression_refuses() {
 /// Everything that a learner can be asked, and that none of it is NaN.
 fn assert_finite(name: &str, aligned: &Aligned) {
     let size = aligned.samples().states().amax().max(f64::MIN_POSITIVE);
-    let norm_in = Some(DVector::from_element(aligned.demonstrations().n_states(), size));
+    let norm_in = Some(DVector::from_element(aligned.demonstrations().dim(), size));
     let params = LwprParams { norm_in, ..Default::default() };
     let learnt = aligned.learn(&params, &mut StdRng::seed_from_u64(1)).unwrap();
     assert!(aligned.offsets().iter().all(|offset| offset.is_finite()), "{name}");

@@ -29,7 +29,7 @@ fn check(text: &str) {
     let case: Value = serde_json::from_str(text).unwrap();
     let name = &case["name"];
     let positions = case["states"].as_array().unwrap().iter().map(matrix);
-    let demonstrations = Demonstrations::from_positions(positions, 1.0).unwrap();
+    let demonstrations = Demonstrations::from_states(positions, 1.0).unwrap();
     let learner = PolicyAlign { bandwidth: bandwidth(&case["bandwidth"]), ..Default::default() };
     let aligned = learner.align(&demonstrations).unwrap();
 

@@ -53,7 +53,7 @@ proptest! {
         demonstrations in drawn::demonstrations(2), integration in drawn::integration(), bandwidth in drawn::bandwidth(),
         basis in vec(-1.0..1.0, 49), shift in vec(-3.0..3.0, 7),
     ) {
-        let n = demonstrations.n_states();
+        let n = demonstrations.dim();
         let rotation = DMatrix::from_column_slice(n, n, &basis[..n * n]).qr().q();
         let shift = DVector::from_column_slice(&shift[..n]);
         let turn = |x: &DMatrix<f64>| &rotation * x;

@@ -213,7 +213,7 @@ fn held_out_samples_are_not_learnt() {
 #[test]
 fn velocities_are_differences_where_none_were_recorded() {
     let x = DMatrix::from_row_slice(1, 4, &[0.0, 1.0, 4.0, 5.0]);
-    let demonstrations = Demonstrations::from_positions([x], 0.5).unwrap();
+    let demonstrations = Demonstrations::from_states([x], 0.5).unwrap();
     let naive = DirectPolicyLearning::default().learn(&demonstrations, &mut rng(14)).unwrap();
     assert!((naive.mean()[0] - 5.0 / 1.5).abs() < 1e-14);
     assert_eq!(naive.model().n_data(), 30);

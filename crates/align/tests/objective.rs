@@ -110,13 +110,13 @@ proptest! {
     ) {
         let aligned = PolicyAlign { bandwidth, ..Default::default() }.align(&demonstrations).unwrap();
         // At a state far from all data the weights themselves underflow.
-        let state = DVector::from_element(demonstrations.n_states(), far);
+        let state = DVector::from_element(demonstrations.dim(), far);
         let shares = aligned.responsibilities(state.as_view());
         prop_assert!(shares.iter().all(|share| (0.0..=1.0).contains(share)));
         prop_assert!((shares.sum() - 1.0).abs() < 1e-12);
 
         // Where squared distances overflow, all are equally far.
-        let beyond = DVector::from_element(demonstrations.n_states(), 1e200_f64.copysign(far));
+        let beyond = DVector::from_element(demonstrations.dim(), 1e200_f64.copysign(far));
         let equal = 1.0 / demonstrations.n_trajectories() as f64;
         let shares = aligned.responsibilities(beyond.as_view());
         prop_assert!(shares.iter().all(|share| close(*share, equal, 1.0)));
@@ -126,7 +126,7 @@ proptest! {
 
         // At the samples they are those of the literal formula.
         let literal = Literal::new(&demonstrations, Integration::Displacement, bandwidth, 0.0);
-        let states = demonstrations.trajectories().iter().flat_map(|t| t.positions().column_iter());
+        let states = demonstrations.trajectories().iter().flat_map(|t| t.states().column_iter());
         for (state, expected) in states.zip(&literal.shares) {
             let shares = aligned.responsibilities(state.as_view());
             prop_assert!(shares.iter().zip(expected).all(|(a, b)| close(*a, *b, 1.0)));

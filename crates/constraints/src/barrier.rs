@@ -93,19 +93,19 @@ impl Barrier {
 }
 
 impl PfaffianConstraint for Barrier {
-    fn n_states(&self) -> usize {
+    fn dim(&self) -> usize {
         3 * self.n_points
     }
 
     fn matrix(&self, state: DVectorView<'_, f64>, _time: f64) -> DMatrix<f64> {
-        assert_eq!(state.len(), self.n_states(), "a state has three coordinates for each point");
+        assert_eq!(state.len(), self.dim(), "a state has three coordinates for each point");
         let position = |point: usize| Point3::new(state[3 * point], state[3 * point + 1], state[3 * point + 2]);
         let blocked: Vec<(usize, Vector3<f64>)> = (0..self.n_points)
             .flat_map(|point| self.plates.iter().map(move |plate| (point, plate)))
             .filter(|&(point, plate)| plate.blocks(&position(point), self.reach))
             .map(|(point, plate)| (point, *plate.normal))
             .collect();
-        let mut matrix = DMatrix::zeros(blocked.len(), self.n_states());
+        let mut matrix = DMatrix::zeros(blocked.len(), self.dim());
         for (row, (point, normal)) in blocked.into_iter().enumerate() {
             matrix.fixed_view_mut::<1, 3>(row, 3 * point).tr_copy_from(&normal);
         }

@@ -18,7 +18,7 @@ use crate::{ConstraintError, NullSpaceProjector};
 /// }
 ///
 /// impl PfaffianConstraint for Wall {
-///     fn n_states(&self) -> usize {
+///     fn dim(&self) -> usize {
 ///         2
 ///     }
 ///
@@ -36,7 +36,7 @@ use crate::{ConstraintError, NullSpaceProjector};
 /// ```
 pub trait PfaffianConstraint: Send + Sync {
     /// Dimension n of the state.
-    fn n_states(&self) -> usize;
+    fn dim(&self) -> usize;
 
     /// A(x,t), (k, n), at a state (n) and a time in seconds. k may be 0, may exceed n, and rows may depend on each
     /// other; the rows' units and lengths do not matter.
@@ -52,8 +52,8 @@ pub trait PfaffianConstraint: Send + Sync {
         time: f64,
     ) -> Result<NullSpaceProjector, ConstraintError> {
         let matrix = self.matrix(state, time);
-        if matrix.ncols() != self.n_states() {
-            return Err(ConstraintError::Columns { found: matrix.ncols(), expected: self.n_states() });
+        if matrix.ncols() != self.dim() {
+            return Err(ConstraintError::Columns { found: matrix.ncols(), expected: self.dim() });
         }
         NullSpaceProjector::new(&matrix)
     }
@@ -63,16 +63,16 @@ pub trait PfaffianConstraint: Send + Sync {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Unconstrained {
     /// Dimension n of the state.
-    pub n_states: usize,
+    pub dim: usize,
 }
 
 impl PfaffianConstraint for Unconstrained {
-    fn n_states(&self) -> usize {
-        self.n_states
+    fn dim(&self) -> usize {
+        self.dim
     }
 
     fn matrix(&self, _state: DVectorView<'_, f64>, _time: f64) -> DMatrix<f64> {
-        DMatrix::zeros(0, self.n_states)
+        DMatrix::zeros(0, self.dim)
     }
 }
 
@@ -80,8 +80,8 @@ impl PfaffianConstraint for Unconstrained {
 macro_rules! behind {
     ($($pointer:ty),*) => {$(
         impl<C: PfaffianConstraint + ?Sized> PfaffianConstraint for $pointer {
-            fn n_states(&self) -> usize {
-                (**self).n_states()
+            fn dim(&self) -> usize {
+                (**self).dim()
             }
 
             fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> DMatrix<f64> {

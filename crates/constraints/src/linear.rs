@@ -22,7 +22,7 @@ impl LinearConstraint {
 }
 
 impl PfaffianConstraint for LinearConstraint {
-    fn n_states(&self) -> usize {
+    fn dim(&self) -> usize {
         self.matrix.ncols()
     }
 

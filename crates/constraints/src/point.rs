@@ -33,17 +33,17 @@ use crate::{ConstraintError, PfaffianConstraint};
 #[derive(Debug, Clone)]
 pub struct PointConstraint<J> {
     normals: DMatrix<f64>,
-    n_states: usize,
+    dim: usize,
     jacobian: J,
 }
 
 impl<J: Fn(DVectorView<'_, f64>, DMatrixViewMut<'_, f64>) + Send + Sync> PointConstraint<J> {
     /// The constraint that forbids motion along the rows of `normals` (k, m), of any length, to a point in m dimensions
-    /// (2 or 3) whose `jacobian` (m, n) belongs to a state of dimension n = `n_states`.
+    /// (2 or 3) whose `jacobian` (m, n) belongs to a state of dimension n = `dim`.
     ///
     /// # Errors
     /// [`ConstraintError::NoNormal`] without a row, [`ConstraintError::Normal`] for a row that is zero or not finite.
-    pub fn new(normals: DMatrix<f64>, n_states: usize, jacobian: J) -> Result<Self, ConstraintError> {
+    pub fn new(normals: DMatrix<f64>, dim: usize, jacobian: J) -> Result<Self, ConstraintError> {
         if normals.is_empty() {
             return Err(ConstraintError::NoNormal);
         }
@@ -54,7 +54,7 @@ impl<J: Fn(DVectorView<'_, f64>, DMatrixViewMut<'_, f64>) + Send + Sync> PointCo
         if let Some(row) = bad {
             return Err(ConstraintError::Normal { row, normal: normals.row(row).iter().copied().collect() });
         }
-        Ok(PointConstraint { normals, n_states, jacobian })
+        Ok(PointConstraint { normals, dim, jacobian })
     }
 
     /// The directions in which the point may not move, (k, m).
@@ -64,12 +64,12 @@ impl<J: Fn(DVectorView<'_, f64>, DMatrixViewMut<'_, f64>) + Send + Sync> PointCo
 }
 
 impl<J: Fn(DVectorView<'_, f64>, DMatrixViewMut<'_, f64>) + Send + Sync> PfaffianConstraint for PointConstraint<J> {
-    fn n_states(&self) -> usize {
-        self.n_states
+    fn dim(&self) -> usize {
+        self.dim
     }
 
     fn matrix(&self, state: DVectorView<'_, f64>, _time: f64) -> DMatrix<f64> {
-        let mut jacobian = DMatrix::from_element(self.normals.ncols(), self.n_states, f64::NAN);
+        let mut jacobian = DMatrix::from_element(self.normals.ncols(), self.dim, f64::NAN);
         (self.jacobian)(state, jacobian.as_view_mut());
         &self.normals * jacobian
     }

@@ -43,12 +43,12 @@ impl NullSpaceProjector {
     }
 
     /// N = I: nothing is constrained.
-    pub fn identity(n_states: usize) -> Self {
-        NullSpaceProjector { row_space: DMatrix::zeros(n_states, 0) }
+    pub fn identity(dim: usize) -> Self {
+        NullSpaceProjector { row_space: DMatrix::zeros(dim, 0) }
     }
 
     /// Dimension n of the state.
-    pub fn n_states(&self) -> usize {
+    pub fn dim(&self) -> usize {
         self.row_space.nrows()
     }
 
@@ -62,8 +62,8 @@ impl NullSpaceProjector {
     /// # Panics
     /// If v has another length than n.
     pub fn project_into(&self, mut vector: DVectorViewMut<'_, f64>) {
-        assert_eq!(vector.len(), self.n_states(), "the projector of an n-dimensional state takes vectors of length n");
-        if self.rank() == self.n_states() {
+        assert_eq!(vector.len(), self.dim(), "the projector of an n-dimensional state takes vectors of length n");
+        if self.rank() == self.dim() {
             // Nothing is free. Subtraction would leave rounding, and a system that cannot move would creep.
             vector.fill(0.0);
         } else {
@@ -83,7 +83,7 @@ impl NullSpaceProjector {
 
     /// N itself, (n, n).
     pub fn matrix(&self) -> DMatrix<f64> {
-        let mut matrix = DMatrix::identity(self.n_states(), self.n_states());
+        let mut matrix = DMatrix::identity(self.dim(), self.dim());
         for mut column in matrix.column_iter_mut() {
             self.project_into(column.as_view_mut());
         }

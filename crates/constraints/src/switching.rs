@@ -8,7 +8,7 @@ use crate::{ConstraintError, NullSpaceProjector, PfaffianConstraint, Unconstrain
 /// For phases of different types take `Switching<Box<dyn PfaffianConstraint>>`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Switching<C> {
-    n_states: usize,
+    dim: usize,
     phases: Vec<(f64, C)>,
 }
 
@@ -18,22 +18,18 @@ impl<C: PfaffianConstraint> Switching<C> {
     /// # Errors
     /// [`ConstraintError::NoPhase`], [`ConstraintError::StartTime`] or [`ConstraintError::PhaseDimension`].
     pub fn new(phases: Vec<(f64, C)>) -> Result<Self, ConstraintError> {
-        let n_states = phases.first().ok_or(ConstraintError::NoPhase)?.1.n_states();
+        let dim = phases.first().ok_or(ConstraintError::NoPhase)?.1.dim();
         let mut previous = f64::NEG_INFINITY;
         for (phase, (start, constraint)) in phases.iter().enumerate() {
             if !(start.is_finite() && *start > previous) {
                 return Err(ConstraintError::StartTime { phase, start: *start });
             }
-            if constraint.n_states() != n_states {
-                return Err(ConstraintError::PhaseDimension {
-                    phase,
-                    found: constraint.n_states(),
-                    expected: n_states,
-                });
+            if constraint.dim() != dim {
+                return Err(ConstraintError::PhaseDimension { phase, found: constraint.dim(), expected: dim });
             }
             previous = *start;
         }
-        Ok(Switching { n_states, phases })
+        Ok(Switching { dim, phases })
     }
 
     /// The constraint that holds at `time`, or none before the first start.
@@ -44,14 +40,14 @@ impl<C: PfaffianConstraint> Switching<C> {
 }
 
 impl<C: PfaffianConstraint> PfaffianConstraint for Switching<C> {
-    fn n_states(&self) -> usize {
-        self.n_states
+    fn dim(&self) -> usize {
+        self.dim
     }
 
     fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> DMatrix<f64> {
         match self.at(time) {
             Some(constraint) => constraint.matrix(state, time),
-            None => Unconstrained { n_states: self.n_states }.matrix(state, time),
+            None => Unconstrained { dim: self.dim }.matrix(state, time),
         }
     }
 
@@ -62,7 +58,7 @@ impl<C: PfaffianConstraint> PfaffianConstraint for Switching<C> {
     ) -> Result<NullSpaceProjector, ConstraintError> {
         match self.at(time) {
             Some(constraint) => constraint.null_space_projector(state, time),
-            None => Ok(NullSpaceProjector::identity(self.n_states)),
+            None => Ok(NullSpaceProjector::identity(self.dim)),
         }
     }
 }

@@ -13,7 +13,7 @@ struct Wall {
 }
 
 impl PfaffianConstraint for Wall {
-    fn n_states(&self) -> usize {
+    fn dim(&self) -> usize {
         2
     }
 
@@ -56,7 +56,7 @@ proptest! {
         prop_assert_eq!(switching.matrix(state.as_view(), now), expected.clone());
         let projector = switching.null_space_projector(state.as_view(), now).unwrap();
         prop_assert_eq!(projector, NullSpaceProjector::new(&expected).unwrap());
-        prop_assert_eq!(switching.n_states(), 2);
+        prop_assert_eq!(switching.dim(), 2);
     }
 
     #[test]
@@ -64,7 +64,7 @@ proptest! {
         let matrix = DMatrix::from_vec(2, 3, entries);
         let constraint = LinearConstraint::new(matrix.clone()).unwrap();
         let state = DVector::from_vec(state);
-        prop_assert_eq!(constraint.n_states(), 3);
+        prop_assert_eq!(constraint.dim(), 3);
         prop_assert_eq!(constraint.matrix(state.as_view(), time), matrix.clone());
         let projector = constraint.null_space_projector(state.as_view(), time).unwrap();
         prop_assert_eq!(projector, NullSpaceProjector::new(&matrix).unwrap());
@@ -84,7 +84,7 @@ fn the_number_of_rows_may_change_with_the_state() {
 #[test]
 fn phases_of_different_kinds_and_references_behave_as_what_they_hold() {
     let phases: Vec<(f64, Box<dyn PfaffianConstraint>)> = vec![
-        (0.0, Box::new(Unconstrained { n_states: 2 })),
+        (0.0, Box::new(Unconstrained { dim: 2 })),
         (1.0, Box::new(row(&[0.0, 1.0]))),
         (2.0, Box::new(Wall { columns: 2 })),
     ];
@@ -97,7 +97,7 @@ fn phases_of_different_kinds_and_references_behave_as_what_they_hold() {
         assert_eq!(switching.matrix(state.as_view(), time).nrows(), projector.rank());
     }
     assert_eq!(
-        Unconstrained { n_states: 4 }.null_space_projector(state.as_view(), 0.0).unwrap(),
+        Unconstrained { dim: 4 }.null_space_projector(state.as_view(), 0.0).unwrap(),
         NullSpaceProjector::identity(4)
     );
 }

@@ -66,7 +66,7 @@ proptest! {
                 prop_assert!((a[(row, column)] - literal).abs() < 1e-13);
             }
         }
-        prop_assert_eq!(constraint.n_states(), n);
+        prop_assert_eq!(constraint.dim(), n);
         prop_assert_eq!(constraint.normals(), &normals);
     }
 

@@ -56,7 +56,7 @@ proptest! {
         let (projector, n) = (case.projector(), case.vector.len());
         let matrix = projector.matrix();
         prop_assert_eq!(projector.rank(), case.rank());
-        prop_assert_eq!(projector.n_states(), n);
+        prop_assert_eq!(projector.dim(), n);
         assert_close(&matrix, &matrix.transpose())?;
         assert_close(&(&matrix * &matrix), &matrix)?;
         assert_close(&(&case.matrix * &matrix), &DMatrix::zeros(case.matrix.nrows(), n))?;

@@ -19,7 +19,7 @@ const MOST_DRAWS: usize = 10_000;
 /// # let srdf = include_str!("../../../robots/asimo_upper_body.srdf");
 /// let grasp = Grasp { n_trajectories: 2, ..Grasp::new(UpperBody::new(urdf, srdf)?) };
 /// let recordings = grasp.record(&mut rand_chacha::ChaCha8Rng::seed_from_u64(1))?;
-/// assert_eq!((recordings[0].observed.n_states(), recordings[0].observed.n_samples()), (6, 100));
+/// assert_eq!((recordings[0].observed.dim(), recordings[0].observed.n_samples()), (6, 100));
 /// # Ok::<(), demo_gen::DemoGenError>(())
 /// ```
 #[derive(Debug, Clone)]

@@ -15,7 +15,7 @@ pub(crate) trait Driver {
     /// What it tells of a state besides its action.
     type Told;
 
-    fn n_states(&self) -> usize;
+    fn dim(&self) -> usize;
 
     /// The action at a state (n), and what else is told of it, all finite; errors name `sample`.
     fn drive(&self, state: DVectorView<'_, f64>, sample: usize) -> Result<(DVector<f64>, Self::Told), DemoGenError>;
@@ -30,8 +30,8 @@ pub(crate) struct AsTold<'a, P: ?Sized>(pub(crate) &'a P);
 impl<P: Potential + ?Sized> Driver for Downhill<'_, P> {
     type Told = f64;
 
-    fn n_states(&self) -> usize {
-        self.0.n_states()
+    fn dim(&self) -> usize {
+        self.0.dim()
     }
 
     fn drive(&self, state: DVectorView<'_, f64>, sample: usize) -> Result<(DVector<f64>, f64), DemoGenError> {
@@ -46,8 +46,8 @@ impl<P: Potential + ?Sized> Driver for Downhill<'_, P> {
 impl<P: Policy + ?Sized> Driver for AsTold<'_, P> {
     type Told = ();
 
-    fn n_states(&self) -> usize {
-        self.0.n_states()
+    fn dim(&self) -> usize {
+        self.0.dim()
     }
 
     fn drive(&self, state: DVectorView<'_, f64>, sample: usize) -> Result<(DVector<f64>, ()), DemoGenError> {
@@ -110,7 +110,7 @@ impl Recording {
 }
 
 fn columns<T>(instants: &[Instant<T>], part: fn(&Instant<T>) -> &DVector<f64>) -> DMatrix<f64> {
-    let n_states = instants.first().map_or(0, |instant| instant.state.len());
+    let dim = instants.first().map_or(0, |instant| instant.state.len());
     let values = instants.iter().flat_map(|instant| part(instant).iter().copied());
-    DMatrix::from_iterator(n_states, instants.len(), values)
+    DMatrix::from_iterator(dim, instants.len(), values)
 }

@@ -60,8 +60,8 @@ impl PalmTracking {
         posture: DVectorView<'_, f64>,
     ) -> Result<JointPath, DemoGenError> {
         self.check()?;
-        if palms.n_states() != 6 {
-            return Err(DemoGenError::Palms { found: palms.n_states() });
+        if palms.dim() != 6 {
+            return Err(DemoGenError::Palms { found: palms.dim() });
         }
         let mut q = posture.into_owned();
         body.robot().clip(q.as_view_mut())?;

@@ -13,12 +13,12 @@ pub struct Parabola {
 }
 
 impl Potential for Parabola {
-    fn n_states(&self) -> usize {
+    fn dim(&self) -> usize {
         self.centre.len()
     }
 
     fn value(&self, state: DVectorView<'_, f64>) -> f64 {
-        assert_eq!(state.len(), self.n_states(), "a state has the dimension of the potential");
+        assert_eq!(state.len(), self.dim(), "a state has the dimension of the potential");
         let distances = state.iter().zip(&self.centre).map(|(x, centre)| x - centre);
         self.weight * distances.map(|distance| distance * distance).sum::<f64>()
     }
@@ -39,7 +39,7 @@ pub struct Sinusoidal {
 }
 
 impl Potential for Sinusoidal {
-    fn n_states(&self) -> usize {
+    fn dim(&self) -> usize {
         2
     }
 

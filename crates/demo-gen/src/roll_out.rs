@@ -57,7 +57,7 @@ impl RollOut {
     /// struct Whirl;
     ///
     /// impl Policy for Whirl {
-    ///     fn n_states(&self) -> usize {
+    ///     fn dim(&self) -> usize {
     ///         2
     ///     }
     ///
@@ -98,8 +98,8 @@ impl RollOut {
         C: PfaffianConstraint + ?Sized,
     {
         self.check()?;
-        let expected = system.driver.n_states();
-        for (part, found) in [(Part::Start, start.len()), (Part::Constraint, system.constraint.n_states())] {
+        let expected = system.driver.dim();
+        for (part, found) in [(Part::Start, start.len()), (Part::Constraint, system.constraint.dim())] {
             if found != expected {
                 return Err(DemoGenError::Dimensions { part, found, expected });
             }

@@ -22,7 +22,7 @@ use crate::{DemoGenError, Parabola, Recording, RollOut};
 ///   <joint name="tip" type="fixed"><parent link="forearm"/><child link="hand"/><origin xyz="1 0 0"/></joint></robot>"#;
 /// let arm = ThreeLinkArm { n_trajectories: 8, ..ThreeLinkArm::new(urdf)? };
 /// let recordings = arm.record(&mut rand_chacha::ChaCha8Rng::seed_from_u64(1))?;
-/// assert_eq!(demonstrations(&recordings)?.n_states(), 2);
+/// assert_eq!(demonstrations(&recordings)?.dim(), 2);
 /// # Ok::<(), demo_gen::DemoGenError>(())
 /// ```
 #[derive(Debug, Clone)]

@@ -25,10 +25,10 @@ impl ToyPotential {
 }
 
 impl Potential for ToyPotential {
-    fn n_states(&self) -> usize {
+    fn dim(&self) -> usize {
         match self {
-            ToyPotential::Parabola(potential) => potential.n_states(),
-            ToyPotential::Sinusoidal(potential) => potential.n_states(),
+            ToyPotential::Parabola(potential) => potential.dim(),
+            ToyPotential::Sinusoidal(potential) => potential.dim(),
         }
     }
 

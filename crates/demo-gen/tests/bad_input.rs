@@ -14,7 +14,7 @@ struct Flat {
 }
 
 impl Potential for Flat {
-    fn n_states(&self) -> usize {
+    fn dim(&self) -> usize {
         2
     }
 
@@ -35,7 +35,7 @@ struct Later {
 }
 
 impl PfaffianConstraint for Later {
-    fn n_states(&self) -> usize {
+    fn dim(&self) -> usize {
         2
     }
 
@@ -63,7 +63,7 @@ fn refused(
 
 #[test]
 fn roll_outs() {
-    let (free, start, default) = (Unconstrained { n_states: 2 }, dvector![1.0, 0.0], RollOut::default());
+    let (free, start, default) = (Unconstrained { dim: 2 }, dvector![1.0, 0.0], RollOut::default());
     let inf = f64::INFINITY;
     let diverged = |sample, quantity| DemoGenError::Diverged { sample, quantity };
     let dimensions = |part, found| DemoGenError::Dimensions { part, found, expected: 2 };
@@ -87,7 +87,7 @@ fn roll_outs() {
         ),
         (refused(RollOut { sub_steps: 0, ..default }, &bowl(0.1), &free, &start), DemoGenError::NoSubStep),
         (refused(default, &bowl(0.1), &free, &dvector![1.0]), dimensions(Part::Start, 1)),
-        (refused(default, &bowl(0.1), &Unconstrained { n_states: 3 }, &start), dimensions(Part::Constraint, 3)),
+        (refused(default, &bowl(0.1), &Unconstrained { dim: 3 }, &start), dimensions(Part::Constraint, 3)),
         (refused(default, &bowl(0.1), &free, &dvector![0.0, inf]), diverged(0, Quantity::State)),
         // Each step multiplies the state by −10: 5.5·10^(2·154) is the first potential beyond the largest number.
         (refused(long, &bowl(5.5), &free, &start), diverged(154, Quantity::Potential)),
@@ -132,7 +132,7 @@ struct Steady {
 }
 
 impl Policy for Steady {
-    fn n_states(&self) -> usize {
+    fn dim(&self) -> usize {
         2
     }
 
@@ -143,7 +143,7 @@ impl Policy for Steady {
 
 #[test]
 fn roll_outs_of_policies() {
-    let (free, start, default) = (Unconstrained { n_states: 2 }, dvector![1.0, 0.0], RollOut::default());
+    let (free, start, default) = (Unconstrained { dim: 2 }, dvector![1.0, 0.0], RollOut::default());
     let inf = f64::INFINITY;
     let refused =
         |roll_out: RollOut, policy: &dyn Policy, constraint: &dyn PfaffianConstraint, start: &DVector<f64>| {
@@ -164,7 +164,7 @@ fn roll_outs_of_policies() {
         ),
         (refused(RollOut { sub_steps: 0, ..default }, &still, &free, &start), DemoGenError::NoSubStep),
         (refused(default, &still, &free, &dvector![1.0]), dimensions(Part::Start, 1)),
-        (refused(default, &still, &Unconstrained { n_states: 3 }, &start), dimensions(Part::Constraint, 3)),
+        (refused(default, &still, &Unconstrained { dim: 3 }, &start), dimensions(Part::Constraint, 3)),
         (refused(default, &still, &free, &dvector![0.0, inf]), diverged(0, Quantity::State)),
         (refused(default, &Steady { action: inf }, &free, &start), diverged(0, Quantity::Policy)),
         // A step of 1.5e308 is possible once.

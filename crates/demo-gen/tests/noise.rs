@@ -24,7 +24,7 @@ fn row(recordings: &[Recording], dimension: usize, of: fn(&Recording) -> DMatrix
 }
 
 fn noise_of(recording: &Recording) -> DMatrix<f64> {
-    recording.observed.positions() - &recording.truth.states
+    recording.observed.states() - &recording.truth.states
 }
 
 proptest! {

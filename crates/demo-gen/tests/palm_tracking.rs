@@ -114,7 +114,7 @@ proptest! {
 
 /// The palms' way to the ball with nothing between, and bows to the side of up to 6 cm, which end elsewhere.
 fn bowed(grasp: &Grasp, start: &GraspStart, rng: &mut ChaCha8Rng) -> Trajectory {
-    let free = Unconstrained { n_states: 6 };
+    let free = Unconstrained { dim: 6 };
     let straight = grasp.roll_out.record(&grasp.scene.potential(), &free, start.palms.as_view());
     let straight = straight.expect("nothing is in the way").observed;
     let mut draw = || rng.random_range(-1.0..1.0f64);
@@ -132,7 +132,7 @@ fn bowed(grasp: &Grasp, start: &GraspStart, rng: &mut ChaCha8Rng) -> Trajectory 
 /// Whether the joints can keep all links apart: hands are 3.5 cm thick, and palms may be asked nearer to a leg or to each
 /// other than that.
 fn is_possible(palms: &Trajectory) -> bool {
-    palms.positions().column_iter().all(|palms| {
+    palms.states().column_iter().all(|palms| {
         let [left, right] = [0, 3].map(|at| Vector3::from(palms.fixed_rows::<3>(at)));
         let from_legs = [0.075, -0.075].into_iter().flat_map(|y| {
             [left, right].map(|palm| (palm - Vector3::new(0.05, y, palm.z.clamp(0.08, 0.56))).norm() - 0.055)
@@ -235,9 +235,9 @@ fn a_palm_goes_around_the_body() {
 #[test]
 fn bad_input_is_refused() {
     let body = upper_body();
-    let palms = |n_states| Trajectory::new(DMatrix::zeros(n_states, 2), 1.0).unwrap();
-    let follow = |tracking: PalmTracking, n_states, n_joints| {
-        tracking.follow(&body, &palms(n_states), DVector::zeros(n_joints).as_view()).unwrap_err()
+    let palms = |dim| Trajectory::new(DMatrix::zeros(dim, 2), 1.0).unwrap();
+    let follow = |tracking: PalmTracking, dim, n_joints| {
+        tracking.follow(&body, &palms(dim), DVector::zeros(n_joints).as_view()).unwrap_err()
     };
     let good = PalmTracking::default();
     assert_eq!(follow(good, 3, 22), DemoGenError::Palms { found: 3 });

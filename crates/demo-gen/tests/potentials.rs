@@ -30,7 +30,7 @@ proptest! {
         let (state, centre): (Vec<f64>, Vec<f64>) = pairs.into_iter().unzip();
         let (state, centre) = (DVector::from_vec(state), DVector::from_vec(centre));
         let potential = Parabola { weight, centre: centre.clone() };
-        prop_assert_eq!(potential.n_states(), state.len());
+        prop_assert_eq!(potential.dim(), state.len());
         prop_assert!((potential.value(state.as_view()) - weight * (&state - &centre).norm_squared()).abs() < 1e-12);
         close(&potential.gradient(state.as_view()), &gradient_by_differences(&potential, state.as_view()), 1e-7)?;
         prop_assert_eq!(potential.gradient(centre.as_view()), DVector::zeros(centre.len()));
@@ -51,7 +51,7 @@ proptest! {
             (ToyPotential::sinusoidal(), 0.1 * x.sin() * y.cos()),
         ];
         for (potential, value) in values {
-            prop_assert_eq!(potential.n_states(), 2);
+            prop_assert_eq!(potential.dim(), 2);
             prop_assert!((potential.value(state.as_view()) - value).abs() < 1e-15);
             close(&potential.gradient(state.as_view()), &gradient_by_differences(&potential, state.as_view()), 1e-9)?;
         }

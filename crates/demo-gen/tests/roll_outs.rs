@@ -10,19 +10,19 @@ use proptest::prelude::*;
 /// One row that turns with time and place, and now and then lets go.
 #[derive(Debug)]
 struct Turning {
-    n_states: usize,
+    dim: usize,
     rate: f64,
 }
 
 impl PfaffianConstraint for Turning {
-    fn n_states(&self) -> usize {
-        self.n_states
+    fn dim(&self) -> usize {
+        self.dim
     }
 
     fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> DMatrix<f64> {
         let angle = self.rate * time + state.sum();
         let rows = usize::from(angle.sin() > -0.8);
-        DMatrix::from_fn(rows, self.n_states, |_, dimension| (angle * (dimension + 1) as f64).cos())
+        DMatrix::from_fn(rows, self.dim, |_, dimension| (angle * (dimension + 1) as f64).cos())
     }
 }
 
@@ -30,7 +30,7 @@ impl PfaffianConstraint for Turning {
 struct Linear(DMatrix<f64>);
 
 impl Policy for Linear {
-    fn n_states(&self) -> usize {
+    fn dim(&self) -> usize {
         self.0.nrows()
     }
 
@@ -118,7 +118,7 @@ proptest! {
         time_step in 0.05..1.0f64, n_samples in 2..20usize, sub_steps in 1..5usize,
     ) {
         let (roll_out, potential) = (RollOut { time_step, n_samples, sub_steps }, Sinusoidal { amplitude });
-        let (constraint, start) = (Turning { n_states: 2, rate }, DVector::from_vec(start));
+        let (constraint, start) = (Turning { dim: 2, rate }, DVector::from_vec(start));
         let recording = roll_out.record(&potential, &constraint, start.as_view()).unwrap();
         let expected = literal(roll_out, &NegativeGradient(&potential), &constraint, &start);
         prop_assert_eq!(recording.observed.n_samples(), n_samples);
@@ -133,10 +133,10 @@ proptest! {
         (start, entries) in (1..5usize).prop_flat_map(|n| (vec(-2.0..2.0f64, n), vec(-0.1..0.1f64, n * n))),
         rate in -1.0..1.0f64, time_step in 0.05..1.0f64, n_samples in 2..20usize, sub_steps in 1..5usize,
     ) {
-        let (n_states, start) = (start.len(), DVector::from_vec(start));
+        let (dim, start) = (start.len(), DVector::from_vec(start));
         // Towards the middle all in all: elsewhere rounding would grow until the constraint switches at another sample.
-        let policy = Linear(DMatrix::from_vec(n_states, n_states, entries) - DMatrix::identity(n_states, n_states) * 0.5);
-        let (roll_out, constraint) = (RollOut { time_step, n_samples, sub_steps }, Turning { n_states, rate });
+        let policy = Linear(DMatrix::from_vec(dim, dim, entries) - DMatrix::identity(dim, dim) * 0.5);
+        let (roll_out, constraint) = (RollOut { time_step, n_samples, sub_steps }, Turning { dim, rate });
         let movement = roll_out.follow(&policy, &constraint, start.as_view()).unwrap();
         prop_assert_eq!((movement.n_samples(), movement.time_step()), (n_samples, time_step));
         for (sample, state) in literal(roll_out, &policy, &constraint, &start).iter().enumerate() {
@@ -162,7 +162,7 @@ proptest! {
         time_step in 0.1..1.0f64, sub_steps in 1..4usize,
     ) {
         let potential = Parabola { weight, centre: DVector::from_vec(centre) };
-        let constraint = Turning { n_states: 4, rate };
+        let constraint = Turning { dim: 4, rate };
         let roll_out = RollOut { time_step, n_samples: 20, sub_steps };
         let recording = roll_out.record(&potential, &constraint, DVector::from_vec(start).as_view()).unwrap();
         let velocities = recording.observed.velocities().unwrap();
@@ -208,7 +208,7 @@ proptest! {
     fn the_truth_is_what_the_functions_say(case in case()) {
         let recording = case.record();
         let Recording { observed, truth } = &recording;
-        prop_assert_eq!(&truth.states, observed.positions());
+        prop_assert_eq!(&truth.states, observed.states());
         prop_assert_eq!(observed.state(0).into_owned(), case.start.clone());
         prop_assert_eq!((truth.potential.len(), truth.projectors.len()), (observed.n_samples(), observed.n_samples()));
         for sample in 0..observed.n_samples() {
@@ -226,7 +226,7 @@ proptest! {
         let potential = Parabola { weight, centre: DVector::zeros(3) };
         let start = DVector::from_vec(start);
         let roll_out = RollOut { time_step, n_samples: 5, sub_steps };
-        let recording = roll_out.record(&potential, &Unconstrained { n_states: 3 }, start.as_view()).unwrap();
+        let recording = roll_out.record(&potential, &Unconstrained { dim: 3 }, start.as_view()).unwrap();
         // Unconstrained, each sub-step is one multiplication; many of them are nearly the exponential.
         let factor = (1.0 - 2.0 * weight * time_step / sub_steps as f64).powf(sub_steps as f64);
         let rate = 2.0 * weight * time_step;
@@ -244,9 +244,7 @@ fn demonstrations_are_what_was_observed() {
     let recordings: Vec<_> = [5, 9]
         .map(|n_samples| {
             let roll_out = RollOut { n_samples, ..RollOut::default() };
-            roll_out
-                .record(&potential, &Unconstrained { n_states: 2 }, dvector![n_samples as f64, 0.0].as_view())
-                .unwrap()
+            roll_out.record(&potential, &Unconstrained { dim: 2 }, dvector![n_samples as f64, 0.0].as_view()).unwrap()
         })
         .into();
     let demonstrations = demonstrations(&recordings).unwrap();

@@ -34,7 +34,7 @@ proptest! {
         prop_assert_ne!(&recordings, &record(&system, seed.wrapping_add(1)));
         prop_assert_eq!(recordings.len(), system.n_trajectories);
         for recording in &recordings {
-            prop_assert_eq!(recording.observed.positions().shape(), (2, system.n_samples));
+            prop_assert_eq!(recording.observed.states().shape(), (2, system.n_samples));
             prop_assert!(recording.observed.state(0).amax() <= 2.0);
         }
     }

@@ -16,11 +16,11 @@ impl Demonstrations {
     /// # Errors
     /// [`MotionError::Empty`] or [`MotionError::Dimensions`].
     pub fn new(trajectories: Vec<Trajectory>) -> Result<Self, MotionError> {
-        let expected = trajectories.first().ok_or(MotionError::Empty)?.n_states();
-        match trajectories.iter().position(|trajectory| trajectory.n_states() != expected) {
+        let expected = trajectories.first().ok_or(MotionError::Empty)?.dim();
+        match trajectories.iter().position(|trajectory| trajectory.dim() != expected) {
             None => Ok(Demonstrations { trajectories }),
             Some(trajectory) => {
-                Err(MotionError::Dimensions { trajectory, found: trajectories[trajectory].n_states(), expected })
+                Err(MotionError::Dimensions { trajectory, found: trajectories[trajectory].dim(), expected })
             }
         }
     }
@@ -30,12 +30,9 @@ impl Demonstrations {
     ///
     /// # Errors
     /// [`MotionError::InTrajectory`] with the trajectory at fault, otherwise as [`Demonstrations::new`].
-    pub fn from_positions(
-        positions: impl IntoIterator<Item = DMatrix<f64>>,
-        time_step: f64,
-    ) -> Result<Self, MotionError> {
-        let trajectories = positions.into_iter().enumerate().map(|(trajectory, positions)| {
-            Trajectory::new(positions, time_step)
+    pub fn from_states(states: impl IntoIterator<Item = DMatrix<f64>>, time_step: f64) -> Result<Self, MotionError> {
+        let trajectories = states.into_iter().enumerate().map(|(trajectory, states)| {
+            Trajectory::new(states, time_step)
                 .map_err(|source| MotionError::InTrajectory { trajectory, source: Box::new(source) })
         });
         Self::new(trajectories.collect::<Result<_, _>>()?)
@@ -52,8 +49,8 @@ impl Demonstrations {
     }
 
     /// Dimension n of the state.
-    pub fn n_states(&self) -> usize {
-        self.trajectories[0].n_states()
+    pub fn dim(&self) -> usize {
+        self.trajectories[0].dim()
     }
 
     /// Number of samples of all movements together, M = Σ_k N_k.

@@ -4,7 +4,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Series {
     /// The states x.
-    Positions,
+    States,
     /// The recorded velocities or commands u.
     Velocities,
 }
@@ -12,7 +12,7 @@ pub enum Series {
 impl std::fmt::Display for Series {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Series::Positions => "positions",
+            Series::States => "states",
             Series::Velocities => "velocities",
         })
     }
@@ -27,7 +27,7 @@ pub enum MotionError {
         "{series}, sample {sample}, dimension {dimension}: {value} is not a finite number; drop or interpolate the sample"
     )]
     NotFinite {
-        /// Positions or velocities.
+        /// States or velocities.
         series: Series,
         /// Column of the value.
         sample: usize,
@@ -51,14 +51,14 @@ pub enum MotionError {
         /// The time step given, in seconds.
         time_step: f64,
     },
-    /// Velocities do not have the positions' shape.
+    /// Velocities do not have the states' shape.
     #[error(
-        "velocities have shape ({}, {}), positions ({}, {}): record one velocity a position",
-        velocities.0, velocities.1, positions.0, positions.1
+        "velocities have shape ({}, {}), states ({}, {}): record one velocity per state",
+        velocities.0, velocities.1, states.0, states.1
     )]
     VelocityShape {
-        /// Rows and columns of the positions.
-        positions: (usize, usize),
+        /// Rows and columns of the states.
+        states: (usize, usize),
         /// Rows and columns of the velocities.
         velocities: (usize, usize),
     },
@@ -76,6 +76,12 @@ pub enum MotionError {
         found: usize,
         /// The number of dimensions of trajectory 0.
         expected: usize,
+    },
+    /// The share to hold out is not between 0 and 1.
+    #[error("share {fraction} of what is held out: it must be more than 0 and less than 1")]
+    Fraction {
+        /// The share given.
+        fraction: f64,
     },
     /// One of several trajectories is not valid.
     #[error("trajectory {trajectory}: {source}")]

@@ -2,17 +2,17 @@ use nalgebra::{DVector, DVectorView, DVectorViewMut};
 
 /// An autonomous movement policy u = π(x) (1): the velocity that is wanted at a state.
 ///
-/// Where a method takes a vector of another length than [`Policy::n_states`], it panics.
+/// Where a method takes a vector of another length than [`Policy::dim`], it panics.
 pub trait Policy: Send + Sync {
     /// Dimension n of state and action.
-    fn n_states(&self) -> usize;
+    fn dim(&self) -> usize;
 
     /// Writes π(x), (n), into `action`, in units of the state per second. Allocates nothing.
     fn action_into(&self, state: DVectorView<'_, f64>, action: DVectorViewMut<'_, f64>);
 
     /// π(x), (n), in units of the state per second.
     fn action(&self, state: DVectorView<'_, f64>) -> DVector<f64> {
-        let mut action = DVector::zeros(self.n_states());
+        let mut action = DVector::zeros(self.dim());
         self.action_into(state, action.as_view_mut());
         action
     }
@@ -20,10 +20,10 @@ pub trait Policy: Send + Sync {
 
 /// A scalar potential φ(x) whose negative gradient is a policy (4).
 ///
-/// Where a method takes a vector of another length than [`Potential::n_states`], it panics.
+/// Where a method takes a vector of another length than [`Potential::dim`], it panics.
 pub trait Potential: Send + Sync {
     /// Dimension n of the state.
-    fn n_states(&self) -> usize;
+    fn dim(&self) -> usize;
 
     /// φ(x), in units of the state squared per second.
     fn value(&self, state: DVectorView<'_, f64>) -> f64;
@@ -33,7 +33,7 @@ pub trait Potential: Send + Sync {
 
     /// ∇φ(x), (n), in units of the state per second.
     fn gradient(&self, state: DVectorView<'_, f64>) -> DVector<f64> {
-        let mut gradient = DVector::zeros(self.n_states());
+        let mut gradient = DVector::zeros(self.dim());
         self.gradient_into(state, gradient.as_view_mut());
         gradient
     }
@@ -44,8 +44,8 @@ pub trait Potential: Send + Sync {
 pub struct NegativeGradient<P>(pub P);
 
 impl<P: Potential> Policy for NegativeGradient<P> {
-    fn n_states(&self) -> usize {
-        self.0.n_states()
+    fn dim(&self) -> usize {
+        self.0.dim()
     }
 
     fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
@@ -55,8 +55,8 @@ impl<P: Potential> Policy for NegativeGradient<P> {
 }
 
 impl<P: Policy + ?Sized> Policy for &P {
-    fn n_states(&self) -> usize {
-        (**self).n_states()
+    fn dim(&self) -> usize {
+        (**self).dim()
     }
 
     fn action_into(&self, state: DVectorView<'_, f64>, action: DVectorViewMut<'_, f64>) {
@@ -65,8 +65,8 @@ impl<P: Policy + ?Sized> Policy for &P {
 }
 
 impl<P: Potential + ?Sized> Potential for &P {
-    fn n_states(&self) -> usize {
-        (**self).n_states()
+    fn dim(&self) -> usize {
+        (**self).dim()
     }
 
     fn value(&self, state: DVectorView<'_, f64>) -> f64 {

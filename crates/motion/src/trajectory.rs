@@ -7,30 +7,30 @@ use crate::{MotionError, Series};
 /// A checked value: at least two samples, at least one dimension, every number finite.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
-    positions: DMatrix<f64>,
+    states: DMatrix<f64>,
     velocities: Option<DMatrix<f64>>,
     time_step: f64,
 }
 
 impl Trajectory {
-    /// A movement of which only the states are known: `positions` (n, N), one column a sample, `time_step` seconds
+    /// A movement of which only the states are known: `states` (n, N), one column a sample, `time_step` seconds
     /// apart.
     ///
     /// # Errors
     /// [`MotionError::TimeStep`], [`MotionError::NoDimension`], [`MotionError::TooShort`] or
     /// [`MotionError::NotFinite`].
-    pub fn new(positions: DMatrix<f64>, time_step: f64) -> Result<Self, MotionError> {
+    pub fn new(states: DMatrix<f64>, time_step: f64) -> Result<Self, MotionError> {
         if !(time_step.is_finite() && time_step > 0.0) {
             return Err(MotionError::TimeStep { time_step });
         }
-        if positions.nrows() == 0 {
+        if states.nrows() == 0 {
             return Err(MotionError::NoDimension);
         }
-        if positions.ncols() < 2 {
-            return Err(MotionError::TooShort { samples: positions.ncols() });
+        if states.ncols() < 2 {
+            return Err(MotionError::TooShort { samples: states.ncols() });
         }
-        require_finite(&positions, Series::Positions)?;
-        Ok(Trajectory { positions, velocities: None, time_step })
+        require_finite(&states, Series::States)?;
+        Ok(Trajectory { states, velocities: None, time_step })
     }
 
     /// The same movement with its recorded velocities or commands (n, N), in units of the state per second.
@@ -38,19 +38,16 @@ impl Trajectory {
     /// # Errors
     /// [`MotionError::VelocityShape`] or [`MotionError::NotFinite`].
     pub fn with_velocities(self, velocities: DMatrix<f64>) -> Result<Self, MotionError> {
-        if velocities.shape() != self.positions.shape() {
-            return Err(MotionError::VelocityShape {
-                positions: self.positions.shape(),
-                velocities: velocities.shape(),
-            });
+        if velocities.shape() != self.states.shape() {
+            return Err(MotionError::VelocityShape { states: self.states.shape(), velocities: velocities.shape() });
         }
         require_finite(&velocities, Series::Velocities)?;
         Ok(Trajectory { velocities: Some(velocities), ..self })
     }
 
     /// The states, (n, N).
-    pub fn positions(&self) -> &DMatrix<f64> {
-        &self.positions
+    pub fn states(&self) -> &DMatrix<f64> {
+        &self.states
     }
 
     /// The recorded velocities, (n, N), in units of the state per second.
@@ -65,17 +62,17 @@ impl Trajectory {
 
     /// State x_i, (n).
     pub fn state(&self, sample: usize) -> DVectorView<'_, f64> {
-        self.positions.column(sample)
+        self.states.column(sample)
     }
 
     /// Dimension n of the state.
-    pub fn n_states(&self) -> usize {
-        self.positions.nrows()
+    pub fn dim(&self) -> usize {
+        self.states.nrows()
     }
 
     /// Number of samples N.
     pub fn n_samples(&self) -> usize {
-        self.positions.ncols()
+        self.states.ncols()
     }
 }
 

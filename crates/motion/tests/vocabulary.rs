@@ -11,7 +11,7 @@ struct Bowl {
 }
 
 impl Potential for Bowl {
-    fn n_states(&self) -> usize {
+    fn dim(&self) -> usize {
         self.centre.len()
     }
 
@@ -36,7 +36,7 @@ proptest! {
     ) {
         let policy = NegativeGradient(Bowl { weight, centre });
         let action = policy.action(state.as_view());
-        prop_assert_eq!(policy.n_states(), state.len());
+        prop_assert_eq!(policy.dim(), state.len());
         let step = 1e-6;
         for i in 0..state.len() {
             let mut ahead = state.clone();
@@ -51,24 +51,24 @@ proptest! {
     #[test]
     fn demonstrations_keep_what_they_are_given(
         lengths in prop::collection::vec(2usize..6, 1..5),
-        n_states in 1usize..4,
+        dim in 1usize..4,
         time_step in 1e-3..10.0f64,
         scale in -5.0..5.0f64,
     ) {
-        let matrix = |(k, &n): (usize, &usize)| DMatrix::from_fn(n_states, n, |i, j| scale * (i + 3 * j + 7 * k) as f64);
+        let matrix = |(k, &n): (usize, &usize)| DMatrix::from_fn(dim, n, |i, j| scale * (i + 3 * j + 7 * k) as f64);
         let matrices: Vec<_> = lengths.iter().enumerate().map(matrix).collect();
-        let demonstrations = Demonstrations::from_positions(matrices.clone(), time_step).unwrap();
+        let demonstrations = Demonstrations::from_states(matrices.clone(), time_step).unwrap();
         prop_assert_eq!(demonstrations.n_trajectories(), lengths.len());
-        prop_assert_eq!(demonstrations.n_states(), n_states);
+        prop_assert_eq!(demonstrations.dim(), dim);
         prop_assert_eq!(demonstrations.n_samples(), lengths.iter().sum::<usize>());
         for (trajectory, matrix) in demonstrations.trajectories().iter().zip(&matrices) {
-            prop_assert_eq!(trajectory.positions(), matrix);
+            prop_assert_eq!(trajectory.states(), matrix);
             prop_assert_eq!(trajectory.time_step(), time_step);
             prop_assert_eq!(trajectory.velocities(), None);
             let velocities = matrix * 2.0;
             let recorded = trajectory.clone().with_velocities(velocities.clone()).unwrap();
             prop_assert_eq!(recorded.velocities(), Some(&velocities));
-            prop_assert_eq!(recorded.positions(), matrix);
+            prop_assert_eq!(recorded.states(), matrix);
             for sample in 0..trajectory.n_samples() {
                 prop_assert_eq!(trajectory.state(sample), matrix.column(sample));
             }

@@ -53,7 +53,7 @@ pub(crate) fn figure() -> Figure {
 struct Hills;
 
 impl Potential for Hills {
-    fn n_states(&self) -> usize {
+    fn dim(&self) -> usize {
         2
     }
 

@@ -83,7 +83,7 @@ fn coming_apart(seed: u64) -> anyhow::Result<ComingApart> {
 
 fn movements(aligned: &Aligned) -> Vec<Vec<(f64, f64)>> {
     let trajectories = aligned.demonstrations().trajectories().iter();
-    trajectories.map(|t| t.positions().column_iter().map(|x| (rounded(x[0], 3), rounded(x[1], 3))).collect()).collect()
+    trajectories.map(|t| t.states().column_iter().map(|x| (rounded(x[0], 3), rounded(x[1], 3))).collect()).collect()
 }
 
 impl Step {

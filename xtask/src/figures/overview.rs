@@ -67,7 +67,7 @@ fn overview(seed: u64) -> anyhow::Result<Overview> {
     let mut learnt = |learner: &dyn Learner| learner.learn(&lesson, &mut rng).map(|learnt| learnt.policy);
     let (naive, learnt) = (learnt(&naive)?, learnt(&regressor)?);
     let movement = |(trajectory, recording): (usize, &demo_gen::Recording)| {
-        let states = recording.observed.positions().column_iter();
+        let states = recording.observed.states().column_iter();
         Movement {
             kept: aligned.offset(trajectory).is_some(),
             points: states.map(|x| (rounded(x[0], 4), rounded(x[1], 4))).collect(),

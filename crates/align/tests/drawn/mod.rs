@@ -6,13 +6,13 @@ use nalgebra::DMatrix;
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-fn matrix(n_states: usize, n_samples: usize) -> impl Strategy<Value = DMatrix<f64>> {
-    vec(-1.0..1.0, n_states * n_samples).prop_map(move |values| DMatrix::from_vec(n_states, n_samples, values))
+fn matrix(dim: usize, n_samples: usize) -> impl Strategy<Value = DMatrix<f64>> {
+    vec(-1.0..1.0, dim * n_samples).prop_map(move |values| DMatrix::from_vec(dim, n_samples, values))
 }
 
-fn trajectory(n_states: usize) -> impl Strategy<Value = Trajectory> {
+fn trajectory(dim: usize) -> impl Strategy<Value = Trajectory> {
     (2usize..12, 0.01..3.0).prop_flat_map(move |(n_samples, time_step)| {
-        (matrix(n_states, n_samples), matrix(n_states, n_samples)).prop_map(move |(positions, velocities)| {
+        (matrix(dim, n_samples), matrix(dim, n_samples)).prop_map(move |(positions, velocities)| {
             let trajectory = Trajectory::new(positions, time_step).expect("finite states");
             trajectory.with_velocities(velocities).expect("finite velocities")
         })
@@ -22,7 +22,7 @@ fn trajectory(n_states: usize) -> impl Strategy<Value = Trajectory> {
 /// At least `least` trajectories with velocities, in 1 to 7 dimensions: more than the search unrolls, and fewer.
 pub(crate) fn demonstrations(least: usize) -> impl Strategy<Value = Demonstrations> {
     (1usize..8)
-        .prop_flat_map(move |n_states| vec(trajectory(n_states), least..8))
+        .prop_flat_map(move |dim| vec(trajectory(dim), least..8))
         .prop_map(|trajectories| Demonstrations::new(trajectories).expect("one state space"))
 }
 
@@ -47,7 +47,7 @@ pub(crate) fn mapped(
     velocity: impl Fn(&DMatrix<f64>) -> DMatrix<f64>,
 ) -> Demonstrations {
     let trajectories = demonstrations.trajectories().iter().map(|t| {
-        let mapped = Trajectory::new(position(t.positions()), t.time_step()).expect("finite states");
+        let mapped = Trajectory::new(position(t.states()), t.time_step()).expect("finite states");
         mapped.with_velocities(velocity(t.velocities().expect("they are drawn"))).expect("finite velocities")
     });
     Demonstrations::new(trajectories.collect()).expect("one state space")

@@ -44,7 +44,7 @@ pub(super) struct Contact<'a> {
 }
 
 impl PfaffianConstraint for Contact<'_> {
-    fn n_states(&self) -> usize {
+    fn dim(&self) -> usize {
         2
     }
 
@@ -88,7 +88,7 @@ impl Finger {
     pub(super) fn movement(&self, constraint: &dyn PfaffianConstraint) -> anyhow::Result<Movement> {
         let recording = ROLL_OUT.record(&self.policy.0, constraint, DVector::from_column_slice(&START).as_view())?;
         let mut movement = Movement::default();
-        for q in recording.observed.positions().column_iter() {
+        for q in recording.observed.states().column_iter() {
             movement.angles.push((rounded(q[0], 5), rounded(q[1], 5)));
             movement.places.push(self.places(q)?.map(|(x, y)| (rounded(x, 7), rounded(y, 7))));
         }
@@ -167,7 +167,7 @@ mod tests {
     #[test]
     fn alone_it_stretches() {
         let finger = Finger::new().unwrap();
-        let movement = finger.movement(&Unconstrained { n_states: 2 }).unwrap();
+        let movement = finger.movement(&Unconstrained { dim: 2 }).unwrap();
         for (sample, (a, b)) in movement.angles.iter().enumerate() {
             let left = (-Movement::time(sample)).exp();
             assert!((a - START[0] * left).abs() < 1e-3 && (b - START[1] * left).abs() < 1e-3);

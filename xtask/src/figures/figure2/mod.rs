@@ -77,9 +77,9 @@ fn shown() -> anyhow::Result<Shown> {
     // A thousandth inside, so that the tip touches whatever the rounding.
     let pressed = touching.iter().step_by(3).map(|(a, b)| (0.999 * a, 0.999 * b));
     Ok(Shown {
-        unconstrained: grid.map(|q| action(q, &Unconstrained { n_states: 2 })).collect::<anyhow::Result<_>>()?,
+        unconstrained: grid.map(|q| action(q, &Unconstrained { dim: 2 })).collect::<anyhow::Result<_>>()?,
         constrained: pressed.map(|q| action(q, &contact)).collect::<anyhow::Result<_>>()?,
-        free: finger.movement(&Unconstrained { n_states: 2 })?,
+        free: finger.movement(&Unconstrained { dim: 2 })?,
         stopped: finger.movement(&contact)?,
         touching,
     })

@@ -71,12 +71,12 @@ impl Stage<'_> {
         let Stage { grasp, policies, starts } = self;
         let (policy, start) = (&*policies[learner], starts[number]);
         let barrier = constraint.barrier(grasp, start)?;
-        let free = Unconstrained { n_states: policy.n_states() };
+        let free = Unconstrained { dim: policy.dim() };
         let hindrance: &dyn PfaffianConstraint = barrier.as_ref().map_or(&free, |barrier| barrier);
         let palms = grasp.roll_out.follow(policy, hindrance, start.palms.as_view())?;
         let path = PalmTracking::default().follow(&grasp.body, &palms, start.posture.as_view())?;
         let kept = |values: &DMatrix<f64>| values.map(|value| rounded(value, DECIMALS));
-        let (joints, palms) = (kept(&path.configurations), kept(palms.positions()));
+        let (joints, palms) = (kept(&path.configurations), kept(palms.states()));
         let end = |y: f64| y.is_finite().then(|| rounded(y, DECIMALS));
         Ok(Movement {
             constraint: constraint.id().to_owned(),

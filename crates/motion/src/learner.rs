@@ -1,0 +1,56 @@
+use std::fmt::Debug;
+
+use nalgebra::{DVectorView, DVectorViewMut};
+use rand::Rng;
+
+use crate::{Demonstrations, Policy, Potential, SampleIndex};
+
+/// Why a learner could not learn; each learner's own error, whose message says what, where and what next.
+pub type LearnError = Box<dyn std::error::Error + Send + Sync>;
+
+/// A way to learn a policy from demonstrations.
+///
+/// A learner is a plain set of parameters. `Debug` shows all of them: equal texts mean equal learners.
+pub trait Learner: Debug + Send + Sync {
+    /// Learns from all samples but those held out, which may come in any order. The same generator gives the same bits
+    /// at any number of threads.
+    ///
+    /// # Errors
+    /// Whatever the learner refuses: parameters out of range, or demonstrations it can make nothing of.
+    fn learn(
+        &self,
+        demonstrations: &Demonstrations,
+        held_out: &[SampleIndex],
+        rng: &mut dyn Rng,
+    ) -> Result<Box<dyn LearntPolicy>, LearnError>;
+}
+
+/// A policy that was learnt, with what its learner knows about it.
+pub trait LearntPolicy: Policy + Debug {
+    /// The potential that the policy descends; none if the learner assumes none.
+    fn potential(&self) -> Option<&dyn Potential> {
+        None
+    }
+
+    /// How much the demonstrations say about a state, (n): 1 in their midst, 0 where the action is a mere default.
+    ///
+    /// Each learner has its own measure: LWPR the largest activation of a receptive field that takes part, a Gaussian
+    /// process 1 − posterior / prior variance.
+    fn support(&self, state: DVectorView<'_, f64>) -> f64;
+
+    /// Writes the standard deviation of every component of the action, (n), into `deviation`, in units of the state per
+    /// second, and returns true; returns false and writes nothing if the learner does not know it.
+    fn action_sd_into(&self, _state: DVectorView<'_, f64>, _deviation: DVectorViewMut<'_, f64>) -> bool {
+        false
+    }
+
+    /// The trajectories that were learnt from, ascending; none if all were.
+    fn kept(&self) -> Option<&[usize]> {
+        None
+    }
+
+    /// What gives reason to doubt the policy, one sentence each.
+    fn warnings(&self) -> Vec<String> {
+        Vec::new()
+    }
+}
