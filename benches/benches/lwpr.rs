@@ -33,7 +33,7 @@ fn model(samples: &PotentialSamples) -> Lwpr {
         ..LwprParams::default()
     };
     let mut model = params.build(samples.xs.nrows(), 1).expect("the parameters are in range");
-    model.fit_in_order(&samples.xs, &samples.ys, 1).expect("the samples are finite");
+    model.fit_in_order(samples.xs.as_view(), samples.ys.as_view(), 1).expect("the samples are finite");
     model
 }
 
@@ -55,7 +55,7 @@ fn bench(criterion: &mut Criterion) {
         });
         group.bench_function("train batch", |bencher| {
             let train = |mut model: Lwpr| {
-                model.fit_in_order(&samples.xs, &samples.ys, 1).expect("the samples are finite");
+                model.fit_in_order(samples.xs.as_view(), samples.ys.as_view(), 1).expect("the samples are finite");
                 model
             };
             bencher.iter_batched(|| model.clone(), train, BatchSize::LargeInput);

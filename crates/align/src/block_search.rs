@@ -6,9 +6,9 @@
 use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::lanes::Lanes;
 use crate::minima::Minima;
 use crate::tiles::{ROWS, Tiles, row_groups};
+use lanes::Lanes;
 
 /// Compares one trajectory, sample by sample, with others.
 #[derive(Debug)]

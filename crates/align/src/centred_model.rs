@@ -43,7 +43,7 @@ impl CentredModel {
         let spread = DVector::from_iterator(outputs.nrows(), outputs.row_iter().map(|row| spread(row.iter())));
         let params = LwprParams { norm_out: Some(spread), ..training.params.clone() };
         let mut model = params.build(states.nrows(), outputs.nrows())?;
-        model.fit_batch(states, &outputs, training.passes, &mut rng)?;
+        model.fit_batch(states.as_view(), outputs.as_view(), training.passes, &mut rng)?;
         Ok(CentredModel { predictor: model.predictor(training.cutoff), model: Arc::new(model), mean })
     }
 

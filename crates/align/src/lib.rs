@@ -61,7 +61,6 @@ mod error;
 mod exponential;
 mod global_potential;
 mod integration;
-mod lanes;
 mod laplacian;
 mod linear_term;
 mod local_potential;

@@ -4,8 +4,8 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::compensated::CompensatedSum;
-use crate::lanes::{LANES, Lanes};
 use crate::responsibilities::{Block, Responsibilities};
+use lanes::{LANES, Lanes};
 
 /// a (16), (K), and E₀ of the objective among a group of trajectories, once each of them is raised by its offset.
 /// Trajectories without an offset are outside: their entries are 0, and their models take no part.

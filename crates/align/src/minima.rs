@@ -1,4 +1,4 @@
-use crate::lanes::{LANES, Lanes, groups_of};
+use lanes::{LANES, Lanes, groups_of};
 
 /// The nearest samples found so far; indices are exact in f64, and compare and blend like the distances.
 #[derive(Debug, Default)]

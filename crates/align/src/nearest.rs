@@ -5,9 +5,9 @@ use rayon::prelude::*;
 
 use crate::AlignError;
 use crate::block_search::BlockSearch;
-use crate::lanes::{LANES, Lanes, groups_of};
 use crate::minima::Minima;
 use crate::tiles::Tiles;
+use lanes::{LANES, Lanes, groups_of};
 
 /// For every sample of every trajectory, its nearest sample in each trajectory: the search behind (10) and (11).
 ///

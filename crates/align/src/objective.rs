@@ -3,10 +3,10 @@ use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::lanes::LANES;
 use crate::laplacian::Elimination;
 use crate::linear_term::linear_term;
 use crate::responsibilities::{Block, Responsibilities};
+use lanes::LANES;
 
 /// H is summed in this many parts, each in the order of its samples, so that no number of threads changes a bit.
 const PARTS: usize = 8;

@@ -4,8 +4,8 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::exponential::to_weights;
-use crate::lanes::{LANES, Lanes, groups_of};
 use crate::nearest::NearestSamples;
+use lanes::{LANES, Lanes, groups_of};
 
 /// The responsibilities q_km (12) of the local models for all samples, and what those models say there.
 ///

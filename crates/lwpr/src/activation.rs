@@ -3,13 +3,14 @@
 use pulp::Simd;
 
 use crate::Metric;
+use crate::element::Element;
 use crate::field::{Field, Layout};
 use crate::full_metric::add_scaled;
 use crate::kernel::Activation;
-use crate::lanes::Lanes;
-use crate::number::{Element, Number};
 use crate::settings::Settings;
 use crate::training::with_width;
+use lanes::Number;
+use lanes::Register;
 
 /// Fields that are looked at together.
 pub(crate) const LANES: usize = 8;
@@ -38,7 +39,7 @@ impl ActivationTable {
         }
         let n = settings.n_in;
         if k / LANES * 2 * n == self.blocks.len() {
-            // Lanes without a field are infinitely far from everything.
+            // Register without a field are infinitely far from everything.
             for _ in 0..n {
                 self.blocks.push([f64::INFINITY; LANES]);
                 self.blocks.push([1.0; LANES]);
@@ -163,11 +164,11 @@ impl Near {
     fn activate<S: Simd>(&mut self, simd: S, settings: &Settings) {
         let room = self.len.next_multiple_of(LANES);
         let Activation { w, slope, curvature } = &mut self.activation;
-        let out = Lanes::<S>::elements_mut(&mut w[..room]).iter_mut();
-        let out = out.zip(Lanes::<S>::elements_mut(&mut slope[..room]));
-        let out = out.zip(Lanes::<S>::elements_mut(&mut curvature[..room]));
-        for (&q, ((w, slope), curvature)) in Lanes::<S>::elements(&self.q[..room]).iter().zip(out) {
-            let activation = settings.params.kernel.at(Lanes::of(simd, q));
+        let out = Register::<S>::elements_mut(&mut w[..room]).iter_mut();
+        let out = out.zip(Register::<S>::elements_mut(&mut slope[..room]));
+        let out = out.zip(Register::<S>::elements_mut(&mut curvature[..room]));
+        for (&q, ((w, slope), curvature)) in Register::<S>::elements(&self.q[..room]).iter().zip(out) {
+            let activation = settings.params.kernel.at(Register::of(simd, q));
             *w = activation.w.raw();
             *slope = activation.slope.raw();
             *curvature = activation.curvature.raw();
@@ -192,11 +193,13 @@ impl Near {
 fn diagonal_distance<S: Simd>(simd: S, field: &Field, x: &[f64], t: &mut [f64]) -> f64 {
     let width = x.len();
     let (centre, m) =
-        (Lanes::<S>::elements(&field.rows[..width]), Lanes::<S>::elements(&field.rows[2 * width..3 * width]));
-    for (((t, &x), &c), &m) in Lanes::<S>::elements_mut(t).iter_mut().zip(Lanes::<S>::elements(x)).zip(centre).zip(m) {
-        *t = ((Lanes::of(simd, x) - Lanes::of(simd, c)) * Lanes::of(simd, m)).raw();
+        (Register::<S>::elements(&field.rows[..width]), Register::<S>::elements(&field.rows[2 * width..3 * width]));
+    for (((t, &x), &c), &m) in
+        Register::<S>::elements_mut(t).iter_mut().zip(Register::<S>::elements(x)).zip(centre).zip(m)
+    {
+        *t = ((Register::of(simd, x) - Register::of(simd, c)) * Register::of(simd, m)).raw();
     }
-    <Lanes<S> as Element<f64>>::dot(simd, t, t)
+    <Register<S> as Element<f64>>::dot(simd, t, t)
 }
 
 /// Squared distance q = (x − c)ᵀD(x − c) with full metric: |M(x − c)|². `t` is a row of scratch.

@@ -1,6 +1,6 @@
 //! A pass over a data set, in chunks.
 
-use nalgebra::DMatrix;
+use nalgebra::DMatrixView;
 use rayon::prelude::*;
 
 use crate::batch::{BatchScratch, BatchTraining};
@@ -36,8 +36,8 @@ impl BatchFit {
     pub(crate) fn pass(
         &mut self,
         model: &mut Lwpr,
-        xs: &DMatrix<f64>,
-        ys: &DMatrix<f64>,
+        xs: DMatrixView<'_, f64>,
+        ys: DMatrixView<'_, f64>,
         order: &[usize],
     ) -> Result<(), LwprError> {
         let mut rest = order;
@@ -46,9 +46,7 @@ impl BatchFit {
             rest = others;
             let born = self.learn(model, xs, ys, samples)?;
             self.length = if born > 0 { self.length / 2 } else { 2 * self.length }.clamp(SHORTEST, LONGEST);
-            for &sample in samples {
-                model.inputs.see(xs.column(sample).as_slice());
-            }
+            model.n_data += samples.len();
         }
         Ok(())
     }
@@ -57,13 +55,12 @@ impl BatchFit {
     fn learn(
         &mut self,
         model: &mut Lwpr,
-        xs: &DMatrix<f64>,
-        ys: &DMatrix<f64>,
+        xs: DMatrixView<'_, f64>,
+        ys: DMatrixView<'_, f64>,
         samples: &[usize],
     ) -> Result<usize, LwprError> {
         let settings = &model.settings;
-        let n_in = settings.n_in;
-        self.chunk.fill(settings, samples.iter().map(|&sample| &xs.as_slice()[sample * n_in..][..n_in]));
+        self.chunk.fill(settings, samples.iter().map(|&sample| xs.column(sample)));
         for (output, (y, norm)) in self.ys.iter_mut().zip(&settings.norm_out).enumerate() {
             y.clear();
             y.extend(samples.iter().map(|&sample| ys[(output, sample)] / norm));

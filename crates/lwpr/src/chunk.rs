@@ -1,10 +1,11 @@
 //! A stretch of samples that all fields of an output learn from, one field after the other.
 
+use nalgebra::DVectorView;
 use pulp::Simd;
 
-use crate::lanes::Lanes;
-use crate::number::Number;
 use crate::settings::Settings;
+use lanes::Number;
+use lanes::Register;
 
 /// Samples that are looked at together.
 const LANES: usize = 8;
@@ -44,7 +45,11 @@ impl Shape {
 
 impl Chunk {
     /// Takes in other samples, columns of length `n_in`.
-    pub(crate) fn fill<'a>(&mut self, settings: &Settings, columns: impl ExactSizeIterator<Item = &'a [f64]>) {
+    pub(crate) fn fill<'a>(
+        &mut self,
+        settings: &Settings,
+        columns: impl ExactSizeIterator<Item = DVectorView<'a, f64>>,
+    ) {
         let (n_in, width) = (settings.n_in, settings.width);
         self.n = columns.len();
         self.n_in = n_in;
@@ -79,12 +84,12 @@ impl Chunk {
     ) -> Option<(usize, f64)> {
         let n = S::F64_LANES;
         let mut first = start / n * n;
-        let near = Lanes::splat(simd, reach);
+        let near = Register::splat(simd, reach);
         while first < end {
             let block = &self.blocks[first / LANES * self.n_in..][..self.n_in];
-            let mut q = Lanes::splat(simd, 0.0);
+            let mut q = Register::splat(simd, 0.0);
             for ((x, &c), &d) in block.iter().zip(&shape.centre).zip(&shape.d) {
-                let dx = Lanes::of(simd, Lanes::<S>::elements(x)[first % LANES / n]) - c;
+                let dx = Register::of(simd, Register::<S>::elements(x)[first % LANES / n]) - c;
                 q += dx * dx * d;
             }
             let lane = q.first_below(near, start.saturating_sub(first));

@@ -5,9 +5,9 @@ use std::cell::RefCell;
 use pulp::Simd;
 
 use crate::Kernel;
-use crate::lanes::Lanes;
 use crate::local_model::LocalModel;
-use crate::number::Number as _;
+use lanes::Number as _;
+use lanes::Register;
 
 /// Fields that are looked at together.
 const LANES: usize = 8;
@@ -94,7 +94,7 @@ impl FieldTable {
     /// A block is one vector or several, `part` after `part`; left to the compiler it would be four of two lanes.
     #[inline(always)]
     fn activate<S: Simd>(&self, simd: S, query: Query<'_>, x: &[f64], active: &mut Vec<ActiveBlock>) -> (f64, f64) {
-        let [reach, cutoff, zero] = [query.reach, query.cutoff, 0.0].map(|value| Lanes::splat(simd, value));
+        let [reach, cutoff, zero] = [query.reach, query.cutoff, 0.0].map(|value| Register::splat(simd, value));
         let (mut sum_w, mut sum_wy) = ([0.0; LANES], [0.0; LANES]);
         let size = HEAD + AXIS * self.n_in;
         active.clear();
@@ -105,11 +105,11 @@ impl FieldTable {
             for part in 0..parts::<S>() {
                 let (mut q, mut y) = (zero, load(simd, &found.y, part));
                 for ([c, d, s], &x) in block[HEAD..].as_chunks::<AXIS>().0.iter().zip(x) {
-                    let dx = Lanes::splat(simd, x) - load(simd, c, part);
+                    let dx = Register::splat(simd, x) - load(simd, c, part);
                     q += load(simd, d, part) * (dx * dx);
                     y += load(simd, s, part) * dx;
                 }
-                in_reach |= Lanes::any(simd, reach.above(q));
+                in_reach |= Register::any(simd, reach.above(q));
                 store(&mut distance, part, q);
                 store(&mut found.y, part, y);
             }
@@ -136,17 +136,18 @@ impl FieldTable {
     fn gradient<S: Simd>(&self, simd: S, x: &[f64], active: &mut [ActiveBlock], value: f64, gradient: &mut [f64]) {
         for block in &mut *active {
             for part in 0..parts::<S>() {
-                let factor = load(simd, &block.slope, part) * (load(simd, &block.y, part) - Lanes::splat(simd, value));
+                let factor =
+                    load(simd, &block.slope, part) * (load(simd, &block.y, part) - Register::splat(simd, value));
                 store(&mut block.y, part, factor);
             }
         }
         for (i, (gradient, &x)) in gradient.iter_mut().zip(x).enumerate() {
             let mut sums = [0.0; LANES];
             for part in 0..parts::<S>() {
-                let mut sum = Lanes::splat(simd, 0.0);
+                let mut sum = Register::splat(simd, 0.0);
                 for block in &*active {
                     let [c, d, s] = &self.blocks[block.at..].as_chunks::<AXIS>().0[i];
-                    let v = load(simd, d, part) * (Lanes::splat(simd, x) - load(simd, c, part));
+                    let v = load(simd, d, part) * (Register::splat(simd, x) - load(simd, c, part));
                     sum += load(simd, &block.w, part) * load(simd, s, part) + load(simd, &block.y, part) * v;
                 }
                 store(&mut sums, part, sum);
@@ -159,17 +160,17 @@ impl FieldTable {
 /// Vectors that make up a row.
 #[inline(always)]
 fn parts<S: Simd>() -> usize {
-    Lanes::<S>::elements(&[0.0; LANES]).len()
+    Register::<S>::elements(&[0.0; LANES]).len()
 }
 
 #[inline(always)]
-fn load<S: Simd>(simd: S, row: &Row, part: usize) -> Lanes<S> {
-    Lanes::of(simd, Lanes::<S>::elements(row)[part])
+fn load<S: Simd>(simd: S, row: &Row, part: usize) -> Register<S> {
+    Register::of(simd, Register::<S>::elements(row)[part])
 }
 
 #[inline(always)]
-fn store<S: Simd>(row: &mut Row, part: usize, value: Lanes<S>) {
-    Lanes::<S>::elements_mut(row)[part] = value.raw();
+fn store<S: Simd>(row: &mut Row, part: usize, value: Register<S>) {
+    Register::<S>::elements_mut(row)[part] = value.raw();
 }
 
 /// The sum over lanes, in halves.

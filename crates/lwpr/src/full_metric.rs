@@ -1,8 +1,9 @@
 //! The gradient of a full metric.
 
+use crate::element::Element;
 use crate::field::MetricRows;
 use crate::metric::{Derivatives, ElementRows, Step};
-use crate::number::{Element, Number};
+use lanes::Number;
 
 /// Scratch rows: M(x − c), a column of MD, and M Mᵀ (`n_in` rows; empty for a diagonal metric).
 pub(crate) struct FullScratch<'a> {

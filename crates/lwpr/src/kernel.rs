@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use crate::number::Number;
+use lanes::Number;
 
 /// Shape of a receptive field: activation w as a function of q = (x − c)ᵀD(x − c).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -26,7 +26,7 @@ impl Kernel {
     pub(crate) fn at<T: Number>(self, q: T) -> Activation<T> {
         match self {
             Kernel::Gaussian => {
-                let w = (q * -0.5).exp();
+                let w = lanes::exp(q * -0.5);
                 Activation { w, slope: w * -0.5, curvature: w * 0.25 }
             }
             Kernel::BiSquare => {

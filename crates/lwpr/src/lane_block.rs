@@ -5,21 +5,21 @@ use pulp::Simd;
 use crate::chunk::{Chunk, Shape};
 use crate::field::{DIRECTION_ROWS, Direction, Field, Layout};
 use crate::kernel::Activation;
-use crate::lanes::Lanes;
-use crate::number::Number;
 use crate::rows::Rows;
 use crate::settings::{Settings, padded_for_lanes};
 use crate::training::{Workspace, train, with_width};
+use lanes::Number;
+use lanes::Register;
 
 /// As many fields as a vector register has lanes, all with the same number of directions, and a sample for each.
 pub(crate) struct LaneBlock<S: Simd> {
     simd: S,
-    field: Field<Lanes<S>>,
+    field: Field<Register<S>>,
     /// Centre and D of each lane.
     shapes: Vec<Shape>,
     x: Rows,
-    y: Lanes<S>,
-    q: Lanes<S>,
+    y: Register<S>,
+    q: Register<S>,
     workspace: Workspace,
 }
 
@@ -38,9 +38,9 @@ impl<T> Field<T> {
 }
 
 impl<S: Simd> LaneBlock<S> {
-    /// For fields of `n_directions`. Lanes that have not been filled hold something whose learning is harmless.
+    /// For fields of `n_directions`. Register that have not been filled hold something whose learning is harmless.
     pub(crate) fn new(simd: S, settings: &Settings, n_directions: usize) -> Self {
-        let one = Lanes::splat(simd, 1.0);
+        let one = Register::splat(simd, 1.0);
         let width = padded_for_lanes(settings.n_in) * S::F64_LANES;
         let direction = Direction {
             beta: one,
@@ -125,12 +125,12 @@ impl<S: Simd> LaneBlock<S> {
 
     /// All lanes learn from their samples. Returns the activations, and which lanes call for another direction.
     #[inline(always)]
-    pub(crate) fn train(&mut self, settings: &Settings) -> (Lanes<S>, Option<Lanes<S>>) {
-        let activation: Activation<Lanes<S>> = settings.params.kernel.at(self.q);
+    pub(crate) fn train(&mut self, settings: &Settings) -> (Register<S>, Option<Register<S>>) {
+        let activation: Activation<Register<S>> = settings.params.kernel.at(self.q);
         let Workspace { rows, mmt } = &mut self.workspace;
         let wanted = with_width!(self.x.len(), [8, 12, 16, 24, 32, 48, 64], rows, |width, scratch| {
             let sample = (&self.x[..width], self.y);
-            train::<Lanes<S>, Lanes<S>>(
+            train::<Register<S>, Register<S>>(
                 (self.simd, self.simd),
                 &mut self.field,
                 settings,
@@ -140,7 +140,7 @@ impl<S: Simd> LaneBlock<S> {
                 mmt,
             )
         });
-        let marks = |mask| Lanes::splat(self.simd, 1.0).or_else(mask, Lanes::splat(self.simd, 0.0));
+        let marks = |mask| Register::splat(self.simd, 1.0).or_else(mask, Register::splat(self.simd, 0.0));
         (activation.w, wanted.map(marks))
     }
 }

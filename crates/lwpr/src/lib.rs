@@ -15,7 +15,7 @@
 //! let ys = xs.map(|x| (3.0 * x).sin());
 //!
 //! let mut model = LwprParams { init_d: 50.0, ..LwprParams::default() }.build(1, 1)?;
-//! model.fit_in_order(&xs, &ys, 10)?; // A batch …
+//! model.fit_in_order(xs.as_view(), ys.as_view(), 10)?; // A batch …
 //! model.update(xs.column(7), ys.column(7))?; // … or one sample at a time.
 //!
 //! let predictor = model.predictor(0.001); // An immutable snapshot, to be shared between threads.
@@ -50,27 +50,26 @@ mod batch_fit;
 mod birth;
 mod chunk;
 mod contribution;
+mod element;
 mod error;
-mod exponential;
 mod field;
 mod field_table;
 mod full_metric;
 mod kernel;
 mod lane_block;
-mod lanes;
 mod local_model;
 mod metric;
 mod model;
 mod model_record;
-mod number;
 mod params;
 mod predictor;
 mod predictor_record;
 mod receptive_field;
 mod regression;
 mod rows;
-mod scalar;
 mod settings;
+mod standardised;
+mod standardised_record;
 mod sub_model;
 mod training;
 
@@ -80,3 +79,4 @@ pub use model::Lwpr;
 pub use params::{LwprParams, Metric, MetricAdaptation, Pruning};
 pub use predictor::{Prediction, Predictor};
 pub use receptive_field::ReceptiveField;
+pub use standardised::{StandardisedModel, Training};

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::element::Element;
 use crate::field::{DIRECTION_ROWS, Field, Layout};
 use crate::full_metric::add_scaled;
-use crate::number::Element;
 use crate::settings::Settings;
 
 /// A receptive field, frozen. Vectors are not padded; everything is in normalised units.

@@ -1,12 +1,13 @@
 //! One step of gradient descent on a field's metric (Vijayakumar, D'Souza, Schaal 2005, table 2 and appendix).
 
+use crate::element::Element;
 use crate::field::{Direction, Field, Layout, MetricRows};
 use crate::full_metric::{FullScratch, full_step};
 use crate::kernel::Activation;
-use crate::number::{Element, Number};
 use crate::regression::{Absorbed, settled};
 use crate::settings::Settings;
 use crate::{Metric, MetricAdaptation};
+use lanes::Number;
 
 /// What the steps of all elements of M share.
 pub(crate) struct Step<T: Number> {
@@ -21,7 +22,7 @@ pub(crate) struct Step<T: Number> {
     transient: T,
     /// A step down of more than this is not made.
     limit: T,
-    /// Lanes that move at all.
+    /// Register that move at all.
     settled: T::Mask,
     /// Learning rate of the learning rates.
     pub(crate) rate: Option<f64>,
@@ -191,7 +192,7 @@ impl<T: Number> Step<T> {
         let hessian = by.penalty_second * self.omega + d2w * self.j1 + dw * dw * self.j1_second;
 
         let new_log_alpha = (log_alpha - (gradient * memory * rate).clip(0.1)).clip(10.0);
-        let new_alpha = new_log_alpha.exp();
+        let new_alpha = lanes::exp(new_log_alpha);
         let delta = new_alpha * gradient;
         let keep = (m.like(1.0) - new_alpha * hessian * self.transient).larger(m.like(0.0));
         let too_large = delta.above(E::spread(token, self.limit));

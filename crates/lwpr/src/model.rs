@@ -1,4 +1,4 @@
-use nalgebra::{DMatrix, DVectorView};
+use nalgebra::{DMatrixView, DVectorView};
 use rand::Rng;
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
@@ -20,17 +20,9 @@ use crate::{LwprError, LwprParams, Predictor, ReceptiveField};
 pub struct Lwpr {
     pub(crate) settings: Settings,
     pub(crate) outputs: Vec<SubModel>,
-    pub(crate) inputs: InputStatistics,
-    online: Online,
-}
-
-/// Running mean and variance of the raw inputs; for information only.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct InputStatistics {
+    /// How many samples have been learnt.
     pub(crate) n_data: usize,
-    pub(crate) mean: Vec<f64>,
-    pub(crate) variance: Vec<f64>,
+    online: Online,
 }
 
 /// What a single update works in, kept so that it allocates nothing.
@@ -41,22 +33,11 @@ struct Online {
     reach: Vec<Reach>,
 }
 
-impl InputStatistics {
-    pub(crate) fn see(&mut self, x: &[f64]) {
-        let n = self.n_data as f64;
-        self.n_data += 1;
-        for ((mean, variance), x) in self.mean.iter_mut().zip(&mut self.variance).zip(x) {
-            *mean = (n * *mean + x) / (n + 1.0);
-            *variance = (n * *variance + (x - *mean) * (x - *mean)) / (n + 1.0);
-        }
-    }
-}
-
 /// [`Lwpr::update_checked`] for the samples of `order`, one after the other, compiled for the processor at hand.
 struct UpdateChecked<'a> {
     model: &'a mut Lwpr,
-    xs: &'a [f64],
-    ys: &'a [f64],
+    xs: DMatrixView<'a, f64>,
+    ys: DMatrixView<'a, f64>,
     order: &'a [usize],
 }
 
@@ -66,9 +47,8 @@ impl pulp::WithSimd for UpdateChecked<'_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) -> Self::Output {
         let UpdateChecked { model, xs, ys, order } = self;
-        let (n_in, n_out) = (model.n_in(), model.n_out());
         for &sample in order {
-            model.update_checked(simd, &xs[sample * n_in..][..n_in], &ys[sample * n_out..][..n_out], sample)?;
+            model.update_checked(simd, xs.column(sample).as_slice(), ys.column(sample).as_slice(), sample)?;
         }
         Ok(())
     }
@@ -76,18 +56,17 @@ impl pulp::WithSimd for UpdateChecked<'_> {
 
 impl Lwpr {
     pub(crate) fn new(settings: Settings) -> Self {
-        let (n_in, n_out) = (settings.n_in, settings.n_out);
-        let inputs = InputStatistics { n_data: 0, mean: vec![0.0; n_in], variance: vec![0.0; n_in] };
-        Self::from_parts(settings, vec![SubModel::default(); n_out], inputs)
+        let outputs = vec![SubModel::default(); settings.n_out];
+        Self::from_parts(settings, outputs, 0)
     }
 
-    pub(crate) fn from_parts(settings: Settings, outputs: Vec<SubModel>, inputs: InputStatistics) -> Self {
+    pub(crate) fn from_parts(settings: Settings, outputs: Vec<SubModel>, n_data: usize) -> Self {
         let online = Online {
             x: Rows::zeros(settings.width),
             workspace: Workspace::new(&settings, settings.width),
             reach: vec![Reach::default(); settings.n_out],
         };
-        Lwpr { settings, outputs, inputs, online }
+        Lwpr { settings, outputs, n_data, online }
     }
 
     /// Learns from one sample x (`n_in`), y (`n_out`). Allocates nothing, except when a receptive field is born or
@@ -97,15 +76,14 @@ impl Lwpr {
     /// [`LwprError::Dimension`], [`LwprError::BadValue`] or [`LwprError::TooManyReceptiveFields`]; the model is then
     /// unchanged.
     pub fn update(&mut self, x: DVectorView<'_, f64>, y: DVectorView<'_, f64>) -> Result<(), LwprError> {
-        let (x, y) = (x.as_slice(), y.as_slice());
-        self.settings.check(x, Side::Input, 0)?;
-        self.settings.check(y, Side::Output, 0)?;
-        pulp::Arch::new().dispatch(UpdateChecked { model: self, xs: x, ys: y, order: &[0] })
+        self.settings.check(x.as_slice(), Side::Input, 0)?;
+        self.settings.check(y.as_slice(), Side::Output, 0)?;
+        self.update_in_order((&x).into(), (&y).into(), &[0])
     }
 
     #[inline(always)]
     fn update_checked<S: pulp::Simd>(&mut self, simd: S, x: &[f64], y: &[f64], sample: usize) -> Result<(), LwprError> {
-        let Lwpr { settings, outputs, inputs, online } = self;
+        let Lwpr { settings, outputs, n_data, online } = self;
         for ((normalised, x), norm) in online.x.iter_mut().zip(x).zip(&settings.norm_in) {
             *normalised = x / norm;
         }
@@ -120,7 +98,7 @@ impl Lwpr {
             let y = y[k] / settings.norm_out[k];
             sub_model.learn(simd, settings, &online.x, y, &mut online.workspace, &online.reach[k]);
         }
-        inputs.see(x);
+        *n_data += 1;
         Ok(())
     }
 
@@ -130,60 +108,71 @@ impl Lwpr {
     /// # Errors
     /// [`LwprError::EmptyBatch`], [`LwprError::SampleCount`], [`LwprError::Dimension`], [`LwprError::BadValue`] or
     /// [`LwprError::TooManyReceptiveFields`]; the model is then unchanged.
-    pub fn fit_in_order(&mut self, xs: &DMatrix<f64>, ys: &DMatrix<f64>, passes: usize) -> Result<(), LwprError> {
-        self.check_batch(xs, ys)?;
-        let order: Vec<usize> = (0..xs.ncols()).collect();
-        self.fit(xs, ys, (0..passes).map(|_| order.clone()))
+    pub fn fit_in_order(
+        &mut self,
+        xs: DMatrixView<'_, f64>,
+        ys: DMatrixView<'_, f64>,
+        passes: usize,
+    ) -> Result<(), LwprError> {
+        self.fit(xs, ys, passes, &mut |_| ())
     }
 
     /// Learns from all columns of `xs` (`n_in`, N) and `ys` (`n_out`, N) in a fresh random order each pass.
     ///
     /// # Errors
     /// As [`fit_in_order`](Self::fit_in_order).
-    pub fn fit_batch(
+    pub fn fit_batch<R: Rng + ?Sized>(
         &mut self,
-        xs: &DMatrix<f64>,
-        ys: &DMatrix<f64>,
+        xs: DMatrixView<'_, f64>,
+        ys: DMatrixView<'_, f64>,
         passes: usize,
-        rng: &mut impl Rng,
+        rng: &mut R,
+    ) -> Result<(), LwprError> {
+        self.fit(xs, ys, passes, &mut |order| order.shuffle(rng))
+    }
+
+    /// As many passes, `arrange` ordering the samples before each. Field by field where that is the same as sample by
+    /// sample, which it is unless fields are pruned, and faster: many dimensions or a full metric keep vector registers
+    /// busy by themselves.
+    ///
+    /// Nothing here depends on the caller's types, so that it is compiled once.
+    fn fit(
+        &mut self,
+        xs: DMatrixView<'_, f64>,
+        ys: DMatrixView<'_, f64>,
+        passes: usize,
+        arrange: &mut dyn FnMut(&mut [usize]),
     ) -> Result<(), LwprError> {
         self.check_batch(xs, ys)?;
         let mut order: Vec<usize> = (0..xs.ncols()).collect();
-        self.fit(
-            xs,
-            ys,
-            (0..passes).map(|_| {
-                order.shuffle(rng);
-                order.clone()
-            }),
-        )
-    }
-
-    /// One pass over each order. Field by field where that is the same as sample by sample, which it is unless fields
-    /// are pruned, and faster: many dimensions or a full metric keep vector registers busy by themselves.
-    fn fit(
-        &mut self,
-        xs: &DMatrix<f64>,
-        ys: &DMatrix<f64>,
-        mut orders: impl Iterator<Item = Vec<usize>>,
-    ) -> Result<(), LwprError> {
-        let params = &self.settings.params;
-        let before = params.max_receptive_fields.map(|_| self.clone());
-        let result = if params.w_prune < 1.0 || !self.settings.narrow() {
-            let (xs, ys) = (xs.as_slice(), ys.as_slice());
-            orders
-                .try_for_each(|order| pulp::Arch::new().dispatch(UpdateChecked { model: self, xs, ys, order: &order }))
-        } else {
-            let mut fit = BatchFit::new(self);
-            orders.try_for_each(|order| fit.pass(self, xs, ys, &order))
-        };
-        if let (Err(_), Some(before)) = (&result, before) {
-            *self = before;
+        let before = self.settings.params.max_receptive_fields.map(|_| self.clone());
+        let mut fit = (self.settings.params.w_prune == 1.0 && self.settings.narrow()).then(|| BatchFit::new(self));
+        for _ in 0..passes {
+            arrange(&mut order);
+            let result = match &mut fit {
+                Some(fit) => fit.pass(self, xs, ys, &order),
+                None => self.update_in_order(xs, ys, &order),
+            };
+            if let Err(refused) = result {
+                if let Some(before) = before {
+                    *self = before;
+                }
+                return Err(refused);
+            }
         }
-        result
+        Ok(())
     }
 
-    fn check_batch(&self, xs: &DMatrix<f64>, ys: &DMatrix<f64>) -> Result<(), LwprError> {
+    fn update_in_order(
+        &mut self,
+        xs: DMatrixView<'_, f64>,
+        ys: DMatrixView<'_, f64>,
+        order: &[usize],
+    ) -> Result<(), LwprError> {
+        pulp::Arch::new().dispatch(UpdateChecked { model: self, xs, ys, order })
+    }
+
+    fn check_batch(&self, xs: DMatrixView<'_, f64>, ys: DMatrixView<'_, f64>) -> Result<(), LwprError> {
         if xs.ncols() != ys.ncols() {
             return Err(LwprError::SampleCount { inputs: xs.ncols(), outputs: ys.ncols() });
         }
@@ -220,17 +209,7 @@ impl Lwpr {
 
     /// How many samples have been learnt.
     pub fn n_data(&self) -> usize {
-        self.inputs.n_data
-    }
-
-    /// Mean of the inputs so far (`n_in`), in their own units.
-    pub fn input_mean(&self) -> &[f64] {
-        &self.inputs.mean
-    }
-
-    /// Running variance of the inputs so far (`n_in`), in their own units squared.
-    pub fn input_variance(&self) -> &[f64] {
-        &self.inputs.variance
+        self.n_data
     }
 
     /// How many receptive fields `output` has.

@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::activation::ActivationTable;
 use crate::field::{DIRECTION_ROWS, Direction, Field, Layout};
-use crate::model::InputStatistics;
 use crate::rows::Rows;
 use crate::settings::Settings;
 use crate::sub_model::SubModel;
@@ -17,7 +16,7 @@ pub(crate) struct ModelRecord {
     params: LwprParams,
     n_in: usize,
     n_out: usize,
-    inputs: InputStatistics,
+    n_data: usize,
     outputs: Vec<OutputRecord>,
 }
 
@@ -180,7 +179,7 @@ impl From<Lwpr> for ModelRecord {
             n_out: settings.n_out,
             outputs: model.outputs.iter().map(output).collect(),
             params: settings.params.clone(),
-            inputs: model.inputs,
+            n_data: model.n_data,
         }
     }
 }
@@ -191,11 +190,6 @@ impl TryFrom<ModelRecord> for Lwpr {
     fn try_from(record: ModelRecord) -> Result<Self, LwprError> {
         let corrupt = |reason: String| LwprError::Corrupt { reason };
         let settings = Settings::new(record.params, record.n_in, record.n_out)?;
-        let inputs = record.inputs;
-        let finite = inputs.mean.iter().chain(&inputs.variance).all(|number| number.is_finite());
-        if inputs.mean.len() != record.n_in || inputs.variance.len() != record.n_in || !finite {
-            return Err(corrupt("the input statistics do not fit the inputs".to_owned()));
-        }
         if record.outputs.len() != record.n_out {
             return Err(corrupt(format!("{} lists of fields for {} outputs", record.outputs.len(), record.n_out)));
         }
@@ -212,6 +206,6 @@ impl TryFrom<ModelRecord> for Lwpr {
             }
             outputs.push(SubModel { table, ..sub_model });
         }
-        Ok(Lwpr::from_parts(settings, outputs, inputs))
+        Ok(Lwpr::from_parts(settings, outputs, record.n_data))
     }
 }

@@ -1,14 +1,14 @@
 //! One field learns from one sample, or several fields side by side from one each.
 
 use crate::Metric;
+use crate::element::Element;
 use crate::field::{Field, Layout};
 use crate::full_metric::FullScratch;
 use crate::kernel::Activation;
-use crate::lanes::Lanes;
 use crate::metric::update_metric;
-use crate::number::Element;
 use crate::regression::{Sample, age, update_means, update_regression};
 use crate::settings::Settings;
+use lanes::Register;
 
 /// Rows of scratch that [`train`] needs.
 pub(crate) const SCRATCH_ROWS: usize = 5;
@@ -61,7 +61,7 @@ pub(crate) fn train_one<S: pulp::Simd>(
     mmt: &mut [f64],
 ) {
     let wanted = if S::F64_LANES > 1 && x.len().is_multiple_of(S::F64_LANES) {
-        train::<f64, Lanes<S>>(((), simd), field, settings, (x, y), activation, scratch, mmt)
+        train::<f64, Register<S>>(((), simd), field, settings, (x, y), activation, scratch, mmt)
     } else {
         train::<f64, f64>(((), ()), field, settings, (x, y), activation, scratch, mmt)
     };

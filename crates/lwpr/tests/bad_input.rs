@@ -74,7 +74,8 @@ fn norms() {
 fn trained() -> Lwpr {
     let mut model = params().build(2, 1).unwrap();
     let xs = DMatrix::from_fn(2, 200, |i, j| ((j * (i + 3)) as f64 * 0.37).sin());
-    model.fit_in_order(&xs, &DMatrix::from_fn(1, 200, |_, j| xs[(0, j)]), 2).unwrap();
+    let ys = DMatrix::from_fn(1, 200, |_, j| xs[(0, j)]);
+    model.fit_in_order(xs.as_view(), ys.as_view(), 2).unwrap();
     model
 }
 
@@ -97,7 +98,7 @@ fn samples() {
 
     let mut xs = DMatrix::zeros(2, 5);
     let ys = DMatrix::zeros(1, 5);
-    let mut fit = |xs: &DMatrix<f64>, ys: &DMatrix<f64>| model.fit_in_order(xs, ys, 1).unwrap_err();
+    let mut fit = |xs: &DMatrix<f64>, ys: &DMatrix<f64>| model.fit_in_order(xs.as_view(), ys.as_view(), 1).unwrap_err();
     assert_eq!(fit(&DMatrix::zeros(2, 0), &DMatrix::zeros(1, 0)), LwprError::EmptyBatch);
     assert_eq!(fit(&xs, &DMatrix::zeros(1, 4)), LwprError::SampleCount { inputs: 5, outputs: 4 });
     assert_eq!(fit(&DMatrix::zeros(3, 5), &ys), dimension(Side::Input, 3, 2));
@@ -136,7 +137,7 @@ fn too_many_fields() {
     let ys = DMatrix::zeros(1, 6);
     let refused = LwprError::TooManyReceptiveFields { sample: 3, output: 0, limit: 3 };
     let mut model = limited.clone().build(2, 1).unwrap();
-    assert_eq!(model.fit_in_order(&xs, &ys, 1).unwrap_err(), refused);
+    assert_eq!(model.fit_in_order(xs.as_view(), ys.as_view(), 1).unwrap_err(), refused);
     assert_eq!((model.n_data(), model.n_receptive_fields(0)), (0, 0));
     for i in 0..3 {
         model.update(xs.column(i).as_view(), ys.column(i).as_view()).unwrap();
@@ -154,7 +155,7 @@ fn stored_models_that_cannot_be() {
         ("/n_in", 3.into()),
         ("/n_out", 2.into()),
         ("/params/w_gen", 2.0.into()),
-        ("/inputs/mean", serde_json::json!([0.0])),
+        ("/n_data", (-1).into()),
         ("/outputs/0/fields/0/centre", serde_json::json!([0.0])),
         ("/outputs/0/fields/0/directions/0/ss2", 0.0.into()),
     ];

@@ -73,7 +73,8 @@ fn check(path: &Path) {
     let (n_in, n_out) = (file["n_in"].as_u64().unwrap() as usize, file["n_out"].as_u64().unwrap() as usize);
     let mut model = params(&file).build(n_in, n_out).unwrap();
     let passes = file["passes"].as_u64().unwrap() as usize;
-    model.fit_in_order(&samples(&file["x_train"]), &samples(&file["y_train"]), passes).unwrap();
+    let (xs, ys) = (samples(&file["x_train"]), samples(&file["y_train"]));
+    model.fit_in_order(xs.as_view(), ys.as_view(), passes).unwrap();
     for output in 0..n_out {
         assert_eq!(model.n_receptive_fields(output) as u64, file["n_receptive_fields"][output], "{name}: fields");
         assert_eq!(model.n_pruned(output) as u64, file["n_pruned"][output], "{name}: pruned");

@@ -54,7 +54,7 @@ proptest! {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
                 let mut model = case.model();
-                model.fit_batch(&case.xs, &case.ys, 2, &mut ChaCha8Rng::seed_from_u64(case.seed)).unwrap();
+                model.fit_batch(case.xs.as_view(), case.ys.as_view(), 2, &mut ChaCha8Rng::seed_from_u64(case.seed)).unwrap();
                 let predictions = model.predictor(0.001).predict_batch(&case.xs).unwrap();
                 (state(&model), predictions)
             })

@@ -58,7 +58,8 @@ struct Params {
 pub(super) fn check(file: &Path) -> anyhow::Result<f64> {
     let case: Case = read_json(file)?;
     let mut model = case.params.ours().build(case.n_in, case.n_out)?;
-    model.fit_in_order(&columns(&case.x_train), &columns(&case.y_train), case.passes)?;
+    let (xs, ys) = (columns(&case.x_train), columns(&case.y_train));
+    model.fit_in_order(xs.as_view(), ys.as_view(), case.passes)?;
     case.same_counts(&model)?;
     Ok(case.compare(&model.predictor(case.cutoff)))
 }

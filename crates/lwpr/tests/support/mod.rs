@@ -26,7 +26,7 @@ impl Case {
 
     pub fn trained(&self, passes: usize) -> Lwpr {
         let mut model = self.model();
-        model.fit_in_order(&self.xs, &self.ys, passes).unwrap();
+        model.fit_in_order(self.xs.as_view(), self.ys.as_view(), passes).unwrap();
         model
     }
 }

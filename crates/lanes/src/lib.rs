@@ -1,0 +1,24 @@
+//! Numbers side by side, for loops that run in vector registers.
+//!
+//! | | |
+//! |---|---|
+//! | [`Lanes`] | eight numbers in memory: what the widest register holds, the same on every machine |
+//! | [`Register`] | as many numbers as a register of the processor at hand holds |
+//! | [`Number`] | what a rule calculates with: one `f64`, or a [`Register`] of them |
+//! | [`exp`], [`exp_in_bulk`] | the exponential without a call or a branch |
+//!
+//! Code that uses them runs under [`pulp::Arch::dispatch`] and is compiled for a processor only where it is inlined, so
+//! that everything here is `#[inline(always)]`. The same operations in the same order give the same bits in every width.
+
+#![allow(clippy::inline_always)]
+
+mod exponential;
+mod group;
+mod number;
+mod register;
+mod scalar;
+
+pub use exponential::{exp, exp_in_bulk};
+pub use group::{LANES, Lanes, groups_of, total};
+pub use number::Number;
+pub use register::Register;

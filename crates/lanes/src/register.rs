@@ -1,0 +1,209 @@
+//! Vector registers.
+
+use std::ops::{Add, AddAssign, Mul, Sub, SubAssign};
+
+use pulp::Simd;
+
+use crate::{LANES, Lanes, Number};
+
+/// As many numbers as a vector register holds.
+#[derive(Debug, Clone, Copy)]
+pub struct Register<S: Simd> {
+    value: S::f64s,
+    simd: S,
+}
+
+impl<S: Simd> Register<S> {
+    #[inline(always)]
+    fn with(self, value: S::f64s) -> Self {
+        Register { value, ..self }
+    }
+
+    #[inline(always)]
+    fn numbers(&mut self) -> &mut [f64] {
+        pulp::bytemuck::cast_slice_mut(std::slice::from_mut(&mut self.value))
+    }
+
+    /// How many registers hold a group.
+    #[inline(always)]
+    pub fn parts() -> usize {
+        Self::elements(&[0.0; LANES]).len()
+    }
+
+    /// Register number `part` of a group.
+    #[inline(always)]
+    pub fn load(simd: S, group: &Lanes, part: usize) -> Self {
+        Self::of(simd, Self::elements(group)[part])
+    }
+
+    /// Puts it back into a group, as register number `part`.
+    #[inline(always)]
+    pub fn store(self, group: &mut Lanes, part: usize) {
+        Self::elements_mut(group)[part] = self.value;
+    }
+
+    /// The sum over all lanes, in halves.
+    #[inline(always)]
+    pub fn sum(self) -> f64 {
+        self.simd.reduce_sum_f64s(self.value)
+    }
+
+    /// The largest of all lanes.
+    #[inline(always)]
+    pub fn largest(self) -> f64 {
+        self.simd.reduce_max_f64s(self.value)
+    }
+
+    /// The first lane from `start` on that is below `limit`; past the end if there is none.
+    #[inline(always)]
+    pub fn first_below(mut self, limit: Self, start: usize) -> usize {
+        if const { size_of::<S::m64s>() == 1 } {
+            // One bit a lane, the first lane lowest (`first_true_m64s` takes it for the highest).
+            let below = u32::from(pulp::bytemuck::cast::<S::m64s, u8>(limit.above(self)));
+            return (below >> start << start).trailing_zeros() as usize;
+        }
+        if start > 0 {
+            self.numbers()[..start].fill(f64::INFINITY);
+        }
+        self.simd.first_true_m64s(limit.above(self))
+    }
+
+    /// The number of lane `lane`.
+    #[inline(always)]
+    pub fn get(mut self, lane: usize) -> f64 {
+        self.numbers()[lane]
+    }
+
+    /// Replaces the number of lane `lane`.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, value: f64) {
+        self.numbers()[lane] = value;
+    }
+}
+
+macro_rules! operators {
+    ($($operator:ident, $function:ident, $instruction:ident;)*) => {$(
+        impl<S: Simd> $operator for Register<S> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $function(self, other: Self) -> Self {
+                self.with(self.simd.$instruction(self.value, other.value))
+            }
+        }
+
+        impl<S: Simd> $operator<f64> for Register<S> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $function(self, other: f64) -> Self {
+                self.$function(self.like(other))
+            }
+        }
+    )*};
+}
+
+operators! {
+    Add, add, add_f64s;
+    Sub, sub, sub_f64s;
+    Mul, mul, mul_f64s;
+}
+
+impl<S: Simd> AddAssign for Register<S> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<S: Simd> SubAssign for Register<S> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<S: Simd> Number for Register<S> {
+    type Raw = S::f64s;
+    type Mask = S::m64s;
+    type Token = S;
+
+    #[inline(always)]
+    fn token(self) -> S {
+        self.simd
+    }
+
+    #[inline(always)]
+    fn splat(simd: S, value: f64) -> Self {
+        Register { value: simd.splat_f64s(value), simd }
+    }
+
+    #[inline(always)]
+    fn of(simd: S, value: S::f64s) -> Self {
+        Register { value, simd }
+    }
+
+    #[inline(always)]
+    fn raw(self) -> S::f64s {
+        self.value
+    }
+
+    #[inline(always)]
+    fn elements(row: &[f64]) -> &[S::f64s] {
+        S::as_simd_f64s(row).0
+    }
+
+    #[inline(always)]
+    fn elements_mut(row: &mut [f64]) -> &mut [S::f64s] {
+        S::as_mut_simd_f64s(row).0
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        self.with(self.simd.mul_add_f64s(self.value, factor.value, term.value))
+    }
+
+    #[inline(always)]
+    fn recip(self) -> Self {
+        self.with(self.simd.div_f64s(self.simd.splat_f64s(1.0), self.value))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.with(self.simd.sqrt_f64s(self.value))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        let magnitude = self.like(f64::from_bits(u64::MAX >> 1));
+        self.with(self.simd.and_f64s(self.value, magnitude.value))
+    }
+
+    #[inline(always)]
+    fn power_of_two(mut self) -> Self {
+        for value in self.numbers() {
+            *value = value.power_of_two();
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn above(self, other: Self) -> S::m64s {
+        self.simd.greater_than_f64s(self.value, other.value)
+    }
+
+    #[inline(always)]
+    fn or_else(self, mask: S::m64s, other: Self) -> Self {
+        self.with(self.simd.select_f64s(mask, self.value, other.value))
+    }
+
+    #[inline(always)]
+    fn both(simd: S, a: S::m64s, b: S::m64s) -> S::m64s {
+        simd.and_m64s(a, b)
+    }
+
+    #[inline(always)]
+    fn any(simd: S, mask: S::m64s) -> bool {
+        simd.first_true_m64s(mask) < S::F64_LANES
+    }
+}

@@ -1,0 +1,108 @@
+//! Outputs that are centred and divided by their spread.
+
+#![allow(clippy::unwrap_used)] // A panic is how a test fails.
+
+mod support;
+
+use lwpr::{LwprError, LwprParams, StandardisedModel, Training};
+use nalgebra::{DMatrix, DVector, dvector};
+use proptest::prelude::*;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use support::{Case, case};
+
+fn training(case: &Case) -> Training {
+    let params = LwprParams { norm_out: None, ..case.params.clone() };
+    Training { params, passes: 2, cutoff: 1e-3 }
+}
+
+fn fitted(training: &Training, case: &Case) -> StandardisedModel {
+    training.fit(case.xs.as_view(), case.ys.as_view(), &mut ChaCha8Rng::seed_from_u64(case.seed)).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    #[test]
+    fn it_is_lwpr_of_centred_outputs_divided_by_their_spread(case in case(200)) {
+        let model = fitted(&training(&case), &case);
+        let n = case.xs.ncols() as f64;
+        let mean = case.ys.column_mean();
+        let centred = DMatrix::from_fn(case.n_out, case.xs.ncols(), |i, j| case.ys[(i, j)] - mean[i]);
+        let spread = DVector::from_fn(case.n_out, |i, _| (centred.row(i).norm_squared() / n).sqrt());
+        prop_assert!((model.mean() - &mean).amax() <= 1e-12 * (1.0 + mean.amax()));
+        let chosen = model.model().params().norm_out.clone().unwrap();
+        prop_assert!((&chosen - &spread).amax() <= 1e-12 * spread.amax(), "{chosen} {spread}");
+        prop_assert_eq!(model.model().n_data(), 2 * case.xs.ncols());
+
+        let mut plain = LwprParams { norm_out: Some(chosen), ..case.params.clone() }.build(case.n_in, case.n_out).unwrap();
+        let centred = DMatrix::from_fn(case.n_out, case.xs.ncols(), |i, j| case.ys[(i, j)] - model.mean()[i]);
+        let rng = &mut ChaCha8Rng::seed_from_u64(case.seed);
+        plain.fit_batch(case.xs.as_view(), centred.as_view(), 2, rng).unwrap();
+        let plain = plain.predictor(1e-3);
+        let (mut ours, mut theirs) = (DVector::zeros(case.n_in), DVector::zeros(case.n_in));
+        for x in case.xs.column_iter() {
+            for output in 0..case.n_out {
+                let value = plain.value_and_gradient_into(x, output, theirs.as_view_mut());
+                prop_assert_eq!(model.supports(x, output), value.is_some());
+                prop_assert_eq!(model.value(x, output), model.mean()[output] + value.unwrap_or(0.0));
+                model.gradient_into(x, output, ours.as_view_mut());
+                if value.is_none() {
+                    theirs.fill(0.0);
+                }
+                prop_assert_eq!(&ours, &theirs);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_read_back_predicts_the_same_bits(case in case(150), cutoff in 0.0..0.1) {
+        let model = fitted(&training(&case), &case).with_cutoff(cutoff).unwrap();
+        let stored: StandardisedModel = serde_json::from_str(&serde_json::to_string(&model).unwrap()).unwrap();
+        prop_assert_eq!((stored.cutoff(), stored.mean()), (cutoff, model.mean()));
+        for x in case.xs.column_iter() {
+            for output in 0..case.n_out {
+                prop_assert_eq!(stored.value(x, output).to_bits(), model.value(x, output).to_bits());
+            }
+        }
+    }
+}
+
+#[test]
+fn equal_outputs_have_spread_one() {
+    let (xs, ys) = (DMatrix::from_fn(2, 50, |i, j| (j * (i + 2)) as f64 * 0.1), DMatrix::repeat(1, 50, 7.0));
+    let model = Training::default().fit(xs.as_view(), ys.as_view(), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
+    assert_eq!(model.model().params().norm_out, Some(dvector![1.0]));
+    assert!((model.value(xs.column(3), 0) - 7.0).abs() < 1e-12);
+    assert_eq!(model.value(dvector![1e6, 1e6].as_view(), 0), model.mean()[0]);
+}
+
+#[test]
+fn what_is_refused() {
+    let (xs, ys) = (DMatrix::from_fn(2, 50, |i, j| (j * (i + 2)) as f64 * 0.1), DMatrix::repeat(1, 50, 7.0));
+    let fit = |training: Training| {
+        training.fit(xs.as_view(), ys.as_view(), &mut ChaCha8Rng::seed_from_u64(1)).map(|_| ()).unwrap_err()
+    };
+    let parameter = |name, value, range| LwprError::Parameter { name, value, range };
+    assert_eq!(fit(Training { passes: 0, ..Training::default() }), parameter("passes", 0.0, "at least 1"));
+    for cutoff in [-0.1, 1.0] {
+        let error = parameter("cutoff", cutoff, "at least 0 and less than 1");
+        assert_eq!(fit(Training { cutoff, ..Training::default() }), error);
+    }
+    let params = LwprParams { norm_out: Some(dvector![1.0]), ..LwprParams::default() };
+    assert_eq!(fit(Training { params, ..Training::default() }), LwprError::NormOutGiven);
+    let none = Training::default().fit(xs.columns(0, 0), ys.columns(0, 0), &mut ChaCha8Rng::seed_from_u64(1));
+    assert_eq!(none.map(|_| ()).unwrap_err(), LwprError::EmptyBatch);
+
+    let model = Training::default().fit(xs.as_view(), ys.as_view(), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
+    let good = serde_json::to_value(&model).unwrap();
+    for (path, value) in [
+        ("/version", serde_json::json!(2)),
+        ("/cutoff", serde_json::json!(1.0)),
+        ("/mean", serde_json::json!([0.0, 0.0])),
+    ] {
+        let mut bad = good.clone();
+        *bad.pointer_mut(path).unwrap() = value;
+        assert!(serde_json::from_value::<StandardisedModel>(bad).is_err(), "{path}");
+    }
+}
