@@ -2,8 +2,9 @@
 
 use std::fmt::Debug;
 
-use align::{Aligned, DirectPolicyLearning, LwprRegressor, Samples};
-use motion::{Policy, Potential};
+use align::{Aligned, DirectPolicyLearning, LwprRegressor};
+use motion::{LearntPolicy, Policy, Potential, SampleIndex};
+use nalgebra::DVectorView;
 use rand_chacha::ChaCha8Rng;
 
 /// What every learner is given of one data set: the observed movements, aligned, and which samples it must not learn
@@ -12,7 +13,16 @@ pub(crate) struct Lesson<'a> {
     /// The demonstrations, for those who align potentials as for those who do not.
     pub(crate) aligned: &'a Aligned,
     /// Samples kept for testing.
-    pub(crate) held_out: &'a Samples<'a>,
+    pub(crate) held_out: &'a [SampleIndex],
+}
+
+impl Lesson<'_> {
+    fn unsupported_share(&self, policy: &dyn LearntPolicy) -> f64 {
+        let trajectories = self.aligned.demonstrations().trajectories();
+        let state = |at: &SampleIndex| -> DVectorView<'_, f64> { trajectories[at.trajectory].state(at.sample) };
+        let unsupported = self.held_out.iter().filter(|at| policy.support(state(at)) == 0.0).count();
+        unsupported as f64 / self.held_out.len().max(1) as f64
+    }
 }
 
 /// What a learner returns.
@@ -34,19 +44,18 @@ pub(crate) trait Learner: Debug + Send + Sync {
 /// Regression on aligned potentials: the paper's method.
 impl Learner for LwprRegressor {
     fn learn(&self, lesson: &Lesson<'_>, rng: &mut ChaCha8Rng) -> anyhow::Result<Learnt> {
-        let training = lesson.aligned.samples().without(lesson.held_out.indices());
-        let learnt = lesson.aligned.regress(self, &training, rng)?;
-        let unsupported = learnt.potential().unsupported_share(&lesson.held_out.states());
-        let potential = Box::new(learnt.potential().clone());
-        Ok(Learnt { policy: Box::new(learnt.into_policy()), potential: Some(potential), unsupported })
+        let policy = lesson.aligned.learn_without(lesson.held_out, self, rng)?;
+        let unsupported = lesson.unsupported_share(&policy);
+        let potential = Box::new(policy.global_potential().clone());
+        Ok(Learnt { policy: Box::new(policy), potential: Some(potential), unsupported })
     }
 }
 
 /// The naive baseline.
 impl Learner for DirectPolicyLearning {
     fn learn(&self, lesson: &Lesson<'_>, rng: &mut ChaCha8Rng) -> anyhow::Result<Learnt> {
-        let policy = self.learn_without(lesson.held_out.indices(), lesson.aligned.demonstrations(), rng)?;
-        let unsupported = policy.unsupported_share(&lesson.held_out.states());
+        let policy = self.learn_policy(lesson.aligned.demonstrations(), lesson.held_out, rng)?;
+        let unsupported = lesson.unsupported_share(&policy);
         Ok(Learnt { policy: Box::new(policy), potential: None, unsupported })
     }
 }

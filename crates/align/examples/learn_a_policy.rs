@@ -1,6 +1,6 @@
 //! From recorded movements to a policy: what a program that uses this crate starts from.
 
-use align::{Bandwidth, PolicyAlign};
+use align::{Bandwidth, LwprRegressor, PolicyAlign};
 use lwpr::LwprParams;
 use motion::{Demonstrations, Policy};
 use nalgebra::{DMatrix, DVector};
@@ -14,11 +14,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for warning in aligned.warnings() {
         println!("warning: {warning}");
     }
-    let learnt =
-        aligned.learn(&LwprParams { init_d: 10.0, w_gen: 0.5, ..Default::default() }, &mut StdRng::seed_from_u64(1))?;
+    let params = LwprParams { init_d: 10.0, w_gen: 0.5, ..Default::default() };
+    let learnt = aligned.learn(&LwprRegressor { params, ..Default::default() }, &mut StdRng::seed_from_u64(1))?;
 
     let x = DVector::from_vec(vec![0.5, -0.2]);
-    let u = learnt.policy().action(x.as_view());
+    let u = learnt.action(x.as_view());
     println!("kept {} of {} movements", aligned.kept().len(), demonstrations.n_trajectories());
     println!("at ({:.2}, {:.2}) move with ({:.3}, {:.3}) per second", x[0], x[1], u[0], u[1]);
     Ok(())

@@ -1,12 +1,11 @@
-use lwpr::LwprParams;
-use motion::Demonstrations;
+use motion::{Demonstrations, SampleIndex};
 use nalgebra::{DVector, DVectorView};
 use rand::Rng;
 
 use crate::bipartition::Partition;
 use crate::{
-    AlignError, AlignmentObjective, GlobalPotential, Learnt, LocalPotential, LwprRegressor, PolicyAlign, Regressor,
-    SampleIndex, Samples, Split, Warning,
+    AlignError, AlignmentObjective, LocalPotential, LwprRegressor, PolicyAlign, PotentialPolicy, Regressor, Samples,
+    Split, Warning,
 };
 
 /// Local potentials brought to one level: what [`PolicyAlign::align`] found.
@@ -128,11 +127,7 @@ impl Aligned {
 
     /// The samples (x_kn, φ̂_kn + b_k) of the kept trajectories (23).
     pub fn samples(&self) -> Samples<'_> {
-        let of = |&trajectory: &usize| {
-            let samples = 0..self.potentials[trajectory].len();
-            samples.map(move |sample| SampleIndex { trajectory, sample })
-        };
-        Samples::new(self, self.kept().iter().flat_map(of).collect())
+        Samples::new(self, self.demonstrations.samples_of(self.kept()))
     }
 
     /// State and levelled potential of one sample of a kept trajectory.
@@ -142,30 +137,38 @@ impl Aligned {
         (state, self.potentials[index.trajectory][index.sample] + offset)
     }
 
-    /// Learns the global potential from all samples by LWPR with these parameters; the rest as in
-    /// [`LwprRegressor::default`].
+    /// Learns the policy from all samples of the kept trajectories.
     ///
     /// # Errors
-    /// [`AlignError::Lwpr`] for parameters that LWPR refuses.
-    pub fn learn<R: Rng + ?Sized>(
-        &self,
-        params: &LwprParams,
-        rng: &mut R,
-    ) -> Result<Learnt<GlobalPotential>, AlignError> {
-        let regressor = LwprRegressor { params: params.clone(), ..LwprRegressor::default() };
-        self.regress(&regressor, &self.samples(), rng)
+    /// [`AlignError::Parameter`] or [`AlignError::Lwpr`] for parameters out of range.
+    pub fn learn(&self, regressor: &LwprRegressor, rng: &mut dyn Rng) -> Result<PotentialPolicy, AlignError> {
+        self.learn_without(&[], regressor, rng)
     }
 
-    /// Learns the global potential (23) from all or some of the samples.
+    /// Learns the policy from all samples of the kept trajectories but those held out.
+    ///
+    /// # Errors
+    /// As [`Aligned::learn`], and [`AlignError::NoSamples`] if none is left.
+    pub fn learn_without(
+        &self,
+        held_out: &[SampleIndex],
+        regressor: &LwprRegressor,
+        rng: &mut dyn Rng,
+    ) -> Result<PotentialPolicy, AlignError> {
+        let potential = self.regress(regressor, &self.samples().without(held_out), rng)?;
+        Ok(PotentialPolicy::new(potential, self))
+    }
+
+    /// Learns the global potential (23) from all or some of the samples, by any regressor.
     ///
     /// # Errors
     /// Those of the regressor.
-    pub fn regress<G: Regressor, R: Rng + ?Sized>(
+    pub fn regress<G: Regressor + ?Sized>(
         &self,
         regressor: &G,
         samples: &Samples<'_>,
-        rng: &mut R,
-    ) -> Result<Learnt<G::Fitted>, G::Error> {
-        regressor.fit(&samples.states(), &samples.values(), rng).map(Learnt::new)
+        rng: &mut dyn Rng,
+    ) -> Result<G::Fitted, G::Error> {
+        regressor.fit(&samples.states(), &samples.values(), rng)
     }
 }

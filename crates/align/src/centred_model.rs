@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use lwpr::{Lwpr, LwprParams, Predictor};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, DVectorView};
 use rand::Rng;
 
 use crate::AlignError;
@@ -25,11 +25,11 @@ pub(crate) struct CentredModel {
 
 impl CentredModel {
     /// Learns `outputs` (n_out, M) from `states` (n, M), in a fresh random order each pass.
-    pub(crate) fn fit<R: Rng + ?Sized>(
+    pub(crate) fn fit(
         training: Training<'_>,
         states: &DMatrix<f64>,
         mut outputs: DMatrix<f64>,
-        mut rng: &mut R,
+        mut rng: &mut dyn Rng,
     ) -> Result<Self, AlignError> {
         check_cutoff(training.cutoff)?;
         if training.passes == 0 {
@@ -45,6 +45,16 @@ impl CentredModel {
         let mut model = params.build(states.nrows(), outputs.nrows())?;
         model.fit_batch(states.as_view(), outputs.as_view(), training.passes, &mut rng)?;
         Ok(CentredModel { predictor: model.predictor(training.cutoff), model: Arc::new(model), mean })
+    }
+
+    /// The largest activation of a receptive field at this state, (n), for the output that has least of it; 0 if no
+    /// field takes part in the prediction of some output.
+    pub(crate) fn support(&self, state: DVectorView<'_, f64>) -> f64 {
+        let of = |output| {
+            let takes_part = self.predictor.value(state, output).is_some();
+            if takes_part { self.predictor.max_activation(state, output) } else { 0.0 }
+        };
+        (0..self.mean.len()).map(of).fold(f64::INFINITY, f64::min)
     }
 
     /// The same model, asked with another cutoff.

@@ -67,12 +67,6 @@ pub enum AlignError {
         /// The first such trajectory.
         trajectory: usize,
     },
-    /// The share to be held out is not within (0, 1).
-    #[error("cannot hold out a share of {fraction}: it must be more than 0 and less than 1")]
-    Fraction {
-        /// The share asked for.
-        fraction: f64,
-    },
     /// No sample is left to learn from.
     #[error("no sample is left to learn from; hold out fewer or give more trajectories")]
     NoSamples,

@@ -1,6 +1,6 @@
 use lwpr::Lwpr;
 use motion::Potential;
-use nalgebra::{DMatrix, DVectorView, DVectorViewMut};
+use nalgebra::{DVectorView, DVectorViewMut};
 
 use crate::AlignError;
 use crate::centred_model::CentredModel;
@@ -19,15 +19,9 @@ impl GlobalPotential {
         GlobalPotential { learnt }
     }
 
-    /// Whether a receptive field takes part in the prediction at this state, (n).
-    pub fn supports(&self, state: DVectorView<'_, f64>) -> bool {
-        self.learnt.predictor.value(state, 0).is_some()
-    }
-
-    /// The share of states (n, M), one column each, without support; 0 for no states.
-    pub fn unsupported_share(&self, states: &DMatrix<f64>) -> f64 {
-        let unsupported = states.column_iter().filter(|state| !self.supports(state.as_view())).count();
-        unsupported as f64 / states.ncols().max(1) as f64
+    /// The largest activation of a receptive field at this state, (n), or 0 where none exceeds the cutoff.
+    pub fn support(&self, state: DVectorView<'_, f64>) -> f64 {
+        self.learnt.support(state)
     }
 
     /// The same potential, of which receptive fields take part as soon as their activation exceeds `cutoff`. Roll-outs

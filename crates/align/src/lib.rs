@@ -17,9 +17,9 @@
 //! [`DirectPolicyLearning`] is the naive regression to compare with.
 //!
 //! ```
-//! use align::{Bandwidth, PolicyAlign};
+//! use align::{Bandwidth, LwprRegressor, PolicyAlign};
 //! use lwpr::LwprParams;
-//! use motion::{Demonstrations, Policy, Potential};
+//! use motion::{Demonstrations, Policy};
 //! use nalgebra::{DMatrix, DVector};
 //! use rand::SeedableRng;
 //!
@@ -34,9 +34,10 @@
 //! assert_eq!(aligned.kept().len(), 8);
 //!
 //! let mut rng = rand::rngs::StdRng::seed_from_u64(1);
-//! let learnt = aligned.learn(&LwprParams { init_d: 10.0, ..Default::default() }, &mut rng)?;
+//! let params = LwprParams { init_d: 10.0, ..Default::default() };
+//! let learnt = aligned.learn(&LwprRegressor { params, ..Default::default() }, &mut rng)?;
 //! let x = DVector::from_vec(vec![0.3, 0.1]);
-//! let u = learnt.policy().action(x.as_view());
+//! let u = learnt.action(x.as_view());
 //! assert!((u + 0.1 * &x).norm() < 0.02);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -45,7 +46,7 @@
 //! or the true policy. Randomness is handed in, and the same seed gives the same bits at any number of threads.
 //!
 //! Reading on: `algorithm` is the algorithm, a line a step; `integration`, `nearest` (with `block_search`, its inner
-//! loop), `bandwidth`, `responsibilities`, `objective`, `bipartition` and `offsets` are the steps; `regress` and
+//! loop), `bandwidth`, `responsibilities`, `objective`, `bipartition` and `offsets` are the steps; `regressor` and
 //! `lwpr_regressor` the regression.
 
 mod algorithm;
@@ -56,6 +57,7 @@ mod block_search;
 mod centred_model;
 mod compensated;
 mod direct_policy;
+mod direct_policy_learning;
 mod eigen;
 mod error;
 mod exponential;
@@ -69,7 +71,9 @@ mod minima;
 mod nearest;
 mod objective;
 mod offsets;
-mod regress;
+mod potential_policy;
+mod potential_policy_learning;
+mod regressor;
 mod responsibilities;
 mod samples;
 mod split;
@@ -80,14 +84,17 @@ mod warning;
 pub use algorithm::PolicyAlign;
 pub use aligned::Aligned;
 pub use bandwidth::Bandwidth;
-pub use direct_policy::{DirectPolicy, DirectPolicyLearning};
+pub use direct_policy::DirectPolicy;
+pub use direct_policy_learning::DirectPolicyLearning;
 pub use error::AlignError;
 pub use global_potential::GlobalPotential;
 pub use integration::Integration;
 pub use local_potential::LocalPotential;
 pub use lwpr_regressor::LwprRegressor;
 pub use objective::AlignmentObjective;
-pub use regress::{Learnt, Regressor};
-pub use samples::{SampleIndex, SampleIter, Samples};
+pub use potential_policy::PotentialPolicy;
+pub use potential_policy_learning::PotentialPolicyLearning;
+pub use regressor::Regressor;
+pub use samples::{SampleIter, Samples};
 pub use split::{Split, SplitCause};
 pub use warning::Warning;

@@ -27,11 +27,11 @@ impl Regressor for LwprRegressor {
     type Fitted = GlobalPotential;
     type Error = AlignError;
 
-    fn fit<R: Rng + ?Sized>(
+    fn fit(
         &self,
         states: &DMatrix<f64>,
         values: &DVector<f64>,
-        rng: &mut R,
+        rng: &mut dyn Rng,
     ) -> Result<GlobalPotential, AlignError> {
         let training = Training { params: &self.params, passes: self.passes, cutoff: self.cutoff };
         let outputs = DMatrix::from_row_slice(1, values.len(), values.as_slice());

@@ -1,16 +1,7 @@
+use motion::SampleIndex;
 use nalgebra::{DMatrix, DVector, DVectorView};
-use rand::Rng;
 
-use crate::{AlignError, Aligned};
-
-/// Which sample of which trajectory, both counted from 0.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct SampleIndex {
-    /// The trajectory.
-    pub trajectory: usize,
-    /// Its sample.
-    pub sample: usize,
-}
+use crate::Aligned;
 
 /// Some samples (x_kn, φ̂_kn + b_k) of the kept trajectories (23), in ascending order.
 #[derive(Debug, Clone)]
@@ -56,19 +47,13 @@ impl<'a> Samples<'a> {
         SampleIter { aligned: self.aligned, indices: self.indices.iter().copied() }
     }
 
-    /// The rest and, second, a random share `fraction` of the samples: rounded down, at least one.
-    ///
-    /// # Errors
-    /// [`AlignError::Fraction`] if the share is not more than 0 and less than 1.
-    pub fn split<R: Rng + ?Sized>(&self, fraction: f64, rng: &mut R) -> Result<(Self, Self), AlignError> {
-        if !(fraction > 0.0 && fraction < 1.0) {
-            return Err(AlignError::Fraction { fraction });
-        }
-        let count = ((self.len() as f64 * fraction) as usize).max(1).min(self.len());
-        let mut positions = rand::seq::index::sample(rng, self.len(), count).into_vec();
-        positions.sort_unstable();
-        let held_out = Samples::new(self.aligned, positions.iter().map(|&at| self.indices[at]).collect());
-        Ok((self.without(held_out.indices()), held_out))
+    /// These samples alone; those that are not here are ignored.
+    #[must_use]
+    pub fn only(&self, wanted: &[SampleIndex]) -> Self {
+        let mut wanted = wanted.to_vec();
+        wanted.sort_unstable();
+        let chosen = self.indices.iter().copied().filter(|index| wanted.binary_search(index).is_ok());
+        Samples::new(self.aligned, chosen.collect())
     }
 
     /// All samples but these; those that are not here are ignored.

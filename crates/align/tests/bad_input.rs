@@ -182,7 +182,7 @@ fn what_the_regression_refuses() {
         let naive = DirectPolicyLearning { params, passes, cutoff };
         let errors = [
             aligned.regress(&regressor, &aligned.samples(), &mut rng).unwrap_err(),
-            naive.learn(aligned.demonstrations(), &mut rng).unwrap_err(),
+            naive.learn_policy(aligned.demonstrations(), &[], &mut rng).unwrap_err(),
         ];
         for error in errors {
             match &expected {
@@ -191,17 +191,14 @@ fn what_the_regression_refuses() {
             }
         }
     }
-    for fraction in [0.0, 1.0, -0.5, f64::INFINITY] {
-        assert_eq!(aligned.samples().split(fraction, &mut rng).unwrap_err(), AlignError::Fraction { fraction });
-    }
-    assert!(matches!(aligned.samples().split(f64::NAN, &mut rng), Err(AlignError::Fraction { .. })));
-
     let everything = aligned.samples();
     let nothing = everything.without(everything.indices());
     assert!(nothing.is_empty());
     assert_eq!(aligned.regress(&LwprRegressor::default(), &nothing, &mut rng).unwrap_err(), AlignError::NoSamples);
-    let potential = aligned.learn(&LwprParams::default(), &mut rng).unwrap().into_potential();
-    assert_eq!(potential.with_cutoff(2.0).unwrap_err(), cutoff(2.0));
+    let learnt = aligned.learn_without(everything.indices(), &LwprRegressor::default(), &mut rng);
+    assert_eq!(learnt.unwrap_err(), AlignError::NoSamples);
+    let policy = aligned.learn(&LwprRegressor::default(), &mut rng).unwrap();
+    assert_eq!(policy.with_cutoff(2.0).unwrap_err(), cutoff(2.0));
 }
 
 /// Everything that a learner can be asked, and that none of it is NaN.
@@ -209,15 +206,16 @@ fn assert_finite(name: &str, aligned: &Aligned) {
     let size = aligned.samples().states().amax().max(f64::MIN_POSITIVE);
     let norm_in = Some(DVector::from_element(aligned.demonstrations().dim(), size));
     let params = LwprParams { norm_in, ..Default::default() };
-    let learnt = aligned.learn(&params, &mut StdRng::seed_from_u64(1)).unwrap();
+    let regressor = LwprRegressor { params, ..Default::default() };
+    let learnt = aligned.learn(&regressor, &mut StdRng::seed_from_u64(1)).unwrap();
     assert!(aligned.offsets().iter().all(|offset| offset.is_finite()), "{name}");
     assert!(aligned.sigma_squared().is_finite() && aligned.lambda_2().is_none_or(f64::is_finite), "{name}");
     assert!(aligned.objective().laplacian.iter().all(|entry| entry.is_finite()), "{name}");
     assert!(!aligned.objective().constant.is_nan(), "{name}");
     for (x, value) in aligned.samples() {
         assert!(value.is_finite() && aligned.responsibilities(x).iter().all(|q| q.is_finite()), "{name}");
-        assert!(learnt.potential().value(x).is_finite(), "{name}");
-        assert!(learnt.policy().action(x).iter().all(|u| u.is_finite()), "{name}");
+        assert!(learnt.global_potential().value(x).is_finite(), "{name}");
+        assert!(learnt.action(x).iter().all(|u| u.is_finite()), "{name}");
     }
 }
 
@@ -304,8 +302,8 @@ fn errors_say_what_next() {
 #[should_panic(expected = "as many dimensions as the potential")]
 fn a_state_of_another_dimension_is_a_bug() {
     let aligned = PolicyAlign::default().align(&observed(sound())).unwrap();
-    let learnt = aligned.learn(&LwprParams::default(), &mut StdRng::seed_from_u64(1)).unwrap();
-    learnt.potential().value(DVector::zeros(3).as_view());
+    let learnt = aligned.learn(&LwprRegressor::default(), &mut StdRng::seed_from_u64(1)).unwrap();
+    learnt.global_potential().value(DVector::zeros(3).as_view());
 }
 
 #[test]
@@ -318,7 +316,8 @@ fn responsibilities_for_a_state_of_another_dimension_are_a_bug() {
 #[test]
 #[should_panic(expected = "an action has as many dimensions as the policy")]
 fn an_action_of_another_dimension_is_a_bug() {
-    let policy = DirectPolicyLearning::default().learn(&observed(sound()), &mut StdRng::seed_from_u64(1)).unwrap();
+    let policy = DirectPolicyLearning::default();
+    let policy = policy.learn_policy(&observed(sound()), &[], &mut StdRng::seed_from_u64(1)).unwrap();
     policy.action_into(DVector::zeros(2).as_view(), DVector::zeros(3).as_view_mut());
 }
 

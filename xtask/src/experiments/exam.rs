@@ -24,9 +24,9 @@ pub(crate) fn examine(
     rng: &mut ChaCha8Rng,
 ) -> anyhow::Result<Measures> {
     let aligned = algorithm.align(&demonstrations(recordings)?)?;
-    let (_, held_out) = aligned.samples().split(HELD_OUT, rng)?;
+    let held_out = aligned.demonstrations().hold_out_samples(aligned.kept(), HELD_OUT, rng)?;
     let lesson = Lesson { aligned: &aligned, held_out: &held_out };
-    let judge = Judge::new(recordings, &held_out);
+    let judge = Judge::new(recordings, &aligned.samples().only(&held_out));
     let mut rows = Vec::new();
     for learner in learners {
         let learnt = learner.learn(&lesson, rng)?;

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use align::{GlobalPotential, Learnt, LwprRegressor, PolicyAlign};
+use align::{LwprRegressor, PolicyAlign, PotentialPolicy};
 use demo_gen::{ThreeLinkArm, demonstrations};
 use nalgebra::{DVectorView, Vector3};
 use rand_chacha::ChaCha8Rng;
@@ -100,9 +100,9 @@ impl Trial for DistanceTrial {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.arm.record(rng)?;
         let aligned = self.algorithm.align(&demonstrations(&recordings)?)?;
-        let (training, held_out) = aligned.samples().split(HELD_OUT, rng)?;
-        let learnt = aligned.regress(&self.regressor, &training, rng)?;
-        let judge = Judge::new(&recordings, &held_out);
+        let held_out = aligned.demonstrations().hold_out_samples(aligned.kept(), HELD_OUT, rng)?;
+        let learnt = aligned.learn_without(&held_out, &self.regressor, rng)?;
+        let judge = Judge::new(&recordings, &aligned.samples().only(&held_out));
         let mut rows = Vec::new();
         for distance in Distance::BOTH {
             for tenths in TENTHS {
@@ -114,11 +114,11 @@ impl Trial for DistanceTrial {
 }
 
 /// Errors of what was learnt; none where there are too few samples.
-fn errors(judge: &Judge<'_>, learnt: &Learnt<GlobalPotential>) -> anyhow::Result<BTreeMap<Measure, f64>> {
+fn errors(judge: &Judge<'_>, learnt: &PotentialPolicy) -> anyhow::Result<BTreeMap<Measure, f64>> {
     let mut errors = BTreeMap::new();
     if judge.n_samples() >= FEWEST_SAMPLES {
-        errors.extend(judge.policy(learnt.policy())?);
-        errors.extend(judge.potential(learnt.potential())?);
+        errors.extend(judge.policy(learnt)?);
+        errors.extend(judge.potential(learnt.global_potential())?);
     }
     Ok(errors)
 }

@@ -60,7 +60,7 @@ fn overview(seed: u64) -> anyhow::Result<Overview> {
     let recordings = system.record(&mut rng)?;
     let align = PolicyAlign { bandwidth: Bandwidth::Medium, ..PolicyAlign::default() };
     let aligned = align.align(&demonstrations(&recordings)?)?;
-    let (_, held_out) = aligned.samples().split(HELD_OUT, &mut rng)?;
+    let held_out = aligned.demonstrations().hold_out_samples(aligned.kept(), HELD_OUT, &mut rng)?;
     let lesson = Lesson { aligned: &aligned, held_out: &held_out };
     let regressor = toy_regressor();
     let naive = DirectPolicyLearning { params: regressor.params.clone(), ..DirectPolicyLearning::default() };

@@ -33,10 +33,10 @@ struct Found {
 pub(super) fn levels(seed: u64) -> anyhow::Result<Levels> {
     let system = ToySystem::default();
     let Found { data_set, recordings, aligned, mut rng } = like_the_paper(&system, seed)?;
-    let (training, held_out) = aligned.samples().split(HELD_OUT, &mut rng)?;
-    let learnt = aligned.regress(&toy_regressor(), &training, &mut rng)?;
-    let errors = Judge::new(&recordings, &held_out).potential(learnt.potential())?;
-    let learnt = learnt.potential();
+    let held_out = aligned.demonstrations().hold_out_samples(aligned.kept(), HELD_OUT, &mut rng)?;
+    let learnt = aligned.learn_without(&held_out, &toy_regressor(), &mut rng)?;
+    let learnt = learnt.global_potential();
+    let errors = Judge::new(&recordings, &aligned.samples().only(&held_out)).potential(learnt)?;
     let kept = aligned.samples().states();
     let height = |potential: &dyn Potential| kept.column_iter().map(|state| potential.value(state)).sum::<f64>();
     let raise = (height(&system.potential) - height(learnt)) / kept.ncols() as f64;
@@ -44,7 +44,7 @@ pub(super) fn levels(seed: u64) -> anyhow::Result<Levels> {
         data_set,
         movements: movements(&recordings, &aligned),
         truth: Field { x: side(), y: side(), values: surface(|x| rounded(system.potential.value(x.as_view()), 5)) },
-        learnt: surface(|x| learnt.supports(x.as_view()).then(|| rounded(learnt.value(x.as_view()) + raise, 5))),
+        learnt: surface(|x| (learnt.support(x.as_view()) > 0.0).then(|| rounded(learnt.value(x.as_view()) + raise, 5))),
         alignment_nmse: errors[&Measure::AlignmentNmse],
         potential_nmse: errors[&Measure::PotentialNmse],
     })

@@ -23,7 +23,7 @@ pub(super) fn policies(
     rng: &mut ChaCha8Rng,
 ) -> anyhow::Result<[Box<dyn Policy>; 3]> {
     let aligned = PolicyAlign::default().align(&demonstrations(recordings)?)?;
-    let (_, held_out) = aligned.samples().split(HELD_OUT, rng)?;
+    let held_out = aligned.demonstrations().hold_out_samples(aligned.kept(), HELD_OUT, rng)?;
     let lesson = Lesson { aligned: &aligned, held_out: &held_out };
     // In the table's order.
     let mut learnt = |learner: &dyn Learner| learner.learn(&lesson, rng).map(|learnt| learnt.policy);

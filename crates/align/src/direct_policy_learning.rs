@@ -1,0 +1,83 @@
+use lwpr::LwprParams;
+use motion::{Demonstrations, LearnError, Learner, LearntPolicy, SampleIndex, Trajectory};
+use nalgebra::DMatrix;
+use rand::Rng;
+
+use crate::centred_model::{CentredModel, Training};
+use crate::{AlignError, DirectPolicy};
+
+/// Direct policy learning, the naive baseline: regression of the observed velocities on the states, as if nothing had
+/// been constrained.
+///
+/// It learns from all trajectories: the recorded velocities, or else u_i = (x_{i+1} − x_i) / δt for all samples but the
+/// last.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DirectPolicyLearning {
+    /// Parameters of LWPR; `norm_out` is replaced by the standard deviations of the velocities.
+    pub params: LwprParams,
+    /// How often all samples are learnt, each time in a fresh random order; 10 by default.
+    pub passes: usize,
+    /// Receptive fields take part in a prediction if their activation exceeds this; in [0, 1), 1e-3 by default.
+    pub cutoff: f64,
+}
+
+impl Default for DirectPolicyLearning {
+    fn default() -> Self {
+        DirectPolicyLearning { params: LwprParams::default(), passes: 10, cutoff: 1e-3 }
+    }
+}
+
+impl DirectPolicyLearning {
+    /// Learns from all samples but those held out.
+    ///
+    /// # Errors
+    /// [`AlignError::Parameter`] or [`AlignError::Lwpr`] for parameters out of range, [`AlignError::NoSamples`] if none
+    /// is left.
+    pub fn learn_policy(
+        &self,
+        demonstrations: &Demonstrations,
+        held_out: &[SampleIndex],
+        rng: &mut dyn Rng,
+    ) -> Result<DirectPolicy, AlignError> {
+        let (states, velocities) = observed(demonstrations, held_out);
+        let training = Training { params: &self.params, passes: self.passes, cutoff: self.cutoff };
+        CentredModel::fit(training, &states, velocities, rng).map(DirectPolicy::new)
+    }
+}
+
+impl Learner for DirectPolicyLearning {
+    fn learn(
+        &self,
+        demonstrations: &Demonstrations,
+        held_out: &[SampleIndex],
+        rng: &mut dyn Rng,
+    ) -> Result<Box<dyn LearntPolicy>, LearnError> {
+        Ok(Box::new(self.learn_policy(demonstrations, held_out, rng)?))
+    }
+}
+
+/// States (n, M) and velocities (n, M) of all samples that have one and are not held out.
+fn observed(demonstrations: &Demonstrations, held_out: &[SampleIndex]) -> (DMatrix<f64>, DMatrix<f64>) {
+    let mut held_out = held_out.to_vec();
+    held_out.sort_unstable();
+    let mut states = Vec::new();
+    let mut velocities = Vec::new();
+    for (index, trajectory) in demonstrations.trajectories().iter().enumerate() {
+        for (sample, velocity) in velocities_of(trajectory).column_iter().enumerate() {
+            if held_out.binary_search(&SampleIndex { trajectory: index, sample }).is_err() {
+                states.extend(trajectory.state(sample).iter());
+                velocities.extend(velocity.iter());
+            }
+        }
+    }
+    let n = demonstrations.dim();
+    let samples = states.len() / n;
+    (DMatrix::from_vec(n, samples, states), DMatrix::from_vec(n, samples, velocities))
+}
+
+fn velocities_of(trajectory: &Trajectory) -> DMatrix<f64> {
+    let x = trajectory.states();
+    let steps = x.ncols() - 1;
+    let differences = || (x.columns(1, steps) - x.columns(0, steps)) / trajectory.time_step();
+    trajectory.velocities().cloned().unwrap_or_else(differences)
+}

@@ -1,0 +1,42 @@
+use motion::{Demonstrations, LearnError, Learner, LearntPolicy, SampleIndex};
+use rand::Rng;
+
+use crate::{AlignError, LwprRegressor, PolicyAlign, PotentialPolicy};
+
+/// Algorithm 1 of the paper as a whole: align the demonstrations, learn one potential, descend it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PotentialPolicyLearning {
+    /// How the potentials along trajectories are brought to one level.
+    pub align: PolicyAlign,
+    /// How the potential is learnt from them.
+    pub regressor: LwprRegressor,
+}
+
+impl PotentialPolicyLearning {
+    /// Aligns all samples, and learns from those that are kept and not held out.
+    ///
+    /// Whoever draws held-out samples from the kept trajectories has aligned already, and goes on with
+    /// [`Aligned::learn_without`](crate::Aligned::learn_without): the same policy to the last bit.
+    ///
+    /// # Errors
+    /// As [`PolicyAlign::align`] and [`Aligned::learn_without`](crate::Aligned::learn_without).
+    pub fn learn_policy(
+        &self,
+        demonstrations: &Demonstrations,
+        held_out: &[SampleIndex],
+        rng: &mut dyn Rng,
+    ) -> Result<PotentialPolicy, AlignError> {
+        self.align.align(demonstrations)?.learn_without(held_out, &self.regressor, rng)
+    }
+}
+
+impl Learner for PotentialPolicyLearning {
+    fn learn(
+        &self,
+        demonstrations: &Demonstrations,
+        held_out: &[SampleIndex],
+        rng: &mut dyn Rng,
+    ) -> Result<Box<dyn LearntPolicy>, LearnError> {
+        Ok(Box::new(self.learn_policy(demonstrations, held_out, rng)?))
+    }
+}
