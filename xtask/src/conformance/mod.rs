@@ -1,7 +1,9 @@
-//! `cargo xtask conformance`: kinematics and LWPR against reference cases that other libraries computed.
+//! `cargo xtask conformance`: kinematics, LWPR and smoothing against reference cases that other programs computed.
 
+mod agreement;
 mod kinematics_cases;
 mod lwpr_cases;
+mod smoothing_cases;
 mod urdf_cases;
 
 use std::fs;
@@ -11,11 +13,12 @@ use anyhow::{Context as _, bail, ensure};
 use clap::Args;
 use serde::de::DeserializeOwned;
 
+use self::agreement::Agreement;
 use crate::progress::say;
 
 #[derive(Debug, Args)]
 pub(crate) struct Conformance {
-    /// Folder with lwpr/*.json, kinematics/*.json and their robots, urdf_traps/expected.json and its files
+    /// Folder with lwpr/*.json, kinematics/*.json and their robots, slope_gp/*.json, urdf_traps/expected.json and its files
     #[arg(long, value_name = "DIR")]
     vectors: PathBuf,
 }
@@ -31,6 +34,13 @@ struct Checked {
 /// reference value of the same kind.
 const TOLERANCE: f64 = 1e-10;
 
+/// Compares the numbers of a file, each kind with a tolerance of its own.
+type Check = fn(&Path) -> anyhow::Result<Vec<Agreement>>;
+
+/// What is compared in slope_gp/*.json: a file is known by how its name begins.
+const SLOPE_GP: [(&str, Check); 2] =
+    [("smoother", smoothing_cases::check_smoother), ("fusion", smoothing_cases::check_fusion)];
+
 impl Conformance {
     /// Fails if a file disagrees, or if there is none.
     pub(crate) fn execute(&self) -> anyhow::Result<()> {
@@ -45,6 +55,12 @@ impl Conformance {
                 files += 1;
             }
         }
+        for file in json_files(&self.vectors.join("slope_gp"))? {
+            if let Some(agrees) = check_by_name(&file, &SLOPE_GP)? {
+                disagreeing += usize::from(!agrees);
+                files += 1;
+            }
+        }
         let odd = urdf_cases::check(&self.vectors.join("urdf_traps/expected.json"))?;
         ensure!(files + odd.files > 0, "there is no reference file in {}", self.vectors.display());
         for fault in &odd.faults {
@@ -52,9 +68,12 @@ impl Conformance {
         }
         let wrong = disagreeing + odd.faults.len();
         if wrong > 0 {
-            bail!("{wrong} of {} reference files disagree (tolerance {TOLERANCE:.0e})", files + odd.files);
+            bail!("{wrong} of {} reference files disagree (tolerance {TOLERANCE:.0e} unless said)", files + odd.files);
         }
-        say(&format!("conformance: {} reference files agree (tolerance {TOLERANCE:.0e})", files + odd.files));
+        say(&format!(
+            "conformance: {} reference files agree (tolerance {TOLERANCE:.0e} unless said)",
+            files + odd.files
+        ));
         Ok(())
     }
 }
@@ -66,6 +85,18 @@ impl Checked {
         say(&format!("{worst:9.1e}  {}", self.file.display()));
         worst
     }
+}
+
+/// Whether all kinds of numbers of a file agree, and says how far each is off; none if the file's name is not known.
+fn check_by_name(file: &Path, checks: &[(&str, Check)]) -> anyhow::Result<Option<bool>> {
+    let name = file.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
+    let Some((_, check)) = checks.iter().find(|(begins, _)| name.starts_with(begins)) else { return Ok(None) };
+    let agreements = check(file).with_context(|| format!("{} cannot be compared", file.display()))?;
+    for agreement in &agreements {
+        let Agreement { what, tolerance, worst } = agreement;
+        say(&format!("{worst:9.1e}  {}: {what} (tolerance {tolerance:.0e})", file.display()));
+    }
+    Ok(Some(agreements.iter().all(Agreement::holds)))
 }
 
 /// The JSON files of a folder, in order; none if there is no such folder.

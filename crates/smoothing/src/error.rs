@@ -1,0 +1,69 @@
+use motion::MotionError;
+use thiserror::Error;
+
+/// Why movements could not be cleaned. All numbers count from 0.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SmoothingError {
+    /// A parameter lies outside its range.
+    #[error("{name} is {value}: it must {requirement}")]
+    Parameter {
+        /// Name of the field.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// What the value must satisfy.
+        requirement: &'static str,
+    },
+    /// The movements themselves are not valid.
+    #[error(transparent)]
+    Motion(#[from] MotionError),
+    /// There is not one time stamp per sample.
+    #[error("there are {times} time stamps for {samples} samples; give one per sample")]
+    StampCount {
+        /// Number of time stamps.
+        times: usize,
+        /// Number of samples.
+        samples: usize,
+    },
+    /// Time stamps do not ascend, or are not finite.
+    #[error(
+        "time stamp {time} s of sample {sample} does not come after the one before; sort the samples, drop duplicates"
+    )]
+    StampOrder {
+        /// The first sample out of order.
+        sample: usize,
+        /// Its time stamp in seconds.
+        time: f64,
+    },
+    /// The scale of an axis is missing or superfluous.
+    #[error("{found} axis scales were given for {expected} dimensions; give one per dimension")]
+    AxisScales {
+        /// Number of scales.
+        found: usize,
+        /// Dimension of the state.
+        expected: usize,
+    },
+    /// No axis ever moves.
+    #[error("no dimension ever changes, so there is no movement to smooth; record one")]
+    NoMotion,
+    /// Squares of the coordinates leave the range of f64.
+    #[error("the coordinates are so large that their squares overflow; use larger units of length")]
+    Overflow,
+    /// Fusion needs velocities that were not recorded.
+    #[error(
+        "trajectory {trajectory} has no recorded velocities to fuse with; add them with Trajectory::with_velocities or use Smoother"
+    )]
+    NoVelocities {
+        /// The first trajectory without velocities.
+        trajectory: usize,
+    },
+    /// There are too few samples in a row to tell noise from movement.
+    #[error("{found} third differences are too few to estimate noise, {needed} are needed; record more samples")]
+    TooFewDifferences {
+        /// How many there are.
+        found: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+}

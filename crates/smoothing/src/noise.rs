@@ -1,0 +1,83 @@
+//! Noise of recorded positions, without smoothing anything.
+
+use motion::Demonstrations;
+use nalgebra::DVector;
+
+use crate::SmoothingError;
+
+/// Fewer third differences than this say too little.
+const NEEDED: usize = 50;
+
+/// A median of absolute values times this is the standard deviation of a normal distribution.
+const MEDIAN_TO_DEVIATION: f64 = 1.4826;
+
+/// How noisy recorded positions are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PositionNoise {
+    /// Standard deviation of the noise in each dimension, (n), in its unit.
+    pub deviations: DVector<f64>,
+    /// How much of the squared steps is noise: 2 Σ_j σ̂_j² / mean ‖x_{i+1} − x_i‖². 0: positions are exact, 1: nothing
+    /// but noise.
+    pub step_share: f64,
+}
+
+impl PositionNoise {
+    /// By third differences, robust against movement and switching constraints:
+    /// σ̂_j = 1.4826 · median |x_{i+3} − 3x_{i+2} + 3x_{i+1} − x_i|_j / √20, over all trajectories together.
+    ///
+    /// # Errors
+    /// [`SmoothingError::TooFewDifferences`] below 50 differences per dimension, [`SmoothingError::NoMotion`] if no
+    /// sample differs from the one before, [`SmoothingError::Overflow`].
+    pub fn of(demonstrations: &Demonstrations) -> Result<Self, SmoothingError> {
+        let trajectories = demonstrations.trajectories();
+        let found = trajectories.iter().map(|trajectory| trajectory.n_samples().saturating_sub(3)).sum();
+        if found < NEEDED {
+            return Err(SmoothingError::TooFewDifferences { found, needed: NEEDED });
+        }
+        let dim = demonstrations.dim();
+        let deviations = DVector::from_fn(dim, |axis, _| {
+            let mut differences: Vec<f64> = trajectories
+                .iter()
+                .flat_map(|trajectory| third_differences(trajectory.states().as_slice(), dim, axis))
+                .collect();
+            MEDIAN_TO_DEVIATION * median(&mut differences).unwrap_or(0.0) / 20f64.sqrt()
+        });
+        let steps: Vec<f64> = trajectories
+            .iter()
+            .flat_map(|trajectory| {
+                (1..trajectory.n_samples()).map(|i| (trajectory.state(i) - trajectory.state(i - 1)).norm_squared())
+            })
+            .collect();
+        let mean_step = steps.iter().sum::<f64>() / steps.len() as f64;
+        if mean_step == 0.0 {
+            return Err(SmoothingError::NoMotion);
+        }
+        let step_share = 2.0 * deviations.norm_squared() / mean_step;
+        if mean_step.is_finite() && step_share.is_finite() {
+            Ok(PositionNoise { deviations, step_share })
+        } else {
+            Err(SmoothingError::Overflow)
+        }
+    }
+}
+
+/// |x_{i+3} − 3x_{i+2} + 3x_{i+1} − x_i| of one axis; `rows` holds x_ij at `i * dim + j`.
+pub(crate) fn third_differences(rows: &[f64], dim: usize, axis: usize) -> impl Iterator<Item = f64> + '_ {
+    let x = move |i: usize| rows[i * dim + axis];
+    (3..rows.len() / dim).map(move |i| (x(i) - x(i - 3) - 3.0 * (x(i - 1) - x(i - 2))).abs())
+}
+
+/// The middle value, or the mean of both; none of nothing.
+pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
+    let middle = values.len() / 2;
+    if values.is_empty() {
+        return None;
+    }
+    let odd = values.len() % 2 == 1;
+    let (below, &mut upper, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
+    if odd {
+        return Some(upper);
+    }
+    let lower = below.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    Some(lower + (upper - lower) / 2.0)
+}

@@ -1,0 +1,72 @@
+use motion::{Demonstrations, Trajectory};
+use nalgebra::DMatrix;
+
+use crate::SmoothingError;
+use crate::polynomials::Polynomials;
+
+/// Savitzky–Golay: every sample becomes the value there of the polynomial that fits the samples around it best.
+///
+/// Smooths positions before steps are taken between them. Its slope is no good velocity: it is blunt at the ends and
+/// where constraints switch ([`Smoother`](crate::Smoother) is made for that).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SavitzkyGolay {
+    /// Samples in a window, odd and more than the degree; shorter trajectories are one window.
+    pub window: usize,
+    /// Degree of the polynomials.
+    pub degree: usize,
+}
+
+impl Default for SavitzkyGolay {
+    /// Nine samples, degree 2.
+    fn default() -> Self {
+        SavitzkyGolay { window: 9, degree: 2 }
+    }
+}
+
+impl SavitzkyGolay {
+    /// The same movements with smoothed states; half a window at each end follows the polynomial of the whole window
+    /// there. Recorded velocities stay.
+    ///
+    /// # Errors
+    /// [`SmoothingError::Parameter`], or [`SmoothingError::Motion`] if a smoothed state overflows.
+    pub fn smooth(&self, demonstrations: &Demonstrations) -> Result<Demonstrations, SmoothingError> {
+        self.check()?;
+        let smoothed = demonstrations.trajectories().iter().map(|trajectory| self.smooth_one(trajectory));
+        Ok(Demonstrations::new(smoothed.collect::<Result<_, _>>()?)?)
+    }
+
+    fn smooth_one(&self, trajectory: &Trajectory) -> Result<Trajectory, SmoothingError> {
+        let n = trajectory.n_samples();
+        let window = self.window.min(n);
+        let weights = self.weights(window);
+        let mut states = DMatrix::zeros(trajectory.dim(), n);
+        for i in 0..n {
+            let first = i.saturating_sub(window / 2).min(n - window);
+            let around = trajectory.states().columns(first, window);
+            around.mul_to(&weights.column(i - first), &mut states.column_mut(i));
+        }
+        let smoothed = Trajectory::new(states, trajectory.time_step())?;
+        Ok(match trajectory.velocities() {
+            None => smoothed,
+            Some(velocities) => smoothed.with_velocities(velocities.clone())?,
+        })
+    }
+
+    /// (window, window): column i weighs the samples of a window for the value at its sample i, Q Q_iᵀ.
+    fn weights(&self, window: usize) -> DMatrix<f64> {
+        let q = Polynomials::even(window, self.degree + 1);
+        DMatrix::from_fn(window, window, |j, i| q.values(j).iter().zip(q.values(i)).map(|(a, b)| a * b).sum())
+    }
+
+    fn check(&self) -> Result<(), SmoothingError> {
+        let window = self.window as f64;
+        if self.window.is_multiple_of(2) {
+            return Err(SmoothingError::Parameter { name: "window", value: window, requirement: "be odd" });
+        }
+        if self.window <= self.degree {
+            let requirement = "be more than the degree";
+            return Err(SmoothingError::Parameter { name: "window", value: window, requirement });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,100 @@
+//! Movements as the smoother sees them: axes of equal noise, each movement about its own mean.
+
+use nalgebra::DVector;
+
+use crate::stamped::{Stamped, common_dim};
+use crate::{AxisScale, SmoothingError};
+
+/// All movements in scaled axes, and what leads back.
+#[derive(Debug)]
+pub(crate) struct Scaled<'a> {
+    pub(crate) movements: Vec<ScaledMovement<'a>>,
+    /// What each axis was divided by, (n); 0 where an axis never moves and is left out.
+    pub(crate) scales: DVector<f64>,
+    /// c of (S15): mean over the moving axes of the variance of all samples, in scaled axes.
+    pub(crate) variance: f64,
+}
+
+/// One movement in the axes that move at all.
+#[derive(Debug)]
+pub(crate) struct ScaledMovement<'a> {
+    pub(crate) stamped: &'a Stamped,
+    /// Number of moving axes d.
+    pub(crate) dim: usize,
+    /// y_ij at `i * dim + j`: scaled, about the movement's mean.
+    pub(crate) rows: Vec<f64>,
+}
+
+impl<'a> Scaled<'a> {
+    pub(crate) fn new(movements: &'a [Stamped], scale: &AxisScale) -> Result<Self, SmoothingError> {
+        let dim = common_dim(movements)?;
+        let variances = DVector::from_fn(dim, |axis, _| variance_of_axis(movements, axis));
+        if variances.iter().any(|variance| !variance.is_finite()) {
+            return Err(SmoothingError::Overflow);
+        }
+        let scales =
+            match scale {
+                AxisScale::StandardDeviation => variances.map(f64::sqrt),
+                AxisScale::Given(scales) => DVector::from_fn(checked(scales, dim)?.len(), |axis, _| {
+                    if variances[axis] > 0.0 { scales[axis] } else { 0.0 }
+                }),
+            };
+        let moving: Vec<usize> = (0..dim).filter(|&axis| scales[axis] > 0.0).collect();
+        if moving.is_empty() {
+            return Err(SmoothingError::NoMotion);
+        }
+        let variance =
+            moving.iter().map(|&j| variances[j] / (scales[j] * scales[j])).sum::<f64>() / moving.len() as f64;
+        if !variance.is_finite() {
+            return Err(SmoothingError::Overflow);
+        }
+        let movements = movements.iter().map(|stamped| ScaledMovement::new(stamped, &scales, &moving)).collect();
+        Ok(Scaled { movements, scales, variance })
+    }
+}
+
+impl<'a> ScaledMovement<'a> {
+    fn new(stamped: &'a Stamped, scales: &DVector<f64>, moving: &[usize]) -> Self {
+        let means = stamped.states().column_mean();
+        let rows = stamped
+            .states()
+            .column_iter()
+            .flat_map(|state| moving.iter().map(move |&j| (state[j], j)))
+            .map(|(x, j)| (x - means[j]) / scales[j])
+            .collect();
+        ScaledMovement { stamped, dim: moving.len(), rows }
+    }
+
+    pub(crate) fn n_samples(&self) -> usize {
+        self.stamped.n_samples()
+    }
+
+    /// Rows of `samples` samples from sample `first` on.
+    pub(crate) fn window(&self, first: usize, samples: usize) -> &[f64] {
+        &self.rows[first * self.dim..][..samples * self.dim]
+    }
+}
+
+fn checked(scales: &DVector<f64>, dim: usize) -> Result<&DVector<f64>, SmoothingError> {
+    if scales.len() != dim {
+        return Err(SmoothingError::AxisScales { found: scales.len(), expected: dim });
+    }
+    match scales.iter().find(|scale| !(scale.is_finite() && **scale > 0.0)) {
+        None => Ok(scales),
+        Some(&value) => {
+            Err(SmoothingError::Parameter { name: "axis_scale", value, requirement: "be positive and finite" })
+        }
+    }
+}
+
+/// Variance of one coordinate over all samples of all movements.
+fn variance_of_axis(movements: &[Stamped], axis: usize) -> f64 {
+    let values = || movements.iter().flat_map(|movement| movement.states().column_iter().map(|state| state[axis]));
+    let first = movements[0].states()[(axis, 0)];
+    if values().all(|value| value == first) {
+        return 0.0; // the mean of equal numbers may differ from them by rounding
+    }
+    let n = values().count() as f64;
+    let mean = values().sum::<f64>() / n;
+    values().map(|value| (value - mean) * (value - mean)).sum::<f64>() / n
+}

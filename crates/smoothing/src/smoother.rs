@@ -1,0 +1,158 @@
+use motion::Demonstrations;
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+use crate::SmoothingError;
+use crate::averages::Averages;
+use crate::evidence::NoiseModel;
+use crate::noise_by_evidence::{most_likely, told_by};
+use crate::scaled::{Scaled, ScaledMovement};
+use crate::segmentation::Segmentation;
+use crate::smoothed::{Smoothed, SmoothedMovement};
+use crate::stamped::Stamped;
+use crate::windows::{Bases, Energy, MAX_COLUMNS, energies};
+
+/// Bayesian piecewise polynomials: states and velocities of movements of which only noisy positions were recorded, and
+/// how sure they are, (S15), (S16).
+///
+/// A movement falls into windows; within one every dimension is a polynomial of time, and between two of them anything
+/// may change, as it does when a constraint switches. Where windows begin and of which degree they are is not decided:
+/// all ways to cut a movement are weighed by their evidence (forward–backward recursion, Fearnhead 2006).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Smoother {
+    /// Degrees that a window may have, equally likely beforehand; at most 7.
+    pub degrees: Vec<usize>,
+    /// Most samples in a window, at least 2.
+    pub longest_window: usize,
+    /// How likely a window ends at any sample, between 0 and 1.
+    pub switch_probability: f64,
+    /// What each axis is divided by; noise should be equal in all axes then.
+    pub axis_scale: AxisScale,
+    /// The variance of that noise.
+    pub noise: NoiseVariance,
+}
+
+/// What each axis is divided by before smoothing.
+#[derive(Debug, Clone, PartialEq)]
+pub enum AxisScale {
+    /// Its standard deviation over all samples.
+    StandardDeviation,
+    /// As given, (n), all positive: where the sensors' noise is known per axis.
+    Given(DVector<f64>),
+}
+
+/// Where the variance of the noise comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NoiseVariance {
+    /// The one that makes the movements most likely.
+    ByEvidence,
+    /// s², positive, in squared units of the scaled axes.
+    Given(f64),
+}
+
+impl Default for Smoother {
+    /// Degrees 1, 2, 3 and 5, windows of up to 60 samples, a switch every 33 samples, axes scaled by their standard
+    /// deviation, noise by evidence.
+    fn default() -> Self {
+        Smoother {
+            degrees: vec![1, 2, 3, 5],
+            longest_window: 60,
+            switch_probability: 0.03,
+            axis_scale: AxisScale::StandardDeviation,
+            noise: NoiseVariance::ByEvidence,
+        }
+    }
+}
+
+impl Smoother {
+    /// Smooths the positions of every demonstration; recorded velocities are not looked at.
+    ///
+    /// Takes time O(N · L · p · n) and memory O(N · L) a trajectory, L the longest window, p the highest degree.
+    ///
+    /// # Errors
+    /// [`SmoothingError::Parameter`], [`SmoothingError::AxisScales`], [`SmoothingError::NoMotion`] or
+    /// [`SmoothingError::Overflow`].
+    pub fn smooth(&self, demonstrations: &Demonstrations) -> Result<Smoothed, SmoothingError> {
+        self.smooth_stamped(&Stamped::all(demonstrations))
+    }
+
+    /// The same for movements with time stamps of their own.
+    ///
+    /// # Errors
+    /// As [`Smoother::smooth`], and [`SmoothingError::Motion`] if there is no movement or dimensions differ.
+    pub fn smooth_stamped(&self, movements: &[Stamped]) -> Result<Smoothed, SmoothingError> {
+        self.check()?;
+        let scaled = Scaled::new(movements, &self.axis_scale)?;
+        let longest = movements.iter().map(Stamped::n_samples).max().unwrap_or(0).min(self.longest_window);
+        let run = Run { smoother: self, scaled: &scaled, longest, bases: Bases::new(longest, self.columns()) };
+        let noise_variance = match self.noise {
+            NoiseVariance::Given(noise_variance) => noise_variance,
+            NoiseVariance::ByEvidence => run.noise_by_evidence(),
+        };
+        let model = run.model(noise_variance);
+        let smoothed = scaled.movements.par_iter().zip(movements);
+        let movements = smoothed.map(|(movement, recorded)| run.smooth(movement, recorded, &model)).collect();
+        Ok(Smoothed { movements, noise_variance, noise: &scaled.scales * noise_variance.sqrt() })
+    }
+
+    fn columns(&self) -> usize {
+        1 + self.degrees.iter().copied().max().unwrap_or(0)
+    }
+
+    fn check(&self) -> Result<(), SmoothingError> {
+        let require = |fine: bool, name, value, requirement| {
+            if fine { Ok(()) } else { Err(SmoothingError::Parameter { name, value, requirement }) }
+        };
+        let (degrees, switch) = (self.degrees.len(), self.switch_probability);
+        require(degrees > 0, "degrees", 0.0, "name at least one degree")?;
+        let highest = self.columns() - 1;
+        require(highest < MAX_COLUMNS, "degrees", highest as f64, "be at most 7")?;
+        let lowest = self.degrees.iter().copied().min().unwrap_or(0);
+        require(lowest < 2, "degrees", lowest as f64, "include 0 or 1, which windows of two samples need")?;
+        require(self.longest_window >= 2, "longest_window", self.longest_window as f64, "be at least 2")?;
+        require(switch > 0.0 && switch < 1.0, "switch_probability", switch, "lie between 0 and 1")?;
+        match self.noise {
+            NoiseVariance::Given(s2) => require(s2.is_finite() && s2 > 0.0, "noise", s2, "be positive and finite"),
+            NoiseVariance::ByEvidence => Ok(()),
+        }
+    }
+}
+
+/// What stays the same while one set of movements is smoothed.
+struct Run<'a> {
+    smoother: &'a Smoother,
+    scaled: &'a Scaled<'a>,
+    longest: usize,
+    bases: Bases,
+}
+
+impl Run<'_> {
+    fn model(&self, noise_variance: f64) -> NoiseModel<'_> {
+        let dim = self.scaled.movements[0].dim;
+        NoiseModel::new(&self.smoother.degrees, self.longest, dim, self.scaled.variance, noise_variance)
+    }
+
+    fn segmentation(&self, movement: &ScaledMovement<'_>, energies: &[Energy], model: &NoiseModel<'_>) -> Segmentation {
+        Segmentation::new(movement.n_samples(), self.longest, self.smoother.switch_probability, energies, model)
+    }
+
+    fn noise_by_evidence(&self) -> f64 {
+        let told = told_by(self.scaled, &self.bases, self.longest);
+        most_likely(self.scaled, |noise_variance| {
+            let model = self.model(noise_variance);
+            let evidence = |(k, energies): &(usize, Vec<Energy>)| {
+                self.segmentation(&self.scaled.movements[*k], energies, &model).log_evidence()
+            };
+            let each: Vec<f64> = told.par_iter().map(evidence).collect();
+            each.iter().sum()
+        })
+    }
+
+    fn smooth(&self, movement: &ScaledMovement<'_>, recorded: &Stamped, model: &NoiseModel<'_>) -> SmoothedMovement {
+        let energies = energies(movement, &self.bases, self.longest);
+        let segmentation = self.segmentation(movement, &energies, model);
+        let averages = Averages::new(movement, &self.bases, &energies, &segmentation, model);
+        let log_evidence = segmentation.log_evidence();
+        SmoothedMovement::unscaled(averages, log_evidence, &self.scaled.scales, recorded)
+    }
+}

@@ -1,0 +1,91 @@
+use motion::{Demonstrations, MotionError, Trajectory};
+use nalgebra::DMatrix;
+
+use crate::SmoothingError;
+
+/// A movement with a time stamp of its own for every sample, evenly spaced or not.
+///
+/// A checked value: everything a [`Trajectory`] promises, and stamps that ascend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stamped {
+    trajectory: Trajectory,
+    /// Seconds; none if the samples are even, which makes smoothing them cheaper.
+    times: Option<Vec<f64>>,
+}
+
+impl Stamped {
+    /// A movement through `states` (n, N), one column a sample, at `times` (N) in seconds.
+    ///
+    /// # Errors
+    /// [`SmoothingError::StampCount`], [`SmoothingError::StampOrder`], or [`SmoothingError::Motion`].
+    pub fn new(times: Vec<f64>, states: DMatrix<f64>) -> Result<Self, SmoothingError> {
+        let trajectory = Trajectory::new(states, 1.0)?;
+        if times.len() != trajectory.n_samples() {
+            return Err(SmoothingError::StampCount { times: times.len(), samples: trajectory.n_samples() });
+        }
+        let in_order = |sample: usize| times[sample].is_finite() && (sample == 0 || times[sample - 1] < times[sample]);
+        match (0..times.len()).find(|&sample| !in_order(sample)) {
+            None => Ok(Stamped { trajectory, times: Some(times) }),
+            Some(sample) => Err(SmoothingError::StampOrder { sample, time: times[sample] }),
+        }
+    }
+
+    /// The same movement with its recorded velocities (n, N), in units of the state per second.
+    ///
+    /// # Errors
+    /// [`SmoothingError::Motion`].
+    pub fn with_velocities(self, velocities: DMatrix<f64>) -> Result<Self, SmoothingError> {
+        Ok(Stamped { trajectory: self.trajectory.with_velocities(velocities)?, ..self })
+    }
+
+    /// All movements of `demonstrations`, which are evenly spaced.
+    pub(crate) fn all(demonstrations: &Demonstrations) -> Vec<Stamped> {
+        demonstrations.trajectories().iter().map(Stamped::from).collect()
+    }
+
+    /// The states, (n, N).
+    pub fn states(&self) -> &DMatrix<f64> {
+        self.trajectory.states()
+    }
+
+    /// The recorded velocities, (n, N), in units of the state per second.
+    pub fn velocities(&self) -> Option<&DMatrix<f64>> {
+        self.trajectory.velocities()
+    }
+
+    /// Number of samples N.
+    pub fn n_samples(&self) -> usize {
+        self.trajectory.n_samples()
+    }
+
+    /// Seconds from sample `from` to sample `to`.
+    pub fn seconds(&self, from: usize, to: usize) -> f64 {
+        match &self.times {
+            None => self.trajectory.time_step() * (to - from) as f64,
+            Some(times) => times[to] - times[from],
+        }
+    }
+
+    /// The time stamps (N) in seconds; none if the samples are evenly spaced.
+    pub(crate) fn times(&self) -> Option<&[f64]> {
+        self.times.as_deref()
+    }
+}
+
+impl From<&Trajectory> for Stamped {
+    fn from(trajectory: &Trajectory) -> Self {
+        Stamped { trajectory: trajectory.clone(), times: None }
+    }
+}
+
+/// The dimension that all movements share.
+pub(crate) fn common_dim(movements: &[Stamped]) -> Result<usize, SmoothingError> {
+    let expected = movements.first().ok_or(MotionError::Empty)?.states().nrows();
+    match movements.iter().position(|movement| movement.states().nrows() != expected) {
+        None => Ok(expected),
+        Some(trajectory) => {
+            let found = movements[trajectory].states().nrows();
+            Err(MotionError::Dimensions { trajectory, found, expected }.into())
+        }
+    }
+}

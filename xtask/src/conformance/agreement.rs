@@ -1,0 +1,34 @@
+//! How far numbers of one kind are from those of the reference.
+
+/// The largest difference so far, each over the largest reference value of its array.
+#[derive(Debug)]
+pub(super) struct Agreement {
+    /// What the numbers are.
+    pub(super) what: &'static str,
+    /// What counts as agreement.
+    pub(super) tolerance: f64,
+    pub(super) worst: f64,
+}
+
+impl Agreement {
+    pub(super) fn new(what: &'static str, tolerance: f64) -> Self {
+        Agreement { what, tolerance, worst: 0.0 }
+    }
+
+    /// Compares an array with the reference's; another length, or a number that is none, is infinitely far.
+    pub(super) fn see(&mut self, ours: impl IntoIterator<Item = f64>, theirs: &[f64]) {
+        let ours: Vec<f64> = ours.into_iter().collect();
+        let largest = theirs.iter().fold(0.0, |largest, theirs| f64::max(largest, theirs.abs()));
+        let difference = ours
+            .iter()
+            .zip(theirs)
+            .map(|(ours, theirs)| (ours - theirs).abs())
+            .fold(0.0, |a, b| if b.is_nan() { f64::INFINITY } else { f64::max(a, b) });
+        let relative = if difference == 0.0 { 0.0 } else { difference / largest };
+        self.worst = self.worst.max(if ours.len() == theirs.len() { relative } else { f64::INFINITY });
+    }
+
+    pub(super) fn holds(&self) -> bool {
+        self.worst <= self.tolerance
+    }
+}
