@@ -97,8 +97,14 @@ impl PfaffianConstraint for Barrier {
         3 * self.n_points
     }
 
-    fn matrix(&self, state: DVectorView<'_, f64>, _time: f64) -> DMatrix<f64> {
-        assert_eq!(state.len(), self.dim(), "a state has three coordinates for each point");
+    fn matrix(&self, state: DVectorView<'_, f64>, _time: f64) -> Result<DMatrix<f64>, ConstraintError> {
+        if state.len() != self.dim() {
+            return Err(ConstraintError::State { found: state.len(), expected: self.dim() });
+        }
+        // Comparing with NaN would tell a point that is nowhere to be free.
+        if let Some(coordinate) = state.iter().position(|value| !value.is_finite()) {
+            return Err(ConstraintError::StateNotFinite { coordinate, value: state[coordinate] });
+        }
         let position = |point: usize| Point3::new(state[3 * point], state[3 * point + 1], state[3 * point + 2]);
         let blocked: Vec<(usize, Vector3<f64>)> = (0..self.n_points)
             .flat_map(|point| self.plates.iter().map(move |plate| (point, plate)))
@@ -109,6 +115,6 @@ impl PfaffianConstraint for Barrier {
         for (row, (point, normal)) in blocked.into_iter().enumerate() {
             matrix.fixed_view_mut::<1, 3>(row, 3 * point).tr_copy_from(&normal);
         }
-        matrix
+        Ok(matrix)
     }
 }

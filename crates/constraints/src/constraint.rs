@@ -9,7 +9,7 @@ use crate::{ConstraintError, NullSpaceProjector};
 /// [`PointConstraint`](crate::PointConstraint).
 ///
 /// ```
-/// use constraints::PfaffianConstraint;
+/// use constraints::{ConstraintError, PfaffianConstraint};
 /// use nalgebra::{DMatrix, DVectorView, dvector};
 ///
 /// /// A point on the plane that slides along a wall from the moment it is there.
@@ -22,9 +22,9 @@ use crate::{ConstraintError, NullSpaceProjector};
 ///         2
 ///     }
 ///
-///     fn matrix(&self, state: DVectorView<'_, f64>, _time: f64) -> DMatrix<f64> {
+///     fn matrix(&self, state: DVectorView<'_, f64>, _time: f64) -> Result<DMatrix<f64>, ConstraintError> {
 ///         let n_rows = usize::from(state[0] >= self.at);
-///         DMatrix::from_fn(n_rows, 2, |_, column| if column == 0 { 1.0 } else { 0.0 })
+///         Ok(DMatrix::from_fn(n_rows, 2, |_, column| if column == 0 { 1.0 } else { 0.0 }))
 ///     }
 /// }
 ///
@@ -40,18 +40,22 @@ pub trait PfaffianConstraint: Send + Sync {
 
     /// A(x,t), (k, n), at a state (n) and a time in seconds. k may be 0, may exceed n, and rows may depend on each
     /// other; the rows' units and lengths do not matter.
-    fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> DMatrix<f64>;
+    ///
+    /// # Errors
+    /// What keeps A from being computed, as [`ConstraintError::State`] or [`ConstraintError::Jacobian`].
+    fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> Result<DMatrix<f64>, ConstraintError>;
 
     /// N(x,t) = I − A⁺A (3), with the [default tolerance](NullSpaceProjector::DEFAULT_TOLERANCE).
     ///
     /// # Errors
-    /// [`ConstraintError::Columns`] when A does not have n columns, otherwise as [`NullSpaceProjector::new`].
+    /// Those of [`PfaffianConstraint::matrix`], [`ConstraintError::Columns`] when A does not have n columns, otherwise as
+    /// [`NullSpaceProjector::new`].
     fn null_space_projector(
         &self,
         state: DVectorView<'_, f64>,
         time: f64,
     ) -> Result<NullSpaceProjector, ConstraintError> {
-        let matrix = self.matrix(state, time);
+        let matrix = self.matrix(state, time)?;
         if matrix.ncols() != self.dim() {
             return Err(ConstraintError::Columns { found: matrix.ncols(), expected: self.dim() });
         }
@@ -71,8 +75,8 @@ impl PfaffianConstraint for Unconstrained {
         self.dim
     }
 
-    fn matrix(&self, _state: DVectorView<'_, f64>, _time: f64) -> DMatrix<f64> {
-        DMatrix::zeros(0, self.dim)
+    fn matrix(&self, _state: DVectorView<'_, f64>, _time: f64) -> Result<DMatrix<f64>, ConstraintError> {
+        Ok(DMatrix::zeros(0, self.dim))
     }
 }
 
@@ -84,7 +88,7 @@ macro_rules! behind {
                 (**self).dim()
             }
 
-            fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> DMatrix<f64> {
+            fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> Result<DMatrix<f64>, ConstraintError> {
                 (**self).matrix(state, time)
             }
 

@@ -16,6 +16,28 @@ pub enum ConstraintError {
         /// The entry itself.
         value: f64,
     },
+    /// A state does not have the dimension that the constraint is for.
+    #[error("the state has {found} coordinates, the constraint is for {expected}; give one for each dimension")]
+    State {
+        /// Coordinates of the state.
+        found: usize,
+        /// Dimension n of the constraint.
+        expected: usize,
+    },
+    /// A coordinate of the state is NaN or infinite, so that nobody knows what holds there.
+    #[error("coordinate {coordinate} of the state is {value}, not a finite number; mend what computes the state")]
+    StateNotFinite {
+        /// The first coordinate at fault.
+        coordinate: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// The Jacobian of a point cannot be computed.
+    #[error("the point has no Jacobian at this state: {reason}")]
+    Jacobian {
+        /// What the function that computes it says.
+        reason: String,
+    },
     /// A does not have one column for each dimension of the state.
     #[error("the constraint matrix has {found} columns, the state {expected} dimensions; A is (k, n)")]
     Columns {

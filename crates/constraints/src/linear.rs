@@ -26,8 +26,8 @@ impl PfaffianConstraint for LinearConstraint {
         self.matrix.ncols()
     }
 
-    fn matrix(&self, _state: DVectorView<'_, f64>, _time: f64) -> DMatrix<f64> {
-        self.matrix.clone()
+    fn matrix(&self, _state: DVectorView<'_, f64>, _time: f64) -> Result<DMatrix<f64>, ConstraintError> {
+        Ok(self.matrix.clone())
     }
 
     fn null_space_projector(

@@ -1,3 +1,5 @@
+use std::fmt::Display;
+
 use nalgebra::{DMatrix, DMatrixViewMut, DVectorView};
 
 use crate::{ConstraintError, PfaffianConstraint};
@@ -9,10 +11,12 @@ use crate::{ConstraintError, PfaffianConstraint};
 /// Planes and lines go through wherever the point is: the constraint is on its velocity.
 ///
 /// The Jacobian is a function, so that this works for any robot library and any mechanism. It is given a state x (n)
-/// and a matrix (m, n) to fill. What it leaves unfilled is NaN, and refused when the constraint is used: a function
-/// that cannot answer just returns.
+/// and a matrix (m, n) to fill; its error becomes [`ConstraintError::Jacobian`]. What it leaves unfilled is NaN and
+/// refused by the projector.
 ///
 /// ```
+/// use std::convert::Infallible;
+///
 /// use constraints::{PfaffianConstraint, PointConstraint};
 /// use nalgebra::{DMatrixViewMut, DVectorView, dmatrix, dvector};
 ///
@@ -20,15 +24,16 @@ use crate::{ConstraintError, PfaffianConstraint};
 /// let tip = |q: DVectorView<'_, f64>, mut jacobian: DMatrixViewMut<'_, f64>| {
 ///     let (a, b) = (q[0], q[0] + q[1]);
 ///     jacobian.copy_from(&dmatrix![-a.sin() - b.sin(), -b.sin(); a.cos() + b.cos(), b.cos()]);
+///     Ok::<(), Infallible>(())
 /// };
 /// let at_its_height = PointConstraint::new(dmatrix![0.0, 1.0], 2, tip)?;
 /// let q = dvector![0.4, 0.9];
 /// let free = at_its_height.null_space_projector(q.as_view(), 0.0)?.project(dvector![1.0, 0.0].as_view());
 /// let mut jacobian = dmatrix![0.0, 0.0; 0.0, 0.0];
-/// tip(q.as_view(), jacobian.as_view_mut());
+/// tip(q.as_view(), jacobian.as_view_mut())?;
 /// let velocity = jacobian * free;
 /// assert!(velocity[1].abs() < 1e-15 && velocity[0].abs() > 0.1);
-/// # Ok::<(), constraints::ConstraintError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct PointConstraint<J> {
@@ -37,7 +42,11 @@ pub struct PointConstraint<J> {
     jacobian: J,
 }
 
-impl<J: Fn(DVectorView<'_, f64>, DMatrixViewMut<'_, f64>) + Send + Sync> PointConstraint<J> {
+impl<J, E> PointConstraint<J>
+where
+    J: Fn(DVectorView<'_, f64>, DMatrixViewMut<'_, f64>) -> Result<(), E> + Send + Sync,
+    E: Display,
+{
     /// The constraint that forbids motion along the rows of `normals` (k, m), of any length, to a point in m dimensions
     /// (2 or 3) whose `jacobian` (m, n) belongs to a state of dimension n = `dim`.
     ///
@@ -63,14 +72,19 @@ impl<J: Fn(DVectorView<'_, f64>, DMatrixViewMut<'_, f64>) + Send + Sync> PointCo
     }
 }
 
-impl<J: Fn(DVectorView<'_, f64>, DMatrixViewMut<'_, f64>) + Send + Sync> PfaffianConstraint for PointConstraint<J> {
+impl<J, E> PfaffianConstraint for PointConstraint<J>
+where
+    J: Fn(DVectorView<'_, f64>, DMatrixViewMut<'_, f64>) -> Result<(), E> + Send + Sync,
+    E: Display,
+{
     fn dim(&self) -> usize {
         self.dim
     }
 
-    fn matrix(&self, state: DVectorView<'_, f64>, _time: f64) -> DMatrix<f64> {
+    fn matrix(&self, state: DVectorView<'_, f64>, _time: f64) -> Result<DMatrix<f64>, ConstraintError> {
         let mut jacobian = DMatrix::from_element(self.normals.ncols(), self.dim, f64::NAN);
-        (self.jacobian)(state, jacobian.as_view_mut());
-        &self.normals * jacobian
+        (self.jacobian)(state, jacobian.as_view_mut())
+            .map_err(|error| ConstraintError::Jacobian { reason: error.to_string() })?;
+        Ok(&self.normals * jacobian)
     }
 }

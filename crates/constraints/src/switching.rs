@@ -44,7 +44,7 @@ impl<C: PfaffianConstraint> PfaffianConstraint for Switching<C> {
         self.dim
     }
 
-    fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> DMatrix<f64> {
+    fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> Result<DMatrix<f64>, ConstraintError> {
         match self.at(time) {
             Some(constraint) => constraint.matrix(state, time),
             None => Unconstrained { dim: self.dim }.matrix(state, time),

@@ -80,7 +80,7 @@ proptest! {
                 }
             }
         }
-        let matrix = barrier.matrix(state.as_view(), 0.0);
+        let matrix = barrier.matrix(state.as_view(), 0.0).unwrap();
         prop_assert_eq!(matrix.shape(), (rows.len(), 3 * n_points));
         for (found, expected) in matrix.row_iter().zip(rows) {
             prop_assert_eq!(found.transpose(), expected);
@@ -98,7 +98,7 @@ proptest! {
         for _ in 0..60 {
             let wish = &goal - &state;
             let velocity = projector(&barrier, state.as_view()).project(wish.as_view());
-            let forbidden = barrier.matrix(state.as_view(), 0.0) * &velocity;
+            let forbidden = barrier.matrix(state.as_view(), 0.0).unwrap() * &velocity;
             prop_assert!(forbidden.is_empty() || forbidden.amax() < 1e-13);
             for at in 0..2 {
                 let p = point(&state, at);
@@ -167,4 +167,29 @@ fn bad_barriers_are_refused() {
     assert!(matches!(of(vec![good], f64::NAN, 1), Err(ConstraintError::Reach { reach }) if reach.is_nan()));
     let nan = of(vec![Plate { edges: [f64::NAN, 1.0], ..good }], 0.05, 1);
     assert!(matches!(nan, Err(ConstraintError::PlateEdges { plate: 0, from, to: 1.0 }) if from.is_nan()));
+}
+
+/// A point that is nowhere is neither blocked nor free.
+#[test]
+fn states_that_are_none_are_refused() {
+    let barrier = Barrier::new(with_a_gap(0.4, 0.1), 0.05, 2).unwrap();
+    for coordinate in 0..6 {
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let mut state = DVector::from_column_slice(&[0.4, 0.3, 0.7, 0.4, -0.3, 0.7]);
+            state[coordinate] = value;
+            let errors = [
+                barrier.matrix(state.as_view(), 0.0).unwrap_err(),
+                barrier.null_space_projector(state.as_view(), 0.0).unwrap_err(),
+            ];
+            for error in errors {
+                assert!(
+                    matches!(error, ConstraintError::StateNotFinite { coordinate: at, value: found }
+                        if at == coordinate && found.to_bits() == value.to_bits()),
+                    "{error:?}"
+                );
+            }
+        }
+    }
+    let short = DVector::zeros(5);
+    assert_eq!(barrier.matrix(short.as_view(), 0.0), Err(ConstraintError::State { found: 5, expected: 6 }));
 }

@@ -17,9 +17,9 @@ impl PfaffianConstraint for Wall {
         2
     }
 
-    fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> DMatrix<f64> {
+    fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> Result<DMatrix<f64>, ConstraintError> {
         let rows = usize::from(state[0] >= 1.0 && time >= 0.0);
-        DMatrix::from_fn(rows, self.columns, |_, column| if column == 0 { 1.0 } else { 0.0 })
+        Ok(DMatrix::from_fn(rows, self.columns, |_, column| if column == 0 { 1.0 } else { 0.0 }))
     }
 }
 
@@ -50,10 +50,10 @@ proptest! {
         let holds = starts.iter().rfind(|&&start| start <= time).map(|&start| row(&angle(start)));
         prop_assert_eq!(switching.at(now), holds.as_ref());
         let expected = match &holds {
-            Some(constraint) => constraint.matrix(state.as_view(), now),
+            Some(constraint) => constraint.matrix(state.as_view(), now).unwrap(),
             None => DMatrix::zeros(0, 2),
         };
-        prop_assert_eq!(switching.matrix(state.as_view(), now), expected.clone());
+        prop_assert_eq!(switching.matrix(state.as_view(), now).unwrap(), expected.clone());
         let projector = switching.null_space_projector(state.as_view(), now).unwrap();
         prop_assert_eq!(projector, NullSpaceProjector::new(&expected).unwrap());
         prop_assert_eq!(switching.dim(), 2);
@@ -65,7 +65,7 @@ proptest! {
         let constraint = LinearConstraint::new(matrix.clone()).unwrap();
         let state = DVector::from_vec(state);
         prop_assert_eq!(constraint.dim(), 3);
-        prop_assert_eq!(constraint.matrix(state.as_view(), time), matrix.clone());
+        prop_assert_eq!(constraint.matrix(state.as_view(), time).unwrap(), matrix.clone());
         let projector = constraint.null_space_projector(state.as_view(), time).unwrap();
         prop_assert_eq!(projector, NullSpaceProjector::new(&matrix).unwrap());
     }
@@ -94,7 +94,7 @@ fn phases_of_different_kinds_and_references_behave_as_what_they_hold() {
     for (time, trace) in free {
         let projector = projector_of(&switching, &state, time);
         assert!((projector.matrix().trace() - trace).abs() < 1e-15);
-        assert_eq!(switching.matrix(state.as_view(), time).nrows(), projector.rank());
+        assert_eq!(switching.matrix(state.as_view(), time).unwrap().nrows(), projector.rank());
     }
     assert_eq!(
         Unconstrained { dim: 4 }.null_space_projector(state.as_view(), 0.0).unwrap(),

@@ -1,6 +1,6 @@
 //! Points that stay in a plane or on a line: the literal nᵀJ, and the motion of the point itself.
 
-use std::f64::consts::PI;
+use std::{convert::Infallible, f64::consts::PI};
 
 use constraints::{ConstraintError, PfaffianConstraint, PointConstraint};
 use nalgebra::{DMatrix, DMatrixViewMut, DVector, DVectorView, Vector3, dmatrix, dvector};
@@ -28,12 +28,13 @@ impl Arm {
     }
 
     /// Column j: axis j, turned by all joints before it, times the way from joint j to the tip.
-    fn jacobian(&self, q: DVectorView<'_, f64>, mut jacobian: DMatrixViewMut<'_, f64>) {
+    fn jacobian(&self, q: DVectorView<'_, f64>, mut jacobian: DMatrixViewMut<'_, f64>) -> Result<(), Infallible> {
         for joint in 0..self.lengths.len() {
             let turned = |axis, link| nalgebra::Rotation3::from_axis_angle(&self::axis(link), q[link]) * axis;
             let axis = (0..joint).rev().fold(axis(joint).into_inner(), turned);
             jacobian.column_mut(joint).copy_from(&axis.cross(&self.tip_from(joint, q)));
         }
+        Ok(())
     }
 }
 
@@ -57,9 +58,9 @@ proptest! {
     fn the_matrix_is_the_normals_times_the_jacobian((arm, q, normals, _) in case(), time in -9.0..9.0f64) {
         let n = q.len();
         let constraint = PointConstraint::new(normals.clone(), n, |q, j| arm.jacobian(q, j)).unwrap();
-        let a = constraint.matrix(q.as_view(), time);
+        let a = constraint.matrix(q.as_view(), time).unwrap();
         let mut jacobian = DMatrix::zeros(3, n);
-        arm.jacobian(q.as_view(), jacobian.as_view_mut());
+        arm.jacobian(q.as_view(), jacobian.as_view_mut()).unwrap();
         for (row, normal) in normals.row_iter().enumerate() {
             for column in 0..n {
                 let literal: f64 = (0..3).map(|d| normal[d] * jacobian[(d, column)]).sum();
@@ -84,7 +85,7 @@ proptest! {
             prop_assert!(along.abs() / (2.0 * d) < 1e-7, "{along}");
         }
         let mut jacobian = DMatrix::zeros(3, q.len());
-        arm.jacobian(q.as_view(), jacobian.as_view_mut());
+        arm.jacobian(q.as_view(), jacobian.as_view_mut()).unwrap();
         prop_assert!((jacobian * &u - moved / (2.0 * d)).amax() < 1e-7);
     }
 
@@ -107,6 +108,7 @@ fn a_stretched_arm_is_free_along_itself() {
     let tip = |q: DVectorView<'_, f64>, mut jacobian: DMatrixViewMut<'_, f64>| {
         let (a, b) = (q[0], q[0] + q[1]);
         jacobian.copy_from(&dmatrix![-a.sin() - b.sin(), -b.sin(); a.cos() + b.cos(), b.cos()]);
+        Ok::<(), Infallible>(())
     };
     let along = PointConstraint::new(dmatrix![1.0, 0.0], 2, tip).unwrap();
     let across = PointConstraint::new(dmatrix![0.0, 1.0], 2, tip).unwrap();
@@ -122,7 +124,10 @@ fn a_stretched_arm_is_free_along_itself() {
 
 #[test]
 fn bad_points_are_refused() {
-    let still = |_: DVectorView<'_, f64>, mut jacobian: DMatrixViewMut<'_, f64>| jacobian.fill(0.0);
+    let still = |_: DVectorView<'_, f64>, mut jacobian: DMatrixViewMut<'_, f64>| {
+        jacobian.fill(0.0);
+        Ok::<(), Infallible>(())
+    };
     let refused = |normals| PointConstraint::new(normals, 2, still).err();
     assert_eq!(refused(DMatrix::zeros(0, 3)), Some(ConstraintError::NoNormal));
     assert_eq!(refused(DMatrix::zeros(1, 0)), Some(ConstraintError::NoNormal));
@@ -133,8 +138,22 @@ fn bad_points_are_refused() {
     );
     assert!(matches!(refused(dmatrix![f64::NAN, 1.0]), Some(ConstraintError::Normal { row: 0, .. })));
 
-    let silent = |_: DVectorView<'_, f64>, _: DMatrixViewMut<'_, f64>| {};
+    let silent = |_: DVectorView<'_, f64>, _: DMatrixViewMut<'_, f64>| Ok::<(), Infallible>(());
     let unknown = PointConstraint::new(dmatrix![1.0, 0.0], 2, silent).unwrap();
     let error = unknown.null_space_projector(dvector![0.0, 0.0].as_view(), 0.0).unwrap_err();
     assert!(matches!(error, ConstraintError::NotFinite { row: 0, column: 0, value } if value.is_nan()));
+}
+
+/// The cause is not lost on the way.
+#[test]
+fn a_function_that_cannot_answer_says_why() {
+    let broken = |_: DVectorView<'_, f64>, mut jacobian: DMatrixViewMut<'_, f64>| {
+        jacobian.fill(1.0);
+        Err("the encoder is dead")
+    };
+    let point = PointConstraint::new(dmatrix![1.0, 0.0], 2, broken).unwrap();
+    let error = ConstraintError::Jacobian { reason: "the encoder is dead".to_owned() };
+    let q = dvector![0.0, 0.0];
+    assert_eq!(point.matrix(q.as_view(), 0.0), Err(error.clone()));
+    assert_eq!(point.null_space_projector(q.as_view(), 0.0), Err(error));
 }

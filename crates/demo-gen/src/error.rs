@@ -95,6 +95,17 @@ pub enum DemoGenError {
         /// What is wrong with it.
         source: ConstraintError,
     },
+    /// A matrix cannot hold the Jacobian of a hand.
+    #[error(
+        "the Jacobian of this hand is ({}, {}), not ({}, {}); normals have 3 coordinates, states one for each joint",
+        expected.0, expected.1, found.0, found.1
+    )]
+    HandJacobian {
+        /// Rows and columns of the matrix to be filled.
+        found: (usize, usize),
+        /// Rows and columns of the Jacobian.
+        expected: (usize, usize),
+    },
     /// No trajectory was asked for, or no recording given.
     #[error("there is no trajectory; ask for or give at least one")]
     NoTrajectory,

@@ -1,5 +1,3 @@
-use std::sync::{Mutex, PoisonError};
-
 use constraints::{PfaffianConstraint, PointConstraint};
 use kinematics::{Chain, RobotModel, Workspace};
 use nalgebra::{DMatrix, DMatrixViewMut, DVectorView, Matrix3xX, Vector3};
@@ -9,21 +7,24 @@ use crate::DemoGenError;
 /// The Jacobian of a hand's position as a [`PointConstraint`] wants it: a function that fills a matrix (3, n) at a
 /// configuration q (n) of `robot`, rows vx vy vz in the root link's axes.
 ///
-/// It allocates nothing after its first call. A configuration that the robot refuses, or a matrix of another shape, is
-/// left as it was.
+/// Each call has memory of its own: threads share nothing and wait for nothing.
+///
+/// # Errors
+/// The function answers with [`DemoGenError::HandJacobian`] for a matrix of another shape, and [`DemoGenError::Robot`]
+/// for a configuration that the robot refuses.
 pub fn hand_jacobian(
     robot: &RobotModel,
     hand: &Chain,
-) -> impl Fn(DVectorView<'_, f64>, DMatrixViewMut<'_, f64>) + Send + Sync + use<> {
-    let hand = hand.clone();
-    // Calls from several threads at once take turns.
-    let memory = Mutex::new((Workspace::new(), Matrix3xX::zeros(robot.n_joints())));
+) -> impl Fn(DVectorView<'_, f64>, DMatrixViewMut<'_, f64>) -> Result<(), DemoGenError> + Send + Sync + use<> {
+    let (hand, expected) = (hand.clone(), (3, robot.n_joints()));
     move |q, mut jacobian| {
-        let mut memory = memory.lock().unwrap_or_else(PoisonError::into_inner);
-        let (workspace, filled) = &mut *memory;
-        if jacobian.shape() == filled.shape() && hand.position_jacobian(q, workspace, filled).is_ok() {
-            jacobian.copy_from(filled);
+        if jacobian.shape() != expected {
+            return Err(DemoGenError::HandJacobian { found: jacobian.shape(), expected });
         }
+        let mut filled = Matrix3xX::zeros(expected.1);
+        hand.position_jacobian(q, &mut Workspace::new(), &mut filled)?;
+        jacobian.copy_from(&filled);
+        Ok(())
     }
 }
 

@@ -39,12 +39,12 @@ impl PfaffianConstraint for Later {
         2
     }
 
-    fn matrix(&self, _state: DVectorView<'_, f64>, time: f64) -> DMatrix<f64> {
-        if time >= self.time {
+    fn matrix(&self, _state: DVectorView<'_, f64>, time: f64) -> Result<DMatrix<f64>, ConstraintError> {
+        Ok(if time >= self.time {
             DMatrix::from_element(1, self.columns, self.entry)
         } else {
             DMatrix::from_element(1, 2, 1.0)
-        }
+        })
     }
 }
 

@@ -100,7 +100,7 @@ proptest! {
                 prop_assert_eq!(u, expected.column(0));
                 let rank = (0..2).filter(|&hand| blocked(hand)).count();
                 prop_assert_eq!(recording.truth.projectors[sample].rank(), rank);
-                let forbidden = wall.matrix(x, 0.0) * u;
+                let forbidden = wall.matrix(x, 0.0).unwrap() * u;
                 prop_assert!(forbidden.iter().all(|&value| value == 0.0));
                 prop_assert_eq!(action.clone_owned(), -grasp.scene.potential().gradient(x));
             }

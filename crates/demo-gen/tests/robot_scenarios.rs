@@ -4,7 +4,7 @@ mod robots;
 
 use std::f64::consts::PI;
 
-use constraints::{PfaffianConstraint as _, PointConstraint};
+use constraints::{ConstraintError, PfaffianConstraint as _, PointConstraint};
 use demo_gen::{DemoGenError, HandInPlane, Recording, RollOut, Side, ThreeLinkArm, hand_jacobian, n_leaving_limits};
 use kinematics::{Chain, KinematicsError, RobotModel, Workspace};
 use nalgebra::{DMatrix, DVector, DVectorView, Matrix3, Matrix3xX, SymmetricEigen, Vector3, dmatrix};
@@ -174,18 +174,20 @@ fn a_hands_jacobian_is_that_of_the_robot() {
                 for step in 0..200 {
                     let q = DVector::from_fn(3, |joint, _| PI * ((7 * thread + 3 * step + joint) as f64).sin());
                     let mut filled = DMatrix::zeros(3, 3);
-                    function(q.as_view(), filled.as_view_mut());
+                    function(q.as_view(), filled.as_view_mut()).unwrap();
                     assert_eq!(filled.as_slice(), jacobian(hand, q.as_view()).as_slice());
                 }
             });
         }
     });
 
-    // What cannot be answered is left alone, and so refused by the constraint.
+    let reason = |error: DemoGenError| ConstraintError::Jacobian { reason: error.to_string() };
     let on_a_line = PointConstraint::new(dmatrix![1.0, 0.0], 3, hand_jacobian(&arm.robot, &hand)).unwrap();
-    assert!(on_a_line.null_space_projector(DVector::zeros(3).as_view(), 0.0).is_err(), "two rows are not three");
+    let two_rows = DemoGenError::HandJacobian { found: (2, 3), expected: (3, 3) };
+    assert_eq!(on_a_line.null_space_projector(DVector::zeros(3).as_view(), 0.0), Err(reason(two_rows)));
     let other = PointConstraint::new(dmatrix![1.0, 0.0, 0.0], 3, hand_jacobian(&arm.robot, &hand)).unwrap();
-    assert!(other.null_space_projector(DVector::zeros(4).as_view(), 0.0).is_err(), "the arm has three joints");
+    let four_joints = KinematicsError::ConfigurationLength { found: 4, expected: 3 };
+    assert_eq!(other.matrix(DVector::zeros(4).as_view(), 0.0), Err(reason(four_joints.into())));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Movements under constraints: the literal loop, the constraint itself, and what the Euler step does to (9).
 
-use constraints::{LinearConstraint, PfaffianConstraint, Switching, Unconstrained};
+use constraints::{ConstraintError, LinearConstraint, PfaffianConstraint, Switching, Unconstrained};
 use demo_gen::{Parabola, Recording, RollOut, Sinusoidal, demonstrations};
 use motion::{NegativeGradient, Policy, Potential};
 use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut, dvector};
@@ -19,10 +19,10 @@ impl PfaffianConstraint for Turning {
         self.dim
     }
 
-    fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> DMatrix<f64> {
+    fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> Result<DMatrix<f64>, ConstraintError> {
         let angle = self.rate * time + state.sum();
         let rows = usize::from(angle.sin() > -0.8);
-        DMatrix::from_fn(rows, self.dim, |_, dimension| (angle * (dimension + 1) as f64).cos())
+        Ok(DMatrix::from_fn(rows, self.dim, |_, dimension| (angle * (dimension + 1) as f64).cos()))
     }
 }
 
@@ -45,7 +45,7 @@ fn literal(roll_out: RollOut, policy: &dyn Policy, constraint: &Turning, start: 
     let mut states = vec![start.clone()];
     let mut state = start.clone();
     for count in 0..roll_out.sub_steps * (roll_out.n_samples - 1) {
-        let matrix = constraint.matrix(state.as_view(), step * count as f64);
+        let matrix = constraint.matrix(state.as_view(), step * count as f64).unwrap();
         let action = policy.action(state.as_view());
         let mut free = DMatrix::identity(state.len(), state.len());
         if matrix.nrows() == 1 {
@@ -167,7 +167,7 @@ proptest! {
         let recording = roll_out.record(&potential, &constraint, DVector::from_vec(start).as_view()).unwrap();
         let velocities = recording.observed.velocities().unwrap();
         for sample in 0..20 {
-            let matrix = constraint.matrix(recording.observed.state(sample), time_step * sample as f64);
+            let matrix = constraint.matrix(recording.observed.state(sample), time_step * sample as f64).unwrap();
             let forbidden = &matrix * velocities.column(sample);
             prop_assert!(forbidden.is_empty() || forbidden.amax() < 1e-13);
             prop_assert_eq!(recording.truth.projectors[sample].rank(), matrix.nrows());

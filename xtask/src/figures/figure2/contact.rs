@@ -1,6 +1,6 @@
 //! A finger of two joints that stretches, simulated, and a box that stops its tip.
 
-use constraints::{PfaffianConstraint, PointConstraint};
+use constraints::{ConstraintError, PfaffianConstraint, PointConstraint};
 use demo_gen::{Parabola, RollOut, hand_jacobian};
 use kinematics::{LinkId, RobotModel, Workspace};
 use motion::{NegativeGradient, Policy};
@@ -48,11 +48,11 @@ impl PfaffianConstraint for Contact<'_> {
         2
     }
 
-    fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> DMatrix<f64> {
-        let into_box = self.face.matrix(state, time);
+    fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> Result<DMatrix<f64>, ConstraintError> {
+        let into_box = self.face.matrix(state, time)?;
         let touches = self.finger.places(state).is_ok_and(|[.., tip]| tip.0 >= FACE);
         let presses = (&into_box * self.finger.policy.action(state))[0] > 0.0;
-        if touches && presses { into_box } else { DMatrix::zeros(0, 2) }
+        Ok(if touches && presses { into_box } else { DMatrix::zeros(0, 2) })
     }
 }
 
@@ -160,7 +160,7 @@ mod tests {
         let (a, b) = movement.angles[160];
         let q = DVector::from_vec(vec![a, b]);
         let action = finger.policy.action(q.as_view());
-        let across = contact.face.matrix(q.as_view(), 0.0).transpose().normalize();
+        let across = contact.face.matrix(q.as_view(), 0.0).unwrap().transpose().normalize();
         assert!((action.normalize() - across.column(0)).norm() < 0.01);
     }
 
