@@ -60,6 +60,26 @@ impl RobotModel {
     }
 }
 
+/// The robot that the crate urdf-rs has read, version 0.10: the one that [`RobotModel::from_urdf`] builds from the same
+/// text, as far as urdf-rs keeps it. What urdf-rs makes of a text differs in three ways: a `<limit>` of zeros alone counts
+/// as missing, an infinite bound of URDF 1.2 counts as missing, and quaternions have become roll, pitch and yaw.
+///
+/// ```
+/// use kinematics::RobotModel;
+///
+/// let read = urdf_rs::read_from_string(r#"<robot name="post"><link name="base"/></robot>"#)?;
+/// assert_eq!(RobotModel::try_from(&read)?.name(), "post");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+impl TryFrom<&urdf_rs::Robot> for RobotModel {
+    /// [`KinematicsError::Urdf`] with the link or joint that breaks a rule.
+    type Error = KinematicsError;
+
+    fn try_from(robot: &urdf_rs::Robot) -> Result<Self, KinematicsError> {
+        Self::assemble(urdf::from_urdf_rs(robot)?)
+    }
+}
+
 /// Collision shapes with their links in the order of the tree.
 fn placed_shapes(shapes: Vec<UrdfCollision>, branches: &[Branch]) -> Vec<CollisionShape> {
     let mut places = vec![LinkId(0); branches.len()];

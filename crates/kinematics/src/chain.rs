@@ -8,7 +8,7 @@ use crate::{
     dispatch::dispatch,
     forward::require_columns,
     jacobian::add_column,
-    joint::{Joint, checked},
+    joint::{Joint, placeable},
     node::{Motion, Node},
     placement::Placement,
     workspace::Motor,
@@ -47,13 +47,13 @@ impl Chain {
     /// The link's pose in the root link's frame, metres. `q` (n) is a configuration of the whole robot.
     ///
     /// # Errors
-    /// [`KinematicsError::ConfigurationLength`] or [`KinematicsError::NotFinite`].
+    /// [`KinematicsError::ConfigurationLength`], [`KinematicsError::NotFinite`] or [`KinematicsError::TooFar`].
     pub fn pose(
         &self,
         q: DVectorView<'_, f64>,
         workspace: &mut Workspace,
     ) -> Result<IsometryMatrix3<f64>, KinematicsError> {
-        let q = checked(&q, &self.joints)?;
+        let q = placeable(&q, &self.joints)?;
         let placements = workspace.place(&self.nodes, &self.motors, q);
         Ok(placements[self.nodes.len() - 1].isometry())
     }
@@ -62,7 +62,7 @@ impl Chain {
     /// axes, and gives the link's pose. `q` (n) is a configuration of the whole robot.
     ///
     /// # Errors
-    /// [`KinematicsError::ConfigurationLength`], [`KinematicsError::NotFinite`] or
+    /// [`KinematicsError::ConfigurationLength`], [`KinematicsError::NotFinite`], [`KinematicsError::TooFar`] or
     /// [`KinematicsError::JacobianColumns`].
     pub fn jacobian(
         &self,
@@ -70,7 +70,7 @@ impl Chain {
         workspace: &mut Workspace,
         jacobian: &mut Matrix6xX<f64>,
     ) -> Result<IsometryMatrix3<f64>, KinematicsError> {
-        let q = checked(&q, &self.joints)?;
+        let q = placeable(&q, &self.joints)?;
         require_columns(jacobian.ncols(), &self.joints)?;
         Ok(self.fill::<6>(q, workspace, jacobian.as_mut_slice()).isometry())
     }
@@ -79,7 +79,7 @@ impl Chain {
     /// gives that origin. `q` (n) is a configuration of the whole robot.
     ///
     /// # Errors
-    /// [`KinematicsError::ConfigurationLength`], [`KinematicsError::NotFinite`] or
+    /// [`KinematicsError::ConfigurationLength`], [`KinematicsError::NotFinite`], [`KinematicsError::TooFar`] or
     /// [`KinematicsError::JacobianColumns`].
     pub fn position_jacobian(
         &self,
@@ -87,7 +87,7 @@ impl Chain {
         workspace: &mut Workspace,
         jacobian: &mut Matrix3xX<f64>,
     ) -> Result<Point3<f64>, KinematicsError> {
-        let q = checked(&q, &self.joints)?;
+        let q = placeable(&q, &self.joints)?;
         require_columns(jacobian.ncols(), &self.joints)?;
         Ok(self.fill::<3>(q, workspace, jacobian.as_mut_slice()).position())
     }

@@ -1,6 +1,7 @@
 use thiserror::Error;
 
 use crate::{
+    joint::FARTHEST,
     names::proposal,
     urdf::{Element, UrdfProblem},
 };
@@ -59,6 +60,16 @@ pub enum KinematicsError {
         /// Its place in the configuration, counted from 0.
         index: usize,
         /// The value itself.
+        value: f64,
+    },
+    /// A coordinate so large that positions computed from it could overflow.
+    #[error("joint \"{joint}\" (value {index}): {value:e} is too far, {FARTHEST:e} is the most")]
+    TooFar {
+        /// The name of the first such joint.
+        joint: String,
+        /// Its place in the configuration, counted from 0.
+        index: usize,
+        /// The value itself, in radians or metres.
         value: f64,
     },
     /// A Jacobian to be filled has not one column for each active joint.

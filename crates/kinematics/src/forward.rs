@@ -5,7 +5,7 @@ use crate::{
     KinematicsError, LinkId, RobotModel, Workspace,
     dispatch::dispatch,
     jacobian::add_column,
-    joint::{Joint, checked},
+    joint::{Joint, placeable},
     placement::{Lanes, Placement, lanes},
 };
 
@@ -20,14 +20,14 @@ impl RobotModel {
     /// Places all links. `q` (n) holds one value for each of [`RobotModel::joints`], in radians or metres.
     ///
     /// # Errors
-    /// [`KinematicsError::ConfigurationLength`] or [`KinematicsError::NotFinite`]. Values beyond the limits are
-    /// accepted.
+    /// [`KinematicsError::ConfigurationLength`], [`KinematicsError::NotFinite`] or [`KinematicsError::TooFar`]. Values
+    /// beyond the limits are accepted.
     pub fn forward_kinematics<'a>(
         &'a self,
         q: DVectorView<'_, f64>,
         workspace: &'a mut Workspace,
     ) -> Result<LinkPoses<'a>, KinematicsError> {
-        let q = checked(&q, &self.joints)?;
+        let q = placeable(&q, &self.joints)?;
         Ok(LinkPoses { robot: self, placements: workspace.place(&self.nodes, &self.motors, q) })
     }
 }

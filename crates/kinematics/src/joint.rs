@@ -33,19 +33,39 @@ impl Joint {
     }
 }
 
+/// Largest coordinate of a configuration that can be placed: positions and their squares stay finite.
+pub(crate) const FARTHEST: f64 = 1e100;
+
 /// Checks a configuration against the joints it is for.
 #[inline]
 pub(crate) fn checked<'q>(q: &'q DVectorView<'_, f64>, joints: &[Joint]) -> Result<&'q [f64], KinematicsError> {
+    within(q, joints, f64::MAX)
+}
+
+/// Checks a configuration that links are to be placed by.
+#[inline]
+pub(crate) fn placeable<'q>(q: &'q DVectorView<'_, f64>, joints: &[Joint]) -> Result<&'q [f64], KinematicsError> {
+    within(q, joints, FARTHEST)
+}
+
+#[inline]
+fn within<'q>(q: &'q DVectorView<'_, f64>, joints: &[Joint], most: f64) -> Result<&'q [f64], KinematicsError> {
     let q = q.as_slice();
     if q.len() != joints.len() {
         return Err(KinematicsError::ConfigurationLength { found: q.len(), expected: joints.len() });
     }
     // No early exit: then the loop becomes vector code.
-    if q.iter().fold(true, |all, value| all & value.is_finite()) { Ok(q) } else { Err(not_finite(q, joints)) }
+    if q.iter().fold(true, |all, value| all & (value.abs() <= most)) { Ok(q) } else { Err(beyond(q, joints, most)) }
 }
 
 #[cold]
-fn not_finite(q: &[f64], joints: &[Joint]) -> KinematicsError {
-    let index = q.iter().position(|value| !value.is_finite()).expect("one value was found not to be finite");
-    KinematicsError::NotFinite { joint: joints[index].name.clone(), index, value: q[index] }
+fn beyond(q: &[f64], joints: &[Joint], most: f64) -> KinematicsError {
+    let is_beyond = |value: &f64| value.is_nan() || value.abs() > most;
+    let index = q.iter().position(is_beyond).expect("one value was found to be beyond");
+    let (joint, value) = (joints[index].name.clone(), q[index]);
+    if value.is_finite() {
+        KinematicsError::TooFar { joint, index, value }
+    } else {
+        KinematicsError::NotFinite { joint, index, value }
+    }
 }

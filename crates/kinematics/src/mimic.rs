@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use crate::{
     KinematicsError,
     names::near_names,
-    urdf::{Element, Freedom, Mimic, UrdfJoint, UrdfProblem},
+    urdf::{Element, Freedom, Mimic, UrdfJoint, UrdfProblem, bounded},
     workspace::Motor,
 };
 
@@ -13,58 +13,64 @@ use crate::{
 /// that move and follow nobody) in document order.
 pub(crate) fn motors(joints: &[UrdfJoint]) -> Result<Vec<Option<Motor>>, KinematicsError> {
     let by_name: HashMap<&str, usize> = joints.iter().enumerate().map(|(i, joint)| (joint.name.as_str(), i)).collect();
-    let mut column = 0;
-    let columns: Vec<Option<usize>> = joints
-        .iter()
-        .map(|joint| {
-            is_active(joint).then(|| {
-                column += 1;
-                column - 1
-            })
-        })
-        .collect();
-    joints
-        .iter()
-        .enumerate()
-        .map(|(start, joint)| match &joint.freedom {
-            Freedom::Fixed => Ok(None),
-            Freedom::Moving { .. } => resolve(start, joints, &by_name, &columns).map(Some),
-        })
-        .collect()
+    let mut motors = vec![None; joints.len()];
+    for (column, joint) in (0..joints.len()).filter(|&joint| is_active(&joints[joint])).enumerate() {
+        motors[joint] = Some(Motor { column, multiplier: 1.0, offset: 0.0 });
+    }
+    for (start, joint) in joints.iter().enumerate() {
+        if matches!(joint.freedom, Freedom::Moving { .. }) {
+            resolve(start, joints, &by_name, &mut motors)?;
+        }
+    }
+    Ok(motors)
 }
 
 pub(crate) fn is_active(joint: &UrdfJoint) -> bool {
     matches!(joint.freedom, Freedom::Moving { mimic: None, .. })
 }
 
-/// Follows the chain from one joint: q = m₁(m₂(… q_active …) + o₂) + o₁.
+/// Finds the motors of a joint and of all that it follows: q = m₁(m₂(… `q_active` …) + o₂) + o₁. What is found once is
+/// not looked for again, so that a long chain takes no longer than its length.
 fn resolve(
     start: usize,
     joints: &[UrdfJoint],
     by_name: &HashMap<&str, usize>,
-    columns: &[Option<usize>],
-) -> Result<Motor, KinematicsError> {
-    let (mut at, mut multiplier, mut offset) = (start, 1.0, 0.0);
-    let mut steps = 0;
-    while let Freedom::Moving { mimic: Some(mimic), .. } = &joints[at].freedom {
-        offset += multiplier * mimic.offset;
-        multiplier *= mimic.multiplier;
-        at = target(&joints[at], mimic, joints, by_name)?;
-        steps += 1;
-        if steps > joints.len() {
+    motors: &mut [Option<Motor>],
+) -> Result<(), KinematicsError> {
+    let mut followers = Vec::new();
+    let mut at = start;
+    while motors[at].is_none() {
+        if followers.len() == joints.len() {
             return Err(ring(at, joints, by_name));
         }
+        followers.push(at);
+        at = target(&joints[at], joints, by_name)?;
     }
-    let column = columns[at].expect("a mimic chain ends at an active joint");
-    Ok(Motor { column, multiplier, offset })
+    let mut motor = motors[at].expect("the loop ends at a motor");
+    for follower in followers.into_iter().rev() {
+        let Mimic { multiplier, offset, .. } = mimic(&joints[follower]);
+        let total = |attribute, value| bounded(attribute, value).map_err(|problem| joints[follower].error(problem));
+        motor = Motor {
+            column: motor.column,
+            multiplier: total("mimic.multiplier", multiplier * motor.multiplier)?,
+            offset: total("mimic.offset", multiplier * motor.offset + offset)?,
+        };
+        motors[follower] = Some(motor);
+    }
+    Ok(())
+}
+
+/// What a joint without a motor of its own follows.
+fn mimic(joint: &UrdfJoint) -> &Mimic {
+    match &joint.freedom {
+        Freedom::Moving { mimic: Some(mimic), .. } => mimic,
+        _ => unreachable!("a joint that moves and follows nobody has a motor"),
+    }
 }
 
 /// Names the ring that a joint is part of, from its first joint in the file.
 fn ring(member: usize, joints: &[UrdfJoint], by_name: &HashMap<&str, usize>) -> KinematicsError {
-    let follows = |at: usize| match &joints[at].freedom {
-        Freedom::Moving { mimic: Some(mimic), .. } => by_name[mimic.target.as_str()],
-        _ => unreachable!("every joint of a ring follows another"),
-    };
+    let follows = |at: usize| by_name[mimic(&joints[at]).target.as_str()];
     let members = std::iter::successors(Some(follows(member)), |&at| (at != member).then(|| follows(at)));
     let first = members.min().expect("a ring has a member");
     let rest = std::iter::successors(Some(follows(first)), |&at| (at != first).then(|| follows(at)));
@@ -72,13 +78,8 @@ fn ring(member: usize, joints: &[UrdfJoint], by_name: &HashMap<&str, usize>) -> 
     KinematicsError::urdf(Element::Joint(path[0].clone()), UrdfProblem::MimicCycle { path })
 }
 
-fn target(
-    joint: &UrdfJoint,
-    mimic: &Mimic,
-    joints: &[UrdfJoint],
-    by_name: &HashMap<&str, usize>,
-) -> Result<usize, KinematicsError> {
-    let target = mimic.target.clone();
+fn target(joint: &UrdfJoint, joints: &[UrdfJoint], by_name: &HashMap<&str, usize>) -> Result<usize, KinematicsError> {
+    let target = mimic(joint).target.clone();
     let problem = match by_name.get(target.as_str()) {
         Some(&index) if matches!(joints[index].freedom, Freedom::Fixed) => UrdfProblem::MimicOfFixed { target },
         Some(&index) => return Ok(index),
@@ -87,5 +88,5 @@ fn target(
             UrdfProblem::MimicTarget { target, near }
         }
     };
-    Err(KinematicsError::urdf(Element::Joint(joint.name.clone()), problem))
+    Err(joint.error(problem))
 }

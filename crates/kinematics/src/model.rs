@@ -126,8 +126,9 @@ impl RobotModel {
 }
 
 pub(crate) fn find_link(name: &str, links: &[String]) -> Result<LinkId, KinematicsError> {
-    links.iter().position(|link| link == name).map(LinkId).ok_or_else(|| KinematicsError::UnknownLink {
-        name: name.to_owned(),
-        near: near_names(name, links.iter().map(String::as_str)),
-    })
+    links.iter().position(|link| link == name).map(LinkId).ok_or_else(|| unknown_link(name, links))
+}
+
+pub(crate) fn unknown_link(name: &str, links: &[String]) -> KinematicsError {
+    KinematicsError::UnknownLink { name: name.to_owned(), near: near_names(name, links.iter().map(String::as_str)) }
 }

@@ -1,11 +1,19 @@
 /// How many proposals an error makes.
 const PROPOSALS: usize = 3;
 
+/// Length in bytes up to which names are compared. Comparing takes as many steps as the product of two lengths, and
+/// nobody mistypes one letter of a name this long.
+const LONGEST_NAME: usize = 64;
+
 /// The names nearest to `wanted` by edit distance, nearest first, ties in the order given; case does not count.
-/// Names that share nothing with `wanted` are left out.
+/// Names that share nothing with `wanted` are left out, and so are very long ones.
 pub(crate) fn near_names<'n>(wanted: &str, names: impl Iterator<Item = &'n str>) -> Vec<String> {
+    if wanted.len() > LONGEST_NAME {
+        return Vec::new();
+    }
     let wanted = wanted.to_lowercase();
     let mut ranked: Vec<(usize, &str)> = names
+        .filter(|name| name.len() <= LONGEST_NAME)
         .map(|name| (edit_distance(&wanted, &name.to_lowercase()), name))
         .filter(|(distance, name)| *distance < wanted.chars().count().max(name.chars().count()))
         .collect();
@@ -53,5 +61,13 @@ mod tests {
         assert_eq!(near_names("L_Plam", names.into_iter())[..2], ["l_palm", "r_palm"]);
         assert!(near_names("qq", ["zzz"].into_iter()).is_empty());
         assert_eq!(proposal(&[]), "");
+    }
+
+    #[test]
+    fn names_of_more_than_64_letters_are_not_compared() {
+        let [fits, long] = [64, 65].map(|length| "a".repeat(length));
+        let nearly = "a".repeat(63) + "b";
+        assert_eq!(near_names(&nearly, [long.as_str(), &fits].into_iter()), [fits.as_str()]);
+        assert!(near_names(&long, [fits.as_str()].into_iter()).is_empty());
     }
 }

@@ -135,7 +135,12 @@ fn bad_pairs_are_refused() {
     let unknown = KinematicsError::UnknownLink { name: "betwen".into(), near: vec!["between".into(), "b".into()] };
     assert_eq!(collision.disable("a", "betwen"), Err(unknown.clone()));
     let srdf = r#"<robot><disable_collisions link1="a" link2="betwen"/></robot>"#;
-    assert_eq!(collision.disable_srdf(srdf), Err(unknown));
+    assert_eq!(collision.disable_srdf(srdf), Err(unknown.clone()));
+    // A sound pair before a faulty one stays a pair.
+    let second =
+        r#"<robot><disable_collisions link1="b" link2="a"/><disable_collisions link1="a" link2="betwen"/></robot>"#;
+    assert_eq!(collision.disable_srdf(second), Err(unknown));
+    assert_eq!(collision.pairs().count(), 1);
     let problem = UrdfProblem::MissingAttribute { attribute: "disable_collisions.link2" };
     assert_eq!(
         collision.disable_srdf(r#"<robot><disable_collisions link1="a"/></robot>"#),

@@ -80,9 +80,12 @@ impl SelfCollision {
     /// over.
     ///
     /// # Errors
-    /// [`KinematicsError::NotXml`], [`KinematicsError::Urdf`] or [`KinematicsError::UnknownLink`].
+    /// [`KinematicsError::NotXml`], [`KinematicsError::Urdf`] or [`KinematicsError::UnknownLink`]; no pair is let
+    /// overlap then.
     pub fn disable_srdf(&mut self, text: &str) -> Result<(), KinematicsError> {
-        srdf::disabled_pairs(text)?.iter().try_for_each(|(first, second)| self.disable(first, second))
+        let disabled = srdf::disabled_pairs(text, &self.links)?;
+        self.pairs.retain(|&(a, b)| !disabled.contains(&(self.bodies[a].link, self.bodies[b].link)));
+        Ok(())
     }
 
     /// The pairs of links that must not touch.

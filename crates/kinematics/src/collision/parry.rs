@@ -9,7 +9,7 @@ use parry3d_f64::{
 };
 
 use super::mesh::MeshShape;
-use crate::Geometry;
+use crate::{Geometry, urdf::LARGEST};
 
 /// A shape, fixed in a link's frame.
 #[derive(Clone)]
@@ -50,8 +50,9 @@ impl PlacedShape {
     ) -> Result<Option<Self>, String> {
         let scaled = |vertices: Vec<Point3<f64>>| -> Result<Vec<Vector>, String> {
             let scaled = vertices.into_iter().map(|vertex| vertex.coords.component_mul(scale));
-            let finite = |v: Vector3<f64>| v.iter().all(|part| part.is_finite()).then(|| Vector::new(v.x, v.y, v.z));
-            scaled.map(finite).collect::<Option<_>>().ok_or_else(|| "a vertex is not finite".to_owned())
+            // Written so that NaN is refused too; far beyond, the collision library fails on overflows of its own.
+            let near = |v: Vector3<f64>| v.iter().all(|part| part.abs() <= LARGEST).then(|| Vector::new(v.x, v.y, v.z));
+            scaled.map(near).collect::<Option<_>>().ok_or_else(|| "a vertex is not finite, or beyond 1e6 m".to_owned())
         };
         let shape = match mesh {
             MeshShape::LeftOut => return Ok(None),

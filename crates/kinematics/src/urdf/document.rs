@@ -23,8 +23,9 @@ pub(super) enum Version {
 }
 
 impl Version {
-    fn read(robot: Node<'_, '_>) -> Result<Self, KinematicsError> {
-        match robot.attribute("version").map(str::trim) {
+    /// The version that `<robot>` gives, 1.0 where it gives none.
+    pub(super) fn of(given: Option<&str>) -> Result<Self, KinematicsError> {
+        match given.map(str::trim) {
             None | Some("1" | "1.0") => Ok(Version::V1_0),
             Some("1.1") => Ok(Version::V1_1),
             Some("1.2") => Ok(Version::V1_2),
@@ -51,7 +52,7 @@ pub(crate) fn parsed<T>(
     text: &str,
     read: impl FnOnce(Node<'_, '_>) -> Result<T, KinematicsError>,
 ) -> Result<T, KinematicsError> {
-    let text = lenient::well_formed(text);
+    let text = lenient::well_formed(text).map_err(|problem| KinematicsError::urdf(Element::Robot, problem))?;
     let document = lenient::strict(&text).map_err(|fault| KinematicsError::NotXml {
         line: fault.pos().row,
         column: fault.pos().col,
@@ -66,7 +67,7 @@ pub(crate) fn parsed<T>(
 }
 
 fn read_robot(robot: Node<'_, '_>) -> Result<UrdfRobot, KinematicsError> {
-    let version = Version::read(robot)?;
+    let version = Version::of(robot.attribute("version"))?;
     let links: Vec<String> = children(robot, "link")
         .enumerate()
         .map(|(index, link)| name_of(link, || Element::UnnamedLink(index), "link.name"))

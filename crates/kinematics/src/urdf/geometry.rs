@@ -4,7 +4,7 @@ use roxmltree::Node;
 use super::{
     Element, UrdfProblem, UrdfWarning,
     document::Version,
-    origin,
+    number, origin,
     tag::{Tag, children},
 };
 use crate::KinematicsError;
@@ -91,7 +91,7 @@ fn shape(geometry: Tag<'_>) -> Result<Geometry, KinematicsError> {
         return Ok(Geometry::Capsule { radius: shape.size("capsule.radius")?, length: shape.size("capsule.length")? });
     }
     if let Some(mesh) = geometry.child("mesh") {
-        let scale = mesh.numbers::<3>("mesh.scale")?.unwrap_or([1.0; 3]);
+        let scale = mesh.bounded::<3>("mesh.scale")?.unwrap_or([1.0; 3]);
         return Ok(Geometry::Mesh { filename: mesh.text("mesh.filename")?, scale: Vector3::from(scale) });
     }
     Err(geometry.error(UrdfProblem::UnknownShape))
@@ -106,9 +106,6 @@ impl Tag<'_> {
     fn sizes<const N: usize>(&self, name: &'static str) -> Result<[f64; N], KinematicsError> {
         let missing = || self.error(UrdfProblem::MissingAttribute { attribute: name });
         let sizes = self.numbers::<N>(name)?.ok_or_else(missing)?;
-        match sizes.into_iter().find(|size| *size < 0.0) {
-            Some(value) => Err(self.error(UrdfProblem::NegativeSize { attribute: name, value })),
-            None => Ok(sizes),
-        }
+        number::each(name, sizes, number::size).map_err(|problem| self.error(problem))
     }
 }

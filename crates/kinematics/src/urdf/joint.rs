@@ -19,6 +19,13 @@ pub(crate) struct UrdfJoint {
     pub(crate) freedom: Freedom,
 }
 
+impl UrdfJoint {
+    /// A rule that this joint breaks.
+    pub(crate) fn error(&self, problem: UrdfProblem) -> KinematicsError {
+        KinematicsError::urdf(Element::Joint(self.name.clone()), problem)
+    }
+}
+
 /// What a joint can do.
 #[derive(Debug, Clone)]
 pub(crate) enum Freedom {
@@ -89,8 +96,13 @@ fn moving(joint: Tag<'_>, kind: JointKind, version: Version) -> Result<Freedom, 
 fn axis(joint: Tag<'_>) -> Result<Unit<Vector3<f64>>, KinematicsError> {
     let Some(axis) = joint.child("axis") else { return Ok(Vector3::x_axis()) };
     let xyz = axis.numbers::<3>("axis.xyz")?.map_or_else(Vector3::x, Vector3::from);
+    direction(xyz).map_err(|problem| joint.error(problem))
+}
+
+/// An axis as a unit vector.
+pub(super) fn direction(xyz: Vector3<f64>) -> Result<Unit<Vector3<f64>>, UrdfProblem> {
     // Scaled first, so that no square overflows or vanishes.
-    Unit::try_new(xyz / xyz.amax(), 0.0).ok_or_else(|| joint.error(UrdfProblem::ZeroAxis))
+    Unit::try_new(xyz / xyz.amax(), 0.0).ok_or(UrdfProblem::ZeroAxis)
 }
 
 /// Lower and upper limit. Up to version 1.1 a bound that is not given is 0.
@@ -102,14 +114,19 @@ fn limits(joint: Tag<'_>, version: Version) -> Result<(f64, f64), KinematicsErro
         None => Err(joint.error(UrdfProblem::MissingBound { bound })),
     };
     let (lower, upper) = (bound("limit.lower", "lower")?, bound("limit.upper", "upper")?);
-    if lower > upper { Err(joint.error(UrdfProblem::LimitsInverted { lower, upper })) } else { Ok((lower, upper)) }
+    in_order(lower, upper).map_err(|problem| joint.error(problem))
+}
+
+/// A pair of limits.
+pub(super) fn in_order(lower: f64, upper: f64) -> Result<(f64, f64), UrdfProblem> {
+    if lower > upper { Err(UrdfProblem::LimitsInverted { lower, upper }) } else { Ok((lower, upper)) }
 }
 
 fn mimic(joint: Tag<'_>) -> Result<Option<Mimic>, KinematicsError> {
     let Some(mimic) = joint.child("mimic") else { return Ok(None) };
     Ok(Some(Mimic {
         target: mimic.text("mimic.joint")?,
-        multiplier: mimic.number("mimic.multiplier")?.unwrap_or(1.0),
-        offset: mimic.number("mimic.offset")?.unwrap_or(0.0),
+        multiplier: mimic.bounded("mimic.multiplier")?.map_or(1.0, |[multiplier]| multiplier),
+        offset: mimic.bounded("mimic.offset")?.map_or(0.0, |[offset]| offset),
     }))
 }

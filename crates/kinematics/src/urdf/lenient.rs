@@ -3,6 +3,8 @@
 
 use roxmltree::{Document, Error, ParsingOptions};
 
+use super::{UrdfProblem, scan};
+
 /// Prefixes that are declared before a text is given up; each costs a reading.
 const MOST_PREFIXES: usize = 50;
 
@@ -10,10 +12,12 @@ pub(super) fn strict(text: &str) -> Result<Document<'_>, Error> {
     Document::parse_with_options(text, ParsingOptions { allow_dtd: true, ..Default::default() })
 }
 
-/// The text, mended where it can be; lines stay where they are.
-pub(super) fn well_formed(text: &str) -> String {
+/// The text, mended where it can be; lines stay where they are. What would be slow to read is refused.
+pub(super) fn well_formed(text: &str) -> Result<String, UrdfProblem> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    declared_prefixes(blanked(&blanked(text, "<!--", "-->"), "<?xml", "?>"))
+    let text = blanked(&blanked(text, "<!--", "-->"), "<?xml", "?>");
+    scan::check(&text)?;
+    Ok(declared_prefixes(text))
 }
 
 /// The text with everything between two marks, and the marks, replaced by blanks.

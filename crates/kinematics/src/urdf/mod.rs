@@ -3,17 +3,22 @@
 
 mod document;
 mod element;
+mod from_urdf_rs;
 mod geometry;
 mod joint;
 mod lenient;
+mod number;
 mod origin;
 mod problem;
+mod scan;
 pub(crate) mod tag;
 
 pub(crate) use document::{UrdfRobot, parsed, read};
 pub use element::{Element, UrdfWarning};
+pub(crate) use from_urdf_rs::from_urdf_rs;
 pub use geometry::Geometry;
 pub(crate) use geometry::UrdfCollision;
 pub use joint::JointKind;
 pub(crate) use joint::{Freedom, Mimic, UrdfJoint};
+pub(crate) use number::{LARGEST, bounded};
 pub use problem::UrdfProblem;

@@ -11,8 +11,8 @@ pub(super) fn read(
     warnings: &mut Vec<UrdfWarning>,
 ) -> Result<IsometryMatrix3<f64>, KinematicsError> {
     let Some(origin) = parent.child("origin") else { return Ok(IsometryMatrix3::identity()) };
-    let translation = origin.numbers::<3>("origin.xyz")?.map_or_else(Translation3::identity, Translation3::from);
-    let [roll, pitch, yaw] = origin.numbers::<3>("origin.rpy")?.unwrap_or_default();
+    let translation = origin.bounded::<3>("origin.xyz")?.map_or_else(Translation3::identity, Translation3::from);
+    let [roll, pitch, yaw] = origin.bounded::<3>("origin.rpy")?.unwrap_or_default();
     let mut rotation = fixed_axes(roll, pitch, yaw);
     if version.has_quaternions() {
         if let Some(xyzw) = origin.numbers::<4>("origin.quat_xyzw")? {
@@ -25,7 +25,7 @@ pub(super) fn read(
 }
 
 /// Rz(yaw) Ry(pitch) Rx(roll); exactly the identity for zero angles.
-fn fixed_axes(roll: f64, pitch: f64, yaw: f64) -> Rotation3<f64> {
+pub(super) fn fixed_axes(roll: f64, pitch: f64, yaw: f64) -> Rotation3<f64> {
     if roll == 0.0 && pitch == 0.0 && yaw == 0.0 {
         Rotation3::identity()
     } else {

@@ -1,5 +1,6 @@
 use thiserror::Error;
 
+use super::{number::LARGEST, scan::MOST_ATTRIBUTES};
 use crate::names::proposal;
 
 /// The rule of URDF that a file breaks. Attributes are written `tag.attribute`.
@@ -11,6 +12,18 @@ pub enum UrdfProblem {
     RootTag {
         /// The tag found.
         found: String,
+    },
+    /// An entity is declared: a short text can stand for a very long one by it.
+    #[error("line {line} declares an entity (<!ENTITY); write out in the text what it stands for")]
+    Entity {
+        /// The line, counted from 1.
+        line: usize,
+    },
+    /// A tag has more attributes than any tag of URDF.
+    #[error("a tag that begins in line {line} has more than {MOST_ATTRIBUTES} attributes")]
+    ManyAttributes {
+        /// The line, counted from 1.
+        line: usize,
     },
     /// The version is not one of 1.0, 1.1 and 1.2.
     #[error("URDF version \"{found}\" is not supported; 1.0, 1.1 and 1.2 are")]
@@ -51,6 +64,14 @@ pub enum UrdfProblem {
         attribute: &'static str,
         /// The text.
         text: String,
+    },
+    /// A length, an angle or a factor that no robot has, and with which sums along the robot may overflow.
+    #[error("{attribute}: {value:e} is too large, {LARGEST:e} is the most; lengths are metres, angles radians")]
+    TooLarge {
+        /// The attribute.
+        attribute: &'static str,
+        /// The number, or the product or sum that mimic joints make of it.
+        value: f64,
     },
     /// Too few or too many numbers.
     #[error("{attribute} has {found} numbers, it needs {expected}")]

@@ -1,6 +1,9 @@
 use roxmltree::Node;
 
-use super::{Element, UrdfProblem};
+use super::{
+    Element, UrdfProblem,
+    number::{self, bounded},
+};
 use crate::KinematicsError;
 
 /// A tag inside a link or joint, and whose it is.
@@ -26,6 +29,13 @@ impl Tag<'_> {
         let numbers = <[f64; N]>::try_from(numbers)
             .map_err(|_| self.error(UrdfProblem::NumberCount { attribute: name, found, expected: N }))?;
         Ok(Some(numbers))
+    }
+
+    /// [`Tag::numbers`] that are lengths, angles or factors, and so must be bounded.
+    pub(crate) fn bounded<const N: usize>(&self, name: &'static str) -> Result<Option<[f64; N]>, KinematicsError> {
+        let numbers = self.numbers::<N>(name)?;
+        let checked = numbers.map(|numbers| number::each(name, numbers, bounded)).transpose();
+        checked.map_err(|problem| self.error(problem))
     }
 
     /// The single number of an attribute, or `None` where the attribute is missing. `name` is `tag.attribute`.

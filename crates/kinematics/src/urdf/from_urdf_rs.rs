@@ -1,0 +1,122 @@
+//! What the crate urdf-rs has read, as [`UrdfRobot`]: its numbers and names are checked as those of a text are.
+
+use nalgebra::{IsometryMatrix3, Translation3, Vector3};
+use urdf_rs::{Joint, JointLimit, JointType, Link, Pose, Robot};
+
+use super::{
+    Element, Freedom, Geometry, JointKind, Mimic, UrdfCollision, UrdfJoint, UrdfProblem, UrdfRobot,
+    document::Version,
+    joint::{direction, in_order},
+    number::{bounded, each, finite, size},
+    origin::fixed_axes,
+};
+use crate::KinematicsError;
+
+/// The tags of kinematics and collision.
+pub(crate) fn from_urdf_rs(robot: &Robot) -> Result<UrdfRobot, KinematicsError> {
+    let version = Version::of(robot.version.as_deref())?;
+    let name = |(index, link): (usize, &Link)| named(&link.name, || Element::UnnamedLink(index), "link.name");
+    let links: Vec<String> = robot.links.iter().enumerate().map(name).collect::<Result<_, _>>()?;
+    if links.is_empty() {
+        return Err(KinematicsError::urdf(Element::Robot, UrdfProblem::NoLinks));
+    }
+    let joints = robot.joints.iter().enumerate();
+    let joints = joints.map(|(index, joint)| read_joint(joint, index, version)).collect::<Result<_, _>>()?;
+    let collisions = robot.links.iter().enumerate();
+    let collisions = collisions.map(|(index, link)| read_collisions(link, index)).collect::<Result<Vec<_>, _>>();
+    let collisions = collisions.map(|links| links.concat());
+    Ok(UrdfRobot { name: robot.name.clone(), links, joints, collisions, warnings: Vec::new() })
+}
+
+fn named(name: &str, unnamed: impl FnOnce() -> Element, attribute: &'static str) -> Result<String, KinematicsError> {
+    if name.is_empty() {
+        return Err(KinematicsError::urdf(unnamed(), UrdfProblem::MissingAttribute { attribute }));
+    }
+    Ok(name.to_owned())
+}
+
+fn read_joint(joint: &Joint, index: usize, version: Version) -> Result<UrdfJoint, KinematicsError> {
+    let name = named(&joint.name, || Element::UnnamedJoint(index), "joint.name")?;
+    let refused = |problem| KinematicsError::urdf(Element::Joint(joint.name.clone()), problem);
+    Ok(UrdfJoint {
+        freedom: freedom(joint, version).map_err(refused)?,
+        parent: joint.parent.link.clone(),
+        child: joint.child.link.clone(),
+        origin: origin(&joint.origin).map_err(refused)?,
+        name,
+    })
+}
+
+fn freedom(joint: &Joint, version: Version) -> Result<Freedom, UrdfProblem> {
+    match joint.joint_type {
+        JointType::Fixed => Ok(Freedom::Fixed),
+        JointType::Revolute => moving(joint, JointKind::Revolute, version),
+        JointType::Continuous => moving(joint, JointKind::Continuous, version),
+        JointType::Prismatic => moving(joint, JointKind::Prismatic, version),
+        JointType::Floating => Err(UrdfProblem::UnsupportedJoint { kind: "floating" }),
+        JointType::Planar => Err(UrdfProblem::UnsupportedJoint { kind: "planar" }),
+        JointType::Spherical => Err(UrdfProblem::JointType { found: "spherical".to_owned() }),
+    }
+}
+
+fn moving(joint: &Joint, kind: JointKind, version: Version) -> Result<Freedom, UrdfProblem> {
+    let axis = direction(Vector3::from(each("axis.xyz", *joint.axis.xyz, finite)?))?;
+    let (lower, upper) = match kind {
+        JointKind::Continuous => (f64::NEG_INFINITY, f64::INFINITY),
+        JointKind::Revolute | JointKind::Prismatic => limits(&joint.limit, version)?,
+    };
+    let mimic = joint.mimic.as_ref().map(|mimic| {
+        Ok(Mimic {
+            target: mimic.joint.clone(),
+            multiplier: bounded("mimic.multiplier", mimic.multiplier.unwrap_or(1.0))?,
+            offset: bounded("mimic.offset", mimic.offset.unwrap_or(0.0))?,
+        })
+    });
+    Ok(Freedom::Moving { kind, axis, lower, upper, mimic: mimic.transpose()? })
+}
+
+/// Lower and upper limit. A missing `<limit>` is not told from one of zeros alone, nor a missing bound of URDF 1.2 from
+/// an infinite one; both are taken to be missing.
+fn limits(limit: &JointLimit, version: Version) -> Result<(f64, f64), UrdfProblem> {
+    if *limit == JointLimit::default() {
+        return Err(UrdfProblem::MissingLimit);
+    }
+    let bound = |attribute, bound, value: f64| match value {
+        f64::INFINITY | f64::NEG_INFINITY if !version.has_optional_bounds() => Err(UrdfProblem::MissingBound { bound }),
+        _ => finite(attribute, value),
+    };
+    in_order(bound("limit.lower", "lower", limit.lower)?, bound("limit.upper", "upper", limit.upper)?)
+}
+
+fn origin(pose: &Pose) -> Result<IsometryMatrix3<f64>, UrdfProblem> {
+    let translation = Translation3::from(each("origin.xyz", *pose.xyz, bounded)?);
+    let [roll, pitch, yaw] = each("origin.rpy", *pose.rpy, bounded)?;
+    Ok(IsometryMatrix3::from_parts(translation, fixed_axes(roll, pitch, yaw)))
+}
+
+fn read_collisions(link: &Link, index: usize) -> Result<Vec<UrdfCollision>, KinematicsError> {
+    let read = |collision: &urdf_rs::Collision| {
+        Ok(UrdfCollision { link: index, origin: origin(&collision.origin)?, geometry: shape(&collision.geometry)? })
+    };
+    let refused = |problem| KinematicsError::urdf(Element::Link(link.name.clone()), problem);
+    link.collision.iter().map(|collision| read(collision).map_err(refused)).collect()
+}
+
+fn shape(geometry: &urdf_rs::Geometry) -> Result<Geometry, UrdfProblem> {
+    Ok(match geometry {
+        urdf_rs::Geometry::Box { size: lengths } => {
+            Geometry::Box { size: Vector3::from(each("box.size", **lengths, size)?) }
+        }
+        urdf_rs::Geometry::Sphere { radius } => Geometry::Sphere { radius: size("sphere.radius", *radius)? },
+        urdf_rs::Geometry::Cylinder { radius, length } => {
+            Geometry::Cylinder { radius: size("cylinder.radius", *radius)?, length: size("cylinder.length", *length)? }
+        }
+        urdf_rs::Geometry::Capsule { radius, length } => {
+            Geometry::Capsule { radius: size("capsule.radius", *radius)?, length: size("capsule.length", *length)? }
+        }
+        urdf_rs::Geometry::Mesh { filename, scale } => {
+            let scale = scale.map_or(Ok([1.0; 3]), |scale| each("mesh.scale", *scale, bounded))?;
+            Geometry::Mesh { filename: filename.clone(), scale: Vector3::from(scale) }
+        }
+    })
+}
