@@ -174,34 +174,6 @@ pub enum DemoGenError {
         /// How many were drawn.
         draws: usize,
     },
-    /// A posture cannot be pulled or corrected so.
-    #[error(
-        "pull {pull}, {corrections} corrections a sample: the pull must be from 0 to 1, the corrections at least 1"
-    )]
-    Tracking {
-        /// The pull given.
-        pull: f64,
-        /// The number of corrections given.
-        corrections: usize,
-    },
-    /// Links cannot be kept that far apart.
-    #[error("clearance {clearance} m: it must be a finite number of metres, 0 or more")]
-    Clearance {
-        /// The clearance given, in metres.
-        clearance: f64,
-    },
-    /// No joint can move by that from one sample to the next.
-    #[error("stride {stride}: it must be a number of radians above 0")]
-    Stride {
-        /// The stride given, in radians, or metres where a joint slides.
-        stride: f64,
-    },
-    /// A movement that hands are to follow is not one of two points in space.
-    #[error("the movement has {found} dimensions; those of a left and a right palm are 6")]
-    Palms {
-        /// Its number of dimensions.
-        found: usize,
-    },
     /// The robot is not what the scenario needs, or refuses a configuration.
     #[error(transparent)]
     Robot(#[from] KinematicsError),

@@ -10,8 +10,7 @@
 //! - [`UpperBody`]: the paper's humanoid, its posture "ready" and start states around it; [`HandInPlane`]: it moves with
 //!   one hand in a plane.
 //! - [`hand_jacobian`]: a robot's hand for a constraint; [`n_leaving_limits`]: movements that a real one would not make.
-//! - [`Grasp`]: reaching for a ball through a wall with a gap, in a [`GraspScene`];
-//!   [`PalmTracking`]: the same with all joints.
+//! - [`Grasp`]: reaching for a ball through a wall with a gap, in a [`GraspScene`].
 //! - [`with_position_noise`]: the same recordings through noisy eyes.
 //!
 //! ```
@@ -40,10 +39,7 @@ mod hand;
 mod hand_in_plane;
 mod instant;
 mod limits;
-mod link_gaps;
 mod noise;
-mod palm_control;
-mod palm_tracking;
 mod potentials;
 mod recording;
 mod roll_out;
@@ -51,7 +47,6 @@ mod three_link_arm;
 mod toy;
 mod toy_potential;
 mod upper_body;
-mod wishes;
 
 pub use error::{DemoGenError, Part, Quantity};
 pub use grasp::{Grasp, GraspStart};
@@ -60,7 +55,6 @@ pub use hand::hand_jacobian;
 pub use hand_in_plane::HandInPlane;
 pub use limits::n_leaving_limits;
 pub use noise::with_position_noise;
-pub use palm_tracking::{JointPath, PalmTracking};
 pub use potentials::{Parabola, Sinusoidal};
 pub use recording::{Recording, Truth, demonstrations};
 pub use roll_out::RollOut;

@@ -2,9 +2,10 @@
 
 use anyhow::{Context as _, ensure};
 use constraints::{Barrier, PfaffianConstraint, Unconstrained};
-use demo_gen::{Grasp, GraspStart, PalmTracking, UpperBody};
+use demo_gen::{Grasp, GraspStart, UpperBody};
 use motion::Policy;
 use nalgebra::{DMatrix, Vector3};
+use playback::PalmTracking;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,6 @@
-use demo_gen::PalmTracking;
 use kinematics::{LinkId, Workspace};
 use nalgebra::{DVector, Unit, Vector3};
+use playback::PalmTracking;
 
 use super::*;
 use crate::figures::stage;

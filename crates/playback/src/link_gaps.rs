@@ -1,8 +1,9 @@
+use demo_gen::UpperBody;
 use kinematics::{LinkId, Workspace};
 use nalgebra::{DMatrix, DVector};
 
-use crate::wishes::Wishes;
-use crate::{DemoGenError, UpperBody};
+use crate::PlaybackError;
+use crate::task::Task;
 
 /// Links are watched while they are less than this beyond the clearance asked for, metres.
 const WATCHED: f64 = 0.045;
@@ -25,7 +26,7 @@ pub(crate) struct LinkGaps {
     near: Vec<((LinkId, LinkId), f64)>,
     touching: Vec<(LinkId, LinkId)>,
     /// How fast each gap must at least widen; less than 0 is how fast it may narrow.
-    widening: Wishes,
+    widening: Task,
 }
 
 impl LinkGaps {
@@ -35,11 +36,10 @@ impl LinkGaps {
         body: &UpperBody,
         clearance: f64,
         workspace: &mut Workspace,
-    ) -> Result<Self, DemoGenError> {
+    ) -> Result<Self, PlaybackError> {
         let poses = body.robot().forward_kinematics(q.as_view(), workspace)?;
         let found = body.collision().nearby(&poses, clearance + WATCHED);
-        let mut widening =
-            Wishes { jacobian: DMatrix::zeros(found.len(), q.len()), rates: DVector::zeros(found.len()) };
+        let mut widening = Task { jacobian: DMatrix::zeros(found.len(), q.len()), rates: DVector::zeros(found.len()) };
         for (row, near) in found.iter().enumerate() {
             widening.jacobian.row_mut(row).tr_copy_from(&(near.gradient(&poses) * WEIGHT));
             widening.rates[row] = CLOSING * (clearance - near.distance.max(0.0)) * WEIGHT;
@@ -48,7 +48,7 @@ impl LinkGaps {
         Ok(LinkGaps { clearance, near, touching: body.collision().colliding_pairs(&poses), widening })
     }
 
-    pub(crate) fn widening(&self) -> &Wishes {
+    pub(crate) fn widening(&self) -> &Task {
         &self.widening
     }
 
@@ -61,7 +61,7 @@ impl LinkGaps {
     /// What a `step` (n) has to do instead of one that leads to the gaps `after`: where links came too near, the place
     /// where they did has to widen as any narrow gap. A flat hand beside a leg turns about one edge and hits it
     /// with the other, of which the gradient of the gap knows nothing.
-    pub(crate) fn instead(&self, after: &LinkGaps, step: &DVector<f64>) -> Wishes {
+    pub(crate) fn instead(&self, after: &LinkGaps, step: &DVector<f64>) -> Task {
         let rows = self.too_narrow(after);
         let jacobian = after.widening.jacobian.select_rows(&rows);
         let missing = rows.iter().map(|row| {
@@ -70,7 +70,7 @@ impl LinkGaps {
             (before + CLOSING * (self.clearance - before) - gap) * WEIGHT
         });
         let rates = DVector::from_iterator(rows.len(), missing) + &jacobian * step;
-        Wishes { jacobian, rates }
+        Task { jacobian, rates }
     }
 
     /// Rows of `after` whose gaps are too narrow after these.

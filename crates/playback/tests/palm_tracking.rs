@@ -1,16 +1,21 @@
 //! All joints follow a movement of the palms: what is reported is true, and how good it is.
 
-mod robots;
-
 use constraints::Unconstrained;
-use demo_gen::{DemoGenError, Grasp, GraspStart, JointPath, PalmTracking, UpperBody};
+use demo_gen::{Grasp, GraspStart, UpperBody};
 use kinematics::{KinematicsError, LinkId, Workspace};
 use motion::Trajectory;
 use nalgebra::{DMatrix, DVector, DVectorView, Vector3};
+use playback::{JointPath, PalmTracking, PlaybackError};
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use robots::upper_body;
+
+const UPPER_BODY: &str = include_str!("../../../robots/asimo_upper_body.urdf");
+const UPPER_BODY_SRDF: &str = include_str!("../../../robots/asimo_upper_body.srdf");
+
+fn upper_body() -> UpperBody {
+    UpperBody::new(UPPER_BODY, UPPER_BODY_SRDF).expect("the project's own robot")
+}
 
 /// The distance of each palm from where it should be, from forward kinematics anew.
 fn literal_errors(body: &UpperBody, path: &JointPath, palms: &Trajectory) -> DMatrix<f64> {
@@ -240,27 +245,27 @@ fn bad_input_is_refused() {
         tracking.follow(&body, &palms(dim), DVector::zeros(n_joints).as_view()).unwrap_err()
     };
     let good = PalmTracking::default();
-    assert_eq!(follow(good, 3, 22), DemoGenError::Palms { found: 3 });
+    assert_eq!(follow(good, 3, 22), PlaybackError::Palms { found: 3 });
     for (pull, corrections) in [(-0.1, 1), (1.1, 1), (0.1, 0)] {
-        let expected = DemoGenError::Tracking { pull, corrections };
+        let expected = PlaybackError::Tracking { pull, corrections };
         assert_eq!(follow(PalmTracking { pull, corrections, ..good }, 6, 22), expected);
     }
     for clearance in [-0.001, f64::INFINITY] {
-        assert_eq!(follow(PalmTracking { clearance, ..good }, 6, 22), DemoGenError::Clearance { clearance });
+        assert_eq!(follow(PalmTracking { clearance, ..good }, 6, 22), PlaybackError::Clearance { clearance });
     }
     for stride in [0.0, -0.1] {
-        assert_eq!(follow(PalmTracking { stride, ..good }, 6, 22), DemoGenError::Stride { stride });
+        assert_eq!(follow(PalmTracking { stride, ..good }, 6, 22), PlaybackError::Stride { stride });
     }
     let nan = follow(PalmTracking { stride: f64::NAN, ..good }, 6, 22);
-    assert!(matches!(nan, DemoGenError::Stride { stride } if stride.is_nan()));
-    let damping = DemoGenError::Robot(KinematicsError::Damping { damping: -1.0 });
+    assert!(matches!(nan, PlaybackError::Stride { stride } if stride.is_nan()));
+    let damping = PlaybackError::Robot(KinematicsError::Damping { damping: -1.0 });
     assert_eq!(follow(PalmTracking { damping: -1.0, ..good }, 6, 22), damping);
-    let length = DemoGenError::Robot(KinematicsError::ConfigurationLength { found: 21, expected: 22 });
+    let length = PlaybackError::Robot(KinematicsError::ConfigurationLength { found: 21, expected: 22 });
     assert_eq!(follow(good, 6, 21), length);
 
-    let no_yaw = UpperBody::new(&robots::UPPER_BODY.replace("l_shoulder_yaw\"", "l_twist\""), robots::UPPER_BODY_SRDF);
+    let no_yaw = UpperBody::new(&UPPER_BODY.replace("l_shoulder_yaw\"", "l_twist\""), UPPER_BODY_SRDF);
     let refused = good.follow(&no_yaw.unwrap(), &palms(6), DVector::zeros(22).as_view()).unwrap_err();
     assert!(
-        matches!(refused, DemoGenError::Robot(KinematicsError::UnknownJoint { name, .. }) if name == "l_shoulder_yaw")
+        matches!(refused, PlaybackError::Robot(KinematicsError::UnknownJoint { name, .. }) if name == "l_shoulder_yaw")
     );
 }

@@ -1,9 +1,10 @@
+use demo_gen::{Side, UpperBody};
 use kinematics::{ResolvedRate, Workspace};
 use nalgebra::{DMatrix, DVector, DVectorView, Matrix3xX};
 
 use crate::link_gaps::LinkGaps;
-use crate::wishes::Wishes;
-use crate::{DemoGenError, PalmTracking, Side, UpperBody};
+use crate::task::Task;
+use crate::{PalmTracking, PlaybackError};
 
 /// The posture that reaching arms are pulled to: before the body, elbows bent and a little outwards. All other joints are
 /// at 0: torso and head upright.
@@ -39,7 +40,7 @@ pub(crate) struct PalmControl<'a> {
 }
 
 impl<'a> PalmControl<'a> {
-    pub(crate) fn new(body: &'a UpperBody, tracking: PalmTracking) -> Result<Self, DemoGenError> {
+    pub(crate) fn new(body: &'a UpperBody, tracking: PalmTracking) -> Result<Self, PlaybackError> {
         let n = body.robot().n_joints();
         let mut reaching = DVector::zeros(n);
         for (joint, value) in REACHING {
@@ -50,7 +51,7 @@ impl<'a> PalmControl<'a> {
     }
 
     /// Corrects `q` towards the wanted palms (6) of the next sample.
-    pub(crate) fn follow(&mut self, q: &mut DVector<f64>, wanted: DVectorView<'_, f64>) -> Result<(), DemoGenError> {
+    pub(crate) fn follow(&mut self, q: &mut DVector<f64>, wanted: DVectorView<'_, f64>) -> Result<(), PlaybackError> {
         let stride = self.tracking.stride;
         for (at, joint) in self.body.robot().joints().iter().enumerate() {
             self.lowest[at] = joint.lower().max(q[at] - stride);
@@ -71,7 +72,7 @@ impl<'a> PalmControl<'a> {
         q: &DVector<f64>,
         wanted: DVectorView<'_, f64>,
         gaps: &LinkGaps,
-    ) -> Result<Option<(DVector<f64>, LinkGaps)>, DemoGenError> {
+    ) -> Result<Option<(DVector<f64>, LinkGaps)>, PlaybackError> {
         let palms = self.palms(q, wanted)?;
         let mut widening = gaps.widening().clone();
         for _ in 0..TRIES {
@@ -82,13 +83,13 @@ impl<'a> PalmControl<'a> {
             }
             let instead = gaps.instead(&found, &(corrected - q));
             let rows: Vec<usize> = (0..instead.rates.len()).collect();
-            widening = widening.and(&instead, &rows);
+            widening = widening.stacked(&instead, &rows);
         }
         Ok(None)
     }
 
-    /// Where a step from `q` leads that does what palms and gaps wish.
-    fn step(&mut self, mut q: DVector<f64>, mut palms: Wishes, mut gaps: Wishes) -> Result<DVector<f64>, DemoGenError> {
+    /// Where a step from `q` leads that does what palms and gaps ask for.
+    fn step(&mut self, mut q: DVector<f64>, mut palms: Task, mut gaps: Task) -> Result<DVector<f64>, PlaybackError> {
         let damping = self.tracking.damping;
         let mut control = ResolvedRate::new((damping * damping + BEND * palms.rates.norm()).sqrt())?;
         let mut home = (&self.reaching - &q) * self.tracking.pull;
@@ -99,8 +100,8 @@ impl<'a> PalmControl<'a> {
             for at in 0..q.len() {
                 let stop = (q[at] + self.velocity[at]).clamp(self.lowest[at], self.highest[at]);
                 if stop != q[at] + self.velocity[at] {
-                    palms.settle(at, stop - q[at]);
-                    gaps.settle(at, stop - q[at]);
+                    palms.hold(at, stop - q[at]);
+                    gaps.hold(at, stop - q[at]);
                     (q[at], home[at], free) = (stop, 0.0, false);
                 }
             }
@@ -111,8 +112,8 @@ impl<'a> PalmControl<'a> {
     }
 
     /// Both palms go all the way.
-    fn palms(&mut self, q: &DVector<f64>, wanted: DVectorView<'_, f64>) -> Result<Wishes, DemoGenError> {
-        let mut palms = Wishes { jacobian: DMatrix::zeros(6, q.len()), rates: wanted.into_owned() };
+    fn palms(&mut self, q: &DVector<f64>, wanted: DVectorView<'_, f64>) -> Result<Task, PlaybackError> {
+        let mut palms = Task { jacobian: DMatrix::zeros(6, q.len()), rates: wanted.into_owned() };
         let mut jacobian = Matrix3xX::zeros(q.len());
         for (hand, side) in Side::BOTH.into_iter().enumerate() {
             let palm = self.body.palm(side).position_jacobian(q.as_view(), &mut self.workspace, &mut jacobian)?;
@@ -123,7 +124,7 @@ impl<'a> PalmControl<'a> {
         Ok(palms)
     }
 
-    fn gaps(&mut self, q: &DVector<f64>) -> Result<LinkGaps, DemoGenError> {
+    fn gaps(&mut self, q: &DVector<f64>) -> Result<LinkGaps, PlaybackError> {
         LinkGaps::at(q, self.body, self.tracking.clearance, &mut self.workspace)
     }
 
@@ -132,13 +133,13 @@ impl<'a> PalmControl<'a> {
     fn solve(
         &mut self,
         control: &mut ResolvedRate,
-        palms: &Wishes,
-        gaps: &Wishes,
+        palms: &Task,
+        gaps: &Task,
         home: &DVector<f64>,
-    ) -> Result<(), DemoGenError> {
+    ) -> Result<(), PlaybackError> {
         let mut kept = Vec::new();
         loop {
-            let Wishes { jacobian, rates } = palms.and(gaps, &kept);
+            let Task { jacobian, rates } = palms.stacked(gaps, &kept);
             control.velocity(&jacobian, rates.as_view(), home.as_view(), self.velocity.as_view_mut())?;
             let found = &gaps.jacobian * &self.velocity;
             let narrowing = (0..found.len()).filter(|gap| found[*gap] < gaps.rates[*gap] && !kept.contains(gap));

@@ -1,9 +1,10 @@
+use demo_gen::UpperBody;
 use kinematics::{ResolvedRate, Workspace};
 use motion::Trajectory;
 use nalgebra::{DMatrix, DVector, DVectorView, Point3};
 
+use crate::PlaybackError;
 use crate::palm_control::PalmControl;
-use crate::{DemoGenError, UpperBody};
 
 /// Carries out a movement of both palms with all joints: damped resolved-rate control that keeps the body's links apart
 /// first, follows the palms second, and uses what freedom is left for a posture for reaching. Every step ends within the
@@ -21,7 +22,7 @@ pub struct PalmTracking {
     /// Corrections for each sample. Default 10.
     pub corrections: usize,
     /// How far a joint moves at most from one sample to the next, radians, or metres where it slides. Default 0.35, more
-    /// than demonstrations of [`Grasp`](crate::Grasp) need; infinite is no bound.
+    /// than demonstrations of [`Grasp`](demo_gen::Grasp) need; infinite is no bound.
     pub stride: f64,
 }
 
@@ -50,18 +51,18 @@ impl PalmTracking {
     /// samples no two links touch that did not in `posture`. See `docs/decisions/table2.md`.
     ///
     /// # Errors
-    /// [`DemoGenError::Tracking`], [`DemoGenError::Clearance`], [`DemoGenError::Stride`], [`DemoGenError::Palms`], or
-    /// [`DemoGenError::Robot`] for a damping out of range, a posture of another length, a body without joints
+    /// [`PlaybackError::Tracking`], [`PlaybackError::Clearance`], [`PlaybackError::Stride`], [`PlaybackError::Palms`], or
+    /// [`PlaybackError::Robot`] for a damping out of range, a posture of another length, a body without joints
     /// `{l,r}_shoulder_yaw`, or a step that cannot be made without damping.
     pub fn follow(
         &self,
         body: &UpperBody,
         palms: &Trajectory,
         posture: DVectorView<'_, f64>,
-    ) -> Result<JointPath, DemoGenError> {
+    ) -> Result<JointPath, PlaybackError> {
         self.check()?;
         if palms.dim() != 6 {
-            return Err(DemoGenError::Palms { found: palms.dim() });
+            return Err(PlaybackError::Palms { found: palms.dim() });
         }
         let mut q = posture.into_owned();
         body.robot().clip(q.as_view_mut())?;
@@ -76,22 +77,22 @@ impl PalmTracking {
         JointPath::judged(body, palms, configurations)
     }
 
-    fn check(&self) -> Result<(), DemoGenError> {
+    fn check(&self) -> Result<(), PlaybackError> {
         let PalmTracking { damping, pull, clearance, corrections, stride } = *self;
         ResolvedRate::new(damping)?;
         if !((0.0..=1.0).contains(&pull) && corrections > 0) {
-            return Err(DemoGenError::Tracking { pull, corrections });
+            return Err(PlaybackError::Tracking { pull, corrections });
         }
         if !(clearance.is_finite() && clearance >= 0.0) {
-            return Err(DemoGenError::Clearance { clearance });
+            return Err(PlaybackError::Clearance { clearance });
         }
-        if stride > 0.0 { Ok(()) } else { Err(DemoGenError::Stride { stride }) }
+        if stride > 0.0 { Ok(()) } else { Err(PlaybackError::Stride { stride }) }
     }
 }
 
 impl JointPath {
     /// The path with what forward kinematics says of it.
-    fn judged(body: &UpperBody, palms: &Trajectory, configurations: DMatrix<f64>) -> Result<Self, DemoGenError> {
+    fn judged(body: &UpperBody, palms: &Trajectory, configurations: DMatrix<f64>) -> Result<Self, PlaybackError> {
         let n_samples = palms.n_samples();
         let (mut errors, mut clearances) = (DMatrix::zeros(2, n_samples), DVector::zeros(n_samples));
         let mut workspace = Workspace::new();
