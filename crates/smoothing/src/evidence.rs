@@ -67,13 +67,14 @@ impl<'a> NoiseModel<'a> {
 impl Shrinkage {
     fn new(samples: usize, variance: f64, noise_variance: f64) -> Self {
         let mut shrinkage = Shrinkage { factors: [0.0; MAX_COLUMNS], log_determinants: [0.0; MAX_COLUMNS] };
-        let mut sum = 0.0;
+        let (mut sum, mut decay) = (0.0, 1.0);
         for k in 0..MAX_COLUMNS {
-            let tau_squared = variance * if k == 0 { OFFSET_VARIANCE } else { DECAY.powi(2 * k as i32) };
+            let tau_squared = variance * if k == 0 { OFFSET_VARIANCE } else { decay };
             let prior = samples as f64 * tau_squared;
             sum += (prior / noise_variance).ln_1p();
             shrinkage.factors[k] = prior / (prior + noise_variance);
             shrinkage.log_determinants[k] = sum;
+            decay *= DECAY * DECAY;
         }
         shrinkage
     }

@@ -97,7 +97,7 @@ impl Fusion {
         if self.log10_ratios.is_empty() {
             return Err(none("log10_ratios"));
         }
-        match self.log10_ratios.iter().find(|log10| !(log10.abs() <= 300.0)) {
+        match self.log10_ratios.iter().find(|log10| !(-300.0..=300.0).contains(*log10)) {
             None => Ok(()),
             Some(&value) => {
                 Err(SmoothingError::Parameter { name: "log10_ratios", value, requirement: "lie within ±300" })

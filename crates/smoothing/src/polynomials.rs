@@ -15,28 +15,29 @@ impl Polynomials {
     /// there are times.
     pub(crate) fn on(tau: &[f64], degrees: usize) -> Self {
         let degrees = degrees.min(tau.len());
-        let mut columns: Vec<(Vec<f64>, Vec<f64>)> = Vec::with_capacity(degrees);
+        let (mut values, mut slopes) =
+            (Vec::<Vec<f64>>::with_capacity(degrees), Vec::<Vec<f64>>::with_capacity(degrees));
+        // τ^k and its slope k·τ^(k−1), for the k at hand.
+        let (mut power, mut power_slope) = (vec![1.0; tau.len()], vec![0.0; tau.len()]);
         for k in 0..degrees {
-            let mut value: Vec<f64> = tau.iter().map(|t| t.powi(k as i32)).collect();
-            let mut slope: Vec<f64> =
-                tau.iter().map(|t| if k == 0 { 0.0 } else { k as f64 * t.powi(k as i32 - 1) }).collect();
+            let (mut value, mut slope) = (power.clone(), power_slope.clone());
             for _ in 0..2 {
-                for (earlier, earlier_slope) in &columns {
+                for (earlier, earlier_slope) in values.iter().zip(&slopes) {
                     let along = dot(earlier, &value);
                     subtract(&mut value, along, earlier);
                     subtract(&mut slope, along, earlier_slope);
                 }
             }
             let norm = dot(&value, &value).sqrt();
-            for entry in value.iter_mut().chain(&mut slope) {
-                *entry /= norm;
+            value.iter_mut().chain(&mut slope).for_each(|entry| *entry /= norm);
+            values.push(value);
+            slopes.push(slope);
+            for ((power, slope), t) in power.iter_mut().zip(&mut power_slope).zip(tau) {
+                *slope = (k + 1) as f64 * *power;
+                *power *= t;
             }
-            columns.push((value, slope));
         }
-        let rows = |pick: fn(&(Vec<f64>, Vec<f64>)) -> &Vec<f64>| {
-            (0..tau.len()).flat_map(|i| columns.iter().map(move |column| pick(column)[i])).collect()
-        };
-        Polynomials { degrees, values: rows(|column| &column.0), slopes: rows(|column| &column.1) }
+        Polynomials { degrees, values: by_sample(&values, tau.len()), slopes: by_sample(&slopes, tau.len()) }
     }
 
     /// On `samples` evenly spaced times.
@@ -68,6 +69,11 @@ impl Polynomials {
             }
         }
     }
+}
+
+/// One row a sample of one column a degree.
+fn by_sample(columns: &[Vec<f64>], samples: usize) -> Vec<f64> {
+    (0..samples).flat_map(|i| columns.iter().map(move |column| column[i])).collect()
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -122,7 +128,7 @@ mod tests {
             let mut coefficients = Vec::new();
             q.project(&y, 1, &mut coefficients);
             for (i, &t) in tau.iter().enumerate() {
-                let slope: f64 = (1..factors.len()).map(|k| k as f64 * factors[k] * t.powi(k as i32 - 1)).sum();
+                let slope: f64 = (1..factors.len()).map(|k| k as f64 * factors[k] * t.powi(i32::try_from(k).unwrap() - 1)).sum();
                 prop_assert!((dot(q.values(i), &coefficients) - y[i]).abs() < 1e-11);
                 prop_assert!((dot(q.slopes(i), &coefficients) - slope).abs() < 1e-8);
             }

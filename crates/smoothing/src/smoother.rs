@@ -22,7 +22,7 @@ use crate::windows::{Bases, Energy, MAX_COLUMNS, energies};
 pub struct Smoother {
     /// Degrees that a window may have, equally likely beforehand; at most 7.
     pub degrees: Vec<usize>,
-    /// Most samples in a window, at least 2.
+    /// Most samples in a window, at least 3: windows of two alone cannot make up an odd number of samples.
     pub longest_window: usize,
     /// How likely a window ends at any sample, between 0 and 1.
     pub switch_probability: f64,
@@ -109,7 +109,7 @@ impl Smoother {
         require(highest < MAX_COLUMNS, "degrees", highest as f64, "be at most 7")?;
         let lowest = self.degrees.iter().copied().min().unwrap_or(0);
         require(lowest < 2, "degrees", lowest as f64, "include 0 or 1, which windows of two samples need")?;
-        require(self.longest_window >= 2, "longest_window", self.longest_window as f64, "be at least 2")?;
+        require(self.longest_window >= 3, "longest_window", self.longest_window as f64, "be at least 3")?;
         require(switch > 0.0 && switch < 1.0, "switch_probability", switch, "lie between 0 and 1")?;
         match self.noise {
             NoiseVariance::Given(s2) => require(s2.is_finite() && s2 > 0.0, "noise", s2, "be positive and finite"),

@@ -44,7 +44,8 @@ impl Bases {
             Some(times) => {
                 let times = &times[window.first..][..window.samples];
                 let (begin, end) = (times[0], times[window.samples - 1]);
-                let tau: Vec<f64> = times.iter().map(|t| (t - (begin + end) / 2.0) / ((end - begin) / 2.0)).collect();
+                let (middle, half) = (f64::midpoint(begin, end), (end - begin) / 2.0);
+                let tau: Vec<f64> = times.iter().map(|t| (t - middle) / half).collect();
                 Cow::Owned(Polynomials::on(&tau, self.columns))
             }
         }

@@ -1,0 +1,109 @@
+//! Noise of positions by third differences.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use motion::Demonstrations;
+use nalgebra::{DMatrix, DVector};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use smoothing::PositionNoise;
+
+/// Every formula in turn: all differences, sorted, the middle one; all steps.
+fn literal(demonstrations: &Demonstrations) -> (Vec<f64>, f64) {
+    let mut steps = Vec::new();
+    let mut differences = vec![Vec::new(); demonstrations.dim()];
+    for trajectory in demonstrations.trajectories() {
+        let x = trajectory.states();
+        for i in 0..x.ncols() - 1 {
+            steps.push((x.column(i + 1) - x.column(i)).norm_squared());
+        }
+        for i in 0..x.ncols().saturating_sub(3) {
+            for (j, all) in differences.iter_mut().enumerate() {
+                all.push((x[(j, i + 3)] - 3.0 * x[(j, i + 2)] + 3.0 * x[(j, i + 1)] - x[(j, i)]).abs());
+            }
+        }
+    }
+    let deviations: Vec<f64> = differences
+        .iter_mut()
+        .map(|all| {
+            all.sort_by(f64::total_cmp);
+            let (n, middle) = (all.len(), all.len() / 2);
+            let median = if n % 2 == 1 { all[middle] } else { f64::midpoint(all[middle - 1], all[middle]) };
+            1.4826 * median / 20f64.sqrt()
+        })
+        .collect();
+    let noise: f64 = deviations.iter().map(|deviation| deviation * deviation).sum();
+    let share = 2.0 * noise / (steps.iter().sum::<f64>() / steps.len() as f64);
+    (deviations, share)
+}
+
+fn movements() -> impl Strategy<Value = Vec<DMatrix<f64>>> {
+    (1..4usize, vec(2..30usize, 1..4)).prop_flat_map(|(dim, mut lengths)| {
+        lengths.push(53);
+        let total: usize = lengths.iter().sum();
+        vec(-1.0..1.0f64, dim * total).prop_map(move |numbers| {
+            let mut from = 0;
+            lengths
+                .iter()
+                .map(|&n| {
+                    from += n * dim;
+                    DMatrix::from_column_slice(dim, n, &numbers[from - n * dim..from])
+                })
+                .collect()
+        })
+    })
+}
+
+proptest! {
+    #[test]
+    fn the_estimate_is_the_formula(movements in movements()) {
+        let demonstrations = Demonstrations::from_states(movements, 1.0).unwrap();
+        let noise = PositionNoise::of(&demonstrations).unwrap();
+        let (deviations, share) = literal(&demonstrations);
+        for (ours, theirs) in noise.deviations.iter().zip(deviations) {
+            prop_assert!((ours - theirs).abs() <= 1e-12 * theirs);
+        }
+        prop_assert!((noise.step_share - share).abs() <= 1e-12 * share);
+    }
+
+    /// A parabola added to every movement changes no estimate, units carry over.
+    #[test]
+    fn parabolas_are_no_noise(movements in movements(), factors in vec(-1.0..1.0f64, 3), unit in 0.01..100.0f64) {
+        let curved = movements.iter().map(|x| {
+            DMatrix::from_fn(x.nrows(), x.ncols(), |j, i| {
+                let t = i as f64 / 10.0;
+                unit * (x[(j, i)] + factors[0] + factors[1] * t + factors[2] * t * t)
+            })
+        });
+        let curved = Demonstrations::from_states(curved.collect::<Vec<_>>(), 1.0).unwrap();
+        let plain = Demonstrations::from_states(movements, 1.0).unwrap();
+        let (curved, plain) = (PositionNoise::of(&curved).unwrap(), PositionNoise::of(&plain).unwrap());
+        prop_assert!((curved.deviations - unit * &plain.deviations).amax() <= 1e-11 * unit * plain.deviations.amax());
+    }
+}
+
+/// Smooth movements whose direction jumps every 20 samples, with noise known per dimension: found within 15 %.
+#[test]
+fn noise_is_found_beside_movement_and_switches() {
+    let truth = DVector::from_vec(vec![0.002, 0.03]);
+    for seed in 0..5 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let movements = (0..40).map(|k| {
+            DMatrix::from_fn(2, 40, |j, i| {
+                let t = i as f64 / 40.0;
+                let path = f64::from(k).sin() + (2.0 * t + j as f64).cos() + if i < 20 { 0.0 } else { t - 0.5 };
+                path + truth[j] * Distribution::<f64>::sample(&StandardNormal, &mut rng)
+            })
+        });
+        let demonstrations = Demonstrations::from_states(movements.collect::<Vec<_>>(), 0.1).unwrap();
+        let noise = PositionNoise::of(&demonstrations).unwrap();
+        for j in 0..2 {
+            let ratio = noise.deviations[j] / truth[j];
+            assert!((ratio - 1.0).abs() < 0.15, "seed {seed}, dimension {j}: {ratio}");
+        }
+        assert!((0.3..1.05).contains(&noise.step_share), "{}", noise.step_share);
+    }
+}

@@ -1,0 +1,66 @@
+//! Savitzky–Golay beside least squares and printed coefficients.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use motion::{Demonstrations, Trajectory};
+use nalgebra::{DMatrix, DVector};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use smoothing::SavitzkyGolay;
+
+/// The value at `at` of the polynomial that fits all columns of `around` best.
+fn fitted(around: &DMatrix<f64>, at: usize, degree: usize) -> DVector<f64> {
+    let n = around.ncols();
+    let power = |i: usize, k: usize| ((i as f64 - at as f64) / n as f64).powf(k as f64);
+    let powers = DMatrix::from_fn(n, degree.min(n - 1) + 1, power);
+    let factors = powers.svd(true, true).solve(&around.transpose(), 1e-14).unwrap();
+    factors.row(0).transpose()
+}
+
+fn settings() -> impl Strategy<Value = SavitzkyGolay> {
+    (0..4usize, 0..5usize)
+        .prop_map(|(degree, more)| SavitzkyGolay { window: 2 * (degree / 2 + more) + 1, degree })
+        .prop_filter("a window beyond its degree", |filter| filter.window > filter.degree)
+}
+
+proptest! {
+    #[test]
+    fn every_sample_is_the_least_squares_fit_around_it(
+        filter in settings(), dim in 1..4usize, n in 2..30usize, numbers in vec(-1.0..1.0f64, 90),
+    ) {
+        let states = DMatrix::from_fn(dim, n, |j, i| numbers[3 * i + j]);
+        let smoothed = filter.smooth(&Demonstrations::from_states([states.clone()], 0.1).unwrap()).unwrap();
+        let window = filter.window.min(n);
+        for i in 0..n {
+            let first = i.max(window / 2).min(n - window + window / 2) - window / 2;
+            let expected = fitted(&states.columns(first, window).into(), i - first, filter.degree);
+            prop_assert!((smoothed.trajectories()[0].state(i) - expected).amax() < 1e-9, "sample {i}");
+        }
+    }
+
+    /// Polynomials of its degree pass, up to both ends; velocities and time step stay as recorded.
+    #[test]
+    fn polynomials_pass(filter in settings(), n in 2..40usize, factors in vec(-1.0..1.0f64, 4), step in 0.01..2.0f64) {
+        let value = |i: usize| (0..=filter.degree).map(|k| factors[k] * (i as f64 / 10.0).powf(k as f64)).sum::<f64>();
+        let states = DMatrix::from_fn(1, n, |_, i| value(i));
+        let velocities = DMatrix::from_fn(1, n, |_, i| factors[i % 4]);
+        let trajectory = Trajectory::new(states.clone(), step).unwrap().with_velocities(velocities.clone()).unwrap();
+        let smoothed = filter.smooth(&Demonstrations::new(vec![trajectory]).unwrap()).unwrap();
+        let smoothed = &smoothed.trajectories()[0];
+        prop_assert!((smoothed.states() - &states).amax() < 1e-9 * (1.0 + states.amax()));
+        prop_assert_eq!(smoothed.velocities(), Some(&velocities));
+        prop_assert_eq!(smoothed.time_step(), step);
+    }
+}
+
+/// The weights of nine samples and degree 2, as tables print them: (−21 14 39 54 59 54 39 14 −21)/231.
+#[test]
+fn printed_weights() {
+    let weights = [-21.0, 14.0, 39.0, 54.0, 59.0, 54.0, 39.0, 14.0, -21.0];
+    for (at, weight) in weights.iter().enumerate() {
+        let mut states = DMatrix::zeros(1, 17);
+        states[4 + at] = 1.0;
+        let smoothed = SavitzkyGolay::default().smooth(&Demonstrations::from_states([states], 1.0).unwrap()).unwrap();
+        assert!((smoothed.trajectories()[0].states()[8] - weight / 231.0).abs() < 1e-14);
+    }
+}
