@@ -4,37 +4,37 @@ use nalgebra::{DMatrix, DVector, DVectorView};
 
 use crate::{DemoGenError, Quantity, Recording, Truth};
 
-/// What wants to move, and what hinders it.
+/// Who acts, and what constrains it.
 pub(crate) struct System<'a, D, C: ?Sized> {
-    pub(crate) driver: D,
+    pub(crate) actor: D,
     pub(crate) constraint: &'a C,
 }
 
-/// What wants to move.
-pub(crate) trait Driver {
-    /// What it tells of a state besides its action.
-    type Told;
+/// A policy, and what is known of its potential.
+pub(crate) trait Actor {
+    /// The potential's value at a state; nothing for a policy that may have none.
+    type Potential;
 
     fn dim(&self) -> usize;
 
-    /// The action at a state (n), and what else is told of it, all finite; errors name `sample`.
-    fn drive(&self, state: DVectorView<'_, f64>, sample: usize) -> Result<(DVector<f64>, Self::Told), DemoGenError>;
+    /// The action at a state (n) and the potential there, both finite; errors name `sample`.
+    fn act(&self, state: DVectorView<'_, f64>, sample: usize) -> Result<(DVector<f64>, Self::Potential), DemoGenError>;
 }
 
-/// A potential drives downhill, and tells its value.
-pub(crate) struct Downhill<'a, P: ?Sized>(pub(crate) &'a P);
+/// The policy −∇φ of a potential.
+pub(crate) struct OfPotential<'a, P: ?Sized>(pub(crate) &'a P);
 
-/// A policy drives as it says.
-pub(crate) struct AsTold<'a, P: ?Sized>(pub(crate) &'a P);
+/// A policy of which no potential is known.
+pub(crate) struct OfPolicy<'a, P: ?Sized>(pub(crate) &'a P);
 
-impl<P: Potential + ?Sized> Driver for Downhill<'_, P> {
-    type Told = f64;
+impl<P: Potential + ?Sized> Actor for OfPotential<'_, P> {
+    type Potential = f64;
 
     fn dim(&self) -> usize {
         self.0.dim()
     }
 
-    fn drive(&self, state: DVectorView<'_, f64>, sample: usize) -> Result<(DVector<f64>, f64), DemoGenError> {
+    fn act(&self, state: DVectorView<'_, f64>, sample: usize) -> Result<(DVector<f64>, f64), DemoGenError> {
         let value = self.0.value(state);
         finite(&[value], Quantity::Potential, sample)?;
         let action = -self.0.gradient(state);
@@ -43,14 +43,14 @@ impl<P: Potential + ?Sized> Driver for Downhill<'_, P> {
     }
 }
 
-impl<P: Policy + ?Sized> Driver for AsTold<'_, P> {
-    type Told = ();
+impl<P: Policy + ?Sized> Actor for OfPolicy<'_, P> {
+    type Potential = ();
 
     fn dim(&self) -> usize {
         self.0.dim()
     }
 
-    fn drive(&self, state: DVectorView<'_, f64>, sample: usize) -> Result<(DVector<f64>, ()), DemoGenError> {
+    fn act(&self, state: DVectorView<'_, f64>, sample: usize) -> Result<(DVector<f64>, ()), DemoGenError> {
         let action = self.0.action(state);
         finite(action.as_slice(), Quantity::Policy, sample)?;
         Ok((action, ()))
@@ -61,28 +61,28 @@ impl<P: Policy + ?Sized> Driver for AsTold<'_, P> {
 pub(crate) struct Instant<T> {
     pub(crate) state: DVector<f64>,
     pub(crate) velocity: DVector<f64>,
-    told: T,
+    potential: T,
     action: DVector<f64>,
     projector: NullSpaceProjector,
 }
 
-impl<D: Driver, C: PfaffianConstraint + ?Sized> System<'_, D, C> {
+impl<D: Actor, C: PfaffianConstraint + ?Sized> System<'_, D, C> {
     /// The system in `state` at `time`; errors name `sample`.
     pub(crate) fn instant(
         &self,
         state: DVector<f64>,
         time: f64,
         sample: usize,
-    ) -> Result<Instant<D::Told>, DemoGenError> {
+    ) -> Result<Instant<D::Potential>, DemoGenError> {
         finite(state.as_slice(), Quantity::State, sample)?;
-        let (action, told) = self.driver.drive(state.as_view(), sample)?;
+        let (action, potential) = self.actor.act(state.as_view(), sample)?;
         let projector = self
             .constraint
             .null_space_projector(state.as_view(), time)
             .map_err(|source| DemoGenError::Constraint { sample, source })?;
         let velocity = projector.project(action.as_view());
         finite(velocity.as_slice(), Quantity::Velocity, sample)?;
-        Ok(Instant { state, velocity, told, action, projector })
+        Ok(Instant { state, velocity, potential, action, projector })
     }
 }
 
@@ -103,7 +103,7 @@ impl Recording {
         let observed = observed(&instants, time_step)?;
         let states = columns(&instants, |instant| &instant.state);
         let actions = columns(&instants, |instant| &instant.action);
-        let potential = DVector::from_iterator(instants.len(), instants.iter().map(|instant| instant.told));
+        let potential = DVector::from_iterator(instants.len(), instants.iter().map(|instant| instant.potential));
         let projectors = instants.into_iter().map(|instant| instant.projector).collect();
         Ok(Recording { observed, truth: Truth { states, potential, actions, projectors } })
     }

@@ -2,7 +2,7 @@ use constraints::PfaffianConstraint;
 use motion::{Policy, Potential, Trajectory};
 use nalgebra::{DVector, DVectorView};
 
-use crate::instant::{AsTold, Downhill, Driver, Instant, System, observed};
+use crate::instant::{Actor, Instant, OfPolicy, OfPotential, System, observed};
 use crate::{DemoGenError, Part, Recording};
 
 /// How a movement is simulated: x ← x + δt N(x,t) π(x), from time 0.
@@ -41,7 +41,7 @@ impl RollOut {
         P: Potential + ?Sized,
         C: PfaffianConstraint + ?Sized,
     {
-        Recording::of(self.instants(&System { driver: Downhill(potential), constraint }, start)?, self.time_step)
+        Recording::of(self.instants(&System { actor: OfPotential(potential), constraint }, start)?, self.time_step)
     }
 
     /// The movement of any policy from `start` (n), as [`RollOut::record`] makes that of a potential: N states with their
@@ -84,7 +84,7 @@ impl RollOut {
         P: Policy + ?Sized,
         C: PfaffianConstraint + ?Sized,
     {
-        observed(&self.instants(&System { driver: AsTold(policy), constraint }, start)?, self.time_step)
+        observed(&self.instants(&System { actor: OfPolicy(policy), constraint }, start)?, self.time_step)
     }
 
     /// All samples of a movement.
@@ -92,13 +92,13 @@ impl RollOut {
         &self,
         system: &System<'_, D, C>,
         start: DVectorView<'_, f64>,
-    ) -> Result<Vec<Instant<D::Told>>, DemoGenError>
+    ) -> Result<Vec<Instant<D::Potential>>, DemoGenError>
     where
-        D: Driver,
+        D: Actor,
         C: PfaffianConstraint + ?Sized,
     {
         self.check()?;
-        let expected = system.driver.dim();
+        let expected = system.actor.dim();
         for (part, found) in [(Part::Start, start.len()), (Part::Constraint, system.constraint.dim())] {
             if found != expected {
                 return Err(DemoGenError::Dimensions { part, found, expected });
@@ -116,11 +116,11 @@ impl RollOut {
     fn advance<D, C>(
         &self,
         system: &System<'_, D, C>,
-        from: &Instant<D::Told>,
+        from: &Instant<D::Potential>,
         sample: usize,
     ) -> Result<DVector<f64>, DemoGenError>
     where
-        D: Driver,
+        D: Actor,
         C: PfaffianConstraint + ?Sized,
     {
         let step = self.time_step / self.sub_steps as f64;

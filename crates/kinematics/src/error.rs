@@ -1,10 +1,12 @@
 use thiserror::Error;
 
 use crate::{
-    joint::FARTHEST,
     names::proposal,
     urdf::{Element, UrdfProblem},
 };
+
+/// Largest coordinate of a configuration that can be placed: positions and their squares stay finite.
+pub(crate) const FARTHEST: f64 = 1e100;
 
 /// Why a robot cannot be built, or a question about it cannot be answered.
 #[derive(Debug, Clone, PartialEq, Error)]

@@ -27,39 +27,23 @@
 //! # Ok::<(), kinematics::KinematicsError>(())
 //! ```
 //!
-//! Where to look: `urdf` text to tags; `tree`, `mimic` and `build` tags to a model; `node` and `workspace` the motion
-//! of one link and of all; `forward`, `chain` and `jacobian` what is asked; `sin_cos` and `dispatch` what makes it fast.
+//! Where to look: `urdf` text to tags; `model` tags to a robot; `nodes` the motion of one link; `forward` poses and
+//! Jacobians; `collision` what touches; `resolved_rate` joint velocities for a task.
 
 #![allow(clippy::inline_always, reason = "vector dispatch compiles for a newer machine only what is inlined into it")]
 
-mod attachment;
-mod build;
-mod chain;
 mod collision;
-mod dispatch;
 mod error;
 mod forward;
-mod jacobian;
-mod joint;
-mod limits;
-mod mimic;
 mod model;
 mod names;
-mod node;
-mod placement;
+mod nodes;
 mod resolved_rate;
-mod sin_cos;
-mod tree;
 mod urdf;
-mod workspace;
 
-pub use attachment::{Attachment, Drive, DriveKind};
-pub use chain::Chain;
 pub use collision::{Clearance, MeshShape, Nearby, SelfCollision};
 pub use error::KinematicsError;
-pub use forward::LinkPoses;
-pub use joint::Joint;
-pub use model::{CollisionShape, LinkId, RobotModel};
+pub use forward::{Chain, LinkPoses, Workspace};
+pub use model::{Attachment, CollisionShape, Joint, JointMotion, LinkId, MotionKind, RobotModel};
 pub use resolved_rate::ResolvedRate;
 pub use urdf::{Element, Geometry, JointKind, UrdfProblem, UrdfWarning};
-pub use workspace::Workspace;

@@ -3,19 +3,21 @@
 
 mod random_tree;
 
-use kinematics::{Attachment, Drive, DriveKind, RobotModel, Workspace};
+use kinematics::{Attachment, JointMotion, MotionKind, RobotModel, Workspace};
 use nalgebra::{DVector, IsometryMatrix3, Rotation3, Translation3, Vector3};
 use proptest::prelude::*;
 use random_tree::tree;
 
 /// What the joint does at a configuration.
-fn motion(drive: &Drive, q: &DVector<f64>) -> IsometryMatrix3<f64> {
-    let value = drive.multiplier * q[drive.column] + drive.offset;
-    match drive.kind {
-        DriveKind::Turn => {
-            IsometryMatrix3::from_parts(Translation3::identity(), Rotation3::from_axis_angle(&drive.axis, value))
+fn motion(joint: &JointMotion, q: &DVector<f64>) -> IsometryMatrix3<f64> {
+    let value = joint.multiplier * q[joint.column] + joint.offset;
+    match joint.kind {
+        MotionKind::Rotation => {
+            IsometryMatrix3::from_parts(Translation3::identity(), Rotation3::from_axis_angle(&joint.axis, value))
         }
-        DriveKind::Slide => IsometryMatrix3::from_parts(Translation3::from(*drive.axis * value), Rotation3::identity()),
+        MotionKind::Translation => {
+            IsometryMatrix3::from_parts(Translation3::from(*joint.axis * value), Rotation3::identity())
+        }
     }
 }
 
@@ -26,9 +28,9 @@ fn by_hand(robot: &RobotModel, q: &DVector<f64>) -> Vec<IsometryMatrix3<f64>> {
     for &link in &links {
         poses.push(match robot.attachment(link) {
             None => IsometryMatrix3::identity(),
-            Some(Attachment { parent, origin, drive }) => {
+            Some(Attachment { parent, origin, joint }) => {
                 let parent = poses[links.iter().position(|&link| link == parent).unwrap()];
-                parent * origin * drive.map_or(IsometryMatrix3::identity(), |drive| motion(&drive, q))
+                parent * origin * joint.map_or(IsometryMatrix3::identity(), |joint| motion(&joint, q))
             }
         });
     }
@@ -57,8 +59,8 @@ proptest! {
         for link in robot.links() {
             let attachment = robot.attachment(link);
             prop_assert_eq!(attachment.as_ref().map(|attachment| attachment.parent), robot.parent(link));
-            let Some(drive) = attachment.and_then(|attachment| attachment.drive) else { continue };
-            prop_assert!((drive.axis.norm() - 1.0).abs() < 1e-12 && drive.multiplier >= 0.0);
+            let Some(joint) = attachment.and_then(|attachment| attachment.joint) else { continue };
+            prop_assert!((joint.axis.norm() - 1.0).abs() < 1e-12 && joint.multiplier >= 0.0);
         }
     }
 
@@ -71,7 +73,7 @@ proptest! {
 
 /// A joint about −z that is followed backwards, and one that does not move.
 #[test]
-fn drives_are_told_as_the_file_has_them() {
+fn motions_are_as_the_file_has_them() {
     let robot = RobotModel::from_urdf(
         r#"<robot name="r"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
              <joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 -2"/>
@@ -81,14 +83,14 @@ fn drives_are_told_as_the_file_has_them() {
              <joint name="l" type="fixed"><parent link="c"/><child link="d"/></joint></robot>"#,
     )
     .unwrap();
-    let drive = |name: &str| robot.attachment(robot.link(name).unwrap()).unwrap().drive;
-    let turn = drive("b").unwrap();
-    assert_eq!((turn.kind, *turn.axis, turn.column), (DriveKind::Turn, -Vector3::z(), 0));
+    let joint = |name: &str| robot.attachment(robot.link(name).unwrap()).unwrap().joint;
+    let turn = joint("b").unwrap();
+    assert_eq!((turn.kind, *turn.axis, turn.column), (MotionKind::Rotation, -Vector3::z(), 0));
     assert_eq!((turn.multiplier, turn.offset), (1.0, 0.0));
-    let slide = drive("c").unwrap();
-    assert_eq!((slide.kind, *slide.axis, slide.column), (DriveKind::Slide, -Vector3::x(), 0));
+    let slide = joint("c").unwrap();
+    assert_eq!((slide.kind, *slide.axis, slide.column), (MotionKind::Translation, -Vector3::x(), 0));
     assert_eq!((slide.multiplier, slide.offset), (3.0, -0.5));
-    assert_eq!(drive("d"), None);
+    assert_eq!(joint("d"), None);
     assert_eq!(robot.attachment(robot.root()), None);
     let b = robot.attachment(robot.link("b").unwrap()).unwrap();
     assert_eq!((b.parent, b.origin.translation.vector), (robot.root(), Vector3::new(1.0, 2.0, 3.0)));

@@ -6,19 +6,25 @@
 //! | [`Register`] | as many numbers as a register of the processor at hand holds |
 //! | [`Number`] | what a rule calculates with: one `f64`, or a [`Register`] of them |
 //! | [`exp`], [`exp_in_bulk`] | the exponential without a call or a branch |
+//! | [`sin_cos_all`] | sines and cosines, likewise |
+//! | [`dispatch_avx2`] | runs an operation compiled for AVX2, and not for wider registers |
 //!
 //! Code that uses them runs under [`pulp::Arch::dispatch`] and is compiled for a processor only where it is inlined, so
 //! that everything here is `#[inline(always)]`. The same operations in the same order give the same bits in every width.
 
 #![allow(clippy::inline_always)]
 
+mod dispatch;
 mod exponential;
 mod group;
 mod number;
 mod register;
 mod scalar;
+mod sin_cos;
 
+pub use dispatch::dispatch_avx2;
 pub use exponential::{exp, exp_in_bulk};
 pub use group::{LANES, Lanes, groups_of, total};
 pub use number::Number;
 pub use register::Register;
+pub use sin_cos::sin_cos_all;

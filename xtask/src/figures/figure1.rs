@@ -1,6 +1,6 @@
 //! The robot: what it is made of, and where its 22 joints are.
 
-use kinematics::{DriveKind, LinkId, Workspace};
+use kinematics::{LinkId, MotionKind, Workspace};
 use nalgebra::{Point3, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -54,12 +54,12 @@ fn ready() -> anyhow::Result<Robot> {
     let poses = robot.forward_kinematics(body.ready().as_view(), &mut workspace)?;
     let joint = |(index, joint): (usize, &kinematics::Joint)| {
         let hangs_on_it =
-            |link: LinkId| Some((link, robot.attachment(link)?.drive.filter(|drive| drive.column == index)?));
-        let (link, drive) = robot.links().find_map(hangs_on_it)?;
-        let axis = poses.pose(link).rotation * drive.axis;
+            |link: LinkId| Some((link, robot.attachment(link)?.joint.filter(|motion| motion.column == index)?));
+        let (link, motion) = robot.links().find_map(hangs_on_it)?;
+        let axis = poses.pose(link).rotation * motion.axis;
         Some(Joint {
             name: joint.name().to_owned(),
-            slides: drive.kind == DriveKind::Slide,
+            slides: motion.kind == MotionKind::Translation,
             at: poses.position(link).coords.map(|value| rounded(value, 5)).into(),
             axis: axis.map(|value| rounded(value, 6)).into(),
         })

@@ -152,7 +152,7 @@ fn free_pairs(robot: &RobotModel, bodies: &[Body]) -> Vec<(usize, usize)> {
     // Every link's group: the uppermost link that it is fixed to.
     let mut groups: Vec<usize> = (0..robot.nodes.len()).collect();
     for (index, node) in robot.nodes.iter().enumerate().skip(1) {
-        if node.motor.is_none() {
+        if node.coupling.is_none() {
             groups[index] = groups[node.parent];
         }
     }

@@ -4,7 +4,7 @@ use nalgebra::{IsometryMatrix3, Translation3, Vector3};
 use urdf_rs::{Joint, JointLimit, JointType, Link, Pose, Robot};
 
 use super::{
-    Element, Freedom, Geometry, JointKind, Mimic, UrdfCollision, UrdfJoint, UrdfProblem, UrdfRobot,
+    Element, Geometry, JointKind, Mimic, UrdfCollision, UrdfJoint, UrdfMotion, UrdfProblem, UrdfRobot,
     document::Version,
     joint::{direction, in_order},
     number::{bounded, each, finite, size},
@@ -39,7 +39,7 @@ fn read_joint(joint: &Joint, index: usize, version: Version) -> Result<UrdfJoint
     let name = named(&joint.name, || Element::UnnamedJoint(index), "joint.name")?;
     let refused = |problem| KinematicsError::urdf(Element::Joint(joint.name.clone()), problem);
     Ok(UrdfJoint {
-        freedom: freedom(joint, version).map_err(refused)?,
+        motion: motion(joint, version).map_err(refused)?,
         parent: joint.parent.link.clone(),
         child: joint.child.link.clone(),
         origin: origin(&joint.origin).map_err(refused)?,
@@ -47,9 +47,9 @@ fn read_joint(joint: &Joint, index: usize, version: Version) -> Result<UrdfJoint
     })
 }
 
-fn freedom(joint: &Joint, version: Version) -> Result<Freedom, UrdfProblem> {
+fn motion(joint: &Joint, version: Version) -> Result<UrdfMotion, UrdfProblem> {
     match joint.joint_type {
-        JointType::Fixed => Ok(Freedom::Fixed),
+        JointType::Fixed => Ok(UrdfMotion::Fixed),
         JointType::Revolute => moving(joint, JointKind::Revolute, version),
         JointType::Continuous => moving(joint, JointKind::Continuous, version),
         JointType::Prismatic => moving(joint, JointKind::Prismatic, version),
@@ -59,7 +59,7 @@ fn freedom(joint: &Joint, version: Version) -> Result<Freedom, UrdfProblem> {
     }
 }
 
-fn moving(joint: &Joint, kind: JointKind, version: Version) -> Result<Freedom, UrdfProblem> {
+fn moving(joint: &Joint, kind: JointKind, version: Version) -> Result<UrdfMotion, UrdfProblem> {
     let axis = direction(Vector3::from(each("axis.xyz", *joint.axis.xyz, finite)?))?;
     let (lower, upper) = match kind {
         JointKind::Continuous => (f64::NEG_INFINITY, f64::INFINITY),
@@ -72,7 +72,7 @@ fn moving(joint: &Joint, kind: JointKind, version: Version) -> Result<Freedom, U
             offset: bounded("mimic.offset", mimic.offset.unwrap_or(0.0))?,
         })
     });
-    Ok(Freedom::Moving { kind, axis, lower, upper, mimic: mimic.transpose()? })
+    Ok(UrdfMotion::Moving { kind, axis, lower, upper, mimic: mimic.transpose()? })
 }
 
 /// Lower and upper limit. A missing `<limit>` is not told from one of zeros alone, nor a missing bound of URDF 1.2 from

@@ -16,7 +16,7 @@ pub(crate) struct UrdfJoint {
     pub(crate) parent: String,
     pub(crate) child: String,
     pub(crate) origin: IsometryMatrix3<f64>,
-    pub(crate) freedom: Freedom,
+    pub(crate) motion: UrdfMotion,
 }
 
 impl UrdfJoint {
@@ -28,7 +28,7 @@ impl UrdfJoint {
 
 /// What a joint can do.
 #[derive(Debug, Clone)]
-pub(crate) enum Freedom {
+pub(crate) enum UrdfMotion {
     Fixed,
     Moving { kind: JointKind, axis: Unit<Vector3<f64>>, lower: f64, upper: f64, mimic: Option<Mimic> },
 }
@@ -61,8 +61,8 @@ pub(super) fn read(
     let name = name_of(node, || Element::UnnamedJoint(index), "joint.name")?;
     let owner = Element::Joint(name.clone());
     let joint = Tag { node, owner: &owner };
-    let freedom = match joint.text("joint.type")?.as_str() {
-        "fixed" => Freedom::Fixed,
+    let motion = match joint.text("joint.type")?.as_str() {
+        "fixed" => UrdfMotion::Fixed,
         "revolute" => moving(joint, JointKind::Revolute, version)?,
         "continuous" => moving(joint, JointKind::Continuous, version)?,
         "prismatic" => moving(joint, JointKind::Prismatic, version)?,
@@ -78,18 +78,18 @@ pub(super) fn read(
         parent: link("parent", "parent.link")?,
         child: link("child", "child.link")?,
         origin: origin::read(joint, version, warnings)?,
-        freedom,
+        motion,
         name,
     })
 }
 
-fn moving(joint: Tag<'_>, kind: JointKind, version: Version) -> Result<Freedom, KinematicsError> {
+fn moving(joint: Tag<'_>, kind: JointKind, version: Version) -> Result<UrdfMotion, KinematicsError> {
     let axis = axis(joint)?;
     let (lower, upper) = match kind {
         JointKind::Continuous => (f64::NEG_INFINITY, f64::INFINITY),
         JointKind::Revolute | JointKind::Prismatic => limits(joint, version)?,
     };
-    Ok(Freedom::Moving { kind, axis, lower, upper, mimic: mimic(joint)? })
+    Ok(UrdfMotion::Moving { kind, axis, lower, upper, mimic: mimic(joint)? })
 }
 
 /// The axis, made a unit vector; x where none is given.

@@ -19,6 +19,6 @@ pub(crate) use from_urdf_rs::from_urdf_rs;
 pub use geometry::Geometry;
 pub(crate) use geometry::UrdfCollision;
 pub use joint::JointKind;
-pub(crate) use joint::{Freedom, Mimic, UrdfJoint};
+pub(crate) use joint::{Mimic, UrdfJoint, UrdfMotion};
 pub(crate) use number::{LARGEST, bounded};
 pub use problem::UrdfProblem;

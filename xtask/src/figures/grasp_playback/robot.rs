@@ -2,7 +2,7 @@
 
 use anyhow::{Context as _, bail};
 use demo_gen::UpperBody;
-use kinematics::{CollisionShape, Drive, DriveKind, LinkId, RobotModel};
+use kinematics::{CollisionShape, JointMotion, LinkId, MotionKind, RobotModel};
 use nalgebra::IsometryMatrix3;
 use serde::{Deserialize, Serialize};
 
@@ -80,15 +80,15 @@ fn link(robot: &RobotModel, link: LinkId, place: impl Fn(LinkId) -> anyhow::Resu
     let attachment = robot.attachment(link);
     let origin = attachment.as_ref().map_or(IsometryMatrix3::identity(), |attachment| attachment.origin);
     let parent = attachment.as_ref().map(|attachment| place(attachment.parent)).transpose()?;
-    let drive = attachment.and_then(|attachment| attachment.drive);
-    if drive.is_some_and(|drive| (drive.multiplier, drive.offset) != (1.0, 0.0)) {
+    let joint = attachment.and_then(|attachment| attachment.joint);
+    if joint.is_some_and(|joint| (joint.multiplier, joint.offset) != (1.0, 0.0)) {
         bail!("link {name} follows another joint, which the form of the figure data has no words for");
     }
-    let (motion, axis) = drive.map_or((Motion::Fixed, [0.0, 0.0, 1.0]), |Drive { kind, axis, .. }| {
-        (if kind == DriveKind::Turn { Motion::Turn } else { Motion::Slide }, axis.into_inner().into())
+    let (motion, axis) = joint.map_or((Motion::Fixed, [0.0, 0.0, 1.0]), |JointMotion { kind, axis, .. }| {
+        (if kind == MotionKind::Rotation { Motion::Turn } else { Motion::Slide }, axis.into_inner().into())
     });
     let (translation, rotation) = numbers(&origin);
-    Ok(Link { name, parent, translation, rotation, motion, axis, joint: drive.map(|drive| drive.column) })
+    Ok(Link { name, parent, translation, rotation, motion, axis, joint: joint.map(|joint| joint.column) })
 }
 
 fn shape(shape: &CollisionShape, place: impl Fn(LinkId) -> anyhow::Result<usize>) -> anyhow::Result<Shape> {

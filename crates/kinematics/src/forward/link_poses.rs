@@ -1,12 +1,15 @@
+use lanes::dispatch_avx2;
 use nalgebra::{DVectorView, IsometryMatrix3, Matrix3xX, Matrix6xX, Point3};
 use pulp::{Simd, WithSimd};
 
+use super::{
+    Workspace,
+    jacobian::{add_column, require_columns},
+};
 use crate::{
-    KinematicsError, LinkId, RobotModel, Workspace,
-    dispatch::dispatch,
-    jacobian::add_column,
-    joint::{Joint, placeable},
-    placement::{Lanes, Placement, lanes},
+    KinematicsError, LinkId, RobotModel,
+    model::placeable,
+    nodes::{Padded, Placement, padded},
 };
 
 /// Where every link is in one configuration: what [`RobotModel::forward_kinematics`] found.
@@ -28,7 +31,7 @@ impl RobotModel {
         workspace: &'a mut Workspace,
     ) -> Result<LinkPoses<'a>, KinematicsError> {
         let q = placeable(&q, &self.joints)?;
-        Ok(LinkPoses { robot: self, placements: workspace.place(&self.nodes, &self.motors, q) })
+        Ok(LinkPoses { robot: self, placements: workspace.place(&self.nodes, &self.couplings, q) })
     }
 }
 
@@ -45,7 +48,7 @@ impl LinkPoses<'_> {
 
     /// A point given in the link's frame, in the root link's frame, metres.
     pub fn transform_point(&self, link: LinkId, point: &Point3<f64>) -> Point3<f64> {
-        self.placements[link.0].translated(lanes(&point.coords)).position()
+        self.placements[link.0].translated(padded(&point.coords)).position()
     }
 
     /// Writes the geometric Jacobian (6, n) of the link's frame: rows vx vy vz wx wy wz, the velocity of the frame's
@@ -82,7 +85,7 @@ impl LinkPoses<'_> {
     /// Fills the Jacobian (ROWS, n) of a point that moves with a link, given in the root link's frame.
     pub(crate) fn fill_at<const ROWS: usize>(&self, link: LinkId, tip: &Point3<f64>, jacobian: &mut [f64]) {
         let (columns, _) = jacobian.as_chunks_mut::<ROWS>();
-        dispatch(Fill { poses: self, link, tip: lanes(&tip.coords), columns });
+        dispatch_avx2(Fill { poses: self, link, tip: padded(&tip.coords), columns });
     }
 }
 
@@ -90,7 +93,7 @@ impl LinkPoses<'_> {
 struct Fill<'a, const ROWS: usize> {
     poses: &'a LinkPoses<'a>,
     link: LinkId,
-    tip: Lanes,
+    tip: Padded,
     columns: &'a mut [[f64; ROWS]],
 }
 
@@ -104,13 +107,8 @@ impl<const ROWS: usize> WithSimd for Fill<'_, ROWS> {
         let mut index = link.0;
         while index != 0 {
             let node = &robot.nodes[index];
-            add_column(node, &robot.motors, &placements[index], tip, columns);
+            add_column(node, &robot.couplings, &placements[index], tip, columns);
             index = node.parent;
         }
     }
-}
-
-pub(crate) fn require_columns(found: usize, joints: &[Joint]) -> Result<(), KinematicsError> {
-    let expected = joints.len();
-    if found == expected { Ok(()) } else { Err(KinematicsError::JacobianColumns { found, expected }) }
 }

@@ -1,13 +1,14 @@
 use nalgebra::IsometryMatrix3;
 
-use crate::{
-    CollisionShape, Joint, JointKind, KinematicsError, LinkId, RobotModel,
+use super::{
+    CollisionShape, Joint, LinkId, RobotModel,
     mimic::{self, is_active},
-    node::{Motion, Node},
-    placement::lanes,
     tree::{self, Branch},
-    urdf::{self, Freedom, UrdfCollision, UrdfJoint, UrdfRobot},
-    workspace::Motor,
+};
+use crate::{
+    JointKind, KinematicsError,
+    nodes::{Coupling, Motion, Node, padded},
+    urdf::{self, UrdfCollision, UrdfJoint, UrdfMotion, UrdfRobot},
 };
 
 impl RobotModel {
@@ -22,12 +23,12 @@ impl RobotModel {
 
     fn assemble(urdf: UrdfRobot) -> Result<Self, KinematicsError> {
         let branches = tree::ordered(&urdf)?;
-        let by_joint = mimic::motors(&urdf.joints)?;
+        let by_joint = mimic::couplings(&urdf.joints)?;
         let mut robot = RobotModel {
             links: branches.iter().map(|branch| urdf.links[branch.link].clone()).collect(),
             nodes: Vec::with_capacity(branches.len()),
             origins: Vec::with_capacity(branches.len()),
-            motors: Vec::new(),
+            couplings: Vec::new(),
             joints: urdf.joints.iter().filter_map(active).collect(),
             collision_shapes: urdf.collisions.map(|shapes| placed_shapes(shapes, &branches)),
             name: urdf.name,
@@ -45,11 +46,11 @@ impl RobotModel {
         Ok(robot)
     }
 
-    fn push(&mut self, parent: usize, joint: &UrdfJoint, motor: Option<Motor>) {
-        let (motion, sign) = motion(&joint.freedom);
-        let index = motor.map(|Motor { column, multiplier, offset }| {
-            self.motors.push(Motor { column, multiplier: sign * multiplier, offset: sign * offset });
-            self.motors.len() - 1
+    fn push(&mut self, parent: usize, joint: &UrdfJoint, coupling: Option<Coupling>) {
+        let (motion, sign) = motion(&joint.motion);
+        let index = coupling.map(|Coupling { column, multiplier, offset }| {
+            self.couplings.push(Coupling { column, multiplier: sign * multiplier, offset: sign * offset });
+            self.couplings.len() - 1
         });
         self.push_node(Node::new(parent, index, motion, &joint.origin), joint.origin);
     }
@@ -91,17 +92,17 @@ fn placed_shapes(shapes: Vec<UrdfCollision>, branches: &[Branch]) -> Vec<Collisi
 }
 
 /// A joint's motion, and the sign that its value changes by.
-fn motion(freedom: &Freedom) -> (Motion, f64) {
-    match freedom {
-        Freedom::Fixed => (Motion::Fixed, 1.0),
-        Freedom::Moving { kind: JointKind::Prismatic, axis, .. } => (Motion::Slide(lanes(axis)), 1.0),
-        Freedom::Moving { axis, .. } => Motion::turn(*axis),
+fn motion(motion: &UrdfMotion) -> (Motion, f64) {
+    match motion {
+        UrdfMotion::Fixed => (Motion::Fixed, 1.0),
+        UrdfMotion::Moving { kind: JointKind::Prismatic, axis, .. } => (Motion::Translation(padded(axis)), 1.0),
+        UrdfMotion::Moving { axis, .. } => Motion::rotation(*axis),
     }
 }
 
 fn active(joint: &UrdfJoint) -> Option<Joint> {
-    match joint.freedom {
-        Freedom::Moving { kind, lower, upper, .. } if is_active(joint) => {
+    match joint.motion {
+        UrdfMotion::Moving { kind, lower, upper, .. } if is_active(joint) => {
             Some(Joint { name: joint.name.clone(), kind, lower, upper })
         }
         _ => None,

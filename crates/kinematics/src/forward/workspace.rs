@@ -1,29 +1,16 @@
+use lanes::{Lanes, dispatch_avx2, groups_of, sin_cos_all};
 use pulp::{Simd, WithSimd};
 
-use crate::{
-    dispatch::dispatch,
-    node::{Node, Position},
-    placement::Placement,
-    sin_cos::{LANES, sin_cos_all},
-};
+use crate::nodes::{Coupling, Node, Placement, Position};
 
 /// Memory that the computations write to; after the first use with a robot nothing is allocated any more. One
 /// workspace serves any number of robots and chains, one at a time.
 #[derive(Debug, Clone, Default)]
 pub struct Workspace {
-    values: Vec<[f64; LANES]>,
-    sines: Vec<[f64; LANES]>,
-    cosines: Vec<[f64; LANES]>,
+    values: Vec<Lanes>,
+    sines: Vec<Lanes>,
+    cosines: Vec<Lanes>,
     placements: Vec<Placement>,
-}
-
-/// How a moving joint gets its value from the configuration: multiplier · q[column] + offset. A mimic joint has the
-/// column of the joint it follows in the end.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Motor {
-    pub(crate) column: usize,
-    pub(crate) multiplier: f64,
-    pub(crate) offset: f64,
 }
 
 impl Workspace {
@@ -33,26 +20,25 @@ impl Workspace {
     }
 
     /// Makes room. Lanes that no joint owns hold some finite number.
-    pub(crate) fn fit(&mut self, n_nodes: usize, n_motors: usize) {
-        let chunks = n_motors.div_ceil(LANES);
+    pub(crate) fn fit(&mut self, n_nodes: usize, n_couplings: usize) {
         for lanes in [&mut self.values, &mut self.sines, &mut self.cosines] {
-            lanes.resize(chunks, [0.0; LANES]);
+            lanes.resize_with(groups_of(n_couplings), Lanes::default);
         }
         self.placements.resize(n_nodes, Placement::IDENTITY);
     }
 
     /// Places every node of a tree, parents before children, node 0 at the root.
-    pub(crate) fn place(&mut self, nodes: &[Node], motors: &[Motor], q: &[f64]) -> &[Placement] {
-        self.fit(nodes.len(), motors.len());
-        dispatch(PlaceAll { workspace: self, nodes, motors, q });
+    pub(crate) fn place(&mut self, nodes: &[Node], couplings: &[Coupling], q: &[f64]) -> &[Placement] {
+        self.fit(nodes.len(), couplings.len());
+        dispatch_avx2(PlaceAll { workspace: self, nodes, couplings, q });
         &self.placements
     }
 
     /// [`Workspace::place`], after [`Workspace::fit`], for a caller that has dispatched already.
     #[inline(always)]
-    pub(crate) fn place_inline(&mut self, nodes: &[Node], motors: &[Motor], q: &[f64]) -> &[Placement] {
-        for (value, motor) in self.values.as_flattened_mut().iter_mut().zip(motors) {
-            *value = motor.multiplier * q[motor.column] + motor.offset;
+    pub(crate) fn place_inline(&mut self, nodes: &[Node], couplings: &[Coupling], q: &[f64]) -> &[Placement] {
+        for (value, coupling) in self.values.as_flattened_mut().iter_mut().zip(couplings) {
+            *value = coupling.multiplier * q[coupling.column] + coupling.offset;
         }
         sin_cos_all(&self.values, &mut self.sines, &mut self.cosines);
         let (values, sines, cosines) =
@@ -61,8 +47,10 @@ impl Workspace {
         for (index, node) in nodes.iter().enumerate().skip(1) {
             // Most links hang on the link before them, which is still at hand.
             let parent = if node.parent + 1 == index { previous } else { self.placements[node.parent] };
-            let position = match node.motor {
-                Some(motor) => Position { value: values[motor], sine: sines[motor], cosine: cosines[motor] },
+            let position = match node.coupling {
+                Some(coupling) => {
+                    Position { value: values[coupling], sine: sines[coupling], cosine: cosines[coupling] }
+                }
                 None => Position::ZERO,
             };
             previous = node.placed(parent, position);
@@ -76,7 +64,7 @@ impl Workspace {
 struct PlaceAll<'a> {
     workspace: &'a mut Workspace,
     nodes: &'a [Node],
-    motors: &'a [Motor],
+    couplings: &'a [Coupling],
     q: &'a [f64],
 }
 
@@ -85,7 +73,7 @@ impl WithSimd for PlaceAll<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        self.workspace.place_inline(self.nodes, self.motors, self.q);
+        self.workspace.place_inline(self.nodes, self.couplings, self.q);
     }
 }
 
@@ -99,15 +87,15 @@ mod tests {
     /// The vector code and its plain twin give the same bits.
     #[test]
     fn dispatch_changes_no_bit() {
-        let robot = RobotModel::from_urdf(include_str!("../../../robots/asimo_upper_body.urdf"))
+        let robot = RobotModel::from_urdf(include_str!("../../../../robots/asimo_upper_body.urdf"))
             .expect("the robot of this project loads");
         let mut rng = ChaCha8Rng::seed_from_u64(4);
         let (mut fast, mut plain) = (Workspace::new(), Workspace::new());
-        plain.fit(robot.nodes.len(), robot.motors.len());
+        plain.fit(robot.nodes.len(), robot.couplings.len());
         for _ in 0..100 {
             let q = robot.random_configuration(&mut rng);
-            let fast = fast.place(&robot.nodes, &robot.motors, q.as_slice());
-            let plain = plain.place_inline(&robot.nodes, &robot.motors, q.as_slice());
+            let fast = fast.place(&robot.nodes, &robot.couplings, q.as_slice());
+            let plain = plain.place_inline(&robot.nodes, &robot.couplings, q.as_slice());
             for (a, b) in fast.iter().zip(plain) {
                 assert_eq!((a.axes, a.origin), (b.axes, b.origin));
             }

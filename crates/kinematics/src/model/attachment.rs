@@ -1,6 +1,7 @@
 use nalgebra::{IsometryMatrix3, UnitVector3, Vector3};
 
-use crate::{LinkId, RobotModel, node::Motion, placement::Lanes, workspace::Motor};
+use super::{LinkId, RobotModel};
+use crate::nodes::{Coupling, Motion, Padded};
 
 /// How a link hangs on its parent: its pose is the parent's, then `origin`, then what the joint does.
 ///
@@ -12,14 +13,14 @@ pub struct Attachment {
     /// The joint's frame in the parent's frame, metres.
     pub origin: IsometryMatrix3<f64>,
     /// What the joint does; `None` for a fixed one.
-    pub drive: Option<Drive>,
+    pub joint: Option<JointMotion>,
 }
 
-/// What a moving joint does: a turn or a slide by `multiplier` · q\[`column`\] + `offset`.
+/// What a moving joint does: a rotation or a translation by `multiplier` · q\[`column`\] + `offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Drive {
+pub struct JointMotion {
     /// About or along `axis`.
-    pub kind: DriveKind,
+    pub kind: MotionKind,
     /// In the joint's frame.
     pub axis: UnitVector3<f64>,
     /// Place in a configuration; a mimic joint has the place of the joint that it follows in the end.
@@ -30,13 +31,13 @@ pub struct Drive {
     pub offset: f64,
 }
 
-/// A turn or a slide.
+/// A rotation or a translation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DriveKind {
+pub enum MotionKind {
     /// About the axis, in radians.
-    Turn,
+    Rotation,
     /// Along the axis, in metres.
-    Slide,
+    Translation,
 }
 
 impl RobotModel {
@@ -44,26 +45,26 @@ impl RobotModel {
     pub fn attachment(&self, link: LinkId) -> Option<Attachment> {
         let parent = self.parent(link)?;
         let node = &self.nodes[link.0];
-        let drive = node.motor.and_then(|motor| drive(node.motion, self.motors[motor]));
-        Some(Attachment { parent, origin: self.origins[link.0], drive })
+        let joint = node.coupling.and_then(|coupling| joint_motion(node.motion, self.couplings[coupling]));
+        Some(Attachment { parent, origin: self.origins[link.0], joint })
     }
 }
 
-fn drive(motion: Motion, Motor { column, multiplier, offset }: Motor) -> Option<Drive> {
+fn joint_motion(motion: Motion, Coupling { column, multiplier, offset }: Coupling) -> Option<JointMotion> {
     let (kind, axis) = match motion {
         Motion::Fixed => return None,
-        Motion::TurnX => (DriveKind::Turn, Vector3::x()),
-        Motion::TurnY => (DriveKind::Turn, Vector3::y()),
-        Motion::TurnZ => (DriveKind::Turn, Vector3::z()),
-        Motion::Turn(axis) => (DriveKind::Turn, vector(axis)),
-        Motion::Slide(axis) => (DriveKind::Slide, vector(axis)),
+        Motion::RotationX => (MotionKind::Rotation, Vector3::x()),
+        Motion::RotationY => (MotionKind::Rotation, Vector3::y()),
+        Motion::RotationZ => (MotionKind::Rotation, Vector3::z()),
+        Motion::Rotation(axis) => (MotionKind::Rotation, vector(axis)),
+        Motion::Translation(axis) => (MotionKind::Translation, vector(axis)),
     };
-    // A turn about −z is kept as one about z, backwards.
+    // A rotation about −z is kept as one about z, backwards.
     let sign = 1.0_f64.copysign(multiplier);
     let axis = UnitVector3::new_unchecked(axis * sign);
-    Some(Drive { kind, axis, column, multiplier: sign * multiplier, offset: sign * offset })
+    Some(JointMotion { kind, axis, column, multiplier: sign * multiplier, offset: sign * offset })
 }
 
-fn vector([x, y, z, _]: Lanes) -> Vector3<f64> {
+fn vector([x, y, z, _]: Padded) -> Vector3<f64> {
     Vector3::new(x, y, z)
 }

@@ -1,7 +1,8 @@
 use nalgebra::{DVector, DVectorView, DVectorViewMut};
 use rand::{Rng, RngExt};
 
-use crate::{JointKind, KinematicsError, RobotModel, joint::checked};
+use super::{RobotModel, joint::checked};
+use crate::{JointKind, KinematicsError};
 
 impl RobotModel {
     /// A configuration (n), each coordinate drawn uniformly between its limits, a continuous joint's angle from

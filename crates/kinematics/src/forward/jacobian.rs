@@ -2,9 +2,8 @@
 //! about the axis; a sliding joint moves it along the axis.
 
 use crate::{
-    node::{Motion, Node},
-    placement::{Lanes, Placement, cross},
-    workspace::Motor,
+    Joint, KinematicsError,
+    nodes::{Coupling, Motion, Node, Padded, Placement, cross},
 };
 
 /// Adds a joint's column, for a frame with its origin at `tip`; 3 rows are vx vy vz, 6 rows vx vy vz wx wy wz. Joints
@@ -12,16 +11,16 @@ use crate::{
 #[inline(always)]
 pub(crate) fn add_column<const ROWS: usize>(
     node: &Node,
-    motors: &[Motor],
+    couplings: &[Coupling],
     placement: &Placement,
-    tip: Lanes,
+    tip: Padded,
     columns: &mut [[f64; ROWS]],
 ) {
-    let Some(motor) = node.motor else { return };
-    let Motor { column, multiplier, .. } = motors[motor];
+    let Some(coupling) = node.coupling else { return };
+    let Coupling { column, multiplier, .. } = couplings[coupling];
     let axis = node.axis(placement);
     let (linear, angular) = match node.motion {
-        Motion::Slide(_) => (axis, [0.0; 4]),
+        Motion::Translation(_) => (axis, [0.0; 4]),
         _ => (cross(axis, std::array::from_fn(|i| tip[i] - placement.origin[i])), axis),
     };
     let column = &mut columns[column];
@@ -31,4 +30,10 @@ pub(crate) fn add_column<const ROWS: usize>(
     for row in 3..ROWS {
         column[row] += multiplier * angular[row - 3];
     }
+}
+
+/// A Jacobian to be filled has one column for each joint.
+pub(crate) fn require_columns(found: usize, joints: &[Joint]) -> Result<(), KinematicsError> {
+    let expected = joints.len();
+    if found == expected { Ok(()) } else { Err(KinematicsError::JacobianColumns { found, expected }) }
 }

@@ -5,66 +5,66 @@ use std::collections::HashMap;
 use crate::{
     KinematicsError,
     names::near_names,
-    urdf::{Element, Freedom, Mimic, UrdfJoint, UrdfProblem, bounded},
-    workspace::Motor,
+    nodes::Coupling,
+    urdf::{Element, Mimic, UrdfJoint, UrdfMotion, UrdfProblem, bounded},
 };
 
 /// For each joint of the file how it gets its value, `None` for fixed joints. Columns count the active joints (those
 /// that move and follow nobody) in document order.
-pub(crate) fn motors(joints: &[UrdfJoint]) -> Result<Vec<Option<Motor>>, KinematicsError> {
+pub(crate) fn couplings(joints: &[UrdfJoint]) -> Result<Vec<Option<Coupling>>, KinematicsError> {
     let by_name: HashMap<&str, usize> = joints.iter().enumerate().map(|(i, joint)| (joint.name.as_str(), i)).collect();
-    let mut motors = vec![None; joints.len()];
+    let mut couplings = vec![None; joints.len()];
     for (column, joint) in (0..joints.len()).filter(|&joint| is_active(&joints[joint])).enumerate() {
-        motors[joint] = Some(Motor { column, multiplier: 1.0, offset: 0.0 });
+        couplings[joint] = Some(Coupling { column, multiplier: 1.0, offset: 0.0 });
     }
     for (start, joint) in joints.iter().enumerate() {
-        if matches!(joint.freedom, Freedom::Moving { .. }) {
-            resolve(start, joints, &by_name, &mut motors)?;
+        if matches!(joint.motion, UrdfMotion::Moving { .. }) {
+            resolve(start, joints, &by_name, &mut couplings)?;
         }
     }
-    Ok(motors)
+    Ok(couplings)
 }
 
 pub(crate) fn is_active(joint: &UrdfJoint) -> bool {
-    matches!(joint.freedom, Freedom::Moving { mimic: None, .. })
+    matches!(joint.motion, UrdfMotion::Moving { mimic: None, .. })
 }
 
-/// Finds the motors of a joint and of all that it follows: q = m₁(m₂(… `q_active` …) + o₂) + o₁. What is found once is
+/// Finds the couplings of a joint and of all that it follows: q = m₁(m₂(… `q_active` …) + o₂) + o₁. What is found once is
 /// not looked for again, so that a long chain takes no longer than its length.
 fn resolve(
     start: usize,
     joints: &[UrdfJoint],
     by_name: &HashMap<&str, usize>,
-    motors: &mut [Option<Motor>],
+    couplings: &mut [Option<Coupling>],
 ) -> Result<(), KinematicsError> {
     let mut followers = Vec::new();
     let mut at = start;
-    while motors[at].is_none() {
+    while couplings[at].is_none() {
         if followers.len() == joints.len() {
             return Err(ring(at, joints, by_name));
         }
         followers.push(at);
         at = target(&joints[at], joints, by_name)?;
     }
-    let mut motor = motors[at].expect("the loop ends at a motor");
+    let mut coupling = couplings[at].expect("the loop ends at a coupling");
     for follower in followers.into_iter().rev() {
         let Mimic { multiplier, offset, .. } = mimic(&joints[follower]);
         let total = |attribute, value| bounded(attribute, value).map_err(|problem| joints[follower].error(problem));
-        motor = Motor {
-            column: motor.column,
-            multiplier: total("mimic.multiplier", multiplier * motor.multiplier)?,
-            offset: total("mimic.offset", multiplier * motor.offset + offset)?,
+        coupling = Coupling {
+            column: coupling.column,
+            multiplier: total("mimic.multiplier", multiplier * coupling.multiplier)?,
+            offset: total("mimic.offset", multiplier * coupling.offset + offset)?,
         };
-        motors[follower] = Some(motor);
+        couplings[follower] = Some(coupling);
     }
     Ok(())
 }
 
-/// What a joint without a motor of its own follows.
+/// What a joint without a coupling of its own follows.
 fn mimic(joint: &UrdfJoint) -> &Mimic {
-    match &joint.freedom {
-        Freedom::Moving { mimic: Some(mimic), .. } => mimic,
-        _ => unreachable!("a joint that moves and follows nobody has a motor"),
+    match &joint.motion {
+        UrdfMotion::Moving { mimic: Some(mimic), .. } => mimic,
+        _ => unreachable!("a joint that moves and follows nobody has a coupling"),
     }
 }
 
@@ -81,7 +81,7 @@ fn ring(member: usize, joints: &[UrdfJoint], by_name: &HashMap<&str, usize>) -> 
 fn target(joint: &UrdfJoint, joints: &[UrdfJoint], by_name: &HashMap<&str, usize>) -> Result<usize, KinematicsError> {
     let target = mimic(joint).target.clone();
     let problem = match by_name.get(target.as_str()) {
-        Some(&index) if matches!(joints[index].freedom, Freedom::Fixed) => UrdfProblem::MimicOfFixed { target },
+        Some(&index) if matches!(joints[index].motion, UrdfMotion::Fixed) => UrdfProblem::MimicOfFixed { target },
         Some(&index) => return Ok(index),
         None => {
             let near = near_names(&target, joints.iter().map(|joint| joint.name.as_str()));

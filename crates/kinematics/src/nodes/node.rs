@@ -1,30 +1,30 @@
 use nalgebra::{IsometryMatrix3, Rotation3, Unit, Vector3};
 
-use crate::placement::{Lanes, Placement, lanes};
+use super::placement::{Padded, Placement, padded};
 
 /// A link, and the joint that carries it: `placement = parent · origin · motion(value)`.
 #[derive(Debug, Clone)]
 pub(crate) struct Node {
     /// Index of the parent node, smaller than the node's own; the root is its own parent.
     pub(crate) parent: usize,
-    /// Index of the joint's value among the motors; none where the motion is fixed.
-    pub(crate) motor: Option<usize>,
+    /// Index of the joint's value among the couplings; none where the motion is fixed.
+    pub(crate) coupling: Option<usize>,
     pub(crate) motion: Motion,
-    translation: Option<Lanes>,
-    rotation: Option<[Lanes; 3]>,
+    translation: Option<Padded>,
+    rotation: Option<[Padded; 3]>,
 }
 
 /// How a joint moves its link. Coordinate axes are worth their own cases: they leave a column alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Motion {
     Fixed,
-    TurnX,
-    TurnY,
-    TurnZ,
+    RotationX,
+    RotationY,
+    RotationZ,
     /// A rotation about a unit axis.
-    Turn(Lanes),
+    Rotation(Padded),
     /// A displacement along a unit axis.
-    Slide(Lanes),
+    Translation(Padded),
 }
 
 /// Value, sine and cosine of one moving joint.
@@ -40,28 +40,28 @@ impl Position {
 }
 
 impl Motion {
-    /// A rotation about an axis, and the sign that its angle has to change by: −z turns as z does, backwards.
-    pub(crate) fn turn(axis: Unit<Vector3<f64>>) -> (Self, f64) {
+    /// A rotation about an axis, and the sign that its angle has to change by: a rotation about −z is one about z, backwards.
+    pub(crate) fn rotation(axis: Unit<Vector3<f64>>) -> (Self, f64) {
         match (axis.x, axis.y, axis.z) {
-            (x, 0.0, 0.0) => (Motion::TurnX, x),
-            (0.0, y, 0.0) => (Motion::TurnY, y),
-            (0.0, 0.0, z) => (Motion::TurnZ, z),
-            _ => (Motion::Turn(lanes(&axis)), 1.0),
+            (x, 0.0, 0.0) => (Motion::RotationX, x),
+            (0.0, y, 0.0) => (Motion::RotationY, y),
+            (0.0, 0.0, z) => (Motion::RotationZ, z),
+            _ => (Motion::Rotation(padded(&axis)), 1.0),
         }
     }
 }
 
 impl Node {
-    pub(crate) fn new(parent: usize, motor: Option<usize>, motion: Motion, origin: &IsometryMatrix3<f64>) -> Self {
+    pub(crate) fn new(parent: usize, coupling: Option<usize>, motion: Motion, origin: &IsometryMatrix3<f64>) -> Self {
         let translation = origin.translation.vector;
         let rotation = origin.rotation;
         Node {
             parent,
-            motor,
+            coupling,
             motion,
-            translation: (translation != Vector3::zeros()).then(|| lanes(&translation)),
+            translation: (translation != Vector3::zeros()).then(|| padded(&translation)),
             rotation: (rotation != Rotation3::identity())
-                .then(|| [0, 1, 2].map(|column| lanes(&rotation.matrix().column(column).into_owned()))),
+                .then(|| [0, 1, 2].map(|column| padded(&rotation.matrix().column(column).into_owned()))),
         }
     }
 
@@ -78,30 +78,30 @@ impl Node {
         let Position { value, sine, cosine } = joint;
         match self.motion {
             Motion::Fixed => placement,
-            Motion::TurnX => placement.turned(1, 2, sine, cosine),
-            Motion::TurnY => placement.turned(2, 0, sine, cosine),
-            Motion::TurnZ => placement.turned(0, 1, sine, cosine),
-            Motion::Turn(axis) => placement.rotated(&about(axis, sine, cosine)),
-            Motion::Slide(axis) => placement.translated(axis.map(|part| part * value)),
+            Motion::RotationX => placement.turned(1, 2, sine, cosine),
+            Motion::RotationY => placement.turned(2, 0, sine, cosine),
+            Motion::RotationZ => placement.turned(0, 1, sine, cosine),
+            Motion::Rotation(axis) => placement.rotated(&about(axis, sine, cosine)),
+            Motion::Translation(axis) => placement.translated(axis.map(|part| part * value)),
         }
     }
 
     /// The joint's axis in root axes, when its link is at `placement`; a motion leaves its own axis alone.
     #[inline(always)]
-    pub(crate) fn axis(&self, placement: &Placement) -> Lanes {
+    pub(crate) fn axis(&self, placement: &Placement) -> Padded {
         match self.motion {
             Motion::Fixed => [0.0; 4],
-            Motion::TurnX => placement.axes[0],
-            Motion::TurnY => placement.axes[1],
-            Motion::TurnZ => placement.axes[2],
-            Motion::Turn(axis) | Motion::Slide(axis) => placement.direction(axis),
+            Motion::RotationX => placement.axes[0],
+            Motion::RotationY => placement.axes[1],
+            Motion::RotationZ => placement.axes[2],
+            Motion::Rotation(axis) | Motion::Translation(axis) => placement.direction(axis),
         }
     }
 }
 
 /// The columns of the rotation about a unit axis (Rodrigues).
 #[inline(always)]
-fn about([x, y, z, _]: Lanes, sine: f64, cosine: f64) -> [Lanes; 3] {
+fn about([x, y, z, _]: Padded, sine: f64, cosine: f64) -> [Padded; 3] {
     let rest = 1.0 - cosine;
     let (xy, yz, zx) = (rest * x * y, rest * y * z, rest * z * x);
     [

@@ -1,17 +1,17 @@
 use std::sync::Arc;
 
+use lanes::dispatch_avx2;
 use nalgebra::{DVectorView, IsometryMatrix3, Matrix3xX, Matrix6xX, Point3};
 use pulp::{Simd, WithSimd};
 
+use super::{
+    Workspace,
+    jacobian::{add_column, require_columns},
+};
 use crate::{
-    KinematicsError, LinkId, RobotModel, Workspace,
-    dispatch::dispatch,
-    forward::require_columns,
-    jacobian::add_column,
-    joint::{Joint, placeable},
-    node::{Motion, Node},
-    placement::Placement,
-    workspace::Motor,
+    Joint, KinematicsError, LinkId, RobotModel,
+    model::placeable,
+    nodes::{Coupling, Motion, Node, Placement},
 };
 
 /// The joints between the root and one link, and nothing else: the cheap way to one hand. Fixed joints are folded
@@ -21,27 +21,34 @@ use crate::{
 pub struct Chain {
     joints: Arc<[Joint]>,
     nodes: Vec<Node>,
-    motors: Vec<Motor>,
+    couplings: Vec<Coupling>,
+}
+
+impl RobotModel {
+    /// The joints from the root to one link, prepared for repeated use.
+    pub fn chain(&self, link: LinkId) -> Chain {
+        Chain::new(self, link)
+    }
 }
 
 impl Chain {
     pub(crate) fn new(robot: &RobotModel, link: LinkId) -> Self {
         let mut nodes = vec![robot.nodes[0].clone()];
-        let mut motors = Vec::new();
+        let mut couplings = Vec::new();
         let mut folded = IsometryMatrix3::identity();
         for index in robot.path(link) {
             let node = &robot.nodes[index];
             folded *= robot.origins[index];
-            if let Some(motor) = node.motor {
-                nodes.push(Node::new(nodes.len() - 1, Some(motors.len()), node.motion, &folded));
-                motors.push(robot.motors[motor]);
+            if let Some(coupling) = node.coupling {
+                nodes.push(Node::new(nodes.len() - 1, Some(couplings.len()), node.motion, &folded));
+                couplings.push(robot.couplings[coupling]);
                 folded = IsometryMatrix3::identity();
             }
         }
         if folded != IsometryMatrix3::identity() {
             nodes.push(Node::new(nodes.len() - 1, None, Motion::Fixed, &folded));
         }
-        Chain { joints: Arc::clone(&robot.joints), nodes, motors }
+        Chain { joints: Arc::clone(&robot.joints), nodes, couplings }
     }
 
     /// The link's pose in the root link's frame, metres. `q` (n) is a configuration of the whole robot.
@@ -54,7 +61,7 @@ impl Chain {
         workspace: &mut Workspace,
     ) -> Result<IsometryMatrix3<f64>, KinematicsError> {
         let q = placeable(&q, &self.joints)?;
-        let placements = workspace.place(&self.nodes, &self.motors, q);
+        let placements = workspace.place(&self.nodes, &self.couplings, q);
         Ok(placements[self.nodes.len() - 1].isometry())
     }
 
@@ -93,9 +100,9 @@ impl Chain {
     }
 
     fn fill<const ROWS: usize>(&self, q: &[f64], workspace: &mut Workspace, jacobian: &mut [f64]) -> Placement {
-        workspace.fit(self.nodes.len(), self.motors.len());
+        workspace.fit(self.nodes.len(), self.couplings.len());
         let (columns, _) = jacobian.as_chunks_mut::<ROWS>();
-        dispatch(Fill { chain: self, q, workspace, columns })
+        dispatch_avx2(Fill { chain: self, q, workspace, columns })
     }
 }
 
@@ -112,12 +119,12 @@ impl<const ROWS: usize> WithSimd for Fill<'_, ROWS> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Placement {
-        let Fill { chain: Chain { nodes, motors, .. }, q, workspace, columns } = self;
-        let placements = workspace.place_inline(nodes, motors, q);
+        let Fill { chain: Chain { nodes, couplings, .. }, q, workspace, columns } = self;
+        let placements = workspace.place_inline(nodes, couplings, q);
         let end = placements[nodes.len() - 1];
         columns.fill([0.0; ROWS]);
         for (node, placement) in nodes.iter().zip(placements) {
-            add_column(node, motors, placement, end.origin, columns);
+            add_column(node, couplings, placement, end.origin, columns);
         }
         end
     }

@@ -1,14 +1,14 @@
 use nalgebra::{IsometryMatrix3, Matrix3, Point3, Rotation3, Translation3, Vector3};
 
-/// A vector with a fourth lane that means nothing: four lanes fill a vector register.
-pub(crate) type Lanes = [f64; 4];
+/// A vector with a fourth number that means nothing: four fill a vector register.
+pub(crate) type Padded = [f64; 4];
 
 /// Where a frame is: the columns of its rotation, and its origin, in root axes and metres.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Placement {
-    pub(crate) axes: [Lanes; 3],
-    pub(crate) origin: Lanes,
+    pub(crate) axes: [Padded; 3],
+    pub(crate) origin: Padded,
 }
 
 impl Placement {
@@ -17,14 +17,14 @@ impl Placement {
 
     /// `Σ axes[i] · part[i]`: a vector given in this frame's axes, in root axes.
     #[inline(always)]
-    pub(crate) fn direction(&self, part: Lanes) -> Lanes {
+    pub(crate) fn direction(&self, part: Padded) -> Padded {
         let [x, y, z] = self.axes;
         std::array::from_fn(|i| x[i] * part[0] + y[i] * part[1] + z[i] * part[2])
     }
 
     /// Moves the origin by a vector given in this frame's axes.
     #[inline(always)]
-    pub(crate) fn translated(mut self, by: Lanes) -> Self {
+    pub(crate) fn translated(mut self, by: Padded) -> Self {
         let step = self.direction(by);
         self.origin = std::array::from_fn(|i| self.origin[i] + step[i]);
         self
@@ -32,7 +32,7 @@ impl Placement {
 
     /// Turns the frame on the spot by a rotation given by its columns.
     #[inline(always)]
-    pub(crate) fn rotated(mut self, by: &[Lanes; 3]) -> Self {
+    pub(crate) fn rotated(mut self, by: &[Padded; 3]) -> Self {
         self.axes = [self.direction(by[0]), self.direction(by[1]), self.direction(by[2])];
         self
     }
@@ -59,12 +59,12 @@ impl Placement {
     }
 }
 
-/// A vector in lanes.
-pub(crate) fn lanes(vector: &Vector3<f64>) -> Lanes {
+/// A vector with its padding.
+pub(crate) fn padded(vector: &Vector3<f64>) -> Padded {
     [vector.x, vector.y, vector.z, 0.0]
 }
 
 #[inline(always)]
-pub(crate) fn cross(a: Lanes, b: Lanes) -> Lanes {
+pub(crate) fn cross(a: Padded, b: Padded) -> Padded {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0], 0.0]
 }

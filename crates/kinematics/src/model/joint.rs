@@ -1,6 +1,6 @@
 use nalgebra::DVectorView;
 
-use crate::{JointKind, KinematicsError};
+use crate::{JointKind, KinematicsError, error::FARTHEST};
 
 /// An active joint: one coordinate of a configuration q, one column of a Jacobian.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,9 +32,6 @@ impl Joint {
         self.upper
     }
 }
-
-/// Largest coordinate of a configuration that can be placed: positions and their squares stay finite.
-pub(crate) const FARTHEST: f64 = 1e100;
 
 /// Checks a configuration against the joints it is for.
 #[inline]

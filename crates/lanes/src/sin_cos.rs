@@ -5,8 +5,7 @@
 //! fused multiply-add, so that every machine gets the same bits. Beyond [`FAR`] the parts of π/2 no longer multiply
 //! exactly and the library function takes over.
 
-/// Angles worked on together.
-pub(crate) const LANES: usize = 8;
+use crate::Lanes;
 
 /// Largest angle that the polynomials serve, in radians.
 const FAR: f64 = 1e5;
@@ -41,9 +40,9 @@ const COS: [f64; 6] = [
     -1.135_964_755_778_819_5e-11,
 ];
 
-/// sin and cos of every angle, in radians; all angles must be finite.
+/// sin and cos of every angle, in radians; all angles must be finite, and the three slices of one length.
 #[inline(always)]
-pub(crate) fn sin_cos_all(angles: &[[f64; LANES]], sines: &mut [[f64; LANES]], cosines: &mut [[f64; LANES]]) {
+pub fn sin_cos_all(angles: &[Lanes], sines: &mut [Lanes], cosines: &mut [Lanes]) {
     let lanes = angles.as_flattened().iter().zip(sines.as_flattened_mut()).zip(cosines.as_flattened_mut());
     for ((angle, sine), cosine) in lanes {
         (*sine, *cosine) = near(*angle);
@@ -121,7 +120,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::dispatch::dispatch;
+    use crate::{LANES, dispatch_avx2};
 
     /// Distance in units in the last place, across zero too.
     fn ulps(a: f64, b: f64) -> u64 {
@@ -131,9 +130,9 @@ mod tests {
     }
 
     struct SinCos<'a> {
-        angles: &'a [[f64; LANES]],
-        sines: &'a mut [[f64; LANES]],
-        cosines: &'a mut [[f64; LANES]],
+        angles: &'a [Lanes],
+        sines: &'a mut [Lanes],
+        cosines: &'a mut [Lanes],
     }
 
     impl pulp::WithSimd for SinCos<'_> {
@@ -149,7 +148,7 @@ mod tests {
     fn in_lanes(angle: f64) -> [(f64, f64); LANES] {
         let angles = [std::array::from_fn(|lane| if lane % 2 == 0 { angle } else { -angle })];
         let (mut sines, mut cosines) = ([[0.0; LANES]], [[0.0; LANES]]);
-        dispatch(SinCos { angles: &angles, sines: &mut sines, cosines: &mut cosines });
+        dispatch_avx2(SinCos { angles: &angles, sines: &mut sines, cosines: &mut cosines });
         std::array::from_fn(|lane| (if lane % 2 == 0 { sines[0][lane] } else { -sines[0][lane] }, cosines[0][lane]))
     }
 

@@ -1,8 +1,25 @@
+//! What a robot is: [`RobotModel`], built (`build`) from tags as a tree (`tree`) whose mimic joints are resolved
+//! (`mimic`); its joints (`joint`) and their limits (`limits`); how a link hangs on its parent (`attachment`).
+
+mod attachment;
+mod build;
+mod joint;
+mod limits;
+mod mimic;
+mod tree;
+
 use std::sync::Arc;
 
+pub use attachment::{Attachment, JointMotion, MotionKind};
+pub use joint::Joint;
+pub(crate) use joint::placeable;
 use nalgebra::IsometryMatrix3;
 
-use crate::{Chain, Geometry, Joint, KinematicsError, UrdfWarning, names::near_names, node::Node, workspace::Motor};
+use crate::{
+    Geometry, KinematicsError, UrdfWarning,
+    names::near_names,
+    nodes::{Coupling, Node},
+};
 
 /// A link of one robot; its frame is the frame of the joint that carries it, moved along by it. Asked of another robot,
 /// it is another link or a panic.
@@ -22,7 +39,7 @@ pub struct RobotModel {
     pub(crate) nodes: Vec<Node>,
     /// Origins of the nodes' joints in their parents' frames.
     pub(crate) origins: Vec<IsometryMatrix3<f64>>,
-    pub(crate) motors: Vec<Motor>,
+    pub(crate) couplings: Vec<Coupling>,
     pub(crate) joints: Arc<[Joint]>,
     pub(crate) collision_shapes: Result<Vec<CollisionShape>, KinematicsError>,
     pub(crate) warnings: Vec<UrdfWarning>,
@@ -92,11 +109,6 @@ impl RobotModel {
     /// The link that a link hangs on; `None` for the root.
     pub fn parent(&self, link: LinkId) -> Option<LinkId> {
         (link.0 != 0).then(|| LinkId(self.nodes[link.0].parent))
-    }
-
-    /// The joints from the root to one link, prepared for repeated use.
-    pub fn chain(&self, link: LinkId) -> Chain {
-        Chain::new(self, link)
     }
 
     /// The collision shapes of all links.
