@@ -117,6 +117,20 @@ pub enum DemoGenError {
         /// Samples of a trajectory.
         n_samples: usize,
     },
+    /// A policy needs more dimensions than asked for.
+    #[error("{found} dimension(s) asked for; this policy lives in {least} or more")]
+    TooFewDimensions {
+        /// The number asked for.
+        found: usize,
+        /// The least number.
+        least: usize,
+    },
+    /// The edge between planes has no width.
+    #[error("edge {edge}: it must be a finite width, 0 (a kink) or more, in units of the state")]
+    Edge {
+        /// The width given.
+        edge: f64,
+    },
     /// The noise is not a share.
     #[error("noise share {share}: it must be a finite number, 0 or more, of each dimension's standard deviation")]
     NoiseShare {

@@ -11,6 +11,7 @@
 //!   one hand in a plane.
 //! - [`hand_jacobian`]: a robot's hand for a constraint; [`n_leaving_limits`]: movements that a real one would not make.
 //! - [`Grasp`]: reaching for a ball through a wall with a gap, in a [`GraspScene`].
+//! - [`beyond`]: policies of other shapes, with and without a potential, in 2 to 22 dimensions.
 //! - [`with_position_noise`]: the same recordings through noisy eyes.
 //!
 //! ```
@@ -32,6 +33,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod beyond;
 mod error;
 mod grasp;
 mod grasp_scene;

@@ -18,7 +18,7 @@ pub struct Recording {
 pub struct Truth {
     /// The states `x_i`, (n, N).
     pub states: DMatrix<f64>,
-    /// The potential `φ(x_i)`, (N).
+    /// The potential `φ(x_i)`, (N); empty where the policy descends none.
     pub potential: DVector<f64>,
     /// The unconstrained policy `π(x_i) = −∇φ(x_i)`, (n, N), in units of the state per second.
     pub actions: DMatrix<f64>,

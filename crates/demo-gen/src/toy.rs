@@ -17,7 +17,7 @@ pub enum Redraw {
 
 impl Redraw {
     /// The samples from which a new constraint holds.
-    fn first_samples(self, n_samples: usize) -> Result<Vec<usize>, DemoGenError> {
+    pub(crate) fn first_samples(self, n_samples: usize) -> Result<Vec<usize>, DemoGenError> {
         match self {
             Redraw::Every(samples) if samples > 0 => Ok((0..n_samples).step_by(samples).collect()),
             Redraw::Segments(segments) if (1..=n_samples).contains(&segments) => {

@@ -1,0 +1,22 @@
+//! Movements beyond the paper's: policies of other shapes, with and without a potential, in 2 to 22 dimensions.
+//!
+//! - [`Wells`], [`Planes`]: potentials; [`Swirl`], [`LimitCycle`], [`Handwriting`]: policies that have none.
+//! - [`DriftingConstraint`]: random rows that turn with the state.
+//! - [`BeyondSystem`]: data sets of them, free, constrained, or both ([`Hindrance`]).
+
+mod direction;
+mod drifting_constraint;
+mod handwriting;
+mod planes;
+mod shown;
+mod system;
+mod wells;
+mod whirls;
+
+pub use drifting_constraint::DriftingConstraint;
+pub use handwriting::Handwriting;
+pub use planes::Planes;
+pub use shown::Shown;
+pub use system::{BeyondSystem, Hindrance};
+pub use wells::Wells;
+pub use whirls::{LimitCycle, Swirl};

@@ -1,0 +1,90 @@
+use motion::{Policy, Potential};
+use rand::Rng;
+
+use super::{Handwriting, LimitCycle, Planes, Swirl, Wells};
+use crate::{DemoGenError, Sinusoidal};
+
+/// What kind of policy is shown; each data set draws its own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shown {
+    /// The paper's sinusoidal potential on the plane, the same in every data set.
+    Sinusoidal,
+    /// Three wells ([`Wells::draw`]).
+    Wells {
+        /// Dimension n ≥ 1.
+        dim: usize,
+    },
+    /// Three planes ([`Planes::draw`]).
+    Planes {
+        /// Dimension n ≥ 1.
+        dim: usize,
+        /// Width of the edges, in units of the state; 0 for kinks.
+        edge: f64,
+    },
+    /// No potential: a swirl ([`Swirl::draw`]).
+    Swirl {
+        /// Dimension n ≥ 2.
+        dim: usize,
+    },
+    /// No potential: round the unit circle on the plane, the same in every data set.
+    LimitCycle,
+    /// No potential: a line written on the plane ([`Handwriting::draw`]).
+    Handwriting,
+}
+
+/// A policy with its potential, or one that has none.
+pub(super) enum Field {
+    OfPotential(Box<dyn Potential>),
+    OfPolicy(Box<dyn Policy>),
+}
+
+/// What one data set shows, and where its movements begin.
+pub(super) struct Scene {
+    pub(super) field: Field,
+    /// Middle of the cube of starts, (n).
+    pub(super) middle: Vec<f64>,
+    /// Half its edge.
+    pub(super) reach: f64,
+}
+
+impl Shown {
+    /// Dimension n of the state.
+    pub fn dim(self) -> usize {
+        match self {
+            Shown::Wells { dim } | Shown::Planes { dim, .. } | Shown::Swirl { dim } => dim,
+            Shown::Sinusoidal | Shown::LimitCycle | Shown::Handwriting => 2,
+        }
+    }
+
+    /// Whether its policy descends a potential.
+    pub fn has_potential(self) -> bool {
+        matches!(self, Shown::Sinusoidal | Shown::Wells { .. } | Shown::Planes { .. })
+    }
+
+    pub(super) fn check(self) -> Result<(), DemoGenError> {
+        let least = if matches!(self, Shown::Swirl { .. }) { 2 } else { 1 };
+        match self {
+            Shown::Planes { edge, .. } if !(edge.is_finite() && edge >= 0.0) => Err(DemoGenError::Edge { edge }),
+            _ if self.dim() < least => Err(DemoGenError::TooFewDimensions { found: self.dim(), least }),
+            _ => Ok(()),
+        }
+    }
+
+    pub(super) fn draw<R: Rng + ?Sized>(self, rng: &mut R) -> Scene {
+        let middle = vec![0.0; self.dim()];
+        let potential = |potential| Scene { field: Field::OfPotential(potential), middle: middle.clone(), reach: 2.0 };
+        let policy = |policy, reach| Scene { field: Field::OfPolicy(policy), middle: middle.clone(), reach };
+        match self {
+            Shown::Sinusoidal => potential(Box::new(Sinusoidal { amplitude: 0.1 })),
+            Shown::Wells { dim } => potential(Box::new(Wells::draw(dim, rng))),
+            Shown::Planes { dim, edge } => potential(Box::new(Planes::draw(dim, edge, rng))),
+            Shown::Swirl { dim } => policy(Box::new(Swirl::draw(dim, rng)), 2.0),
+            Shown::LimitCycle => policy(Box::new(LimitCycle { speed: 0.15 }), 1.5),
+            Shown::Handwriting => {
+                let line = Handwriting::draw(rng);
+                let middle = line.start().iter().copied().collect();
+                Scene { field: Field::OfPolicy(Box::new(line)), middle, reach: 0.25 }
+            }
+        }
+    }
+}

@@ -1,0 +1,145 @@
+use constraints::{PfaffianConstraint, Switching, Unconstrained};
+use motion::{Policy, Trajectory};
+use nalgebra::{DMatrix, DVector};
+use rand::{Rng, RngExt};
+
+use super::shown::{Field, Scene};
+use super::{DriftingConstraint, Shown};
+use crate::recording::record_each;
+use crate::{DemoGenError, Recording, Redraw, RollOut, Truth};
+
+/// Which of the movements are constrained, and how.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hindrance {
+    /// None is.
+    Free,
+    /// Each, by constraints of its own.
+    Varying,
+    /// All by the same constraint, all the time.
+    OneForAll,
+    /// Every other one, by constraints of its own; the first is free.
+    HalfFree,
+}
+
+/// Movements that a learner of the paper's examples has not met: other policies, in 2 to 22 dimensions, under random
+/// constraints that turn with the state ([`DriftingConstraint`], about one forbidden direction in four).
+///
+/// ```
+/// use demo_gen::beyond::{BeyondSystem, Hindrance, Shown};
+/// use rand::SeedableRng;
+///
+/// let system = BeyondSystem { shown: Shown::Wells { dim: 3 }, n_trajectories: 10, ..BeyondSystem::default() };
+/// let recordings = system.record(&mut rand_chacha::ChaCha8Rng::seed_from_u64(1))?;
+/// assert_eq!(recordings[9].observed.states().shape(), (3, 40));
+/// assert_eq!(recordings[9].truth.projectors[0].rank(), 1);
+/// # Ok::<(), demo_gen::DemoGenError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct BeyondSystem {
+    /// The policy. Default three wells in three dimensions.
+    pub shown: Shown,
+    /// Default [`Hindrance::Varying`].
+    pub hindrance: Hindrance,
+    /// Number of trajectories K. Default 60.
+    pub n_trajectories: usize,
+    /// When a constraint of one movement's own changes. Default every 20 samples.
+    pub redraw: Redraw,
+    /// Samples, time step and sub-steps. Default 40 samples one second apart, 50 Euler steps between two.
+    pub roll_out: RollOut,
+}
+
+impl Default for BeyondSystem {
+    fn default() -> Self {
+        BeyondSystem {
+            shown: Shown::Wells { dim: 3 },
+            hindrance: Hindrance::Varying,
+            n_trajectories: 60,
+            redraw: Redraw::Every(20),
+            roll_out: RollOut { sub_steps: 50, ..RollOut::default() },
+        }
+    }
+}
+
+impl BeyondSystem {
+    /// One data set: K movements of one policy from starts in a cube.
+    ///
+    /// The generator is asked for the policy, for the constraint that all share, and then, trajectory after trajectory,
+    /// for the start and each constraint in order of time. `truth.potential` is empty where the policy has no potential.
+    ///
+    /// # Errors
+    /// [`DemoGenError::TooFewDimensions`], [`DemoGenError::Edge`], [`DemoGenError::NoTrajectory`],
+    /// [`DemoGenError::Redraw`], or what [`RollOut::record`] says.
+    pub fn record<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<Recording>, DemoGenError> {
+        self.shown.check()?;
+        self.roll_out.check()?;
+        let first_samples = self.redraw.first_samples(self.roll_out.n_samples)?;
+        let scene = self.shown.draw(rng);
+        let shared = self.draw_constraint(rng);
+        let mut trajectory = 0;
+        record_each(self.n_trajectories, || {
+            let start = scene.start(rng);
+            let own =
+                self.hindrance == Hindrance::Varying || self.hindrance == Hindrance::HalfFree && trajectory % 2 == 1;
+            trajectory += 1;
+            if own {
+                let phases = first_samples
+                    .iter()
+                    .map(|&sample| (self.roll_out.time_step * sample as f64, self.draw_constraint(rng)));
+                let constraint = Switching::new(phases.collect())
+                    .map_err(|source| DemoGenError::Constraint { sample: 0, source })?;
+                return scene.record(&self.roll_out, &constraint, &start);
+            }
+            match self.hindrance {
+                Hindrance::OneForAll => scene.record(&self.roll_out, &shared, &start),
+                _ => scene.record(&self.roll_out, &Unconstrained { dim: self.shown.dim() }, &start),
+            }
+        })
+    }
+
+    fn draw_constraint<R: Rng + ?Sized>(&self, rng: &mut R) -> DriftingConstraint {
+        let dim = self.shown.dim();
+        DriftingConstraint::draw(dim.div_ceil(4), dim, rng)
+    }
+}
+
+impl Scene {
+    fn start<R: Rng + ?Sized>(&self, rng: &mut R) -> DVector<f64> {
+        let from_middle = self.middle.iter().map(|middle| middle + rng.random_range(-self.reach..self.reach));
+        DVector::from_iterator(self.middle.len(), from_middle)
+    }
+
+    fn record<C: PfaffianConstraint>(
+        &self,
+        roll_out: &RollOut,
+        constraint: &C,
+        start: &DVector<f64>,
+    ) -> Result<Recording, DemoGenError> {
+        match &self.field {
+            Field::OfPotential(potential) => roll_out.record(&**potential, constraint, start.as_view()),
+            Field::OfPolicy(policy) => {
+                let observed = roll_out.follow(&**policy, constraint, start.as_view())?;
+                let truth = truth(&**policy, constraint, &observed)?;
+                Ok(Recording { observed, truth })
+            }
+        }
+    }
+}
+
+/// What is true of a movement of a policy without potential.
+fn truth<C: PfaffianConstraint>(
+    policy: &dyn Policy,
+    constraint: &C,
+    observed: &Trajectory,
+) -> Result<Truth, DemoGenError> {
+    let mut actions = DMatrix::zeros(observed.dim(), observed.n_samples());
+    for (state, action) in observed.states().column_iter().zip(actions.column_iter_mut()) {
+        policy.action_into(state, action);
+    }
+    let at = |sample: usize| {
+        let time = observed.time_step() * sample as f64;
+        let projector = constraint.null_space_projector(observed.state(sample), time);
+        projector.map_err(|source| DemoGenError::Constraint { sample, source })
+    };
+    let projectors = (0..observed.n_samples()).map(at).collect::<Result<_, _>>()?;
+    Ok(Truth { states: observed.states().clone(), potential: DVector::zeros(0), actions, projectors })
+}
