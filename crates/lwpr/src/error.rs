@@ -30,6 +30,18 @@ pub enum LwprError {
         /// Number of outputs asked for.
         n_out: usize,
     },
+    /// A model has more inputs or outputs than fit.
+    #[error(
+        "a model of {found} {side}(s): at most {most} are possible (of inputs fewer with a full metric than with a diagonal one)"
+    )]
+    TooManyDimensions {
+        /// Inputs or outputs.
+        side: Side,
+        /// How many were asked for.
+        found: usize,
+        /// The limit.
+        most: usize,
+    },
     /// A parameter is outside its range.
     #[error("parameter {name} is {value}: it must be {range}")]
     Parameter {

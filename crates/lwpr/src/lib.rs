@@ -44,39 +44,18 @@
 // Several rows run in step, and lanes are numbered.
 #![allow(clippy::needless_range_loop)]
 
-mod activation;
-mod batch;
-mod batch_fit;
-mod birth;
-mod chunk;
-mod contribution;
-mod element;
 mod error;
 mod field;
-mod field_table;
-mod full_metric;
-mod kernel;
-mod lane_block;
-mod local_model;
-mod metric;
+mod learning;
 mod model;
-mod model_record;
-mod params;
-mod predictor;
-mod predictor_record;
-mod receptive_field;
-mod regression;
-mod rows;
+mod prediction;
 mod settings;
 mod standardised;
-mod standardised_record;
-mod sub_model;
-mod training;
 
 pub use error::{LwprError, Side};
-pub use kernel::Kernel;
+pub use field::receptive_field::ReceptiveField;
 pub use model::Lwpr;
-pub use params::{LwprParams, Metric, MetricAdaptation, Pruning};
-pub use predictor::{Prediction, Predictor};
-pub use receptive_field::ReceptiveField;
+pub use prediction::{Prediction, Predictor};
+pub use settings::kernel::Kernel;
+pub use settings::params::{LwprParams, Metric, MetricAdaptation, Pruning};
 pub use standardised::{StandardisedModel, Training};

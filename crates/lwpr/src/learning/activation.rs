@@ -3,24 +3,19 @@
 use pulp::Simd;
 
 use crate::Metric;
-use crate::element::Element;
+use crate::field::element::{Element, add_scaled};
 use crate::field::{Field, Layout};
-use crate::full_metric::add_scaled;
-use crate::kernel::Activation;
 use crate::settings::Settings;
-use crate::training::with_width;
+use crate::settings::kernel::Activation;
 use lanes::Number;
-use lanes::Register;
-
-/// Fields that are looked at together.
-pub(crate) const LANES: usize = 8;
+use lanes::{LANES, Lanes, Register};
 
 /// Centres and diagonal metrics of all fields, in blocks of eight: for each dimension eight centres, then eight D.
 ///
 /// With a full metric or many dimensions the table is empty: M is read from the fields themselves.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct ActivationTable {
-    blocks: Vec<[f64; LANES]>,
+    blocks: Vec<Lanes>,
 }
 
 /// A field within reach of a sample, its squared distance and activation.
@@ -110,26 +105,25 @@ pub(crate) struct Near {
 }
 
 impl Near {
-    /// Looks for the fields closer than `reach` to the normalised sample `x`.
+    /// Looks for the fields closer than `reach` to the padded, normalised sample `x`.
     #[inline(always)]
     pub(crate) fn find<S: Simd>(
         &mut self,
         simd: S,
         settings: &Settings,
         (fields, table): (&[Field], &ActivationTable),
-        x: &[f64],
+        (x, reach): (&[f64], f64),
         scratch: &mut [f64],
     ) {
         self.clear(fields.len());
-        let reach = settings.reach;
         if settings.narrow() {
             table.look(settings.n_in, x, reach, self);
         } else if settings.params.metric == Metric::Diagonal {
-            with_width!(settings.width, [16, 24, 32], scratch, |width, scratch| {
-                for (k, field) in fields.iter().enumerate() {
-                    self.see(k, diagonal_distance(simd, field, &x[..width], &mut scratch[..width]), reach);
-                }
-            });
+            if settings.width == 24 {
+                self.look::<S>(simd, fields, (&x[..24], reach), &mut scratch[..24]);
+            } else {
+                self.look::<S>(simd, fields, (x, reach), &mut scratch[..settings.width]);
+            }
         } else {
             let layout = Layout::new(settings, settings.width);
             for (k, field) in fields.iter().enumerate() {
@@ -137,6 +131,24 @@ impl Near {
             }
         }
         self.activate(simd, settings);
+    }
+
+    /// [`find`](Self::find) with a wide diagonal metric.
+    #[inline(always)]
+    fn look<S: Simd>(&mut self, simd: S, fields: &[Field], (x, reach): (&[f64], f64), scratch: &mut [f64]) {
+        for (k, field) in fields.iter().enumerate() {
+            self.see(k, diagonal_distance(simd, field, x, scratch), reach);
+        }
+    }
+
+    /// Holds field `field` alone.
+    #[inline(always)]
+    pub(crate) fn only(&mut self, field: usize, q: f64, activation: Activation<f64>) {
+        self.clear(1);
+        self.len = 1;
+        (self.fields[0], self.q[0]) = (field, q);
+        (self.activation.w[0], self.activation.slope[0], self.activation.curvature[0]) =
+            (activation.w, activation.slope, activation.curvature);
     }
 
     fn clear(&mut self, n_fields: usize) {

@@ -1,10 +1,14 @@
+//! LWPR of outputs of any mean and size.
+
+mod record;
+
 use std::sync::Arc;
 
 use nalgebra::{DMatrixView, DVector, DVectorView, DVectorViewMut};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 
-use crate::standardised_record::StandardisedRecord;
+use crate::standardised::record::StandardisedRecord;
 use crate::{Lwpr, LwprError, LwprParams, Predictor};
 
 /// How LWPR learns outputs of any mean and size, and how it is asked afterwards.

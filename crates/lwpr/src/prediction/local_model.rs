@@ -1,51 +1,55 @@
 //! What prediction needs of one receptive field.
 
+use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-use crate::element::Element;
+use crate::field::element::{Element, add_scaled};
 use crate::field::{DIRECTION_ROWS, Field, Layout};
-use crate::full_metric::add_scaled;
 use crate::settings::Settings;
+
+/// Normalised inputs are nowhere beyond this, and no other number of a field is larger than that.
+const FARTHEST: f64 = 1e51;
+const LARGEST: f64 = 1e150;
 
 /// A receptive field, frozen. Vectors are not padded; everything is in normalised units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct LocalModel {
-    pub(crate) centre: Vec<f64>,
+pub(super) struct LocalModel {
+    pub(super) centre: Vec<f64>,
     /// D: its diagonal, or its columns.
-    pub(crate) metric: Vec<f64>,
+    pub(super) metric: Vec<f64>,
     /// The affine model y = offset + slopeᵀ(x − c); `None` while the field is not trustworthy.
-    pub(crate) affine: Option<Affine>,
+    pub(super) affine: Option<Affine>,
 }
 
 /// A local prediction and what its confidence needs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Affine {
-    pub(crate) offset: f64,
-    pub(crate) slope: Vec<f64>,
+pub(super) struct Affine {
+    pub(super) offset: f64,
+    pub(super) slope: Vec<f64>,
     /// Noise variance Γ; `None` before errors were collected.
-    pub(crate) noise: Option<f64>,
+    pub(super) noise: Option<f64>,
     /// One row aⱼ a direction: the loading of x, over the spread of the loadings seen, is aⱼᵀ(x − mean).
-    pub(crate) mean: Vec<f64>,
-    pub(crate) loadings: Vec<f64>,
+    pub(super) mean: Vec<f64>,
+    pub(super) loadings: Vec<f64>,
 }
 
 impl LocalModel {
-    /// `None` where learning has run into numbers that are not finite, so that the field is of no use.
-    pub(crate) fn new(field: &Field, settings: &Settings) -> Option<Self> {
+    /// `None` where learning has run into numbers that are not finite or absurdly large, so that the field is of no use.
+    pub(super) fn new(field: &Field, settings: &Settings) -> Option<Self> {
         let n = settings.n_in;
         let centre = field.centre(settings).to_vec();
-        let d = crate::receptive_field::metric_of(field.m(settings), settings.params.metric, n);
+        let d = crate::field::receptive_field::metric_of(field.m(settings), settings.params.metric, n);
         let metric = match settings.params.metric {
             crate::Metric::Diagonal => d.diagonal().as_slice().to_vec(),
             crate::Metric::Full => d.as_slice().to_vec(),
         };
         let affine = field.is_trustworthy().then(|| Affine::new(field, settings));
         let model = LocalModel { centre, metric, affine };
-        model.is_finite().then_some(model)
+        model.is_sound().then_some(model)
     }
 
     /// Whether all vectors fit `n` inputs.
-    pub(crate) fn has_shape(&self, n: usize) -> bool {
+    pub(super) fn has_shape(&self, n: usize) -> bool {
         let affine_has = |affine: &Affine| {
             affine.slope.len() == n && affine.mean.len() == n && affine.loadings.len().is_multiple_of(n)
         };
@@ -54,17 +58,32 @@ impl LocalModel {
             && self.affine.as_ref().is_none_or(affine_has)
     }
 
-    /// Whether every number is finite.
-    pub(crate) fn is_finite(&self) -> bool {
-        let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
+    /// Whether every number is finite and of a size that predictions of finite inputs are, and the metric is one.
+    pub(super) fn is_sound(&self) -> bool {
+        let below = |values: &[f64], limit: f64| values.iter().all(|value| value.abs() <= limit);
         let affine_is = |affine: &Affine| {
-            affine.offset.is_finite()
-                && finite(&affine.slope)
-                && finite(&affine.mean)
-                && finite(&affine.loadings)
-                && affine.noise.is_none_or(f64::is_finite)
+            below(&[affine.offset], LARGEST)
+                && below(&affine.slope, LARGEST)
+                && below(&affine.mean, FARTHEST)
+                && below(&affine.loadings, LARGEST)
+                && affine.noise.is_none_or(|noise| (0.0..=LARGEST).contains(&noise))
         };
-        finite(&self.centre) && finite(&self.metric) && self.affine.as_ref().is_none_or(affine_is)
+        below(&self.centre, FARTHEST)
+            && below(&self.metric, LARGEST)
+            && self.has_metric()
+            && self.affine.as_ref().is_none_or(affine_is)
+    }
+
+    /// Whether D is symmetric and, to rounding, nowhere negative.
+    fn has_metric(&self) -> bool {
+        let n = self.centre.len();
+        if self.metric.len() == n {
+            return self.metric.iter().all(|&d| d >= 0.0);
+        }
+        let d = DMatrix::from_column_slice(n, n, &self.metric);
+        let rounding = 1e-12 * d.amax() + f64::MIN_POSITIVE;
+        let asymmetry = (&d - d.transpose()).amax();
+        asymmetry <= rounding && (d + DMatrix::from_diagonal_element(n, n, rounding)).cholesky().is_some()
     }
 }
 
@@ -102,7 +121,7 @@ impl Affine {
 }
 
 /// Γ = Σ w e² / (Σ w − p): the noise variance, once leave-one-out errors have been collected.
-fn noise(field: &Field, usable: usize) -> Option<f64> {
+pub(super) fn noise(field: &Field, usable: usize) -> Option<f64> {
     let last = &field.directions[usable.checked_sub(1)?];
     let weight = last.sum_w - field.ss_p;
     (last.sum_e_cv2 > 0.0 && weight > 0.0).then(|| last.sum_e_cv2 / weight)

@@ -27,6 +27,14 @@ pub(crate) trait Element<T: Number>: Number + Mul<T, Output = Self> {
     fn largest(token: Self::Token, a: &[f64]) -> T;
 }
 
+/// y ← y + a·x for rows.
+#[inline(always)]
+pub(crate) fn add_scaled<T: Number, E: Element<T>>(token: E::Token, y: &mut [f64], a: T, x: &[f64]) {
+    for (y, &x) in E::elements_mut(y).iter_mut().zip(E::elements(x)) {
+        *y = (E::of(token, *y) + E::of(token, x) * a).raw();
+    }
+}
+
 impl Element<f64> for f64 {
     #[inline(always)]
     fn spread((): (), value: f64) -> f64 {

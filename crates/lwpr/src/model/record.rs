@@ -2,12 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::activation::ActivationTable;
+use crate::field::rows::Rows;
 use crate::field::{DIRECTION_ROWS, Direction, Field, Layout};
-use crate::rows::Rows;
+use crate::learning::activation::ActivationTable;
+use crate::learning::sub_model::SubModel;
 use crate::settings::Settings;
-use crate::sub_model::SubModel;
 use crate::{Lwpr, LwprError, LwprParams, Metric};
+
+/// More samples than this cannot have been learnt; every whole number up to it is a floating-point number.
+const MOST_SAMPLES: usize = 1 << 53;
 
 /// A [`Lwpr`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -77,6 +80,17 @@ fn pad(rows: &mut Vec<f64>, numbers: &[f64], n_rows: usize, settings: &Settings)
         rows.resize(rows.len() + settings.width - settings.n_in, 0.0);
     }
     Some(())
+}
+
+/// Whether a field's numbers have not overflowed, which absurd learning rates can bring about. One whose have is of no use,
+/// for prediction or learning, and is not stored.
+fn is_finite(field: &&Field) -> bool {
+    let direction_is = |direction: &Direction| {
+        let &Direction { beta, ss2, ss_y, h, r, sum_w, sum_e_cv2, n_data, lambda, s: _ } = direction;
+        [beta, ss2, ss_y, h, r, sum_w, sum_e_cv2, n_data, lambda].iter().all(|number| number.is_finite())
+    };
+    [field.beta0, field.sum_e2, field.ss_p].iter().chain(&*field.rows).all(|number| number.is_finite())
+        && field.directions.iter().all(direction_is)
 }
 
 impl FieldRecord {
@@ -172,7 +186,7 @@ impl From<Lwpr> for ModelRecord {
         let settings = &model.settings;
         let output = |sub_model: &SubModel| OutputRecord {
             n_pruned: sub_model.n_pruned,
-            fields: sub_model.fields.iter().map(|field| FieldRecord::new(field, settings)).collect(),
+            fields: sub_model.fields.iter().filter(is_finite).map(|field| FieldRecord::new(field, settings)).collect(),
         };
         ModelRecord {
             n_in: settings.n_in,
@@ -189,10 +203,17 @@ impl TryFrom<ModelRecord> for Lwpr {
 
     fn try_from(record: ModelRecord) -> Result<Self, LwprError> {
         let corrupt = |reason: String| LwprError::Corrupt { reason };
-        let settings = Settings::new(record.params, record.n_in, record.n_out)?;
         if record.outputs.len() != record.n_out {
             return Err(corrupt(format!("{} lists of fields for {} outputs", record.outputs.len(), record.n_out)));
         }
+        let fields = || record.outputs.iter().flat_map(|output| &output.fields);
+        if let Some(field) = fields().find(|field| field.centre.len() != record.n_in) {
+            return Err(corrupt(format!("a field of {} inputs in a model of {}", field.centre.len(), record.n_in)));
+        }
+        if record.n_data > MOST_SAMPLES || record.outputs.iter().any(|output| output.n_pruned > MOST_SAMPLES) {
+            return Err(corrupt("more samples than anybody has".to_owned()));
+        }
+        let settings = Settings::new(record.params, record.n_in, record.n_out)?;
         let mut outputs = Vec::new();
         for (o, output) in record.outputs.iter().enumerate() {
             let mut sub_model = SubModel { n_pruned: output.n_pruned, ..SubModel::default() };

@@ -1,16 +1,20 @@
+//! A model that learns.
+
+mod record;
+
 use nalgebra::{DMatrixView, DVectorView};
 use rand::Rng;
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
-use crate::batch_fit::BatchFit;
 use crate::error::Side;
-use crate::model_record::ModelRecord;
-use crate::rows::Rows;
+use crate::field::rows::Rows;
+use crate::learning::passes::{BatchFit, SHORTEST};
+use crate::learning::rules::Workspace;
+use crate::learning::sub_model::{Reach, SubModel};
+use crate::model::record::ModelRecord;
 use crate::settings::Settings;
-use crate::sub_model::{Reach, SubModel};
-use crate::training::Workspace;
-use crate::{LwprError, LwprParams, Predictor, ReceptiveField};
+use crate::{LwprError, LwprParams, ReceptiveField};
 
 /// A model that learns; make one with [`LwprParams::build`].
 ///
@@ -51,6 +55,17 @@ impl pulp::WithSimd for UpdateChecked<'_> {
             model.update_checked(simd, xs.column(sample).as_slice(), ys.column(sample).as_slice(), sample)?;
         }
         Ok(())
+    }
+}
+
+impl LwprParams {
+    /// An empty model of `n_in` inputs and `n_out` outputs. The parameters are checked here, once.
+    ///
+    /// # Errors
+    /// [`LwprError::NoDimension`], [`LwprError::Parameter`], [`LwprError::NormLength`], [`LwprError::Norm`] or one of
+    /// the `LwprError::Metric…` variants.
+    pub fn build(self, n_in: usize, n_out: usize) -> Result<Lwpr, LwprError> {
+        Settings::new(self, n_in, n_out).map(Lwpr::new)
     }
 }
 
@@ -132,8 +147,8 @@ impl Lwpr {
     }
 
     /// As many passes, `arrange` ordering the samples before each. Field by field where that is the same as sample by
-    /// sample, which it is unless fields are pruned, and faster: many dimensions or a full metric keep vector registers
-    /// busy by themselves.
+    /// sample, and faster: many dimensions or a full metric keep vector registers busy by themselves, and few samples do
+    /// not pay for the preparation.
     ///
     /// Nothing here depends on the caller's types, so that it is compiled once.
     fn fit(
@@ -146,7 +161,7 @@ impl Lwpr {
         self.check_batch(xs, ys)?;
         let mut order: Vec<usize> = (0..xs.ncols()).collect();
         let before = self.settings.params.max_receptive_fields.map(|_| self.clone());
-        let mut fit = (self.settings.params.w_prune == 1.0 && self.settings.narrow()).then(|| BatchFit::new(self));
+        let mut fit = (self.settings.side_by_side() && xs.ncols() >= SHORTEST).then(|| BatchFit::new(self));
         for _ in 0..passes {
             arrange(&mut order);
             let result = match &mut fit {
@@ -184,12 +199,6 @@ impl Lwpr {
             self.settings.check(y.as_slice(), Side::Output, sample)?;
         }
         Ok(())
-    }
-
-    /// An immutable snapshot that predicts. Fields whose activation is at most `cutoff` do not take part: 0.001 is a
-    /// good choice, 0 uses every field however far.
-    pub fn predictor(&self, cutoff: f64) -> Predictor {
-        Predictor::new(self, cutoff)
     }
 
     /// The parameters, as given.

@@ -1,8 +1,8 @@
 use nalgebra::{DMatrix, DVector};
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::settings::Settings;
-use crate::{Kernel, Lwpr, LwprError};
+use crate::Kernel;
 
 /// Shape of the distance metric D of every receptive field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -50,6 +50,7 @@ pub struct LwprParams {
     /// Initial metric D = `init_d`·I: a field's standard deviation is 1/√`init_d`.
     pub init_d: f64,
     /// Initial metric D (`n_in`, `n_in`), symmetric positive definite; overrides `init_d`.
+    #[serde(deserialize_with = "matrix")]
     pub init_metric: Option<DMatrix<f64>>,
     /// Learning rate of the metric, for every element.
     pub init_alpha: f64,
@@ -67,9 +68,9 @@ pub struct LwprParams {
     pub w_prune: f64,
     /// Which of the two.
     pub pruning: Pruning,
-    /// Forgetting factor λ of a new field; in (0, 1].
+    /// Forgetting factor λ of a new field; in [0.5, 1].
     pub init_lambda: f64,
-    /// Forgetting factor that it approaches; in (0, 1].
+    /// Forgetting factor that it approaches; in [0.5, 1].
     pub final_lambda: f64,
     /// How slowly: λ ← τλ + (1 − τ)·`final_lambda`; in (0, 1].
     pub tau_lambda: f64,
@@ -110,13 +111,14 @@ impl Default for LwprParams {
     }
 }
 
-impl LwprParams {
-    /// An empty model of `n_in` inputs and `n_out` outputs. The parameters are checked here, once.
-    ///
-    /// # Errors
-    /// [`LwprError::NoDimension`], [`LwprError::Parameter`], [`LwprError::NormLength`], [`LwprError::Norm`] or one of
-    /// the `LwprError::Metric…` variants.
-    pub fn build(self, n_in: usize, n_out: usize) -> Result<Lwpr, LwprError> {
-        Settings::new(self, n_in, n_out).map(Lwpr::new)
+/// A matrix as nalgebra writes it, numbers, rows, columns: its shape is checked before it is believed.
+fn matrix<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<DMatrix<f64>>, D::Error> {
+    let Some((numbers, rows, columns)) = Option::<(Vec<f64>, usize, usize)>::deserialize(deserializer)? else {
+        return Ok(None);
+    };
+    if rows.checked_mul(columns) != Some(numbers.len()) {
+        let found = numbers.len();
+        return Err(D::Error::custom(format!("a matrix of shape ({rows}, {columns}) with {found} numbers")));
     }
+    Ok(Some(DMatrix::from_vec(rows, columns, numbers)))
 }

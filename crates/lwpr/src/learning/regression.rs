@@ -1,6 +1,6 @@
 //! Incremental partial least squares inside a receptive field (Vijayakumar, D'Souza, Schaal 2005, table 1).
 
-use crate::element::Element;
+use crate::field::element::Element;
 use crate::field::{Direction, DirectionRows, Field, Layout};
 use crate::settings::Settings;
 use lanes::Number;
@@ -12,6 +12,9 @@ pub(crate) struct Sample<'a, T> {
     pub(crate) y: T,
     pub(crate) w: T,
 }
+
+/// Σ w s² stays above this, so that it can divide: equal samples spread along no direction, and what was there is forgotten.
+const LEAST_SPREAD: f64 = 1e-150;
 
 /// What the metric needs to know of a sample that the regression has absorbed.
 pub(crate) struct Absorbed<T: Number> {
@@ -138,7 +141,7 @@ pub(crate) fn update_regression<T: Number, E: Element<T>>(
 fn update_scalars<T: Number>(direction: &mut Direction<T>, (s, t): (T, T), w: T) -> T {
     let (lambda, ws) = (direction.lambda, w * s);
     direction.sum_w = lambda * direction.sum_w + w;
-    direction.ss2 = lambda * direction.ss2 + ws * s;
+    direction.ss2 = (lambda * direction.ss2 + ws * s).larger(lambda.like(LEAST_SPREAD));
     direction.ss_y = lambda * direction.ss_y + ws * t;
     let inverse = direction.ss2.recip();
     direction.beta = direction.ss_y * inverse;

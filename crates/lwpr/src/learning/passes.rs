@@ -3,13 +3,13 @@
 use nalgebra::DMatrixView;
 use rayon::prelude::*;
 
-use crate::batch::{BatchScratch, BatchTraining};
-use crate::chunk::Chunk;
+use crate::learning::batch::{BatchScratch, BatchTraining};
+use crate::learning::chunk::Chunk;
 use crate::{Lwpr, LwprError};
 
 /// Shortest and longest chunk. Every birth of a field costs a second run of its neighbour over part of the chunk, every
 /// chunk costs something by itself: chunks grow while no field is born and shrink when one is.
-const SHORTEST: usize = 64;
+pub(crate) const SHORTEST: usize = 64;
 const LONGEST: usize = 1024;
 
 /// What passes over a data set work in.

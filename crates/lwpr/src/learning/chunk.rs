@@ -4,11 +4,7 @@ use nalgebra::DVectorView;
 use pulp::Simd;
 
 use crate::settings::Settings;
-use lanes::Number;
-use lanes::Register;
-
-/// Samples that are looked at together.
-const LANES: usize = 8;
+use lanes::{LANES, Lanes, Number, Register};
 
 /// Normalised inputs, sample by sample and eight samples side by side.
 #[derive(Debug, Clone, Default)]
@@ -18,7 +14,7 @@ pub(crate) struct Chunk {
     width: usize,
     rows: Vec<f64>,
     /// For each block of eight samples, one array a dimension; beyond the end everything is infinitely far away.
-    blocks: Vec<[f64; LANES]>,
+    blocks: Vec<Lanes>,
 }
 
 /// Centre and diagonal D of a field, padded.

@@ -2,12 +2,13 @@
 
 use pulp::Simd;
 
-use crate::chunk::{Chunk, Shape};
+use crate::field::rows::Rows;
 use crate::field::{DIRECTION_ROWS, Direction, Field, Layout};
-use crate::kernel::Activation;
-use crate::rows::Rows;
-use crate::settings::{Settings, padded_for_lanes};
-use crate::training::{Workspace, train, with_width};
+use crate::learning::chunk::{Chunk, Shape};
+use crate::learning::metric::Diagonal;
+use crate::learning::rules::{SCRATCH_ROWS, Workspace, train};
+use crate::settings::Settings;
+use crate::settings::kernel::Activation;
 use lanes::Number;
 use lanes::Register;
 
@@ -41,7 +42,7 @@ impl<S: Simd> LaneBlock<S> {
     /// For fields of `n_directions`. Register that have not been filled hold something whose learning is harmless.
     pub(crate) fn new(simd: S, settings: &Settings, n_directions: usize) -> Self {
         let one = Register::splat(simd, 1.0);
-        let width = padded_for_lanes(settings.n_in) * S::F64_LANES;
+        let width = settings.n_in * S::F64_LANES;
         let direction = Direction {
             beta: one,
             ss2: one,
@@ -126,21 +127,46 @@ impl<S: Simd> LaneBlock<S> {
     /// All lanes learn from their samples. Returns the activations, and which lanes call for another direction.
     #[inline(always)]
     pub(crate) fn train(&mut self, settings: &Settings) -> (Register<S>, Option<Register<S>>) {
+        let simd = self.simd;
         let activation: Activation<Register<S>> = settings.params.kernel.at(self.q);
-        let Workspace { rows, mmt } = &mut self.workspace;
-        let wanted = with_width!(self.x.len(), [8, 12, 16, 24, 32, 48, 64], rows, |width, scratch| {
-            let sample = (&self.x[..width], self.y);
-            train::<Register<S>, Register<S>>(
-                (self.simd, self.simd),
-                &mut self.field,
-                settings,
-                sample,
-                activation,
-                scratch,
-                mmt,
-            )
-        });
-        let marks = |mask| Register::splat(self.simd, 1.0).or_else(mask, Register::splat(self.simd, 0.0));
-        (activation.w, wanted.map(marks))
+        let wanted = match settings.n_in {
+            2 => simd.vectorize(TrainLanes::<S, 2> { block: self, settings, activation }),
+            3 => simd.vectorize(TrainLanes::<S, 3> { block: self, settings, activation }),
+            4 => simd.vectorize(TrainLanes::<S, 4> { block: self, settings, activation }),
+            _ => simd.vectorize(TrainLanes::<S, 6> { block: self, settings, activation }),
+        };
+        (activation.w, wanted)
+    }
+}
+
+/// [`LaneBlock::train`] for one number of dimensions, a function of its own.
+struct TrainLanes<'a, S: Simd, const N: usize> {
+    block: &'a mut LaneBlock<S>,
+    settings: &'a Settings,
+    activation: Activation<Register<S>>,
+}
+
+impl<S: Simd, const N: usize> pulp::WithSimd for TrainLanes<'_, S, N> {
+    /// Non-zero in lanes that call for another direction.
+    type Output = Option<Register<S>>;
+
+    #[inline(always)]
+    fn with_simd<Same: Simd>(self, _: Same) -> Self::Output {
+        let TrainLanes { block, settings, activation } = self;
+        let width = const { N * S::F64_LANES };
+        let LaneBlock { simd, field, x, y, workspace, .. } = block;
+        let simd = *simd;
+        let Workspace { rows, mmt } = workspace;
+        let wanted = train::<Register<S>, Register<S>, Diagonal>(
+            (simd, simd),
+            field,
+            settings,
+            (&x[..width], *y),
+            activation,
+            &mut rows[..SCRATCH_ROWS * width],
+            mmt,
+        );
+        let (zero, one) = (Register::splat(simd, 0.0), Register::splat(simd, 1.0));
+        wanted.map(|mask| one.or_else(mask, zero))
     }
 }

@@ -2,18 +2,18 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::local_model::LocalModel;
+use super::local_model::LocalModel;
 use crate::{Kernel, LwprError, Predictor};
 
 /// Everything a [`Predictor`] is made from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct PredictorRecord {
-    pub(crate) kernel: Kernel,
-    pub(crate) cutoff: f64,
-    pub(crate) norm_in: Vec<f64>,
-    pub(crate) norm_out: Vec<f64>,
-    pub(crate) outputs: Vec<Vec<LocalModel>>,
+pub(super) struct PredictorRecord {
+    pub(super) kernel: Kernel,
+    pub(super) cutoff: f64,
+    pub(super) norm_in: Vec<f64>,
+    pub(super) norm_out: Vec<f64>,
+    pub(super) outputs: Vec<Vec<LocalModel>>,
 }
 
 impl PredictorRecord {
@@ -26,10 +26,19 @@ impl PredictorRecord {
             (positive(&self.norm_in) && positive(&self.norm_out), "a norm is not positive and finite"),
             (self.outputs.len() == self.norm_out.len(), "there is not one list of fields an output"),
             (models().all(|model| model.has_shape(n)), "a field has not the shape of the inputs"),
-            (models().all(LocalModel::is_finite), "a field has a number that is not finite"),
+            (self.outputs.iter().all(|models| have_one_shape(models)), "some fields turn, others do not"),
+            (
+                models().all(LocalModel::is_sound),
+                "a field has a number that is not finite or too large, or a metric that is none",
+            ),
         ];
         checks.into_iter().find(|(fine, _)| !fine).map_or(Ok(()), |(_, reason)| Err(reason))
     }
+}
+
+/// Whether the metrics are all diagonal or all full.
+fn have_one_shape(models: &[LocalModel]) -> bool {
+    models.windows(2).all(|pair| pair[0].metric.len() == pair[1].metric.len())
 }
 
 impl TryFrom<PredictorRecord> for Predictor {

@@ -1,7 +1,12 @@
 //! The state of one receptive field, or of several side by side.
 
+mod birth;
+pub(crate) mod element;
+pub(crate) mod receptive_field;
+pub(crate) mod rows;
+
 use crate::Metric;
-use crate::rows::Rows;
+use crate::field::rows::Rows;
 use crate::settings::Settings;
 
 /// One direction of the projection regression: its scalars. Its vectors are rows of the field.

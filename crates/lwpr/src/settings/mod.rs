@@ -1,3 +1,8 @@
+//! What can be chosen about a model, checked, and what follows from it.
+
+pub(crate) mod kernel;
+pub(crate) mod params;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::Side;
@@ -8,6 +13,10 @@ const TRAINING_FLOOR: f64 = 0.001;
 
 /// Normalised values above this are refused: fourth powers must stay finite.
 const LARGEST: f64 = 1e50;
+
+/// Most inputs or outputs, and most inputs with a full metric, which has the square of it in each field.
+const MOST_DIMENSIONS: usize = 1 << 16;
+const MOST_TURNING: usize = 1 << 10;
 
 /// Checked parameters and what follows from them.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +41,7 @@ impl Settings {
         if n_in == 0 || n_out == 0 {
             return Err(LwprError::NoDimension { n_in, n_out });
         }
+        check_dimensions(params.metric, n_in, n_out)?;
         check_scalars(&params)?;
         let width = padded(n_in);
         let init_m = match &params.init_metric {
@@ -63,6 +73,12 @@ impl Settings {
         self.params.metric == Metric::Diagonal && self.width <= 8
     }
 
+    /// Whether a batch may go field by field, several fields side by side: few dimensions, for each of which there is
+    /// code, and no field that vanishes in between.
+    pub(crate) fn side_by_side(&self) -> bool {
+        self.narrow() && matches!(self.n_in, 2 | 3 | 4 | 6) && self.params.w_prune == 1.0
+    }
+
     /// Refuses what is not finite, or so large that its powers would not be.
     pub(crate) fn check(&self, values: &[f64], side: Side, sample: usize) -> Result<(), LwprError> {
         let norm = match side {
@@ -79,13 +95,18 @@ impl Settings {
     }
 }
 
-/// `n` rounded up to a number of dimensions that several fields side by side are trained with: few enough of them, so
-/// that each can be compiled apart.
-pub(crate) fn padded_for_lanes(n: usize) -> usize {
-    match n {
-        3 | 6 => n,
-        n => padded(n),
+/// Refuses more dimensions than a model can have, before anything is allocated for them.
+fn check_dimensions(metric: Metric, n_in: usize, n_out: usize) -> Result<(), LwprError> {
+    let most_inputs = match metric {
+        Metric::Diagonal => MOST_DIMENSIONS,
+        Metric::Full => MOST_TURNING,
+    };
+    for (side, found, most) in [(Side::Input, n_in, most_inputs), (Side::Output, n_out, MOST_DIMENSIONS)] {
+        if found > most {
+            return Err(LwprError::TooManyDimensions { side, found, most });
+        }
     }
+    Ok(())
 }
 
 /// Whether a normalised value is finite and its powers will be.
@@ -102,6 +123,8 @@ fn check_scalars(p: &LwprParams) -> Result<(), LwprError> {
     let positive = |v: f64| v > 0.0 && v.is_finite();
     let non_negative = |v: f64| v >= 0.0 && v.is_finite();
     let unit = |v: f64| v > 0.0 && v <= 1.0;
+    // With less a field forgets nearly everything at each sample, and its sums run dry.
+    let remembers = |v: f64| (0.5..=1.0).contains(&v);
     let rate = match p.adaptation {
         MetricAdaptation::Meta { rate } => rate,
         MetricAdaptation::Fixed | MetricAdaptation::Gradient => 0.0,
@@ -114,8 +137,8 @@ fn check_scalars(p: &LwprParams) -> Result<(), LwprError> {
         ("penalty", p.penalty, non_negative(p.penalty), "finite and not negative"),
         ("w_gen", p.w_gen, p.w_gen > 0.0 && p.w_gen < 1.0, "between 0 and 1, both excluded"),
         ("w_prune", p.w_prune, unit(p.w_prune), "in (0, 1]"),
-        ("init_lambda", p.init_lambda, unit(p.init_lambda), "in (0, 1]"),
-        ("final_lambda", p.final_lambda, unit(p.final_lambda), "in (0, 1]"),
+        ("init_lambda", p.init_lambda, remembers(p.init_lambda), "in [0.5, 1]"),
+        ("final_lambda", p.final_lambda, remembers(p.final_lambda), "in [0.5, 1]"),
         ("tau_lambda", p.tau_lambda, unit(p.tau_lambda), "in (0, 1]"),
         ("add_threshold", p.add_threshold, non_negative(p.add_threshold), "finite and not negative"),
         ("init_s2", p.init_s2, positive(p.init_s2), "positive and finite"),

@@ -1,10 +1,10 @@
 //! The fields of one output, and how they learn from one sample.
 
 use crate::Pruning;
-use crate::activation::{ActivationTable, Near, Reached};
 use crate::field::Field;
+use crate::learning::activation::{ActivationTable, Near, Reached};
+use crate::learning::rules::{LearnFromOne, Workspace};
 use crate::settings::Settings;
-use crate::training::{Workspace, train_one, with_width};
 
 /// The receptive fields of one output.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -68,7 +68,7 @@ impl SubModel {
         workspace: &mut Workspace,
         reach: &mut Reach,
     ) {
-        reach.near.find(simd, settings, (&self.fields, &self.table), x, &mut workspace.rows);
+        reach.near.find(simd, settings, (&self.fields, &self.table), (x, settings.reach), &mut workspace.rows);
         reach.strongest = Strongest::default();
         for Reached { field, activation, .. } in reach.near.iter() {
             reach.strongest.see(field, activation.w);
@@ -86,16 +86,11 @@ impl SubModel {
         workspace: &mut Workspace,
         reach: &Reach,
     ) {
-        let Workspace { rows, mmt } = workspace;
-        with_width!(settings.width, [1, 2, 4, 8, 16, 24, 32], rows, |width, scratch| {
-            for Reached { field: k, q, activation } in reach.near.iter() {
-                if q < settings.training_reach {
-                    let field = &mut self.fields[k];
-                    train_one(simd, field, settings, (&x[..width], y), activation, scratch, mmt);
-                    self.table.set_metric(settings, k, field);
-                }
-            }
-        });
+        let near = &reach.near;
+        LearnFromOne { settings, fields: &mut self.fields, near, x, y, workspace }.run(simd);
+        for Reached { field, .. } in near.iter() {
+            self.table.set_metric(settings, field, &self.fields[field]);
+        }
         let strongest = reach.strongest;
         if strongest.asks_for_field(settings) {
             self.create(settings, x, y, strongest);

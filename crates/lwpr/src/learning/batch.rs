@@ -9,12 +9,13 @@ use std::cmp::Reverse;
 
 use pulp::Simd;
 
-use crate::chunk::{Chunk, Shape};
 use crate::field::Field;
-use crate::lane_block::LaneBlock;
+use crate::learning::activation::Near;
+use crate::learning::chunk::{Chunk, Shape};
+use crate::learning::lane_block::LaneBlock;
+use crate::learning::rules::{LearnFromOne, Workspace};
+use crate::learning::sub_model::{Strongest, SubModel, is_template};
 use crate::settings::Settings;
-use crate::sub_model::{Strongest, SubModel, is_template};
-use crate::training::{Workspace, train_one, with_width};
 
 /// Training of one output on one chunk.
 pub(crate) struct BatchTraining<'a> {
@@ -37,6 +38,7 @@ pub(crate) struct BatchScratch {
     /// long one at the end.
     load: Vec<usize>,
     workspace: Workspace,
+    near: Near,
 }
 
 /// A sample needs a field, but there are enough.
@@ -59,6 +61,7 @@ impl BatchScratch {
             start: Vec::new(),
             load: Vec::new(),
             workspace: Workspace::new(settings, settings.width),
+            near: Near::default(),
         }
     }
 }
@@ -103,7 +106,11 @@ impl BatchTraining<'_> {
     #[inline(always)]
     fn train_group<S: Simd>(&mut self, simd: S, group: &[(usize, Reverse<usize>, usize)]) {
         let mut queue = group.iter().map(|&(_, _, k)| k);
-        if group.len() * 2 < S::F64_LANES || S::F64_LANES == 1 {
+        if const { S::F64_LANES == 1 } {
+            queue.for_each(|k| self.train_rest(simd, k, 0));
+            return;
+        }
+        if group.len() * 2 < S::F64_LANES {
             queue.for_each(|k| self.train_rest(simd, k, 0));
             return;
         }
@@ -260,11 +267,10 @@ impl pulp::WithSimd for Alone<'_, '_> {
             let Some((sample, q)) = training.find(simd, &shape, k, (next, end)) else { break };
             let activation = settings.params.kernel.at(q);
             training.see(sample, k, activation.w);
-            let Workspace { rows, mmt } = &mut training.scratch.workspace;
             let (x, y) = (training.chunk.row(sample), training.y[sample]);
-            with_width!(width, [1, 2, 4, 8], rows, |width, scratch| {
-                train_one(simd, field, settings, (&x[..width], y), activation, scratch, mmt);
-            });
+            let BatchScratch { near, workspace, .. } = &mut *training.scratch;
+            near.only(0, q, activation);
+            LearnFromOne { settings, fields: std::slice::from_mut(field), near, x, y, workspace }.run(simd);
             next = sample + 1;
         }
     }

@@ -14,10 +14,6 @@ pub(crate) struct Rows {
     len: usize,
 }
 
-/// Numbers on the stack that start at a cache line.
-#[repr(align(64))]
-pub(crate) struct Aligned<const N: usize>(pub(crate) [f64; N]);
-
 impl Rows {
     pub(crate) fn zeros(len: usize) -> Self {
         let slack = LINE / size_of::<f64>();

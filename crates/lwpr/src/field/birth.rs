@@ -1,8 +1,8 @@
 //! How receptive fields come into being, and grow.
 
 use crate::Metric;
+use crate::field::rows::Rows;
 use crate::field::{DIRECTION_ROWS, Direction, Field, Layout};
-use crate::rows::Rows;
 use crate::settings::Settings;
 
 /// What the learning rates are floored by before their logarithm.

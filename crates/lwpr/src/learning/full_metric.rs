@@ -1,8 +1,8 @@
 //! The gradient of a full metric.
 
-use crate::element::Element;
 use crate::field::MetricRows;
-use crate::metric::{Derivatives, ElementRows, Step};
+use crate::field::element::{Element, add_scaled};
+use crate::learning::metric::{Derivatives, ElementRows, Step};
 use lanes::Number;
 
 /// Scratch rows: M(x − c), a column of MD, and M Mᵀ (`n_in` rows; empty for a diagonal metric).
@@ -10,14 +10,6 @@ pub(crate) struct FullScratch<'a> {
     pub(crate) t: &'a mut [f64],
     pub(crate) md: &'a mut [f64],
     pub(crate) mmt: &'a mut [f64],
-}
-
-/// y ← y + a·x for rows.
-#[inline(always)]
-pub(crate) fn add_scaled<T: Number, E: Element<T>>(token: E::Token, y: &mut [f64], a: T, x: &[f64]) {
-    for (y, &x) in E::elements_mut(y).iter_mut().zip(E::elements(x)) {
-        *y = (E::of(token, *y) + E::of(token, x) * a).raw();
-    }
 }
 
 /// Steps every element of the upper triangle. With t = M(x − c), ∂q/∂M_nm = 2 (x − c)_m t_n; the penalty's gradient needs

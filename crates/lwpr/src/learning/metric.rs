@@ -1,13 +1,35 @@
 //! One step of gradient descent on a field's metric (Vijayakumar, D'Souza, Schaal 2005, table 2 and appendix).
 
-use crate::element::Element;
+use crate::MetricAdaptation;
+use crate::field::element::Element;
 use crate::field::{Direction, Field, Layout, MetricRows};
-use crate::full_metric::{FullScratch, full_step};
-use crate::kernel::Activation;
-use crate::regression::{Absorbed, settled};
+use crate::learning::full_metric::{FullScratch, full_step};
+use crate::learning::regression::{Absorbed, settled};
 use crate::settings::Settings;
-use crate::{Metric, MetricAdaptation};
+use crate::settings::kernel::Activation;
 use lanes::Number;
+
+/// The metric's shape, where the code for it is chosen when it is compiled.
+pub(crate) trait Shape: Default {
+    /// Whether fields may turn.
+    const FULL: bool;
+}
+
+/// M is diagonal.
+#[derive(Debug, Default)]
+pub(crate) struct Diagonal;
+
+/// M is upper triangular.
+#[derive(Debug, Default)]
+pub(crate) struct Full;
+
+impl Shape for Diagonal {
+    const FULL: bool = false;
+}
+
+impl Shape for Full {
+    const FULL: bool = true;
+}
 
 /// What the steps of all elements of M share.
 pub(crate) struct Step<T: Number> {
@@ -53,7 +75,7 @@ impl<E: Number> Derivatives<E> {
 
 /// Adapts M after the regression has absorbed a sample; x − c in `dx`.
 #[inline(always)]
-pub(crate) fn update_metric<T: Element<T>, E: Element<T>>(
+pub(crate) fn update_metric<T: Element<T>, E: Element<T>, M: Shape>(
     tokens: (T::Token, E::Token),
     field: &mut Field<T>,
     settings: &Settings,
@@ -73,9 +95,10 @@ pub(crate) fn update_metric<T: Element<T>, E: Element<T>>(
     let mut step = Step::new(field, settings, activation, sample, rate);
     let mut rows = field.metric_rows(Layout::new(settings, dx.len()));
     step.limit = E::largest(tokens.1, rows.m) * 0.1;
-    match settings.params.metric {
-        Metric::Diagonal => diagonal_step::<T, E>(tokens.1, &mut rows, &step, dx),
-        Metric::Full => full_step::<T, E>(tokens, &mut rows, &step, dx, scratch),
+    if const { M::FULL } {
+        full_step::<T, E>(tokens, &mut rows, &step, dx, scratch);
+    } else {
+        diagonal_step::<T, E>(tokens.1, &mut rows, &step, dx);
     }
     let rest = activation.w.like(1.0) - activation.w * sample.leverage;
     remember(&mut field.directions, sample, activation.w, activation.w * rest.recip() * step.transient);

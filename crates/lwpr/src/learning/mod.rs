@@ -1,0 +1,12 @@
+//! How receptive fields learn: one sample at a time, or a batch field by field.
+
+pub(crate) mod activation;
+mod batch;
+mod chunk;
+pub(crate) mod full_metric;
+mod lane_block;
+mod metric;
+pub(crate) mod passes;
+mod regression;
+pub(crate) mod rules;
+pub(crate) mod sub_model;

@@ -1,0 +1,259 @@
+//! Prediction from a model as it stands, between two updates.
+
+use std::cell::RefCell;
+
+use lanes::Register;
+use nalgebra::{DVectorView, DVectorViewMut};
+
+use super::local_model::noise;
+use super::sweep::Wanted;
+use super::{Prediction, is_query};
+use crate::field::element::{Element, add_scaled};
+use crate::field::{DIRECTION_ROWS, Field, Layout};
+use crate::learning::activation::{Near, Reached};
+use crate::learning::sub_model::SubModel;
+use crate::settings::Settings;
+use crate::{Lwpr, Metric};
+
+/// A field that takes part. Its slope and D(x − c) lie in [`Scratch::vectors`].
+#[derive(Debug, Clone, Copy)]
+struct Term {
+    w: f64,
+    /// 2 dw/dq.
+    dw: f64,
+    y: f64,
+    noise: Option<f64>,
+}
+
+/// What a query works in; each thread has one, so that none allocates more than once.
+#[derive(Debug, Default)]
+struct Scratch {
+    /// x, x − mean less what the directions explain, M(x − c).
+    rows: Vec<f64>,
+    near: Near,
+    terms: Vec<Term>,
+    vectors: Vec<f64>,
+}
+
+thread_local! {
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
+}
+
+impl Lwpr {
+    /// What the model says about `x` as it stands, without a snapshot; whether every output has support, without which
+    /// only `max_activation` is answered. Fields whose activation is at most `cutoff` do not take part. Allocates nothing
+    /// once a thread has asked a model of that size.
+    ///
+    /// # Panics
+    /// If `prediction` was made for other numbers of inputs and outputs.
+    pub fn predict_into(&self, x: DVectorView<'_, f64>, cutoff: f64, prediction: &mut Prediction) -> bool {
+        prediction.fill_with(self.n_in(), self.n_out(), |output, wanted| self.ask(x, output, cutoff, wanted))
+    }
+
+    /// Prediction of one output and its derivative by the input (`n_in`), written into `gradient`, from the model as it
+    /// stands; `None` without support (`gradient` may then hold anything). Otherwise as
+    /// [`predict_into`](Self::predict_into).
+    ///
+    /// # Panics
+    /// If there is no such output, or `gradient` has not `n_in` elements.
+    pub fn value_and_gradient_into(
+        &self,
+        x: DVectorView<'_, f64>,
+        output: usize,
+        cutoff: f64,
+        mut gradient: DVectorViewMut<'_, f64>,
+    ) -> Option<f64> {
+        assert_eq!(gradient.len(), self.n_in(), "the gradient has one element for each input");
+        self.ask(x, output, cutoff, Wanted { gradient: Some((gradient.as_mut_slice(), 1)), ..Wanted::default() })
+    }
+
+    fn ask(&self, x: DVectorView<'_, f64>, output: usize, cutoff: f64, wanted: Wanted<'_>) -> Option<f64> {
+        let sub_model = &self.outputs[output];
+        if !is_query(x, self.n_in()) {
+            return None;
+        }
+        let norm_out = self.settings.norm_out[output];
+        SCRATCH.with_borrow_mut(|scratch| {
+            let ask = Ask {
+                settings: &self.settings,
+                sub_model,
+                norm_out,
+                x: x.as_slice(),
+                cutoff: cutoff.max(0.0),
+                wanted,
+                scratch,
+            };
+            pulp::Arch::new().dispatch(ask)
+        })
+    }
+}
+
+/// One question to one output, compiled for the processor at hand.
+struct Ask<'a> {
+    settings: &'a Settings,
+    sub_model: &'a SubModel,
+    norm_out: f64,
+    x: &'a [f64],
+    cutoff: f64,
+    wanted: Wanted<'a>,
+    scratch: &'a mut Scratch,
+}
+
+impl pulp::WithSimd for Ask<'_> {
+    type Output = Option<f64>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<f64> {
+        let width = self.settings.width;
+        let Scratch { rows, near, terms, .. } = &mut *self.scratch;
+        rows.clear();
+        rows.resize(3 * width, 0.0);
+        let (x, rest) = rows.split_at_mut(width);
+        for ((x, raw), norm) in x.iter_mut().zip(self.x).zip(&self.settings.norm_in) {
+            *x = raw / norm;
+        }
+        let reach = if self.wanted.max_activation.is_some() {
+            f64::INFINITY
+        } else {
+            // Where rounding might decide, the activation itself does.
+            self.settings.params.kernel.reach(self.cutoff.min(1.0)) + 1e-6
+        };
+        near.find(simd, self.settings, (&self.sub_model.fields, &self.sub_model.table), (x, reach), rest);
+        terms.clear();
+        if S::F64_LANES > 1 && width.is_multiple_of(S::F64_LANES) {
+            self.answer::<Register<S>>(simd)
+        } else {
+            self.answer::<f64>(())
+        }
+    }
+}
+
+impl Ask<'_> {
+    #[inline(always)]
+    fn answer<E: Element<f64>>(self, token: E::Token) -> Option<f64> {
+        let Ask { settings, sub_model, norm_out, cutoff, wanted, scratch, .. } = self;
+        let Scratch { rows, near, terms, vectors } = scratch;
+        let width = settings.width;
+        let (x, rest) = rows.split_at_mut(width);
+        let (mut nearest, mut sum_w, mut sum_wy) = (0.0, 0.0, 0.0);
+        for Reached { field, activation, .. } in near.iter() {
+            nearest = if activation.w > nearest { activation.w } else { nearest };
+            let field = &sub_model.fields[field];
+            if activation.w <= cutoff || !field.is_trustworthy() {
+                continue;
+            }
+            let at = terms.len() * 2 * width;
+            if vectors.len() < at + 2 * width {
+                vectors.resize(at + 2 * width, 0.0);
+            }
+            let local = Local { settings, field, layout: Layout::new(settings, width) };
+            let (slope, v) = vectors[at..at + 2 * width].split_at_mut(width);
+            let (y, squares) = local.predict::<E>(token, x, rest, slope);
+            // What has run into numbers that are not finite is of no use.
+            if !y.is_finite() {
+                continue;
+            }
+            local.turn::<E>(token, x, rest, v);
+            let noise = noise(field, field.n_usable(settings.n_in));
+            let noise = noise.map(|noise| noise * (1.0 + activation.w * squares));
+            terms.push(Term { w: activation.w, dw: 2.0 * activation.slope, y, noise });
+            sum_w += activation.w;
+            sum_wy += activation.w * y;
+        }
+        if let Some(max_activation) = wanted.max_activation {
+            *max_activation = nearest;
+        }
+        if sum_w <= 0.0 {
+            return None;
+        }
+        let (value, scale) = (sum_wy / sum_w, norm_out / sum_w);
+        if let Some(confidence) = wanted.confidence {
+            *confidence = scale * spread(terms, value);
+        }
+        if let Some((gradient, stride)) = wanted.gradient {
+            for (i, (gradient, norm)) in gradient.iter_mut().step_by(stride).zip(&settings.norm_in).enumerate() {
+                let mut sum = 0.0;
+                for (term, vectors) in terms.iter().zip(vectors.chunks_exact(2 * width)) {
+                    sum += term.w * vectors[i] + term.dw * (term.y - value) * vectors[width + i];
+                }
+                *gradient = sum * (scale / norm);
+            }
+        }
+        Some(value * norm_out)
+    }
+}
+
+/// √(Σ w σ² + Σ w (y − `value`)²); infinite if no field has errors.
+fn spread(terms: &[Term], value: f64) -> f64 {
+    if terms.iter().all(|term| term.noise.is_none()) {
+        return f64::INFINITY;
+    }
+    let square = |term: &Term| term.w * (term.noise.unwrap_or(0.0) + (term.y - value) * (term.y - value));
+    terms.iter().map(square).sum::<f64>().sqrt()
+}
+
+/// A field that is asked.
+#[derive(Clone, Copy)]
+struct Local<'a> {
+    settings: &'a Settings,
+    field: &'a Field,
+    layout: Layout,
+}
+
+impl Local<'_> {
+    /// U and P of direction `j`.
+    #[inline(always)]
+    fn direction(&self, j: usize) -> (&[f64], &[f64]) {
+        let width = self.layout.width;
+        let rows = &self.field.rows[self.layout.directions() + (DIRECTION_ROWS * j + 2) * width..][..2 * width];
+        rows.split_at(width)
+    }
+
+    /// The local prediction at `x` and Σ s²/Σ w s². `slope` receives Σⱼ βⱼ ∂sⱼ/∂x, by the adjoint of the deflations
+    /// x ← x − P s.
+    #[inline(always)]
+    fn predict<E: Element<f64>>(&self, token: E::Token, x: &[f64], rest: &mut [f64], slope: &mut [f64]) -> (f64, f64) {
+        let (width, usable) = (self.layout.width, self.field.n_usable(self.settings.n_in));
+        let residual = &mut rest[..width];
+        for ((residual, x), mean) in residual.iter_mut().zip(x).zip(&self.field.rows[width..2 * width]) {
+            *residual = x - mean;
+        }
+        let (mut y, mut squares) = (self.field.beta0, 0.0);
+        for (j, direction) in self.field.directions[..usable].iter().enumerate() {
+            let (u, p) = self.direction(j);
+            let s = E::dot(token, u, residual);
+            add_scaled::<f64, E>(token, residual, -s, p);
+            y += direction.beta * s;
+            squares += s * s / direction.ss2;
+        }
+        slope.fill(0.0);
+        for j in (0..usable).rev() {
+            let (u, p) = self.direction(j);
+            let factor = self.field.directions[j].beta - E::dot(token, p, slope);
+            add_scaled::<f64, E>(token, slope, factor, u);
+        }
+        (y, squares)
+    }
+
+    /// v = D(x − c).
+    #[inline(always)]
+    fn turn<E: Element<f64>>(&self, token: E::Token, x: &[f64], rest: &mut [f64], v: &mut [f64]) {
+        let width = self.layout.width;
+        let m = self.field.m(self.settings);
+        if self.settings.params.metric == Metric::Diagonal {
+            for (((v, m), x), c) in v.iter_mut().zip(m).zip(x).zip(&*self.field.rows) {
+                *v = m * m * (x - c);
+            }
+            return;
+        }
+        let t = &mut rest[..width];
+        t.fill(0.0);
+        for ((column, x), c) in m.chunks_exact(width).zip(x).zip(&*self.field.rows) {
+            add_scaled::<f64, E>(token, t, x - c, column);
+        }
+        v.fill(0.0);
+        for (v, column) in v.iter_mut().zip(m.chunks_exact(width)) {
+            *v = E::dot(token, column, t);
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! What a model says about an input.
+
+mod field_table;
+mod live;
+mod local_model;
+mod predictor;
+mod record;
+mod sweep;
+
+use nalgebra::{DMatrix, DVector, DVectorView};
+
+pub use predictor::Predictor;
+use sweep::Wanted;
+
+/// What a model says about one input.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prediction {
+    /// The prediction (`n_out`).
+    pub value: DVector<f64>,
+    /// Its derivative by the input (`n_out`, `n_in`).
+    pub gradient: DMatrix<f64>,
+    /// Predictive standard deviation (`n_out`), in the units of the outputs; infinite where no field that takes part
+    /// has collected errors yet (in its first hundred samples or so, with the default forgetting).
+    pub confidence: DVector<f64>,
+    /// Activation of the nearest receptive field (`n_out`), whether it takes part or not.
+    pub max_activation: DVector<f64>,
+}
+
+impl Prediction {
+    /// Room for the predictions of a model of `n_in` inputs and `n_out` outputs; all zero.
+    pub fn zeros(n_in: usize, n_out: usize) -> Self {
+        Prediction {
+            value: DVector::zeros(n_out),
+            gradient: DMatrix::zeros(n_out, n_in),
+            confidence: DVector::zeros(n_out),
+            max_activation: DVector::zeros(n_out),
+        }
+    }
+
+    /// Asks output after output for everything. Returns whether all have support.
+    fn fill_with(&mut self, n_in: usize, n_out: usize, mut ask: impl FnMut(usize, Wanted<'_>) -> Option<f64>) -> bool {
+        assert_eq!(self.gradient.shape(), (n_out, n_in), "the prediction has the shape of the model");
+        let mut supported = true;
+        for output in 0..n_out {
+            let wanted = Wanted {
+                gradient: Some((&mut self.gradient.as_mut_slice()[output..], n_out)),
+                hessian: None,
+                confidence: Some(&mut self.confidence[output]),
+                max_activation: Some(&mut self.max_activation[output]),
+            };
+            match ask(output, wanted) {
+                Some(value) => self.value[output] = value,
+                None => supported = false,
+            }
+        }
+        supported
+    }
+}
+
+/// Whether `x` is something to be asked: `n_in` finite numbers.
+fn is_query(x: DVectorView<'_, f64>, n_in: usize) -> bool {
+    x.len() == n_in && x.as_slice().iter().all(|x| x.is_finite())
+}

@@ -1,0 +1,230 @@
+use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::field_table::FieldTable;
+use super::local_model::LocalModel;
+use super::record::PredictorRecord;
+use super::sweep::{Query, Wanted, sweep};
+use super::{Prediction, is_query};
+use crate::error::Side;
+use crate::{Kernel, Lwpr, LwprError};
+
+/// An immutable snapshot of a model that predicts; made by [`Lwpr::predictor`]. Threads may share it.
+///
+/// A query is (`n_in`) numbers in the units the model was trained with. One that has another length or is not finite has
+/// no support; what takes a batch refuses it instead. Nothing allocates but the answers that are returned; a thread's
+/// first query of a model makes room once.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "PredictorRecord", into = "PredictorRecord")]
+pub struct Predictor {
+    kernel: Kernel,
+    cutoff: f64,
+    reach: f64,
+    norm_in: Vec<f64>,
+    /// 1 / norm_in: a division costs as much as ten products.
+    per_norm_in: Vec<f64>,
+    norm_out: Vec<f64>,
+    outputs: Vec<OutputFields>,
+}
+
+/// The fields of one output, as they are stored and as they are asked.
+#[derive(Debug, Clone, PartialEq)]
+struct OutputFields {
+    models: Vec<LocalModel>,
+    table: FieldTable,
+}
+
+impl Lwpr {
+    /// An immutable snapshot that predicts. Fields whose activation is at most `cutoff` do not take part: 0.001 is a
+    /// good choice, 0 uses every field however far.
+    pub fn predictor(&self, cutoff: f64) -> Predictor {
+        let settings = &self.settings;
+        let freeze = |field| LocalModel::new(field, settings);
+        Predictor::from_record(PredictorRecord {
+            kernel: settings.params.kernel,
+            cutoff: cutoff.max(0.0),
+            norm_in: settings.norm_in.clone(),
+            norm_out: settings.norm_out.clone(),
+            outputs: self.outputs.iter().map(|o| o.fields.iter().filter_map(freeze).collect()).collect(),
+        })
+    }
+}
+
+impl Predictor {
+    /// From a record that has been checked.
+    pub(super) fn from_record(record: PredictorRecord) -> Self {
+        let PredictorRecord { kernel, cutoff, norm_in, norm_out, outputs } = record;
+        let fields =
+            |models: Vec<LocalModel>| OutputFields { table: FieldTable::new(norm_in.len(), &models, cutoff), models };
+        Predictor {
+            kernel,
+            cutoff,
+            // Where rounding might decide, the activation itself does.
+            reach: kernel.reach(cutoff.min(1.0)) + 1e-6,
+            per_norm_in: norm_in.iter().map(|norm| 1.0 / norm).collect(),
+            outputs: outputs.into_iter().map(fields).collect(),
+            norm_in,
+            norm_out,
+        }
+    }
+
+    pub(super) fn record(&self) -> PredictorRecord {
+        PredictorRecord {
+            kernel: self.kernel,
+            cutoff: self.cutoff,
+            norm_in: self.norm_in.clone(),
+            norm_out: self.norm_out.clone(),
+            outputs: self.outputs.iter().map(|output| output.models.clone()).collect(),
+        }
+    }
+
+    /// Everything about `x`; `None` if some output has no trustworthy field activated above the cutoff.
+    pub fn predict(&self, x: DVectorView<'_, f64>) -> Option<Prediction> {
+        let mut prediction = Prediction::zeros(self.n_in(), self.n_out());
+        self.predict_into(x, &mut prediction).then_some(prediction)
+    }
+
+    /// Everything about `x`, written into `prediction`; whether every output has support, without which only
+    /// `max_activation` is answered.
+    ///
+    /// # Panics
+    /// If `prediction` was made for other numbers of inputs and outputs.
+    pub fn predict_into(&self, x: DVectorView<'_, f64>, prediction: &mut Prediction) -> bool {
+        prediction.fill_with(self.n_in(), self.n_out(), |output, wanted| self.ask(x, output, wanted))
+    }
+
+    /// [`predict`](Self::predict) for every column of `xs` (`n_in`, N), in parallel; the same at any thread count.
+    ///
+    /// # Errors
+    /// [`LwprError::Dimension`] or [`LwprError::BadValue`].
+    pub fn predict_batch(&self, xs: DMatrixView<'_, f64>) -> Result<Vec<Option<Prediction>>, LwprError> {
+        self.check_queries(xs)?;
+        Ok((0..xs.ncols()).into_par_iter().map(|sample| self.predict(xs.column(sample))).collect())
+    }
+
+    /// [`value`](Self::value) for every column of `xs` (`n_in`, N), in parallel; the same at any thread count.
+    ///
+    /// # Errors
+    /// [`LwprError::Dimension`] or [`LwprError::BadValue`].
+    ///
+    /// # Panics
+    /// If there is no such output.
+    pub fn values(&self, xs: DMatrixView<'_, f64>, output: usize) -> Result<Vec<Option<f64>>, LwprError> {
+        self.check_queries(xs)?;
+        Ok((0..xs.ncols()).into_par_iter().map(|sample| self.value(xs.column(sample), output)).collect())
+    }
+
+    /// Gradients of one output at every column of `xs` (`n_in`, N), written into the columns of `gradients` (`n_in`, N),
+    /// in parallel; the same at any thread count. A column without support becomes NaN. Returns how many do.
+    ///
+    /// # Errors
+    /// [`LwprError::Dimension`] or [`LwprError::BadValue`].
+    ///
+    /// # Panics
+    /// If there is no such output, or `gradients` has another shape than `xs`.
+    pub fn gradients_into(
+        &self,
+        xs: DMatrixView<'_, f64>,
+        output: usize,
+        gradients: &mut DMatrix<f64>,
+    ) -> Result<usize, LwprError> {
+        assert_eq!(xs.shape(), gradients.shape(), "there is one gradient for each query");
+        self.check_queries(xs)?;
+        let columns = gradients.as_mut_slice().par_chunks_exact_mut(self.n_in()).enumerate();
+        let unsupported = columns.map(|(sample, gradient)| {
+            let mut column = DVectorViewMut::from_slice(gradient, self.n_in());
+            if self.value_and_gradient_into(xs.column(sample), output, column.as_view_mut()).is_some() {
+                return 0;
+            }
+            column.fill(f64::NAN);
+            1
+        });
+        Ok(unsupported.sum())
+    }
+
+    /// Prediction of one output; `None` without support.
+    ///
+    /// # Panics
+    /// If there is no such output.
+    pub fn value(&self, x: DVectorView<'_, f64>, output: usize) -> Option<f64> {
+        self.ask(x, output, Wanted::default())
+    }
+
+    /// Prediction of one output and its derivative by the input (`n_in`), written into `gradient`; `None` without
+    /// support (`gradient` may then hold anything).
+    ///
+    /// # Panics
+    /// If there is no such output, or `gradient` has not `n_in` elements.
+    pub fn value_and_gradient_into(
+        &self,
+        x: DVectorView<'_, f64>,
+        output: usize,
+        mut gradient: DVectorViewMut<'_, f64>,
+    ) -> Option<f64> {
+        assert_eq!(gradient.len(), self.n_in(), "the gradient has one element for each input");
+        self.ask(x, output, Wanted { gradient: Some((gradient.as_mut_slice(), 1)), ..Wanted::default() })
+    }
+
+    /// Second derivative of one output by the input (`n_in`, `n_in`); `None` without support.
+    ///
+    /// # Panics
+    /// If there is no such output.
+    pub fn hessian(&self, x: DVectorView<'_, f64>, output: usize) -> Option<DMatrix<f64>> {
+        let mut hessian = DMatrix::zeros(self.n_in(), self.n_in());
+        let wanted = Wanted { hessian: Some(hessian.as_mut_slice()), ..Wanted::default() };
+        self.ask(x, output, wanted).map(|_| hessian)
+    }
+
+    /// Predictive standard deviation of one output, in its units; `None` without support, infinite where no field that
+    /// takes part has collected errors yet.
+    ///
+    /// # Panics
+    /// If there is no such output.
+    pub fn confidence(&self, x: DVectorView<'_, f64>, output: usize) -> Option<f64> {
+        let mut confidence = 0.0;
+        self.ask(x, output, Wanted { confidence: Some(&mut confidence), ..Wanted::default() }).map(|_| confidence)
+    }
+
+    /// Activation of the nearest receptive field, trustworthy or not: how far `x` is from everything learnt. 0 for a
+    /// query that is not finite or has another length.
+    ///
+    /// # Panics
+    /// If there is no such output.
+    pub fn max_activation(&self, x: DVectorView<'_, f64>, output: usize) -> f64 {
+        let mut max_activation = 0.0;
+        self.ask(x, output, Wanted { max_activation: Some(&mut max_activation), ..Wanted::default() });
+        max_activation
+    }
+
+    /// Number of inputs.
+    pub fn n_in(&self) -> usize {
+        self.norm_in.len()
+    }
+
+    /// Number of outputs.
+    pub fn n_out(&self) -> usize {
+        self.norm_out.len()
+    }
+
+    fn ask(&self, x: DVectorView<'_, f64>, output: usize, wanted: Wanted<'_>) -> Option<f64> {
+        let (fields, norm_out) = (&self.outputs[output], self.norm_out[output]);
+        if !is_query(x, self.n_in()) {
+            return None;
+        }
+        let Predictor { kernel, reach, ref per_norm_in, .. } = *self;
+        sweep(&fields.table, Query { kernel, reach, x: x.as_slice(), per_norm_in, norm_out }, wanted)
+    }
+
+    fn check_queries(&self, xs: DMatrixView<'_, f64>) -> Result<(), LwprError> {
+        if xs.nrows() != self.n_in() {
+            return Err(LwprError::Dimension { side: Side::Input, found: xs.nrows(), expected: self.n_in() });
+        }
+        for (sample, x) in xs.column_iter().enumerate() {
+            if let Some(dimension) = x.iter().position(|x| !x.is_finite()) {
+                return Err(LwprError::BadValue { side: Side::Input, sample, dimension, value: x[dimension] });
+            }
+        }
+        Ok(())
+    }
+}

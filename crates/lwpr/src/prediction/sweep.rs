@@ -1,0 +1,377 @@
+//! One sweep over the fields of an output, for everything that is asked of a query.
+
+use std::cell::RefCell;
+
+use lanes::{LANES, Lanes, Number, Register, total};
+use pulp::Simd;
+
+use super::field_table::{Block, CUTOFF, FAR, FieldTable, NOISE, NOISE_KNOWN, OFFSET};
+use crate::Kernel;
+
+/// What a query needs to know besides the fields.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Query<'a> {
+    pub(super) kernel: Kernel,
+    /// Squared distance beyond which activations are below the cutoff.
+    pub(super) reach: f64,
+    pub(super) x: &'a [f64],
+    pub(super) per_norm_in: &'a [f64],
+    pub(super) norm_out: f64,
+}
+
+/// What is asked for besides the value. All answers are in the units of inputs and outputs.
+#[derive(Debug, Default)]
+pub(super) struct Wanted<'a> {
+    /// The gradient, one element every `stride`.
+    pub(super) gradient: Option<(&'a mut [f64], usize)>,
+    /// Second derivatives (n, n).
+    pub(super) hessian: Option<&'a mut [f64]>,
+    /// Standard deviation; infinite where no field that takes part has collected errors.
+    pub(super) confidence: Option<&'a mut f64>,
+    /// Activation of the nearest field, whether it takes part or not; answered without support too.
+    pub(super) max_activation: Option<&'a mut f64>,
+}
+
+/// A block with fields in reach: squared distances, activations, 2 dw/dq, local predictions.
+#[derive(Debug, Clone, Copy, Default)]
+struct Active {
+    block: usize,
+    q: Lanes,
+    w: Lanes,
+    dw: Lanes,
+    y: Lanes,
+}
+
+/// What a query works in; each thread has one, so that none allocates more than once.
+#[derive(Debug, Default)]
+struct Scratch {
+    x: Vec<f64>,
+    active: Vec<Active>,
+    /// D(x − c) of a block, or of every active one.
+    v: Vec<Lanes>,
+    /// Sums of the gradient, dimension by dimension.
+    sums: Vec<Lanes>,
+}
+
+thread_local! {
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
+}
+
+/// Sums over all fields that take part.
+#[derive(Debug, Clone, Copy)]
+struct Sums {
+    w: f64,
+    wy: f64,
+    /// The least squared distance of all fields.
+    nearest: f64,
+}
+
+/// The weighted mean of the local predictions, and what else is wanted; `None` without support.
+pub(super) fn sweep(table: &FieldTable, query: Query<'_>, wanted: Wanted<'_>) -> Option<f64> {
+    SCRATCH.with_borrow_mut(|scratch| pulp::Arch::new().dispatch(Sweep { table, query, wanted, scratch }))
+}
+
+impl Scratch {
+    #[inline(always)]
+    fn make_room(&mut self, table: &FieldTable) {
+        let n = table.n_in();
+        if self.x.len() < n {
+            self.x.resize(n, 0.0);
+            self.v.resize(n, [0.0; LANES]);
+            self.sums.resize(n, [0.0; LANES]);
+        }
+        if self.active.len() < table.n_blocks() {
+            self.active.resize(table.n_blocks(), Active::default());
+        }
+    }
+}
+
+/// [`sweep`], compiled for the processor at hand.
+struct Sweep<'a> {
+    table: &'a FieldTable,
+    query: Query<'a>,
+    wanted: Wanted<'a>,
+    scratch: &'a mut Scratch,
+}
+
+impl pulp::WithSimd for Sweep<'_> {
+    type Output = Option<f64>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Option<f64> {
+        let Sweep { table, query, wanted, scratch } = self;
+        scratch.make_room(table);
+        let Scratch { x, active, v, sums } = scratch;
+        let (x, sums) = (&mut x[..table.n_in()], &mut sums[..table.n_in()]);
+        for ((x, raw), per_norm) in x.iter_mut().zip(query.x).zip(query.per_norm_in) {
+            *x = raw * per_norm;
+        }
+        let (found, count) = find(simd, table, query, x, active);
+        let active = &active[..count];
+        if let Some(max_activation) = wanted.max_activation {
+            *max_activation = query.kernel.at(found.nearest).w;
+        }
+        if found.w <= 0.0 {
+            return None;
+        }
+        let value = found.wy / found.w;
+        let scale = query.norm_out / found.w;
+        if let Some(confidence) = wanted.confidence {
+            *confidence = scale * spread(simd, table, x, active, value);
+        }
+        if wanted.gradient.is_some() || wanted.hessian.is_some() {
+            add_gradients(simd, table, x, active, value, (v, sums));
+        }
+        if let Some((gradient, stride)) = wanted.gradient {
+            for ((gradient, sum), per_norm) in gradient.iter_mut().step_by(stride).zip(&*sums).zip(query.per_norm_in) {
+                *gradient = total(*sum) * (scale * per_norm);
+            }
+        }
+        if let Some(hessian) = wanted.hessian {
+            let gradients = (&*sums, found.w);
+            write_hessian(simd, table, (query, scale, value), (x, active), (v, gradients), hessian);
+        }
+        Some(value * query.norm_out)
+    }
+}
+
+/// Finds the blocks in reach, and how many they are.
+#[inline(always)]
+fn find<S: Simd>(simd: S, table: &FieldTable, query: Query<'_>, x: &[f64], active: &mut [Active]) -> (Sums, usize) {
+    let (reach, zero) = (Register::splat(simd, query.reach), Register::splat(simd, 0.0));
+    let (mut sum_w, mut sum_wy, mut nearest) = ([0.0; LANES], [0.0; LANES], [f64::INFINITY; LANES]);
+    let mut count = 0;
+    for (b, block) in table.blocks().enumerate() {
+        let (mut distance, mut local) = ([0.0; LANES], [0.0; LANES]);
+        let mut in_reach = false;
+        for part in 0..Register::<S>::parts() {
+            let (q, y) = if table.is_full() {
+                full_distance(simd, block, x, part)
+            } else {
+                diagonal_distance(simd, block, x, part)
+            };
+            in_reach |= Register::<S>::any(simd, reach.above(q));
+            q.store(&mut distance, part);
+            y.store(&mut local, part);
+            q.smaller(Register::load(simd, &nearest, part)).store(&mut nearest, part);
+        }
+        if !in_reach {
+            continue;
+        }
+        let found = &mut active[count];
+        count += 1;
+        (found.block, found.q, found.y) = (b, distance, local);
+        for part in 0..Register::<S>::parts() {
+            let activation = query.kernel.at(Register::load(simd, &distance, part));
+            let counts = activation.w.above(Register::load(simd, &block.head[CUTOFF], part));
+            let w = activation.w.or_else(counts, zero);
+            w.store(&mut found.w, part);
+            (activation.slope * 2.0).or_else(counts, zero).store(&mut found.dw, part);
+            (Register::load(simd, &sum_w, part) + w).store(&mut sum_w, part);
+            let sum = Register::load(simd, &sum_wy, part);
+            w.mul_add(Register::load(simd, &local, part), sum).store(&mut sum_wy, part);
+        }
+    }
+    let mut least = f64::INFINITY;
+    for q in nearest {
+        least = if q < least { q } else { least };
+    }
+    (Sums { w: total(sum_w), wy: total(sum_wy), nearest: least }, count)
+}
+
+/// q = (x − c)ᵀD(x − c) with diagonal D, and the local prediction.
+#[inline(always)]
+fn diagonal_distance<S: Simd>(simd: S, block: Block<'_>, x: &[f64], part: usize) -> (Register<S>, Register<S>) {
+    let mut q = Register::load(simd, &block.head[FAR], part);
+    let mut y = Register::load(simd, &block.head[OFFSET], part);
+    for (([c, s], d), &x) in block.axes.iter().zip(block.metric).zip(x) {
+        let dx = Register::splat(simd, x) - Register::load(simd, c, part);
+        q = (dx * dx).mul_add(Register::load(simd, d, part), q);
+        y = dx.mul_add(Register::load(simd, s, part), y);
+    }
+    (q, y)
+}
+
+/// The same with full D: Σᵢ dxᵢ (Dᵢᵢ dxᵢ + 2 Σⱼ Dᵢⱼ dxⱼ) over the upper triangle.
+#[inline(always)]
+fn full_distance<S: Simd>(simd: S, block: Block<'_>, x: &[f64], part: usize) -> (Register<S>, Register<S>) {
+    let mut q = Register::load(simd, &block.head[FAR], part);
+    let mut y = Register::load(simd, &block.head[OFFSET], part);
+    let mut metric = block.metric.iter();
+    for (i, ([c, s], &xi)) in block.axes.iter().zip(x).enumerate() {
+        let dx = Register::splat(simd, xi) - Register::load(simd, c, part);
+        y = dx.mul_add(Register::load(simd, s, part), y);
+        let Some(diagonal) = metric.next() else { break };
+        let mut beside = Register::splat(simd, 0.0);
+        for (([c, _], &xj), d) in block.axes[i + 1..].iter().zip(&x[i + 1..]).zip(&mut metric) {
+            beside = (Register::splat(simd, xj) - Register::load(simd, c, part))
+                .mul_add(Register::load(simd, d, part), beside);
+        }
+        q = dx.mul_add((beside + beside) + dx * Register::load(simd, diagonal, part), q);
+    }
+    // A singular D may be negative by rounding; what is no number stays none.
+    let zero = Register::splat(simd, 0.0);
+    (zero.or_else(zero.above(q), q), y)
+}
+
+/// v = D(x − c) of a block.
+#[inline(always)]
+fn turn<S: Simd>(simd: S, table: &FieldTable, block: Block<'_>, x: &[f64], v: &mut [Lanes]) {
+    for part in 0..Register::<S>::parts() {
+        if table.is_full() {
+            turn_full(simd, block, x, v, part);
+        } else {
+            for ((([c, _], d), &x), v) in block.axes.iter().zip(block.metric).zip(x).zip(&mut *v) {
+                let dx = Register::splat(simd, x) - Register::load(simd, c, part);
+                (dx * Register::load(simd, d, part)).store(v, part);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn turn_full<S: Simd>(simd: S, block: Block<'_>, x: &[f64], v: &mut [Lanes], part: usize) {
+    for v in &mut *v {
+        Register::splat(simd, 0.0).store(v, part);
+    }
+    let mut metric = block.metric.iter();
+    for i in 0..x.len() {
+        let dx = Register::splat(simd, x[i]) - Register::load(simd, &block.axes[i][0], part);
+        let Some(diagonal) = metric.next() else { break };
+        let mut sum = dx.mul_add(Register::load(simd, diagonal, part), Register::load(simd, &v[i], part));
+        for (j, d) in (i + 1..x.len()).zip(&mut metric) {
+            let d = Register::load(simd, d, part);
+            sum = (Register::splat(simd, x[j]) - Register::load(simd, &block.axes[j][0], part)).mul_add(d, sum);
+            dx.mul_add(d, Register::load(simd, &v[j], part)).store(&mut v[j], part);
+        }
+        sum.store(&mut v[i], part);
+    }
+}
+
+/// Σ w ∂y/∂x + Σ ∂w/∂x (y − `value`), in each lane; `v` is a row of scratch.
+#[inline(always)]
+fn add_gradients<S: Simd>(
+    simd: S,
+    table: &FieldTable,
+    x: &[f64],
+    active: &[Active],
+    value: f64,
+    (v, sums): (&mut [Lanes], &mut [Lanes]),
+) {
+    for sum in &mut *sums {
+        *sum = [0.0; LANES];
+    }
+    for found in active {
+        let block = table.block(found.block);
+        turn(simd, table, block, x, v);
+        for part in 0..Register::<S>::parts() {
+            let w = Register::load(simd, &found.w, part);
+            let off = Register::load(simd, &found.y, part) - Register::splat(simd, value);
+            let off = off * Register::load(simd, &found.dw, part);
+            for (([_, slope], v), sum) in block.axes.iter().zip(&*v).zip(&mut *sums) {
+                let so_far = w.mul_add(Register::load(simd, slope, part), Register::load(simd, sum, part));
+                off.mul_add(Register::load(simd, v, part), so_far).store(sum, part);
+            }
+        }
+    }
+}
+
+/// √(Σ w σ² + Σ w (y − `value`)²), with variances σ² = Γ(1 + w Σ s²/Σ w s²); fields without errors add their spread, but no
+/// noise of their own. Infinite if none has errors.
+#[inline(always)]
+fn spread<S: Simd>(simd: S, table: &FieldTable, x: &[f64], active: &[Active], value: f64) -> f64 {
+    let (mut sums, mut known) = ([0.0; LANES], [0.0; LANES]);
+    for found in active {
+        let block = table.block(found.block);
+        let (mean, loadings) = table.loadings(found.block);
+        for part in 0..Register::<S>::parts() {
+            let mut squares = Register::splat(simd, 0.0);
+            for direction in loadings.chunks_exact(x.len()) {
+                let mut s = Register::splat(simd, 0.0);
+                for ((a, mean), &x) in direction.iter().zip(mean).zip(x) {
+                    let z = Register::splat(simd, x) - Register::load(simd, mean, part);
+                    s = Register::load(simd, a, part).mul_add(z, s);
+                }
+                squares = s.mul_add(s, squares);
+            }
+            let w = Register::load(simd, &found.w, part);
+            let off = Register::load(simd, &found.y, part) - Register::splat(simd, value);
+            let noise = Register::load(simd, &block.head[NOISE], part) * (w * squares + 1.0);
+            let sum = w.mul_add(off.mul_add(off, noise), Register::load(simd, &sums, part));
+            sum.store(&mut sums, part);
+            let known_too =
+                w.mul_add(Register::load(simd, &block.head[NOISE_KNOWN], part), Register::load(simd, &known, part));
+            known_too.store(&mut known, part);
+        }
+    }
+    if total(known) > 0.0 { total(sums).sqrt() } else { f64::INFINITY }
+}
+
+/// The second derivative: Σ (y − `value`)(4 w″ vvᵀ + 2 w′ D) + Σ 2 w′ (v sᵀ + s vᵀ), less g aᵀ + a gᵀ with the gradient g
+/// and a = Σ 2 w′ v, over Σ w.
+#[inline(always)]
+fn write_hessian<S: Simd>(
+    simd: S,
+    table: &FieldTable,
+    (query, scale, value): (Query<'_>, f64, f64),
+    (x, active): (&[f64], &[Active]),
+    (v, (gradients, sum_w)): (&mut Vec<Lanes>, (&[Lanes], f64)),
+    hessian: &mut [f64],
+) {
+    let n = table.n_in();
+    if v.len() < n * active.len() {
+        v.resize(n * active.len(), [0.0; LANES]);
+    }
+    for (found, v) in active.iter().zip(v.chunks_exact_mut(n)) {
+        turn(simd, table, table.block(found.block), x, v);
+    }
+    for i in 0..n {
+        for j in i..n {
+            let (sum, a_i, a_j) = hessian_sums(simd, table, active, v, (query.kernel, value), (i, j));
+            let (g_i, g_j) = (total(gradients[i]) / sum_w, total(gradients[j]) / sum_w);
+            let element = (sum - (g_i * a_j + a_i * g_j)) * (scale * query.per_norm_in[i] * query.per_norm_in[j]);
+            (hessian[j * n + i], hessian[i * n + j]) = (element, element);
+        }
+    }
+}
+
+/// The sums of element (i, j), and of aᵢ and aⱼ.
+#[inline(always)]
+fn hessian_sums<S: Simd>(
+    simd: S,
+    table: &FieldTable,
+    active: &[Active],
+    v: &[Lanes],
+    (kernel, value): (Kernel, f64),
+    (i, j): (usize, usize),
+) -> (f64, f64, f64) {
+    let n = table.n_in();
+    let (mut sums, mut a_i, mut a_j) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+    for part in 0..Register::<S>::parts() {
+        let zero = Register::splat(simd, 0.0);
+        let (mut sum, mut sum_i, mut sum_j) = (zero, zero, zero);
+        for (k, found) in active.iter().enumerate() {
+            let block = table.block(found.block);
+            let dw = Register::load(simd, &found.dw, part);
+            let counts = Register::load(simd, &found.w, part).above(zero);
+            let curvature = kernel.at(Register::load(simd, &found.q, part)).curvature.or_else(counts, zero);
+            let off = Register::load(simd, &found.y, part) - Register::splat(simd, value);
+            let (v_i, v_j) = (Register::load(simd, &v[k * n + i], part), Register::load(simd, &v[k * n + j], part));
+            let (s_i, s_j) =
+                (Register::load(simd, &block.axes[i][1], part), Register::load(simd, &block.axes[j][1], part));
+            let d = if table.is_full() {
+                Register::load(simd, &block.metric[i * (2 * n - i + 1) / 2 + j - i], part)
+            } else if i == j {
+                Register::load(simd, &block.metric[i], part)
+            } else {
+                zero
+            };
+            sum += off * (curvature * v_i * v_j * 4.0 + dw * d) + dw * (v_i * s_j + s_i * v_j);
+            (sum_i, sum_j) = (sum_i + dw * v_i, sum_j + dw * v_j);
+        }
+        sum.store(&mut sums, part);
+        sum_i.store(&mut a_i, part);
+        sum_j.store(&mut a_j, part);
+    }
+    (total(sums), total(a_i), total(a_j))
+}
