@@ -13,6 +13,7 @@
 //! that everything here is `#[inline(always)]`. The same operations in the same order give the same bits in every width.
 
 #![allow(clippy::inline_always)]
+#![allow(clippy::return_self_not_must_use, reason = "numbers: whoever drops one needs no word about it")]
 
 mod dispatch;
 mod exponential;

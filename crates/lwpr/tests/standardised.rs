@@ -70,7 +70,7 @@ proptest! {
 
 #[test]
 fn equal_outputs_have_spread_one() {
-    let (xs, ys) = (DMatrix::from_fn(2, 50, |i, j| (j * (i + 2)) as f64 * 0.1), DMatrix::repeat(1, 50, 7.0));
+    let (xs, ys) = (DMatrix::from_fn(2, 64, |i, j| (j * (i + 2)) as f64 * 0.1), DMatrix::repeat(1, 64, 7.0));
     let model = Training::default().fit(xs.as_view(), ys.as_view(), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
     assert_eq!(model.model().params().norm_out, Some(dvector![1.0]));
     assert!((model.value(xs.column(3), 0) - 7.0).abs() < 1e-12);
@@ -79,7 +79,7 @@ fn equal_outputs_have_spread_one() {
 
 #[test]
 fn what_is_refused() {
-    let (xs, ys) = (DMatrix::from_fn(2, 50, |i, j| (j * (i + 2)) as f64 * 0.1), DMatrix::repeat(1, 50, 7.0));
+    let (xs, ys) = (DMatrix::from_fn(2, 64, |i, j| (j * (i + 2)) as f64 * 0.1), DMatrix::repeat(1, 64, 7.0));
     let fit = |training: Training| {
         training.fit(xs.as_view(), ys.as_view(), &mut ChaCha8Rng::seed_from_u64(1)).map(|_| ()).unwrap_err()
     };

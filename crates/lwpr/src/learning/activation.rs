@@ -10,9 +10,10 @@ use crate::settings::kernel::Activation;
 use lanes::Number;
 use lanes::{LANES, Lanes, Register};
 
-/// Centres and diagonal metrics of all fields, in blocks of eight: for each dimension eight centres, then eight D.
+/// Centres and metrics of all fields, in blocks of eight: for each dimension eight centres, then, eight by eight, what
+/// decides about distances ([`distance`]).
 ///
-/// With a full metric or many dimensions the table is empty: M is read from the fields themselves.
+/// With many dimensions the table is empty: M is read from the fields themselves.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct ActivationTable {
     blocks: Vec<Lanes>,
@@ -33,16 +34,15 @@ impl ActivationTable {
             return;
         }
         let n = settings.n_in;
-        if k / LANES * 2 * n == self.blocks.len() {
-            // Register without a field are infinitely far from everything.
-            for _ in 0..n {
-                self.blocks.push([f64::INFINITY; LANES]);
-                self.blocks.push([1.0; LANES]);
-            }
+        let size = n + settings.shape_len();
+        if k / LANES * size == self.blocks.len() {
+            // Lanes without a field are infinitely far from everything.
+            self.blocks.resize(self.blocks.len() + n, [f64::INFINITY; LANES]);
+            self.blocks.resize(self.blocks.len() + size - n, [1.0; LANES]);
         }
-        let block = &mut self.blocks[k / LANES * 2 * n..][..2 * n];
-        for (i, &c) in field.centre(settings).iter().enumerate() {
-            block[2 * i][k % LANES] = c;
+        let block = &mut self.blocks[k / LANES * size..][..size];
+        for (row, &c) in block.iter_mut().zip(field.centre(settings)) {
+            row[k % LANES] = c;
         }
         self.set_metric(settings, k, field);
     }
@@ -53,10 +53,21 @@ impl ActivationTable {
         if !settings.narrow() {
             return;
         }
-        let n = settings.n_in;
-        let block = &mut self.blocks[k / LANES * 2 * n..][..2 * n];
-        for (i, m) in field.m(settings)[..n].iter().enumerate() {
-            block[2 * i + 1][k % LANES] = m * m;
+        let (n, lane) = (settings.n_in, k % LANES);
+        let size = n + settings.shape_len();
+        let rows = &mut self.blocks[k / LANES * size..][n..size];
+        let m = field.m(settings);
+        if settings.params.metric == Metric::Diagonal {
+            for (row, m) in rows.iter_mut().zip(m) {
+                row[lane] = m * m;
+            }
+            return;
+        }
+        let mut rows = rows.iter_mut();
+        for i in 0..n {
+            for (column, row) in (i..n).zip(&mut rows) {
+                row[lane] = m[column * settings.width + i];
+            }
         }
     }
 
@@ -66,33 +77,67 @@ impl ActivationTable {
             return;
         }
         let n = settings.n_in;
-        let start = k / LANES * 2 * n;
+        let start = k / LANES * (n + settings.shape_len());
         if k.is_multiple_of(LANES) {
             self.blocks.truncate(start);
         } else {
-            self.blocks[start..].iter_mut().step_by(2).for_each(|centres| centres[k % LANES] = f64::INFINITY);
+            self.blocks[start..start + n].iter_mut().for_each(|centres| centres[k % LANES] = f64::INFINITY);
         }
     }
 
     /// Takes note of every field whose squared distance from `x` is below `reach`, in list order.
     #[inline(always)]
-    fn look(&self, n: usize, x: &[f64], reach: f64, near: &mut Near) {
-        for (b, block) in self.blocks.chunks_exact(2 * n).enumerate() {
+    fn look<S: Simd>(&self, simd: S, settings: &Settings, x: &[f64], reach: f64, near: &mut Near) {
+        let n = settings.n_in;
+        let limit = Register::splat(simd, reach);
+        let mut dx = [[0.0; LANES]; LANES];
+        for (b, block) in self.blocks.chunks_exact(n + settings.shape_len()).enumerate() {
+            let (centres, metric) = block.split_at(n);
             let mut q = [0.0; LANES];
-            for (pair, &x) in block.as_chunks::<2>().0.iter().zip(x) {
-                let [centres, d] = pair;
-                for lane in 0..LANES {
-                    let dx = x - centres[lane];
-                    q[lane] += d[lane] * (dx * dx);
+            let mut close = false;
+            for part in 0..Register::<S>::parts() {
+                for ((dx, centre), &x) in dx.iter_mut().zip(centres).zip(x) {
+                    (Register::splat(simd, x) - Register::load(simd, centre, part)).store(dx, part);
                 }
+                let distance = distance(simd, settings.params.metric, (&dx[..n], metric), part);
+                close |= Register::<S>::any(simd, limit.above(distance));
+                distance.store(&mut q, part);
             }
-            if q.iter().any(|&q| q < reach) {
+            if close {
                 for (lane, &q) in q.iter().enumerate() {
                     near.see(b * LANES + lane, q, reach);
                 }
             }
         }
     }
+}
+
+/// q = |M(x − c)|² of eight pairs of a sample and a field side by side, from the eight D of each dimension, or with a full
+/// metric from the eight numbers of each element in the upper triangle of M, row after row.
+#[inline(always)]
+pub(crate) fn distance<S: Simd>(
+    simd: S,
+    shape: Metric,
+    (dx, metric): (&[Lanes], &[Lanes]),
+    part: usize,
+) -> Register<S> {
+    let mut q = Register::splat(simd, 0.0);
+    if shape == Metric::Diagonal {
+        for (dx, d) in dx.iter().zip(metric) {
+            let dx = Register::load(simd, dx, part);
+            q += dx * dx * Register::load(simd, d, part);
+        }
+        return q;
+    }
+    let mut elements = metric.iter();
+    for i in 0..dx.len() {
+        let mut t = Register::splat(simd, 0.0);
+        for (dx, m) in dx[i..].iter().zip(&mut elements) {
+            t += Register::load(simd, dx, part) * Register::load(simd, m, part);
+        }
+        q += t * t;
+    }
+    q
 }
 
 /// The fields within reach of a sample, in list order, with what belongs to each at the same place.
@@ -117,7 +162,7 @@ impl Near {
     ) {
         self.clear(fields.len());
         if settings.narrow() {
-            table.look(settings.n_in, x, reach, self);
+            table.look(simd, settings, x, reach, self);
         } else if settings.params.metric == Metric::Diagonal {
             if settings.width == 24 {
                 self.look::<S>(simd, fields, (&x[..24], reach), &mut scratch[..24]);

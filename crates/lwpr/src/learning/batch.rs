@@ -260,10 +260,10 @@ impl pulp::WithSimd for Alone<'_, '_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Alone { training, field, k, start, end } = self;
         let (settings, width) = (training.settings, training.settings.width);
-        let mut shape = Shape::new(&field.rows[..width]);
+        let mut shape = Shape::new(settings, &field.rows[..width]);
         let mut next = start;
         loop {
-            shape.set_metric(field.m(settings).iter());
+            shape.set_metric(field.m(settings), width, 1);
             let Some((sample, q)) = training.find(simd, &shape, k, (next, end)) else { break };
             let activation = settings.params.kernel.at(q);
             training.see(sample, k, activation.w);

@@ -3,6 +3,7 @@
 use nalgebra::DVectorView;
 use pulp::Simd;
 
+use crate::Metric;
 use crate::settings::Settings;
 use lanes::{LANES, Lanes, Number, Register};
 
@@ -17,25 +18,65 @@ pub(crate) struct Chunk {
     blocks: Vec<Lanes>,
 }
 
-/// Centre and diagonal D of a field, padded.
+/// Where a field is and how far it reaches.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Shape {
+    kind: Metric,
+    n_in: usize,
+    /// Padded.
     pub(crate) centre: Vec<f64>,
-    pub(crate) d: Vec<f64>,
+    /// The diagonal of D, or the upper triangle of M, row after row.
+    elements: Vec<f64>,
 }
 
 impl Shape {
-    /// A row of `width`; D is yet to come.
-    pub(crate) fn new(centre: &[f64]) -> Self {
-        Shape { centre: centre.to_vec(), d: vec![0.0; centre.len()] }
+    /// A row of `width`; the metric is yet to come.
+    pub(crate) fn new(settings: &Settings, centre: &[f64]) -> Self {
+        Shape {
+            kind: settings.params.metric,
+            n_in: settings.n_in,
+            centre: centre.to_vec(),
+            elements: vec![0.0; settings.shape_len()],
+        }
     }
 
-    /// Takes over D = M².
+    /// Takes over M, given in rows of `width` dimensions; every `lanes`-th number belongs to this field.
     #[inline(always)]
-    pub(crate) fn set_metric<'a>(&mut self, m: impl Iterator<Item = &'a f64>) {
-        for (d, &m) in self.d.iter_mut().zip(m) {
-            *d = m * m;
+    pub(crate) fn set_metric(&mut self, m: &[f64], width: usize, lanes: usize) {
+        if self.kind == Metric::Diagonal {
+            for (d, &m) in self.elements.iter_mut().zip(m.iter().step_by(lanes)) {
+                *d = m * m;
+            }
+            return;
         }
+        let mut elements = self.elements.iter_mut();
+        for i in 0..self.n_in {
+            for (column, element) in (i..self.n_in).zip(&mut elements) {
+                *element = m[(column * width + i) * lanes];
+            }
+        }
+    }
+
+    /// Squared distances of the samples of part `part` of a block, summed as in the activation table.
+    #[inline(always)]
+    fn distance<S: Simd>(&self, simd: S, block: &[Lanes], part: usize) -> Register<S> {
+        let mut q = Register::splat(simd, 0.0);
+        if self.kind == Metric::Diagonal {
+            for ((x, &c), &d) in block.iter().zip(&self.centre).zip(&self.elements) {
+                let dx = Register::load(simd, x, part) - c;
+                q += dx * dx * d;
+            }
+            return q;
+        }
+        let mut elements = self.elements.iter();
+        for i in 0..block.len() {
+            let mut t = Register::splat(simd, 0.0);
+            for ((x, &c), &m) in block[i..].iter().zip(&self.centre[i..]).zip(&mut elements) {
+                t += (Register::load(simd, x, part) - c) * m;
+            }
+            q += t * t;
+        }
+        q
     }
 }
 
@@ -83,11 +124,7 @@ impl Chunk {
         let near = Register::splat(simd, reach);
         while first < end {
             let block = &self.blocks[first / LANES * self.n_in..][..self.n_in];
-            let mut q = Register::splat(simd, 0.0);
-            for ((x, &c), &d) in block.iter().zip(&shape.centre).zip(&shape.d) {
-                let dx = Register::of(simd, Register::<S>::elements(x)[first % LANES / n]) - c;
-                q += dx * dx * d;
-            }
+            let q = shape.distance(simd, block, first % LANES / n);
             let lane = q.first_below(near, start.saturating_sub(first));
             if lane < n {
                 let sample = first + lane;

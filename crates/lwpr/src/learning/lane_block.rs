@@ -2,10 +2,11 @@
 
 use pulp::Simd;
 
+use crate::Metric;
 use crate::field::rows::Rows;
 use crate::field::{DIRECTION_ROWS, Direction, Field, Layout};
 use crate::learning::chunk::{Chunk, Shape};
-use crate::learning::metric::Diagonal;
+use crate::learning::metric::{self, Diagonal, Full};
 use crate::learning::rules::{SCRATCH_ROWS, Workspace, train};
 use crate::settings::Settings;
 use crate::settings::kernel::Activation;
@@ -66,7 +67,7 @@ impl<S: Simd> LaneBlock<S> {
                 directions: vec![direction; n_directions],
                 rows: Rows::zeros(len),
             },
-            shapes: vec![Shape::new(&vec![0.0; settings.width]); S::F64_LANES],
+            shapes: vec![Shape::new(settings, &vec![0.0; settings.width]); S::F64_LANES],
             x: Rows::zeros(width),
             y: one,
             q: one,
@@ -110,7 +111,7 @@ impl<S: Simd> LaneBlock<S> {
     pub(crate) fn shape(&mut self, lane: usize) -> &Shape {
         let width = self.x.len();
         let shape = &mut self.shapes[lane];
-        shape.set_metric(self.field.rows[2 * width + lane..3 * width].iter().step_by(S::F64_LANES));
+        shape.set_metric(&self.field.rows[2 * width + lane..], width / S::F64_LANES, S::F64_LANES);
         shape
     }
 
@@ -129,35 +130,50 @@ impl<S: Simd> LaneBlock<S> {
     pub(crate) fn train(&mut self, settings: &Settings) -> (Register<S>, Option<Register<S>>) {
         let simd = self.simd;
         let activation: Activation<Register<S>> = settings.params.kernel.at(self.q);
-        let wanted = match settings.n_in {
-            2 => simd.vectorize(TrainLanes::<S, 2> { block: self, settings, activation }),
-            3 => simd.vectorize(TrainLanes::<S, 3> { block: self, settings, activation }),
-            4 => simd.vectorize(TrainLanes::<S, 4> { block: self, settings, activation }),
-            _ => simd.vectorize(TrainLanes::<S, 6> { block: self, settings, activation }),
+        let wanted = match (settings.params.metric, settings.n_in) {
+            (Metric::Diagonal, 2) => self.train_in::<Diagonal, 2>(simd, settings, activation),
+            (Metric::Diagonal, 3) => self.train_in::<Diagonal, 3>(simd, settings, activation),
+            (Metric::Diagonal, 4) => self.train_in::<Diagonal, 4>(simd, settings, activation),
+            (Metric::Diagonal, _) => self.train_in::<Diagonal, 6>(simd, settings, activation),
+            (Metric::Full, 2) => self.train_in::<Full, 2>(simd, settings, activation),
+            (Metric::Full, 3) => self.train_in::<Full, 3>(simd, settings, activation),
+            (Metric::Full, _) => self.train_in::<Full, 6>(simd, settings, activation),
         };
         (activation.w, wanted)
+    }
+
+    #[inline(always)]
+    fn train_in<M: metric::Shape, const N: usize>(
+        &mut self,
+        simd: S,
+        settings: &Settings,
+        activation: Activation<Register<S>>,
+    ) -> Option<Register<S>> {
+        simd.vectorize(TrainLanes::<S, M, N> { block: self, settings, activation, shape: M::default() })
     }
 }
 
 /// [`LaneBlock::train`] for one number of dimensions, a function of its own.
-struct TrainLanes<'a, S: Simd, const N: usize> {
+struct TrainLanes<'a, S: Simd, M, const N: usize> {
     block: &'a mut LaneBlock<S>,
     settings: &'a Settings,
     activation: Activation<Register<S>>,
+    #[allow(dead_code, reason = "says which metric")]
+    shape: M,
 }
 
-impl<S: Simd, const N: usize> pulp::WithSimd for TrainLanes<'_, S, N> {
+impl<S: Simd, M: metric::Shape, const N: usize> pulp::WithSimd for TrainLanes<'_, S, M, N> {
     /// Non-zero in lanes that call for another direction.
     type Output = Option<Register<S>>;
 
     #[inline(always)]
     fn with_simd<Same: Simd>(self, _: Same) -> Self::Output {
-        let TrainLanes { block, settings, activation } = self;
+        let TrainLanes { block, settings, activation, .. } = self;
         let width = const { N * S::F64_LANES };
         let LaneBlock { simd, field, x, y, workspace, .. } = block;
         let simd = *simd;
         let Workspace { rows, mmt } = workspace;
-        let wanted = train::<Register<S>, Register<S>, Diagonal>(
+        let wanted = train::<Register<S>, Register<S>, M>(
             (simd, simd),
             field,
             settings,

@@ -84,7 +84,7 @@ fn pad(rows: &mut Vec<f64>, numbers: &[f64], n_rows: usize, settings: &Settings)
 
 /// Whether a field's numbers have not overflowed, which absurd learning rates can bring about. One whose have is of no use,
 /// for prediction or learning, and is not stored.
-fn is_finite(field: &&Field) -> bool {
+fn is_finite(field: &Field) -> bool {
     let direction_is = |direction: &Direction| {
         let &Direction { beta, ss2, ss_y, h, r, sum_w, sum_e_cv2, n_data, lambda, s: _ } = direction;
         [beta, ss2, ss_y, h, r, sum_w, sum_e_cv2, n_data, lambda].iter().all(|number| number.is_finite())
@@ -186,7 +186,12 @@ impl From<Lwpr> for ModelRecord {
         let settings = &model.settings;
         let output = |sub_model: &SubModel| OutputRecord {
             n_pruned: sub_model.n_pruned,
-            fields: sub_model.fields.iter().filter(is_finite).map(|field| FieldRecord::new(field, settings)).collect(),
+            fields: sub_model
+                .fields
+                .iter()
+                .filter(|field| is_finite(field))
+                .map(|field| FieldRecord::new(field, settings))
+                .collect(),
         };
         ModelRecord {
             n_in: settings.n_in,

@@ -28,7 +28,7 @@ impl PredictorRecord {
             (models().all(|model| model.has_shape(n)), "a field has not the shape of the inputs"),
             (self.outputs.iter().all(|models| have_one_shape(models)), "some fields turn, others do not"),
             (
-                models().all(LocalModel::is_sound),
+                models().all(|model| model.has_shape(n) && model.is_sound()),
                 "a field has a number that is not finite or too large, or a metric that is none",
             ),
         ];

@@ -70,13 +70,26 @@ impl Settings {
     /// at a time.
     #[inline(always)]
     pub(crate) fn narrow(&self) -> bool {
-        self.params.metric == Metric::Diagonal && self.width <= 8
+        self.width <= 8
     }
 
     /// Whether a batch may go field by field, several fields side by side: few dimensions, for each of which there is
     /// code, and no field that vanishes in between.
     pub(crate) fn side_by_side(&self) -> bool {
-        self.narrow() && matches!(self.n_in, 2 | 3 | 4 | 6) && self.params.w_prune == 1.0
+        let served = match self.params.metric {
+            Metric::Diagonal => matches!(self.n_in, 2 | 3 | 4 | 6),
+            Metric::Full => matches!(self.n_in, 2 | 3 | 6),
+        };
+        served && self.params.w_prune == 1.0
+    }
+
+    /// How many numbers of M decide about distances: its diagonal, or its upper triangle.
+    #[inline(always)]
+    pub(crate) fn shape_len(&self) -> usize {
+        match self.params.metric {
+            Metric::Diagonal => self.n_in,
+            Metric::Full => self.n_in * (self.n_in + 1) / 2,
+        }
     }
 
     /// Refuses what is not finite, or so large that its powers would not be.
