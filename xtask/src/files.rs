@@ -21,7 +21,7 @@ pub(crate) fn told(path: &Path) -> String {
 /// Writes a whole file or nothing.
 pub(crate) fn write(path: &Path, contents: impl AsRef<[u8]>) -> anyhow::Result<()> {
     let mut draft = path.as_os_str().to_owned();
-    draft.push(".part");
+    draft.push(format!(".{}.part", std::process::id()));
     fs::write(&draft, contents)
         .and_then(|()| fs::rename(&draft, path))
         .with_context(|| format!("cannot write {}", told(path)))

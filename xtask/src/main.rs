@@ -7,7 +7,6 @@ mod files;
 mod learners;
 mod measure;
 mod paper;
-mod plot;
 mod progress;
 mod publish;
 mod records;
@@ -18,7 +17,6 @@ mod robots;
 mod run_folder;
 mod runner;
 mod seed;
-mod table;
 mod tidy;
 mod verdict;
 

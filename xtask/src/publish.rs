@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
 use clap::Args;
+use page::markdown_table;
 
 use crate::experiments::{Experiment, registry};
 use crate::figures::{Figure, Sources, figures};
@@ -15,7 +16,6 @@ use crate::progress::say;
 use crate::report::{Section, Tally, draw, key, sections};
 use crate::results::{ExperimentResult, Results};
 use crate::run_folder::RunFolder;
-use crate::table::markdown_table;
 use crate::verdict::Verdict;
 
 /// Seeds of the committed runs.

@@ -1,6 +1,8 @@
 //! Demonstrations in the plane over lines of equal potential.
 
-use crate::plot::{Field, Layer, Who};
+use plot::{Field, Layer};
+
+use crate::figures::Who;
 
 /// Movements that alignment leaves out: a light blue.
 const LEFT_OUT: &str = "#8fc1e3";

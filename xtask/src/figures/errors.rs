@@ -1,8 +1,9 @@
 //! Curves of errors: mean and spread over data sets against what is varied, in the same colours and marks everywhere.
 
+use plot::{Curve, Dash, Entry, Filling, Mark, Sign, Stroke};
+
 use super::Csv;
 use crate::measure::Measure;
-use crate::plot::{Curve, Dash, Entry, Filling, Mark, Sign, Stroke};
 use crate::results::{Cell, ExperimentResult};
 
 /// The error of one thing that is learnt.

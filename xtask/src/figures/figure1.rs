@@ -2,11 +2,12 @@
 
 use kinematics::{LinkId, MotionKind, Workspace};
 use nalgebra::{Point3, Vector3};
+use plot::{Camera, Dash, Item, Paint, Picture, Space, Stroke};
 use serde::{Deserialize, Serialize};
 
 use super::shapes::{self, Shape};
+use super::sound::{self, Sound, some};
 use super::{Document, Drawing, Figure, Sources, rounded};
-use crate::plot::{Camera, Dash, Item, Paint, Picture, Space, Stroke};
 use crate::robots::upper_body;
 
 pub(crate) fn document() -> Document {
@@ -45,6 +46,15 @@ struct Joint {
     at: [f64; 3],
     /// Of length 1.
     axis: [f64; 3],
+}
+
+impl Sound for Robot {
+    const LARGEST: f64 = 10.0;
+
+    fn check(&self) -> anyhow::Result<()> {
+        some("joints", &self.joints)?;
+        self.shapes.iter().try_for_each(|shape| sound::size(shape.kind, &shape.size))
+    }
 }
 
 fn ready() -> anyhow::Result<Robot> {

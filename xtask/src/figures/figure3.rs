@@ -2,10 +2,12 @@
 
 use constraints::NullSpaceProjector;
 use nalgebra::{DVector, Point3, dmatrix, dvector};
+use plot::{Camera, Dash, Item, Paint, Picture, Space, Stroke};
 use serde::{Deserialize, Serialize};
 
+use super::sound::Sound;
 use super::{Document, Drawing, Figure, Sources, rounded};
-use crate::plot::{Camera, Dash, Item, Paint, Picture, Space, Stroke, Who};
+use crate::figures::Who;
 
 /// What a system wants to do: forwards, towards the reader, upwards.
 const POLICY: [f64; 3] = [0.8, -0.6, 0.7];
@@ -57,6 +59,14 @@ struct Vectors {
     other: [f64; 3],
     /// What the horizontal constraint leaves of the other policy.
     other_seen: [f64; 3],
+}
+
+impl Sound for Vectors {
+    const LARGEST: f64 = 10.0;
+
+    fn check(&self) -> anyhow::Result<()> {
+        Ok(())
+    }
 }
 
 fn vectors() -> anyhow::Result<Vectors> {

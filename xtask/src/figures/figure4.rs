@@ -3,10 +3,11 @@
 use constraints::{LinearConstraint, PfaffianConstraint};
 use motion::{NegativeGradient, Policy, Potential};
 use nalgebra::{DVector, DVectorView, DVectorViewMut, dmatrix};
+use plot::{Field, Layer, Mark, Picture, Plane, Relief};
 use serde::{Deserialize, Serialize};
 
+use super::sound::{Sound, field as sound_field, some};
 use super::{Csv, Document, Drawing, Figure, Sources, rounded};
-use crate::plot::{Field, Layer, Mark, Picture, Plane, Relief};
 
 /// Drawn is [−2, 2]².
 const EXTENT: f64 = 2.0;
@@ -87,6 +88,16 @@ struct Shown {
     minima: Vec<(f64, f64)>,
 }
 
+impl Sound for Shown {
+    const LARGEST: f64 = 10.0;
+
+    fn check(&self) -> anyhow::Result<()> {
+        some("arrows", &self.unconstrained)?;
+        some("arrows of the blocked", &self.constrained)?;
+        sound_field("potential", &self.potential)
+    }
+}
+
 fn hills() -> anyhow::Result<Shown> {
     let blocked = LinearConstraint::new(dmatrix![1.0, 0.0])?;
     let policy = NegativeGradient(Hills);
@@ -142,9 +153,7 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let (lowest, highest) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
     let surface = Relief {
         title: "(a) φ as a surface".to_owned(),
-        x_label: "x₁",
-        y_label: "x₂",
-        z_label: "φ",
+        labels: ["x₁", "x₂", "φ"].map(str::to_owned),
         extent: [(-BOX, -BOX, lowest), (BOX, BOX, highest)],
         surface: Some(coarse(&shown.potential)),
         dots: vec![],
@@ -153,8 +162,8 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let range = [-EXTENT, EXTENT];
     let above = Plane {
         title: "(b) φ from above, and the policy".to_owned(),
-        x_label: "x₁",
-        y_label: "x₂",
+        x_label: "x₁".to_owned(),
+        y_label: "x₂".to_owned(),
         x: range,
         y: range,
         layers: layers(&shown),
@@ -177,12 +186,12 @@ fn layers(shown: &Shown) -> Vec<Layer> {
         color,
         scale: ARROW_SECONDS,
         width,
-        label: Some(label),
+        label: Some(str::to_owned(label)),
     };
     let marks =
         |points: &[_], mark| Layer::Marks { points: points.to_vec(), mark, color: "#000000", size: 6.0, label: None };
     vec![
-        Layer::Colors { field: shown.potential.clone(), name: "φ" },
+        Layer::Colors { field: shown.potential.clone(), name: "φ".to_owned() },
         Layer::Contours(shown.potential.clone()),
         marks(&shown.maxima, Mark::Up),
         marks(&shown.minima, Mark::Down),

@@ -1,11 +1,11 @@
 //! Fig. 6: errors on the parabola against the amount of data, and against noise.
 
 use anyhow::Context as _;
+use plot::{Axis, Curves, Key, Picture};
 
 use super::errors::{ERRORS, FIRST, SECOND, Series, Style};
 use super::{Csv, Drawing, Figure, Sources};
 use crate::experiments::{BANDWIDTHS, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
-use crate::plot::{Axis, Curves, Key, Picture};
 
 /// In the order of [`BANDWIDTHS`].
 const STYLES: [Style; 2] = [FIRST, SECOND];
@@ -63,7 +63,7 @@ pub(super) fn right() -> Figure {
 fn draw_left(sources: &Sources) -> anyhow::Result<Drawing> {
     let series = series(sources, "figure6_left", "", &TRAJECTORIES_PERCENT)?;
     let panel = Curves {
-        x_label: "Trajectories learnt from (% of 40)",
+        x_label: "Trajectories learnt from (% of 40)".to_owned(),
         x: [0.0, 105.0],
         x_step: 20.0,
         y: [1e-3, 10.0],
@@ -77,7 +77,7 @@ fn draw_right(sources: &Sources) -> anyhow::Result<Drawing> {
     let [velocity, displacement] = RULES.map(|(rule, _)| series(sources, "figure6_right", rule, &NOISE_PERCENT));
     let (velocity, displacement) = (velocity?, displacement?);
     let panel = |title, series, y| Curves {
-        x_label: "Noise on positions (% of their standard deviation)",
+        x_label: "Noise on positions (% of their standard deviation)".to_owned(),
         x: [-0.8, 20.8],
         x_step: 5.0,
         y,
@@ -108,8 +108,8 @@ fn series<'a>(sources: &'a Sources, id: &str, rule: &str, percent: &[f64]) -> an
 fn panel(title: &str, series: &[Series<'_>]) -> Curves {
     Curves {
         title: title.to_owned(),
-        x_label: "",
-        y_label: "Normalised error",
+        x_label: String::new(),
+        y_label: "Normalised error".to_owned(),
         y_axis: Axis::Logarithmic,
         x: [0.0; 2],
         y: [0.0; 2],

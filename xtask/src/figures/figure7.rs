@@ -2,10 +2,11 @@
 
 use anyhow::Context as _;
 use nalgebra::Point3;
+use plot::{Camera, Paint, Panel, Picture, Space};
 
 use super::grasp_playback::{GraspPlayback, Movement};
 use super::{Drawing, Figure, Sources, stage};
-use crate::plot::{Camera, Paint, Panel, Picture, Space, Who};
+use crate::figures::Who;
 
 /// Postures that are shown.
 const FRAMES: usize = 5;

@@ -2,12 +2,11 @@
 
 use metrics::Summary;
 use nalgebra::{Point3, Translation3, Vector3};
+use plot::{Axis, Camera, Curve, Curves, Entry, Filling, Frame, Item, Key, Mark, Paint, Picture, Sign, Space};
 
 use super::grasp_playback::{GraspPlayback, LEARNERS, Movement};
 use super::{Csv, Drawing, Figure, Sources, rounded, stage};
-use crate::plot::{
-    Axis, Camera, Curve, Curves, Entry, Filling, Frame, Item, Key, Mark, Paint, Picture, Sign, Space, Who,
-};
+use crate::figures::Who;
 
 pub(crate) fn figure() -> Figure {
     Figure {
@@ -80,7 +79,7 @@ fn frame(playback: &GraspPlayback) -> Frame {
     Frame {
         lowest: lowest.map(|value| (value * 10.0).floor() / 10.0),
         highest: highest.map(|value| (value * 10.0).ceil() / 10.0),
-        labels: ["x (m)", "y (m)", "z (m)"],
+        labels: ["x (m)", "y (m)", "z (m)"].map(str::to_owned),
     }
 }
 
@@ -163,8 +162,8 @@ fn curves(distances: &[Distances], time_step: f64) -> Curves {
     let end = distances[0].over_time.last().map_or(0.0, |last| last.0);
     Curves {
         title: "Distance from the ball's sides".to_owned(),
-        x_label: "time (s)",
-        y_label: "distance (m)",
+        x_label: "time (s)".to_owned(),
+        y_label: "distance (m)".to_owned(),
         y_axis: Axis::Linear,
         x: [0.0, 1.02 * end],
         y: [0.0, 0.8],

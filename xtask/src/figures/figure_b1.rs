@@ -3,11 +3,12 @@
 use align::{Aligned, PolicyAlign, Split, SplitCause};
 use anyhow::Context as _;
 use demo_gen::{ToyPotential, ToySystem, demonstrations};
+use plot::{Dash, Layer, Mark, Panel, Picture, Plane, Stroke};
 use serde::{Deserialize, Serialize};
 
+use super::sound::{Sound, among, some};
 use super::{Csv, Document, Drawing, Figure, Sources, rounded};
 use crate::experiments::SINUSOIDAL_SYSTEM;
-use crate::plot::{Dash, Layer, Mark, Panel, Picture, Plane, Stroke};
 use crate::seed::generator;
 
 /// Data sets of Table 1 among which one is chosen.
@@ -86,6 +87,21 @@ fn movements(aligned: &Aligned) -> Vec<Vec<(f64, f64)>> {
     trajectories.map(|t| t.states().column_iter().map(|x| (rounded(x[0], 3), rounded(x[1], 3))).collect()).collect()
 }
 
+impl Sound for ComingApart {
+    const LARGEST: f64 = 100.0;
+
+    fn check(&self) -> anyhow::Result<()> {
+        some("movements", &self.movements)?;
+        self.movements.iter().try_for_each(|movement| some("samples of a movement", movement))?;
+        anyhow::ensure!(self.steps.len() <= MOST_STEPS, "steps: {}", self.steps.len());
+        for Step { group, parts, .. } in &self.steps {
+            some("parts of a step", parts)?;
+            parts.iter().chain([group]).try_for_each(|part| among("a part", part, self.movements.len()))?;
+        }
+        among("kept", &self.kept, self.movements.len())
+    }
+}
+
 impl Step {
     fn new(split: &Split) -> Self {
         let mut parts = split.parts.clone();
@@ -157,7 +173,15 @@ impl ComingApart {
     fn plane(&self, title: String, layers: Vec<Layer>) -> Plane {
         let reach = self.movements.iter().flatten().fold(2.0_f64, |reach, (x, y)| reach.max(x.abs()).max(y.abs()));
         let range = [-1.06 * reach, 1.06 * reach];
-        Plane { title, x_label: "x₁", y_label: "x₂", x: range, y: range, layers, size: (340.0, 358.0) }
+        Plane {
+            title,
+            x_label: "x₁".to_owned(),
+            y_label: "x₂".to_owned(),
+            x: range,
+            y: range,
+            layers,
+            size: (340.0, 358.0),
+        }
     }
 
     fn table(&self) -> Csv {

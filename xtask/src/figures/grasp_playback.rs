@@ -8,6 +8,7 @@ mod robot;
 mod scene;
 mod starts;
 
+use anyhow::ensure;
 use serde::{Deserialize, Serialize};
 
 use constraint::Constraint;
@@ -15,6 +16,7 @@ use movements::movements;
 use scene::scene;
 
 use super::Document;
+use super::sound::{Sound, as_many, some};
 use crate::experiments::grasp;
 
 pub(crate) use movements::Movement;
@@ -42,6 +44,18 @@ pub(crate) struct GraspPlayback {
     pub(crate) starts: usize,
     /// Each constraint with each learner and each start.
     pub(crate) movements: Vec<Movement>,
+}
+
+impl Sound for GraspPlayback {
+    const LARGEST: f64 = 1000.0;
+
+    fn check(&self) -> anyhow::Result<()> {
+        let n_joints = self.robot.check()?;
+        as_many("target", &self.scene.target, 6)?;
+        ensure!(self.time_step > 0.0 && self.starts <= 100, "time step {}, starts {}", self.time_step, self.starts);
+        some("movements", &self.movements)?;
+        self.movements.iter().try_for_each(|movement| movement.check(n_joints))
+    }
 }
 
 /// One thing to choose.

@@ -18,21 +18,26 @@ mod figure_b1;
 mod grasp_playback;
 mod overview;
 mod shapes;
+mod sound;
 pub(crate) mod stage;
+mod who;
 
 use std::collections::BTreeMap;
 
-use anyhow::Context as _;
+use anyhow::{Context as _, anyhow, bail};
+use plot::Picture;
 use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use crate::experiments::Experiment;
-use crate::plot::Picture;
+use sound::Sound;
+
 use crate::results::{ExperimentResult, Results};
 
 pub(crate) use grasp_playback::LEARNERS;
+pub(crate) use who::Who;
 
 /// What a run computes for the figures, from fixed data sets.
 pub(crate) struct Document {
@@ -168,10 +173,15 @@ impl Sources {
     }
 
     /// A document, which has to be there.
-    fn document<D: DeserializeOwned>(&self, id: &str) -> anyhow::Result<D> {
+    fn document<D: DeserializeOwned + Sound>(&self, id: &str) -> anyhow::Result<D> {
+        const AGAIN: &str = "the command of its run writes it again";
         let value = self.documents.get(id).with_context(|| format!("figure data {id} is missing"))?;
-        D::deserialize(value)
-            .with_context(|| format!("figure data {id} has another form; the command of its run writes it again"))
+        if let Some(number) = sound::beyond(value, D::LARGEST) {
+            bail!("figure data {id} is damaged: it holds the number {number:e}; {AGAIN}");
+        }
+        let document = D::deserialize(value).with_context(|| format!("figure data {id} has another form; {AGAIN}"))?;
+        document.check().map_err(|error| anyhow!("figure data {id} is damaged: {error:#}; {AGAIN}"))?;
+        Ok(document)
     }
 }
 

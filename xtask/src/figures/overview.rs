@@ -4,12 +4,14 @@ use align::{Bandwidth, DirectPolicyLearning, PolicyAlign};
 use demo_gen::{ToySystem, demonstrations};
 use motion::{NegativeGradient, Policy, Potential};
 use nalgebra::DVector;
+use plot::{Field, Layer, Picture, Plane};
 use serde::{Deserialize, Serialize};
 
+use super::sound::{Sound, field, some};
 use super::{Document, Drawing, Figure, Sources, demonstrated, rounded};
 use crate::experiments::{HELD_OUT, PARABOLA_SYSTEM, toy_regressor};
+use crate::figures::Who;
 use crate::learners::{Learner, Lesson};
-use crate::plot::{Field, Layer, Picture, Plane, Who};
 use crate::seed::generator;
 
 /// Starts of the movements are drawn from [−2, 2]².
@@ -52,6 +54,17 @@ struct Overview {
 struct Movement {
     kept: bool,
     points: Vec<(f64, f64)>,
+}
+
+impl Sound for Overview {
+    const LARGEST: f64 = 10.0;
+
+    fn check(&self) -> anyhow::Result<()> {
+        some("movements", &self.movements)?;
+        self.movements.iter().try_for_each(|movement| some("points of a movement", &movement.points))?;
+        [&self.expert, &self.naive, &self.policy_align].into_iter().try_for_each(|arrows| some("arrows", arrows))?;
+        field("contours", &self.contours)
+    }
 }
 
 fn overview(seed: u64) -> anyhow::Result<Overview> {
@@ -113,7 +126,15 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
 
 fn plane(title: &str, layers: Vec<Layer>) -> Plane {
     let range = [-EXTENT, EXTENT];
-    Plane { title: title.to_owned(), x_label: "x₁", y_label: "x₂", x: range, y: range, layers, size: Plane::SQUARE }
+    Plane {
+        title: title.to_owned(),
+        x_label: "x₁".to_owned(),
+        y_label: "x₂".to_owned(),
+        x: range,
+        y: range,
+        layers,
+        size: Plane::SQUARE,
+    }
 }
 
 /// The unconstrained actions of the expert and of a learner.

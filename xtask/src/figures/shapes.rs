@@ -3,10 +3,10 @@
 use anyhow::bail;
 use kinematics::{CollisionShape, Geometry, LinkPoses, RobotModel};
 use nalgebra::{IsometryMatrix3, Matrix3, Point3, Rotation3, Translation3, Vector3};
+use plot::{Item, Paint};
 use serde::{Deserialize, Serialize};
 
 use super::rounded;
-use crate::plot::{Item, Paint};
 
 /// A shape of a link and its pose in the frame of the root, metres.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -1,10 +1,10 @@
 //! Robot, ball, table and plates of the grasp as things in space.
 
 use nalgebra::{IsometryMatrix3, Point3, Translation3, Vector3};
+use plot::{Item, Paint, Stroke};
 
 use super::grasp_playback::{Motion, Robot, Scene};
 use super::shapes::{self, Shape};
-use crate::plot::{Item, Paint, Stroke};
 
 /// Plates reach from the ground to this height, metres.
 pub(crate) const PLATE_TOP: f64 = 1.0;

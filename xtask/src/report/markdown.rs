@@ -2,13 +2,14 @@
 
 use std::fmt::Write as _;
 
+use page::markdown_table;
+
 use super::compared::{Compared, FEW, Line, compared};
 use super::legend::{MEASURES, RULE, names};
 use super::tally::Tally;
 use crate::experiments::Experiment;
 use crate::measure::Measure;
 use crate::results::Results;
-use crate::table::markdown_table;
 
 /// All tables of `results`; `second`, a run from another seed, adds its means as a column.
 pub(crate) fn markdown(experiments: &[Experiment], results: &Results, second: Option<&Results>) -> String {

@@ -97,6 +97,9 @@ impl Finger {
 }
 
 impl Movement {
+    /// Of each movement.
+    pub(super) const SAMPLES: usize = ROLL_OUT.n_samples;
+
     /// The sample at a time in seconds.
     pub(super) fn sample(time: f64) -> usize {
         (time / ROLL_OUT.time_step).round() as usize

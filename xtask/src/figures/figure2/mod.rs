@@ -5,11 +5,12 @@ mod contact;
 use constraints::{PfaffianConstraint, Unconstrained};
 use motion::Policy;
 use nalgebra::dvector;
+use plot::{Dash, Layer, Mark, Picture, Plane, Stroke};
 use serde::{Deserialize, Serialize};
 
 use self::contact::{FACE, Finger, Movement, touching};
+use super::sound::{Sound, as_many, some, within};
 use super::{Csv, Document, Drawing, Figure, Sources, rounded};
-use crate::plot::{Dash, Layer, Mark, Picture, Plane, Stroke};
 
 /// Seconds at which postures are drawn, and the colours, ever darker, of the free and of the stopped finger.
 const POSTURES: [(f64, &str, &str, &str); 5] = [
@@ -63,6 +64,23 @@ struct Shown {
     constrained: Vec<(f64, f64, f64, f64)>,
 }
 
+impl Sound for Shown {
+    const LARGEST: f64 = 10.0;
+
+    fn check(&self) -> anyhow::Result<()> {
+        for Movement { angles, places } in [&self.free, &self.stopped] {
+            as_many("angles", angles, Movement::SAMPLES)?;
+            as_many("places", places, Movement::SAMPLES)?;
+            let places: Vec<f64> = places.iter().flatten().flat_map(|&(x, y)| [x, y]).collect();
+            within("places", &places, 1.0)?;
+        }
+        some("arrows", &self.unconstrained)?;
+        some("arrows at the box", &self.constrained)?;
+        anyhow::ensure!(self.touching.len() > 2, "angles that touch: {}", self.touching.len());
+        Ok(())
+    }
+}
+
 fn shown() -> anyhow::Result<Shown> {
     let finger = Finger::new()?;
     let contact = finger.contact()?;
@@ -105,7 +123,15 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
 /// Where the finger is, metres.
 fn place(title: &str, layers: Vec<Layer>) -> Plane {
     let (x, y) = ([-0.015, 0.115], [-0.07, 0.065]);
-    Plane { title: title.to_owned(), x_label: "x (m)", y_label: "y (m)", x, y, layers, size: (390.0, 440.0) }
+    Plane {
+        title: title.to_owned(),
+        x_label: "x (m)".to_owned(),
+        y_label: "y (m)".to_owned(),
+        x,
+        y,
+        layers,
+        size: (390.0, 440.0),
+    }
 }
 
 /// The finger at a few times, and the way of its tip.
@@ -114,12 +140,15 @@ fn postures(movement: &Movement, times: [(f64, &'static str, &'static str); 5]) 
     let way = Layer::Path {
         points: tip,
         stroke: Stroke { color: "#0072b2", width: 1.4, dash: Dash::Dotted },
-        label: Some("tip"),
+        label: Some("tip".to_owned()),
     };
     let posture = |(time, label, color): (f64, &'static str, &'static str)| {
         let points = movement.places[Movement::sample(time)].to_vec();
         let stroke = Stroke { color, width: 3.5, dash: Dash::Solid };
-        [Layer::Path { points: points.clone(), stroke, label: Some(label) }, Layer::Dots { points, color, radius: 3.5 }]
+        [
+            Layer::Path { points: points.clone(), stroke, label: Some(str::to_owned(label)) },
+            Layer::Dots { points, color, radius: 3.5 },
+        ]
     };
     times.into_iter().flat_map(posture).chain([way]).collect()
 }
@@ -131,19 +160,19 @@ fn angles(shown: &Shown) -> Plane {
         color,
         scale: seconds,
         width,
-        label: Some(label),
+        label: Some(str::to_owned(label)),
     };
     let path = |movement: &Movement, color, width, dash, label| Layer::Path {
         points: movement.angles.clone(),
         stroke: Stroke { color, width, dash },
-        label: Some(label),
+        label: Some(str::to_owned(label)),
     };
     let start = Layer::Marks {
         points: vec![shown.free.angles[0]],
         mark: Mark::Circle,
         color: "#0072b2",
         size: 4.0,
-        label: Some("start"),
+        label: Some("start".to_owned()),
     };
     let inside = Layer::Region { corners: shown.touching.clone(), color: BOX, opacity: 0.25 };
     let layers = vec![
@@ -156,7 +185,9 @@ fn angles(shown: &Shown) -> Plane {
         Layer::Words { at: (-0.3, 0.43), text: "in the box".to_owned() },
     ];
     let (title, x, y) = ("(c) both, in joint space".to_owned(), [-2.0, 2.0], [-2.5, 1.5]);
-    Plane { title, x_label: "q₁ (rad)", y_label: "q₂ (rad)", x, y, layers, size: (390.0, 440.0) }
+    Plane {
+        title, x_label: "q₁ (rad)".to_owned(), y_label: "q₂ (rad)".to_owned(), x, y, layers, size: (390.0, 440.0)
+    }
 }
 
 fn table(name: &'static str, movement: &Movement) -> Csv {

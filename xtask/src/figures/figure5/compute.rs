@@ -3,13 +3,13 @@ use anyhow::Context as _;
 use demo_gen::{Recording, ToySystem, demonstrations};
 use motion::Potential;
 use nalgebra::DVector;
+use plot::Field;
 use rand_chacha::ChaCha8Rng;
 
 use super::{Levels, Movement};
 use crate::experiments::{HELD_OUT, Judge, PARABOLA_SYSTEM, toy_regressor};
 use crate::figures::rounded;
 use crate::measure::Measure;
-use crate::plot::Field;
 use crate::seed::generator;
 
 /// Movements that alignment leaves out in the paper's picture.

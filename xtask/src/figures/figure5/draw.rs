@@ -1,6 +1,7 @@
+use plot::{Field, Picture, Plane, Relief};
+
 use super::{Levels, Movement};
 use crate::figures::{Csv, Drawing, Sources, demonstrated};
-use crate::plot::{Field, Picture, Plane, Relief};
 
 /// What is seen from above: [−2, 2]².
 const EXTENT: f64 = 2.0;
@@ -37,15 +38,21 @@ fn seen(levels: &Levels) -> Plane {
     let layers = demonstrated::layers(&levels.truth, movements, 1.4);
     let range = [-EXTENT, EXTENT];
     let title = "(a) Movements; light crosses: left out".to_owned();
-    Plane { title, x_label: "x₁", y_label: "x₂", x: range, y: range, layers, size: (420.0, 430.0) }
+    Plane {
+        title,
+        x_label: "x₁".to_owned(),
+        y_label: "x₂".to_owned(),
+        x: range,
+        y: range,
+        layers,
+        size: (420.0, 430.0),
+    }
 }
 
 fn relief(title: &str, size: (f64, f64)) -> Relief {
     Relief {
         title: title.to_owned(),
-        x_label: "x₁",
-        y_label: "x₂",
-        z_label: "φ",
+        labels: ["x₁", "x₂", "φ"].map(str::to_owned),
         extent: [(-BOX, -BOX, HEIGHTS[0]), (BOX, BOX, HEIGHTS[1])],
         surface: None,
         dots: vec![],

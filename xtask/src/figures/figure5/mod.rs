@@ -3,10 +3,11 @@
 mod compute;
 mod draw;
 
+use plot::Field;
 use serde::{Deserialize, Serialize};
 
+use super::sound::{Sound, as_many, field, grid, some};
 use super::{Document, Figure};
-use crate::plot::Field;
 
 pub(super) fn document() -> Document {
     Document::new("figure5", None, compute::levels)
@@ -46,6 +47,22 @@ struct Levels {
     /// Errors at samples that the regression did not see, (A4) and (A3).
     alignment_nmse: f64,
     potential_nmse: f64,
+}
+
+impl Sound for Levels {
+    const LARGEST: f64 = 100.0;
+
+    fn check(&self) -> anyhow::Result<()> {
+        some("movements", &self.movements)?;
+        for Movement { points, truth, before, after } in &self.movements {
+            some("points", points)?;
+            for values in [Some(truth), Some(before), after.as_ref()].into_iter().flatten() {
+                as_many("heights of a movement", values, points.len())?;
+            }
+        }
+        field("truth", &self.truth)?;
+        grid("learnt", &self.learnt, self.truth.x.len(), self.truth.y.len())
+    }
 }
 
 impl Levels {

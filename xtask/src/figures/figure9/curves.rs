@@ -1,11 +1,11 @@
 //! Errors among the samples near the goal along the line, and near the line.
 
 use anyhow::Context as _;
+use plot::{Axis, Curves, Key};
 
 use crate::experiments::{Distance, TENTHS};
 use crate::figures::errors::{ERRORS, FIRST, Series};
 use crate::figures::{Csv, Sources};
-use crate::plot::{Axis, Curves, Key};
 
 /// Pixels.
 const SIZE: (f64, f64) = (620.0, 400.0);
@@ -34,11 +34,11 @@ pub(super) fn panels(sources: &Sources) -> anyhow::Result<Panels> {
     })
 }
 
-fn panel(title: &str, x_label: &'static str, series: &Series<'_>) -> Curves {
+fn panel(title: &str, x_label: &str, series: &Series<'_>) -> Curves {
     Curves {
         title: title.to_owned(),
-        x_label,
-        y_label: "Normalised error, cumulative",
+        x_label: x_label.to_owned(),
+        y_label: "Normalised error, cumulative".to_owned(),
         y_axis: Axis::Linear,
         x: [0.0, 1.05],
         x_step: 0.2,

@@ -3,13 +3,14 @@
 mod curves;
 mod scenes;
 
-use curves::Panels;
+use plot::Picture;
 use serde::{Deserialize, Serialize};
 
+use super::sound::{Sound, some};
 use super::{Document, Drawing, Figure, Sources, rounded};
 use crate::experiments::{ARM_SYSTEM, arm};
-use crate::plot::Picture;
 use crate::seed::generator;
+use curves::Panels;
 
 pub(super) fn document() -> Document {
     Document::new("figure9_movements", Some("figure9"), movements)
@@ -43,6 +44,15 @@ pub(super) fn figure() -> Figure {
 /// Movements of the first data set, (q₁, q₂, q₃) in radians.
 #[derive(Serialize, Deserialize)]
 struct Movements(Vec<Vec<(f64, f64, f64)>>);
+
+impl Sound for Movements {
+    const LARGEST: f64 = 10.0;
+
+    fn check(&self) -> anyhow::Result<()> {
+        some("movements", &self.0)?;
+        self.0.iter().try_for_each(|movement| some("samples of a movement", movement))
+    }
+}
 
 fn movements(seed: u64) -> anyhow::Result<Movements> {
     let recordings = arm()?.record(&mut generator(seed, ARM_SYSTEM, 0))?;

@@ -1,9 +1,10 @@
 //! Movements in joint space: where they end, and what distances along and from that line mean.
 
 use nalgebra::{Point3, Vector3};
+use plot::{Camera, Dash, Frame, Item, Paint, Space, Stroke};
 
 use crate::experiments::line;
-use crate::plot::{Camera, Dash, Frame, Item, Paint, Space, Stroke, Who};
+use crate::figures::Who;
 
 /// So many movements are drawn.
 const SHOWN: usize = 50;
@@ -47,19 +48,19 @@ fn scene(
     let mut items = bounds;
     for movement in movements {
         let points = movement.iter().map(point).collect();
-        items.push(Item::Path { points, stroke: Who::Demonstration.stroke(1.0), label: Some("movement") });
+        items.push(Item::Path { points, stroke: Who::Demonstration.stroke(1.0), label: Some("movement".to_owned()) });
     }
     let ends = movements.iter().filter_map(|movement| movement.last().map(point)).collect();
     let far = Point3::from(line() * 1.3);
     let line = Stroke { color: LINE, width: 1.4, dash: Dash::Dashed };
     let mut over = measured;
     over.extend([
-        Item::Path { points: vec![-far, far], stroke: line, label: Some("line l") },
+        Item::Path { points: vec![-far, far], stroke: line, label: Some("line l".to_owned()) },
         Item::Dots { points: ends, color: Who::Demonstration.color(), radius: 2.4 },
         Item::Mark { at: Point3::origin(), text: "0".to_owned(), color: GOAL },
     ]);
     let (lowest, highest) = (Point3::from([-EXTENT; 3]), Point3::from([EXTENT; 3]));
-    let frame = Frame { lowest, highest, labels: ["q₁ (rad)", "q₂ (rad)", "q₃ (rad)"] };
+    let frame = Frame { lowest, highest, labels: ["q₁ (rad)", "q₂ (rad)", "q₃ (rad)"].map(str::to_owned) };
     Space { title: title.to_owned(), camera, items, over, frame: Some(frame), extent: None, size: (410.0, 430.0) }
 }
 

@@ -12,9 +12,11 @@ use serde::{Deserialize, Serialize};
 use super::STARTS;
 use super::constraint::Constraint;
 use super::policies::{LEARNERS, policies};
+use super::robot::FARTHEST;
 use super::starts::chosen;
 use crate::experiments::GRASP_SYSTEM;
 use crate::figures::rounded;
+use crate::figures::sound::{grid, some, within};
 use crate::seed::generator;
 
 /// Decimals of joints and palms: a tenth of a millimetre.
@@ -37,6 +39,16 @@ pub(crate) struct Movement {
     pub(crate) palms: Vec<Vec<f64>>,
     /// How far a palm is at most from where the policy wants it, millimetres.
     pub(crate) error_mm: f64,
+}
+
+impl Movement {
+    /// Whether there is a configuration of all joints, and a place for both palms, at every sample.
+    pub(super) fn check(&self, n_joints: usize) -> anyhow::Result<()> {
+        some("samples of a movement", &self.palms)?;
+        grid("joints", &self.joints, n_joints, self.palms.len())?;
+        grid("palms", &self.palms, 6, self.palms.len())?;
+        self.joints.iter().chain(&self.palms).try_for_each(|row| within("a movement", row, FARTHEST))
+    }
 }
 
 /// All movements: by constraint, then by learner, then by start.

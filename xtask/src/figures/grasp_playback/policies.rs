@@ -6,8 +6,8 @@ use motion::{NegativeGradient, Policy};
 use rand_chacha::ChaCha8Rng;
 
 use crate::experiments::{HELD_OUT, grasp_naive, grasp_regressor};
+use crate::figures::Who;
 use crate::learners::{Learner, Lesson};
-use crate::plot::Who;
 
 /// A roll-out leaves the data now and then: receptive fields take part as soon as they are felt at all.
 const CUTOFF: f64 = 1e-9;

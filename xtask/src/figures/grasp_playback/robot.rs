@@ -7,6 +7,10 @@ use nalgebra::IsometryMatrix3;
 use serde::{Deserialize, Serialize};
 
 use crate::figures::shapes::{Kind, form, numbers};
+use crate::figures::sound::{self, among, within};
+
+/// No link is farther away, metres.
+pub(super) const FARTHEST: f64 = 10.0;
 
 /// Links and what they look like.
 #[derive(Serialize, Deserialize)]
@@ -56,6 +60,26 @@ pub(crate) struct Shape {
     pub(crate) translation: [f64; 3],
     /// By rows.
     pub(crate) rotation: [f64; 9],
+}
+
+impl Robot {
+    /// Whether links, joints and shapes are there that others point to; how many joints there are.
+    pub(super) fn check(&self) -> anyhow::Result<usize> {
+        let (links, joints) = (self.links.len(), self.joints.len());
+        for (place, link) in self.links.iter().enumerate() {
+            among("a parent", link.parent.as_slice(), place)?;
+            among("a joint", link.joint.as_slice(), joints)?;
+            within("a link", &[link.translation, link.axis].concat(), FARTHEST)?;
+            within("a rotation", &link.rotation, FARTHEST)?;
+        }
+        for shape in &self.shapes {
+            among("a shape's link", &[shape.link], links)?;
+            sound::size(shape.kind, &shape.size)?;
+            within("a shape", &[&shape.size[..], &shape.translation, &shape.rotation].concat(), FARTHEST)?;
+        }
+        among("hands", &self.hands, links)?;
+        Ok(joints)
+    }
 }
 
 pub(crate) fn robot(body: &UpperBody) -> anyhow::Result<Robot> {

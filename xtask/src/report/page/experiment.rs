@@ -1,12 +1,11 @@
 //! An experiment: its tables, its figures, what stands out, what the paper leaves open.
 
 use maud::{Markup, html};
+use page::{emphasised, key};
 
-use super::emphasis::emphasised;
-use super::strip::key;
 use super::table::{columns, grid, is_printed, list, scales};
 use super::verdict_bar::{bar, words};
-use super::{Contents, figure, view};
+use super::{Contents, view};
 use crate::report::compared::{Compared, Line};
 use crate::report::tally::Tally;
 use crate::verdict::Verdict;
@@ -27,10 +26,10 @@ pub(super) fn section(compared: &Compared<'_>, contents: &Contents<'_>) -> Marku
         @if compared.is_printed() {
             (printed(compared))
             @if experiment.id == view::EXPERIMENT { (view::view(contents.sources, &figures)) }
-            @for (figure, svg) in &figures { (figure::card(figure, svg, experiment.title)) }
+            @for (figure, svg) in &figures { (super::card(figure, svg, experiment.title)) }
             (standing_out(compared)) (left_open(compared))
         } @else {
-            @for (figure, svg) in &figures { (figure::card(figure, svg, experiment.title)) }
+            @for (figure, svg) in &figures { (super::card(figure, svg, experiment.title)) }
             (left_open(compared)) (curves(compared))
         }
     }
@@ -44,7 +43,7 @@ fn printed(compared: &Compared<'_>) -> Markup {
         @match columns {
             Some(columns) => {
                 (grid(compared, &columns, &scales))
-                (key())
+                (key("the paper’s mean ± s.d."))
                 details {
                     summary { "Every cell: median, z, second seed, and what the paper does not print" }
                     (list(compared, &scales, |_| true))
@@ -52,7 +51,7 @@ fn printed(compared: &Compared<'_>) -> Markup {
             }
             None => {
                 (list(compared, &scales, is_printed))
-                (key())
+                (key("the paper’s mean ± s.d."))
                 @if compared.lines().any(|line| !is_printed(&line)) {
                     details {
                         summary { "What the paper does not print" }
@@ -70,7 +69,7 @@ fn curves(compared: &Compared<'_>) -> Markup {
         details {
             summary { "The numbers behind the curves" }
             (list(compared, &scales(compared), |_| true))
-            (key())
+            (key("the paper’s mean ± s.d."))
         }
     }
 }

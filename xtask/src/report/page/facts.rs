@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::{Contents, figure};
+use super::Contents;
 use crate::experiments::Setup;
 use crate::report::compared::Compared;
 use crate::report::tally::Tally;
@@ -41,7 +41,7 @@ pub(super) fn facts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
 
 /// Figures that would be here if their data were.
 fn missing(contents: &Contents<'_>) -> Markup {
-    let names: Vec<&str> = undrawn(contents.sources).iter().map(figure::name).collect();
+    let names: Vec<&str> = undrawn(contents.sources).iter().map(|figure| page::name(figure.title)).collect();
     html! {
         @if !names.is_empty() {
             p .notice {

@@ -1,12 +1,12 @@
 //! The opening: what was asked and how it went.
 
 use maud::{Markup, html};
+use page::emphasised;
 
-use super::emphasis::emphasised;
 use super::experiment::sentence;
 use super::facts::facts;
 use super::verdict_bar::{bar, words};
-use super::{Contents, OVERVIEW, figure, pictures, view};
+use super::{Contents, OVERVIEW, pictures, view};
 use crate::report::compared::{Compared, FEW, Line};
 use crate::report::tally::Tally;
 use crate::verdict::Verdict;
@@ -28,7 +28,7 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
                 p .notice { "With fewer than " (FEW) " data sets a row single numbers mean little." }
             } @else { (not_reached(all)) (pictures::otherwise(contents)) }
         }
-        @if let Some((figure, svg)) = overview { (figure::card(figure, svg, "")) }
+        @if let Some((figure, svg)) = overview { (super::card(figure, svg, "")) }
         (view::way(contents.sources))
     }
 }

@@ -1,9 +1,8 @@
 //! How it was measured, and how to measure it again.
 
 use maud::html;
+use page::{Part, emphasised};
 
-use super::Part;
-use super::emphasis::emphasised;
 use crate::measure::Measure;
 use crate::report::legend::{MEASURES, RULE, names};
 use crate::results::Results;

@@ -1,30 +1,21 @@
 //! The report as one page that needs nothing else: style, script and pictures are in it.
 
-mod emphasis;
 mod experiment;
 mod facts;
-mod figure;
 mod glance;
 mod method;
 mod pictures;
-mod scale;
-mod strip;
 mod table;
 mod verdict_bar;
 mod view;
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, html};
+use page::{Card, Document, Part};
 
 use super::compared::{Compared, compared};
 use crate::experiments::Experiment;
 use crate::figures::{Figure, Sources};
 use crate::results::Results;
-
-const STYLE: &str = include_str!("../../../page/report.css");
-const SCRIPT: &str = include_str!("../../../page/report.js");
-
-/// What the page may do: show what is in it. Nothing is fetched.
-const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
 
 /// The figure that says what it is about.
 const OVERVIEW: &str = "overview";
@@ -39,44 +30,20 @@ pub(crate) struct Contents<'a> {
     pub(crate) figures: Vec<(Figure, String)>,
 }
 
-/// A part of the page that can be gone to.
-struct Part {
-    id: String,
-    title: String,
-    body: Markup,
-}
-
 /// The page, as HTML.
 pub(crate) fn page(contents: &Contents<'_>) -> String {
     let results = &contents.sources.results;
     let all = compared(contents.experiments, results, contents.second);
-    let parts = parts(contents, &all);
-    let title = "policy-align: the paper, computed again";
-    let document = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
-                title { (title) }
-                link rel="icon" href="data:,";
-                style { (PreEscaped(STYLE)) (PreEscaped(view::STYLE)) }
-            }
-            body {
-                a .skip href="#main" { "Skip to the results" }
-                (navigation(&parts))
-                main #main tabindex="-1" {
-                    (glance::opening(contents, &all))
-                    @for part in &parts { section id=(part.id) { (part.body) } }
-                }
-                (figure::enlarged())
-                script type="module" { (PreEscaped(SCRIPT)) }
-            }
-        }
-    };
-    document.into_string()
+    let body = glance::opening(contents, &all);
+    let opening = Part { id: "glance".to_owned(), title: "At a glance".to_owned(), body };
+    let (title, name) = ("policy-align: the paper, computed again", "policy-align");
+    Document { title, name, opening, parts: parts(contents, &all), style: view::STYLE }.html()
+}
+
+/// A figure on a card, under a heading that may have said its title.
+fn card(figure: &Figure, svg: &str, heading: &str) -> Markup {
+    let remark = figure.beside_paper.map(|text| ("Beside the paper's figure.", text));
+    Card { id: figure.id, title: figure.title, caption: figure.caption, remark, svg }.under(heading)
 }
 
 /// All parts after the opening.
@@ -94,22 +61,10 @@ fn parts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Vec<Part> {
         let title = "The idea in pictures".to_owned();
         let body = html! {
             h2 { (title) }
-            @for (figure, svg) in others { (figure::card(figure, svg, &title)) }
+            @for (figure, svg) in others { (card(figure, svg, &title)) }
         };
         parts.push(Part { id: "ideas".to_owned(), title, body });
     }
     parts.push(method::part(&contents.sources.results));
     parts
-}
-
-fn navigation(parts: &[Part]) -> Markup {
-    html! {
-        nav aria-label="Contents" {
-            p .name { "policy-align" }
-            ol {
-                li { a href="#glance" { "At a glance" } }
-                @for part in parts { li { a href={ "#" (part.id) } { (part.title) } } }
-            }
-        }
-    }
 }

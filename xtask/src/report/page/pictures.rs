@@ -1,9 +1,9 @@
 //! Figures whose picture differs from the paper's, for the opening. What stands beside them says it in full.
 
 use maud::{Markup, html};
+use page::emphasised;
 
-use super::emphasis::emphasised;
-use super::{Contents, figure};
+use super::Contents;
 use crate::report::undrawn;
 
 /// The figures of this run that differ, each with what differs. A quick run is too coarse to tell.
@@ -17,7 +17,7 @@ pub(super) fn otherwise(contents: &Contents<'_>) -> Markup {
             h2 .small { "Pictures that differ from the paper’s" }
             ul .differ {
                 @for (figure, drawn, words) in differ {
-                    @let name = figure::name(figure);
+                    @let name = page::name(figure.title);
                     li {
                         @if drawn { a href={ "#figure-" (figure.id) } { (name) } } @else { (name) }
                         ": " (emphasised(words))

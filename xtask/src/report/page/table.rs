@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 
 use maud::{Markup, html};
+use page::{Reference, Scale, Strip, axis};
 
-use super::scale::Scale;
-use super::strip::{axis, strip};
 use crate::measure::Measure;
 use crate::report::compared::{Compared, Line, NOTHING, Second};
 
@@ -17,7 +16,11 @@ pub(super) type Scales = BTreeMap<Measure, Scale>;
 
 pub(super) fn scales(compared: &Compared<'_>) -> Scales {
     let measures = compared.lines().map(|line| line.measure);
-    let scale = |measure| Scale::around(compared.lines().filter(move |line| line.measure == measure));
+    let scale = |measure| {
+        let lines: Vec<Line<'_>> = compared.lines().filter(|line| line.measure == measure).collect();
+        let values = lines.iter().flat_map(|line| line.cell.values.iter().copied().flatten());
+        Scale::around(values, lines.iter().filter_map(reference))
+    };
     measures.map(|measure| (measure, scale(measure))).collect()
 }
 
@@ -27,6 +30,18 @@ pub(super) fn columns(compared: &Compared<'_>) -> Option<Vec<Measure>> {
     let mut rows = compared.result.rows.iter().map(printed);
     let first = rows.next()?;
     (compared.result.rows.len() >= MANY_ROWS && !first.is_empty() && rows.all(|row| row == first)).then_some(first)
+}
+
+/// What the paper prints for a cell.
+fn reference(line: &Line<'_>) -> Option<Reference> {
+    line.cell.paper.map(|paper| Reference { mean: paper.mean, sd: paper.sd })
+}
+
+/// Every data set of a cell.
+fn strip(line: &Line<'_>, scale: Scale) -> Markup {
+    let show = |value| line.measure.show(value);
+    let (mean, median) = (line.cell.mean, line.cell.median);
+    Strip { values: &line.cell.values, mean, median, reference: reference(line), show: &show }.drawn(scale)
 }
 
 pub(super) fn is_printed(line: &Line<'_>) -> bool {

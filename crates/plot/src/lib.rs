@@ -1,0 +1,59 @@
+//! Pictures: rows of panels, written as SVG and PNG.
+//!
+//! - [`Plane`]: things in the plane, both axes alike.
+//! - [`Curves`]: quantities against a quantity, linear or logarithmic, with bands; [`Key`] names them.
+//! - [`Relief`]: a scalar field or dots in perspective.
+//! - [`Space`]: things in space, the nearer ones before the others.
+//!
+//! Sizes of panels, widths of lines and radii of dots are in pixels; everything else is in the units of what is shown.
+//! Colours are written as in HTML, `#rrggbb`. The same panels give the same bytes.
+//!
+//! ```
+//! use plot::{Dash, Layer, Picture, Plane, Stroke};
+//!
+//! let points = (0..=20).map(|i| f64::from(i) / 10.0).map(|t| (t - 1.0, (t - 1.0) * (t - 1.0))).collect();
+//! let stroke = Stroke { color: "#0072b2", width: 1.5, dash: Dash::Solid };
+//! let plane = Plane {
+//!     title: "A parabola".to_owned(),
+//!     x_label: "x (m)".to_owned(),
+//!     y_label: "y (m)".to_owned(),
+//!     x: [-1.0, 1.0],
+//!     y: [0.0, 1.0],
+//!     layers: vec![Layer::Path { points, stroke, label: Some("shown".to_owned()) }],
+//!     size: Plane::SQUARE,
+//! };
+//! let picture = Picture::rows(&[&[&plane]]);
+//! assert!(picture.svg().starts_with("<svg"));
+//! assert!(picture.png()?.starts_with(b"\x89PNG"));
+//! # Ok::<(), plot::PlotError>(())
+//! ```
+//!
+//! The only place that knows the plotting crate.
+
+mod colour_scale;
+mod curves;
+mod dashes;
+mod decimals;
+mod error;
+mod key;
+mod panel;
+mod picture;
+mod plane;
+mod raster;
+mod relief;
+mod samples;
+mod sheet;
+mod sign;
+mod space;
+mod style;
+
+pub use curves::{Axis, Curve, Curves};
+pub use error::PlotError;
+pub use key::{Entry, Key};
+pub use panel::{Field, Panel, Sketch};
+pub use picture::Picture;
+pub use plane::{Layer, Plane};
+pub use relief::Relief;
+pub use sign::{Filling, Sign};
+pub use space::{Camera, Frame, Item, Paint, Space};
+pub use style::{Dash, Mark, Stroke};

@@ -1,0 +1,61 @@
+use kuva::render::render::{Primitive, Scene};
+
+use crate::raster::Raster;
+
+/// One part of a picture.
+pub trait Panel {
+    /// Draws it on a sheet of its own.
+    fn sketch(&self) -> Sketch;
+}
+
+/// A panel as it is drawn: lines, areas and words, and pixels under some of them.
+#[derive(Debug)]
+pub struct Sketch {
+    pub(crate) scene: Scene,
+    pub(crate) rasters: Vec<Raster>,
+}
+
+/// A scalar field on a grid: `values[row][column]` at (`x[column]`, `y[row]`).
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub struct Field {
+    /// Places of the columns.
+    pub x: Vec<f64>,
+    /// Places of the rows.
+    pub y: Vec<f64>,
+    /// One row for each y.
+    pub values: Vec<Vec<f64>>,
+}
+
+/// What marks the group of a scene that has pixels in it, before their number.
+const MARK: &str = "data-raster=\"";
+
+impl Sketch {
+    pub(crate) fn new(scene: Scene) -> Sketch {
+        Sketch { scene, rasters: vec![] }
+    }
+
+    /// Adds pixels over all that is drawn so far.
+    pub(crate) fn add_raster(&mut self, raster: Option<Raster>) {
+        if let Some(raster) = raster {
+            self.scene.add(Sketch::group(self.rasters.len()));
+            self.scene.add(Primitive::GroupEnd);
+            self.rasters.push(raster);
+        }
+    }
+
+    /// The attribute of the group that has these pixels in it.
+    pub(crate) fn mark(number: usize) -> String {
+        format!("{MARK}{number}\"")
+    }
+
+    /// The beginning of that group.
+    pub(crate) fn group(number: usize) -> Primitive {
+        Primitive::GroupStart { transform: None, title: None, extra_attrs: Some(Sketch::mark(number)) }
+    }
+
+    /// The number of the pixels whose group begins here.
+    pub(crate) fn number(element: &Primitive) -> Option<usize> {
+        let Primitive::GroupStart { extra_attrs: Some(attribute), .. } = element else { return None };
+        attribute.strip_prefix(MARK)?.strip_suffix('"')?.parse().ok()
+    }
+}

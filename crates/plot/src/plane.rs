@@ -1,0 +1,268 @@
+use kuva::plot::{BandPlot, ContourPlot, Heatmap, LegendPosition, LinePlot, MarkerShape, QuiverPlot, ScatterPlot};
+use kuva::render::annotations::TextAnnotation;
+use kuva::render::plots::Plot;
+use kuva::render::render::render_multiple;
+
+use crate::samples::{self, Sample};
+use crate::sheet::{Edge, titled, with_axes};
+use crate::style::heights;
+use crate::{Field, Mark, Panel, Sketch, Stroke, colour_scale};
+
+/// One thing drawn in the plane; later layers lie on top.
+#[derive(Debug, Clone)]
+pub enum Layer {
+    /// Lines of equal value.
+    Contours(Field),
+    /// A field in colours, light where it is high, with a scale of this name.
+    Colors {
+        /// Values on an even grid.
+        field: Field,
+        /// What the values are.
+        name: String,
+    },
+    /// A filled polygon that is in one piece on every vertical line.
+    Region {
+        /// In order.
+        corners: Vec<(f64, f64)>,
+        /// As in HTML.
+        color: &'static str,
+        /// From 0 to 1.
+        opacity: f64,
+    },
+    /// A line through points. A label puts it in the legend.
+    Path {
+        /// From its start to its end.
+        points: Vec<(f64, f64)>,
+        /// How it looks.
+        stroke: Stroke,
+        /// In the legend.
+        label: Option<String>,
+    },
+    /// Crosses.
+    Crosses {
+        /// Their middles.
+        points: Vec<(f64, f64)>,
+        /// As in HTML.
+        color: &'static str,
+    },
+    /// Dots with this radius in pixels.
+    Dots {
+        /// Their middles.
+        points: Vec<(f64, f64)>,
+        /// As in HTML.
+        color: &'static str,
+        /// Pixels.
+        radius: f64,
+    },
+    /// Marks of this size in pixels. A label puts them in the legend.
+    Marks {
+        /// Their middles.
+        points: Vec<(f64, f64)>,
+        /// Their shape.
+        mark: Mark,
+        /// As in HTML.
+        color: &'static str,
+        /// Half their width, pixels.
+        size: f64,
+        /// In the legend.
+        label: Option<String>,
+    },
+    /// Words centred just above a point, on top of all layers.
+    Words {
+        /// The point.
+        at: (f64, f64),
+        /// The words.
+        text: String,
+    },
+    /// Arrows (x, y, u, v), in data units, `scale` times as long as they are. A label puts them in the legend.
+    Arrows {
+        /// Foot and components.
+        arrows: Vec<(f64, f64, f64, f64)>,
+        /// As in HTML.
+        color: &'static str,
+        /// How many times as long as their components they are drawn.
+        scale: f64,
+        /// Of the shaft, pixels.
+        width: f64,
+        /// In the legend.
+        label: Option<String>,
+    },
+}
+
+/// Things in the plane, one unit as long on either axis.
+#[derive(Debug, Clone)]
+pub struct Plane {
+    /// Above it.
+    pub title: String,
+    /// With its unit.
+    pub x_label: String,
+    /// With its unit.
+    pub y_label: String,
+    /// From and to.
+    pub x: [f64; 2],
+    /// From and to.
+    pub y: [f64; 2],
+    /// Later ones lie on top.
+    pub layers: Vec<Layer>,
+    /// Pixels.
+    pub size: (f64, f64),
+}
+
+impl Plane {
+    /// Width and height in pixels that suit a square of the plane.
+    pub const SQUARE: (f64, f64) = (400.0, 420.0);
+
+    /// The names of lines and arrows in the legend.
+    fn names(&self) -> Vec<(&str, Sample)> {
+        fn name(layer: &Layer) -> Option<(&str, Sample)> {
+            match layer {
+                Layer::Path { label, .. } => Some((label.as_deref()?, Sample::Line)),
+                Layer::Arrows { label, .. } => Some((label.as_deref()?, Sample::Arrow)),
+                _ => None,
+            }
+        }
+        self.layers.iter().filter_map(name).collect()
+    }
+}
+
+impl Panel for Plane {
+    fn sketch(&self) -> Sketch {
+        let plots: Vec<Plot> = self.layers.iter().filter_map(plot).collect();
+        let (x, y) = (Edge { label: &self.x_label, range: self.x }, Edge { label: &self.y_label, range: self.y });
+        let mut layout = with_axes(titled(&plots, &self.title, self.size), &x, &y)
+            .with_show_grid(false)
+            .with_legend_position(LegendPosition::OutsideBottomColumns)
+            .with_legend_box(false)
+            .with_equal_aspect();
+        layout.annotations = self.layers.iter().filter_map(words).collect();
+        let mut scene = render_multiple(plots, layout);
+        for layer in &self.layers {
+            if let Layer::Colors { name, .. } = layer {
+                colour_scale::name(name, &mut scene);
+            }
+        }
+        samples::draw(&self.names(), &mut scene);
+        Sketch::new(scene)
+    }
+}
+
+fn plot(layer: &Layer) -> Option<Plot> {
+    Some(match layer.clone() {
+        Layer::Words { .. } => return None,
+        Layer::Contours(Field { x, y, values }) => {
+            let contours = ContourPlot::new().with_grid(values, x, y).with_n_levels(12);
+            Plot::Contour(contours.with_line_color("#b8b8b8").with_line_width(0.8))
+        }
+        Layer::Colors { field, .. } => Plot::Heatmap(colors(&field)),
+        Layer::Region { corners, color, opacity } => Plot::Band(band(&corners).with_color(color).with_opacity(opacity)),
+        Layer::Path { points, stroke, label } => {
+            let line = LinePlot::new().with_data(points).with_color(stroke.color).with_stroke_width(stroke.width);
+            let line = line.with_line_style(stroke.dash.into());
+            Plot::Line(if let Some(label) = label { line.with_legend(label) } else { line })
+        }
+        Layer::Crosses { points, color } => Plot::Scatter(
+            ScatterPlot::new().with_data(points).with_color(color).with_size(2.5).with_marker(MarkerShape::Cross),
+        ),
+        Layer::Dots { points, color, radius } => {
+            Plot::Scatter(ScatterPlot::new().with_data(points).with_color(color).with_size(radius))
+        }
+        Layer::Marks { points, mark, color, size, label } => {
+            let marks = ScatterPlot::new().with_data(points).with_color(color).with_size(size).with_marker(mark.into());
+            Plot::Scatter(if let Some(label) = label { marks.with_legend(label) } else { marks })
+        }
+        Layer::Arrows { arrows, color, scale, width, label } => {
+            let quiver = QuiverPlot::new().with_arrows(arrows).with_color(color).with_scale(scale);
+            let quiver = quiver.with_shaft_width(width).with_clip_to_plot_area();
+            Plot::Quiver(if let Some(label) = label { quiver.with_legend(label) } else { quiver })
+        }
+    })
+}
+
+/// A field as squares between four places of its grid each, with their mean.
+fn colors(field: &Field) -> Heatmap {
+    let mean = |low: &[f64], high: &[f64]| (low[0] + low[1] + high[0] + high[1]) / 4.0;
+    let row = |rows: &[Vec<f64>]| {
+        rows[0].windows(2).zip(rows[1].windows(2)).map(|(low, high)| mean(low, high)).collect::<Vec<_>>()
+    };
+    let cells: Vec<_> = field.values.windows(2).map(row).collect();
+    let (x, y) = (&field.x, &field.y);
+    Heatmap::new()
+        .with_data(cells)
+        .with_x_range(x[0], x[x.len() - 1])
+        .with_y_range(y[0], y[y.len() - 1])
+        .with_cell_size(1.0)
+        .with_color_map(heights())
+}
+
+fn words(layer: &Layer) -> Option<TextAnnotation> {
+    let Layer::Words { at, text } = layer else { return None };
+    Some(TextAnnotation::new(text, at.0, at.1).with_font_size(13))
+}
+
+/// The strip between the lower and the upper edges of a polygon.
+fn band(corners: &[(f64, f64)]) -> BandPlot {
+    let mut x: Vec<f64> = corners.iter().map(|corner| corner.0).collect();
+    x.sort_by(f64::total_cmp);
+    x.dedup();
+    let edges = || corners.iter().zip(corners.iter().cycle().skip(1));
+    // Where edges meet the vertical through x; a vertical edge meets it in both ends.
+    let heights = |at: f64| {
+        edges().filter(move |(a, b)| (a.0.min(b.0)..=a.0.max(b.0)).contains(&at)).flat_map(move |(a, b)| {
+            let share = (at - a.0) / (b.0 - a.0);
+            if a.0 == b.0 { [a.1, b.1] } else { [a.1 + share * (b.1 - a.1); 2] }
+        })
+    };
+    let lower: Vec<f64> = x.iter().map(|&at| heights(at).fold(f64::INFINITY, f64::min)).collect();
+    let upper: Vec<f64> = x.iter().map(|&at| heights(at).fold(f64::NEG_INFINITY, f64::max)).collect();
+    BandPlot::new(x, lower, upper)
+}
+
+#[cfg(test)]
+mod tests {
+    use kuva::render::render::Primitive;
+
+    use super::*;
+    use crate::Dash;
+
+    #[test]
+    fn a_polygon_is_filled_between_its_lower_and_upper_edges() {
+        let kite = band(&[(0.0, 0.0), (1.0, -1.0), (4.0, 0.0), (1.0, 1.0)]);
+        assert_eq!(kite.x, [0.0, 1.0, 4.0]);
+        assert_eq!((kite.y_lower, kite.y_upper), (vec![0.0, -1.0, 0.0], vec![0.0, 1.0, 0.0]));
+        let slanted = band(&[(0.0, 0.0), (0.0, 2.0), (2.0, 4.0), (4.0, 2.0)]);
+        assert_eq!((slanted.x, slanted.y_lower), (vec![0.0, 2.0, 4.0], vec![0.0, 1.0, 2.0]));
+        assert_eq!(slanted.y_upper, [2.0, 4.0, 2.0]);
+    }
+
+    #[test]
+    fn arrows_and_colours_are_named_as_they_are_drawn() {
+        let field = Field { x: vec![0.0, 1.0], y: vec![0.0, 1.0], values: vec![vec![0.0, 1.0], vec![1.0, 2.0]] };
+        let (color, width, scale) = ("#d55e00", 1.0, 1.0);
+        let arrows =
+            Layer::Arrows { arrows: vec![(0.2, 0.2, 0.5, 0.5)], color, scale, width, label: Some("flow".to_owned()) };
+        let stroke = Stroke { color: "#000000", width, dash: Dash::Solid };
+        let path = Layer::Path { points: vec![(0.0, 0.0), (1.0, 1.0)], stroke, label: Some("way".to_owned()) };
+        let layers = vec![Layer::Colors { field, name: "φ".to_owned() }, path, arrows];
+        let (title, size) = (String::new(), Plane::SQUARE);
+        let scene = Plane {
+            title,
+            x_label: "x".to_owned(),
+            y_label: "y".to_owned(),
+            x: [0.0, 1.0],
+            y: [0.0, 1.0],
+            layers,
+            size,
+        }
+        .sketch()
+        .scene;
+        let after = |name: &str| {
+            let named = |element: &Primitive| matches!(element, Primitive::Text { content, .. } if content == name);
+            let at = scene.elements.iter().position(named).unwrap();
+            [1, 2].map(|step| scene.elements.get(at + step))
+        };
+        assert!(matches!(after("flow"), [Some(Primitive::Line { .. }), Some(Primitive::Path(head))]
+            if head.fill == Some(color.into())));
+        assert!(!matches!(after("way"), [Some(Primitive::Line { .. }), Some(Primitive::Path(_))]));
+        after("φ");
+    }
+}

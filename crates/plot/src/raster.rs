@@ -1,0 +1,112 @@
+//! Pixels under a drawing.
+
+use std::fmt::Write as _;
+
+use kuva::render::color::Color;
+use kuva::render::render::Primitive;
+
+/// Dots along a side of a pixel.
+pub(crate) const DOTS: usize = 2;
+
+/// A rectangle of coloured dots.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Raster {
+    /// Where its upper left corner is, pixels.
+    pub(crate) corner: (f64, f64),
+    /// Dots in a row.
+    pub(crate) width: usize,
+    /// Red, green, blue, and how much of it there is; row by row.
+    pub(crate) dots: Vec<[u8; 4]>,
+}
+
+impl Raster {
+    fn height(&self) -> usize {
+        self.dots.len() / self.width
+    }
+
+    /// As an element of a drawing.
+    pub(crate) fn svg(&self) -> String {
+        let ((x, y), [width, height]) =
+            (self.corner, [self.width, self.height()].map(|dots| dots as f64 / DOTS as f64));
+        let data = base64(&self.png());
+        format!(r#"<image x="{x}" y="{y}" width="{width}" height="{height}" href="data:image/png;base64,{data}"/>"#)
+    }
+
+    /// As areas of one colour each, which have whole dots as their sides.
+    pub(crate) fn areas(&self) -> Vec<Primitive> {
+        let side = 1.0 / DOTS as f64;
+        let mut areas = vec![];
+        for (row, dots) in self.dots.chunks(self.width).enumerate() {
+            let mut column = 0;
+            for run in dots.chunk_by(|a, b| a == b) {
+                let [red, green, blue, share] = run[0];
+                if share > 0 {
+                    areas.push(Primitive::Rect {
+                        x: self.corner.0 + column as f64 * side,
+                        y: self.corner.1 + row as f64 * side,
+                        width: run.len() as f64 * side,
+                        height: side,
+                        fill: Color::Rgb(red, green, blue),
+                        stroke: None,
+                        stroke_width: None,
+                        opacity: Some(f64::from(share) / 255.0),
+                    });
+                }
+                column += run.len();
+            }
+        }
+        areas
+    }
+
+    /// As a file.
+    fn png(&self) -> Vec<u8> {
+        let mut file = Vec::new();
+        let mut encoder = png::Encoder::new(&mut file, self.width as u32, self.height() as u32);
+        encoder.set_color(png::ColorType::Rgba);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::High);
+        let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(self.dots.as_flattened()));
+        written.expect("a picture of some dots, all rows as wide, can be written to memory");
+        file
+    }
+}
+
+/// Bytes as letters, three to four (RFC 4648).
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for three in bytes.chunks(3) {
+        let bits = (0..3).fold(0, |bits, i| bits << 8 | three.get(i).copied().map_or(0, u32::from));
+        for i in 0..4 {
+            let letter = char::from(LETTERS[(bits >> (18 - 6 * i) & 63) as usize]);
+            let _ = write!(text, "{}", if i <= three.len() { letter } else { '=' });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_are_written_as_in_the_rfc() {
+        let texts = ["", "f", "fo", "foo", "foob", "fooba", "foobar"].map(|text| base64(text.as_bytes()));
+        assert_eq!(texts, ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"]);
+    }
+
+    #[test]
+    fn areas_are_runs_of_one_colour_and_nothing_where_nothing_is() {
+        let (red, none) = ([255, 0, 0, 255], [0; 4]);
+        let raster = Raster { corner: (3.0, 4.0), width: 3, dots: vec![red, red, none, none, none, red] };
+        let areas: Vec<_> = raster
+            .areas()
+            .iter()
+            .map(|area| match area {
+                Primitive::Rect { x, y, width, height, .. } => [*x, *y, *width, *height],
+                other => panic!("{other:?}"),
+            })
+            .collect();
+        assert_eq!(areas, [[3.0, 4.0, 1.0, 0.5], [4.0, 4.5, 0.5, 0.5]]);
+    }
+}

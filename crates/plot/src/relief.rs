@@ -1,0 +1,99 @@
+use kuva::plot::{ColorMap, Scatter3DPlot, Surface3DPlot};
+use kuva::render::plots::Plot;
+use kuva::render::render::{Primitive, render_multiple};
+
+use crate::sheet::titled;
+use crate::style::heights;
+use crate::{Field, Panel, Sketch};
+
+/// Heights above the plane in perspective, x to the right and y away from the reader; light is high.
+#[derive(Debug, Clone)]
+pub struct Relief {
+    /// Above it.
+    pub title: String,
+    /// Names of the axes, with units.
+    pub labels: [String; 3],
+    /// Lowest and highest corner of the box; colours are of its heights.
+    pub extent: [(f64, f64, f64); 2],
+    /// Heights on a grid; what is not finite is left out.
+    pub surface: Option<Field>,
+    /// Points (x, y, z).
+    pub dots: Vec<(f64, f64, f64)>,
+    /// Pixels.
+    pub size: (f64, f64),
+}
+
+/// Radius of dots, pixels.
+const DOT: f64 = 2.0;
+
+/// Size of words along axes, pixels.
+const WORDS: u32 = 12;
+
+/// Pixels beside and below the box, and above it.
+const ROOM: (f64, f64) = (24.0, 18.0);
+const TITLE: f64 = 36.0;
+
+impl Panel for Relief {
+    // The crate's axes are left-handed from this side: with x and y exchanged the picture is no mirror image.
+    fn sketch(&self) -> Sketch {
+        let [x_label, y_label, z_label] = self.labels.each_ref().map(String::as_str);
+        let points = |points: &[(f64, f64, f64)]| points.iter().map(|&(x, y, z)| (y, x, z)).collect::<Vec<_>>();
+        // The crate fits its box to what is in it: corners without size hold it open.
+        let corners = Scatter3DPlot::new().with_data(points(&self.extent)).with_size(0.0);
+        let corners = corners.with_x_label(y_label).with_y_label(x_label).with_z_label(z_label);
+        let corners = corners.with_z_axis_right(false);
+        let mut plots = vec![Plot::Scatter3D(corners)];
+        if let Some(Field { x, y, values }) = &self.surface {
+            let columns = (0..x.len()).map(|column| values.iter().map(|row| row[column]).collect()).collect();
+            let surface = Surface3DPlot::new(columns).with_x_coords(y.clone()).with_y_coords(x.clone());
+            plots.push(Plot::Surface3D(surface.with_z_colormap(heights()).with_wireframe_width(0.25)));
+        }
+        if !self.dots.is_empty() {
+            let dots = Scatter3DPlot::new().with_data(points(&self.dots)).with_size(DOT);
+            plots.push(Plot::Scatter3D(dots.with_z_colormap(ColorMap::Cividis)));
+        }
+        let layout = titled(&plots, &self.title, self.size);
+        let mut layout = layout.with_force_margins(ROOM.0, ROOM.0).with_force_margins_y(TITLE, ROOM.1);
+        // Heights are at the axis.
+        layout.show_colorbar = false;
+        let mut scene = render_multiple(plots, layout);
+        scene.elements.iter_mut().for_each(upright);
+        Sketch::new(scene)
+    }
+}
+
+/// Words along axes as in [`crate::Space`]: level, and none bolder than the others.
+fn upright(element: &mut Primitive) {
+    if let Primitive::Text { size, rotate: rotate @ Some(_), bold, .. } = element {
+        (*size, *rotate, *bold) = (WORDS, None, false);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_no_mirror_image_and_up_is_up() {
+        let dots = vec![(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)];
+        let extent = [(-1.0, -2.0, -1.0), (3.0, 2.0, 1.0)];
+        let labels = ["x", "y", "z"].map(str::to_owned);
+        let (title, surface, size) = (String::new(), None, (400.0, 400.0));
+        let scene = Relief { title, labels, extent, surface, dots, size }.sketch().scene;
+        // The farthest is drawn first: find each by its radius and distance to the others.
+        let circle = |element: &Primitive| match element {
+            Primitive::Circle { cx, cy, r, .. } if *r > 0.0 => Some((*cx, -*cy)),
+            _ => None,
+        };
+        let mut places: Vec<(f64, f64)> = scene.elements.iter().filter_map(circle).collect();
+        places.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let [x, origin, y, z] = places[..] else { panic!("{places:?}") };
+        let from_origin = |(right, up): (f64, f64)| (right - origin.0, up - origin.1);
+        let (x, y, z) = (from_origin(x), from_origin(y), from_origin(z));
+        assert!(x.0 > 1.0 && y.0 > 1.0 && z.0.abs() < 0.1 && z.1 > 1.0, "{x:?} {y:?} {z:?}");
+        assert!(x.0 * y.1 - x.1 * y.0 > 1.0, "seen from above y is to the left of x: {x:?} {y:?}");
+        let words = scene.elements.iter().filter(|element| matches!(element, Primitive::Text { .. }));
+        assert!(words.clone().count() > 10);
+        assert!(words.into_iter().all(|word| matches!(word, Primitive::Text { rotate: None, bold: false, .. })));
+    }
+}

@@ -1,0 +1,54 @@
+//! Samples of lines and arrows before their names: the plotting crate draws a line there, too short for dashes and
+//! without a head.
+
+use kuva::render::color::Color;
+use kuva::render::render::{PathData, Primitive, Scene};
+
+/// Pixels from the sample's ends to the name.
+const FROM: f64 = 26.0;
+const TO: f64 = 4.0;
+
+/// Length and half width of a head, pixels.
+const HEAD: (f64, f64) = (8.0, 3.6);
+
+/// What a name is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Sample {
+    Line,
+    Arrow,
+}
+
+/// Draws the samples before these names anew.
+pub(crate) fn draw(names: &[(&str, Sample)], scene: &mut Scene) {
+    let mut drawn = Vec::with_capacity(scene.elements.len());
+    let mut named = None;
+    for mut element in std::mem::take(&mut scene.elements) {
+        let mut head = None;
+        if let (Primitive::Line { x1, x2, y1, stroke, .. }, Some((name_at, sample))) = (&mut element, named.take()) {
+            (*x1, *x2) = (name_at - FROM, name_at - TO);
+            if sample == Sample::Arrow {
+                head = Some(arrowhead((*x2, *y1), stroke));
+                *x2 -= HEAD.0;
+            }
+        }
+        if let Primitive::Text { x, content, .. } = &element {
+            named = names.iter().find(|(name, _)| name == content).map(|(_, sample)| (*x, *sample));
+        }
+        drawn.extend([Some(element), head].into_iter().flatten());
+    }
+    scene.elements = drawn;
+}
+
+/// The head of an arrow to the right.
+fn arrowhead((x, y): (f64, f64), color: &Color) -> Primitive {
+    let (length, half) = HEAD;
+    let foot = x - length;
+    Primitive::Path(Box::new(PathData {
+        d: format!("M{x:.2} {y:.2}L{foot:.2} {:.2}L{foot:.2} {:.2}Z", y - half, y + half),
+        fill: Some(color.clone()),
+        stroke: Color::None,
+        stroke_width: 0.0,
+        opacity: None,
+        stroke_dasharray: None,
+    }))
+}

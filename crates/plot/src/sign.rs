@@ -1,0 +1,85 @@
+use std::fmt::Write as _;
+
+use kuva::plot::ScatterPlot;
+use kuva::render::color::Color;
+use kuva::render::plots::Plot;
+use kuva::render::render::{PathData, Primitive, Scene};
+
+use crate::Mark;
+
+/// What marks the points of a curve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sign {
+    /// Its shape.
+    pub mark: Mark,
+    /// What is inside.
+    pub filling: Filling,
+}
+
+/// What is inside a mark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Filling {
+    /// The colour of its edge.
+    Full,
+    /// White.
+    Hollow,
+}
+
+/// Half the width of a mark, pixels.
+const SIZE: f64 = 4.0;
+/// How much of a hollow mark is empty.
+const HOLLOW: f64 = 0.55;
+
+impl Sign {
+    /// Colours and sizes of the marks that lie on each other.
+    fn layers(self, color: &str) -> Vec<(&str, f64)> {
+        match self.filling {
+            Filling::Full => vec![(color, SIZE)],
+            Filling::Hollow => vec![(color, SIZE), ("#ffffff", HOLLOW * SIZE)],
+        }
+    }
+
+    /// At points of a plot.
+    pub(crate) fn plots(self, points: &[(f64, f64)], color: &str) -> Vec<Plot> {
+        let layer = |(color, size): (&str, f64)| {
+            let marks = ScatterPlot::new().with_data(points.iter().copied()).with_color(color).with_size(size);
+            Plot::Scatter(marks.with_marker(self.mark.into()))
+        };
+        self.layers(color).into_iter().map(layer).collect()
+    }
+
+    /// At a place of a scene, pixels; as the plotting crate draws it at points of a plot.
+    pub(crate) fn draw(self, at: (f64, f64), color: &str, scene: &mut Scene) {
+        for (color, size) in self.layers(color) {
+            scene.add(shape(self.mark, at, color, size));
+        }
+    }
+}
+
+fn shape(mark: Mark, (cx, cy): (f64, f64), color: &str, size: f64) -> Primitive {
+    let corners: &[(f64, f64)] = match mark {
+        Mark::Circle => {
+            let fill = Color::from(color);
+            return Primitive::Circle { cx, cy, r: size, fill, fill_opacity: None, stroke: None, stroke_width: None };
+        }
+        Mark::Square => &[(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)],
+        Mark::Up => &[(0.0, -1.02), (-1.0, 0.68), (1.0, 0.68)],
+        Mark::Down => &[(0.0, 1.02), (-1.0, -0.68), (1.0, -0.68)],
+        Mark::Cross => {
+            &[(-0.9, -0.9), (0.0, 0.0), (0.9, -0.9), (0.0, 0.0), (0.9, 0.9), (0.0, 0.0), (-0.9, 0.9), (0.0, 0.0)]
+        }
+    };
+    let mut d = String::new();
+    for (i, (x, y)) in corners.iter().enumerate() {
+        let command = if i == 0 { 'M' } else { 'L' };
+        let _ = write!(d, "{command}{:.1} {:.1}", cx + x * size, cy + y * size);
+    }
+    Primitive::Path(Box::new(PathData {
+        d: d + "Z",
+        fill: Some(Color::from(color)),
+        stroke: Color::from(color),
+        stroke_width: if mark == Mark::Cross { 1.5 } else { 0.5 },
+        opacity: None,
+        stroke_dasharray: None,
+    }))
+}

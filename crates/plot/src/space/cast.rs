@@ -1,0 +1,208 @@
+//! Bodies as pixels: each sample of the panel shows what its line of sight meets first, and what that is seen through.
+
+use nalgebra::{Point2, Vector3};
+
+use super::item::{Item, Paint};
+use super::shade::{self, Rgb};
+use super::solid::{Hit, Solid};
+use super::view::View;
+use crate::raster::{DOTS, Raster};
+
+/// A body and how it looks.
+#[derive(Debug, Clone)]
+pub(super) struct Body {
+    pub(super) solid: Solid,
+    pub(super) paint: Paint,
+}
+
+/// Samples along a side of a dot, and of a pixel.
+const FINE: usize = 2;
+const SAMPLES: usize = FINE * DOTS;
+/// Width of outlines, pixels.
+const INK: f64 = 0.9;
+/// Neighbours whose normals have a smaller product are on different faces.
+const SAME_FACE: f64 = 0.7;
+
+/// All bodies of the items.
+pub(super) fn bodies(items: &[Item], view: &View) -> Vec<Body> {
+    let body = |item: &Item| Some(Body { paint: item.paint()?, solid: Solid::of(item, view)? });
+    items.iter().filter_map(body).collect()
+}
+
+/// A picture of the bodies on a panel of this size, pixels; none where there are no bodies.
+pub(super) fn raster(bodies: &[Body], size: (f64, f64)) -> Option<Raster> {
+    let mut canvas = Canvas::over(Window::around(bodies, size)?);
+    let (opaque, veils): (Vec<&Body>, Vec<&Body>) = bodies.iter().partition(|body| body.paint.opacity >= 1.0);
+    for body in opaque {
+        for (at, depth, color) in canvas.window.samples_of(body) {
+            if depth > canvas.depths[at] {
+                canvas.depths[at] = depth;
+                canvas.colors[at] = [color[0], color[1], color[2], 1.0];
+            }
+        }
+    }
+    canvas.veil(&veils);
+    Some(canvas.raster())
+}
+
+/// A part of the panel: its corner in pixels, its sides in samples.
+#[derive(Debug, Clone, Copy)]
+struct Window {
+    corner: Point2<f64>,
+    width: usize,
+    height: usize,
+}
+
+impl Window {
+    /// What holds all bodies, in whole pixels.
+    fn around(bodies: &[Body], size: (f64, f64)) -> Option<Window> {
+        let bounds = bodies.iter().map(|body| body.solid.bounds());
+        let [low, high] = bounds.reduce(|[low, high], [a, b]| [low.inf(&a), high.sup(&b)])?;
+        let low = low.map(|side| side.floor().max(0.0));
+        let (right, below) = (high.x.ceil().min(size.0), high.y.ceil().min(size.1));
+        let samples = |from: f64, to: f64| (to - from).max(0.0) as usize * SAMPLES;
+        let (width, height) = (samples(low.x, right), samples(low.y, below));
+        (width > 0 && height > 0).then_some(Window { corner: low, width, height })
+    }
+
+    /// The middle of a sample on the panel.
+    fn place(&self, column: usize, row: usize) -> Point2<f64> {
+        let pixels = |sample: usize| (sample as f64 + 0.5) / SAMPLES as f64;
+        self.corner + nalgebra::Vector2::new(pixels(column), pixels(row))
+    }
+
+    /// The samples that a body takes: which, how near, in what colour.
+    fn samples_of(&self, body: &Body) -> Vec<(usize, f32, [f32; 3])> {
+        let part = self.part(body);
+        let place = |at: usize| self.place(part.columns.start + at % part.width(), part.rows.start + at / part.width());
+        let hits: Vec<Option<Hit>> = (0..part.width() * part.rows.len()).map(|at| body.solid.hit(&place(at))).collect();
+        let inked = inked(&hits, part.width());
+        let sample = |(at, hit): (usize, &Option<Hit>)| {
+            let Hit { depth, normal } = (*hit)?;
+            let color = if inked[at] { shade::ink(&body.paint) } else { shade::seen(&body.paint, &normal) };
+            let (column, row) = (part.columns.start + at % part.width(), part.rows.start + at / part.width());
+            Some((row * self.width + column, depth as f32, color.map(|part| part as f32)))
+        };
+        hits.iter().enumerate().filter_map(sample).collect()
+    }
+
+    /// The columns and rows that a body may touch.
+    fn part(&self, body: &Body) -> Part {
+        let [low, high] = body.solid.bounds().map(|end| (end - self.corner) * SAMPLES as f64);
+        let range = |from: f64, to: f64, most: usize| {
+            let from = (from.floor().max(0.0) as usize).min(most);
+            from..(to.ceil().max(0.0) as usize).clamp(from, most)
+        };
+        Part { columns: range(low.x, high.x, self.width), rows: range(low.y, high.y, self.height) }
+    }
+}
+
+/// Columns and rows of samples.
+struct Part {
+    columns: std::ops::Range<usize>,
+    rows: std::ops::Range<usize>,
+}
+
+impl Part {
+    fn width(&self) -> usize {
+        self.columns.len()
+    }
+}
+
+/// Which of the samples of a body are on its outline, or where two of its faces meet.
+fn inked(hits: &[Option<Hit>], width: usize) -> Vec<bool> {
+    let mut inked = vec![false; hits.len()];
+    let outline = INK * SAMPLES as f64;
+    let mut stamp = |at: usize, radius: f64| {
+        let (column, row, reach) = ((at % width) as i64, (at / width) as i64, radius.floor() as i64);
+        for (across, down) in (-reach..=reach).flat_map(|x| (-reach..=reach).map(move |y| (x, y))) {
+            let (x, y) = (column + across, row + down);
+            let within = x >= 0 && y >= 0 && (x as usize) < width && ((x + y * width as i64) as usize) < hits.len();
+            if within && ((across * across + down * down) as f64) < radius * radius {
+                inked[x as usize + y as usize * width] = true;
+            }
+        }
+    };
+    for (at, hit) in hits.iter().enumerate() {
+        let Some(hit) = hit else { continue };
+        for beside in neighbours(at, width, hits.len()) {
+            match &hits[beside] {
+                None => stamp(at, outline),
+                Some(other) if other.normal.dot(&hit.normal) < SAME_FACE => stamp(at, outline / 2.0),
+                Some(_) => {}
+            }
+        }
+    }
+    inked
+}
+
+/// Left, right, above and below, where there are any.
+fn neighbours(at: usize, width: usize, len: usize) -> impl Iterator<Item = usize> {
+    let (left, right) = ((at % width > 0).then(|| at - 1), (at % width + 1 < width).then_some(at + 1));
+    let (above, below) = (at.checked_sub(width), (at + width < len).then_some(at + width));
+    [left, right, above, below].into_iter().flatten()
+}
+
+/// Samples: what is seen, red, green, blue and how much of it there is, and how near that is.
+struct Canvas {
+    window: Window,
+    colors: Vec<[f32; 4]>,
+    depths: Vec<f32>,
+}
+
+impl Canvas {
+    fn over(window: Window) -> Canvas {
+        let n = window.width * window.height;
+        Canvas { window, colors: vec![[0.0; 4]; n], depths: vec![f32::NEG_INFINITY; n] }
+    }
+
+    /// Lays what can be seen through over what is behind it, the farther first.
+    fn veil(&mut self, bodies: &[&Body]) {
+        let mut veils: Vec<(usize, f32, [f32; 3], f32)> = vec![];
+        for body in bodies {
+            let samples = self.window.samples_of(body).into_iter();
+            let before = samples.filter(|(at, depth, _)| *depth > self.depths[*at]);
+            veils.extend(before.map(|(at, depth, color)| (at, depth, color, body.paint.opacity as f32)));
+        }
+        veils.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        for (at, _, color, opacity) in veils {
+            let below = self.colors[at];
+            let mixed = |i: usize| opacity * color[i] + (1.0 - opacity) * below[i];
+            self.colors[at] = [mixed(0), mixed(1), mixed(2), opacity + (1.0 - opacity) * below[3]];
+        }
+    }
+
+    /// The mean of the samples of each dot.
+    fn raster(&self) -> Raster {
+        let (width, height) = (self.window.width / FINE, self.window.height / FINE);
+        let dot = |at: usize| {
+            let (column, row) = (at % width * FINE, at / width * FINE);
+            let samples = (0..FINE * FINE).map(|i| (row + i / FINE) * self.window.width + column + i % FINE);
+            let sum = samples.fold([0.0; 4], |sum: [f32; 4], at| std::array::from_fn(|i| sum[i] + self.colors[at][i]));
+            let part = |color: f32| if sum[3] > 0.0 { (color / sum[3]).round() as u8 } else { 0 };
+            let share = (255.0 * sum[3] / (FINE * FINE) as f32).round() as u8;
+            [part(sum[0]), part(sum[1]), part(sum[2]), share]
+        };
+        let Point2 { coords: corner } = self.window.corner;
+        Raster { corner: (corner.x, corner.y), width, dots: (0..width * height).map(dot).collect() }
+    }
+}
+
+/// The colour of something small at a place of the panel and so near: nothing where a body hides it, and tinted by what
+/// it is seen through.
+pub(super) fn seen(color: Rgb, at: &Point2<f64>, depth: f64, bodies: &[Body]) -> Option<Rgb> {
+    let mut veils: Vec<(f64, &Paint)> = vec![];
+    for Body { solid, paint } in bodies {
+        match solid.hit(at) {
+            Some(hit) if hit.depth > depth && paint.opacity >= 1.0 => return None,
+            Some(hit) if hit.depth > depth => veils.push((hit.depth, paint)),
+            _ => {}
+        }
+    }
+    veils.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let tinted = |below: Rgb, (_, paint): &(f64, &Paint)| {
+        let veil = shade::seen(paint, &Vector3::z());
+        std::array::from_fn(|i| paint.opacity * veil[i] + (1.0 - paint.opacity) * below[i])
+    };
+    Some(veils.iter().fold(color, tinted))
+}

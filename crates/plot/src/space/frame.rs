@@ -1,0 +1,174 @@
+//! A box of axes behind a scene, with ticks and labels where nothing hides them.
+
+use kuva::render::color::Color;
+use kuva::render::render::{Primitive, Scene, TextAnchor};
+use nalgebra::{Point2, Point3, Vector2, Vector3};
+
+use super::item::WORDS;
+use super::legend;
+use super::view::{Reach, Room, View, corners};
+use super::words::{area, polyline};
+
+/// A box with axes.
+#[derive(Debug, Clone)]
+pub struct Frame {
+    /// The corner with the least coordinates.
+    pub lowest: Point3<f64>,
+    /// The corner with the largest coordinates.
+    pub highest: Point3<f64>,
+    /// With units, x y z.
+    pub labels: [String; 3],
+}
+
+/// Pixels of a tick, from the edge to its number's middle, and to the label's middle.
+const TICK: f64 = 5.0;
+const NUMBER: f64 = 17.0;
+const LABEL: f64 = 40.0;
+/// From a word's middle to its foot.
+const DOWN: f64 = 0.36 * WORDS as f64;
+/// An axis seen shorter than this has no ticks, pixels.
+const SHORTEST: f64 = 40.0;
+/// About so many pixels from tick to tick.
+const APART: f64 = 45.0;
+
+impl Frame {
+    /// What must be on the panel for it to be readable.
+    pub(super) fn reaches(&self) -> Vec<Reach> {
+        let room = LABEL + 8.0;
+        let around = Room { left: room, right: room, up: 8.0, down: room };
+        corners([self.lowest, self.highest]).map(|at| Reach { at, room: around }).to_vec()
+    }
+
+    /// Draws faces, grid, ticks and labels.
+    pub(super) fn draw(&self, view: &View, scene: &mut Scene) {
+        for axis in 0..3 {
+            self.draw_back(axis, view, scene);
+        }
+        for axis in 0..3 {
+            self.draw_axis(axis, view, scene);
+        }
+    }
+
+    /// The face across an axis that is behind everything, with lines at the ticks of the two other axes.
+    fn draw_back(&self, axis: usize, view: &View, scene: &mut Scene) {
+        let towards = view.direction(&Vector3::ith(axis, 1.0)).z;
+        if towards.abs() < 1e-9 {
+            return;
+        }
+        let back = if towards > 0.0 { self.lowest[axis] } else { self.highest[axis] };
+        let on = |mut point: Point3<f64>| {
+            point[axis] = back;
+            view.place(&point).xy()
+        };
+        let [across, up] = [(axis + 1) % 3, (axis + 2) % 3].map(|side| 1 << side);
+        let all = corners([self.lowest, self.highest]);
+        let outline = [0, across, across + up, up].map(|corner| on(all[corner]));
+        scene.add(area(&outline, Color::from("#f6f6f6")));
+        for along in (0..3).filter(|&along| along != axis) {
+            for tick in self.ticks(along, view) {
+                let line = [self.lowest, self.highest].map(|mut end| {
+                    end[along] = tick;
+                    on(end)
+                });
+                scene.add(polyline(&line, Color::from("#dcdcdc"), 0.7));
+            }
+        }
+        let [a, b, c, d] = outline;
+        scene.add(polyline(&[a, b, c, d, a], Color::from("#a8a8a8"), 0.8));
+    }
+
+    /// One axis: the edge of the box that is lowest on the panel, or for an upright axis leftmost.
+    fn draw_axis(&self, axis: usize, view: &View, scene: &mut Scene) {
+        let Some((outward, [start, end])) = self.edge(axis, view) else { return };
+        let at = |value: f64| {
+            let mut point = start;
+            point[axis] = value;
+            view.place(&point).xy()
+        };
+        let black = || Color::from("#1a1a1a");
+        scene.add(polyline(&[view.place(&start).xy(), view.place(&end).xy()], black(), 1.0));
+        let ticks = self.ticks(axis, view);
+        let decimals = decimals(&ticks);
+        for tick in ticks {
+            let foot = at(tick);
+            scene.add(polyline(&[foot, foot + outward * TICK], black(), 1.0));
+            let number = format!("{:.decimals$}", if tick.abs() < 1e-9 { 0.0 } else { tick });
+            scene.add(beside(foot + outward * NUMBER, outward, &number));
+        }
+        let middle = at(f64::midpoint(self.lowest[axis], self.highest[axis])) + outward * LABEL;
+        let rotate = (outward.x.abs() > 0.8).then_some(-90.0);
+        scene.add(legend::text((middle.x, middle.y + DOWN), &self.labels[axis], TextAnchor::Middle, "#000000", rotate));
+    }
+
+    /// The edge that carries an axis, and the direction on the panel away from the box.
+    fn edge(&self, axis: usize, view: &View) -> Option<(Vector2<f64>, [Point3<f64>; 2])> {
+        let all = corners([self.lowest, self.highest]);
+        let along = view.place(&all[1 << axis]).xy() - view.place(&all[0]).xy();
+        if along.norm() < SHORTEST {
+            return None;
+        }
+        let across = Vector2::new(-along.y, along.x).normalize();
+        let outward = if across.y.abs() > 0.35 { across * across.y.signum() } else { -across * across.x.signum() };
+        let starts = (0..8).filter(|corner| corner >> axis & 1 == 0);
+        let reach = |corner: &usize| outward.dot(&view.place(&all[*corner]).xy().coords);
+        let start = starts.max_by(|a, b| reach(a).total_cmp(&reach(b)))?;
+        Some((outward, [all[start], all[start + (1 << axis)]]))
+    }
+
+    fn ticks(&self, axis: usize, view: &View) -> Vec<f64> {
+        let (low, high) = (self.lowest[axis], self.highest[axis]);
+        let seen = view.length(view.direction(&Vector3::ith(axis, 1.0)).xy().norm() * (high - low));
+        ticks(low, high, (seen / APART).max(2.0))
+    }
+}
+
+/// Round values from low to high, about so many, and at least two.
+fn ticks(low: f64, high: f64, about: f64) -> Vec<f64> {
+    let power = 10_f64.powf(((high - low) / about).log10().floor());
+    let every = |step: f64| {
+        let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
+        (first..=last).map(|i| i as f64 * step).collect::<Vec<_>>()
+    };
+    let enough = |ticks: &Vec<f64>| ticks.len() >= 2;
+    let coarsest = [10.0, 5.0, 2.0, 1.0, 0.5].map(|step| step * power);
+    let not_finer = coarsest.iter().rposition(|step| step * about >= 0.999 * (high - low)).unwrap_or(0);
+    coarsest[not_finer..].iter().map(|&step| every(step)).find(enough).unwrap_or_else(|| vec![low, high])
+}
+
+/// Digits after the point that tell the ticks apart.
+fn decimals(ticks: &[f64]) -> usize {
+    let step = if let [a, b, ..] = ticks { b - a } else { 1.0 };
+    (-(step.log10() + 1e-9).floor()).max(0.0) as usize
+}
+
+/// A word with its middle here, or where it is beside the box its nearer end.
+fn beside(at: Point2<f64>, outward: Vector2<f64>, word: &str) -> Primitive {
+    let (anchor, back) = match outward.x {
+        x if x < -0.8 => (TextAnchor::End, 8.0),
+        x if x > 0.8 => (TextAnchor::Start, -8.0),
+        _ => (TextAnchor::Middle, 0.0),
+    };
+    legend::text((at.x + back, at.y + DOWN), word, anchor, "#000000", None)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn ticks_are_round_and_within(low in -1e3..1e3, length in 1e-3..1e4, about in 2.0..12.0) {
+            let high = low + length;
+            let ticks = ticks(low, high, about);
+            prop_assert!(ticks.len() >= 2 && ticks.len() as f64 <= 2.0 * about + 2.0);
+            let slack = 1e-6 * length;
+            prop_assert!(ticks.iter().all(|tick| (low - slack..=high + slack).contains(tick)));
+            let text = |tick: &f64| format!("{:.*}", decimals(&ticks), tick);
+            for (tick, text) in ticks.iter().map(|tick| (tick, text(tick))) {
+                prop_assert!((text.parse::<f64>().unwrap() - tick).abs() < slack, "{tick} is written {text}");
+            }
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Things in space: bodies as pixels under lines and words, with exact hidden surfaces.
+//!
+//! - [`Camera`], `view`: from where, and how that becomes pixels.
+//! - [`Item`]: what there is. `solid`, `cast`: its bodies, line of sight by line of sight; `stroke`: its lines and dots.
+//! - [`Frame`], `legend`, `words`: axes with ticks, names of lines, words.
+
+mod camera;
+mod cast;
+mod frame;
+mod item;
+mod legend;
+mod shade;
+mod solid;
+mod stroke;
+mod view;
+mod words;
+
+use kuva::render::render::{Primitive, Scene, TextAnchor};
+use nalgebra::Point3;
+
+pub use camera::Camera;
+pub use frame::Frame;
+pub use item::{Item, Paint};
+
+use crate::raster::Raster;
+use crate::{Panel, Sketch};
+use view::{Area, Reach, View};
+
+/// Pixels kept free at the edges.
+const MARGIN: f64 = 10.0;
+/// Pixels for the title, where there is one.
+const TITLE: f64 = 28.0;
+
+/// As in the other panels.
+const FONT: &str = "DejaVu Sans, Verdana, Liberation Sans, Arial, sans-serif";
+
+/// A scene in space, seen from far away.
+#[derive(Debug, Clone)]
+pub struct Space {
+    /// Above it.
+    pub title: String,
+    /// From where it is seen.
+    pub camera: Camera,
+    /// What hides and is hidden.
+    pub items: Vec<Item>,
+    /// What is drawn over all that: bodies, then lines and dots in this order.
+    pub over: Vec<Item>,
+    /// A box of axes behind it all.
+    pub frame: Option<Frame>,
+    /// Lowest and highest corner of what is fitted to the panel, so that several have one scale; without it all items.
+    pub extent: Option<[Point3<f64>; 2]>,
+    /// Pixels.
+    pub size: (f64, f64),
+}
+
+impl Panel for Space {
+    fn sketch(&self) -> Sketch {
+        let mut sketch = Sketch::new(Scene::new(self.size.0, self.size.1));
+        let scene = &mut sketch.scene;
+        scene.font_family = Some(FONT.to_owned());
+        let smooth = Some(r#"stroke-linecap="round" stroke-linejoin="round""#.to_owned());
+        scene.add(Primitive::GroupStart { transform: None, title: None, extra_attrs: smooth });
+        let view = self.view();
+        if let Some(frame) = &self.frame {
+            frame.draw(&view, scene);
+        }
+        self.draw_items(&view, &mut sketch);
+        let scene = &mut sketch.scene;
+        let names = legend::names(self.items.iter().chain(&self.over));
+        legend::draw(&names, self.size, scene);
+        scene.add(Primitive::GroupEnd);
+        self.add_title(scene);
+        sketch
+    }
+}
+
+impl Space {
+    /// Where things come to lie on the panel.
+    fn view(&self) -> View {
+        let items = || self.items.iter().chain(&self.over);
+        let mut reaches: Vec<Reach> = match self.extent {
+            Some(corners) => view::corners(corners).map(Reach::bare).to_vec(),
+            None => items().flat_map(|item| item.reaches(&self.camera)).collect(),
+        };
+        reaches.extend(self.frame.iter().flat_map(Frame::reaches));
+        let top = MARGIN + if self.title.is_empty() { 0.0 } else { TITLE };
+        let bottom = self.size.1 - MARGIN - legend::height(&legend::names(items()), self.size.0);
+        let area = Area { x: [MARGIN, self.size.0 - MARGIN], y: [top, bottom] };
+        View::fit(&self.camera, &reaches, area)
+    }
+
+    /// Draws bodies, then what they do not hide, then what nothing hides, then words.
+    fn draw_items(&self, view: &View, sketch: &mut Sketch) {
+        for (items, hidden_by) in [(&self.items, &self.items[..]), (&self.over, &[][..])] {
+            let raster: Option<Raster> = cast::raster(&cast::bodies(items, view), self.size);
+            sketch.add_raster(raster);
+            let bodies = cast::bodies(hidden_by, view);
+            for item in items {
+                stroke::draw(item, &bodies, view, &mut sketch.scene);
+            }
+        }
+        for item in self.items.iter().chain(&self.over) {
+            words::draw(item, view, &mut sketch.scene);
+        }
+    }
+
+    fn add_title(&self, scene: &mut Scene) {
+        if !self.title.is_empty() {
+            scene.add(Primitive::Text {
+                x: self.size.0 / 2.0,
+                y: MARGIN + 14.0,
+                content: self.title.clone(),
+                size: 15,
+                anchor: TextAnchor::Middle,
+                rotate: None,
+                bold: false,
+                color: None,
+            });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

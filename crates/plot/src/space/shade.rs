@@ -1,0 +1,69 @@
+//! Light and shadow: light falls from the left, from above and from behind the viewer.
+
+use kuva::render::color::Color;
+use nalgebra::Vector3;
+
+use super::Paint;
+
+/// Red, green and blue, from 0 to 255.
+pub(super) type Rgb = [f64; 3];
+
+/// What is in full shadow keeps this share of its lightness.
+const SHADOW: f64 = 0.66;
+
+/// Towards the light, on the panel: right, down, towards the viewer.
+pub(super) fn light() -> Vector3<f64> {
+    Vector3::new(-0.5, -0.62, 0.6).normalize()
+}
+
+/// The colour of a body where its surface has this outward normal, of length 1; what is not opaque is not shaded.
+pub(super) fn seen(paint: &Paint, normal: &Vector3<f64>) -> Rgb {
+    let lit = if paint.opacity < 1.0 { 1.0 } else { f64::midpoint(normal.dot(&light()), 1.0) };
+    rgb(paint.color).map(|part| part * (SHADOW + (1.0 - SHADOW) * lit))
+}
+
+/// The colour of outlines: dark, or where things behind can be seen less so.
+pub(super) fn ink(paint: &Paint) -> Rgb {
+    rgb(paint.color).map(|part| part * if paint.opacity < 1.0 { 0.6 } else { 0.3 })
+}
+
+/// Black or white, whichever can be read on a colour.
+pub(super) fn word_on(color: &str) -> &'static str {
+    let [red, green, blue] = rgb(color);
+    // As light as it looks.
+    let lightness = 0.3 * red + 0.59 * green + 0.11 * blue;
+    if lightness > 140.0 { "#000000" } else { "#ffffff" }
+}
+
+/// The parts of a colour as in HTML, `#rrggbb`; black where it is another.
+pub(super) fn rgb(color: &str) -> Rgb {
+    match Color::from(color) {
+        Color::Rgb(red, green, blue) => [red, green, blue].map(f64::from),
+        _ => [0.0; 3],
+    }
+}
+
+/// As the plotting crate has it.
+pub(super) fn color(rgb: Rgb) -> Color {
+    let [red, green, blue] = rgb.map(|part| part.round() as u8);
+    Color::Rgb(red, green, blue)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_differ_from_what_is_behind_them() {
+        let behind = ["#000000", "#0072b2", "#cc79a7", "#f0e442", "#ffffff"];
+        assert_eq!(behind.map(word_on), ["#ffffff", "#ffffff", "#000000", "#000000", "#000000"]);
+    }
+
+    #[test]
+    fn the_side_towards_the_light_is_lighter() {
+        let brightness = |normal: Vector3<f64>| seen(&Paint::opaque("#ffffff"), &normal)[0];
+        assert!((brightness(light()) - 255.0).abs() < 1e-9);
+        let [top, front, right] = [-Vector3::y(), Vector3::z(), Vector3::x()].map(brightness);
+        assert!(top > front - 3.0 && front > right && right > 150.0);
+    }
+}

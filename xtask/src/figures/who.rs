@@ -1,0 +1,52 @@
+//! Who moves: one colour and line each in every picture.
+
+use plot::{Dash, Stroke};
+
+/// Who moves: one colour and line each in every picture, distinct in grey and for colour-blind people.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Who {
+    /// The true policy.
+    Expert,
+    /// Direct policy learning.
+    Naive,
+    /// Aligned potentials.
+    PolicyAlign,
+    /// Constrained movements that are learnt from.
+    Demonstration,
+}
+
+impl Who {
+    /// The colour, as in HTML.
+    pub(crate) fn color(self) -> &'static str {
+        match self {
+            Who::Expert => "#1a1a1a",
+            Who::Naive => "#009e73",
+            Who::PolicyAlign => "#d55e00",
+            Who::Demonstration => "#0072b2",
+        }
+    }
+
+    /// How its line is broken.
+    pub(crate) fn dash(self) -> Dash {
+        match self {
+            Who::Expert | Who::Demonstration => Dash::Solid,
+            Who::Naive => Dash::Dotted,
+            Who::PolicyAlign => Dash::Dashed,
+        }
+    }
+
+    /// Its name in legends.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Who::Expert => "expert",
+            Who::Naive => "naive",
+            Who::PolicyAlign => "policy-align",
+            Who::Demonstration => "demonstration",
+        }
+    }
+
+    /// A line as wide as this, in its colour and dashes.
+    pub(crate) fn stroke(self, width: f64) -> Stroke {
+        Stroke { color: self.color(), width, dash: self.dash() }
+    }
+}
