@@ -15,21 +15,7 @@ pub(crate) fn document() -> Document {
 }
 
 pub(crate) fn figure() -> Figure {
-    Figure {
-        id: "figure1",
-        title: "Figure 1: the robot and its 22 joints",
-        caption: "The upper body in the posture from which movements start, and all that moves it: seven joints for each \
-                  arm, two for the head, and six that place the torso against the heel, whose frame is fixed to the \
-                  ground. Left: how many joints meet where. Right: their axes; the torso slides along the broken ones.",
-        beside_paper: Some(
-            "The paper's shows ASIMO. Its measures are not published; this is a robot like it, of the same joints and \
-                  the same height, 1.3 m.",
-        ),
-        differs: None,
-        experiment: None,
-        needs: &["figure1"],
-        draw,
-    }
+    Figure::new("figure1", None, &["figure1"], draw)
 }
 
 /// The robot in the posture "ready", metres in the heel's frame.

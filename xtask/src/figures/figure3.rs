@@ -29,22 +29,7 @@ pub(crate) fn document() -> Document {
 }
 
 pub(crate) fn figure() -> Figure {
-    Figure {
-        id: "figure3",
-        title: "Figure 3: projections of a policy",
-        caption: "(a) A policy π and two observations of it: x₁ under a constraint that forbids motion across a vertical \
-                  plane, x₂ under one that allows horizontal motion only. (b) The mean of both explains neither: projected \
-                  on the planes (dashed, dots) it falls short of what was seen in each, and it is not π. (c) Two policies \
-                  that look the same under the second constraint: what it takes away is never seen, and only another \
-                  constraint can tell them apart.",
-        beside_paper: Some(
-            "The same three situations. Directions and lengths are ours; projections are computed, N = I − A⁺A.",
-        ),
-        differs: None,
-        experiment: None,
-        needs: &["figure3"],
-        draw,
-    }
+    Figure::new("figure3", None, &["figure3"], draw)
 }
 
 /// Velocities from one point.

@@ -32,22 +32,7 @@ pub(crate) fn document() -> Document {
 }
 
 pub(crate) fn figure() -> Figure {
-    Figure {
-        id: "figure4",
-        title: "Figure 4: a potential and its policy",
-        caption: "A potential with three maxima, which repel, and two minima, which attract: (a) as a surface, (b) from \
-                  above, with triangles at the five. Thin black arrows are the unconstrained policy, the negative \
-                  gradient; broad orange ones what is left of it when motion along x₁ is blocked. The minima still attract \
-                  from above and below, but no more from the sides.",
-        beside_paper: Some(
-            "The paper does not print its potential: this one is a sum of five Gaussians, with as many maxima and \
-                  minima.",
-        ),
-        differs: None,
-        experiment: None,
-        needs: &["figure4"],
-        draw,
-    }
+    Figure::new("figure4", None, &["figure4"], draw)
 }
 
 /// φ(x) = Σ aᵢ exp(−‖x − cᵢ‖² / 2sᵢ²).

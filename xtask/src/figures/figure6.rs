@@ -14,50 +14,11 @@ const STYLES: [Style; 2] = [FIRST, SECOND];
 const SIZE: (f64, f64) = (600.0, 430.0);
 
 pub(super) fn left() -> Figure {
-    Figure {
-        id: "figure6_left",
-        title: "Figure 6, left: error against the amount of data",
-        caption: "Errors of the policy π, of what constraints let through of it, Nπ, and of the potential φ, when only so \
-                  many percent of 40 movements are learnt from: means over data sets, with bands of one standard deviation \
-                  up and by the same factor down. Medians are in the CSV files.",
-        beside_paper: Some(
-            "In the full run of seed 1 errors fall from 20 % of the movements, where the paper's axis begins, to all of \
-                  them: with the narrow bandwidth π from .35 to .027, Nπ from .090 to .011, φ from .11 to .0028. As in the \
-                  paper π is on top throughout. There φ is lowest throughout; here it is only with many movements, with the \
-                  narrow bandwidth from 40 % on, with the medium one from 80 % on. With fewer, alignment goes wrong in some data \
-                  sets, and these make the means: at 20 %, narrow, the median of φ is .0071. The paper does not say which \
-                  bandwidth it shows.",
-        ),
-        differs: Some("the potential’s error φ is the lowest only with many movements, in the paper throughout."),
-        experiment: Some("figure6_left"),
-        needs: &["figure6_left"],
-        draw: draw_left,
-    }
+    Figure::new("figure6_left", Some("figure6_left"), &["figure6_left"], draw_left)
 }
 
 pub(super) fn right() -> Figure {
-    Figure {
-        id: "figure6_right",
-        title: "Figure 6, right: error against noise",
-        caption: "The same errors when recorded positions are noisy, against the truth without noise. Left: potentials \
-                  integrated from recorded velocities, which are clean. Right, on another scale: potentials integrated \
-                  from displacements, by rule (9). Without noise both rules are the same here.",
-        beside_paper: Some(
-            "In the full run of seed 1, with velocities (left), errors grow from 2.5 % of noise to 20 % as in the paper: with \
-                  the narrow bandwidth π from .023 to .37, Nπ from .0085 to .093, φ from .0039 to .11. As in the paper they \
-                  stay below 1, with π on top. φ, lowest there throughout, is lowest here with the narrow bandwidth up to 15 %, \
-                  with the medium one up to 5 %. With displacements (right) noise looks like a steady descent, and soon \
-                  nothing is left to learn: at 5 % the error of π is 8.4 and 4.2. The paper's curves can hardly come from \
-                  that rule.",
-        ),
-        differs: Some(
-            "with much noise φ is no lower than Nπ, in the paper it is throughout; by rule (9) 5 % of noise leave nothing to \
-             learn, where the paper’s errors stay below 1.",
-        ),
-        experiment: Some("figure6_right"),
-        needs: &["figure6_right"],
-        draw: draw_right,
-    }
+    Figure::new("figure6_right", Some("figure6_right"), &["figure6_right"], draw_right)
 }
 
 fn draw_left(sources: &Sources) -> anyhow::Result<Drawing> {

@@ -5,6 +5,7 @@ use nalgebra::Point3;
 use plot::{Camera, Paint, Panel, Picture, Space};
 
 use super::grasp_playback::{GraspPlayback, Movement};
+use super::stage::Actor;
 use super::{Drawing, Figure, Sources, stage};
 use crate::figures::Who;
 
@@ -12,30 +13,17 @@ use crate::figures::Who;
 const FRAMES: usize = 5;
 
 pub(crate) fn figure() -> Figure {
-    Figure {
-        id: "figure7",
-        title: "Figure 7: grasping a ball through a gap",
-        caption: "A demonstration: with its hands at its sides at first, the robot reaches between two plates and takes \
-                  the ball between its palms. From frame to frame the hands go on by a quarter of their way, which is \
-                  drawn; a hand beside the gap cannot go forward and moves along its plate. Only the hands are taught and \
-                  feel the plates: all joints follow them by resolved-rate control, and the trunk may lean through a \
-                  plate. Times are the simulation's, 0.5 s from sample to sample.",
-        beside_paper: Some(
-            "The paper's shows ASIMO before two barriers; the measures of that scene are not published, ours are \
-                  fitted. Its movements last 2 s.",
-        ),
-        differs: None,
-        experiment: Some("table2"),
-        needs: &["grasp_playback"],
-        draw,
-    }
+    Figure::new("figure7", Some("table2"), &["grasp_playback"], draw)
 }
 
 fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let playback: GraspPlayback = sources.document("grasp_playback")?;
     let shown = playback.movements.iter().find(|m| m.constraint == "gap" && m.learner == "expert" && m.start == 0);
     let shown = shown.context("no movement of the expert through the gap")?;
-    let frames: Vec<Space> = stages(&shown.palms).into_iter().map(|sample| frame(&playback, shown, sample)).collect();
+    let actor = Actor::new(&playback.robot.joints)?;
+    let stages = stages(&shown.palms).into_iter();
+    let frames: Vec<Space> =
+        stages.map(|sample| frame(&playback, &actor, shown, sample)).collect::<anyhow::Result<_>>()?;
     let panels: Vec<&dyn Panel> = frames.iter().map(|frame| frame as &dyn Panel).collect();
     Ok(Drawing { picture: Picture::rows(&[&panels]), tables: vec![] })
 }
@@ -53,12 +41,12 @@ fn stages(palms: &[Vec<f64>]) -> Vec<usize> {
     (0..FRAMES).filter_map(|frame| nearest(at(frame))).collect()
 }
 
-fn frame(playback: &GraspPlayback, movement: &Movement, sample: usize) -> Space {
-    let mut items = stage::robot(&playback.robot, &movement.joints[sample], paint);
+fn frame(playback: &GraspPlayback, actor: &Actor, movement: &Movement, sample: usize) -> anyhow::Result<Space> {
+    let mut items = actor.items(&movement.joints[sample], paint)?;
     items.extend(stage::ball_and_table(&playback.scene));
     items.extend(stage::plates(&playback.scene, &movement.plates));
     let side = playback.scene.table.half_width;
-    Space {
+    Ok(Space {
         title: format!("t = {} s", sample as f64 * playback.time_step),
         camera: Camera { azimuth: 30.0, elevation: 25.0 },
         items,
@@ -66,7 +54,7 @@ fn frame(playback: &GraspPlayback, movement: &Movement, sample: usize) -> Space 
         frame: None,
         extent: Some([Point3::new(-0.2, -side, 0.0), Point3::new(playback.scene.table.far, side, 1.08)]),
         size: (252.0, 310.0),
-    }
+    })
 }
 
 fn paint(link: &str) -> Paint {

@@ -9,30 +9,7 @@ use super::{Csv, Drawing, Figure, Sources, rounded, stage};
 use crate::figures::Who;
 
 pub(crate) fn figure() -> Figure {
-    Figure {
-        id: "figure8",
-        title: "Figure 8: reaching with nothing in the way",
-        caption: "Both hands reach for the ball from four starts, without plates; drawn is where each policy wants the \
-                  palms. Grey: where hands beside the gap were stopped in the demonstrations, here at the mean gap of \
-                  these four; discs: the end of the movement. Right: how far palms are from the sides of the ball, mean \
-                  and standard deviation of the eight.",
-        beside_paper: Some(
-            "In the full run of seed 1 the expert goes straight and ends .4 cm from the ball's sides. The naive learner has averaged \
-             hands that were stopped and hands that passed: it moves aside, as if the plates were there, before it goes on, and \
-             ends 2.1 cm away. The learnt policy sets off as the expert does and passes where the plates stood, but then \
-             runs on: it ends 20.3 cm away, where in the paper's figure its ways lie close to the expert's. The reason: demonstrations \
-             arrive at the ball on a few ways and from one side; receptive fields are planes, and a plane that fits \
-             one side of a parabola slopes on beyond its minimum. Neither narrower fields nor adaptive ones nor a cutoff \
-             mend that (`docs/decisions/table2.md`). The naive learner's planes are velocities, which do vanish at the ball.",
-        ),
-        differs: Some(
-            "in the full run the hands of policy-align run past the ball and end 20 cm from where they should take it (naive 2 cm); \
-             the paper’s stay close to the expert’s.",
-        ),
-        experiment: Some("table2"),
-        needs: &["grasp_playback"],
-        draw,
-    }
+    Figure::new("figure8", Some("table2"), &["grasp_playback"], draw)
 }
 
 /// From mark to mark on a curve, seconds.

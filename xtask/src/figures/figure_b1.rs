@@ -26,24 +26,7 @@ pub(crate) fn document() -> Document {
 }
 
 pub(crate) fn figure() -> Figure {
-    Figure {
-        id: "figureB1",
-        title: "Figure B1: trajectories come apart, step by step",
-        caption: "A data set of Table 1 (sinusoidal potential, 40 × 40, narrow); lines are movements, marks their starts. \
-                  (a) All of them. Each further panel shows one step: a group falls into its largest part (blue, solid, \
-                  circles) and the rest (purple, dashed, squares); grey are all other groups. Parts that no link connects \
-                  come apart at once; other groups are cut in two by the eigenvectors of H with eigenvalues near zero, of \
-                  which the title gives the number. In the last panel the largest group is kept; crosses mark what is \
-                  discarded.",
-        beside_paper: Some(
-            "The paper's data set is another. In any run ours is the one, of the first 30, that comes apart in most \
-                  steps, though in no more than six.",
-        ),
-        differs: None,
-        experiment: Some("table1"),
-        needs: &["figureB1"],
-        draw,
-    }
+    Figure::new("figureB1", Some("table1"), &["figureB1"], draw)
 }
 
 #[derive(Serialize, Deserialize)]

@@ -11,17 +11,16 @@ mod starts;
 use anyhow::ensure;
 use serde::{Deserialize, Serialize};
 
+use super::Document;
+use super::sound::{Sound, as_many, some};
+use crate::experiments::grasp;
 use constraint::Constraint;
 use movements::movements;
 use scene::scene;
 
-use super::Document;
-use super::sound::{Sound, as_many, some};
-use crate::experiments::grasp;
-
 pub(crate) use movements::Movement;
 pub(crate) use policies::LEARNERS;
-pub(crate) use robot::{Motion, Robot, robot};
+pub(crate) use robot::{Robot, robot};
 pub(crate) use scene::Scene;
 
 /// Start postures that are shown.

@@ -21,6 +21,7 @@ mod shapes;
 mod sound;
 pub(crate) mod stage;
 mod who;
+mod words;
 
 use std::collections::BTreeMap;
 
@@ -32,9 +33,9 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use crate::experiments::Experiment;
-use sound::Sound;
-
 use crate::results::{ExperimentResult, Results};
+use sound::Sound;
+use words::{Words, words};
 
 pub(crate) use grasp_playback::LEARNERS;
 pub(crate) use who::Who;
@@ -146,6 +147,18 @@ impl Document {
 }
 
 impl Figure {
+    /// A figure with the words that `xtask/paper/figures.toml` has for it.
+    fn new(
+        id: &'static str,
+        experiment: Option<&'static str>,
+        needs: &'static [&'static str],
+        draw: fn(&Sources) -> anyhow::Result<Drawing>,
+    ) -> Figure {
+        let Words { title, caption, beside_paper, differs } = words(id);
+        let (beside_paper, differs) = (beside_paper.as_deref(), differs.as_deref());
+        Figure { id, title, caption, beside_paper, differs, experiment, needs, draw }
+    }
+
     /// Whether all that it needs was run.
     pub(crate) fn can_be_drawn(&self, sources: &Sources) -> bool {
         let there = |id: &&str| sources.documents.contains_key(*id) || sources.experiment(id).is_some();

@@ -25,18 +25,7 @@ pub(crate) fn document() -> Document {
 }
 
 pub(crate) fn figure() -> Figure {
-    Figure {
-        id: "overview",
-        title: "What it is about",
-        caption: "Left: forty movements of a point that wants to go to the centre, each under constraints that change on \
-                  the way and that nobody tells, over lines of equal potential. Centre: regression of what was seen gets \
-                  directions and speeds wrong. Right: aligned potentials give the policy, without having seen it.",
-        beside_paper: None,
-        differs: None,
-        experiment: None,
-        needs: &["overview"],
-        draw,
-    }
+    Figure::new("overview", None, &["overview"], draw)
 }
 
 /// The first data set of the toy system, and what is learnt from it.

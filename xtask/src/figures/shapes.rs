@@ -8,16 +8,17 @@ use serde::{Deserialize, Serialize};
 
 use super::rounded;
 
-/// A shape of a link and its pose in the frame of the root, metres.
+/// A shape and its pose, metres: as documents hold it. `Link` says which link it is a part of: by name, then its pose is
+/// in the frame of the root; or by its place in a tree, then its pose is in the link's own frame.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Shape {
-    pub(super) link: String,
-    pub(super) kind: Kind,
+pub(crate) struct Shape<Link = String> {
+    pub(crate) link: Link,
+    pub(crate) kind: Kind,
     /// \[radius\], \[radius, length along z\], or whole lengths along x, y, z.
-    pub(super) size: Vec<f64>,
-    pub(super) translation: [f64; 3],
+    pub(crate) size: Vec<f64>,
+    pub(crate) translation: [f64; 3],
     /// By rows.
-    pub(super) rotation: [f64; 9],
+    pub(crate) rotation: [f64; 9],
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

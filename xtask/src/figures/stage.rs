@@ -1,10 +1,14 @@
 //! Robot, ball, table and plates of the grasp as things in space.
 
-use nalgebra::{IsometryMatrix3, Point3, Translation3, Vector3};
+use anyhow::ensure;
+use demo_gen::UpperBody;
+use kinematics::{Joint, Workspace};
+use nalgebra::{DVectorView, Point3, Translation3, Vector3};
 use plot::{Item, Paint, Stroke};
 
-use super::grasp_playback::{Motion, Robot, Scene};
-use super::shapes::{self, Shape};
+use super::grasp_playback::Scene;
+use super::shapes;
+use crate::robots::upper_body;
 
 /// Plates reach from the ground to this height, metres.
 pub(crate) const PLATE_TOP: f64 = 1.0;
@@ -16,33 +20,26 @@ pub(crate) const BALL: &str = "#f0e442";
 pub(crate) const TABLE: &str = "#efe6d6";
 pub(crate) const PLATE: &str = "#56b4e9";
 
-/// Poses of all links in a configuration.
-pub(super) fn poses(robot: &Robot, joints: &[f64]) -> Vec<IsometryMatrix3<f64>> {
-    let mut poses: Vec<IsometryMatrix3<f64>> = Vec::with_capacity(robot.links.len());
-    for link in &robot.links {
-        let parent = link.parent.map_or_else(IsometryMatrix3::identity, |parent| poses[parent]);
-        let axis = Vector3::from(link.axis);
-        let value = link.joint.map_or(0.0, |joint| joints[joint]);
-        let moved = match link.motion {
-            Motion::Fixed => IsometryMatrix3::identity(),
-            Motion::Turn => IsometryMatrix3::rotation(axis * value),
-            Motion::Slide => Translation3::from(axis * value).into(),
-        };
-        poses.push(parent * shapes::pose(&link.translation, &link.rotation) * moved);
-    }
-    poses
+/// The robot in configurations of these joints, by its model: drawn is the robot that the document is about, or nothing.
+pub(super) struct Actor {
+    body: UpperBody,
 }
 
-/// The robot in a configuration.
-pub(super) fn robot(robot: &Robot, joints: &[f64], paint: impl Fn(&str) -> Paint) -> Vec<Item> {
-    let poses = poses(robot, joints);
-    let posed = robot.shapes.iter().map(|shape| {
-        let pose = poses[shape.link] * shapes::pose(&shape.translation, &shape.rotation);
-        let (translation, rotation) = shapes::seen(&pose);
-        let link = robot.links[shape.link].name.clone();
-        Shape { link, kind: shape.kind, size: shape.size.clone(), translation, rotation }
-    });
-    shapes::items(&posed.collect::<Vec<_>>(), paint)
+impl Actor {
+    pub(super) fn new(joints: &[String]) -> anyhow::Result<Self> {
+        let body = upper_body()?;
+        let same = body.robot().joints().iter().map(Joint::name).eq(joints.iter().map(String::as_str));
+        ensure!(same, "the figure data are of a robot with other joints; the command of their run writes them again");
+        Ok(Actor { body })
+    }
+
+    /// Its shapes, each painted after its link.
+    pub(super) fn items(&self, joints: &[f64], paint: impl Fn(&str) -> Paint) -> anyhow::Result<Vec<Item>> {
+        let mut workspace = Workspace::new();
+        let robot = self.body.robot();
+        let poses = robot.forward_kinematics(DVectorView::from_slice(joints, joints.len()), &mut workspace)?;
+        Ok(shapes::items(&shapes::posed(robot, &poses)?, paint))
+    }
 }
 
 /// The ball, and the table that it lies on.
@@ -83,40 +80,4 @@ pub(super) fn ways(palms: &[Vec<f64>], stroke: Stroke) -> [Item; 2] {
         Item::Path { points, stroke, label: None }
     };
     [way(0), way(1)]
-}
-
-#[cfg(test)]
-mod tests {
-    use demo_gen::Side;
-    use kinematics::Workspace;
-    use nalgebra::DVector;
-
-    use super::super::grasp_playback::robot as tree;
-    use super::*;
-    use crate::robots::upper_body;
-
-    #[test]
-    fn links_are_where_forward_kinematics_has_them() {
-        let body = upper_body().unwrap();
-        let tree = tree(&body).unwrap();
-        let q = DVector::from_fn(body.robot().n_joints(), |i, _| {
-            0.02 * (i as f64 + 1.0) * if i % 2 == 0 { 1.0 } else { -1.0 }
-        });
-        let poses = poses(&tree, q.as_slice());
-        for (side, hand) in Side::BOTH.into_iter().zip(tree.hands) {
-            let expected = body.palm(side).pose(q.as_view(), &mut Workspace::new()).unwrap();
-            assert!((poses[hand].to_homogeneous() - expected.to_homogeneous()).norm() < 1e-12);
-        }
-    }
-
-    #[test]
-    fn a_robot_of_the_document_is_drawn_as_that_of_the_file() {
-        let body = upper_body().unwrap();
-        let mut workspace = Workspace::new();
-        let paint = |_: &str| Paint::opaque("#ffffff");
-        let poses = body.robot().forward_kinematics(body.ready().as_view(), &mut workspace).unwrap();
-        let expected = shapes::items(&shapes::posed(body.robot(), &poses).unwrap(), paint);
-        let drawn = robot(&tree(&body).unwrap(), body.ready().as_slice(), paint);
-        assert_eq!(format!("{drawn:.3?}"), format!("{expected:.3?}"));
-    }
 }

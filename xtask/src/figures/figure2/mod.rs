@@ -33,24 +33,7 @@ pub(crate) fn document() -> Document {
 }
 
 pub(crate) fn figure() -> Figure {
-    Figure {
-        id: "figure2",
-        title: "Figure 2: one policy, two movements",
-        caption: "A finger of two joints stretches: its policy takes both angles to zero. (a) Nothing is in its way. (b) \
-                  The same policy, but a box stops the tip, which slides along it to where the policy presses straight \
-                  against it; the later, the darker. (c) Both in the space of the angles: thin orange arrows are the \
-                  policy, the broken orange line is the free movement. In the grey region the tip would be in the box; on \
-                  its edge the box leaves of the policy what the broad black arrows show, drawn twice as long, and the \
-                  black line is the movement along it.",
-        beside_paper: Some(
-            "The paper's shows the same three things; its finger and box are of unknown size. Here both movements are \
-                  simulated, with contact between the tip and one face of the box.",
-        ),
-        differs: None,
-        experiment: None,
-        needs: &["figure2"],
-        draw,
-    }
+    Figure::new("figure2", None, &["figure2"], draw)
 }
 
 #[derive(Serialize, Deserialize)]

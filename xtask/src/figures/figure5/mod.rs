@@ -14,25 +14,7 @@ pub(super) fn document() -> Document {
 }
 
 pub(super) fn figure() -> Figure {
-    Figure {
-        id: "figure5",
-        title: "Figure 5: local potentials, aligned and learnt",
-        caption: "(a) Forty movements over lines of equal potential; they turn where their constraint changes. Alignment \
-                  leaves out the three drawn as light crosses. (b) What the movements tell of the potential, each for \
-                  itself: how it falls on the way, but not how high it was at the start. With all starts at one height, \
-                  movements disagree where they meet. (c) The same after alignment: one bowl. (d) What LWPR learns from \
-                  it, as far as its receptive fields reach, beside (e) the truth. Axes and colours of (b) to (e) are on \
-                  one scale, colours of surfaces paler; (c) and (d) are raised to the mean height of the truth, since a \
-                  potential is known up to a constant.",
-        beside_paper: Some(
-            "The paper's panels show the same. In any run ours is the first data set from which alignment leaves out \
-                  three movements, as many as in the paper's picture.",
-        ),
-        differs: None,
-        experiment: Some("table1"),
-        needs: &["figure5"],
-        draw: draw::draw,
-    }
+    Figure::new("figure5", Some("table1"), &["figure5"], draw::draw)
 }
 
 /// What the figure shows.

@@ -17,28 +17,7 @@ pub(super) fn document() -> Document {
 }
 
 pub(super) fn figure() -> Figure {
-    Figure {
-        id: "figure9",
-        title: "Figure 9: movements that end on a line",
-        caption: "(a) Movements of the three-link arm in joint space; dots are where they end. They run to a line and not \
-                  to the goal of the policy, q = 0 (disc), because on that line every constraint blocks the direction to \
-                  it. (b), (c) The same seen along q₃, with planes at a distance d from the goal along the line and a \
-                  cylinder of radius r around it. (d), (e) Errors of policy-align at the test samples between the planes \
-                  or within the cylinder: mean and standard deviation over data sets.",
-        beside_paper: Some(
-            "In the full run of seed 1, as in the paper, φ and π start low and rise with d (d), are high close to the line already (e), \
-                  and Nπ is low everywhere: what is unknown is the potential along the line. What differs: with d the paper's φ and \
-                  π rise to .6–.7, ours φ from .013 to .26 and π from .18 to .43, about the errors of all samples, as they must \
-                  where nearly all are counted (printed: .17 and .35); with r ours fall, φ from .48 to .29 and π from .62 \
-                  to .44; and Nπ, flat in the paper, falls with d: Nπ from .099 to .052.",
-        ),
-        differs: Some(
-            "in (d) φ and π rise with the distance to less than the paper’s, in (e) they fall with the radius.",
-        ),
-        experiment: Some("figure9"),
-        needs: &["figure9_movements", "figure9"],
-        draw,
-    }
+    Figure::new("figure9", Some("figure9"), &["figure9_movements", "figure9"], draw)
 }
 
 /// Movements of the first data set, (q₁, q₂, q₃) in radians.

@@ -6,7 +6,7 @@ use kinematics::{CollisionShape, JointMotion, LinkId, MotionKind, RobotModel};
 use nalgebra::IsometryMatrix3;
 use serde::{Deserialize, Serialize};
 
-use crate::figures::shapes::{Kind, form, numbers};
+use crate::figures::shapes::{Shape, form, numbers};
 use crate::figures::sound::{self, among, within};
 
 /// No link is farther away, metres.
@@ -17,7 +17,7 @@ pub(super) const FARTHEST: f64 = 10.0;
 pub(crate) struct Robot {
     /// A parent comes before its children.
     pub(crate) links: Vec<Link>,
-    pub(crate) shapes: Vec<Shape>,
+    pub(crate) shapes: Vec<Shape<usize>>,
     /// Places of the left palm and of the right one in `links`.
     pub(crate) hands: [usize; 2],
     /// Names, in the order of a configuration.
@@ -47,19 +47,6 @@ pub(crate) enum Motion {
     Fixed,
     Turn,
     Slide,
-}
-
-/// A body in a link's frame.
-#[derive(Serialize, Deserialize)]
-pub(crate) struct Shape {
-    /// Place in `links`.
-    pub(crate) link: usize,
-    pub(crate) kind: Kind,
-    /// Radius; or radius and length, along z; or whole lengths along x, y, z.
-    pub(crate) size: Vec<f64>,
-    pub(crate) translation: [f64; 3],
-    /// By rows.
-    pub(crate) rotation: [f64; 9],
 }
 
 impl Robot {
@@ -115,7 +102,7 @@ fn link(robot: &RobotModel, link: LinkId, place: impl Fn(LinkId) -> anyhow::Resu
     Ok(Link { name, parent, translation, rotation, motion, axis, joint: joint.map(|joint| joint.column) })
 }
 
-fn shape(shape: &CollisionShape, place: impl Fn(LinkId) -> anyhow::Result<usize>) -> anyhow::Result<Shape> {
+fn shape(shape: &CollisionShape, place: impl Fn(LinkId) -> anyhow::Result<usize>) -> anyhow::Result<Shape<usize>> {
     let (kind, size) = form(&shape.geometry)?;
     let (translation, rotation) = numbers(&shape.origin);
     Ok(Shape { link: place(shape.link)?, kind, size, translation, rotation })

@@ -1,9 +1,29 @@
+use demo_gen::Side;
 use kinematics::{LinkId, Workspace};
-use nalgebra::{DVector, Unit, Vector3};
+use nalgebra::{DVector, IsometryMatrix3, Translation3, Unit, Vector3};
 use playback::PalmTracking;
 
+use super::robot::Motion;
 use super::*;
-use crate::figures::stage;
+use crate::figures::shapes;
+use crate::robots::upper_body;
+
+/// Poses of all links in a configuration, by the tree of the document alone: as the script of the page has them.
+fn poses(robot: &Robot, joints: &[f64]) -> Vec<IsometryMatrix3<f64>> {
+    let mut poses: Vec<IsometryMatrix3<f64>> = Vec::with_capacity(robot.links.len());
+    for link in &robot.links {
+        let parent = link.parent.map_or_else(IsometryMatrix3::identity, |parent| poses[parent]);
+        let axis = Vector3::from(link.axis);
+        let value = link.joint.map_or(0.0, |joint| joints[joint]);
+        let moved = match link.motion {
+            Motion::Fixed => IsometryMatrix3::identity(),
+            Motion::Turn => IsometryMatrix3::rotation(axis * value),
+            Motion::Slide => Translation3::from(axis * value).into(),
+        };
+        poses.push(parent * shapes::pose(&link.translation, &link.rotation) * moved);
+    }
+    poses
+}
 
 #[test]
 fn the_document_says_where_the_hands_are() {
@@ -18,7 +38,7 @@ fn the_document_says_where_the_hands_are() {
         assert_eq!((movement.joints.len(), movement.palms.len()), (100, 100), "{place}");
         let mut worst = 0.0_f64;
         for (q, palms) in movement.joints.iter().zip(&movement.palms) {
-            let poses = stage::poses(&playback.robot, q);
+            let poses = poses(&playback.robot, q);
             let configuration = DVector::from_column_slice(q);
             let expected = robot.forward_kinematics(configuration.as_view(), &mut workspace).unwrap();
             for (pose, link) in poses.iter().zip(&links) {
@@ -56,5 +76,37 @@ fn no_movement_touches_or_jumps_and_the_demonstrated_are_exact() {
             // Each value is rounded by at most half of the last decimal.
             assert!(step <= PalmTracking::default().stride + 1.01e-4, "{place}: {step}");
         }
+    }
+}
+
+#[test]
+fn links_are_where_forward_kinematics_has_them() {
+    let body = upper_body().unwrap();
+    let tree = robot(&body).unwrap();
+    let q =
+        DVector::from_fn(body.robot().n_joints(), |i, _| 0.02 * (i as f64 + 1.0) * if i % 2 == 0 { 1.0 } else { -1.0 });
+    let poses = poses(&tree, q.as_slice());
+    for (side, hand) in Side::BOTH.into_iter().zip(tree.hands) {
+        let expected = body.palm(side).pose(q.as_view(), &mut Workspace::new()).unwrap();
+        assert!((poses[hand].to_homogeneous() - expected.to_homogeneous()).norm() < 1e-12);
+    }
+}
+
+#[test]
+fn shapes_of_the_tree_are_those_of_the_file() {
+    let body = upper_body().unwrap();
+    let mut workspace = Workspace::new();
+    let expected = body.robot().forward_kinematics(body.ready().as_view(), &mut workspace).unwrap();
+    let expected = shapes::posed(body.robot(), &expected).unwrap();
+    let tree = robot(&body).unwrap();
+    let poses = poses(&tree, body.ready().as_slice());
+    assert_eq!(tree.shapes.len(), expected.len());
+    for (shape, expected) in tree.shapes.iter().zip(&expected) {
+        let pose = poses[shape.link] * shapes::pose(&shape.translation, &shape.rotation);
+        let (translation, rotation) = shapes::seen(&pose);
+        assert_eq!((tree.links[shape.link].name.as_str(), shape.kind), (expected.link.as_str(), expected.kind));
+        assert_eq!(shape.size, expected.size);
+        let off = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off(&translation, &expected.translation) < 2e-5 && off(&rotation, &expected.rotation) < 2e-6);
     }
 }
