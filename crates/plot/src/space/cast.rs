@@ -37,7 +37,7 @@ pub(super) fn raster(bodies: &[Body], size: (f64, f64)) -> Option<Raster> {
         for (at, depth, color) in canvas.window.samples_of(body) {
             if depth > canvas.depths[at] {
                 canvas.depths[at] = depth;
-                canvas.colors[at] = [color[0], color[1], color[2], 1.0];
+                canvas.colors[at] = color;
             }
         }
     }
@@ -54,12 +54,12 @@ struct Window {
 }
 
 impl Window {
-    /// What holds all bodies, in whole pixels.
+    /// What holds all bodies with a pixel around them, in whole pixels.
     fn around(bodies: &[Body], size: (f64, f64)) -> Option<Window> {
         let bounds = bodies.iter().map(|body| body.solid.bounds());
         let [low, high] = bounds.reduce(|[low, high], [a, b]| [low.inf(&a), high.sup(&b)])?;
-        let low = low.map(|side| side.floor().max(0.0));
-        let (right, below) = (high.x.ceil().min(size.0), high.y.ceil().min(size.1));
+        let low = low.map(|side| (side.floor() - 1.0).max(0.0));
+        let (right, below) = ((high.x.ceil() + 1.0).min(size.0), (high.y.ceil() + 1.0).min(size.1));
         let samples = |from: f64, to: f64| (to - from).max(0.0) as usize * SAMPLES;
         let (width, height) = (samples(low.x, right), samples(low.y, below));
         (width > 0 && height > 0).then_some(Window { corner: low, width, height })
@@ -71,27 +71,32 @@ impl Window {
         self.corner + nalgebra::Vector2::new(pixels(column), pixels(row))
     }
 
-    /// The samples that a body takes: which, how near, in what colour.
-    fn samples_of(&self, body: &Body) -> Vec<(usize, f32, [f32; 3])> {
+    /// The samples that a body takes: which, how near, in what colour. Its outline can always be seen.
+    fn samples_of(&self, body: &Body) -> Vec<(usize, f32, [f32; 4])> {
         let part = self.part(body);
         let place = |at: usize| self.place(part.columns.start + at % part.width(), part.rows.start + at / part.width());
         let hits: Vec<Option<Hit>> = (0..part.width() * part.rows.len()).map(|at| body.solid.hit(&place(at))).collect();
         let inked = inked(&hits, part.width());
         let sample = |(at, hit): (usize, &Option<Hit>)| {
             let Hit { depth, normal } = (*hit)?;
-            let color = if inked[at] { shade::ink(&body.paint) } else { shade::seen(&body.paint, &normal) };
+            let (color, share) = if inked[at] {
+                (shade::ink(&body.paint), 1.0)
+            } else {
+                (shade::seen(&body.paint, &normal), body.paint.opacity)
+            };
+            let [red, green, blue] = color;
             let (column, row) = (part.columns.start + at % part.width(), part.rows.start + at / part.width());
-            Some((row * self.width + column, depth as f32, color.map(|part| part as f32)))
+            Some((row * self.width + column, depth as f32, [red, green, blue, share].map(|part| part as f32)))
         };
         hits.iter().enumerate().filter_map(sample).collect()
     }
 
-    /// The columns and rows that a body may touch.
+    /// The columns and rows that a body may touch, and one more on each side, so that its outline is seen as one.
     fn part(&self, body: &Body) -> Part {
         let [low, high] = body.solid.bounds().map(|end| (end - self.corner) * SAMPLES as f64);
         let range = |from: f64, to: f64, most: usize| {
-            let from = (from.floor().max(0.0) as usize).min(most);
-            from..(to.ceil().max(0.0) as usize).clamp(from, most)
+            let from = ((from.floor() - 1.0).max(0.0) as usize).min(most);
+            from..((to.ceil() + 1.0).max(0.0) as usize).clamp(from, most)
         };
         Part { columns: range(low.x, high.x, self.width), rows: range(low.y, high.y, self.height) }
     }
@@ -158,17 +163,16 @@ impl Canvas {
 
     /// Lays what can be seen through over what is behind it, the farther first.
     fn veil(&mut self, bodies: &[&Body]) {
-        let mut veils: Vec<(usize, f32, [f32; 3], f32)> = vec![];
+        let mut veils: Vec<(usize, f32, [f32; 4])> = vec![];
         for body in bodies {
             let samples = self.window.samples_of(body).into_iter();
-            let before = samples.filter(|(at, depth, _)| *depth > self.depths[*at]);
-            veils.extend(before.map(|(at, depth, color)| (at, depth, color, body.paint.opacity as f32)));
+            veils.extend(samples.filter(|(at, depth, _)| *depth > self.depths[*at]));
         }
         veils.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        for (at, _, color, opacity) in veils {
+        for (at, _, [red, green, blue, share]) in veils {
+            let veil = [red, green, blue, 1.0];
             let below = self.colors[at];
-            let mixed = |i: usize| opacity * color[i] + (1.0 - opacity) * below[i];
-            self.colors[at] = [mixed(0), mixed(1), mixed(2), opacity + (1.0 - opacity) * below[3]];
+            self.colors[at] = std::array::from_fn(|i| share * veil[i] + (1.0 - share) * below[i]);
         }
     }
 
