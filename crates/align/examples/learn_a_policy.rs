@@ -1,7 +1,6 @@
 //! From recorded movements to a policy: what a program that uses this crate starts from.
 
 use align::{Bandwidth, LwprRegressor, PolicyAlign};
-use lwpr::LwprParams;
 use motion::{Demonstrations, Policy};
 use nalgebra::{DMatrix, DVector};
 use rand::{SeedableRng, rngs::StdRng};
@@ -14,8 +13,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for warning in aligned.warnings() {
         println!("warning: {warning}");
     }
-    let params = LwprParams { init_d: 10.0, w_gen: 0.5, ..Default::default() };
-    let learnt = aligned.learn(&LwprRegressor { params, ..Default::default() }, &mut StdRng::seed_from_u64(1))?;
+    let learnt = aligned.learn(&LwprRegressor::default(), &mut StdRng::seed_from_u64(1))?;
 
     let x = DVector::from_vec(vec![0.5, -0.2]);
     let u = learnt.action(x.as_view());

@@ -1,13 +1,16 @@
 use motion::Demonstrations;
+use serde::{Deserialize, Serialize};
 
-use crate::bipartition::bipartition;
-use crate::nearest::NearestSamples;
-use crate::offsets::group_offsets;
-use crate::responsibilities::Responsibilities;
-use crate::{AlignError, Aligned, AlignmentObjective, Bandwidth, Integration};
+use crate::levelling::bipartition::bipartition;
+use crate::levelling::offsets::group_offsets;
+use crate::levelling::responsibilities::{Responsibilities, reach};
+use crate::scrutiny::scrutinise;
+use crate::search::SearchSpace;
+use crate::{AlignError, Aligned, AlignmentObjective, Bandwidth, Integration, Warning};
 
 /// Algorithm 1 of the paper, up to the regression: brings the potentials along single trajectories to one level.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct PolicyAlign {
     /// How the potential along each trajectory is found.
     pub integration: Integration,
@@ -19,6 +22,8 @@ pub struct PolicyAlign {
     /// Responsibilities below this share of the largest at a sample are dropped; in [0, 1), 1e-20 by default, at which
     /// offsets keep 14 digits.
     pub responsibility_floor: f64,
+    /// Bytes of memory that the alignment may take; 8 GiB by default. What would take more is refused before the search.
+    pub memory_limit: u64,
 }
 
 impl Default for PolicyAlign {
@@ -28,6 +33,7 @@ impl Default for PolicyAlign {
             bandwidth: Bandwidth::default(),
             eigenvalue_threshold: 1e-8,
             responsibility_floor: 1e-20,
+            memory_limit: 8 << 30,
         }
     }
 }
@@ -35,24 +41,28 @@ impl Default for PolicyAlign {
 impl PolicyAlign {
     /// Aligns the local potentials of all trajectories, and leaves out those whose level the data do not determine.
     ///
-    /// Work and memory grow with the square of the number of samples. Coordinates are compared as they are: unwrap
-    /// continuous angles beforehand.
+    /// Time and memory grow with the number of pairs of samples within reach of the bandwidth: with K trajectories of N
+    /// samples, up to 28 bytes for each of K²N. Coordinates are compared as they are: unwrap continuous angles
+    /// beforehand.
     ///
     /// # Errors
-    /// [`AlignError`] for parameters out of range, missing velocities, an undefined bandwidth or overflow.
+    /// [`AlignError`] for parameters out of range, missing velocities, an undefined bandwidth, overflow, underflow or
+    /// too many samples for the memory.
     pub fn align(&self, demonstrations: &Demonstrations) -> Result<Aligned, AlignError> {
         // One visit to the thread pool for all steps.
         rayon::scope(|_| {
             self.check()?;
             let potentials = self.integration.potentials(demonstrations)?;
-            let nearest = NearestSamples::search(demonstrations)?;
-            let sigma_squared = self.bandwidth.sigma_squared(&nearest.trajectory_distances())?;
-            let responsibilities =
-                Responsibilities::new(&nearest, &potentials, sigma_squared, self.responsibility_floor);
+            let space = SearchSpace::new(demonstrations)?;
+            let sigma_squared = self.bandwidth.among(&space)?;
+            let nearest = space.nearest(reach(sigma_squared, self.responsibility_floor), self.memory_limit)?;
+            let responsibilities = Responsibilities::new(&nearest, &potentials, sigma_squared);
             let objective = AlignmentObjective::new(&responsibilities);
             let partition = bipartition(&objective.laplacian, self.eigenvalue_threshold)?;
             let offsets = group_offsets(&responsibilities, &objective, &partition.groups[0])?;
-            Ok(Aligned::new(self, demonstrations, potentials, sigma_squared, objective, partition, offsets))
+            let mut warnings = Warning::about(&partition, self.eigenvalue_threshold);
+            warnings.extend(scrutinise(demonstrations));
+            Ok(Aligned::new(demonstrations, potentials, sigma_squared, objective, partition, offsets, warnings))
         })
     }
 

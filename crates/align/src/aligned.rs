@@ -2,13 +2,13 @@ use motion::{Demonstrations, SampleIndex};
 use nalgebra::{DVector, DVectorView};
 use rand::Rng;
 
-use crate::bipartition::Partition;
+use crate::levelling::bipartition::Partition;
 use crate::{
-    AlignError, AlignmentObjective, LocalPotential, LwprRegressor, PolicyAlign, PotentialPolicy, Regressor, Samples,
-    Split, Warning,
+    AlignError, AlignmentObjective, LocalPotential, LwprRegressor, Origin, PotentialPolicy, Regressor, Samples, Split,
+    Warning,
 };
 
-/// Local potentials brought to one level: what [`PolicyAlign::align`] found.
+/// Local potentials brought to one level: what [`PolicyAlign::align`](crate::PolicyAlign::align) found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Aligned {
     demonstrations: Demonstrations,
@@ -23,18 +23,17 @@ pub struct Aligned {
 
 impl Aligned {
     pub(crate) fn new(
-        parameters: &PolicyAlign,
         demonstrations: &Demonstrations,
         potentials: Vec<Vec<f64>>,
         sigma_squared: f64,
         objective: AlignmentObjective,
         partition: Partition,
         offsets: DVector<f64>,
+        warnings: Vec<Warning>,
     ) -> Self {
         let mut discarded = partition.groups[1..].concat();
         discarded.sort_unstable();
         Aligned {
-            warnings: Warning::about(&partition, parameters.eigenvalue_threshold),
             demonstrations: demonstrations.clone(),
             potentials,
             sigma_squared,
@@ -42,6 +41,7 @@ impl Aligned {
             partition,
             discarded,
             offsets,
+            warnings,
         }
     }
 
@@ -140,7 +140,7 @@ impl Aligned {
     /// Learns the policy from all samples of the kept trajectories.
     ///
     /// # Errors
-    /// [`AlignError::Parameter`] or [`AlignError::Lwpr`] for parameters out of range.
+    /// [`AlignError::Lwpr`] for parameters out of range.
     pub fn learn(&self, regressor: &LwprRegressor, rng: &mut dyn Rng) -> Result<PotentialPolicy, AlignError> {
         self.learn_without(&[], regressor, rng)
     }
@@ -156,7 +156,9 @@ impl Aligned {
         rng: &mut dyn Rng,
     ) -> Result<PotentialPolicy, AlignError> {
         let potential = self.regress(regressor, &self.samples().without(held_out), rng)?;
-        Ok(PotentialPolicy::new(potential, self))
+        let warnings = self.warnings.iter().map(ToString::to_string).collect();
+        let origin = Origin { kept: Some(self.kept().to_vec()), warnings, ..Origin::new(&self.demonstrations) };
+        Ok(PotentialPolicy::new(potential, origin))
     }
 
     /// Learns the global potential (23) from all or some of the samples, by any regressor.

@@ -1,10 +1,12 @@
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 
 use crate::AlignError;
+use crate::search::SearchSpace;
 
 /// How far a local model speaks beyond its own trajectory: the rule for σ² in (11), from the squared distances
 /// d_kj = min over samples ‖x_kn − x_jm‖² of trajectories (18).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Bandwidth {
     /// σ² = median_k min_{j≠k} d_kj (19), (20): the usual distance to the nearest other trajectory.
@@ -31,17 +33,39 @@ impl Bandwidth {
         if distances.ncols() < 2 {
             return Err(AlignError::SingleTrajectory);
         }
-        let sigma_squared = match self {
+        let sigma_squared = self.rule(distances);
+        if sigma_squared > 0.0 {
+            return Ok(sigma_squared);
+        }
+        // As if those that touch had not met: what the rule makes of the others.
+        let apart = distances.map(|distance| if distance > 0.0 { distance } else { f64::INFINITY });
+        let usable = Some(self.rule(&apart)).filter(|usable| usable.is_finite());
+        Err(AlignError::ZeroBandwidth { pairs: touching(distances), usable })
+    }
+
+    fn rule(self, distances: &DMatrix<f64>) -> f64 {
+        match self {
             Bandwidth::Narrow => narrow(distances),
             Bandwidth::Wide => wide(distances),
             // Two roots, so that the product can neither overflow nor underflow.
             _ => narrow(distances).sqrt() * wide(distances).sqrt(),
-        };
-        if sigma_squared > 0.0 {
-            Ok(sigma_squared)
-        } else {
-            Err(AlignError::ZeroBandwidth { pairs: touching(distances) })
         }
+    }
+
+    /// σ² among trajectories. Narrow bandwidths take nothing but the distance of each trajectory to its nearest.
+    pub(crate) fn among(self, space: &SearchSpace) -> Result<f64, AlignError> {
+        self.check()?;
+        match self {
+            Bandwidth::Fixed(sigma_squared) => return Ok(sigma_squared),
+            Bandwidth::Narrow if space.n_trajectories() > 1 => {
+                let sigma_squared = median(space.distances_to_nearest());
+                if sigma_squared > 0.0 {
+                    return Ok(sigma_squared);
+                }
+            }
+            _ => {}
+        }
+        self.sigma_squared(&space.distances())
     }
 
     pub(crate) fn check(self) -> Result<(), AlignError> {
@@ -79,8 +103,12 @@ fn pairs(distances: &DMatrix<f64>) -> impl Iterator<Item = (usize, usize, f64)> 
     (0..count).flat_map(move |k| (k + 1..count).map(move |j| (k, j, distances[(j, k)])))
 }
 
-/// The middle value, or the mean of the middle two.
+/// The middle value, or the mean of the middle two; infinite values do not count.
 fn median(mut values: Vec<f64>) -> f64 {
+    values.retain(|value| value.is_finite());
+    if values.is_empty() {
+        return f64::INFINITY;
+    }
     let half = values.len() / 2;
     let even = values.len().is_multiple_of(2);
     let (below, &mut upper, _) = values.select_nth_unstable_by(half, f64::total_cmp);

@@ -32,6 +32,16 @@ pub enum AlignError {
         /// The first sample whose potential is not finite.
         sample: usize,
     },
+    /// The potential along a trajectory is too small for f64, although it moves.
+    #[error(
+        "trajectory {trajectory}: it moves, but its potential underflows to {lowest:e}; use smaller units of length or larger ones of time"
+    )]
+    PotentialUnderflow {
+        /// The trajectory.
+        trajectory: usize,
+        /// The largest magnitude of its potential.
+        lowest: f64,
+    },
     /// Squared distances between samples leave the range of f64.
     #[error(
         "the samples span {span:e} in dimension {dimension}, so squared distances overflow; use larger units of length"
@@ -49,12 +59,26 @@ pub enum AlignError {
     SingleTrajectory,
     /// The bandwidth is zero because trajectories share points.
     #[error(
-        "the bandwidth is 0 since trajectories touch exactly, {}; drop duplicated trajectories or use Bandwidth::Fixed",
-        name_pairs(pairs)
+        "the bandwidth is 0 since trajectories touch exactly, {}; drop duplicated trajectories, or, where positions are rounded, use {}",
+        name_pairs(pairs), fixed(*usable)
     )]
     ZeroBandwidth {
         /// All pairs of trajectories at squared distance zero, lower index first.
         pairs: Vec<(usize, usize)>,
+        /// What the rule makes of the distances of all other pairs, in units of the state squared: a σ² to use with
+        /// `Bandwidth::Fixed`. None if there are too few.
+        usable: Option<f64>,
+    },
+    /// The alignment would take too much memory.
+    #[error(
+        "the alignment could take {:.1} GB of memory, more than the {:.1} GB allowed; give fewer trajectories, every second sample or a narrower bandwidth, or raise PolicyAlign::memory_limit",
+        *needed as f64 * 1e-9, *limit as f64 * 1e-9
+    )]
+    Memory {
+        /// Bytes that it could take.
+        needed: u64,
+        /// Bytes that it may take.
+        limit: u64,
     },
     /// The eigenvalues of the alignment graph were not found.
     #[error("the eigenvalues of H did not converge; try another bandwidth")]
@@ -70,6 +94,28 @@ pub enum AlignError {
     /// No sample is left to learn from.
     #[error("no sample is left to learn from; hold out fewer or give more trajectories")]
     NoSamples,
+    /// There is not one label for each dimension.
+    #[error("{found} labels for a state of {expected} dimensions; give one for each, or none")]
+    Labels {
+        /// How many were given.
+        found: usize,
+        /// How many dimensions there are.
+        expected: usize,
+    },
+    /// A stored policy has a form that this program does not know.
+    #[error("the stored policy has version {found}, this program reads up to {known}; use a newer one")]
+    PolicyVersion {
+        /// Its version.
+        found: u32,
+        /// The newest that can be read.
+        known: u32,
+    },
+    /// A stored policy contradicts itself.
+    #[error("the stored policy is damaged: {reason}")]
+    CorruptPolicy {
+        /// What is wrong with it.
+        reason: &'static str,
+    },
     /// The regression refused its parameters or data.
     #[error("LWPR: {0}")]
     Lwpr(#[from] lwpr::LwprError),
@@ -80,4 +126,8 @@ fn name_pairs(pairs: &[(usize, usize)]) -> String {
     let named: Vec<_> = pairs.iter().take(SHOWN).map(|(k, j)| format!("{k} and {j}")).collect();
     let more = pairs.len().saturating_sub(SHOWN);
     if more == 0 { named.join(", ") } else { format!("{} and {more} more pairs", named.join(", ")) }
+}
+
+fn fixed(usable: Option<f64>) -> String {
+    usable.map_or("Bandwidth::Fixed".to_owned(), |usable| format!("Bandwidth::Fixed({usable:.3e})"))
 }

@@ -1,5 +1,6 @@
 use motion::{Demonstrations, Trajectory};
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 
 use crate::AlignError;
 
@@ -7,7 +8,7 @@ use crate::AlignError;
 ///
 /// Wherever a constraint lets the system move, dφ = ∇φᵀdx = −uᵀdx, so that the potential falls by the work of the
 /// policy along the path. Values start at φ̂₁ = 0 and have units of the state squared per second.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Integration {
     /// φ̂_{i+1} = φ̂_i − ‖x_{i+1} − x_i‖² / δt (9): positions alone. Noise of variance s² on the positions looks
@@ -24,7 +25,7 @@ impl Integration {
     /// The values φ̂_k of every trajectory at its own samples, N_k of them.
     ///
     /// # Errors
-    /// [`AlignError::NoVelocities`] or [`AlignError::PotentialOverflow`].
+    /// [`AlignError::NoVelocities`], [`AlignError::PotentialOverflow`] or [`AlignError::PotentialUnderflow`].
     pub fn potentials(self, demonstrations: &Demonstrations) -> Result<Vec<Vec<f64>>, AlignError> {
         let trajectories = demonstrations.trajectories().iter().enumerate();
         trajectories.map(|(index, trajectory)| self.along(index, trajectory)).collect()
@@ -45,9 +46,30 @@ impl Integration {
                 descend(x, |i| work(x, u, i))
             }
         };
-        match values.iter().position(|value| !value.is_finite()) {
-            None => Ok(values),
-            Some(sample) => Err(AlignError::PotentialOverflow { trajectory: index, sample }),
+        if let Some(sample) = values.iter().position(|value| !value.is_finite()) {
+            return Err(AlignError::PotentialOverflow { trajectory: index, sample });
+        }
+        let lowest = values.iter().fold(0.0_f64, |lowest, value| lowest.max(value.abs()));
+        if lowest < f64::MIN_POSITIVE && self.moves(trajectory) {
+            return Err(AlignError::PotentialUnderflow { trajectory: index, lowest });
+        }
+        Ok(values)
+    }
+
+    /// Whether anything but 0 is summed, if it were not for rounding.
+    fn moves(self, trajectory: &Trajectory) -> bool {
+        let x = trajectory.states();
+        let mut steps = (0..x.ncols() - 1).flat_map(|i| (0..x.nrows()).map(move |c| (i, c)));
+        let stepped = |i, c| x[(c, i + 1)] != x[(c, i)];
+        let wanted = |i, c| trajectory.velocities().is_some_and(|u| u[(c, i)] != 0.0);
+        match self {
+            Integration::Displacement => steps.any(|(i, c)| stepped(i, c)),
+            Integration::Velocity => steps.any(|(i, c)| wanted(i, c)),
+            // What is orthogonal sums to 0 by itself.
+            Integration::Work => {
+                let product = |i, c| trajectory.velocities().map_or(0.0, |u| u[(c, i)] * (x[(c, i + 1)] - x[(c, i)]));
+                steps.any(|(i, c)| stepped(i, c) && wanted(i, c) && product(i, c).abs() < f64::MIN_POSITIVE)
+            }
         }
     }
 }

@@ -18,7 +18,6 @@
 //!
 //! ```
 //! use align::{Bandwidth, LwprRegressor, PolicyAlign};
-//! use lwpr::LwprParams;
 //! use motion::{Demonstrations, Policy};
 //! use nalgebra::{DMatrix, DVector};
 //! use rand::SeedableRng;
@@ -34,8 +33,7 @@
 //! assert_eq!(aligned.kept().len(), 8);
 //!
 //! let mut rng = rand::rngs::StdRng::seed_from_u64(1);
-//! let params = LwprParams { init_d: 10.0, ..Default::default() };
-//! let learnt = aligned.learn(&LwprRegressor { params, ..Default::default() }, &mut rng)?;
+//! let learnt = aligned.learn(&LwprRegressor::default(), &mut rng)?;
 //! let x = DVector::from_vec(vec![0.3, 0.1]);
 //! let u = learnt.action(x.as_view());
 //! assert!((u + 0.1 * &x).norm() < 0.02);
@@ -45,56 +43,32 @@
 //! The learner sees [`motion::Demonstrations`] and nothing else: this crate depends on none that knows the constraints
 //! or the true policy. Randomness is handed in, and the same seed gives the same bits at any number of threads.
 //!
-//! Reading on: `algorithm` is the algorithm, a line a step; `integration`, `nearest` (with `block_search`, its inner
-//! loop), `bandwidth`, `responsibilities`, `objective`, `bipartition` and `offsets` are the steps; `regressor` and
-//! `lwpr_regressor` the regression.
+//! Reading on: `algorithm` is the algorithm, a line a step; `integration`, `bandwidth`, and the folders `search` (nearest
+//! samples) and `levelling` (responsibilities, objective, groups, offsets) are the steps; `learning` is the rest.
 
 mod algorithm;
 mod aligned;
 mod bandwidth;
-mod bipartition;
-mod block_search;
-mod centred_model;
-mod compensated;
-mod direct_policy;
-mod direct_policy_learning;
-mod eigen;
 mod error;
-mod exponential;
-mod global_potential;
 mod integration;
-mod laplacian;
-mod linear_term;
+mod learning;
+mod levelling;
 mod local_potential;
-mod lwpr_regressor;
-mod minima;
-mod nearest;
-mod objective;
-mod offsets;
-mod potential_policy;
-mod potential_policy_learning;
-mod regressor;
-mod responsibilities;
 mod samples;
-mod split;
-mod tiles;
-mod two_means;
+mod scrutiny;
+mod search;
 mod warning;
 
 pub use algorithm::PolicyAlign;
 pub use aligned::Aligned;
 pub use bandwidth::Bandwidth;
-pub use direct_policy::DirectPolicy;
-pub use direct_policy_learning::DirectPolicyLearning;
 pub use error::AlignError;
-pub use global_potential::GlobalPotential;
 pub use integration::Integration;
+pub use learning::{
+    DirectPolicy, DirectPolicyLearning, GlobalPotential, Label, LwprRegressor, Origin, PotentialPolicy,
+    PotentialPolicyLearning, Regressor,
+};
+pub use levelling::{AlignmentObjective, Split, SplitCause};
 pub use local_potential::LocalPotential;
-pub use lwpr_regressor::LwprRegressor;
-pub use objective::AlignmentObjective;
-pub use potential_policy::PotentialPolicy;
-pub use potential_policy_learning::PotentialPolicyLearning;
-pub use regressor::Regressor;
 pub use samples::{SampleIter, Samples};
-pub use split::{Split, SplitCause};
 pub use warning::Warning;

@@ -1,6 +1,6 @@
 use std::fmt;
 
-use crate::bipartition::Partition;
+use crate::levelling::bipartition::Partition;
 
 /// More than this share of trajectories discarded is worth a word.
 const MANY: f64 = 0.5;
@@ -8,7 +8,7 @@ const MANY: f64 = 0.5;
 const NEAR: f64 = 10.0;
 
 /// Why the result of an alignment may not be what was wanted.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
     /// More than half of the trajectories hang together too weakly to be levelled.
@@ -25,9 +25,41 @@ pub enum Warning {
         /// The threshold below which they would have been taken apart.
         threshold: f64,
     },
+    /// Even the longest trajectory has less than half as many samples as dimensions.
+    LooksTransposed {
+        /// Dimensions of the state.
+        dim: usize,
+        /// Samples of the longest trajectory.
+        n_samples: usize,
+    },
+    /// One step is over ten times as long as those about it: an angle that was wrapped, samples that are missing.
+    LongStep {
+        /// The trajectory.
+        trajectory: usize,
+        /// The sample before its longest such step.
+        sample: usize,
+        /// How many times the usual step of the trajectory it is.
+        times: f64,
+    },
+    /// The trajectory never moves: it says nothing about the policy.
+    StandsStill {
+        /// The trajectory.
+        trajectory: usize,
+    },
+    /// Two trajectories have the same states.
+    Duplicated {
+        /// Both, the lower first.
+        trajectories: [usize; 2],
+    },
+    /// One trajectory is another, run backwards: one of them climbs.
+    Mirrored {
+        /// Both, the lower first.
+        trajectories: [usize; 2],
+    },
 }
 
 impl Warning {
+    /// About how trajectories hang together.
     pub(crate) fn about(partition: &Partition, threshold: f64) -> Vec<Self> {
         let of: usize = partition.groups.iter().map(Vec::len).sum();
         let discarded = of - partition.groups[0].len();
@@ -49,6 +81,23 @@ impl fmt::Display for Warning {
                 f,
                 "a part of the kept trajectories is barely connected to the rest (lambda_2 = {lambda_2:e}, threshold {threshold:e}); use a wider bandwidth or a higher threshold"
             ),
+            Warning::LooksTransposed { dim, n_samples } => write!(
+                f,
+                "the state has {dim} dimensions, and no trajectory more than {n_samples} sample(s); samples are columns: transpose the matrices if they are rows"
+            ),
+            Warning::LongStep { trajectory, sample, times } => write!(
+                f,
+                "trajectory {trajectory}: the step after sample {sample} is {times:.0} times as long as usual; unwrap angles, and cut the trajectory where samples are missing"
+            ),
+            Warning::StandsStill { trajectory } => {
+                write!(f, "trajectory {trajectory} never moves; leave it out")
+            }
+            Warning::Duplicated { trajectories: [k, j] } => {
+                write!(f, "trajectories {k} and {j} have the same states; leave one out unless both were shown")
+            }
+            Warning::Mirrored { trajectories: [k, j] } => {
+                write!(f, "trajectory {j} is trajectory {k} run backwards; leave out the one that was not shown")
+            }
         }
     }
 }

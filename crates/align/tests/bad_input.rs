@@ -7,7 +7,7 @@ mod literal;
 
 use align::{AlignError, Aligned, Bandwidth, DirectPolicyLearning, Integration, LwprRegressor, PolicyAlign, Warning};
 use literal::Literal;
-use lwpr::LwprParams;
+use lwpr::{LwprError, LwprParams};
 use motion::{Demonstrations, Policy, Potential, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use rand::{SeedableRng, rngs::StdRng};
@@ -44,7 +44,7 @@ fn what_is_refused() {
     };
     let steep = || Demonstrations::from_states([line([0.0, 0.0], [1e5, 0.0], 4)], 1e-300).unwrap();
     let single = || observed(vec![line([0.0, 0.0], [1.0, 1.0], 5)]);
-    let duplicates = |pairs| AlignError::ZeroBandwidth { pairs };
+    let duplicates = |pairs, usable| AlignError::ZeroBandwidth { pairs, usable };
     let parameter = |name, value, requirement| AlignError::Parameter { name, value, requirement };
     let sigma = "bandwidth Fixed(sigma_squared)";
     let positive = "be positive and finite";
@@ -53,18 +53,18 @@ fn what_is_refused() {
         ("one trajectory, narrow", with(|_| {}), single(), AlignError::SingleTrajectory),
         ("one trajectory, medium", with(|p| p.bandwidth = Bandwidth::Medium), single(), AlignError::SingleTrajectory),
         ("one trajectory, wide", with(|p| p.bandwidth = Bandwidth::Wide), single(), AlignError::SingleTrajectory),
-        ("duplicates, narrow", with(|_| {}), observed(touching()), duplicates(vec![(0, 1)])),
+        ("duplicates, narrow", with(|_| {}), observed(touching()), duplicates(vec![(0, 1)], Some(50.0))),
         (
             "duplicates, medium",
             with(|p| p.bandwidth = Bandwidth::Medium),
             observed(touching()),
-            duplicates(vec![(0, 1)]),
+            duplicates(vec![(0, 1)], Some(50.0_f64.sqrt() * 50.0_f64.sqrt())),
         ),
         (
             "all points equal",
             with(|p| p.bandwidth = Bandwidth::Wide),
             observed(vec![line([1.0, 2.0], [1.0, 2.0], 4); 3]),
-            duplicates(vec![(0, 1), (0, 2), (1, 2)]),
+            duplicates(vec![(0, 1), (0, 2), (1, 2)], None),
         ),
         (
             "bandwidth 0",
@@ -114,6 +114,25 @@ fn what_is_refused() {
             half_recorded,
             AlignError::NoVelocities { trajectory: 1 },
         ),
+        (
+            "steps too small",
+            with(|_| {}),
+            observed(sound().into_iter().map(|x| x * 1e-170).collect()),
+            AlignError::PotentialUnderflow { trajectory: 0, lowest: 0.0 },
+        ),
+        (
+            "steps too slow",
+            with(|_| {}),
+            Demonstrations::from_states(sound().into_iter().map(|x| x * 1e-10), 4e307).unwrap(),
+            AlignError::PotentialUnderflow { trajectory: 0, lowest: 0.0 },
+        ),
+        (
+            "more than the memory holds",
+            with(|p| p.memory_limit = 3759),
+            observed(sound()),
+            // Three by three trajectories, each of ten samples in two groups of eight.
+            AlignError::Memory { needed: 28 * 12 * 16 + 112 * 9, limit: 3759 },
+        ),
         ("steps too fast", with(|_| {}), steep(), AlignError::PotentialOverflow { trajectory: 0, sample: 1 }),
         (
             "too far apart",
@@ -153,6 +172,10 @@ fn what_is_refused() {
     for (name, learner, demonstrations, expected) in cases {
         assert_eq!(learner.align(&demonstrations).unwrap_err(), expected, "{name}");
     }
+    // What is left has lost most of its digits.
+    let slow = Demonstrations::from_states(sound(), 4e307).unwrap();
+    let error = PolicyAlign::default().align(&slow).unwrap_err();
+    assert!(matches!(error, AlignError::PotentialUnderflow { trajectory: 0, lowest } if lowest > 0.0), "{error}");
     for learner in [
         with(|p| p.bandwidth = Bandwidth::Fixed(f64::NAN)),
         with(|p| p.eigenvalue_threshold = f64::NAN),
@@ -167,13 +190,20 @@ fn what_is_refused() {
 fn what_the_regression_refuses() {
     let aligned = PolicyAlign::default().align(&observed(sound())).unwrap();
     let mut rng = StdRng::seed_from_u64(1);
-    let cutoff = |value| AlignError::Parameter { name: "cutoff", value, requirement: "be at least 0 and less than 1" };
-    let passes = AlignError::Parameter { name: "passes", value: 0.0, requirement: "be at least 1" };
+    let parameter = |name, value, range| AlignError::Lwpr(LwprError::Parameter { name, value, range });
+    let cutoff = |value| parameter("cutoff", value, "at least 0 and less than 1");
+    let passes = parameter("passes", 0.0, "at least 1");
+    let norm_out = LwprParams { norm_out: Some(DVector::repeat(1, 1.0)), ..Default::default() };
     let bad_metric = LwprParams { init_d: -1.0, ..Default::default() };
 
     let cases = [
         ("cutoff −1", LwprRegressor { cutoff: -1.0, ..Default::default() }, Some(cutoff(-1.0))),
         ("cutoff 1", LwprRegressor { cutoff: 1.0, ..Default::default() }, Some(cutoff(1.0))),
+        (
+            "norm_out",
+            LwprRegressor { params: norm_out, ..Default::default() },
+            Some(AlignError::Lwpr(LwprError::NormOutGiven)),
+        ),
         ("no pass", LwprRegressor { passes: 0, ..Default::default() }, Some(passes)),
         ("metric", LwprRegressor { params: bad_metric, ..Default::default() }, None),
     ];
@@ -283,6 +313,13 @@ fn what_gives_reason_for_doubt() {
 
     let aligned = PolicyAlign::default().align(&observed(sound())).unwrap();
     assert_eq!(aligned.warnings(), []);
+    // Half of the trajectories is not more than half.
+    for (count, warned) in [(4, vec![]), (5, vec![Warning::ManyDiscarded { discarded: 3, of: 5 }])] {
+        let near_or_apart = |k: i32| if k < 2 { 0.1 * f64::from(k) } else { 10.0_f64.powi(k) };
+        let movements = (0..count).map(|k| line([0.0, near_or_apart(k)], [1.0, near_or_apart(k)], 5)).collect();
+        let aligned = with(|p| p.bandwidth = Bandwidth::Fixed(0.1)).align(&observed(movements)).unwrap();
+        assert_eq!((aligned.kept(), aligned.warnings()), (&[0, 1][..], &warned[..]));
+    }
     let lambda_2 = aligned.lambda_2().unwrap();
     let strict = with(|p| p.eigenvalue_threshold = lambda_2 / 2.0).align(&observed(sound())).unwrap();
     assert_eq!(strict.warnings(), [Warning::BarelyConnected { lambda_2, threshold: lambda_2 / 2.0 }]);
@@ -292,8 +329,12 @@ fn what_gives_reason_for_doubt() {
 #[test]
 fn errors_say_what_next() {
     let pairs = (0..7).map(|k| (k, k + 1)).collect();
-    let message = AlignError::ZeroBandwidth { pairs }.to_string();
-    assert!(message.contains("0 and 1, 1 and 2") && message.contains("2 more") && message.contains("Bandwidth::Fixed"));
+    let message = AlignError::ZeroBandwidth { pairs, usable: Some(0.01234) }.to_string();
+    assert!(
+        message.contains("0 and 1, 1 and 2")
+            && message.contains("2 more")
+            && message.contains("Bandwidth::Fixed(1.234e-2)")
+    );
     assert!(AlignError::SingleTrajectory.to_string().contains("Bandwidth::Fixed"));
     assert!(AlignError::NoVelocities { trajectory: 3 }.to_string().contains("trajectory 3"));
 }

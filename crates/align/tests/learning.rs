@@ -103,8 +103,8 @@ fn what_is_true_does_not_leak() {
         (
             aligned,
             bits.map(f64::to_bits),
-            learnt.global_potential().model().predictor(0.0),
-            naive.model().predictor(0.0),
+            learnt.global_potential().regression().model().predictor(0.0),
+            naive.regression().model().predictor(0.0),
         )
     };
     assert_eq!(learn(&recordings), learn(&forged));
@@ -116,7 +116,13 @@ fn all_bits_are_the_same_at_any_number_of_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let aligned = align_toy(Bandwidth::Narrow, 5);
-            let model = aligned.learn(&regressor(), &mut rng(6)).unwrap().global_potential().model().predictor(0.0);
+            let model = aligned
+                .learn(&regressor(), &mut rng(6))
+                .unwrap()
+                .global_potential()
+                .regression()
+                .model()
+                .predictor(0.0);
             (aligned, model)
         })
     };
@@ -157,19 +163,19 @@ fn far_away_there_is_no_support() {
     let potential = learnt.global_potential();
     let near = DVector::from_vec(vec![0.1, 0.1]);
     let far = DVector::from_vec(vec![1e3, -1e3]);
-    let model = potential.model().predictor(1e-3);
+    let model = potential.regression().model().predictor(1e-3);
     assert_eq!(learnt.support(near.as_view()), model.max_activation(near.as_view(), 0));
-    let of_naive = naive.model().predictor(1e-3);
+    let of_naive = naive.regression().model().predictor(1e-3);
     let least = of_naive.max_activation(near.as_view(), 0).min(of_naive.max_activation(near.as_view(), 1));
     assert_eq!(naive.support(near.as_view()), least);
     assert!(learnt.support(near.as_view()) > 1e-3 && least > 1e-3);
     assert_eq!([learnt.support(far.as_view()), naive.support(far.as_view())], [0.0, 0.0]);
 
     let mean = aligned.samples().values().mean();
-    assert!((potential.mean() - mean).abs() < 1e-12);
-    assert_eq!(potential.value(far.as_view()), potential.mean());
+    assert!((potential.regression().mean()[0] - mean).abs() < 1e-12);
+    assert_eq!(potential.value(far.as_view()), potential.regression().mean()[0]);
     assert_eq!(learnt.action(far.as_view()), DVector::zeros(2));
-    assert_eq!(&naive.action(far.as_view()), naive.mean());
+    assert_eq!(&naive.action(far.as_view()), naive.regression().mean());
 
     // A smaller cutoff reaches farther, and changes little where there is data.
     let edge = DVector::from_vec(vec![3.5, 3.5]);
@@ -215,7 +221,7 @@ fn held_out_samples_are_not_learnt() {
     let demonstrations = Demonstrations::new(vec![trajectory]).unwrap();
     let held_out = [SampleIndex { trajectory: 0, sample: 15 }, SampleIndex { trajectory: 0, sample: 3 }];
     let naive = DirectPolicyLearning::default().learn_policy(&demonstrations, &held_out, &mut rng(13)).unwrap();
-    assert!((naive.mean()[0] - 1.0).abs() < 1e-15);
+    assert!((naive.regression().mean()[0] - 1.0).abs() < 1e-15);
 
     let all: Vec<_> = (0..20).map(|sample| SampleIndex { trajectory: 0, sample }).collect();
     let nothing = DirectPolicyLearning::default().learn_policy(&demonstrations, &all, &mut rng(13));
@@ -227,8 +233,44 @@ fn velocities_are_differences_where_none_were_recorded() {
     let x = DMatrix::from_row_slice(1, 4, &[0.0, 1.0, 4.0, 5.0]);
     let demonstrations = Demonstrations::from_states([x], 0.5).unwrap();
     let naive = DirectPolicyLearning::default().learn_policy(&demonstrations, &[], &mut rng(14)).unwrap();
-    assert!((naive.mean()[0] - 5.0 / 1.5).abs() < 1e-14);
-    assert_eq!(naive.model().n_data(), 30);
+    assert!((naive.regression().mean()[0] - 5.0 / 1.5).abs() < 1e-14);
+    assert_eq!(naive.regression().model().n_data(), 30);
+}
+
+#[test]
+fn every_pass_learns_every_sample_of_outputs_divided_by_their_spread() {
+    let aligned = align_toy(Bandwidth::Narrow, 21);
+    let held_out = aligned.demonstrations().hold_out_samples(aligned.kept(), 0.2, &mut rng(22)).unwrap();
+    let regressor = LwprRegressor { passes: 3, ..regressor() };
+    let learnt = aligned.learn_without(&held_out, &regressor, &mut rng(23)).unwrap();
+    let values = aligned.samples().without(&held_out).values();
+    let model = learnt.global_potential().regression().model();
+    assert_eq!(model.n_data(), 3 * values.len());
+    let spread = values.variance().sqrt();
+    let found = model.params().norm_out.as_ref().unwrap()[0];
+    // A variance by n − 1 would be off by 4e-4.
+    assert!((found / spread - 1.0).abs() < 1e-12, "{found} {spread}");
+}
+
+#[test]
+fn units_of_length_decide_nothing() {
+    let states = recordings(24).into_iter().map(|recording| recording.observed.states().clone());
+    let movements = Demonstrations::from_states(states, 1.0).unwrap();
+    let metres = DirectPolicyLearning::default().learn_policy(&movements, &[], &mut rng(25)).unwrap();
+    let aligned = PolicyAlign::default().align(&movements).unwrap();
+    let learnt = aligned.learn(&LwprRegressor::default(), &mut rng(26)).unwrap();
+    let unit = 1024.0;
+    let scaled = movements.trajectories().iter().map(|t| t.states() * unit);
+    let scaled = Demonstrations::from_states(scaled, 1.0).unwrap();
+    let metres_scaled = DirectPolicyLearning::default().learn_policy(&scaled, &[], &mut rng(25)).unwrap();
+    let aligned = PolicyAlign::default().align(&scaled).unwrap();
+    let learnt_scaled = aligned.learn(&LwprRegressor::default(), &mut rng(26)).unwrap();
+    let x = DVector::from_vec(vec![0.4, -0.3]);
+    assert!(learnt.action(x.as_view()).norm() > 0.01);
+    for (policy, scaled) in [(&metres as &dyn Policy, &metres_scaled as &dyn Policy), (&learnt, &learnt_scaled)] {
+        let (one, other) = (policy.action(x.as_view()), scaled.action((&x * unit).as_view()) / unit);
+        assert!((&one - &other).norm() < 1e-9 * one.norm(), "{one} {other}");
+    }
 }
 
 #[test]
@@ -277,7 +319,7 @@ fn a_learnt_policy_knows_what_it_is_made_of() {
     let apart = [0.0, 1e3].map(|y| DMatrix::from_fn(2, 9, |row, i| if row == 0 { i as f64 } else { y }));
     let fixed = PolicyAlign { bandwidth: Bandwidth::Fixed(1.0), ..Default::default() };
     let learner = PotentialPolicyLearning { align: fixed, regressor: regressor() };
-    let observed = Demonstrations::from_states([0, 1, 1].map(|k| apart[k].add_scalar(0.1 * k as f64)), 1.0).unwrap();
+    let observed = Demonstrations::from_states([0.0, 0.1, 0.2].map(|y| apart[0].add_scalar(y)), 1.0).unwrap();
     assert!(learner.learn(&observed, &[], &mut rng(20)).unwrap().warnings().is_empty());
     let observed = Demonstrations::from_states([0.0, 1e3, 1e4].map(|y| apart[0].add_scalar(y)), 1.0).unwrap();
     let warnings = learner.learn(&observed, &[], &mut rng(20)).unwrap().warnings();

@@ -3,6 +3,7 @@
 use align::{LwprRegressor, PolicyAlign};
 use demo_gen::{HandInPlane, n_leaving_limits};
 use lwpr::{LwprParams, MetricAdaptation};
+use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
 
 use super::exam::examine;
@@ -50,7 +51,8 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
 
 /// In the order of the rows.
 fn learners() -> Vec<Box<dyn Learner>> {
-    let params = LwprParams { init_d: 50.0, adaptation: MetricAdaptation::Fixed, ..LwprParams::default() };
+    let norm_in = Some(DVector::repeat(22, 1.0));
+    let params = LwprParams { init_d: 50.0, norm_in, adaptation: MetricAdaptation::Fixed, ..LwprParams::default() };
     vec![Box::new(LwprRegressor { params, passes: 20, cutoff: 1e-9 })]
 }
 

@@ -3,6 +3,7 @@
 use align::{Bandwidth, LwprRegressor, PolicyAlign};
 use demo_gen::{Redraw, ToyPotential, ToySystem};
 use lwpr::LwprParams;
+use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
 
 use super::exam::examine;
@@ -80,7 +81,8 @@ struct ToyTrial {
 
 /// The regression of all rows.
 pub(crate) fn toy_regressor() -> LwprRegressor {
-    let params = LwprParams { init_d: 10.0, w_gen: 0.5, penalty: 1e-5, ..LwprParams::default() };
+    let norm_in = Some(DVector::repeat(2, 1.0));
+    let params = LwprParams { init_d: 10.0, w_gen: 0.5, penalty: 1e-5, norm_in, ..LwprParams::default() };
     LwprRegressor { params, passes: 10, ..LwprRegressor::default() }
 }
 

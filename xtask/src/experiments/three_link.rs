@@ -3,6 +3,7 @@
 use align::{DirectPolicyLearning, LwprRegressor, PolicyAlign};
 use demo_gen::{ThreeLinkArm, n_leaving_limits};
 use lwpr::{LwprParams, MetricAdaptation};
+use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
 
 use super::exam::examine;
@@ -57,7 +58,8 @@ fn learners() -> Vec<Box<dyn Learner>> {
 }
 
 fn params(init_d: f64) -> LwprParams {
-    LwprParams { init_d, adaptation: MetricAdaptation::Fixed, ..LwprParams::default() }
+    let norm_in = Some(DVector::repeat(3, 1.0));
+    LwprParams { init_d, norm_in, adaptation: MetricAdaptation::Fixed, ..LwprParams::default() }
 }
 
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 use align::{Aligned, PolicyAlign};
 use anyhow::Context as _;
 use demo_gen::{Recording, ToySystem, demonstrations};
-use motion::Potential;
+use motion::{LearntPolicy, Potential};
 use nalgebra::DVector;
 use plot::Field;
 use rand_chacha::ChaCha8Rng;
@@ -35,16 +35,18 @@ pub(super) fn levels(seed: u64) -> anyhow::Result<Levels> {
     let Found { data_set, recordings, aligned, mut rng } = like_the_paper(&system, seed)?;
     let held_out = aligned.demonstrations().hold_out_samples(aligned.kept(), HELD_OUT, &mut rng)?;
     let learnt = aligned.learn_without(&held_out, &toy_regressor(), &mut rng)?;
-    let learnt = learnt.global_potential();
-    let errors = Judge::new(&recordings, &aligned.samples().only(&held_out)).potential(learnt)?;
+    let potential = learnt.global_potential();
+    let errors = Judge::new(&recordings, &aligned.samples().only(&held_out)).potential(potential)?;
     let kept = aligned.samples().states();
     let height = |potential: &dyn Potential| kept.column_iter().map(|state| potential.value(state)).sum::<f64>();
-    let raise = (height(&system.potential) - height(learnt)) / kept.ncols() as f64;
+    let raise = (height(&system.potential) - height(potential)) / kept.ncols() as f64;
     Ok(Levels {
         data_set,
         movements: movements(&recordings, &aligned),
         truth: Field { x: side(), y: side(), values: surface(|x| rounded(system.potential.value(x.as_view()), 5)) },
-        learnt: surface(|x| (learnt.support(x.as_view()) > 0.0).then(|| rounded(learnt.value(x.as_view()) + raise, 5))),
+        learnt: surface(|x| {
+            (learnt.support(x.as_view()) > 0.0).then(|| rounded(potential.value(x.as_view()) + raise, 5))
+        }),
         alignment_nmse: errors[&Measure::AlignmentNmse],
         potential_nmse: errors[&Measure::PotentialNmse],
     })

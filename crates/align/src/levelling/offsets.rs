@@ -1,8 +1,8 @@
 use nalgebra::DVector;
 
-use crate::laplacian::{Elimination, of_group};
-use crate::linear_term::linear_term;
-use crate::responsibilities::Responsibilities;
+use super::laplacian::{Elimination, of_group};
+use super::linear_term::linear_term;
+use super::responsibilities::Responsibilities;
 use crate::{AlignError, AlignmentObjective};
 
 /// The first solution is good to 1e-16 / λ₂; the second levels what that left.
@@ -40,8 +40,9 @@ pub(crate) fn group_offsets(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bipartition::bipartition;
-    use crate::nearest::NearestSamples;
+    use crate::levelling::bipartition::bipartition;
+    use crate::levelling::responsibilities::reach;
+    use crate::search::SearchSpace;
     use motion::Demonstrations;
     use nalgebra::DMatrix;
     use proptest::collection::vec;
@@ -62,8 +63,9 @@ mod tests {
         sigma_squared: f64,
     ) -> (Vec<usize>, DVector<f64>, f64) {
         let demonstrations = Demonstrations::from_states(positions.to_vec(), 1.0).unwrap();
-        let nearest = NearestSamples::search(&demonstrations).unwrap();
-        let responsibilities = Responsibilities::new(&nearest, potentials, sigma_squared, 1e-20);
+        let nearest =
+            SearchSpace::new(&demonstrations).unwrap().nearest(reach(sigma_squared, 1e-20), u64::MAX).unwrap();
+        let responsibilities = Responsibilities::new(&nearest, potentials, sigma_squared);
         let objective = AlignmentObjective::new(&responsibilities);
         let partition = bipartition(&objective.laplacian, 1e-8).unwrap();
         let offsets = group_offsets(&responsibilities, &objective, &partition.groups[0]).unwrap();

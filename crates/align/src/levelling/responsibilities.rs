@@ -3,8 +3,8 @@
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use crate::exponential::to_weights;
-use crate::nearest::NearestSamples;
+use super::weights::to_weights;
+use crate::search::nearest::{Nearest, NearestSamples};
 use lanes::{LANES, Lanes, groups_of};
 
 /// The responsibilities q_km (12) of the local models for all samples, and what those models say there.
@@ -28,16 +28,18 @@ pub(crate) struct Block {
     pub(crate) groups: usize,
 }
 
+/// The squared distance beyond which weights are below `floor` and dropped: at a sample of the data the own trajectory
+/// has weight 1, the largest there can be.
+pub(crate) fn reach(sigma_squared: f64, floor: f64) -> f64 {
+    // Not 2σ² first, which may overflow.
+    sigma_squared * (-2.0 * floor.ln())
+}
+
 impl Responsibilities {
     /// w_km = exp(−min_i ‖x_m − x_ki‖² / 2σ²) (11), q_km = w_km / Σ_j w_jm (12).
-    ///
-    /// At a sample of the data the own trajectory has weight 1, the largest there can be: weights below `floor` are
-    /// dropped.
-    pub(crate) fn new(nearest: &NearestSamples, potentials: &[Vec<f64>], sigma_squared: f64, floor: f64) -> Self {
-        // Not 2σ² first, which may overflow.
-        let reach = sigma_squared * (-2.0 * floor.ln());
+    pub(crate) fn new(nearest: &NearestSamples, potentials: &[Vec<f64>], sigma_squared: f64) -> Self {
         let owners = (0..nearest.n_trajectories()).into_par_iter();
-        let blocks = owners.map(|owner| Block::new(owner, nearest, potentials, sigma_squared, reach)).collect();
+        let blocks = owners.map(|owner| Block::new(owner, nearest, potentials, sigma_squared)).collect();
         Responsibilities { blocks }
     }
 
@@ -48,22 +50,22 @@ impl Responsibilities {
 }
 
 impl Block {
-    fn new(owner: usize, nearest: &NearestSamples, potentials: &[Vec<f64>], sigma_squared: f64, reach: f64) -> Self {
-        let models: Vec<usize> =
-            (0..potentials.len()).filter(|&model| nearest.of(owner, model).smallest <= reach).collect();
+    fn new(owner: usize, nearest: &NearestSamples, potentials: &[Vec<f64>], sigma_squared: f64) -> Self {
+        let near = (0..potentials.len()).filter_map(|model| Some((model, nearest.of(owner, model)?)));
+        let near: Vec<(usize, Nearest<'_>)> = near.collect();
+        let own = near.iter().find(|&&(model, _)| model == owner).expect("a trajectory is within reach of itself").1;
+        let own: Vec<Lanes> = own.samples.iter().map(|samples| look_up(&potentials[owner], samples)).collect();
         let groups = groups_of(potentials[owner].len());
-        let mut shares = Vec::with_capacity(groups * models.len());
-        let mut rises = Vec::with_capacity(groups * models.len());
-        let own: Vec<Lanes> = nearest.of(owner, owner).samples.iter().map(|s| look_up(&potentials[owner], s)).collect();
-        for &model in &models {
-            let nearest = nearest.of(owner, model);
-            let values = nearest.samples.iter().map(|samples| look_up(&potentials[model], samples));
+        let mut shares = Vec::with_capacity(groups * near.len());
+        let mut rises = Vec::with_capacity(groups * near.len());
+        for (model, nearest) in &near {
+            let values = nearest.samples.iter().map(|samples| look_up(&potentials[*model], samples));
             rises.extend(values.zip(&own).map(|(value, own)| std::array::from_fn(|lane| value[lane] - own[lane])));
             shares.extend_from_slice(nearest.squared_distances);
         }
-        to_weights(shares.as_flattened_mut(), sigma_squared, reach);
+        to_weights(shares.as_flattened_mut(), sigma_squared, nearest.reach());
         Arch::new().dispatch(Normalise { weights: &mut shares, groups });
-        Block { models, shares, rises, groups }
+        Block { models: near.into_iter().map(|(model, _)| model).collect(), shares, rises, groups }
     }
 
     /// (model, q, f − f of the own trajectory) for each model of the block.

@@ -3,9 +3,9 @@ use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::laplacian::Elimination;
-use crate::linear_term::linear_term;
-use crate::responsibilities::{Block, Responsibilities};
+use super::laplacian::Elimination;
+use super::linear_term::linear_term;
+use super::responsibilities::{Block, Responsibilities};
 use lanes::LANES;
 
 /// H is summed in this many parts, each in the order of its samples, so that no number of threads changes a bit.

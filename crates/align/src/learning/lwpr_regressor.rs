@@ -1,15 +1,19 @@
 use lwpr::LwprParams;
 use nalgebra::{DMatrix, DVector};
 use rand::Rng;
+use serde::{Deserialize, Serialize};
 
-use crate::centred_model::{CentredModel, Training};
+use super::regression::{default_params, fit};
 use crate::{AlignError, GlobalPotential, Regressor};
 
 /// Learns a potential by locally weighted projection regression, from values that are centred and divided by their
 /// standard deviation.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct LwprRegressor {
-    /// Parameters of LWPR; `norm_out` is replaced by the standard deviation of the values.
+    /// Parameters of LWPR, in units of `norm_in`: by default `init_d` 10, `w_gen` .5 and `penalty` 1e-5, the rest as in
+    /// [`LwprParams::default`]. Where `norm_in` is `None`, all dimensions are divided by one number, the root mean square
+    /// of their standard deviations. `norm_out` must be `None`.
     pub params: LwprParams,
     /// How often all samples are learnt, each time in a fresh random order; 10 by default.
     pub passes: usize,
@@ -19,7 +23,7 @@ pub struct LwprRegressor {
 
 impl Default for LwprRegressor {
     fn default() -> Self {
-        LwprRegressor { params: LwprParams::default(), passes: 10, cutoff: 1e-3 }
+        LwprRegressor { params: default_params(), passes: 10, cutoff: 1e-3 }
     }
 }
 
@@ -33,8 +37,7 @@ impl Regressor for LwprRegressor {
         values: &DVector<f64>,
         rng: &mut dyn Rng,
     ) -> Result<GlobalPotential, AlignError> {
-        let training = Training { params: &self.params, passes: self.passes, cutoff: self.cutoff };
         let outputs = DMatrix::from_row_slice(1, values.len(), values.as_slice());
-        CentredModel::fit(training, states, outputs, rng).map(GlobalPotential::new)
+        fit(&self.params, self.passes, self.cutoff, states, &outputs, rng).map(GlobalPotential::new)
     }
 }

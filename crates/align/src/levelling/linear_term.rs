@@ -3,8 +3,8 @@
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use crate::compensated::CompensatedSum;
-use crate::responsibilities::{Block, Responsibilities};
+use super::compensated::CompensatedSum;
+use super::responsibilities::{Block, Responsibilities};
 use lanes::{LANES, Lanes};
 
 /// a (16), (K), and E₀ of the objective among a group of trajectories, once each of them is raised by its offset.

@@ -2,18 +2,20 @@ use lwpr::LwprParams;
 use motion::{Demonstrations, LearnError, Learner, LearntPolicy, SampleIndex, Trajectory};
 use nalgebra::DMatrix;
 use rand::Rng;
+use serde::{Deserialize, Serialize};
 
-use crate::centred_model::{CentredModel, Training};
-use crate::{AlignError, DirectPolicy};
+use super::regression::{default_params, fit};
+use crate::{AlignError, DirectPolicy, Origin};
 
 /// Direct policy learning, the naive baseline: regression of the observed velocities on the states, as if nothing had
 /// been constrained.
 ///
 /// It learns from all trajectories: the recorded velocities, or else u_i = (x_{i+1} − x_i) / δt for all samples but the
 /// last.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct DirectPolicyLearning {
-    /// Parameters of LWPR; `norm_out` is replaced by the standard deviations of the velocities.
+    /// Parameters of LWPR; defaults and norms as in [`LwprRegressor::params`](crate::LwprRegressor::params).
     pub params: LwprParams,
     /// How often all samples are learnt, each time in a fresh random order; 10 by default.
     pub passes: usize,
@@ -23,7 +25,7 @@ pub struct DirectPolicyLearning {
 
 impl Default for DirectPolicyLearning {
     fn default() -> Self {
-        DirectPolicyLearning { params: LwprParams::default(), passes: 10, cutoff: 1e-3 }
+        DirectPolicyLearning { params: default_params(), passes: 10, cutoff: 1e-3 }
     }
 }
 
@@ -31,8 +33,7 @@ impl DirectPolicyLearning {
     /// Learns from all samples but those held out.
     ///
     /// # Errors
-    /// [`AlignError::Parameter`] or [`AlignError::Lwpr`] for parameters out of range, [`AlignError::NoSamples`] if none
-    /// is left.
+    /// [`AlignError::Lwpr`] for parameters out of range, [`AlignError::NoSamples`] if no sample is left.
     pub fn learn_policy(
         &self,
         demonstrations: &Demonstrations,
@@ -40,8 +41,8 @@ impl DirectPolicyLearning {
         rng: &mut dyn Rng,
     ) -> Result<DirectPolicy, AlignError> {
         let (states, velocities) = observed(demonstrations, held_out);
-        let training = Training { params: &self.params, passes: self.passes, cutoff: self.cutoff };
-        CentredModel::fit(training, &states, velocities, rng).map(DirectPolicy::new)
+        let regression = fit(&self.params, self.passes, self.cutoff, &states, &velocities, rng)?;
+        Ok(DirectPolicy::new(regression, Origin::new(demonstrations)))
     }
 }
 

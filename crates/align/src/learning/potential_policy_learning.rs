@@ -1,10 +1,12 @@
 use motion::{Demonstrations, LearnError, Learner, LearntPolicy, SampleIndex};
 use rand::Rng;
+use serde::{Deserialize, Serialize};
 
 use crate::{AlignError, LwprRegressor, PolicyAlign, PotentialPolicy};
 
 /// Algorithm 1 of the paper as a whole: align the demonstrations, learn one potential, descend it.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct PotentialPolicyLearning {
     /// How the potentials along trajectories are brought to one level.
     pub align: PolicyAlign,

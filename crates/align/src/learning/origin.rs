@@ -1,0 +1,67 @@
+use motion::{Demonstrations, Trajectory};
+use serde::{Deserialize, Serialize};
+
+use crate::AlignError;
+
+/// What one dimension of the state is, in its owner's words.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Label {
+    /// Its name: `x`, `l_elbow`.
+    pub name: String,
+    /// Its unit: `m`, `rad`; the action has this unit per second.
+    pub unit: String,
+}
+
+/// What a policy was learnt from. It is stored with the policy, and decides nothing.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Origin {
+    /// Seconds between two samples: the median over the trajectories.
+    pub time_step: f64,
+    /// How many trajectories were seen.
+    pub n_trajectories: usize,
+    /// Those that were learnt from, ascending; none if all were.
+    pub kept: Option<Vec<usize>>,
+    /// What gave reason for doubt, one sentence each.
+    pub warnings: Vec<String>,
+    /// Name and unit of each dimension of the state, n of them; empty if nobody gave them.
+    pub labels: Vec<Label>,
+}
+
+impl Origin {
+    pub(crate) fn new(demonstrations: &Demonstrations) -> Self {
+        let mut steps: Vec<f64> = demonstrations.trajectories().iter().map(Trajectory::time_step).collect();
+        steps.sort_by(f64::total_cmp);
+        Origin {
+            time_step: steps[steps.len() / 2],
+            n_trajectories: steps.len(),
+            kept: None,
+            warnings: Vec::new(),
+            labels: Vec::new(),
+        }
+    }
+
+    /// With names and units of `dim` dimensions, or none.
+    pub(crate) fn with_labels(self, labels: Vec<Label>, dim: usize) -> Result<Self, AlignError> {
+        if labels.is_empty() || labels.len() == dim {
+            return Ok(Origin { labels, ..self });
+        }
+        Err(AlignError::Labels { found: labels.len(), expected: dim })
+    }
+
+    /// What is wrong with it as that of a policy of so many dimensions.
+    pub(crate) fn check(&self, dim: usize) -> Result<(), &'static str> {
+        let kept = self.kept.as_deref();
+        let ascending = |kept: &[usize]| {
+            kept.is_sorted_by(|a, b| a < b) && kept.last().is_some_and(|&last| last < self.n_trajectories)
+        };
+        let checks = [
+            (self.time_step > 0.0 && self.time_step.is_finite(), "the time step is not positive and finite"),
+            (self.n_trajectories > 0, "it was learnt from no trajectory"),
+            (kept.is_none_or(ascending), "the kept trajectories are not ascending numbers of those seen"),
+            (self.labels.is_empty() || self.labels.len() == dim, "there is not one label for each dimension"),
+        ];
+        checks.into_iter().find(|(fine, _)| !fine).map_or(Ok(()), |(_, reason)| Err(reason))
+    }
+}

@@ -1,0 +1,99 @@
+//! Policies as they are stored.
+
+use lwpr::StandardisedModel;
+use serde::{Deserialize, Serialize};
+
+use crate::{AlignError, DirectPolicy, GlobalPotential, Origin, PotentialPolicy};
+
+/// The form that is written; a program reads this and all before it.
+const VERSION: u32 = 1;
+
+/// A learnt policy. What tells the format comes first, so that a text of another is refused by that.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PolicyRecord {
+    format: Format,
+    version: Version,
+    dim: usize,
+    origin: Origin,
+    regression: StandardisedModel,
+}
+
+/// Which kind of policy it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+enum Format {
+    #[serde(rename = "potential policy")]
+    Potential,
+    #[serde(rename = "direct policy")]
+    Direct,
+}
+
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[serde(try_from = "u32", into = "u32")]
+struct Version;
+
+impl TryFrom<u32> for Version {
+    type Error = AlignError;
+
+    fn try_from(version: u32) -> Result<Self, AlignError> {
+        if version == VERSION { Ok(Version) } else { Err(AlignError::PolicyVersion { found: version, known: VERSION }) }
+    }
+}
+
+impl From<Version> for u32 {
+    fn from(_: Version) -> u32 {
+        VERSION
+    }
+}
+
+impl PolicyRecord {
+    fn new(format: Format, origin: &Origin, regression: &StandardisedModel) -> Self {
+        let (origin, regression) = (origin.clone(), regression.clone());
+        PolicyRecord { format, version: Version, dim: regression.n_in(), origin, regression }
+    }
+
+    /// Origin and regression of a policy of this format, with so many outputs for n inputs.
+    fn check(self, format: Format, n_out: impl Fn(usize) -> usize) -> Result<(Origin, StandardisedModel), AlignError> {
+        let PolicyRecord { format: found, dim, origin, regression, .. } = self;
+        let checks = [
+            (found == format, "it is a policy of the other kind: potential or direct"),
+            (regression.n_in() == dim, "its regression has another dimension"),
+            (regression.n_out() == n_out(dim), "its regression has another number of outputs"),
+        ];
+        let reason = checks.into_iter().find(|(fine, _)| !fine).map(|(_, reason)| reason);
+        match reason.map_or_else(|| origin.check(dim), Err) {
+            Ok(()) => Ok((origin, regression)),
+            Err(reason) => Err(AlignError::CorruptPolicy { reason }),
+        }
+    }
+}
+
+impl From<PotentialPolicy> for PolicyRecord {
+    fn from(policy: PotentialPolicy) -> Self {
+        PolicyRecord::new(Format::Potential, policy.origin(), policy.global_potential().regression())
+    }
+}
+
+impl TryFrom<PolicyRecord> for PotentialPolicy {
+    type Error = AlignError;
+
+    fn try_from(record: PolicyRecord) -> Result<Self, AlignError> {
+        let (origin, regression) = record.check(Format::Potential, |_| 1)?;
+        Ok(PotentialPolicy::new(GlobalPotential::new(regression), origin))
+    }
+}
+
+impl From<DirectPolicy> for PolicyRecord {
+    fn from(policy: DirectPolicy) -> Self {
+        PolicyRecord::new(Format::Direct, policy.origin(), policy.regression())
+    }
+}
+
+impl TryFrom<PolicyRecord> for DirectPolicy {
+    type Error = AlignError;
+
+    fn try_from(record: PolicyRecord) -> Result<Self, AlignError> {
+        let (origin, regression) = record.check(Format::Direct, |dim| dim)?;
+        Ok(DirectPolicy::new(regression, origin))
+    }
+}

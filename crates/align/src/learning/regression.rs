@@ -1,0 +1,99 @@
+//! How both learners use LWPR.
+
+use lwpr::{LwprParams, StandardisedModel, Training};
+use nalgebra::{DMatrix, DVector, DVectorView};
+use rand::Rng;
+
+use crate::AlignError;
+
+/// Dimensions that vary by less than this share of the one that varies most are idle.
+const IDLE: f64 = 1e-3;
+
+/// The parameters of the paper's toy tables, and good ones to start from: LWPR's own have narrower fields (`init_d` 25),
+/// fewer of them (`w_gen` .1) and hardly a penalty (1e-6).
+pub(crate) fn default_params() -> LwprParams {
+    LwprParams { init_d: 10.0, w_gen: 0.5, penalty: 1e-5, ..LwprParams::default() }
+}
+
+/// Learns `outputs` (n_out, M) from `states` (n, M), one column a sample.
+pub(crate) fn fit(
+    params: &LwprParams,
+    passes: usize,
+    cutoff: f64,
+    states: &DMatrix<f64>,
+    outputs: &DMatrix<f64>,
+    rng: &mut dyn Rng,
+) -> Result<StandardisedModel, AlignError> {
+    if states.ncols() == 0 {
+        return Err(AlignError::NoSamples);
+    }
+    let norm_in = params.norm_in.clone().unwrap_or_else(|| DVector::repeat(states.nrows(), spread(states)));
+    let training = Training { params: LwprParams { norm_in: Some(norm_in), ..params.clone() }, passes, cutoff };
+    Ok(training.fit(states.as_view(), outputs.as_view(), rng)?)
+}
+
+/// The largest activation of a receptive field at a state, (n), for the output that has least of it; 0 if no field takes
+/// part in the prediction of some output.
+pub(crate) fn support(model: &StandardisedModel, state: DVectorView<'_, f64>) -> f64 {
+    let of = |output| {
+        if model.supports(state, output) { model.predictor().max_activation(state, output) } else { 0.0 }
+    };
+    (0..model.n_out()).map(of).fold(f64::INFINITY, f64::min)
+}
+
+/// One length for all dimensions: the root mean square of the states' standard deviations, idle dimensions aside; 1 if
+/// nothing moves.
+///
+/// Distances between states are Euclidean in the alignment and in the policy's gradient; receptive fields that are round
+/// in the same sense keep it so.
+fn spread(states: &DMatrix<f64>) -> f64 {
+    let deviations: Vec<f64> = states.row_iter().map(|row| deviation(row.iter().copied())).collect();
+    let largest = deviations.iter().copied().fold(0.0, f64::max);
+    if largest == 0.0 {
+        return 1.0;
+    }
+    // Relative to the largest, so that squares neither overflow nor underflow.
+    let squares = deviations.iter().map(|deviation| deviation / largest).filter(|&share| share >= IDLE);
+    let squares: Vec<f64> = squares.map(|share| share * share).collect();
+    largest * (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+}
+
+/// Standard deviation of one dimension.
+fn deviation(values: impl ExactSizeIterator<Item = f64> + Clone) -> f64 {
+    let count = values.len() as f64;
+    let mean: f64 = values.clone().map(|value| value / count).sum();
+    let largest = values.clone().fold(0.0_f64, |largest, value| largest.max((value - mean).abs()));
+    // What rounding of the mean alone makes differ does not vary.
+    if largest <= 1e-14 * mean.abs() {
+        return 0.0;
+    }
+    largest * values.map(|value| ((value - mean) / largest).powi(2) / count).sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    #[test]
+    fn idle_dimensions_do_not_count() {
+        let states = DMatrix::from_row_slice(3, 4, &[3.0, -3.0, 3.0, -3.0, 7.0, 7.0, 7.0, 7.002, 1.0, 0.0, 1.0, 0.0]);
+        assert!((spread(&states) - 4.625_f64.sqrt()).abs() < 1e-15);
+        assert_eq!(spread(&DMatrix::from_element(2, 5, 0.1)), 1.0);
+        assert_eq!(spread(&DMatrix::zeros(2, 5)), 1.0);
+    }
+
+    proptest! {
+        #[test]
+        fn is_the_root_of_the_mean_variance(
+            dim in 1usize..6, values in vec(-1.0..1.0, 60), shift in -10.0..10.0, exponent in -900i32..900,
+        ) {
+            let states = DMatrix::from_vec(dim, 10, values[..10 * dim].to_vec()).add_scalar(shift);
+            let variance = states.row_iter().map(|row| row.variance()).sum::<f64>() / dim as f64;
+            prop_assert!((spread(&states) / variance.sqrt() - 1.0).abs() < 1e-12);
+            let unit = 2.0_f64.powi(exponent);
+            prop_assert!((spread(&(&states * unit)) / unit / spread(&states) - 1.0).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! The search for nearest samples: distances between trajectories, then whatever is within reach of a bandwidth.
+
+mod block_search;
+mod boxes;
+mod closest;
+mod distances;
+mod minima;
+pub(crate) mod nearest;
+mod space;
+mod tiles;
+
+pub(crate) use space::SearchSpace;

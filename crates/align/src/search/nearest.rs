@@ -1,0 +1,109 @@
+use lanes::{LANES, Lanes, groups_of};
+use rayon::prelude::*;
+
+use super::block_search::BlockSearch;
+use super::minima::Minima;
+use super::tiles::Tiles;
+
+/// For every sample of every trajectory, its nearest sample in each trajectory within reach: the search behind (10) and
+/// (11).
+///
+/// Each pair of trajectories is one block of squared distances, looked at once: it tells the samples of both what is
+/// nearest in the other. Distances are sums of squared differences, exact to rounding even for distant clouds.
+#[derive(Debug)]
+pub(crate) struct NearestSamples {
+    reach: f64,
+    /// At i, those of trajectories i, i + 1, … whose boxes are within reach of those of trajectory i, ascending.
+    neighbours: Vec<Vec<usize>>,
+    /// At i, for the samples of trajectory i: the nearest of its neighbours, one after the other.
+    toward_later: Vec<NearestList>,
+    /// At i, for the samples of its neighbours, one after the other: the nearest of trajectory i.
+    toward_earlier: Vec<NearestList>,
+}
+
+/// For the samples of one trajectory, the nearest ones of another.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Nearest<'a> {
+    /// Squared distances, filled up with infinity; of samples whose nearest is beyond reach some number beyond it.
+    pub(crate) squared_distances: &'a [Lanes],
+    /// Indices, filled up with 0; the lowest of those equally near. Of samples whose nearest is beyond reach any.
+    pub(crate) samples: &'a [[u32; LANES]],
+}
+
+impl NearestSamples {
+    /// Searches all pairs of trajectories for samples at a squared distance of at most `reach`.
+    pub(crate) fn search(trajectories: &[Tiles], neighbours: Vec<Vec<usize>>, reach: f64) -> Self {
+        let blocks = (0..trajectories.len()).into_par_iter().map(|i| {
+            let mut search = BlockSearch::new(&trajectories[i], reach);
+            let own = groups_of(trajectories[i].n_samples);
+            let groups = neighbours[i].iter().map(|&j| groups_of(trajectories[j].n_samples));
+            let mut of_rows = NearestList::with_capacity(own * neighbours[i].len());
+            let mut of_columns = NearestList::with_capacity(groups.sum());
+            for &j in &neighbours[i] {
+                // Boxes within reach may have no samples that are.
+                let within = search.run(&trajectories[j]) <= reach;
+                of_rows.push(within.then_some(&search.of_rows));
+                of_columns.push(within.then_some(&search.of_columns));
+            }
+            (of_rows, of_columns)
+        });
+        let (toward_later, toward_earlier) = blocks.unzip();
+        NearestSamples { reach, neighbours, toward_later, toward_earlier }
+    }
+
+    /// The squared distance beyond which nothing is told.
+    pub(crate) fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// Number K of trajectories.
+    pub(crate) fn n_trajectories(&self) -> usize {
+        self.neighbours.len()
+    }
+
+    /// The nearest samples in trajectory `model` to each sample of trajectory `owner`; none if all are beyond reach.
+    pub(crate) fn of(&self, owner: usize, model: usize) -> Option<Nearest<'_>> {
+        let (first, second) = (owner.min(model), owner.max(model));
+        let at = self.neighbours[first].binary_search(&second).ok()?;
+        let lists = if model >= owner { &self.toward_later } else { &self.toward_earlier };
+        lists[first].get(at)
+    }
+}
+
+/// The minima of several blocks, one after the other; blocks without any are empty.
+#[derive(Debug)]
+struct NearestList {
+    squared_distances: Vec<Lanes>,
+    samples: Vec<[u32; LANES]>,
+    ends: Vec<usize>,
+}
+
+impl NearestList {
+    fn with_capacity(groups: usize) -> Self {
+        NearestList {
+            squared_distances: Vec::with_capacity(groups),
+            samples: Vec::with_capacity(groups),
+            ends: Vec::new(),
+        }
+    }
+
+    fn push(&mut self, minima: Option<&Minima>) {
+        if let Some(minima) = minima {
+            self.squared_distances.extend_from_slice(&minima.distances);
+            self.samples.extend(minima.samples.iter().map(|samples| samples.map(whole)));
+        }
+        self.ends.push(self.samples.len());
+    }
+
+    fn get(&self, at: usize) -> Option<Nearest<'_>> {
+        let range = if at == 0 { 0 } else { self.ends[at - 1] }..self.ends[at];
+        let squared_distances = &self.squared_distances[range.clone()];
+        let samples = &self.samples[range];
+        (!samples.is_empty()).then_some(Nearest { squared_distances, samples })
+    }
+}
+
+/// A whole number below 2^32 from its f64: added to 2^52 it stands in the low bits, and that vectorises on any machine.
+fn whole(number: f64) -> u32 {
+    (number + 4503599627370496.0).to_bits() as u32
+}

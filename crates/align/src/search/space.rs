@@ -1,0 +1,113 @@
+use lanes::LANES;
+use motion::Demonstrations;
+use nalgebra::DMatrix;
+use pulp::Arch;
+use rayon::prelude::*;
+
+use super::closest::closest;
+use super::nearest::NearestSamples;
+use super::tiles::Tiles;
+use crate::AlignError;
+
+/// Bytes for each sample and each trajectory that it may be within reach of: squared distance and index of the nearest,
+/// responsibility and rise.
+const PER_SAMPLE_AND_TRAJECTORY: u64 = 8 + 4 + 8 + 8;
+
+/// Bytes for each pair of trajectories: H in parts, its eigenvectors and its elimination.
+const PER_PAIR: u64 = 8 * 14;
+
+/// All trajectories, laid out for the search for nearest samples.
+#[derive(Debug)]
+pub(crate) struct SearchSpace {
+    trajectories: Vec<Tiles>,
+}
+
+impl SearchSpace {
+    /// # Errors
+    /// [`AlignError::SpanOverflow`] when squared distances could overflow.
+    pub(crate) fn new(demonstrations: &Demonstrations) -> Result<Self, AlignError> {
+        check_span(demonstrations)?;
+        let arch = Arch::new();
+        let tiles = demonstrations.trajectories().iter().map(|t| Tiles::new(t.states(), arch));
+        Ok(SearchSpace { trajectories: tiles.collect() })
+    }
+
+    /// Number K of trajectories.
+    pub(crate) fn n_trajectories(&self) -> usize {
+        self.trajectories.len()
+    }
+
+    /// d_kj = min_{n,m} ‖x_kn − x_jm‖² (18), shape (K, K), zero on the diagonal.
+    pub(crate) fn distances(&self) -> DMatrix<f64> {
+        let count = self.n_trajectories();
+        let to_later = |k: usize| -> Vec<f64> {
+            let later = self.trajectories[k + 1..].iter();
+            later.map(|other| closest(&self.trajectories[k], other, f64::INFINITY)).collect()
+        };
+        let to_later: Vec<Vec<f64>> = (0..count).into_par_iter().map(to_later).collect();
+        DMatrix::from_fn(count, count, |j, k| if j == k { 0.0 } else { to_later[k.min(j)][k.max(j) - k.min(j) - 1] })
+    }
+
+    /// d_k^min = min_{j≠k} d_kj (19), (K): infinite for a single trajectory.
+    pub(crate) fn distances_to_nearest(&self) -> Vec<f64> {
+        (0..self.n_trajectories()).into_par_iter().map(|k| self.distance_to_nearest(k)).collect()
+    }
+
+    /// The trajectory with the nearest box is looked at first; it bounds what others are worth a look.
+    fn distance_to_nearest(&self, k: usize) -> f64 {
+        let own = &self.trajectories[k];
+        let others = || (0..self.n_trajectories()).filter(move |&j| j != k);
+        let gaps: Vec<f64> = self.trajectories.iter().map(|other| own.boxes.squared_gap_of_all(&other.boxes)).collect();
+        let Some(first) = others().min_by(|&i, &j| gaps[i].total_cmp(&gaps[j])) else { return f64::INFINITY };
+        let found = closest(own, &self.trajectories[first], f64::INFINITY);
+        let nearer = |found, j| if gaps[j] < found { closest(own, &self.trajectories[j], found) } else { found };
+        others().filter(|&j| j != first).fold(found, nearer)
+    }
+
+    /// The nearest samples of all pairs of trajectories, where their squared distance is at most `reach`.
+    ///
+    /// # Errors
+    /// [`AlignError::Memory`] if they and what is made of them could take more bytes than that.
+    pub(crate) fn nearest(&self, reach: f64, memory_limit: u64) -> Result<NearestSamples, AlignError> {
+        let neighbours = self.neighbours(reach);
+        let needed = self.bytes(&neighbours);
+        if needed > memory_limit {
+            return Err(AlignError::Memory { needed, limit: memory_limit });
+        }
+        Ok(NearestSamples::search(&self.trajectories, neighbours, reach))
+    }
+
+    /// How much memory the alignment takes at most, if these are the neighbours.
+    fn bytes(&self, neighbours: &[Vec<usize>]) -> u64 {
+        let samples = |k: usize| self.trajectories[k].n_samples.next_multiple_of(LANES) as u64;
+        let pairs = neighbours.iter().enumerate().flat_map(|(i, later)| later.iter().map(move |&j| (i, j)));
+        let linked: u64 = pairs.map(|(i, j)| samples(i) + samples(j)).sum();
+        PER_SAMPLE_AND_TRAJECTORY * linked + PER_PAIR * (neighbours.len() as u64).pow(2)
+    }
+
+    /// For each trajectory i, those of i, i + 1, … whose boxes are within reach of its own, ascending.
+    fn neighbours(&self, reach: f64) -> Vec<Vec<usize>> {
+        let of = |i: usize| -> Vec<usize> {
+            let own = &self.trajectories[i].boxes;
+            let within = |&j: &usize| own.is_within(reach, &self.trajectories[j].boxes);
+            (i..self.n_trajectories()).filter(within).collect()
+        };
+        (0..self.n_trajectories()).into_par_iter().map(of).collect()
+    }
+}
+
+/// Squared distances are finite if the diagonal of the data's bounding box is.
+fn check_span(demonstrations: &Demonstrations) -> Result<(), AlignError> {
+    let span = |dimension: usize| {
+        let states = demonstrations.trajectories().iter().flat_map(|t| t.states().column_iter());
+        let extend = |(low, high): (f64, f64), x: f64| (low.min(x), high.max(x));
+        let (low, high) = states.map(|state| state[dimension]).fold((f64::INFINITY, f64::NEG_INFINITY), extend);
+        high - low
+    };
+    let spans: Vec<f64> = (0..demonstrations.dim()).map(span).collect();
+    if spans.iter().map(|span| span * span).sum::<f64>().is_finite() {
+        return Ok(());
+    }
+    let widest = (0..spans.len()).max_by(|&a, &b| spans[a].total_cmp(&spans[b])).expect("a state has a dimension");
+    Err(AlignError::SpanOverflow { dimension: widest, span: spans[widest] })
+}
