@@ -1,8 +1,10 @@
-//! `cargo xtask conformance`: kinematics, LWPR and smoothing against reference cases that other programs computed.
+//! `cargo xtask conformance`: kinematics, LWPR, smoothing and Gaussian processes against reference cases that other programs computed.
 
 mod agreement;
 mod kinematics_cases;
 mod lwpr_cases;
+mod reading_cases;
+mod slope_cases;
 mod smoothing_cases;
 mod urdf_cases;
 
@@ -18,7 +20,7 @@ use crate::progress::say;
 
 #[derive(Debug, Args)]
 pub(crate) struct Conformance {
-    /// Folder with lwpr/*.json, kinematics/*.json and their robots, slope_gp/*.json, urdf_traps/expected.json and its files
+    /// Folder with lwpr/*.json, kinematics/*.json and their robots, slope_gp/*.json, reading/*.json, urdf_traps/expected.json and its files
     #[arg(long, value_name = "DIR")]
     vectors: PathBuf,
 }
@@ -38,8 +40,21 @@ const TOLERANCE: f64 = 1e-10;
 type Check = fn(&Path) -> anyhow::Result<Vec<Agreement>>;
 
 /// What is compared in slope_gp/*.json: a file is known by how its name begins.
-const SLOPE_GP: [(&str, Check); 2] =
-    [("smoother", smoothing_cases::check_smoother), ("fusion", smoothing_cases::check_fusion)];
+const SLOPE_GP: [(&str, Check); 6] = [
+    ("smoother", smoothing_cases::check_smoother),
+    ("fusion", smoothing_cases::check_fusion),
+    ("kernels", slope_cases::check_kernels),
+    ("evidence", slope_cases::check_evidence),
+    ("loto", slope_cases::check_left_out),
+    ("frozen_fit", slope_cases::check_frozen),
+];
+
+/// The same in reading/*.json.
+const READING: [(&str, Check); 3] = [
+    ("direct", reading_cases::check_direct),
+    ("near", reading_cases::check_near),
+    ("readings", reading_cases::check_readings),
+];
 
 impl Conformance {
     /// Fails if a file disagrees, or if there is none.
@@ -55,10 +70,12 @@ impl Conformance {
                 files += 1;
             }
         }
-        for file in json_files(&self.vectors.join("slope_gp"))? {
-            if let Some(agrees) = check_by_name(&file, &SLOPE_GP)? {
-                disagreeing += usize::from(!agrees);
-                files += 1;
+        for (folder, checks) in [("slope_gp", &SLOPE_GP[..]), ("reading", &READING[..])] {
+            for file in json_files(&self.vectors.join(folder))? {
+                if let Some(agrees) = check_by_name(&file, checks)? {
+                    disagreeing += usize::from(!agrees);
+                    files += 1;
+                }
             }
         }
         let odd = urdf_cases::check(&self.vectors.join("urdf_traps/expected.json"))?;

@@ -1,0 +1,53 @@
+//! Rows side by side, so that one row meets many in vector registers.
+
+use lanes::{LANES, Lanes, total};
+use nalgebra::DMatrix;
+
+/// Rows that share a place on the stack.
+pub(crate) const CHUNK: usize = 64;
+
+/// One number for each row of a chunk.
+pub(crate) type Chunk = [f64; CHUNK];
+
+/// The columns of a matrix (n, M) in chunks: for each chunk and each dimension one number a column. The last chunk is
+/// filled up with zeros.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Chunks {
+    numbers: Vec<Chunk>,
+    dim: usize,
+}
+
+impl Chunks {
+    pub(crate) fn new(columns: &DMatrix<f64>) -> Self {
+        let (dim, count) = columns.shape();
+        let mut numbers = vec![[0.0; CHUNK]; count.div_ceil(CHUNK) * dim];
+        for (column, state) in columns.column_iter().enumerate() {
+            for (k, &value) in state.iter().enumerate() {
+                numbers[column / CHUNK * dim + k][column % CHUNK] = value;
+            }
+        }
+        Chunks { numbers, dim }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.numbers.len() / self.dim
+    }
+
+    /// One chunk: for each dimension a number for each row.
+    pub(crate) fn get(&self, chunk: usize) -> &[Chunk] {
+        &self.numbers[chunk * self.dim..(chunk + 1) * self.dim]
+    }
+}
+
+/// The sum over a chunk, in one order on every machine.
+#[inline(always)]
+#[allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
+pub(crate) fn sum(chunk: &Chunk) -> f64 {
+    let mut sums: Lanes = [0.0; LANES];
+    for group in chunk.as_chunks::<LANES>().0 {
+        for lane in 0..LANES {
+            sums[lane] += group[lane];
+        }
+    }
+    total(sums)
+}

@@ -1,0 +1,28 @@
+use nalgebra::DMatrix;
+
+/// The prior of a model: a sum of blocks over rows, each with an amplitude of its own.
+pub(crate) trait Covariance: Sync {
+    /// Number of blocks B.
+    fn n_blocks(&self) -> usize;
+
+    /// The covariance matrix of every block alone among these rows; lower triangles.
+    fn each_among(&self, rows: &[usize]) -> Vec<DMatrix<f64>>;
+
+    /// Σ a_b K_b among all rows; lower triangle.
+    fn sum(&self, amplitudes: &[f64]) -> DMatrix<f64>;
+}
+
+/// Least noise variance: σ² + this is what (S6) adds.
+pub(crate) const NOISE_FLOOR: f64 = 1e-10;
+
+/// Adds (σ² + 1e-10) diag(D), then 1e-12 of the mean of the diagonal: the rest of (S6).
+pub(crate) fn add_noise(matrix: &mut DMatrix<f64>, noise: f64, noise_weights: impl Iterator<Item = f64>) {
+    let count = matrix.nrows();
+    for (i, weight) in noise_weights.enumerate() {
+        matrix[(i, i)] += (noise + NOISE_FLOOR) * weight;
+    }
+    let jitter = 1e-12 * (0..count).map(|i| matrix[(i, i)]).sum::<f64>() / count as f64;
+    for i in 0..count {
+        matrix[(i, i)] += jitter;
+    }
+}

@@ -1,0 +1,72 @@
+//! Is there a potential at all? (S12), (R5).
+
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+
+use crate::left_out::LeftOut;
+
+/// Whether a model with rotation is tried beside those with a potential.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CurlTest {
+    /// A Helmholtz decomposition is fitted too, and taken if left-out trajectories speak for it.
+    #[default]
+    Fit,
+    /// The policy is taken to have a potential.
+    AssumePotential,
+}
+
+/// t above which rotation is seen.
+const LEAST_T: f64 = 2.5;
+/// Two models differ if their policies do by more than this share.
+const DIFFERS: f64 = 0.05;
+/// A potential is kept if it predicts better by so much.
+const BETTER: f64 = 1.1;
+
+/// Policies at the rows, (n, M), and what was predicted of left-out trajectories.
+#[derive(Debug)]
+pub(crate) struct Contender<'a> {
+    pub(crate) actions: &'a DMatrix<f64>,
+    pub(crate) left_out: &'a LeftOut,
+}
+
+/// (S12): t of the gain per trajectory, Δ_T = Σ w (e² with a potential − e² without), w = 1/D.
+pub(crate) fn curl_t(potential: &LeftOut, rotation: &LeftOut, noise_weights: &[f64], groups: &[Vec<usize>]) -> f64 {
+    let gain = |row: usize| {
+        let square = |left_out: &LeftOut| left_out.residuals.row(row).norm_squared();
+        (square(potential) - square(rotation)) / noise_weights[row]
+    };
+    let gains: Vec<f64> = groups.iter().map(|rows| rows.iter().map(|&row| gain(row)).sum()).collect();
+    t_of_mean(&gains)
+}
+
+/// mean/(sd/√K), sd with K − 1; 0 where nothing varies.
+pub(crate) fn t_of_mean(values: &[f64]) -> f64 {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    let t = mean / (variance / count).sqrt();
+    if t.is_finite() { t } else { 0.0 }
+}
+
+/// Whether rotation is taken: seen by (S12), or by (R5) because dropping the potential changes the policy and costs
+/// less than a tenth in prediction.
+pub(crate) fn takes_rotation(t: f64, potential: &Contender<'_>, rotation: &Contender<'_>) -> bool {
+    let (r2_potential, r2_rotation) = (potential.left_out.r_squared, rotation.left_out.r_squared);
+    let seen = t > LEAST_T && r2_rotation > r2_potential;
+    let changes = difference(potential.actions, rotation.actions) > DIFFERS;
+    let costs_little = 1.0 - r2_rotation <= BETTER * (1.0 - r2_potential);
+    let hides_less = rotation.actions.norm_squared() <= potential.actions.norm_squared();
+    seen || (changes && costs_little && hides_less)
+}
+
+/// Σ|a − b|²/Σ|a − mean a|² over columns.
+pub(crate) fn difference(a: &DMatrix<f64>, b: &DMatrix<f64>) -> f64 {
+    (a - b).norm_squared() / spread(a)
+}
+
+/// Σ|a − mean a|² over columns.
+pub(crate) fn spread(a: &DMatrix<f64>) -> f64 {
+    let mean = a.column_mean();
+    a.column_iter().map(|column| (column - &mean).norm_squared()).sum()
+}

@@ -1,0 +1,86 @@
+use nalgebra::{DMatrix, DVector};
+
+use crate::covariance::add_noise;
+use crate::factor::{Factor, add_product_below, view};
+
+/// Pull of every log parameter towards −4, and its strength: the last term of (S8).
+const CENTRE: f64 = -4.0;
+const STRENGTH: f64 = 0.01;
+
+/// The negative log evidence J of (S8) and (R2), and its gradient (S9).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evidence {
+    /// J, without the constant M/2 · log 2π.
+    pub value: f64,
+    /// ∂J/∂θ, (B + 1), θ = (log a_1 .. log a_B, log σ²).
+    pub gradient: DVector<f64>,
+}
+
+/// What evidence is taken of: some rows, their targets (h, c), c columns with one covariance for all.
+#[derive(Debug)]
+pub(crate) struct Task {
+    pub(crate) blocks: Vec<DMatrix<f64>>,
+    pub(crate) noise_weights: Vec<f64>,
+    pub(crate) targets: DMatrix<f64>,
+}
+
+impl Task {
+    /// (S8), (S9), (R2); none if the covariance has no Cholesky factor.
+    pub(crate) fn evidence(&self, theta: &DVector<f64>) -> Option<Evidence> {
+        let columns = self.targets.ncols() as f64;
+        let noise = theta[self.blocks.len()].exp();
+        let factor = Factor::new(self.covariance(theta, noise))?;
+        let mut weights = self.targets.clone();
+        factor.solve(&mut weights);
+        let fit = 0.5 * self.targets.dot(&weights);
+        let prior = 0.5 * STRENGTH * theta.iter().map(|theta| (theta - CENTRE).powi(2)).sum::<f64>();
+        let value = fit + columns * factor.half_log_determinant() + prior;
+        // c K⁻¹ − AAᵀ: every derivative is half its inner product with that of K.
+        let mut slack = factor.inverse() * columns;
+        add_product_below(&mut slack, -1.0, view(&weights), view(&weights).transpose());
+        let slack_of = |b: usize| inner_product(&slack, &self.blocks[b]);
+        let noise_slack: f64 = self.noise_weights.iter().enumerate().map(|(i, weight)| weight * slack[(i, i)]).sum();
+        let gradient = DVector::from_fn(theta.len(), |k, _| {
+            let product = if k < self.blocks.len() { slack_of(k) } else { noise_slack };
+            0.5 * theta[k].exp() * product + STRENGTH * (theta[k] - CENTRE)
+        });
+        value.is_finite().then_some(Evidence { value, gradient })
+    }
+
+    fn covariance(&self, theta: &DVector<f64>, noise: f64) -> DMatrix<f64> {
+        let count = self.targets.nrows();
+        let mut sum = DMatrix::zeros(count, count);
+        for (block, log_amplitude) in self.blocks.iter().zip(theta.iter()) {
+            let amplitude = log_amplitude.exp();
+            for i in 0..count {
+                let terms = block.column(i).rows_range(i..).iter().copied().collect::<Vec<_>>();
+                let mut column = sum.column_mut(i);
+                let mut place = column.rows_range_mut(i..);
+                place.iter_mut().zip(terms).for_each(|(sum, term)| *sum += amplitude * term);
+            }
+        }
+        add_noise(&mut sum, noise, self.noise_weights.iter().copied());
+        sum
+    }
+}
+
+/// tr(AB) of symmetric matrices of which the lower triangles are given.
+fn inner_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> f64 {
+    let column = |i: usize| {
+        let (a, b) = (&a.column(i).data.into_slice()[i..], &b.column(i).data.into_slice()[i..]);
+        2.0 * dot(a, b) - a[0] * b[0]
+    };
+    (0..a.ncols()).map(column).sum()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums: lanes::Lanes = [0.0; lanes::LANES];
+    let (a_groups, a_rest) = a.as_chunks::<{ lanes::LANES }>();
+    let (b_groups, b_rest) = b.as_chunks::<{ lanes::LANES }>();
+    for (a, b) in a_groups.iter().zip(b_groups) {
+        for lane in 0..lanes::LANES {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    lanes::total(sums) + a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum::<f64>()
+}

@@ -1,0 +1,96 @@
+//! Cholesky factors, by faer on one thread: the same bits at any number of threads.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::matmul::triangular::{BlockStructure, matmul};
+use faer::linalg::triangular_inverse::invert_lower_triangular;
+use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
+use faer::{Accum, MatMut, MatRef, Par, Spec};
+use nalgebra::DMatrix;
+
+/// L with K = LLᵀ, in the lower triangle; above it stands nothing of meaning.
+#[derive(Debug, Clone)]
+pub(crate) struct Factor {
+    lower: DMatrix<f64>,
+}
+
+pub(crate) fn view(matrix: &DMatrix<f64>) -> MatRef<'_, f64> {
+    MatRef::from_column_major_slice(matrix.as_slice(), matrix.nrows(), matrix.ncols())
+}
+
+pub(crate) fn view_mut(matrix: &mut DMatrix<f64>) -> MatMut<'_, f64> {
+    let (rows, columns) = matrix.shape();
+    MatMut::from_column_major_slice_mut(matrix.as_mut_slice(), rows, columns)
+}
+
+impl Factor {
+    /// Of a symmetric matrix, of which the lower triangle is read; none if it is not positive definite in f64.
+    pub(crate) fn new(mut matrix: DMatrix<f64>) -> Option<Self> {
+        let scratch = cholesky_in_place_scratch::<f64>(matrix.nrows(), Par::Seq, Spec::default());
+        let mut memory = MemBuffer::new(scratch);
+        let stack = MemStack::new(&mut memory);
+        cholesky_in_place(view_mut(&mut matrix), Default::default(), Par::Seq, stack, Spec::default()).ok()?;
+        let sound = matrix.diagonal().iter().all(|&pivot| pivot > 0.0 && pivot.is_finite());
+        sound.then_some(Factor { lower: matrix })
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.lower.nrows()
+    }
+
+    /// Σ log L_ii.
+    pub(crate) fn half_log_determinant(&self) -> f64 {
+        self.lower.diagonal().iter().map(|pivot| pivot.ln()).sum()
+    }
+
+    /// Replaces B by L⁻¹B.
+    pub(crate) fn whiten(&self, b: &mut DMatrix<f64>) {
+        solve_lower_triangular_in_place(view(&self.lower), view_mut(b), Par::Seq);
+    }
+
+    /// Replaces B by K⁻¹B.
+    pub(crate) fn solve(&self, b: &mut DMatrix<f64>) {
+        self.whiten(b);
+        solve_upper_triangular_in_place(view(&self.lower).transpose(), view_mut(b), Par::Seq);
+    }
+
+    /// X = L⁻¹, zero above the diagonal.
+    pub(crate) fn inverse_triangle(&self) -> DMatrix<f64> {
+        let mut inverse = DMatrix::zeros(self.len(), self.len());
+        invert_lower_triangular(view_mut(&mut inverse), view(&self.lower), Par::Seq);
+        inverse
+    }
+
+    /// The lower triangle of K⁻¹.
+    pub(crate) fn inverse(&self) -> DMatrix<f64> {
+        let x = self.inverse_triangle();
+        let mut inverse = DMatrix::zeros(self.len(), self.len());
+        matmul(
+            view_mut(&mut inverse),
+            BlockStructure::TriangularLower,
+            Accum::Replace,
+            view(&x).transpose(),
+            BlockStructure::TriangularUpper,
+            view(&x),
+            BlockStructure::TriangularLower,
+            1.0,
+            Par::Seq,
+        );
+        inverse
+    }
+}
+
+/// Adds `scale` · BᵀB or BBᵀ to the lower triangle of `target`: `left` times `right`.
+pub(crate) fn add_product_below(target: &mut DMatrix<f64>, scale: f64, left: MatRef<'_, f64>, right: MatRef<'_, f64>) {
+    matmul(
+        view_mut(target),
+        BlockStructure::TriangularLower,
+        Accum::Add,
+        left,
+        BlockStructure::Rectangular,
+        right,
+        BlockStructure::Rectangular,
+        scale,
+        Par::Seq,
+    );
+}

@@ -1,0 +1,41 @@
+use nalgebra::DVector;
+
+use crate::covariance::Covariance;
+use crate::evidence::Task;
+use crate::lbfgs::{Bounds, minimise};
+use crate::noise_factor::{Conditions, Level};
+
+/// A family whose amplitudes evidence has chosen and whose noise prediction has raised.
+#[derive(Debug)]
+pub(crate) struct FamilyFit {
+    /// a_b, (B).
+    pub(crate) amplitudes: Vec<f64>,
+    pub(crate) level: Level,
+}
+
+/// Where the search begins: log a_b and log σ².
+const AMPLITUDE: f64 = 0.3;
+const NOISE: f64 = 1e-2;
+
+/// Minimises (S8) on the hyper rows, then climbs κ on all rows; none if there is no Cholesky factor even at κ = 1.
+pub(crate) fn fit_family(
+    covariance: &impl Covariance,
+    hyper: &[usize],
+    conditions: &Conditions<'_>,
+) -> Option<FamilyFit> {
+    let blocks = covariance.n_blocks();
+    let task = Task {
+        blocks: covariance.each_among(hyper),
+        noise_weights: hyper.iter().map(|&row| conditions.noise_weights[row]).collect(),
+        targets: conditions.targets.select_rows(hyper),
+    };
+    let or_noise =
+        |amplitude: f64, noise: f64| DVector::from_fn(blocks + 1, |k, _| if k < blocks { amplitude } else { noise });
+    let start = or_noise(AMPLITUDE.ln(), NOISE.ln());
+    let bounds = Bounds { lower: or_noise(-23.0, 1e-12_f64.ln()), upper: or_noise(12.0, 2.0) };
+    let theta = minimise(|theta| task.evidence(theta), &start, &bounds);
+    drop(task);
+    let amplitudes: Vec<f64> = theta.iter().take(blocks).map(|log| log.exp()).collect();
+    let level = Level::best(&covariance.sum(&amplitudes), theta[blocks].exp(), conditions)?;
+    Some(FamilyFit { amplitudes, level })
+}

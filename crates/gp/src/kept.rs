@@ -1,0 +1,163 @@
+//! The rows that a fit learns from: steps 1 and 2 of it.
+
+use nalgebra::DMatrix;
+use rand::Rng;
+use rand::seq::SliceRandom;
+use serde::{Deserialize, Serialize};
+
+use crate::{GpError, Rows};
+
+/// Which rows a fit keeps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Selection {
+    pub(crate) max_rows: usize,
+    pub(crate) hyper_rows: usize,
+    pub(crate) least_snr: f64,
+    pub(crate) least_speed: f64,
+}
+
+/// What was left out at a time to test prediction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Grouping {
+    /// One trajectory after the other.
+    Trajectories,
+    /// Blocks of time, since there are only one or two trajectories: R² is then too good.
+    BlocksOfTime,
+}
+
+/// Rows that were not learnt from, and why.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct RowsDropped {
+    /// As good as standing still.
+    pub still: usize,
+    /// Slower than their noise.
+    pub noisy: usize,
+    /// Beyond `max_rows`, chosen at random.
+    pub thinned: usize,
+}
+
+/// Rows kept, in the order of trajectories and samples.
+#[derive(Debug, Clone)]
+pub(crate) struct Kept {
+    /// (n, M).
+    pub(crate) states: DMatrix<f64>,
+    /// (n, M).
+    pub(crate) velocities: DMatrix<f64>,
+    /// r = |u|, (M).
+    pub(crate) speeds: Vec<f64>,
+    pub(crate) variances: Option<Vec<f64>>,
+    pub(crate) groups: Vec<Vec<usize>>,
+    /// Rows that evidence is taken of: at random, for contiguous ones would make it believe in errors that are
+    /// correlated along a trajectory.
+    pub(crate) hyper: Vec<usize>,
+    pub(crate) grouping: Grouping,
+    pub(crate) dropped: RowsDropped,
+}
+
+impl Selection {
+    pub(crate) fn check(&self) -> Result<(), GpError> {
+        let wrong = |name, value, requirement| Err(GpError::Parameter { name, value, requirement });
+        if self.max_rows == 0 {
+            return wrong("max_rows", self.max_rows as f64, "be at least 1");
+        }
+        if self.hyper_rows == 0 {
+            return wrong("hyper_rows", self.hyper_rows as f64, "be at least 1");
+        }
+        if !(self.least_snr >= 0.0 && self.least_snr.is_finite()) {
+            return wrong("least_snr", self.least_snr, "be finite and not negative");
+        }
+        if !(0.0..1.0).contains(&self.least_speed) {
+            return wrong("least_speed", self.least_speed, "be at least 0 and less than 1");
+        }
+        Ok(())
+    }
+
+    /// Keeps rows that move more than their noise, at most `max_rows` of them. Draws one permutation, nothing else.
+    pub(crate) fn keep<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<Kept, GpError> {
+        self.check()?;
+        let speeds: Vec<f64> = rows.velocities().column_iter().map(|velocity| velocity.norm()).collect();
+        let fastest = speeds.iter().copied().fold(0.0, f64::max);
+        if fastest == 0.0 {
+            return Err(GpError::NoMotion);
+        }
+        if fastest * fastest < 1e-290 {
+            return Err(GpError::Overflow { what: "speed" });
+        }
+        let moving: Vec<usize> = (0..rows.len()).filter(|&row| speeds[row] > self.least_speed * fastest).collect();
+        let least = |row: usize| rows.variances().map_or(0.0, |variances| variances[row]);
+        let power = self.least_snr.powi(2) * rows.dim() as f64;
+        let mut usable: Vec<usize> =
+            moving.iter().copied().filter(|&row| speeds[row].powi(2) > power * least(row)).collect();
+        let mut dropped = RowsDropped {
+            still: rows.len() - moving.len(),
+            noisy: moving.len() - usable.len(),
+            thinned: usable.len().saturating_sub(self.max_rows),
+        };
+        let enough = grouped(rows, &usable)?;
+        usable.shuffle(rng);
+        usable.truncate(self.max_rows);
+        let mut hyper = usable[..usable.len().min(self.hyper_rows)].to_vec();
+        let in_time = |&row: &usize| (rows.indices()[row], row);
+        usable.sort_by_key(in_time);
+        hyper.sort_by_key(in_time);
+        let groups = enough.among(rows, &usable);
+        if groups.len() < 3 {
+            return Err(GpError::TooFewTrajectories { found: groups.len() });
+        }
+        dropped.thinned = dropped.thinned.min(rows.len());
+        Ok(Kept {
+            states: rows.states().select_columns(&usable),
+            velocities: rows.velocities().select_columns(&usable),
+            speeds: usable.iter().map(|&row| speeds[row]).collect(),
+            variances: rows.variances().map(|variances| usable.iter().map(|&row| variances[row]).collect()),
+            hyper: positions(&usable, &hyper),
+            groups,
+            grouping: enough.grouping,
+            dropped,
+        })
+    }
+}
+
+/// How rows go together: parts a trajectory is cut into.
+struct Grouped {
+    grouping: Grouping,
+    parts: usize,
+}
+
+/// Refuses too few rows or trajectories; one or two trajectories are cut into blocks of time.
+fn grouped(rows: &Rows, usable: &[usize]) -> Result<Grouped, GpError> {
+    let trajectories = |of: &mut dyn Iterator<Item = usize>| {
+        of.map(|row| rows.indices()[row].trajectory).collect::<std::collections::BTreeSet<_>>().len()
+    };
+    let recorded = trajectories(&mut (0..rows.len()));
+    let with_rows = trajectories(&mut usable.iter().copied());
+    if recorded > 2 && with_rows < 3 {
+        return Err(GpError::TooFewTrajectories { found: with_rows });
+    }
+    let needed = rows.dim() + 2;
+    if usable.len() < needed {
+        return Err(GpError::TooFewRows { found: usable.len(), needed });
+    }
+    Ok(match with_rows {
+        1 => Grouped { grouping: Grouping::BlocksOfTime, parts: 3 },
+        2 => Grouped { grouping: Grouping::BlocksOfTime, parts: 2 },
+        _ => Grouped { grouping: Grouping::Trajectories, parts: 1 },
+    })
+}
+
+impl Grouped {
+    /// Positions among `kept`, ordered by trajectory and sample, that are left out together.
+    fn among(&self, rows: &Rows, kept: &[usize]) -> Vec<Vec<usize>> {
+        let positions: Vec<usize> = (0..kept.len()).collect();
+        let trajectory = |&at: &usize| rows.indices()[kept[at]].trajectory;
+        let of_trajectories = positions.chunk_by(|a, b| trajectory(a) == trajectory(b));
+        of_trajectories.flat_map(|rows| rows.chunks(rows.len().div_ceil(self.parts)).map(<[usize]>::to_vec)).collect()
+    }
+}
+
+/// Where in `all` each of `some` stands.
+fn positions(all: &[usize], some: &[usize]) -> Vec<usize> {
+    let place: std::collections::HashMap<usize, usize> = all.iter().enumerate().map(|(at, &row)| (row, at)).collect();
+    some.iter().map(|row| place[row]).collect()
+}

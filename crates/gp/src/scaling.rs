@@ -1,0 +1,49 @@
+use nalgebra::{DMatrix, DVector, DVectorView};
+use serde::{Deserialize, Serialize};
+
+use crate::GpError;
+
+/// Scaled coordinates z = (x − μ)/S. One S for all axes: a gradient field stays one only under a common scale.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Scaling {
+    /// μ, (n).
+    pub(crate) mean: Vec<f64>,
+    /// S: root of the mean over axes of their variances.
+    pub(crate) scale: f64,
+}
+
+impl Scaling {
+    /// Of states (n, M).
+    pub(crate) fn of(states: &DMatrix<f64>) -> Result<Self, GpError> {
+        let count = states.ncols() as f64;
+        let mean: Vec<f64> = states.row_iter().map(|axis| axis.iter().sum::<f64>() / count).collect();
+        let variance =
+            |(axis, mean): (usize, &f64)| states.row(axis).iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count;
+        let variances: f64 = mean.iter().enumerate().map(variance).sum();
+        let scale = (variances / mean.len() as f64).sqrt();
+        // The mean of equal numbers may differ from them by its rounding.
+        if scale <= 1e-14 * states.amax() {
+            return Err(GpError::OneState);
+        }
+        if !(scale > 1e-150 && scale < 1e150) {
+            return Err(GpError::Overflow { what: "distance" });
+        }
+        Ok(Scaling { mean, scale })
+    }
+
+    /// z of each state, (n, M).
+    pub(crate) fn apply(&self, states: &DMatrix<f64>) -> DMatrix<f64> {
+        DMatrix::from_fn(states.nrows(), states.ncols(), |k, row| (states[(k, row)] - self.mean[k]) / self.scale)
+    }
+
+    /// z of one state, (n).
+    pub(crate) fn of_state(&self, state: DVectorView<'_, f64>) -> DVector<f64> {
+        DVector::from_fn(state.len(), |k, _| self.coordinate(k, state[k]))
+    }
+
+    /// z_k.
+    pub(crate) fn coordinate(&self, axis: usize, value: f64) -> f64 {
+        (value - self.mean[axis]) / self.scale
+    }
+}
