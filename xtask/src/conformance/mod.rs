@@ -1,6 +1,7 @@
 //! `cargo xtask conformance`: kinematics, LWPR, smoothing and Gaussian processes against reference cases that other programs computed.
 
 mod agreement;
+mod auto_fit_cases;
 mod kinematics_cases;
 mod lwpr_cases;
 mod reading_cases;
@@ -40,13 +41,14 @@ const TOLERANCE: f64 = 1e-10;
 type Check = fn(&Path) -> anyhow::Result<Vec<Agreement>>;
 
 /// What is compared in slope_gp/*.json: a file is known by how its name begins.
-const SLOPE_GP: [(&str, Check); 6] = [
+const SLOPE_GP: [(&str, Check); 7] = [
     ("smoother", smoothing_cases::check_smoother),
     ("fusion", smoothing_cases::check_fusion),
     ("kernels", slope_cases::check_kernels),
     ("evidence", slope_cases::check_evidence),
     ("loto", slope_cases::check_left_out),
     ("frozen_fit", slope_cases::check_frozen),
+    ("auto_fit", auto_fit_cases::check),
 ];
 
 /// The same in reading/*.json.
