@@ -19,11 +19,11 @@ pub struct Plate {
 }
 
 impl Plate {
-    /// Whether a point is nearer to the plane than `reach` and strictly between the edges.
-    pub fn blocks(&self, point: &Point3<f64>, reach: f64) -> bool {
+    /// Whether a point is nearer to the plane than `influence` and strictly between the edges.
+    pub fn blocks(&self, point: &Point3<f64>, influence: f64) -> bool {
         let from_plane = self.normal.dot(&point.coords) - self.distance;
         let across = self.along.dot(&point.coords);
-        from_plane.abs() < reach && self.edges[0] < across && across < self.edges[1]
+        from_plane.abs() < influence && self.edges[0] < across && across < self.edges[1]
     }
 
     fn check(&self, plate: usize) -> Result<(), ConstraintError> {
@@ -60,25 +60,25 @@ impl Plate {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Barrier {
     plates: Vec<Plate>,
-    reach: f64,
+    influence: f64,
     n_points: usize,
 }
 
 impl Barrier {
-    /// `plates` that act on each of `n_points` points while these are nearer to them than `reach`, in metres.
+    /// `plates` that act on each of `n_points` points while these are nearer to them than `influence`, in metres.
     ///
     /// # Errors
-    /// [`ConstraintError::NoPoint`], [`ConstraintError::Reach`], [`ConstraintError::PlateInSpace`] or
+    /// [`ConstraintError::NoPoint`], [`ConstraintError::Influence`], [`ConstraintError::PlateInSpace`] or
     /// [`ConstraintError::PlateEdges`].
-    pub fn new(plates: Vec<Plate>, reach: f64, n_points: usize) -> Result<Self, ConstraintError> {
+    pub fn new(plates: Vec<Plate>, influence: f64, n_points: usize) -> Result<Self, ConstraintError> {
         if n_points == 0 {
             return Err(ConstraintError::NoPoint);
         }
-        if !(reach.is_finite() && reach > 0.0) {
-            return Err(ConstraintError::Reach { reach });
+        if !(influence.is_finite() && influence > 0.0) {
+            return Err(ConstraintError::Influence { influence });
         }
         plates.iter().enumerate().try_for_each(|(at, plate)| plate.check(at))?;
-        Ok(Barrier { plates, reach, n_points })
+        Ok(Barrier { plates, influence, n_points })
     }
 
     /// The plates.
@@ -86,9 +86,9 @@ impl Barrier {
         &self.plates
     }
 
-    /// From which distance to its plane a plate is felt, in metres.
-    pub fn reach(&self) -> f64 {
-        self.reach
+    /// The influence distance: how near to its plane a plate blocks, in metres.
+    pub fn influence(&self) -> f64 {
+        self.influence
     }
 }
 
@@ -108,7 +108,7 @@ impl PfaffianConstraint for Barrier {
         let position = |point: usize| Point3::new(state[3 * point], state[3 * point + 1], state[3 * point + 2]);
         let blocked: Vec<(usize, Vector3<f64>)> = (0..self.n_points)
             .flat_map(|point| self.plates.iter().map(move |plate| (point, plate)))
-            .filter(|&(point, plate)| plate.blocks(&position(point), self.reach))
+            .filter(|&(point, plate)| plate.blocks(&position(point), self.influence))
             .map(|(point, plate)| (point, *plate.normal))
             .collect();
         let mut matrix = DMatrix::zeros(blocked.len(), self.dim());

@@ -90,11 +90,11 @@ pub enum ConstraintError {
     /// A barrier was given no point to stop.
     #[error("a barrier acts on at least one point; a state of n points has 3n coordinates")]
     NoPoint,
-    /// The reach of a barrier is not a positive, finite length.
-    #[error("a barrier's reach is {reach} m; it must be positive and finite")]
-    Reach {
-        /// The reach given, in metres.
-        reach: f64,
+    /// The influence distance of a barrier is not a positive, finite length.
+    #[error("a barrier's influence distance is {influence} m; it must be positive and finite")]
+    Influence {
+        /// The distance given, in metres.
+        influence: f64,
     },
     /// A plate has no place in space.
     #[error(

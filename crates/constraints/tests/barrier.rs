@@ -44,12 +44,12 @@ fn projector(barrier: &Barrier, state: DVectorView<'_, f64>) -> NullSpaceProject
 proptest! {
     #[test]
     fn each_hand_is_blocked_beside_the_gap_and_near_the_plane_only(
-        state in vec(-0.5..0.5f64, 6), plane in -0.3..0.3f64, half_gap in 0.0..0.4f64, reach in 0.05..0.5f64,
+        state in vec(-0.5..0.5f64, 6), plane in -0.3..0.3f64, half_gap in 0.0..0.4f64, influence in 0.05..0.5f64,
         velocity in vec(-1.0..1.0f64, 6), time in -5.0..5.0f64,
     ) {
-        let barrier = Barrier::new(with_a_gap(plane, half_gap), reach, 2).unwrap();
+        let barrier = Barrier::new(with_a_gap(plane, half_gap), influence, 2).unwrap();
         let (state, velocity) = (DVector::from_vec(state), DVector::from_vec(velocity));
-        let blocked = |hand: usize| (state[3 * hand] - plane).abs() < reach && state[3 * hand + 1].abs() > half_gap;
+        let blocked = |hand: usize| (state[3 * hand] - plane).abs() < influence && state[3 * hand + 1].abs() > half_gap;
         let projector = barrier.null_space_projector(state.as_view(), time).unwrap();
         prop_assert_eq!(projector.rank(), usize::from(blocked(0)) + usize::from(blocked(1)));
         let mut expected = velocity.clone();
@@ -61,19 +61,19 @@ proptest! {
 
     #[test]
     fn rows_are_the_normals_of_what_blocks_in_the_columns_of_what_is_blocked(
-        plates in vec(plate(), 0..4), reach in 0.01..1.0f64, (n_points, state) in (1..4usize)
+        plates in vec(plate(), 0..4), influence in 0.01..1.0f64, (n_points, state) in (1..4usize)
             .prop_flat_map(|n| (Just(n), vec(-1.0..1.0f64, 3 * n))),
     ) {
-        let barrier = Barrier::new(plates.clone(), reach, n_points).unwrap();
+        let barrier = Barrier::new(plates.clone(), influence, n_points).unwrap();
         let state = DVector::from_vec(state);
         let mut rows = Vec::new();
         for at in 0..n_points {
             for plate in &plates {
                 let p = point(&state, at);
-                let near = (plate.normal.dot(&p.coords) - plate.distance).abs() < reach;
+                let near = (plate.normal.dot(&p.coords) - plate.distance).abs() < influence;
                 let y = plate.along.dot(&p.coords);
-                prop_assert_eq!(plate.blocks(&p, reach), near && plate.edges[0] < y && y < plate.edges[1]);
-                if plate.blocks(&p, reach) {
+                prop_assert_eq!(plate.blocks(&p, influence), near && plate.edges[0] < y && y < plate.edges[1]);
+                if plate.blocks(&p, influence) {
                     let mut row = DVector::<f64>::zeros(3 * n_points);
                     row.fixed_rows_mut::<3>(3 * at).copy_from(&*plate.normal);
                     rows.push(row);
@@ -90,10 +90,10 @@ proptest! {
     /// Euler steps of N π from any start: no step moves a blocked point along a normal, and every other point moves freely.
     #[test]
     fn a_roll_out_obeys_at_every_step(
-        plates in vec(plate(), 1..4), reach in 0.05..0.5f64, start in vec(-1.0..1.0f64, 6),
+        plates in vec(plate(), 1..4), influence in 0.05..0.5f64, start in vec(-1.0..1.0f64, 6),
         goal in vec(-1.0..1.0f64, 6), time_step in 0.01..0.2f64,
     ) {
-        let barrier = Barrier::new(plates.clone(), reach, 2).unwrap();
+        let barrier = Barrier::new(plates.clone(), influence, 2).unwrap();
         let (mut state, goal) = (DVector::from_vec(start), DVector::from_vec(goal));
         for _ in 0..60 {
             let wish = &goal - &state;
@@ -102,7 +102,7 @@ proptest! {
             prop_assert!(forbidden.is_empty() || forbidden.amax() < 1e-13);
             for at in 0..2 {
                 let p = point(&state, at);
-                if !plates.iter().any(|plate| plate.blocks(&p, reach)) {
+                if !plates.iter().any(|plate| plate.blocks(&p, influence)) {
                     prop_assert_eq!(velocity.rows(3 * at, 3), wish.rows(3 * at, 3));
                 }
             }
@@ -135,14 +135,14 @@ fn rank_switches_as_two_hands_come_near_and_pass() {
 #[test]
 fn bad_barriers_are_refused() {
     let good = with_a_gap(0.4, 0.1)[0];
-    let of = |plates, reach, n_points| Barrier::new(plates, reach, n_points).map(|_| ());
+    let of = |plates, influence, n_points| Barrier::new(plates, influence, n_points).map(|_| ());
     let long = Unit::new_unchecked(Vector3::new(0.0, 2.0, 0.0));
     let nowhere = Unit::new_unchecked(Vector3::repeat(f64::NAN));
     let mut cases = vec![
         (of(vec![good], 0.05, 0), ConstraintError::NoPoint),
-        (of(vec![good], 0.0, 1), ConstraintError::Reach { reach: 0.0 }),
-        (of(vec![good], -0.1, 1), ConstraintError::Reach { reach: -0.1 }),
-        (of(vec![good], f64::INFINITY, 1), ConstraintError::Reach { reach: f64::INFINITY }),
+        (of(vec![good], 0.0, 1), ConstraintError::Influence { influence: 0.0 }),
+        (of(vec![good], -0.1, 1), ConstraintError::Influence { influence: -0.1 }),
+        (of(vec![good], f64::INFINITY, 1), ConstraintError::Influence { influence: f64::INFINITY }),
         (
             of(vec![good, Plate { edges: [0.2, 0.2], ..good }], 0.05, 1),
             ConstraintError::PlateEdges { plate: 1, from: 0.2, to: 0.2 },
@@ -164,7 +164,7 @@ fn bad_barriers_are_refused() {
     for (found, expected) in cases {
         assert_eq!(found, Err(expected));
     }
-    assert!(matches!(of(vec![good], f64::NAN, 1), Err(ConstraintError::Reach { reach }) if reach.is_nan()));
+    assert!(matches!(of(vec![good], f64::NAN, 1), Err(ConstraintError::Influence { influence }) if influence.is_nan()));
     let nan = of(vec![Plate { edges: [f64::NAN, 1.0], ..good }], 0.05, 1);
     assert!(matches!(nan, Err(ConstraintError::PlateEdges { plate: 0, from, to: 1.0 }) if from.is_nan()));
 }

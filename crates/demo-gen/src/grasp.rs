@@ -41,7 +41,7 @@ pub struct Grasp {
     pub gap_least: f64,
     /// Variance of start postures around "ready", in rad² or m². Default 0.1.
     pub start_variance: f64,
-    /// Start palms are before this x, metres. Default 0.26, out of the wall's reach.
+    /// Start palms are before this x, metres. Default 0.26, out of the wall's influence.
     pub start_depth: f64,
     /// Start palms are farther than this to their side, |y| in metres. Default 0.02.
     pub start_side: f64,

@@ -25,7 +25,7 @@ pub struct GraspScene {
     /// The wall, or what else stands between robot and ball, is in the plane of this x. Default 0.35.
     pub wall: f64,
     /// From which distance to its plane the wall is felt. Default 0.09.
-    pub wall_reach: f64,
+    pub wall_influence: f64,
     /// The obstacle that no demonstration shows is as wide as this to either side of the middle. Default 0.13.
     pub obstacle_half_width: f64,
 }
@@ -39,7 +39,7 @@ impl Default for GraspScene {
             table_depth: [0.45, 1.05],
             table_half_width: 0.6,
             wall: 0.35,
-            wall_reach: 0.09,
+            wall_influence: 0.09,
             obstacle_half_width: 0.13,
         }
     }
@@ -59,10 +59,10 @@ impl GraspScene {
     }
 
     /// The wall of the demonstrations: two plates, with a gap (metres, 0 or more) between them around the middle. A hand
-    /// beside the gap and nearer to the wall than its reach cannot move along x.
+    /// beside the gap and nearer to the wall than its influence cannot move along x.
     ///
     /// # Errors
-    /// Those of [`Barrier::new`], for a wall or gap that is not finite or a reach that is not positive.
+    /// Those of [`Barrier::new`], for a wall or gap that is not finite or an influence distance that is not positive.
     pub fn wall_with_gap(&self, gap: f64) -> Result<Barrier, ConstraintError> {
         let edge = gap / 2.0;
         self.barrier(&[[edge, f64::INFINITY], [f64::NEG_INFINITY, -edge]])
@@ -71,14 +71,14 @@ impl GraspScene {
     /// The obstacle that no demonstration shows: one plate in the wall's plane, around the middle.
     ///
     /// # Errors
-    /// Those of [`Barrier::new`], for an obstacle without width or a reach that is not positive.
+    /// Those of [`Barrier::new`], for an obstacle without width or an influence distance that is not positive.
     pub fn central_obstacle(&self) -> Result<Barrier, ConstraintError> {
         self.barrier(&[[-self.obstacle_half_width, self.obstacle_half_width]])
     }
 
     fn barrier(&self, edges: &[[f64; 2]]) -> Result<Barrier, ConstraintError> {
         let plate = |&edges| Plate { normal: Vector3::x_axis(), distance: self.wall, along: Vector3::y_axis(), edges };
-        Barrier::new(edges.iter().map(plate).collect(), self.wall_reach, N_HANDS)
+        Barrier::new(edges.iter().map(plate).collect(), self.wall_influence, N_HANDS)
     }
 
     /// Whether a point is under or in the table: over its area, but not above its top.

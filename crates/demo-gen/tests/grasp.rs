@@ -19,11 +19,11 @@ fn rng(seed: u64) -> ChaCha8Rng {
 /// A scene with ball, wall and obstacle anywhere in front of the robot.
 fn scene() -> impl Strategy<Value = GraspScene> {
     (0.5..0.9f64, -0.1..0.1f64, 0.5..0.8f64, 0.05..0.3f64, 0.3..0.45f64, 0.01..0.12f64, 0.01..0.3f64).prop_map(
-        |(x, y, z, ball_diameter, wall, wall_reach, obstacle_half_width)| GraspScene {
+        |(x, y, z, ball_diameter, wall, wall_influence, obstacle_half_width)| GraspScene {
             ball: Point3::new(x, y, z),
             ball_diameter,
             wall,
-            wall_reach,
+            wall_influence,
             obstacle_half_width,
             ..GraspScene::default()
         },
@@ -91,7 +91,7 @@ proptest! {
                 let (x, u) = (recording.truth.states.column(sample), velocities.column(sample));
                 let action = recording.truth.actions.column(sample);
                 let blocked = |hand: usize| {
-                    (x[3 * hand] - grasp.scene.wall).abs() < grasp.scene.wall_reach && x[3 * hand + 1].abs() > start.gap / 2.0
+                    (x[3 * hand] - grasp.scene.wall).abs() < grasp.scene.wall_influence && x[3 * hand + 1].abs() > start.gap / 2.0
                 };
                 let mut expected = action.clone_owned();
                 for hand in (0..2).filter(|&hand| blocked(hand)) {
@@ -128,7 +128,7 @@ proptest! {
         let ball = scene.ball;
         prop_assert_eq!(&target, &dvector![ball.x, ball.y + side, ball.z, ball.x, ball.y - side, ball.z]);
         prop_assert!((scene.potential().value(state.as_view()) - 0.05 * (&state - target).norm_squared()).abs() < 1e-14);
-        let near = |hand: usize| (state[3 * hand] - scene.wall).abs() < scene.wall_reach;
+        let near = |hand: usize| (state[3 * hand] - scene.wall).abs() < scene.wall_influence;
         let rank = |blocked: &dyn Fn(usize) -> bool| (0..2).filter(|&hand| near(hand) && blocked(hand)).count();
         let of = |barrier: constraints::Barrier| barrier.null_space_projector(state.as_view(), 0.0).unwrap().rank();
         let beside = rank(&|hand| state[3 * hand + 1].abs() > gap / 2.0);
@@ -182,8 +182,8 @@ fn unsuitable_scenes_are_refused() {
     assert_eq!(refused(Grasp { start_depth: -1.0, ..good() }), first(DemoGenError::NoNaturalStart { draws: 10_000 }));
     let variance = -1.0;
     assert_eq!(refused(Grasp { start_variance: variance, ..good() }), first(DemoGenError::StartVariance { variance }));
-    let scene = GraspScene { wall_reach: 0.0, ..GraspScene::default() };
-    let source = constraints::ConstraintError::Reach { reach: 0.0 };
+    let scene = GraspScene { wall_influence: 0.0, ..GraspScene::default() };
+    let source = constraints::ConstraintError::Influence { influence: 0.0 };
     assert_eq!(refused(Grasp { scene, ..good() }), first(DemoGenError::Constraint { sample: 0, source }));
     let roll_out = RollOut { n_samples: 1, ..good().roll_out };
     assert_eq!(refused(Grasp { roll_out, ..good() }), first(DemoGenError::TooFewSamples { n_samples: 1 }));

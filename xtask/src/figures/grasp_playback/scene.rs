@@ -40,7 +40,7 @@ pub(super) fn scene(scene: &GraspScene) -> Scene {
     Scene {
         ball: Ball { centre: scene.ball.coords.into(), diameter: scene.ball_diameter },
         table: Table { top: scene.table_top, near, far, half_width: scene.table_half_width },
-        wall: Wall { x: scene.wall, reach: scene.wall_reach },
+        wall: Wall { x: scene.wall, reach: scene.wall_influence },
         target: scene.target().iter().copied().collect(),
     }
 }
