@@ -28,6 +28,7 @@ impl Arm {
     }
 
     /// Column j: axis j, turned by all joints before it, times the way from joint j to the tip.
+    #[allow(clippy::unnecessary_wraps, reason = "what a constraint is given may fail")]
     fn jacobian(&self, q: DVectorView<'_, f64>, mut jacobian: DMatrixViewMut<'_, f64>) -> Result<(), Infallible> {
         for joint in 0..self.lengths.len() {
             let turned = |axis, link| nalgebra::Rotation3::from_axis_angle(&self::axis(link), q[link]) * axis;

@@ -45,7 +45,7 @@ fn literal(roll_out: RollOut, policy: &dyn Policy, constraint: &Turning, start: 
     let mut states = vec![start.clone()];
     let mut state = start.clone();
     for count in 0..roll_out.sub_steps * (roll_out.n_samples - 1) {
-        let matrix = constraint.matrix(state.as_view(), step * count as f64).unwrap();
+        let matrix = constraint.matrix(state.as_view(), step * count as f64).expect("it always answers");
         let action = policy.action(state.as_view());
         let mut free = DMatrix::identity(state.len(), state.len());
         if matrix.nrows() == 1 {

@@ -44,7 +44,7 @@ fn entities_are_refused_wherever_they_are_declared() {
 #[test]
 fn tags_of_very_many_attributes_are_refused() {
     let of = |n: usize| {
-        let attributes: String = (0..n).map(|i| format!(" a{i}='\"'")).collect();
+        let attributes = (0..n).map(|i| format!(" a{i}='\"'")).collect::<Vec<_>>().concat();
         robot("a", &format!("\n<gazebo{attributes}/>"))
     };
     assert_eq!(refused(&of(20_000)), (Element::Robot, UrdfProblem::ManyAttributes { line: 2 }));
