@@ -1,4 +1,5 @@
-//! LWPR: training sample by sample and in batch, prediction with gradient; d = 2, 6, 22, diagonal metric. Under a minute.
+//! LWPR: training sample by sample and in batch, prediction, and both in turns; d = 2, 6, 22 with a diagonal metric, 2 and 6
+//! with a full one. About two minutes.
 #![allow(missing_docs, reason = "a benchmark")]
 
 use std::hint::black_box;
@@ -6,7 +7,7 @@ use std::time::Duration;
 
 use benches::lwpr_data::{PotentialSamples, potential_samples};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
-use lwpr::{Lwpr, LwprParams};
+use lwpr::{Lwpr, LwprParams, Metric, Prediction};
 use nalgebra::DVector;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -26,8 +27,9 @@ fn shuffled(d: usize) -> PotentialSamples {
 }
 
 /// A model that has seen all samples once, so that its fields are all there.
-fn model(samples: &PotentialSamples) -> Lwpr {
+fn model(samples: &PotentialSamples, metric: Metric) -> Lwpr {
     let params = LwprParams {
+        metric,
         init_d: samples.init_d,
         norm_out: Some(DVector::from_element(1, samples.spread())),
         ..LwprParams::default()
@@ -38,10 +40,11 @@ fn model(samples: &PotentialSamples) -> Lwpr {
 }
 
 fn bench(criterion: &mut Criterion) {
-    for d in [2, 6, 22] {
+    let shapes = [2, 6, 22].map(|d| (d, Metric::Diagonal)).into_iter().chain([2, 6].map(|d| (d, Metric::Full)));
+    for (d, metric) in shapes {
         let samples = shuffled(d);
-        let model = model(&samples);
-        let mut group = criterion.benchmark_group(format!("lwpr d={d}"));
+        let model = model(&samples, metric);
+        let mut group = criterion.benchmark_group(format!("lwpr d={d} {metric:?}"));
         group.sample_size(10).throughput(Throughput::Elements(samples.xs.ncols() as u64));
         group.warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(3));
         group.bench_function("train online", |bencher| {
@@ -68,6 +71,24 @@ fn bench(criterion: &mut Criterion) {
                     black_box(predictor.value_and_gradient_into(x, 0, gradient.as_view_mut()));
                 }
             });
+        });
+        let mut prediction = Prediction::zeros(d, 1);
+        group.bench_function("predict everything", |bencher| {
+            bencher.iter(|| {
+                for x in samples.xs.column_iter() {
+                    black_box(predictor.predict_into(x, &mut prediction));
+                }
+            });
+        });
+        group.bench_function("update, then predict with gradient", |bencher| {
+            let mut learn = |mut model: Lwpr| {
+                for (x, y) in samples.xs.column_iter().zip(samples.ys.column_iter()) {
+                    model.update(x, y).expect("the samples are finite");
+                    black_box(model.value_and_gradient_into(x, 0, 0.001, gradient.as_view_mut()));
+                }
+                model
+            };
+            bencher.iter_batched(|| model.clone(), &mut learn, BatchSize::LargeInput);
         });
         group.finish();
     }

@@ -18,7 +18,7 @@
 //! model.fit_in_order(xs.as_view(), ys.as_view(), 10)?; // A batch …
 //! model.update(xs.column(7), ys.column(7))?; // … or one sample at a time.
 //!
-//! let predictor = model.predictor(0.001); // An immutable snapshot, to be shared between threads.
+//! let predictor = model.predictor(0.001); // An immutable snapshot, quick and to be shared between threads.
 //! let p = predictor.predict(DVector::from_element(1, 0.5).as_view()).expect("trained here");
 //! assert!((p.value[0] - 1.5_f64.sin()).abs() < 0.02);
 //! assert!((p.gradient[(0, 0)] - 3.0 * 1.5_f64.cos()).abs() < 0.5);
@@ -36,6 +36,9 @@
 //! - [`MetricAdaptation::Gradient`] adapts the fields' shapes; [`Meta`](MetricAdaptation::Meta) also their learning rates,
 //!   which then may start low (`init_alpha` of a few); [`Fixed`](MetricAdaptation::Fixed) suits data that are dense and even.
 //! - Samples in random order learn better than along trajectories: [`Lwpr::fit_batch`] shuffles every pass.
+//!
+//! Between updates the model itself can be asked ([`Lwpr::predict_into`], [`Lwpr::value_and_gradient_into`]), which saves the
+//! snapshot. Outputs whose mean and size are not known beforehand are learnt by [`Training::fit`].
 //!
 //! A batch gives the same model as its samples one by one, bit for bit, at any number of threads, faster.
 

@@ -29,7 +29,7 @@ pub(crate) struct Direction<T = f64> {
     pub(crate) s: T,
 }
 
-/// A receptive field. Its vectors lie in one buffer of rows of equal length; padding is zero for ever.
+/// A receptive field. Its vectors lie in one buffer of rows of equal length; padding stays zero.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Field<T = f64> {
     pub(crate) beta0: T,

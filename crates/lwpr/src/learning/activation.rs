@@ -5,6 +5,7 @@ use pulp::Simd;
 use crate::Metric;
 use crate::field::element::{Element, add_scaled};
 use crate::field::{Field, Layout};
+use crate::learning::memory::Seen;
 use crate::settings::Settings;
 use crate::settings::kernel::Activation;
 use lanes::Number;
@@ -150,7 +151,8 @@ pub(crate) struct Near {
 }
 
 impl Near {
-    /// Looks for the fields closer than `reach` to the padded, normalised sample `x`.
+    /// Looks for the fields closer than `reach` to the padded, normalised sample `x`; those it has `seen` are not compared
+    /// again, for which there must be no table.
     #[inline(always)]
     pub(crate) fn find<S: Simd>(
         &mut self,
@@ -159,29 +161,55 @@ impl Near {
         (fields, table): (&[Field], &ActivationTable),
         (x, reach): (&[f64], f64),
         scratch: &mut [f64],
+        seen: Option<&mut Seen>,
     ) {
         self.clear(fields.len());
+        let from = match &seen {
+            Some(seen) => self.recall(seen),
+            None => 0,
+        };
         if settings.narrow() {
             table.look(simd, settings, x, reach, self);
         } else if settings.params.metric == Metric::Diagonal {
             if settings.width == 24 {
-                self.look::<S>(simd, fields, (&x[..24], reach), &mut scratch[..24]);
+                self.look::<S>(simd, (fields, from), (&x[..24], reach), &mut scratch[..24]);
             } else {
-                self.look::<S>(simd, fields, (x, reach), &mut scratch[..settings.width]);
+                self.look::<S>(simd, (fields, from), (x, reach), &mut scratch[..settings.width]);
             }
         } else {
             let layout = Layout::new(settings, settings.width);
-            for (k, field) in fields.iter().enumerate() {
+            for (k, field) in fields.iter().enumerate().skip(from) {
                 self.see(k, full_distance(field, layout, x, &mut scratch[..layout.width]), reach);
             }
+        }
+        if let Some(seen) = seen {
+            let known = seen.fields.len();
+            seen.fields.extend_from_slice(&self.fields[known..self.len]);
+            seen.q.extend_from_slice(&self.q[known..self.len]);
+            seen.n_compared = fields.len();
         }
         self.activate(simd, settings);
     }
 
-    /// [`find`](Self::find) with a wide diagonal metric.
+    /// Takes over what is known of a sample. Returns with how many fields it has been compared.
     #[inline(always)]
-    fn look<S: Simd>(&mut self, simd: S, fields: &[Field], (x, reach): (&[f64], f64), scratch: &mut [f64]) {
-        for (k, field) in fields.iter().enumerate() {
+    fn recall(&mut self, seen: &Seen) -> usize {
+        self.len = seen.fields.len();
+        self.fields[..self.len].copy_from_slice(&seen.fields);
+        self.q[..self.len].copy_from_slice(&seen.q);
+        seen.n_compared
+    }
+
+    /// [`find`](Self::find) with a wide diagonal metric, from field `from` on.
+    #[inline(always)]
+    fn look<S: Simd>(
+        &mut self,
+        simd: S,
+        (fields, from): (&[Field], usize),
+        (x, reach): (&[f64], f64),
+        scratch: &mut [f64],
+    ) {
+        for (k, field) in fields.iter().enumerate().skip(from) {
             self.see(k, diagonal_distance(simd, field, x, scratch), reach);
         }
     }

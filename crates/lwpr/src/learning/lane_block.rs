@@ -133,10 +133,8 @@ impl<S: Simd> LaneBlock<S> {
         let wanted = match (settings.params.metric, settings.n_in) {
             (Metric::Diagonal, 2) => self.train_in::<Diagonal, 2>(simd, settings, activation),
             (Metric::Diagonal, 3) => self.train_in::<Diagonal, 3>(simd, settings, activation),
-            (Metric::Diagonal, 4) => self.train_in::<Diagonal, 4>(simd, settings, activation),
             (Metric::Diagonal, _) => self.train_in::<Diagonal, 6>(simd, settings, activation),
             (Metric::Full, 2) => self.train_in::<Full, 2>(simd, settings, activation),
-            (Metric::Full, 3) => self.train_in::<Full, 3>(simd, settings, activation),
             (Metric::Full, _) => self.train_in::<Full, 6>(simd, settings, activation),
         };
         (activation.w, wanted)

@@ -5,6 +5,7 @@ mod batch;
 mod chunk;
 pub(crate) mod full_metric;
 mod lane_block;
+pub(crate) mod memory;
 mod metric;
 pub(crate) mod passes;
 mod regression;

@@ -118,7 +118,7 @@ pub(crate) fn update_regression<T: Number, E: Element<T>>(
         if j + 1 < r {
             (prediction, sample.e_cv, sample.error_sum) = (next, e_cv, direction.sum_e_cv2);
         } else {
-            // A last direction that has seen little is trained, but not used; a single one lends its errors anyway.
+            // A last direction that has seen little is trained, but not used. If it is the only one, its errors count all the same.
             prediction = next.or_else(last_counts, prediction);
             sample.e_cv = e_cv.or_else(last_counts, sample.e_cv);
             let errors = direction.sum_e_cv2.or_else(last_counts, sample.error_sum);

@@ -3,6 +3,7 @@
 use crate::Pruning;
 use crate::field::Field;
 use crate::learning::activation::{ActivationTable, Near, Reached};
+use crate::learning::memory::Seen;
 use crate::learning::rules::{LearnFromOne, Workspace};
 use crate::settings::Settings;
 
@@ -16,7 +17,7 @@ pub(crate) struct SubModel {
 
 /// The fields in reach of a sample, and the strongest of them.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Reach {
+pub(crate) struct InReach {
     near: Near,
     pub(crate) strongest: Strongest,
 }
@@ -58,7 +59,7 @@ impl Strongest {
 }
 
 impl SubModel {
-    /// Finds the fields in reach of the normalised sample `x` and their activations.
+    /// Finds the fields in reach of the normalised sample `x`, of which some may have been `seen`, and their activations.
     #[inline(always)]
     pub(crate) fn activate<S: pulp::Simd>(
         &self,
@@ -66,9 +67,10 @@ impl SubModel {
         settings: &Settings,
         x: &[f64],
         workspace: &mut Workspace,
-        reach: &mut Reach,
+        (reach, seen): (&mut InReach, Option<&mut Seen>),
     ) {
-        reach.near.find(simd, settings, (&self.fields, &self.table), (x, settings.reach), &mut workspace.rows);
+        let (fields, sample) = ((&self.fields[..], &self.table), (x, settings.reach));
+        reach.near.find(simd, settings, fields, sample, &mut workspace.rows, seen);
         reach.strongest = Strongest::default();
         for Reached { field, activation, .. } in reach.near.iter() {
             reach.strongest.see(field, activation.w);
@@ -84,7 +86,7 @@ impl SubModel {
         x: &[f64],
         y: f64,
         workspace: &mut Workspace,
-        reach: &Reach,
+        reach: &InReach,
     ) {
         let near = &reach.near;
         LearnFromOne { settings, fields: &mut self.fields, near, x, y, workspace }.run(simd);

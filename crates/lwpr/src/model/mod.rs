@@ -9,9 +9,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Side;
 use crate::field::rows::Rows;
+use crate::learning::memory::Memory;
 use crate::learning::passes::{BatchFit, SHORTEST};
 use crate::learning::rules::Workspace;
-use crate::learning::sub_model::{Reach, SubModel};
+use crate::learning::sub_model::{InReach, SubModel};
 use crate::model::record::ModelRecord;
 use crate::settings::Settings;
 use crate::{LwprError, LwprParams, ReceptiveField};
@@ -34,7 +35,7 @@ pub struct Lwpr {
 struct Online {
     x: Rows,
     workspace: Workspace,
-    reach: Vec<Reach>,
+    reach: Vec<InReach>,
 }
 
 /// [`Lwpr::update_checked`] for the samples of `order`, one after the other, compiled for the processor at hand.
@@ -43,6 +44,7 @@ struct UpdateChecked<'a> {
     xs: DMatrixView<'a, f64>,
     ys: DMatrixView<'a, f64>,
     order: &'a [usize],
+    memory: Option<&'a mut Memory>,
 }
 
 impl pulp::WithSimd for UpdateChecked<'_> {
@@ -50,9 +52,10 @@ impl pulp::WithSimd for UpdateChecked<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) -> Self::Output {
-        let UpdateChecked { model, xs, ys, order } = self;
+        let UpdateChecked { model, xs, ys, order, mut memory } = self;
         for &sample in order {
-            model.update_checked(simd, xs.column(sample).as_slice(), ys.column(sample).as_slice(), sample)?;
+            let (x, y) = (xs.column(sample), ys.column(sample));
+            model.update_checked(simd, (x.as_slice(), y.as_slice()), sample, memory.as_deref_mut())?;
         }
         Ok(())
     }
@@ -79,7 +82,7 @@ impl Lwpr {
         let online = Online {
             x: Rows::zeros(settings.width),
             workspace: Workspace::new(&settings, settings.width),
-            reach: vec![Reach::default(); settings.n_out],
+            reach: vec![InReach::default(); settings.n_out],
         };
         Lwpr { settings, outputs, n_data, online }
     }
@@ -93,18 +96,25 @@ impl Lwpr {
     pub fn update(&mut self, x: DVectorView<'_, f64>, y: DVectorView<'_, f64>) -> Result<(), LwprError> {
         self.settings.check(x.as_slice(), Side::Input, 0)?;
         self.settings.check(y.as_slice(), Side::Output, 0)?;
-        self.update_in_order((&x).into(), (&y).into(), &[0])
+        self.update_in_order((&x).into(), (&y).into(), &[0], None)
     }
 
     #[inline(always)]
-    fn update_checked<S: pulp::Simd>(&mut self, simd: S, x: &[f64], y: &[f64], sample: usize) -> Result<(), LwprError> {
+    fn update_checked<S: pulp::Simd>(
+        &mut self,
+        simd: S,
+        (x, y): (&[f64], &[f64]),
+        sample: usize,
+        mut memory: Option<&mut Memory>,
+    ) -> Result<(), LwprError> {
         let Lwpr { settings, outputs, n_data, online } = self;
         for ((normalised, x), norm) in online.x.iter_mut().zip(x).zip(&settings.norm_in) {
             *normalised = x / norm;
         }
         let limit = settings.params.max_receptive_fields.unwrap_or(usize::MAX);
         for (k, (sub_model, reach)) in outputs.iter().zip(&mut online.reach).enumerate() {
-            sub_model.activate(simd, settings, &online.x, &mut online.workspace, reach);
+            let seen = memory.as_mut().map(|memory| memory.of(k, sample));
+            sub_model.activate(simd, settings, &online.x, &mut online.workspace, (reach, seen));
             if reach.strongest.asks_for_field(settings) && sub_model.fields.len() >= limit {
                 return Err(LwprError::TooManyReceptiveFields { sample, output: k, limit });
             }
@@ -162,11 +172,12 @@ impl Lwpr {
         let mut order: Vec<usize> = (0..xs.ncols()).collect();
         let before = self.settings.params.max_receptive_fields.map(|_| self.clone());
         let mut fit = (self.settings.side_by_side() && xs.ncols() >= SHORTEST).then(|| BatchFit::new(self));
+        let mut memory = Memory::new(&self.settings, xs.ncols(), passes);
         for _ in 0..passes {
             arrange(&mut order);
             let result = match &mut fit {
                 Some(fit) => fit.pass(self, xs, ys, &order),
-                None => self.update_in_order(xs, ys, &order),
+                None => self.update_in_order(xs, ys, &order, memory.as_mut()),
             };
             if let Err(refused) = result {
                 if let Some(before) = before {
@@ -183,8 +194,9 @@ impl Lwpr {
         xs: DMatrixView<'_, f64>,
         ys: DMatrixView<'_, f64>,
         order: &[usize],
+        memory: Option<&mut Memory>,
     ) -> Result<(), LwprError> {
-        pulp::Arch::new().dispatch(UpdateChecked { model: self, xs, ys, order })
+        pulp::Arch::new().dispatch(UpdateChecked { model: self, xs, ys, order, memory })
     }
 
     fn check_batch(&self, xs: DMatrixView<'_, f64>, ys: DMatrixView<'_, f64>) -> Result<(), LwprError> {

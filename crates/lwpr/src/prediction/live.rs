@@ -118,7 +118,8 @@ impl pulp::WithSimd for Ask<'_> {
             // Where rounding might decide, the activation itself does.
             self.settings.params.kernel.reach(self.cutoff.min(1.0)) + 1e-6
         };
-        near.find(simd, self.settings, (&self.sub_model.fields, &self.sub_model.table), (x, reach), rest);
+        let fields = (&self.sub_model.fields[..], &self.sub_model.table);
+        near.find(simd, self.settings, fields, (x, reach), rest, None);
         terms.clear();
         if S::F64_LANES > 1 && width.is_multiple_of(S::F64_LANES) {
             self.answer::<Register<S>>(simd)

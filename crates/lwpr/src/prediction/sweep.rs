@@ -47,7 +47,9 @@ struct Active {
 struct Scratch {
     x: Vec<f64>,
     active: Vec<Active>,
-    /// D(x − c) of a block, or of every active one.
+    /// x − c of a block.
+    dx: Vec<Lanes>,
+    /// D(x − c) of every active block, for second derivatives.
     v: Vec<Lanes>,
     /// Sums of the gradient, dimension by dimension.
     sums: Vec<Lanes>,
@@ -62,8 +64,8 @@ thread_local! {
 struct Sums {
     w: f64,
     wy: f64,
-    /// The least squared distance of all fields.
-    nearest: f64,
+    /// The least squared distances of all fields, in each lane.
+    nearest: Lanes,
 }
 
 /// The weighted mean of the local predictions, and what else is wanted; `None` without support.
@@ -77,7 +79,7 @@ impl Scratch {
         let n = table.n_in();
         if self.x.len() < n {
             self.x.resize(n, 0.0);
-            self.v.resize(n, [0.0; LANES]);
+            self.dx.resize(n, [0.0; LANES]);
             self.sums.resize(n, [0.0; LANES]);
         }
         if self.active.len() < table.n_blocks() {
@@ -101,26 +103,31 @@ impl pulp::WithSimd for Sweep<'_> {
     fn with_simd<S: Simd>(self, simd: S) -> Option<f64> {
         let Sweep { table, query, wanted, scratch } = self;
         scratch.make_room(table);
-        let Scratch { x, active, v, sums } = scratch;
-        let (x, sums) = (&mut x[..table.n_in()], &mut sums[..table.n_in()]);
+        let Scratch { x, active, dx, v, sums } = scratch;
+        let n = table.n_in();
+        let (x, dx, sums) = (&mut x[..n], &mut dx[..n], &mut sums[..n]);
         for ((x, raw), per_norm) in x.iter_mut().zip(query.x).zip(query.per_norm_in) {
             *x = raw * per_norm;
         }
         let (found, count) = find(simd, table, query, x, active);
         let active = &active[..count];
         if let Some(max_activation) = wanted.max_activation {
-            *max_activation = query.kernel.at(found.nearest).w;
+            let mut nearest = f64::INFINITY;
+            for q in found.nearest {
+                nearest = if q < nearest { q } else { nearest };
+            }
+            *max_activation = query.kernel.at(nearest).w;
         }
         if found.w <= 0.0 {
             return None;
         }
-        let value = found.wy / found.w;
-        let scale = query.norm_out / found.w;
+        let per_w = 1.0 / found.w;
+        let (value, scale) = (found.wy * per_w, query.norm_out * per_w);
         if let Some(confidence) = wanted.confidence {
             *confidence = scale * spread(simd, table, x, active, value);
         }
         if wanted.gradient.is_some() || wanted.hessian.is_some() {
-            add_gradients(simd, table, x, active, value, (v, sums));
+            add_gradients(simd, table, x, active, value, (dx, sums));
         }
         if let Some((gradient, stride)) = wanted.gradient {
             for ((gradient, sum), per_norm) in gradient.iter_mut().step_by(stride).zip(&*sums).zip(query.per_norm_in) {
@@ -129,7 +136,7 @@ impl pulp::WithSimd for Sweep<'_> {
         }
         if let Some(hessian) = wanted.hessian {
             let gradients = (&*sums, found.w);
-            write_hessian(simd, table, (query, scale, value), (x, active), (v, gradients), hessian);
+            write_hessian(simd, table, (query, scale, value), (x, active), (dx, v, gradients), hessian);
         }
         Some(value * query.norm_out)
     }
@@ -172,11 +179,7 @@ fn find<S: Simd>(simd: S, table: &FieldTable, query: Query<'_>, x: &[f64], activ
             w.mul_add(Register::load(simd, &local, part), sum).store(&mut sum_wy, part);
         }
     }
-    let mut least = f64::INFINITY;
-    for q in nearest {
-        least = if q < least { q } else { least };
-    }
-    (Sums { w: total(sum_w), wy: total(sum_wy), nearest: least }, count)
+    (Sums { w: total(sum_w), wy: total(sum_wy), nearest }, count)
 }
 
 /// q = (x − c)ᵀD(x − c) with diagonal D, and the local prediction.
@@ -214,41 +217,36 @@ fn full_distance<S: Simd>(simd: S, block: Block<'_>, x: &[f64], part: usize) -> 
     (zero.or_else(zero.above(q), q), y)
 }
 
-/// v = D(x − c) of a block.
+/// x − c of a block.
 #[inline(always)]
-fn turn<S: Simd>(simd: S, table: &FieldTable, block: Block<'_>, x: &[f64], v: &mut [Lanes]) {
+fn differences<S: Simd>(simd: S, block: Block<'_>, x: &[f64], dx: &mut [Lanes]) {
     for part in 0..Register::<S>::parts() {
-        if table.is_full() {
-            turn_full(simd, block, x, v, part);
-        } else {
-            for ((([c, _], d), &x), v) in block.axes.iter().zip(block.metric).zip(x).zip(&mut *v) {
-                let dx = Register::splat(simd, x) - Register::load(simd, c, part);
-                (dx * Register::load(simd, d, part)).store(v, part);
-            }
+        for (([c, _], &x), dx) in block.axes.iter().zip(x).zip(&mut *dx) {
+            (Register::splat(simd, x) - Register::load(simd, c, part)).store(dx, part);
         }
     }
 }
 
+/// Element `i` of v = D(x − c).
 #[inline(always)]
-fn turn_full<S: Simd>(simd: S, block: Block<'_>, x: &[f64], v: &mut [Lanes], part: usize) {
-    for v in &mut *v {
-        Register::splat(simd, 0.0).store(v, part);
+fn turned<S: Simd>(simd: S, table: &FieldTable, block: Block<'_>, dx: &[Lanes], i: usize, part: usize) -> Register<S> {
+    if !table.is_full() {
+        return Register::load(simd, &dx[i], part) * Register::load(simd, &block.metric[i], part);
     }
-    let mut metric = block.metric.iter();
-    for i in 0..x.len() {
-        let dx = Register::splat(simd, x[i]) - Register::load(simd, &block.axes[i][0], part);
-        let Some(diagonal) = metric.next() else { break };
-        let mut sum = dx.mul_add(Register::load(simd, diagonal, part), Register::load(simd, &v[i], part));
-        for (j, d) in (i + 1..x.len()).zip(&mut metric) {
-            let d = Register::load(simd, d, part);
-            sum = (Register::splat(simd, x[j]) - Register::load(simd, &block.axes[j][0], part)).mul_add(d, sum);
-            dx.mul_add(d, Register::load(simd, &v[j], part)).store(&mut v[j], part);
-        }
-        sum.store(&mut v[i], part);
+    // Row j of the triangle begins n, n − 1, … further on.
+    let mut at = i;
+    let mut sum = Register::splat(simd, 0.0);
+    for (j, dx_j) in dx[..i].iter().enumerate() {
+        sum = Register::load(simd, dx_j, part).mul_add(Register::load(simd, &block.metric[at], part), sum);
+        at += dx.len() - 1 - j;
     }
+    for (dx_j, d) in dx[i..].iter().zip(&block.metric[at..]) {
+        sum = Register::load(simd, dx_j, part).mul_add(Register::load(simd, d, part), sum);
+    }
+    sum
 }
 
-/// Σ w ∂y/∂x + Σ ∂w/∂x (y − `value`), in each lane; `v` is a row of scratch.
+/// Σ w ∂y/∂x + Σ ∂w/∂x (y − `value`), in each lane; `dx` is a row of scratch.
 #[inline(always)]
 fn add_gradients<S: Simd>(
     simd: S,
@@ -256,21 +254,32 @@ fn add_gradients<S: Simd>(
     x: &[f64],
     active: &[Active],
     value: f64,
-    (v, sums): (&mut [Lanes], &mut [Lanes]),
+    (dx, sums): (&mut [Lanes], &mut [Lanes]),
 ) {
     for sum in &mut *sums {
         *sum = [0.0; LANES];
     }
     for found in active {
         let block = table.block(found.block);
-        turn(simd, table, block, x, v);
+        if table.is_full() {
+            differences(simd, block, x, dx);
+        }
         for part in 0..Register::<S>::parts() {
             let w = Register::load(simd, &found.w, part);
             let off = Register::load(simd, &found.y, part) - Register::splat(simd, value);
             let off = off * Register::load(simd, &found.dw, part);
-            for (([_, slope], v), sum) in block.axes.iter().zip(&*v).zip(&mut *sums) {
+            if table.is_full() {
+                for (i, ([_, slope], sum)) in block.axes.iter().zip(&mut *sums).enumerate() {
+                    let v = turned(simd, table, block, dx, i, part);
+                    let so_far = w.mul_add(Register::load(simd, slope, part), Register::load(simd, sum, part));
+                    off.mul_add(v, so_far).store(sum, part);
+                }
+                continue;
+            }
+            for ((([c, slope], d), &x), sum) in block.axes.iter().zip(block.metric).zip(x).zip(&mut *sums) {
+                let v = (Register::splat(simd, x) - Register::load(simd, c, part)) * Register::load(simd, d, part);
                 let so_far = w.mul_add(Register::load(simd, slope, part), Register::load(simd, sum, part));
-                off.mul_add(Register::load(simd, v, part), so_far).store(sum, part);
+                off.mul_add(v, so_far).store(sum, part);
             }
         }
     }
@@ -315,7 +324,7 @@ fn write_hessian<S: Simd>(
     table: &FieldTable,
     (query, scale, value): (Query<'_>, f64, f64),
     (x, active): (&[f64], &[Active]),
-    (v, (gradients, sum_w)): (&mut Vec<Lanes>, (&[Lanes], f64)),
+    (dx, v, (gradients, sum_w)): (&mut [Lanes], &mut Vec<Lanes>, (&[Lanes], f64)),
     hessian: &mut [f64],
 ) {
     let n = table.n_in();
@@ -323,7 +332,13 @@ fn write_hessian<S: Simd>(
         v.resize(n * active.len(), [0.0; LANES]);
     }
     for (found, v) in active.iter().zip(v.chunks_exact_mut(n)) {
-        turn(simd, table, table.block(found.block), x, v);
+        let block = table.block(found.block);
+        differences(simd, block, x, dx);
+        for (i, v) in v.iter_mut().enumerate() {
+            for part in 0..Register::<S>::parts() {
+                turned(simd, table, block, dx, i, part).store(v, part);
+            }
+        }
     }
     for i in 0..n {
         for j in i..n {

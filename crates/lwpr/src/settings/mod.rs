@@ -77,8 +77,8 @@ impl Settings {
     /// code, and no field that vanishes in between.
     pub(crate) fn side_by_side(&self) -> bool {
         let served = match self.params.metric {
-            Metric::Diagonal => matches!(self.n_in, 2 | 3 | 4 | 6),
-            Metric::Full => matches!(self.n_in, 2 | 3 | 6),
+            Metric::Diagonal => matches!(self.n_in, 2 | 3 | 6),
+            Metric::Full => matches!(self.n_in, 2 | 6),
         };
         served && self.params.w_prune == 1.0
     }
