@@ -18,6 +18,14 @@ pub(crate) fn told(path: &Path) -> String {
     if path.as_os_str().is_empty() { ".".to_owned() } else { path.display().to_string() }
 }
 
+/// A path as one would type it in a shell, in the current folder.
+pub(crate) fn typed(path: &Path) -> String {
+    let path = told(path);
+    let plain = |c: char| c.is_alphanumeric() || "/._-+:,@%".contains(c);
+    let path = if path.starts_with('-') { format!("./{path}") } else { path };
+    if path.chars().all(plain) { path } else { format!("'{}'", path.replace('\'', r"'\''")) }
+}
+
 /// Writes a whole file or nothing.
 pub(crate) fn write(path: &Path, contents: impl AsRef<[u8]>) -> anyhow::Result<()> {
     let mut draft = path.as_os_str().to_owned();
@@ -25,4 +33,20 @@ pub(crate) fn write(path: &Path, contents: impl AsRef<[u8]>) -> anyhow::Result<(
     fs::write(&draft, contents)
         .and_then(|()| fs::rename(&draft, path))
         .with_context(|| format!("cannot write {}", told(path)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shell_reads_a_typed_path_as_it_is() {
+        assert_eq!(typed(Path::new("runs/seed-1")), "runs/seed-1");
+        assert_eq!(typed(Path::new("-o")), "./-o");
+        for name in ["m/a b 'ö`", "$HOME", "a;b", "a\nb", "~", "*", "a\\b", "\"", "''", "a&b", "#", "(", "!!"] {
+            let told = typed(Path::new(name));
+            let heard = std::process::Command::new("sh").args(["-c", &format!("printf %s {told}")]).output().unwrap();
+            assert_eq!(String::from_utf8(heard.stdout).unwrap(), name, "{told}");
+        }
+    }
 }

@@ -13,10 +13,12 @@ mod records;
 mod report;
 mod reproduce;
 mod results;
+mod revision;
 mod robots;
 mod run_folder;
 mod runner;
 mod seed;
+mod summary;
 mod tidy;
 mod verdict;
 

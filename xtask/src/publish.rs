@@ -16,6 +16,7 @@ use crate::progress::say;
 use crate::report::{Section, Tally, draw, key, sections};
 use crate::results::{ExperimentResult, Results};
 use crate::run_folder::RunFolder;
+use crate::summary::check;
 use crate::verdict::Verdict;
 
 /// Seeds of the committed runs.
@@ -73,6 +74,7 @@ fn fit(experiments: &[Experiment], run: &Path) -> anyhow::Result<Sources> {
     let mut sources = RunFolder::at(run).sources()?;
     let seed = sources.results.seed;
     complete(experiments, &sources.results).with_context(|| format!("{} is no full run", told(run)))?;
+    check(experiments, &sources.results).with_context(|| format!("{} is damaged", told(run)))?;
     ensure!([FIRST_SEED, SECOND_SEED].contains(&seed), "{} is of seed {seed}, not 1 or 2", told(run));
     // The pages show the figures of the first seed only.
     if seed == FIRST_SEED {
@@ -120,16 +122,18 @@ impl Records {
     }
 }
 
-/// Fails unless every row of every experiment was run in full.
+/// Fails unless every data set of every row of every experiment was measured.
 fn complete(experiments: &[Experiment], results: &Results) -> anyhow::Result<()> {
     for experiment in experiments {
         let result = results.experiments.iter().find(|result| result.id == experiment.id);
         let result = result.with_context(|| format!("{} is missing", experiment.id))?;
         for row in experiment.rows() {
             let result = result.rows.iter().find(|result| result.id == row.id);
-            let data_sets = result.map_or(0, |result| result.data_sets);
+            let (data_sets, failed) = result.map_or((0, 0), |result| (result.data_sets, result.failed));
             let wanted = experiment.data_sets as usize;
-            ensure!(data_sets == wanted, "{} {} has {data_sets} data sets, not {wanted}", experiment.id, row.id);
+            let place = format!("{} {}", experiment.id, row.id);
+            ensure!(data_sets == wanted, "{place} has {data_sets} data sets, not {wanted}");
+            ensure!(failed == 0, "{place}: {failed} of {data_sets} data sets failed");
         }
     }
     Ok(())

@@ -1,22 +1,23 @@
 //! The results of a run, as written to `results.json`.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::{Context as _, anyhow, bail, ensure};
-use metrics::Summary;
 use serde::{Deserialize, Serialize, Serializer, ser::Error as _};
 use serde_json::Value;
 
-use crate::experiments::{Experiment, Row};
+use crate::experiments::Experiment;
 use crate::files::told;
 use crate::measure::Measure;
 use crate::paper::Printed;
-use crate::runner::Outcomes;
-use crate::verdict::{Verdict, verdict};
+use crate::verdict::Verdict;
 
 /// Version of the form of `results.json`.
-pub(crate) const SCHEMA: u32 = 2;
+pub(crate) const SCHEMA: u32 = 3;
+
+/// The oldest form that is still read: it does not say what ran.
+const OLDEST_SCHEMA: u32 = 2;
 
 /// The whole file. All but `run` is the same to the bit for the same seed and program.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -41,10 +42,24 @@ impl Results {
         let value: Value = serde_json::from_str(&text).map_err(|error| anyhow!("{name} is damaged ({error})"))?;
         let schema = value["schema"].as_u64().with_context(|| format!("{name} is not a results.json"))?;
         ensure!(
-            schema == u64::from(SCHEMA),
-            "{name} is of form {schema}, which this version does not read (but form {SCHEMA})"
+            (u64::from(OLDEST_SCHEMA)..=u64::from(SCHEMA)).contains(&schema),
+            "{name} is of form {schema}, which this version does not read (but forms {OLDEST_SCHEMA} to {SCHEMA})"
         );
-        serde_json::from_value(value).map_err(|error| anyhow!("{name} is damaged ({error})"))
+        let results: Results = serde_json::from_value(value).map_err(|error| anyhow!("{name} is damaged ({error})"))?;
+        if let Some(text) = results.texts().into_iter().find(|text| !is_plain(text)) {
+            bail!("{name} is damaged ({text:?} is no name of a row or experiment and no command of a run)");
+        }
+        Ok(results)
+    }
+
+    /// What is shown to people as it stands.
+    fn texts(&self) -> Vec<&str> {
+        let mut texts = vec![self.run.command.as_str()];
+        for result in &self.experiments {
+            texts.extend([result.id.as_str(), &result.section]);
+            texts.extend(result.rows.iter().map(|row| row.id.as_str()));
+        }
+        texts
     }
 
     /// Fails where there are results of other experiments than these.
@@ -60,6 +75,11 @@ impl Results {
     pub(crate) fn json(&self) -> anyhow::Result<String> {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }
+}
+
+/// Whether a text means nothing to a shell, to Markdown or to a terminal.
+fn is_plain(text: &str) -> bool {
+    text.chars().all(|c| c.is_ascii_alphanumeric() || " ._,/-".contains(c))
 }
 
 /// Hundreds of numbers in a row are for machines.
@@ -82,6 +102,15 @@ pub(crate) struct Run {
     pub(crate) cpu_seconds: f64,
     /// Version of the program.
     pub(crate) version: String,
+    /// The commit it was built from, with `-dirty` where files were changed; none outside of a checkout.
+    #[serde(default)]
+    pub(crate) revision: Option<String>,
+    /// The compiler that built it.
+    #[serde(default)]
+    pub(crate) rustc: String,
+    /// What it was built for.
+    #[serde(default)]
+    pub(crate) target: String,
 }
 
 /// One table or figure.
@@ -131,37 +160,4 @@ impl Cell {
     pub(crate) fn n(&self) -> usize {
         self.values.iter().flatten().count()
     }
-}
-
-/// Sums up the outcomes of every setup, which stand in the order of `experiments`.
-pub(crate) fn summarise(
-    experiments: &[Experiment],
-    outcomes: &[Vec<Outcomes>],
-) -> anyhow::Result<Vec<ExperimentResult>> {
-    let experiment = |(experiment, outcomes): (&Experiment, &Vec<Outcomes>)| {
-        let mut rows = Vec::new();
-        for (setup, outcomes) in experiment.setups.iter().zip(outcomes) {
-            for (at, row) in setup.rows.iter().enumerate() {
-                rows.push(summarise_row(experiment, row, at, outcomes)?);
-            }
-        }
-        Ok(ExperimentResult { id: experiment.id.to_owned(), section: experiment.section.to_owned(), rows })
-    };
-    experiments.iter().zip(outcomes).map(experiment).collect()
-}
-
-/// Sums up the row that stands at `at` in its setup.
-fn summarise_row(experiment: &Experiment, row: &Row, at: usize, outcomes: &Outcomes) -> anyhow::Result<RowResult> {
-    let rows: Vec<Option<&BTreeMap<Measure, f64>>> = outcomes.iter().map(|outcome| outcome.row(at)).collect();
-    let failed = rows.iter().filter(|row| row.is_none()).count();
-    let measures: BTreeSet<Measure> = rows.iter().flatten().flat_map(|row| row.keys().copied()).collect();
-    let cell = |measure: Measure| {
-        let values: Vec<Option<f64>> = rows.iter().map(|row| (*row)?.get(&measure).copied()).collect();
-        let Summary { mean, sd, median, .. } = Summary::of(&values.iter().flatten().copied().collect::<Vec<_>>())?;
-        let paper = experiment.paper(&row.id, measure);
-        let verdict = paper.map(|paper| verdict(measure.kind(row.of), mean, paper));
-        Ok((measure, Cell { mean, sd, median, values, paper, verdict }))
-    };
-    let measures = measures.into_iter().map(cell).collect::<anyhow::Result<_>>()?;
-    Ok(RowResult { id: row.id.clone(), data_sets: outcomes.len(), failed, measures })
 }

@@ -10,7 +10,7 @@ use anyhow::{Context as _, anyhow, bail};
 use serde_json::Value;
 
 use crate::figures::{Figure, Sources, documents, figures};
-use crate::files::{repository, told, write};
+use crate::files::{repository, told, typed, write};
 use crate::results::Results;
 
 /// A folder that a run writes to.
@@ -81,7 +81,11 @@ impl RunFolder {
     /// What to type for the same run again, into the same folder.
     pub(crate) fn command(&self, results: &Results) -> String {
         let command = &results.run.command;
-        if *self == RunFolder::of_latest_run() { command.clone() } else { format!("{command} --out {}", told(&self.0)) }
+        if *self == RunFolder::of_latest_run() {
+            command.clone()
+        } else {
+            format!("{command} --out {}", typed(&self.0))
+        }
     }
 
     /// Reads what a run ended with.
@@ -102,7 +106,7 @@ impl RunFolder {
     /// Reads the results alone.
     pub(crate) fn results(&self) -> anyhow::Result<Results> {
         let folder = told(&self.0);
-        let again = format!("`cargo xtask reproduce --out {folder}`");
+        let again = format!("`cargo xtask reproduce --out {}`", typed(&self.0));
         if !self.is_finished() {
             bail!(
                 "no run has ended in {folder}: where one was stopped, the same command goes on, with the same --out; else {again} makes one"

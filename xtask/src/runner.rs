@@ -87,14 +87,13 @@ pub(crate) fn run(experiments: &[Experiment], plan: Plan, records: &Arc<Records>
 
 fn measure(job: &Job<'_>, plan: Plan) -> Outcome {
     let mut rng = generator(plan.seed, job.setup.system, job.data_set);
-    match job.setup.trial.run(&mut rng) {
-        Ok(measures) => Outcome::Measured(measures),
-        Err(error) => Outcome::Failed(format!("{error:#}")),
-    }
+    Outcome::of(job.setup.trial.run(&mut rng), job.setup.rows.len())
 }
 
+/// What an earlier run finished; nothing if the record is of another number of rows than the setup has.
 fn find(records: &Records, experiment: &Experiment, setup: &Setup, plan: Plan, data_set: u32) -> Option<Outcome> {
-    records.finished(&name(experiment, setup, &definition(setup), plan, data_set)).cloned()
+    let outcome = records.finished(&name(experiment, setup, &definition(setup), plan, data_set))?;
+    outcome.is_of_rows(setup.rows.len()).then(|| outcome.clone())
 }
 
 /// All that determines what a data set of a setup gives.

@@ -86,7 +86,7 @@ fn results_that_cannot_be_used_are_refused_with_the_next_step() {
     said(folder.path(), &["reproduce", "--out", "run", "--only", row, "--data-sets", "1", "--no-figures"]);
     let path = folder.path().join("run/results.json");
     let whole = fs::read_to_string(&path).unwrap();
-    let form = "\"schema\": 2";
+    let form = "\"schema\": 3";
     assert!(whole.contains(form) && whole.contains("\"table1\""));
     for (results, why) in [
         (whole.replace(form, "\"schema\": 7"), "is of form 7"),

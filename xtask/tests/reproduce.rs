@@ -101,7 +101,7 @@ fn the_form_is_the_documented_one() {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), &["--only", ROW, "--no-figures", "--data-sets", "2", "--seed", "5"]);
     let results = results(folder.path());
-    assert_eq!((&results["schema"], &results["seed"], &results["quick"]), (&2.into(), &5.into(), &false.into()));
+    assert_eq!((&results["schema"], &results["seed"], &results["quick"]), (&3.into(), &5.into(), &false.into()));
     let row = &results["experiments"][0]["rows"][0];
     assert_eq!((&row["id"], &row["failed"]), (&"parabola-40x40-narrow".into(), &0.into()));
     for measure in ["potential_nmse", "alignment_nmse", "nupe", "ncpe", "disc"] {
@@ -111,6 +111,73 @@ fn the_form_is_the_documented_one() {
         }
         let printed = measure != "alignment_nmse";
         assert_eq!((cell["paper"].is_null(), cell["verdict"].is_null()), (!printed, !printed), "{measure}: {cell}");
+    }
+}
+
+#[test]
+fn a_run_says_what_ran() {
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), &["--only", ROW, "--no-figures", "--data-sets", "1"]);
+    let results: Value = serde_json::from_slice(&fs::read(folder.path().join("results.json")).unwrap()).unwrap();
+    let run = &results["run"];
+    assert!(run["rustc"].as_str().unwrap().starts_with("rustc 1."), "{run}");
+    assert!(run["target"].as_str().unwrap().contains('-'), "{run}");
+    let commit = run["revision"].as_str().map(|revision| revision.trim_end_matches("-dirty").len());
+    assert!(commit.is_none_or(|length| length == 40), "{run}");
+}
+
+#[test]
+fn a_changed_digit_is_measured_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["--only", ROW, "--no-figures", "--data-sets", "2"];
+    run(folder.path(), &arguments);
+    let before = results(folder.path());
+    let path = folder.path().join("records.jsonl");
+    let text = fs::read_to_string(&path).unwrap();
+    let damaged = text.replacen("\"nupe\":0.0", "\"nupe\":0.1", 1);
+    assert_ne!(damaged, text);
+    fs::write(&path, damaged).unwrap();
+    let again = run(folder.path(), &arguments);
+    let said = String::from_utf8_lossy(&again.stderr).into_owned();
+    assert!(said.contains("1 line(s) of records.jsonl") && said.contains("1 of 2 data sets"), "{said}");
+    assert_eq!(results(folder.path()), before);
+}
+
+/// `/dev/full` takes nothing.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_standard_output_loses_no_results() {
+    let folder = tempfile::tempdir().unwrap();
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = reproduce(folder.path(), &["--only", ROW, "--no-figures", "--data-sets", "1"]).stdout(full).output();
+    let output = output.unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("cannot write to standard output") && !said.contains("panicked"), "{said}");
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(results(folder.path())["experiments"][0]["rows"][0]["failed"], 0);
+    assert!(folder.path().join("report.md").exists());
+}
+
+/// Whatever started the tests may have signals ignored, which a program inherits: `env` undoes it.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_that_is_told_to_stop_says_what_is_kept() {
+    for signal in ["INT", "TERM", "HUP"] {
+        let folder = tempfile::tempdir().unwrap();
+        let run = reproduce(folder.path(), &["--only", ROW, "--no-figures", "--threads", "1"]);
+        let mut program = Command::new("env");
+        program.arg("--default-signal=INT,TERM,HUP").arg(run.get_program()).args(run.get_args());
+        let child = program.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        let started = Instant::now();
+        while lines(folder.path()) < 1 && started.elapsed() < Duration::from_secs(120) {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let sent = Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).status().unwrap();
+        assert!(sent.success());
+        let output = child.wait_with_output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(said.contains("stopped: what was finished is kept"), "{signal}: {said}");
+        assert_eq!(output.status.code(), Some(130), "{signal}");
     }
 }
 

@@ -139,8 +139,9 @@ mod tests {
         let measures = BTreeMap::from([(Measure::Nupe, cell)]);
         let row = RowResult { id: "a-row".to_owned(), data_sets: 3, failed: 1, measures };
         let result = ExperimentResult { id: curves.id.to_owned(), section: "9".to_owned(), rows: vec![row] };
-        let (command, version) = (String::new(), "1".to_owned());
-        let run = Run { command, threads: 1, resumed: 0, wall_seconds: 1.0, cpu_seconds: 1.0, version };
+        let [command, version, rustc, target] = ["", "1", "", ""].map(str::to_owned);
+        let (wall_seconds, cpu_seconds, revision) = (1.0, 1.0, None);
+        let run = Run { command, threads: 1, resumed: 0, wall_seconds, cpu_seconds, version, revision, rustc, target };
         let results = Results { schema: SCHEMA, seed: 3, quick: false, run, experiments: vec![result] };
         let text = markdown(&experiments, &results, None);
         let (_, section) = text.split_once("## ").unwrap();

@@ -22,7 +22,11 @@ pub(super) fn part(results: &Results) -> Part {
             "cargo xtask reproduce --list      # experiments and rows, for --only\n"
             "cargo xtask report                # this page from a finished run"
         } }
-        p .versions { "policy-align " (results.run.version) ", results.json of form " (results.schema) ", seed " (results.seed) "." }
+        p .versions {
+            "policy-align " (results.run.version)
+            @if let Some(revision) = &results.run.revision { ", commit " (revision) }
+            ", results.json of form " (results.schema) ", seed " (results.seed) "."
+        }
     };
     Part { id: "method".to_owned(), title, body }
 }

@@ -1,5 +1,8 @@
 //! `cargo xtask reproduce`: runs experiments, keeps every finished data set, and ends with the tables.
 
+mod interruption;
+mod selection;
+
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::{self, ErrorKind};
@@ -11,21 +14,22 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use cpu_time::ProcessTime;
 
-use crate::experiments::{Experiment, Setup, registry};
+use crate::experiments::{Experiment, registry};
 use crate::figures::{Sources, compute};
-use crate::files::told;
+use crate::files::{repository, told};
 use crate::progress::say;
 use crate::records::{Earlier, Outcome, Records};
 use crate::report::{Tally, tables, write_report, write_tables, written};
-use crate::results::{Results, Run, SCHEMA, summarise};
+use crate::results::{Results, Run, SCHEMA};
+use crate::revision::revision;
 use crate::run_folder::RunFolder;
 use crate::runner::{Measured, Outcomes, Plan, run};
+use crate::summary::summarise;
+use interruption::stop_cleanly;
+use selection::{list, select};
 
 /// Data sets a row with `--quick`.
 const QUICK_DATA_SETS: u32 = 3;
-
-/// Exit status after Ctrl-C.
-const INTERRUPTED: i32 = 130;
 
 #[derive(Debug, Args)]
 #[allow(clippy::struct_excessive_bools, reason = "switches of a command line")]
@@ -66,35 +70,17 @@ impl Reproduce {
         if self.list {
             return print(&list(&experiments));
         }
-        let started = Instant::now();
         let folder = self.out.as_deref().map_or_else(RunFolder::of_latest_run, RunFolder::at);
         folder.make()?;
-        let earlier = if self.fresh { Earlier::Forget } else { Earlier::Resume };
-        let records = Arc::new(Records::open(&folder.join("records.jsonl"), earlier)?);
-        stop_cleanly_on_ctrl_c(&records)?;
-        let plan = Plan { data_sets: self.data_sets.or(self.quick.then_some(QUICK_DATA_SETS)), seed: self.seed };
-        let threads = self.threads.map_or(0, usize::from);
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-        let Measured { outcomes, resumed } = pool.install(|| run(&experiments, plan, &records))?;
-        let results = Results {
-            schema: SCHEMA,
-            seed: self.seed,
-            quick: self.quick,
-            run: Run {
-                command: self.command(),
-                threads: pool.current_num_threads(),
-                resumed,
-                wall_seconds: started.elapsed().as_secs_f64(),
-                cpu_seconds: ProcessTime::now().as_duration().as_secs_f64(),
-                version: env!("CARGO_PKG_VERSION").to_owned(),
-            },
-            experiments: summarise(&experiments, &outcomes)?,
-        };
-        print(&tables(&experiments, &results))?;
-        say_failures(&experiments, &outcomes);
+        let records = Arc::new(self.records(&folder)?);
+        stop_cleanly(&records)?;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build()?;
+        let (results, failures) = self.measure(&experiments, &records, &pool)?;
         let mut sources = Sources { results, documents: BTreeMap::new(), missing: vec![] };
+        // The results are safe before anything else may go wrong.
+        folder.keep(&sources)?;
+        failures.iter().for_each(|failure| say(failure));
         if self.no_figures {
-            folder.keep(&sources)?;
             folder.forget_report()?;
             write_tables(&experiments, &sources.results, &folder)?;
         } else {
@@ -103,7 +89,47 @@ impl Reproduce {
             folder.keep(&sources)?;
             pool.install(|| write_report(&experiments, &sources, &folder))?;
         }
-        self.conclude(&sources.results, &folder)
+        let printed = print(&tables(&experiments, &sources.results));
+        self.conclude(&sources.results, &folder)?;
+        printed
+    }
+
+    /// The records of the folder, without a word where all of them can be used.
+    fn records(&self, folder: &RunFolder) -> anyhow::Result<Records> {
+        let earlier = if self.fresh { Earlier::Forget } else { Earlier::Resume };
+        let records = Records::open(&folder.join("records.jsonl"), earlier)?;
+        match records.unreadable() {
+            0 => (),
+            lines => say(&format!("{lines} line(s) of records.jsonl are torn, damaged or of an older form: not used")),
+        }
+        Ok(records)
+    }
+
+    /// Measures what is not measured yet, and sums up; with a line for every data set that failed.
+    fn measure(
+        &self,
+        experiments: &[Experiment],
+        records: &Arc<Records>,
+        pool: &rayon::ThreadPool,
+    ) -> anyhow::Result<(Results, Vec<String>)> {
+        let started = Instant::now();
+        let revision = revision(&repository());
+        let plan = Plan { data_sets: self.data_sets.or(self.quick.then_some(QUICK_DATA_SETS)), seed: self.seed };
+        let Measured { outcomes, resumed } = pool.install(|| run(experiments, plan, records))?;
+        let run = Run {
+            command: self.command(),
+            threads: pool.current_num_threads(),
+            resumed,
+            wall_seconds: started.elapsed().as_secs_f64(),
+            cpu_seconds: ProcessTime::now().as_duration().as_secs_f64(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            revision,
+            rustc: env!("XTASK_RUSTC").to_owned(),
+            target: env!("XTASK_TARGET").to_owned(),
+        };
+        let (seed, quick, summaries) = (self.seed, self.quick, summarise(experiments, &outcomes)?);
+        let results = Results { schema: SCHEMA, seed, quick, run, experiments: summaries };
+        Ok((results, failures(experiments, &outcomes)))
     }
 
     /// What to type for the same again, without what changes no number.
@@ -147,64 +173,19 @@ impl Reproduce {
     }
 }
 
-/// Keeps the experiments, setups and rows that are asked for; all where nothing is. Rows that are measured on the same
-/// data sets stay together.
-fn select(mut experiments: Vec<Experiment>, only: &[String]) -> anyhow::Result<Vec<Experiment>> {
-    if only.is_empty() {
-        return Ok(experiments);
-    }
-    let matches = |wanted: &str, experiment: &str, setup: &Setup| {
-        let (within, name) = wanted.split_once('/').unwrap_or((experiment, wanted));
-        within == experiment && (name == experiment || name == setup.id || setup.rows.iter().any(|row| name == row.id))
-    };
-    for wanted in only {
-        let known = |e: &Experiment| e.setups.iter().any(|setup| matches(wanted, e.id, setup));
-        if !experiments.iter().any(known) {
-            let ids: Vec<&str> = experiments.iter().map(|experiment| experiment.id).collect();
-            let ids = ids.join(", ");
-            bail!(
-                "--only {wanted:?}: no such experiment or row; experiments are {ids}; `cargo xtask reproduce --list` shows the rows"
-            );
-        }
-    }
-    for experiment in &mut experiments {
-        let id = experiment.id;
-        experiment.setups.retain(|setup| only.iter().any(|wanted| matches(wanted, id, setup)));
-    }
-    experiments.retain(|experiment| !experiment.setups.is_empty());
-    Ok(experiments)
-}
-
-fn list(experiments: &[Experiment]) -> String {
-    let line = |e: &Experiment| {
-        let rows: Vec<String> = e.rows().map(|row| format!("    {}\n", row.id)).collect();
-        format!("{}: {} (Section {}), {} data sets a row\n{}", e.id, e.title, e.section, e.data_sets, rows.concat())
-    };
-    experiments.iter().map(line).collect()
-}
-
-/// Ctrl-C waits for a line that is being written, says what is kept, and leaves.
-fn stop_cleanly_on_ctrl_c(records: &Arc<Records>) -> anyhow::Result<()> {
-    let records = Arc::clone(records);
-    let stop = move || {
-        let _no_more_writes = records.writing();
-        say("\nstopped: what was finished is kept; the same command, without --fresh, goes on from there");
-        std::process::exit(INTERRUPTED);
-    };
-    ctrlc::set_handler(stop).context("cannot watch for Ctrl-C")
-}
-
 /// Why data sets could not be measured, in this run or an earlier one.
-fn say_failures(experiments: &[Experiment], outcomes: &[Vec<Outcomes>]) {
+fn failures(experiments: &[Experiment], outcomes: &[Vec<Outcomes>]) -> Vec<String> {
+    let mut failures = Vec::new();
     for (experiment, outcomes) in experiments.iter().zip(outcomes) {
         for (setup, outcomes) in experiment.setups.iter().zip(outcomes) {
             for (data_set, outcome) in outcomes.iter().enumerate() {
                 if let Outcome::Failed(why) = outcome {
-                    say(&format!("{} {}, data set {data_set} failed: {why}", experiment.id, setup.id));
+                    failures.push(format!("{} {}, data set {data_set} failed: {why}", experiment.id, setup.id));
                 }
             }
         }
     }
+    failures
 }
 
 /// Writes to standard output; a reader that has seen enough (`| head`) is no error.

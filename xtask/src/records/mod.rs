@@ -1,6 +1,9 @@
 //! Finished data sets, kept one JSON line each so that nothing but what is in flight is ever lost.
 
-use std::collections::{BTreeMap, HashMap};
+mod line;
+mod outcome;
+
+use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
@@ -8,40 +11,9 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use anyhow::Context as _;
-use serde::{Deserialize, Serialize};
 
-use crate::experiments::Measures;
-use crate::measure::Measure;
-
-/// What one data set of one setup gave.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum Outcome {
-    /// The measures of each row.
-    Measured(Measures),
-    /// Why there are none.
-    Failed(String),
-}
-
-impl Outcome {
-    /// The measures of the row that stands at `at` in its setup, where there are any.
-    pub(crate) fn row(&self, at: usize) -> Option<&BTreeMap<Measure, f64>> {
-        match self {
-            Outcome::Measured(rows) => Some(&rows[at]),
-            Outcome::Failed(_) => None,
-        }
-    }
-}
-
-/// One line of the file.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-struct Record {
-    key: String,
-    experiment: String,
-    setup: String,
-    number: u32,
-    outcome: Outcome,
-}
+use line::Record;
+pub(crate) use outcome::Outcome;
 
 /// Names one data set of one setup of an experiment.
 #[derive(Debug, Clone, Copy)]
@@ -64,6 +36,7 @@ pub(crate) struct Records {
     path: PathBuf,
     code: u64,
     finished: HashMap<String, Outcome>,
+    unreadable: usize,
     file: Mutex<File>,
 }
 
@@ -77,32 +50,26 @@ pub(crate) enum Earlier {
 }
 
 impl Records {
-    /// Opens the records at `path`, creating them where there are none. Lines that cannot be read, such as the torn
+    /// Opens the records at `path`, creating them where there are none. Lines that cannot be believed, such as the torn
     /// last line of a killed run, are passed over; their data sets are computed again.
     pub(crate) fn open(path: &Path, earlier: Earlier) -> anyhow::Result<Records> {
-        let read = || -> anyhow::Result<(File, HashMap<String, Outcome>)> {
-            let mut file = OpenOptions::new().read(true).append(true).create(true).open(path)?;
-            file.try_lock().context("another run is writing there")?;
-            if earlier == Earlier::Forget {
-                file.set_len(0)?;
-            }
-            let mut bytes = Vec::new();
-            file.seek(SeekFrom::Start(0))?;
-            file.read_to_end(&mut bytes)?;
-            if bytes.last().is_some_and(|&last| last != b'\n') {
-                file.write_all(b"\n")?;
-            }
-            let finished = bytes
-                .split(|&byte| byte == b'\n')
-                .filter_map(|line| serde_json::from_slice::<Record>(line).ok())
-                .map(|record| (record.key, record.outcome))
-                .collect();
-            Ok((file, finished))
-        };
-        let (file, finished) = read().with_context(|| {
+        let (file, bytes) = open(path, earlier).with_context(|| {
             format!("cannot open the records {}; wait for it, or choose another --out", path.display())
         })?;
-        Ok(Records { path: path.to_owned(), code: code_identity()?, finished, file: Mutex::new(file) })
+        let lines = bytes.split(|&byte| byte == b'\n').filter(|line| !line.is_empty());
+        let records: Vec<Option<Record>> = lines.map(Record::read).collect();
+        Ok(Records {
+            path: path.to_owned(),
+            code: code_identity()?,
+            unreadable: records.iter().filter(|record| record.is_none()).count(),
+            finished: records.into_iter().flatten().map(|record| (record.key, record.outcome)).collect(),
+            file: Mutex::new(file),
+        })
+    }
+
+    /// How many lines were passed over.
+    pub(crate) fn unreadable(&self) -> usize {
+        self.unreadable
     }
 
     /// The outcome of a data set that an earlier run finished, with the same parameters, seed and program.
@@ -119,8 +86,7 @@ impl Records {
             number: data_set.number,
             outcome: outcome.clone(),
         };
-        let mut line = serde_json::to_vec(&record)?;
-        line.push(b'\n');
+        let line = record.line()?;
         self.writing().write_all(&line).with_context(|| format!("cannot write to {}", self.path.display()))
     }
 
@@ -139,6 +105,22 @@ impl Records {
     }
 }
 
+/// Opens a file that no other run has open, and reads it; a last line that was torn is ended.
+fn open(path: &Path, earlier: Earlier) -> anyhow::Result<(File, Vec<u8>)> {
+    let mut file = OpenOptions::new().read(true).append(true).create(true).open(path)?;
+    file.try_lock().context("another run is writing there")?;
+    if earlier == Earlier::Forget {
+        file.set_len(0)?;
+    }
+    let mut bytes = Vec::new();
+    file.seek(SeekFrom::Start(0))?;
+    file.read_to_end(&mut bytes)?;
+    if bytes.last().is_some_and(|&last| last != b'\n') {
+        file.write_all(b"\n")?;
+    }
+    Ok((file, bytes))
+}
+
 /// A hash of the running program itself: whatever changes the program, be it a source line, a dependency or a compiler
 /// flag, starts new records.
 fn code_identity() -> anyhow::Result<u64> {
@@ -150,7 +132,10 @@ fn code_identity() -> anyhow::Result<u64> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
+    use crate::measure::Measure;
 
     const DATA_SET: DataSet<'static> =
         DataSet { experiment: "table1", setup: "narrow", definition: "K = 40", seed: 1, number: 7 };
@@ -203,7 +188,7 @@ mod tests {
 
         let records = Records::open(&path, Earlier::Resume).unwrap();
         assert_eq!(records.finished(&DATA_SET), Some(&measured(1.0)));
-        assert_eq!(records.finished(&DataSet { number: 8, ..DATA_SET }), None);
+        assert_eq!((records.finished(&DataSet { number: 8, ..DATA_SET }), records.unreadable()), (None, 1));
         records.append(&DataSet { number: 9, ..DATA_SET }, &measured(3.0)).unwrap();
         drop(records);
         let records = Records::open(&path, Earlier::Resume).unwrap();
