@@ -117,7 +117,7 @@ fn source_faults(folder: &Path, faults: &mut Vec<String>) -> anyhow::Result<()> 
                 faults.push(format!("{}: name the file after what is in it", path.display()));
             }
             let text = read(&path)?;
-            let lines = text.lines().take_while(|line| !line.starts_with("#[cfg(test)]")).count();
+            let lines = lines_before_tests(&text);
             if lines > LONGEST_FILE && !path.components().any(|part| part.as_os_str() == "tests") {
                 faults.push(format!("{}: {lines} lines; one idea a file, {LONGEST_FILE} at most", path.display()));
             }
@@ -130,6 +130,15 @@ fn source_faults(folder: &Path, faults: &mut Vec<String>) -> anyhow::Result<()> 
         }
     }
     Ok(())
+}
+
+/// Lines up to a module of tests that stands in the file; one that is only declared does not end what is counted.
+fn lines_before_tests(text: &str) -> usize {
+    let lines: Vec<&str> = text.lines().collect();
+    let is_test_module = |pair: &[&str]| {
+        pair[0].starts_with("#[cfg(test)]") && pair[1].starts_with("mod ") && pair[1].trim_end().ends_with('{')
+    };
+    lines.windows(2).position(is_test_module).unwrap_or(lines.len())
 }
 
 fn is_attribute(line: &str) -> bool {
@@ -154,6 +163,14 @@ mod tests {
     #[test]
     fn this_workspace_is_tidy() {
         execute().unwrap();
+    }
+
+    #[test]
+    fn lines_are_counted_to_the_tests_and_no_less() {
+        let body = "mod a;\n#[cfg(test)]\nmod b;\n#[cfg(test)]\nuse c;\nfn d() {}\n";
+        assert_eq!(lines_before_tests(body), 6);
+        assert_eq!(lines_before_tests(&format!("{body}#[cfg(test)]\nmod tests {{\n    fn e() {{}}\n}}\n")), 6);
+        assert_eq!(lines_before_tests(""), 0);
     }
 
     #[test]
