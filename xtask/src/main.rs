@@ -4,7 +4,6 @@ mod conformance;
 mod experiments;
 mod figures;
 mod files;
-mod learners;
 mod measure;
 mod paper;
 mod progress;

@@ -22,6 +22,16 @@ pub(crate) enum Measure {
     Naive,
     /// Error of PolicyAlign under the row's constraint (A2).
     PolicyAlign,
+    /// [`Measure::Nupe`] on held-out samples of all movements.
+    NupeAll,
+    /// [`Measure::Ncpe`] on held-out samples of all movements.
+    NcpeAll,
+    /// [`Measure::NcpeUnseen`] on held-out samples of all movements.
+    NcpeUnseenAll,
+    /// [`Measure::Naive`] on held-out samples of all movements.
+    NaiveAll,
+    /// [`Measure::PolicyAlign`] on held-out samples of all movements.
+    PolicyAlignAll,
     /// Test samples where no receptive field speaks, percent; they count with the mean.
     Unsupported,
     /// Demonstrated movements that leave the robot's joint limits somewhere, percent.
@@ -60,6 +70,11 @@ impl Measure {
             Measure::AlignmentNmse => "alignment_nmse",
             Measure::Naive => "naive",
             Measure::PolicyAlign => "policy_align",
+            Measure::NupeAll => "nupe_all",
+            Measure::NcpeAll => "ncpe_all",
+            Measure::NcpeUnseenAll => "ncpe_unseen_all",
+            Measure::NaiveAll => "naive_all",
+            Measure::PolicyAlignAll => "policy_align_all",
             Measure::Unsupported => "unsupported",
             Measure::BeyondLimits => "beyond_limits",
         }
@@ -76,6 +91,11 @@ impl Measure {
             Measure::AlignmentNmse => "alignment nMSE",
             Measure::Naive => "naive",
             Measure::PolicyAlign => "PolicyAlign",
+            Measure::NupeAll => "nUPE, all movements",
+            Measure::NcpeAll => "nCPE, all movements",
+            Measure::NcpeUnseenAll => "nCPE, unseen, all movements",
+            Measure::NaiveAll => "naive, all movements",
+            Measure::PolicyAlignAll => "PolicyAlign, all movements",
             Measure::Unsupported => "unsupported %",
             Measure::BeyondLimits => "beyond limits %",
         }
@@ -90,7 +110,7 @@ impl Measure {
     pub(crate) fn kind(self, row: RowOf) -> Kind {
         match (self, row) {
             _ if self.is_share() => Kind::Share,
-            (Measure::Naive, _) | (_, RowOf::Baseline) => Kind::BaselineError,
+            (Measure::Naive | Measure::NaiveAll, _) | (_, RowOf::Baseline) => Kind::BaselineError,
             (_, RowOf::Learner) => Kind::LearnerError,
         }
     }

@@ -217,6 +217,16 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_run_with_failures_is_not_full() {
+        let experiments = registry().unwrap();
+        let mut results = RunFolder::committed(SECOND_SEED).results().unwrap();
+        complete(&experiments, &results).unwrap();
+        results.experiments[0].rows[2].failed = 1;
+        let told = format!("{:#}", complete(&experiments, &results).unwrap_err());
+        assert_eq!(told, "table1 parabola-40x40-wide: 1 of 100 data sets failed");
+    }
+
     /// Words and digits as drawn; the last digits of a place on the sheet may differ between machines.
     #[test]
     fn the_committed_pictures_show_the_committed_figure_data() {

@@ -129,6 +129,9 @@ pub(crate) struct ExperimentResult {
 pub(crate) struct RowResult {
     /// Identifier.
     pub(crate) id: String,
+    /// Which samples the errors are of.
+    #[serde(default)]
+    pub(crate) tested_on: String,
     /// Data sets asked for.
     pub(crate) data_sets: usize,
     /// Data sets that could not be measured; they are counted here and left out of the measures.

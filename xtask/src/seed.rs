@@ -12,3 +12,12 @@ pub(crate) fn generator(seed: u64, system: u32, data_set: u32) -> ChaCha8Rng {
     rng.set_stream(u64::from(system) << 32 | u64::from(data_set));
     rng
 }
+
+/// A generator beside that of a data set, in a stream that no data set has: what is drawn from it takes nothing from
+/// the other, wherever that one stands.
+pub(crate) fn beside(rng: &ChaCha8Rng) -> ChaCha8Rng {
+    let mut beside = rng.clone();
+    beside.set_stream(rng.get_stream() | 1 << 63);
+    beside.set_word_pos(0);
+    beside
+}

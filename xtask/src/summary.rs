@@ -61,7 +61,13 @@ fn summarise_row(experiment: &Experiment, row: &Row, at: usize, outcomes: &Outco
         Ok((measure, cell(experiment, row, measure, values)?))
     };
     let measures = measures.into_iter().map(cell).collect::<anyhow::Result<_>>()?;
-    Ok(RowResult { id: row.id.clone(), data_sets: outcomes.len(), failed, measures })
+    Ok(RowResult {
+        id: row.id.clone(),
+        tested_on: row.tested_on.to_owned(),
+        data_sets: outcomes.len(),
+        failed,
+        measures,
+    })
 }
 
 fn cell(experiment: &Experiment, row: &Row, measure: Measure, values: Vec<Option<f64>>) -> anyhow::Result<Cell> {

@@ -210,12 +210,17 @@ fn the_committed_records_are_of_this_code() {
         let found = list.as_array().unwrap().iter().find(|entry| entry["id"] == *id);
         found.unwrap_or_else(|| panic!("docs/records has no {id}")).clone()
     };
+    // Form 2 knows no held-out samples of discarded movements: its baseline learnt from them.
+    let unknown = |row: &Value, name: &str| committed["schema"] == 2 && (row == "naive" || name.ends_with("_all"));
     let mut compared = 0;
     for experiment in ours["experiments"].as_array().unwrap() {
         let rows = &find(&committed["experiments"], &experiment["id"])["rows"];
         for row in experiment["rows"].as_array().unwrap() {
             let measures = &find(rows, &row["id"])["measures"];
             for (name, cell) in row["measures"].as_object().unwrap() {
+                if unknown(&row["id"], name) {
+                    continue;
+                }
                 // As printed: the last digits may be the machine's.
                 let [now, then] = [&cell["values"][0], &measures[name]["values"][0]].map(|v| v.as_f64().unwrap());
                 let place = format!("{} {} {name}", experiment["id"], row["id"]);

@@ -7,9 +7,9 @@ use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
 
 use super::exam::examine;
+use super::pupil::Pupil;
 use super::{Experiment, Measures, Row, Setup, Trial};
-use crate::learners::Learner;
-use crate::measure::{Measure, RowOf};
+use crate::measure::Measure;
 use crate::paper::{explanations, paper_table};
 use crate::robots::upper_body;
 
@@ -19,12 +19,8 @@ const BODY_SYSTEM: u32 = 430;
 /// The experiment.
 pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
     let id = "policy_align";
-    let row = Row { id: id.to_owned(), of: RowOf::Learner };
-    let trial = BodyTrial {
-        scenario: HandInPlane::new(upper_body()?),
-        algorithm: PolicyAlign::default(),
-        learners: learners(),
-    };
+    let trial =
+        BodyTrial { scenario: HandInPlane::new(upper_body()?), algorithm: PolicyAlign::default(), pupils: pupils() };
     Ok(Experiment {
         id: "asimo22",
         section: "4.3",
@@ -39,7 +35,7 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
         another_reading_of: None,
         setups: vec![Setup {
             id: id.to_owned(),
-            rows: vec![row],
+            rows: vec![Row::of_learner(id)],
             system: BODY_SYSTEM,
             cost: 20_000_000,
             trial: Box::new(trial),
@@ -50,23 +46,23 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
 }
 
 /// In the order of the rows.
-fn learners() -> Vec<Box<dyn Learner>> {
+fn pupils() -> Vec<Pupil> {
     let norm_in = Some(DVector::repeat(22, 1.0));
     let params = LwprParams { init_d: 50.0, norm_in, adaptation: MetricAdaptation::Fixed, ..LwprParams::default() };
-    vec![Box::new(LwprRegressor { params, passes: 20, cutoff: 1e-9 })]
+    vec![Pupil::PolicyAlign(LwprRegressor { params, passes: 20, cutoff: 1e-9 })]
 }
 
 #[derive(Debug)]
 struct BodyTrial {
     scenario: HandInPlane,
     algorithm: PolicyAlign,
-    learners: Vec<Box<dyn Learner>>,
+    pupils: Vec<Pupil>,
 }
 
 impl Trial for BodyTrial {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.scenario.record(rng)?;
-        let mut rows = examine(&recordings, &self.algorithm, &self.learners, None, rng)?;
+        let mut rows = examine(&recordings, &self.algorithm, &self.pupils, rng)?.rows()?;
         let leaving = n_leaving_limits(self.scenario.body.robot(), &recordings)?;
         rows[0].insert(Measure::BeyondLimits, 100.0 * leaving as f64 / recordings.len() as f64);
         Ok(rows)

@@ -1,45 +1,104 @@
 //! An exam: every learner gets the same recordings and the same samples held out of them, and is judged by the same truth.
 
-use align::PolicyAlign;
+use std::collections::BTreeMap;
+
+use align::{Aligned, PolicyAlign};
 use constraints::PfaffianConstraint;
 use demo_gen::{Recording, demonstrations};
+use motion::{LearntPolicy, Policy};
 use rand_chacha::ChaCha8Rng;
 
 use super::Measures;
-use super::judge::{Judge, discarded_percent};
-use crate::learners::{Learner, Lesson};
+use super::judge::Judge;
+use super::pupil::Pupil;
+use super::test_samples::TestSamples;
 use crate::measure::Measure;
 
-/// Share of the kept samples that is held out for testing.
-pub(crate) const HELD_OUT: f64 = 0.1;
+/// What an exam tests on.
+pub(crate) const TESTED_ON: &str =
+    "a tenth of the samples of the movements that alignment keeps; measures named _all: of all movements";
 
-/// Aligns the recordings, lets each learner learn, and gives its errors, in the order of the learners. Those that know a
-/// potential are also judged by it and by the alignment beneath; where there is an `unseen` constraint, which holds at
-/// time 0 and in no recording, all policies are judged under it too.
-pub(crate) fn examine(
-    recordings: &[Recording],
+/// What was learnt, and those who judge it.
+pub(crate) struct Exam<'a> {
+    aligned: Aligned,
+    judge: Judge<'a>,
+    judge_of_all: Judge<'a>,
+    learnt: Vec<Box<dyn LearntPolicy>>,
+}
+
+/// Aligns the recordings, draws what is held out, and lets each learner learn.
+pub(crate) fn examine<'a>(
+    recordings: &'a [Recording],
     algorithm: &PolicyAlign,
-    learners: &[Box<dyn Learner>],
-    unseen: Option<&dyn PfaffianConstraint>,
+    pupils: &[Pupil],
     rng: &mut ChaCha8Rng,
-) -> anyhow::Result<Measures> {
+) -> anyhow::Result<Exam<'a>> {
     let aligned = algorithm.align(&demonstrations(recordings)?)?;
-    let held_out = aligned.demonstrations().hold_out_samples(aligned.kept(), HELD_OUT, rng)?;
-    let lesson = Lesson { aligned: &aligned, held_out: &held_out };
-    let judge = Judge::new(recordings, &aligned.samples().only(&held_out));
-    let mut rows = Vec::new();
-    for learner in learners {
-        let learnt = learner.learn(&lesson, rng)?;
-        let mut row = judge.policy(&*learnt.policy)?;
-        row.insert(Measure::Unsupported, 100.0 * learnt.unsupported);
-        if let Some(constraint) = unseen {
-            row.insert(Measure::NcpeUnseen, judge.policy_under(&*learnt.policy, constraint)?);
-        }
-        if let Some(potential) = learnt.potential {
-            row.extend(judge.potential(&*potential)?);
-            row.insert(Measure::Disc, discarded_percent(&aligned));
-        }
-        rows.push(row);
+    let test = TestSamples::draw(&aligned, rng)?;
+    let judge = Judge::new(recordings, &test.of_kept);
+    let judge_of_all = Judge::new(recordings, &test.of_all);
+    let learnt = pupils.iter().map(|pupil| pupil.learn(&aligned, &test.of_all, rng)).collect::<Result<_, _>>()?;
+    Ok(Exam { aligned, judge, judge_of_all, learnt })
+}
+
+impl<'a> Exam<'a> {
+    /// What each learner found, in their order.
+    pub(crate) fn learnt(&self) -> impl Iterator<Item = &dyn LearntPolicy> {
+        self.learnt.iter().map(|learnt| &**learnt)
     }
-    Ok(rows)
+
+    /// Who judges on the samples of kept movements.
+    pub(crate) fn judge(&self) -> &Judge<'a> {
+        &self.judge
+    }
+
+    /// A row for each learner, in their order: its errors on samples of kept movements, and those of its policy on
+    /// samples of all.
+    pub(crate) fn rows(&self) -> anyhow::Result<Measures> {
+        let row = |learnt: &dyn LearntPolicy| {
+            let mut row = self.errors(&self.judge, learnt)?;
+            let [nupe, ncpe] = self.judge_of_all.policy(&learnt)?;
+            row.extend([(Measure::NupeAll, nupe), (Measure::NcpeAll, ncpe)]);
+            row.insert(Measure::Unsupported, self.unsupported_percent(learnt));
+            if let Some(kept) = learnt.kept() {
+                let all = self.aligned.demonstrations().n_trajectories();
+                row.insert(Measure::Disc, 100.0 * (all - kept.len()) as f64 / all as f64);
+            }
+            Ok(row)
+        };
+        self.learnt().map(row).collect()
+    }
+
+    /// Error of a policy under a constraint that holds at time 0 and in no recording: on samples of kept movements, and
+    /// of all.
+    pub(crate) fn unseen(&self, policy: &dyn Policy, constraint: &dyn PfaffianConstraint) -> anyhow::Result<[f64; 2]> {
+        Ok([self.judge.policy_under(policy, constraint)?, self.judge_of_all.policy_under(policy, constraint)?])
+    }
+
+    /// Errors of what was learnt before a judge on samples of kept movements: of its potential too, if it has one, and
+    /// of the alignment, if it rests on that.
+    pub(crate) fn errors(
+        &self,
+        judge: &Judge<'_>,
+        learnt: &dyn LearntPolicy,
+    ) -> anyhow::Result<BTreeMap<Measure, f64>> {
+        let [nupe, ncpe] = judge.policy(&learnt)?;
+        let mut errors = BTreeMap::from([(Measure::Nupe, nupe), (Measure::Ncpe, ncpe)]);
+        if let Some(potential) = learnt.potential() {
+            errors.insert(Measure::PotentialNmse, judge.potential(potential)?);
+        }
+        if learnt.kept().is_some() {
+            errors.insert(Measure::AlignmentNmse, judge.alignment(&self.aligned)?);
+        }
+        Ok(errors)
+    }
+
+    /// Share of the test samples, as they were observed, of which the demonstrations say nothing.
+    fn unsupported_percent(&self, learnt: &dyn LearntPolicy) -> f64 {
+        let trajectories = self.aligned.demonstrations().trajectories();
+        let samples = self.judge.samples();
+        let unsupported =
+            samples.iter().filter(|at| learnt.support(trajectories[at.trajectory].state(at.sample)) == 0.0);
+        100.0 * (unsupported.count() as f64 / samples.len() as f64)
+    }
 }

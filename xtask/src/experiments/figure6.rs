@@ -7,9 +7,9 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
 use super::exam::examine;
-use super::table1::{PARABOLA_SYSTEM, learning_cost, toy_regressor};
+use super::pupil::Pupil;
+use super::table1::{PARABOLA_SYSTEM, learning_cost, toy_pupils};
 use super::{Experiment, Measures, Row, Setup, Trial};
-use crate::measure::RowOf;
 
 /// What is learnt from, percent of the trajectories.
 pub(crate) const TRAJECTORIES_PERCENT: [f64; 6] = [10.0, 20.0, 40.0, 60.0, 80.0, 100.0];
@@ -75,8 +75,14 @@ fn curves() -> Experiment {
 }
 
 fn setup(id: &str, percent: &[f64], algorithm: PolicyAlign, against: Against) -> Setup {
-    let row = |percent: &f64| Row { id: format!("{id}-{percent}"), of: RowOf::Learner };
-    let trial = CurveTrial { system: ToySystem::default(), algorithm, against, percent: percent.to_vec() };
+    let row = |percent: &f64| Row::of_learner(&format!("{id}-{percent}"));
+    let trial = CurveTrial {
+        system: ToySystem::default(),
+        algorithm,
+        pupils: toy_pupils(),
+        against,
+        percent: percent.to_vec(),
+    };
     let cost = percent.iter().map(|&percent| learning_cost(trial.trajectories(percent), trial.system.n_samples)).sum();
     let rows = percent.iter().map(row).collect();
     Setup { id: id.to_owned(), rows, system: PARABOLA_SYSTEM, cost, trial: Box::new(trial) }
@@ -94,6 +100,7 @@ enum Against {
 struct CurveTrial {
     system: ToySystem,
     algorithm: PolicyAlign,
+    pupils: Vec<Pupil>,
     against: Against,
     percent: Vec<f64>,
 }
@@ -125,8 +132,8 @@ impl Trial for CurveTrial {
         let mut rows = Vec::new();
         for &percent in &self.percent {
             let seen = self.at(percent, &recordings, &noise)?;
-            let errors = examine(&seen, &self.algorithm, &[Box::new(toy_regressor())], None, &mut learning.clone());
-            rows.extend(errors.with_context(|| format!("{:?}, {percent} %", self.against))?);
+            let exam = examine(&seen, &self.algorithm, &self.pupils, &mut learning.clone());
+            rows.extend(exam.and_then(|exam| exam.rows()).with_context(|| format!("{:?}, {percent} %", self.against))?);
         }
         Ok(rows)
     }

@@ -3,13 +3,14 @@
 
 use std::collections::BTreeMap;
 
-use align::{LwprRegressor, PolicyAlign, PotentialPolicy};
-use demo_gen::{ThreeLinkArm, demonstrations};
+use align::PolicyAlign;
+use demo_gen::ThreeLinkArm;
+use motion::LearntPolicy;
 use nalgebra::{DVectorView, Vector3};
 use rand_chacha::ChaCha8Rng;
 
-use super::exam::HELD_OUT;
-use super::judge::Judge;
+use super::exam::{Exam, examine};
+use super::pupil::Pupil;
 use super::three_link::{ARM_SYSTEM, arm, regressor};
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::{Measure, RowOf};
@@ -20,11 +21,16 @@ pub(crate) const TENTHS: std::ops::RangeInclusive<u32> = 1..=10;
 /// Fewer test samples than this give no value: the variance that errors are divided by would be chance.
 const FEWEST_SAMPLES: usize = 10;
 
+/// What its rows test on.
+const TESTED_ON: &str =
+    "a tenth of the samples of the movements that alignment keeps, of these the ones in the distance";
+
 /// The experiment.
 pub(crate) fn figure9() -> anyhow::Result<Experiment> {
     let rows = Distance::BOTH.into_iter().flat_map(|distance| TENTHS.map(move |tenths| distance.row(tenths)));
-    let rows = rows.map(|id| Row { id, of: RowOf::Learner }).collect();
-    let trial = DistanceTrial { arm: arm()?, algorithm: PolicyAlign::default(), regressor: regressor() };
+    let rows = rows.map(|id| Row { id, of: RowOf::Learner, tested_on: TESTED_ON }).collect();
+    let pupils = vec![Pupil::PolicyAlign(regressor())];
+    let trial = DistanceTrial { arm: arm()?, algorithm: PolicyAlign::default(), pupils };
     let (paper, explanations) = Default::default();
     Ok(Experiment {
         id: "figure9",
@@ -93,34 +99,34 @@ pub(crate) fn line() -> Vector3<f64> {
 struct DistanceTrial {
     arm: ThreeLinkArm,
     algorithm: PolicyAlign,
-    regressor: LwprRegressor,
+    pupils: Vec<Pupil>,
 }
 
 impl Trial for DistanceTrial {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.arm.record(rng)?;
-        let aligned = self.algorithm.align(&demonstrations(&recordings)?)?;
-        let held_out = aligned.demonstrations().hold_out_samples(aligned.kept(), HELD_OUT, rng)?;
-        let learnt = aligned.learn_without(&held_out, &self.regressor, rng)?;
-        let judge = Judge::new(&recordings, &aligned.samples().only(&held_out));
+        let exam = examine(&recordings, &self.algorithm, &self.pupils, rng)?;
         let mut rows = Vec::new();
-        for distance in Distance::BOTH {
-            for tenths in TENTHS {
-                rows.push(errors(&judge.among(|state| distance.of(state) < f64::from(tenths) / 10.0), &learnt)?);
+        for learnt in exam.learnt() {
+            for distance in Distance::BOTH {
+                for tenths in TENTHS {
+                    rows.push(errors(&exam, learnt, distance, f64::from(tenths) / 10.0)?);
+                }
             }
         }
         Ok(rows)
     }
 }
 
-/// Errors of what was learnt; none where there are too few samples.
-fn errors(judge: &Judge<'_>, learnt: &PotentialPolicy) -> anyhow::Result<BTreeMap<Measure, f64>> {
-    let mut errors = BTreeMap::new();
-    if judge.n_samples() >= FEWEST_SAMPLES {
-        errors.extend(judge.policy(learnt)?);
-        errors.extend(judge.potential(learnt.global_potential())?);
-    }
-    Ok(errors)
+/// Errors of what was learnt at the test samples within a distance; none where there are too few.
+fn errors(
+    exam: &Exam<'_>,
+    learnt: &dyn LearntPolicy,
+    distance: Distance,
+    bound: f64,
+) -> anyhow::Result<BTreeMap<Measure, f64>> {
+    let judge = exam.judge().among(|state| distance.of(state) < bound);
+    if judge.n_samples() < FEWEST_SAMPLES { Ok(BTreeMap::new()) } else { exam.errors(&judge, learnt) }
 }
 
 #[cfg(test)]

@@ -1,36 +1,32 @@
 //! Scores what was learnt from one data set against the truth (A1)–(A4).
 
-use std::collections::BTreeMap;
-
-use align::{Aligned, Samples};
+use align::Aligned;
 use constraints::{NullSpaceProjector, PfaffianConstraint};
-use demo_gen::Recording;
+use demo_gen::{Recording, Truth};
 use metrics::{alignment_nmse, ncpe, nupe, potential_nmse};
-use motion::{Policy, Potential};
+use motion::{Policy, Potential, SampleIndex};
 use nalgebra::{DMatrix, DVector, DVectorView};
 
-use crate::measure::Measure;
-
-/// The truth at the test samples: samples of kept trajectories that the regression did not see.
+/// The truth at some samples.
 pub(crate) struct Judge<'a> {
+    samples: Vec<SampleIndex>,
     states: DMatrix<f64>,
-    levelled: DVector<f64>,
     potential: DVector<f64>,
     actions: DMatrix<f64>,
     projectors: Vec<&'a NullSpaceProjector>,
 }
 
 impl<'a> Judge<'a> {
-    /// Looks up the truth of the held-out samples.
-    pub(crate) fn new(recordings: &'a [Recording], held_out: &Samples<'_>) -> Self {
-        let truth = || held_out.indices().iter().map(|at| (&recordings[at.trajectory].truth, at.sample));
-        let columns = |of: fn(&demo_gen::Truth) -> &DMatrix<f64>| {
+    /// Looks up the truth of samples, which are in ascending order.
+    pub(crate) fn new(recordings: &'a [Recording], samples: &[SampleIndex]) -> Self {
+        let truth = || samples.iter().map(|at| (&recordings[at.trajectory].truth, at.sample));
+        let columns = |of: fn(&Truth) -> &DMatrix<f64>| {
             DMatrix::from_columns(&truth().map(|(truth, n)| of(truth).column(n)).collect::<Vec<_>>())
         };
         Judge {
+            samples: samples.to_vec(),
             states: columns(|truth| &truth.states),
-            levelled: held_out.values(),
-            potential: DVector::from_iterator(held_out.len(), truth().map(|(truth, n)| truth.potential[n])),
+            potential: DVector::from_iterator(samples.len(), truth().map(|(truth, n)| truth.potential[n])),
             actions: columns(|truth| &truth.actions),
             projectors: truth().map(|(truth, n)| &truth.projectors[n]).collect(),
         }
@@ -38,14 +34,19 @@ impl<'a> Judge<'a> {
 
     /// The same test at some of the states: variances are then of these alone.
     pub(crate) fn among(&self, wanted: impl Fn(DVectorView<'_, f64>) -> bool) -> Judge<'a> {
-        let kept: Vec<usize> = (0..self.n_samples()).filter(|&sample| wanted(self.states.column(sample))).collect();
+        let chosen: Vec<usize> = (0..self.n_samples()).filter(|&sample| wanted(self.states.column(sample))).collect();
         Judge {
-            states: self.states.select_columns(&kept),
-            levelled: self.levelled.select_rows(&kept),
-            potential: self.potential.select_rows(&kept),
-            actions: self.actions.select_columns(&kept),
-            projectors: kept.iter().map(|&sample| self.projectors[sample]).collect(),
+            samples: chosen.iter().map(|&sample| self.samples[sample]).collect(),
+            states: self.states.select_columns(&chosen),
+            potential: self.potential.select_rows(&chosen),
+            actions: self.actions.select_columns(&chosen),
+            projectors: chosen.iter().map(|&sample| self.projectors[sample]).collect(),
         }
+    }
+
+    /// What is tested, ascending.
+    pub(crate) fn samples(&self) -> &[SampleIndex] {
+        &self.samples
     }
 
     /// How many states are tested.
@@ -54,10 +55,10 @@ impl<'a> Judge<'a> {
     }
 
     /// Errors of a policy, unconstrained (A1) and under the constraints of the demonstrations (A2).
-    pub(crate) fn policy(&self, policy: &dyn Policy) -> anyhow::Result<BTreeMap<Measure, f64>> {
+    pub(crate) fn policy(&self, policy: &dyn Policy) -> anyhow::Result<[f64; 2]> {
         let learnt = self.actions_of(policy);
         let under_training = ncpe(&self.actions, &learnt, |n, v| self.projectors[n].project_into(v))?;
-        Ok(BTreeMap::from([(Measure::Nupe, nupe(&self.actions, &learnt)?), (Measure::Ncpe, under_training)]))
+        Ok([nupe(&self.actions, &learnt)?, under_training])
     }
 
     /// Error of a policy under a constraint that holds at time 0 (A2), seen in the demonstrations or not.
@@ -67,14 +68,16 @@ impl<'a> Judge<'a> {
         Ok(ncpe(&self.actions, &self.actions_of(policy), |n, v| projectors[n].project_into(v))?)
     }
 
-    /// Errors of a learnt potential (A3) and of the aligned local potentials (A4).
-    pub(crate) fn potential(&self, potential: &dyn Potential) -> anyhow::Result<BTreeMap<Measure, f64>> {
+    /// Error of a learnt potential (A3).
+    pub(crate) fn potential(&self, potential: &dyn Potential) -> anyhow::Result<f64> {
         let values = self.states.column_iter().map(|state| potential.value(state));
-        let learnt = DVector::from_iterator(self.states.ncols(), values);
-        Ok(BTreeMap::from([
-            (Measure::PotentialNmse, potential_nmse(&self.potential, &learnt)?),
-            (Measure::AlignmentNmse, alignment_nmse(&self.potential, &self.levelled)?),
-        ]))
+        let learnt = DVector::from_iterator(self.n_samples(), values);
+        Ok(potential_nmse(&self.potential, &learnt)?)
+    }
+
+    /// Error of the aligned local potentials (A4); all samples are of trajectories that are kept.
+    pub(crate) fn alignment(&self, aligned: &Aligned) -> anyhow::Result<f64> {
+        Ok(alignment_nmse(&self.potential, &aligned.samples().only(&self.samples).values())?)
     }
 
     /// The actions of a policy at the test samples.
@@ -85,11 +88,6 @@ impl<'a> Judge<'a> {
         }
         actions
     }
-}
-
-/// Share of the trajectories that alignment left out, percent.
-pub(crate) fn discarded_percent(aligned: &Aligned) -> f64 {
-    100.0 * aligned.discarded().len() as f64 / aligned.demonstrations().n_trajectories() as f64
 }
 
 #[cfg(test)]
@@ -107,7 +105,7 @@ mod tests {
         let recordings = system.record(&mut crate::seed::generator(1, 0, 0)).unwrap();
         let align = PolicyAlign { bandwidth: align::Bandwidth::Wide, ..PolicyAlign::default() };
         let aligned = align.align(&demonstrations(&recordings).unwrap()).unwrap();
-        let judge = Judge::new(&recordings, &aligned.samples());
+        let judge = Judge::new(&recordings, aligned.samples().indices());
         assert_eq!((judge.n_samples(), judge.among(|_| true).n_samples()), (240, 240));
 
         let learnt = demo_gen::ToyPotential::sinusoidal();
@@ -117,10 +115,11 @@ mod tests {
         assert!((20..220).contains(&near.n_samples()) && near.n_samples() == states.len());
         let values = DVector::from_iterator(states.len(), states.iter().map(|state| learnt.value(*state)));
         let expected = potential_nmse(&DVector::from_vec(truth), &values).unwrap();
-        assert_eq!(near.potential(&learnt).unwrap()[&Measure::PotentialNmse], expected);
+        assert_eq!(near.potential(&learnt).unwrap(), expected);
 
         let errors = [&near, &judge].map(|judge| judge.policy(&NegativeGradient(&learnt)).unwrap());
-        assert!(errors[0][&Measure::Ncpe] < errors[0][&Measure::Nupe]);
+        let [nupe, ncpe] = errors[0];
+        assert!(ncpe < nupe);
         assert_ne!(errors[0], errors[1]);
     }
 }

@@ -5,16 +5,18 @@ mod exam;
 mod figure6;
 mod figure9;
 mod judge;
+mod pupil;
 mod table1;
 mod table2;
+mod test_samples;
 mod three_link;
 
-pub(crate) use exam::HELD_OUT;
 pub(crate) use figure6::{BANDWIDTHS, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
 pub(crate) use figure9::{Distance, TENTHS, line};
 pub(crate) use judge::Judge;
 pub(crate) use table1::{PARABOLA_SYSTEM, SINUSOIDAL_SYSTEM, toy_regressor};
 pub(crate) use table2::{GRASP_SYSTEM, grasp, grasp_naive, grasp_regressor};
+pub(crate) use test_samples::TestSamples;
 pub(crate) use three_link::{ARM_SYSTEM, arm};
 
 use std::collections::BTreeMap;
@@ -22,6 +24,8 @@ use std::fmt::Debug;
 
 use anyhow::ensure;
 use rand_chacha::ChaCha8Rng;
+
+use exam::TESTED_ON;
 
 use crate::measure::{Measure, RowOf};
 use crate::paper::{Explanations, PaperTable, Printed};
@@ -98,6 +102,15 @@ pub(crate) struct Row {
     pub(crate) id: String,
     /// Whose errors stand in it.
     pub(crate) of: RowOf,
+    /// Which samples its errors are of.
+    pub(crate) tested_on: &'static str,
+}
+
+impl Row {
+    /// A row of a learner's errors in an exam.
+    fn of_learner(id: &str) -> Row {
+        Row { id: id.to_owned(), of: RowOf::Learner, tested_on: TESTED_ON }
+    }
 }
 
 /// What one data set gives: the measures of each row of its setup.

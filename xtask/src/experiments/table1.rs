@@ -7,8 +7,8 @@ use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
 
 use super::exam::examine;
+use super::pupil::Pupil;
 use super::{Experiment, Measures, Row, Setup, Trial};
-use crate::measure::RowOf;
 use crate::paper::{explanations, paper_table};
 
 /// The systems of the table, by their random streams; those of the literal reading follow from 100.
@@ -62,10 +62,10 @@ fn setups(redraw: Redraw, first_system: u32) -> Vec<Setup> {
         for (bandwidth_name, bandwidth) in bandwidths {
             let id = format!("{name}-{size}x{size}-{bandwidth_name}");
             let system = ToySystem { potential: potential.clone(), n_trajectories: size, n_samples: size, redraw };
-            let row = Row { id: id.clone(), of: RowOf::Learner };
+            let row = Row::of_learner(&id);
             let algorithm = PolicyAlign { bandwidth, ..PolicyAlign::default() };
             let cost = learning_cost(size, size);
-            let trial = Box::new(ToyTrial { system, algorithm });
+            let trial = Box::new(ToyTrial { system, algorithm, pupils: toy_pupils() });
             setups.push(Setup { id, rows: vec![row], system: first_system + number, cost, trial });
         }
     }
@@ -77,6 +77,12 @@ fn setups(redraw: Redraw, first_system: u32) -> Vec<Setup> {
 struct ToyTrial {
     system: ToySystem,
     algorithm: PolicyAlign,
+    pupils: Vec<Pupil>,
+}
+
+/// Who learns the toy system.
+pub(super) fn toy_pupils() -> Vec<Pupil> {
+    vec![Pupil::PolicyAlign(toy_regressor())]
 }
 
 /// The regression of all rows.
@@ -95,6 +101,6 @@ pub(super) fn learning_cost(n_trajectories: usize, n_samples: usize) -> u64 {
 impl Trial for ToyTrial {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.system.record(rng)?;
-        examine(&recordings, &self.algorithm, &[Box::new(toy_regressor())], None, rng)
+        examine(&recordings, &self.algorithm, &self.pupils, rng)?.rows()
     }
 }

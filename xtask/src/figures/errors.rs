@@ -106,7 +106,13 @@ mod tests {
         let values = vec![Some(0.25), None, Some(0.75)];
         let cell = Cell { mean: 0.5, sd: Some(0.2), median: 0.5, values, paper: None, verdict: None };
         let measures = BTreeMap::from([(Measure::Nupe, cell)]);
-        let row = |id: &str, measures| RowResult { id: id.to_owned(), data_sets: 3, failed: 0, measures };
+        let row = |id: &str, measures| RowResult {
+            id: id.to_owned(),
+            tested_on: String::new(),
+            data_sets: 3,
+            failed: 0,
+            measures,
+        };
         let rows = vec![row("d-0.1", BTreeMap::new()), row("d-0.2", measures)];
         let result = ExperimentResult { id: "figure9".to_owned(), section: "4.4".to_owned(), rows };
         let rows = [(0.1, "d-0.1"), (0.2, "d-0.2"), (0.3, "d-0.3")].map(|(x, id)| (x, id.to_owned())).into();

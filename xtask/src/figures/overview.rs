@@ -9,9 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::sound::{Sound, field, some};
 use super::{Document, Drawing, Figure, Sources, demonstrated, rounded};
-use crate::experiments::{HELD_OUT, PARABOLA_SYSTEM, toy_regressor};
+use crate::experiments::{PARABOLA_SYSTEM, TestSamples, toy_regressor};
 use crate::figures::Who;
-use crate::learners::{Learner, Lesson};
 use crate::seed::generator;
 
 /// Starts of the movements are drawn from [−2, 2]².
@@ -62,12 +61,11 @@ fn overview(seed: u64) -> anyhow::Result<Overview> {
     let recordings = system.record(&mut rng)?;
     let align = PolicyAlign { bandwidth: Bandwidth::Medium, ..PolicyAlign::default() };
     let aligned = align.align(&demonstrations(&recordings)?)?;
-    let held_out = aligned.demonstrations().hold_out_samples(aligned.kept(), HELD_OUT, &mut rng)?;
-    let lesson = Lesson { aligned: &aligned, held_out: &held_out };
+    let test = TestSamples::draw(&aligned, &mut rng)?;
     let regressor = toy_regressor();
     let naive = DirectPolicyLearning { params: regressor.params.clone(), ..DirectPolicyLearning::default() };
-    let mut learnt = |learner: &dyn Learner| learner.learn(&lesson, &mut rng).map(|learnt| learnt.policy);
-    let (naive, learnt) = (learnt(&naive)?, learnt(&regressor)?);
+    let naive = naive.learn_policy(aligned.demonstrations(), &test.of_all, &mut rng)?;
+    let learnt = aligned.learn_without(&test.of_all, &regressor, &mut rng)?;
     let movement = |(trajectory, recording): (usize, &demo_gen::Recording)| {
         let states = recording.observed.states().column_iter();
         Movement {
@@ -79,8 +77,8 @@ fn overview(seed: u64) -> anyhow::Result<Overview> {
         movements: recordings.iter().enumerate().map(movement).collect(),
         contours: contours(&system.potential),
         expert: arrows(&NegativeGradient(&system.potential)),
-        naive: arrows(&*naive),
-        policy_align: arrows(&*learnt),
+        naive: arrows(&naive),
+        policy_align: arrows(&learnt),
     })
 }
 

@@ -12,13 +12,18 @@ rate agrees within one printed standard deviation (printed 0 ± 0: below .005 %)
 **differ**.";
 
 /// Measures and what they are.
-pub(super) const MEASURES: [(&[Measure], &str); 7] = [
+pub(super) const MEASURES: [(&[Measure], &str); 9] = [
     (&[Measure::PotentialNmse], "error of the learnt potential (A3)"),
     (
         &[Measure::Nupe, Measure::Ncpe],
         "error of the learnt policy, unconstrained (A1) and under the constraints of the demonstrations (A2)",
     ),
+    (
+        &[Measure::NupeAll, Measure::NcpeAll],
+        "the same on held-out samples of all movements, not of the kept ones alone",
+    ),
     (&[Measure::Naive, Measure::PolicyAlign], "error of that learner's policy under the constraint of the row"),
+    (&[Measure::NaiveAll, Measure::PolicyAlignAll], "the same on held-out samples of all movements"),
     (&[Measure::AlignmentNmse], "error of the aligned local potentials (A4)"),
     (&[Measure::Disc], "trajectories left out, %"),
     (&[Measure::Unsupported], "test samples where no receptive field speaks, %"),

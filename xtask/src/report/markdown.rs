@@ -137,7 +137,7 @@ mod tests {
             verdict: None,
         };
         let measures = BTreeMap::from([(Measure::Nupe, cell)]);
-        let row = RowResult { id: "a-row".to_owned(), data_sets: 3, failed: 1, measures };
+        let row = RowResult { id: "a-row".to_owned(), tested_on: String::new(), data_sets: 3, failed: 1, measures };
         let result = ExperimentResult { id: curves.id.to_owned(), section: "9".to_owned(), rows: vec![row] };
         let [command, version, rustc, target] = ["", "1", "", ""].map(str::to_owned);
         let (wall_seconds, cpu_seconds, revision) = (1.0, 1.0, None);

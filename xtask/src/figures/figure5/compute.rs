@@ -7,9 +7,8 @@ use plot::Field;
 use rand_chacha::ChaCha8Rng;
 
 use super::{Levels, Movement};
-use crate::experiments::{HELD_OUT, Judge, PARABOLA_SYSTEM, toy_regressor};
+use crate::experiments::{Judge, PARABOLA_SYSTEM, TestSamples, toy_regressor};
 use crate::figures::rounded;
-use crate::measure::Measure;
 use crate::seed::generator;
 
 /// Movements that alignment leaves out in the paper's picture.
@@ -33,10 +32,10 @@ struct Found {
 pub(super) fn levels(seed: u64) -> anyhow::Result<Levels> {
     let system = ToySystem::default();
     let Found { data_set, recordings, aligned, mut rng } = like_the_paper(&system, seed)?;
-    let held_out = aligned.demonstrations().hold_out_samples(aligned.kept(), HELD_OUT, &mut rng)?;
-    let learnt = aligned.learn_without(&held_out, &toy_regressor(), &mut rng)?;
+    let test = TestSamples::draw(&aligned, &mut rng)?;
+    let learnt = aligned.learn_without(&test.of_kept, &toy_regressor(), &mut rng)?;
     let potential = learnt.global_potential();
-    let errors = Judge::new(&recordings, &aligned.samples().only(&held_out)).potential(potential)?;
+    let judge = Judge::new(&recordings, &test.of_kept);
     let kept = aligned.samples().states();
     let height = |potential: &dyn Potential| kept.column_iter().map(|state| potential.value(state)).sum::<f64>();
     let raise = (height(&system.potential) - height(potential)) / kept.ncols() as f64;
@@ -47,8 +46,8 @@ pub(super) fn levels(seed: u64) -> anyhow::Result<Levels> {
         learnt: surface(|x| {
             (learnt.support(x.as_view()) > 0.0).then(|| rounded(potential.value(x.as_view()) + raise, 5))
         }),
-        alignment_nmse: errors[&Measure::AlignmentNmse],
-        potential_nmse: errors[&Measure::PotentialNmse],
+        alignment_nmse: judge.alignment(&aligned)?,
+        potential_nmse: judge.potential(potential)?,
     })
 }
 

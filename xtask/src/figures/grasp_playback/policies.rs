@@ -5,9 +5,8 @@ use demo_gen::{Grasp, Recording, demonstrations};
 use motion::{NegativeGradient, Policy};
 use rand_chacha::ChaCha8Rng;
 
-use crate::experiments::{HELD_OUT, grasp_naive, grasp_regressor};
+use crate::experiments::{TestSamples, grasp_naive, grasp_regressor};
 use crate::figures::Who;
-use crate::learners::{Learner, Lesson};
 
 /// A roll-out leaves the data now and then: receptive fields take part as soon as they are felt at all.
 const CUTOFF: f64 = 1e-9;
@@ -23,11 +22,11 @@ pub(super) fn policies(
     rng: &mut ChaCha8Rng,
 ) -> anyhow::Result<[Box<dyn Policy>; 3]> {
     let aligned = PolicyAlign::default().align(&demonstrations(recordings)?)?;
-    let held_out = aligned.demonstrations().hold_out_samples(aligned.kept(), HELD_OUT, rng)?;
-    let lesson = Lesson { aligned: &aligned, held_out: &held_out };
+    let test = TestSamples::draw(&aligned, rng)?;
     // In the table's order.
-    let mut learnt = |learner: &dyn Learner| learner.learn(&lesson, rng).map(|learnt| learnt.policy);
-    let policy_align = learnt(&LwprRegressor { cutoff: CUTOFF, ..grasp_regressor() })?;
-    let naive = learnt(&DirectPolicyLearning { cutoff: CUTOFF, ..grasp_naive() })?;
-    Ok([Box::new(NegativeGradient(grasp.scene.potential())), naive, policy_align])
+    let regressor = LwprRegressor { cutoff: CUTOFF, ..grasp_regressor() };
+    let policy_align = aligned.learn_without(&test.of_all, &regressor, rng)?;
+    let naive = DirectPolicyLearning { cutoff: CUTOFF, ..grasp_naive() };
+    let naive = naive.learn_policy(aligned.demonstrations(), &test.of_all, rng)?;
+    Ok([Box::new(NegativeGradient(grasp.scene.potential())), Box::new(naive), Box::new(policy_align)])
 }
