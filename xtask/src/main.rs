@@ -1,5 +1,6 @@
 //! Runs the experiments of the paper and the checks of the workspace.
 
+mod compare;
 mod conformance;
 mod experiments;
 mod figures;
@@ -50,6 +51,8 @@ enum Command {
     Report(report::Report),
     /// Write the README's tables, docs/reproduction.md and docs/pictures from the committed records
     Publish(publish::Publish),
+    /// Hold a run against the committed records: every mean within 1e-6 of itself, every verdict the same
+    Compare(compare::Compare),
     /// Compare kinematics and LWPR with reference cases that other libraries computed
     Conformance(conformance::Conformance),
     /// Check manifests and sources against the architecture
@@ -61,6 +64,7 @@ fn main() -> ExitCode {
         Command::Reproduce(reproduce) => reproduce.execute(),
         Command::Report(report) => report.execute(),
         Command::Publish(publish) => publish.execute(),
+        Command::Compare(compare) => compare.execute(),
         Command::Conformance(conformance) => conformance.execute(),
         Command::Tidy => tidy::execute(),
     };
