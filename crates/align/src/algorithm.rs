@@ -5,7 +5,7 @@ use crate::levelling::bipartition::bipartition;
 use crate::levelling::offsets::group_offsets;
 use crate::levelling::responsibilities::{Responsibilities, reach};
 use crate::scrutiny::scrutinise;
-use crate::search::SearchSpace;
+use crate::search::{NearestSamples, SearchSpace};
 use crate::{AlignError, Aligned, AlignmentObjective, Bandwidth, Integration, Warning};
 
 /// Algorithm 1 of the paper, up to the regression: brings the potentials along single trajectories to one level.
@@ -54,8 +54,7 @@ impl PolicyAlign {
             self.check()?;
             let potentials = self.integration.potentials(demonstrations)?;
             let space = SearchSpace::new(demonstrations)?;
-            let sigma_squared = self.bandwidth.among(&space)?;
-            let nearest = space.nearest(reach(sigma_squared, self.responsibility_floor), self.memory_limit)?;
+            let (sigma_squared, nearest) = self.search(&space)?;
             let responsibilities = Responsibilities::new(&nearest, &potentials, sigma_squared);
             let objective = AlignmentObjective::new(&responsibilities);
             let partition = bipartition(&objective.laplacian, self.eigenvalue_threshold)?;
@@ -64,6 +63,19 @@ impl PolicyAlign {
             warnings.extend(scrutinise(demonstrations));
             Ok(Aligned::new(demonstrations, potentials, sigma_squared, objective, partition, offsets, warnings))
         })
+    }
+
+    /// The bandwidth, and the nearest samples within reach of it.
+    fn search(&self, space: &SearchSpace) -> Result<(f64, NearestSamples), AlignError> {
+        let reach = |sigma_squared| reach(sigma_squared, self.responsibility_floor);
+        if self.bandwidth == Bandwidth::Wide {
+            // Nearly everything will be within reach, and shows all distances between trajectories.
+            let nearest = space.nearest(f64::INFINITY, self.memory_limit)?;
+            let sigma_squared = self.bandwidth.sigma_squared(&nearest.distances())?;
+            return Ok((sigma_squared, nearest.within(reach(sigma_squared))));
+        }
+        let sigma_squared = self.bandwidth.among(space)?;
+        Ok((sigma_squared, space.nearest(reach(sigma_squared), self.memory_limit)?))
     }
 
     fn check(&self) -> Result<(), AlignError> {

@@ -17,8 +17,16 @@ impl Boxes {
     /// Of states (n, N), one column a sample.
     pub(crate) fn new(states: &DMatrix<f64>) -> Self {
         let dim = states.nrows();
-        let segments = states.as_slice().chunks(SEGMENT * dim).flat_map(|segment| bounds(dim, segment)).collect();
-        Boxes { dim, whole: bounds(dim, states.as_slice()).collect(), segments }
+        let nothing = vec![[f64::INFINITY, f64::NEG_INFINITY]; dim];
+        let (mut whole, mut segments) = (nothing.clone(), Vec::new());
+        for samples in states.as_slice().chunks(SEGMENT * dim) {
+            let mut bounds = nothing.clone();
+            samples.chunks_exact(dim).for_each(|state| extend(&mut bounds, state, state));
+            let (lows, highs): (Vec<f64>, Vec<f64>) = bounds.iter().map(|&[low, high]| (low, high)).unzip();
+            extend(&mut whole, &lows, &highs);
+            segments.extend(bounds);
+        }
+        Boxes { dim, whole, segments }
     }
 
     /// Number of segments.
@@ -46,12 +54,12 @@ impl Boxes {
     }
 }
 
-/// Lowest and highest coordinates of samples in each dimension.
-fn bounds(dim: usize, samples: &[f64]) -> impl Iterator<Item = [f64; 2]> {
-    (0..dim).map(move |c| {
-        let coordinates = samples.iter().skip(c).step_by(dim);
-        coordinates.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)])
-    })
+/// Makes a box so large that it holds two corners.
+fn extend(bounds: &mut [[f64; 2]], lowest: &[f64], highest: &[f64]) {
+    for ([low, high], (&below, &above)) in bounds.iter_mut().zip(lowest.iter().zip(highest)) {
+        *low = if below < *low { below } else { *low };
+        *high = if above > *high { above } else { *high };
+    }
 }
 
 /// Rounding is monotone: differences, squares and sums are formed as those of samples are, in the same order, and none

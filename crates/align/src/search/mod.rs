@@ -9,4 +9,5 @@ pub(crate) mod nearest;
 mod space;
 mod tiles;
 
+pub(crate) use nearest::NearestSamples;
 pub(crate) use space::SearchSpace;

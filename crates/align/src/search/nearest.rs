@@ -1,4 +1,5 @@
 use lanes::{LANES, Lanes, groups_of};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::block_search::BlockSearch;
@@ -28,6 +29,8 @@ pub(crate) struct Nearest<'a> {
     pub(crate) squared_distances: &'a [Lanes],
     /// Indices, filled up with 0; the lowest of those equally near. Of samples whose nearest is beyond reach any.
     pub(crate) samples: &'a [[u32; LANES]],
+    /// The smallest squared distance of all.
+    smallest: f64,
 }
 
 impl NearestSamples {
@@ -41,9 +44,9 @@ impl NearestSamples {
             let mut of_columns = NearestList::with_capacity(groups.sum());
             for &j in &neighbours[i] {
                 // Boxes within reach may have no samples that are.
-                let within = search.run(&trajectories[j]) <= reach;
-                of_rows.push(within.then_some(&search.of_rows));
-                of_columns.push(within.then_some(&search.of_columns));
+                let smallest = search.run(&trajectories[j]);
+                of_rows.push(&search.of_rows, smallest, reach);
+                of_columns.push(&search.of_columns, smallest, reach);
             }
             (of_rows, of_columns)
         });
@@ -56,6 +59,17 @@ impl NearestSamples {
         self.reach
     }
 
+    /// The same, of which only what is within this smaller reach is told.
+    pub(crate) fn within(self, reach: f64) -> Self {
+        NearestSamples { reach, ..self }
+    }
+
+    /// d_kj = min_{n,m} ‖x_kn − x_jm‖² (18), shape (K, K), zero on the diagonal; infinite beyond reach.
+    pub(crate) fn distances(&self) -> DMatrix<f64> {
+        let count = self.n_trajectories();
+        DMatrix::from_fn(count, count, |j, k| self.of(k, j).map_or(f64::INFINITY, |nearest| nearest.smallest))
+    }
+
     /// Number K of trajectories.
     pub(crate) fn n_trajectories(&self) -> usize {
         self.neighbours.len()
@@ -66,7 +80,7 @@ impl NearestSamples {
         let (first, second) = (owner.min(model), owner.max(model));
         let at = self.neighbours[first].binary_search(&second).ok()?;
         let lists = if model >= owner { &self.toward_later } else { &self.toward_earlier };
-        lists[first].get(at)
+        lists[first].get(at).filter(|nearest| nearest.smallest <= self.reach)
     }
 }
 
@@ -75,6 +89,7 @@ impl NearestSamples {
 struct NearestList {
     squared_distances: Vec<Lanes>,
     samples: Vec<[u32; LANES]>,
+    smallest: Vec<f64>,
     ends: Vec<usize>,
 }
 
@@ -83,15 +98,17 @@ impl NearestList {
         NearestList {
             squared_distances: Vec::with_capacity(groups),
             samples: Vec::with_capacity(groups),
+            smallest: Vec::new(),
             ends: Vec::new(),
         }
     }
 
-    fn push(&mut self, minima: Option<&Minima>) {
-        if let Some(minima) = minima {
+    fn push(&mut self, minima: &Minima, smallest: f64, reach: f64) {
+        if smallest <= reach {
             self.squared_distances.extend_from_slice(&minima.distances);
             self.samples.extend(minima.samples.iter().map(|samples| samples.map(whole)));
         }
+        self.smallest.push(smallest);
         self.ends.push(self.samples.len());
     }
 
@@ -99,7 +116,7 @@ impl NearestList {
         let range = if at == 0 { 0 } else { self.ends[at - 1] }..self.ends[at];
         let squared_distances = &self.squared_distances[range.clone()];
         let samples = &self.samples[range];
-        (!samples.is_empty()).then_some(Nearest { squared_distances, samples })
+        (!samples.is_empty()).then_some(Nearest { squared_distances, samples, smallest: self.smallest[at] })
     }
 }
 
