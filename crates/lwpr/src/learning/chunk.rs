@@ -1,11 +1,11 @@
 //! A stretch of samples that all fields of an output learn from, one field after the other.
 
+use lanes::{LANES, Lanes, Number, Register};
 use nalgebra::DVectorView;
 use pulp::Simd;
 
 use crate::Metric;
 use crate::settings::Settings;
-use lanes::{LANES, Lanes, Number, Register};
 
 /// Normalised inputs, sample by sample and eight samples side by side.
 #[derive(Debug, Clone, Default)]

@@ -1,9 +1,10 @@
 //! The gradient of a full metric.
 
+use lanes::Number;
+
 use crate::field::MetricRows;
 use crate::field::element::{Element, add_scaled};
 use crate::learning::metric::{Derivatives, ElementRows, Step};
-use lanes::Number;
 
 /// Scratch rows: M(x − c), a column of MD, and M Mᵀ (`n_in` rows; empty for a diagonal metric).
 pub(crate) struct FullScratch<'a> {

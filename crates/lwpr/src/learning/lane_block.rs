@@ -1,5 +1,6 @@
 //! Fields side by side: one in each lane of a vector register.
 
+use lanes::{Number, Register};
 use pulp::Simd;
 
 use crate::Metric;
@@ -10,8 +11,6 @@ use crate::learning::metric::{self, Diagonal, Full};
 use crate::learning::rules::{SCRATCH_ROWS, Workspace, train};
 use crate::settings::Settings;
 use crate::settings::kernel::Activation;
-use lanes::Number;
-use lanes::Register;
 
 /// As many fields as a vector register has lanes, all with the same number of directions, and a sample for each.
 pub(crate) struct LaneBlock<S: Simd> {

@@ -1,5 +1,7 @@
 //! One step of gradient descent on a field's metric (Vijayakumar, D'Souza, Schaal 2005, table 2 and appendix).
 
+use lanes::Number;
+
 use crate::MetricAdaptation;
 use crate::field::element::Element;
 use crate::field::{Direction, Field, Layout, MetricRows};
@@ -7,7 +9,6 @@ use crate::learning::full_metric::{FullScratch, full_step};
 use crate::learning::regression::{Absorbed, settled};
 use crate::settings::Settings;
 use crate::settings::kernel::Activation;
-use lanes::Number;
 
 /// The metric's shape, where the code for it is chosen when it is compiled.
 pub(crate) trait Shape: Default {

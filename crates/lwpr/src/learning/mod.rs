@@ -1,6 +1,7 @@
 //! How receptive fields learn: one sample at a time, or a batch field by field.
 
 pub(crate) mod activation;
+pub(crate) mod activation_table;
 mod batch;
 mod chunk;
 pub(crate) mod full_metric;

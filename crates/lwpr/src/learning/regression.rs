@@ -1,9 +1,10 @@
 //! Incremental partial least squares inside a receptive field (Vijayakumar, D'Souza, Schaal 2005, table 1).
 
+use lanes::Number;
+
 use crate::field::element::Element;
 use crate::field::{Direction, DirectionRows, Field, Layout};
 use crate::settings::Settings;
-use lanes::Number;
 
 /// A normalised sample, and how strongly it activates the field.
 #[derive(Debug, Clone, Copy)]

@@ -2,7 +2,8 @@
 
 use crate::Pruning;
 use crate::field::Field;
-use crate::learning::activation::{ActivationTable, Near, Reached};
+use crate::learning::activation::{Near, Reached};
+use crate::learning::activation_table::ActivationTable;
 use crate::learning::memory::Seen;
 use crate::learning::rules::{LearnFromOne, Workspace};
 use crate::settings::Settings;

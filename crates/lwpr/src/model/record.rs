@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::field::rows::Rows;
 use crate::field::{DIRECTION_ROWS, Direction, Field, Layout};
-use crate::learning::activation::ActivationTable;
+use crate::learning::activation_table::ActivationTable;
 use crate::learning::sub_model::SubModel;
 use crate::settings::Settings;
 use crate::{Lwpr, LwprError, LwprParams, Metric};

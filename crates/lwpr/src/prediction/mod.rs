@@ -1,6 +1,8 @@
 //! What a model says about an input.
 
+mod distance;
 mod field_table;
+mod hessian;
 mod live;
 mod local_model;
 mod predictor;

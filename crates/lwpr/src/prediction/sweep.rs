@@ -5,7 +5,9 @@ use std::cell::RefCell;
 use lanes::{LANES, Lanes, Number, Register, total};
 use pulp::Simd;
 
-use super::field_table::{Block, CUTOFF, FAR, FieldTable, NOISE, NOISE_KNOWN, OFFSET};
+use super::distance::{diagonal_distance, differences, full_distance, turned};
+use super::field_table::{CUTOFF, FieldTable, NOISE, NOISE_KNOWN};
+use super::hessian::write_hessian;
 use crate::Kernel;
 
 /// What a query needs to know besides the fields.
@@ -34,12 +36,12 @@ pub(super) struct Wanted<'a> {
 
 /// A block with fields in reach: squared distances, activations, 2 dw/dq, local predictions.
 #[derive(Debug, Clone, Copy, Default)]
-struct Active {
-    block: usize,
-    q: Lanes,
-    w: Lanes,
-    dw: Lanes,
-    y: Lanes,
+pub(super) struct Active {
+    pub(super) block: usize,
+    pub(super) q: Lanes,
+    pub(super) w: Lanes,
+    pub(super) dw: Lanes,
+    pub(super) y: Lanes,
 }
 
 /// What a query works in; each thread has one, so that none allocates more than once.
@@ -182,70 +184,6 @@ fn find<S: Simd>(simd: S, table: &FieldTable, query: Query<'_>, x: &[f64], activ
     (Sums { w: total(sum_w), wy: total(sum_wy), nearest }, count)
 }
 
-/// q = (x − c)ᵀD(x − c) with diagonal D, and the local prediction.
-#[inline(always)]
-fn diagonal_distance<S: Simd>(simd: S, block: Block<'_>, x: &[f64], part: usize) -> (Register<S>, Register<S>) {
-    let mut q = Register::load(simd, &block.head[FAR], part);
-    let mut y = Register::load(simd, &block.head[OFFSET], part);
-    for (([c, s], d), &x) in block.axes.iter().zip(block.metric).zip(x) {
-        let dx = Register::splat(simd, x) - Register::load(simd, c, part);
-        q = (dx * dx).mul_add(Register::load(simd, d, part), q);
-        y = dx.mul_add(Register::load(simd, s, part), y);
-    }
-    (q, y)
-}
-
-/// The same with full D: Σᵢ dxᵢ (Dᵢᵢ dxᵢ + 2 Σⱼ Dᵢⱼ dxⱼ) over the upper triangle.
-#[inline(always)]
-fn full_distance<S: Simd>(simd: S, block: Block<'_>, x: &[f64], part: usize) -> (Register<S>, Register<S>) {
-    let mut q = Register::load(simd, &block.head[FAR], part);
-    let mut y = Register::load(simd, &block.head[OFFSET], part);
-    let mut metric = block.metric.iter();
-    for (i, ([c, s], &xi)) in block.axes.iter().zip(x).enumerate() {
-        let dx = Register::splat(simd, xi) - Register::load(simd, c, part);
-        y = dx.mul_add(Register::load(simd, s, part), y);
-        let Some(diagonal) = metric.next() else { break };
-        let mut beside = Register::splat(simd, 0.0);
-        for (([c, _], &xj), d) in block.axes[i + 1..].iter().zip(&x[i + 1..]).zip(&mut metric) {
-            beside = (Register::splat(simd, xj) - Register::load(simd, c, part))
-                .mul_add(Register::load(simd, d, part), beside);
-        }
-        q = dx.mul_add((beside + beside) + dx * Register::load(simd, diagonal, part), q);
-    }
-    // A singular D may be negative by rounding; what is no number stays none.
-    let zero = Register::splat(simd, 0.0);
-    (zero.or_else(zero.above(q), q), y)
-}
-
-/// x − c of a block.
-#[inline(always)]
-fn differences<S: Simd>(simd: S, block: Block<'_>, x: &[f64], dx: &mut [Lanes]) {
-    for part in 0..Register::<S>::parts() {
-        for (([c, _], &x), dx) in block.axes.iter().zip(x).zip(&mut *dx) {
-            (Register::splat(simd, x) - Register::load(simd, c, part)).store(dx, part);
-        }
-    }
-}
-
-/// Element `i` of v = D(x − c).
-#[inline(always)]
-fn turned<S: Simd>(simd: S, table: &FieldTable, block: Block<'_>, dx: &[Lanes], i: usize, part: usize) -> Register<S> {
-    if !table.is_full() {
-        return Register::load(simd, &dx[i], part) * Register::load(simd, &block.metric[i], part);
-    }
-    // Row j of the triangle begins n, n − 1, … further on.
-    let mut at = i;
-    let mut sum = Register::splat(simd, 0.0);
-    for (j, dx_j) in dx[..i].iter().enumerate() {
-        sum = Register::load(simd, dx_j, part).mul_add(Register::load(simd, &block.metric[at], part), sum);
-        at += dx.len() - 1 - j;
-    }
-    for (dx_j, d) in dx[i..].iter().zip(&block.metric[at..]) {
-        sum = Register::load(simd, dx_j, part).mul_add(Register::load(simd, d, part), sum);
-    }
-    sum
-}
-
 /// Σ w ∂y/∂x + Σ ∂w/∂x (y − `value`), in each lane; `dx` is a row of scratch.
 #[inline(always)]
 fn add_gradients<S: Simd>(
@@ -314,79 +252,4 @@ fn spread<S: Simd>(simd: S, table: &FieldTable, x: &[f64], active: &[Active], va
         }
     }
     if total(known) > 0.0 { total(sums).sqrt() } else { f64::INFINITY }
-}
-
-/// The second derivative: Σ (y − `value`)(4 w″ vvᵀ + 2 w′ D) + Σ 2 w′ (v sᵀ + s vᵀ), less g aᵀ + a gᵀ with the gradient g
-/// and a = Σ 2 w′ v, over Σ w.
-#[inline(always)]
-fn write_hessian<S: Simd>(
-    simd: S,
-    table: &FieldTable,
-    (query, scale, value): (Query<'_>, f64, f64),
-    (x, active): (&[f64], &[Active]),
-    (dx, v, (gradients, sum_w)): (&mut [Lanes], &mut Vec<Lanes>, (&[Lanes], f64)),
-    hessian: &mut [f64],
-) {
-    let n = table.n_in();
-    if v.len() < n * active.len() {
-        v.resize(n * active.len(), [0.0; LANES]);
-    }
-    for (found, v) in active.iter().zip(v.chunks_exact_mut(n)) {
-        let block = table.block(found.block);
-        differences(simd, block, x, dx);
-        for (i, v) in v.iter_mut().enumerate() {
-            for part in 0..Register::<S>::parts() {
-                turned(simd, table, block, dx, i, part).store(v, part);
-            }
-        }
-    }
-    for i in 0..n {
-        for j in i..n {
-            let (sum, a_i, a_j) = hessian_sums(simd, table, active, v, (query.kernel, value), (i, j));
-            let (g_i, g_j) = (total(gradients[i]) / sum_w, total(gradients[j]) / sum_w);
-            let element = (sum - (g_i * a_j + a_i * g_j)) * (scale * query.per_norm_in[i] * query.per_norm_in[j]);
-            (hessian[j * n + i], hessian[i * n + j]) = (element, element);
-        }
-    }
-}
-
-/// The sums of element (i, j), and of aᵢ and aⱼ.
-#[inline(always)]
-fn hessian_sums<S: Simd>(
-    simd: S,
-    table: &FieldTable,
-    active: &[Active],
-    v: &[Lanes],
-    (kernel, value): (Kernel, f64),
-    (i, j): (usize, usize),
-) -> (f64, f64, f64) {
-    let n = table.n_in();
-    let (mut sums, mut a_i, mut a_j) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-    for part in 0..Register::<S>::parts() {
-        let zero = Register::splat(simd, 0.0);
-        let (mut sum, mut sum_i, mut sum_j) = (zero, zero, zero);
-        for (k, found) in active.iter().enumerate() {
-            let block = table.block(found.block);
-            let dw = Register::load(simd, &found.dw, part);
-            let counts = Register::load(simd, &found.w, part).above(zero);
-            let curvature = kernel.at(Register::load(simd, &found.q, part)).curvature.or_else(counts, zero);
-            let off = Register::load(simd, &found.y, part) - Register::splat(simd, value);
-            let (v_i, v_j) = (Register::load(simd, &v[k * n + i], part), Register::load(simd, &v[k * n + j], part));
-            let (s_i, s_j) =
-                (Register::load(simd, &block.axes[i][1], part), Register::load(simd, &block.axes[j][1], part));
-            let d = if table.is_full() {
-                Register::load(simd, &block.metric[i * (2 * n - i + 1) / 2 + j - i], part)
-            } else if i == j {
-                Register::load(simd, &block.metric[i], part)
-            } else {
-                zero
-            };
-            sum += off * (curvature * v_i * v_j * 4.0 + dw * d) + dw * (v_i * s_j + s_i * v_j);
-            (sum_i, sum_j) = (sum_i + dw * v_i, sum_j + dw * v_j);
-        }
-        sum.store(&mut sums, part);
-        sum_i.store(&mut a_i, part);
-        sum_j.store(&mut a_j, part);
-    }
-    (total(sums), total(a_i), total(a_j))
 }

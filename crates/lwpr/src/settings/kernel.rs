@@ -1,6 +1,5 @@
-use serde::{Deserialize, Serialize};
-
 use lanes::Number;
+use serde::{Deserialize, Serialize};
 
 /// Shape of a receptive field: activation w as a function of q = (x − c)ᵀD(x − c).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]

@@ -1,0 +1,126 @@
+//! Centres and metrics of fields with few dimensions, eight side by side.
+
+use lanes::{LANES, Lanes, Number, Register};
+use pulp::Simd;
+
+use crate::Metric;
+use crate::field::Field;
+use crate::learning::activation::Near;
+use crate::settings::Settings;
+
+/// Centres and metrics of all fields, in blocks of eight: for each dimension eight centres, then, eight by eight, what
+/// decides about distances ([`distance`]).
+///
+/// With many dimensions the table is empty: M is read from the fields themselves.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct ActivationTable {
+    blocks: Vec<Lanes>,
+}
+
+impl ActivationTable {
+    /// Puts field `k` in, as a new last one or in place of the old.
+    pub(crate) fn set(&mut self, settings: &Settings, k: usize, field: &Field) {
+        if !settings.narrow() {
+            return;
+        }
+        let n = settings.n_in;
+        let size = n + settings.shape_len();
+        if k / LANES * size == self.blocks.len() {
+            // Lanes without a field are infinitely far from everything.
+            self.blocks.resize(self.blocks.len() + n, [f64::INFINITY; LANES]);
+            self.blocks.resize(self.blocks.len() + size - n, [1.0; LANES]);
+        }
+        let block = &mut self.blocks[k / LANES * size..][..size];
+        for (row, &c) in block.iter_mut().zip(field.centre(settings)) {
+            row[k % LANES] = c;
+        }
+        self.set_metric(settings, k, field);
+    }
+
+    /// Takes over the metric of field `k` after it has learnt.
+    #[inline(always)]
+    pub(crate) fn set_metric(&mut self, settings: &Settings, k: usize, field: &Field) {
+        if !settings.narrow() {
+            return;
+        }
+        let (n, lane) = (settings.n_in, k % LANES);
+        let size = n + settings.shape_len();
+        let rows = &mut self.blocks[k / LANES * size..][n..size];
+        let m = field.m(settings);
+        if settings.params.metric == Metric::Diagonal {
+            for (row, m) in rows.iter_mut().zip(m) {
+                row[lane] = m * m;
+            }
+            return;
+        }
+        let mut rows = rows.iter_mut();
+        for i in 0..n {
+            for (column, row) in (i..n).zip(&mut rows) {
+                row[lane] = m[column * settings.width + i];
+            }
+        }
+    }
+
+    /// Forgets the last field, number `k`.
+    pub(crate) fn pop(&mut self, settings: &Settings, k: usize) {
+        if !settings.narrow() {
+            return;
+        }
+        let n = settings.n_in;
+        let start = k / LANES * (n + settings.shape_len());
+        if k.is_multiple_of(LANES) {
+            self.blocks.truncate(start);
+        } else {
+            self.blocks[start..start + n].iter_mut().for_each(|centres| centres[k % LANES] = f64::INFINITY);
+        }
+    }
+
+    /// Takes note of every field whose squared distance from `x` is below `reach`, in list order.
+    #[inline(always)]
+    pub(super) fn look<S: Simd>(&self, simd: S, settings: &Settings, x: &[f64], reach: f64, near: &mut Near) {
+        let n = settings.n_in;
+        let limit = Register::splat(simd, reach);
+        let mut dx = [[0.0; LANES]; LANES];
+        for (b, block) in self.blocks.chunks_exact(n + settings.shape_len()).enumerate() {
+            let (centres, metric) = block.split_at(n);
+            let mut q = [0.0; LANES];
+            let mut close = false;
+            for part in 0..Register::<S>::parts() {
+                for ((dx, centre), &x) in dx.iter_mut().zip(centres).zip(x) {
+                    (Register::splat(simd, x) - Register::load(simd, centre, part)).store(dx, part);
+                }
+                let distance = distance(simd, settings.params.metric, (&dx[..n], metric), part);
+                close |= Register::<S>::any(simd, limit.above(distance));
+                distance.store(&mut q, part);
+            }
+            if close {
+                for (lane, &q) in q.iter().enumerate() {
+                    near.see(b * LANES + lane, q, reach);
+                }
+            }
+        }
+    }
+}
+
+/// q = |M(x − c)|² of eight pairs of a sample and a field side by side, from the eight D of each dimension, or with a full
+/// metric from the eight numbers of each element in the upper triangle of M, row after row.
+#[inline(always)]
+fn distance<S: Simd>(simd: S, shape: Metric, (dx, metric): (&[Lanes], &[Lanes]), part: usize) -> Register<S> {
+    let mut q = Register::splat(simd, 0.0);
+    if shape == Metric::Diagonal {
+        for (dx, d) in dx.iter().zip(metric) {
+            let dx = Register::load(simd, dx, part);
+            q += dx * dx * Register::load(simd, d, part);
+        }
+        return q;
+    }
+    let mut elements = metric.iter();
+    for i in 0..dx.len() {
+        let mut t = Register::splat(simd, 0.0);
+        for (dx, m) in dx[i..].iter().zip(&mut elements) {
+            t += Register::load(simd, dx, part) * Register::load(simd, m, part);
+        }
+        q += t * t;
+    }
+    q
+}
