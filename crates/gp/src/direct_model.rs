@@ -94,7 +94,7 @@ impl DirectModel {
         let places = actions.as_mut_slice().par_chunks_mut(states.nrows());
         places
             .zip(states.as_slice().par_chunks(states.nrows()))
-            .for_each(|(action, state)| Arch::new().dispatch(Action { model: self, state, action }));
+            .for_each(|(action, state)| Arch::new().dispatch(Action { model: self, state, place: action }));
         actions
     }
 }
@@ -103,7 +103,7 @@ impl DirectModel {
 struct Action<'a> {
     model: &'a DirectModel,
     state: &'a [f64],
-    action: &'a mut [f64],
+    place: &'a mut [f64],
 }
 
 impl WithSimd for Action<'_> {
@@ -111,7 +111,7 @@ impl WithSimd for Action<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
-        let Action { model, state, action } = self;
+        let Action { model, state, place: action } = self;
         action.fill(0.0);
         let z = |k: usize| model.scaling.coordinate(k, state[k]);
         for chunk in 0..model.states.len() {
@@ -137,6 +137,6 @@ impl Policy for DirectModel {
 
     fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
         require(self.dim(), &[state.len(), action.len()]);
-        Arch::new().dispatch(Action { model: self, state: state.as_slice(), action: action.as_mut_slice() });
+        Arch::new().dispatch(Action { model: self, state: state.as_slice(), place: action.as_mut_slice() });
     }
 }

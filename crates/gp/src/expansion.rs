@@ -74,7 +74,7 @@ impl Expansion {
 
     /// π̂(x), (n), in units of the state per second. Allocates nothing.
     pub(crate) fn action_into(&self, state: &[f64], action: &mut [f64]) {
-        Arch::new().dispatch(Action { expansion: self, state, action });
+        Arch::new().dispatch(Action { expansion: self, state, place: action });
         let z = |k: usize| self.scaling.coordinate(k, state[k]);
         for (k, action) in action.iter_mut().enumerate() {
             let sloped: f64 = (0..state.len()).map(|l| self.matrix[(k, l)] * z(l)).sum();
@@ -150,7 +150,7 @@ impl Expansion {
 struct Action<'a> {
     expansion: &'a Expansion,
     state: &'a [f64],
-    action: &'a mut [f64],
+    place: &'a mut [f64],
 }
 
 impl WithSimd for Action<'_> {
@@ -158,7 +158,7 @@ impl WithSimd for Action<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
-        let Action { expansion, state, action } = self;
+        let Action { expansion, state, place: action } = self;
         action.fill(0.0);
         for chunk in 0..expansion.states.len() {
             let (beta, g, h) = expansion.chunk(chunk, state);

@@ -1,7 +1,7 @@
 //! Cholesky factors, by faer on one thread: the same bits at any number of threads.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::cholesky::llt::factor::{LltRegularization, cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::linalg::triangular_inverse::invert_lower_triangular;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
@@ -29,7 +29,8 @@ impl Factor {
         let scratch = cholesky_in_place_scratch::<f64>(matrix.nrows(), Par::Seq, Spec::default());
         let mut memory = MemBuffer::new(scratch);
         let stack = MemStack::new(&mut memory);
-        cholesky_in_place(view_mut(&mut matrix), Default::default(), Par::Seq, stack, Spec::default()).ok()?;
+        cholesky_in_place(view_mut(&mut matrix), LltRegularization::default(), Par::Seq, stack, Spec::default())
+            .ok()?;
         let sound = matrix.diagonal().iter().all(|&pivot| pivot > 0.0 && pivot.is_finite());
         sound.then_some(Factor { lower: matrix })
     }

@@ -78,7 +78,8 @@ impl Selection {
         self.check()?;
         let speeds: Vec<f64> = rows.velocities().column_iter().map(|velocity| velocity.norm()).collect();
         let fastest = speeds.iter().copied().fold(0.0, f64::max);
-        if fastest == 0.0 {
+        // Squares of what moves may vanish, so that not the speeds are asked.
+        if rows.velocities().amax() == 0.0 {
             return Err(GpError::NoMotion);
         }
         if fastest * fastest < 1e-290 {

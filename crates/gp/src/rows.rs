@@ -40,7 +40,7 @@ impl Rows {
                 return Err(GpError::Value { what, row: at / matrix.nrows(), value: matrix[at] });
             }
             // Room for sums over rows and dimensions.
-            if !(matrix.norm_squared() < 1e300) {
+            if !(0.0..1e300).contains(&matrix.norm_squared()) {
                 return Err(GpError::Overflow { what: if what == "state" { "distance" } else { "speed" } });
             }
         }
@@ -56,7 +56,7 @@ impl Rows {
         if found != expected {
             return Err(GpError::Lengths { what: "variances", found, expected });
         }
-        match variances.iter().position(|&variance| !(variance >= 0.0 && variance < 1e300)) {
+        match variances.iter().position(|&variance| !(0.0..1e300).contains(&variance)) {
             Some(row) => Err(GpError::Value { what: "variance", row, value: variances[row] }),
             None => Ok(Rows { variances: Some(variances), ..self }),
         }
@@ -64,6 +64,7 @@ impl Rows {
 
     /// The same with what the front end found: the standard deviation of its noise, in units of the state, and for
     /// every sample of every trajectory the probability that a constraint switched before it.
+    #[must_use]
     pub fn with_findings(self, noise: f64, switches: Option<Vec<Vec<f64>>>) -> Self {
         Rows { noise: Some(noise), switches, ..self }
     }

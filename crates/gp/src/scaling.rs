@@ -23,7 +23,9 @@ impl Scaling {
         let variances: f64 = mean.iter().enumerate().map(variance).sum();
         let scale = (variances / mean.len() as f64).sqrt();
         // The mean of equal numbers may differ from them by its rounding.
-        if scale <= 1e-14 * states.amax() {
+        let furthest =
+            states.row_iter().zip(&mean).map(|(axis, mean)| axis.add_scalar(-mean).amax()).fold(0.0, f64::max);
+        if furthest <= 1e-14 * states.amax() {
             return Err(GpError::OneState);
         }
         if !(scale > 1e-150 && scale < 1e150) {

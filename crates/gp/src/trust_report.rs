@@ -105,12 +105,11 @@ impl TrustReport {
     /// What gives reason to doubt the policy, one sentence each.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
-        match self.r_squared {
-            r2 if r2 < 0.5 => {
-                warnings.push(format!("left-out movements are not predicted (R² {r2:.2}): do not use this policy"))
-            }
-            r2 if r2 < 0.9 => warnings.push(format!("left-out movements are predicted poorly (R² {r2:.2})")),
-            _ => {}
+        if self.r_squared < 0.5 {
+            let r2 = self.r_squared;
+            warnings.push(format!("left-out movements are not predicted (R² {r2:.2}): do not use this policy"));
+        } else if self.r_squared < 0.9 {
+            warnings.push(format!("left-out movements are predicted poorly (R² {:.2})", self.r_squared));
         }
         if self.z_squared > 4.0 {
             warnings.push(format!(

@@ -1,0 +1,121 @@
+//! Near passes, and the rule by which a reading is chosen.
+
+mod drawn;
+
+use drawn::{descent, matrix, rng, rows};
+use gp::{Grouping, LeastSeen, NearPasses, Reading, ReadingLearner, ReadingNumbers, Rows};
+use motion::{Policy as _, SampleIndex};
+use nalgebra::{DMatrix, DVector};
+use proptest::prelude::*;
+
+/// `trajectories` copies of the same states, moving as `sign` of the trajectory says.
+fn copies(trajectories: usize, per: usize, sign: impl Fn(usize) -> f64, seed: u64) -> Rows {
+    let rng = &mut rng(seed);
+    let (x, u) = (matrix(3, per, rng), matrix(3, per, rng) + DMatrix::from_element(3, per, 5.0));
+    let states: Vec<DVector<f64>> = (0..trajectories * per).map(|row| x.column(row % per).into_owned()).collect();
+    let moves: Vec<DVector<f64>> = (0..trajectories * per).map(|row| u.column(row % per) * sign(row / per)).collect();
+    let index = |row: usize| SampleIndex { trajectory: row / per, sample: row % per };
+    let indices = (0..trajectories * per).map(index).collect();
+    Rows::new(DMatrix::from_columns(&states), DMatrix::from_columns(&moves), indices).expect("finite rows")
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(50))]
+
+    /// The same movement twice differs by 0, its reverse by 2.
+    #[test]
+    fn same_and_opposite(per in 4_usize..12, seed in any::<u64>()) {
+        let near = |rows: &Rows| NearPasses::of(rows, 1e-9, &mut rng(0)).expect("a distance");
+        let same = near(&copies(3, per, |_| 1.0, seed));
+        prop_assert_eq!((same.pairs, same.samples, same.share), (3, 3 * per, Some(0.0)));
+        let turned = near(&copies(2, per, |k| if k == 0 { 1.0 } else { -1.0 }, seed));
+        prop_assert!((turned.share.expect("they meet") - 2.0).abs() < 1e-12);
+        let alone = near(&copies(1, per, |_| 1.0, seed));
+        prop_assert_eq!((alone.pairs, alone.share), (0, None));
+    }
+
+    /// Counts grow with the distance; units do not matter.
+    #[test]
+    fn units_do_not_matter(seed in any::<u64>(), near in 0.02..0.2, more in 1.0..3.0, unit in 0.01..100.0_f64) {
+        let given = rows(2, (5, 12), descent, &mut rng(seed));
+        let scaled = Rows::new(given.states() * unit, given.velocities() * (3.0 * unit), given.indices().to_vec()).expect("finite");
+        let of = |rows: &Rows, distance: f64| NearPasses::of(rows, distance, &mut rng(0)).expect("a distance");
+        let (a, b) = (of(&given, near), of(&scaled, near));
+        prop_assert_eq!((a.pairs, a.samples), (b.pairs, b.samples));
+        prop_assert!((a.share.unwrap_or(0.0) - b.share.unwrap_or(0.0)).abs() < 1e-9);
+        prop_assert!(of(&given, near * more).samples >= a.samples);
+    }
+}
+
+/// Numbers for which every step of the rule but the last is passed by.
+fn numbers() -> ReadingNumbers {
+    ReadingNumbers {
+        a_s: 0.02,
+        a_d: 0.03,
+        q: 0.67,
+        t: 1.0,
+        lambda: 0.1,
+        t_lambda: 0.5,
+        p_d: 0.2,
+        gap: 0.4,
+        least_seen: LeastSeen { share: 0.4, direction: vec![1.0, 0.0] },
+        hidden: 0.3,
+        trajectories: 6,
+        grouping: Grouping::Trajectories,
+    }
+}
+
+#[test]
+fn the_rule_in_its_order() {
+    let unseen = || LeastSeen { share: 0.04, direction: vec![1.0, 0.0] };
+    let constrained = || ReadingNumbers { q: 0.4, t: 2.0, ..numbers() };
+    let cases = [
+        (numbers(), Reading::Ambiguous),
+        (ReadingNumbers { gap: 0.03, ..constrained() }, Reading::Free),
+        (ReadingNumbers { gap: 0.03, least_seen: unseen(), ..constrained() }, Reading::Ambiguous),
+        (constrained(), Reading::Constrained),
+        (ReadingNumbers { t: 1.99, ..constrained() }, Reading::Ambiguous),
+        (ReadingNumbers { q: 0.41, ..constrained() }, Reading::Ambiguous),
+        (ReadingNumbers { a_s: 0.81, ..constrained() }, Reading::Ambiguous),
+        (ReadingNumbers { trajectories: 4, ..constrained() }, Reading::Ambiguous),
+        (ReadingNumbers { trajectories: 4, p_d: 0.51, ..constrained() }, Reading::Unexplained),
+        (ReadingNumbers { lambda: 0.5, t_lambda: 2.0, ..numbers() }, Reading::Constrained),
+        (ReadingNumbers { lambda: 0.49, t_lambda: 2.0, ..numbers() }, Reading::Ambiguous),
+        (ReadingNumbers { lambda: 0.5, t_lambda: 1.99, ..numbers() }, Reading::Ambiguous),
+        (ReadingNumbers { p_d: 0.51, ..numbers() }, Reading::Unexplained),
+        (ReadingNumbers { gap: 0.1, ..numbers() }, Reading::Free),
+        (ReadingNumbers { gap: 0.1, least_seen: unseen(), ..numbers() }, Reading::Ambiguous),
+        (ReadingNumbers { grouping: Grouping::BlocksOfTime, ..constrained() }, Reading::TooFew),
+    ];
+    for (numbers, reading) in cases {
+        assert_eq!(numbers.reading(), reading, "{numbers:?}");
+        assert!(!numbers.text(0.1).is_empty());
+    }
+}
+
+#[test]
+fn the_policy_follows_the_reading() {
+    let n = numbers();
+    assert!(n.takes_slope(Reading::Constrained));
+    assert!(!n.takes_slope(Reading::Free) && !n.takes_slope(Reading::Ambiguous) && !n.takes_slope(Reading::TooFew));
+    assert!(n.takes_slope(Reading::Unexplained));
+    assert!(!ReadingNumbers { a_s: 0.04, ..n }.takes_slope(Reading::Unexplained));
+}
+
+#[test]
+fn four_demonstrations_lean() {
+    let text = ReadingNumbers { trajectories: 4, q: 0.1, t: 3.0, ..numbers() }.text(0.1);
+    assert!(text.contains("leans towards constraints; record at least five"), "{text}");
+}
+
+#[test]
+fn the_user_may_know_better() {
+    let given = rows(2, (6, 10), descent, &mut rng(1));
+    let own = ReadingLearner { reading: Some(Reading::Free), ..ReadingLearner::default() };
+    let fit = own.fit(&given, &mut rng(2)).expect("a fit");
+    let x = given.states().column(3);
+    assert_eq!(fit.reading(), Reading::Constrained);
+    assert_eq!(fit.action(x), fit.direct().action(x));
+    assert!(fit.expected_nupe() >= fit.numbers().gap);
+    assert!(fit.text().contains("You decided: Free"), "{}", fit.text());
+}
