@@ -49,4 +49,15 @@ mod tests {
             assert_eq!(String::from_utf8(heard.stdout).unwrap(), name, "{told}");
         }
     }
+
+    #[test]
+    fn the_draft_of_another_program_is_not_in_the_way() {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, other) = (folder.path().join("figure4.svg"), folder.path().join("figure4.svg.part"));
+        // What another program writes cannot be written over, nor renamed from under it.
+        fs::create_dir(&other).unwrap();
+        write(&path, "drawn").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "drawn");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
 }
