@@ -19,7 +19,7 @@ pub(super) trait Sound {
 pub(super) fn beyond(value: &Value, largest: f64) -> Option<f64> {
     match value {
         Value::Number(number) => {
-            number.as_f64().filter(|number| number.abs().partial_cmp(&largest).is_none_or(|o| o.is_gt()))
+            number.as_f64().filter(|number| number.abs().partial_cmp(&largest).is_none_or(std::cmp::Ordering::is_gt))
         }
         Value::Array(values) => values.iter().find_map(|value| beyond(value, largest)),
         Value::Object(values) => values.values().find_map(|value| beyond(value, largest)),

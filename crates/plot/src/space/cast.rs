@@ -119,12 +119,13 @@ fn inked(hits: &[Option<Hit>], width: usize) -> Vec<bool> {
     let mut inked = vec![false; hits.len()];
     let outline = INK * SAMPLES as f64;
     let mut stamp = |at: usize, radius: f64| {
-        let (column, row, reach) = ((at % width) as i64, (at / width) as i64, radius.floor() as i64);
-        for (across, down) in (-reach..=reach).flat_map(|x| (-reach..=reach).map(move |y| (x, y))) {
-            let (x, y) = (column + across, row + down);
-            let within = x >= 0 && y >= 0 && (x as usize) < width && ((x + y * width as i64) as usize) < hits.len();
-            if within && ((across * across + down * down) as f64) < radius * radius {
-                inked[x as usize + y as usize * width] = true;
+        let (column, row, reach) = (at % width, at / width, radius.floor() as usize);
+        for y in row.saturating_sub(reach)..(row + reach + 1).min(hits.len() / width) {
+            for x in column.saturating_sub(reach)..(column + reach + 1).min(width) {
+                let aside = x.abs_diff(column).pow(2) + y.abs_diff(row).pow(2);
+                if (aside as f64) < radius * radius {
+                    inked[x + y * width] = true;
+                }
             }
         }
     };
@@ -143,7 +144,7 @@ fn inked(hits: &[Option<Hit>], width: usize) -> Vec<bool> {
 
 /// Left, right, above and below, where there are any.
 fn neighbours(at: usize, width: usize, len: usize) -> impl Iterator<Item = usize> {
-    let (left, right) = ((at % width > 0).then(|| at - 1), (at % width + 1 < width).then_some(at + 1));
+    let (left, right) = ((!at.is_multiple_of(width)).then(|| at - 1), (at % width + 1 < width).then_some(at + 1));
     let (above, below) = (at.checked_sub(width), (at + width < len).then_some(at + width));
     [left, right, above, below].into_iter().flatten()
 }
