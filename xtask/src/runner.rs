@@ -30,9 +30,8 @@ impl Plan {
 
 /// One data set of one setup that is still to be measured, and where its outcome goes.
 struct Job<'a> {
-    experiment: &'a Experiment,
     setup: &'a Setup,
-    data_set: u32,
+    data_set: DataSet<'a>,
     slot: &'a mut Option<Outcome>,
 }
 
@@ -48,32 +47,35 @@ pub(crate) struct Measured {
 ///
 /// The result depends only on experiments, plan and program: not on the number of threads, nor on what was resumed.
 pub(crate) fn run(experiments: &[Experiment], plan: Plan, records: &Arc<Records>) -> anyhow::Result<Measured> {
-    let mut slots: Vec<Vec<Vec<Option<Outcome>>>> = experiments
-        .iter()
-        .map(|experiment| {
-            let setup = |setup: &Setup| {
-                (0..plan.data_sets(experiment)).map(|n| find(records, experiment, setup, plan, n)).collect()
-            };
-            experiment.setups.iter().map(setup).collect()
-        })
-        .collect();
+    let definition = |setup: &Setup| Ok(serde_json::to_string(&(setup.system, setup.trial.parameters()?))?);
+    let of_setups = |e: &Experiment| e.setups.iter().map(definition).collect::<anyhow::Result<Vec<String>>>();
+    let definitions = experiments.iter().map(of_setups).collect::<anyhow::Result<Vec<_>>>()?;
+    let mut slots: Vec<Vec<Vec<Option<Outcome>>>> = Vec::new();
+    for (experiment, definitions) in experiments.iter().zip(&definitions) {
+        let slots_of = |(setup, definition): (&Setup, &String)| {
+            let find = |number| find(records, setup, &name(experiment, setup, definition, plan, number));
+            (0..plan.data_sets(experiment)).map(find).collect()
+        };
+        slots.push(experiment.setups.iter().zip(definitions).map(slots_of).collect());
+    }
     let total: usize = slots.iter().flatten().map(Vec::len).sum();
     let mut jobs = Vec::new();
-    for (experiment, slots) in experiments.iter().zip(&mut slots) {
-        for (setup, slots) in experiment.setups.iter().zip(slots) {
-            for (data_set, slot) in (0..).zip(slots).filter(|(_, slot)| slot.is_none()) {
-                jobs.push(Job { experiment, setup, data_set, slot });
+    for ((experiment, definitions), slots) in experiments.iter().zip(&definitions).zip(&mut slots) {
+        for ((setup, definition), slots) in experiment.setups.iter().zip(definitions).zip(slots) {
+            for (number, slot) in (0..).zip(slots).filter(|(_, slot)| slot.is_none()) {
+                jobs.push(Job { setup, data_set: name(experiment, setup, definition, plan, number), slot });
             }
         }
     }
     let resumed = total - jobs.len();
     let progress = Progress::start(total, jobs.len(), jobs.iter().map(|job| job.setup.cost).sum());
     // One job at a time to each thread: data sets of different setups differ a hundredfold in work.
-    jobs.into_par_iter().with_max_len(1).try_for_each(|job| -> anyhow::Result<()> {
-        let outcome = measure(&job, plan);
-        records.append(&name(job.experiment, job.setup, &definition(job.setup), plan, job.data_set), &outcome)?;
-        *job.slot = Some(outcome);
-        progress.finished(job.experiment.id, &job.setup.id, job.setup.cost);
+    jobs.into_par_iter().with_max_len(1).try_for_each(|Job { setup, data_set, slot }| -> anyhow::Result<()> {
+        let mut rng = generator(plan.seed, setup.system, data_set.number);
+        let outcome = Outcome::of(setup.trial.run(&mut rng), setup.rows.len());
+        records.append(&data_set, &outcome)?;
+        *slot = Some(outcome);
+        progress.finished(data_set.experiment, &setup.id, setup.cost);
         Ok(())
     })?;
     progress.done();
@@ -85,28 +87,13 @@ pub(crate) fn run(experiments: &[Experiment], plan: Plan, records: &Arc<Records>
     Ok(Measured { outcomes, resumed })
 }
 
-fn measure(job: &Job<'_>, plan: Plan) -> Outcome {
-    let mut rng = generator(plan.seed, job.setup.system, job.data_set);
-    Outcome::of(job.setup.trial.run(&mut rng), job.setup.rows.len())
-}
-
 /// What an earlier run finished; nothing if the record is of another number of rows than the setup has.
-fn find(records: &Records, experiment: &Experiment, setup: &Setup, plan: Plan, data_set: u32) -> Option<Outcome> {
-    let outcome = records.finished(&name(experiment, setup, &definition(setup), plan, data_set))?;
+fn find(records: &Records, setup: &Setup, data_set: &DataSet<'_>) -> Option<Outcome> {
+    let outcome = records.finished(data_set)?;
     outcome.is_of_rows(setup.rows.len()).then(|| outcome.clone())
 }
 
-/// All that determines what a data set of a setup gives.
-fn definition(setup: &Setup) -> String {
-    format!("system {} {:?}", setup.system, setup.trial)
-}
-
-fn name<'a>(
-    experiment: &'a Experiment,
-    setup: &'a Setup,
-    definition: &'a str,
-    plan: Plan,
-    data_set: u32,
-) -> DataSet<'a> {
-    DataSet { experiment: experiment.id, setup: &setup.id, definition, seed: plan.seed, number: data_set }
+/// A data set of a setup; `definition` is all that determines what it gives.
+fn name<'a>(experiment: &Experiment, setup: &'a Setup, definition: &'a str, plan: Plan, number: u32) -> DataSet<'a> {
+    DataSet { experiment: experiment.id, setup: &setup.id, definition, seed: plan.seed, number }
 }

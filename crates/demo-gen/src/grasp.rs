@@ -1,6 +1,7 @@
 use nalgebra::{DVector, Point3};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
+use serde::Serialize;
 
 use crate::recording::record_each;
 use crate::{DemoGenError, GraspScene, Recording, RollOut, UpperBody};
@@ -22,9 +23,10 @@ const MOST_DRAWS: usize = 10_000;
 /// assert_eq!((recordings[0].observed.dim(), recordings[0].observed.n_samples()), (6, 100));
 /// # Ok::<(), demo_gen::DemoGenError>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Grasp {
-    /// The robot.
+    /// The robot; it is not stored with the rest, its URDF is.
+    #[serde(skip)]
     pub body: UpperBody,
     /// Ball, table, wall.
     pub scene: GraspScene,

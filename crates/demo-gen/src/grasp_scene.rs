@@ -1,5 +1,6 @@
 use constraints::{Barrier, ConstraintError, Plate};
 use nalgebra::{DVector, Point3, Vector3};
+use serde::Serialize;
 
 use crate::Parabola;
 
@@ -9,7 +10,7 @@ const N_HANDS: usize = 2;
 /// Where Section 4.2 happens: a ball on a table behind a wall, in the heel's frame (x forward, y left, z up), metres.
 ///
 /// The state is the positions of the left and the right palm, (6).
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GraspScene {
     /// Centre of the ball. Default (0.7, 0, 0.65).
     pub ball: Point3<f64>,

@@ -1,6 +1,7 @@
 use nalgebra::{DVector, Vector3};
 use rand::{Rng, RngExt};
 use rand_distr::UnitSphere;
+use serde::Serialize;
 
 use crate::hand::hand_in_plane;
 use crate::recording::record_each;
@@ -11,9 +12,10 @@ use crate::{DemoGenError, Parabola, Recording, RollOut, Side, UpperBody};
 ///
 /// Starts are [`UpperBody::start`]s. The movements themselves know neither limits nor collisions, as in the paper;
 /// [`n_leaving_limits`](crate::n_leaving_limits) counts.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub struct HandInPlane {
-    /// The robot.
+    /// The robot; it is not stored with the rest, its URDF is.
+    #[serde(skip)]
     pub body: UpperBody,
     /// φ. In the paper w = 0.05; the default's centre is 0: upright, with hanging arms.
     pub potential: Parabola,

@@ -1,12 +1,13 @@
 use constraints::PfaffianConstraint;
 use motion::{Policy, Potential, Trajectory};
 use nalgebra::{DVector, DVectorView};
+use serde::Serialize;
 
 use crate::instant::{Actor, Instant, OfPolicy, OfPotential, System, observed};
 use crate::{DemoGenError, Part, Recording};
 
 /// How a movement is simulated: x ← x + δt N(x,t) π(x), from time 0.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct RollOut {
     /// Time δt between two samples, in seconds. Default 1.
     pub time_step: f64,

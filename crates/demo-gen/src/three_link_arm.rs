@@ -2,6 +2,7 @@ use kinematics::RobotModel;
 use nalgebra::{DVector, Vector3};
 use rand::{Rng, RngExt};
 use rand_distr::UnitCircle;
+use serde::Serialize;
 
 use crate::hand::hand_in_plane;
 use crate::recording::record_each;
@@ -25,9 +26,10 @@ use crate::{DemoGenError, Parabola, Recording, RollOut};
 /// assert_eq!(demonstrations(&recordings)?.dim(), 2);
 /// # Ok::<(), demo_gen::DemoGenError>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub struct ThreeLinkArm {
-    /// The arm; its link `hand` is constrained.
+    /// The arm; its link `hand` is constrained. It is not stored with the rest, its URDF is.
+    #[serde(skip)]
     pub robot: RobotModel,
     /// φ. In the paper w = 0.05, centre 0: the arm stretched along x.
     pub potential: Parabola,

@@ -2,12 +2,13 @@ use constraints::{LinearConstraint, Switching};
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
+use serde::Serialize;
 
 use crate::recording::record_each;
 use crate::{DemoGenError, Recording, RollOut, ToyPotential};
 
 /// When a trajectory of the toy system gets a new constraint.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Redraw {
     /// At every so many samples, the first draw at sample 0.
     Every(usize),
@@ -41,7 +42,7 @@ impl Redraw {
 /// assert_eq!((demonstrations.n_trajectories(), demonstrations.n_samples()), (40, 4000));
 /// # Ok::<(), demo_gen::DemoGenError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ToySystem {
     /// φ. Default [`ToyPotential::parabola`].
     pub potential: ToyPotential,

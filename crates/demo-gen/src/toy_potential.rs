@@ -1,10 +1,11 @@
 use motion::Potential;
 use nalgebra::{DVector, DVectorView, DVectorViewMut};
+use serde::Serialize;
 
 use crate::{Parabola, Sinusoidal};
 
 /// The potentials of the toy system.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub enum ToyPotential {
     /// (24)
     Parabola(Parabola),

@@ -5,6 +5,7 @@ use demo_gen::{HandInPlane, n_leaving_limits};
 use lwpr::{LwprParams, MetricAdaptation};
 use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
 
 use super::exam::examine;
 use super::pupil::Pupil;
@@ -52,7 +53,7 @@ fn pupils() -> Vec<Pupil> {
     vec![Pupil::PolicyAlign(LwprRegressor { params, passes: 20, cutoff: 1e-9 })]
 }
 
-#[derive(Debug)]
+#[derive(Serialize)]
 struct BodyTrial {
     scenario: HandInPlane,
     algorithm: PolicyAlign,

@@ -5,6 +5,7 @@ use anyhow::Context as _;
 use demo_gen::{Recording, ToySystem, with_position_noise};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
 
 use super::exam::examine;
 use super::pupil::Pupil;
@@ -89,14 +90,14 @@ fn setup(id: &str, percent: &[f64], algorithm: PolicyAlign, against: Against) ->
 }
 
 /// What changes along a curve.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize)]
 enum Against {
     Trajectories,
     Noise,
 }
 
 /// One curve: all its points come from the same data set.
-#[derive(Debug)]
+#[derive(Serialize)]
 struct CurveTrial {
     system: ToySystem,
     algorithm: PolicyAlign,

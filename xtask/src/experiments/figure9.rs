@@ -8,6 +8,7 @@ use demo_gen::ThreeLinkArm;
 use motion::LearntPolicy;
 use nalgebra::{DVectorView, Vector3};
 use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
 
 use super::exam::{Exam, examine};
 use super::pupil::Pupil;
@@ -95,7 +96,7 @@ pub(crate) fn line() -> Vector3<f64> {
     Vector3::new(3.0, 2.0, 1.0).normalize()
 }
 
-#[derive(Debug)]
+#[derive(Serialize)]
 struct DistanceTrial {
     arm: ThreeLinkArm,
     algorithm: PolicyAlign,

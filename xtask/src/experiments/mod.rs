@@ -5,6 +5,7 @@ mod exam;
 mod figure6;
 mod figure9;
 mod judge;
+mod parameters;
 mod pupil;
 mod table1;
 mod table2;
@@ -14,13 +15,13 @@ mod three_link;
 pub(crate) use figure6::{BANDWIDTHS, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
 pub(crate) use figure9::{Distance, TENTHS, line};
 pub(crate) use judge::Judge;
+pub(crate) use parameters::Parameters;
 pub(crate) use table1::{PARABOLA_SYSTEM, SINUSOIDAL_SYSTEM, toy_regressor};
 pub(crate) use table2::{GRASP_SYSTEM, grasp, grasp_naive, grasp_regressor};
 pub(crate) use test_samples::TestSamples;
 pub(crate) use three_link::{ARM_SYSTEM, arm};
 
 use std::collections::BTreeMap;
-use std::fmt::Debug;
 
 use anyhow::ensure;
 use rand_chacha::ChaCha8Rng;
@@ -116,9 +117,8 @@ impl Row {
 /// What one data set gives: the measures of each row of its setup.
 pub(crate) type Measures = Vec<BTreeMap<Measure, f64>>;
 
-/// Everything that one data set of a setup needs. `Debug` names all parameters that are not code: they are part of the
-/// records' keys.
-pub(crate) trait Trial: Debug + Send + Sync {
+/// Everything that one data set of a setup needs.
+pub(crate) trait Trial: Parameters + Send + Sync {
     /// Makes a data set, learns from it and scores what was learnt, row by row.
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures>;
 }

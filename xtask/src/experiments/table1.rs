@@ -5,6 +5,7 @@ use demo_gen::{Redraw, ToyPotential, ToySystem};
 use lwpr::LwprParams;
 use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
 
 use super::exam::examine;
 use super::pupil::Pupil;
@@ -73,7 +74,7 @@ fn setups(redraw: Redraw, first_system: u32) -> Vec<Setup> {
 }
 
 /// One row of the table.
-#[derive(Debug)]
+#[derive(Serialize)]
 struct ToyTrial {
     system: ToySystem,
     algorithm: PolicyAlign,

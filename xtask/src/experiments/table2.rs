@@ -7,6 +7,7 @@ use demo_gen::Grasp;
 use lwpr::{LwprParams, MetricAdaptation};
 use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
 
 use super::exam::examine;
 use super::pupil::Pupil;
@@ -25,7 +26,7 @@ const SPREAD: f64 = 0.3;
 pub(crate) fn table2() -> anyhow::Result<Experiment> {
     let rows = ["training", "unseen_barrier", "unconstrained", "alignment"].map(Row::of_learner).into();
     // In the order of [`MEASURES`].
-    let pupils = vec![Pupil::PolicyAlign(grasp_regressor()), Pupil::Other(Box::new(grasp_naive()))];
+    let pupils = vec![Pupil::PolicyAlign(grasp_regressor()), Pupil::other(grasp_naive())?];
     let trial = GraspTrial { grasp: grasp()?, algorithm: PolicyAlign::default(), pupils };
     Ok(Experiment {
         id: "table2",
@@ -82,7 +83,7 @@ const ERRORS: [[Measure; 2]; 3] = [
 ];
 
 /// All rows: they are measured on the same data sets.
-#[derive(Debug)]
+#[derive(Serialize)]
 struct GraspTrial {
     grasp: Grasp,
     algorithm: PolicyAlign,

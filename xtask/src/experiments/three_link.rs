@@ -5,6 +5,7 @@ use demo_gen::{ThreeLinkArm, n_leaving_limits};
 use lwpr::{LwprParams, MetricAdaptation};
 use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
 
 use super::exam::{TESTED_ON, examine};
 use super::pupil::Pupil;
@@ -19,7 +20,7 @@ pub(crate) const ARM_SYSTEM: u32 = 440;
 pub(crate) fn three_link() -> anyhow::Result<Experiment> {
     let rows = [("policy_align", RowOf::Learner), ("naive", RowOf::Baseline)];
     let rows = rows.map(|(id, of)| Row { id: id.to_owned(), of, tested_on: TESTED_ON });
-    let trial = ArmTrial { arm: arm()?, algorithm: PolicyAlign::default(), pupils: pupils() };
+    let trial = ArmTrial { arm: arm()?, algorithm: PolicyAlign::default(), pupils: pupils()? };
     Ok(Experiment {
         id: "three_link",
         section: "4.4",
@@ -53,9 +54,9 @@ pub(super) fn regressor() -> LwprRegressor {
 }
 
 /// In the order of the rows.
-fn pupils() -> Vec<Pupil> {
+fn pupils() -> anyhow::Result<Vec<Pupil>> {
     let naive = DirectPolicyLearning { params: params(50.0), ..DirectPolicyLearning::default() };
-    vec![Pupil::PolicyAlign(regressor()), Pupil::Other(Box::new(naive))]
+    Ok(vec![Pupil::PolicyAlign(regressor()), Pupil::other(naive)?])
 }
 
 fn params(init_d: f64) -> LwprParams {
@@ -63,7 +64,7 @@ fn params(init_d: f64) -> LwprParams {
     LwprParams { init_d, norm_in, adaptation: MetricAdaptation::Fixed, ..LwprParams::default() }
 }
 
-#[derive(Debug)]
+#[derive(Serialize)]
 struct ArmTrial {
     arm: ThreeLinkArm,
     algorithm: PolicyAlign,
