@@ -156,10 +156,12 @@ mod tests {
         assert_eq!(Comparison::of(&run, &recorded).faults.len(), 1);
     }
 
+    type Damage = fn(&mut Results);
+
     #[test]
     fn every_difference_is_told() {
         let recorded = committed();
-        let damages: [(fn(&mut Results), &str); 4] = [
+        let damages: [(Damage, &str); 4] = [
             (|run| scaled(run, 1.0 + 2e-6), "mean"),
             (|run| cell(run).verdict = Some(Verdict::Worse), "worse, was agrees"),
             (|run| cell(run).values[7] = None, "99 of 100 data sets have a value, 100 had one"),

@@ -19,7 +19,8 @@ type Series = Vec<Vec<Vec<f64>>>;
 
 #[derive(Debug, Deserialize)]
 struct System {
-    system: String,
+    #[serde(rename = "system")]
+    name: String,
     times: Vec<Vec<f64>>,
     positions: Option<Series>,
     velocities: Option<Series>,
@@ -51,7 +52,7 @@ pub(super) fn check(file: &Path) -> anyhow::Result<Vec<Agreement>> {
             let gp = SlopeGp { max_rows: 400, hyper_rows: 200, ..SlopeGp::default() };
             let rows = system.front_end().rows(&system.demonstrations()?)?;
             let fit = gp.fit(&rows, &mut ChaCha8Rng::seed_from_u64(seed))?;
-            system.compare(&fit, &mut agreements).with_context(|| system.system.clone())?;
+            system.compare(&fit, &mut agreements).with_context(|| system.name.clone())?;
         }
     }
     Ok(agreements)

@@ -193,7 +193,7 @@ impl FrozenCase {
             agreement.see(at().map(potential), expected);
         }
         if let Some(expected) = &self.potential_difference {
-            agreement.see(self.differences(system, model).map(|(value, _)| value), expected);
+            agreement.see(Self::differences(system, model).map(|(value, _)| value), expected);
         }
         if let Some(expected) = &self.rotational_part {
             let rotation = model.rotational_part();
@@ -207,15 +207,11 @@ impl FrozenCase {
         agreement.see(at().flat_map(|x| numbers(model.covariance(x))), &self.covariance.concat().concat());
         agreement.see(at().flat_map(|x| numbers(model.prior_covariance(x))), &self.prior_covariance.concat().concat());
         if let Some(expected) = &self.potential_difference_variance {
-            agreement.see(self.differences(system, model).map(|(_, variance)| variance), expected);
+            agreement.see(Self::differences(system, model).map(|(_, variance)| variance), expected);
         }
     }
 
-    fn differences<'a>(
-        &self,
-        system: &'a FrozenSystem,
-        model: &'a SlopeModel,
-    ) -> impl Iterator<Item = (f64, f64)> + 'a {
+    fn differences<'a>(system: &'a FrozenSystem, model: &'a SlopeModel) -> impl Iterator<Item = (f64, f64)> + 'a {
         let from = view(&system.x_reference);
         let difference = move |x: &Vec<f64>| model.potential_difference(view(x), from).unwrap_or((f64::NAN, f64::NAN));
         system.x_test.iter().map(difference)

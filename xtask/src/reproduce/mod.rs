@@ -79,7 +79,9 @@ impl Reproduce {
         let mut sources = Sources { results, documents: BTreeMap::new(), missing: vec![] };
         // The results are safe before anything else may go wrong.
         folder.keep(&sources)?;
-        failures.iter().for_each(|failure| say(failure));
+        for failure in &failures {
+            say(failure);
+        }
         if self.no_figures {
             folder.forget_report()?;
             write_tables(&experiments, &sources.results, &folder)?;
