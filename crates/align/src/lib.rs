@@ -72,3 +72,8 @@ pub use levelling::{AlignmentObjective, Split, SplitCause};
 pub use local_potential::LocalPotential;
 pub use samples::{SampleIter, Samples};
 pub use warning::Warning;
+
+/// The README's program, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -1,0 +1,28 @@
+use align::{Bandwidth, LwprRegressor, PolicyAlign, PotentialPolicy};
+use motion::{Demonstrations, LearntPolicy, Policy};
+use nalgebra::{DMatrix, dvector};
+use rand::{SeedableRng, rngs::StdRng};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let path = std::env::args().nth(1).unwrap_or_else(|| "policy.json".to_owned());
+    if !std::path::Path::new(&path).exists() {
+        let demonstrations = Demonstrations::from_states(recorded(), 0.5)?; // seconds between two samples
+        let aligned = PolicyAlign { bandwidth: Bandwidth::Medium, ..Default::default() }.align(&demonstrations)?;
+        let learnt = aligned.learn(&LwprRegressor::default(), &mut StdRng::seed_from_u64(1))?;
+        println!("kept {} of {}; {:?}", aligned.kept().len(), demonstrations.n_trajectories(), learnt.warnings());
+        serde_json::to_writer(std::fs::File::create(&path)?, &learnt)?;
+    }
+    let learnt: PotentialPolicy = serde_json::from_str(&std::fs::read_to_string(&path)?)?;
+    let x = dvector![0.5, -0.2];
+    println!("action {:.3?}, support {:.2}", learnt.action(x.as_view()).as_slice(), learnt.support(x.as_view()));
+    Ok(())
+}
+
+/// One matrix per movement, one column per sample. Here: down φ = ‖x‖²/20, every time on another straight rail.
+fn recorded() -> impl Iterator<Item = DMatrix<f64>> {
+    (0..60).map(f64::from).map(|k| {
+        let (start, rail) = (dvector![(1.5 * k).sin(), (0.9 * k).cos()], dvector![(0.7 * k).cos(), (0.7 * k).sin()]);
+        let along = rail.dot(&start);
+        DMatrix::from_fn(2, 60, |row, i| start[row] + rail[row] * along * (0.95_f64.powi(i as i32) - 1.0))
+    })
+}
