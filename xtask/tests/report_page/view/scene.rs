@@ -1,6 +1,7 @@
 //! What stands around the robot: whole in the picture, and as in the figures.
 
 use std::fs;
+use std::io::Cursor;
 
 use serde_json::Value;
 
@@ -35,10 +36,55 @@ fn colours_are_those_of_the_figures() {
     let drawn = fs::read_to_string(run().join("figures/figure7.svg")).unwrap()
         + &fs::read_to_string(run().join("figures/figure8.svg")).unwrap();
     page.prefer("prefers-color-scheme", "light");
-    for name in ["ball", "plate", "expert", "naive", "policy-align"] {
+    let mut color = |name: &str| -> String {
         let style =
             format!("getComputedStyle(document.getElementById('view')).getPropertyValue('--view-{name}').trim()");
-        let color: String = page.evaluate(&style);
+        page.evaluate(&style)
+    };
+    for name in ["expert", "naive", "policy-align"] {
+        let color = color(name);
         assert!(color.starts_with('#') && drawn.contains(&color), "{name} is {color:?}, in no figure");
     }
+    // Bodies are pixels, light or dark as they face the light, and seen through: the hue remains.
+    let hues: Vec<f64> = pixels(&drawn).filter_map(hue).collect();
+    for name in ["ball", "plate"] {
+        let color = color(name);
+        let part = |at: usize| u8::from_str_radix(&color[at..at + 2], 16).unwrap();
+        let wanted = hue([part(1), part(3), part(5)]).expect("a colour, not a grey");
+        let alike = hues.iter().filter(|&hue| (hue - wanted).abs() < 3.0).count();
+        assert!(alike > 1000, "{name} is {color:?}, of which {alike} pixels are");
+    }
+}
+
+/// All pixels of the pictures within a drawing that show something.
+fn pixels(svg: &str) -> impl Iterator<Item = [u8; 3]> {
+    let pictures = svg.split("data:image/png;base64,").skip(1).map(|rest| rest.split('"').next().unwrap());
+    pictures.flat_map(|text| {
+        let bytes = data_encoding::BASE64.decode(text.as_bytes()).unwrap();
+        let mut decoder = png::Decoder::new(Cursor::new(bytes));
+        decoder.set_transformations(png::Transformations::normalize_to_color8() | png::Transformations::ALPHA);
+        let mut reader = decoder.read_info().unwrap();
+        let mut picture = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut picture).unwrap();
+        let seen = picture.chunks_exact(4).filter(|pixel| pixel[3] > 0).map(|pixel| [pixel[0], pixel[1], pixel[2]]);
+        seen.collect::<Vec<_>>()
+    })
+}
+
+/// Hue in degrees; none for what is nearly grey.
+fn hue(rgb: [u8; 3]) -> Option<f64> {
+    let [r, g, b] = rgb.map(f64::from);
+    let (most, least) = (r.max(g).max(b), r.min(g).min(b));
+    let chroma = most - least;
+    if chroma < 40.0 {
+        return None;
+    }
+    let sixths = if most == r {
+        ((g - b) / chroma).rem_euclid(6.0)
+    } else if most == g {
+        (b - r) / chroma + 2.0
+    } else {
+        (r - g) / chroma + 4.0
+    };
+    Some(60.0 * sixths)
 }
