@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 /// One matrix per movement, one column per sample. Here: down φ = ‖x‖²/20, every time on another straight rail.
 fn recorded() -> impl Iterator<Item = DMatrix<f64>> {
-    (0..60).map(f64::from).map(|k| {
+    (1..=60).map(f64::from).map(|k| {
         let (start, rail) = (dvector![(1.5 * k).sin(), (0.9 * k).cos()], dvector![(0.7 * k).cos(), (0.7 * k).sin()]);
         let along = rail.dot(&start);
         DMatrix::from_fn(2, 60, |row, i| start[row] + rail[row] * along * (0.95_f64.powi(i as i32) - 1.0))
