@@ -1,4 +1,4 @@
-use motion::SampleIndex;
+use motion::{SampleIndex, SampleSet};
 use nalgebra::{DMatrix, DVector, DVectorView};
 
 use crate::Aligned;
@@ -50,18 +50,16 @@ impl<'a> Samples<'a> {
     /// These samples alone; those that are not here are ignored.
     #[must_use]
     pub fn only(&self, wanted: &[SampleIndex]) -> Self {
-        let mut wanted = wanted.to_vec();
-        wanted.sort_unstable();
-        let chosen = self.indices.iter().copied().filter(|index| wanted.binary_search(index).is_ok());
+        let wanted = SampleSet::of(wanted);
+        let chosen = self.indices.iter().copied().filter(|&index| wanted.contains(index));
         Samples::new(self.aligned, chosen.collect())
     }
 
     /// All samples but these; those that are not here are ignored.
     #[must_use]
     pub fn without(&self, held_out: &[SampleIndex]) -> Self {
-        let mut held_out = held_out.to_vec();
-        held_out.sort_unstable();
-        let rest = self.indices.iter().copied().filter(|index| held_out.binary_search(index).is_err());
+        let held_out = SampleSet::of(held_out);
+        let rest = self.indices.iter().copied().filter(|&index| !held_out.contains(index));
         Samples::new(self.aligned, rest.collect())
     }
 }

@@ -1,7 +1,8 @@
 use nalgebra::{DMatrix, DVector};
 
-use crate::covariance::add_noise;
+use crate::covariance::{Covariance, add_noise};
 use crate::factor::{Factor, add_product_below, view};
+use crate::noise_factor::Conditions;
 
 /// Pull of every log parameter towards −4, and its strength: the last term of (S8).
 const CENTRE: f64 = -4.0;
@@ -25,8 +26,21 @@ pub(crate) struct Task {
 }
 
 impl Task {
-    /// (S8), (S9), (R2); none if the covariance has no Cholesky factor.
+    /// These rows of a covariance and of what it is to explain.
+    pub(crate) fn of(covariance: &impl Covariance, rows: &[usize], conditions: &Conditions<'_>) -> Task {
+        Task {
+            blocks: covariance.each_among(rows),
+            noise_weights: rows.iter().map(|&row| conditions.noise_weights[row]).collect(),
+            targets: conditions.targets.select_rows(rows),
+        }
+    }
+
+    /// (S8), (S9), (R2) at θ = (log a_1 .. log a_B, log σ²); none if the covariance has no Cholesky factor.
+    ///
+    /// # Panics
+    /// If there is not one θ a block and one more.
     pub(crate) fn evidence(&self, theta: &DVector<f64>) -> Option<Evidence> {
+        assert_eq!(theta.len(), self.blocks.len() + 1, "one log amplitude a block, and the noise");
         let columns = self.targets.ncols() as f64;
         let noise = theta[self.blocks.len()].exp();
         let factor = Factor::new(self.covariance(theta, noise))?;

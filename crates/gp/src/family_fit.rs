@@ -13,6 +13,25 @@ pub(crate) struct FamilyFit {
     pub(crate) level: Level,
 }
 
+impl FamilyFit {
+    /// At a given θ = (log a_1 .. log a_B, log σ²) and κ; none if the covariance has no Cholesky factor.
+    ///
+    /// # Panics
+    /// If there is not one θ a block and one more.
+    pub(crate) fn at(
+        covariance: &impl Covariance,
+        theta: &[f64],
+        kappa: f64,
+        conditions: &Conditions<'_>,
+    ) -> Option<FamilyFit> {
+        let blocks = covariance.n_blocks();
+        assert_eq!(theta.len(), blocks + 1, "one log amplitude a block, and the noise");
+        let amplitudes: Vec<f64> = theta[..blocks].iter().map(|log| log.exp()).collect();
+        let level = Level::at(&covariance.sum(&amplitudes), theta[blocks].exp(), kappa, conditions)?;
+        Some(FamilyFit { amplitudes, level })
+    }
+}
+
 /// Where the search begins: log a_b and log σ².
 const AMPLITUDE: f64 = 0.3;
 const NOISE: f64 = 1e-2;
@@ -24,11 +43,7 @@ pub(crate) fn fit_family(
     conditions: &Conditions<'_>,
 ) -> Option<FamilyFit> {
     let blocks = covariance.n_blocks();
-    let task = Task {
-        blocks: covariance.each_among(hyper),
-        noise_weights: hyper.iter().map(|&row| conditions.noise_weights[row]).collect(),
-        targets: conditions.targets.select_rows(hyper),
-    };
+    let task = Task::of(covariance, hyper, conditions);
     let or_noise =
         |amplitude: f64, noise: f64| DVector::from_fn(blocks + 1, |k, _| if k < blocks { amplitude } else { noise });
     let start = or_noise(AMPLITUDE.ln(), NOISE.ln());

@@ -54,9 +54,7 @@ fn recorded(
 
 /// (x_{i+1} − x_i)/δt.
 fn steps(trajectory: &Trajectory) -> Movement {
-    let x = trajectory.states();
-    let steps = x.ncols() - 1;
-    (x.clone(), (x.columns(1, steps) - x.columns(0, steps)) / trajectory.time_step())
+    (trajectory.states().clone(), trajectory.step_velocities())
 }
 
 fn smoothed(smoother: &Smoother, demonstrations: &Demonstrations) -> Result<Rows, GpError> {

@@ -1,6 +1,6 @@
 //! The seam: what both learners and both policies share with all others.
 
-use motion::{Demonstrations, LearnError, Learner, LearntPolicy, Policy, Potential, SampleIndex};
+use motion::{Demonstrations, LearnError, Learner, LearntPolicy, Policy, Potential, SampleIndex, SampleSet};
 use nalgebra::{DMatrix, DVectorView, DVectorViewMut};
 use rand::Rng;
 
@@ -57,10 +57,9 @@ pub(crate) fn seen(
     demonstrations: &Demonstrations,
     held_out: &[SampleIndex],
 ) -> Result<Rows, GpError> {
-    let mut held_out = held_out.to_vec();
-    held_out.sort_unstable();
+    let held_out = SampleSet::of(held_out);
     let rows = front_end.rows(demonstrations)?;
-    Ok(rows.without(|trajectory, sample| held_out.binary_search(&SampleIndex { trajectory, sample }).is_ok()))
+    Ok(rows.without(|trajectory, sample| held_out.contains(SampleIndex { trajectory, sample })))
 }
 
 impl SlopeFit {

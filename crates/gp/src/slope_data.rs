@@ -1,12 +1,11 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::block::Block;
-use crate::covariance::Covariance;
 use crate::evidence::{Evidence, Task};
 use crate::family_fit::{FamilyFit, fit_family};
 use crate::kept::Kept;
 use crate::left_out::LeftOut;
-use crate::noise_factor::{Conditions, Level};
+use crate::noise_factor::Conditions;
 use crate::scaling::Scaling;
 use crate::slope_covariance::SlopeCovariance;
 use crate::slope_model::SlopeModel;
@@ -96,13 +95,8 @@ impl SlopeData {
     /// # Panics
     /// If there is not one θ a block and one more.
     pub fn evidence(&self, blocks: &[Block], theta: &[f64]) -> Option<Evidence> {
-        assert_eq!(theta.len(), blocks.len() + 1, "one log amplitude a block, and the noise");
         let all: Vec<usize> = (0..self.z.ncols()).collect();
-        let task = Task {
-            blocks: self.covariance(blocks).each_among(&all),
-            noise_weights: self.noise_weights.clone(),
-            targets: self.targets.clone(),
-        };
+        let task = Task::of(&self.covariance(blocks), &all, &self.conditions());
         task.evidence(&DVector::from_column_slice(theta))
     }
 
@@ -112,12 +106,9 @@ impl SlopeData {
     /// # Panics
     /// If there is not one θ a block and one more.
     pub fn condition(&self, blocks: &[Block], theta: &[f64], kappa: f64) -> Option<(SlopeModel, LeftOut)> {
-        assert_eq!(theta.len(), blocks.len() + 1, "one log amplitude a block, and the noise");
-        let amplitudes: Vec<f64> = theta[..blocks.len()].iter().map(|log| log.exp()).collect();
-        let covariance = self.covariance(blocks).sum(&amplitudes);
-        let level = Level::at(&covariance, theta[blocks.len()].exp(), kappa, &self.conditions())?;
-        let left_out = level.left_out.clone();
-        Some((SlopeModel::new(self, blocks.to_vec(), FamilyFit { amplitudes, level }), left_out))
+        let fit = FamilyFit::at(&self.covariance(blocks), theta, kappa, &self.conditions())?;
+        let left_out = fit.level.left_out.clone();
+        Some((SlopeModel::new(self, blocks.to_vec(), fit), left_out))
     }
 
     /// Amplitudes by evidence on the hyper rows, noise by prediction: (S8), (S11).

@@ -3,7 +3,7 @@
 mod drawn;
 
 use drawn::{descent, rng, rows, vector};
-use gp::{DirectData, Family, Rows, SlopeData, Trend};
+use gp::{DirectData, Evidence, Family, Rows, SlopeData, Trend};
 use motion::{Policy as _, Potential as _};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -20,6 +20,21 @@ fn noise_weights<R: rand::Rng>(count: usize, rng: &mut R) -> Vec<f64> {
     (0..count).map(|_| rng.random_range(0.2..3.0)).collect()
 }
 
+/// The gradient of an evidence at θ is that of its values.
+fn agrees_with_differences(theta: &[f64], evidence: impl Fn(&[f64]) -> Evidence) -> Result<(), TestCaseError> {
+    let gradient = evidence(theta).gradient;
+    for k in 0..theta.len() {
+        let at = |step: f64| {
+            let mut theta = theta.to_vec();
+            theta[k] += step;
+            evidence(&theta).value
+        };
+        let expected = (at(1e-4) - at(-1e-4)) / 2e-4;
+        prop_assert!((gradient[k] - expected).abs() < 1e-5 * (1.0 + expected.abs()), "{k}: {} {expected}", gradient[k]);
+    }
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
@@ -31,16 +46,7 @@ proptest! {
         let blocks = family.helmholtz_blocks(Trend::Quadratic);
         let data = SlopeData::new(&rows, noise_weights(20, rng)).expect("rows");
         let theta = theta(blocks.len(), rng);
-        let gradient = data.evidence(&blocks, &theta).expect("a factor").gradient;
-        for k in 0..theta.len() {
-            let at = |step: f64| {
-                let mut theta = theta.clone();
-                theta[k] += step;
-                data.evidence(&blocks, &theta).expect("a factor").value
-            };
-            let expected = (at(1e-4) - at(-1e-4)) / 2e-4;
-            prop_assert!((gradient[k] - expected).abs() < 1e-5 * (1.0 + expected.abs()), "{k}: {} {expected}", gradient[k]);
-        }
+        agrees_with_differences(&theta, |theta| data.evidence(&blocks, theta).expect("a factor"))?;
     }
 
     /// (R2) likewise.
@@ -51,16 +57,7 @@ proptest! {
         let blocks = family.direct_blocks();
         let data = DirectData::new(&rows, noise_weights(20, rng)).expect("rows");
         let theta = theta(blocks.len(), rng);
-        let gradient = data.evidence(&blocks, &theta).expect("a factor").gradient;
-        for k in 0..theta.len() {
-            let at = |step: f64| {
-                let mut theta = theta.clone();
-                theta[k] += step;
-                data.evidence(&blocks, &theta).expect("a factor").value
-            };
-            let expected = (at(1e-4) - at(-1e-4)) / 2e-4;
-            prop_assert!((gradient[k] - expected).abs() < 1e-5 * (1.0 + expected.abs()), "{k}: {} {expected}", gradient[k]);
-        }
+        agrees_with_differences(&theta, |theta| data.evidence(&blocks, theta).expect("a factor"))?;
     }
 
     /// π̂ = −∇φ̂, by differences.

@@ -21,6 +21,7 @@ mod hold_out;
 mod learner;
 mod policy;
 mod sample_index;
+mod sample_set;
 mod trajectory;
 
 pub use demonstrations::Demonstrations;
@@ -28,4 +29,5 @@ pub use error::{MotionError, Series};
 pub use learner::{LearnError, Learner, LearntPolicy};
 pub use policy::{NegativeGradient, Policy, Potential};
 pub use sample_index::SampleIndex;
+pub use sample_set::SampleSet;
 pub use trajectory::Trajectory;

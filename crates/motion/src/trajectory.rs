@@ -55,6 +55,12 @@ impl Trajectory {
         self.velocities.as_ref()
     }
 
+    /// Velocities of the steps, (x_{i+1} − x_i) / δt, (n, N − 1), in units of the state per second.
+    pub fn step_velocities(&self) -> DMatrix<f64> {
+        let steps = self.n_samples() - 1;
+        (self.states.columns(1, steps) - self.states.columns(0, steps)) / self.time_step
+    }
+
     /// Seconds between two samples.
     pub fn time_step(&self) -> f64 {
         self.time_step

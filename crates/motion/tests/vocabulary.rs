@@ -72,6 +72,11 @@ proptest! {
             for sample in 0..trajectory.n_samples() {
                 prop_assert_eq!(trajectory.state(sample), matrix.column(sample));
             }
+            let steps = trajectory.step_velocities();
+            prop_assert_eq!(steps.shape(), (dim, trajectory.n_samples() - 1));
+            for (sample, step) in steps.column_iter().enumerate() {
+                prop_assert_eq!(step, (matrix.column(sample + 1) - matrix.column(sample)) / time_step);
+            }
         }
         prop_assert_eq!(Demonstrations::new(demonstrations.trajectories().to_vec()), Ok(demonstrations));
     }

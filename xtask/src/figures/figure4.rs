@@ -3,10 +3,11 @@
 use constraints::{LinearConstraint, PfaffianConstraint};
 use motion::{NegativeGradient, Policy, Potential};
 use nalgebra::{DVector, DVectorView, DVectorViewMut, dmatrix};
-use plot::{Field, Layer, Mark, Picture, Plane, Relief};
+use plot::{Field, Layer, Mark, Picture, Relief};
 use serde::{Deserialize, Serialize};
 
 use super::sound::{Sound, field as sound_field, some};
+use super::state_plane::state_plane;
 use super::{Csv, Document, Drawing, Figure, Sources, rounded};
 
 /// Drawn is [−2, 2]².
@@ -144,16 +145,7 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
         dots: vec![],
         size: (430.0, 408.0),
     };
-    let range = [-EXTENT, EXTENT];
-    let above = Plane {
-        title: "(b) φ from above, and the policy".to_owned(),
-        x_label: "x₁".to_owned(),
-        y_label: "x₂".to_owned(),
-        x: range,
-        y: range,
-        layers: layers(&shown),
-        size: (430.0, 408.0),
-    };
+    let above = state_plane("(b) φ from above, and the policy", EXTENT, layers(&shown), (430.0, 408.0));
     let tables = vec![arrows("unconstrained", &shown.unconstrained), arrows("constrained", &shown.constrained)];
     Ok(Drawing { picture: Picture::rows(&[&[&surface, &above]]), tables })
 }

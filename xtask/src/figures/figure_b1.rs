@@ -7,6 +7,7 @@ use plot::{Dash, Layer, Mark, Panel, Picture, Plane, Stroke};
 use serde::{Deserialize, Serialize};
 
 use super::sound::{Sound, among, some};
+use super::state_plane::state_plane;
 use super::{Csv, Document, Drawing, Figure, Sources, rounded};
 use crate::experiments::SINUSOIDAL_SYSTEM;
 use crate::seed::generator;
@@ -155,16 +156,7 @@ impl ComingApart {
 
     fn plane(&self, title: String, layers: Vec<Layer>) -> Plane {
         let reach = self.movements.iter().flatten().fold(2.0_f64, |reach, (x, y)| reach.max(x.abs()).max(y.abs()));
-        let range = [-1.06 * reach, 1.06 * reach];
-        Plane {
-            title,
-            x_label: "x₁".to_owned(),
-            y_label: "x₂".to_owned(),
-            x: range,
-            y: range,
-            layers,
-            size: (340.0, 358.0),
-        }
+        state_plane(&title, 1.06 * reach, layers, (340.0, 358.0))
     }
 
     fn table(&self) -> Csv {

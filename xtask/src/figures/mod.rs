@@ -20,6 +20,7 @@ mod overview;
 mod shapes;
 mod sound;
 pub(crate) mod stage;
+mod state_plane;
 mod who;
 mod words;
 

@@ -8,6 +8,7 @@ use plot::{Field, Layer, Picture, Plane};
 use serde::{Deserialize, Serialize};
 
 use super::sound::{Sound, field, some};
+use super::state_plane::state_plane;
 use super::{Document, Drawing, Figure, Sources, demonstrated, rounded};
 use crate::experiments::{PARABOLA_SYSTEM, TestSamples, toy_regressor};
 use crate::figures::Who;
@@ -112,16 +113,7 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
 }
 
 fn plane(title: &str, layers: Vec<Layer>) -> Plane {
-    let range = [-EXTENT, EXTENT];
-    Plane {
-        title: title.to_owned(),
-        x_label: "x₁".to_owned(),
-        y_label: "x₂".to_owned(),
-        x: range,
-        y: range,
-        layers,
-        size: Plane::SQUARE,
-    }
+    state_plane(title, EXTENT, layers, Plane::SQUARE)
 }
 
 /// The unconstrained actions of the expert and of a learner.

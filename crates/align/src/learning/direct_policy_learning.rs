@@ -1,5 +1,5 @@
 use lwpr::LwprParams;
-use motion::{Demonstrations, LearnError, Learner, LearntPolicy, SampleIndex, Trajectory};
+use motion::{Demonstrations, LearnError, Learner, LearntPolicy, SampleIndex, SampleSet, Trajectory};
 use nalgebra::DMatrix;
 use rand::Rng;
 use serde::{Deserialize, Serialize};
@@ -59,13 +59,12 @@ impl Learner for DirectPolicyLearning {
 
 /// States (n, M) and velocities (n, M) of all samples that have one and are not held out.
 fn observed(demonstrations: &Demonstrations, held_out: &[SampleIndex]) -> (DMatrix<f64>, DMatrix<f64>) {
-    let mut held_out = held_out.to_vec();
-    held_out.sort_unstable();
+    let held_out = SampleSet::of(held_out);
     let mut states = Vec::new();
     let mut velocities = Vec::new();
     for (index, trajectory) in demonstrations.trajectories().iter().enumerate() {
         for (sample, velocity) in velocities_of(trajectory).column_iter().enumerate() {
-            if held_out.binary_search(&SampleIndex { trajectory: index, sample }).is_err() {
+            if !held_out.contains(SampleIndex { trajectory: index, sample }) {
                 states.extend(trajectory.state(sample).iter());
                 velocities.extend(velocity.iter());
             }
@@ -77,8 +76,5 @@ fn observed(demonstrations: &Demonstrations, held_out: &[SampleIndex]) -> (DMatr
 }
 
 fn velocities_of(trajectory: &Trajectory) -> DMatrix<f64> {
-    let x = trajectory.states();
-    let steps = x.ncols() - 1;
-    let differences = || (x.columns(1, steps) - x.columns(0, steps)) / trajectory.time_step();
-    trajectory.velocities().cloned().unwrap_or_else(differences)
+    trajectory.velocities().cloned().unwrap_or_else(|| trajectory.step_velocities())
 }

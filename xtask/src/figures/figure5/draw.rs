@@ -1,6 +1,7 @@
 use plot::{Field, Picture, Plane, Relief};
 
 use super::{Levels, Movement};
+use crate::figures::state_plane::state_plane;
 use crate::figures::{Csv, Drawing, Sources, demonstrated};
 
 /// What is seen from above: [−2, 2]².
@@ -36,17 +37,7 @@ pub(super) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
 fn seen(levels: &Levels) -> Plane {
     let movements = levels.movements.iter().map(|movement| (&movement.points[..], movement.after.is_some()));
     let layers = demonstrated::layers(&levels.truth, movements, 1.4);
-    let range = [-EXTENT, EXTENT];
-    let title = "(a) Movements; light crosses: left out".to_owned();
-    Plane {
-        title,
-        x_label: "x₁".to_owned(),
-        y_label: "x₂".to_owned(),
-        x: range,
-        y: range,
-        layers,
-        size: (420.0, 430.0),
-    }
+    state_plane("(a) Movements; light crosses: left out", EXTENT, layers, (420.0, 430.0))
 }
 
 fn relief(title: &str, size: (f64, f64)) -> Relief {

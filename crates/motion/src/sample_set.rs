@@ -1,0 +1,22 @@
+use crate::SampleIndex;
+
+/// Some samples, to be asked for one after the other; O(log size) each.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct SampleSet {
+    /// Ascending.
+    samples: Vec<SampleIndex>,
+}
+
+impl SampleSet {
+    /// These samples, in any order; one may be named twice.
+    pub fn of(samples: &[SampleIndex]) -> Self {
+        let mut samples = samples.to_vec();
+        samples.sort_unstable();
+        SampleSet { samples }
+    }
+
+    /// Whether a sample is among them.
+    pub fn contains(&self, sample: SampleIndex) -> bool {
+        self.samples.binary_search(&sample).is_ok()
+    }
+}
