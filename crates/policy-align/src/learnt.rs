@@ -1,0 +1,30 @@
+use align::PotentialPolicy;
+use gp::{BothReadings, DirectFit, SlopeFit};
+use motion::LearntPolicy;
+use serde::{Deserialize, Serialize};
+
+/// A learnt policy as it is stored, by its learner.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Learnt {
+    /// Slope GP and direct GP, and which of them the data support.
+    Auto(Box<BothReadings>),
+    /// Aligned potentials and LWPR.
+    PolicyAlign(Box<PotentialPolicy>),
+    /// The slope GP alone.
+    Slope(Box<SlopeFit>),
+    /// The direct GP alone.
+    Direct(Box<DirectFit>),
+}
+
+impl Learnt {
+    /// The policy, in the units it was learnt in.
+    pub fn policy(&self) -> &dyn LearntPolicy {
+        match self {
+            Learnt::Auto(policy) => policy.as_ref(),
+            Learnt::PolicyAlign(policy) => policy.as_ref(),
+            Learnt::Slope(policy) => policy.as_ref(),
+            Learnt::Direct(policy) => policy.as_ref(),
+        }
+    }
+}

@@ -1,0 +1,89 @@
+use serde::{Deserialize, Serialize};
+
+use crate::{Decision, Learnt, Trust};
+
+/// What was learnt, from what, how, and how far to trust it: all that a model file holds.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Model {
+    /// Who made it, and when.
+    pub made_by: MadeBy,
+    /// Dimensions of the state, n of them.
+    pub state: Vec<StateChannel>,
+    /// Seconds; the median over trajectories.
+    pub time_step: f64,
+    /// What was learnt from.
+    pub data: DataSummary,
+    /// What was decided for the user, in the order of deciding.
+    pub decisions: Vec<Decision>,
+    /// Seed of every random choice.
+    pub seed: u64,
+    /// How far to trust it.
+    pub trust: Trust,
+    /// The policy, of states that were multiplied by [`StateChannel::scale`].
+    pub learnt: Learnt,
+}
+
+/// Who made a model, and when.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MadeBy {
+    /// "policy-align 0.1.0".
+    pub program: String,
+    /// Coordinated universal time, ISO 8601.
+    pub time: String,
+}
+
+/// A dimension of the state, in the user's units.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StateChannel {
+    /// As in the recording.
+    pub name: String,
+    /// If the recording or the user said.
+    pub unit: Option<String>,
+    /// The learner saw the state times this.
+    pub scale: f64,
+    /// Least value learnt from.
+    pub low: f64,
+    /// Largest value learnt from.
+    pub high: f64,
+    /// Median of the values learnt from.
+    pub median: f64,
+}
+
+/// What a model was learnt from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DataSummary {
+    /// The files, in the order they were given.
+    pub files: Vec<FileSummary>,
+    /// Episodes learnt from.
+    pub episodes: usize,
+    /// Samples learnt from.
+    pub samples: usize,
+    /// Episodes not learnt from.
+    pub left_out: Vec<LeftOutEpisode>,
+}
+
+/// A file, by its name without folders.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FileSummary {
+    /// Without folders: a model tells nothing of the machine it was made on.
+    pub name: String,
+    /// Of its bytes, hexadecimal.
+    pub sha256: String,
+    /// Its size.
+    pub bytes: u64,
+}
+
+/// An episode that was not learnt from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LeftOutEpisode {
+    /// Its name.
+    pub episode: String,
+    /// "not connected".
+    pub why: String,
+}
