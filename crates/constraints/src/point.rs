@@ -85,6 +85,11 @@ where
         let mut jacobian = DMatrix::from_element(self.normals.ncols(), self.dim, f64::NAN);
         (self.jacobian)(state, jacobian.as_view_mut())
             .map_err(|error| ConstraintError::Jacobian { reason: error.to_string() })?;
-        Ok(&self.normals * jacobian)
+        Ok(along(&self.normals, &jacobian))
     }
+}
+
+/// nᵀJ (27), compiled here and not wherever a Jacobian comes from.
+fn along(normals: &DMatrix<f64>, jacobian: &DMatrix<f64>) -> DMatrix<f64> {
+    normals * jacobian
 }

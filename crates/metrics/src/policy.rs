@@ -28,6 +28,15 @@ pub fn ncpe(
     learnt: &DMatrix<f64>,
     mut project: impl FnMut(usize, DVectorViewMut<'_, f64>),
 ) -> Result<f64, MetricsError> {
+    projected_error(truth, learnt, &mut project)
+}
+
+/// [`ncpe`], compiled here for every projection.
+fn projected_error(
+    truth: &DMatrix<f64>,
+    learnt: &DMatrix<f64>,
+    project: &mut dyn FnMut(usize, DVectorViewMut<'_, f64>),
+) -> Result<f64, MetricsError> {
     let spread = spread(truth.as_view(), learnt.as_view())?;
     let mut sum = 0.0;
     let mut difference = DVector::zeros(truth.nrows());
