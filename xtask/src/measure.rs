@@ -36,6 +36,18 @@ pub(crate) enum Measure {
     Unsupported,
     /// Demonstrated movements that leave the robot's joint limits somewhere, percent.
     BeyondLimits,
+    /// What a learner expects [`Measure::Nupe`] to be.
+    ExpectedNupe,
+    /// Data sets in which the slope GP finds rotation, percent.
+    Rotation,
+    /// Data sets that are read as free movement, percent.
+    ReadFree,
+    /// Data sets that are read as constrained by constraints that vary, percent.
+    ReadConstrained,
+    /// Data sets that two readings explain, percent.
+    ReadAmbiguous,
+    /// Data sets that no reading explains, percent.
+    ReadUnexplained,
 }
 
 /// By which rule ours and the paper's figure are compared.
@@ -56,6 +68,8 @@ pub(crate) enum RowOf {
     Learner,
     /// The baseline.
     Baseline,
+    /// A learner that the paper does not have: it stands in tables of learners only.
+    Contestant,
 }
 
 impl Measure {
@@ -77,6 +91,12 @@ impl Measure {
             Measure::PolicyAlignAll => "policy_align_all",
             Measure::Unsupported => "unsupported",
             Measure::BeyondLimits => "beyond_limits",
+            Measure::ExpectedNupe => "expected_nupe",
+            Measure::Rotation => "rotation",
+            Measure::ReadFree => "read_free",
+            Measure::ReadConstrained => "read_constrained",
+            Measure::ReadAmbiguous => "read_ambiguous",
+            Measure::ReadUnexplained => "read_unexplained",
         }
     }
 
@@ -98,12 +118,24 @@ impl Measure {
             Measure::PolicyAlignAll => "PolicyAlign, all movements",
             Measure::Unsupported => "unsupported %",
             Measure::BeyondLimits => "beyond limits %",
+            Measure::ExpectedNupe => "nUPE expected",
+            Measure::Rotation => "rotation found %",
+            Measure::ReadFree => "read as free %",
+            Measure::ReadConstrained => "read as constrained %",
+            Measure::ReadAmbiguous => "read as ambiguous %",
+            Measure::ReadUnexplained => "read as unexplained %",
         }
     }
 
     /// Whether it is in percent.
     fn is_share(self) -> bool {
-        matches!(self, Measure::Disc | Measure::Unsupported | Measure::BeyondLimits)
+        use Measure::{
+            BeyondLimits, Disc, ReadAmbiguous, ReadConstrained, ReadFree, ReadUnexplained, Rotation, Unsupported,
+        };
+        matches!(
+            self,
+            Disc | Unsupported | BeyondLimits | Rotation | ReadFree | ReadConstrained | ReadAmbiguous | ReadUnexplained
+        )
     }
 
     /// How it is judged in a row.
@@ -111,7 +143,7 @@ impl Measure {
         match (self, row) {
             _ if self.is_share() => Kind::Share,
             (Measure::Naive | Measure::NaiveAll, _) | (_, RowOf::Baseline) => Kind::BaselineError,
-            (_, RowOf::Learner) => Kind::LearnerError,
+            (_, RowOf::Learner | RowOf::Contestant) => Kind::LearnerError,
         }
     }
 
@@ -125,6 +157,8 @@ impl Measure {
     pub(crate) fn show(self, value: f64) -> String {
         match self {
             _ if self.is_share() => format!("{value:.2}"),
+            // What is exact but for rounding.
+            _ if value != 0.0 && value.abs() < 1e-5 => format!("{value:.0e}"),
             // Table 2 has errors below a thousandth.
             _ if value.abs() < 1e-3 => format!("{value:.6}"),
             _ => format!("{value:.4}"),

@@ -8,7 +8,7 @@ use anyhow::{Context as _, ensure};
 use clap::Args;
 use page::markdown_table;
 
-use crate::experiments::{Experiment, registry};
+use crate::experiments::{Experiment, Setup, registry};
 use crate::figures::{Figure, Sources, figures};
 use crate::files::{repository, told, write};
 use crate::measure::Measure;
@@ -127,10 +127,12 @@ fn complete(experiments: &[Experiment], results: &Results) -> anyhow::Result<()>
     for experiment in experiments {
         let result = results.experiments.iter().find(|result| result.id == experiment.id);
         let result = result.with_context(|| format!("{} is missing", experiment.id))?;
-        for row in experiment.rows() {
+        let rows = |setup: &'_ Setup| setup.data_sets.unwrap_or(experiment.data_sets) as usize;
+        for (row, wanted) in
+            experiment.setups.iter().flat_map(|setup| setup.rows.iter().map(move |row| (row, rows(setup))))
+        {
             let result = result.rows.iter().find(|result| result.id == row.id);
             let (data_sets, failed) = result.map_or((0, 0), |result| (result.data_sets, result.failed));
-            let wanted = experiment.data_sets as usize;
             let place = format!("{} {}", experiment.id, row.id);
             ensure!(data_sets == wanted, "{place} has {data_sets} data sets, not {wanted}");
             ensure!(failed == 0, "{place}: {failed} of {data_sets} data sets failed");

@@ -17,14 +17,18 @@ pub(crate) type Outcomes = Vec<Outcome>;
 pub(crate) struct Plan {
     /// Overrides each experiment's own number of data sets.
     pub(crate) data_sets: Option<u32>,
+    /// The same for setups that only hold learners against each other; they take longest.
+    pub(crate) of_contestants: Option<u32>,
     /// Seed of all random numbers.
     pub(crate) seed: u64,
 }
 
 impl Plan {
-    /// Repetitions of each setup of an experiment.
-    pub(crate) fn data_sets(&self, experiment: &Experiment) -> u32 {
-        self.data_sets.unwrap_or(experiment.data_sets)
+    /// Repetitions of a setup of an experiment; of one that has its own number, no more than that.
+    pub(crate) fn data_sets(&self, experiment: &Experiment, setup: &Setup) -> u32 {
+        let own = setup.data_sets.unwrap_or(experiment.data_sets);
+        let asked = if setup.is_of_contestants() { self.of_contestants } else { self.data_sets };
+        asked.map_or(own, |asked| if setup.data_sets.is_some() { asked.min(own) } else { asked })
     }
 }
 
@@ -54,7 +58,7 @@ pub(crate) fn run(experiments: &[Experiment], plan: Plan, records: &Arc<Records>
     for (experiment, definitions) in experiments.iter().zip(&definitions) {
         let slots_of = |(setup, definition): (&Setup, &String)| {
             let find = |number| find(records, setup, &name(experiment, setup, definition, plan, number));
-            (0..plan.data_sets(experiment)).map(find).collect()
+            (0..plan.data_sets(experiment, setup)).map(find).collect()
         };
         slots.push(experiment.setups.iter().zip(definitions).map(slots_of).collect());
     }

@@ -14,7 +14,7 @@ use crate::{FrontEnd, GpError, Rows};
 
 /// Fits the slope GP and the direct GP to the same rows, compares them on left-out demonstrations, and hands out the
 /// policy that the data support. No learner is right for both free and constrained movement.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct ReadingLearner {
     /// How recordings become rows.
     pub front_end: FrontEnd,

@@ -1,4 +1,9 @@
+#![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
+
+use std::ops::Range;
+
 use nalgebra::{DMatrix, DVector};
+use pulp::{Arch, Simd, WithSimd};
 
 use crate::covariance::{Covariance, add_noise};
 use crate::factor::{Factor, add_product_below, view};
@@ -50,12 +55,15 @@ impl Task {
         let prior = 0.5 * STRENGTH * theta.iter().map(|theta| (theta - CENTRE).powi(2)).sum::<f64>();
         let value = fit + columns * factor.half_log_determinant() + prior;
         // c K⁻¹ − AAᵀ: every derivative is half its inner product with that of K.
-        let mut slack = factor.inverse() * columns;
+        let mut slack = factor.inverse();
+        if weights.ncols() > 1 {
+            slack *= columns;
+        }
         add_product_below(&mut slack, -1.0, view(&weights), view(&weights).transpose());
-        let slack_of = |b: usize| inner_product(&slack, &self.blocks[b]);
+        let slacks = Arch::new().dispatch(InnerProducts { matrix: &slack, blocks: &self.blocks });
         let noise_slack: f64 = self.noise_weights.iter().enumerate().map(|(i, weight)| weight * slack[(i, i)]).sum();
         let gradient = DVector::from_fn(theta.len(), |k, _| {
-            let product = if k < self.blocks.len() { slack_of(k) } else { noise_slack };
+            let product = slacks.get(k).copied().unwrap_or(noise_slack);
             0.5 * theta[k].exp() * product + STRENGTH * (theta[k] - CENTRE)
         });
         value.is_finite().then_some(Evidence { value, gradient })
@@ -63,30 +71,71 @@ impl Task {
 
     fn covariance(&self, theta: &DVector<f64>, noise: f64) -> DMatrix<f64> {
         let count = self.targets.nrows();
+        let amplitudes: Vec<f64> = theta.iter().take(self.blocks.len()).map(|theta| theta.exp()).collect();
         let mut sum = DMatrix::zeros(count, count);
-        for (block, log_amplitude) in self.blocks.iter().zip(theta.iter()) {
-            let amplitude = log_amplitude.exp();
-            for i in 0..count {
-                let terms = block.column(i).rows_range(i..).iter().copied().collect::<Vec<_>>();
-                let mut column = sum.column_mut(i);
-                let mut place = column.rows_range_mut(i..);
-                place.iter_mut().zip(terms).for_each(|(sum, term)| *sum += amplitude * term);
-            }
-        }
+        Arch::new().dispatch(WeightedSum { blocks: &self.blocks, amplitudes: &amplitudes, sum: &mut sum });
         add_noise(&mut sum, noise, self.noise_weights.iter().copied());
         sum
     }
 }
 
-/// tr(AB) of symmetric matrices of which the lower triangles are given.
-fn inner_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> f64 {
-    let column = |i: usize| {
-        let (a, b) = (&a.column(i).data.into_slice()[i..], &b.column(i).data.into_slice()[i..]);
-        2.0 * dot(a, b) - a[0] * b[0]
-    };
-    (0..a.ncols()).map(column).sum()
+/// Adds Σ a_b K_b to the lower triangle of `sum`: column by column, so that a column stays near while blocks pass by.
+struct WeightedSum<'a> {
+    blocks: &'a [DMatrix<f64>],
+    amplitudes: &'a [f64],
+    sum: &'a mut DMatrix<f64>,
 }
 
+impl WithSimd for WeightedSum<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let WeightedSum { blocks, amplitudes, sum } = self;
+        for i in 0..sum.ncols() {
+            let below = below(sum, i);
+            let column = &mut sum.as_mut_slice()[below.clone()];
+            for (block, amplitude) in blocks.iter().zip(amplitudes) {
+                let terms = &block.as_slice()[below.clone()];
+                column.iter_mut().zip(terms).for_each(|(sum, term)| *sum += amplitude * term);
+            }
+        }
+    }
+}
+
+/// tr(AK_b) for every block, of symmetric matrices of which the lower triangles are given.
+struct InnerProducts<'a> {
+    matrix: &'a DMatrix<f64>,
+    blocks: &'a [DMatrix<f64>],
+}
+
+impl WithSimd for InnerProducts<'_> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) -> Vec<f64> {
+        let InnerProducts { matrix, blocks } = self;
+        let mut products = vec![0.0; blocks.len()];
+        for i in 0..matrix.ncols() {
+            let below = below(matrix, i);
+            let a = &matrix.as_slice()[below.clone()];
+            for (product, block) in products.iter_mut().zip(blocks) {
+                let b = &block.as_slice()[below.clone()];
+                *product += 2.0 * dot(a, b) - a[0] * b[0];
+            }
+        }
+        products
+    }
+}
+
+/// Where the part of a column from the diagonal down stands.
+#[inline(always)]
+fn below(matrix: &DMatrix<f64>, column: usize) -> Range<usize> {
+    let rows = matrix.nrows();
+    column * rows + column..(column + 1) * rows
+}
+
+#[inline(always)]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums: lanes::Lanes = [0.0; lanes::LANES];
     let (a_groups, a_rest) = a.as_chunks::<{ lanes::LANES }>();

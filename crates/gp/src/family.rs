@@ -1,8 +1,10 @@
 use std::fmt;
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::block::Block;
+use crate::left_out::LeftOut;
 use crate::shape::Shape;
 
 /// What kind of policy is looked for. Evidence chooses the amplitudes within a family, prediction of left-out
@@ -60,6 +62,20 @@ impl Family {
         let rotation = [Block::Skew].into_iter().chain([0.25, 0.5, 1.0, 2.0].map(Block::DivergenceFree));
         self.blocks(trend).into_iter().chain(rotation).collect()
     }
+}
+
+/// Tries one family, and if that does not predict exactly, all others at once. In the order of the families.
+pub(crate) fn each_until_exact<T: Send>(
+    families: &[Family],
+    attempt: impl Fn(Family) -> Option<T> + Sync,
+    left_out: impl Fn(&T) -> &LeftOut,
+) -> Vec<(Family, Option<T>)> {
+    let Some((&first, others)) = families.split_first() else { return Vec::new() };
+    let mut tried = vec![(first, attempt(first))];
+    if !tried[0].1.as_ref().is_some_and(|first| left_out(first).is_exact()) {
+        tried.par_extend(others.par_iter().map(|&family| (family, attempt(family))));
+    }
+    tried
 }
 
 impl fmt::Display for Family {

@@ -1,11 +1,12 @@
 use motion::{Demonstrations, SampleIndex, Trajectory};
 use nalgebra::DMatrix;
+use serde::Serialize;
 use smoothing::{Fusion, Smoother, SmoothingError};
 
 use crate::{GpError, Rows};
 
 /// How what was recorded becomes rows of states and velocities.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub enum FrontEnd {
     /// Velocities or commands were recorded and are believed: (x_i, u_i) for all i.
     Velocities,

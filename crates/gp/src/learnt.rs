@@ -3,6 +3,7 @@
 use motion::{Demonstrations, LearnError, Learner, LearntPolicy, Policy, Potential, SampleIndex, SampleSet};
 use nalgebra::{DMatrix, DVectorView, DVectorViewMut};
 use rand::Rng;
+use serde::Serialize;
 
 use crate::direct_gp::{DirectFit, DirectGp};
 use crate::slope_fit::SlopeFit;
@@ -12,7 +13,7 @@ use crate::trust_report::TrustReport;
 use crate::{FrontEnd, GpError, Rows};
 
 /// The slope GP as a learner: what was recorded, and what is made of it.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct SlopeLearner {
     /// How recordings become rows.
     pub front_end: FrontEnd,
@@ -21,7 +22,7 @@ pub struct SlopeLearner {
 }
 
 /// The direct GP as a learner.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct DirectLearner {
     /// How recordings become rows.
     pub front_end: FrontEnd,

@@ -18,6 +18,16 @@ pub struct LeftOut {
     pub z_squared: f64,
 }
 
+/// Left-out error, as a share of the variance, below which nothing is left to choose by prediction.
+const EXACT: f64 = 1e-8;
+
+impl LeftOut {
+    /// Whether prediction is so good that more noise and other families need not be tried.
+    pub(crate) fn is_exact(&self) -> bool {
+        1.0 - self.r_squared < EXACT
+    }
+}
+
 /// Of every group of rows T: V_T = ((K⁻¹)_TT)⁻¹ and e_T = V_T α_T, (K⁻¹)_TT = X_Tᵀ X_T with X = L⁻¹. None if a
 /// block cannot be inverted.
 ///

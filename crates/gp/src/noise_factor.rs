@@ -51,9 +51,13 @@ impl Level {
         Some(Level { kappa, noise, factor, weights, left_out })
     }
 
-    /// The best of κ = 1, 4, 16 .. 4¹⁰ by R², given up after two in a row that are not better.
+    /// The best of κ = 1, 4, 16 .. 4¹⁰ by R², given up after two in a row that are not better, or where there is nothing
+    /// to gain.
     pub(crate) fn best(covariance: &DMatrix<f64>, noise: f64, conditions: &Conditions<'_>) -> Option<Self> {
         let mut best = Level::at(covariance, noise, 1.0, conditions)?;
+        if best.left_out.is_exact() {
+            return Some(best);
+        }
         let mut worse = 0;
         for power in 1..=10 {
             let Some(level) = Level::at(covariance, noise, 4.0_f64.powi(power), conditions) else { break };

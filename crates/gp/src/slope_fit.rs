@@ -1,10 +1,9 @@
 use nalgebra::DMatrix;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::block::Block;
 use crate::curl_test::{Contender, CurlTest, curl_t, takes_rotation};
-use crate::family::Family;
+use crate::family::{Family, each_until_exact};
 use crate::family_fit::FamilyFit;
 use crate::kept::Kept;
 use crate::left_out::LeftOut;
@@ -66,10 +65,12 @@ pub(crate) fn fit(gp: &SlopeGp, kept: &Kept, rows: &Rows) -> Result<SlopeFit, Gp
 pub(crate) fn outcome(gp: &SlopeGp, kept: &Kept) -> Result<Outcome, GpError> {
     let data = weighted(gp, kept)?;
     let mut families = Vec::new();
-    let tried: Vec<_> =
-        gp.families.par_iter().map(|&family| candidate(gp, &data, kept, family, ModelKind::Potential)).collect();
-    let best = best_of(gp.families.iter().copied().zip(tried), ModelKind::Potential, &mut families)
-        .ok_or(GpError::NoFactor)?;
+    let tried = each_until_exact(
+        &gp.families,
+        |family| candidate(gp, &data, kept, family, ModelKind::Potential),
+        |candidate| &candidate.left_out,
+    );
+    let best = best_of(tried.into_iter(), ModelKind::Potential, &mut families).ok_or(GpError::NoFactor)?;
     let rotation = rotation(gp, &data, kept, &best, &mut families);
     let Some(rotation) = rotation else {
         return Ok(Outcome { data, taken: best, other: None, curl_t: None, families });

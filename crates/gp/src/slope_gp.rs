@@ -16,7 +16,8 @@ use crate::{GpError, Rows};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SlopeGp {
-    /// Families tried; the one that predicts left-out trajectories best is kept, ties to the first.
+    /// Families tried; the one that predicts left-out trajectories best is kept, ties to the first. If the first predicts
+    /// all but 1e-8 of the variance, no other is.
     pub families: Vec<Family>,
     /// Whether families have a trend.
     pub trend: Trend,

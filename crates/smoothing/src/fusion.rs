@@ -1,6 +1,7 @@
 use motion::Demonstrations;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use serde::Serialize;
 
 use crate::SmoothingError;
 use crate::increments::StepRule;
@@ -12,7 +13,7 @@ use crate::stamped::{Stamped, common_dim};
 ///
 /// x_{i+1} = x_i + Δ_i + process noise q, y_i = x_i + noise ρ, with one Kalman filter for all dimensions and
 /// Rauch–Tung–Striebel smoothing. The rule for Δ_i and q/ρ are those of the highest likelihood.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fusion {
     /// Rules to choose from, at least one.
     pub rules: Vec<StepRule>,

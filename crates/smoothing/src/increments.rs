@@ -1,9 +1,10 @@
 use nalgebra::{DMatrix, DMatrixView};
+use serde::Serialize;
 
 use crate::stamped::Stamped;
 
 /// How a step Δ_i from one sample to the next follows from the velocities.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum StepRule {
     /// v_i δt: the simulator's own, exact for commands that are held until the next sample.
     Euler,

@@ -1,6 +1,7 @@
 use motion::Demonstrations;
 use nalgebra::DVector;
 use rayon::prelude::*;
+use serde::Serialize;
 
 use crate::SmoothingError;
 use crate::averages::Averages;
@@ -18,7 +19,7 @@ use crate::windows::{Bases, Energy, MAX_COLUMNS, energies};
 /// A movement falls into windows; within one every dimension is a polynomial of time, and between two of them anything
 /// may change, as it does when a constraint switches. Where windows begin and of which degree they are is not decided:
 /// all ways to cut a movement are weighed by their evidence (forward–backward recursion, Fearnhead 2006).
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Smoother {
     /// Degrees that a window may have, equally likely beforehand; at most 7.
     pub degrees: Vec<usize>,
@@ -33,7 +34,7 @@ pub struct Smoother {
 }
 
 /// What each axis is divided by before smoothing.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub enum AxisScale {
     /// Its standard deviation over all samples.
     StandardDeviation,
@@ -42,7 +43,7 @@ pub enum AxisScale {
 }
 
 /// Where the variance of the noise comes from.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum NoiseVariance {
     /// The one that makes the movements most likely.
     ByEvidence,

@@ -1,13 +1,17 @@
 //! Section 4.3: 22 joints of a humanoid, one hand in a plane.
 
-use align::{LwprRegressor, PolicyAlign};
+use align::{DirectPolicyLearning, LwprRegressor, PolicyAlign};
 use demo_gen::{HandInPlane, n_leaving_limits};
+use gp::FrontEnd;
 use lwpr::{LwprParams, MetricAdaptation};
 use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
+use super::beside::{Beside, BesideTrial, DATA_SETS};
+use super::contest::{Contest, Contestant};
 use super::exam::examine;
+use super::gaussians::Gaussians;
 use super::pupil::Pupil;
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::Measure;
@@ -17,11 +21,17 @@ use crate::robots::upper_body;
 /// The system whose random stream is used.
 const BODY_SYSTEM: u32 = 430;
 
+/// What its rows of other learners are named after.
+const CASE: &str = "body";
+
 /// The experiment.
 pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
     let id = "policy_align";
-    let trial =
-        BodyTrial { scenario: HandInPlane::new(upper_body()?), algorithm: PolicyAlign::default(), pupils: pupils() };
+    let scenario = HandInPlane::new(upper_body()?);
+    let trial = BodyTrial { scenario: scenario.clone(), algorithm: PolicyAlign::default(), pupils: pupils() };
+    let beside = beside();
+    let contest =
+        |measure| Contest::of(CASE, measure, &beside.contestants()).with(Contestant::PolicyAlign, id, measure);
     Ok(Experiment {
         id: "asimo22",
         section: "4.3",
@@ -34,23 +44,46 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
                  movements are not held there, and most leave them somewhere (beyond limits %).",
         decisions: "asimo22.md",
         another_reading_of: None,
-        setups: vec![Setup {
-            id: id.to_owned(),
-            rows: vec![Row::of_learner(id)],
-            system: BODY_SYSTEM,
-            cost: 20_000_000,
-            trial: Box::new(trial),
-        }],
+        contests: [Measure::Nupe, Measure::Ncpe].map(contest).into(),
+        setups: vec![
+            Setup {
+                id: id.to_owned(),
+                rows: vec![Row::of_learner(id)],
+                system: BODY_SYSTEM,
+                data_sets: None,
+                cost: 20_000_000,
+                trial: Box::new(trial),
+            },
+            Setup {
+                id: "beside".to_owned(),
+                rows: beside.rows(CASE),
+                system: BODY_SYSTEM,
+                data_sets: Some(DATA_SETS),
+                cost: beside.cost(),
+                trial: Box::new(BesideTrial { scene: scenario, algorithms: vec![PolicyAlign::default()], beside }),
+            },
+        ],
         paper: paper_table(include_str!("../../paper/asimo22.toml"))?,
         explanations: explanations(include_str!("../../paper/asimo22-explained.toml"))?,
     })
 }
 
+/// Who learns beside PolicyAlign.
+fn beside() -> Beside {
+    let LwprRegressor { params, passes, cutoff } = regressor();
+    let naive = Some(DirectPolicyLearning { params, passes, cutoff });
+    Beside { naive, gaussians: Gaussians { front_end: FrontEnd::Map, max_rows: 1000, hyper_rows: 400 } }
+}
+
 /// In the order of the rows.
 fn pupils() -> Vec<Pupil> {
+    vec![Pupil::PolicyAlign(regressor())]
+}
+
+fn regressor() -> LwprRegressor {
     let norm_in = Some(DVector::repeat(22, 1.0));
     let params = LwprParams { init_d: 50.0, norm_in, adaptation: MetricAdaptation::Fixed, ..LwprParams::default() };
-    vec![Pupil::PolicyAlign(LwprRegressor { params, passes: 20, cutoff: 1e-9 })]
+    LwprRegressor { params, passes: 20, cutoff: 1e-9 }
 }
 
 #[derive(Serialize)]

@@ -26,6 +26,16 @@ pub(crate) struct Exam<'a> {
     learnt: Vec<Box<dyn LearntPolicy>>,
 }
 
+/// Errors of what was learnt: of its policy, and of its potential where there are two to compare.
+pub(super) fn errors(judge: &Judge<'_>, learnt: &dyn LearntPolicy) -> anyhow::Result<BTreeMap<Measure, f64>> {
+    let [nupe, ncpe] = judge.policy(&learnt)?;
+    let mut errors = BTreeMap::from([(Measure::Nupe, nupe), (Measure::Ncpe, ncpe)]);
+    if let Some(potential) = learnt.potential().filter(|_| judge.has_potential()) {
+        errors.insert(Measure::PotentialNmse, judge.potential(potential)?);
+    }
+    Ok(errors)
+}
+
 /// Aligns the recordings, draws what is held out, and lets each learner learn.
 pub(crate) fn examine<'a>(
     recordings: &'a [Recording],
@@ -82,11 +92,7 @@ impl<'a> Exam<'a> {
         judge: &Judge<'_>,
         learnt: &dyn LearntPolicy,
     ) -> anyhow::Result<BTreeMap<Measure, f64>> {
-        let [nupe, ncpe] = judge.policy(&learnt)?;
-        let mut errors = BTreeMap::from([(Measure::Nupe, nupe), (Measure::Ncpe, ncpe)]);
-        if let Some(potential) = learnt.potential() {
-            errors.insert(Measure::PotentialNmse, judge.potential(potential)?);
-        }
+        let mut errors = errors(judge, learnt)?;
         if learnt.kept().is_some() {
             errors.insert(Measure::AlignmentNmse, judge.alignment(&self.aligned)?);
         }

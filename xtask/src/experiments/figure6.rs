@@ -3,14 +3,19 @@
 use align::{Bandwidth, Integration, PolicyAlign};
 use anyhow::Context as _;
 use demo_gen::{Recording, ToySystem, with_position_noise};
+use gp::FrontEnd;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
+use smoothing::{Fusion, Smoother};
 
+use super::beside::{Beside, DATA_SETS};
+use super::contest::{Contest, Contestant};
 use super::exam::examine;
 use super::pupil::Pupil;
-use super::table1::{PARABOLA_SYSTEM, learning_cost, toy_pupils};
+use super::table1::{PARABOLA_SYSTEM, learning_cost, toy_beside, toy_pupils};
 use super::{Experiment, Measures, Row, Setup, Trial};
+use crate::measure::Measure;
 
 /// What is learnt from, percent of the trajectories.
 pub(crate) const TRAJECTORIES_PERCENT: [f64; 6] = [10.0, 20.0, 40.0, 60.0, 80.0, 100.0];
@@ -31,12 +36,15 @@ pub(crate) fn figure6_left() -> Experiment {
         let algorithm = PolicyAlign { bandwidth, ..PolicyAlign::default() };
         setup(name, &TRAJECTORIES_PERCENT, algorithm, Against::Trajectories)
     };
+    let beside =
+        setup_beside(BESIDE_LEFT, &TRAJECTORIES_PERCENT, Integration::default(), Against::Trajectories, FrontEnd::Map);
     Experiment {
         id: "figure6_left",
         title: "Figure 6, left: error against the amount of data",
         remark: "Only the first of the 40 trajectories of Table 1's parabola (40 samples each) are used, 10 to 100 percent of them. \
                  Regression as in Table 1; test samples from the trajectories that are kept of those used.",
-        setups: BANDWIDTHS.map(setup).into(),
+        contests: TRAJECTORIES_PERCENT.map(|percent| contest(BESIDE_LEFT, "narrow", percent)).into(),
+        setups: BANDWIDTHS.map(setup).into_iter().chain([beside]).collect(),
         ..curves()
     }
 }
@@ -47,14 +55,67 @@ pub(crate) fn figure6_right() -> Experiment {
         let algorithm = PolicyAlign { integration, bandwidth, ..PolicyAlign::default() };
         setup(&format!("{rule}-{name}"), &NOISE_PERCENT, algorithm, Against::Noise)
     };
+    let setups = RULES.into_iter().flat_map(|rule| BANDWIDTHS.map(|bandwidth| setup(rule, bandwidth)));
+    let contests = |((rule, _), name): ((&str, Integration), &'static str)| {
+        NOISE_PERCENT.map(|percent| contest(name, &format!("{rule}-narrow"), percent))
+    };
+    let beside = |((_, integration), name): ((&str, Integration), &'static str)| {
+        let front_end = match integration {
+            Integration::Displacement => FrontEnd::Smoothed(Smoother::default()),
+            _ => FrontEnd::Fused(Fusion::default()),
+        };
+        setup_beside(name, &NOISE_PERCENT, integration, Against::Noise, front_end)
+    };
     Experiment {
         id: "figure6_right",
         title: "Figure 6, right: error against noise",
         remark: "Gaussian noise, in percent of each dimension's standard deviation, on the recorded positions of Table 1's parabola; \
                  recorded velocities are clean. Potentials are integrated from velocities, or from displacements (9). \
                  Regression as in Table 1; errors are against the truth at the true states.",
-        setups: RULES.into_iter().flat_map(|rule| BANDWIDTHS.map(|bandwidth| setup(rule, bandwidth))).collect(),
+        contests: RULES.into_iter().zip(BESIDE_RIGHT).flat_map(contests).collect(),
+        setups: setups.chain(RULES.into_iter().zip(BESIDE_RIGHT).map(beside)).collect(),
         ..curves()
+    }
+}
+
+/// Cases of the learners beside PolicyAlign.
+pub(crate) const BESIDE_LEFT: &str = "map";
+/// In the order of [`RULES`].
+pub(crate) const BESIDE_RIGHT: [&str; 2] = ["fused", "smoothed"];
+
+/// Rows that the Gaussian processes learn from.
+const ROWS: usize = 500;
+
+/// A line of the table: of the learners beside, and of PolicyAlign by another name.
+fn contest(case: &str, policy_align: &str, percent: f64) -> Contest {
+    let contestants = toy_beside(FrontEnd::Map, ROWS).contestants();
+    let row = format!("{policy_align}-{percent}");
+    Contest::of(&format!("{case}-{percent}"), Measure::Nupe, &contestants).with(
+        Contestant::PolicyAlign,
+        &row,
+        Measure::Nupe,
+    )
+}
+
+fn setup_beside(case: &str, percent: &[f64], integration: Integration, against: Against, front_end: FrontEnd) -> Setup {
+    let beside = toy_beside(front_end, ROWS);
+    let rows = percent.iter().flat_map(|percent| beside.rows(&format!("{case}-{percent}"))).collect();
+    let cost = beside.cost() * percent.len() as u64;
+    let trial = CurveTrial {
+        system: ToySystem::default(),
+        algorithm: PolicyAlign { integration, ..PolicyAlign::default() },
+        pupils: vec![],
+        beside: Some(beside),
+        against,
+        percent: percent.to_vec(),
+    };
+    Setup {
+        id: case.to_owned(),
+        rows,
+        system: PARABOLA_SYSTEM,
+        data_sets: Some(DATA_SETS),
+        cost,
+        trial: Box::new(trial),
     }
 }
 
@@ -69,6 +130,7 @@ fn curves() -> Experiment {
         remark: "",
         decisions: "figure6.md",
         another_reading_of: None,
+        contests: vec![],
         setups: vec![],
         paper,
         explanations,
@@ -81,12 +143,13 @@ fn setup(id: &str, percent: &[f64], algorithm: PolicyAlign, against: Against) ->
         system: ToySystem::default(),
         algorithm,
         pupils: toy_pupils(),
+        beside: None,
         against,
         percent: percent.to_vec(),
     };
     let cost = percent.iter().map(|&percent| learning_cost(trial.trajectories(percent), trial.system.n_samples)).sum();
     let rows = percent.iter().map(row).collect();
-    Setup { id: id.to_owned(), rows, system: PARABOLA_SYSTEM, cost, trial: Box::new(trial) }
+    Setup { id: id.to_owned(), rows, system: PARABOLA_SYSTEM, data_sets: None, cost, trial: Box::new(trial) }
 }
 
 /// What changes along a curve.
@@ -102,6 +165,8 @@ struct CurveTrial {
     system: ToySystem,
     algorithm: PolicyAlign,
     pupils: Vec<Pupil>,
+    /// Who learns instead of the pupils, if anybody does.
+    beside: Option<Beside>,
     against: Against,
     percent: Vec<f64>,
 }
@@ -112,6 +177,14 @@ impl CurveTrial {
         match self.against {
             Against::Trajectories => Ok(recordings[..self.trajectories(percent)].to_vec()),
             Against::Noise => Ok(with_position_noise(recordings, percent / 100.0, &mut noise.clone())?),
+        }
+    }
+
+    /// What is measured at one point.
+    fn point(&self, seen: &[Recording], rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
+        match &self.beside {
+            Some(beside) => beside.sit(seen, std::slice::from_ref(&self.algorithm), rng)?.rows(),
+            None => examine(seen, &self.algorithm, &self.pupils, rng)?.rows(),
         }
     }
 
@@ -133,8 +206,8 @@ impl Trial for CurveTrial {
         let mut rows = Vec::new();
         for &percent in &self.percent {
             let seen = self.at(percent, &recordings, &noise)?;
-            let exam = examine(&seen, &self.algorithm, &self.pupils, &mut learning.clone());
-            rows.extend(exam.and_then(|exam| exam.rows()).with_context(|| format!("{:?}, {percent} %", self.against))?);
+            let of_point = self.point(&seen, &mut learning.clone());
+            rows.extend(of_point.with_context(|| format!("{:?}, {percent} %", self.against))?);
         }
         Ok(rows)
     }

@@ -10,9 +10,10 @@ use nalgebra::{DVectorView, Vector3};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
-use super::exam::{Exam, examine};
+use super::beside::{Beside, DATA_SETS};
+use super::exam::{Exam, errors as errors_of, examine};
 use super::pupil::Pupil;
-use super::three_link::{ARM_SYSTEM, arm, regressor};
+use super::three_link::{ARM_SYSTEM, arm, beside, regressor};
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::{Measure, RowOf};
 
@@ -28,10 +29,13 @@ const TESTED_ON: &str =
 
 /// The experiment.
 pub(crate) fn figure9() -> anyhow::Result<Experiment> {
-    let rows = Distance::BOTH.into_iter().flat_map(|distance| TENTHS.map(move |tenths| distance.row(tenths)));
-    let rows = rows.map(|id| Row { id, of: RowOf::Learner, tested_on: TESTED_ON }).collect();
+    let rows = cases().into_iter().map(|id| Row { id, of: RowOf::Learner, tested_on: TESTED_ON }).collect();
     let pupils = vec![Pupil::PolicyAlign(regressor())];
     let trial = DistanceTrial { arm: arm()?, algorithm: PolicyAlign::default(), pupils };
+    let (beside, cases) = (beside(ROWS), cases());
+    let rows_beside = cases.iter().flat_map(|case| beside.rows(case)).map(|row| Row { tested_on: TESTED_ON, ..row });
+    let rows_beside = rows_beside.collect();
+    let contests = cases.iter().map(|case| beside.contest(case, Measure::Nupe)).collect();
     let (paper, explanations) = Default::default();
     Ok(Experiment {
         id: "figure9",
@@ -43,16 +47,36 @@ pub(crate) fn figure9() -> anyhow::Result<Experiment> {
                  these samples too. A data set with fewer than 10 of them has no value there.",
         decisions: "figure9.md",
         another_reading_of: None,
-        setups: vec![Setup {
-            id: "distances".to_owned(),
-            rows,
-            system: ARM_SYSTEM,
-            cost: 1_500_000,
-            trial: Box::new(trial),
-        }],
+        contests,
+        setups: vec![
+            Setup {
+                id: "distances".to_owned(),
+                rows,
+                system: ARM_SYSTEM,
+                data_sets: None,
+                cost: 1_500_000,
+                trial: Box::new(trial),
+            },
+            Setup {
+                id: "beside".to_owned(),
+                rows: rows_beside,
+                system: ARM_SYSTEM,
+                data_sets: Some(DATA_SETS),
+                cost: beside.cost(),
+                trial: Box::new(DistancesBeside { arm: arm()?, algorithm: PolicyAlign::default(), beside }),
+            },
+        ],
         paper,
         explanations,
     })
+}
+
+/// Rows that the Gaussian processes learn from: the arm's table, with all of them, shows the same errors.
+const ROWS: usize = 500;
+
+/// What is tested on, in the order of the rows.
+fn cases() -> Vec<String> {
+    Distance::BOTH.into_iter().flat_map(|distance| TENTHS.map(move |tenths| distance.row(tenths))).collect()
 }
 
 /// How far a posture is from the one that the policy aims at, in two parts.
@@ -113,6 +137,32 @@ impl Trial for DistanceTrial {
                 for tenths in TENTHS {
                     rows.push(errors(&exam, learnt, distance, f64::from(tenths) / 10.0)?);
                 }
+            }
+        }
+        Ok(rows)
+    }
+}
+
+/// The same of the learners beside PolicyAlign.
+#[derive(Serialize)]
+struct DistancesBeside {
+    arm: ThreeLinkArm,
+    algorithm: PolicyAlign,
+    beside: Beside,
+}
+
+impl Trial for DistancesBeside {
+    fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
+        let recordings = self.arm.record(rng)?;
+        let sat = self.beside.sit(&recordings, std::slice::from_ref(&self.algorithm), rng)?;
+        let mut rows = Vec::new();
+        for distance in Distance::BOTH {
+            for tenths in TENTHS {
+                let judge = sat.judges(0)[0].among(|state| distance.of(state) < f64::from(tenths) / 10.0);
+                let row = |learnt| {
+                    if judge.n_samples() < FEWEST_SAMPLES { Ok(BTreeMap::new()) } else { errors_of(&judge, learnt) }
+                };
+                rows.extend(sat.learnt().into_iter().map(row).collect::<anyhow::Result<Vec<_>>>()?);
             }
         }
         Ok(rows)

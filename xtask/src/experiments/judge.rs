@@ -11,6 +11,7 @@ use nalgebra::{DMatrix, DVector, DVectorView};
 pub(crate) struct Judge<'a> {
     samples: Vec<SampleIndex>,
     states: DMatrix<f64>,
+    /// Empty where the policy descends none.
     potential: DVector<f64>,
     actions: DMatrix<f64>,
     projectors: Vec<&'a NullSpaceProjector>,
@@ -26,7 +27,7 @@ impl<'a> Judge<'a> {
         Judge {
             samples: samples.to_vec(),
             states: columns(|truth| &truth.states),
-            potential: DVector::from_iterator(samples.len(), truth().map(|(truth, n)| truth.potential[n])),
+            potential: truth().filter_map(|(truth, n)| truth.potential.get(n).copied()).collect::<Vec<_>>().into(),
             actions: columns(|truth| &truth.actions),
             projectors: truth().map(|(truth, n)| &truth.projectors[n]).collect(),
         }
@@ -38,10 +39,15 @@ impl<'a> Judge<'a> {
         Judge {
             samples: chosen.iter().map(|&sample| self.samples[sample]).collect(),
             states: self.states.select_columns(&chosen),
-            potential: self.potential.select_rows(&chosen),
+            potential: if self.has_potential() { self.potential.select_rows(&chosen) } else { DVector::zeros(0) },
             actions: self.actions.select_columns(&chosen),
             projectors: chosen.iter().map(|&sample| self.projectors[sample]).collect(),
         }
+    }
+
+    /// Whether there is a true potential to compare with.
+    pub(crate) fn has_potential(&self) -> bool {
+        !self.potential.is_empty()
     }
 
     /// What is tested, ascending.

@@ -1,17 +1,24 @@
 //! The registry: every table and figure of the paper that can be reproduced, one file each.
 
 mod asimo22;
+mod beside;
+mod beyond;
+mod contest;
 mod exam;
 mod figure6;
 mod figure9;
+mod gaussians;
 mod judge;
 mod parameters;
 mod pupil;
+mod readings;
+mod seen;
 mod table1;
 mod table2;
 mod test_samples;
 mod three_link;
 
+pub(crate) use contest::{Contest, Contestant};
 pub(crate) use figure6::{BANDWIDTHS, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
 pub(crate) use figure9::{Distance, TENTHS, line};
 pub(crate) use judge::Judge;
@@ -47,6 +54,8 @@ pub(crate) struct Experiment {
     pub(crate) decisions: &'static str,
     /// The experiment of which it is another reading: its cells are no further figures of the paper.
     pub(crate) another_reading_of: Option<&'static str>,
+    /// Learners held against each other, a line for each error; empty where there is one learner alone.
+    pub(crate) contests: Vec<Contest>,
     /// What is measured, in the table's order.
     pub(crate) setups: Vec<Setup>,
     /// The printed figures: `xtask/paper/*.toml`; empty where the paper shows curves only.
@@ -68,11 +77,16 @@ impl Experiment {
 
     /// Fails if the printed figures and the rows do not belong together, as after a slip in a name.
     fn checked(self) -> anyhow::Result<Self> {
-        for row in self.rows().filter(|_| !self.paper.is_empty()) {
+        let of_paper = |row: &&Row| !self.paper.is_empty() && row.of != RowOf::Contestant;
+        for row in self.rows().filter(of_paper) {
             ensure!(self.paper.contains_key(&row.id), "{}: xtask/paper has no row {}", self.id, row.id);
         }
         for id in self.paper.keys().chain(self.explanations.keys()) {
             ensure!(self.rows().any(|row| row.id == *id), "{}: xtask/paper has a row {id} that is not run", self.id);
+        }
+        for entry in self.contests.iter().flat_map(|contest| &contest.entries) {
+            let (id, row) = (self.id, &entry.row);
+            ensure!(self.rows().any(|other| other.id == *row), "{id}: a contest has a row {row} that is not run");
         }
         Ok(self)
     }
@@ -91,10 +105,19 @@ pub(crate) struct Setup {
     pub(crate) rows: Vec<Row>,
     /// The system whose random stream is used: equal numbers see equal data sets.
     pub(crate) system: u32,
+    /// How many data sets it sees, where not as many as the experiment has: then the first ones.
+    pub(crate) data_sets: Option<u32>,
     /// Work of one data set, in any unit that all setups share; used for the time left.
     pub(crate) cost: u64,
     /// How a data set is made, learnt and scored.
     pub(crate) trial: Box<dyn Trial>,
+}
+
+impl Setup {
+    /// Whether its rows only hold learners against each other.
+    pub(crate) fn is_of_contestants(&self) -> bool {
+        self.rows.iter().all(|row| row.of == RowOf::Contestant)
+    }
 }
 
 /// One row of a table.
@@ -134,6 +157,8 @@ pub(crate) fn registry() -> anyhow::Result<Vec<Experiment>> {
         asimo22::asimo22()?,
         three_link::three_link()?,
         figure9::figure9()?,
+        beyond::beyond(),
+        readings::readings(),
     ];
     experiments.into_iter().map(Experiment::checked).collect()
 }

@@ -1,15 +1,20 @@
 //! Table 1 (Section 4.1): the toy system, three set-ups by three bandwidths.
 
-use align::{Bandwidth, LwprRegressor, PolicyAlign};
+use align::{Bandwidth, DirectPolicyLearning, LwprRegressor, PolicyAlign};
 use demo_gen::{Redraw, ToyPotential, ToySystem};
+use gp::FrontEnd;
 use lwpr::LwprParams;
 use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
+use super::beside::{Beside, BesideTrial, DATA_SETS};
+use super::contest::Contest;
 use super::exam::examine;
+use super::gaussians::Gaussians;
 use super::pupil::Pupil;
 use super::{Experiment, Measures, Row, Setup, Trial};
+use crate::measure::Measure;
 use crate::paper::{explanations, paper_table};
 
 /// The systems of the table, by their random streams; those of the literal reading follow from 100.
@@ -29,7 +34,8 @@ pub(crate) fn table1() -> anyhow::Result<Experiment> {
                  rates come out. Regression, the same in all rows: init_D 10, w_gen .5, penalty 1e-5, adaptive diagonal metric, 10 passes.",
         decisions: "table1.md",
         another_reading_of: None,
-        setups: setups(Redraw::Every(20), 0),
+        contests: contests(),
+        setups: setups(Redraw::Every(20), 0, 1500),
         paper: paper_table(include_str!("../../paper/table1.toml"))?,
         explanations: explanations(include_str!("../../paper/table1-explained.toml"))?,
     })
@@ -45,32 +51,75 @@ pub(crate) fn table1_literal() -> anyhow::Result<Experiment> {
         remark: "As Table 1, but the constraint is \"re-sampled twice\" during each movement to the letter: three segments of equal length.",
         decisions: "table1.md",
         another_reading_of: Some("table1"),
-        setups: setups(Redraw::Segments(3), LITERAL),
+        contests: contests(),
+        setups: setups(Redraw::Segments(3), LITERAL, LITERAL_ROWS),
         paper: paper_table(include_str!("../../paper/table1.toml"))?,
         explanations: explanations(include_str!("../../paper/table1-literal-explained.toml"))?,
     })
 }
 
-fn setups(redraw: Redraw, first_system: u32) -> Vec<Setup> {
-    let systems = [
+/// Rows that the Gaussian processes learn from in the literal reading, which shows them nothing new.
+const LITERAL_ROWS: usize = 500;
+
+/// Names in rows.
+const BANDWIDTHS: [(&str, Bandwidth); 3] =
+    [("narrow", Bandwidth::Narrow), ("medium", Bandwidth::Medium), ("wide", Bandwidth::Wide)];
+
+/// The three systems: number, name, trajectories and samples, potential.
+fn systems() -> [(u32, &'static str, usize, ToyPotential); 3] {
+    [
         (PARABOLA_SYSTEM, "parabola", 40, ToyPotential::parabola()),
         (SINUSOIDAL_SYSTEM, "sinusoidal", 40, ToyPotential::sinusoidal()),
         (LONG_SINUSOIDAL_SYSTEM, "sinusoidal", 100, ToyPotential::sinusoidal()),
-    ];
-    let bandwidths = [("narrow", Bandwidth::Narrow), ("medium", Bandwidth::Medium), ("wide", Bandwidth::Wide)];
+    ]
+}
+
+fn setups(redraw: Redraw, first_system: u32, max_rows: usize) -> Vec<Setup> {
     let mut setups = Vec::new();
-    for (number, name, size, potential) in systems {
-        for (bandwidth_name, bandwidth) in bandwidths {
+    for (number, name, size, potential) in systems() {
+        let system = ToySystem { potential, n_trajectories: size, n_samples: size, redraw };
+        for (bandwidth_name, bandwidth) in BANDWIDTHS {
             let id = format!("{name}-{size}x{size}-{bandwidth_name}");
-            let system = ToySystem { potential: potential.clone(), n_trajectories: size, n_samples: size, redraw };
             let row = Row::of_learner(&id);
             let algorithm = PolicyAlign { bandwidth, ..PolicyAlign::default() };
-            let cost = learning_cost(size, size);
-            let trial = Box::new(ToyTrial { system, algorithm, pupils: toy_pupils() });
-            setups.push(Setup { id, rows: vec![row], system: first_system + number, cost, trial });
+            let (cost, system_number) = (learning_cost(size, size), first_system + number);
+            let trial = Box::new(ToyTrial { system: system.clone(), algorithm, pupils: toy_pupils() });
+            setups.push(Setup { id, rows: vec![row], system: system_number, data_sets: None, cost, trial });
         }
     }
+    for (number, name, size, potential) in systems() {
+        let scene = ToySystem { potential, n_trajectories: size, n_samples: size, redraw };
+        let algorithms = BANDWIDTHS.map(|(_, bandwidth)| PolicyAlign { bandwidth, ..PolicyAlign::default() }).into();
+        let beside = toy_beside(FrontEnd::Map, max_rows);
+        setups.push(Setup {
+            id: format!("{name}-{size}x{size}-beside"),
+            rows: cases(name, size).iter().flat_map(|case| beside.rows(case)).collect(),
+            system: first_system + number,
+            data_sets: Some(DATA_SETS),
+            cost: beside.cost(),
+            trial: Box::new(BesideTrial { scene, algorithms, beside }),
+        });
+    }
     setups
+}
+
+/// A system in each bandwidth.
+fn cases(name: &str, size: usize) -> [String; 3] {
+    BANDWIDTHS.map(|(bandwidth, _)| format!("{name}-{size}x{size}-{bandwidth}"))
+}
+
+/// The learners on each system, in each bandwidth.
+fn contests() -> Vec<Contest> {
+    let beside = toy_beside(FrontEnd::Map, 1);
+    let cases = systems().into_iter().flat_map(|(_, name, size, _)| cases(name, size));
+    cases.map(|case| beside.contest(&case, Measure::Nupe)).collect()
+}
+
+/// Who learns the toy system beside PolicyAlign.
+pub(super) fn toy_beside(front_end: FrontEnd, max_rows: usize) -> Beside {
+    let LwprRegressor { params, passes, cutoff } = toy_regressor();
+    let naive = Some(DirectPolicyLearning { params, passes, cutoff });
+    Beside { naive, gaussians: Gaussians { front_end, max_rows, hyper_rows: 400.min(max_rows) } }
 }
 
 /// One row of the table.

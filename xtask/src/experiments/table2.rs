@@ -4,12 +4,16 @@ use std::collections::BTreeMap;
 
 use align::{DirectPolicyLearning, LwprRegressor, PolicyAlign};
 use demo_gen::Grasp;
+use gp::FrontEnd;
 use lwpr::{LwprParams, MetricAdaptation};
 use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
+use super::beside::{Beside, DATA_SETS};
+use super::contest::{Contest, Contestant};
 use super::exam::examine;
+use super::gaussians::Gaussians;
 use super::pupil::Pupil;
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::Measure;
@@ -24,7 +28,14 @@ const SPREAD: f64 = 0.3;
 
 /// The experiment.
 pub(crate) fn table2() -> anyhow::Result<Experiment> {
-    let rows = ["training", "unseen_barrier", "unconstrained", "alignment"].map(Row::of_learner).into();
+    let rows = CASES.into_iter().chain(["alignment"]).map(Row::of_learner).collect();
+    let beside = grasp_beside();
+    let contest = |(case, [measure, _]): (&str, [Measure; 2])| Contest {
+        case: case.to_owned(),
+        ..Contest::of(CASE, measure, &beside.contestants())
+            .with(Contestant::PolicyAlign, case, Measure::PolicyAlign)
+            .with(Contestant::Naive, case, Measure::Naive)
+    };
     // In the order of [`MEASURES`].
     let pupils = vec![Pupil::PolicyAlign(grasp_regressor()), Pupil::other(grasp_naive())?];
     let trial = GraspTrial { grasp: grasp()?, algorithm: PolicyAlign::default(), pupils };
@@ -39,16 +50,39 @@ pub(crate) fn table2() -> anyhow::Result<Experiment> {
                  the naive learner are held against its errors on held-out samples of all movements.",
         decisions: "table2.md",
         another_reading_of: None,
-        setups: vec![Setup {
-            id: "grasp".to_owned(),
-            rows,
-            system: GRASP_SYSTEM,
-            cost: 2_000_000,
-            trial: Box::new(trial),
-        }],
+        contests: CASES.into_iter().zip(ERRORS).map(contest).collect(),
+        setups: vec![
+            Setup {
+                id: "grasp".to_owned(),
+                rows,
+                system: GRASP_SYSTEM,
+                data_sets: None,
+                cost: 2_000_000,
+                trial: Box::new(trial),
+            },
+            Setup {
+                id: "beside".to_owned(),
+                rows: beside.rows(CASE),
+                system: GRASP_SYSTEM,
+                data_sets: Some(DATA_SETS),
+                cost: beside.cost(),
+                trial: Box::new(GraspBeside { grasp: grasp()?, algorithm: PolicyAlign::default(), beside }),
+            },
+        ],
         paper: paper_table(include_str!("../../paper/table2.toml"))?,
         explanations: explanations(include_str!("../../paper/table2-explained.toml"))?,
     })
+}
+
+/// The rows of the printed table.
+const CASES: [&str; 3] = ["training", "unseen_barrier", "unconstrained"];
+
+/// What rows of other learners are named after.
+const CASE: &str = "grasp";
+
+/// Who learns beside PolicyAlign and the naive learner.
+pub(crate) fn grasp_beside() -> Beside {
+    Beside { naive: None, gaussians: Gaussians { front_end: FrontEnd::Map, max_rows: 1000, hyper_rows: 400 } }
 }
 
 /// What is demonstrated.
@@ -81,6 +115,27 @@ const ERRORS: [[Measure; 2]; 3] = [
     [Measure::NcpeUnseen, Measure::NcpeUnseenAll],
     [Measure::Nupe, Measure::NupeAll],
 ];
+
+/// The learners beside.
+#[derive(Serialize)]
+struct GraspBeside {
+    grasp: Grasp,
+    algorithm: PolicyAlign,
+    beside: Beside,
+}
+
+impl Trial for GraspBeside {
+    fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
+        let recordings = self.grasp.record(rng)?;
+        let obstacle = self.grasp.scene.central_obstacle()?;
+        let sat = self.beside.sit(&recordings, std::slice::from_ref(&self.algorithm), rng)?;
+        let mut rows = sat.rows()?;
+        for (row, learnt) in rows.iter_mut().zip(sat.learnt()) {
+            row.insert(Measure::NcpeUnseen, sat.judges(0)[0].policy_under(&learnt, &obstacle)?);
+        }
+        Ok(rows)
+    }
+}
 
 /// All rows: they are measured on the same data sets.
 #[derive(Serialize)]

@@ -2,12 +2,16 @@
 
 use align::{DirectPolicyLearning, LwprRegressor, PolicyAlign};
 use demo_gen::{ThreeLinkArm, n_leaving_limits};
+use gp::FrontEnd;
 use lwpr::{LwprParams, MetricAdaptation};
 use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
+use super::beside::{Beside, BesideTrial, DATA_SETS};
+use super::contest::{Contest, Contestant};
 use super::exam::{TESTED_ON, examine};
+use super::gaussians::Gaussians;
 use super::pupil::Pupil;
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::{Measure, RowOf};
@@ -16,11 +20,21 @@ use crate::paper::{explanations, paper_table};
 /// The system whose random stream is used.
 pub(crate) const ARM_SYSTEM: u32 = 440;
 
+/// What its rows of other learners are named after.
+const CASE: &str = "arm";
+
 /// The experiment.
 pub(crate) fn three_link() -> anyhow::Result<Experiment> {
     let rows = [("policy_align", RowOf::Learner), ("naive", RowOf::Baseline)];
     let rows = rows.map(|(id, of)| Row { id: id.to_owned(), of, tested_on: TESTED_ON });
     let trial = ArmTrial { arm: arm()?, algorithm: PolicyAlign::default(), pupils: pupils()? };
+    let beside = beside(1500);
+    let contest =
+        |measure| {
+            Contest::of(CASE, measure, &beside.contestants())
+                .with(Contestant::PolicyAlign, "policy_align", measure)
+                .with(Contestant::Naive, "naive", measure)
+        };
     Ok(Experiment {
         id: "three_link",
         section: "4.4",
@@ -31,16 +45,33 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
                  its errors on held-out samples of all movements.",
         decisions: "three-link.md",
         another_reading_of: None,
-        setups: vec![Setup {
-            id: "three_link".to_owned(),
-            rows: rows.into(),
-            system: ARM_SYSTEM,
-            cost: 2_000_000,
-            trial: Box::new(trial),
-        }],
+        contests: [Measure::Nupe, Measure::Ncpe].map(contest).into(),
+        setups: vec![
+            Setup {
+                id: "three_link".to_owned(),
+                rows: rows.into(),
+                system: ARM_SYSTEM,
+                data_sets: None,
+                cost: 2_000_000,
+                trial: Box::new(trial),
+            },
+            Setup {
+                id: "beside".to_owned(),
+                rows: beside.rows(CASE),
+                system: ARM_SYSTEM,
+                data_sets: Some(DATA_SETS),
+                cost: beside.cost(),
+                trial: Box::new(BesideTrial { scene: arm()?, algorithms: vec![PolicyAlign::default()], beside }),
+            },
+        ],
         paper: paper_table(include_str!("../../paper/three_link.toml"))?,
         explanations: explanations(include_str!("../../paper/three_link-explained.toml"))?,
     })
+}
+
+/// Who learns beside PolicyAlign and the naive learner.
+pub(super) fn beside(max_rows: usize) -> Beside {
+    Beside { naive: None, gaussians: Gaussians { front_end: FrontEnd::Map, max_rows, hyper_rows: 400.min(max_rows) } }
 }
 
 /// The arm of Section 4.4.

@@ -2,7 +2,7 @@
 //! why it stands out. The Markdown and the page say the same.
 
 use crate::experiments::Experiment;
-use crate::measure::Measure;
+use crate::measure::{Measure, RowOf};
 use crate::results::{Cell, ExperimentResult, Results, RowResult};
 use crate::verdict::Verdict;
 
@@ -76,14 +76,20 @@ impl<'a> Compared<'a> {
         row.measures.iter().map(line)
     }
 
-    /// All cells.
+    /// The rows of the paper's own learners; the others stand in tables of learners.
+    pub(super) fn rows(&self) -> impl Iterator<Item = &'a RowResult> {
+        let contestant = |id: &str| self.experiment.rows().any(|row| row.id == id && row.of == RowOf::Contestant);
+        self.result.rows.iter().filter(move |row| !contestant(&row.id))
+    }
+
+    /// Their cells.
     pub(super) fn lines(&self) -> impl Iterator<Item = Line<'a>> {
-        self.result.rows.iter().flat_map(|row| self.lines_of(row))
+        self.rows().flat_map(|row| self.lines_of(row))
     }
 
     /// Whether there are too few data sets for single cells to mean much.
     pub(super) fn is_glimpse(&self) -> bool {
-        self.result.rows.iter().any(|row| row.data_sets < FEW)
+        self.rows().any(|row| row.data_sets < FEW)
     }
 
     /// The cells that need a word, each with it.

@@ -12,7 +12,7 @@ rate agrees within one printed standard deviation (printed 0 ± 0: below .005 %)
 **differ**.";
 
 /// Measures and what they are.
-pub(super) const MEASURES: [(&[Measure], &str); 9] = [
+pub(super) const MEASURES: [(&[Measure], &str); 12] = [
     (&[Measure::PotentialNmse], "error of the learnt potential (A3)"),
     (
         &[Measure::Nupe, Measure::Ncpe],
@@ -28,6 +28,12 @@ pub(super) const MEASURES: [(&[Measure], &str); 9] = [
     (&[Measure::Disc], "trajectories left out, %"),
     (&[Measure::Unsupported], "test samples where no receptive field speaks, %"),
     (&[Measure::BeyondLimits], "movements that leave the robot's joint limits somewhere, %"),
+    (&[Measure::ExpectedNupe], "what a Gaussian process expects nupe to be"),
+    (&[Measure::Rotation], "data sets in which the slope GP finds that there is no potential, %"),
+    (
+        &[Measure::ReadFree, Measure::ReadConstrained, Measure::ReadAmbiguous, Measure::ReadUnexplained],
+        "data sets that are read so, %",
+    ),
 ];
 
 /// Names of measures, one after the other.

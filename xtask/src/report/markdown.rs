@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use page::markdown_table;
 
 use super::compared::{Compared, FEW, Line, compared};
+use super::contests::{CAUTION, Contests};
 use super::legend::{MEASURES, RULE, names};
 use super::tally::Tally;
 use crate::experiments::Experiment;
@@ -43,17 +44,20 @@ pub(crate) fn sections<'a>(
 /// What a run shows when it ends: the tables that the paper prints. Curves are in the report.
 pub(crate) fn tables(experiments: &[Experiment], results: &Results) -> String {
     let shown = |compared: &Compared<'_>| {
-        if compared.is_printed() {
+        if compared.is_printed() || compared.rows().next().is_none() {
             return section(compared, results.seed);
         }
-        let n = compared.result.rows.len();
+        let n = compared.rows().count();
         format!("## {}\n\n{n} rows: see the report.\n\n", title(compared.experiment))
     };
     compared(experiments, results, None).iter().map(shown).collect()
 }
 
 fn title(experiment: &Experiment) -> String {
-    format!("{} (Section {}): `{}`", experiment.title, experiment.section, experiment.id)
+    match experiment.section {
+        "none" => format!("{}: `{}`", experiment.title, experiment.id),
+        section => format!("{} (Section {section}): `{}`", experiment.title, experiment.id),
+    }
 }
 
 fn section(compared: &Compared<'_>, seed: u64) -> String {
@@ -64,10 +68,18 @@ fn section(compared: &Compared<'_>, seed: u64) -> String {
     for (row, what) in compared.failures() {
         let _ = writeln!(text, "**`{row}`: {what}.**\n");
     }
-    text += &table(compared);
-    text.push('\n');
-    text += &explanations(compared);
-    text
+    if compared.rows().next().is_some() {
+        text += &table(compared);
+        text.push('\n');
+        text += &explanations(compared);
+    }
+    text + &contests(compared)
+}
+
+/// Learners side by side, where there are several.
+fn contests(compared: &Compared<'_>) -> String {
+    let Some(contests) = Contests::of(compared.experiment, compared.result) else { return String::new() };
+    format!("### Learners side by side\n\n{CAUTION}\n\n{}\n", markdown_table(&contests.header(), &contests.rows()))
 }
 
 /// A column: what stands over it and in it.
@@ -93,7 +105,7 @@ fn table<'a>(compared: &Compared<'a>) -> String {
     columns.extend(compared.second.map(|other| column(&format!("seed {}", other.seed), second)));
     let header: Vec<&str> = ["row"].into_iter().chain(columns.iter().map(|(name, _)| name.as_str())).collect();
     let mut rows = Vec::new();
-    for row in &compared.result.rows {
+    for row in compared.rows() {
         for (i, line) in compared.lines_of(row).enumerate() {
             let id = if i == 0 { format!("`{}`", row.id) } else { String::new() };
             rows.push([id].into_iter().chain(columns.iter().map(|(_, show)| show(&line))).collect());

@@ -1,6 +1,7 @@
 //! `cargo xtask report`: draws the figures of a finished run and writes its report, from what the run left behind.
 
 mod compared;
+mod contests;
 mod legend;
 mod markdown;
 mod page;

@@ -43,7 +43,7 @@ pub(crate) struct Reproduce {
     /// Data sets a row [default: as many as the paper]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     data_sets: Option<u32>,
-    /// Three data sets a row: a first look within a minute
+    /// Three data sets a row, one where learners are held against each other: a first look within a minute or two
     #[arg(long, conflicts_with = "data_sets")]
     quick: bool,
     /// Seed of all random numbers
@@ -116,7 +116,8 @@ impl Reproduce {
     ) -> anyhow::Result<(Results, Vec<String>)> {
         let started = Instant::now();
         let revision = revision(&repository());
-        let plan = Plan { data_sets: self.data_sets.or(self.quick.then_some(QUICK_DATA_SETS)), seed: self.seed };
+        let quick = |number| self.data_sets.or(self.quick.then_some(number));
+        let plan = Plan { data_sets: quick(QUICK_DATA_SETS), of_contestants: quick(1), seed: self.seed };
         let Measured { outcomes, resumed } = pool.install(|| run(experiments, plan, records))?;
         let run = Run {
             command: self.command(),

@@ -1,11 +1,12 @@
 use motion::{Policy, Potential};
 use rand::Rng;
+use serde::Serialize;
 
 use super::{Handwriting, LimitCycle, Planes, Swirl, Wells};
 use crate::{DemoGenError, Sinusoidal};
 
 /// What kind of policy is shown; each data set draws its own.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum Shown {
     /// The paper's sinusoidal potential on the plane, the same in every data set.
     Sinusoidal,

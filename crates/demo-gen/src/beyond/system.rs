@@ -2,6 +2,7 @@ use constraints::{PfaffianConstraint, Switching, Unconstrained};
 use motion::{Policy, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, RngExt};
+use serde::Serialize;
 
 use super::shown::{Field, Scene};
 use super::{DriftingConstraint, Shown};
@@ -9,7 +10,7 @@ use crate::recording::record_each;
 use crate::{DemoGenError, Recording, Redraw, RollOut, Truth};
 
 /// Which of the movements are constrained, and how.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Hindrance {
     /// None is.
     Free,
@@ -34,7 +35,7 @@ pub enum Hindrance {
 /// assert_eq!(recordings[9].truth.projectors[0].rank(), 1);
 /// # Ok::<(), demo_gen::DemoGenError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BeyondSystem {
     /// The policy. Default three wells in three dimensions.
     pub shown: Shown,

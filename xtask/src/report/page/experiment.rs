@@ -7,6 +7,7 @@ use super::table::{columns, grid, is_printed, list, scales};
 use super::verdict_bar::{bar, words};
 use super::{Contents, view};
 use crate::report::compared::{Compared, Line};
+use crate::report::contests::{CAUTION, Contests};
 use crate::report::tally::Tally;
 use crate::verdict::Verdict;
 
@@ -19,7 +20,10 @@ pub(super) fn section(compared: &Compared<'_>, contents: &Contents<'_>) -> Marku
     html! {
         header {
             h2 { (experiment.title) }
-            p .where { "Section " (experiment.section) " of the paper · " code { (experiment.id) } }
+            p .where {
+                @if experiment.section != "none" { "Section " (experiment.section) " of the paper · " }
+                code { (experiment.id) }
+            }
             @if tally.total() > 0 { (bar(&tally)) (words(&tally)) }
         }
         @for (row, what) in compared.failures() { p .notice { code { (row) } ": " (what) "." } }
@@ -27,10 +31,11 @@ pub(super) fn section(compared: &Compared<'_>, contents: &Contents<'_>) -> Marku
             (printed(compared))
             @if experiment.id == view::EXPERIMENT { (view::view(contents.sources, &figures)) }
             @for (figure, svg) in &figures { (super::card(figure, svg, experiment.title)) }
-            (standing_out(compared)) (left_open(compared))
+            (standing_out(compared)) (contests(compared)) (left_open(compared))
         } @else {
             @for (figure, svg) in &figures { (super::card(figure, svg, experiment.title)) }
-            (left_open(compared)) (curves(compared))
+            (contests(compared)) (left_open(compared))
+            @if compared.rows().next().is_some() { (curves(compared)) }
         }
     }
 }
@@ -70,6 +75,29 @@ fn curves(compared: &Compared<'_>) -> Markup {
             summary { "The numbers behind the curves" }
             (list(compared, &scales(compared), |_| true))
             (key("the paper’s mean ± s.d."))
+        }
+    }
+}
+
+/// Learners side by side, where there are several.
+fn contests(compared: &Compared<'_>) -> Markup {
+    html! {
+        @if let Some(contests) = Contests::of(compared.experiment, compared.result) {
+            h3 { "Learners side by side" }
+            p { (CAUTION) }
+            table .list .contests {
+                thead { tr { @for name in contests.header() { th scope="col" { (name) } } } }
+                tbody {
+                    @for row in contests.rows() {
+                        tr {
+                            th scope="row" { (row[0]) }
+                            @for (cell, name) in row[1..].iter().zip(&contests.header()[1..]) {
+                                td .number data-label=(name) { (cell) }
+                            }
+                        }
+                    }
+                }
+            }
         }
     }
 }

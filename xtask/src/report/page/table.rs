@@ -27,9 +27,9 @@ pub(super) fn scales(compared: &Compared<'_>) -> Scales {
 /// The measures that are printed in every row, where these are all that is printed.
 pub(super) fn columns(compared: &Compared<'_>) -> Option<Vec<Measure>> {
     let printed = |row| compared.lines_of(row).filter(is_printed).map(|line| line.measure).collect::<Vec<_>>();
-    let mut rows = compared.result.rows.iter().map(printed);
+    let mut rows = compared.rows().map(printed);
     let first = rows.next()?;
-    (compared.result.rows.len() >= MANY_ROWS && !first.is_empty() && rows.all(|row| row == first)).then_some(first)
+    (compared.rows().count() >= MANY_ROWS && !first.is_empty() && rows.all(|row| row == first)).then_some(first)
 }
 
 /// What the paper prints for a cell.
@@ -59,7 +59,7 @@ pub(super) fn grid(compared: &Compared<'_>, columns: &[Measure], scales: &Scales
                 }
             }
             tbody {
-                @for row in &compared.result.rows {
+                @for row in compared.rows() {
                     tr {
                         th scope="row" { (parts(&row.id)) }
                         @for line in compared.lines_of(row).filter(|line| columns.contains(&line.measure)) {
@@ -108,7 +108,7 @@ pub(super) fn list(compared: &Compared<'_>, scales: &Scales, wanted: fn(&Line<'_
                     th scope="col" { "Each data set" }
                 }
             }
-            @for row in &compared.result.rows {
+            @for row in compared.rows() {
                 @let lines: Vec<Line<'_>> = compared.lines_of(row).filter(wanted).collect();
                 @if !lines.is_empty() {
                     tbody {

@@ -1,0 +1,177 @@
+//! The learners beside the paper's: the same recordings, the same held-out samples, the same judge.
+
+use std::collections::BTreeMap;
+
+use align::{Aligned, DirectPolicyLearning, PolicyAlign};
+use demo_gen::{Grasp, HandInPlane, Recording, ThreeLinkArm, ToySystem, demonstrations};
+use gp::{BothReadings, SlopeFit};
+use motion::{Learner as _, LearntPolicy, SampleIndex};
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+
+use super::contest::{Contest, Contestant, row_id};
+use super::exam::{TESTED_ON, errors};
+use super::gaussians::{Gaussians, reading_of, told_by};
+use super::judge::Judge;
+use super::test_samples::TestSamples;
+use super::{Measures, Row, Trial};
+use crate::measure::{Measure, RowOf};
+use crate::seed::beside;
+
+/// Data sets that they learn from: errors that are smaller by orders of magnitude need no hundred.
+pub(super) const DATA_SETS: u32 = 5;
+
+/// Who learns beside.
+#[derive(Serialize)]
+pub(super) struct Beside {
+    /// The naive learner, where the paper's table has none.
+    pub(super) naive: Option<DirectPolicyLearning>,
+    pub(super) gaussians: Gaussians,
+}
+
+/// What they learnt, and those who judge it.
+pub(super) struct Sat<'a> {
+    /// For each alignment: on samples of the movements that it keeps, and of all.
+    judges: Vec<[Judge<'a>; 2]>,
+    naive: Option<Box<dyn LearntPolicy>>,
+    both: BothReadings,
+    no_trend: SlopeFit,
+}
+
+impl Beside {
+    /// Work of one data set, in the unit of [`Setup::cost`](super::Setup::cost).
+    pub(super) fn cost(&self) -> u64 {
+        // Measured: two fits of 1500 rows take about four seconds.
+        40 * (self.gaussians.max_rows as u64).pow(2)
+    }
+
+    /// In the order of the rows.
+    pub(super) fn contestants(&self) -> Vec<Contestant> {
+        let naive = self.naive.as_ref().map(|_| Contestant::Naive);
+        naive.into_iter().chain([Contestant::SlopeGp, Contestant::SlopeGpNoTrend, Contestant::DirectGp]).collect()
+    }
+
+    /// The rows of a case.
+    pub(super) fn rows(&self, case: &str) -> Vec<Row> {
+        let row = |contestant| Row { id: row_id(case, contestant), of: RowOf::Contestant, tested_on: TESTED_ON };
+        self.contestants().into_iter().map(row).collect()
+    }
+
+    /// A line of the table: those of a case and PolicyAlign, of which the case is named.
+    pub(super) fn contest(&self, case: &str, measure: Measure) -> Contest {
+        Contest::of(case, measure, &self.contestants()).with(Contestant::PolicyAlign, case, measure)
+    }
+
+    /// Lets them learn from all samples but those held out for any of the alignments. The generator stands where it does
+    /// when alignment draws its test samples, and is left there.
+    pub(super) fn sit<'a>(
+        &self,
+        recordings: &'a [Recording],
+        algorithms: &[PolicyAlign],
+        rng: &ChaCha8Rng,
+    ) -> anyhow::Result<Sat<'a>> {
+        let demonstrations = demonstrations(recordings)?;
+        let sit = |algorithm: &PolicyAlign| {
+            let aligned = algorithm.align(&demonstrations)?;
+            let test = TestSamples::draw(&aligned, &mut rng.clone())?;
+            Ok((aligned, test))
+        };
+        let sat: Vec<(Aligned, TestSamples)> = algorithms.iter().map(sit).collect::<anyhow::Result<_>>()?;
+        let held_out: Vec<SampleIndex> = sat.iter().flat_map(|(_, test)| &test.of_all).copied().collect();
+        let own = || beside(rng);
+        let learn = |naive: &DirectPolicyLearning| naive.learn(&demonstrations, &held_out, &mut own());
+        let judges = |(_, test): &(Aligned, TestSamples)| {
+            [Judge::new(recordings, &test.of_kept), Judge::new(recordings, &test.of_all)]
+        };
+        Ok(Sat {
+            judges: sat.iter().map(judges).collect(),
+            naive: self.naive.as_ref().map(learn).transpose().map_err(anyhow::Error::from_boxed)?,
+            both: self.gaussians.both(&demonstrations, &held_out, &mut own())?,
+            no_trend: self.gaussians.no_trend(&demonstrations, &held_out, &mut own())?,
+        })
+    }
+}
+
+impl<'a> Sat<'a> {
+    /// In the order of the rows.
+    pub(super) fn learnt(&self) -> Vec<&dyn LearntPolicy> {
+        let naive = self.naive.as_deref();
+        let gaussians: [&dyn LearntPolicy; 3] = [self.both.slope(), &self.no_trend, self.both.direct()];
+        naive.into_iter().chain(gaussians).collect()
+    }
+
+    /// On samples of movements that an alignment keeps, and of all.
+    pub(super) fn judges(&self, alignment: usize) -> &[Judge<'a>; 2] {
+        &self.judges[alignment]
+    }
+
+    /// A row for each learner and alignment, alignment after alignment.
+    pub(super) fn rows(&self) -> anyhow::Result<Measures> {
+        let mut rows = Vec::new();
+        for [kept, all] in &self.judges {
+            for learnt in self.learnt() {
+                let mut row = errors(kept, learnt)?;
+                let [nupe, ncpe] = all.policy(&learnt)?;
+                row.extend([(Measure::NupeAll, nupe), (Measure::NcpeAll, ncpe)]);
+                rows.push(row);
+            }
+            self.add_doubts(&mut rows);
+        }
+        Ok(rows)
+    }
+
+    /// What the learners say of themselves, into the last rows.
+    fn add_doubts(&self, rows: &mut Measures) {
+        let expected = BTreeMap::from([(Measure::ExpectedNupe, 1.0 - self.both.direct().r_squared())]);
+        let mut of_slope = told_by(self.both.slope());
+        of_slope.extend(reading_of(&self.both));
+        let first = rows.len() - 3;
+        for (row, told) in rows[first..].iter_mut().zip([of_slope, told_by(&self.no_trend), expected]) {
+            row.extend(told);
+        }
+    }
+}
+
+/// Where recordings come from.
+pub(super) trait Scene: Serialize + Send + Sync {
+    fn recordings(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Vec<Recording>>;
+}
+
+impl Scene for ToySystem {
+    fn recordings(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Vec<Recording>> {
+        Ok(self.record(rng)?)
+    }
+}
+
+impl Scene for HandInPlane {
+    fn recordings(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Vec<Recording>> {
+        Ok(self.record(rng)?)
+    }
+}
+
+impl Scene for ThreeLinkArm {
+    fn recordings(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Vec<Recording>> {
+        Ok(self.record(rng)?)
+    }
+}
+
+impl Scene for Grasp {
+    fn recordings(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Vec<Recording>> {
+        Ok(self.record(rng)?)
+    }
+}
+
+/// Their rows of a table, for one or more alignments of the same recordings.
+#[derive(Serialize)]
+pub(super) struct BesideTrial<S> {
+    pub(super) scene: S,
+    pub(super) algorithms: Vec<PolicyAlign>,
+    pub(super) beside: Beside,
+}
+
+impl<S: Scene> Trial for BesideTrial<S> {
+    fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
+        let recordings = self.scene.recordings(rng)?;
+        self.beside.sit(&recordings, &self.algorithms, rng)?.rows()
+    }
+}

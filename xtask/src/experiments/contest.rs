@@ -1,0 +1,92 @@
+//! Learners held against each other, as a table shows them: a line for each error, a column for each learner.
+
+use crate::measure::Measure;
+
+/// Whom such tables have a column for, in its order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Contestant {
+    /// LWPR on the velocities.
+    Naive,
+    /// The paper's method.
+    PolicyAlign,
+    /// The slope GP.
+    SlopeGp,
+    /// The slope GP whose families hold no quadratic potential.
+    SlopeGpNoTrend,
+    /// A Gaussian process on the velocities.
+    DirectGp,
+    /// The slope GP or the direct GP, whichever the data support.
+    Reading,
+}
+
+impl Contestant {
+    pub(crate) const ALL: [Contestant; 6] = [
+        Contestant::Naive,
+        Contestant::PolicyAlign,
+        Contestant::SlopeGp,
+        Contestant::SlopeGpNoTrend,
+        Contestant::DirectGp,
+        Contestant::Reading,
+    ];
+
+    /// Its name in rows.
+    pub(crate) fn id(self) -> &'static str {
+        match self {
+            Contestant::Naive => "naive",
+            Contestant::PolicyAlign => "policy_align",
+            Contestant::SlopeGp => "slope_gp",
+            Contestant::SlopeGpNoTrend => "slope_gp_no_trend",
+            Contestant::DirectGp => "direct_gp",
+            Contestant::Reading => "reading",
+        }
+    }
+
+    /// Its name for readers.
+    pub(crate) fn label(self) -> &'static str {
+        match self {
+            Contestant::Naive => "naive",
+            Contestant::PolicyAlign => "PolicyAlign",
+            Contestant::SlopeGp => "slope GP",
+            Contestant::SlopeGpNoTrend => "slope GP, no trend",
+            Contestant::DirectGp => "direct GP",
+            Contestant::Reading => "as read",
+        }
+    }
+}
+
+/// One line of such a table: an error of each learner on the same data sets.
+pub(crate) struct Contest {
+    /// What was learnt from.
+    pub(crate) case: String,
+    /// The error.
+    pub(crate) measure: Measure,
+    /// Where each learner's error stands among the experiment's rows.
+    pub(crate) entries: Vec<Entry>,
+}
+
+/// The cell of one learner.
+pub(crate) struct Entry {
+    pub(crate) contestant: Contestant,
+    pub(crate) row: String,
+    pub(crate) measure: Measure,
+}
+
+impl Contest {
+    /// Of learners whose rows are named `case/learner`.
+    pub(super) fn of(case: &str, measure: Measure, contestants: &[Contestant]) -> Contest {
+        let entry = |&contestant: &Contestant| Entry { contestant, row: row_id(case, contestant), measure };
+        Contest { case: case.to_owned(), measure, entries: contestants.iter().map(entry).collect() }
+    }
+
+    /// And one whose error stands elsewhere.
+    pub(super) fn with(mut self, contestant: Contestant, row: &str, measure: Measure) -> Contest {
+        self.entries.push(Entry { contestant, row: row.to_owned(), measure });
+        self.entries.sort_by_key(|entry| entry.contestant);
+        self
+    }
+}
+
+/// The row of a learner in a case.
+pub(super) fn row_id(case: &str, contestant: Contestant) -> String {
+    format!("{case}/{}", contestant.id())
+}
