@@ -167,7 +167,7 @@ mod tests {
         let recorded = committed();
         let damages: [(Damage, &str); 4] = [
             (|run| scaled(run, 1.0 + 2e-6), "mean"),
-            (|run| cell(run).verdict = Some(Verdict::Worse), "worse, was agrees"),
+            (|run| cell(run).verdict = Some(Verdict::Higher), "higher, was agrees"),
             (|run| cell(run).values[7] = None, "99 of 100 data sets have a value, 100 had one"),
             (|run| drop(run.experiments[0].rows[3].measures.remove(&Measure::Nupe)), "is not there any more"),
         ];

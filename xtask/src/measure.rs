@@ -32,7 +32,7 @@ pub(crate) enum Measure {
     NaiveAll,
     /// [`Measure::PolicyAlign`] on held-out samples of all movements.
     PolicyAlignAll,
-    /// Test samples where no receptive field speaks, percent; they count with the mean.
+    /// Test samples outside every receptive field, percent; they count with the mean.
     Unsupported,
     /// Demonstrated movements that leave the robot's joint limits somewhere, percent.
     BeyondLimits,
@@ -53,11 +53,13 @@ pub(crate) enum Measure {
 /// By which rule ours and the paper's figure are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// An error of the learner: lower is better.
+    /// An error that is left to the learner.
     LearnerError,
-    /// An error of the baseline: it is to be as bad as the paper's.
+    /// An error of the baseline: it is to be as large as the paper's.
     BaselineError,
-    /// A share of trajectories: neither direction is better.
+    /// An error that the set-up decides, not the learner: that of alignment follows from the time step.
+    SetUpError,
+    /// A share of trajectories.
     Share,
 }
 
@@ -143,6 +145,7 @@ impl Measure {
         match (self, row) {
             _ if self.is_share() => Kind::Share,
             (Measure::Naive | Measure::NaiveAll, _) | (_, RowOf::Baseline) => Kind::BaselineError,
+            (Measure::AlignmentNmse, _) => Kind::SetUpError,
             (_, RowOf::Learner | RowOf::Contestant) => Kind::LearnerError,
         }
     }

@@ -171,7 +171,8 @@ fn pictured(figure: &Figure) -> String {
 /// One line an experiment with printed figures: how many printed figures are reached.
 fn verdicts(experiments: &[Experiment], results: &Results) -> String {
     let line = |experiment: &Experiment| {
-        let tally = Tally::of(results.experiments.iter().filter(|result| result.id == experiment.id));
+        let result = results.experiments.iter().filter(|result| result.id == experiment.id);
+        let tally = Tally::of(result.map(|result| (experiment, result)));
         let words = vec![experiment.title.to_owned(), experiment.section.to_owned(), tally.sentence()];
         (tally.total() > 0).then_some(words)
     };
@@ -192,7 +193,7 @@ fn summary(experiments: &[Experiment], result: &ExperimentResult) -> String {
                     cell.paper.map_or(String::new(), |paper| format!(" ({})", measure.show_printed(paper.mean)));
                 let ours = measure.show(cell.mean);
                 match cell.verdict {
-                    Some(Verdict::Better) => format!("**{ours}**{paper}"),
+                    Some(Verdict::Lower) => format!("**{ours}**{paper}"),
                     Some(verdict) if !verdict.reached() => format!("{ours}{paper} {}", verdict.word()),
                     _ => format!("{ours}{paper}"),
                 }
@@ -200,10 +201,11 @@ fn summary(experiments: &[Experiment], result: &ExperimentResult) -> String {
             [row.id.clone()].into_iter().chain(measures.iter().map(cell)).collect()
         })
         .collect();
-    let title = experiments.iter().find(|experiment| experiment.id == result.id).map_or("", |e| e.title);
+    let experiment = experiments.iter().find(|experiment| experiment.id == result.id);
+    let title = experiment.map_or("", |experiment| experiment.title);
     let table = markdown_table(&["row", "potential nMSE", "nUPE", "nCPE", "discarded %"], &rows);
-    let tally = Tally::of([result]).sentence();
-    format!("{title}: ours, and in brackets the paper's; bold where ours is better. {tally}\n\n{table}")
+    let tally = Tally::of(experiment.map(|experiment| (experiment, result))).sentence();
+    format!("{title}: ours, and in brackets the paper's; bold where ours is lower. {tally}\n\n{table}")
 }
 
 #[cfg(test)]

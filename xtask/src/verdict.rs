@@ -11,30 +11,31 @@ use crate::paper::Printed;
 pub(crate) enum Verdict {
     /// Within the band around the printed mean.
     Agrees,
-    /// An error below the band.
-    Better,
-    /// An error above the band.
-    Worse,
-    /// Outside the band, where neither direction is better.
+    /// An error of the learner below the band.
+    #[serde(alias = "better")]
+    Lower,
+    /// An error of the learner above the band.
+    #[serde(alias = "worse")]
+    Higher,
+    /// Outside the band, where neither direction is to be preferred.
     Differs,
 }
 
 /// A printed share of 0 ± 0 agrees with anything that would be printed so: below .005 percent.
 const PRINTED_ZERO: f64 = 0.005;
 
-/// Judges our mean: errors of the learner and shares agree within one printed s.d., errors of the baseline within two.
+/// Judges our mean: it agrees within one printed s.d. Only an error that is left to the learner can be lower or higher.
 pub(crate) fn verdict(kind: Kind, ours: f64, paper: Printed) -> Verdict {
     let difference = ours - paper.mean;
     let band = match kind {
         Kind::Share if paper.mean == 0.0 && paper.sd == 0.0 => PRINTED_ZERO,
-        Kind::BaselineError => 2.0 * paper.sd,
-        Kind::Share | Kind::LearnerError => paper.sd,
+        _ => paper.sd,
     };
     match kind {
         _ if difference.abs() <= band => Verdict::Agrees,
-        Kind::Share | Kind::BaselineError => Verdict::Differs,
-        Kind::LearnerError if difference < 0.0 => Verdict::Better,
-        Kind::LearnerError => Verdict::Worse,
+        Kind::Share | Kind::BaselineError | Kind::SetUpError => Verdict::Differs,
+        Kind::LearnerError if difference < 0.0 => Verdict::Lower,
+        Kind::LearnerError => Verdict::Higher,
     }
 }
 
@@ -43,8 +44,8 @@ impl Verdict {
     pub(crate) fn word(self) -> &'static str {
         match self {
             Verdict::Agrees => "agrees",
-            Verdict::Better => "better",
-            Verdict::Worse => "worse",
+            Verdict::Lower => "lower",
+            Verdict::Higher => "higher",
             Verdict::Differs => "differs",
         }
     }
@@ -53,8 +54,8 @@ impl Verdict {
     pub(crate) fn singular(self) -> &'static str {
         match self {
             Verdict::Agrees => "agrees",
-            Verdict::Better => "is better",
-            Verdict::Worse => "is worse",
+            Verdict::Lower => "is lower",
+            Verdict::Higher => "is higher",
             Verdict::Differs => "differs",
         }
     }
@@ -63,15 +64,15 @@ impl Verdict {
     pub(crate) fn plural(self) -> &'static str {
         match self {
             Verdict::Agrees => "agree",
-            Verdict::Better => "are better",
-            Verdict::Worse => "are worse",
+            Verdict::Lower => "are lower",
+            Verdict::Higher => "are higher",
             Verdict::Differs => "differ",
         }
     }
 
-    /// Whether the figure is at least as good as the paper's.
+    /// Whether the figure is at least as low as the paper's.
     pub(crate) fn reached(self) -> bool {
-        matches!(self, Verdict::Agrees | Verdict::Better)
+        matches!(self, Verdict::Agrees | Verdict::Lower)
     }
 }
 
@@ -86,14 +87,15 @@ mod tests {
             (Kind::LearnerError, 0.625, printed(0.5, 0.125), Verdict::Agrees),
             (Kind::LearnerError, 0.375, printed(0.5, 0.125), Verdict::Agrees),
             (Kind::LearnerError, 0.0625, printed(0.0625, 0.0), Verdict::Agrees),
-            (Kind::LearnerError, 0.0501, printed(0.04, 0.01), Verdict::Worse),
-            (Kind::LearnerError, 0.0299, printed(0.04, 0.01), Verdict::Better),
+            (Kind::LearnerError, 0.0501, printed(0.04, 0.01), Verdict::Higher),
+            (Kind::LearnerError, 0.0299, printed(0.04, 0.01), Verdict::Lower),
             (Kind::Share, 12.0, printed(10.0, 2.0), Verdict::Agrees),
             (Kind::Share, 7.9, printed(10.0, 2.0), Verdict::Differs),
             (Kind::Share, 12.1, printed(10.0, 2.0), Verdict::Differs),
-            (Kind::BaselineError, 0.9, printed(0.75, 0.125), Verdict::Agrees),
-            (Kind::BaselineError, 1.1, printed(0.75, 0.125), Verdict::Differs),
-            (Kind::BaselineError, 0.4, printed(0.75, 0.125), Verdict::Differs),
+            (Kind::BaselineError, 0.85, printed(0.75, 0.125), Verdict::Agrees),
+            (Kind::BaselineError, 0.9, printed(0.75, 0.125), Verdict::Differs),
+            (Kind::SetUpError, 0.4, printed(0.75, 0.125), Verdict::Differs),
+            (Kind::SetUpError, 0.7, printed(0.75, 0.125), Verdict::Agrees),
             (Kind::Share, 0.004, printed(0.0, 0.0), Verdict::Agrees),
             (Kind::Share, 0.006, printed(0.0, 0.0), Verdict::Differs),
         ] {

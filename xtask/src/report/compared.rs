@@ -1,13 +1,14 @@
 //! What there is to say of each cell: ours beside the paper's and beside another seed's, how sure the difference is, and
 //! why it stands out. The Markdown and the page say the same.
 
+use super::tally::z;
 use crate::experiments::Experiment;
 use crate::measure::{Measure, RowOf};
 use crate::results::{Cell, ExperimentResult, Results, RowResult};
 use crate::verdict::Verdict;
 
 /// Standard deviations by which an error must undercut the paper's before the report has to say why.
-const REMARKABLY_BETTER: f64 = 2.0;
+const REMARKABLY_LOWER: f64 = 2.0;
 
 /// Data sets below which single cells are not worth an explanation.
 pub(super) const FEW: usize = 20;
@@ -140,11 +141,14 @@ impl Line<'_> {
 
     /// Difference of the two means over its standard error.
     pub(super) fn z(&self) -> String {
-        let z = self.cell.paper.zip(self.cell.sd).and_then(|(paper, sd)| {
-            let variance = sd.powi(2) / self.n() as f64 + paper.sd.powi(2) / f64::from(self.paper_n);
-            (variance > 0.0).then(|| (self.cell.mean - paper.mean) / variance.sqrt())
-        });
-        z.map_or(NOTHING.to_owned(), |z| format!("{z:+.1}"))
+        z(self.cell, self.paper_n).map_or(NOTHING.to_owned(), |z| format!("{z:+.1}"))
+    }
+
+    /// How many times our standard deviation is the printed one, where they differ by more than a factor of two.
+    pub(super) fn spread_ratio(&self) -> Option<String> {
+        let (paper, sd) = self.cell.paper.zip(self.cell.sd)?;
+        let ratio = sd / paper.sd;
+        (paper.sd > 0.0 && !(0.5..=2.0).contains(&ratio)).then(|| format!("× {ratio:.2}"))
     }
 
     /// The verdict's word.
@@ -163,11 +167,9 @@ impl Line<'_> {
     }
 }
 
-/// Figures that are not reached, and errors that are better by far, must be explained.
+/// Figures that are not reached, and errors that are lower by far, must be explained.
 fn needs_a_word(cell: &Cell) -> bool {
     let (Some(paper), Some(verdict)) = (cell.paper, cell.verdict) else { return false };
-    let far_better = verdict == Verdict::Better && paper.mean - cell.mean > REMARKABLY_BETTER * paper.sd;
-    // The baseline's band is twice as wide: what it alone lets pass is worth a word too.
-    let barely = verdict == Verdict::Agrees && paper.sd > 0.0 && (cell.mean - paper.mean).abs() > paper.sd;
-    !verdict.reached() || far_better || barely
+    let far_lower = verdict == Verdict::Lower && paper.mean - cell.mean > REMARKABLY_LOWER * paper.sd;
+    !verdict.reached() || far_lower
 }

@@ -7,9 +7,10 @@ pub(super) const RULE: &str = "\
 Errors are mean squared errors as a share of the variance of the true policy or potential: 0 is perfect.
 \"ours\" is the mean ± the sample standard deviation over data sets, \"n\" how many there are, \"paper\" what is printed. \"z\" is the
 difference of the two means over its standard error (both spreads count): how sure it is that there is a difference, not how large it is.
-An error **agrees** if it is within one printed standard deviation of the printed mean, else it is **better** (lower) or **worse**. A discard
-rate agrees within one printed standard deviation (printed 0 ± 0: below .005 %), an error of the naive baseline within two; else they
-**differ**.";
+A mean **agrees** if it is within one printed standard deviation of the printed mean (printed 0 ± 0: below .005 %). An error that is left to
+the learner is else **lower** or **higher**; lower can mean an easier set-up or a smoother regression. What the set-up decides (discard rates,
+the error of alignment, which follows from the time step) and the naive baseline **differ**. \"s.d.\" is ours over the printed one, where they
+differ by more than a factor of two; it is not judged.";
 
 /// Measures and what they are.
 pub(super) const MEASURES: [(&[Measure], &str); 12] = [
@@ -26,7 +27,7 @@ pub(super) const MEASURES: [(&[Measure], &str); 12] = [
     (&[Measure::NaiveAll, Measure::PolicyAlignAll], "the same on held-out samples of all movements"),
     (&[Measure::AlignmentNmse], "error of the aligned local potentials (A4)"),
     (&[Measure::Disc], "trajectories left out, %"),
-    (&[Measure::Unsupported], "test samples where no receptive field speaks, %"),
+    (&[Measure::Unsupported], "test samples outside every receptive field, %"),
     (&[Measure::BeyondLimits], "movements that leave the robot's joint limits somewhere, %"),
     (&[Measure::ExpectedNupe], "what a Gaussian process expects nupe to be"),
     (&[Measure::Rotation], "data sets in which the slope GP finds that there is no potential, %"),

@@ -64,7 +64,8 @@ fn section(compared: &Compared<'_>, seed: u64) -> String {
     let Compared { experiment, result, .. } = compared;
     let mut text = format!("## {}\n\n", title(experiment));
     let _ = writeln!(text, "{}\n", experiment.remark);
-    let _ = writeln!(text, "{}\n", format!("Seed {seed}. {}", Tally::of([*result]).sentence()).trim_end());
+    let _ =
+        writeln!(text, "{}\n", format!("Seed {seed}. {}", Tally::of([(*experiment, *result)]).sentence()).trim_end());
     for (row, what) in compared.failures() {
         let _ = writeln!(text, "**`{row}`: {what}.**\n");
     }
@@ -97,6 +98,7 @@ fn table<'a>(compared: &Compared<'a>) -> String {
         columns.extend([
             column("paper", Line::paper),
             column("z", Line::z),
+            column("s.d.", |line| line.spread_ratio().unwrap_or_default()),
             column("verdict", |line| line.verdict().to_owned()),
         ]);
     }

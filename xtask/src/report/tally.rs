@@ -2,23 +2,37 @@
 
 use std::collections::BTreeMap;
 
-use crate::results::ExperimentResult;
+use crate::experiments::Experiment;
+use crate::results::{Cell, ExperimentResult};
 use crate::verdict::Verdict;
+
+/// Standard errors within which two means may well be the same.
+const STANDARD_ERRORS: f64 = 2.0;
 
 /// How many of the printed cells are reached, and how.
 pub(crate) struct Tally {
     counts: BTreeMap<Verdict, usize>,
+    alike: usize,
 }
 
 impl Tally {
     /// Counts the cells of experiments.
-    pub(crate) fn of<'a>(results: impl IntoIterator<Item = &'a ExperimentResult>) -> Tally {
-        let mut counts = BTreeMap::new();
-        let cells = results.into_iter().flat_map(|result| &result.rows).flat_map(|row| row.measures.values());
-        for verdict in cells.filter_map(|cell| cell.verdict) {
-            *counts.entry(verdict).or_default() += 1;
+    pub(crate) fn of<'a>(results: impl IntoIterator<Item = (&'a Experiment, &'a ExperimentResult)>) -> Tally {
+        let mut tally = Tally { counts: BTreeMap::new(), alike: 0 };
+        for (experiment, result) in results {
+            for cell in result.rows.iter().flat_map(|row| row.measures.values()) {
+                let Some(verdict) = cell.verdict else { continue };
+                *tally.counts.entry(verdict).or_default() += 1;
+                let alike = z(cell, experiment.data_sets).is_none_or(|z| z.abs() <= STANDARD_ERRORS);
+                tally.alike += usize::from(alike);
+            }
         }
-        Tally { counts }
+        tally
+    }
+
+    /// Printed cells whose means differ by no more than two standard errors.
+    pub(crate) fn alike(&self) -> usize {
+        self.alike
     }
 
     /// Printed cells.
@@ -38,9 +52,21 @@ impl Tally {
         if words.is_empty() {
             String::new()
         } else {
-            format!("Of {} printed cells {}.", self.total(), words.join(", "))
+            format!(
+                "Of {} printed cells {}; {} within two standard errors.",
+                self.total(),
+                words.join(", "),
+                self.alike
+            )
         }
     }
+}
+
+/// Difference of our mean and the printed one over its standard error; none where nothing is printed, or nothing varies.
+pub(super) fn z(cell: &Cell, paper_n: u32) -> Option<f64> {
+    let (paper, sd) = cell.paper.zip(cell.sd)?;
+    let variance = sd.powi(2) / cell.n() as f64 + paper.sd.powi(2) / f64::from(paper_n);
+    (variance > 0.0).then(|| (cell.mean - paper.mean) / variance.sqrt())
 }
 
 /// The verdict as the words after a number of cells.

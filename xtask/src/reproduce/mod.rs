@@ -92,7 +92,7 @@ impl Reproduce {
             pool.install(|| write_report(&experiments, &sources, &folder))?;
         }
         let printed = print(&tables(&experiments, &sources.results));
-        self.conclude(&sources.results, &folder)?;
+        self.conclude(&experiments, &sources.results, &folder)?;
         printed
     }
 
@@ -151,12 +151,24 @@ impl Reproduce {
     }
 
     /// Says how it went; a row of which nothing could be measured is an error.
-    fn conclude(&self, results: &Results, folder: &RunFolder) -> anyhow::Result<()> {
-        for experiment in &results.experiments {
-            let tally = Tally::of([experiment]);
+    fn conclude(&self, experiments: &[Experiment], results: &Results, folder: &RunFolder) -> anyhow::Result<()> {
+        let measured: Vec<_> = results
+            .experiments
+            .iter()
+            .filter_map(|result| {
+                experiments.iter().find(|experiment| experiment.id == result.id).map(|experiment| (experiment, result))
+            })
+            .collect();
+        for &(experiment, result) in &measured {
+            let tally = Tally::of([(experiment, result)]);
             if tally.total() > 0 {
                 say(&format!("{}: {}", experiment.id, tally.sentence()));
             }
+        }
+        let first_readings = measured.iter().copied().filter(|(experiment, _)| experiment.another_reading_of.is_none());
+        let total = Tally::of(first_readings);
+        if total.total() > 0 {
+            say(&format!("in all: {}", total.sentence()));
         }
         let Run { threads, wall_seconds, cpu_seconds, .. } = &results.run;
         say(&format!(

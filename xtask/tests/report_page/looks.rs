@@ -16,8 +16,8 @@ const WORDS: [&str; 9] = [
     "figcaption",
     ".minor",
     ".verdict.is-agrees",
-    ".verdict.is-better",
-    ".verdict.is-worse",
+    ".verdict.is-lower",
+    ".verdict.is-higher",
     ".verdict.is-differs",
 ];
 

@@ -22,8 +22,8 @@ struct Shown {
     z: Option<String>,
     verdict: Option<String>,
     second: Option<String>,
-    /// What each dot says when pointed at.
-    dots: Vec<String>,
+    /// Where each dot is, in pixels.
+    dots: Vec<f64>,
 }
 
 const SHOWN: &str = "[...document.querySelectorAll('[data-measure]')].map(cell => {
@@ -32,7 +32,7 @@ const SHOWN: &str = "[...document.querySelectorAll('[data-measure]')].map(cell =
         experiment: cell.closest('section').id, row: cell.dataset.row, measure: cell.dataset.measure,
         ours: text('.ours'), median: text('span.median'), n: text('.n'), paper: text('.paper'), z: text('.z'),
         verdict: text('.verdict'), second: text('.second'),
-        dots: [...cell.querySelectorAll('.strip circle > title')].map(title => title.textContent),
+        dots: [...cell.querySelector('.strip .dots').getAttribute('d').matchAll(/M([-.\\d]+)/g)].map(at => Number(at[1])),
     };
 })";
 
@@ -125,9 +125,11 @@ fn holds(cell: &Cell, place: &Shown) {
         assert_eq!(place.paper, Some(format!("{} ± {}", of("mean"), of("sd"))), "{:?}", cell.name);
         assert_eq!(place.verdict.as_deref(), value["verdict"].as_str(), "{:?}", cell.name);
     }
-    let values = value["values"].as_array().unwrap().iter().enumerate().filter(|(_, value)| !value.is_null());
-    let dots: Vec<String> = values.map(|(i, value)| format!("data set {i}: {}", printed(measure, value))).collect();
-    assert_eq!(place.dots, dots, "{:?}", cell.name);
+    let values: Vec<f64> = value["values"].as_array().unwrap().iter().filter_map(Value::as_f64).collect();
+    assert_eq!(place.dots.len(), values.len(), "{:?}", cell.name);
+    let mut dots: Vec<(f64, f64)> = values.into_iter().zip(place.dots.iter().copied()).collect();
+    dots.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    assert!(dots.is_sorted_by(|(_, a), (_, b)| a <= b), "{:?}: a larger value lies further right", cell.name);
     assert!(dots.len() as u64 <= cell.data_sets - cell.failed, "{:?}", cell.name);
 }
 
@@ -174,7 +176,7 @@ fn the_opening_counts_every_printed_cell() {
 fn what_is_not_reached_is_told_at_once() {
     let Some(mut page) = page() else { return };
     let told: String = page.evaluate("document.getElementById('glance').textContent");
-    let missed = |cell: &Cell| ["worse", "differs"].map(Value::from).contains(&cell.value["verdict"]);
+    let missed = |cell: &Cell| ["higher", "differs"].map(Value::from).contains(&cell.value["verdict"]);
     for cell in cells(&results(1)).into_iter().filter(missed) {
         let ours = printed(&cell.name[2], &cell.value["mean"]);
         assert!(told.contains(&cell.name[1]) && told.contains(&ours), "{:?}: {ours} is not told", cell.name);

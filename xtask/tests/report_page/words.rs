@@ -12,7 +12,7 @@ fn the_rule_is_told_of_verdicts_that_occur() {
     let occurring: Vec<String> =
         page.evaluate("[...document.querySelectorAll('.total [data-verdict]')].map(item => item.dataset.verdict)");
     for (verdict, words) in
-        [("agrees", "Agree: "), ("better", "Better: "), ("worse", "Worse: "), ("differs", "Differ: ")]
+        [("agrees", "Agree: "), ("lower", "Lower: "), ("higher", "Higher: "), ("differs", "Differ: ")]
     {
         assert_eq!(rule.contains(words), occurring.iter().any(|other| other == verdict), "{verdict}: {rule}");
     }

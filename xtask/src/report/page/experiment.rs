@@ -14,7 +14,7 @@ use crate::verdict::Verdict;
 /// The section of an experiment.
 pub(super) fn section(compared: &Compared<'_>, contents: &Contents<'_>) -> Markup {
     let experiment = compared.experiment;
-    let tally = Tally::of([compared.result]);
+    let tally = Tally::of([(compared.experiment, compared.result)]);
     let figures: Vec<_> =
         contents.figures.iter().filter(|(figure, _)| figure.experiment == Some(experiment.id)).collect();
     html! {

@@ -55,9 +55,10 @@ fn missing(contents: &Contents<'_>) -> Markup {
 /// How the other run went, in what was run here.
 fn beside(second: &Results, all: &[Compared<'_>]) -> String {
     let here = |id: &str| {
-        all.iter().any(|compared| compared.experiment.id == id && compared.experiment.another_reading_of.is_none())
+        let mut first_readings = all.iter().filter(|compared| compared.experiment.another_reading_of.is_none());
+        first_readings.find(|compared| compared.experiment.id == id).map(|compared| compared.experiment)
     };
-    Tally::of(second.experiments.iter().filter(|result| here(&result.id))).sentence()
+    Tally::of(second.experiments.iter().filter_map(|result| Some((here(&result.id)?, result)))).sentence()
 }
 
 /// Rows of a setup are measured on the same data sets.

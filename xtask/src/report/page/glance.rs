@@ -17,10 +17,9 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
         header #glance {
             h1 { "Learn the movement, not the constraint" }
             p .lead {
-                "Demonstrations made under constraints that nobody tells, and that change from one to the next, hide the policy behind \
-                 them. Howard, Klanke, Gienger, Goerick and Vijayakumar showed how to recover it ("
+                "Demonstrations are made under unknown, changing constraints, which hide the policy. Howard, Klanke, Gienger, Goerick and Vijayakumar showed how to recover it ("
                 cite { "Behaviour Generation in Humanoids by Learning Potential-based Policies from Constrained Motion" }
-                "). policy-align computes their experiments anew; this page holds the outcome against what the paper prints."
+                "). policy-align repeats their experiments; this page compares our results with the paper's numbers."
             }
             (how_it_went(all))
             (facts(contents, all))
@@ -36,7 +35,7 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
 /// How many cells are reached: in total, and for each experiment.
 fn how_it_went(all: &[Compared<'_>]) -> Markup {
     let first_readings = all.iter().filter(|compared| compared.experiment.another_reading_of.is_none());
-    let total = Tally::of(first_readings.map(|compared| compared.result));
+    let total = Tally::of(first_readings.map(|compared| (compared.experiment, compared.result)));
     html! {
         @if total.total() > 0 {
             div .total {
@@ -45,6 +44,8 @@ fn how_it_went(all: &[Compared<'_>]) -> Markup {
                 (bar(&total))
                 p .rule {
                     @for (verdict, _) in total.counts() { (meaning(verdict)) " " }
+                    "How sure that is: " b { (total.alike()) } " of the " (total.total()) " means are within two standard errors of the printed \
+                     ones; the others differ by more than chance. "
                     a href="#method" { "The rule in full" }
                 }
             }
@@ -59,18 +60,18 @@ fn how_it_went(all: &[Compared<'_>]) -> Markup {
 /// What a verdict says, in short.
 fn meaning(verdict: Verdict) -> &'static str {
     match verdict {
-        Verdict::Agrees => {
-            "Agree: our mean is within one printed standard deviation of the printed mean (errors of the naive baseline: two)."
+        Verdict::Agrees => "Agree: our mean is within one printed standard deviation of the printed mean.",
+        Verdict::Lower => "Lower: an error of the learner below that.",
+        Verdict::Higher => "Higher: an error of the learner above that.",
+        Verdict::Differs => {
+            "Differ: a figure outside that which is not left to the learner (discard rate, alignment error, naive baseline)."
         }
-        Verdict::Better => "Better: an error of ours below that.",
-        Verdict::Worse => "Worse: an error of ours above that.",
-        Verdict::Differs => "Differ: a discard rate or an error of the naive baseline outside that.",
     }
 }
 
 fn tally_of(compared: &Compared<'_>) -> Markup {
     let experiment = compared.experiment;
-    let tally = Tally::of([compared.result]);
+    let tally = Tally::of([(compared.experiment, compared.result)]);
     html! {
         @if tally.total() > 0 {
             tr {
@@ -86,13 +87,13 @@ fn tally_of(compared: &Compared<'_>) -> Markup {
     }
 }
 
-/// The cells that are worse than printed or otherwise off, each with what is known of it.
+/// The cells that are higher than printed or otherwise off, each with what is known of it.
 fn not_reached(all: &[Compared<'_>]) -> Markup {
     let (others, first): (Vec<_>, Vec<_>) =
         all.iter().partition(|compared| compared.experiment.another_reading_of.is_some());
     html! {
-        (missed("Not reached", &first))
-        (missed("Not reached in another reading, which is not in the total", &others))
+        (missed("Higher or different", &first))
+        (missed("The same in the literal reading of Table 1, which is not counted above", &others))
     }
 }
 

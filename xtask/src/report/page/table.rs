@@ -138,7 +138,7 @@ fn cells(line: &Line<'_>, columns: Columns) -> Markup {
         @if columns == Columns::BesidePaper {
             td .number data-label="Paper" {
                 span .paper { (line.paper()) }
-                @if is_printed(line) { span .minor { "z " span .z { (line.z().replace('-', "−")) } } }
+                @if is_printed(line) { span .minor { "z " span .z { (line.z().replace('-', "−")) } @if let Some(ratio) = line.spread_ratio() { ", s.d. " (ratio) } } }
             }
             td data-label="Verdict" { (verdict(line)) }
         }
