@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use std::sync::PoisonError;
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 
 /// How often a plain line is written at most.
 const LINE_INTERVAL: Duration = Duration::from_secs(5);
@@ -41,7 +41,7 @@ impl Progress {
             return Progress { display: Display::Lines(Mutex::new(lines)) };
         }
         let bar = ProgressBar::new(work);
-        let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {elapsed} gone, {eta} left  {msg}");
+        let style = ProgressStyle::with_template("{bar:20} {percent:>3} %  {elapsed} gone{msg}");
         bar.set_style(style.unwrap_or_else(|_| unreachable!("the template is valid")));
         bar.enable_steady_tick(Duration::from_millis(200));
         Progress { display: Display::Bar(bar) }
@@ -51,8 +51,9 @@ impl Progress {
     pub(crate) fn finished(&self, experiment: &str, row: &str, work: u64) {
         match &self.display {
             Display::Bar(bar) => {
-                bar.set_message(format!("{experiment} {row}"));
                 bar.inc(work);
+                // Before the first data set nothing is known of the time left.
+                bar.set_message(format!(", {} left  {experiment} {row}", HumanDuration(bar.eta())));
             }
             Display::Lines(lines) => {
                 let mut lines = lines.lock().unwrap_or_else(PoisonError::into_inner);

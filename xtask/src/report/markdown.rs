@@ -41,18 +41,6 @@ pub(crate) fn sections<'a>(
     all.map(|compared| Section { experiment: compared.experiment, text: section(&compared, results.seed) })
 }
 
-/// What a run shows when it ends: the tables that the paper prints. Curves are in the report.
-pub(crate) fn tables(experiments: &[Experiment], results: &Results) -> String {
-    let shown = |compared: &Compared<'_>| {
-        if compared.is_printed() || compared.rows().next().is_none() {
-            return section(compared, results.seed);
-        }
-        let n = compared.rows().count();
-        format!("## {}\n\n{n} rows: see the report.\n\n", title(compared.experiment))
-    };
-    compared(experiments, results, None).iter().map(shown).collect()
-}
-
 fn title(experiment: &Experiment) -> String {
     match experiment.section {
         "none" => format!("{}: `{}`", experiment.title, experiment.id),

@@ -6,6 +6,7 @@ mod legend;
 mod markdown;
 mod page;
 mod tally;
+mod terminal;
 
 use std::path::PathBuf;
 
@@ -19,8 +20,9 @@ use crate::progress::say;
 use crate::results::Results;
 use crate::run_folder::RunFolder;
 
-pub(crate) use markdown::{Section, key, markdown, sections, tables};
+pub(crate) use markdown::{Section, key, markdown, sections};
 pub(crate) use tally::Tally;
+pub(crate) use terminal::terminal;
 
 #[derive(Debug, Args)]
 pub(crate) struct Report {

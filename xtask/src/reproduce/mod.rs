@@ -19,7 +19,7 @@ use crate::figures::{Sources, compute};
 use crate::files::{repository, told};
 use crate::progress::say;
 use crate::records::{Earlier, Outcome, Records};
-use crate::report::{Tally, tables, write_report, write_tables, written};
+use crate::report::{Tally, terminal, write_report, write_tables, written};
 use crate::results::{Results, Run, SCHEMA};
 use crate::revision::revision;
 use crate::run_folder::RunFolder;
@@ -91,7 +91,7 @@ impl Reproduce {
             folder.keep(&sources)?;
             pool.install(|| write_report(&experiments, &sources, &folder))?;
         }
-        let printed = print(&tables(&experiments, &sources.results));
+        let printed = print(&terminal(&experiments, &sources.results));
         self.conclude(&experiments, &sources.results, &folder)?;
         printed
     }

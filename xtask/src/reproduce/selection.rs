@@ -4,6 +4,9 @@ use anyhow::bail;
 
 use crate::experiments::{Experiment, Setup};
 
+/// Names that are as alike as this may be meant for each other (Jaro and Winkler's measure: 1 for equal names).
+const LIKE: f64 = 0.8;
+
 /// Keeps the experiments, setups and rows that are asked for; all where nothing is. Rows that are measured on the same
 /// data sets stay together.
 pub(super) fn select(mut experiments: Vec<Experiment>, only: &[String]) -> anyhow::Result<Vec<Experiment>> {
@@ -18,9 +21,10 @@ pub(super) fn select(mut experiments: Vec<Experiment>, only: &[String]) -> anyho
         let known = |e: &Experiment| e.setups.iter().any(|setup| matches(wanted, e.id, setup));
         if !experiments.iter().any(known) {
             let ids: Vec<&str> = experiments.iter().map(|experiment| experiment.id).collect();
-            let ids = ids.join(", ");
+            let nearest = nearest(wanted, &experiments).map_or(String::new(), |name| format!("; do you mean {name}?"));
             bail!(
-                "--only {wanted:?}: no such experiment or row; experiments are {ids}; `cargo xtask reproduce --list` shows the rows"
+                "--only {wanted:?}: no such experiment or row{nearest}\nexperiments: {}\n`cargo xtask reproduce --list` shows the rows",
+                ids.join(", ")
             );
         }
     }
@@ -30,6 +34,16 @@ pub(super) fn select(mut experiments: Vec<Experiment>, only: &[String]) -> anyho
     }
     experiments.retain(|experiment| !experiment.setups.is_empty());
     Ok(experiments)
+}
+
+/// The experiment, setup or row whose name is most like it.
+fn nearest<'a>(wanted: &str, experiments: &'a [Experiment]) -> Option<&'a str> {
+    let names = experiments.iter().flat_map(|experiment| {
+        let rows = experiment.rows().map(|row| row.id.as_str());
+        [experiment.id].into_iter().chain(rows)
+    });
+    let alike = names.map(|name| (strsim::jaro_winkler(wanted, name), name));
+    alike.filter(|(alike, _)| *alike > LIKE).max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, name)| name)
 }
 
 /// Every experiment with its rows.
