@@ -125,7 +125,7 @@ impl Line<'_> {
 
     /// Our mean ± standard deviation.
     pub(super) fn ours(&self) -> String {
-        format!("{} ± {}", self.mean(), self.spread())
+        format!("{}\u{a0}±\u{a0}{}", self.mean(), self.spread())
     }
 
     /// Our median.
@@ -136,7 +136,9 @@ impl Line<'_> {
     /// The printed mean ± standard deviation.
     pub(super) fn paper(&self) -> String {
         let show = |value| self.measure.show_printed(value);
-        self.cell.paper.map_or(NOTHING.to_owned(), |paper| format!("{} ± {}", show(paper.mean), show(paper.sd)))
+        self.cell
+            .paper
+            .map_or(NOTHING.to_owned(), |paper| format!("{}\u{a0}±\u{a0}{}", show(paper.mean), show(paper.sd)))
     }
 
     /// Difference of the two means over its standard error.

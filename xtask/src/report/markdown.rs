@@ -57,9 +57,13 @@ fn section(compared: &Compared<'_>, seed: u64) -> String {
     for (row, what) in compared.failures() {
         let _ = writeln!(text, "**`{row}`: {what}.**\n");
     }
-    if compared.rows().next().is_some() {
-        text += &table(compared);
-        text.push('\n');
+    if compared.is_printed() {
+        let _ = writeln!(text, "{}", table(compared, &judged(), |line| line.cell.paper.is_some()));
+    }
+    if let Some(n) = Some(compared.lines().count()).filter(|&n| n > 0) {
+        // Markdown within the fold needs the empty lines.
+        let all = table(compared, &in_full(compared), |_| true);
+        let _ = writeln!(text, "<details><summary>All {n} means</summary>\n\n{all}\n</details>\n");
         text += &explanations(compared);
     }
     text + &contests(compared)
@@ -74,29 +78,44 @@ fn contests(compared: &Compared<'_>) -> String {
 /// A column: what stands over it and in it.
 type Column<'a> = (String, fn(&Line<'a>) -> String);
 
-fn table<'a>(compared: &Compared<'a>) -> String {
-    let column = |name: &str, show: fn(&Line<'a>) -> String| (name.to_owned(), show);
-    let mut columns: Vec<Column<'a>> = vec![
+fn column<'a>(name: &str, show: fn(&Line<'a>) -> String) -> Column<'a> {
+    (name.to_owned(), show)
+}
+
+/// What a printed cell is held against, and how it comes out.
+fn judged<'a>() -> Vec<Column<'a>> {
+    vec![
+        column("measure", |line| line.measure.name().to_owned()),
+        column("ours", Line::ours),
+        column("paper", Line::paper),
+        column("z", Line::z),
+        column("verdict", |line| line.verdict().to_owned()),
+    ]
+}
+
+/// All there is to know of any cell.
+fn in_full<'a>(compared: &Compared<'a>) -> Vec<Column<'a>> {
+    let mut columns = vec![
         column("measure", |line| line.measure.name().to_owned()),
         column("ours", Line::ours),
         column("median", Line::median),
         column("n", |line| line.n().to_string()),
     ];
     if compared.is_printed() {
-        columns.extend([
-            column("paper", Line::paper),
-            column("z", Line::z),
-            column("s.d.", |line| line.spread_ratio().unwrap_or_default()),
-            column("verdict", |line| line.verdict().to_owned()),
-        ]);
+        columns.extend([column("paper", Line::paper), column("s.d.", |line| line.spread_ratio().unwrap_or_default())]);
     }
     let second: fn(&Line<'a>) -> String =
         |line| format!("{} {}", line.second(), line.second_verdict()).trim_end().to_owned();
     columns.extend(compared.second.map(|other| column(&format!("seed {}", other.seed), second)));
+    columns
+}
+
+/// The wanted cells, row by row.
+fn table<'a>(compared: &Compared<'a>, columns: &[Column<'a>], wanted: fn(&Line<'a>) -> bool) -> String {
     let header: Vec<&str> = ["row"].into_iter().chain(columns.iter().map(|(name, _)| name.as_str())).collect();
     let mut rows = Vec::new();
     for row in compared.rows() {
-        for (i, line) in compared.lines_of(row).enumerate() {
+        for (i, line) in compared.lines_of(row).filter(wanted).enumerate() {
             let id = if i == 0 { format!("`{}`", row.id) } else { String::new() };
             rows.push([id].into_iter().chain(columns.iter().map(|(_, show)| show(&line))).collect());
         }
@@ -151,9 +170,11 @@ mod tests {
         let expected = [
             "Seed 3.",
             "**`a-row`: 1 of 3 data sets failed.**",
+            "<details><summary>All 1 means</summary>",
             "| row     | measure | ours            | median | n |",
             "| ------- | ------- | --------------- | ------ | - |",
-            "| `a-row` | nupe    | 0.2500 ± 0.1250 | 0.5000 | 2 |",
+            "| `a-row` | nupe    | 0.2500\u{a0}±\u{a0}0.1250 | 0.5000 | 2 |",
+            "</details>",
             "With fewer than 20 data sets single cells mean little.",
         ];
         assert_eq!(lines, expected);

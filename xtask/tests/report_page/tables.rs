@@ -27,7 +27,7 @@ struct Shown {
 }
 
 const SHOWN: &str = "[...document.querySelectorAll('[data-measure]')].map(cell => {
-    const text = (selector) => cell.querySelector(selector)?.textContent ?? null;
+    const text = (selector) => cell.querySelector(selector)?.textContent.replaceAll('\\u00a0', ' ') ?? null;
     return {
         experiment: cell.closest('section').id, row: cell.dataset.row, measure: cell.dataset.measure,
         ours: text('.ours'), median: text('span.median'), n: text('.n'), paper: text('.paper'), z: text('.z'),

@@ -157,7 +157,7 @@ fn beside(second: Second<'_>, line: &Line<'_>) -> Markup {
 
 /// Our mean ± standard deviation.
 fn ours(line: &Line<'_>) -> Markup {
-    html! { span .ours { b { (line.mean()) } " ± " (line.spread()) } }
+    html! { span .ours { b { (line.mean()) } "\u{a0}±\u{a0}" (line.spread()) } }
 }
 
 /// The verdict as a word in its colour.
