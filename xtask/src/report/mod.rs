@@ -2,6 +2,7 @@
 
 mod compared;
 mod contests;
+mod learners;
 mod legend;
 mod markdown;
 mod page;
@@ -19,6 +20,7 @@ use crate::progress::say;
 use crate::results::Results;
 use crate::run_folder::RunFolder;
 
+pub(crate) use learners::learners;
 pub(crate) use markdown::{Section, key, markdown, sections, tables};
 pub(crate) use tally::Tally;
 
