@@ -97,7 +97,7 @@ mod tests {
             |cell| cell.values[7] = cell.values[7].map(|value| value * 1.001),
             |cell| cell.values[7] = None,
             |cell| cell.values.push(Some(0.5)),
-            |cell| cell.verdict = Some(Verdict::Worse),
+            |cell| cell.verdict = Some(Verdict::Higher),
         ];
         for (number, damage) in damages.iter().enumerate() {
             let mut damaged = committed.clone();

@@ -2,7 +2,7 @@ use nalgebra::DVector;
 
 use crate::covariance::Covariance;
 use crate::evidence::Task;
-use crate::lbfgs::{Bounds, minimise};
+use crate::lbfgs::{Bounds, ITERATIONS, minimise};
 use crate::noise_factor::{Conditions, Level};
 
 /// A family whose amplitudes evidence has chosen and whose noise prediction has raised.
@@ -35,6 +35,10 @@ impl FamilyFit {
 /// Where the search begins: log a_b and log σ².
 const AMPLITUDE: f64 = 0.3;
 const NOISE: f64 = 1e-2;
+/// From so many hyper rows on, half of them are searched first: an eighth of the work leads most of the way.
+const WORTH_TWO_SEARCHES: usize = 200;
+/// Iterations that are left for all of them then.
+const LAST_ITERATIONS: usize = 12;
 
 /// Minimises (S8) on the hyper rows, then climbs κ on all rows; none if there is no Cholesky factor even at κ = 1.
 pub(crate) fn fit_family(
@@ -43,13 +47,21 @@ pub(crate) fn fit_family(
     conditions: &Conditions<'_>,
 ) -> Option<FamilyFit> {
     let blocks = covariance.n_blocks();
-    let task = Task::of(covariance, hyper, conditions);
+    let among = |rows: &[usize]| Task::of(covariance, rows, conditions);
     let or_noise =
         |amplitude: f64, noise: f64| DVector::from_fn(blocks + 1, |k, _| if k < blocks { amplitude } else { noise });
     let start = or_noise(AMPLITUDE.ln(), NOISE.ln());
     let bounds = Bounds { lower: or_noise(-23.0, 1e-12_f64.ln()), upper: or_noise(12.0, 2.0) };
-    let theta = minimise(|theta| task.evidence(theta), &start, &bounds);
-    drop(task);
+    let search = |task: &Task, start: &DVector<f64>, iterations| {
+        minimise(|theta| task.evidence(theta), start, &bounds, iterations)
+    };
+    let theta = if hyper.len() < WORTH_TWO_SEARCHES {
+        search(&among(hyper), &start, ITERATIONS)
+    } else {
+        let half: Vec<usize> = hyper.iter().step_by(2).copied().collect();
+        let near = search(&among(&half), &start, ITERATIONS);
+        search(&among(hyper), &near, LAST_ITERATIONS)
+    };
     let amplitudes: Vec<f64> = theta.iter().take(blocks).map(|log| log.exp()).collect();
     let level = Level::best(&covariance.sum(&amplitudes), theta[blocks].exp(), conditions)?;
     Some(FamilyFit { amplitudes, level })

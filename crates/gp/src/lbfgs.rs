@@ -7,7 +7,8 @@ use nalgebra::DVector;
 use crate::evidence::Evidence;
 
 const MEMORY: usize = 10;
-const ITERATIONS: usize = 40;
+/// As many iterations as ever pay.
+pub(crate) const ITERATIONS: usize = 40;
 /// Stop when no entry of the projected gradient exceeds this.
 const FLAT: f64 = 1e-5;
 /// Stop when a step lowers the value by less than this share.
@@ -40,11 +41,12 @@ impl Bounds {
     }
 }
 
-/// The least point found from `start`; a value of none counts as 1e10 with zero gradient.
+/// The least point found from `start` in at most so many iterations; a value of none counts as 1e10 with zero gradient.
 pub(crate) fn minimise(
     objective: impl Fn(&DVector<f64>) -> Option<Evidence>,
     start: &DVector<f64>,
     bounds: &Bounds,
+    iterations: usize,
 ) -> DVector<f64> {
     let evaluate = |point: &DVector<f64>| {
         objective(point).unwrap_or_else(|| Evidence { value: WALL, gradient: DVector::zeros(point.len()) })
@@ -52,7 +54,7 @@ pub(crate) fn minimise(
     let mut point = bounds.project(start);
     let mut here = evaluate(&point);
     let mut pairs = VecDeque::new();
-    for _ in 0..ITERATIONS {
+    for _ in 0..iterations {
         let free = bounds.free(&point, &here.gradient);
         if free.amax() < FLAT {
             break;

@@ -2,7 +2,7 @@
 // The things in the picture: what stands there for good, what changes with the choice, what moves.
 
 /** How each learner's path is broken: metres from dash to dash, and the share that is drawn. As in the figures. */
-const DASHES = { expert: [1, 1], naive: [0.016, 0.5], policy_align: [0.045, 0.66] };
+const DASHES = { expert: [1, 1], naive: [0.016, 0.5], policy_align: [0.045, 0.66], slope_gp: [1, 1] };
 const PATH_RADIUS = 0.0055;
 const PLATE_THICKNESS = 0.008;
 

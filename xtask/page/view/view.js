@@ -5,7 +5,7 @@
 
 const COLOR_NAMES = [
   "background", "sky", "ground", "floor", "grid", "robot", "table", "ball", "plate", "target",
-  "expert", "naive", "policy_align",
+  "expert", "naive", "policy_align", "slope_gp",
 ];
 const HELP = "Drag or arrow keys: turn. Pinch, wheel (after a click) or + and −: nearer, farther. "
   + "Space: play, pause. Home: reset.";

@@ -72,7 +72,7 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
 fn beside() -> Beside {
     let LwprRegressor { params, passes, cutoff } = regressor();
     let naive = Some(DirectPolicyLearning { params, passes, cutoff });
-    Beside { naive, gaussians: Gaussians { front_end: FrontEnd::Map, max_rows: 1000, hyper_rows: 400 } }
+    Beside { naive, gaussians: Gaussians::new(FrontEnd::Map, 1000) }
 }
 
 /// In the order of the rows.

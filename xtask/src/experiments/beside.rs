@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use align::{Aligned, DirectPolicyLearning, PolicyAlign};
 use demo_gen::{Grasp, HandInPlane, Recording, ThreeLinkArm, ToySystem, demonstrations};
-use gp::{BothReadings, SlopeFit};
-use motion::{Learner as _, LearntPolicy, SampleIndex};
+use gp::{BothReadings, SlopeFit, Trend};
+use motion::{Demonstrations, Learner as _, LearntPolicy, SampleIndex};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
@@ -23,7 +23,7 @@ pub(super) const DATA_SETS: u32 = 5;
 
 /// Who learns beside.
 #[derive(Serialize)]
-pub(super) struct Beside {
+pub(crate) struct Beside {
     /// The naive learner, where the paper's table has none.
     pub(super) naive: Option<DirectPolicyLearning>,
     pub(super) gaussians: Gaussians,
@@ -62,6 +62,16 @@ impl Beside {
         Contest::of(case, measure, &self.contestants()).with(Contestant::PolicyAlign, case, measure)
     }
 
+    /// The slope GP alone.
+    pub(crate) fn slope(
+        &self,
+        demonstrations: &Demonstrations,
+        held_out: &[SampleIndex],
+        rng: &mut ChaCha8Rng,
+    ) -> anyhow::Result<SlopeFit> {
+        self.gaussians.slope(Trend::Quadratic, demonstrations, held_out, rng)
+    }
+
     /// Lets them learn from all samples but those held out for any of the alignments. The generator stands where it does
     /// when alignment draws its test samples, and is left there.
     pub(super) fn sit<'a>(
@@ -87,7 +97,7 @@ impl Beside {
             judges: sat.iter().map(judges).collect(),
             naive: self.naive.as_ref().map(learn).transpose().map_err(anyhow::Error::from_boxed)?,
             both: self.gaussians.both(&demonstrations, &held_out, &mut own())?,
-            no_trend: self.gaussians.no_trend(&demonstrations, &held_out, &mut own())?,
+            no_trend: self.gaussians.slope(Trend::None, &demonstrations, &held_out, &mut own())?,
         })
     }
 }
@@ -173,5 +183,36 @@ impl<S: Scene> Trial for BesideTrial<S> {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.scene.recordings(rng)?;
         self.beside.sit(&recordings, &self.algorithms, rng)?.rows()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::exam::examine;
+    use super::super::table1::{toy_beside, toy_regressor};
+    use super::*;
+    use crate::experiments::pupil::Pupil;
+    use crate::seed::generator;
+    use gp::FrontEnd;
+
+    /// The same samples as PolicyAlign's exam, and no learner has seen one of them.
+    #[test]
+    fn they_are_tested_where_policy_align_is() {
+        let system = ToySystem { n_trajectories: 20, ..ToySystem::default() };
+        let mut rng = generator(1, 0, 0);
+        let recordings = system.record(&mut rng).unwrap();
+        let (beside, algorithm) = (toy_beside(FrontEnd::Map, 150), PolicyAlign::default());
+        let sat = beside.sit(&recordings, &[algorithm], &rng).unwrap();
+        let exam = examine(&recordings, &algorithm, &[Pupil::PolicyAlign(toy_regressor())], &mut rng).unwrap();
+        assert_eq!(sat.judges(0)[0].samples(), exam.judge().samples());
+        assert_eq!(sat.both.slope().report().rows, 150);
+
+        let rows = sat.rows().unwrap();
+        assert_eq!(rows.len(), beside.rows("case").len());
+        let [naive, slope, no_trend, direct] = [0, 1, 2, 3].map(|row| rows[row][&Measure::Nupe]);
+        // The parabola is in the slope GP's families; without a trend it is not.
+        assert!(slope < 1e-12 && slope < no_trend && no_trend < 1e-2, "{slope} {no_trend}");
+        assert!(naive > 0.1 && direct > 0.1, "{naive} {direct}");
+        assert_eq!(rows[1][&Measure::ReadConstrained], 100.0);
     }
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use align::{Bandwidth, DirectPolicyLearning, LwprRegressor, PolicyAlign};
 use demo_gen::beyond::{BeyondSystem, Hindrance, Shown};
 use demo_gen::demonstrations;
+use gp::Trend;
 use motion::{Demonstrations, Learner as _};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
@@ -98,11 +99,28 @@ pub(crate) fn beyond() -> Experiment {
     }
 }
 
+/// A case that can be drawn: its system, by its number, and what learns from it.
+pub(crate) fn case_on_the_plane() -> (u32, BeyondSystem, Gaussians) {
+    let case = cases().swap_remove(0);
+    let (system, gaussians) = (case.system(), case.gaussians());
+    (FIRST_SYSTEM, system, gaussians)
+}
+
+impl Case {
+    fn system(&self) -> BeyondSystem {
+        let &Case { shown, n_trajectories, hindrance, .. } = self;
+        BeyondSystem { shown, n_trajectories, hindrance, ..BeyondSystem::default() }
+    }
+
+    fn gaussians(&self) -> Gaussians {
+        Gaussians::new(self.seen.front_end(), self.max_rows)
+    }
+}
+
 fn setup((system_number, case): (u32, Case)) -> Setup {
-    let Case { name, shown, n_trajectories, hindrance, seen, max_rows } = case;
+    let (system, gaussians) = (case.system(), case.gaussians());
+    let Case { name, n_trajectories, seen, max_rows, .. } = case;
     let row = |contestant| Row { id: row_id(name, contestant), of: RowOf::Contestant, tested_on: TESTED_ON };
-    let system = BeyondSystem { shown, n_trajectories, hindrance, ..BeyondSystem::default() };
-    let gaussians = Gaussians { front_end: seen.front_end(), max_rows, hyper_rows: 400 };
     let cost = 40 * (max_rows.min(39 * n_trajectories) as u64).pow(2);
     Setup {
         id: name.to_owned(),
@@ -130,7 +148,7 @@ impl Trial for BeyondTrial {
         let naive =
             DirectPolicyLearning::default().learn(&demonstrations, &[], rng).map_err(anyhow::Error::from_boxed)?;
         let both = self.gaussians.both(&demonstrations, &[], &mut beside(rng))?;
-        let no_trend = self.gaussians.no_trend(&demonstrations, &[], &mut beside(rng))?;
+        let no_trend = self.gaussians.slope(Trend::None, &demonstrations, &[], &mut beside(rng))?;
         let with = |mut row: BTreeMap<Measure, f64>, told: BTreeMap<Measure, f64>| {
             row.extend(told);
             row

@@ -11,7 +11,7 @@ use crate::measure::Measure;
 
 /// The slope GP and the direct GP, both as they come, from at most so many rows.
 #[derive(Serialize)]
-pub(super) struct Gaussians {
+pub(crate) struct Gaussians {
     /// What was recorded.
     pub(super) front_end: FrontEnd,
     /// Rows learnt from.
@@ -20,9 +20,16 @@ pub(super) struct Gaussians {
     pub(super) hyper_rows: usize,
 }
 
+/// Rows that amplitudes are chosen on, in experiments: evidence of more costs most of a fit and changes little.
+const HYPER_ROWS: usize = 250;
+
 impl Gaussians {
+    pub(super) fn new(front_end: FrontEnd, max_rows: usize) -> Self {
+        Gaussians { front_end, max_rows, hyper_rows: HYPER_ROWS.min(max_rows) }
+    }
+
     /// Both, and which of them the data support: the slope GP's and the direct GP's fits are what each alone would be.
-    pub(super) fn both(
+    pub(crate) fn both(
         &self,
         demonstrations: &Demonstrations,
         held_out: &[SampleIndex],
@@ -36,14 +43,16 @@ impl Gaussians {
         Ok(learner.fit(&self.rows(demonstrations, held_out)?, rng)?)
     }
 
-    /// The slope GP whose families hold no quadratic potential: what is left where the class does not contain the truth.
-    pub(super) fn no_trend(
+    /// The slope GP alone; without a trend its families hold no quadratic potential, which shows what is left where the
+    /// class does not contain the truth.
+    pub(super) fn slope(
         &self,
+        trend: Trend,
         demonstrations: &Demonstrations,
         held_out: &[SampleIndex],
         rng: &mut ChaCha8Rng,
     ) -> anyhow::Result<SlopeFit> {
-        Ok(self.slope_gp(Trend::None).fit(&self.rows(demonstrations, held_out)?, rng)?)
+        Ok(self.slope_gp(trend).fit(&self.rows(demonstrations, held_out)?, rng)?)
     }
 
     fn slope_gp(&self, trend: Trend) -> SlopeGp {

@@ -18,13 +18,14 @@ mod table2;
 mod test_samples;
 mod three_link;
 
+pub(crate) use beyond::case_on_the_plane;
 pub(crate) use contest::{Contest, Contestant};
-pub(crate) use figure6::{BANDWIDTHS, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
+pub(crate) use figure6::{BANDWIDTHS, BESIDE_LEFT, BESIDE_RIGHT, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
 pub(crate) use figure9::{Distance, TENTHS, line};
 pub(crate) use judge::Judge;
 pub(crate) use parameters::Parameters;
-pub(crate) use table1::{PARABOLA_SYSTEM, SINUSOIDAL_SYSTEM, toy_regressor};
-pub(crate) use table2::{GRASP_SYSTEM, grasp, grasp_naive, grasp_regressor};
+pub(crate) use table1::{PARABOLA_SYSTEM, SINUSOIDAL_SYSTEM, toy_beside, toy_regressor};
+pub(crate) use table2::{GRASP_SYSTEM, grasp, grasp_beside, grasp_naive, grasp_regressor};
 pub(crate) use test_samples::TestSamples;
 pub(crate) use three_link::{ARM_SYSTEM, arm};
 

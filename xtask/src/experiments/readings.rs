@@ -109,7 +109,7 @@ fn setup((system_number, kind): (u32, Kind)) -> Setup {
     let Kind { name, shown, n_trajectories, hindrance, held_out, data_sets } = kind;
     let row = |contestant| Row { id: row_id(name, contestant), of: RowOf::Contestant, tested_on: TESTED_ON };
     let system = BeyondSystem { shown, n_trajectories, hindrance, ..BeyondSystem::default() };
-    let gaussians = Gaussians { front_end: Seen::Velocities.front_end(), max_rows: 400, hyper_rows: 200 };
+    let gaussians = Gaussians::new(Seen::Velocities.front_end(), 400);
     Setup {
         id: name.to_owned(),
         rows: CONTESTANTS.map(row).into(),

@@ -116,10 +116,10 @@ fn contests() -> Vec<Contest> {
 }
 
 /// Who learns the toy system beside PolicyAlign.
-pub(super) fn toy_beside(front_end: FrontEnd, max_rows: usize) -> Beside {
+pub(crate) fn toy_beside(front_end: FrontEnd, max_rows: usize) -> Beside {
     let LwprRegressor { params, passes, cutoff } = toy_regressor();
     let naive = Some(DirectPolicyLearning { params, passes, cutoff });
-    Beside { naive, gaussians: Gaussians { front_end, max_rows, hyper_rows: 400.min(max_rows) } }
+    Beside { naive, gaussians: Gaussians::new(front_end, max_rows) }
 }
 
 /// One row of the table.

@@ -82,7 +82,7 @@ const CASE: &str = "grasp";
 
 /// Who learns beside PolicyAlign and the naive learner.
 pub(crate) fn grasp_beside() -> Beside {
-    Beside { naive: None, gaussians: Gaussians { front_end: FrontEnd::Map, max_rows: 1000, hyper_rows: 400 } }
+    Beside { naive: None, gaussians: Gaussians::new(FrontEnd::Map, 1000) }
 }
 
 /// What is demonstrated.

@@ -47,6 +47,15 @@ pub(super) struct Style {
 pub(super) const FIRST: Style = Style { dash: Dash::Solid, filling: Filling::Full };
 pub(super) const SECOND: Style = Style { dash: Dash::Dashed, filling: Filling::Hollow };
 
+/// The policy's error of learners beside PolicyAlign, and what their rows are called.
+pub(super) const BESIDE: [(Error, &str); 2] = [
+    (Error { measure: Measure::Nupe, name: "π, slope GP", color: "#cc79a7", mark: Mark::Down }, "slope_gp"),
+    (
+        Error { measure: Measure::Nupe, name: "π, slope GP without trend", color: "#0072b2", mark: Mark::Cross },
+        "slope_gp_no_trend",
+    ),
+];
+
 /// One line of rows of an experiment, and how it is drawn. Rows that were not run are left out.
 pub(super) struct Series<'a> {
     pub(super) result: &'a ExperimentResult,
@@ -61,7 +70,8 @@ impl Series<'_> {
         ERRORS.into_iter().map(|error| self.curve(error)).filter(|curve| !curve.points.is_empty())
     }
 
-    fn curve(&self, error: Error) -> Curve {
+    /// One error, with a point for each row that has it.
+    pub(super) fn curve(&self, error: Error) -> Curve {
         let point = |(x, row): &(f64, String)| {
             let Cell { mean, sd, .. } = self.cell(row, error.measure)?;
             Some((*x, *mean, sd.unwrap_or(0.0)))

@@ -1,11 +1,11 @@
 //! Fig. 6: errors on the parabola against the amount of data, and against noise.
 
 use anyhow::Context as _;
-use plot::{Axis, Curves, Key, Picture};
+use plot::{Axis, Curves, Entry, Key, Picture};
 
-use super::errors::{ERRORS, FIRST, SECOND, Series, Style};
+use super::errors::{BESIDE, ERRORS, FIRST, SECOND, Series, Style};
 use super::{Csv, Drawing, Figure, Sources};
-use crate::experiments::{BANDWIDTHS, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
+use crate::experiments::{BANDWIDTHS, BESIDE_LEFT, BESIDE_RIGHT, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
 
 /// In the order of [`BANDWIDTHS`].
 const STYLES: [Style; 2] = [FIRST, SECOND];
@@ -23,15 +23,19 @@ pub(super) fn right() -> Figure {
 
 fn draw_left(sources: &Sources) -> anyhow::Result<Drawing> {
     let series = series(sources, "figure6_left", "", &TRAJECTORIES_PERCENT)?;
-    let panel = Curves {
-        x_label: "Trajectories learnt from (% of 40)".to_owned(),
-        x: [0.0, 105.0],
-        x_step: 20.0,
-        y: [1e-3, 10.0],
-        ..panel("Learning from fewer movements", &series)
-    };
+    let beside = beside(sources, "figure6_left", BESIDE_LEFT, &TRAJECTORIES_PERCENT)?;
+    let panel = with(
+        &beside,
+        Curves {
+            x_label: "Trajectories learnt from (% of 40)".to_owned(),
+            x: [0.0, 105.0],
+            x_step: 20.0,
+            y: [1e-3, 10.0],
+            ..panel("Learning from fewer movements", &series)
+        },
+    );
     let tables = tables(&series, ["narrow", "medium"], "trajectories_percent");
-    Ok(Drawing { picture: Picture::rows(&[&[&panel], &[&key(SIZE.0)]]), tables })
+    Ok(Drawing { picture: Picture::rows(&[&[&panel], &[&key(SIZE.0, &beside)]]), tables })
 }
 
 fn draw_right(sources: &Sources) -> anyhow::Result<Drawing> {
@@ -44,13 +48,15 @@ fn draw_right(sources: &Sources) -> anyhow::Result<Drawing> {
         y,
         ..panel(title, series)
     };
+    let [fused, smoothed] = BESIDE_RIGHT.map(|case| beside(sources, "figure6_right", case, &NOISE_PERCENT));
+    let (fused, smoothed) = (fused?, smoothed?);
     let panels = [
-        panel("Potentials from recorded velocities", &velocity, [1e-3, 1.0]),
-        panel("Potentials from displacements (9)", &displacement, [1e-3, 1e4]),
+        with(&fused, panel("Potentials from recorded velocities", &velocity, [1e-3, 1.0])),
+        with(&smoothed, panel("Potentials from displacements (9)", &displacement, [1e-3, 1e4])),
     ];
     let mut all = tables(&velocity, ["velocity-narrow", "velocity-medium"], "noise_percent");
     all.extend(tables(&displacement, ["displacement-narrow", "displacement-medium"], "noise_percent"));
-    let key = key(2.0 * SIZE.0);
+    let key = key(2.0 * SIZE.0, &fused);
     Ok(Drawing { picture: Picture::rows(&[&[&panels[0], &panels[1]], &[&key]]), tables: all })
 }
 
@@ -80,10 +86,36 @@ fn panel(title: &str, series: &[Series<'_>]) -> Curves {
     }
 }
 
-fn key(width: f64) -> Key {
+/// A series for each learner beside PolicyAlign; empty ones where they were not run.
+fn beside<'a>(sources: &'a Sources, id: &str, case: &str, percent: &[f64]) -> anyhow::Result<Vec<Series<'a>>> {
+    let result = sources.experiment(id).with_context(|| format!("{id} was not run"))?;
+    let of = |learner: &str| percent.iter().map(|&x| (x, format!("{case}-{x}/{learner}"))).collect();
+    Ok(BESIDE.map(|(_, learner)| Series { result, rows: of(learner), style: FIRST }).into())
+}
+
+/// The curves of the learners beside, on an axis that reaches down to them.
+fn with(beside: &[Series<'_>], mut panel: Curves) -> Curves {
+    for (series, (error, _)) in beside.iter().zip(BESIDE) {
+        let curve = series.curve(error);
+        let least = curve.points.iter().map(|point| point.1).filter(|mean| *mean > 0.0).fold(f64::INFINITY, f64::min);
+        if least < panel.y[0] {
+            panel.y[0] = 10_f64.powf(least.log10().floor());
+        }
+        if !curve.points.is_empty() {
+            panel.lines.push(curve);
+        }
+    }
+    panel
+}
+
+fn key(width: f64, beside: &[Series<'_>]) -> Key {
     let row =
         |((name, _), style): (&(&str, _), Style)| ERRORS.map(|error| error.entry(&format!(", {name}"), style)).into();
-    Key { rows: BANDWIDTHS.iter().zip(STYLES).map(row).collect(), width }
+    let mut rows: Vec<Vec<Entry>> = BANDWIDTHS.iter().zip(STYLES).map(row).collect();
+    if beside.iter().zip(BESIDE).any(|(series, (error, _))| !series.curve(error).points.is_empty()) {
+        rows.push(BESIDE.map(|(error, _)| error.entry("", FIRST)).into());
+    }
+    Key { rows, width }
 }
 
 fn tables(series: &[Series<'_>], names: [&'static str; 2], varied: &str) -> Vec<Csv> {

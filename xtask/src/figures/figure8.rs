@@ -21,11 +21,16 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let above = view("From above", Camera::ABOVE, &playback, &frame);
     let behind = view("From behind", Camera::BEHIND, &playback, &frame);
     let distances =
-        LEARNERS.iter().map(|&learner| Distances::of(&playback, learner)).collect::<anyhow::Result<Vec<_>>>()?;
+        shown(&playback).map(|learner| Distances::of(&playback, learner)).collect::<anyhow::Result<Vec<_>>>()?;
     let curves = curves(&distances, playback.time_step);
     let key = Key { rows: vec![distances.iter().map(Distances::entry).collect()], width: 1240.0 };
     let picture = Picture::rows(&[&[&above, &behind, &curves], &[&key]]);
     Ok(Drawing { picture, tables: vec![ends(&playback), over_time(&distances)] })
+}
+
+/// Those of the learners whose movements there are: older figure data have fewer.
+fn shown(playback: &GraspPlayback) -> impl Iterator<Item = (&'static str, Who)> {
+    LEARNERS.into_iter().filter(|(id, _)| movements(playback, id).next().is_some())
 }
 
 fn movements<'p>(playback: &'p GraspPlayback, learner: &'p str) -> impl Iterator<Item = &'p Movement> {
@@ -48,7 +53,7 @@ fn frame(playback: &GraspPlayback) -> Frame {
     let ball = &playback.scene.ball;
     let radius = Vector3::repeat(ball.diameter / 2.0);
     let (mut lowest, mut highest) = (Point3::from(ball.centre) - radius, Point3::from(ball.centre) + radius);
-    for movement in LEARNERS.iter().flat_map(|(id, _)| movements(playback, id)) {
+    for movement in shown(playback).flat_map(|(id, _)| movements(playback, id)) {
         for palm in [0, 1].into_iter().flat_map(|hand| palm(movement, hand)) {
             (lowest, highest) = (lowest.inf(&palm), highest.sup(&palm));
         }
@@ -66,7 +71,7 @@ fn view(title: &str, camera: Camera, playback: &GraspPlayback, frame: &Frame) ->
     let mut items = walls(playback, frame);
     items.push(Item::Ball { centre, radius, paint: Paint { color: stage::BALL, opacity: 0.45 } });
     let mut over = vec![];
-    for (id, who) in LEARNERS {
+    for (id, who) in shown(playback) {
         for movement in movements(playback, id) {
             over.extend(stage::ways(&movement.palms, who.stroke(1.8)));
             let points = [0, 1].iter().filter_map(|&hand| palm(movement, hand).last()).collect();
@@ -154,6 +159,7 @@ fn sign(who: Who) -> Sign {
     let mark = match who {
         Who::Naive => Mark::Square,
         Who::PolicyAlign => Mark::Up,
+        Who::SlopeGp => Mark::Down,
         _ => Mark::Circle,
     };
     Sign { mark, filling: Filling::Full }
@@ -171,10 +177,10 @@ fn ends(playback: &GraspPlayback) -> Csv {
         movement.and_then(|movement| distance(playback, movement, hand).last()).map_or(f64::NAN, micrometres)
     };
     let row = |(start, hand): (usize, usize)| {
-        let learners = LEARNERS.iter().map(|(id, _)| far(id, start, hand));
+        let learners = shown(playback).map(|(id, _)| far(id, start, hand));
         [start as f64, hand as f64].into_iter().chain(learners).collect()
     };
-    let header = ["start", "hand"].into_iter().chain(LEARNERS.map(|(id, _)| id)).map(str::to_owned).collect();
+    let header = ["start", "hand"].into_iter().chain(shown(playback).map(|(id, _)| id)).map(str::to_owned).collect();
     let rows = (0..playback.starts).flat_map(|start| [(start, 0), (start, 1)]).map(row).collect();
     Csv { name: "ends", header, rows }
 }
@@ -200,7 +206,7 @@ mod tests {
     use super::*;
 
     /// One start; the right hand never moves, the left one goes along x, and ends this far behind its target.
-    fn playback(behind: [f64; 3]) -> GraspPlayback {
+    fn playback(behind: [f64; 4]) -> GraspPlayback {
         let palms = |x: f64| vec![x, 0.1, 0.6, 0.7, -0.1, 0.6];
         let movement = |constraint: &str, learner: &str, end: f64, plates: Value| {
             json!({ "constraint": constraint, "learner": learner, "start": 0, "plates": plates, "joints": [],
@@ -221,10 +227,10 @@ mod tests {
 
     #[test]
     fn distances_are_those_of_both_hands() {
-        let playback = playback([0.0, 0.1, -0.2]);
+        let playback = playback([0.0, 0.1, -0.2, 0.3]);
         let ends = ends(&playback);
-        assert_eq!(ends.header, ["start", "hand", "expert", "naive", "policy_align"]);
-        let expected = [[0.0, 0.0, 0.0, 0.1, 0.2], [0.0, 1.0, 0.0, 0.0, 0.0]];
+        assert_eq!(ends.header, ["start", "hand", "expert", "naive", "policy_align", "slope_gp"]);
+        let expected = [[0.0, 0.0, 0.0, 0.1, 0.2, 0.3], [0.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
         for (row, expected) in ends.rows.iter().zip(expected) {
             assert!(row.iter().zip(expected).all(|(value, expected)| (value - expected).abs() < 1e-12), "{row:?}");
         }
@@ -232,13 +238,13 @@ mod tests {
         let (time, mean, sd) = distances[2].over_time[2];
         assert!((time - 1.0).abs() + (mean - 0.1).abs() + (sd - 0.02_f64.sqrt()).abs() < 1e-12);
         assert_eq!(distances[2].entry().name, "policy-align: at the end 10.0 cm away");
-        assert_eq!(over_time(&distances).rows[2].len(), 7);
+        assert_eq!(over_time(&distances).rows[2].len(), 9);
     }
 
     #[test]
     fn ends_are_as_said_beside_the_paper_s_figure() {
         let playback: GraspPlayback = beside_paper::records().document("grasp_playback").unwrap();
-        let ends = LEARNERS.map(|learner| 100.0 * Distances::of(&playback, learner).unwrap().at_end());
+        let ends = shown(&playback).map(|learner| 100.0 * Distances::of(&playback, learner).unwrap().at_end());
         let ends = ends.map(|end| format!("{end:.1}").trim_start_matches('0').to_owned());
         for (words, end) in
             std::iter::zip(["ends {} cm from", "ends {} cm away. The learnt", "ends {} cm away, where"], ends)
@@ -250,7 +256,7 @@ mod tests {
 
     #[test]
     fn the_frame_holds_all_ways_and_the_ball() {
-        let playback = playback([0.0, 0.1, -0.25]);
+        let playback = playback([0.0, 0.1, -0.25, 0.0]);
         let Frame { lowest, highest, .. } = frame(&playback);
         assert!((lowest - Point3::new(0.0, -0.1, 0.5)).norm() < 1e-12, "{lowest}");
         assert!((highest - Point3::new(1.0, 0.1, 0.7)).norm() < 1e-12, "{highest}");
@@ -258,7 +264,7 @@ mod tests {
 
     #[test]
     fn walls_stand_beside_the_mean_gap() {
-        let playback = playback([0.0; 3]);
+        let playback = playback([0.0; 4]);
         let mut frame = frame(&playback);
         (frame.lowest.y, frame.highest.y) = (-0.4, 0.5);
         let across: Vec<_> = walls(&playback, &frame)

@@ -3,6 +3,7 @@
 
 #[cfg(test)]
 mod beside_paper;
+mod beyond;
 mod demonstrated;
 mod errors;
 mod figure1;
@@ -104,6 +105,7 @@ pub(crate) fn documents() -> Vec<Document> {
         figure9::document(),
         figure_b1::document(),
         grasp_playback::document(),
+        beyond::document(),
     ]
 }
 
@@ -122,6 +124,7 @@ pub(crate) fn figures() -> Vec<Figure> {
         figure8::figure(),
         figure9::figure(),
         figure_b1::figure(),
+        beyond::figure(),
     ]
 }
 

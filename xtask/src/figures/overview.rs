@@ -2,6 +2,7 @@
 
 use align::{Bandwidth, DirectPolicyLearning, PolicyAlign};
 use demo_gen::{ToySystem, demonstrations};
+use gp::FrontEnd;
 use motion::{NegativeGradient, Policy, Potential};
 use nalgebra::DVector;
 use plot::{Field, Layer, Picture, Plane};
@@ -10,12 +11,15 @@ use serde::{Deserialize, Serialize};
 use super::sound::{Sound, field, some};
 use super::state_plane::state_plane;
 use super::{Document, Drawing, Figure, Sources, demonstrated, rounded};
-use crate::experiments::{PARABOLA_SYSTEM, TestSamples, toy_regressor};
+use crate::experiments::{PARABOLA_SYSTEM, TestSamples, toy_beside, toy_regressor};
 use crate::figures::Who;
-use crate::seed::generator;
+use crate::seed::{beside, generator};
 
 /// Starts of the movements are drawn from [−2, 2]².
 const EXTENT: f64 = 2.0;
+
+/// Rows that the slope GP learns from.
+const ROWS: usize = 500;
 
 /// Arrows are drawn as long as this many seconds of movement.
 const ARROW_SECONDS: f64 = 2.0;
@@ -37,6 +41,9 @@ struct Overview {
     expert: Vec<(f64, f64, f64, f64)>,
     naive: Vec<(f64, f64, f64, f64)>,
     policy_align: Vec<(f64, f64, f64, f64)>,
+    /// Empty in older figure data.
+    #[serde(default)]
+    slope_gp: Vec<(f64, f64, f64, f64)>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -67,6 +74,7 @@ fn overview(seed: u64) -> anyhow::Result<Overview> {
     let naive = DirectPolicyLearning { params: regressor.params.clone(), ..DirectPolicyLearning::default() };
     let naive = naive.learn_policy(aligned.demonstrations(), &test.of_all, &mut rng)?;
     let learnt = aligned.learn_without(&test.of_all, &regressor, &mut rng)?;
+    let slope = toy_beside(FrontEnd::Map, ROWS).slope(aligned.demonstrations(), &test.of_all, &mut beside(&rng))?;
     let movement = |(trajectory, recording): (usize, &demo_gen::Recording)| {
         let states = recording.observed.states().column_iter();
         Movement {
@@ -80,6 +88,7 @@ fn overview(seed: u64) -> anyhow::Result<Overview> {
         expert: arrows(&NegativeGradient(&system.potential)),
         naive: arrows(&naive),
         policy_align: arrows(&learnt),
+        slope_gp: arrows(&slope),
     })
 }
 
@@ -109,7 +118,13 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
         compared("Direct learning (green) and the truth", &overview, Who::Naive),
         compared("policy-align (orange) and the truth", &overview, Who::PolicyAlign),
     ];
-    Ok(Drawing { picture: Picture::rows(&[&[&shown, &naive, &learnt]]), tables: vec![] })
+    let slope = compared("slope GP (purple) and the truth", &overview, Who::SlopeGp);
+    let picture = if overview.slope_gp.is_empty() {
+        Picture::rows(&[&[&shown, &naive, &learnt]])
+    } else {
+        Picture::rows(&[&[&shown, &naive], &[&learnt, &slope]])
+    };
+    Ok(Drawing { picture, tables: vec![] })
 }
 
 fn plane(title: &str, layers: Vec<Layer>) -> Plane {
@@ -118,7 +133,11 @@ fn plane(title: &str, layers: Vec<Layer>) -> Plane {
 
 /// The unconstrained actions of the expert and of a learner.
 fn compared(title: &str, overview: &Overview, who: Who) -> Plane {
-    let learner = if who == Who::Naive { &overview.naive } else { &overview.policy_align };
+    let learner = match who {
+        Who::Naive => &overview.naive,
+        Who::SlopeGp => &overview.slope_gp,
+        _ => &overview.policy_align,
+    };
     let layer = |arrows: &[_], who: Who, width| Layer::Arrows {
         arrows: arrows.to_vec(),
         color: who.color(),

@@ -11,6 +11,8 @@ pub(crate) enum Who {
     Naive,
     /// Aligned potentials.
     PolicyAlign,
+    /// A Gaussian process on the potential, seen through slopes.
+    SlopeGp,
     /// Constrained movements that are learnt from.
     Demonstration,
 }
@@ -22,6 +24,7 @@ impl Who {
             Who::Expert => "#1a1a1a",
             Who::Naive => "#009e73",
             Who::PolicyAlign => "#d55e00",
+            Who::SlopeGp => "#cc79a7",
             Who::Demonstration => "#0072b2",
         }
     }
@@ -29,7 +32,7 @@ impl Who {
     /// How its line is broken.
     pub(crate) fn dash(self) -> Dash {
         match self {
-            Who::Expert | Who::Demonstration => Dash::Solid,
+            Who::Expert | Who::Demonstration | Who::SlopeGp => Dash::Solid,
             Who::Naive => Dash::Dotted,
             Who::PolicyAlign => Dash::Dashed,
         }
@@ -41,6 +44,7 @@ impl Who {
             Who::Expert => "expert",
             Who::Naive => "naive",
             Who::PolicyAlign => "policy-align",
+            Who::SlopeGp => "slope GP",
             Who::Demonstration => "demonstration",
         }
     }

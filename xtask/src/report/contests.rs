@@ -93,3 +93,54 @@ pub(crate) const CAUTION: &str = "\
 Means over the first data sets, the same recordings and test samples for all. \
 Parabola, grasp, body and arm have quadratic potentials, which the slope GP's families contain: where the class contains the truth and \
 velocities are exact, exact recovery is no feat. The column \"no trend\" is the slope GP without them.";
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::experiments::registry;
+    use crate::results::RowResult;
+
+    fn row(id: &str, values: &[Option<f64>]) -> RowResult {
+        let known: Vec<f64> = values.iter().flatten().copied().collect();
+        let mean = known.iter().sum::<f64>() / known.len() as f64;
+        let cell = Cell { mean, sd: None, median: mean, values: values.to_vec(), paper: None, verdict: None };
+        let measures = BTreeMap::from([(Measure::Nupe, cell)]);
+        RowResult { id: id.to_owned(), tested_on: String::new(), data_sets: values.len(), failed: 0, measures }
+    }
+
+    /// PolicyAlign has more data sets than the others: only the first ones count, and a set without a value for nobody
+    /// but its own learner.
+    #[test]
+    fn means_are_over_the_data_sets_that_all_have() {
+        let experiments = registry().unwrap();
+        let table1 = experiments.iter().find(|experiment| experiment.id == "table1").unwrap();
+        let case = "parabola-40x40-narrow";
+        let rows = vec![
+            row(case, &[Some(0.1), Some(0.3), Some(9.0)]),
+            row(&format!("{case}/slope_gp"), &[Some(0.001), Some(0.003)]),
+            row(&format!("{case}/naive"), &[None, Some(0.5)]),
+        ];
+        let result = ExperimentResult { id: "table1".to_owned(), section: "4.1".to_owned(), rows };
+        let contests = Contests::of(table1, &result).unwrap();
+        assert_eq!(contests.contestants, [Contestant::Naive, Contestant::PolicyAlign, Contestant::SlopeGp]);
+        let expected = [case, "nUPE", "2", "0.5000", "0.2000", "0.0020", "0.01"];
+        assert_eq!(contests.rows(), [expected.map(str::to_owned).to_vec()]);
+        assert_eq!(contests.header().len(), expected.len());
+    }
+
+    #[test]
+    fn where_the_slope_gp_was_not_run_there_is_no_table() {
+        let experiments = registry().unwrap();
+        let table1 = experiments.iter().find(|experiment| experiment.id == "table1").unwrap();
+        let rows = vec![row("parabola-40x40-narrow", &[Some(0.1)])];
+        let result = ExperimentResult { id: "table1".to_owned(), section: "4.1".to_owned(), rows };
+        assert!(Contests::of(table1, &result).is_none());
+    }
+
+    #[test]
+    fn ratios_show_what_they_can() {
+        assert_eq!([2.5, 0.004, 3e-21].map(shown_ratio), ["2.50", "4e-3", "0"]);
+    }
+}

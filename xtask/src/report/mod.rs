@@ -2,6 +2,7 @@
 
 mod compared;
 mod contests;
+mod learners;
 mod legend;
 mod markdown;
 mod page;
@@ -20,6 +21,7 @@ use crate::progress::say;
 use crate::results::Results;
 use crate::run_folder::RunFolder;
 
+pub(crate) use learners::learners;
 pub(crate) use markdown::{Section, key, markdown, sections};
 pub(crate) use tally::Tally;
 pub(crate) use terminal::terminal;

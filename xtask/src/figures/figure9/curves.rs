@@ -1,10 +1,10 @@
 //! Errors among the samples near the goal along the line, and near the line.
 
 use anyhow::Context as _;
-use plot::{Axis, Curves, Key};
+use plot::{Axis, Curve, Curves, Key};
 
 use crate::experiments::{Distance, TENTHS};
-use crate::figures::errors::{ERRORS, FIRST, Series};
+use crate::figures::errors::{BESIDE, ERRORS, FIRST, Series};
 use crate::figures::{Csv, Sources};
 
 /// Pixels.
@@ -26,15 +26,25 @@ pub(super) fn panels(sources: &Sources) -> anyhow::Result<Panels> {
         style: FIRST,
     };
     let [along, around] = Distance::BOTH.map(series);
+    let (error, learner) = BESIDE[0];
+    let beside = |distance: Distance| {
+        let rows = TENTHS.map(|tenths| (f64::from(tenths) / 10.0, format!("{}/{learner}", distance.row(tenths))));
+        Series { result, rows: rows.collect(), style: FIRST }.curve(error)
+    };
+    let [beside_along, beside_around] = Distance::BOTH.map(beside);
+    let of_beside = (!beside_along.points.is_empty()).then(|| error.entry("", FIRST));
     Ok(Panels {
-        along: panel("(d) Samples within d of the goal along the line", "d (rad)", &along),
-        around: panel("(e) Samples within r of the line", "r (rad)", &around),
-        key: Key { rows: vec![ERRORS.map(|error| error.entry("", FIRST)).into()], width: 2.0 * SIZE.0 },
+        along: panel("(d) Samples within d of the goal along the line", "d (rad)", &along, beside_along),
+        around: panel("(e) Samples within r of the line", "r (rad)", &around, beside_around),
+        key: Key {
+            rows: vec![ERRORS.map(|error| error.entry("", FIRST)).into_iter().chain(of_beside).collect()],
+            width: 2.0 * SIZE.0,
+        },
         tables: vec![along.table("d", "d"), around.table("r", "r")],
     })
 }
 
-fn panel(title: &str, x_label: &str, series: &Series<'_>) -> Curves {
+fn panel(title: &str, x_label: &str, series: &Series<'_>, beside: Curve) -> Curves {
     Curves {
         title: title.to_owned(),
         x_label: x_label.to_owned(),
@@ -43,7 +53,7 @@ fn panel(title: &str, x_label: &str, series: &Series<'_>) -> Curves {
         x: [0.0, 1.05],
         x_step: 0.2,
         y: [0.0, 1.1],
-        lines: series.curves().collect(),
+        lines: series.curves().chain((!beside.points.is_empty()).then_some(beside)).collect(),
         size: SIZE,
     }
 }

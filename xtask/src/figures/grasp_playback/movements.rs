@@ -75,7 +75,7 @@ pub(super) fn movements(grasp: &Grasp, seed: u64) -> anyhow::Result<Vec<Movement
 /// What all movements share.
 struct Stage<'a> {
     grasp: &'a Grasp,
-    policies: [Box<dyn Policy>; 3],
+    policies: [Box<dyn Policy>; 4],
     starts: Vec<&'a GraspStart>,
 }
 

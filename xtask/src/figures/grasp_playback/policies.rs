@@ -5,22 +5,23 @@ use demo_gen::{Grasp, Recording, demonstrations};
 use motion::{NegativeGradient, Policy};
 use rand_chacha::ChaCha8Rng;
 
-use crate::experiments::{TestSamples, grasp_naive, grasp_regressor};
+use crate::experiments::{TestSamples, grasp_beside, grasp_naive, grasp_regressor};
 use crate::figures::Who;
+use crate::seed::beside;
 
 /// A roll-out leaves the data now and then: receptive fields take part as soon as they are felt at all.
 const CUTOFF: f64 = 1e-9;
 
 /// Who is shown, each with its id.
-pub(crate) const LEARNERS: [(&str, Who); 3] =
-    [("expert", Who::Expert), ("naive", Who::Naive), ("policy_align", Who::PolicyAlign)];
+pub(crate) const LEARNERS: [(&str, Who); 4] =
+    [("expert", Who::Expert), ("naive", Who::Naive), ("policy_align", Who::PolicyAlign), ("slope_gp", Who::SlopeGp)];
 
 /// The policies, in the order of [`LEARNERS`]; learnt as for the table, from what is left of its random numbers.
 pub(super) fn policies(
     grasp: &Grasp,
     recordings: &[Recording],
     rng: &mut ChaCha8Rng,
-) -> anyhow::Result<[Box<dyn Policy>; 3]> {
+) -> anyhow::Result<[Box<dyn Policy>; 4]> {
     let aligned = PolicyAlign::default().align(&demonstrations(recordings)?)?;
     let test = TestSamples::draw(&aligned, rng)?;
     // In the table's order.
@@ -28,5 +29,7 @@ pub(super) fn policies(
     let policy_align = aligned.learn_without(&test.of_all, &regressor, rng)?;
     let naive = DirectPolicyLearning { cutoff: CUTOFF, ..grasp_naive() };
     let naive = naive.learn_policy(aligned.demonstrations(), &test.of_all, rng)?;
-    Ok([Box::new(NegativeGradient(grasp.scene.potential())), Box::new(naive), Box::new(policy_align)])
+    let slope = grasp_beside().slope(aligned.demonstrations(), &test.of_all, &mut beside(rng))?;
+    let expert = NegativeGradient(grasp.scene.potential());
+    Ok([Box::new(expert), Box::new(naive), Box::new(policy_align), Box::new(slope)])
 }

@@ -41,7 +41,7 @@ fn colours_are_those_of_the_figures() {
             format!("getComputedStyle(document.getElementById('view')).getPropertyValue('--view-{name}').trim()");
         page.evaluate(&style)
     };
-    for name in ["expert", "naive", "policy-align"] {
+    for name in ["expert", "naive", "policy-align", "slope-gp"] {
         let color = color(name);
         assert!(color.starts_with('#') && drawn.contains(&color), "{name} is {color:?}, in no figure");
     }

@@ -1,0 +1,215 @@
+//! What a run says of the learners: side by side, how they read movements, and how far they can be trusted.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+use page::markdown_table;
+
+use super::contests::{CAUTION, Contests};
+use crate::experiments::{Contestant, Experiment};
+use crate::measure::Measure;
+use crate::results::{ExperimentResult, Results, RowResult};
+
+/// Errors below this are as good as none, and need not be foretold.
+const WORTH_FORETELLING: f64 = 1e-3;
+
+/// Cases of policies that have no potential begin with one of these.
+const ROTATIONAL: [&str; 2] = ["swirl", "limit-cycle"];
+
+/// All of it, as Markdown.
+pub(crate) fn learners(experiments: &[Experiment], results: &Results) -> String {
+    let result = |id: &str| results.experiments.iter().find(|result| result.id == id);
+    let mut text = format!("{CAUTION}\n\n");
+    for experiment in experiments {
+        let contests = result(experiment.id).and_then(|result| Contests::of(experiment, result));
+        if let Some(contests) = contests {
+            let table = markdown_table(&contests.header(), &contests.rows());
+            let _ = write!(text, "### {}: `{}`\n\n{table}\n", experiment.title, experiment.id);
+        }
+    }
+    if let Some(readings) = result("readings") {
+        let _ = write!(text, "### How movements are read\n\n{}\n", confusion(readings));
+    }
+    let _ = write!(text, "### How far to trust it\n\n{}\n{}", foretold(results), rotation(results));
+    text
+}
+
+/// The rows of a learner, each with its case.
+fn rows_of(result: &ExperimentResult, who: Contestant) -> impl Iterator<Item = (&str, &RowResult)> {
+    result.rows.iter().filter_map(move |row| {
+        let (case, learner) = row.id.rsplit_once('/')?;
+        (learner == who.id()).then_some((case, row))
+    })
+}
+
+/// Values of a measure, data set by data set.
+fn values(row: &RowResult, measure: Measure) -> &[Option<f64>] {
+    row.measures.get(&measure).map_or(&[], |cell| &cell.values)
+}
+
+/// How often movements of each kind are read as what.
+fn confusion(readings: &ExperimentResult) -> String {
+    const READ: [Measure; 4] =
+        [Measure::ReadFree, Measure::ReadConstrained, Measure::ReadAmbiguous, Measure::ReadUnexplained];
+    let mut kinds: Vec<(&str, [usize; 5])> = Vec::new();
+    for (case, row) in rows_of(readings, Contestant::Reading) {
+        let kind = case.split_once('/').map_or(case, |(kind, _)| kind);
+        if kinds.last().is_none_or(|(last, _)| *last != kind) {
+            kinds.push((kind, [0; 5]));
+        }
+        let Some((_, counts)) = kinds.last_mut() else { continue };
+        counts[0] += row.data_sets - row.failed;
+        for (count, measure) in counts[1..].iter_mut().zip(READ) {
+            *count += values(row, measure).iter().flatten().filter(|share| **share > 0.0).count();
+        }
+    }
+    let line = |(kind, counts): &(&str, [usize; 5])| {
+        std::iter::once((*kind).to_owned()).chain(counts.iter().map(usize::to_string)).collect()
+    };
+    let header = ["movements are", "data sets", "read as free", "constrained", "ambiguous", "unexplained"];
+    markdown_table(&header, &kinds.iter().map(line).collect::<Vec<_>>())
+}
+
+/// Expected over true error of every fit of the slope GP and of the direct GP that errs by something.
+fn foretold(results: &Results) -> String {
+    let line = |(under, who): (Under, Contestant)| {
+        let rows = results.experiments.iter().flat_map(|result| rows_of(result, who));
+        let mut ratios: Vec<f64> =
+            rows.filter(|(case, _)| Under::of(case) == under).flat_map(|(_, row)| ratios(row)).collect();
+        ratios.sort_by(f64::total_cmp);
+        let within = |factor: f64| ratios.iter().filter(|ratio| (1.0 / factor..=factor).contains(*ratio)).count();
+        let (n, show) =
+            (ratios.len(), |at: usize| ratios.get(at).map_or("–".to_owned(), |ratio| format!("{ratio:.2}")));
+        let [near, far] = [within(3.0), within(10.0)].map(|count| count.to_string());
+        let range = [show(0), show(n / 2), show(n.saturating_sub(1))];
+        [who.label().to_owned(), under.name().to_owned(), n.to_string(), near, far].into_iter().chain(range).collect()
+    };
+    let whom = [Contestant::SlopeGp, Contestant::SlopeGpNoTrend, Contestant::DirectGp];
+    let both = [Under::Varying, Under::NoneOrOne].into_iter().flat_map(|under| whom.map(|who| (under, who)));
+    let lines: Vec<Vec<String>> = both.map(line).collect();
+    let header = [
+        "expected error / true error",
+        "constraints",
+        "fits",
+        "within 3 times",
+        "within 10 times",
+        "least",
+        "median",
+        "largest",
+    ];
+    format!("Of fits whose true error is at least {WORTH_FORETELLING}:\n\n{}", markdown_table(&header, &lines))
+}
+
+/// What held movements back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Under {
+    Varying,
+    NoneOrOne,
+}
+
+impl Under {
+    /// Cases of free movement, and of one constraint for all, are named so.
+    fn of(case: &str) -> Under {
+        let is_kind = ["free/", "one-for-all/", "handwriting"].iter().any(|kind| case.starts_with(kind));
+        let without = is_kind || case.ends_with("-free") || case.ends_with("one-constraint-for-all");
+        if without { Under::NoneOrOne } else { Under::Varying }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Under::Varying => "that vary",
+            Under::NoneOrOne => "none, or one for all",
+        }
+    }
+}
+
+fn ratios(row: &RowResult) -> Vec<f64> {
+    let all = values(row, Measure::NupeAll);
+    let errors = if all.is_empty() { values(row, Measure::Nupe) } else { all };
+    let both = values(row, Measure::ExpectedNupe).iter().zip(errors);
+    let both = both.filter_map(|(expected, error)| Some(((*expected)?, (*error)?)));
+    both.filter(|(_, error)| *error >= WORTH_FORETELLING).map(|(expected, error)| expected / error).collect()
+}
+
+/// How often rotation is found where there is some, and where there is none.
+fn rotation(results: &Results) -> String {
+    let mut seen = BTreeSet::new();
+    let (mut there, mut not_there) = ([0; 2], [0; 2]);
+    for result in &results.experiments {
+        for who in [Contestant::SlopeGp, Contestant::SlopeGpNoTrend] {
+            for (case, row) in rows_of(result, who) {
+                // Rows that differ in what they are tested on come from the same fits.
+                let fits: Vec<u64> = values(row, Measure::ExpectedNupe).iter().flatten().map(|v| v.to_bits()).collect();
+                let kind = case.rsplit_once('/').map_or(case, |(_, kind)| kind);
+                if case.starts_with("handwriting") || kind.contains("positions") || !seen.insert(fits) {
+                    continue;
+                }
+                let is_rotational = ROTATIONAL.iter().any(|rotational| kind.starts_with(rotational));
+                let counts = if is_rotational { &mut there } else { &mut not_there };
+                for share in values(row, Measure::Rotation).iter().flatten() {
+                    counts[0] += 1;
+                    counts[1] += usize::from(*share > 0.0);
+                }
+            }
+        }
+    }
+    format!(
+        "Rotation is found in {} of {} fits to policies that have no potential, and in {} of {} to policies that have one \
+         (exact velocities, or noisy states with exact velocities).\n",
+        there[1], there[0], not_there[1], not_there[0]
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::results::Cell;
+
+    fn row(id: &str, measures: &[(Measure, [f64; 2])]) -> RowResult {
+        let cell = |&(measure, values): &(Measure, [f64; 2])| {
+            let (mean, values) = (values.iter().sum::<f64>() / 2.0, values.map(Some).to_vec());
+            (measure, Cell { mean, sd: None, median: mean, values, paper: None, verdict: None })
+        };
+        let measures: BTreeMap<_, _> = measures.iter().map(cell).collect();
+        RowResult { id: id.to_owned(), tested_on: String::new(), data_sets: 2, failed: 0, measures }
+    }
+
+    fn result(id: &str, rows: Vec<RowResult>) -> ExperimentResult {
+        ExperimentResult { id: id.to_owned(), section: "none".to_owned(), rows }
+    }
+
+    #[test]
+    fn readings_are_counted_by_kind() {
+        let reading = |id: &str, free: [f64; 2], ambiguous: [f64; 2]| {
+            row(id, &[(Measure::ReadFree, free), (Measure::ReadAmbiguous, ambiguous)])
+        };
+        let rows = vec![
+            reading("free/sinus/reading", [100.0, 100.0], [0.0, 0.0]),
+            reading("free/wells/reading", [100.0, 0.0], [0.0, 100.0]),
+            row("free/wells/slope_gp", &[]),
+            reading("one-for-all/wells/reading", [0.0, 0.0], [100.0, 100.0]),
+        ];
+        let table = confusion(&result("readings", rows));
+        let cells = |line: &str| line.split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
+        let lines: Vec<_> = table.lines().skip(2).map(cells).collect();
+        assert_eq!(lines[0][1..7], ["free", "4", "3", "0", "1", "0"]);
+        assert_eq!(lines[1][1..7], ["one-for-all", "2", "0", "0", "2", "0"]);
+    }
+
+    /// Of rows with errors of all movements these count, and errors that are as good as none do not.
+    #[test]
+    fn what_was_foretold_is_held_against_what_came() {
+        let (nupe, all, expected) = (Measure::Nupe, Measure::NupeAll, Measure::ExpectedNupe);
+        let rows = [
+            row("a/slope_gp", &[(nupe, [0.5, 0.5]), (all, [0.1, 0.2]), (expected, [0.2, 0.1])]),
+            row("b/slope_gp", &[(nupe, [0.1, 1e-9]), (expected, [5.0, 1.0])]),
+        ];
+        assert_eq!(rows.each_ref().map(ratios), [vec![2.0, 0.5], vec![50.0]]);
+        assert_eq!(
+            ["free/sinus", "half-free/sinus", "sinus-2d-free", "wells-3d", "one-for-all/wells"].map(Under::of),
+            [Under::NoneOrOne, Under::Varying, Under::NoneOrOne, Under::Varying, Under::NoneOrOne]
+        );
+    }
+}
