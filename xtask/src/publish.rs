@@ -35,8 +35,9 @@ Written by `cargo xtask publish` from [records/](records/), the results of `carg
 The last column of each table is the same experiment from another seed. One function decides the verdicts
 ([`verdict.rs`](../xtask/src/verdict.rs)).
 
-The paper leaves many settings open. What is used here was *fitted*: settings under which the printed figures come out, the
-same for all rows of a table; they are listed with each table and argued for in [decisions/](decisions/).
+The paper leaves many settings open. What is used here was *fitted*: settings under which the printed figures come out. All rows of a
+table share one scene; PolicyAlign and the naive baseline each have a regression of their own in Table 2 and Section 4.4. The settings are
+listed with each table; how much hangs on them is told in [decisions/](decisions/).
 
 ";
 
