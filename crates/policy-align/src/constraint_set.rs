@@ -189,7 +189,7 @@ impl<'a> Watch<'a> {
             let broken = if is_distance {
                 -kept[0]
             } else {
-                (&kept - begun.get_or_insert_with(|| kept.clone())).amax()
+                (&kept - &*begun.get_or_insert_with(|| kept.clone())).amax()
             };
             if broken > self.broken_by {
                 (self.broken_by, self.worst) = (broken, at + 1);

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use motion::Policy as _;
 use serde::Serialize;
 use serde_json::{Map, Value};
 

@@ -207,7 +207,7 @@ proptest! {
 
     #[test]
     fn constraints_act_at_right_angles_in_the_learners_units(
-        angle in 0.0..6.28, scale_x in 0.2..5.0, scale_y in 0.2..5.0, x in -1.0..1.0, y in -1.0..1.0,
+        angle in 0.0..6.28_f64, scale_x in 0.2..5.0, scale_y in 0.2..5.0, x in -1.0..1.0, y in -1.0..1.0,
     ) {
         // The same movement, told in other units, is the same movement.
         let plain = toy_model();

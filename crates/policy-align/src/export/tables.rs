@@ -1,4 +1,4 @@
-use gp::{Block, DirectBlock};
+use gp::{Block, DirectBlock, DirectFit, SlopeFit};
 use nalgebra::DVector;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -29,8 +29,8 @@ impl Tables {
     pub(super) fn of(model: &Model) -> Result<Tables, ExportError> {
         let scale = DVector::from_iterator(model.state.len(), model.state.iter().map(|channel| channel.scale));
         let shared = scale.iter().all(|&s| s == scale[0]);
-        let slope = |fit| SlopeTables::new(stored::<_, StoredSlope>(fit)?, |z| squared_reach(model, z));
-        let direct = |fit| DirectTables::new(stored::<_, StoredDirect>(fit)?.direct_gp, |z| squared_reach(model, z));
+        let slope = |fit: &SlopeFit| SlopeTables::new(stored::<_, StoredSlope>(fit)?, |z| squared_reach(model, z));
+        let direct = |fit: &DirectFit| DirectTables::new(stored::<_, StoredDirect>(fit)?.direct_gp, |z| squared_reach(model, z));
         let learner = match &model.learnt {
             Learnt::PolicyAlign(policy) => {
                 let regression = policy.global_potential().regression();

@@ -14,32 +14,32 @@ use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
 /// Movements of the toy system.
-pub fn toy(n_trajectories: usize, n_samples: usize) -> Demonstrations {
+pub(crate) fn toy(n_trajectories: usize, n_samples: usize) -> Demonstrations {
     let system = ToySystem { n_trajectories, n_samples, ..ToySystem::default() };
     let recordings = system.record(&mut ChaCha8Rng::seed_from_u64(7)).unwrap();
     demonstrations(&recordings).unwrap()
 }
 
-pub fn rows(demonstrations: &Demonstrations) -> Rows {
+pub(crate) fn rows(demonstrations: &Demonstrations) -> Rows {
     FrontEnd::Velocities.rows(demonstrations).unwrap()
 }
 
-pub fn slope(demonstrations: &Demonstrations) -> Model {
+pub(crate) fn slope(demonstrations: &Demonstrations) -> Model {
     let fit = SlopeGp::default().fit(&rows(demonstrations), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
     model(Learnt::Slope(Box::new(fit)), demonstrations)
 }
 
-pub fn direct(demonstrations: &Demonstrations) -> Model {
+pub(crate) fn direct(demonstrations: &Demonstrations) -> Model {
     let fit = DirectGp::default().fit(&rows(demonstrations), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
     model(Learnt::Direct(Box::new(fit)), demonstrations)
 }
 
-pub fn auto(demonstrations: &Demonstrations) -> Model {
+pub(crate) fn auto(demonstrations: &Demonstrations) -> Model {
     let fit = ReadingLearner::default().fit(&rows(demonstrations), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
     model(Learnt::Auto(Box::new(fit)), demonstrations)
 }
 
-pub fn policy_align(demonstrations: &Demonstrations) -> Model {
+pub(crate) fn policy_align(demonstrations: &Demonstrations) -> Model {
     let aligned =
         PolicyAlign { bandwidth: Bandwidth::Medium, ..PolicyAlign::default() }.align(demonstrations).unwrap();
     let learnt = aligned.learn(&LwprRegressor::default(), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
@@ -47,7 +47,7 @@ pub fn policy_align(demonstrations: &Demonstrations) -> Model {
 }
 
 /// One of each learner, with its name.
-pub fn one_of_each(demonstrations: &Demonstrations) -> [(&'static str, Model); 4] {
+pub(crate) fn one_of_each(demonstrations: &Demonstrations) -> [(&'static str, Model); 4] {
     [
         ("auto", auto(demonstrations)),
         ("slope", slope(demonstrations)),
@@ -57,7 +57,7 @@ pub fn one_of_each(demonstrations: &Demonstrations) -> [(&'static str, Model); 4
 }
 
 /// A model around a policy.
-pub fn model(learnt: Learnt, demonstrations: &Demonstrations) -> Model {
+pub(crate) fn model(learnt: Learnt, demonstrations: &Demonstrations) -> Model {
     let channel = |axis: usize| {
         let mut values: Vec<f64> =
             demonstrations.trajectories().iter().flat_map(|t| t.states().row(axis).iter().copied().collect::<Vec<_>>()).collect();
@@ -108,7 +108,7 @@ pub fn model(learnt: Learnt, demonstrations: &Demonstrations) -> Model {
 }
 
 /// States in and around the data of the toy system, (2, `count`).
-pub fn states(count: usize) -> DMatrix<f64> {
+pub(crate) fn states(count: usize) -> DMatrix<f64> {
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     DMatrix::from_fn(2, count, |_, _| rng.random_range(-2.5..2.5))
 }
