@@ -1,34 +1,34 @@
 //! From a laboratory's recordings to a policy that one can trust, or to the reason why not.
+//!
+//! [`prepare`] makes demonstrations of [`demo_io::Recordings`]; [`fit`] learns from them and says how far to trust what
+//! came of it; [`evaluate`] holds a policy against other recordings. Every decision that is taken for the user is a
+//! [`Decision`], every doubt a [`Finding`].
+//!
+//! A [`Model`] is what is kept: [`Model::save`], [`Model::load`], and [`Model::policy`] in the units of the recording.
+//! [`RollOut`] follows it under constraints, [`CSource`] and [`to_onnx`] make a program of it that needs nothing else.
 
-mod canonical;
-mod constraint_file;
-mod constraint_set;
 mod decision;
+mod error;
+mod evaluate;
 mod export;
-mod joint_limits;
+mod fit;
 mod learnt;
-mod link_point;
 mod model;
-mod model_error;
-mod model_file;
 mod model_policy;
+mod prepare;
 mod roll_out;
-mod roll_out_error;
-mod runge_kutta;
+mod stored;
 mod trust;
-mod whole_file;
 
-pub use canonical::sha256;
-pub use constraint_file::ConstraintFileError;
-pub use constraint_set::ConstraintSet;
 pub use decision::Decision;
+pub use error::{FitError, PrepareError};
+pub use evaluate::{EvaluateError, Evaluation, Truth, evaluate};
 pub use export::{CSource, ExportError, Precision, to_onnx};
-pub use joint_limits::JointLimits;
+pub use fit::{Fit, FitOptions, LearnerChoice, Progress, Step, fit};
 pub use learnt::Learnt;
 pub use model::{DataSummary, FileSummary, LeftOutEpisode, MadeBy, Model, StateChannel};
-pub use model_error::ModelError;
 pub use model_policy::{ModelPolicy, ModelPotential};
-pub use roll_out::{Path, RollOut, Stop};
-pub use roll_out_error::RollOutError;
-pub use trust::{Finding, Trust, Verdict};
-pub use whole_file::write_whole;
+pub use prepare::{Noise, PrepareOptions, Prepared, Recorded, VelocityUse, prepare};
+pub use roll_out::{ConstraintFileError, ConstraintSet, JointLimits, Path, RollOut, RollOutError, Stop};
+pub use stored::{ModelError, sha256, write_whole};
+pub use trust::{AlignedNumbers, Finding, Trust, TrustNumbers, Verdict};

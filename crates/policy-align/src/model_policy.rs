@@ -3,10 +3,13 @@ use std::cell::RefCell;
 use motion::{LearntPolicy, Policy, Potential};
 use nalgebra::{DVector, DVectorView, DVectorViewMut};
 
-use crate::{Learnt, Model};
+use crate::{Learnt, Model, StateChannel};
 
 /// Share of the prior variance of a Gaussian process that the demonstrations must have taken away where it is used.
 const LEAST_KNOWN: f64 = 0.5;
+/// Share of its range by which a channel may lie beyond what was shown. A Gaussian process with a trend trusts the trend
+/// as far as anybody asks; what a robot does there, nobody has seen.
+const BEYOND: f64 = 0.25;
 
 /// A model's policy in the units of the recording: π(x) = S⁻¹ π'(S x), where S multiplies every channel by its
 /// [`scale`](crate::StateChannel::scale) and π' is the policy that was learnt.
@@ -16,6 +19,7 @@ pub struct ModelPolicy<'a> {
     scale: DVector<f64>,
     potential: Option<ModelPotential<'a>>,
     least_support: f64,
+    bounds: Vec<[f64; 2]>,
 }
 
 /// A model's potential, φ(x) = φ'(S x) / s², where s is the scale that all channels share, and 1 if they differ.
@@ -41,15 +45,27 @@ impl Model {
             Learnt::PolicyAlign(_) => f64::MIN_POSITIVE,
             Learnt::Auto(_) | Learnt::Slope(_) | Learnt::Direct(_) => LEAST_KNOWN,
         };
-        ModelPolicy { learnt, scale, potential, least_support }
+        ModelPolicy { learnt, scale, potential, least_support, bounds: self.bounds() }
+    }
+}
+
+impl Model {
+    /// Range of every channel that counts as known: what was shown, a quarter wider on either side, (n).
+    pub fn bounds(&self) -> Vec<[f64; 2]> {
+        let bound = |channel: &StateChannel| {
+            let beyond = BEYOND * (channel.high - channel.low);
+            [channel.low - beyond, channel.high + beyond]
+        };
+        self.state.iter().map(bound).collect()
     }
 }
 
 impl ModelPolicy<'_> {
     /// Whether the demonstrations say enough about a state (n) to act on it: an LWPR policy has a receptive field
-    /// there, a Gaussian process has lost half of its prior variance.
+    /// there, a Gaussian process has lost half of its prior variance; and no channel is beyond [`Model::bounds`].
     pub fn is_supported(&self, state: DVectorView<'_, f64>) -> bool {
-        self.support(state) >= self.least_support
+        let within = self.bounds.iter().zip(&state).all(|([low, high], x)| (low..=high).contains(&x));
+        within && self.support(state) >= self.least_support
     }
 
     /// The support from which on a state counts as known.

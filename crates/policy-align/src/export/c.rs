@@ -8,11 +8,11 @@ use super::{c_gp, c_lwpr};
 use crate::{Model, Verdict};
 
 /// Names that a function cannot have.
-const TAKEN: [&str; 55] = [
+const TAKEN: [&str; 56] = [
     "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum", "extern", "float",
     "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return", "short", "signed", "sizeof",
     "static", "struct", "switch", "typedef", "union", "unsigned", "void", "volatile", "while", "main", "exp", "sqrt",
-    "isfinite", "NAN", "expf", "sqrtf", "real", "N", "M", "A", "C", "Q", "V", "Z", "SCALE", "NORM", "MEAN", "CENTRE",
+    "isfinite", "NAN", "expf", "sqrtf", "real", "N", "M", "A", "BOUNDS", "C", "Q", "V", "Z", "SCALE", "NORM", "MEAN", "CENTRE",
     "METRIC", "SLOPE",
 ];
 
@@ -56,6 +56,8 @@ impl CSource {
         let n = tables.dim();
         let _ = writeln!(text, "enum {{ N = {n} }};\n");
         self.vector("SCALE", tables.scale.as_slice(), &mut text);
+        let bounds = DMatrix::from_fn(2, n, |end, k| tables.bounds[k][end]);
+        self.columns("BOUNDS", &bounds, &mut text);
         match &tables.learner {
             LearnerTables::Lwpr(lwpr) => c_lwpr::write(self, lwpr, tables.per_unit, &mut text),
             LearnerTables::Slope(slope) => c_gp::write_slope(self, slope, tables.per_unit, &mut text),

@@ -42,6 +42,7 @@ int {name}(const real *x, real *u, real *phi) {{
         if (u) u[k] = {speed} * (sum[k] + (C[k] + t)) / SCALE[k];
     }}
     {potential}
+    for (k = 0; k < N; k++) if (x[k] < BOUNDS[k][0] || x[k] > BOUNDS[k][1]) return 0;
     return nearest <= {reach};
 }}
 ",
@@ -80,6 +81,7 @@ int {name}(const real *x, real *u, real *phi) {{
 {terms}        for (k = 0; k < N; k++) sum[k] += c * A[m][k];
     }}
     if (u) for (k = 0; k < N; k++) u[k] = {unit} * sum[k] / SCALE[k];
+    for (k = 0; k < N; k++) if (x[k] < BOUNDS[k][0] || x[k] > BOUNDS[k][1]) return 0;
     return nearest <= {reach};
 }}
 ",

@@ -76,6 +76,7 @@ int {name}(const real *x, real *u, real *phi) {{
     if (phi) *phi = {per_unit} * ({mean} + {norm_out} * f);
     if (u) for (k = 0; k < N; k++)
         u[k] = -{norm_out} * (ws[k] + wyv[k] - f * wv[k]) / (sum * NORM[k] * SCALE[k]);
+    for (k = 0; k < N; k++) if (x[k] < BOUNDS[k][0] || x[k] > BOUNDS[k][1]) return 0;
     return 1;
 }}
 ",

@@ -35,7 +35,8 @@ pub fn to_onnx(model: &Model) -> Result<Vec<u8>, ExportError> {
         graph.output(&potential, "phi");
         outputs.push(("phi", Output::Numbers));
     }
-    graph.output(&asked.support, "support");
+    let support = within(&mut graph, &tables.bounds, &asked.support);
+    graph.output(&support, "support");
     outputs.push(("support", Output::Truths));
     Ok(described(model, &graph.finished(n, &outputs)))
 }
@@ -48,6 +49,20 @@ pub(super) struct Asked {
     pub(super) potential: Option<String>,
     /// (B).
     pub(super) support: String,
+}
+
+/// Support, within bounds.
+fn within(graph: &mut Graph, bounds: &[[f64; 2]], support: &str) -> String {
+    let low = graph.constant(&[bounds.len()], bounds.iter().map(|[low, _]| *low));
+    let high = graph.constant(&[bounds.len()], bounds.iter().map(|[_, high]| *high));
+    // How far beyond, summed over channels: 0 within.
+    let (below, above) = (graph.node("Sub", &[&low, "x"]), graph.node("Sub", &["x", &high]));
+    let (below, above) = (graph.node("Relu", &[&below]), graph.node("Relu", &[&above]));
+    let beyond = graph.node("Add", &[&below, &above]);
+    let beyond = graph.sum(&beyond, 1);
+    let zero = graph.number(0.0);
+    let within = graph.node("LessOrEqual", &[&beyond, &zero]);
+    graph.node("And", &[support, &within])
 }
 
 /// The file around a graph.

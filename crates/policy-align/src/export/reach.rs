@@ -1,37 +1,43 @@
 use nalgebra::DVector;
+use rayon::prelude::*;
 
 use super::gp_tables::Scaled;
 use crate::Model;
 
 /// States at which the model is asked whether it knows them.
-const ASKED: usize = 400;
+const ASKED: usize = 1000;
+/// Share of the states within reach that the model may not know.
+const UNKNOWN: f64 = 0.05;
 
 /// How far from a learnt state a state still counts as known in an exported Gaussian process, squared, in its scaled
-/// coordinates.
+/// coordinates; negative if nothing does.
 ///
 /// The variance that decides in the model itself needs a matrix of the size of all samples squared. What is exported asks
-/// for the nearest learnt state instead. The reach is such that of states asked in the box of the data, widened by half
-/// on every side, none that the model does not know lies within it.
+/// for the nearest learnt state instead: it reaches as far as 95 % of the states within it, evenly spread over the
+/// model's bounds, are known to the model.
 pub(super) fn squared_reach(model: &Model, scaled: &Scaled) -> f64 {
-    let policy = model.policy();
-    let (mut nearest_unknown, mut farthest) = (f64::INFINITY, 0.0_f64);
-    for index in 1..=ASKED {
-        let state = DVector::from_fn(model.state.len(), |k, _| {
-            let channel = &model.state[k];
-            let width = channel.high - channel.low;
-            channel.low - 0.5 * width + 2.0 * width * radical_inverse(index, k)
+    let (policy, bounds) = (model.policy(), model.bounds());
+    let asked = (1..=ASKED).into_par_iter().map(|index| {
+        let state = DVector::from_fn(bounds.len(), |k, _| {
+            let [low, high] = bounds[k];
+            low + (high - low) * radical_inverse(index, k)
         });
         let z = DVector::from_fn(state.len(), |k, _| {
             (state[k] * model.state[k].scale - scaled.mean[k]) / scaled.spread
         });
-        let squared = scaled.z.column_iter().map(|row| (row - &z).norm_squared()).fold(f64::INFINITY, f64::min);
-        farthest = farthest.max(squared);
-        if !policy.is_supported(state.as_view()) {
-            nearest_unknown = nearest_unknown.min(squared);
+        let nearest = scaled.z.column_iter().map(|row| (row - &z).norm_squared()).fold(f64::INFINITY, f64::min);
+        (nearest, policy.is_supported(state.as_view()))
+    });
+    let mut asked: Vec<_> = asked.collect();
+    asked.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (mut unknown, mut reach) = (0, -1.0);
+    for (count, (squared, known)) in asked.into_iter().enumerate() {
+        unknown += usize::from(!known);
+        if known && unknown as f64 <= UNKNOWN * (count + 1) as f64 {
+            reach = squared;
         }
     }
-    // Half a per cent nearer, so that rounding decides nothing.
-    (0.995 * nearest_unknown).min(farthest)
+    reach
 }
 
 /// Halton's sequence: number `index` of an even covering of (0, 1), in dimension `axis`.

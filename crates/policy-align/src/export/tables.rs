@@ -13,6 +13,8 @@ use crate::{Learnt, Model};
 pub(super) struct Tables {
     /// The state is multiplied by this before it is asked, the action divided, (n).
     pub(super) scale: DVector<f64>,
+    /// What counts as known lies between, (n).
+    pub(super) bounds: Vec<[f64; 2]>,
     /// Of the potential, by this.
     pub(super) per_unit: f64,
     pub(super) learner: LearnerTables,
@@ -42,7 +44,7 @@ impl Tables {
             Learnt::Auto(both) if both.numbers().takes_slope(both.overridden().unwrap_or(both.reading())) => LearnerTables::Slope(slope(both.slope())?),
             Learnt::Auto(both) => LearnerTables::Direct(direct(both.direct())?),
         };
-        Ok(Tables { per_unit: if shared { scale[0].powi(-2) } else { 1.0 }, scale, learner })
+        Ok(Tables { per_unit: if shared { scale[0].powi(-2) } else { 1.0 }, scale, bounds: model.bounds(), learner })
     }
 
     pub(super) fn dim(&self) -> usize {

@@ -8,7 +8,8 @@ use gp::{DirectGp, FrontEnd, ReadingLearner, Rows, SlopeGp};
 use motion::Demonstrations;
 use nalgebra::DMatrix;
 use policy_align::{
-    DataSummary, Decision, FileSummary, Finding, LeftOutEpisode, Learnt, MadeBy, Model, StateChannel, Trust, Verdict,
+    DataSummary, Decision, FileSummary, Finding, LeftOutEpisode, Learnt, MadeBy, Model, StateChannel, Trust,
+    TrustNumbers, Verdict,
 };
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -102,6 +103,28 @@ pub(crate) fn model(learnt: Learnt, demonstrations: &Demonstrations) -> Model {
                 what: "left-out movements are predicted poorly (error 0.2)".to_owned(),
                 next: "record more movements".to_owned(),
             }],
+            numbers: TrustNumbers {
+                episodes: demonstrations.n_trajectories(),
+                reading: gp::Reading::Constrained,
+                held_out_error: 0.2,
+                held_out_error_direct: 0.6,
+                direct_error: 0.5,
+                gap: 0.4,
+                expected_error: 0.1,
+                ambiguity: 0.01,
+                slope_r_squared: 0.9,
+                z_squared: 1.1,
+                direction_coverage: 0.8,
+                unseen_direction: vec![0.6, 0.8],
+                least_known: 0.01,
+                least_known_direction: vec![1.0, 0.0],
+                rotation_share: 0.0,
+                rotation_t: None,
+                model: gp::ModelKind::Potential,
+                step_noise: 0.001,
+                grouping: gp::Grouping::Trajectories,
+                aligned: None,
+            },
         },
         learnt,
     }

@@ -1,10 +1,12 @@
 use constraints::NullSpaceProjector;
 use nalgebra::{DMatrix, DVector, DVectorView, Point3};
 
-use crate::link_point::LinkPoint;
+use super::link_point::LinkPoint;
 
-/// From which distance on a ball slows what approaches it, in radii.
+/// From which distance on a ball slows what approaches it, and at which it stops it, in radii: what steps err by stays
+/// outside.
 const BAND: f64 = 0.05;
+const MARGIN: f64 = 0.01;
 /// How often speeds towards balls are taken away in turn, until none is left.
 const ROUNDS: usize = 20;
 
@@ -92,6 +94,15 @@ impl ConstraintSet {
         self.parts.is_empty()
     }
 
+    /// The least radius of a ball, in its unit.
+    pub(crate) fn least_radius(&self) -> f64 {
+        let radius = |part: &Part| match part.kind {
+            Kind::Ball { radius, .. } | Kind::LinkBall { radius, .. } => radius,
+            Kind::Normal(_) | Kind::Plane(..) => f64::INFINITY,
+        };
+        self.parts.iter().map(radius).fold(f64::INFINITY, f64::min)
+    }
+
     /// Times at which one begins or ends.
     pub(crate) fn switches(&self) -> impl Iterator<Item = f64> {
         self.parts.iter().flat_map(|part| [part.from, part.until])
@@ -117,7 +128,8 @@ impl ConstraintSet {
             match part.kind.at(state).map_err(|reason| (at + 1, reason))? {
                 Said::Rows(matrix) => rows.extend(matrix.row_iter().map(|row| row.into_owned())),
                 Said::Distance { clearance, radius, gradient } => {
-                    balls.push((clearance / (BAND * radius), gradient.component_div(scale)));
+                    let bands = (clearance / radius - MARGIN) / (BAND - MARGIN);
+                    balls.push((bands.max(-1.0), gradient.component_div(scale)));
                 }
             }
         }
@@ -132,14 +144,15 @@ impl ConstraintSet {
     }
 }
 
-/// Takes away what approaches balls, given as distance in bands and gradient of the distance, within what is free.
+/// Takes away what approaches balls, given as distance in bands and gradient of the distance, within what is free. What
+/// is too near is led away.
 fn keep_off(balls: &[(f64, DVector<f64>)], free: &NullSpaceProjector, wanted: &mut DVector<f64>) {
     let speed = wanted.norm();
     for _ in 0..ROUNDS {
         let mut changed = false;
         for (bands, gradient) in balls.iter().filter(|(bands, _)| *bands < 1.0) {
             let along = free.project(gradient.as_view());
-            let allowed = bands.max(0.0) * gradient.norm() * speed;
+            let allowed = bands * gradient.norm() * speed;
             let excess = -gradient.dot(wanted) - allowed;
             if excess <= 1e-14 * gradient.norm() * speed {
                 continue;

@@ -1,14 +1,29 @@
+//! A learnt policy followed from a start, under constraints that need not have been in the data.
+
+mod constraint_file;
+mod constraint_set;
+mod error;
+mod joint_limits;
+mod link_point;
+mod runge_kutta;
+
+pub use constraint_file::ConstraintFileError;
+pub use constraint_set::ConstraintSet;
+pub use error::RollOutError;
+pub use joint_limits::JointLimits;
+
 use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::{DMatrix, DVector};
 
-use crate::constraint_set::{ConstraintSet, Fault, Watch};
-use crate::joint_limits::JointLimits;
-use crate::roll_out_error::{LONGEST, RollOutError};
-use crate::runge_kutta::RungeKutta;
 use crate::{Model, ModelPolicy};
+use constraint_set::{Fault, Watch};
+use error::LONGEST;
+use runge_kutta::RungeKutta;
 
 /// Error of a step, in spreads of the channels.
 const TOLERANCE: f64 = 1e-4;
+/// And at most this share of the least ball's radius.
+const OF_RADIUS: f64 = 5e-4;
 /// At rest is what is slower than this share of the demonstrated median …
 const AT_REST: f64 = 0.01;
 /// … for so many samples.
@@ -84,7 +99,7 @@ impl RollOut {
         start: &DVector<f64>,
         (step, seconds): (f64, f64),
     ) -> Result<Path, RollOutError> {
-        let mut method = RungeKutta::new(tolerance(model));
+        let mut method = RungeKutta::new(tolerance(model).map(|error| error.min(OF_RADIUS * self.constraints.least_radius())));
         let mut watch = Watch::new(&self.constraints);
         let (mut times, mut states) = (vec![0.0], vec![start.clone()]);
         let mut velocities = vec![run.velocity(start, 0.0)?];

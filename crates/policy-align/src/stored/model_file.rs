@@ -1,13 +1,13 @@
-//! Models as files: JSON with a checksum. `docs/model-file.md` describes it.
+//! Models as JSON with a checksum. `docs/model-file.md` describes it.
 
 use std::path::Path;
 
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use crate::canonical::checksum;
-use crate::model_error::ModelError;
-use crate::whole_file::write_whole;
+use super::canonical::checksum;
+use super::error::ModelError;
+use super::whole_file::write_whole;
 use crate::{Model, StateChannel};
 
 const FORMAT: &str = "policy-align model";

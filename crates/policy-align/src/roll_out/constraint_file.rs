@@ -23,8 +23,8 @@ use nalgebra::{DMatrix, DVector, Point3};
 use serde::Deserialize;
 use thiserror::Error;
 
-use crate::constraint_set::{ConstraintSet, Kind, Part};
-use crate::link_point::LinkPoint;
+use super::constraint_set::{ConstraintSet, Kind, Part};
+use super::link_point::LinkPoint;
 
 /// Why constraints cannot be read.
 #[derive(Debug, Error)]
