@@ -10,6 +10,7 @@ use smoothing::SavitzkyGolay;
 
 use super::options::FitOptions;
 use super::progress::Progress;
+use super::recorded_rows::averaged;
 use crate::{Decision, FitError, Prepared, Recorded};
 
 /// Positions alone are smoothed if noise makes more than this share of the squared steps.
@@ -86,22 +87,19 @@ impl Tried {
     }
 }
 
-/// Positions smoothed where that is better, and the rule that integrates them.
-pub(super) fn integrable(prepared: &Prepared) -> Result<(Demonstrations, Integration, &'static str), FitError> {
-    let smooth = || SavitzkyGolay::default().smooth(&prepared.demonstrations);
+/// Positions averaged and smoothed where that is better, and the rule that integrates them.
+fn integrable(prepared: &Prepared) -> Result<(Demonstrations, Integration, &'static str), FitError> {
+    let averaged = averaged(prepared)?;
+    let smooth = || SavitzkyGolay::default().smooth(&averaged);
     Ok(match prepared.recorded {
-        Recorded::Velocities => {
-            (prepared.demonstrations.clone(), Integration::Velocity, "recorded; they agree with the steps")
-        }
+        Recorded::Velocities => (averaged, Integration::Velocity, "recorded; they agree with the steps"),
         Recorded::FusedVelocities | Recorded::NoisyVelocities(_) => {
             (smooth()?, Integration::Velocity, "recorded; positions smoothed (9 samples, degree 2)")
         }
         Recorded::Positions if prepared.noise.step_share > NOISY => {
             (smooth()?, Integration::Displacement, "positions smoothed (9 samples, degree 2), then step by step")
         }
-        Recorded::Positions => {
-            (prepared.demonstrations.clone(), Integration::Displacement, "positions are exact enough")
-        }
+        Recorded::Positions => (averaged, Integration::Displacement, "positions are exact enough"),
     })
 }
 

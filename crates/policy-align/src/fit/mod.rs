@@ -16,7 +16,7 @@ use nalgebra::DMatrix;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::trust::{AlignedNumbers, Evidence, TrustNumbers, judge};
+use crate::trust::{AlignedNumbers, Evidence, TrustNumbers, judge, share_leaving};
 use crate::{
     DataSummary, Decision, FileSummary, FitError, Learnt, LeftOutEpisode, MadeBy, Model, Prepared, StateChannel, Trust,
 };
@@ -183,6 +183,12 @@ fn numbers(
         LearnerChoice::Direct => false,
         _ => of.takes_slope(options.reading.unwrap_or(readings.reading())),
     };
+    let policy: &dyn Policy = match aligned {
+        Some(aligned) => &aligned.policy,
+        None if options.learner == LearnerChoice::Auto => readings,
+        None if takes_slope => readings.slope(),
+        None => readings.direct(),
+    };
     let slope_error = of.a_s * (1.0 - of.hidden);
     let held_out_error = match aligned {
         Some(aligned) => aligned.held_out.to_judge(),
@@ -218,6 +224,7 @@ fn numbers(
         rotation_share: report.rotational_share,
         rotation_t: report.curl_t,
         model: report.model,
+        leaving: share_leaving(policy, &prepared.demonstrations),
         step_noise: prepared.noise.step_share,
         grouping: of.grouping,
         aligned: aligned_numbers,

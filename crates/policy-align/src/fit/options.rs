@@ -47,7 +47,7 @@ impl Default for FitOptions {
             init_d: None,
             folds: 5,
             seed: 1,
-            max_rows: 600,
+            max_rows: 400,
         }
     }
 }

@@ -1,5 +1,5 @@
 use demo_io::Recordings;
-use motion::Trajectory;
+use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
 
 use super::prepared::Notes;
@@ -59,6 +59,17 @@ impl Take {
         }
     }
 
+    /// Seconds from a sample to the next.
+    pub(super) fn seconds(&self, sample: usize) -> f64 {
+        self.time_step.unwrap_or_else(|| self.times[sample + 1] - self.times[sample])
+    }
+
+    /// What was taken as seconds were milliseconds.
+    pub(super) fn in_milliseconds(&mut self) {
+        self.times.iter_mut().for_each(|time| *time /= 1000.0);
+        self.time_step = self.time_step.map(|step| step / 1000.0);
+    }
+
     pub(super) fn step(&self, sample: usize) -> DVector<f64> {
         self.positions.column(sample + 1) - self.positions.column(sample)
     }
@@ -79,6 +90,13 @@ impl Take {
             Some(velocities) => trajectory.with_velocities(velocities.clone()).map_err(of),
         }
     }
+}
+
+/// All of them, checked.
+pub(super) fn demonstrations(takes: &[Take]) -> Result<Demonstrations, PrepareError> {
+    let trajectories = takes.iter().map(Take::trajectory).collect::<Result<_, _>>()?;
+    // Takes are of one dimension, as recordings are.
+    Demonstrations::new(trajectories).map_err(|source| PrepareError::Episode { episode: takes[0].name.clone(), source })
 }
 
 /// Episodes in which nothing ever changes.

@@ -9,15 +9,16 @@ mod prepared;
 mod remarks;
 mod scale;
 mod stamps;
+mod thinning;
 mod velocities;
 mod wraps;
 
 pub use noise::Noise;
 pub use options::{PrepareOptions, VelocityUse};
 pub use prepared::{Prepared, Recorded};
+pub(crate) use thinning::thinned;
 
 use demo_io::Recordings;
-use motion::Demonstrations;
 
 use crate::PrepareError;
 use episodes::Take;
@@ -41,14 +42,15 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
         let why = notes.left_out.first().map_or_else(String::new, |left_out| left_out.why.clone());
         return Err(PrepareError::NothingLeft { of: recordings.episodes.len(), why });
     }
-    let agreement = velocities::decide(&mut takes, options, &recordings.state, &mut notes);
-    let trajectories = takes.iter().map(Take::trajectory).collect::<Result<_, _>>()?;
-    // Takes are of one dimension, as recordings are.
-    let demonstrations = Demonstrations::new(trajectories)
-        .map_err(|source| PrepareError::Episode { episode: takes[0].name.clone(), source })?;
-    let noise = noise::of(&demonstrations);
+    let noise = noise::of(&episodes::demonstrations(&takes)?);
+    let agreement = velocities::decide(&mut takes, options, &recordings.state, &noise, &mut notes);
+    let demonstrations = episodes::demonstrations(&takes)?;
     let recorded = noise::decide(&demonstrations, &noise, agreement, options, &mut notes);
+    let averaged = match recorded {
+        Recorded::Positions => thinning::decide(&demonstrations, &noise, &mut notes),
+        _ => 1,
+    };
     let state = scale::channels(recordings, &scales, &demonstrations);
     remarks::about(&demonstrations, &state, &noise, &mut notes);
-    Ok(Prepared::new(demonstrations, &takes, state, noise, recorded, notes))
+    Ok(Prepared::new(demonstrations, &takes, state, noise, (recorded, averaged), notes))
 }

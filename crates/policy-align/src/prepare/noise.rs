@@ -1,4 +1,5 @@
 use motion::{Demonstrations, Trajectory};
+use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 use smoothing::PositionNoise;
 
@@ -16,6 +17,11 @@ const EXACT_VELOCITIES: f64 = 1e-3;
 /// Velocities this noisy are worth less than positions.
 const USELESS_VELOCITIES: f64 = 0.2;
 
+/// Steps are multiples of another if they are so to this part of it.
+const WHOLE: f64 = 0.01;
+/// Digits are few if a value occurs so often on average.
+const REPEATED: usize = 4;
+
 /// How noisy recordings are, by third differences.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -30,13 +36,47 @@ pub struct Noise {
 
 /// Of positions, and of velocities where they were recorded.
 pub(super) fn of(demonstrations: &Demonstrations) -> Noise {
-    let positions = PositionNoise::of(demonstrations).ok();
+    let positions = PositionNoise::of(demonstrations).ok().map(|noise| with_resolution(demonstrations, noise));
     let velocity_share = velocity_noise(demonstrations).map(|(variance, power)| variance / power);
     Noise {
         step_share: positions.as_ref().map_or(0.0, |noise| noise.step_share),
         positions: positions.map(|noise| noise.deviations.iter().copied().collect()),
         velocity_share,
     }
+}
+
+/// Positions with few digits are no better than those: a step q of the last digit is noise of deviation q/√12, which
+/// differences do not see while the digits stand still.
+fn with_resolution(demonstrations: &Demonstrations, noise: PositionNoise) -> PositionNoise {
+    let least = DVector::from_fn(demonstrations.dim(), |axis, _| {
+        resolution(demonstrations, axis).unwrap_or(0.0) / 12f64.sqrt()
+    });
+    let deviations = noise.deviations.sup(&least);
+    let before = noise.deviations.norm_squared();
+    if deviations == noise.deviations {
+        return noise;
+    }
+    let steps = demonstrations.trajectories().iter().map(|movement| {
+        let (x, steps) = (movement.states(), movement.n_samples() - 1);
+        ((x.columns(1, steps) - x.columns(0, steps)).norm_squared(), steps)
+    });
+    let (sum, count) = steps.fold((0.0, 0), |(sum, count), (square, steps)| (sum + square, count + steps));
+    let step_share = noise.step_share + 2.0 * (deviations.norm_squared() - before) * count as f64 / sum;
+    PositionNoise { deviations, step_share: step_share.min(1.0) }
+}
+
+/// The step of which all differences between a channel's values are multiples, if there are few values.
+pub(super) fn resolution(demonstrations: &Demonstrations, axis: usize) -> Option<f64> {
+    let movements = demonstrations.trajectories().iter();
+    let mut values: Vec<f64> =
+        movements.flat_map(|movement| movement.states().row(axis).iter().copied().collect::<Vec<_>>()).collect();
+    let all = values.len();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    let least = values.windows(2).map(|pair| pair[1] - pair[0]).min_by(f64::total_cmp)?;
+    let whole = |step: f64| (step / least - (step / least).round()).abs() < WHOLE;
+    let few = REPEATED * values.len() < all;
+    (few && values.windows(2).all(|pair| whole(pair[1] - pair[0]))).then_some(least)
 }
 
 /// Variance of noise in recorded velocities, summed over axes, and their mean square.

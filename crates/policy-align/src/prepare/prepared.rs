@@ -23,6 +23,8 @@ pub struct Prepared {
     pub noise: Noise,
     /// What the learners are given.
     pub recorded: Recorded,
+    /// So many samples in a row become one before learning; 1: all stay.
+    pub averaged: usize,
     /// What was decided, in the order of deciding.
     pub decisions: Vec<Decision>,
     /// What gives reason for doubt.
@@ -84,7 +86,7 @@ impl Prepared {
         takes: &[Take],
         state: Vec<StateChannel>,
         noise: Noise,
-        recorded: Recorded,
+        (recorded, averaged): (Recorded, usize),
         notes: Notes,
     ) -> Self {
         let mut steps: Vec<f64> = demonstrations.trajectories().iter().map(motion::Trajectory::time_step).collect();
@@ -99,6 +101,7 @@ impl Prepared {
             time_step,
             noise,
             recorded,
+            averaged,
             decisions,
             findings,
             left_out,

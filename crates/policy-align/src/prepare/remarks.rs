@@ -2,7 +2,7 @@
 
 use motion::{Demonstrations, Trajectory};
 
-use super::noise::Noise;
+use super::noise::{Noise, resolution};
 use super::prepared::Notes;
 use crate::{StateChannel, Verdict};
 
@@ -113,18 +113,8 @@ fn standing(demonstrations: &Demonstrations, noise: &Noise, notes: &mut Notes) {
 
 fn coarse(demonstrations: &Demonstrations, spreads: &[f64], state: &[StateChannel], notes: &mut Notes) {
     for (axis, channel) in state.iter().enumerate() {
-        let mut values: Vec<f64> = demonstrations
-            .trajectories()
-            .iter()
-            .flat_map(|movement| movement.states().row(axis).iter().copied().collect::<Vec<_>>())
-            .collect();
-        let all = values.len();
-        values.sort_by(f64::total_cmp);
-        values.dedup();
-        let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let Some(&least) = steps.iter().min_by(|a, b| a.total_cmp(b)) else { continue };
-        let whole = |step: &f64| ((step / least) - (step / least).round()).abs() < 0.01;
-        if 4 * values.len() < all && least > COARSE * spreads[axis] && steps.iter().all(whole) {
+        let Some(least) = resolution(demonstrations, axis) else { continue };
+        if least > COARSE * spreads[axis] {
             notes.found(
                 Verdict::Good,
                 format!(

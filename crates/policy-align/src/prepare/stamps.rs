@@ -8,7 +8,7 @@ const EVEN: f64 = 0.01;
 /// A time step this near to a whole rate is that rate.
 const WHOLE: f64 = 1e-3;
 /// Longer steps than this are hardly seconds.
-const SLOW: f64 = 5.0;
+pub(super) const SLOW: f64 = 5.0;
 /// A step over so many usual ones is a gap.
 const GAP: f64 = 3.0;
 

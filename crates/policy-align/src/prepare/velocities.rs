@@ -2,14 +2,20 @@ use demo_io::Channel;
 use nalgebra::DVector;
 
 use super::episodes::Take;
+use super::noise::Noise;
 use super::options::{PrepareOptions, VelocityUse};
 use super::prepared::Notes;
+use super::stamps::SLOW;
 use crate::Verdict;
 
 /// Velocities agree with the steps up to this factor.
 const AGREE: f64 = 1.25;
 /// Below this share of the steps' squares explained, velocities have nothing to do with them.
 const UNRELATED: f64 = 0.5;
+/// A factor is one that mistakes have if it is as near as this.
+const NEAR: f64 = 0.1;
+/// What velocities do not explain may be so many times the noise.
+const NOISE: f64 = 1.5;
 /// Parts of a movement that are compared.
 const PARTS: usize = 4;
 /// Velocities that are differences of positions up to this share are made of them.
@@ -31,6 +37,7 @@ pub(super) fn decide(
     takes: &mut [Take],
     options: &PrepareOptions,
     channels: &[Channel],
+    noise: &Noise,
     notes: &mut Notes,
 ) -> Agreement {
     let recorded = takes.iter().filter(|take| take.velocities.is_some()).count();
@@ -48,7 +55,7 @@ pub(super) fn decide(
         notes.decided("velocities", "recorded", "told to believe them", "--integration");
         return Agreement::Own;
     }
-    let fit = Steps::of(takes);
+    let fit = Steps::of(takes, noise);
     if fit.explained < UNRELATED {
         takes.iter_mut().for_each(|take| take.velocities = None);
         notes.decided(
@@ -87,7 +94,7 @@ struct Steps {
 }
 
 impl Steps {
-    fn of(takes: &[Take]) -> Self {
+    fn of(takes: &[Take], noise: &Noise) -> Self {
         let pairs: Vec<(DVector<f64>, DVector<f64>)> = takes.iter().flat_map(parts).collect();
         let dim = takes[0].positions.nrows();
         let sum = |of: &dyn Fn(&(DVector<f64>, DVector<f64>)) -> f64| pairs.iter().map(of).sum::<f64>();
@@ -100,7 +107,10 @@ impl Steps {
         };
         let factors = DVector::from_fn(dim, |axis, _| factor(axis));
         let left = sum(&|(d, s)| (d - s.component_mul(&factors)).norm_squared());
-        let explained = 1.0 - left / sum(&|(d, _)| d.norm_squared());
+        // Both ends of a part carry the positions' noise.
+        let noise = 2.0 * noise.positions.iter().flatten().map(|sd| sd * sd).sum::<f64>() * pairs.len() as f64;
+        let moved = sum(&|(d, _)| d.norm_squared());
+        let explained = if left <= NOISE * noise { 1.0 } else { 1.0 - (left - noise) / (moved - noise) };
         Steps { factors, explained: if explained.is_finite() { explained } else { 0.0 } }
     }
 }
@@ -110,14 +120,13 @@ fn parts(take: &Take) -> Vec<(DVector<f64>, DVector<f64>)> {
     let steps = take.n_samples() - 1;
     let parts = PARTS.min((steps / 2).max(1));
     let Some(velocities) = &take.velocities else { return Vec::new() };
-    let seconds = |i: usize| take.time_step.unwrap_or_else(|| take.times[i + 1] - take.times[i]);
     (0..parts)
         .map(|part| {
             let (from, to) = (part * steps / parts, (part + 1) * steps / parts);
             let moved = take.positions.column(to) - take.positions.column(from);
             let mut said = DVector::zeros(moved.len());
             for i in from..to {
-                said += (velocities.column(i) + velocities.column(i + 1)) * (0.5 * seconds(i));
+                said += (velocities.column(i) + velocities.column(i + 1)) * (0.5 * take.seconds(i));
             }
             (moved, said)
         })
@@ -138,25 +147,40 @@ fn made_of_positions(takes: &[Take]) -> bool {
         }
         left <= SAME * SAME * power
     };
-    let seconds = |take: &Take, i: usize| take.time_step.unwrap_or_else(|| take.times[i + 1] - take.times[i]);
-    let after = |take: &Take, i: usize| Some(take.step(i) / seconds(take, i));
-    let before = |take: &Take, i: usize| Some(take.step(i - 1) / seconds(take, i - 1));
+    let after = |take: &Take, i: usize| Some(take.step(i) / take.seconds(i));
+    let before = |take: &Take, i: usize| Some(take.step(i - 1) / take.seconds(i - 1));
     let both =
-        |take: &Take, i: usize| Some((take.step(i) + take.step(i - 1)) / (seconds(take, i) + seconds(take, i - 1)));
+        |take: &Take, i: usize| Some((take.step(i) + take.step(i - 1)) / (take.seconds(i) + take.seconds(i - 1)));
     off(&after) || off(&before) || off(&both)
 }
 
 /// Velocities in other units than the steps: brought to those of positions and stamps, and said.
 fn mend(takes: &mut [Take], fit: &Steps, channels: &[Channel], notes: &mut Notes) {
-    for take in takes.iter_mut() {
-        if let Some(velocities) = &mut take.velocities {
-            velocities.column_iter_mut().for_each(|mut column| column.component_mul_assign(&fit.factors));
-        }
-    }
-    let step = takes[0].time_step.unwrap_or_else(|| takes[0].times[1] - takes[0].times[0]);
     let (low, high) = (fit.factors.min(), fit.factors.max());
-    let (what, next) = if low * high > 0.0 && (high / low) < AGREE && (low / high) < AGREE {
-        let times = 1.0 / (low * high).sqrt().copysign(low);
+    let step = takes[0].seconds(0);
+    if step > SLOW && fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(&(factor * 1000.0))) {
+        takes.iter_mut().for_each(Take::in_milliseconds);
+        let what = format!("stamps are {step:.0} apart and velocities 1000 times the steps");
+        notes.decided("time step", format!("{} s", step / 1000.0), format!("{what}: stamps are milliseconds"), "--dt");
+        notes.found(
+            Verdict::Doubtful,
+            format!("{what}: stamps were taken as milliseconds"),
+            "say so in the file (name the column t_ms), or give --dt",
+        );
+        return;
+    }
+    let common = low * high > 0.0 && high / low < AGREE && low / high < AGREE;
+    let factors = if common {
+        let factor = (low * high).sqrt().copysign(low);
+        DVector::repeat(channels.len(), 1.0 / whole(1.0 / factor, step))
+    } else {
+        fit.factors.clone()
+    };
+    for velocities in takes.iter_mut().filter_map(|take| take.velocities.as_mut()) {
+        velocities.column_iter_mut().for_each(|mut column| column.component_mul_assign(&factors));
+    }
+    let (what, next) = if common {
+        let times = 1.0 / factors[0];
         (format!("velocities are {} times the steps", rounded(times)), guess(times, step).to_owned())
     } else {
         let odd = (0..channels.len()).max_by(|&a, &b| fit.factors[a].ln_abs().total_cmp(&fit.factors[b].ln_abs()));
@@ -191,21 +215,27 @@ impl LnAbs for f64 {
     }
 }
 
+/// Factors that mistakes have.
+fn usual(step: f64) -> [f64; 6] {
+    [1000.0, 0.001, 1f64.to_degrees(), 1f64.to_radians(), -1.0, step]
+}
+
+/// A factor as mistakes have it, where it is that near: rules of integration differ by some percent.
+fn whole(times: f64, step: f64) -> f64 {
+    usual(step).into_iter().find(|value| (times / value - 1.0).abs() < NEAR).unwrap_or(times)
+}
+
 fn guess(times: f64, step: f64) -> &'static str {
-    let near = |value: f64| times > 0.0 && (times / value).ln().abs() < 1.1_f64.ln();
-    if times < 0.0 {
-        "look at the sign: velocities point against the movement"
-    } else if near(1000.0) {
-        "velocities in millimetres, or stamps in milliseconds? Say so in the file (units) or with --dt"
-    } else if near(0.001) {
-        "positions in millimetres? Say so in the file (units)"
-    } else if near(1f64.to_degrees()) || near(1f64.to_radians()) {
-        "degrees here and radians there? Use one of them (--degrees)"
-    } else if near(step) {
-        "these are steps, not velocities per second"
-    } else {
-        "look at units and time step; --dt sets the latter"
-    }
+    const WORDS: [&str; 6] = [
+        "velocities in millimetres, or stamps in milliseconds? Say so in the file (units) or with --dt",
+        "positions in millimetres? Say so in the file (units)",
+        "degrees here and radians there? Use one of them (--degrees)",
+        "degrees here and radians there? Use one of them (--degrees)",
+        "look at the sign: velocities point against the movement",
+        "these are steps, not velocities per second",
+    ];
+    let named = usual(step).into_iter().zip(WORDS).find(|(value, _)| (times / value - 1.0).abs() < NEAR);
+    named.map_or("look at units and time step; --dt sets the latter", |(_, words)| words)
 }
 
 fn rounded(value: f64) -> String {

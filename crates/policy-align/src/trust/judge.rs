@@ -4,6 +4,17 @@ use super::numbers::TrustNumbers;
 use super::words::{direction, percent};
 use crate::{Finding, StateChannel, Trust, Verdict};
 
+/// Left-out error along the path from which a policy is wrong.
+const WRONG: f64 = 0.5;
+/// The same, and errors expected, from which it may be.
+const DOUBTFUL: f64 = 0.15;
+/// What is free moves in all directions; less coverage than this may be a constraint.
+const SPREAD: f64 = 0.25;
+/// Less coverage than this and one direction is a guess.
+const UNSEEN: f64 = 0.1;
+/// From more starts than this share, and the goal lies outside what was shown.
+const LEAVING: f64 = 0.5;
+
 /// What is known when it comes to a verdict.
 pub(crate) struct Evidence<'a> {
     pub(crate) numbers: TrustNumbers,
@@ -26,7 +37,21 @@ pub(crate) fn judge(evidence: Evidence<'_>) -> Trust {
 
 fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn FnMut(Verdict, String, &str)) {
     match numbers.reading {
-        Reading::Free | Reading::Constrained => {}
+        Reading::Constrained => {}
+        Reading::Free if numbers.direction_coverage < SPREAD => found(
+            Verdict::Doubtful,
+            format!(
+                "nothing points to a constraint, but movements hardly went along {} (coverage {:.2})",
+                direction(&numbers.unseen_direction, state),
+                numbers.direction_coverage
+            ),
+            "either they want not to, or something always prevents them: record movements that go that way",
+        ),
+        Reading::Free => found(
+            Verdict::Good,
+            "nothing points to a constraint; one that is the same in all movements cannot be seen in them".to_owned(),
+            "if there is one, record movements without it",
+        ),
         Reading::Ambiguous => found(
             Verdict::Doubtful,
             format!(
@@ -36,7 +61,7 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
             "only you know: --reading free or --reading constrained, or record movements that pass the same places in other directions",
         ),
         Reading::Unexplained => found(
-            Verdict::DoNotUse,
+            if numbers.held_out_error > WRONG { Verdict::DoNotUse } else { Verdict::Doubtful },
             format!(
                 "left-out movements are not predicted: errors {} and {}",
                 percent(numbers.direct_error),
@@ -50,7 +75,7 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
             "record at least five",
         ),
     }
-    if numbers.direction_coverage < 0.1 {
+    if numbers.direction_coverage < UNSEEN {
         found(
             Verdict::Doubtful,
             format!(
@@ -65,7 +90,7 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
 
 fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &str)) {
     let expected = numbers.expected_error;
-    if expected > 0.15 {
+    if expected > DOUBTFUL {
         found(
             Verdict::Doubtful,
             format!("the policy expects an error of {} of its variance", percent(expected)),
@@ -73,17 +98,27 @@ fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &s
         );
     }
     let held = numbers.held_out_error;
-    if held > 0.5 {
+    if held > WRONG {
         found(
             Verdict::DoNotUse,
             format!("left-out movements are predicted with an error of {}", percent(held)),
             "record more",
         );
-    } else if held > 0.15 {
+    } else if held > DOUBTFUL {
         found(
             Verdict::Doubtful,
             format!("left-out movements are predicted with an error of {}", percent(held)),
             "record more",
+        );
+    }
+    if numbers.leaving > LEAVING {
+        found(
+            Verdict::Doubtful,
+            format!(
+                "followed freely, the policy leaves what was shown from {} of the starts: its goal lies outside, or time runs backwards",
+                percent(numbers.leaving)
+            ),
+            "look at a roll-out; record movements up to where they should end",
         );
     }
     if numbers.grouping == Grouping::BlocksOfTime {

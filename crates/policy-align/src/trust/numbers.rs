@@ -39,6 +39,8 @@ pub struct TrustNumbers {
     pub rotation_t: Option<f64>,
     /// Whether the slope policy has a potential.
     pub model: ModelKind,
+    /// Share of the demonstrated starts from which the policy, followed freely, leaves what was shown.
+    pub leaving: f64,
     /// Share of the squared steps that is noise.
     pub step_noise: f64,
     /// What was left out at a time.
