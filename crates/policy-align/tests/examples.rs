@@ -1,12 +1,12 @@
 //! The examples of the documentation: where they come from, and that they do what is said of them.
 
-mod program;
+mod running;
 
 use std::fmt::Write as _;
 use std::path::Path;
 
 use demo_gen::ToySystem;
-use program::{examples, run_in};
+use running::{examples, run_in};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 

@@ -1,12 +1,11 @@
 //! The program as its users meet it.
 
-#[path = "program/mod.rs"]
-mod program;
+mod running;
 
 use std::io::{Read as _, Write as _};
 use std::process::{Command, Stdio};
 
-use program::{command, folder, run, run_in};
+use running::{command, folder, run, run_in};
 use serde_json::Value;
 
 const VERBS: [&str; 11] = [
@@ -141,7 +140,7 @@ fn predictions_of_a_file_and_of_standard_input_are_those_of_the_model() {
 #[test]
 fn a_configuration_is_complete_and_flags_win() {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::copy(program::examples().join("toy.csv"), folder.path().join("toy.csv")).unwrap();
+    std::fs::copy(running::examples().join("toy.csv"), folder.path().join("toy.csv")).unwrap();
     let printed = run_in(folder.path(), "fit --print-config --seed 4 --state x,y");
     assert!(printed.out.contains("seed = 4") && printed.out.contains("state = [\"x,y\"]"), "{}", printed.out);
     std::fs::write(folder.path().join("c.toml"), &printed.out).unwrap();
@@ -201,7 +200,7 @@ fn completions_and_manual_pages_are_well_formed() {
 #[test]
 fn an_interrupted_fit_leaves_the_old_model() {
     let place = tempfile::tempdir().unwrap();
-    std::fs::copy(program::examples().join("toy.csv"), place.path().join("toy.csv")).unwrap();
+    std::fs::copy(running::examples().join("toy.csv"), place.path().join("toy.csv")).unwrap();
     std::fs::write(place.path().join("toy.json"), "old").unwrap();
     let child = command(place.path()).args(["fit", "toy.csv", "-o", "toy.json", "--max-rows", "1500"]).stderr(Stdio::piped()).spawn().unwrap();
     std::thread::sleep(std::time::Duration::from_millis(700));

@@ -39,21 +39,22 @@ impl Man {
     pub(crate) fn run(&self) -> Result<Said, Failure> {
         let mut command = Cli::command();
         command.build();
-        let Some(folder) = &self.to else { return Said::done(page(command)?) };
+        let Some(folder) = &self.to else { return Said::done(page(command, "policy-align")?) };
         for sub in command.get_subcommands().cloned().collect::<Vec<_>>() {
             let name = format!("policy-align-{}", sub.get_name());
             let path = folder.join(format!("{name}.1"));
-            write_whole(&path, page(sub.name(name))?.as_bytes()).map_err(|error| Failure::writing(&path, error))?;
+            write_whole(&path, page(sub, &name)?.as_bytes()).map_err(|error| Failure::writing(&path, error))?;
         }
         let path = folder.join("policy-align.1");
-        write_whole(&path, page(command)?.as_bytes()).map_err(|error| Failure::writing(&path, error))?;
+        write_whole(&path, page(command, "policy-align")?.as_bytes()).map_err(|error| Failure::writing(&path, error))?;
         Said::done(String::new())
     }
 }
 
-fn page(command: Command) -> Result<String, Failure> {
+fn page(command: Command, title: &str) -> Result<String, Failure> {
     let mut text = Vec::new();
     clap_mangen::Man::new(command)
+        .title(title)
         .render(&mut text)
         .map_err(|error| Failure::new(Exit::Bug, error.to_string(), "man", "please report it"))?;
     Ok(String::from_utf8_lossy(&text).into_owned())

@@ -94,6 +94,7 @@ fn numbers(model: &Model) -> Markup {
                 (row("Squared errors over those expected", short(numbers.z_squared), "about 1, below 4"))
                 (row("Directions seen, the least of them", short(numbers.direction_coverage), "above 0.1; 1 if all alike"))
                 (row("Share of rotation in the policy", short(numbers.rotation_share), "0 for a potential"))
+                (row("Free movements that leave what was shown", short(numbers.leaving), "0"))
                 (row("Share of noise in the squared steps", short(numbers.step_noise), "below 0.1"))
                 (aligned(numbers))
             }

@@ -121,6 +121,7 @@ pub(crate) fn model(learnt: Learnt, demonstrations: &Demonstrations) -> Model {
                 rotation_share: 0.0,
                 rotation_t: None,
                 model: gp::ModelKind::Potential,
+                leaving: 0.0,
                 step_noise: 0.001,
                 grouping: gp::Grouping::Trajectories,
                 aligned: None,
