@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
 
-use models::{auto, direct, policy_align, slope, states, toy};
+use models::{direct, free, one_of_each, policy_align, slope, states, toy};
 use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::DMatrix;
 use policy_align::{CSource, ExportError, Finding, Model, Precision, Verdict};
@@ -83,8 +83,8 @@ fn compare(name: &str, model: &Model, precision: Precision, tolerance: f64) {
     assert_eq!(answers.len(), 10_000);
     let policy = model.policy();
     let (mut error, mut largest) = ([0.0_f64; 2], [f64::MIN_POSITIVE; 2]);
-    let (mut known, mut wrongly) = (0, 0);
-    for (answer, state) in answers.iter().zip(states.column_iter()) {
+    let (mut known, mut wrongly, mut missed) = (0, 0, 0);
+    for (at, (answer, state)) in answers.iter().zip(states.column_iter()).enumerate() {
         let action = policy.action(state);
         for k in 0..2 {
             error[0] = error[0].max((answer.action[k] - action[k]).abs());
@@ -98,15 +98,24 @@ fn compare(name: &str, model: &Model, precision: Precision, tolerance: f64) {
                 largest[1] = largest[1].max(value.abs());
             }
         }
-        known += usize::from(answer.known);
-        wrongly += usize::from(answer.known && !policy.is_supported(state));
+        if at < 500 {
+            // What a Gaussian process knows takes long to find out, and is found in another way in C.
+            let expected = policy.is_supported(state);
+            known += usize::from(expected);
+            wrongly += usize::from(answer.known && !expected);
+            missed += usize::from(!answer.known && expected);
+        }
     }
     let relative = [error[0] / largest[0], error[1] / largest[1]];
-    eprintln!("{name}: {} bytes of C, action {:e}, potential {:e}, {known} known, {wrongly} wrongly", source.len(), relative[0], relative[1]);
+    eprintln!(
+        "{name}: {} bytes of C, action {:e}, potential {:e}, of 500 {known} known, {wrongly} wrongly, {missed} missed",
+        source.len(),
+        relative[0],
+        relative[1]
+    );
     assert!(relative[0] <= tolerance && relative[1] <= tolerance, "{name}: {relative:?}");
-    // Whether something is known is found in another way by Gaussian processes.
-    assert!(wrongly * 10 <= known, "{name}: {known} known, {wrongly} wrongly");
-    assert!(10 * known >= 9 * states.column_iter().filter(|state| policy.is_supported(*state)).count() || name == "direct");
+    // What the direct GP knows of constrained movements is in patches, which no distance tells.
+    assert!(wrongly <= 25 && (missed <= 50 || name == "direct"), "{name}: of {known} known {wrongly} wrongly, {missed} missed");
 }
 
 /// The same model in other units, one of them another unit than the other's.
@@ -124,17 +133,12 @@ fn every_learner_acts_as_its_model() {
     if compiler().is_none() {
         return;
     }
-    let demonstrations = toy(20, 40);
-    for (name, model) in [
-        ("slope", slope(&demonstrations)),
-        ("direct", direct(&demonstrations)),
-        ("auto", auto(&demonstrations)),
-        ("policy-align", policy_align(&demonstrations)),
-    ] {
+    for (name, model) in one_of_each(&toy(12, 30)) {
         compare(name, &model, Precision::Double, 1e-12);
         compare(name, &model, Precision::Single, 2e-3);
         compare(name, &rescaled(model), Precision::Double, 1e-12);
     }
+    compare("direct, free", &direct(&free(12, 30)), Precision::Double, 1e-12);
 }
 
 #[test]

@@ -14,10 +14,11 @@ use super::session::{Said, Session};
 
 /// Say everything that can be said before learning
 ///
-/// Reads the files, finds out what is state, velocity and time, and looks for what would spoil a policy: noise, jumps,
-/// missing numbers, mixed units, directions that never move. Nothing is written.
+/// Reads the files, finds out what is state, velocity and time, and looks for
+/// what would spoil a policy: noise, jumps, missing numbers, mixed units,
+/// directions that never move. Nothing is written.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  policy-align check toy.csv")]
+#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align check toy.csv")]
 pub(crate) struct Check {
     /// Recordings: CSV, NPZ, JSON lines, LeRobot, HDF5, MCAP, MAT
     #[arg(required = true)]

@@ -16,9 +16,10 @@ use super::session::{Said, Session};
 
 /// Hold a model against other recordings
 ///
-/// The error is of what is seen along the movements: 0 explains every one, 1 is as good as standing still.
+/// The error is of what is seen along the movements: 0 explains every one, 1 is
+/// as good as standing still.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  policy-align evaluate toy.json toy.csv")]
+#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align evaluate toy.json toy.csv")]
 pub(crate) struct Evaluate {
     /// A model that `fit` has written
     model: PathBuf,

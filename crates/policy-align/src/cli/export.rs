@@ -10,10 +10,11 @@ use super::session::{Said, Session};
 
 /// Write a policy for a robot: one C file, or ONNX
 ///
-/// The C file is ISO C99 and needs nothing but math.h: int policy(const double *x, double *u, double *phi) returns 1
-/// where something was learnt. ONNX has operators of version 17 on doubles: x (states, n) to u, phi and support.
+/// The C file is ISO C99 and needs nothing but math.h: int policy(const double
+/// *x, double *u, double *phi) returns 1 where something was learnt. ONNX has
+/// operators of version 17 on doubles: x (states, n) to u, phi and support.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  policy-align export toy.json --to c -o toy.c")]
+#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align export toy.json --to c -o toy.c")]
 pub(crate) struct Export {
     /// A model that `fit` has written
     model: PathBuf,

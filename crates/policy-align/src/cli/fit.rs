@@ -18,10 +18,11 @@ use super::trust_page::trust_page;
 
 /// Learn a policy, and how far to trust it
 ///
-/// Beside the model a page is written that says how far to trust it: MODEL.trust.html, and the same as JSON. The exit
-/// code is 1 if it says "do not use".
+/// Beside the model a page is written that says how far to trust it:
+/// MODEL.trust.html, and the same as JSON. The exit code is 1 if it says "do not
+/// use".
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  policy-align fit toy.csv -o toy.json")]
+#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align fit toy.csv -o toy.json")]
 pub(crate) struct Fit {
     /// Recordings: CSV, NPZ, JSON lines, LeRobot, HDF5, MCAP, MAT
     #[arg(required_unless_present = "print_config")]

@@ -55,7 +55,7 @@ pub(crate) struct ReadFlags {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     unwrap: Vec<String>,
     /// Samples that are not finite
-    #[arg(long, value_parser = ["refuse", "drop", "fill"], hide_possible_values = false)]
+    #[arg(long, value_parser = ["refuse", "drop", "fill"])]
     #[serde(skip_serializing_if = "Option::is_none")]
     nan: Option<String>,
     /// Put samples in the order of their stamps
@@ -90,8 +90,8 @@ pub(crate) struct ReadFlags {
     #[arg(long, value_name = "NAME")]
     #[serde(skip_serializing_if = "Option::is_none")]
     topic: Option<String>,
-    /// The format; otherwise found by content
-    #[arg(long = "as", value_name = "FORMAT", value_parser = [
+    /// csv, tsv, npy, npz, jsonl, lerobot, parquet, hdf5, mcap or mat
+    #[arg(long = "as", value_name = "FORMAT", hide_possible_values = true, value_parser = [
         "csv", "tsv", "npy", "npz", "jsonl", "lerobot", "parquet", "hdf5", "mcap", "mat",
     ])]
     #[serde(rename = "as", skip_serializing_if = "Option::is_none")]

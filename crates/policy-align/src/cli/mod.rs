@@ -27,7 +27,7 @@ pub(crate) use failure::Exit;
 pub(crate) use session::complain;
 
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 
 use failure::Failure;
 use session::{Said, Session, tell};
@@ -103,8 +103,10 @@ fn usage(error: &clap::Error) -> Result<Said, Failure> {
     let what = what.join(" ");
     let tip = text.lines().find_map(|line| line.trim().strip_prefix("tip: "));
     let verb = std::env::args().nth(1).filter(|verb| !verb.starts_with('-'));
-    let place = verb.map_or_else(|| "policy-align".to_owned(), |verb| format!("policy-align {verb}"));
-    let remedy = tip.map_or_else(|| "--help".to_owned(), ToOwned::to_owned);
+    let place = verb.as_ref().map_or_else(|| "policy-align".to_owned(), |verb| format!("policy-align {verb}"));
+    let known = Cli::command().get_subcommands().any(|known| Some(known.get_name()) == verb.as_deref());
+    let help = if known { format!("{place} --help") } else { "policy-align --help".to_owned() };
+    let remedy = tip.map_or(help, ToOwned::to_owned);
     let what = if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
         "a command is missing".to_owned()
     } else {

@@ -11,15 +11,15 @@ use rayon::prelude::*;
 use super::failure::{Exit, Failure, shown};
 
 /// Places asked along each axis: for arrows, and for potential and support.
-const ARROWS: usize = 19;
+const ARROWS: usize = 16;
 const FINE: usize = 49;
 /// Empty space around the data, as a share of its range.
 const MARGIN: f64 = 0.12;
 const SIZE: (f64, f64) = (640.0, 660.0);
 const UNKNOWN: &str = "#e4e4e4";
-const SHOWN: Stroke = Stroke { color: "#8fb8d8", width: 1.0, dash: Dash::Solid };
+const SHOWN: Stroke = Stroke { color: "#56a0d3", width: 1.3, dash: Dash::Solid };
 const FOLLOWED: Stroke = Stroke { color: "#d55e00", width: 2.4, dash: Dash::Solid };
-const ARROW: &str = "#404040";
+const ARROW: &str = "#6a6a6a";
 
 /// What is drawn.
 pub(crate) struct Picture<'a> {
@@ -130,7 +130,7 @@ impl<'a> Picture<'a> {
             return None;
         }
         let spacing = (xs[1] - xs[0]).min(ys[1] - ys[0]);
-        Some(Layer::Arrows { arrows, color: ARROW, scale: 1.6 * spacing / longest, width: 1.0, label: Some("learnt".to_owned()) })
+        Some(Layer::Arrows { arrows, color: ARROW, scale: 1.2 * spacing / longest, width: 1.0, label: Some("learnt".to_owned()) })
     }
 }
 

@@ -17,9 +17,10 @@ use super::session::{Said, Session};
 
 /// Draw a policy: its field, its potential, what was shown
 ///
-/// Two channels are drawn; all others are at the median of what was learnt from. Where nothing was learnt it is grey.
+/// Two channels are drawn; all others are at the median of what was learnt from.
+/// Where nothing was learnt it is grey.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  policy-align plot toy.json -o toy.svg --files toy.csv --rollout 1.5,1")]
+#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align plot toy.json -o toy.svg --files toy.csv --rollout 1.5,1")]
 pub(crate) struct Plot {
     /// A model that `fit` has written
     model: PathBuf,

@@ -17,10 +17,10 @@ use super::table::states;
 
 /// Ask a model for actions
 ///
-/// For every state the action per second, the potential, standard deviations and the support: how much the
-/// demonstrations say about it, from 0 to 1.
+/// For every state the action per second, the potential, standard deviations and
+/// the support: how much the demonstrations say about it, from 0 to 1.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  policy-align predict toy.json --at 0.3,1.2")]
+#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align predict toy.json --at 0.3,1.2")]
 pub(crate) struct Predict {
     /// A model that `fit` has written
     model: PathBuf,

@@ -84,14 +84,14 @@ fn numbers(model: &Model) -> Markup {
     html! {
         p { "Errors are squared and shares of the policy's own squares: 0 is exact, 1 is as good as standing still." }
         table .numbers {
-            thead { tr { th { "What" } th { "Value" } th { "Good is" } } }
+            thead { tr { th { "What" } th .value { "Value" } th { "Good is" } } }
             tbody {
                 (row("Error along movements left out", short(numbers.held_out_error), "below 0.15"))
                 (row("The same of the direct learner, which takes velocities as they are", short(numbers.held_out_error_direct), "for comparison"))
                 (row("Error of the direct learner in all directions", short(numbers.direct_error), "for comparison"))
                 (row("Error that the policy expects of itself", short(numbers.expected_error), "below 0.15"))
                 (row("Difference of slope and direct policy", short(numbers.gap), "for comparison: large where constraints acted"))
-                (row("Squared errors over those expected", short(numbers.z_squared), "about 1, below 4"))
+                (row("Squared errors over those expected", short(numbers.z_squared), "below 4"))
                 (row("Directions seen, the least of them", short(numbers.direction_coverage), "above 0.1; 1 if all alike"))
                 (row("Share of rotation in the policy", short(numbers.rotation_share), "0 for a potential"))
                 (row("Free movements that leave what was shown", short(numbers.leaving), "0"))
@@ -139,7 +139,7 @@ fn decisions(model: &Model) -> Markup {
 fn data(model: &Model) -> Markup {
     html! {
         table .numbers {
-            thead { tr { th { "Channel" } th { "Unit" } th { "Least, median, largest" } th { "Scale" } } }
+            thead { tr { th { "Channel" } th { "Unit" } th .value { "Least, median, largest" } th .value { "Scale" } } }
             tbody {
                 @for channel in &model.state {
                     tr {

@@ -39,7 +39,7 @@ pub(super) fn write_slope(graph: &mut Graph, slope: &SlopeTables, state: &str) -
     let along = graph.node("Mul", &[&apart, &directions]);
     let along = graph.sum(&along, 2);
     let [g, h] = slopes(graph, slope, &squared);
-    let straight = graph.node("MatMul", &[&g, &directions]);
+    let straight = graph.product(&g, &directions);
     let bent = graph.node("Mul", &[&h, &along]);
     let bent = graph.unsqueezed(&bent, 2);
     let bent = graph.node("Mul", &[&bent, &apart]);
@@ -47,7 +47,7 @@ pub(super) fn write_slope(graph: &mut Graph, slope: &SlopeTables, state: &str) -
     let constant = graph.constant(&[n], slope.constant.iter().copied());
     // Columns of Q are rows of its transpose, which multiplies from the right.
     let matrix = rows(graph, &slope.matrix);
-    let sloped = graph.node("MatMul", &[&z, &matrix]);
+    let sloped = graph.product(&z, &matrix);
     let trend = graph.node("Add", &[&sloped, &constant]);
     let action = graph.node("Sub", &[&straight, &bent]);
     let action = graph.node("Add", &[&action, &trend]);
@@ -70,7 +70,7 @@ pub(super) fn write_direct(graph: &mut Graph, direct: &DirectTables, state: &str
     let [z, _, squared] = differences(graph, &direct.scaled, state);
     let (n, m) = direct.scaled.z.shape();
     let learnt = graph.constant(&[n, m], direct.scaled.z.transpose().iter().copied());
-    let product = graph.node("MatMul", &[&z, &learnt]);
+    let product = graph.product(&z, &learnt);
     let [constant, linear, quadratic] = direct.trend.map(|factor| graph.number(factor));
     let trend = graph.node("Mul", &[&product, &quadratic]);
     let trend = graph.node("Add", &[&trend, &linear]);
@@ -81,7 +81,7 @@ pub(super) fn write_direct(graph: &mut Graph, direct: &DirectTables, state: &str
         sum = graph.node("Add", &[&sum, &covariance]);
     }
     let weights = rows(graph, &direct.weights);
-    let action = graph.node("MatMul", &[&sum, &weights]);
+    let action = graph.product(&sum, &weights);
     let support = support(graph, &direct.scaled, &squared);
     Asked { action: graph.times(&action, direct.scaled.speed), potential: None, support }
 }

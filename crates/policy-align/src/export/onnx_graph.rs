@@ -96,6 +96,14 @@ impl Graph {
         self.node("Unsqueeze", &[tensor, &axis])
     }
 
+    /// Rows (B, M) times a matrix (M, n). Not by `MatMul`: onnxruntime joins that with numbers beside it, which it rounds
+    /// to single precision.
+    pub(super) fn product(&mut self, rows: &str, matrix: &str) -> Tensor {
+        let rows = self.unsqueezed(rows, 2);
+        let products = self.node("Mul", &[&rows, matrix]);
+        self.sum(&products, 1)
+    }
+
     /// Times a number.
     pub(super) fn times(&mut self, tensor: &str, factor: f64) -> Tensor {
         let factor = self.number(factor);

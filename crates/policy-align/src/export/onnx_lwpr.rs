@@ -17,9 +17,9 @@ pub(super) fn write(graph: &mut Graph, lwpr: &LwprTables, scaled: &str) -> Asked
     let apart = graph.node("Sub", &[&z, &centres]);
     let turned = if lwpr.is_full() {
         let metric = graph.constant(&[m, n, n], each(|field| &field.metric));
-        let column = graph.unsqueezed(&apart, 3);
-        let product = graph.node("MatMul", &[&metric, &column]);
-        graph.sum(&product, 3)
+        let rows = graph.unsqueezed(&apart, 2);
+        let products = graph.node("Mul", &[&metric, &rows]);
+        graph.sum(&products, 3)
     } else {
         let metric = graph.constant(&[m, n], each(|field| &field.metric));
         graph.node("Mul", &[&apart, &metric])
@@ -48,7 +48,7 @@ pub(super) fn write(graph: &mut Graph, lwpr: &LwprTables, scaled: &str) -> Asked
     let off = graph.unsqueezed(&off, 2);
     let bent = graph.node("Mul", &[&off, &turned]);
     let bent = graph.sum(&bent, 1);
-    let straight = graph.node("MatMul", &[&weight, &slopes]);
+    let straight = graph.product(&weight, &slopes);
     let gradient = graph.node("Add", &[&straight, &bent]);
     let divisor = graph.unsqueezed(&divisor, 1);
     let gradient = graph.node("Div", &[&gradient, &divisor]);

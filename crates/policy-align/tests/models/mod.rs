@@ -3,10 +3,11 @@
 #![allow(dead_code, reason = "every test that has this module uses a part of it")]
 
 use align::{Bandwidth, LwprRegressor, PolicyAlign};
-use demo_gen::{ToySystem, demonstrations};
+use constraints::Unconstrained;
+use demo_gen::{RollOut, ToySystem, demonstrations};
 use gp::{DirectGp, FrontEnd, ReadingLearner, Rows, SlopeGp};
 use motion::Demonstrations;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use policy_align::{
     DataSummary, Decision, FileSummary, Finding, LeftOutEpisode, Learnt, MadeBy, Model, StateChannel, Trust,
     TrustNumbers, Verdict,
@@ -18,6 +19,20 @@ use rand_chacha::ChaCha8Rng;
 pub(crate) fn toy(n_trajectories: usize, n_samples: usize) -> Demonstrations {
     let system = ToySystem { n_trajectories, n_samples, ..ToySystem::default() };
     let recordings = system.record(&mut ChaCha8Rng::seed_from_u64(7)).unwrap();
+    demonstrations(&recordings).unwrap()
+}
+
+/// Movements down the same bowl that nothing constrains.
+pub(crate) fn free(n_trajectories: usize, n_samples: usize) -> Demonstrations {
+    let roll_out = RollOut { n_samples, ..RollOut::default() };
+    let potential = ToySystem::default().potential;
+    let mut rng = ChaCha8Rng::seed_from_u64(8);
+    let recordings: Vec<_> = (0..n_trajectories)
+        .map(|_| {
+            let start = DVector::from_fn(2, |_, _| rng.random_range(-2.0..2.0));
+            roll_out.record(&potential, &Unconstrained { dim: 2 }, start.as_view()).unwrap()
+        })
+        .collect();
     demonstrations(&recordings).unwrap()
 }
 
