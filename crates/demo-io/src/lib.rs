@@ -1,17 +1,29 @@
 //! Recordings of movements: what a file says, with names, units and stamps, before anybody decides what to make of it.
 
+mod array;
 mod clean;
 mod delimited;
+mod documents;
 mod draft;
 mod error;
+mod fields;
+mod flat;
+mod grouped;
 mod input;
+mod json;
+mod json_lines;
+mod layout;
+mod natural;
 mod note;
 mod notice;
+mod npy;
+mod npz;
 mod options;
 mod read;
 mod recordings;
 mod roles;
 mod selection;
+mod sniff;
 mod stamps;
 mod statistics;
 mod table;

@@ -1,6 +1,8 @@
 //! Recordings to files.
 
 mod delimited;
+mod json_lines;
+mod npz;
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -75,6 +77,8 @@ pub fn write(path: &Path, recordings: &Recordings) -> Result<(), WriteError> {
     match &extension[..] {
         "csv" => whole(path, |file| delimited::write(file, recordings, b',')),
         "tsv" => whole(path, |file| delimited::write(file, recordings, b'\t')),
+        "jsonl" | "ndjson" => whole(path, |file| json_lines::write(file, recordings)),
+        "npz" => whole(path, |file| npz::write(file, recordings)),
         _ => Err(WriteError::Extension { extension }),
     }
 }
