@@ -161,6 +161,3 @@ fn hint(text: &str) -> Option<String> {
     };
     (digits(whole) && digits(decimals)).then(|| "--decimal , (this seems to be a decimal comma)".to_owned())
 }
-
-#[cfg(test)]
-mod tests;

@@ -65,6 +65,27 @@ impl<'a> Input<'a> {
         Ok(())
     }
 
+    /// Whether these are the file's last bytes.
+    #[cfg(feature = "parquet")]
+    pub(crate) fn ends_with(&self, mark: &[u8]) -> bool {
+        use std::io::{Seek as _, SeekFrom};
+        let mut end = Vec::new();
+        let read = self.open().ok().and_then(|mut file| {
+            file.seek(SeekFrom::End(-i64::try_from(mark.len()).ok()?)).ok()?;
+            file.read_to_end(&mut end).ok()
+        });
+        read.is_some() && end == mark
+    }
+
+    /// All bytes of the file.
+    #[cfg(feature = "mat")]
+    pub(crate) fn whole(&self, progress: &mut dyn FnMut(u64)) -> Result<Vec<u8>, ReadError> {
+        let mut bytes = Vec::new();
+        self.open()?.read_to_end(&mut bytes).map_err(|error| unreadable(&error, &self.name))?;
+        progress(bytes.len() as u64);
+        Ok(bytes)
+    }
+
     pub(crate) fn open(&self) -> Result<File, ReadError> {
         File::open(&self.path).map_err(|error| unreadable(&error, &self.name))
     }

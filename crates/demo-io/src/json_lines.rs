@@ -86,6 +86,3 @@ impl<R: BufRead> Lines<R> {
         ReadError::Json(Fault::new(format!("this is not JSON: {what}"), place, remedy))
     }
 }
-
-#[cfg(test)]
-mod tests;

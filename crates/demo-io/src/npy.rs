@@ -6,6 +6,8 @@ mod values;
 use std::io::Read;
 
 pub(crate) use self::header::Header;
+#[cfg(feature = "parquet")]
+pub(crate) use self::values::half;
 use crate::array::{Data, Described, Kind};
 use crate::draft::Drafts;
 use crate::input::Input;
@@ -74,6 +76,3 @@ fn truncated(shape: &str, file: &str) -> ReadError {
     let what = format!("the file ends before the array of shape ({shape}) that it announces");
     ReadError::Truncated(Fault::new(what, file, "another copy of the file: this one is not whole"))
 }
-
-#[cfg(test)]
-mod tests;

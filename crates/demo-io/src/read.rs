@@ -48,23 +48,41 @@ fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> 
     let name = name_of(path);
     if path.is_dir() {
         return match sniff::folder(path, &name)? {
+            #[cfg(feature = "parquet")]
+            Folder::LeRobot => crate::lerobot::read(path, options, progress),
+            #[cfg(not(feature = "parquet"))]
             Folder::LeRobot => Err(not_built(&name, "parquet")),
             Folder::Files => folder(path, &name, options, progress),
         };
     }
-    let input = Input::new(path, options)?;
-    match sniff::format(&input)? {
+    let mut input = Input::new(path, options)?;
+    let format = sniff::format(&input)?;
+    input.columns_first = format == Format::Mat;
+    match format {
         Format::Csv | Format::Tsv => delimited::read(&input, progress),
         Format::Jsonl => json_lines::read(&input, progress),
         Format::Npy => npy::read(&input, progress),
         Format::Npz => npz::read(&input, progress),
+        #[cfg(feature = "parquet")]
+        Format::LeRobot | Format::Parquet => crate::parquet::read(&input, progress),
+        #[cfg(not(feature = "parquet"))]
         Format::LeRobot | Format::Parquet => Err(not_built(&name, "parquet")),
+        #[cfg(feature = "hdf5")]
+        Format::Hdf5 => crate::hdf5::read(&input, progress),
+        #[cfg(not(feature = "hdf5"))]
         Format::Hdf5 => Err(not_built(&name, "hdf5")),
+        #[cfg(feature = "mcap")]
+        Format::Mcap => crate::mcap::read(&input, progress),
+        #[cfg(not(feature = "mcap"))]
         Format::Mcap => Err(not_built(&name, "mcap")),
+        #[cfg(feature = "mat")]
+        Format::Mat => crate::mat::read(&input, progress),
+        #[cfg(not(feature = "mat"))]
         Format::Mat => Err(not_built(&name, "mat")),
     }
 }
 
+#[cfg(not(all(feature = "parquet", feature = "hdf5", feature = "mcap", feature = "mat")))]
 fn not_built(name: &str, feature: &str) -> ReadError {
     let what = format!("this needs the feature '{feature}', which was not built in");
     ReadError::Unsupported(Fault::new(what, name, format!("cargo build --features {feature}, or convert the file to CSV or NPZ")))
@@ -102,7 +120,7 @@ fn name_by_file(drafts: &mut Drafts, file: &Path) {
     }
 }
 
-fn add(joined: &mut Option<Drafts>, drafts: Drafts, file: &str) -> Result<(), ReadError> {
+pub(crate) fn add(joined: &mut Option<Drafts>, drafts: Drafts, file: &str) -> Result<(), ReadError> {
     match joined {
         Some(joined) => join(joined, drafts, file),
         None => {

@@ -104,6 +104,13 @@ impl Table {
         self
     }
 
+    /// The columns that have a role.
+    #[cfg(feature = "parquet")]
+    pub(crate) fn used(&self) -> std::collections::HashSet<usize> {
+        let Roles { time, episode, constraint, state, velocity, .. } = &self.roles;
+        [*time, *episode, *constraint].into_iter().flatten().chain(state.iter().chain(velocity).copied()).collect()
+    }
+
     /// Adds a row, which stands at `place`.
     pub(crate) fn push(&mut self, place: u64, row: &impl Row) -> Result<(), ReadError> {
         let episode = self.episode_of(row)?;

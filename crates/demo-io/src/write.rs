@@ -2,6 +2,8 @@
 
 mod delimited;
 mod json_lines;
+#[cfg(feature = "mcap")]
+mod mcap;
 mod npz;
 
 use std::fs::{self, File};
@@ -79,6 +81,10 @@ pub fn write(path: &Path, recordings: &Recordings) -> Result<(), WriteError> {
         "tsv" => whole(path, |file| delimited::write(file, recordings, b'\t')),
         "jsonl" | "ndjson" => whole(path, |file| json_lines::write(file, recordings)),
         "npz" => whole(path, |file| npz::write(file, recordings)),
+        #[cfg(feature = "mcap")]
+        "mcap" => whole(path, |file| mcap::write(file, recordings)),
+        #[cfg(not(feature = "mcap"))]
+        "mcap" => Err(WriteError::Feature { extension, feature: "mcap" }),
         _ => Err(WriteError::Extension { extension }),
     }
 }

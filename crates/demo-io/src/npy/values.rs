@@ -59,7 +59,7 @@ fn widened(bytes: &[u8], big_endian: bool) -> [u8; 8] {
 }
 
 /// A half-precision number.
-fn half(bits: u16) -> f64 {
+pub(crate) fn half(bits: u16) -> f64 {
     let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
     let fraction = f64::from(bits & 0x3ff) / 1024.0;
     sign * match i32::from(bits >> 10 & 0x1f) {
