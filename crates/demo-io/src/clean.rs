@@ -325,6 +325,3 @@ pub(crate) fn rounded(value: f64) -> String {
     let digits = format!("{value:.3e}");
     digits.parse::<f64>().map_or(digits, |value| format!("{value}"))
 }
-
-#[cfg(test)]
-mod tests;

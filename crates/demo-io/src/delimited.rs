@@ -7,16 +7,12 @@ mod source;
 use csv::ByteRecord;
 
 use self::dialect::Dialect;
-use self::fields::Fields;
 use self::source::Guarded;
 use crate::draft::Drafts;
 use crate::input::Input;
-use crate::roles::{Column, Content};
-use crate::table::{Row as _, Table};
+use crate::roles::Column;
+use crate::table::{HEAD_ROWS, Row as _, Table, content};
 use crate::{Fault, Note, NoteKind, ReadError};
-
-/// Columns are judged by so many rows.
-const HEAD_ROWS: usize = 64;
 
 pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<Drafts, ReadError> {
     let dialect = Dialect::of(input)?;
@@ -55,16 +51,16 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<D
     let columns: Vec<Column> = names
         .into_iter()
         .enumerate()
-        .map(|(column, name)| Column { name, content: content(&head, column, dialect.decimal_comma) })
+        .map(|(column, name)| Column { name, content: content(head.iter().map(|(_, record)| dialect.fields(record)), column) })
         .collect();
     let mut table = Table::new(&columns, (&input.name, &input.stem), "line", input.options)?.with_hint(hint);
     for (line, record) in &head {
-        table.push(*line, &Fields { record, decimal_comma: dialect.decimal_comma })?;
+        table.push(*line, &dialect.fields(record))?;
     }
     drop(head);
     while let Some(line) = rows.next(&mut record)? {
         fresh_record.set(0);
-        table.push(line, &Fields { record: &record, decimal_comma: dialect.decimal_comma })?;
+        table.push(line, &dialect.fields(&record))?;
     }
     let mut drafts = table.finish();
     if dialect.decimal_comma {
@@ -114,7 +110,7 @@ impl<R: std::io::Read> Rows<'_, R> {
         head: &mut Vec<(u64, ByteRecord)>,
     ) -> Result<Option<Vec<String>>, ReadError> {
         let Some(line) = self.next(record)? else { return Ok(None) };
-        let fields = Fields { record, decimal_comma: dialect.decimal_comma };
+        let fields = dialect.fields(record);
         let number = |column| fields.number(column).is_ok() && !record[column].trim_ascii().is_empty();
         if (0..record.len()).any(number) {
             head.push((line, record.clone()));
@@ -157,17 +153,6 @@ fn encoding(file: &str, line: u64) -> ReadError {
     ReadError::Encoding(Fault::new(what, format!("{file}, line {line}"), "save it as UTF-8 (or plain ASCII)"))
 }
 
-fn content(head: &[(u64, ByteRecord)], column: usize, decimal_comma: bool) -> Content {
-    let mut last: Option<f64> = None;
-    let mut counting = true;
-    for (_, record) in head {
-        let Ok(value) = (Fields { record, decimal_comma }).number(column) else { return Content::Text };
-        counting &= value.fract() == 0.0 && last.is_none_or(|last| value == last + 1.0 || value < last);
-        last = Some(value);
-    }
-    if counting { Content::Counting } else { Content::Numbers }
-}
-
 /// A decimal comma among points.
 fn hint(text: &str) -> Option<String> {
     let (whole, decimals) = text.split_once(',')?;
@@ -176,6 +161,3 @@ fn hint(text: &str) -> Option<String> {
     };
     (digits(whole) && digits(decimals)).then(|| "--decimal , (this seems to be a decimal comma)".to_owned())
 }
-
-#[cfg(test)]
-mod tests;

@@ -259,7 +259,7 @@ fn is_one_of(known: &[&str], name: &str) -> bool {
     known.contains(&name.as_str())
 }
 
-fn is_time(name: &str) -> bool {
+pub(crate) fn is_time(name: &str) -> bool {
     let name = base(name);
     TIMES.contains(&name.as_str())
         || name.rsplit_once('_').is_some_and(|(stem, unit)| TIMES.contains(&stem) && TIME_UNITS.contains(&unit))
@@ -293,7 +293,7 @@ fn unit_at(name: &str) -> Option<usize> {
 }
 
 /// Names that the velocity of `state` may have, the first of them the best.
-fn velocity_names(state: &str) -> impl Iterator<Item = String> {
+pub(crate) fn velocity_names(state: &str) -> impl Iterator<Item = String> + use<> {
     let s = state;
     let mut names = vec![
         format!("v{s}"),

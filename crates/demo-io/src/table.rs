@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::draft::{Clock, Draft, Drafts, MOST_CHANNELS, MOST_EPISODES, Rows, ignored_note, no_time, period};
-use crate::roles::{Column, Roles, assign, unit};
+use crate::roles::{Column, Content, Roles, assign, unit};
 use crate::stamps::{Stamp, TicksPerSecond};
 use crate::{Channel, Fault, ReadError, ReadOptions};
 
@@ -15,6 +15,20 @@ pub(crate) trait Row {
     fn stamp(&self, column: usize) -> Result<(Stamp, Option<TicksPerSecond>), String>;
     /// Written to `label`.
     fn label(&self, column: usize, label: &mut String);
+}
+
+impl<R: Row> Row for &R {
+    fn number(&self, column: usize) -> Result<f64, String> {
+        (*self).number(column)
+    }
+
+    fn stamp(&self, column: usize) -> Result<(Stamp, Option<TicksPerSecond>), String> {
+        (*self).stamp(column)
+    }
+
+    fn label(&self, column: usize, label: &mut String) {
+        (*self).label(column, label);
+    }
 }
 
 /// Collects rows into episodes, in the order in which their labels appear.
@@ -88,6 +102,13 @@ impl Table {
     pub(crate) fn with_hint(mut self, hint: fn(&str) -> Option<String>) -> Self {
         self.hint = hint;
         self
+    }
+
+    /// The columns that have a role.
+    #[cfg(feature = "parquet")]
+    pub(crate) fn used(&self) -> std::collections::HashSet<usize> {
+        let Roles { time, episode, constraint, state, velocity, .. } = &self.roles;
+        [*time, *episode, *constraint].into_iter().flatten().chain(state.iter().chain(velocity).copied()).collect()
     }
 
     /// Adds a row, which stands at `place`.
@@ -223,4 +244,19 @@ impl Constraint {
             _ => {}
         }
     }
+}
+
+/// Columns are judged by so many rows.
+pub(crate) const HEAD_ROWS: usize = 64;
+
+/// What the first rows of a column hold.
+pub(crate) fn content<R: Row>(rows: impl Iterator<Item = R>, column: usize) -> Content {
+    let mut last: Option<f64> = None;
+    let mut counting = true;
+    for row in rows {
+        let Ok(value) = row.number(column) else { return Content::Text };
+        counting &= value.fract() == 0.0 && last.is_none_or(|last| value == last + 1.0 || value < last);
+        last = Some(value);
+    }
+    if counting { Content::Counting } else { Content::Numbers }
 }

@@ -1,6 +1,10 @@
 //! Recordings to files.
 
 mod delimited;
+mod json_lines;
+#[cfg(feature = "mcap")]
+mod mcap;
+mod npz;
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -75,6 +79,12 @@ pub fn write(path: &Path, recordings: &Recordings) -> Result<(), WriteError> {
     match &extension[..] {
         "csv" => whole(path, |file| delimited::write(file, recordings, b',')),
         "tsv" => whole(path, |file| delimited::write(file, recordings, b'\t')),
+        "jsonl" | "ndjson" => whole(path, |file| json_lines::write(file, recordings)),
+        "npz" => whole(path, |file| npz::write(file, recordings)),
+        #[cfg(feature = "mcap")]
+        "mcap" => whole(path, |file| mcap::write(file, recordings)),
+        #[cfg(not(feature = "mcap"))]
+        "mcap" => Err(WriteError::Feature { extension, feature: "mcap" }),
         _ => Err(WriteError::Extension { extension }),
     }
 }

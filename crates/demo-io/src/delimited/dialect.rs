@@ -1,3 +1,6 @@
+use csv::ByteRecord;
+
+use super::fields::Fields;
 use crate::input::Input;
 use crate::{Fault, ReadError};
 
@@ -62,6 +65,10 @@ impl Dialect {
 
     pub(super) fn delimiter(&self) -> u8 {
         self.separator
+    }
+
+    pub(super) fn fields<'a>(&self, record: &'a ByteRecord) -> Fields<'a> {
+        Fields { record, decimal_comma: self.decimal_comma }
     }
 
     /// Names from the last comment before the rows, as `numpy.savetxt` writes them.

@@ -21,7 +21,7 @@ fn recordings(names: &[&str]) -> Recordings {
 fn text_reads_back_to_the_same_bits() {
     let folder = tempfile::tempdir().unwrap();
     let made = recordings(&["x", "joint 2"]);
-    for file in ["a.csv", "a.tsv"] {
+    for file in ["a.csv", "a.tsv", "a.jsonl", "a.npz"] {
         let path = folder.path().join(file);
         write(&path, &made).unwrap();
         let back = read(&path, &ReadOptions::default(), &mut |_| ()).unwrap();
@@ -31,7 +31,7 @@ fn text_reads_back_to_the_same_bits() {
             assert_eq!((&back.velocities, &back.constraint), (&made.velocities, &made.constraint));
         }
     }
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2, "no temporary file stays");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 4, "no temporary file stays");
 }
 
 #[test]
