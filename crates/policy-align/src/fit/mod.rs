@@ -1,6 +1,8 @@
 //! From prepared movements to a policy, with a line for everything that was decided, and how far to trust it.
 
+mod actions;
 mod aligning;
+mod halves;
 mod options;
 mod progress;
 mod recorded_rows;
@@ -12,7 +14,6 @@ pub(crate) use recorded_rows::rows;
 
 use gp::{BothReadings, DirectGp, FrontEnd, Reading, ReadingLearner, SlopeGp};
 use motion::{LearntPolicy, Policy};
-use nalgebra::DMatrix;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -203,6 +204,11 @@ fn numbers(
         rotation_share: report.rotational_share,
         rotation_t: report.curl_t,
         model: report.model,
+        halves: if takes_slope {
+            halves::of_slope(readings.slope(), rows, (options.max_rows, options.seed))
+        } else {
+            None
+        },
         leaving: share_leaving(policy, &prepared.demonstrations),
         step_noise: prepared.noise.step_share,
         grouping: of.grouping,
@@ -212,17 +218,7 @@ fn numbers(
 
 /// Σ‖π̂ − π̂_GP‖² over Σ‖π̂_GP − mean‖², at the rows' states.
 fn difference(readings: &BothReadings, policy: &dyn LearntPolicy, rows: &gp::Rows) -> f64 {
-    let every = (rows.len() / 500).max(1);
-    let states: Vec<usize> = (0..rows.len()).step_by(every).collect();
-    let actions = |of: &dyn Policy| {
-        let mut actions = DMatrix::zeros(rows.dim(), states.len());
-        for (mut action, &row) in actions.column_iter_mut().zip(&states) {
-            of.action_into(rows.states().column(row), action.as_view_mut());
-        }
-        actions
-    };
-    let (of_gp, of_policy) = (actions(readings), actions(policy));
-    let mean = of_gp.column_mean();
-    let spread: f64 = of_gp.column_iter().map(|action| (action - &mean).norm_squared()).sum();
-    (of_gp - of_policy).norm_squared() / spread
+    let states = actions::states(rows);
+    let of_gp = actions::actions(readings, &states);
+    (&of_gp - actions::actions(policy, &states)).norm_squared() / actions::spread(&of_gp)
 }

@@ -6,8 +6,12 @@ use crate::{Finding, StateChannel, Trust, Verdict};
 
 /// Left-out error along the path from which a policy is wrong.
 const WRONG: f64 = 0.5;
-/// The same, and errors expected, from which it may be.
-const DOUBTFUL: f64 = 0.15;
+/// The same from which it may be.
+const DOUBTFUL: f64 = 0.04;
+/// Expected errors from which it may be: they have been too low by a factor of 3.
+const EXPECTED: f64 = 0.06;
+/// Difference of what halves of the movements tell from which it may be.
+const HALVES: f64 = 0.15;
 /// What is free moves in all directions; less coverage than this may be a constraint.
 const SPREAD: f64 = 0.25;
 /// Less coverage than this and one direction is a guess.
@@ -90,7 +94,7 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
 
 fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &str)) {
     let expected = numbers.expected_error;
-    if expected > DOUBTFUL {
+    if expected > EXPECTED {
         found(
             Verdict::Doubtful,
             format!("the policy expects an error of {} of its variance", percent(expected)),
@@ -109,6 +113,16 @@ fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &s
             Verdict::Doubtful,
             format!("left-out movements are predicted with an error of {}", percent(held)),
             "record more",
+        );
+    }
+    if let Some(halves) = numbers.halves.filter(|&halves| halves > HALVES) {
+        found(
+            Verdict::Doubtful,
+            format!(
+                "half of the movements tell another policy than the other half: they differ by {}",
+                percent(halves)
+            ),
+            "record more movements, from other starts; less noise helps as well",
         );
     }
     if numbers.leaving > LEAVING {

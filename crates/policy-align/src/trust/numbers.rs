@@ -39,6 +39,9 @@ pub struct TrustNumbers {
     pub rotation_t: Option<f64>,
     /// Whether the slope policy has a potential.
     pub model: ModelKind,
+    /// Difference of the slope policies that every other movement alone would give, as a share of the policy's variance;
+    /// none where the direct policy is handed out, or halves are too few.
+    pub halves: Option<f64>,
     /// Share of the demonstrated starts from which the policy, followed freely, leaves what was shown.
     pub leaving: f64,
     /// Share of the squared steps that is noise.
