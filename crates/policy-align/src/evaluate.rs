@@ -52,10 +52,10 @@ pub fn evaluate(
     }
     let rows = rows(prepared)?;
     let all: Vec<usize> = (0..rows.len()).collect();
-    let total = held_out(policy, &rows, &all);
+    let total = held_out(policy, &rows, &all, None);
     let of_trajectory = |k: usize| {
         let own: Vec<usize> = all.iter().copied().filter(|&row| rows.indices()[row].trajectory == k).collect();
-        let error = held_out(policy, &rows, &own).to_choose();
+        let error = held_out(policy, &rows, &own, None).to_choose();
         error.is_finite().then_some(error)
     };
     let (nupe, ncpe) = match truth {

@@ -1,8 +1,11 @@
 //! PolicyAlign on what was recorded: rule of integration, bandwidth and receptive fields by held-out movements.
 
-use align::{Bandwidth, Integration, LwprRegressor, PolicyAlign, PotentialPolicy};
+use align::{Aligned, Bandwidth, Integration, LwprRegressor, PolicyAlign, PotentialPolicy};
+use gp::Rows;
 use lwpr::LwprParams;
-use motion::Demonstrations;
+use motion::{Demonstrations, LearntPolicy, Potential};
+use nalgebra::{DMatrix, DVector};
+
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -38,6 +41,8 @@ pub(crate) struct HeldOut {
     pub(crate) seen: f64,
     /// Σ ‖π̂‖².
     pub(crate) wanted: f64,
+    /// Σ ‖π̂ − π̂_GP‖², of the Gaussian process that knows all movements.
+    pub(crate) apart: f64,
     pub(crate) samples: usize,
     /// Samples that the policy knows nothing of.
     pub(crate) unsupported: usize,
@@ -59,6 +64,7 @@ impl HeldOut {
             squares: self.squares + other.squares,
             seen: self.seen + other.seen,
             wanted: self.wanted + other.wanted,
+            apart: self.apart + other.apart,
             samples: self.samples + other.samples,
             unsupported: self.unsupported + other.unsupported,
         }
@@ -105,16 +111,16 @@ fn integrable(prepared: &Prepared) -> Result<(Demonstrations, Integration, &'sta
 
 pub(super) fn fit(
     prepared: &Prepared,
-    rows: &gp::Rows,
+    rows: &Rows,
+    reference: &DMatrix<f64>,
     options: &FitOptions,
     progress: &mut Progress<'_>,
-    steps: (usize, usize),
 ) -> Result<AlignedFit, FitError> {
     let (demonstrations, integration, why) = integrable(prepared)?;
     let mut decisions =
         vec![decision("integration", format!("{integration:?}").to_lowercase(), why.to_owned(), "--integration")];
-    progress.begin(steps.0, steps.1, "choosing bandwidth and receptive fields")?;
-    let tried = grid(&demonstrations, integration, rows, options, progress)?;
+    progress.begin(2, 4, "choosing bandwidth and receptive fields")?;
+    let tried = grid(&demonstrations, integration, (rows, reference), options, progress)?;
     let best = choose(&tried).ok_or(FitError::Cancelled)?;
     let said = format!(
         "best of {} by held-out slope error {:.3}, {} folds of episodes",
@@ -130,7 +136,7 @@ pub(super) fn fit(
         "--bandwidth",
     ));
     decisions.push(decision("init_d", format!("{}", best.init_d), given(options.init_d.is_some()), "--init-d"));
-    progress.begin(steps.0 + 1, steps.1, "aligning all movements")?;
+    progress.begin(3, 4, "aligning all movements")?;
     let align = PolicyAlign { integration, bandwidth: Bandwidth::Fixed(best.sigma_squared), ..PolicyAlign::default() };
     let aligned = align.align(&demonstrations)?;
     let policy = aligned.learn(&regressor(best.init_d), &mut ChaCha8Rng::seed_from_u64(options.seed))?;
@@ -151,7 +157,7 @@ fn regressor(init_d: f64) -> LwprRegressor {
 fn grid(
     demonstrations: &Demonstrations,
     integration: Integration,
-    rows: &gp::Rows,
+    (rows, reference): (&Rows, &DMatrix<f64>),
     options: &FitOptions,
     progress: &Progress<'_>,
 ) -> Result<Vec<Tried>, FitError> {
@@ -195,7 +201,7 @@ fn grid(
         let errors = sizes.iter().map(|&init_d| {
             let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
             rng.set_stream(1 + fold as u64);
-            Ok(held_out(&aligned.learn(&regressor(init_d), &mut rng)?, rows, &test))
+            Ok(held_out(&aligned.learn(&regressor(init_d), &mut rng)?, rows, &test, Some(reference)))
         });
         errors.collect::<Result<Vec<HeldOut>, FitError>>()
     };
@@ -231,9 +237,16 @@ fn folds(episodes: usize, options: &FitOptions) -> Vec<Vec<usize>> {
 }
 
 /// How a policy predicts the speed of rows along the direction they moved in.
-pub(crate) fn held_out(policy: &dyn motion::LearntPolicy, rows: &gp::Rows, test: &[usize]) -> HeldOut {
+///
+/// `reference`: another policy at every row, (n, M), to compare with.
+pub(crate) fn held_out(
+    policy: &dyn LearntPolicy,
+    rows: &Rows,
+    test: &[usize],
+    reference: Option<&DMatrix<f64>>,
+) -> HeldOut {
     let mut sums = HeldOut::default();
-    let mut action = nalgebra::DVector::zeros(rows.dim());
+    let mut action = DVector::zeros(rows.dim());
     for &row in test {
         let (x, u) = (rows.states().column(row), rows.velocities().column(row));
         let variance = rows.variances().map_or(0.0, |variances| variances[row]);
@@ -245,14 +258,14 @@ pub(crate) fn held_out(policy: &dyn motion::LearntPolicy, rows: &gp::Rows, test:
         sums.squares += (u.dot(&action) / r - r).powi(2);
         sums.seen += r * r;
         sums.wanted += action.norm_squared();
+        sums.apart += reference.map_or(0.0, |reference| (&action - reference.column(row)).norm_squared());
         sums.samples += 1;
         sums.unsupported += usize::from(policy.support(x) == 0.0);
     }
     sums
 }
 
-fn residual(aligned: &align::Aligned, policy: &PotentialPolicy) -> f64 {
-    use motion::Potential;
+fn residual(aligned: &Aligned, policy: &PotentialPolicy) -> f64 {
     let potential = policy.global_potential();
     let pairs: Vec<(f64, f64)> = aligned.samples().iter().map(|(x, level)| (potential.value(x), level)).collect();
     let count = pairs.len() as f64;

@@ -1,6 +1,8 @@
 //! From prepared movements to a policy, with a line for everything that was decided, and how far to trust it.
 
+mod actions;
 mod aligning;
+mod halves;
 mod options;
 mod progress;
 mod recorded_rows;
@@ -10,9 +12,8 @@ pub use options::{FitOptions, LearnerChoice};
 pub use progress::{Progress, Step};
 pub(crate) use recorded_rows::rows;
 
-use gp::{BothReadings, DirectGp, FrontEnd, Reading, ReadingLearner, SlopeGp};
+use gp::{BothReadings, DirectGp, FrontEnd, Reading, ReadingLearner, SlopeGp, TrajectoryErrors};
 use motion::{LearntPolicy, Policy};
-use nalgebra::DMatrix;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -66,11 +67,15 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
     let mut decisions = prepared.decisions.clone();
     decisions.push(learner_decision(options, &readings));
     let aligned = match options.learner {
-        LearnerChoice::PolicyAlign => Some(aligning::fit(prepared, &rows, options, progress, (2, steps))?),
+        LearnerChoice::PolicyAlign => {
+            let reference = actions::actions(&readings, rows.states());
+            Some(aligning::fit(prepared, &rows, &reference, options, progress)?)
+        }
         _ => None,
     };
     let numbers = numbers(prepared, options, &readings, aligned.as_ref(), &rows);
-    let trust = judge(Evidence { numbers, findings: &prepared.findings, state: &prepared.state });
+    let trust =
+        judge(Evidence { numbers, findings: &prepared.findings, state: &prepared.state, episodes: &prepared.episodes });
     let left_out = prepared.left_out.clone();
     let learnt = match (options.learner, aligned) {
         (_, Some(aligned)) => {
@@ -195,7 +200,7 @@ fn numbers(
         None if takes_slope => slope_error,
         None => of.a_d,
     };
-    let expected = if takes_slope { report.expected_nupe } else { readings.expected_nupe() };
+    let own = if takes_slope { report.expected_nupe } else { readings.expected_nupe() };
     let aligned_numbers = aligned.map(|aligned| {
         let kept = aligned.policy.kept().map_or(prepared.demonstrations.n_trajectories(), <[usize]>::len);
         AlignedNumbers {
@@ -203,17 +208,23 @@ fn numbers(
             discarded: prepared.demonstrations.n_trajectories() - kept,
             residual: aligned.residual,
             unsupported: aligned.held_out.unsupported as f64 / aligned.held_out.samples.max(1) as f64,
-            difference: difference(readings, &aligned.policy, rows),
+            difference: aligned.held_out.apart / actions::spread(&actions::actions(readings, rows.states()))
+                * rows.len() as f64
+                / aligned.held_out.samples.max(1) as f64,
         }
     });
     TrustNumbers {
         episodes: prepared.demonstrations.n_trajectories(),
         reading: readings.reading(),
         held_out_error,
+        episode_errors: episode_errors(readings, takes_slope),
         held_out_error_direct: of.a_d,
         direct_error: of.p_d,
         gap: of.gap,
-        expected_error: expected,
+        // How far PolicyAlign's policy is from one that is as far from the truth: together at most.
+        expected_error: aligned_numbers
+            .as_ref()
+            .map_or(own, |aligned| (aligned.difference.sqrt() + own.sqrt()).powi(2)),
         ambiguity: report.ambiguity,
         slope_r_squared: report.r_squared,
         z_squared: report.z_squared,
@@ -224,6 +235,11 @@ fn numbers(
         rotation_share: report.rotational_share,
         rotation_t: report.curl_t,
         model: report.model,
+        halves: if takes_slope {
+            halves::of_slope(readings.slope(), rows, (options.max_rows, options.seed))
+        } else {
+            None
+        },
         leaving: share_leaving(policy, &prepared.demonstrations),
         step_noise: prepared.noise.step_share,
         grouping: of.grouping,
@@ -231,19 +247,11 @@ fn numbers(
     }
 }
 
-/// Σ‖π̂ − π̂_GP‖² over Σ‖π̂_GP − mean‖², at the rows' states.
-fn difference(readings: &BothReadings, policy: &dyn LearntPolicy, rows: &gp::Rows) -> f64 {
-    let every = (rows.len() / 500).max(1);
-    let states: Vec<usize> = (0..rows.len()).step_by(every).collect();
-    let actions = |of: &dyn Policy| {
-        let mut actions = DMatrix::zeros(rows.dim(), states.len());
-        for (mut action, &row) in actions.column_iter_mut().zip(&states) {
-            of.action_into(rows.states().column(row), action.as_view_mut());
-        }
-        actions
-    };
-    let (of_gp, of_policy) = (actions(readings), actions(policy));
-    let mean = of_gp.column_mean();
-    let spread: f64 = of_gp.column_iter().map(|action| (action - &mean).norm_squared()).sum();
-    (of_gp - of_policy).norm_squared() / spread
+/// E′ of every movement left out, as if it were as fast as all are.
+fn episode_errors(readings: &BothReadings, takes_slope: bool) -> Vec<(usize, f64)> {
+    let left_out = readings.left_out();
+    let seen = left_out.iter().map(|errors| errors.seen).sum::<f64>() / left_out.len() as f64;
+    let hidden = if takes_slope { readings.numbers().hidden } else { 0.0 };
+    let error = |errors: &TrajectoryErrors| if takes_slope { errors.slope } else { errors.direct };
+    left_out.iter().map(|errors| (errors.trajectory, error(errors) / seen * (1.0 - hidden))).collect()
 }

@@ -51,6 +51,7 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
         _ => 1,
     };
     let state = scale::channels(recordings, &scales, &demonstrations);
+    stamps::doubt(&demonstrations, &mut notes);
     remarks::about(&demonstrations, &state, &noise, &mut notes);
     Ok(Prepared::new(demonstrations, &takes, state, noise, (recorded, averaged), notes))
 }

@@ -142,5 +142,7 @@ pub(super) fn decide(
 }
 
 fn percent(share: f64) -> String {
-    if share < 0.1 { format!("{:.2} %", 100.0 * share) } else { format!("{:.0} %", 100.0 * share) }
+    // Where steps are nothing but noise, its estimate may exceed them.
+    let percent = 100.0 * share.min(1.0);
+    if percent < 10.0 { format!("{percent:.2} %") } else { format!("{percent:.0} %") }
 }

@@ -1,3 +1,5 @@
+use motion::{Demonstrations, Trajectory};
+
 use super::episodes::Take;
 use super::options::PrepareOptions;
 use super::prepared::Notes;
@@ -68,20 +70,25 @@ fn say(takes: &[Take], (uneven, worst, gaps): (usize, f64, usize), notes: &mut N
             "cut episodes there (--split-gap) if the movement went on meanwhile",
         );
     }
-    if usual > SLOW {
-        notes.found(
-            Verdict::Doubtful,
-            format!(
-                "samples are {} s apart, an episode lasts {} s: are stamps milliseconds?",
-                short(usual),
-                short(usual * takes[0].n_samples() as f64)
-            ),
-            format!(
-                "if so, name the column's unit or give --dt {}; velocities learnt are per second of the stamps",
-                short(usual / 1000.0)
-            ),
-        );
-    }
+}
+
+/// A time step that is hardly one in seconds.
+pub(super) fn doubt(demonstrations: &Demonstrations, notes: &mut Notes) {
+    let steps = demonstrations.trajectories().iter().map(Trajectory::time_step).collect();
+    let Some(usual) = median(steps).filter(|&usual| usual > SLOW) else { return };
+    let movement = &demonstrations.trajectories()[0];
+    notes.found(
+        Verdict::Doubtful,
+        format!(
+            "samples are {} s apart, an episode lasts {} s: are stamps milliseconds?",
+            short(usual),
+            short(movement.seconds(0, movement.n_samples() - 1))
+        ),
+        format!(
+            "if so, name the column's unit or give --dt {}; velocities learnt are per second of the stamps",
+            short(usual / 1000.0)
+        ),
+    );
 }
 
 fn step_of(take: &Take) -> Option<f64> {

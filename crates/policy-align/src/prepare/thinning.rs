@@ -30,7 +30,7 @@ pub(super) fn decide(demonstrations: &Demonstrations, noise: &Noise, notes: &mut
     if taken > 1 {
         let why = format!(
             "noise makes {:.0} % of the squared steps as recorded, {:.0} % then",
-            100.0 * noise.step_share,
+            100.0 * noise.step_share.min(1.0),
             100.0 * share
         );
         notes.decided("averaging", format!("{taken} samples become one"), why, "--smooth");

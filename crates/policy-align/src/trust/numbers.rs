@@ -11,6 +11,8 @@ pub struct TrustNumbers {
     pub reading: Reading,
     /// E′ of the policy handed out: error along the path of movements left out, as a share of the policy's squares.
     pub held_out_error: f64,
+    /// The same of every movement that was left out: its place among the episodes, and its error.
+    pub episode_errors: Vec<(usize, f64)>,
     /// The same of the direct GP, which is what plain averaging would give.
     pub held_out_error_direct: f64,
     /// Left-out error of the direct policy in all directions, as a share of its variance.
@@ -39,6 +41,9 @@ pub struct TrustNumbers {
     pub rotation_t: Option<f64>,
     /// Whether the slope policy has a potential.
     pub model: ModelKind,
+    /// Difference of the slope policies that every other movement alone would give, as a share of the policy's variance;
+    /// none where the direct policy is handed out, or halves are too few.
+    pub halves: Option<f64>,
     /// Share of the demonstrated starts from which the policy, followed freely, leaves what was shown.
     pub leaving: f64,
     /// Share of the squared steps that is noise.
@@ -61,6 +66,7 @@ pub struct AlignedNumbers {
     pub residual: f64,
     /// Share of held-out samples that the policy knows nothing of.
     pub unsupported: f64,
-    /// Difference from the Gaussian process's policy, as a share of that one's variance.
+    /// Difference of what it says of movements left out from the Gaussian process's policy, as a share of that one's
+    /// variance.
     pub difference: f64,
 }
