@@ -26,7 +26,7 @@ pub(crate) struct Evaluate {
     /// Recordings that it was not learnt from
     #[arg(required = true)]
     files: Vec<PathBuf>,
-    /// Columns of the true policy, in the order of the state: the error without constraints
+    /// Columns of the true policy, in the order of the state
     #[arg(long, value_name = "PATTERNS")]
     truth: Vec<String>,
     /// Exit code 1 if the error of the policy is larger

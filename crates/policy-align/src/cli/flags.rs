@@ -134,7 +134,7 @@ pub(crate) struct FitFlags {
     #[arg(long, value_name = "BANDWIDTH")]
     #[serde(skip_serializing_if = "Option::is_none")]
     bandwidth: Option<String>,
-    /// Of policy-align: auto or the fields' inverse squared width [default: auto]
+    /// Of policy-align: auto or 1 / squared width of fields [default: auto]
     #[arg(long, value_name = "NUMBER")]
     #[serde(skip_serializing_if = "Option::is_none")]
     init_d: Option<String>,

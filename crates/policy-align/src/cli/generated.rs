@@ -15,6 +15,7 @@ use super::session::Said;
 #[command(after_help = "Example:\n  policy-align completions bash")]
 pub(crate) struct Completions {
     /// bash, zsh, fish, elvish or powershell
+    #[arg(hide_possible_values = true)]
     shell: Shell,
 }
 
@@ -30,7 +31,7 @@ impl Completions {
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  policy-align man")]
 pub(crate) struct Man {
-    /// A folder for a page of every command, instead of one page on standard output
+    /// A folder for a page of every command
     #[arg(long, value_name = "FOLDER")]
     to: Option<PathBuf>,
 }

@@ -34,7 +34,7 @@ use session::{Said, Session, tell};
 
 /// From recordings of movements under unknown constraints to a policy one can trust.
 #[derive(Debug, Parser)]
-#[command(name = "policy-align", version, after_help = "Example:\n  policy-align check toy.csv")]
+#[command(name = "policy-align", version, next_line_help = true, after_help = "Example:\n  policy-align check toy.csv")]
 struct Cli {
     #[command(flatten)]
     session: Session,

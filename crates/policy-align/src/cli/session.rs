@@ -16,7 +16,7 @@ pub(crate) struct Session {
     /// Nothing but results and errors
     #[arg(long, short, global = true, help_heading = "Every command")]
     pub(crate) quiet: bool,
-    /// Read flags from a file; those of the command line win
+    /// Flags of a file; those of the command line win
     #[arg(long, global = true, value_name = "FILE.toml", help_heading = "Every command")]
     pub(crate) config: Option<PathBuf>,
 }

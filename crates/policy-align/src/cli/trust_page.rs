@@ -91,6 +91,12 @@ fn numbers(model: &Model) -> Markup {
                 (row("Error of the direct learner in all directions", short(numbers.direct_error), "for comparison"))
                 (row("Error that the policy expects of itself", short(numbers.expected_error), "below 0.15"))
                 (row("Difference of slope and direct policy", short(numbers.gap), "for comparison: large where constraints acted"))
+                @if let Some((_, error)) = numbers.episode_errors.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
+                    (row("The worst movement left out", short(*error), "not far from the others"))
+                }
+                @if let Some(halves) = numbers.halves {
+                    (row("Difference of policies of both halves of the movements", short(halves), "below 0.15"))
+                }
                 (row("Squared errors over those expected", short(numbers.z_squared), "below 4"))
                 (row("Directions seen, the least of them", short(numbers.direction_coverage), "above 0.1; 1 if all alike"))
                 (row("Share of rotation in the policy", short(numbers.rotation_share), "0 for a potential"))
