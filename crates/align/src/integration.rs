@@ -11,11 +11,11 @@ use crate::AlignError;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Integration {
-    /// φ̂_{i+1} = φ̂_i − ‖x_{i+1} − x_i‖² / δt (9): positions alone. Noise of variance s² on the positions looks
+    /// φ̂_{i+1} = φ̂_i − ‖x_{i+1} − x_i‖² / δt_i (9): positions alone. Noise of variance s² on the positions looks
     /// like a steady descent of 2ns²/δt a step; with noisy states, record velocities.
     #[default]
     Displacement,
-    /// φ̂_{i+1} = φ̂_i − ‖u_i‖² δt: recorded velocities or commands alone.
+    /// φ̂_{i+1} = φ̂_i − ‖u_i‖² δt_i: recorded velocities or commands alone.
     Velocity,
     /// φ̂_{i+1} = φ̂_i − u_iᵀ(x_{i+1} − x_i): recorded velocities and positions.
     Work,
@@ -33,13 +33,13 @@ impl Integration {
 
     fn along(self, index: usize, trajectory: &Trajectory) -> Result<Vec<f64>, AlignError> {
         let x = trajectory.states();
-        let time_step = trajectory.time_step();
+        let time_step = |i: usize| trajectory.seconds(i, i + 1);
         let velocities = || trajectory.velocities().ok_or(AlignError::NoVelocities { trajectory: index });
         let values = match self {
-            Integration::Displacement => descend(x, |i| squared_step(x, i) / time_step),
+            Integration::Displacement => descend(x, |i| squared_step(x, i) / time_step(i)),
             Integration::Velocity => {
                 let u = velocities()?;
-                descend(x, |i| u.column(i).norm_squared() * time_step)
+                descend(x, |i| u.column(i).norm_squared() * time_step(i))
             }
             Integration::Work => {
                 let u = velocities()?;

@@ -5,7 +5,7 @@
 mod drawn;
 
 use align::{AlignError, Aligned, Bandwidth, Integration, PolicyAlign};
-use motion::Demonstrations;
+use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -121,4 +121,18 @@ proptest! {
         let misses: Vec<f64> = aligned.samples().into_iter().map(|(x, level)| level - phi(&x.into_owned())).collect();
         prop_assert!(misses.iter().all(|miss| (miss - misses[0]).abs() < 1e-10), "{misses:?}");
     }
+}
+
+/// Seconds enter step by step: a movement of uneven stamps falls by the work of each step at its own speed.
+#[test]
+fn uneven_stamps() {
+    let states = DMatrix::from_row_slice(1, 4, &[0.0, 1.0, 3.0, 4.0]);
+    let velocities = DMatrix::from_row_slice(1, 4, &[2.0, 1.0, 3.0, 5.0]);
+    let trajectory = Trajectory::new(states, 1.0).unwrap().with_velocities(velocities).unwrap();
+    let trajectory = trajectory.with_times(vec![0.0, 0.5, 2.5, 2.75]).unwrap();
+    let demonstrations = Demonstrations::new(vec![trajectory]).unwrap();
+    let values = |integration: Integration| integration.potentials(&demonstrations).unwrap().remove(0);
+    assert_eq!(values(Integration::Displacement), [0.0, -2.0, -4.0, -8.0]);
+    assert_eq!(values(Integration::Velocity), [0.0, -2.0, -4.0, -6.25]);
+    assert_eq!(values(Integration::Work), [0.0, -2.0, -4.0, -7.0]);
 }

@@ -40,6 +40,31 @@ pub enum NoteKind {
     DecimalComma,
     /// A column that was not used.
     Ignored,
+    /// The file ends in the middle; what is whole was read.
+    Truncated,
+}
+
+impl NoteKind {
+    /// The variant's name, for machines and for searching.
+    pub fn code(self) -> &'static str {
+        match self {
+            NoteKind::DuplicateStamp => "DuplicateStamp",
+            NoteKind::Gap => "Gap",
+            NoteKind::Uneven => "Uneven",
+            NoteKind::TooShort => "TooShort",
+            NoteKind::StandsStill => "StandsStill",
+            NoteKind::Jump => "Jump",
+            NoteKind::LooksWrapped => "LooksWrapped",
+            NoteKind::LooksLikeDegrees => "LooksLikeDegrees",
+            NoteKind::VelocityMismatch => "VelocityMismatch",
+            NoteKind::DuplicateEpisode => "DuplicateEpisode",
+            NoteKind::Integers => "Integers",
+            NoteKind::CoarseFloats => "CoarseFloats",
+            NoteKind::DecimalComma => "DecimalComma",
+            NoteKind::Ignored => "Ignored",
+            NoteKind::Truncated => "Truncated",
+        }
+    }
 }
 
 impl fmt::Display for Note {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::direct_gp::{DirectFit, DirectGp};
 use crate::learnt::seen;
 use crate::reading::Reading;
-use crate::reading_numbers::{Compared, ReadingNumbers};
+use crate::reading_numbers::{Compared, ReadingNumbers, TrajectoryErrors};
 use crate::slope_fit::{SlopeFit, outcome};
 use crate::slope_gp::SlopeGp;
 use crate::slope_report::{Chosen, report};
@@ -34,6 +34,9 @@ pub struct BothReadings {
     pub(crate) direct: DirectFit,
     pub(crate) numbers: ReadingNumbers,
     pub(crate) overridden: Option<Reading>,
+    /// Models that were stored before this was kept have none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) left_out: Vec<TrajectoryErrors>,
 }
 
 impl ReadingLearner {
@@ -45,21 +48,23 @@ impl ReadingLearner {
         let kept = self.slope.selection()?.keep(rows, rng)?;
         let (slope, direct) = rayon::join(|| outcome(&self.slope, &kept), || self.direct.outcome(&kept));
         let (slope, direct) = (slope?, direct?);
-        let numbers = ReadingNumbers::compared(&Compared {
+        let compared = Compared {
             speeds: &kept.speeds,
             grouping: kept.grouping,
+            trajectories: &kept.trajectories,
             data: &slope.data,
             slope: (&slope.taken.left_out, &slope.taken.actions),
             direct: (&direct.left_out, &direct.actions),
             direct_unit: direct.fit.model.unit,
-        });
+        };
+        let (numbers, left_out) = (ReadingNumbers::compared(&compared), compared.errors());
         let mut report = report(&Chosen { outcome: &slope, kept: &kept, rows });
         if numbers.reading() != Reading::Constrained {
             // (R6): how far the other reading's policy is away is an error to expect.
             report.expected_nupe = report.expected_nupe.max(numbers.gap);
         }
         let slope = SlopeFit { model: slope.taken.model, report };
-        Ok(BothReadings { slope, direct: direct.fit, numbers, overridden: self.reading })
+        Ok(BothReadings { slope, direct: direct.fit, numbers, overridden: self.reading, left_out })
     }
 }
 
@@ -88,6 +93,11 @@ impl BothReadings {
     /// What the reading rests on.
     pub fn numbers(&self) -> &ReadingNumbers {
         &self.numbers
+    }
+
+    /// How each trajectory was predicted without it.
+    pub fn left_out(&self) -> &[TrajectoryErrors] {
+        &self.left_out
     }
 
     /// The policy for constrained movement.

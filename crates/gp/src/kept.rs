@@ -48,6 +48,8 @@ pub(crate) struct Kept {
     pub(crate) speeds: Vec<f64>,
     pub(crate) variances: Option<Vec<f64>>,
     pub(crate) groups: Vec<Vec<usize>>,
+    /// The trajectory that each group is of.
+    pub(crate) trajectories: Vec<usize>,
     /// Rows that evidence is taken of: at random, for contiguous ones would make it believe in errors that are
     /// correlated along a trajectory.
     pub(crate) hyper: Vec<usize>,
@@ -113,6 +115,7 @@ impl Selection {
             speeds: usable.iter().map(|&row| speeds[row]).collect(),
             variances: rows.variances().map(|variances| usable.iter().map(|&row| variances[row]).collect()),
             hyper: positions(&usable, &hyper),
+            trajectories: groups.iter().map(|rows_of| rows.indices()[usable[rows_of[0]]].trajectory).collect(),
             groups,
             grouping: enough.grouping,
             dropped,

@@ -67,7 +67,7 @@ pub use learnt::{DirectLearner, SlopeLearner};
 pub use left_out::LeftOut;
 pub use near_passes::NearPasses;
 pub use reading::Reading;
-pub use reading_numbers::ReadingNumbers;
+pub use reading_numbers::{ReadingNumbers, TrajectoryErrors};
 pub use rows::Rows;
 pub use shape::Shape;
 pub use slope_data::SlopeData;

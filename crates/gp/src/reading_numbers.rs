@@ -45,10 +45,27 @@ pub struct ReadingNumbers {
     pub grouping: Grouping,
 }
 
+/// How a trajectory was predicted without it: weighted sums of squares along the direction of motion (R7), in squared
+/// units of the state per second.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrajectoryErrors {
+    /// The trajectory; of one or two that were cut into blocks of time, each block is an entry.
+    pub trajectory: usize,
+    /// E^s of the slope GP.
+    pub slope: f64,
+    /// E^d of the direct GP.
+    pub direct: f64,
+    /// R: what there was to predict.
+    pub seen: f64,
+}
+
 /// Two models of the same rows.
 pub(crate) struct Compared<'a> {
     pub(crate) speeds: &'a [f64],
     pub(crate) grouping: Grouping,
+    /// The trajectory that each group of the data is of.
+    pub(crate) trajectories: &'a [usize],
     pub(crate) data: &'a SlopeData,
     /// What the slope GP predicts of left-out trajectories, and its policy at the rows, (n, M).
     pub(crate) slope: (&'a LeftOut, &'a DMatrix<f64>),
@@ -56,6 +73,25 @@ pub(crate) struct Compared<'a> {
     pub(crate) direct: (&'a LeftOut, &'a DMatrix<f64>),
     /// ū.
     pub(crate) direct_unit: f64,
+}
+
+impl Compared<'_> {
+    /// E^s_T, E^d_T and R_T of (R7).
+    pub(crate) fn errors(&self) -> Vec<TrajectoryErrors> {
+        let &Compared { speeds, data, slope, direct, direct_unit, .. } = self;
+        let mean_weight = data.noise_weights.iter().map(|d| 1.0 / d).sum::<f64>() / data.noise_weights.len() as f64;
+        let weight = |row: usize| 1.0 / (data.noise_weights[row] * mean_weight);
+        let errors = |(rows, &trajectory): (&Vec<usize>, &usize)| {
+            let power = |of: &dyn Fn(usize) -> f64| rows.iter().map(|&row| weight(row) * of(row).powi(2)).sum();
+            TrajectoryErrors {
+                trajectory,
+                slope: power(&|row| data.speed * slope.0.residuals[(row, 0)]),
+                direct: power(&|row| direct_unit * (direct.0.residuals.row(row) * data.n.column(row)).x),
+                seen: power(&|row| speeds[row]),
+            }
+        };
+        data.groups.iter().zip(self.trajectories).map(errors).collect()
+    }
 }
 
 impl ReadingNumbers {
@@ -66,10 +102,13 @@ impl ReadingNumbers {
         (slope, slope_left_out): (&SlopeModel, &LeftOut),
         (direct, direct_left_out): (&DirectModel, &LeftOut),
     ) -> Self {
+        let trajectories: Vec<usize> =
+            data.groups.iter().map(|rows_of| rows.indices()[rows_of[0]].trajectory).collect();
         let speeds: Vec<f64> = rows.velocities().column_iter().map(|velocity| velocity.norm()).collect();
         Self::compared(&Compared {
             speeds: &speeds,
             grouping: Grouping::Trajectories,
+            trajectories: &trajectories,
             data,
             slope: (slope_left_out, &slope.actions(rows.states())),
             direct: (direct_left_out, &direct.actions(rows.states())),
@@ -78,15 +117,10 @@ impl ReadingNumbers {
     }
 
     pub(crate) fn compared(compared: &Compared<'_>) -> Self {
-        let &Compared { speeds, grouping, data, slope, direct, direct_unit } = compared;
-        let mean_weight = data.noise_weights.iter().map(|d| 1.0 / d).sum::<f64>() / data.noise_weights.len() as f64;
-        let weight = |row: usize| 1.0 / (data.noise_weights[row] * mean_weight);
-        let power = |of: &dyn Fn(usize) -> f64| -> Vec<f64> {
-            data.groups.iter().map(|rows| rows.iter().map(|&row| weight(row) * of(row).powi(2)).sum()).collect()
-        };
-        let e_s = power(&|row| data.speed * slope.0.residuals[(row, 0)]);
-        let e_d = power(&|row| direct_unit * (direct.0.residuals.row(row) * data.n.column(row)).x);
-        let r = power(&|row| speeds[row]);
+        let &Compared { speeds, grouping, data, slope, direct, .. } = compared;
+        let errors = compared.errors();
+        let each = |of: fn(&TrajectoryErrors) -> f64| -> Vec<f64> { errors.iter().map(of).collect() };
+        let (e_s, e_d, r) = (each(|of| of.slope), each(|of| of.direct), each(|of| of.seen));
         let total = |values: &[f64]| values.iter().sum::<f64>();
         let (a_s, a_d) = (total(&e_s) / total(&r), total(&e_d) / total(&r));
         let gains: Vec<f64> = e_d.iter().zip(&e_s).map(|(d, s)| d - s).collect();

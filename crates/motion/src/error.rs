@@ -51,6 +51,24 @@ pub enum MotionError {
         /// The time step given, in seconds.
         time_step: f64,
     },
+    /// There is not one time stamp per sample.
+    #[error("there are {times} time stamps for {samples} samples; give one per sample")]
+    StampCount {
+        /// Number of time stamps.
+        times: usize,
+        /// Number of samples.
+        samples: usize,
+    },
+    /// Time stamps do not ascend, or are not finite.
+    #[error(
+        "time stamp {time} s of sample {sample} does not come after the one before; sort the samples, drop duplicates"
+    )]
+    StampOrder {
+        /// The first sample out of order.
+        sample: usize,
+        /// Its time stamp in seconds.
+        time: f64,
+    },
     /// Velocities do not have the states' shape.
     #[error(
         "velocities have shape ({}, {}), states ({}, {}): record one velocity per state",

@@ -2,14 +2,17 @@ use nalgebra::{DMatrix, DVectorView};
 
 use crate::{MotionError, Series};
 
-/// One observed movement: states x₁..x_N at a fixed time step, and the velocities u₁..u_N where they were recorded.
+/// One observed movement: states x₁..x_N, evenly spaced in time or each with its stamp, and the velocities u₁..u_N where
+/// they were recorded.
 ///
-/// A checked value: at least two samples, at least one dimension, every number finite.
+/// A checked value: at least two samples, at least one dimension, every number finite, stamps that ascend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     states: DMatrix<f64>,
     velocities: Option<DMatrix<f64>>,
     time_step: f64,
+    /// Seconds; none if the samples are evenly spaced.
+    times: Option<Vec<f64>>,
 }
 
 impl Trajectory {
@@ -30,7 +33,7 @@ impl Trajectory {
             return Err(MotionError::TooShort { samples: states.ncols() });
         }
         require_finite(&states, Series::States)?;
-        Ok(Trajectory { states, velocities: None, time_step })
+        Ok(Trajectory { states, velocities: None, time_step, times: None })
     }
 
     /// The same movement with its recorded velocities or commands (n, N), in units of the state per second.
@@ -45,6 +48,30 @@ impl Trajectory {
         Ok(Trajectory { velocities: Some(velocities), ..self })
     }
 
+    /// The same movement with a time stamp for every sample, (N), in seconds, strictly ascending. The time step becomes
+    /// the median one; stamps that are even to their rounding leave the movement as it is.
+    ///
+    /// # Errors
+    /// [`MotionError::StampCount`] or [`MotionError::StampOrder`].
+    pub fn with_times(self, times: Vec<f64>) -> Result<Self, MotionError> {
+        if times.len() != self.n_samples() {
+            return Err(MotionError::StampCount { times: times.len(), samples: self.n_samples() });
+        }
+        let in_order = |sample: usize| times[sample].is_finite() && (sample == 0 || times[sample - 1] < times[sample]);
+        if let Some(sample) = (0..times.len()).find(|&sample| !in_order(sample)) {
+            return Err(MotionError::StampOrder { sample, time: times[sample] });
+        }
+        let rounding = 4.0 * f64::EPSILON * times[0].abs().max(times[times.len() - 1].abs());
+        let even = |(sample, time): (usize, &f64)| (time - times[0] - self.time_step * sample as f64).abs() <= rounding;
+        if times.iter().enumerate().all(even) {
+            return Ok(Trajectory { times: None, ..self });
+        }
+        let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let middle = steps.len() / 2;
+        let time_step = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+        Ok(Trajectory { time_step, times: Some(times), ..self })
+    }
+
     /// The states, (n, N).
     pub fn states(&self) -> &DMatrix<f64> {
         &self.states
@@ -55,15 +82,32 @@ impl Trajectory {
         self.velocities.as_ref()
     }
 
-    /// Velocities of the steps, (x_{i+1} − x_i) / δt, (n, N − 1), in units of the state per second.
+    /// Velocities of the steps, (x_{i+1} − x_i) / δt_i, (n, N − 1), in units of the state per second.
     pub fn step_velocities(&self) -> DMatrix<f64> {
         let steps = self.n_samples() - 1;
-        (self.states.columns(1, steps) - self.states.columns(0, steps)) / self.time_step
+        let mut velocities = self.states.columns(1, steps) - self.states.columns(0, steps);
+        for (sample, mut velocity) in velocities.column_iter_mut().enumerate() {
+            velocity /= self.seconds(sample, sample + 1);
+        }
+        velocities
     }
 
-    /// Seconds between two samples.
+    /// Seconds between two samples; the median where they are unevenly spaced.
     pub fn time_step(&self) -> f64 {
         self.time_step
+    }
+
+    /// Time stamps of the samples, (N), in seconds; none if they are evenly spaced.
+    pub fn times(&self) -> Option<&[f64]> {
+        self.times.as_deref()
+    }
+
+    /// Seconds from sample `from` to sample `to`, which is not before it.
+    pub fn seconds(&self, from: usize, to: usize) -> f64 {
+        match &self.times {
+            None => self.time_step * (to - from) as f64,
+            Some(times) => times[to] - times[from],
+        }
     }
 
     /// State x_i, (n).

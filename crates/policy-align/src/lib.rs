@@ -1,11 +1,34 @@
 //! From a laboratory's recordings to a policy that one can trust, or to the reason why not.
+//!
+//! [`prepare`] makes demonstrations of [`demo_io::Recordings`]; [`fit`] learns from them and says how far to trust what
+//! came of it; [`evaluate`] holds a policy against other recordings. Every decision that is taken for the user is a
+//! [`Decision`], every doubt a [`Finding`].
+//!
+//! A [`Model`] is what is kept: [`Model::save`], [`Model::load`], and [`Model::policy`] in the units of the recording.
+//! [`RollOut`] follows it under constraints, [`CSource`] and [`to_onnx`] make a program of it that needs nothing else.
 
 mod decision;
+mod error;
+mod evaluate;
+mod export;
+mod fit;
 mod learnt;
 mod model;
+mod model_policy;
+mod prepare;
+mod roll_out;
+mod stored;
 mod trust;
 
 pub use decision::Decision;
+pub use error::{FitError, PrepareError};
+pub use evaluate::{EvaluateError, Evaluation, Truth, evaluate};
+pub use export::{CSource, ExportError, Precision, to_onnx};
+pub use fit::{Fit, FitOptions, LearnerChoice, Progress, Step, fit};
 pub use learnt::Learnt;
 pub use model::{DataSummary, FileSummary, LeftOutEpisode, MadeBy, Model, StateChannel};
-pub use trust::{Finding, Trust, Verdict};
+pub use model_policy::{ModelPolicy, ModelPotential};
+pub use prepare::{Noise, PrepareOptions, Prepared, Recorded, VelocityUse, prepare};
+pub use roll_out::{ConstraintFileError, ConstraintSet, JointLimits, Path, RollOut, RollOutError, Stop};
+pub use stored::{ModelError, sha256, write_whole};
+pub use trust::{AlignedNumbers, Finding, Trust, TrustNumbers, Verdict};

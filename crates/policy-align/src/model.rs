@@ -53,7 +53,7 @@ pub struct StateChannel {
 }
 
 /// What a model was learnt from.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DataSummary {
     /// The files, in the order they were given.
@@ -62,6 +62,10 @@ pub struct DataSummary {
     pub episodes: usize,
     /// Samples learnt from.
     pub samples: usize,
+    /// Duration of the longest episode, in seconds.
+    pub longest: f64,
+    /// Median speed over all samples, in scaled units of the state per second: what is fast and what is slow.
+    pub speed: f64,
     /// Episodes not learnt from.
     pub left_out: Vec<LeftOutEpisode>,
 }

@@ -18,24 +18,6 @@ pub enum SmoothingError {
     /// The movements themselves are not valid.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// There is not one time stamp per sample.
-    #[error("there are {times} time stamps for {samples} samples; give one per sample")]
-    StampCount {
-        /// Number of time stamps.
-        times: usize,
-        /// Number of samples.
-        samples: usize,
-    },
-    /// Time stamps do not ascend, or are not finite.
-    #[error(
-        "time stamp {time} s of sample {sample} does not come after the one before; sort the samples, drop duplicates"
-    )]
-    StampOrder {
-        /// The first sample out of order.
-        sample: usize,
-        /// Its time stamp in seconds.
-        time: f64,
-    },
     /// The scale of an axis is missing or superfluous.
     #[error("{found} axis scales were given for {expected} dimensions; give one per dimension")]
     AxisScales {

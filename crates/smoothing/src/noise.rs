@@ -23,7 +23,8 @@ pub struct PositionNoise {
 
 impl PositionNoise {
     /// By third differences, robust against movement and switching constraints:
-    /// σ̂_j = 1.4826 · median |x_{i+3} − 3x_{i+2} + 3x_{i+1} − x_i|_j / √20, over all trajectories together.
+    /// σ̂_j = 1.4826 · median |x_{i+3} − 3x_{i+2} + 3x_{i+1} − x_i|_j / √20, over all trajectories together. Where stamps
+    /// are uneven, the four factors are those of the divided difference, their squares' sum still 20.
     ///
     /// # Errors
     /// [`SmoothingError::TooFewDifferences`] below 50 differences per dimension, [`SmoothingError::NoMotion`] if no
@@ -38,7 +39,7 @@ impl PositionNoise {
         let deviations = DVector::from_fn(dim, |axis, _| {
             let mut differences: Vec<f64> = trajectories
                 .iter()
-                .flat_map(|trajectory| third_differences(trajectory.states().as_slice(), dim, axis))
+                .flat_map(|trajectory| third_differences(trajectory.states().as_slice(), dim, axis, trajectory.times()))
                 .collect();
             MEDIAN_TO_DEVIATION * median(&mut differences).unwrap_or(0.0) / 20f64.sqrt()
         });
@@ -62,9 +63,30 @@ impl PositionNoise {
 }
 
 /// |x_{i+3} − 3x_{i+2} + 3x_{i+1} − x_i| of one axis; `rows` holds x_ij at `i * dim + j`.
-pub(crate) fn third_differences(rows: &[f64], dim: usize, axis: usize) -> impl Iterator<Item = f64> + '_ {
+pub(crate) fn third_differences<'a>(
+    rows: &'a [f64],
+    dim: usize,
+    axis: usize,
+    times: Option<&'a [f64]>,
+) -> impl Iterator<Item = f64> + 'a {
     let x = move |i: usize| rows[i * dim + axis];
-    (3..rows.len() / dim).map(move |i| (x(i) - x(i - 3) - 3.0 * (x(i - 1) - x(i - 2))).abs())
+    (3..rows.len() / dim).map(move |i| match times {
+        None => (x(i) - x(i - 3) - 3.0 * (x(i - 1) - x(i - 2))).abs(),
+        Some(times) => {
+            let factors = divided_difference(&times[i - 3..=i]);
+            // Differences first, so that what the samples share is not rounded.
+            (1..4).map(|k| factors[k] * (x(i - 3 + k) - x(i - 3))).sum::<f64>().abs()
+        }
+    })
+}
+
+/// Factors c_k ∝ 1/Π_{j ≠ k}(t_k − t_j) of four samples, which vanish on parabolas; Σ c_k² = 20, as on even stamps.
+fn divided_difference(times: &[f64]) -> [f64; 4] {
+    let span = times[3] - times[0];
+    let product = |k: usize| (0..4).filter(|&j| j != k).map(|j| (times[k] - times[j]) / span).product::<f64>();
+    let factors = [0, 1, 2, 3].map(|k| 1.0 / product(k));
+    let norm = (factors.iter().map(|factor| factor * factor).sum::<f64>() / 20.0).sqrt();
+    factors.map(|factor| factor / norm)
 }
 
 /// The middle value, or the mean of both; none of nothing.

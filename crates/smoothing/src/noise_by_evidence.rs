@@ -57,7 +57,9 @@ fn first_guess(scaled: &Scaled<'_>) -> f64 {
     let mut differences: Vec<f64> = scaled
         .movements
         .iter()
-        .flat_map(|movement| (0..movement.dim).flat_map(|j| third_differences(&movement.rows, movement.dim, j)))
+        .flat_map(|movement| {
+            (0..movement.dim).flat_map(|j| third_differences(&movement.rows, movement.dim, j, movement.stamped.times()))
+        })
         .collect();
     let deviation = median(&mut differences).unwrap_or(0.0) / 0.6745;
     deviation * deviation / 20.0 + 1e-16 * scaled.variance

@@ -40,6 +40,14 @@ impl Polynomials {
         Polynomials { degrees, values: by_sample(&values, tau.len()), slopes: by_sample(&slopes, tau.len()) }
     }
 
+    /// On ascending times in seconds, in units of half their span from its middle.
+    pub(crate) fn at(times: &[f64], degrees: usize) -> Self {
+        let (begin, end) = (times[0], times[times.len() - 1]);
+        let (middle, half) = (f64::midpoint(begin, end), (end - begin) / 2.0);
+        let tau: Vec<f64> = times.iter().map(|t| (t - middle) / half).collect();
+        Self::on(&tau, degrees)
+    }
+
     /// On `samples` evenly spaced times.
     pub(crate) fn even(samples: usize, degrees: usize) -> Self {
         let last = samples as f64 - 1.0;

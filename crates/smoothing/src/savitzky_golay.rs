@@ -38,24 +38,25 @@ impl SavitzkyGolay {
     fn smooth_one(&self, trajectory: &Trajectory) -> Result<Trajectory, SmoothingError> {
         let n = trajectory.n_samples();
         let window = self.window.min(n);
-        let weights = self.weights(window);
+        let degrees = self.degree + 1;
+        let even = weights(&Polynomials::even(window, degrees), window);
         let mut states = DMatrix::zeros(trajectory.dim(), n);
         for i in 0..n {
             let first = i.saturating_sub(window / 2).min(n - window);
             let around = trajectory.states().columns(first, window);
-            around.mul_to(&weights.column(i - first), &mut states.column_mut(i));
+            let own =
+                trajectory.times().map(|times| weights(&Polynomials::at(&times[first..][..window], degrees), window));
+            around.mul_to(&own.as_ref().unwrap_or(&even).column(i - first), &mut states.column_mut(i));
         }
         let smoothed = Trajectory::new(states, trajectory.time_step())?;
+        let smoothed = match trajectory.times() {
+            None => smoothed,
+            Some(times) => smoothed.with_times(times.to_vec())?,
+        };
         Ok(match trajectory.velocities() {
             None => smoothed,
             Some(velocities) => smoothed.with_velocities(velocities.clone())?,
         })
-    }
-
-    /// (window, window): column i weighs the samples of a window for the value at its sample i, Q Q_iᵀ.
-    fn weights(&self, window: usize) -> DMatrix<f64> {
-        let q = Polynomials::even(window, self.degree + 1);
-        DMatrix::from_fn(window, window, |j, i| q.values(j).iter().zip(q.values(i)).map(|(a, b)| a * b).sum())
     }
 
     fn check(&self) -> Result<(), SmoothingError> {
@@ -69,4 +70,9 @@ impl SavitzkyGolay {
         }
         Ok(())
     }
+}
+
+/// (window, window): column i weighs the samples of a window for the value at its sample i, Q Q_iᵀ.
+fn weights(q: &Polynomials, window: usize) -> DMatrix<f64> {
+    DMatrix::from_fn(window, window, |j, i| q.values(j).iter().zip(q.values(i)).map(|(a, b)| a * b).sum())
 }

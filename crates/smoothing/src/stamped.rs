@@ -9,25 +9,16 @@ use crate::SmoothingError;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stamped {
     trajectory: Trajectory,
-    /// Seconds; none if the samples are even, which makes smoothing them cheaper.
-    times: Option<Vec<f64>>,
 }
 
 impl Stamped {
     /// A movement through `states` (n, N), one column a sample, at `times` (N) in seconds.
     ///
     /// # Errors
-    /// [`SmoothingError::StampCount`], [`SmoothingError::StampOrder`], or [`SmoothingError::Motion`].
+    /// [`SmoothingError::Motion`].
     pub fn new(times: Vec<f64>, states: DMatrix<f64>) -> Result<Self, SmoothingError> {
-        let trajectory = Trajectory::new(states, 1.0)?;
-        if times.len() != trajectory.n_samples() {
-            return Err(SmoothingError::StampCount { times: times.len(), samples: trajectory.n_samples() });
-        }
-        let in_order = |sample: usize| times[sample].is_finite() && (sample == 0 || times[sample - 1] < times[sample]);
-        match (0..times.len()).find(|&sample| !in_order(sample)) {
-            None => Ok(Stamped { trajectory, times: Some(times) }),
-            Some(sample) => Err(SmoothingError::StampOrder { sample, time: times[sample] }),
-        }
+        // Any time step will do: the stamps tell.
+        Ok(Stamped { trajectory: Trajectory::new(states, 1.0)?.with_times(times)? })
     }
 
     /// The same movement with its recorded velocities (n, N), in units of the state per second.
@@ -35,10 +26,10 @@ impl Stamped {
     /// # Errors
     /// [`SmoothingError::Motion`].
     pub fn with_velocities(self, velocities: DMatrix<f64>) -> Result<Self, SmoothingError> {
-        Ok(Stamped { trajectory: self.trajectory.with_velocities(velocities)?, ..self })
+        Ok(Stamped { trajectory: self.trajectory.with_velocities(velocities)? })
     }
 
-    /// All movements of `demonstrations`, which are evenly spaced.
+    /// All movements of `demonstrations`.
     pub(crate) fn all(demonstrations: &Demonstrations) -> Vec<Stamped> {
         demonstrations.trajectories().iter().map(Stamped::from).collect()
     }
@@ -60,21 +51,18 @@ impl Stamped {
 
     /// Seconds from sample `from` to sample `to`.
     pub fn seconds(&self, from: usize, to: usize) -> f64 {
-        match &self.times {
-            None => self.trajectory.time_step() * (to - from) as f64,
-            Some(times) => times[to] - times[from],
-        }
+        self.trajectory.seconds(from, to)
     }
 
     /// The time stamps (N) in seconds; none if the samples are evenly spaced.
     pub(crate) fn times(&self) -> Option<&[f64]> {
-        self.times.as_deref()
+        self.trajectory.times()
     }
 }
 
 impl From<&Trajectory> for Stamped {
     fn from(trajectory: &Trajectory) -> Self {
-        Stamped { trajectory: trajectory.clone(), times: None }
+        Stamped { trajectory: trajectory.clone() }
     }
 }
 

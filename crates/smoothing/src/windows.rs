@@ -41,13 +41,7 @@ impl Bases {
     pub(crate) fn of(&self, movement: &ScaledMovement<'_>, window: Window) -> Cow<'_, Polynomials> {
         match movement.stamped.times() {
             None => Cow::Borrowed(&self.even[window.samples - 2]),
-            Some(times) => {
-                let times = &times[window.first..][..window.samples];
-                let (begin, end) = (times[0], times[window.samples - 1]);
-                let (middle, half) = (f64::midpoint(begin, end), (end - begin) / 2.0);
-                let tau: Vec<f64> = times.iter().map(|t| (t - middle) / half).collect();
-                Cow::Owned(Polynomials::on(&tau, self.columns))
-            }
+            Some(times) => Cow::Owned(Polynomials::at(&times[window.first..][..window.samples], self.columns)),
         }
     }
 }

@@ -70,12 +70,12 @@ fn movements_that_do_not_move_or_overflow() {
 #[test]
 fn stamps() {
     let error = Stamped::new(vec![0.0, 1.0], wave(1.0)).unwrap_err();
-    assert_eq!(error, SmoothingError::StampCount { times: 2, samples: 30 });
+    assert_eq!(error, SmoothingError::Motion(MotionError::StampCount { times: 2, samples: 30 }));
     for (bad, sample) in [(2.0, 3), (f64::NAN, 3), (1.0, 3), (f64::INFINITY, 3)] {
         let mut times: Vec<f64> = (0..30).map(f64::from).collect();
         times[3] = bad;
         match Stamped::new(times, wave(1.0)).unwrap_err() {
-            SmoothingError::StampOrder { sample: found, time } => {
+            SmoothingError::Motion(MotionError::StampOrder { sample: found, time }) => {
                 assert_eq!(found, sample);
                 assert!(time == bad || time.is_nan() && bad.is_nan());
             }

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use motion::Demonstrations;
+use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -106,4 +106,20 @@ fn noise_is_found_beside_movement_and_switches() {
         }
         assert!((0.3..1.05).contains(&noise.step_share), "{}", noise.step_share);
     }
+}
+
+/// Stamps make no noise: a parabola sampled unevenly is exact, and white noise on it is seen as it is.
+#[test]
+fn uneven_stamps_are_no_noise() {
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    let mut draw = || -> f64 { StandardNormal.sample(&mut rng) };
+    let times: Vec<f64> = (0..2000).map(|i| 0.1 * (f64::from(i) + 0.2 * draw().clamp(-2.0, 2.0))).collect();
+    let of = |noise: &mut dyn FnMut() -> f64| {
+        let states = DMatrix::from_fn(1, times.len(), |_, i| 3.0 * times[i] - 0.2 * times[i].powi(2) + noise());
+        let trajectory = Trajectory::new(states, 0.1).unwrap().with_times(times.clone()).unwrap();
+        PositionNoise::of(&Demonstrations::new(vec![trajectory]).unwrap()).unwrap().deviations[0]
+    };
+    assert!(of(&mut || 0.0) < 1e-9);
+    let seen = of(&mut || 0.01 * draw());
+    assert!((seen / 0.01 - 1.0).abs() < 0.05, "{seen}");
 }

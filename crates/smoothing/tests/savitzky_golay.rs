@@ -64,3 +64,20 @@ fn printed_weights() {
         assert!((smoothed.trajectories()[0].states()[8] - weight / 231.0).abs() < 1e-14);
     }
 }
+
+proptest! {
+    /// Polynomials of its degree pass at any stamps; on even ones nothing changes.
+    #[test]
+    fn polynomials_pass_at_uneven_stamps(
+        filter in settings(), gaps in vec(0.2..2.0f64, 1..39), factors in vec(-1.0..1.0f64, 4),
+    ) {
+        let times: Vec<f64> = std::iter::once(0.0).chain(gaps).scan(0.0, |at, gap| { *at += gap; Some(*at) }).collect();
+        let value = |t: f64| (0..=filter.degree).map(|k| factors[k] * (t / 10.0).powf(k as f64)).sum::<f64>();
+        let states = DMatrix::from_fn(1, times.len(), |_, i| value(times[i]));
+        let trajectory = Trajectory::new(states.clone(), 1.0).unwrap().with_times(times).unwrap();
+        let smoothed = filter.smooth(&Demonstrations::new(vec![trajectory.clone()]).unwrap()).unwrap();
+        let smoothed = &smoothed.trajectories()[0];
+        prop_assert!((smoothed.states() - &states).amax() < 1e-8 * (1.0 + states.amax()));
+        prop_assert_eq!(smoothed.times(), trajectory.times());
+    }
+}

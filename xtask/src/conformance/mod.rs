@@ -1,7 +1,9 @@
-//! `cargo xtask conformance`: kinematics, LWPR, smoothing and Gaussian processes against reference cases that other programs computed.
+//! `cargo xtask conformance`: kinematics, LWPR, smoothing and Gaussian processes against reference cases that other programs computed,
+//! and files that other programs wrote.
 
 mod agreement;
 mod auto_fit_cases;
+mod file_cases;
 mod kinematics_cases;
 mod lwpr_cases;
 mod reading_cases;
@@ -21,7 +23,7 @@ use crate::progress::say;
 
 #[derive(Debug, Args)]
 pub(crate) struct Conformance {
-    /// Folder with lwpr/*.json, kinematics/*.json and their robots, slope_gp/*.json, reading/*.json, urdf_traps/expected.json and its files
+    /// Folder with lwpr/*.json, kinematics/*.json and their robots, slope_gp/*.json, reading/*.json, urdf_traps/expected.json and files/expected.json with their files
     #[arg(long, value_name = "DIR")]
     vectors: PathBuf,
 }
@@ -81,18 +83,17 @@ impl Conformance {
             }
         }
         let odd = urdf_cases::check(&self.vectors.join("urdf_traps/expected.json"))?;
-        ensure!(files + odd.files > 0, "there is no reference file in {}", self.vectors.display());
-        for fault in &odd.faults {
+        let recordings = file_cases::check(&self.vectors.join("files/expected.json"))?;
+        let compared = files + odd.files + recordings.compared;
+        ensure!(compared > 0, "there is no reference file in {}", self.vectors.display());
+        for fault in odd.faults.iter().chain(&recordings.faults) {
             say(fault);
         }
-        let wrong = disagreeing + odd.faults.len();
+        let wrong = disagreeing + odd.faults.len() + recordings.faults.len();
         if wrong > 0 {
-            bail!("{wrong} of {} reference files disagree (tolerance {TOLERANCE:.0e} unless said)", files + odd.files);
+            bail!("{wrong} of {compared} reference cases disagree (tolerance {TOLERANCE:.0e} unless said)");
         }
-        say(&format!(
-            "conformance: {} reference files agree (tolerance {TOLERANCE:.0e} unless said)",
-            files + odd.files
-        ));
+        say(&format!("conformance: {compared} reference cases agree (tolerance {TOLERANCE:.0e} unless said)"));
         Ok(())
     }
 }

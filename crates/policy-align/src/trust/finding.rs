@@ -1,5 +1,7 @@
 use serde::{Deserialize, Serialize};
 
+use super::numbers::TrustNumbers;
+
 /// Whether a policy may be used. The worst of its findings decides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -30,6 +32,8 @@ pub struct Finding {
 pub struct Trust {
     /// The worst of the findings; good if there is none.
     pub verdict: Verdict,
-    /// Why, the worst first.
+    /// Why, the worst first; those called good are mere remarks.
     pub findings: Vec<Finding>,
+    /// What it rests on.
+    pub numbers: TrustNumbers,
 }

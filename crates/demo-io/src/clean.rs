@@ -1,0 +1,327 @@
+//! From what a reader found to samples one may believe: finite, in order of time, none twice.
+
+use crate::draft::{Draft, Drafts};
+use crate::selection::{flags, select};
+use crate::statistics::Statistics;
+use crate::{Fault, Nan, Note, NoteKind, ReadError, ReadOptions, roles};
+
+/// At most this many samples in a row are interpolated.
+const LONGEST_FILL: usize = 3;
+
+/// An episode standing still for so many samples is noted.
+pub(crate) const STILL: usize = 10;
+
+/// Checks and repairs every episode, as the options say.
+pub(crate) fn clean(drafts: &mut Drafts, options: &ReadOptions) -> Result<(), ReadError> {
+    positive(options.split_gap, "--split-gap")?;
+    if drafts.drop_constant {
+        leave_out_constant(drafts);
+    }
+    name_units(drafts, options)?;
+    degrees_to_radians(drafts, options)?;
+    let names: Vec<String> = drafts.channels.iter().map(|channel| channel.name.clone()).collect();
+    let mut episodes = Vec::with_capacity(drafts.episodes.len());
+    for mut draft in drafts.episodes.drain(..) {
+        make_finite(&mut draft, &names, drafts.word, options.nan)?;
+        if options.sort {
+            sort(&mut draft);
+        }
+        refuse_backwards(&draft, drafts.word)?;
+        drafts.notes.extend(leave_out_twins(&mut draft, drafts.word));
+        match options.split_gap {
+            Some(longest) => episodes.extend(split(draft, longest)),
+            None => episodes.push(draft),
+        }
+    }
+    drafts.episodes = episodes;
+    unwrap_angles(drafts, options)?;
+    if options.trim_still {
+        trim_still(drafts);
+    }
+    leave_out_short(drafts);
+    for draft in &mut drafts.episodes {
+        let first = draft.times[0];
+        draft.times.iter_mut().for_each(|time| *time -= first);
+    }
+    Ok(())
+}
+
+fn positive(seconds: Option<f64>, flag: &str) -> Result<(), ReadError> {
+    match seconds {
+        Some(value) if !(value.is_finite() && value > 0.0) => Err(ReadError::Option(Fault::new(
+            format!("{flag} is {value}"),
+            "the flags",
+            format!("{flag} with seconds above 0"),
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Columns nobody named that never change are no state: a counter that stands, a sensor that is off.
+fn leave_out_constant(drafts: &mut Drafts) {
+    let n = drafts.channels.len();
+    let mut first: Vec<f64> = vec![f64::NAN; n];
+    let mut changes = vec![false; n];
+    for draft in &drafts.episodes {
+        for sample in draft.positions.chunks_exact(n) {
+            for ((first, changes), &value) in first.iter_mut().zip(&mut changes).zip(sample) {
+                if first.is_nan() {
+                    *first = value;
+                }
+                *changes |= value != *first && !value.is_nan();
+            }
+        }
+    }
+    let recorded = drafts.episodes.iter().any(|draft| !draft.velocities.is_empty());
+    if recorded || changes.iter().all(|&changes| changes) || !changes.contains(&true) {
+        return;
+    }
+    let names: Vec<&str> = drafts
+        .channels
+        .iter()
+        .zip(&changes)
+        .filter(|(_, changes)| !**changes)
+        .map(|(channel, _)| channel.name.as_str())
+        .collect();
+    let text = format!("columns that never change are no state: {}; --state keeps them", roles::shortened(&names));
+    drafts.notes.push(Note { kind: NoteKind::Ignored, text });
+    let mut column = changes.iter();
+    drafts.channels.retain(|_| *column.next().unwrap_or(&true));
+    for draft in &mut drafts.episodes {
+        let mut column = changes.iter().cycle();
+        draft.positions.retain(|_| *column.next().unwrap_or(&true));
+    }
+}
+
+/// `--units m`, `--units x=mm`.
+fn name_units(drafts: &mut Drafts, options: &ReadOptions) -> Result<(), ReadError> {
+    let names: Vec<String> = drafts.channels.iter().map(|channel| channel.name.clone()).collect();
+    for assignment in options.units.iter().flat_map(|text| text.split(',')) {
+        let (pattern, unit) = assignment.split_once('=').unwrap_or(("*", assignment));
+        for channel in named(&[pattern.trim().to_owned()], &names, "--units")? {
+            drafts.channels[channel].unit = Some(unit.trim().to_owned());
+        }
+    }
+    Ok(())
+}
+
+fn named(patterns: &[String], names: &[String], flag: &str) -> Result<Vec<usize>, ReadError> {
+    select(patterns, names).map_err(|pattern| {
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        roles::no_column(&pattern, &names, &format!("{flag}, among the channels of the state"))
+    })
+}
+
+fn degrees_to_radians(drafts: &mut Drafts, options: &ReadOptions) -> Result<(), ReadError> {
+    let names: Vec<String> = drafts.channels.iter().map(|channel| channel.name.clone()).collect();
+    for channel in named(&options.degrees, &names, "--degrees")? {
+        drafts.channels[channel].unit = Some("rad".to_owned());
+        for draft in &mut drafts.episodes {
+            for numbers in [&mut draft.positions, &mut draft.velocities] {
+                for value in numbers.iter_mut().skip(channel).step_by(names.len()) {
+                    *value = value.to_radians();
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn make_finite(draft: &mut Draft, names: &[String], word: &str, nan: Nan) -> Result<(), ReadError> {
+    let n = names.len();
+    let bad: Vec<usize> = (0..draft.len()).filter(|&sample| !is_finite(draft, sample, n)).collect();
+    let Some(&first) = bad.first() else { return Ok(()) };
+    match nan {
+        Nan::Refuse => Err(not_finite(draft, first, names, word)),
+        Nan::Drop => {
+            let mut bad = bad.into_iter().peekable();
+            let kept: Vec<usize> = (0..draft.len()).filter(|sample| bad.next_if_eq(sample).is_none()).collect();
+            draft.keep(&kept, n);
+            Ok(())
+        }
+        Nan::Fill => bad.chunk_by(|a, b| a + 1 == *b).try_for_each(|run| {
+            let (before, after) = (run[0].wrapping_sub(1), run[run.len() - 1] + 1);
+            let fits = run[0] > 0 && after < draft.len() && run.len() <= LONGEST_FILL;
+            if !fits || run.iter().any(|&sample| !draft.times[sample].is_finite()) {
+                return Err(not_finite(draft, run[0], names, word));
+            }
+            interpolate(draft, run, before, after, n);
+            Ok(())
+        }),
+    }
+}
+
+fn is_finite(draft: &Draft, sample: usize, n: usize) -> bool {
+    let columns = sample * n..(sample + 1) * n;
+    draft.times[sample].is_finite()
+        && draft.positions[columns.clone()].iter().all(|value| value.is_finite())
+        && (draft.velocities.is_empty() || draft.velocities[columns].iter().all(|value| value.is_finite()))
+}
+
+/// What of a sample is missing.
+fn not_finite(draft: &Draft, sample: usize, names: &[String], word: &str) -> ReadError {
+    let n = names.len();
+    let here = |numbers: &[f64]| {
+        let values = numbers.get(sample * n..(sample + 1) * n)?;
+        values.iter().enumerate().find(|(_, value)| !value.is_finite()).map(|(channel, &value)| (channel, value))
+    };
+    let (whose, value) = if !draft.times[sample].is_finite() {
+        ("the stamp".to_owned(), draft.times[sample])
+    } else if let Some((channel, value)) = here(&draft.positions) {
+        (format!("'{}'", names[channel]), value)
+    } else {
+        let (channel, value) = here(&draft.velocities).unwrap_or((0, f64::NAN));
+        (format!("the velocity of '{}'", names[channel]), value)
+    };
+    let found = if value.is_nan() { "missing or NaN".to_owned() } else { format!("{value}") };
+    let remedy = "--nan drop (leaves the sample out) or --nan fill (interpolates gaps of up to 3 samples)";
+    ReadError::NotFinite(Fault::new(format!("{whose} is no finite number: {found}"), draft.place(sample, word), remedy))
+}
+
+/// Straight between the samples around a run, in time; only what is missing.
+fn interpolate(draft: &mut Draft, run: &[usize], before: usize, after: usize, n: usize) {
+    let times = &draft.times;
+    for numbers in [&mut draft.positions, &mut draft.velocities] {
+        if numbers.is_empty() {
+            continue;
+        }
+        for &sample in run {
+            let share = (times[sample] - times[before]) / (times[after] - times[before]);
+            let share = if share.is_finite() { share } else { 0.5 };
+            for channel in 0..n {
+                if !numbers[sample * n + channel].is_finite() {
+                    let (low, high) = (numbers[before * n + channel], numbers[after * n + channel]);
+                    numbers[sample * n + channel] = low + share * (high - low);
+                }
+            }
+        }
+    }
+}
+
+/// Into the order of stamps; equal ones keep theirs.
+fn sort(draft: &mut Draft) {
+    let mut order: Vec<usize> = (0..draft.len()).collect();
+    order.sort_by(|&a, &b| draft.times[a].total_cmp(&draft.times[b]));
+    let n = draft.dim();
+    draft.keep(&order, n);
+}
+
+fn refuse_backwards(draft: &Draft, word: &str) -> Result<(), ReadError> {
+    let Some(at) = draft.times.windows(2).position(|pair| pair[1] < pair[0]) else { return Ok(()) };
+    let what = format!("stamps go back by {} s", rounded(draft.times[at] - draft.times[at + 1]));
+    let remedy = "--sort (puts samples in the order of their stamps), or --episode if a new movement begins here";
+    Err(ReadError::TimeBackwards(Fault::new(what, draft.place(at + 1, word), remedy)))
+}
+
+/// Of samples with equal stamps the first is kept.
+fn leave_out_twins(draft: &mut Draft, word: &str) -> Option<Note> {
+    let twin = |sample: &usize| *sample > 0 && draft.times[*sample] == draft.times[sample - 1];
+    let first = (0..draft.len()).find(twin)?;
+    let kept: Vec<usize> = (0..draft.len()).filter(|sample| !twin(sample)).collect();
+    let more = match draft.len() - kept.len() {
+        1 => String::new(),
+        twins => format!(" (and {} more)", twins - 1),
+    };
+    let text = format!("a stamp occurs twice; kept the first of its samples: {}{more}", draft.place(first, word));
+    let n = draft.dim();
+    draft.keep(&kept, n);
+    Some(Note { kind: NoteKind::DuplicateStamp, text })
+}
+
+/// Cuts where stamps are more than `longest` seconds apart.
+fn split(draft: Draft, longest: f64) -> Vec<Draft> {
+    let n = draft.dim();
+    let mut cuts: Vec<usize> = vec![0];
+    cuts.extend((1..draft.len()).filter(|&sample| draft.times[sample] - draft.times[sample - 1] > longest));
+    cuts.push(draft.len());
+    if cuts.len() == 2 {
+        return vec![draft];
+    }
+    let part = |(number, cut): (usize, &[usize])| {
+        let samples = cut[0]..cut[1];
+        let columns = samples.start * n..samples.end * n;
+        Draft {
+            name: format!("{}_{number}", draft.name),
+            file: draft.file.clone(),
+            rows: draft.rows.chosen(samples.clone()),
+            times: draft.times[samples].to_vec(),
+            positions: draft.positions[columns.clone()].to_vec(),
+            velocities: draft.velocities.get(columns).map_or_else(Vec::new, <[f64]>::to_vec),
+            constraint: draft.constraint.clone(),
+        }
+    };
+    cuts.windows(2).enumerate().map(part).collect()
+}
+
+/// Steps of more than half a turn become short ones.
+fn unwrap_angles(drafts: &mut Drafts, options: &ReadOptions) -> Result<(), ReadError> {
+    let names: Vec<String> = drafts.channels.iter().map(|channel| channel.name.clone()).collect();
+    if options.unwrap.iter().any(|pattern| pattern != "*") {
+        named(&options.unwrap, &names, "--unwrap")?;
+    }
+    let turn = std::f64::consts::TAU;
+    for (channel, _) in flags(&options.unwrap, &names).iter().enumerate().filter(|(_, chosen)| **chosen) {
+        for draft in &mut drafts.episodes {
+            let mut turns = 0.0;
+            let mut last: Option<f64> = None;
+            for value in draft.positions.iter_mut().skip(channel).step_by(names.len()) {
+                let raw = *value;
+                turns -= last.map_or(0.0, |last| ((raw - last) / turn).round());
+                last = Some(raw);
+                *value = raw + turns * turn;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn trim_still(drafts: &mut Drafts) {
+    let statistics = Statistics::of(drafts);
+    let n = drafts.channels.len();
+    for draft in &mut drafts.episodes {
+        let (start, end) = statistics.still(draft);
+        let moving: Vec<usize> = (start..draft.len().saturating_sub(end)).collect();
+        if moving.len() < draft.len() {
+            draft.keep(&moving, n);
+        }
+    }
+}
+
+fn leave_out_short(drafts: &mut Drafts) {
+    let word = drafts.word;
+    let notes = &mut drafts.notes;
+    drafts.episodes.retain(|draft| {
+        if draft.len() < 2 {
+            let samples = if draft.len() == 1 { "1 sample" } else { "no sample" };
+            let text = format!("episode {} has {samples} and was left out: {}", draft.name, draft.place(0, word));
+            notes.push(Note { kind: NoteKind::TooShort, text });
+        }
+        draft.len() >= 2
+    });
+}
+
+impl Draft {
+    /// n, or 0 without samples.
+    fn dim(&self) -> usize {
+        self.positions.len().checked_div(self.len()).unwrap_or(0)
+    }
+
+    /// Leaves some samples, in the order given.
+    fn keep(&mut self, samples: &[usize], n: usize) {
+        self.rows = self.rows.chosen(samples.iter().copied());
+        let columns = |numbers: &[f64]| -> Vec<f64> {
+            samples.iter().flat_map(|&sample| &numbers[sample * n..(sample + 1) * n]).copied().collect()
+        };
+        self.positions = columns(&self.positions);
+        if !self.velocities.is_empty() {
+            self.velocities = columns(&self.velocities);
+        }
+        self.times = samples.iter().map(|&sample| self.times[sample]).collect();
+    }
+}
+
+/// Three or four digits, without a tail of zeros.
+pub(crate) fn rounded(value: f64) -> String {
+    let digits = format!("{value:.3e}");
+    digits.parse::<f64>().map_or(digits, |value| format!("{value}"))
+}

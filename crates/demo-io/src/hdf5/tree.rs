@@ -1,0 +1,110 @@
+use hdf5_pure::{DType, Dataset, Error, File, FormatError, Group};
+
+use crate::array::{Data, Described, Kind};
+use crate::input::Input;
+use crate::{Fault, ReadError};
+
+/// The arrays of a file that were found so far.
+pub(super) struct Tree<'a> {
+    input: &'a Input<'a>,
+    arrays: Vec<(Described, Dataset)>,
+}
+
+impl<'a> Tree<'a> {
+    pub(super) fn new(input: &'a Input<'a>) -> Self {
+        Self { input, arrays: Vec::new() }
+    }
+
+    pub(super) fn input(&self) -> &'a Input<'a> {
+        self.input
+    }
+
+    pub(super) fn ok<T>(&self, result: Result<T, Error>) -> Result<T, ReadError> {
+        result.map_err(|error| failed(&error, self.input))
+    }
+
+    pub(super) fn described(&self) -> Vec<Described> {
+        self.arrays.iter().map(|(described, _)| described.clone()).collect()
+    }
+
+    /// The arrays of a group, with `prefix` before their names, and their indices.
+    pub(super) fn arrays(&mut self, group: &Group, prefix: &str) -> Result<Vec<(String, usize)>, ReadError> {
+        let mut found = Vec::new();
+        for name in self.ok(group.datasets())? {
+            let dataset = self.ok(group.dataset(&name))?;
+            let shape: Option<Vec<usize>> =
+                self.ok(dataset.shape())?.into_iter().map(|length| usize::try_from(length).ok()).collect();
+            let (Some(shape), Ok(kind)) = (shape, dataset.dtype().map(kind)) else { continue };
+            let name = format!("{prefix}{name}");
+            self.arrays.push((Described { name: name.clone(), shape, kind }, dataset));
+            found.push((name, self.arrays.len() - 1));
+        }
+        Ok(found)
+    }
+
+    pub(super) fn load(&self, index: usize) -> Result<Data, ReadError> {
+        let (described, dataset) = &self.arrays[index];
+        let count = described.shape.iter().try_fold(1u64, |count, &length| count.checked_mul(length as u64));
+        let size = self.ok(dataset.element_size())?.max(8);
+        self.input.charge(count.and_then(|count| count.checked_mul(size)).unwrap_or(u64::MAX))?;
+        let data = match &described.kind {
+            Kind::Text => dataset.read_string().map(Data::Text),
+            Kind::Number("uint64" | "float16" | "float32" | "float64") => dataset.read_f64().map(Data::Numbers),
+            Kind::Number(_) => dataset.read_i64().map(Data::Whole),
+            _ => return Ok(Data::Text(Vec::new())),
+        };
+        let data = self.ok(data)?;
+        if Some(data.len() as u64) == count {
+            return Ok(data);
+        }
+        let what = format!("'{}' holds {} values", described.with_shape(), data.len());
+        Err(ReadError::Corrupt(Fault::new(what, &self.input.name, "another copy of the file")))
+    }
+}
+
+fn kind(kind: DType) -> Kind {
+    match kind {
+        DType::F32 => Kind::Number("float32"),
+        DType::F64 => Kind::Number("float64"),
+        DType::I8 => Kind::Number("int8"),
+        DType::I16 => Kind::Number("int16"),
+        DType::I32 => Kind::Number("int32"),
+        DType::I64 => Kind::Number("int64"),
+        DType::U8 => Kind::Number("uint8"),
+        DType::U16 => Kind::Number("uint16"),
+        DType::U32 => Kind::Number("uint32"),
+        DType::U64 => Kind::Number("uint64"),
+        DType::String | DType::VariableLengthString => Kind::Text,
+        DType::Other(other) if matches!(*other, hdf5_pure::Datatype::FloatingPoint { size: 2, .. }) => Kind::Number("float16"),
+        other => Kind::Other(other.to_string()),
+    }
+}
+
+/// The demonstrations that `/mask/<filter>` names.
+pub(super) fn mask(file: &File, filter: &str, input: &Input<'_>) -> Result<Vec<String>, ReadError> {
+    let masks = file.group("mask").map_err(|_| super::no_mask(filter, &[], &input.name))?;
+    let known = masks.datasets().map_err(|error| failed(&error, input))?;
+    if !known.iter().any(|name| name == filter) {
+        return Err(super::no_mask(filter, &known, &input.name));
+    }
+    let names = masks.dataset(filter).and_then(|mask| mask.read_string()).map_err(|error| failed(&error, input))?;
+    Ok(names.into_iter().map(|name| name.trim_end_matches('\0').to_owned()).collect())
+}
+
+pub(super) fn failed(error: &Error, input: &Input<'_>) -> ReadError {
+    let file = &input.name;
+    let copy = "another copy of the file: this one is not whole";
+    match error {
+        Error::Format(FormatError::UnexpectedEof { .. }) => {
+            ReadError::Truncated(Fault::new(format!("the file is cut off: {error}"), file, copy))
+        }
+        Error::Io(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
+            ReadError::Truncated(Fault::new("the file is cut off", file, copy))
+        }
+        Error::Io(error) => crate::input::unreadable(error, file),
+        Error::Format(FormatError::SignatureNotFound) => {
+            ReadError::NotThisFormat(Fault::new("not an HDF5 file: its signature is missing", file, "--as with the format it has"))
+        }
+        _ => ReadError::Corrupt(Fault::new(format!("the file is damaged, or of a kind that is not read: {error}"), file, "h5repack IN OUT, or another copy of the file")),
+    }
+}

@@ -1,0 +1,111 @@
+//! A file before its format is known.
+
+use std::cell::Cell;
+use std::fs::File;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+use crate::{Fault, ReadError, ReadOptions, SamplesAre};
+
+/// A file to be read, with its first bytes.
+pub(crate) struct Input<'a> {
+    pub(crate) path: PathBuf,
+    /// Without folders, for messages.
+    pub(crate) name: String,
+    /// Without folders and extension: the name of a movement that has none.
+    pub(crate) stem: String,
+    /// Bytes in all.
+    pub(crate) len: u64,
+    /// The first of them.
+    pub(crate) head: Vec<u8>,
+    pub(crate) options: &'a ReadOptions,
+    /// Whether arrays are handed on with their indices in reverse order, since the format stores columns first.
+    pub(crate) columns_first: bool,
+    /// Bytes of memory that may still be taken.
+    budget: Cell<u64>,
+}
+
+/// A file may always grow to so much in memory.
+const MEMORY: u64 = 48 << 20;
+
+/// Enough for the header of thousands of columns.
+const HEAD: u64 = 256 << 10;
+
+impl<'a> Input<'a> {
+    pub(crate) fn new(path: &Path, options: &'a ReadOptions) -> Result<Self, ReadError> {
+        let name = name_of(path);
+        let unreadable = |error: std::io::Error| unreadable(&error, &name);
+        let file = File::open(path).map_err(unreadable)?;
+        let len = file.metadata().map_err(unreadable)?.len();
+        let mut head = Vec::new();
+        file.take(HEAD).read_to_end(&mut head).map_err(unreadable)?;
+        let stem = path.file_stem().map_or_else(|| name.clone(), |stem| stem.to_string_lossy().into_owned());
+        Ok(Self { path: path.to_owned(), name, stem, len, head, options, columns_first: false, budget: Cell::new(len.saturating_mul(64).saturating_add(MEMORY)) })
+    }
+
+    /// How samples lie in arrays as they are handed on.
+    pub(crate) fn samples_are(&self) -> Option<SamplesAre> {
+        match (self.options.samples_are, self.columns_first) {
+            (Some(SamplesAre::Rows), true) => Some(SamplesAre::Columns),
+            (Some(SamplesAre::Columns), true) => Some(SamplesAre::Rows),
+            (asked, _) => asked,
+        }
+    }
+
+    /// Asks for memory, before it is taken: all that a file unpacks to is at most 64 times its size, unless it is trusted.
+    pub(crate) fn charge(&self, bytes: u64) -> Result<(), ReadError> {
+        match self.budget.get().checked_sub(bytes) {
+            Some(left) => self.budget.set(left),
+            None if self.options.trust => {}
+            None => {
+                let what = format!("{} bytes unpack to more than 64 times as much", self.len);
+                return Err(ReadError::TooLarge(Fault::new(what, &self.name, "--trust if the file comes from a friend")));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether these are the file's last bytes.
+    #[cfg(feature = "parquet")]
+    pub(crate) fn ends_with(&self, mark: &[u8]) -> bool {
+        use std::io::{Seek as _, SeekFrom};
+        let mut end = Vec::new();
+        let read = self.open().ok().and_then(|mut file| {
+            file.seek(SeekFrom::End(-i64::try_from(mark.len()).ok()?)).ok()?;
+            file.read_to_end(&mut end).ok()
+        });
+        read.is_some() && end == mark
+    }
+
+    /// All bytes of the file.
+    #[cfg(feature = "mat")]
+    pub(crate) fn whole(&self, progress: &mut dyn FnMut(u64)) -> Result<Vec<u8>, ReadError> {
+        let mut bytes = Vec::new();
+        self.open()?.read_to_end(&mut bytes).map_err(|error| unreadable(&error, &self.name))?;
+        progress(bytes.len() as u64);
+        Ok(bytes)
+    }
+
+    pub(crate) fn open(&self) -> Result<File, ReadError> {
+        File::open(&self.path).map_err(|error| unreadable(&error, &self.name))
+    }
+}
+
+pub(crate) fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+pub(crate) fn unreadable(error: &std::io::Error, name: &str) -> ReadError {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => ReadError::MissingFile(Fault::new(
+            "there is no such file",
+            name,
+            "another path: it counts from the current folder",
+        )),
+        _ => ReadError::Unreadable(Fault::new(
+            format!("cannot be read: {error}"),
+            name,
+            "another file, or other permissions",
+        )),
+    }
+}

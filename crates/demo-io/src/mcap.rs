@@ -1,0 +1,105 @@
+//! Bags of ROS 2 in MCAP: one topic becomes one recording.
+
+mod messages;
+mod records;
+mod topic;
+
+use std::collections::{BTreeMap, HashMap};
+
+use self::records::End;
+pub(crate) use self::topic::Noted;
+use self::topic::Topic;
+use crate::draft::Drafts;
+use crate::input::Input;
+use crate::roles::shortened;
+use crate::{Fault, Note, NoteKind, ReadError};
+
+/// Name of the metadata record in which [`crate::write`] keeps what messages cannot say.
+pub(crate) const METADATA: &str = "demo-io";
+
+/// A bag has hardly more topics than that.
+const MOST_TOPICS: usize = 4096;
+
+pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<Drafts, ReadError> {
+    let mut bag = Bag { input, schemas: HashMap::new(), topics: Vec::new(), by_channel: HashMap::new(), metadata: BTreeMap::new() };
+    let end = records::each(input, progress, |record| bag.add(record))?;
+    let mut drafts = bag.finish()?;
+    if end == End::Cut {
+        let text = format!(
+            "the bag ends in the middle of a record, as if its recorder was killed; what is whole was read: {} (mcap recover FILE repairs it)",
+            input.name
+        );
+        drafts.notes.push(Note { kind: NoteKind::Truncated, text });
+    }
+    Ok(drafts)
+}
+
+/// What is known of a bag while it is read.
+struct Bag<'a> {
+    input: &'a Input<'a>,
+    schemas: HashMap<u16, String>,
+    topics: Vec<Topic<'a>>,
+    by_channel: HashMap<u16, usize>,
+    metadata: BTreeMap<String, String>,
+}
+
+impl Bag<'_> {
+    fn add(&mut self, record: mcap::records::Record<'_>) -> Result<(), ReadError> {
+        use mcap::records::Record;
+        match record {
+            Record::Schema { header, .. } => {
+                self.schemas.insert(header.id, header.name);
+            }
+            Record::Channel(channel) => {
+                let schema = self.schemas.get(&channel.schema_id).cloned().unwrap_or_default();
+                let known = self.topics.iter().position(|topic| topic.is(&channel.topic, &schema));
+                let topic = match known {
+                    Some(topic) => topic,
+                    None if self.topics.len() == MOST_TOPICS => {
+                        let what = format!("more than {MOST_TOPICS} topics");
+                        return Err(ReadError::TooLarge(Fault::new(what, &self.input.name, "a bag with fewer")));
+                    }
+                    None => {
+                        self.topics.push(Topic::new(self.input, channel.topic, schema, &channel.message_encoding));
+                        self.topics.len() - 1
+                    }
+                };
+                self.by_channel.insert(channel.id, topic);
+            }
+            Record::Message { header, data } => {
+                if let Some(&topic) = self.by_channel.get(&header.channel_id) {
+                    self.topics[topic].add(header.log_time, &data);
+                }
+            }
+            Record::Metadata(metadata) if metadata.name == METADATA => self.metadata = metadata.metadata,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn finish(self) -> Result<Drafts, ReadError> {
+        let file = &self.input.name;
+        let asked = self.input.options.topic.as_deref();
+        let listed: Vec<String> = self.topics.iter().map(ToString::to_string).collect();
+        let no_topic = |what: String| {
+            let remedy = format!(
+                "--topic with one that holds JointState, PoseStamped, TwistStamped, Float64MultiArray or JSON; there are: {}",
+                shortened(&listed)
+            );
+            Err(ReadError::NoTopic(Fault::new(what, file, remedy)))
+        };
+        let mut fitting: Vec<Topic<'_>> = match asked {
+            Some(asked) => self.topics.into_iter().filter(|topic| topic.name() == asked).collect(),
+            None => self.topics.into_iter().filter(Topic::is_known).collect(),
+        };
+        if fitting.len() > 1 {
+            fitting.retain(|topic| topic.len() > 0);
+        }
+        match (fitting.pop(), fitting.is_empty()) {
+            (Some(topic), true) if topic.is_known() => topic.finish(&self.metadata),
+            (Some(topic), true) => no_topic(format!("the topic {topic} has a type that is not read")),
+            (Some(_), false) => no_topic("several topics could be the state".to_owned()),
+            (None, _) => no_topic(asked.map_or("no topic has a type that is read".to_owned(), |asked| format!("there is no topic '{asked}'"))),
+        }
+    }
+}

@@ -1,0 +1,152 @@
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::clean::clean;
+use crate::draft::Drafts;
+use crate::input::{Input, name_of, unreadable};
+use crate::notice::notice;
+use crate::sniff::{self, Folder};
+use crate::{Fault, Format, ReadError, ReadOptions, Recordings, delimited, json_lines, natural, npy, npz};
+
+/// Reads a file, or a folder of files with a movement each, whatever its format.
+///
+/// `progress` is told how many more bytes were read, now and then.
+///
+/// # Errors
+///
+/// [`ReadError`] says what is wrong, where, and which option helps.
+pub fn read(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> Result<Recordings, ReadError> {
+    read_all(&[path.to_owned()], options, progress)
+}
+
+/// Reads several files as one set: their channels must be equal, their episodes follow each other.
+///
+/// # Errors
+///
+/// As [`read`], and [`ReadError::Lengths`] if the channels of two files differ.
+pub fn read_all(
+    paths: &[PathBuf],
+    options: &ReadOptions,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Recordings, ReadError> {
+    let mut joined: Option<Drafts> = None;
+    for path in paths {
+        add(&mut joined, drafts(path, options, progress)?, &name_of(path))?;
+    }
+    let place = || paths.first().map(|path| name_of(path)).unwrap_or_default();
+    let nothing = |what: &str| ReadError::Empty(Fault::new(what, place(), "another file: this one holds no movement"));
+    let mut drafts = joined.ok_or_else(|| nothing("no file was given"))?;
+    clean(&mut drafts, options)?;
+    notice(&mut drafts, options);
+    if drafts.episodes.is_empty() {
+        return Err(nothing("there is no episode of two samples or more"));
+    }
+    Ok(Recordings::from_drafts(drafts))
+}
+
+fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> Result<Drafts, ReadError> {
+    let name = name_of(path);
+    if path.is_dir() {
+        return match sniff::folder(path, &name)? {
+            #[cfg(feature = "parquet")]
+            Folder::LeRobot => crate::lerobot::read(path, options, progress),
+            #[cfg(not(feature = "parquet"))]
+            Folder::LeRobot => Err(not_built(&name, "parquet")),
+            Folder::Files => folder(path, &name, options, progress),
+        };
+    }
+    let mut input = Input::new(path, options)?;
+    let format = sniff::format(&input)?;
+    input.columns_first = format == Format::Mat;
+    match format {
+        Format::Csv | Format::Tsv => delimited::read(&input, progress),
+        Format::Jsonl => json_lines::read(&input, progress),
+        Format::Npy => npy::read(&input, progress),
+        Format::Npz => npz::read(&input, progress),
+        #[cfg(feature = "parquet")]
+        Format::LeRobot | Format::Parquet => crate::parquet::read(&input, progress),
+        #[cfg(not(feature = "parquet"))]
+        Format::LeRobot | Format::Parquet => Err(not_built(&name, "parquet")),
+        #[cfg(feature = "hdf5")]
+        Format::Hdf5 => crate::hdf5::read(&input, progress),
+        #[cfg(not(feature = "hdf5"))]
+        Format::Hdf5 => Err(not_built(&name, "hdf5")),
+        #[cfg(feature = "mcap")]
+        Format::Mcap => crate::mcap::read(&input, progress),
+        #[cfg(not(feature = "mcap"))]
+        Format::Mcap => Err(not_built(&name, "mcap")),
+        #[cfg(feature = "mat")]
+        Format::Mat => crate::mat::read(&input, progress),
+        #[cfg(not(feature = "mat"))]
+        Format::Mat => Err(not_built(&name, "mat")),
+    }
+}
+
+#[cfg(not(all(feature = "parquet", feature = "hdf5", feature = "mcap", feature = "mat")))]
+fn not_built(name: &str, feature: &str) -> ReadError {
+    let what = format!("this needs the feature '{feature}', which was not built in");
+    ReadError::Unsupported(Fault::new(what, name, format!("cargo build --features {feature}, or convert the file to CSV or NPZ")))
+}
+
+/// The files of a folder in natural order, as one set.
+fn folder(
+    path: &Path,
+    name: &str,
+    options: &ReadOptions,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Drafts, ReadError> {
+    let entries = fs::read_dir(path).and_then(Iterator::collect::<Result<Vec<_>, _>>);
+    let entries = entries.map_err(|error| unreadable(&error, name))?;
+    let mut files: Vec<PathBuf> = entries.iter().map(fs::DirEntry::path).filter(|path| path.is_file()).collect();
+    files.retain(|file| sniff::is_recording(file));
+    files.sort_by(|a, b| natural::compare(&name_of(a), &name_of(b)));
+    let mut joined: Option<Drafts> = None;
+    for file in &files {
+        let mut drafts = drafts(file, options, progress)?;
+        name_by_file(&mut drafts, file);
+        add(&mut joined, drafts, &name_of(file))?;
+    }
+    joined.ok_or_else(|| {
+        let what = "there is no file of a known format in the folder";
+        ReadError::Empty(Fault::new(what, name, "a folder with .csv, .npz, .jsonl, .mcap … files, a movement each"))
+    })
+}
+
+/// Several episodes of one file in a folder carry its name, since they are numbered in each.
+fn name_by_file(drafts: &mut Drafts, file: &Path) {
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    for draft in drafts.episodes.iter_mut().filter(|draft| draft.name != stem) {
+        draft.name = format!("{stem}/{}", draft.name);
+    }
+}
+
+pub(crate) fn add(joined: &mut Option<Drafts>, drafts: Drafts, file: &str) -> Result<(), ReadError> {
+    match joined {
+        Some(joined) => join(joined, drafts, file),
+        None => {
+            *joined = Some(drafts);
+            Ok(())
+        }
+    }
+}
+
+/// Appends the episodes of another file.
+fn join(joined: &mut Drafts, more: Drafts, file: &str) -> Result<(), ReadError> {
+    let names = |drafts: &Drafts| drafts.channels.iter().map(|channel| channel.name.clone()).collect::<Vec<_>>();
+    if joined.channels != more.channels {
+        let what = format!("channels differ: {} here, {} before", names(&more).join(", "), names(joined).join(", "));
+        return Err(ReadError::Lengths(Fault::new(
+            what,
+            file,
+            "--state with channels that all files have, or files of one kind",
+        )));
+    }
+    let recorded = |drafts: &Drafts| drafts.episodes.iter().any(|draft| !draft.velocities.is_empty());
+    if recorded(joined) != recorded(&more) {
+        let what = "velocities are recorded in some of the files only";
+        return Err(ReadError::Lengths(Fault::new(what, file, "--ignore with the names of the velocities, or files of one kind")));
+    }
+    joined.episodes.extend(more.episodes);
+    joined.notes.extend(more.notes);
+    Ok(())
+}

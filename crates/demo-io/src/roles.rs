@@ -1,0 +1,328 @@
+//! Which column is what, from names alone.
+
+use std::collections::HashMap;
+
+use crate::selection::{flags, glob, select};
+use crate::{Fault, ReadError, ReadOptions};
+
+/// A column before its role is known.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Column {
+    pub(crate) name: String,
+    pub(crate) content: Content,
+}
+
+/// What the first rows of a column hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Content {
+    /// Whole numbers, each one more than the last, or starting again.
+    Counting,
+    /// Numbers, or nothing.
+    Numbers,
+    /// Anything else.
+    Text,
+}
+
+/// Indices of columns by role.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(crate) struct Roles {
+    pub(crate) time: Option<usize>,
+    pub(crate) episode: Option<usize>,
+    pub(crate) constraint: Option<usize>,
+    pub(crate) state: Vec<usize>,
+    /// As many as the state, or none.
+    pub(crate) velocity: Vec<usize>,
+    /// Not used although nobody said so.
+    pub(crate) ignored: Vec<usize>,
+    /// Whether the state was found here rather than named by the user.
+    pub(crate) state_guessed: bool,
+}
+
+const ROW_NUMBERS: [&str; 7] = ["", "unnamed: 0", "index", "frame", "frame_index", "seq", "header.seq"];
+const TIMES: [&str; 9] = ["t", "time", "timestamp", "stamp", "secs", "%time", "header.stamp", "log_time", "time_stamp"];
+const TIME_UNITS: [&str; 12] =
+    ["s", "sec", "secs", "seconds", "ms", "msec", "milliseconds", "us", "usec", "ns", "nsec", "nanoseconds"];
+const EPISODES: [&str; 12] = [
+    "episode",
+    "ep",
+    "episode_index",
+    "episode_id",
+    "demo",
+    "demo_id",
+    "trial",
+    "traj",
+    "trajectory",
+    "traj_id",
+    "take",
+    "run",
+];
+const CONSTRAINTS: [&str; 4] = ["constraint", "condition", "task", "task_index"];
+const NEVER_STATE: [&str; 7] = ["*effort*", "*torque*", "*current*", "*temperature*", "reward", "done", "success"];
+
+/// Assigns every column of `columns`; `place` is where to say it stands.
+pub(crate) fn assign(columns: &[Column], options: &ReadOptions, place: &str) -> Result<Roles, ReadError> {
+    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+    let ignored_by_user = flags(&options.ignore, &names);
+    refuse_twins(&names, &ignored_by_user, options, place)?;
+    let mut roles = Roles {
+        time: one(options.time.as_deref(), "--time", &names, place)?,
+        episode: one(options.episode.as_deref(), "--episode", &names, place)?,
+        constraint: one(options.constraint_column.as_deref(), "--constraint-column", &names, place)?,
+        state: named(&options.state, &names, place)?,
+        velocity: named(&options.velocity, &names, place)?,
+        ..Roles::default()
+    };
+    let mut free: Vec<usize> = (0..names.len())
+        .filter(|&index| !ignored_by_user[index] && !roles.holds(index))
+        .filter(|&index| !(is_one_of(&ROW_NUMBERS, names[index]) && columns[index].content == Content::Counting))
+        .collect();
+    for (role, known) in [
+        (&mut roles.time, &is_time as &dyn Fn(&str) -> bool),
+        (&mut roles.episode, &|name: &str| is_one_of(&EPISODES, name)),
+        (&mut roles.constraint, &|name: &str| is_one_of(&CONSTRAINTS, name)),
+    ] {
+        let found = free.iter().position(|&index| known(names[index]));
+        match (&role, found) {
+            (None, Some(at)) => *role = Some(free.remove(at)),
+            (Some(_), Some(at)) => roles.ignored.push(free.remove(at)),
+            _ => {}
+        }
+    }
+    let pointless = |name: &str| NEVER_STATE.iter().any(|pattern| glob(pattern, &name.to_ascii_lowercase()));
+    roles.ignored.extend(free.extract_if(.., |index| pointless(names[*index])));
+    roles.state_guessed = options.state.is_empty();
+    if roles.state_guessed {
+        roles.guess_state(&names, &mut free, options, place)?;
+    }
+    if roles.velocity.is_empty() && options.velocity.is_empty() {
+        roles.guess_velocities(&names, &mut free, place)?;
+    }
+    roles.ignored.extend(free);
+    roles.ignored.sort_unstable();
+    roles.checked(&names, place)
+}
+
+impl Roles {
+    fn holds(&self, index: usize) -> bool {
+        [self.time, self.episode, self.constraint].contains(&Some(index))
+            || self.state.contains(&index)
+            || self.velocity.contains(&index)
+    }
+
+    /// State is what is left, without what is the velocity of something left.
+    fn guess_state(
+        &mut self,
+        names: &[&str],
+        free: &mut Vec<usize>,
+        options: &ReadOptions,
+        place: &str,
+    ) -> Result<(), ReadError> {
+        let mut velocity_of: Vec<(usize, usize)> = Vec::new();
+        if options.velocity.is_empty() {
+            let lowered: Vec<(usize, String)> = free.iter().map(|&index| (index, base(names[index]))).collect();
+            let mut by_name: HashMap<&str, usize> = HashMap::new();
+            for (index, name) in &lowered {
+                by_name.entry(name).or_insert(*index);
+            }
+            for (index, name) in &lowered {
+                if velocity_of.iter().any(|&(_, velocity)| velocity == *index) {
+                    continue;
+                }
+                let velocity = velocity_names(name).find_map(|wanted| by_name.get(wanted.as_str()).copied());
+                if let Some(velocity) = velocity.filter(|velocity| velocity != index) {
+                    velocity_of.push((*index, velocity));
+                }
+            }
+        }
+        let velocities: Vec<usize> = velocity_of.iter().map(|&(_, velocity)| velocity).collect();
+        // What is a velocity has no velocity of its own here: 'ddx' beside 'x' and 'dx' stays state and is found lacking.
+        self.state = free.iter().copied().filter(|index| !velocities.contains(index)).collect();
+        free.retain(|index| velocities.contains(index));
+        if self.state.is_empty() {
+            let what = "no column is left that could be the state";
+            let remedy = format!("--state with the names of its columns; there are: {}", names.join(", "));
+            return Err(ReadError::NoRoles(Fault::new(what, place, remedy)));
+        }
+        Ok(())
+    }
+
+    /// The velocities of the state by name: of every dimension, or an error, or of none.
+    fn guess_velocities(&mut self, names: &[&str], free: &mut Vec<usize>, place: &str) -> Result<(), ReadError> {
+        let mut by_name: HashMap<String, usize> = HashMap::new();
+        for &index in free.iter() {
+            by_name.entry(base(names[index])).or_insert(index);
+        }
+        let found: Vec<Option<usize>> = self
+            .state
+            .iter()
+            .map(|&index| velocity_names(&base(names[index])).find_map(|wanted| by_name.get(&wanted).copied()))
+            .collect();
+        if found.iter().all(Option::is_none) {
+            return Ok(());
+        }
+        let lacking: Vec<&str> = self
+            .state
+            .iter()
+            .zip(&found)
+            .filter(|(_, found)| found.is_none())
+            .map(|(&index, _)| names[index])
+            .collect();
+        if !lacking.is_empty() {
+            let known: Vec<&str> = found.iter().flatten().map(|&index| names[index]).collect();
+            let what = format!("some states have a velocity ({}), but {} lack one", known.join(", "), quoted(&lacking));
+            let remedy = format!(
+                "--state with the names of the state, --ignore {} or --velocity with a column for each state",
+                known.join(",")
+            );
+            return Err(ReadError::NoRoles(Fault::new(what, place, remedy)));
+        }
+        self.velocity = found.into_iter().flatten().collect();
+        free.retain(|index| !self.velocity.contains(index));
+        Ok(())
+    }
+
+    fn checked(self, names: &[&str], place: &str) -> Result<Self, ReadError> {
+        let (states, velocities) = (self.state.len(), self.velocity.len());
+        if velocities != 0 && velocities != states {
+            let what = format!("{states} columns of state but {velocities} of velocity");
+            let remedy = format!("--velocity with one column for each of {}", quoted_at(names, &self.state));
+            return Err(ReadError::NoRoles(Fault::new(what, place, remedy)));
+        }
+        if let Some(&both) = self.state.iter().find(|index| self.velocity.contains(index)) {
+            let what = format!("'{}' is named as state and as velocity", names[both]);
+            return Err(ReadError::AmbiguousColumn(Fault::new(
+                what,
+                place,
+                "--state and --velocity with other columns",
+            )));
+        }
+        Ok(self)
+    }
+}
+
+/// Two columns of one name, unless columns were chosen by number.
+fn refuse_twins(names: &[&str], ignored: &[bool], options: &ReadOptions, place: &str) -> Result<(), ReadError> {
+    let numbers = |pattern: &String| pattern.bytes().all(|letter| letter.is_ascii_digit() || b"-, ".contains(&letter));
+    if !options.state.is_empty() && options.state.iter().chain(&options.velocity).all(numbers) {
+        return Ok(());
+    }
+    let mut first: HashMap<&str, usize> = HashMap::new();
+    for (index, name) in names.iter().enumerate().filter(|(index, name)| !name.is_empty() && !ignored[*index]) {
+        if let Some(twin) = first.insert(name, index) {
+            let what = format!("'{name}' names columns {twin} and {index}");
+            let remedy = "rename one, or choose columns by number: --state 2,3 (they count from 0)";
+            return Err(ReadError::AmbiguousColumn(Fault::new(what, place, remedy)));
+        }
+    }
+    Ok(())
+}
+
+fn named(patterns: &[String], names: &[&str], place: &str) -> Result<Vec<usize>, ReadError> {
+    select(patterns, names).map_err(|pattern| no_column(&pattern, names, place))
+}
+
+fn one(pattern: Option<&str>, flag: &str, names: &[&str], place: &str) -> Result<Option<usize>, ReadError> {
+    let Some(pattern) = pattern else { return Ok(None) };
+    match named(&[pattern.to_owned()], names, place)?[..] {
+        [index] => Ok(Some(index)),
+        _ => {
+            let what = format!("{flag} '{pattern}' names several columns");
+            Err(ReadError::AmbiguousColumn(Fault::new(what, place, format!("{flag} with the name of one"))))
+        }
+    }
+}
+
+/// What was asked for does not exist; names what does, and the nearest.
+pub(crate) fn no_column(pattern: &str, names: &[&str], place: &str) -> ReadError {
+    let what = format!("there is no '{pattern}'");
+    ReadError::NoColumn(Fault::new(what, place, format!("one of: {}", shortened(names))))
+}
+
+/// Names with commas between, not more than a screen of them.
+pub(crate) fn shortened<S: AsRef<str>>(names: &[S]) -> String {
+    let shown: Vec<&str> = names.iter().take(40).map(AsRef::as_ref).collect();
+    let more = if names.len() > 40 { format!(", … ({} in all)", names.len()) } else { String::new() };
+    shown.join(", ") + &more
+}
+
+fn quoted(names: &[&str]) -> String {
+    let names: Vec<String> = names.iter().map(|name| format!("'{name}'")).collect();
+    shortened(&names)
+}
+
+fn quoted_at(names: &[&str], indices: &[usize]) -> String {
+    quoted(&indices.iter().map(|&index| names[index]).collect::<Vec<_>>())
+}
+
+fn is_one_of(known: &[&str], name: &str) -> bool {
+    let name = base(name);
+    known.contains(&name.as_str())
+}
+
+pub(crate) fn is_time(name: &str) -> bool {
+    let name = base(name);
+    TIMES.contains(&name.as_str())
+        || name.rsplit_once('_').is_some_and(|(stem, unit)| TIMES.contains(&stem) && TIME_UNITS.contains(&unit))
+}
+
+/// Lower case, without a unit in brackets after a blank: `X [m]` is `x`, but `position[0]` stays.
+fn base(name: &str) -> String {
+    let name = name.trim().to_lowercase();
+    match unit_at(&name) {
+        Some(at) => name[..at].trim_end().to_owned(),
+        None => name,
+    }
+}
+
+/// The unit in brackets at the end of a name, if there is one.
+pub(crate) fn unit(name: &str) -> Option<&str> {
+    let name = name.trim();
+    unit_at(name).map(|at| name[at + 1..name.len() - 1].trim()).filter(|unit| !unit.is_empty())
+}
+
+/// Where a bracket with a unit opens: at the end, and with a letter or degree sign inside, since `position[0]` is an element.
+fn unit_at(name: &str) -> Option<usize> {
+    let opening = match name.as_bytes().last()? {
+        b']' => '[',
+        b')' => '(',
+        _ => return None,
+    };
+    let at = name.rfind(opening)?;
+    let inside = &name[at + 1..name.len() - 1];
+    (at > 0 && inside.starts_with(|letter: char| letter.is_alphabetic() || letter == '°')).then_some(at)
+}
+
+/// Names that the velocity of `state` may have, the first of them the best.
+pub(crate) fn velocity_names(state: &str) -> impl Iterator<Item = String> + use<> {
+    let s = state;
+    let mut names = vec![
+        format!("v{s}"),
+        format!("d{s}"),
+        format!("{s}dot"),
+        format!("{s}_dot"),
+        format!("{s}_vel"),
+        format!("{s}.vel"),
+        format!("{s}_velocity"),
+        format!("{s}.velocity"),
+        format!("vel_{s}"),
+        format!("velocity_{s}"),
+        format!("v_{s}"),
+        format!("d_{s}"),
+        format!("{s}_d"),
+    ];
+    if let Some(index) = s.strip_prefix('q') {
+        names.push(format!("qd{index}"));
+        names.push(format!("qdot{index}"));
+        names.push(format!("qd_{index}"));
+    }
+    if s.contains("position") {
+        names.push(s.replacen("position", "velocity", 1));
+    } else if s.contains("pos") {
+        names.push(s.replacen("pos", "vel", 1));
+    }
+    // `dt` is a time step, and `d` nobody's velocity.
+    names.into_iter().filter(|name| name != "dt")
+}
+
+#[cfg(test)]
+mod tests;

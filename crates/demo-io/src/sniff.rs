@@ -1,0 +1,197 @@
+//! Which format a file has: by its first bytes, then by its extension.
+
+use std::path::Path;
+
+use crate::input::Input;
+use crate::{Fault, Format, ReadError};
+
+/// What the content shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Content {
+    Known(Format),
+    /// Could be any of the formats made of lines.
+    Text,
+    Nothing,
+    Other,
+}
+
+const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
+const MCAP: &[u8] = b"\x89MCAP0\r\n";
+
+/// The format to read `input` as: content wins over extension, `--as` over both.
+///
+/// # Errors
+///
+/// Known formats that are not read, and files that are not what `--as` or their extension promises.
+pub(crate) fn format(input: &Input<'_>) -> Result<Format, ReadError> {
+    let extension = input.path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    refuse_unread(input, &extension)?;
+    let content = content(&input.head, &extension);
+    let promised = input.options.format.or_else(|| by_extension(&extension));
+    match (content, promised) {
+        (Content::Known(found), Some(asked)) if input.options.format.is_some() && !same_family(found, asked) => {
+            Err(not_this(input, asked, looks_like(content)))
+        }
+        (Content::Known(_) | Content::Nothing, Some(asked)) if input.options.format.is_some() => Ok(asked),
+        (Content::Known(found), _) => Ok(found),
+        (Content::Nothing, _) => {
+            Err(ReadError::Empty(Fault::new("the file is empty", &input.name, "another file: this one holds nothing")))
+        }
+        (_, Some(asked)) if is_text(asked) => Ok(asked),
+        (_, Some(asked)) => Err(not_this(input, asked, looks_like(content))),
+        (Content::Text, None) => Ok(Format::Csv),
+        (Content::Other, None) => Ok(Format::Csv),
+    }
+}
+
+fn is_text(format: Format) -> bool {
+    matches!(format, Format::Csv | Format::Tsv | Format::Jsonl)
+}
+
+fn same_family(found: Format, asked: Format) -> bool {
+    found == asked || (is_text(found) && is_text(asked))
+}
+
+fn by_extension(extension: &str) -> Option<Format> {
+    Some(match extension {
+        "csv" | "txt" | "dat" => Format::Csv,
+        "tsv" | "tab" => Format::Tsv,
+        "npy" => Format::Npy,
+        "npz" => Format::Npz,
+        "jsonl" | "ndjson" | "json" => Format::Jsonl,
+        "parquet" => Format::Parquet,
+        "hdf5" | "h5" => Format::Hdf5,
+        "mcap" => Format::Mcap,
+        "mat" => Format::Mat,
+        _ => return None,
+    })
+}
+
+fn content(head: &[u8], extension: &str) -> Content {
+    let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
+    let first = text.iter().find(|byte| !byte.is_ascii_whitespace());
+    if head.starts_with(crate::npy::MAGIC) {
+        return Content::Known(Format::Npy);
+    }
+    if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
+        return Content::Known(Format::Npz);
+    }
+    if head.starts_with(HDF5) {
+        return Content::Known(Format::Hdf5);
+    }
+    if head.starts_with(MCAP) {
+        return Content::Known(Format::Mcap);
+    }
+    if head.starts_with(b"PAR1") {
+        return Content::Known(Format::Parquet);
+    }
+    if head.starts_with(b"MATLAB 5.0") || (extension == "mat" && is_mat(head)) {
+        return Content::Known(Format::Mat);
+    }
+    match first {
+        None => Content::Nothing,
+        Some(b'{') => Content::Known(Format::Jsonl),
+        Some(b'[') if extension.starts_with("json") => Content::Known(Format::Jsonl),
+        Some(_) if head.iter().take(4096).any(|&byte| byte == 0) => Content::Other,
+        Some(_) => Content::Text,
+    }
+}
+
+/// The header of a MAT-file of version 5 with a text of its own: version and byte order stand at 124.
+fn is_mat(head: &[u8]) -> bool {
+    head.get(126..128).is_some_and(|order| order == b"IM" || order == b"MI")
+}
+
+fn looks_like(content: Content) -> &'static str {
+    match content {
+        Content::Known(format) => name(format),
+        Content::Text => "text",
+        Content::Nothing => "an empty file",
+        Content::Other => "something else",
+    }
+}
+
+fn name(format: Format) -> &'static str {
+    match format {
+        Format::Csv => "CSV",
+        Format::Tsv => "TSV",
+        Format::Npy => "NPY",
+        Format::Npz => "NPZ",
+        Format::Jsonl => "JSON lines",
+        Format::LeRobot => "LeRobot",
+        Format::Parquet => "Parquet",
+        Format::Hdf5 => "HDF5",
+        Format::Mcap => "MCAP",
+        Format::Mat => "MAT",
+    }
+}
+
+fn not_this(input: &Input<'_>, asked: Format, found: &str) -> ReadError {
+    let article = if matches!(asked, Format::Npy | Format::Npz | Format::Hdf5 | Format::Mcap) { "an" } else { "a" };
+    let what = format!("not {article} {} file; it looks like {found}", name(asked));
+    ReadError::NotThisFormat(Fault::new(what, &input.name, "--as with the format it has (csv, jsonl, npz, …), or another file"))
+}
+
+/// Known formats that are not read, with the command that helps.
+fn refuse_unread(input: &Input<'_>, extension: &str) -> Result<(), ReadError> {
+    let head = &input.head[..];
+    let (what, remedy) = if head.starts_with(b"SQLite format 3\0") {
+        (
+            "a bag of ROS 2 in sqlite3 storage, which is not read",
+            "ros2 bag convert -i BAG -o out.yaml with 'storage_id: mcap' in out.yaml, or rosbags-convert --src BAG --dst OUT --dst-storage mcap",
+        )
+    } else if head.starts_with(b"#ROSBAG V") {
+        ("a bag of ROS 1, which is not read", "rosbags-convert --src FILE.bag --dst OUT --dst-storage mcap (pip install rosbags)")
+    } else if is_mat73(head) {
+        ("a MAT-file of version 7.3, which is not read", "in MATLAB: save('out.mat', …, '-v7')")
+    } else if head.starts_with(b"\x1f\x8b") {
+        ("a file compressed by gzip, which is not read", "gunzip FILE")
+    } else if head.starts_with(b"\x28\xb5\x2f\xfd") {
+        ("a file compressed by zstd, which is not read", "unzstd FILE")
+    } else if matches!(extension, "pkl" | "pickle" | "pt" | "pth") || matches!(head, [0x80, 2..=5, ..]) {
+        let remedy =
+            "in Python, with a file you trust: np.savez(path, **{f'demo_{i}': d for i, d in enumerate(demos)}, dt=0.01)";
+        let what = "a pickle: reading it would run what is inside";
+        return Err(ReadError::Pickled(Fault::new(what, &input.name, remedy)));
+    } else if matches!(extension, "xlsx" | "xls" | "ods") {
+        ("a spreadsheet, which is not read", "save the sheet as CSV UTF-8")
+    } else {
+        return Ok(());
+    };
+    Err(ReadError::Unsupported(Fault::new(what, &input.name, remedy)))
+}
+
+/// HDF5 behind MATLAB's header of 512 bytes.
+fn is_mat73(head: &[u8]) -> bool {
+    head.starts_with(b"MATLAB 7.3") || (head.starts_with(b"MATLAB") && head.get(512..520) == Some(HDF5))
+}
+
+/// What a folder is, if it is one thing rather than a folder of recordings.
+pub(crate) enum Folder {
+    /// `meta/info.json` and `data/`.
+    LeRobot,
+    Files,
+}
+
+/// # Errors
+///
+/// Folders of formats that are not read.
+pub(crate) fn folder(path: &Path, name: &str) -> Result<Folder, ReadError> {
+    let has = |inside: &str| path.join(inside).exists();
+    if has("meta/info.json") {
+        return Ok(Folder::LeRobot);
+    }
+    if has(".zgroup") || has("zarr.json") || has(".zattrs") || name.to_lowercase().ends_with(".zarr") {
+        let what = "a Zarr store, which is not read";
+        let remedy = "in Python: z = zarr.open(PATH, 'r'); np.savez('out.npz', state=z['data/state'][:], episode_ends=z['meta/episode_ends'][:], dt=0.1)";
+        return Err(ReadError::Unsupported(Fault::new(what, name, remedy)));
+    }
+    Ok(Folder::Files)
+}
+
+/// Whether a file in a folder is one to read; others (notes, videos, pictures) are passed over.
+pub(crate) fn is_recording(path: &Path) -> bool {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+    !hidden && (by_extension(&extension).is_some() || matches!(&extension[..], "db3" | "bag"))
+}

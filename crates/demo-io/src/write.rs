@@ -1,0 +1,142 @@
+//! Recordings to files.
+
+mod delimited;
+mod json_lines;
+#[cfg(feature = "mcap")]
+mod mcap;
+mod npz;
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::Recordings;
+
+/// Why nothing was written.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// The extension names no format that is written.
+    #[error("files ending in '.{extension}' are not written; use one of: csv, tsv, npz, jsonl, mcap")]
+    Extension {
+        /// Without its point.
+        extension: String,
+    },
+    /// The format needs a feature that was not built in.
+    #[error("'.{extension}' needs demo-io's feature '{feature}', which was not built in")]
+    Feature {
+        /// Without its point.
+        extension: String,
+        /// To be turned on.
+        feature: &'static str,
+    },
+    /// The system does not let us write.
+    #[error("{} cannot be written: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A reader would take a channel for something else.
+    #[error("with these names a reader would take {found} for the state; write .jsonl or .npz, or rename the channels")]
+    Names {
+        /// What would be read as state.
+        found: String,
+    },
+    /// Velocities in some episodes only.
+    #[error(
+        "episode {episode} has no velocities but others have; this format has columns for all or none, .jsonl has not"
+    )]
+    SomeVelocities {
+        /// The first without.
+        episode: String,
+    },
+    /// There is no episode or no channel.
+    #[error("there is nothing to write: {episodes} episodes of {channels} channels")]
+    Nothing {
+        /// How many.
+        episodes: usize,
+        /// How many.
+        channels: usize,
+    },
+}
+
+/// Writes recordings in the format of the extension: csv, tsv, npz, jsonl, and with the feature `mcap` mcap.
+///
+/// The file appears whole or not at all: a temporary file beside it is renamed.
+///
+/// # Errors
+///
+/// [`WriteError`]: an unknown extension, names that would be misread, or what the system refuses.
+pub fn write(path: &Path, recordings: &Recordings) -> Result<(), WriteError> {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    if recordings.episodes.is_empty() || recordings.state.is_empty() {
+        return Err(WriteError::Nothing { episodes: recordings.episodes.len(), channels: recordings.state.len() });
+    }
+    match &extension[..] {
+        "csv" => whole(path, |file| delimited::write(file, recordings, b',')),
+        "tsv" => whole(path, |file| delimited::write(file, recordings, b'\t')),
+        "jsonl" | "ndjson" => whole(path, |file| json_lines::write(file, recordings)),
+        "npz" => whole(path, |file| npz::write(file, recordings)),
+        #[cfg(feature = "mcap")]
+        "mcap" => whole(path, |file| mcap::write(file, recordings)),
+        #[cfg(not(feature = "mcap"))]
+        "mcap" => Err(WriteError::Feature { extension, feature: "mcap" }),
+        _ => Err(WriteError::Extension { extension }),
+    }
+}
+
+/// What goes wrong while bytes are made.
+#[derive(Debug)]
+enum Failure {
+    Io(io::Error),
+    Write(WriteError),
+}
+
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        Failure::Io(error)
+    }
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        Failure::Write(error)
+    }
+}
+
+/// Writes a file beside `path` and renames it, so that nobody sees half of it.
+fn whole(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), Failure>) -> Result<(), WriteError> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let temporary = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
+    let filled = File::create(&temporary).map_err(Failure::Io).and_then(|file| {
+        let mut file = BufWriter::with_capacity(1 << 16, file);
+        fill(&mut file)?;
+        file.flush()?;
+        file.get_ref().sync_all()?;
+        Ok(fs::rename(&temporary, path)?)
+    });
+    filled.map_err(|failure| {
+        // Whatever happened, the message about it matters more than what is left.
+        let _ = fs::remove_file(&temporary);
+        match failure {
+            Failure::Io(source) => WriteError::Io { path: path.to_owned(), source },
+            Failure::Write(error) => error,
+        }
+    })
+}
+
+/// Whether all episodes have velocities; an error if only some have.
+fn has_velocities(recordings: &Recordings) -> Result<bool, WriteError> {
+    let with = recordings.episodes.iter().filter(|episode| episode.velocities.is_some()).count();
+    match recordings.episodes.iter().find(|episode| episode.velocities.is_none()) {
+        Some(episode) if with > 0 => Err(WriteError::SomeVelocities { episode: episode.name.clone() }),
+        without => Ok(without.is_none()),
+    }
+}
+
+#[cfg(test)]
+mod tests;

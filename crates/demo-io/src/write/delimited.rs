@@ -1,0 +1,61 @@
+use std::io::Write;
+
+use super::{Failure, WriteError, has_velocities};
+use crate::roles::{Column, Content, assign};
+use crate::{ReadOptions, Recordings};
+
+/// `episode, t, x, y, x_vel, y_vel`, a row a sample, numbers in the shortest form that reads back to the same bits.
+pub(super) fn write(file: impl Write, recordings: &Recordings, separator: u8) -> Result<(), Failure> {
+    let velocities = has_velocities(recordings)?;
+    let constraints = recordings.episodes.iter().any(|episode| episode.constraint.is_some());
+    let mut header = vec!["episode".to_owned(), "t".to_owned()];
+    header.extend(constraints.then(|| "constraint".to_owned()));
+    let leading = header.len();
+    header.extend(recordings.state.iter().map(|channel| channel.name.clone()));
+    if velocities {
+        header.extend(recordings.state.iter().map(|channel| format!("{}_vel", channel.name)));
+    }
+    check(&header, leading..leading + recordings.state.len())?;
+    let mut writer = csv::WriterBuilder::new().delimiter(separator).from_writer(file);
+    writer.write_record(&header).map_err(std::io::Error::from)?;
+    let mut number = String::new();
+    for episode in &recordings.episodes {
+        for (sample, time) in episode.times.iter().enumerate() {
+            let mut field = |text: &str| writer.write_field(text).map_err(std::io::Error::from);
+            field(&episode.name)?;
+            let label = episode.constraint.as_deref().unwrap_or_default();
+            let columns = [Some(&episode.positions), episode.velocities.as_ref()];
+            field(shortest(&mut number, *time))?;
+            if constraints {
+                field(label)?;
+            }
+            for value in columns.into_iter().flatten().flat_map(|numbers| numbers.column(sample)) {
+                field(shortest(&mut number, *value))?;
+            }
+            writer.write_record(None::<&[u8]>).map_err(std::io::Error::from)?;
+        }
+    }
+    Ok(writer.flush()?)
+}
+
+fn shortest(buffer: &mut String, value: f64) -> &str {
+    use std::fmt::Write as _;
+    buffer.clear();
+    // Writing to a String does not fail.
+    let _ = write!(buffer, "{value:?}");
+    buffer
+}
+
+/// A reader must find the same roles by itself.
+fn check(header: &[String], state: std::ops::Range<usize>) -> Result<(), WriteError> {
+    let columns: Vec<Column> =
+        header.iter().map(|name| Column { name: name.clone(), content: Content::Counting }).collect();
+    let roles = assign(&columns, &ReadOptions::default(), "").map(|roles| roles.state);
+    match roles {
+        Ok(found) if found.iter().copied().eq(state) => Ok(()),
+        Ok(found) => Err(WriteError::Names {
+            found: crate::roles::shortened(&found.iter().map(|&at| &header[at]).collect::<Vec<_>>()),
+        }),
+        Err(error) => Err(WriteError::Names { found: error.fault().what.clone() }),
+    }
+}

@@ -1,0 +1,62 @@
+use std::io::Write;
+
+use nalgebra::DMatrix;
+use serde::Serialize;
+
+use super::Failure;
+use crate::{Episode, Recordings};
+
+/// A line an episode, with names, units and labels in each.
+pub(super) fn write(mut file: impl Write, recordings: &Recordings) -> Result<(), Failure> {
+    let names: Vec<&str> = recordings.state.iter().map(|channel| &channel.name[..]).collect();
+    let units: Vec<Option<&str>> = recordings.state.iter().map(|channel| channel.unit.as_deref()).collect();
+    for episode in &recordings.episodes {
+        let step = even_step(&episode.times);
+        let line = Line {
+            episode: &episode.name,
+            dt: step,
+            times: step.is_none().then_some(&episode.times),
+            names: &names,
+            unit: units.iter().any(Option::is_some).then_some(&units),
+            constraint: episode.constraint.as_deref(),
+            state: samples(&episode.positions),
+            velocity: episode.velocities.as_ref().map(samples),
+        };
+        serde_json::to_writer(&mut file, &line).map_err(std::io::Error::from)?;
+        file.write_all(b"\n")?;
+    }
+    Ok(())
+}
+
+#[derive(Serialize)]
+struct Line<'a> {
+    episode: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    dt: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    times: Option<&'a Vec<f64>>,
+    names: &'a [&'a str],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unit: Option<&'a Vec<Option<&'a str>>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    constraint: Option<&'a str>,
+    state: Vec<&'a [f64]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    velocity: Option<Vec<&'a [f64]>>,
+}
+
+fn samples(numbers: &DMatrix<f64>) -> Vec<&[f64]> {
+    numbers.as_slice().chunks_exact(numbers.nrows().max(1)).collect()
+}
+
+/// The time step of which all stamps are multiples, to the last bit.
+fn even_step(times: &[f64]) -> Option<f64> {
+    let step = times.get(1).copied().filter(|&step| step > 0.0)?;
+    times.iter().enumerate().all(|(sample, &time)| time == sample as f64 * step).then_some(step)
+}
+
+/// The time step of which the stamps of all episodes are multiples.
+pub(super) fn common_step(episodes: &[Episode]) -> Option<f64> {
+    let step = even_step(&episodes.first()?.times)?;
+    episodes.iter().all(|episode| even_step(&episode.times) == Some(step)).then_some(step)
+}

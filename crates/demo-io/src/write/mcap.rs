@@ -1,0 +1,99 @@
+use std::collections::BTreeMap;
+use std::io::{self, Seek, Write};
+
+use mcap::records::{MessageHeader, Metadata};
+use mcap::{Compression, McapError, WriteOptions};
+
+use super::{Failure, has_velocities};
+use crate::Recordings;
+use crate::cdr::Writer;
+use crate::mcap::{METADATA, Noted};
+
+const TOPIC: &str = "/joint_states";
+const TYPE: &str = "sensor_msgs/msg/JointState";
+
+/// What viewers need to know to take messages apart.
+const SCHEMA: &str = "\
+std_msgs/Header header
+string[] name
+float64[] position
+float64[] velocity
+float64[] effort
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+";
+
+/// Stamp of the first sample: 0 would mean that a driver left it out.
+const START: u64 = 1_000_000_000;
+
+/// Nanoseconds without a message between two movements, so that programs see them apart.
+const PAUSE: u64 = 5_000_000_000;
+
+/// Messages of `sensor_msgs/msg/JointState`, a message a sample; names of movements and units stand in a metadata record.
+pub(super) fn write(file: impl Write + Seek, recordings: &Recordings) -> Result<(), Failure> {
+    has_velocities(recordings)?;
+    let io = |error: McapError| match error {
+        McapError::Io(error) => error,
+        other => io::Error::other(other),
+    };
+    let options = WriteOptions::new().compression(Some(Compression::Zstd)).profile("ros2").library("demo-io");
+    let mut bag = options.create(file).map_err(io)?;
+    let schema = bag.add_schema(TYPE, "ros2msg", SCHEMA.as_bytes()).map_err(io)?;
+    let channel_id = bag.add_channel(schema, TOPIC, "cdr", &BTreeMap::new()).map_err(io)?;
+    let mut start = START;
+    let mut sequence = 0;
+    for episode in &recordings.episodes {
+        let mut stamp = start;
+        for (sample, time) in episode.times.iter().enumerate() {
+            stamp = start + (time * 1e9).round() as u64;
+            let header = MessageHeader { channel_id, sequence, log_time: stamp, publish_time: stamp };
+            bag.write_to_known_channel(&header, &message(recordings, episode, sample, stamp)).map_err(io)?;
+            sequence = sequence.wrapping_add(1);
+        }
+        start = stamp + PAUSE;
+    }
+    bag.write_metadata(&metadata(recordings)?).map_err(io)?;
+    bag.finish().map_err(io)?;
+    Ok(())
+}
+
+fn message(recordings: &Recordings, episode: &crate::Episode, sample: usize, stamp: u64) -> Vec<u8> {
+    let mut writer = Writer::default();
+    writer.i32((stamp / 1_000_000_000) as i32);
+    writer.u32((stamp % 1_000_000_000) as u32);
+    writer.text("");
+    writer.u32(recordings.state.len() as u32);
+    recordings.state.iter().for_each(|channel| writer.text(&channel.name));
+    writer.numbers(episode.positions.column(sample).iter());
+    match &episode.velocities {
+        Some(velocities) => writer.numbers(velocities.column(sample).iter()),
+        None => writer.numbers([].iter()),
+    }
+    writer.numbers([].iter());
+    writer.message()
+}
+
+fn metadata(recordings: &Recordings) -> Result<Metadata, io::Error> {
+    let noted: Vec<Noted> = recordings
+        .episodes
+        .iter()
+        .map(|episode| Noted {
+            name: episode.name.clone(),
+            messages: episode.times.len(),
+            constraint: episode.constraint.clone(),
+        })
+        .collect();
+    let mut metadata = BTreeMap::from([("episodes".to_owned(), serde_json::to_string(&noted)?)]);
+    for channel in &recordings.state {
+        if let Some(unit) = &channel.unit {
+            metadata.insert(format!("unit/{}", channel.name), unit.clone());
+        }
+    }
+    Ok(Metadata { name: METADATA.to_owned(), metadata })
+}

@@ -1,0 +1,63 @@
+//! What all tests of reading need.
+
+use std::path::{Path, PathBuf};
+
+use demo_io::{NoteKind, ReadError, ReadOptions, Recordings, read};
+use tempfile::TempDir;
+
+/// A folder for files of one test.
+pub struct Files(TempDir);
+
+impl Files {
+    pub fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    pub fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    pub fn add(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.0.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, content).unwrap();
+        path
+    }
+}
+
+/// Reads a file without progress.
+pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Recordings, ReadError> {
+    read(path, options, &mut |_| ())
+}
+
+/// Reads one file of this content.
+pub fn parsed(name: &str, content: impl AsRef<[u8]>, options: &ReadOptions) -> Result<Recordings, ReadError> {
+    let files = Files::new();
+    read_with(&files.add(name, content), options)
+}
+
+/// The error of reading this content, which has three lines and says all of `words`.
+pub fn refused(name: &str, content: impl AsRef<[u8]>, options: &ReadOptions, code: &str, words: &[&str]) {
+    let error = parsed(name, content, options).expect_err("should be refused");
+    let text = error.to_string();
+    assert_eq!(error.code(), code, "{text}");
+    assert_eq!(text.lines().count(), 3, "{text}");
+    for word in words {
+        assert!(text.contains(word), "'{word}' is not said:\n{text}");
+    }
+}
+
+/// The kinds of what was noticed, in order.
+pub fn kinds(recordings: &Recordings) -> Vec<NoteKind> {
+    recordings.notes.iter().map(|note| note.kind).collect()
+}
+
+/// Names of the state.
+pub fn names(recordings: &Recordings) -> Vec<&str> {
+    recordings.state.iter().map(|channel| &channel.name[..]).collect()
+}
+
+/// Numbers of samples.
+pub fn lengths(recordings: &Recordings) -> Vec<usize> {
+    recordings.episodes.iter().map(|episode| episode.times.len()).collect()
+}

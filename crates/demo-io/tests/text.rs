@@ -1,0 +1,247 @@
+//! Text with separators, as people and programs write it.
+
+mod common;
+
+use common::{Files, kinds, lengths, names, parsed, read_with, refused};
+use demo_io::{Nan, NoteKind, ReadOptions};
+use proptest::prelude::*;
+
+fn plain() -> ReadOptions {
+    ReadOptions::default()
+}
+
+/// Rows of `t, x, y` over two movements, with any line end and separator.
+fn two_movements(separator: &str, end: &str, comma: &str) -> String {
+    let mut text = ["episode", "t", "x", "y"].join(separator) + end;
+    for row in 0..12 {
+        let (episode, step) = (row / 6, row % 6);
+        let x = f64::from(row * row) * 0.137;
+        let y = f64::from(7 - row).sin();
+        let fields = [format!("{episode}"), format!("{}", f64::from(step) * 0.1), format!("{x}"), format!("{y}")];
+        text += &(fields.map(|field| field.replace('.', comma)).join(separator) + end);
+    }
+    text
+}
+
+#[test]
+fn separators_line_ends_and_decimal_commas_give_the_same_numbers() {
+    let expected = parsed("a.csv", two_movements(",", "\n", "."), &plain()).unwrap();
+    assert_eq!((names(&expected), lengths(&expected)), (vec!["x", "y"], vec![6, 6]));
+    assert_eq!(expected.episodes[1].positions[(0, 0)], 36.0 * 0.137);
+    assert_eq!(expected.time_step(), 0.1);
+    for (separator, end, comma) in
+        [(";", "\n", "."), (";", "\r\n", ","), ("\t", "\n", ","), ("  ", "\n", "."), (" \t ", "\n", "."), ("|", "\n", "."), (", ", "\r\n", ".")]
+    {
+        for mark in ["", "\u{feff}", "# made by hand\n", "\n\n"] {
+            let text = mark.to_owned() + &two_movements(separator, end, comma);
+            let found = parsed("a.txt", &text, &plain()).unwrap();
+            assert_eq!(found.episodes[0].positions, expected.episodes[0].positions, "{separator:?} {mark:?}");
+            assert_eq!(found.episodes[1].times, expected.episodes[1].times, "{separator:?} {mark:?}");
+            assert_eq!(kinds(&found).contains(&NoteKind::DecimalComma), comma == ",");
+        }
+    }
+}
+
+#[test]
+fn blanks_in_front_and_behind_are_no_fields() {
+    let text = two_movements("   ", "   \n", ".").replace("\n0", "\n  0");
+    assert_eq!(lengths(&parsed("a.dat", text, &plain()).unwrap()), [6, 6]);
+}
+
+#[test]
+fn quotes_blank_lines_and_comments_are_understood() {
+    let text = "\"t\",\"x, left\",\"y\"\n0,1.5,2\n\n# pause\n0.1,\"1.75\",2.25\n   \n0.2,2.125,2.5\n";
+    let found = parsed("a.csv", text, &plain()).unwrap();
+    assert_eq!(names(&found), ["x, left", "y"]);
+    assert_eq!(lengths(&found), [3]);
+    assert_eq!(found.episodes[0].source.rows, Some((2, 7)));
+}
+
+#[test]
+fn thousands_of_columns_are_no_trouble() {
+    let header: Vec<String> = (0..3000).map(|column| format!("c_{column}")).collect();
+    let mut text = format!("t,{}\n", header.join(","));
+    for row in 0..4 {
+        let fields: Vec<String> = (0..3000).map(|column| format!("{}", row * column + row)).collect();
+        text += &format!("{},{}\n", f64::from(row) * 0.5, fields.join(","));
+    }
+    let found = parsed("wide.csv", text, &plain()).unwrap();
+    assert_eq!(found.state.len(), 3000);
+    assert_eq!(found.episodes[0].positions[(2999, 3)], 3.0 * 2999.0 + 3.0);
+}
+
+#[test]
+fn what_is_wrong_is_said_with_its_line() {
+    let with = |line: usize, content: &str| {
+        let text = two_movements(",", "\n", ".");
+        let mut lines: Vec<&str> = text.lines().collect();
+        lines[line - 1] = content;
+        lines.join("\n") + "\n"
+    };
+    for (line, content, code, words) in [
+        (5, "0,0.3,1.0", "Ragged", &["line 5", "3 fields", "4"][..]),
+        (5, "0,0.3,1.0,2.0,3.0", "Ragged", &["line 5", "5 fields"]),
+        (7, "0,0.5,one,2", "NotANumber", &["line 7", "'x'", "'one'"]),
+        (7, "0,soon,1,2", "NotANumber", &["line 7", "'t'", "stamp"]),
+        (4, "0,0.2,,2", "NotFinite", &["line 4", "'x'", "--nan"]),
+        (4, "0,0.2,inf,2", "NotFinite", &["line 4", "inf"]),
+        (4, "0,,1,2", "NotFinite", &["line 4", "stamp"]),
+        (6, "0,0.05,1,2", "TimeBackwards", &["line 6", "--sort", "episode 0"]),
+        (1, "episode,t,x,x", "AmbiguousColumn", &["'x'", "columns 2 and 3"]),
+        (1, "episode,t,x,vx", "", &[]),
+    ] {
+        match code {
+            "" => assert!(parsed("a.csv", with(line, content), &plain()).is_ok()),
+            code => refused("a.csv", with(line, content), &plain(), code, words),
+        }
+    }
+    refused("a.csv", "", &plain(), "Empty", &["empty"]);
+    refused("a.csv", "t,x,y\n", &plain(), "Empty", &["no row"]);
+    refused("a.csv", "x,y\n1,2\n2,3\n", &plain(), "NoTime", &["--dt"]);
+    refused("a.csv", "t,x,y,vx\n0,1,2,3\n1,2,3,4\n", &plain(), "NoRoles", &["'y'"]);
+    refused("a.csv", b"t,\xe9\n0,1\n1,2\n", &plain(), "Encoding", &["UTF-8"]);
+    refused("a.csv", b"\xff\xfet\0,\0x\0\n\0", &plain(), "Encoding", &["UTF-16"]);
+    refused("a.csv", b"t\0,\0x\0\n\x000\0,\x001\0\n\0", &plain(), "Encoding", &["UTF-16"]);
+}
+
+#[test]
+fn an_open_quotation_mark_does_not_swallow_memory() {
+    let mut text = "t,x\n0,\"1\n".to_owned();
+    text += &"1,2\n".repeat(5 << 20);
+    refused("a.csv", text, &plain(), "NotThisFormat", &["quotation mark", "line"]);
+}
+
+#[test]
+fn what_is_missing_is_dropped_or_filled() {
+    let text = "t,x,y\n0,0,0\n1,1,2\n2,,4\n3,nan,6\n4,4,8\n6,6,12\n";
+    let dropped = parsed("a.csv", text, &ReadOptions { nan: Nan::Drop, ..plain() }).unwrap();
+    assert_eq!(dropped.episodes[0].times, [0.0, 1.0, 4.0, 6.0]);
+    let filled = parsed("a.csv", text, &ReadOptions { nan: Nan::Fill, ..plain() }).unwrap();
+    assert_eq!(filled.episodes[0].positions.row(0).iter().copied().collect::<Vec<_>>(), [0.0, 1.0, 2.0, 3.0, 4.0, 6.0]);
+    let long = text.replace("1,1,2", "1,,2").replace("4,4,8", "4,,8");
+    refused("a.csv", long, &ReadOptions { nan: Nan::Fill, ..plain() }, "NotFinite", &["line 3"]);
+    let at_end = "t,x\n0,1\n1,2\n2,\n";
+    refused("a.csv", at_end, &ReadOptions { nan: Nan::Fill, ..plain() }, "NotFinite", &["line 4"]);
+}
+
+#[test]
+fn stamps_are_sorted_cut_and_kept_once() {
+    let text = "t,x\n0,0\n2,2\n1,1\n1,9\n8,8.5\n9,9.5\n";
+    let options = ReadOptions { sort: true, split_gap: Some(3.0), ..plain() };
+    let found = parsed("take.csv", text, &options).unwrap();
+    assert_eq!(lengths(&found), [3, 2]);
+    assert_eq!(found.episodes[0].positions.as_slice(), [0.0, 1.0, 2.0]);
+    assert_eq!(found.episodes[1].times, [0.0, 1.0]);
+    assert_eq!(found.episodes[1].name, "take_1");
+    assert!(kinds(&found).contains(&NoteKind::DuplicateStamp));
+}
+
+#[test]
+fn angles_become_radians_and_continuous() {
+    let mut text = "t,q1,q2\n".to_owned();
+    for step in 0..40 {
+        let angle = 150.0 + 3.0 * f64::from(step);
+        let wrapped = if angle > 180.0 { angle - 360.0 } else { angle };
+        text += &format!("{},{wrapped},{}\n", f64::from(step) * 0.1, 20.0 - 0.31 * f64::from(step));
+    }
+    let found = parsed("a.csv", &text, &plain()).unwrap();
+    assert!(kinds(&found).contains(&NoteKind::LooksLikeDegrees));
+    let options = ReadOptions { degrees: vec!["q*".to_owned()], unwrap: vec!["*".to_owned()], ..plain() };
+    let found = parsed("a.csv", &text, &options).unwrap();
+    assert_eq!(kinds(&found), []);
+    let row = found.episodes[0].positions.row(0);
+    assert!(row.iter().zip(row.iter().skip(1)).all(|(here, next)| (next - here - 3f64.to_radians()).abs() < 1e-12));
+    assert_eq!(found.state[0].unit.as_deref(), Some("rad"));
+}
+
+#[test]
+fn still_ends_are_noted_and_trimmed() {
+    let mut text = "t,x\n".to_owned();
+    for step in 0..60 {
+        let x = f64::from(step).clamp(15.0, 40.0).powi(2) * 0.0137;
+        text += &format!("{},{x}\n", f64::from(step) * 0.1);
+    }
+    let found = parsed("a.csv", &text, &plain()).unwrap();
+    assert!(kinds(&found).contains(&NoteKind::StandsStill), "{:?}", found.notes);
+    let found = parsed("a.csv", &text, &ReadOptions { trim_still: true, ..plain() }).unwrap();
+    assert_eq!(lengths(&found), [26]);
+    assert_eq!(found.episodes[0].times[0], 0.0);
+}
+
+#[test]
+fn files_of_a_folder_are_movements_in_natural_order() {
+    let files = Files::new();
+    for (name, shift) in [("demo_10.csv", 10), ("demo_2.csv", 2), ("demo_1.csv", 1)] {
+        files.add(name, format!("t,x\n0,{shift}.5\n1,3.25\n2,4.125\n"));
+    }
+    files.add("notes.md", "not a recording");
+    let found = read_with(files.path(), &plain()).unwrap();
+    let episodes: Vec<&str> = found.episodes.iter().map(|episode| &episode.name[..]).collect();
+    assert_eq!(episodes, ["demo_1", "demo_2", "demo_10"]);
+    files.add("demo_3.csv", "t,x,y\n0,1,2\n1,2,3\n");
+    assert_eq!(read_with(files.path(), &plain()).unwrap_err().code(), "Lengths");
+}
+
+#[test]
+fn what_is_something_else_is_said() {
+    refused("a.csv", b"\x80\x04\x95\x0b\0\0\0.", &plain(), "Pickled", &["pickle"]);
+    refused("a.csv", b"SQLite format 3\0 and more", &plain(), "Unsupported", &["sqlite3", "mcap"]);
+    refused("a.bag", b"#ROSBAG V2.0\n", &plain(), "Unsupported", &["rosbags-convert"]);
+    refused("a.csv.gz", b"\x1f\x8b\x08\0", &plain(), "Unsupported", &["gunzip"]);
+    refused("a.npz", "t,x\n0,1\n", &plain(), "NotThisFormat", &["NPZ", "looks like text"]);
+    let files = Files::new();
+    files.add("set.zarr/.zgroup", "{}");
+    assert_eq!(read_with(&files.path().join("set.zarr"), &plain()).unwrap_err().code(), "Unsupported");
+    assert_eq!(read_with(&files.path().join("nothing.csv"), &plain()).unwrap_err().code(), "MissingFile");
+}
+
+proptest! {
+    /// Every f64 that is written in decimals is read to the same bits, from text with any separator.
+    #[test]
+    fn numbers_keep_their_bits(values in proptest::collection::vec(proptest::num::f64::NORMAL, 4..40), tabs in any::<bool>()) {
+        let separator = if tabs { "\t" } else { "," };
+        let mut text = format!("t{separator}x{separator}y\n");
+        for (row, pair) in values.chunks_exact(2).enumerate() {
+            text += &format!("{row}{separator}{:e}{separator}{}\n", pair[0], pair[1]);
+        }
+        let options = ReadOptions { state: vec!["x".to_owned(), "y".to_owned()], ..plain() };
+        let found = parsed("a.csv", text, &options).unwrap();
+        let bits: Vec<u64> = found.episodes[0].positions.iter().map(|value| value.to_bits()).collect();
+        let expected: Vec<u64> = values.chunks_exact(2).flatten().map(|value| value.to_bits()).collect();
+        prop_assert_eq!(bits, expected);
+    }
+
+    /// Rows of several movements in any order give each movement its rows in order.
+    #[test]
+    fn interleaved_movements_are_told_apart(labels in proptest::collection::vec(0u8..4, 2..60)) {
+        let mut text = "episode,t,x\n".to_owned();
+        for (row, label) in labels.iter().enumerate() {
+            text += &format!("take {label},{row},{}\n", row as f64 * 1.25 + 0.1);
+        }
+        let mut expected: Vec<(u8, Vec<f64>)> = Vec::new();
+        for (row, &label) in labels.iter().enumerate() {
+            let value = row as f64 * 1.25 + 0.1;
+            match expected.iter_mut().find(|(known, _)| *known == label) {
+                Some((_, values)) => values.push(value),
+                None => expected.push((label, vec![value])),
+            }
+        }
+        expected.retain(|(_, values)| values.len() > 1);
+        match parsed("a.csv", text, &ReadOptions { state: vec!["x".to_owned()], ..plain() }) {
+            Ok(found) => {
+                let found: Vec<(String, Vec<f64>)> = found
+                    .episodes
+                    .iter()
+                    .map(|episode| (episode.name.clone(), episode.positions.as_slice().to_vec()))
+                    .collect();
+                let expected: Vec<(String, Vec<f64>)> =
+                    expected.into_iter().map(|(label, values)| (format!("take {label}"), values)).collect();
+                prop_assert_eq!(found, expected);
+            }
+            Err(error) => {
+                prop_assert!(expected.is_empty(), "{}", error);
+                prop_assert_eq!(error.code(), "Empty");
+            }
+        }
+    }
+}

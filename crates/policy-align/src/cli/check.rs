@@ -1,0 +1,117 @@
+use std::path::PathBuf;
+
+use clap::Args;
+use policy_align::{Finding, Prepared, Verdict, prepare};
+use serde_json::json;
+
+use super::config::Config;
+use super::coverage::directions;
+use super::failure::{Exit, Failure};
+use super::flags::{PrepareFlags, ReadFlags};
+use super::lines::{Lines, counted, short};
+use super::recorded::{named, read};
+use super::session::{Said, Session};
+
+/// Say everything that can be said before learning
+///
+/// Reads the files, finds out what is state, velocity and time, and looks for
+/// what would spoil a policy: noise, jumps, missing numbers, mixed units,
+/// directions that never move. Nothing is written.
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align check toy.csv")]
+pub(crate) struct Check {
+    /// Recordings: CSV, NPZ, JSON lines, LeRobot, HDF5, MCAP, MAT
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    read: ReadFlags,
+    #[command(flatten)]
+    prepare: PrepareFlags,
+}
+
+impl Check {
+    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+        let config = Config::of(session)?;
+        let flags = config.under("read", &self.read)?;
+        let options = config.under("prepare", &self.prepare)?.options(flags.dt)?;
+        let recordings = read(session, &self.files, &flags.options()?)?;
+        let prepared =
+            prepare(&recordings, &options).map_err(|error| Failure::prepare(&error, named(&self.files)))?;
+        let refused = prepared.findings.iter().any(|finding| finding.verdict == Verdict::DoNotUse);
+        let exit = if refused { Exit::Refused } else { Exit::Done };
+        let (coverage, direction) = directions(&prepared.demonstrations);
+        if session.json {
+            let document = json!({
+                "episodes": prepared.episodes, "left_out": prepared.left_out, "state": prepared.state,
+                "samples": prepared.demonstrations.n_samples(), "time_step": prepared.time_step,
+                "noise": prepared.noise, "direction_coverage": coverage,
+                "least_seen": direction.as_slice(), "decisions": prepared.decisions, "findings": prepared.findings,
+            });
+            return Ok(Said { text: format!("{document}\n"), exit });
+        }
+        let mut lines = Lines::default();
+        about(&prepared, &named(&self.files), &mut lines);
+        let seen = if coverage < 0.1 { "one is hardly ever seen" } else { "every direction is seen somewhere" };
+        lines.add("directions", &format!("{} of 1: {seen}", short(coverage)));
+        findings(&prepared.findings, 12 - 2 - lines.count(), &mut lines);
+        if refused {
+            return Ok(Said { text: lines.into_text(), exit });
+        }
+        let given = self.files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>().join(" ");
+        Ok(Said { text: lines.next(&format!("policy-align fit {given} -o model.json")), exit })
+    }
+}
+
+/// What was recorded.
+pub(crate) fn about(prepared: &Prepared, files: &str, lines: &mut Lines) {
+    let demonstrations = &prepared.demonstrations;
+    let names: Vec<&str> = prepared.state.iter().map(|channel| channel.name.as_str()).collect();
+    let velocities = demonstrations.trajectories().iter().all(|movement| movement.velocities().is_some());
+    lines.add(
+        "recorded",
+        &format!(
+            "{files}: {}, {}, {} ({}){}",
+            counted(demonstrations.n_trajectories(), "episode"),
+            counted(demonstrations.n_samples(), "sample"),
+            counted(names.len(), "state"),
+            names.join(", "),
+            if velocities { " with velocities" } else { "" }
+        ),
+    );
+    if let Some(first) = prepared.left_out.first() {
+        lines.add("left out", &format!("{} ({}: {})", counted(prepared.left_out.len(), "episode"), first.episode, first.why));
+    }
+    let rate = 1.0 / prepared.time_step;
+    lines.add("time", &format!("dt {} s ({} Hz)", short(prepared.time_step), short(rate)));
+    let range = |channel: &policy_align::StateChannel| {
+        let unit = channel.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
+        format!("{} {} … {}{unit}", channel.name, short(channel.low), short(channel.high))
+    };
+    let mut ranges: Vec<String> = prepared.state.iter().take(8).map(range).collect();
+    if prepared.state.len() > ranges.len() {
+        ranges.push("…".to_owned());
+    }
+    lines.add("values", &ranges.join(", "));
+    for decision in &prepared.decisions {
+        lines.add(&decision.what, &format!("{} ({})", decision.value, decision.why));
+    }
+}
+
+/// What gives reason for doubt, in so many lines.
+pub(crate) fn findings(findings: &[Finding], room: usize, lines: &mut Lines) {
+    let begun = lines.count();
+    for (shown, finding) in findings.iter().enumerate() {
+        let label = match finding.verdict {
+            Verdict::Good => "remark",
+            Verdict::Doubtful => "warning",
+            Verdict::DoNotUse => "wrong",
+        };
+        let mut longer = lines.clone();
+        longer.add(label, &format!("{}: {}", finding.what, finding.next));
+        if longer.count() - begun > room {
+            lines.add("", &format!("and {} more: --json shows all", findings.len() - shown));
+            return;
+        }
+        *lines = longer;
+    }
+}

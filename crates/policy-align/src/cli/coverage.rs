@@ -1,0 +1,34 @@
+use motion::Demonstrations;
+use nalgebra::{DMatrix, DVector};
+
+/// Samples slower than this share of the median are left out: their direction is noise.
+const STILL: f64 = 0.01;
+
+/// How evenly directions are seen: n times the least eigenvalue of the mean of d dᵀ, d = u/‖u‖, 1 if all alike and 0 if
+/// one never is, and that direction, (n).
+pub(crate) fn directions(demonstrations: &Demonstrations) -> (f64, DVector<f64>) {
+    let velocities: Vec<DVector<f64>> = demonstrations
+        .trajectories()
+        .iter()
+        .flat_map(|movement| {
+            let velocities = movement.velocities().cloned().unwrap_or_else(|| movement.step_velocities());
+            velocities.column_iter().map(|u| u.into_owned()).collect::<Vec<_>>()
+        })
+        .collect();
+    let mut speeds: Vec<f64> = velocities.iter().map(|u| u.norm()).collect();
+    speeds.sort_by(f64::total_cmp);
+    let least = STILL * speeds[speeds.len() / 2];
+    let n = demonstrations.dim();
+    let (mut sum, mut count) = (DMatrix::zeros(n, n), 0.0);
+    for velocity in velocities.iter().filter(|u| u.norm() > least) {
+        let direction = velocity.normalize();
+        sum.ger(1.0, &direction, &direction, 1.0);
+        count += 1.0;
+    }
+    if count == 0.0 {
+        return (0.0, DVector::zeros(n));
+    }
+    let eigen = (sum / count).symmetric_eigen();
+    let at = eigen.eigenvalues.imin();
+    (n as f64 * eigen.eigenvalues[at].max(0.0), eigen.eigenvectors.column(at).into_owned())
+}

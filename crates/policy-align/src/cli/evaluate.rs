@@ -1,0 +1,137 @@
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use clap::Args;
+use nalgebra::{DMatrix, DVector};
+use policy_align::{Evaluation, Model, PrepareOptions, Prepared, Truth, evaluate, prepare};
+use serde_json::json;
+
+use super::config::Config;
+use super::failure::{Exit, Failure};
+use super::fit::load;
+use super::flags::{PrepareFlags, ReadFlags};
+use super::lines::{Lines, counted, short};
+use super::recorded::{named, read};
+use super::session::{Said, Session};
+
+/// Hold a model against other recordings
+///
+/// The error is of what is seen along the movements: 0 explains every one, 1 is
+/// as good as standing still.
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align evaluate toy.json toy.csv")]
+pub(crate) struct Evaluate {
+    /// A model that `fit` has written
+    model: PathBuf,
+    /// Recordings that it was not learnt from
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// Columns of the true policy, in the order of the state
+    #[arg(long, value_name = "PATTERNS")]
+    truth: Vec<String>,
+    /// Exit code 1 if the error of the policy is larger
+    #[arg(long, value_name = "ERROR")]
+    require: Option<f64>,
+    #[command(flatten)]
+    read: ReadFlags,
+    #[command(flatten)]
+    prepare: PrepareFlags,
+}
+
+impl Evaluate {
+    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+        let model = load(&self.model)?;
+        let config = Config::of(session)?;
+        let mut reading = config.under("read", &self.read)?;
+        if reading.state.is_empty() {
+            reading.state = model.state.iter().map(|channel| channel.name.clone()).collect();
+        }
+        let mut options = config.under("prepare", &self.prepare)?.options(reading.dt)?;
+        // The learner saw the state times these, whatever is said now.
+        options.scale = model.state.iter().filter(|c| c.scale != 1.0).map(|c| (c.name.clone(), c.scale)).collect();
+        let prepared = self.prepared(session, &reading, &options)?;
+        let names = |state: &[policy_align::StateChannel]| state.iter().map(|c| c.name.clone()).collect::<Vec<_>>();
+        if names(&prepared.state) != names(&model.state) {
+            let what = format!("the channels are {}, the model's {}", names(&prepared.state).join(", "), names(&model.state).join(", "));
+            return Err(Failure::usage(what, named(&self.files), format!("--state {}", names(&model.state).join(","))));
+        }
+        let truth = self.truth(session, &reading, &model)?;
+        let judged = evaluate(model.learnt.policy(), &prepared, truth.as_ref()).map_err(|error| {
+            let remedy = "recordings of which no sample is left out, and a column of the truth for each channel";
+            Failure::new(Exit::Refused, error.to_string(), named(&self.files), remedy)
+        })?;
+        let failed = self.require.is_some_and(|most| judged.policy_error.is_nan() || judged.policy_error > most);
+        let exit = if failed { Exit::Refused } else { Exit::Done };
+        if session.json {
+            let document = json!({ "evaluation": judged, "episodes": prepared.episodes, "constraints": by_constraint(&prepared, &judged) });
+            return Ok(Said { text: format!("{document}\n"), exit });
+        }
+        let mut lines = Lines::default();
+        tell(&prepared, &judged, &mut lines);
+        if let Some(most) = self.require {
+            lines.add("required", &format!("at most {}: {}", short(most), if failed { "not met" } else { "met" }));
+        }
+        Ok(Said { text: lines.into_text(), exit })
+    }
+
+    fn prepared(&self, session: &Session, reading: &ReadFlags, options: &PrepareOptions) -> Result<Prepared, Failure> {
+        let recordings = read(session, &self.files, &reading.options()?)?;
+        prepare(&recordings, options).map_err(|error| Failure::prepare(&error, named(&self.files)))
+    }
+
+    /// The columns of the true policy, read as if they were the state.
+    fn truth(&self, session: &Session, reading: &ReadFlags, model: &Model) -> Result<Option<Truth>, Failure> {
+        if self.truth.is_empty() {
+            return Ok(None);
+        }
+        let mut options = reading.options()?;
+        options.state.clone_from(&self.truth);
+        options.velocity = vec![];
+        let quiet = Session { quiet: true, ..session.clone() };
+        let recordings = read(&quiet, &self.files, &options)?;
+        let scale = DVector::from_iterator(model.state.len(), model.state.iter().map(|channel| channel.scale));
+        let columns: Vec<DVector<f64>> = recordings
+            .episodes
+            .iter()
+            .flat_map(|episode| episode.positions.column_iter().map(|column| column.into_owned()).collect::<Vec<_>>())
+            .collect();
+        if recordings.state.len() != scale.len() {
+            let what = format!("{} columns for {}", recordings.state.len(), counted(scale.len(), "channel"));
+            return Err(Failure::usage(what, "--truth", "a column for each channel, in their order"));
+        }
+        let actions = DMatrix::from_columns(&columns.iter().map(|column| column.component_mul(&scale)).collect::<Vec<_>>());
+        Ok(Some(Truth { actions, projectors: None }))
+    }
+}
+
+fn tell(prepared: &Prepared, judged: &Evaluation, lines: &mut Lines) {
+    let count = prepared.demonstrations.n_trajectories();
+    lines.add("held against", &format!("{}, {}", counted(count, "episode"), counted(prepared.demonstrations.n_samples(), "sample")));
+    lines.add("error", &format!("{} of the policy, {} of what was seen (0 explains everything)", short(judged.policy_error), short(judged.slope_error)));
+    let errors = prepared.episodes.iter().zip(&judged.episodes).filter_map(|(name, error)| Some((name, (*error)?)));
+    if let Some((name, error)) = errors.max_by(|a, b| a.1.total_cmp(&b.1)) {
+        lines.add("worst", &format!("episode {name}: {} of what was seen", short(error)));
+    }
+    for (label, error) in by_constraint(prepared, judged) {
+        lines.add("constraint", &format!("{label}: {} (median of its episodes)", short(error)));
+    }
+    lines.add("support", &format!("{} % of the samples are within what was learnt", short(100.0 * judged.supported)));
+    if let Some(nupe) = judged.nupe {
+        lines.add("truth", &format!("nUPE {} (error of the unconstrained policy)", short(nupe)));
+    }
+}
+
+/// Median error of the episodes of each constraint, where the file names them; at most five.
+fn by_constraint(prepared: &Prepared, judged: &Evaluation) -> BTreeMap<String, f64> {
+    let mut errors: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    for (label, error) in prepared.constraints.iter().zip(&judged.episodes) {
+        if let (Some(label), Some(error)) = (label, error) {
+            errors.entry(label.clone()).or_default().push(*error);
+        }
+    }
+    let median = |mut errors: Vec<f64>| {
+        errors.sort_by(f64::total_cmp);
+        errors[errors.len() / 2]
+    };
+    errors.into_iter().take(5).map(|(label, errors)| (label, median(errors))).collect()
+}

@@ -1,0 +1,106 @@
+use std::fmt;
+use std::path::Path;
+
+use demo_io::ReadError;
+use policy_align::{ConstraintFileError, FitError, ModelError, PrepareError};
+
+/// What the program says to the shell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Exit {
+    Done = 0,
+    /// The data or the result is refused.
+    Refused = 1,
+    Usage = 2,
+    /// A file cannot be read or written.
+    File = 3,
+    /// Our own bug.
+    Bug = 4,
+    Interrupted = 130,
+}
+
+/// Why the program stops: what is wrong, where, and what helps, a line each.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Failure {
+    pub(crate) exit: Exit,
+    pub(crate) what: String,
+    pub(crate) place: String,
+    pub(crate) remedy: String,
+}
+
+impl Failure {
+    pub(crate) fn new(
+        exit: Exit,
+        what: impl Into<String>,
+        place: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Failure { exit, what: what.into(), place: place.into(), remedy: remedy.into() }
+    }
+
+    pub(crate) fn usage(what: impl Into<String>, place: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Failure::new(Exit::Usage, what, place, remedy)
+    }
+
+    pub(crate) fn writing(path: &Path, reason: impl fmt::Display) -> Self {
+        Failure::new(Exit::File, format!("cannot be written: {reason}"), shown(path), "-o with a folder that you may write to")
+    }
+
+    pub(crate) fn reading(path: &Path, reason: impl fmt::Display) -> Self {
+        Failure::new(Exit::File, format!("cannot be read: {reason}"), shown(path), "another file, or its right name")
+    }
+
+    pub(crate) fn model(path: &Path, error: &ModelError) -> Self {
+        let remedy = match error {
+            ModelError::File(reason) => return Failure::reading(path, reason),
+            ModelError::Newer { .. } => "a newer policy-align",
+            ModelError::NotAModel { .. } => "a file that `policy-align fit` has written",
+            _ => "another copy of the file, or fit again",
+        };
+        Failure::new(Exit::File, error.to_string(), shown(path), remedy)
+    }
+
+    pub(crate) fn prepare(error: &PrepareError, place: String) -> Self {
+        // Messages say what next after a semicolon.
+        let text = error.to_string();
+        let (what, remedy) = text.rsplit_once("; ").unwrap_or((&text, "other recordings"));
+        Failure::new(Exit::Refused, what, place, remedy)
+    }
+
+    pub(crate) fn fit(error: &FitError, place: String) -> Self {
+        let text = error.to_string();
+        let (what, remedy) = text.rsplit_once("; ").unwrap_or((&text, "more recordings, or `policy-align check` for what is wrong with these"));
+        let exit = if matches!(error, FitError::Option { .. }) { Exit::Usage } else { Exit::Refused };
+        Failure::new(exit, what, place, remedy)
+    }
+
+    pub(crate) fn constraints(path: &Path, error: &ConstraintFileError) -> Self {
+        match error {
+            ConstraintFileError::File { file, source } => Failure::reading(Path::new(file), source),
+            _ => Failure::usage(error.to_string(), shown(path), "`policy-align rollout --help` shows what such a file holds"),
+        }
+    }
+}
+
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
+        let fault = error.fault();
+        let exit = match error {
+            ReadError::Option(_) => Exit::Usage,
+            ReadError::NoColumn(_) | ReadError::AmbiguousColumn(_) | ReadError::NoRoles(_) | ReadError::NoTime(_) => Exit::Usage,
+            _ => Exit::File,
+        };
+        Failure::new(exit, &fault.what, &fault.place, &fault.remedy)
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let line = |text: &str| text.lines().map(str::trim).collect::<Vec<_>>().join(" ");
+        write!(f, "error: {}\n  in:  {}\n  try: {}", line(&self.what), line(&self.place), line(&self.remedy))
+    }
+}
+
+/// A path as the user wrote it.
+pub(crate) fn shown(path: &Path) -> String {
+    path.display().to_string()
+}

@@ -1,0 +1,228 @@
+//! Flags that several commands share. Each group is a table of a configuration file, with the same names.
+
+use align::Bandwidth;
+use clap::Args;
+use demo_io::ReadOptions;
+use gp::Reading;
+use policy_align::{FitOptions, LearnerChoice, PrepareOptions, VelocityUse};
+use serde::{Deserialize, Serialize};
+
+use super::failure::Failure;
+
+/// How files are read: table `[read]`.
+#[derive(Debug, Clone, Default, PartialEq, Args, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[command(next_help_heading = "Reading files")]
+pub(crate) struct ReadFlags {
+    /// Channels of the state: names, globs, ranges, as 'q*' or 2-8
+    #[arg(long, value_name = "PATTERNS")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) state: Vec<String>,
+    /// Recorded velocities, in the order of the state
+    #[arg(long, value_name = "PATTERNS")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    velocity: Vec<String>,
+    /// Column of time stamps
+    #[arg(long, value_name = "COLUMN")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    time: Option<String>,
+    /// Column that tells episodes apart
+    #[arg(long, value_name = "COLUMN")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    episode: Option<String>,
+    /// Column with the label of the constraint
+    #[arg(long, value_name = "COLUMN")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    constraint_column: Option<String>,
+    /// What is not looked at
+    #[arg(long, value_name = "PATTERNS")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    ignore: Vec<String>,
+    /// Seconds between samples; overrides stamps
+    #[arg(long, value_name = "SECONDS")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) dt: Option<f64>,
+    /// Units, as m or x=m; changes no number
+    #[arg(long, value_name = "UNITS")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    units: Vec<String>,
+    /// Channels in degrees, which become radians
+    #[arg(long, value_name = "PATTERNS")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    degrees: Vec<String>,
+    /// Angles that jump by whole turns
+    #[arg(long, value_name = "PATTERNS")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    unwrap: Vec<String>,
+    /// Samples that are not finite
+    #[arg(long, value_parser = ["refuse", "drop", "fill"])]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    nan: Option<String>,
+    /// Put samples in the order of their stamps
+    #[arg(long)]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    sort: bool,
+    /// Cut episodes where stamps are further apart
+    #[arg(long, value_name = "SECONDS")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    split_gap: Option<f64>,
+    /// Leave out samples that stand still at the ends
+    #[arg(long)]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    trim_still: bool,
+    /// A named subset of episodes (robomimic)
+    #[arg(long, value_name = "NAME")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    filter: Option<String>,
+    /// How arrays lie
+    #[arg(long, value_parser = ["rows", "columns"])]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    samples_are: Option<String>,
+    /// Between fields of text
+    #[arg(long, value_name = "CHARACTER")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    separator: Option<char>,
+    /// Decimal point of text
+    #[arg(long, value_name = "CHARACTER")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    decimal: Option<char>,
+    /// Topic of a bag
+    #[arg(long, value_name = "NAME")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    topic: Option<String>,
+    /// csv, tsv, npy, npz, jsonl, lerobot, parquet, hdf5, mcap or mat
+    #[arg(long = "as", value_name = "FORMAT", hide_possible_values = true, value_parser = [
+        "csv", "tsv", "npy", "npz", "jsonl", "lerobot", "parquet", "hdf5", "mcap", "mat",
+    ])]
+    #[serde(rename = "as", skip_serializing_if = "Option::is_none")]
+    format: Option<String>,
+    /// Allow more than 64-fold compression
+    #[arg(long)]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    trust: bool,
+}
+
+/// What is made of recordings: table `[prepare]`.
+#[derive(Debug, Clone, Default, PartialEq, Args, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[command(next_help_heading = "Preparing")]
+pub(crate) struct PrepareFlags {
+    /// Multiply a channel's unit, as z=10
+    #[arg(long, value_name = "NAME=FACTOR", value_delimiter = ',')]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    scale: Vec<String>,
+    /// Believe recorded velocities, or steps of positions
+    #[arg(long, value_parser = ["auto", "velocity", "displacement"])]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    integration: Option<String>,
+}
+
+/// How a policy is learnt: table `[fit]`.
+#[derive(Debug, Clone, Default, PartialEq, Args, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[command(next_help_heading = "Learning")]
+pub(crate) struct FitFlags {
+    /// What learns [default: auto]
+    #[arg(long, value_parser = ["auto", "policy-align", "slope", "direct"])]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    learner: Option<String>,
+    /// Whether constraints acted, if you know
+    #[arg(long, value_parser = ["free", "constrained"])]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reading: Option<String>,
+    /// Of policy-align: auto, narrow, medium, wide or σ² [default: auto]
+    #[arg(long, value_name = "BANDWIDTH")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bandwidth: Option<String>,
+    /// Of policy-align: auto or 1 / squared width of fields [default: auto]
+    #[arg(long, value_name = "NUMBER")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    init_d: Option<String>,
+    /// Parts that are left out in turn [default: 5]
+    #[arg(long, value_name = "NUMBER")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    folds: Option<usize>,
+    /// Of every random choice [default: 1]
+    #[arg(long, value_name = "NUMBER")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    seed: Option<u64>,
+    /// Samples a Gaussian process learns from, at most [default: 600]
+    #[arg(long, value_name = "NUMBER")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    max_rows: Option<usize>,
+    /// Episodes that are not learnt from, but judged by
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) hold_out: Vec<String>,
+}
+
+impl ReadFlags {
+    /// Flags have the names of the options, and of a configuration file.
+    pub(crate) fn options(&self) -> Result<ReadOptions, Failure> {
+        let wrong = |error: &dyn std::fmt::Display| Failure::usage(error.to_string(), "flags for reading", "--help");
+        let table = toml::Table::try_from(self).map_err(|error| wrong(&error))?;
+        table.try_into().map_err(|error: toml::de::Error| wrong(&error.message()))
+    }
+}
+
+impl PrepareFlags {
+    pub(crate) fn options(&self, dt: Option<f64>) -> Result<PrepareOptions, Failure> {
+        let scale = self.scale.iter().map(|text| {
+            let pair = text.split_once('=').and_then(|(name, factor)| Some((name.to_owned(), factor.parse().ok()?)));
+            pair.ok_or_else(|| Failure::usage(format!("'{text}' is no scale"), "--scale", "--scale z=10"))
+        });
+        let velocities = match self.integration.as_deref() {
+            Some("velocity") => VelocityUse::Recorded,
+            Some("displacement") => VelocityUse::Ignored,
+            _ => VelocityUse::Auto,
+        };
+        Ok(PrepareOptions { scale: scale.collect::<Result<_, _>>()?, time_step: dt, velocities })
+    }
+}
+
+impl FitFlags {
+    pub(crate) fn options(&self) -> Result<FitOptions, Failure> {
+        let default = FitOptions::default();
+        let bandwidth = match self.bandwidth.as_deref() {
+            None | Some("auto") => None,
+            Some("narrow") => Some(Bandwidth::Narrow),
+            Some("medium") => Some(Bandwidth::Medium),
+            Some("wide") => Some(Bandwidth::Wide),
+            Some(text) => Some(Bandwidth::Fixed(number(text, "--bandwidth")?)),
+        };
+        let init_d = match self.init_d.as_deref() {
+            None | Some("auto") => None,
+            Some(text) => Some(number(text, "--init-d")?),
+        };
+        Ok(FitOptions {
+            learner: match self.learner.as_deref() {
+                Some("policy-align") => LearnerChoice::PolicyAlign,
+                Some("slope") => LearnerChoice::Slope,
+                Some("direct") => LearnerChoice::Direct,
+                _ => LearnerChoice::Auto,
+            },
+            reading: match self.reading.as_deref() {
+                Some("free") => Some(Reading::Free),
+                Some("constrained") => Some(Reading::Constrained),
+                _ => None,
+            },
+            bandwidth,
+            init_d,
+            folds: self.folds.unwrap_or(default.folds),
+            seed: self.seed.unwrap_or(default.seed),
+            max_rows: self.max_rows.unwrap_or(default.max_rows),
+        })
+    }
+}
+
+fn number(text: &str, flag: &str) -> Result<f64, Failure> {
+    let number = text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
+    number.ok_or_else(|| Failure::usage(format!("'{text}' is no positive number"), flag, format!("{flag} auto")))
+}
+
+/// Numbers with commas between, as a state is given.
+pub(crate) fn numbers(text: &str, flag: &str) -> Result<Vec<f64>, Failure> {
+    let numbers = text.split(',').map(|number| number.trim().parse());
+    let numbers: Result<Vec<f64>, _> = numbers.collect();
+    numbers.map_err(|_| Failure::usage(format!("'{text}' is not numbers with commas between"), flag, format!("{flag} 0.3,1.2")))
+}

@@ -1,0 +1,69 @@
+use std::path::PathBuf;
+
+use clap::Args;
+use policy_align::{Learnt, Model};
+use serde_json::json;
+
+use super::check::findings;
+use super::failure::Failure;
+use super::fit::{load, verdict};
+use super::lines::{Lines, counted, short};
+use super::session::{Said, Session};
+
+/// Show what is inside a model
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  policy-align info toy.json")]
+pub(crate) struct Info {
+    /// A model that `fit` has written
+    model: PathBuf,
+}
+
+impl Info {
+    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+        let model = load(&self.model)?;
+        if session.json {
+            let document = json!({
+                "made_by": model.made_by, "state": model.state, "time_step": model.time_step, "data": model.data,
+                "learner": learner(&model), "decisions": model.decisions, "seed": model.seed, "trust": model.trust,
+            });
+            return Said::done(format!("{document}\n"));
+        }
+        let mut lines = Lines::default();
+        lines.add("made by", &format!("{}, {}", model.made_by.program, model.made_by.time));
+        let files: Vec<&str> = model.data.files.iter().take(3).map(|file| file.name.as_str()).collect();
+        lines.add("learnt from", &format!("{}, {} ({})", counted(model.data.episodes, "episode"), counted(model.data.samples, "sample"), files.join(", ")));
+        lines.add("learner", &learner(&model));
+        let channel = |channel: &policy_align::StateChannel| {
+            let unit = channel.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
+            let scale = if channel.scale == 1.0 { String::new() } else { format!(" (times {})", short(channel.scale)) };
+            format!("{} {} … {}{unit}{scale}", channel.name, short(channel.low), short(channel.high))
+        };
+        let mut channels: Vec<String> = model.state.iter().take(8).map(channel).collect();
+        if model.state.len() > channels.len() {
+            channels.push("…".to_owned());
+        }
+        lines.add("state", &channels.join(", "));
+        lines.add("time", &format!("dt {} s, the longest episode {} s", short(model.time_step), short(model.data.longest)));
+        lines.add("trust", verdict(&model));
+        findings(&model.trust.findings, 4, &mut lines);
+        let middle: Vec<String> = model.state.iter().map(|channel| short(channel.median)).collect();
+        Said::done(lines.next(&format!("policy-align predict {} --at {}", self.model.display(), middle.join(","))))
+    }
+}
+
+/// What learnt it, in words.
+pub(crate) fn learner(model: &Model) -> String {
+    match &model.learnt {
+        Learnt::PolicyAlign(policy) => {
+            let fields = policy.global_potential().regression().model().receptive_fields(0).count();
+            format!("aligned potentials and LWPR, {}", counted(fields, "receptive field"))
+        }
+        Learnt::Slope(_) => "slope GP: a potential seen through slopes along the movements".to_owned(),
+        Learnt::Direct(_) => "direct GP: velocities as they were seen".to_owned(),
+        Learnt::Auto(both) => {
+            let reading = both.overridden().unwrap_or(both.reading());
+            let taken = if both.numbers().takes_slope(reading) { "slope GP" } else { "direct GP" };
+            format!("{taken}, chosen between slope and direct GP (reading: {reading:?})").to_lowercase().replace("gp", "GP")
+        }
+    }
+}

@@ -1,0 +1,110 @@
+/// Columns of the terminal that are used.
+const WIDTH: usize = 80;
+/// Columns of a line's label.
+const LABEL: usize = 13;
+
+/// What a command says: lines with a label each, folded to the width of a terminal.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct Lines(String);
+
+impl Lines {
+    pub(crate) fn add(&mut self, label: &str, text: &str) {
+        let mut start = format!("{label:<LABEL$}");
+        for line in folded(text, WIDTH - LABEL) {
+            self.0.push_str(start.trim_end_matches(|c| line.is_empty() && c == ' '));
+            self.0.push_str(&line);
+            self.0.push('\n');
+            start = " ".repeat(LABEL);
+        }
+    }
+
+    /// The last line, set apart: what to do next.
+    pub(crate) fn next(mut self, command: &str) -> String {
+        self.0.push_str(&format!("\nNext:  {command}\n"));
+        self.0
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.0.lines().count()
+    }
+
+    pub(crate) fn into_text(self) -> String {
+        self.0
+    }
+}
+
+/// Text in lines of at most `width` columns, broken at spaces.
+pub(crate) fn folded(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let used = lines[lines.len() - 1].chars().count();
+        if used > 0 && used + 1 + word.chars().count() > width {
+            lines.push(String::new());
+        }
+        if let Some(line) = lines.last_mut() {
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+    }
+    lines
+}
+
+/// Three significant digits.
+pub(crate) fn short(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    if !(-4..6).contains(&exponent) {
+        return format!("{value:.2e}");
+    }
+    let digits = (2 - exponent).max(0) as usize;
+    let text = format!("{value:.digits$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// Numbers with commas between.
+pub(crate) fn list(values: impl IntoIterator<Item = f64>) -> String {
+    values.into_iter().map(short).collect::<Vec<_>>().join(", ")
+}
+
+/// Bytes for people.
+pub(crate) fn size(bytes: usize) -> String {
+    match bytes {
+        0..1000 => format!("{bytes} bytes"),
+        1000..1_000_000 => format!("{} kB", short(bytes as f64 / 1e3)),
+        _ => format!("{} MB", short(bytes as f64 / 1e6)),
+    }
+}
+
+/// "1 episode", "40 episodes".
+pub(crate) fn counted(count: usize, what: &str) -> String {
+    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_digits_are_shown() {
+        for (value, expected) in [
+            (0.0, "0"), (1.0, "1"), (-2.0855, "-2.09"), (0.05, "0.05"), (1600.0, "1600"), (123456.0, "123456"),
+            (0.000123456, "0.000123"), (1.5e-7, "1.50e-7"), (2.5e9, "2.50e9"), (-0.0, "-0"), (f64::NAN, "NaN"),
+        ] {
+            assert_eq!(short(value), expected);
+        }
+    }
+
+    #[test]
+    fn lines_fit_a_terminal() {
+        let mut lines = Lines::default();
+        lines.add("noise", &"word ".repeat(40));
+        let text = lines.into_text();
+        assert!(text.lines().all(|line| line.chars().count() <= WIDTH && line.contains("word")), "{text}");
+        assert!(text.starts_with("noise        word"));
+    }
+}

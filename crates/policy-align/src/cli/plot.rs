@@ -1,0 +1,89 @@
+use std::path::PathBuf;
+
+use clap::Args;
+use nalgebra::DVector;
+use policy_align::{Model, write_whole};
+
+use super::config::Config;
+use super::failure::Failure;
+use super::fit::load;
+use super::flags::{ReadFlags, numbers};
+use super::lines::Lines;
+use super::picture::{Picture, draw};
+use super::recorded::read;
+use super::rollout::followed;
+use super::rollout_flags::RollOutFlags;
+use super::session::{Said, Session};
+
+/// Draw a policy: its field, its potential, what was shown
+///
+/// Two channels are drawn; all others are at the median of what was learnt from.
+/// Where nothing was learnt it is grey.
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align plot toy.json -o toy.svg --files toy.csv --rollout 1.5,1")]
+pub(crate) struct Plot {
+    /// A model that `fit` has written
+    model: PathBuf,
+    /// The picture to write: SVG or PNG
+    #[arg(long, short, value_name = "FILE.svg", default_value = "field.svg")]
+    output: PathBuf,
+    /// Channels across and up [default: the first two]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    dims: Vec<String>,
+    /// Recordings to draw
+    #[arg(long, value_name = "FILES", num_args = 1..)]
+    files: Vec<PathBuf>,
+    /// A start to follow the policy from; any number of times
+    #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
+    rollout: Vec<String>,
+    #[command(flatten)]
+    read: ReadFlags,
+    #[command(flatten)]
+    follow: RollOutFlags,
+}
+
+impl Plot {
+    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+        let model = load(&self.model)?;
+        let config = Config::of(session)?;
+        let dims = dims(&self.dims, &model)?;
+        let mut reading = config.under("read", &self.read)?;
+        if reading.state.is_empty() {
+            reading.state = model.state.iter().map(|channel| channel.name.clone()).collect();
+        }
+        let shown = if self.files.is_empty() {
+            vec![]
+        } else {
+            let recordings = read(session, &self.files, &reading.options()?)?;
+            recordings.episodes.into_iter().map(|episode| episode.positions).collect()
+        };
+        let flags = config.under("rollout", &self.follow)?;
+        let paths = self.rollout.iter().map(|from| {
+            let start = DVector::from_vec(numbers(from, "--rollout")?);
+            Ok(followed(&flags, &model, &start, from)?.states)
+        });
+        let picture = Picture::of(&model, dims, shown, paths.collect::<Result<_, Failure>>()?);
+        write_whole(&self.output, &draw(&self.output, picture)?).map_err(|error| Failure::writing(&self.output, error))?;
+        let mut lines = Lines::default();
+        lines.add("written", &format!("{}: {} across, {} up", self.output.display(), model.state[dims[0]].name, model.state[dims[1]].name));
+        let start: Vec<String> = model.state.iter().map(|channel| super::lines::short(channel.high * 0.5 + channel.median * 0.5)).collect();
+        Said::done(lines.next(&format!("policy-align rollout {} --from {}", self.model.display(), start.join(","))))
+    }
+}
+
+/// The channels to draw, by name.
+fn dims(names: &[String], model: &Model) -> Result<[usize; 2], Failure> {
+    let known: Vec<&str> = model.state.iter().map(|channel| channel.name.as_str()).collect();
+    if known.len() < 2 {
+        return Err(Failure::usage("a state of one channel has no picture", "plot", "`policy-align predict` with states of a file"));
+    }
+    let place = |name: &String| known.iter().position(|known| known == name);
+    match names {
+        [] => Ok([0, 1]),
+        [x, y] => match (place(x), place(y)) {
+            (Some(x), Some(y)) if x != y => Ok([x, y]),
+            _ => Err(Failure::usage(format!("'{x},{y}' are not two channels"), "--dims", format!("two of {}", known.join(", ")))),
+        },
+        _ => Err(Failure::usage("two channels are drawn", "--dims", format!("--dims {},{}", known[0], known[1]))),
+    }
+}

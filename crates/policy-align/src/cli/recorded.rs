@@ -1,0 +1,46 @@
+//! Recordings of the files that a command names.
+
+use std::path::{Path, PathBuf};
+
+use demo_io::{ReadOptions, Recordings};
+use policy_align::{FileSummary, sha256};
+
+use super::failure::{Failure, shown};
+use super::lines::counted;
+use super::session::Session;
+
+/// Reads them, with a bar if it takes long; says what was noticed.
+pub(crate) fn read(session: &Session, files: &[PathBuf], options: &ReadOptions) -> Result<Recordings, Failure> {
+    let bytes = files.iter().filter_map(|file| std::fs::metadata(file).ok()).map(|found| found.len()).sum();
+    let bar = session.bar(bytes, "reading  {bar:30} {bytes} of {total_bytes}, {eta} left");
+    let recordings = demo_io::read_all(files, options, &mut |read| bar.inc(read));
+    bar.finish_and_clear();
+    let recordings = recordings?;
+    for note in &recordings.notes {
+        session.warn(&note.text);
+    }
+    Ok(recordings)
+}
+
+/// Names and checksums, for the model.
+pub(crate) fn summaries(files: &[PathBuf]) -> Result<Vec<FileSummary>, Failure> {
+    let summary = |path: &PathBuf| {
+        let bytes = std::fs::read(path).map_err(|error| Failure::reading(path, error))?;
+        Ok(FileSummary { name: base_name(path), sha256: sha256(&bytes), bytes: bytes.len() as u64 })
+    };
+    // Of a folder its files are read, but not listed one by one.
+    files.iter().filter(|path| path.is_file()).map(summary).collect()
+}
+
+/// Without folders: nobody learns from a model where it was made.
+pub(crate) fn base_name(path: &Path) -> String {
+    path.file_name().map_or_else(|| shown(path), |name| name.to_string_lossy().into_owned())
+}
+
+/// The files in a few words.
+pub(crate) fn named(files: &[PathBuf]) -> String {
+    match files {
+        [file] => base_name(file),
+        files => counted(files.len(), "file"),
+    }
+}

@@ -1,0 +1,131 @@
+use std::path::{self, PathBuf};
+
+use clap::Args;
+use demo_io::{Channel, Episode, Recordings, Source};
+use nalgebra::DVector;
+use policy_align::{Model, Path, RollOutError, Stop, write_whole};
+use serde_json::json;
+
+use super::config::Config;
+use super::failure::{Exit, Failure};
+use super::fit::load;
+use super::flags::numbers;
+use super::lines::{Lines, counted, list, short};
+use super::picture::{Picture, draw};
+use super::rollout_flags::RollOutFlags;
+use super::session::{Said, Session};
+
+/// Follow a policy from a start, under constraints
+///
+/// A constraint file holds, any number of times, one of
+///
+///   [[constraint]]
+///   normal = [1, 0]        # x stays as it is; several rows: [[1, 0], [0, 1]]
+///
+///   [[constraint]]
+///   point = [0.5, 0.5]     # stay out of a ball
+///   radius = 0.2
+///   from = 0.5             # seconds; every constraint may have these
+///   until = 2.0
+///
+///   [[constraint]]
+///   robot = "arm.urdf"     # a link stays in its plane (or out of a ball);
+///   link = "hand"          # channels have the names of the robot's joints
+///   plane = [0, 0, 1]
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align rollout toy.json --from 1.5,1 --constraint wall.toml -o path.csv")]
+pub(crate) struct RollOut {
+    /// A model that `fit` has written
+    model: PathBuf,
+    /// Where to start
+    #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
+    from: String,
+    /// The path to write: CSV or any other format that `convert` writes
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// A picture to draw: SVG or PNG
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+    #[command(flatten)]
+    follow: RollOutFlags,
+}
+
+impl RollOut {
+    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+        let model = load(&self.model)?;
+        let flags = Config::of(session)?.under("rollout", &self.follow)?;
+        let start = DVector::from_vec(numbers(&self.from, "--from")?);
+        let followed = followed(&flags, &model, &start, &self.from)?;
+        if let Some(output) = &self.output {
+            let recordings = recordings(&model, &followed, output);
+            demo_io::write(output, &recordings).map_err(|error| Failure::writing(output, error))?;
+        }
+        if let Some(plot) = &self.plot {
+            let picture = Picture::of(&model, [0, 1.min(model.state.len() - 1)], vec![], vec![followed.states.clone()]);
+            write_whole(plot, &draw(plot, picture)?).map_err(|error| Failure::writing(plot, error))?;
+        }
+        if session.json {
+            let columns = |matrix: &nalgebra::DMatrix<f64>| matrix.column_iter().map(|column| column.iter().copied().collect()).collect::<Vec<Vec<f64>>>();
+            let document = json!({
+                "times": followed.times, "states": columns(&followed.states),
+                "velocities": columns(&followed.velocities), "stop": stop(&followed.stop),
+                "broken_by": followed.broken_by.map(|(by, _)| by),
+            });
+            return Said::done(format!("{document}\n"));
+        }
+        Said::done(self.told(&followed))
+    }
+
+    fn told(&self, followed: &Path) -> String {
+        let mut lines = Lines::default();
+        let (count, last) = (followed.times.len(), followed.times.len() - 1);
+        let end = list(followed.states.column(last).iter().copied());
+        lines.add("moved", &format!("{}  →  {end} in {} s", list(followed.states.column(0).iter().copied()), short(followed.times[last])));
+        lines.add("ended", &stop(&followed.stop));
+        if let Some((by, which)) = followed.broken_by {
+            let told = if by == 0.0 { "exactly".to_owned() } else { format!("to {} (constraint {which})", short(by)) };
+            lines.add("constraints", &format!("kept {told}"));
+        }
+        lines.add("states", &format!("{}, all within what was shown", counted(count, "sample")));
+        match &self.output {
+            Some(output) => lines.add("written", &output.display().to_string()),
+            None => return lines.next(&format!("policy-align rollout {} --from {} -o path.csv", self.model.display(), self.from)),
+        }
+        lines.into_text()
+    }
+}
+
+/// Follows a policy as flags say.
+pub(crate) fn followed(flags: &RollOutFlags, model: &Model, start: &DVector<f64>, from: &str) -> Result<Path, Failure> {
+    flags.roll_out(model)?.follow(model, start).map_err(|error| {
+        let exit = match error {
+            RollOutError::Unsupported { .. } | RollOutError::StartBreaks { .. } | RollOutError::StartBeyondLimit { .. } => Exit::Refused,
+            _ => Exit::Usage,
+        };
+        Failure::new(exit, error.to_string(), format!("--from {from}"), error.remedy())
+    })
+}
+
+fn stop(stop: &Stop) -> String {
+    match stop {
+        Stop::AtRest => "stopped: slower than 1 % of the demonstrated speed".to_owned(),
+        Stop::LeftTheData => "left the data: the next state is outside of what was shown".to_owned(),
+        Stop::Limit(joint) => format!("limit of joint '{joint}'"),
+        Stop::Time => "time is up: --seconds allows more".to_owned(),
+    }
+}
+
+/// A path as a recording of one episode.
+fn recordings(model: &Model, followed: &Path, output: &path::Path) -> Recordings {
+    let channel = |channel: &policy_align::StateChannel| Channel { name: channel.name.clone(), unit: channel.unit.clone() };
+    let file = output.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let episode = Episode {
+        name: "0".to_owned(),
+        source: Source { file, rows: None },
+        times: followed.times.clone(),
+        positions: followed.states.clone(),
+        velocities: Some(followed.velocities.clone()),
+        constraint: None,
+    };
+    Recordings { state: model.state.iter().map(channel).collect(), episodes: vec![episode], notes: vec![] }
+}

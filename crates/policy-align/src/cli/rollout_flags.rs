@@ -1,0 +1,53 @@
+use std::path::PathBuf;
+
+use clap::Args;
+use policy_align::{ConstraintSet, JointLimits, Model, RollOut};
+use serde::{Deserialize, Serialize};
+
+use super::failure::{Failure, shown};
+
+/// How a policy is followed: table `[rollout]`.
+#[derive(Debug, Clone, Default, PartialEq, Args, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[command(next_help_heading = "Following")]
+pub(crate) struct RollOutFlags {
+    /// Constraints that hold on the way
+    #[arg(long, value_name = "FILE.toml")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    constraint: Option<PathBuf>,
+    /// At most so long [default: 3 times the longest episode]
+    #[arg(long, value_name = "SECONDS")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    seconds: Option<f64>,
+    /// Between two samples [default: the model's time step]
+    #[arg(long, value_name = "SECONDS")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    step: Option<f64>,
+    /// A robot (URDF) whose joint limits stop it
+    #[arg(long, value_name = "FILE.urdf")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    limits: Option<PathBuf>,
+}
+
+impl RollOutFlags {
+    pub(crate) fn roll_out(&self, model: &Model) -> Result<RollOut, Failure> {
+        let channels: Vec<String> = model.state.iter().map(|channel| channel.name.clone()).collect();
+        let constraints = match &self.constraint {
+            None => ConstraintSet::default(),
+            Some(path) => {
+                ConstraintSet::load(path, &channels).map_err(|error| Failure::constraints(path, &error))?
+            }
+        };
+        let limits = match &self.limits {
+            None => None,
+            Some(path) => {
+                let text = std::fs::read_to_string(path).map_err(|error| Failure::reading(path, error))?;
+                let limits = JointLimits::from_urdf(&text, &channels);
+                Some(limits.map_err(|reason| {
+                    Failure::usage(reason, shown(path), "a URDF whose joints have the names of the channels")
+                })?)
+            }
+        };
+        Ok(RollOut { constraints, limits, seconds: self.seconds, step: self.step })
+    }
+}

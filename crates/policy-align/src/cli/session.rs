@@ -1,0 +1,82 @@
+use std::io::{self, IsTerminal as _, Write as _};
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::failure::{Exit, Failure};
+
+/// Flags of every command.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct Session {
+    /// Results as one JSON document
+    #[arg(long, global = true, help_heading = "Every command")]
+    pub(crate) json: bool,
+    /// Nothing but results and errors
+    #[arg(long, short, global = true, help_heading = "Every command")]
+    pub(crate) quiet: bool,
+    /// Flags of a file; those of the command line win
+    #[arg(long, global = true, value_name = "FILE.toml", help_heading = "Every command")]
+    pub(crate) config: Option<PathBuf>,
+}
+
+/// What a command has to say on standard output, and to the shell.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Said {
+    pub(crate) text: String,
+    pub(crate) exit: Exit,
+}
+
+impl Said {
+    pub(crate) fn done(text: String) -> Result<Said, Failure> {
+        Ok(Said { text, exit: Exit::Done })
+    }
+}
+
+impl Session {
+    /// Tells the user something beside the result.
+    pub(crate) fn warn(&self, text: &str) {
+        if !self.quiet {
+            complain(&format!("warning: {text}"));
+        }
+    }
+
+    /// A bar that appears when something takes longer than a second, on a terminal.
+    pub(crate) fn bar(&self, length: u64, template: &str) -> ProgressBar {
+        let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());
+        if self.quiet || self.json || !io::stderr().is_terminal() {
+            return bar;
+        }
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+        let later = bar.downgrade();
+        std::thread::spawn(move || {
+            std::thread::sleep(Duration::from_secs(1));
+            if let Some(bar) = later.upgrade()
+                && !bar.is_finished()
+            {
+                bar.set_draw_target(ProgressDrawTarget::stderr());
+                bar.enable_steady_tick(Duration::from_millis(200));
+            }
+        });
+        bar
+    }
+}
+
+/// Writes a result; who closes the pipe has read enough.
+pub(crate) fn tell(text: &str) -> Result<(), Failure> {
+    let mut stdout = io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::new(Exit::File, error.to_string(), "standard output", "-o with a file"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes a line to standard error; a closed one stops nothing.
+pub(crate) fn complain(text: &str) {
+    let _ = writeln!(io::stderr(), "{text}");
+}

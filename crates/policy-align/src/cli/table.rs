@@ -1,0 +1,75 @@
+//! States of a file, as prediction wants them: a column for each channel, found by name, or the channels alone.
+
+use std::io::Read as _;
+use std::path::Path;
+
+use nalgebra::DMatrix;
+use policy_align::Model;
+
+use super::failure::{Exit, Failure, shown};
+
+/// States (n, N) of a text with separators; `-` is standard input.
+pub(crate) fn states(path: &Path, model: &Model) -> Result<DMatrix<f64>, Failure> {
+    let text = if path == Path::new("-") {
+        let mut text = String::new();
+        std::io::stdin().read_to_string(&mut text).map(|_| text)
+    } else {
+        std::fs::read_to_string(path)
+    };
+    let text = text.map_err(|error| Failure::reading(path, error))?;
+    parsed(&text, model, &shown(path))
+}
+
+fn parsed(text: &str, model: &Model, place: &str) -> Result<DMatrix<f64>, Failure> {
+    let n = model.state.len();
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let first = text.lines().next().unwrap_or_default();
+    let separator = [b'\t', b';', b','].into_iter().find(|&s| first.contains(char::from(s))).unwrap_or(b',');
+    let mut reader = csv::ReaderBuilder::new().delimiter(separator).has_headers(false).trim(csv::Trim::All).from_reader(text.as_bytes());
+    let fault = |what: String, line: u64, remedy: &str| Failure::new(Exit::File, what, format!("{place}, line {line}"), remedy);
+    let (mut columns, mut numbers): (Option<Vec<usize>>, Vec<f64>) = (None, Vec::new());
+    for record in reader.records() {
+        let record = record.map_err(|error| {
+            let line = error.position().map_or(1, csv::Position::line);
+            fault("a row has more or fewer fields than the first".to_owned(), line, "a file whose rows are alike")
+        })?;
+        let line = record.position().map_or(1, csv::Position::line);
+        let Some(columns) = &columns else {
+            let found = columns_of(&record, model).ok_or_else(|| {
+                let names: Vec<&str> = model.state.iter().map(|channel| channel.name.as_str()).collect();
+                fault(format!("the first row names not all of {}", names.join(", ")), line, "a header with these names, or these columns alone")
+            })?;
+            let is_header = record.iter().any(|field| field.parse::<f64>().is_err());
+            if !is_header {
+                take(&record, &found, &mut numbers).map_err(|what| fault(what, line, "numbers"))?;
+            }
+            columns = Some(found);
+            continue;
+        };
+        take(&record, columns, &mut numbers).map_err(|what| fault(what, line, "a number"))?;
+    }
+    let states = DMatrix::from_vec(n, numbers.len() / n, numbers);
+    if states.ncols() == 0 {
+        return Err(fault("there is no state".to_owned(), 1, "a file with a row for each state, or --at 0.3,1.2"));
+    }
+    Ok(states)
+}
+
+/// Where the channels are, by a header or by their number.
+fn columns_of(record: &csv::StringRecord, model: &Model) -> Option<Vec<usize>> {
+    if record.iter().all(|field| field.parse::<f64>().is_ok()) {
+        return (record.len() == model.state.len()).then(|| (0..record.len()).collect());
+    }
+    model.state.iter().map(|channel| record.iter().position(|field| field == channel.name)).collect()
+}
+
+fn take(record: &csv::StringRecord, columns: &[usize], numbers: &mut Vec<f64>) -> Result<(), String> {
+    for &column in columns {
+        let field = record.get(column).unwrap_or_default();
+        match field.parse::<f64>() {
+            Ok(number) if number.is_finite() => numbers.push(number),
+            _ => return Err(format!("'{field}' is not a finite number")),
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,92 @@
+use align::AlignError;
+use gp::GpError;
+use motion::MotionError;
+use thiserror::Error;
+
+/// Why recordings cannot be learnt from. Samples count from 0.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum PrepareError {
+    /// There is nothing.
+    #[error("there is no episode; give at least one")]
+    Empty,
+    /// Nothing is left.
+    #[error("no episode is left: all {of} were left out ({why}); record movements")]
+    NothingLeft {
+        /// How many there were.
+        of: usize,
+        /// Why the first was left out.
+        why: String,
+    },
+    /// Rows and columns seem to be exchanged.
+    #[error(
+        "the state has {dim} dimensions and the longest episode {samples} samples: rows and columns seem to be exchanged; read the samples the other way (--samples-are)"
+    )]
+    LooksTransposed {
+        /// Dimensions of the state.
+        dim: usize,
+        /// Samples of the longest episode.
+        samples: usize,
+    },
+    /// A scale for something that is not there.
+    #[error("--scale names '{name}', but the state has {known}; use one of these names")]
+    UnknownChannel {
+        /// The name given.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// A scale that is none.
+    #[error("--scale {name}={factor}: a scale must be positive and finite")]
+    Scale {
+        /// The channel.
+        name: String,
+        /// The factor given.
+        factor: f64,
+    },
+    /// A time step that is none.
+    #[error("--dt {time_step}: a time step must be a positive, finite number of seconds")]
+    TimeStep {
+        /// The time step given.
+        time_step: f64,
+    },
+    /// Nothing moves.
+    #[error("no channel changes in any episode: there is no movement to learn from")]
+    NoMotion,
+    /// An episode is not a movement.
+    #[error("episode '{episode}': {source}")]
+    Episode {
+        /// Its name.
+        episode: String,
+        /// What is wrong with it.
+        source: MotionError,
+    },
+}
+
+/// Why nothing was learnt.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FitError {
+    /// Somebody asked to stop.
+    #[error("stopped as asked; nothing was learnt")]
+    Cancelled,
+    /// An option lies outside its range.
+    #[error("{name} is {value}: it must {requirement}")]
+    Option {
+        /// Its flag.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// What it must satisfy.
+        requirement: &'static str,
+    },
+    /// A Gaussian process refuses.
+    #[error(transparent)]
+    Gp(#[from] GpError),
+    /// PolicyAlign refuses.
+    #[error(transparent)]
+    Align(#[from] AlignError),
+    /// Positions cannot be smoothed.
+    #[error(transparent)]
+    Smoothing(#[from] smoothing::SmoothingError),
+}

@@ -1,0 +1,136 @@
+use gp::GpError;
+use metrics::{MetricsError, ncpe, nupe};
+use motion::LearntPolicy;
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+use crate::Prepared;
+use crate::fit::{held_out, rows};
+
+/// A policy held against movements that it was not learnt from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Evaluation {
+    /// Σ (uᵀπ̂/r − r)² / Σ r², r = ‖u‖: 0 explains every movement, 1 is as good as standing still.
+    pub slope_error: f64,
+    /// The same over Σ ‖π̂‖²: what matters where constraints hardly let the policy move.
+    pub policy_error: f64,
+    /// [`Evaluation::slope_error`] of each movement, (K); none where it does not move.
+    pub episodes: Vec<Option<f64>>,
+    /// uᵀπ̂/r − r of every sample that moves, in units of the scaled state per second.
+    pub residuals: Vec<f64>,
+    /// Share of samples that the policy knows something of.
+    pub supported: f64,
+    /// Error of the unconstrained policy; none without truth.
+    pub nupe: Option<f64>,
+    /// Error of the constrained policy; none without truth.
+    pub ncpe: Option<f64>,
+}
+
+/// The true policy at every sample of every movement, in order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Truth {
+    /// π at each sample, (n, M), times the channels' scales.
+    pub actions: DMatrix<f64>,
+    /// Projectors N at each sample, each (n, n), (M); none if nobody knows.
+    pub projectors: Option<Vec<DMatrix<f64>>>,
+}
+
+/// Slope errors, residuals and support on other movements; with the truth also nUPE and nCPE.
+///
+/// # Errors
+/// [`GpError`] if the movements cannot be cleaned, or the policy has another dimension; [`EvaluateError::Metrics`] if the
+/// truth does not fit the movements.
+pub fn evaluate(
+    policy: &dyn LearntPolicy,
+    prepared: &Prepared,
+    truth: Option<&Truth>,
+) -> Result<Evaluation, EvaluateError> {
+    let dim = prepared.demonstrations.dim();
+    if policy.dim() != dim {
+        return Err(EvaluateError::Dimension { policy: policy.dim(), movements: dim });
+    }
+    let rows = rows(prepared)?;
+    let all: Vec<usize> = (0..rows.len()).collect();
+    let total = held_out(policy, &rows, &all, None);
+    let of_trajectory = |k: usize| {
+        let own: Vec<usize> = all.iter().copied().filter(|&row| rows.indices()[row].trajectory == k).collect();
+        let error = held_out(policy, &rows, &own, None).to_choose();
+        error.is_finite().then_some(error)
+    };
+    let (nupe, ncpe) = match truth {
+        None => (None, None),
+        Some(truth) => against(policy, prepared, truth)?,
+    };
+    Ok(Evaluation {
+        slope_error: total.to_choose(),
+        policy_error: total.to_judge(),
+        episodes: (0..prepared.demonstrations.n_trajectories()).map(of_trajectory).collect(),
+        residuals: residuals(policy, &rows),
+        supported: 1.0 - total.unsupported as f64 / total.samples.max(1) as f64,
+        nupe,
+        ncpe,
+    })
+}
+
+fn residuals(policy: &dyn LearntPolicy, rows: &gp::Rows) -> Vec<f64> {
+    let mut action = DVector::zeros(rows.dim());
+    let residual = |(x, u): (nalgebra::DVectorView<'_, f64>, nalgebra::DVectorView<'_, f64>)| {
+        let r = u.norm();
+        policy.action_into(x, action.as_view_mut());
+        (r > 0.0).then(|| u.dot(&action) / r - r)
+    };
+    rows.states().column_iter().zip(rows.velocities().column_iter()).filter_map(residual).collect()
+}
+
+fn against(
+    policy: &dyn LearntPolicy,
+    prepared: &Prepared,
+    truth: &Truth,
+) -> Result<(Option<f64>, Option<f64>), EvaluateError> {
+    let demonstrations = &prepared.demonstrations;
+    let (n, m) = (demonstrations.dim(), demonstrations.n_samples());
+    let mut learnt = DMatrix::zeros(n, m);
+    let states = demonstrations.trajectories().iter().flat_map(|trajectory| trajectory.states().column_iter());
+    for (state, mut action) in states.zip(learnt.column_iter_mut()) {
+        policy.action_into(state, action.as_view_mut());
+    }
+    let unconstrained = nupe(&truth.actions, &learnt)?;
+    let constrained = match &truth.projectors {
+        None => None,
+        Some(projectors) if projectors.len() == m => Some(ncpe(&truth.actions, &learnt, |sample, mut difference| {
+            let projected = &projectors[sample] * &difference;
+            difference.copy_from(&projected);
+        })?),
+        Some(projectors) => return Err(EvaluateError::Projectors { found: projectors.len(), expected: m }),
+    };
+    Ok((Some(unconstrained), constrained))
+}
+
+/// Why a policy cannot be held against movements.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EvaluateError {
+    /// They are of different spaces.
+    #[error("the policy has {policy} dimensions, the movements {movements}; give it the channels it was learnt from")]
+    Dimension {
+        /// Of the policy.
+        policy: usize,
+        /// Of the movements.
+        movements: usize,
+    },
+    /// Not one projector a sample.
+    #[error("there are {found} projectors for {expected} samples; give one each")]
+    Projectors {
+        /// How many there are.
+        found: usize,
+        /// How many samples there are.
+        expected: usize,
+    },
+    /// The movements cannot be cleaned.
+    #[error(transparent)]
+    Gp(#[from] GpError),
+    /// The truth does not fit the movements.
+    #[error(transparent)]
+    Metrics(#[from] MetricsError),
+}

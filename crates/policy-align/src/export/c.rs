@@ -1,0 +1,162 @@
+use std::fmt::Write as _;
+
+use nalgebra::DMatrix;
+
+use super::error::ExportError;
+use super::tables::{LearnerTables, Tables};
+use super::{c_gp, c_lwpr};
+use crate::{Model, Verdict};
+
+/// Names that a function cannot have.
+const TAKEN: [&str; 56] = [
+    "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum", "extern", "float",
+    "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return", "short", "signed", "sizeof",
+    "static", "struct", "switch", "typedef", "union", "unsigned", "void", "volatile", "while", "main", "exp", "sqrt",
+    "isfinite", "NAN", "expf", "sqrtf", "real", "N", "M", "A", "BOUNDS", "C", "Q", "V", "Z", "SCALE", "NORM", "MEAN", "CENTRE",
+    "METRIC", "SLOPE",
+];
+
+/// How a model is written in C: one file of ISO C99 that needs `math.h` alone.
+///
+/// It defines `int policy(const double *x, double *u, double *phi)`: from a state (n) in the units of the recording it
+/// writes the action (n), per second, and the potential (NaN where the policy has none), either of which may be `NULL`,
+/// and returns 1 where something was learnt, 0 elsewhere.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CSource {
+    /// Name of the function.
+    pub name: String,
+    /// Of its numbers.
+    pub precision: Precision,
+}
+
+/// What numbers are in C.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// `double`: the model's own results but for rounding.
+    Double,
+    /// `float`: for controllers that have nothing else.
+    Single,
+}
+
+impl Default for CSource {
+    fn default() -> Self {
+        CSource { name: "policy".to_owned(), precision: Precision::Double }
+    }
+}
+
+impl CSource {
+    /// The text of the file.
+    ///
+    /// # Errors
+    /// [`ExportError`].
+    pub fn of(&self, model: &Model) -> Result<String, ExportError> {
+        self.check_name()?;
+        let tables = Tables::of(model)?;
+        let mut text = self.head(model);
+        let n = tables.dim();
+        let _ = writeln!(text, "enum {{ N = {n} }};\n");
+        self.vector("SCALE", tables.scale.as_slice(), &mut text);
+        let bounds = DMatrix::from_fn(2, n, |end, k| tables.bounds[k][end]);
+        self.columns("BOUNDS", &bounds, &mut text);
+        match &tables.learner {
+            LearnerTables::Lwpr(lwpr) => c_lwpr::write(self, lwpr, tables.per_unit, &mut text),
+            LearnerTables::Slope(slope) => c_gp::write_slope(self, slope, tables.per_unit, &mut text),
+            LearnerTables::Direct(direct) => c_gp::write_direct(self, direct, &mut text),
+        }
+        Ok(text)
+    }
+
+    fn check_name(&self) -> Result<(), ExportError> {
+        let mut letters = self.name.chars();
+        let first = letters.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_');
+        if first && letters.all(|c| c.is_ascii_alphanumeric() || c == '_') && !TAKEN.contains(&self.name.as_str()) {
+            return Ok(());
+        }
+        Err(ExportError::Name { name: self.name.clone() })
+    }
+
+    /// What it is, in a comment, and the numbers it is made of.
+    fn head(&self, model: &Model) -> String {
+        let verdict = match model.trust.verdict {
+            Verdict::Good => "good",
+            Verdict::Doubtful => "doubtful",
+            Verdict::DoNotUse => "DO NOT USE",
+        };
+        let mut text = format!("/* A learnt policy, written by {}.\n", plain(&model.made_by.program));
+        let _ = writeln!(text, " * Learnt {} from {} episodes, {} samples,", plain(&model.made_by.time), model.data.episodes, model.data.samples);
+        let _ = writeln!(text, " * one every {} s. Trust: {verdict}.", model.time_step);
+        for finding in &model.trust.findings {
+            let _ = writeln!(text, " *   {}", plain(&finding.what));
+        }
+        let _ = writeln!(text, " *\n * State x, in this order, and action u, the same per second:");
+        for (at, channel) in model.state.iter().enumerate() {
+            let unit = channel.unit.as_deref().map_or(String::new(), |unit| format!(" ({})", plain(unit)));
+            let _ = writeln!(text, " *   [{at}] {}{unit}, learnt from {} to {}", plain(&channel.name), channel.low, channel.high);
+        }
+        let _ = writeln!(
+            text,
+            " *\n * int {}(x, u, phi) writes the action u and the potential phi (NaN if the\n \
+             * policy has none); u and phi may be NULL. It returns 1 where something was\n \
+             * learnt, and 0 elsewhere: then stop. Limits of speed are up to the caller. */\n#include <math.h>\n\ntypedef {} real;\n",
+            self.name,
+            self.real(),
+        );
+        text
+    }
+
+    fn real(&self) -> &'static str {
+        match self.precision {
+            Precision::Double => "double",
+            Precision::Single => "float",
+        }
+    }
+
+    /// A function of `math.h` in this precision.
+    pub(super) fn function(&self, name: &str) -> String {
+        match self.precision {
+            Precision::Double => name.to_owned(),
+            Precision::Single => format!("{name}f"),
+        }
+    }
+
+    /// A number, to its last bit.
+    pub(super) fn number(&self, value: f64) -> String {
+        match self.precision {
+            Precision::Double => format!("{value:e}"),
+            Precision::Single => {
+                let value = value as f32;
+                // What is too large for it is as far as it goes.
+                format!("{:e}f", value.clamp(f32::MIN, f32::MAX))
+            }
+        }
+    }
+
+    /// A table with one dimension.
+    pub(super) fn vector(&self, name: &str, values: &[f64], text: &mut String) {
+        let _ = writeln!(text, "static const real {name}[{}] = {{", values.len());
+        self.lines(values, text);
+        text.push_str("};\n");
+    }
+
+    /// A table with a row for each column of a matrix.
+    pub(super) fn columns(&self, name: &str, matrix: &DMatrix<f64>, text: &mut String) {
+        let _ = writeln!(text, "static const real {name}[{}][{}] = {{", matrix.ncols(), matrix.nrows());
+        for column in matrix.column_iter() {
+            let numbers: Vec<String> = column.iter().map(|&value| self.number(value)).collect();
+            let _ = writeln!(text, "    {{{}}},", numbers.join(", "));
+        }
+        text.push_str("};\n");
+    }
+
+    fn lines(&self, values: &[f64], text: &mut String) {
+        for line in values.chunks(4) {
+            let numbers: Vec<String> = line.iter().map(|&value| self.number(value)).collect();
+            let _ = writeln!(text, "    {},", numbers.join(", "));
+        }
+    }
+}
+
+/// What can stand in a comment, in one line.
+fn plain(text: &str) -> String {
+    text.replace("*/", "* /").replace("/*", "/ *").replace("??/", "? ?/").chars().map(|c| if c.is_control() || c == '\\' { ' ' } else { c }).collect()
+}

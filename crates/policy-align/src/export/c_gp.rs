@@ -1,0 +1,172 @@
+use std::fmt::Write as _;
+
+use gp::Shape;
+
+use super::c::CSource;
+use super::gp_tables::{DirectTables, Fall, Scaled, SlopeTables, Term};
+
+/// π = speed (Σ g v − h (vᵀa) a + c + Q z), a = z − z', and φ, whose negative gradient it is.
+pub(super) fn write_slope(c: &CSource, slope: &SlopeTables, per_unit: f64, text: &mut String) {
+    write_scaled(c, &slope.scaled, text);
+    c.columns("V", &slope.directions, text);
+    c.vector("C", slope.constant.as_slice(), text);
+    c.columns("Q", &slope.matrix.transpose(), text);
+    let terms: String = slope.terms.iter().map(|&term| slope_term(c, term, slope.scaled.mean.len())).collect();
+    let potential = if slope.has_potential {
+        let number = c.number(-slope.scaled.speed * slope.scaled.spread * per_unit);
+        format!("if (phi) *phi = {number} * f;")
+    } else {
+        "(void)f;\n    if (phi) *phi = NAN;".to_owned()
+    };
+    let _ = write!(
+        text,
+        "
+int {name}(const real *x, real *u, real *phi) {{
+    real z[N], sum[N], f = {zero}, nearest = {far};
+    int k, j, m;
+{entry}    for (m = 0; m < M; m++) {{
+        real a[N], s = {zero}, b = {zero}, g = {zero}, h = {zero};
+        for (k = 0; k < N; k++) {{
+            a[k] = z[k] - Z[m][k];
+            s += a[k] * a[k];
+            b += V[m][k] * a[k];
+        }}
+        if (s < nearest) nearest = s;
+{terms}        f += g * b;
+        for (k = 0; k < N; k++) sum[k] += g * V[m][k] - h * b * a[k];
+    }}
+    for (k = 0; k < N; k++) {{
+        real t = {zero};
+        for (j = 0; j < N; j++) t += Q[k][j] * z[j];
+        f += z[k] * (C[k] + {half} * t);
+        if (u) u[k] = {speed} * (sum[k] + (C[k] + t)) / SCALE[k];
+    }}
+    {potential}
+    for (k = 0; k < N; k++) if (x[k] < BOUNDS[k][0] || x[k] > BOUNDS[k][1]) return 0;
+    return nearest <= {reach};
+}}
+",
+        name = c.name,
+        zero = c.number(0.0),
+        half = c.number(0.5),
+        far = c.number(f64::from(f32::MAX)),
+        speed = c.number(slope.scaled.speed),
+        reach = c.number(slope.scaled.squared_reach),
+        entry = entry(c, &slope.scaled),
+    );
+}
+
+/// û = unit Σ k(z, z') A.
+pub(super) fn write_direct(c: &CSource, direct: &DirectTables, text: &mut String) {
+    write_scaled(c, &direct.scaled, text);
+    c.columns("A", &direct.weights, text);
+    let terms: String = direct.terms.iter().map(|&term| direct_term(c, term)).collect();
+    let [constant, linear, quadratic] = direct.trend.map(|factor| c.number(factor));
+    let _ = write!(
+        text,
+        "
+int {name}(const real *x, real *u, real *phi) {{
+    real z[N], sum[N], nearest = {far};
+    int k, m;
+{entry}    if (phi) *phi = NAN;
+    for (m = 0; m < M; m++) {{
+        real s = {zero}, p = {zero}, c;
+        for (k = 0; k < N; k++) {{
+            real a = z[k] - Z[m][k];
+            s += a * a;
+            p += z[k] * Z[m][k];
+        }}
+        if (s < nearest) nearest = s;
+        c = {constant} + p * ({linear} + {quadratic} * p);
+{terms}        for (k = 0; k < N; k++) sum[k] += c * A[m][k];
+    }}
+    if (u) for (k = 0; k < N; k++) u[k] = {unit} * sum[k] / SCALE[k];
+    for (k = 0; k < N; k++) if (x[k] < BOUNDS[k][0] || x[k] > BOUNDS[k][1]) return 0;
+    return nearest <= {reach};
+}}
+",
+        name = c.name,
+        zero = c.number(0.0),
+        far = c.number(f64::from(f32::MAX)),
+        unit = c.number(direct.scaled.speed),
+        reach = c.number(direct.scaled.squared_reach),
+        entry = entry(c, &direct.scaled),
+    );
+}
+
+fn write_scaled(c: &CSource, scaled: &Scaled, text: &mut String) {
+    let _ = writeln!(text, "enum {{ M = {} }}; /* learnt states */\n", scaled.z.ncols());
+    c.vector("MEAN", &scaled.mean, text);
+    c.columns("Z", &scaled.z, text);
+}
+
+/// Scaled coordinates; what is not finite is not asked further.
+fn entry(c: &CSource, scaled: &Scaled) -> String {
+    let (spread, zero) = (c.number(scaled.spread), c.number(0.0));
+    format!(
+        "    for (k = 0; k < N; k++) {{
+        z[k] = (x[k] * SCALE[k] - MEAN[k]) / {spread};
+        sum[k] = {zero};
+    }}
+    for (k = 0; k < N; k++) {{
+        if (isfinite(x[k])) continue;
+        if (phi) *phi = NAN;
+        if (u) for (m = 0; m < N; m++) u[m] = {zero};
+        return 0;
+    }}
+"
+    )
+}
+
+/// Adds a term's g and h (S3).
+fn slope_term(c: &CSource, term: Term, dim: usize) -> String {
+    let Term { fall, length, amplitude } = term;
+    let (exp, sqrt) = (c.function("exp"), c.function("sqrt"));
+    let number = |value| c.number(value);
+    let squared = length * length;
+    match fall {
+        Fall::Shape(Shape::SquaredExponential) => format!(
+            "        {{ real e = {} * {exp}({} * s); g += e; h += {} * e; }}\n",
+            number(amplitude), number(-0.5 / squared), number(1.0 / squared)
+        ),
+        Fall::Shape(Shape::Matern52) => format!(
+            "        {{ real r = {sqrt}({five} * s) / {}, e = {} * {exp}(-r); g += ({} + r) * e; h += {} * e; }}\n",
+            number(length), number(amplitude), number(1.0), number(5.0 / squared), five = number(5.0)
+        ),
+        Fall::Shape(Shape::Matern32) => {
+            let rate = 3.0_f64.sqrt() / length;
+            format!(
+                "        {{ real r = {sqrt}(s), e = {} * {exp}({} * r); g += e; h += {} * e / (r > {tiny} ? r : {tiny}); }}\n",
+                number(amplitude), number(-rate), number(rate), tiny = number(1e-12)
+            )
+        }
+        Fall::DivergenceFree => {
+            let others = dim as f64 - 1.0;
+            format!(
+                "        {{ real r = s / {}, e = {} * {exp}({} * r); g += e * ({} - r); h -= {} * e; }}\n",
+                number(squared), number(amplitude / others.max(1.0)), number(-0.5), number(others),
+                number(1.0 / squared)
+            )
+        }
+    }
+}
+
+/// Adds a term's covariance.
+fn direct_term(c: &CSource, term: Term) -> String {
+    let Term { fall, length, amplitude } = term;
+    let (exp, sqrt) = (c.function("exp"), c.function("sqrt"));
+    let number = |value| c.number(value);
+    match fall {
+        Fall::Shape(Shape::Matern52) => format!(
+            "        {{ real r = {sqrt}({} * s) / {}; c += {} * ({one} + r + r * r / {}) * {exp}(-r); }}\n",
+            number(5.0), number(length), number(amplitude), number(3.0), one = number(1.0)
+        ),
+        Fall::Shape(Shape::Matern32) => format!(
+            "        {{ real r = {sqrt}({} * s) / {}; c += {} * ({} + r) * {exp}(-r); }}\n",
+            number(3.0), number(length), number(amplitude), number(1.0)
+        ),
+        Fall::Shape(Shape::SquaredExponential) | Fall::DivergenceFree => format!(
+            "        c += {} * {exp}({} * s);\n", number(amplitude), number(-0.5 / (length * length))
+        ),
+    }
+}

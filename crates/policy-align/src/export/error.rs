@@ -1,0 +1,22 @@
+use thiserror::Error;
+
+/// Why a model cannot be exported.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum ExportError {
+    /// Nothing of the policy can be written down.
+    #[error("the policy has no field that was learnt: it is zero everywhere")]
+    Nothing,
+    /// Not a name in C.
+    #[error("'{name}' is not a name in C: letters, digits and _, not a digit first, no keyword")]
+    Name {
+        /// What was given.
+        name: String,
+    },
+    /// The stored form of the policy is not the one that is known.
+    #[error("the policy's stored form is not understood: {reason}")]
+    Form {
+        /// What is unexpected.
+        reason: String,
+    },
+}

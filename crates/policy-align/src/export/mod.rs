@@ -1,0 +1,19 @@
+//! Models as programs that need nothing of this one.
+
+mod c;
+mod c_gp;
+mod c_lwpr;
+mod error;
+mod gp_tables;
+mod lwpr_tables;
+mod onnx;
+mod onnx_gp;
+mod onnx_graph;
+mod onnx_lwpr;
+mod protobuf;
+mod reach;
+mod tables;
+
+pub use c::{CSource, Precision};
+pub use error::ExportError;
+pub use onnx::to_onnx;

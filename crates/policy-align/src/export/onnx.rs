@@ -1,0 +1,87 @@
+use super::error::ExportError;
+use super::onnx_graph::{Graph, Output};
+use super::protobuf::Message;
+use super::tables::{LearnerTables, Tables};
+use super::{onnx_gp, onnx_lwpr};
+use crate::{Model, Verdict};
+
+/// The version of the operators, and of the format that came with them.
+const OPERATORS: i64 = 17;
+const FORMAT: i64 = 8;
+
+/// A model as ONNX: operators of version 17 on doubles.
+///
+/// Its input is `x`, (B, n), states in the units of the recording; its outputs are `u`, (B, n), actions per second, `phi`,
+/// (B), potentials, unless the policy has none, and `support`, (B), whether something was learnt there.
+///
+/// # Errors
+/// [`ExportError`].
+pub fn to_onnx(model: &Model) -> Result<Vec<u8>, ExportError> {
+    let tables = Tables::of(model)?;
+    let n = tables.dim();
+    let mut graph = Graph::default();
+    let scale = graph.constant(&[n], tables.scale.iter().copied());
+    let scaled = graph.node("Mul", &["x", &scale]);
+    let asked = match &tables.learner {
+        LearnerTables::Lwpr(lwpr) => onnx_lwpr::write(&mut graph, lwpr, &scaled),
+        LearnerTables::Slope(slope) => onnx_gp::write_slope(&mut graph, slope, &scaled),
+        LearnerTables::Direct(direct) => onnx_gp::write_direct(&mut graph, direct, &scaled),
+    };
+    let action = graph.node("Div", &[&asked.action, &scale]);
+    graph.output(&action, "u");
+    let mut outputs = vec![("u", Output::Vectors(n))];
+    if let Some(potential) = &asked.potential {
+        let potential = graph.times(potential, tables.per_unit);
+        graph.output(&potential, "phi");
+        outputs.push(("phi", Output::Numbers));
+    }
+    let support = within(&mut graph, &tables.bounds, &asked.support);
+    graph.output(&support, "support");
+    outputs.push(("support", Output::Truths));
+    Ok(described(model, &graph.finished(n, &outputs)))
+}
+
+/// What a learner's graph says of scaled states.
+pub(super) struct Asked {
+    /// Per second, (B, n).
+    pub(super) action: String,
+    /// In the learner's units, (B).
+    pub(super) potential: Option<String>,
+    /// (B).
+    pub(super) support: String,
+}
+
+/// Support, within bounds.
+fn within(graph: &mut Graph, bounds: &[[f64; 2]], support: &str) -> String {
+    let low = graph.constant(&[bounds.len()], bounds.iter().map(|[low, _]| *low));
+    let high = graph.constant(&[bounds.len()], bounds.iter().map(|[_, high]| *high));
+    // How far beyond, summed over channels: 0 within.
+    let (below, above) = (graph.node("Sub", &[&low, "x"]), graph.node("Sub", &["x", &high]));
+    let (below, above) = (graph.node("Relu", &[&below]), graph.node("Relu", &[&above]));
+    let beyond = graph.node("Add", &[&below, &above]);
+    let beyond = graph.sum(&beyond, 1);
+    let zero = graph.number(0.0);
+    let within = graph.node("LessOrEqual", &[&beyond, &zero]);
+    graph.node("And", &[support, &within])
+}
+
+/// The file around a graph.
+fn described(model: &Model, graph: &Message) -> Vec<u8> {
+    let entry = |key: &str, value: &str| Message::default().text(1, key).text(2, value);
+    let verdict = match model.trust.verdict {
+        Verdict::Good => "good",
+        Verdict::Doubtful => "doubtful",
+        Verdict::DoNotUse => "do not use",
+    };
+    let names: Vec<&str> = model.state.iter().map(|channel| channel.name.as_str()).collect();
+    Message::default()
+        .integer(1, FORMAT)
+        .text(2, "policy-align")
+        .text(3, env!("CARGO_PKG_VERSION"))
+        .message(7, graph)
+        .message(8, &Message::default().text(1, "").integer(2, OPERATORS))
+        .message(14, &entry("state", &names.join(",")))
+        .message(14, &entry("time_step", &model.time_step.to_string()))
+        .message(14, &entry("trust", verdict))
+        .into_bytes()
+}

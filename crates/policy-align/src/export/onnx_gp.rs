@@ -1,0 +1,171 @@
+use gp::Shape;
+use nalgebra::DMatrix;
+
+use super::gp_tables::{DirectTables, Fall, Scaled, SlopeTables, Term};
+use super::onnx::Asked;
+use super::onnx_graph::Graph;
+
+/// Scaled coordinates z, (B, n), their differences from the learnt states, (B, M, n), and squares of these, (B, M).
+fn differences(graph: &mut Graph, scaled: &Scaled, state: &str) -> [String; 3] {
+    let (n, m) = scaled.z.shape();
+    let mean = graph.constant(&[n], scaled.mean.iter().copied());
+    let spread = graph.number(scaled.spread);
+    let centred = graph.node("Sub", &[state, &mean]);
+    let z = graph.node("Div", &[&centred, &spread]);
+    let learnt = graph.constant(&[1, m, n], scaled.z.iter().copied());
+    let column = graph.unsqueezed(&z, 1);
+    let apart = graph.node("Sub", &[&column, &learnt]);
+    let squares = graph.node("Mul", &[&apart, &apart]);
+    let squared = graph.sum(&squares, 2);
+    [z, apart, squared]
+}
+
+fn support(graph: &mut Graph, scaled: &Scaled, squared: &str) -> String {
+    let nearest = graph.least(squared, 1);
+    let reach = graph.number(scaled.squared_reach);
+    graph.node("LessOrEqual", &[&nearest, &reach])
+}
+
+/// A matrix (n, M) with a row a column, (M, n).
+fn rows(graph: &mut Graph, matrix: &DMatrix<f64>) -> String {
+    graph.constant(&[matrix.ncols(), matrix.nrows()], matrix.iter().copied())
+}
+
+/// π = speed (Σ g v − h (vᵀa) a + c + Q z), and φ.
+pub(super) fn write_slope(graph: &mut Graph, slope: &SlopeTables, state: &str) -> Asked {
+    let [z, apart, squared] = differences(graph, &slope.scaled, state);
+    let n = slope.scaled.mean.len();
+    let directions = rows(graph, &slope.directions);
+    let along = graph.node("Mul", &[&apart, &directions]);
+    let along = graph.sum(&along, 2);
+    let [g, h] = slopes(graph, slope, &squared);
+    let straight = graph.product(&g, &directions);
+    let bent = graph.node("Mul", &[&h, &along]);
+    let bent = graph.unsqueezed(&bent, 2);
+    let bent = graph.node("Mul", &[&bent, &apart]);
+    let bent = graph.sum(&bent, 1);
+    let constant = graph.constant(&[n], slope.constant.iter().copied());
+    // Columns of Q are rows of its transpose, which multiplies from the right.
+    let matrix = rows(graph, &slope.matrix);
+    let sloped = graph.product(&z, &matrix);
+    let trend = graph.node("Add", &[&sloped, &constant]);
+    let action = graph.node("Sub", &[&straight, &bent]);
+    let action = graph.node("Add", &[&action, &trend]);
+    let potential = slope.has_potential.then(|| {
+        let falling = graph.node("Mul", &[&g, &along]);
+        let falling = graph.sum(&falling, 1);
+        let half = graph.times(&sloped, 0.5);
+        let half = graph.node("Add", &[&half, &constant]);
+        let trend = graph.node("Mul", &[&z, &half]);
+        let trend = graph.sum(&trend, 1);
+        let value = graph.node("Add", &[&falling, &trend]);
+        graph.times(&value, -slope.scaled.speed * slope.scaled.spread)
+    });
+    let support = support(graph, &slope.scaled, &squared);
+    Asked { action: graph.times(&action, slope.scaled.speed), potential, support }
+}
+
+/// û = unit Σ k(z, z') A.
+pub(super) fn write_direct(graph: &mut Graph, direct: &DirectTables, state: &str) -> Asked {
+    let [z, _, squared] = differences(graph, &direct.scaled, state);
+    let (n, m) = direct.scaled.z.shape();
+    let learnt = graph.constant(&[n, m], direct.scaled.z.transpose().iter().copied());
+    let product = graph.product(&z, &learnt);
+    let [constant, linear, quadratic] = direct.trend.map(|factor| graph.number(factor));
+    let trend = graph.node("Mul", &[&product, &quadratic]);
+    let trend = graph.node("Add", &[&trend, &linear]);
+    let trend = graph.node("Mul", &[&trend, &product]);
+    let mut sum = graph.node("Add", &[&trend, &constant]);
+    for &term in &direct.terms {
+        let covariance = covariance(graph, term, &squared);
+        sum = graph.node("Add", &[&sum, &covariance]);
+    }
+    let weights = rows(graph, &direct.weights);
+    let action = graph.product(&sum, &weights);
+    let support = support(graph, &direct.scaled, &squared);
+    Asked { action: graph.times(&action, direct.scaled.speed), potential: None, support }
+}
+
+/// g and h of (S3), summed over the terms, (B, M) each.
+fn slopes(graph: &mut Graph, slope: &SlopeTables, squared: &str) -> [String; 2] {
+    // Without any term: zeros of the right shape.
+    let mut sums = [graph.times(squared, 0.0), graph.times(squared, 0.0)];
+    for &term in &slope.terms {
+        let terms = slope_term(graph, term, slope.scaled.mean.len(), squared);
+        for (sum, term) in sums.iter_mut().zip(terms) {
+            *sum = graph.node("Add", &[sum, &term]);
+        }
+    }
+    sums
+}
+
+/// amplitude · e^(factor · tensor).
+fn exponential(graph: &mut Graph, amplitude: f64, factor: f64, tensor: &str) -> String {
+    let exponent = graph.times(tensor, factor);
+    let exponential = graph.node("Exp", &[&exponent]);
+    graph.times(&exponential, amplitude)
+}
+
+/// √(factor · s).
+fn root(graph: &mut Graph, factor: f64, squared: &str) -> String {
+    let scaled = graph.times(squared, factor);
+    graph.node("Sqrt", &[&scaled])
+}
+
+fn slope_term(graph: &mut Graph, term: Term, dim: usize, squared: &str) -> [String; 2] {
+    let Term { fall, length, amplitude } = term;
+    let per_square = 1.0 / (length * length);
+    match fall {
+        Fall::Shape(Shape::SquaredExponential) => {
+            let g = exponential(graph, amplitude, -0.5 * per_square, squared);
+            let h = graph.times(&g, per_square);
+            [g, h]
+        }
+        Fall::Shape(Shape::Matern52) => {
+            let r = root(graph, 5.0 * per_square, squared);
+            let e = exponential(graph, amplitude, -1.0, &r);
+            let one = graph.number(1.0);
+            let factor = graph.node("Add", &[&r, &one]);
+            [graph.node("Mul", &[&factor, &e]), graph.times(&e, 5.0 * per_square)]
+        }
+        Fall::Shape(Shape::Matern32) => {
+            let rate = 3.0_f64.sqrt() / length;
+            let distance = graph.node("Sqrt", &[squared]);
+            let g = exponential(graph, amplitude, -rate, &distance);
+            let tiny = graph.number(1e-12);
+            let distance = graph.node("Max", &[&distance, &tiny]);
+            let h = graph.times(&g, rate);
+            let h = graph.node("Div", &[&h, &distance]);
+            [g, h]
+        }
+        Fall::DivergenceFree => {
+            let others = dim as f64 - 1.0;
+            let e = exponential(graph, amplitude / others.max(1.0), -0.5 * per_square, squared);
+            let (ratio, others) = (graph.times(squared, per_square), graph.number(others));
+            let factor = graph.node("Sub", &[&others, &ratio]);
+            [graph.node("Mul", &[&factor, &e]), graph.times(&e, -per_square)]
+        }
+    }
+}
+
+fn covariance(graph: &mut Graph, term: Term, squared: &str) -> String {
+    let Term { fall, length, amplitude } = term;
+    let per_square = 1.0 / (length * length);
+    let polynomial = match fall {
+        Fall::Shape(Shape::SquaredExponential) | Fall::DivergenceFree => {
+            return exponential(graph, amplitude, -0.5 * per_square, squared);
+        }
+        Fall::Shape(Shape::Matern52) => Some(1.0 / 3.0),
+        Fall::Shape(Shape::Matern32) => None,
+    };
+    let r = root(graph, if polynomial.is_some() { 5.0 } else { 3.0 } * per_square, squared);
+    let e = exponential(graph, amplitude, -1.0, &r);
+    let one = graph.number(1.0);
+    let mut factor = graph.node("Add", &[&r, &one]);
+    if let Some(third) = polynomial {
+        let square = graph.node("Mul", &[&r, &r]);
+        let square = graph.times(&square, third);
+        factor = graph.node("Add", &[&factor, &square]);
+    }
+    graph.node("Mul", &[&factor, &e])
+}

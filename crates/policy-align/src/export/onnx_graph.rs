@@ -1,0 +1,140 @@
+use super::protobuf::Message;
+
+/// Types of ONNX tensors.
+const INT64: i64 = 7;
+const BOOL: i64 = 9;
+const DOUBLE: i64 = 11;
+
+/// Name of a tensor.
+pub(super) type Tensor = String;
+
+/// A graph of ONNX operators on doubles, made node by node. Names count up, so that the same model gives the same bytes.
+#[derive(Debug, Default)]
+pub(super) struct Graph {
+    nodes: Message,
+    constants: Message,
+    made: usize,
+}
+
+/// What an output is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Output {
+    /// (B, n) doubles.
+    Vectors(usize),
+    /// (B) doubles.
+    Numbers,
+    /// (B) truths.
+    Truths,
+}
+
+impl Graph {
+    fn name(&mut self, what: &str) -> Tensor {
+        self.made += 1;
+        format!("{what}_{}", self.made)
+    }
+
+    /// Doubles in rows, of this shape.
+    pub(super) fn constant(&mut self, shape: &[usize], values: impl IntoIterator<Item = f64>) -> Tensor {
+        let bytes: Vec<u8> = values.into_iter().flat_map(f64::to_le_bytes).collect();
+        self.tensor(shape, DOUBLE, &bytes)
+    }
+
+    /// One double.
+    pub(super) fn number(&mut self, value: f64) -> Tensor {
+        self.constant(&[], [value])
+    }
+
+    fn axis(&mut self, axis: i64) -> Tensor {
+        self.tensor(&[1], INT64, &axis.to_le_bytes())
+    }
+
+    fn tensor(&mut self, shape: &[usize], kind: i64, bytes: &[u8]) -> Tensor {
+        let name = self.name("c");
+        let shaped = shape.iter().fold(Message::default(), |message, &length| message.integer(1, length as i64));
+        let tensor = shaped.integer(2, kind).text(8, &name).bytes(9, bytes);
+        self.constants = std::mem::take(&mut self.constants).message(5, &tensor);
+        name
+    }
+
+    /// A node without attributes.
+    pub(super) fn node(&mut self, operator: &str, inputs: &[&str]) -> Tensor {
+        let name = self.name("t");
+        self.add(operator, inputs, &name, &[]);
+        name
+    }
+
+    /// Gives a tensor the name of an output.
+    pub(super) fn output(&mut self, tensor: &str, name: &str) {
+        self.add("Identity", &[tensor], name, &[]);
+    }
+
+    fn add(&mut self, operator: &str, inputs: &[&str], output: &str, attributes: &[Message]) {
+        let node = inputs.iter().fold(Message::default(), |node, input| node.text(1, input));
+        let node = node.text(2, output).text(4, operator);
+        let node = attributes.iter().fold(node, |node, attribute| node.message(5, attribute));
+        self.nodes = std::mem::take(&mut self.nodes).message(1, &node);
+    }
+
+    /// Sum along an axis, which disappears.
+    pub(super) fn sum(&mut self, tensor: &str, axis: i64) -> Tensor {
+        let (axis, name) = (self.axis(axis), self.name("t"));
+        self.add("ReduceSum", &[tensor, &axis], &name, &[integer("keepdims", 0)]);
+        name
+    }
+
+    /// Least number along an axis, which disappears.
+    pub(super) fn least(&mut self, tensor: &str, axis: i64) -> Tensor {
+        let name = self.name("t");
+        let axes = Message::default().text(1, "axes").integer(8, axis).integer(20, 7);
+        self.add("ReduceMin", &[tensor], &name, &[axes, integer("keepdims", 0)]);
+        name
+    }
+
+    /// With a new axis of length 1.
+    pub(super) fn unsqueezed(&mut self, tensor: &str, axis: i64) -> Tensor {
+        let axis = self.axis(axis);
+        self.node("Unsqueeze", &[tensor, &axis])
+    }
+
+    /// Rows (B, M) times a matrix (M, n). Not by `MatMul`: onnxruntime joins that with numbers beside it, which it rounds
+    /// to single precision.
+    pub(super) fn product(&mut self, rows: &str, matrix: &str) -> Tensor {
+        let rows = self.unsqueezed(rows, 2);
+        let products = self.node("Mul", &[&rows, matrix]);
+        self.sum(&products, 1)
+    }
+
+    /// Times a number.
+    pub(super) fn times(&mut self, tensor: &str, factor: f64) -> Tensor {
+        let factor = self.number(factor);
+        self.node("Mul", &[tensor, &factor])
+    }
+
+    /// The graph of an input `x`, (B, n).
+    pub(super) fn finished(self, n: usize, outputs: &[(&str, Output)]) -> Message {
+        let graph = self.nodes.text(2, "policy").joined(&self.constants);
+        let graph = graph.message(11, &value("x", DOUBLE, Some(n)));
+        outputs.iter().fold(graph, |graph, (name, output)| {
+            let value = match output {
+                Output::Vectors(n) => value(name, DOUBLE, Some(*n)),
+                Output::Numbers => value(name, DOUBLE, None),
+                Output::Truths => value(name, BOOL, None),
+            };
+            graph.message(12, &value)
+        })
+    }
+}
+
+/// An attribute that is a whole number.
+fn integer(name: &str, value: i64) -> Message {
+    Message::default().text(1, name).integer(3, value).integer(20, 2)
+}
+
+/// An input or output: its first axis counts states.
+fn value(name: &str, kind: i64, n: Option<usize>) -> Message {
+    let dimension = |dimension: Message| Message::default().message(1, &dimension);
+    let shape = dimension(Message::default().text(2, "states"));
+    let shape = n.map_or(shape.clone(), |n| shape.message(1, &Message::default().integer(1, n as i64)));
+    let tensor = Message::default().integer(1, kind).message(2, &shape);
+    Message::default().text(1, name).message(2, &Message::default().message(1, &tensor))
+}

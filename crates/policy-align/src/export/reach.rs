@@ -1,0 +1,53 @@
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+use super::gp_tables::Scaled;
+use crate::Model;
+
+/// States at which the model is asked whether it knows them.
+const ASKED: usize = 1000;
+/// Share of the states within reach that the model may not know.
+const UNKNOWN: f64 = 0.05;
+
+/// How far from a learnt state a state still counts as known in an exported Gaussian process, squared, in its scaled
+/// coordinates; negative if nothing does.
+///
+/// The variance that decides in the model itself needs a matrix of the size of all samples squared. What is exported asks
+/// for the nearest learnt state instead: it reaches as far as 95 % of the states within it, evenly spread over the
+/// model's bounds, are known to the model.
+pub(super) fn squared_reach(model: &Model, scaled: &Scaled) -> f64 {
+    let (policy, bounds) = (model.policy(), model.bounds());
+    let asked = (1..=ASKED).into_par_iter().map(|index| {
+        let state = DVector::from_fn(bounds.len(), |k, _| {
+            let [low, high] = bounds[k];
+            low + (high - low) * radical_inverse(index, k)
+        });
+        let z = DVector::from_fn(state.len(), |k, _| {
+            (state[k] * model.state[k].scale - scaled.mean[k]) / scaled.spread
+        });
+        let nearest = scaled.z.column_iter().map(|row| (row - &z).norm_squared()).fold(f64::INFINITY, f64::min);
+        (nearest, policy.is_supported(state.as_view()))
+    });
+    let mut asked: Vec<_> = asked.collect();
+    asked.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (mut unknown, mut reach) = (0, -1.0);
+    for (count, (squared, known)) in asked.into_iter().enumerate() {
+        unknown += usize::from(!known);
+        if known && unknown as f64 <= UNKNOWN * (count + 1) as f64 {
+            reach = squared;
+        }
+    }
+    reach
+}
+
+/// Halton's sequence: number `index` of an even covering of (0, 1), in dimension `axis`.
+fn radical_inverse(index: usize, axis: usize) -> f64 {
+    let base = (2..).filter(|n| (2..*n).take_while(|d| d * d <= *n).all(|d| n % d != 0)).nth(axis).unwrap_or(2);
+    let (mut left, mut share, mut value) = (index, 1.0 / base as f64, 0.0);
+    while left > 0 {
+        value += share * (left % base) as f64;
+        left /= base;
+        share /= base as f64;
+    }
+    value
+}

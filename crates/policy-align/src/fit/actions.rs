@@ -1,0 +1,30 @@
+//! Policies compared at states that were recorded.
+
+use gp::Rows;
+use motion::Policy;
+use nalgebra::DMatrix;
+
+/// States that policies are compared at, at most.
+const STATES: usize = 500;
+
+/// Rows' states, evenly thinned, (n, M).
+pub(super) fn states(rows: &Rows) -> DMatrix<f64> {
+    let every = rows.len().div_ceil(STATES);
+    let chosen: Vec<usize> = (0..rows.len()).step_by(every).collect();
+    rows.states().select_columns(&chosen)
+}
+
+/// π at states (n, M), (n, M).
+pub(super) fn actions(policy: &dyn Policy, states: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut actions = states.clone();
+    for (state, action) in states.column_iter().zip(actions.column_iter_mut()) {
+        policy.action_into(state, action);
+    }
+    actions
+}
+
+/// Σ‖u − mean u‖² over columns.
+pub(super) fn spread(actions: &DMatrix<f64>) -> f64 {
+    let mean = actions.column_mean();
+    actions.column_iter().map(|action| (action - &mean).norm_squared()).sum()
+}

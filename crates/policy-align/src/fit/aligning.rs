@@ -1,0 +1,277 @@
+//! PolicyAlign on what was recorded: rule of integration, bandwidth and receptive fields by held-out movements.
+
+use align::{Aligned, Bandwidth, Integration, LwprRegressor, PolicyAlign, PotentialPolicy};
+use gp::Rows;
+use lwpr::LwprParams;
+use motion::{Demonstrations, LearntPolicy, Potential};
+use nalgebra::{DMatrix, DVector};
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use smoothing::SavitzkyGolay;
+
+use super::options::FitOptions;
+use super::progress::Progress;
+use super::recorded_rows::averaged;
+use crate::{Decision, FitError, Prepared, Recorded};
+
+/// Positions alone are smoothed if noise makes more than this share of the squared steps.
+const NOISY: f64 = 0.1;
+/// Sizes of receptive fields tried, in units of the states' spread.
+const INIT_D: [f64; 5] = [1.0, 2.5, 6.0, 15.0, 40.0];
+const BANDWIDTHS: [Bandwidth; 3] = [Bandwidth::Narrow, Bandwidth::Medium, Bandwidth::Wide];
+
+/// What PolicyAlign learnt, and how it predicts movements held out.
+#[derive(Debug, Clone)]
+pub(crate) struct AlignedFit {
+    pub(crate) policy: PotentialPolicy,
+    pub(crate) decisions: Vec<Decision>,
+    /// Held-out error of every setting's choice.
+    pub(crate) held_out: HeldOut,
+    /// Root mean square of potentials' disagreement after alignment, over their standard deviation.
+    pub(crate) residual: f64,
+}
+
+/// Σ (uᵀπ̂/r − r)² and its comparisons, over held-out samples.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct HeldOut {
+    pub(crate) squares: f64,
+    /// Σ r².
+    pub(crate) seen: f64,
+    /// Σ ‖π̂‖².
+    pub(crate) wanted: f64,
+    /// Σ ‖π̂ − π̂_GP‖², of the Gaussian process that knows all movements.
+    pub(crate) apart: f64,
+    pub(crate) samples: usize,
+    /// Samples that the policy knows nothing of.
+    pub(crate) unsupported: usize,
+}
+
+impl HeldOut {
+    /// E: 0 explains every movement left out, 1 is as good as standing still.
+    pub(crate) fn to_choose(self) -> f64 {
+        self.squares / self.seen
+    }
+
+    /// E′: as a share of the policy, for a policy may be right where constraints hardly let it move.
+    pub(crate) fn to_judge(self) -> f64 {
+        if self.wanted > 0.0 { self.squares / self.wanted } else { f64::INFINITY }
+    }
+
+    fn plus(self, other: HeldOut) -> HeldOut {
+        HeldOut {
+            squares: self.squares + other.squares,
+            seen: self.seen + other.seen,
+            wanted: self.wanted + other.wanted,
+            apart: self.apart + other.apart,
+            samples: self.samples + other.samples,
+            unsupported: self.unsupported + other.unsupported,
+        }
+    }
+}
+
+/// One point of the grid, with its error in every fold.
+struct Tried {
+    bandwidth: Bandwidth,
+    sigma_squared: f64,
+    init_d: f64,
+    folds: Vec<HeldOut>,
+}
+
+impl Tried {
+    fn total(&self) -> HeldOut {
+        self.folds.iter().copied().fold(HeldOut::default(), HeldOut::plus)
+    }
+
+    /// Standard error of E over folds.
+    fn standard_error(&self) -> f64 {
+        let errors: Vec<f64> = self.folds.iter().map(|fold| fold.to_choose()).collect();
+        let count = errors.len() as f64;
+        let mean = errors.iter().sum::<f64>() / count;
+        (errors.iter().map(|error| (error - mean).powi(2)).sum::<f64>() / (count * (count - 1.0))).sqrt()
+    }
+}
+
+/// Positions averaged and smoothed where that is better, and the rule that integrates them.
+fn integrable(prepared: &Prepared) -> Result<(Demonstrations, Integration, &'static str), FitError> {
+    let averaged = averaged(prepared)?;
+    let smooth = || SavitzkyGolay::default().smooth(&averaged);
+    Ok(match prepared.recorded {
+        Recorded::Velocities => (averaged, Integration::Velocity, "recorded; they agree with the steps"),
+        Recorded::FusedVelocities | Recorded::NoisyVelocities(_) => {
+            (smooth()?, Integration::Velocity, "recorded; positions smoothed (9 samples, degree 2)")
+        }
+        Recorded::Positions if prepared.noise.step_share > NOISY => {
+            (smooth()?, Integration::Displacement, "positions smoothed (9 samples, degree 2), then step by step")
+        }
+        Recorded::Positions => (averaged, Integration::Displacement, "positions are exact enough"),
+    })
+}
+
+pub(super) fn fit(
+    prepared: &Prepared,
+    rows: &Rows,
+    reference: &DMatrix<f64>,
+    options: &FitOptions,
+    progress: &mut Progress<'_>,
+) -> Result<AlignedFit, FitError> {
+    let (demonstrations, integration, why) = integrable(prepared)?;
+    let mut decisions =
+        vec![decision("integration", format!("{integration:?}").to_lowercase(), why.to_owned(), "--integration")];
+    progress.begin(2, 4, "choosing bandwidth and receptive fields")?;
+    let tried = grid(&demonstrations, integration, (rows, reference), options, progress)?;
+    let best = choose(&tried).ok_or(FitError::Cancelled)?;
+    let said = format!(
+        "best of {} by held-out slope error {:.3}, {} folds of episodes",
+        tried.len(),
+        best.total().to_choose(),
+        best.folds.len()
+    );
+    let given = |flag: bool| if flag { "given".to_owned() } else { said.clone() };
+    decisions.push(decision(
+        "bandwidth",
+        format!("{:?} (σ² {:.3e})", best.bandwidth, best.sigma_squared).to_lowercase(),
+        given(options.bandwidth.is_some()),
+        "--bandwidth",
+    ));
+    decisions.push(decision("init_d", format!("{}", best.init_d), given(options.init_d.is_some()), "--init-d"));
+    progress.begin(3, 4, "aligning all movements")?;
+    let align = PolicyAlign { integration, bandwidth: Bandwidth::Fixed(best.sigma_squared), ..PolicyAlign::default() };
+    let aligned = align.align(&demonstrations)?;
+    let policy = aligned.learn(&regressor(best.init_d), &mut ChaCha8Rng::seed_from_u64(options.seed))?;
+    let residual = residual(&aligned, &policy);
+    Ok(AlignedFit { policy, decisions, held_out: best.total(), residual })
+}
+
+fn decision(what: &str, value: String, why: String, flag: &str) -> Decision {
+    Decision { what: what.to_owned(), value, why, flag: flag.to_owned() }
+}
+
+fn regressor(init_d: f64) -> LwprRegressor {
+    let regressor = LwprRegressor::default();
+    LwprRegressor { params: LwprParams { init_d, ..regressor.params }, ..regressor }
+}
+
+/// Every setting in every fold, in parallel.
+fn grid(
+    demonstrations: &Demonstrations,
+    integration: Integration,
+    (rows, reference): (&Rows, &DMatrix<f64>),
+    options: &FitOptions,
+    progress: &Progress<'_>,
+) -> Result<Vec<Tried>, FitError> {
+    let bandwidths = options.bandwidth.map_or_else(|| BANDWIDTHS.to_vec(), |given| vec![given]);
+    let sizes = options.init_d.map_or_else(|| INIT_D.to_vec(), |given| vec![given]);
+    let cancelled = progress.cancelled;
+    let folds = folds(demonstrations.n_trajectories(), options);
+    let mut tried = Vec::new();
+    let mut refused = None;
+    for bandwidth in bandwidths {
+        let align = PolicyAlign { integration, bandwidth, ..PolicyAlign::default() };
+        match align.align(demonstrations) {
+            Err(error) => refused = Some(error),
+            Ok(aligned) => tried.extend(sizes.iter().map(|&init_d| Tried {
+                bandwidth,
+                sigma_squared: aligned.sigma_squared(),
+                init_d,
+                folds: Vec::new(),
+            })),
+        }
+    }
+    if tried.is_empty() {
+        return Err(refused.map_or(FitError::Cancelled, FitError::Align));
+    }
+    let mut settings: Vec<f64> = tried.iter().map(|tried| tried.sigma_squared).collect();
+    settings.dedup();
+    let jobs: Vec<(f64, usize)> = settings.iter().flat_map(|&s| (0..folds.len()).map(move |fold| (s, fold))).collect();
+    let fold_errors = |&(sigma_squared, fold): &(f64, usize)| {
+        if cancelled.load(std::sync::atomic::Ordering::Relaxed) {
+            return Err(FitError::Cancelled);
+        }
+        let held: Vec<usize> = folds[fold].clone();
+        let kept: Vec<_> = (0..demonstrations.n_trajectories()).filter(|k| !held.contains(k)).collect();
+        let seen = kept.iter().map(|&k| demonstrations.trajectories()[k].clone()).collect();
+        // A fold is not everything.
+        let seen = Demonstrations::new(seen)
+            .map_err(|error| FitError::Gp(gp::GpError::Cleaning { reason: error.to_string() }))?;
+        let align = PolicyAlign { integration, bandwidth: Bandwidth::Fixed(sigma_squared), ..PolicyAlign::default() };
+        let aligned = align.align(&seen)?;
+        let test: Vec<usize> = (0..rows.len()).filter(|&row| held.contains(&rows.indices()[row].trajectory)).collect();
+        let errors = sizes.iter().map(|&init_d| {
+            let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
+            rng.set_stream(1 + fold as u64);
+            Ok(held_out(&aligned.learn(&regressor(init_d), &mut rng)?, rows, &test, Some(reference)))
+        });
+        errors.collect::<Result<Vec<HeldOut>, FitError>>()
+    };
+    let results: Vec<_> = jobs.par_iter().map(fold_errors).collect();
+    for ((sigma_squared, _), errors) in jobs.iter().zip(results) {
+        for (init_d, error) in sizes.iter().zip(errors?) {
+            let of = |tried: &&mut Tried| tried.sigma_squared == *sigma_squared && tried.init_d == *init_d;
+            tried.iter_mut().filter(of).for_each(|tried| tried.folds.push(error));
+        }
+    }
+    Ok(tried)
+}
+
+/// The lowest E; of those within one standard error of it the narrowest bandwidth, then the smallest fields' number.
+fn choose(tried: &[Tried]) -> Option<&Tried> {
+    let error = |tried: &Tried| {
+        let error = tried.total().to_choose();
+        if error.is_finite() { error } else { f64::INFINITY }
+    };
+    let best = tried.iter().min_by(|a, b| error(a).total_cmp(&error(b)))?;
+    let limit = error(best) + best.standard_error().max(0.0);
+    let near = tried.iter().filter(|tried| error(tried) <= limit);
+    near.min_by(|a, b| a.sigma_squared.total_cmp(&b.sigma_squared).then(a.init_d.total_cmp(&b.init_d))).or(Some(best))
+}
+
+/// Episodes, in random order, dealt out.
+fn folds(episodes: usize, options: &FitOptions) -> Vec<Vec<usize>> {
+    use rand::seq::SliceRandom;
+    let mut order: Vec<usize> = (0..episodes).collect();
+    order.shuffle(&mut ChaCha8Rng::seed_from_u64(options.seed));
+    let count = options.folds.min(episodes);
+    (0..count).map(|fold| order.iter().copied().skip(fold).step_by(count).collect()).collect()
+}
+
+/// How a policy predicts the speed of rows along the direction they moved in.
+///
+/// `reference`: another policy at every row, (n, M), to compare with.
+pub(crate) fn held_out(
+    policy: &dyn LearntPolicy,
+    rows: &Rows,
+    test: &[usize],
+    reference: Option<&DMatrix<f64>>,
+) -> HeldOut {
+    let mut sums = HeldOut::default();
+    let mut action = DVector::zeros(rows.dim());
+    for &row in test {
+        let (x, u) = (rows.states().column(row), rows.velocities().column(row));
+        let variance = rows.variances().map_or(0.0, |variances| variances[row]);
+        let r = u.norm();
+        if r == 0.0 || r * r < 9.0 * variance * rows.dim() as f64 {
+            continue;
+        }
+        policy.action_into(x, action.as_view_mut());
+        sums.squares += (u.dot(&action) / r - r).powi(2);
+        sums.seen += r * r;
+        sums.wanted += action.norm_squared();
+        sums.apart += reference.map_or(0.0, |reference| (&action - reference.column(row)).norm_squared());
+        sums.samples += 1;
+        sums.unsupported += usize::from(policy.support(x) == 0.0);
+    }
+    sums
+}
+
+fn residual(aligned: &Aligned, policy: &PotentialPolicy) -> f64 {
+    let potential = policy.global_potential();
+    let pairs: Vec<(f64, f64)> = aligned.samples().iter().map(|(x, level)| (potential.value(x), level)).collect();
+    let count = pairs.len() as f64;
+    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / count;
+    let shift = mean(&|(f, level)| level - f);
+    let left = mean(&|(f, level)| (level - f - shift).powi(2));
+    let middle = mean(&|(_, level)| *level);
+    (left / mean(&|(_, level)| (level - middle).powi(2))).sqrt()
+}

@@ -1,0 +1,257 @@
+//! From prepared movements to a policy, with a line for everything that was decided, and how far to trust it.
+
+mod actions;
+mod aligning;
+mod halves;
+mod options;
+mod progress;
+mod recorded_rows;
+
+pub(crate) use aligning::held_out;
+pub use options::{FitOptions, LearnerChoice};
+pub use progress::{Progress, Step};
+pub(crate) use recorded_rows::rows;
+
+use gp::{BothReadings, DirectGp, FrontEnd, Reading, ReadingLearner, SlopeGp, TrajectoryErrors};
+use motion::{LearntPolicy, Policy};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use crate::trust::{AlignedNumbers, Evidence, TrustNumbers, judge, share_leaving};
+use crate::{
+    DataSummary, Decision, FileSummary, FitError, Learnt, LeftOutEpisode, MadeBy, Model, Prepared, StateChannel, Trust,
+};
+use aligning::AlignedFit;
+
+/// Rows that amplitudes are chosen on, as a share of those learnt from.
+const HYPER_SHARE: f64 = 0.5;
+
+/// A policy, how it came about, and how far to trust it.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// The policy, of states times the channels' scales.
+    pub learnt: Learnt,
+    /// What was decided for the user, in the order of deciding.
+    pub decisions: Vec<Decision>,
+    /// How far to trust it.
+    pub trust: Trust,
+    /// Dimensions of the state, n of them.
+    pub state: Vec<StateChannel>,
+    /// Seconds.
+    pub time_step: f64,
+    /// Episodes learnt from.
+    pub episodes: usize,
+    /// Samples learnt from.
+    pub samples: usize,
+    /// Duration of the longest episode, in seconds.
+    pub longest: f64,
+    /// Median speed of the movements, in scaled units of the state per second.
+    pub speed: f64,
+    /// Episodes not learnt from.
+    pub left_out: Vec<LeftOutEpisode>,
+    /// Of every random choice.
+    pub seed: u64,
+}
+
+/// Learns a policy. The same seed gives the same bits at any number of threads.
+///
+/// # Errors
+/// [`FitError`]: options out of range, too few movements for the learner, or [`FitError::Cancelled`].
+pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_>) -> Result<Fit, FitError> {
+    options.check()?;
+    let steps = if options.learner == LearnerChoice::PolicyAlign { 4 } else { 2 };
+    progress.begin(0, steps, "cleaning what was recorded")?;
+    let rows = rows(prepared)?;
+    progress.begin(1, steps, "learning with and without constraints")?;
+    let readings = readings(&rows, options)?;
+    let mut decisions = prepared.decisions.clone();
+    decisions.push(learner_decision(options, &readings));
+    let aligned = match options.learner {
+        LearnerChoice::PolicyAlign => {
+            let reference = actions::actions(&readings, rows.states());
+            Some(aligning::fit(prepared, &rows, &reference, options, progress)?)
+        }
+        _ => None,
+    };
+    let numbers = numbers(prepared, options, &readings, aligned.as_ref(), &rows);
+    let trust =
+        judge(Evidence { numbers, findings: &prepared.findings, state: &prepared.state, episodes: &prepared.episodes });
+    let left_out = prepared.left_out.clone();
+    let learnt = match (options.learner, aligned) {
+        (_, Some(aligned)) => {
+            decisions.extend(aligned.decisions);
+            Learnt::PolicyAlign(Box::new(aligned.policy))
+        }
+        (LearnerChoice::Slope, _) => Learnt::Slope(Box::new(readings.slope().clone())),
+        (LearnerChoice::Direct, _) => Learnt::Direct(Box::new(readings.direct().clone())),
+        _ => Learnt::Auto(Box::new(readings)),
+    };
+    Ok(Fit {
+        learnt,
+        decisions,
+        trust,
+        state: prepared.state.clone(),
+        time_step: prepared.time_step,
+        episodes: prepared.demonstrations.n_trajectories(),
+        samples: prepared.demonstrations.n_samples(),
+        longest: longest(prepared),
+        speed: median_speed(&rows),
+        left_out,
+        seed: options.seed,
+    })
+}
+
+impl Fit {
+    /// As it is stored.
+    pub fn into_model(self, made_by: MadeBy, files: Vec<FileSummary>) -> Model {
+        let Fit { learnt, decisions, trust, state, time_step, episodes, samples, longest, speed, left_out, seed } = self;
+        let data = DataSummary { files, episodes, samples, longest, speed, left_out };
+        Model { made_by, state, time_step, data, decisions, seed, trust, learnt }
+    }
+}
+
+/// Duration of the longest episode, in seconds.
+fn longest(prepared: &Prepared) -> f64 {
+    let duration = |movement: &motion::Trajectory| match movement.times() {
+        Some(times) => times[times.len() - 1] - times[0],
+        None => movement.time_step() * (movement.n_samples() - 1) as f64,
+    };
+    prepared.demonstrations.trajectories().iter().map(duration).fold(0.0, f64::max)
+}
+
+fn median_speed(rows: &gp::Rows) -> f64 {
+    let mut speeds: Vec<f64> = rows.velocities().column_iter().map(|velocity| velocity.norm()).collect();
+    speeds.sort_by(f64::total_cmp);
+    speeds.get(speeds.len() / 2).copied().unwrap_or(0.0)
+}
+
+fn readings(rows: &gp::Rows, options: &FitOptions) -> Result<BothReadings, FitError> {
+    let (max_rows, hyper_rows) = (options.max_rows, (options.max_rows as f64 * HYPER_SHARE) as usize);
+    let learner = ReadingLearner {
+        front_end: FrontEnd::Velocities, // the rows are made already
+        slope: SlopeGp { max_rows, hyper_rows, ..SlopeGp::default() },
+        direct: DirectGp { max_rows, hyper_rows, ..DirectGp::default() },
+        reading: options.reading,
+    };
+    Ok(learner.fit(rows, &mut ChaCha8Rng::seed_from_u64(options.seed))?)
+}
+
+fn learner_decision(options: &FitOptions, readings: &BothReadings) -> Decision {
+    let decision = |value: &str, why: String, flag: &str| Decision {
+        what: "learner".to_owned(),
+        value: value.to_owned(),
+        why,
+        flag: flag.to_owned(),
+    };
+    match options.learner {
+        LearnerChoice::PolicyAlign => decision("policy-align", "given".to_owned(), "--learner"),
+        LearnerChoice::Slope => decision("slope GP", "given".to_owned(), "--learner"),
+        LearnerChoice::Direct => decision("direct GP", "given".to_owned(), "--learner"),
+        LearnerChoice::Auto => {
+            let numbers = readings.numbers();
+            let reading = options.reading.unwrap_or(readings.reading());
+            let learner = if numbers.takes_slope(reading) { "slope GP" } else { "direct GP" };
+            let why = match options.reading {
+                Some(reading) => format!("you read the movements as {}", named(reading)),
+                None => format!(
+                    "movements look {}: left-out squared error {:.3} knowing the direction, {:.3} from the place alone",
+                    named(reading),
+                    numbers.a_s,
+                    numbers.a_d
+                ),
+            };
+            decision(learner, why, "--reading")
+        }
+    }
+}
+
+fn named(reading: Reading) -> &'static str {
+    match reading {
+        Reading::Free => "free",
+        Reading::Constrained => "constrained",
+        Reading::Ambiguous => "ambiguous",
+        Reading::Unexplained => "unexplained",
+        Reading::TooFew => "too few to tell",
+    }
+}
+
+fn numbers(
+    prepared: &Prepared,
+    options: &FitOptions,
+    readings: &BothReadings,
+    aligned: Option<&AlignedFit>,
+    rows: &gp::Rows,
+) -> TrustNumbers {
+    let (of, report) = (readings.numbers(), readings.slope().report());
+    let takes_slope = match options.learner {
+        LearnerChoice::Slope => true,
+        LearnerChoice::Direct => false,
+        _ => of.takes_slope(options.reading.unwrap_or(readings.reading())),
+    };
+    let policy: &dyn Policy = match aligned {
+        Some(aligned) => &aligned.policy,
+        None if options.learner == LearnerChoice::Auto => readings,
+        None if takes_slope => readings.slope(),
+        None => readings.direct(),
+    };
+    let slope_error = of.a_s * (1.0 - of.hidden);
+    let held_out_error = match aligned {
+        Some(aligned) => aligned.held_out.to_judge(),
+        None if takes_slope => slope_error,
+        None => of.a_d,
+    };
+    let own = if takes_slope { report.expected_nupe } else { readings.expected_nupe() };
+    let aligned_numbers = aligned.map(|aligned| {
+        let kept = aligned.policy.kept().map_or(prepared.demonstrations.n_trajectories(), <[usize]>::len);
+        AlignedNumbers {
+            kept,
+            discarded: prepared.demonstrations.n_trajectories() - kept,
+            residual: aligned.residual,
+            unsupported: aligned.held_out.unsupported as f64 / aligned.held_out.samples.max(1) as f64,
+            difference: aligned.held_out.apart / actions::spread(&actions::actions(readings, rows.states()))
+                * rows.len() as f64
+                / aligned.held_out.samples.max(1) as f64,
+        }
+    });
+    TrustNumbers {
+        episodes: prepared.demonstrations.n_trajectories(),
+        reading: readings.reading(),
+        held_out_error,
+        episode_errors: episode_errors(readings, takes_slope),
+        held_out_error_direct: of.a_d,
+        direct_error: of.p_d,
+        gap: of.gap,
+        // How far PolicyAlign's policy is from one that is as far from the truth: together at most.
+        expected_error: aligned_numbers
+            .as_ref()
+            .map_or(own, |aligned| (aligned.difference.sqrt() + own.sqrt()).powi(2)),
+        ambiguity: report.ambiguity,
+        slope_r_squared: report.r_squared,
+        z_squared: report.z_squared,
+        direction_coverage: of.least_seen.share * of.least_seen.direction.len() as f64,
+        unseen_direction: of.least_seen.direction.clone(),
+        least_known: report.identifiability.least,
+        least_known_direction: report.identifiability.direction.clone(),
+        rotation_share: report.rotational_share,
+        rotation_t: report.curl_t,
+        model: report.model,
+        halves: if takes_slope {
+            halves::of_slope(readings.slope(), rows, (options.max_rows, options.seed))
+        } else {
+            None
+        },
+        leaving: share_leaving(policy, &prepared.demonstrations),
+        step_noise: prepared.noise.step_share,
+        grouping: of.grouping,
+        aligned: aligned_numbers,
+    }
+}
+
+/// E′ of every movement left out, as if it were as fast as all are.
+fn episode_errors(readings: &BothReadings, takes_slope: bool) -> Vec<(usize, f64)> {
+    let left_out = readings.left_out();
+    let seen = left_out.iter().map(|errors| errors.seen).sum::<f64>() / left_out.len() as f64;
+    let hidden = if takes_slope { readings.numbers().hidden } else { 0.0 };
+    let error = |errors: &TrajectoryErrors| if takes_slope { errors.slope } else { errors.direct };
+    left_out.iter().map(|errors| (errors.trajectory, error(errors) / seen * (1.0 - hidden))).collect()
+}

@@ -1,0 +1,71 @@
+use align::Bandwidth;
+use gp::Reading;
+use serde::{Deserialize, Serialize};
+
+use crate::FitError;
+
+/// What a user may decide about learning; by default everything is decided from the data.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FitOptions {
+    /// `--learner`.
+    pub learner: LearnerChoice,
+    /// The user's own reading, which overrides that of the data (`--reading`).
+    pub reading: Option<Reading>,
+    /// For PolicyAlign; none: chosen by held-out movements (`--bandwidth`).
+    pub bandwidth: Option<Bandwidth>,
+    /// For PolicyAlign; none: chosen by held-out movements (`--init-d`).
+    pub init_d: Option<f64>,
+    /// Parts that episodes are divided into to test prediction (`--folds`).
+    pub folds: usize,
+    /// Of every random choice (`--seed`).
+    pub seed: u64,
+    /// Rows that Gaussian processes learn from, at most; random ones are left out (`--max-rows`).
+    pub max_rows: usize,
+}
+
+/// What learns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LearnerChoice {
+    /// Slope GP or direct GP, as the data say.
+    #[default]
+    Auto,
+    /// Aligned potentials and LWPR.
+    PolicyAlign,
+    /// The slope GP.
+    Slope,
+    /// The direct GP.
+    Direct,
+}
+
+impl Default for FitOptions {
+    fn default() -> Self {
+        FitOptions {
+            learner: LearnerChoice::Auto,
+            reading: None,
+            bandwidth: None,
+            init_d: None,
+            folds: 5,
+            seed: 1,
+            max_rows: 400,
+        }
+    }
+}
+
+impl FitOptions {
+    pub(super) fn check(&self) -> Result<(), FitError> {
+        let wrong = |name, value, requirement| Err(FitError::Option { name, value, requirement });
+        if self.folds < 2 {
+            return wrong("--folds", self.folds as f64, "be at least 2");
+        }
+        if self.max_rows < 50 {
+            return wrong("--max-rows", self.max_rows as f64, "be at least 50");
+        }
+        match self.init_d {
+            Some(init_d) if !(init_d > 0.0 && init_d.is_finite()) => {
+                wrong("--init-d", init_d, "be positive and finite")
+            }
+            _ => Ok(()),
+        }
+    }
+}

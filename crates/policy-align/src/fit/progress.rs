@@ -1,0 +1,36 @@
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::FitError;
+
+/// How somebody follows a fit, and stops it.
+pub struct Progress<'a> {
+    /// Set by whoever wants the fit to stop; looked at between steps.
+    pub cancelled: &'a AtomicBool,
+    /// Told of every step that begins.
+    pub report: &'a mut dyn FnMut(Step),
+}
+
+/// A step of a fit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Step {
+    /// Steps done.
+    pub done: usize,
+    /// Of so many.
+    pub of: usize,
+    /// What begins now.
+    pub what: &'static str,
+}
+
+impl Progress<'_> {
+    pub(super) fn begin(&mut self, done: usize, of: usize, what: &'static str) -> Result<(), FitError> {
+        if self.is_cancelled() {
+            return Err(FitError::Cancelled);
+        }
+        (self.report)(Step { done, of, what });
+        Ok(())
+    }
+
+    pub(super) fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+}

@@ -1,0 +1,26 @@
+//! The program `policy-align`: from recordings to a policy, in a few commands.
+
+mod cli;
+
+use std::panic::{PanicHookInfo, catch_unwind};
+use std::process::{ExitCode, exit};
+
+use cli::{Exit, complain};
+
+fn main() -> ExitCode {
+    std::panic::set_hook(Box::new(report));
+    // Whoever interrupts wants an end at once. Files are written whole or not at all.
+    let _ = ctrlc::set_handler(|| exit(Exit::Interrupted as i32));
+    let exit = catch_unwind(cli::run).unwrap_or(Exit::Bug);
+    ExitCode::from(exit as u8)
+}
+
+/// A panic is a bug of ours.
+fn report(panic: &PanicHookInfo<'_>) {
+    let what = panic.payload_as_str().unwrap_or("a panic").replace('\n', " ");
+    let place = panic.location().map_or_else(String::new, ToString::to_string);
+    complain(&format!(
+        "error: a bug of policy-align {}: {what}\n  in:  {place}\n  try: please report it, with the command and the file",
+        env!("CARGO_PKG_VERSION")
+    ));
+}

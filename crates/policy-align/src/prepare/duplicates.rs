@@ -1,0 +1,32 @@
+use std::collections::HashMap;
+
+use super::episodes::Take;
+use super::prepared::Notes;
+use crate::Verdict;
+
+/// The same movement twice counts once: it would be left out to test the prediction of itself.
+pub(super) fn leave_out(takes: &mut Vec<Take>, notes: &mut Notes) {
+    let mut first = HashMap::<Vec<u64>, String>::new();
+    let before = takes.len();
+    takes.retain(|take| {
+        let bits: Vec<u64> = take.positions.iter().map(|x| x.to_bits()).collect();
+        match first.get(&bits) {
+            None => {
+                first.insert(bits, take.name.clone());
+                true
+            }
+            Some(same) => {
+                notes.left_out(&take.name, format!("the same samples as episode {same}"));
+                false
+            }
+        }
+    });
+    let repeated = before - takes.len();
+    if repeated > 0 {
+        notes.found(
+            Verdict::Good,
+            format!("{repeated} of {before} episodes repeat another sample for sample and were left out"),
+            "look how the files were made; a copied movement tells nothing new",
+        );
+    }
+}

@@ -1,0 +1,110 @@
+use gp::FrontEnd;
+use motion::Demonstrations;
+use smoothing::Smoother;
+
+use super::episodes::Take;
+use super::noise::Noise;
+use crate::{Decision, Finding, LeftOutEpisode, StateChannel, Verdict};
+
+/// Demonstrations that can be learnt from, with what was decided and noticed on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prepared {
+    /// Movements, states and velocities times the channels' scales.
+    pub demonstrations: Demonstrations,
+    /// Name of each movement, (K).
+    pub episodes: Vec<String>,
+    /// Label of the constraint of each movement, (K), where the file has one.
+    pub constraints: Vec<Option<String>>,
+    /// Dimensions of the state, n of them.
+    pub state: Vec<StateChannel>,
+    /// Median time step in seconds.
+    pub time_step: f64,
+    /// Noise of positions and velocities.
+    pub noise: Noise,
+    /// What the learners are given.
+    pub recorded: Recorded,
+    /// So many samples in a row become one before learning; 1: all stay.
+    pub averaged: usize,
+    /// What was decided, in the order of deciding.
+    pub decisions: Vec<Decision>,
+    /// What gives reason for doubt.
+    pub findings: Vec<Finding>,
+    /// Episodes that are not learnt from.
+    pub left_out: Vec<LeftOutEpisode>,
+}
+
+/// What was recorded, as learners use it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Recorded {
+    /// Exact positions and velocities.
+    Velocities,
+    /// Exact velocities, noisy positions.
+    FusedVelocities,
+    /// Velocities with noise of this variance along each axis.
+    NoisyVelocities(f64),
+    /// Positions alone.
+    Positions,
+}
+
+impl Recorded {
+    /// How it becomes rows of a Gaussian process.
+    pub fn front_end(self) -> FrontEnd {
+        match self {
+            Recorded::Velocities | Recorded::NoisyVelocities(_) => FrontEnd::Velocities,
+            Recorded::FusedVelocities => FrontEnd::Fused(smoothing::Fusion::default()),
+            Recorded::Positions => FrontEnd::Smoothed(Smoother::default()),
+        }
+    }
+}
+
+/// What is said while preparing.
+#[derive(Debug, Default)]
+pub(super) struct Notes {
+    pub(super) decisions: Vec<Decision>,
+    pub(super) findings: Vec<Finding>,
+    pub(super) left_out: Vec<LeftOutEpisode>,
+}
+
+impl Notes {
+    pub(super) fn decided(&mut self, what: &str, value: impl Into<String>, why: impl Into<String>, flag: &str) {
+        let (what, flag) = (what.to_owned(), flag.to_owned());
+        self.decisions.push(Decision { what, value: value.into(), why: why.into(), flag });
+    }
+
+    pub(super) fn found(&mut self, verdict: Verdict, what: impl Into<String>, next: impl Into<String>) {
+        self.findings.push(Finding { verdict, what: what.into(), next: next.into() });
+    }
+
+    pub(super) fn left_out(&mut self, episode: &str, why: impl Into<String>) {
+        self.left_out.push(LeftOutEpisode { episode: episode.to_owned(), why: why.into() });
+    }
+}
+
+impl Prepared {
+    pub(super) fn new(
+        demonstrations: Demonstrations,
+        takes: &[Take],
+        state: Vec<StateChannel>,
+        noise: Noise,
+        (recorded, averaged): (Recorded, usize),
+        notes: Notes,
+    ) -> Self {
+        let mut steps: Vec<f64> = demonstrations.trajectories().iter().map(motion::Trajectory::time_step).collect();
+        let middle = steps.len() / 2;
+        let time_step = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let Notes { decisions, findings, left_out } = notes;
+        Prepared {
+            demonstrations,
+            episodes: takes.iter().map(|take| take.name.clone()).collect(),
+            constraints: takes.iter().map(|take| take.constraint.clone()).collect(),
+            state,
+            time_step,
+            noise,
+            recorded,
+            averaged,
+            decisions,
+            findings,
+            left_out,
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! What else can be said before learning.
+
+use motion::{Demonstrations, Trajectory};
+
+use super::noise::{Noise, resolution};
+use super::prepared::Notes;
+use crate::{StateChannel, Verdict};
+
+/// A channel that spreads so many times as much as most others has another unit, it seems.
+const MIXED: f64 = 20.0;
+/// Fewer episodes tell too little of constraints.
+const FEW: usize = 5;
+/// An episode whose ends are this near, as a share of its length, is a loop.
+const LOOP: f64 = 0.05;
+/// Samples at an end that may stand still.
+const STANDING: usize = 10;
+/// Positions have few digits if a step of the last digit is this share of a channel's spread.
+const COARSE: f64 = 0.01;
+
+pub(super) fn about(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise, notes: &mut Notes) {
+    let spreads = spreads(demonstrations);
+    mixed_units(&spreads, state, notes);
+    few(demonstrations, notes);
+    loops(demonstrations, notes);
+    standing(demonstrations, noise, notes);
+    coarse(demonstrations, &spreads, state, notes);
+}
+
+fn spreads(demonstrations: &Demonstrations) -> Vec<f64> {
+    let samples = demonstrations.n_samples() as f64;
+    let values = |axis: usize| {
+        demonstrations
+            .trajectories()
+            .iter()
+            .flat_map(move |movement| movement.states().row(axis).iter().copied().collect::<Vec<_>>())
+    };
+    (0..demonstrations.dim())
+        .map(|axis| {
+            let mean = values(axis).sum::<f64>() / samples;
+            (values(axis).map(|x| (x - mean).powi(2)).sum::<f64>() / samples).sqrt()
+        })
+        .collect()
+}
+
+fn mixed_units(spreads: &[f64], state: &[StateChannel], notes: &mut Notes) {
+    let mut sorted: Vec<f64> = spreads.iter().copied().filter(|&spread| spread > 0.0).collect();
+    sorted.sort_by(f64::total_cmp);
+    let Some((&largest, others)) = sorted.split_last() else { return };
+    let Some(&usual) = others.get(others.len() / 2) else { return };
+    let times = largest / usual;
+    if times < MIXED {
+        return;
+    }
+    let name = spreads.iter().position(|&spread| spread == largest).map_or("", |at| state[at].name.as_str());
+    notes.found(
+        Verdict::Doubtful,
+        format!("channel {name} spreads {times:.0} times as much as the others: has it another unit (degrees, millimetres)?"),
+        format!("constraints act at right angles only if all channels share one unit: --degrees {name} or --scale {name}=FACTOR"),
+    );
+}
+
+fn few(demonstrations: &Demonstrations, notes: &mut Notes) {
+    let count = demonstrations.n_trajectories();
+    if count < FEW {
+        let (verb, plural) = if count == 1 { ("is", "") } else { ("are", "s") };
+        notes.found(
+            Verdict::Doubtful,
+            format!("{count} movement{plural} {verb} too few to tell what constraints hid"),
+            "record at least 10, from different starts and under different constraints",
+        );
+    }
+}
+
+fn loops(demonstrations: &Demonstrations, notes: &mut Notes) {
+    let is_loop = |movement: &&Trajectory| {
+        let last = movement.n_samples() - 1;
+        let length: f64 = (0..last).map(|i| (movement.state(i + 1) - movement.state(i)).norm()).sum();
+        let furthest = (0..=last).map(|i| (movement.state(i) - movement.state(0)).norm()).fold(0.0, f64::max);
+        let back = (movement.state(last) - movement.state(0)).norm();
+        back < LOOP * length && furthest > 0.2 * length && last > 10
+    };
+    let loops = demonstrations.trajectories().iter().filter(is_loop).count();
+    if loops > 0 {
+        notes.found(
+            Verdict::Good,
+            format!("{loops} of {} episodes come back to where they began", demonstrations.n_trajectories()),
+            "a potential cannot explain a round trip: use --learner auto, which allows for rotation, or cut them",
+        );
+    }
+}
+
+fn standing(demonstrations: &Demonstrations, noise: &Noise, notes: &mut Notes) {
+    let noise = noise.positions.as_ref().map_or(0.0, |each| each.iter().map(|s| s * s).sum::<f64>().sqrt());
+    let stands = |movement: &Trajectory, samples: &mut dyn Iterator<Item = usize>| {
+        let Some(end) = samples.next() else { return false };
+        let still = 4.0 * noise;
+        let count = samples.take_while(|&i| (movement.state(i) - movement.state(end)).norm() <= still).count();
+        count + 1 >= STANDING && 2 * count < movement.n_samples()
+    };
+    let either = |movement: &&Trajectory| {
+        let n = movement.n_samples();
+        stands(movement, &mut (0..n)) || stands(movement, &mut (0..n).rev())
+    };
+    let standing = demonstrations.trajectories().iter().filter(either).count();
+    if standing > 0 && noise == 0.0 {
+        notes.found(
+            Verdict::Good,
+            format!("{standing} episodes stand still at an end"),
+            "nothing is learnt there; --trim-still leaves it out",
+        );
+    }
+}
+
+fn coarse(demonstrations: &Demonstrations, spreads: &[f64], state: &[StateChannel], notes: &mut Notes) {
+    for (axis, channel) in state.iter().enumerate() {
+        let Some(least) = resolution(demonstrations, axis) else { continue };
+        if least > COARSE * spreads[axis] {
+            notes.found(
+                Verdict::Good,
+                format!(
+                    "channel {} has steps of {least:.2e}, {:.1} % of its spread: positions have few digits",
+                    channel.name,
+                    100.0 * least / spreads[axis]
+                ),
+                "write files with more digits, or record velocities",
+            );
+        }
+    }
+}

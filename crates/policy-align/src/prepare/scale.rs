@@ -1,0 +1,52 @@
+use demo_io::Recordings;
+use motion::Demonstrations;
+use nalgebra::DVector;
+
+use super::options::PrepareOptions;
+use super::prepared::Notes;
+use crate::{PrepareError, StateChannel};
+
+/// Factor of every channel, (n).
+pub(super) fn scales(
+    recordings: &Recordings,
+    options: &PrepareOptions,
+    notes: &mut Notes,
+) -> Result<DVector<f64>, PrepareError> {
+    let mut scales = DVector::repeat(recordings.state.len(), 1.0);
+    for (name, factor) in &options.scale {
+        if !(*factor > 0.0 && factor.is_finite()) {
+            return Err(PrepareError::Scale { name: name.clone(), factor: *factor });
+        }
+        match recordings.state.iter().position(|channel| channel.name == *name) {
+            Some(channel) => scales[channel] = *factor,
+            None => {
+                let known: Vec<_> = recordings.state.iter().map(|channel| channel.name.as_str()).collect();
+                return Err(PrepareError::UnknownChannel { name: name.clone(), known: known.join(", ") });
+            }
+        }
+        notes.decided("scale", format!("{name} times {factor}"), "given", "--scale");
+    }
+    Ok(scales)
+}
+
+/// Names, units and ranges, in the user's units.
+pub(super) fn channels(
+    recordings: &Recordings,
+    scales: &DVector<f64>,
+    demonstrations: &Demonstrations,
+) -> Vec<StateChannel> {
+    let of = |(at, channel): (usize, &demo_io::Channel)| {
+        let mut values: Vec<f64> = demonstrations
+            .trajectories()
+            .iter()
+            .flat_map(|trajectory| trajectory.states().row(at).iter().copied().collect::<Vec<_>>())
+            .map(|x| x / scales[at])
+            .collect();
+        let middle = values.len() / 2;
+        let median = *values.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        StateChannel { name: channel.name.clone(), unit: channel.unit.clone(), scale: scales[at], low, high, median }
+    };
+    recordings.state.iter().enumerate().map(of).collect()
+}

@@ -1,0 +1,243 @@
+use demo_io::Channel;
+use nalgebra::DVector;
+
+use super::episodes::Take;
+use super::noise::Noise;
+use super::options::{PrepareOptions, VelocityUse};
+use super::prepared::Notes;
+use super::stamps::SLOW;
+use crate::Verdict;
+
+/// Velocities agree with the steps up to this factor.
+const AGREE: f64 = 1.25;
+/// Below this share of the steps' squares explained, velocities have nothing to do with them.
+const UNRELATED: f64 = 0.5;
+/// A factor is one that mistakes have if it is as near as this.
+const NEAR: f64 = 0.1;
+/// What velocities do not explain may be so many times the noise.
+const NOISE: f64 = 1.5;
+/// Parts of a movement that are compared.
+const PARTS: usize = 4;
+/// Velocities that are differences of positions up to this share are made of them.
+const SAME: f64 = 1e-6;
+
+/// What recorded velocities are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Agreement {
+    /// There are none, or they are of no use.
+    None,
+    /// Differences of the positions: they know nothing that positions do not.
+    Differences,
+    /// Of their own, and in agreement with the steps.
+    Own,
+}
+
+/// Compares velocities with the steps; brings them to the steps' units, or drops them.
+pub(super) fn decide(
+    takes: &mut [Take],
+    options: &PrepareOptions,
+    channels: &[Channel],
+    noise: &Noise,
+    notes: &mut Notes,
+) -> Agreement {
+    let recorded = takes.iter().filter(|take| take.velocities.is_some()).count();
+    if recorded < takes.len() || options.velocities == VelocityUse::Ignored {
+        takes.iter_mut().for_each(|take| take.velocities = None);
+        let why = match recorded {
+            0 => "none recorded".to_owned(),
+            _ if recorded < takes.len() => format!("only {recorded} of {} episodes have them", takes.len()),
+            _ => "told to ignore them".to_owned(),
+        };
+        notes.decided("velocities", "from positions", why, "--integration");
+        return Agreement::None;
+    }
+    if options.velocities == VelocityUse::Recorded {
+        notes.decided("velocities", "recorded", "told to believe them", "--integration");
+        return Agreement::Own;
+    }
+    let fit = Steps::of(takes, noise);
+    if fit.explained < UNRELATED {
+        takes.iter_mut().for_each(|take| take.velocities = None);
+        notes.decided(
+            "velocities",
+            "from positions",
+            format!("those recorded explain {:.0} % of the steps", 100.0 * fit.explained.max(0.0)),
+            "--integration",
+        );
+        notes.found(
+            Verdict::Doubtful,
+            format!("the recorded velocities have nothing to do with the steps (they explain {:.0} % of them) and were ignored", 100.0 * fit.explained.max(0.0)),
+            "look whether these columns are velocities, of the same channels in the same order",
+        );
+        return Agreement::None;
+    }
+    if fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(factor)) {
+        let differences = made_of_positions(takes);
+        let why = if differences {
+            "recorded; they are differences of the positions"
+        } else {
+            "recorded; they agree with the steps"
+        };
+        notes.decided("velocities", "recorded", why, "--integration");
+        return if differences { Agreement::Differences } else { Agreement::Own };
+    }
+    mend(takes, &fit, channels, notes);
+    Agreement::Own
+}
+
+/// Steps as multiples of what velocities say, over parts of movements: Σ D S / Σ S² in each channel, S = Σ u δt.
+struct Steps {
+    /// (n).
+    factors: DVector<f64>,
+    /// 1 − Σ |D − factor S|² / Σ |D|².
+    explained: f64,
+}
+
+impl Steps {
+    fn of(takes: &[Take], noise: &Noise) -> Self {
+        let pairs: Vec<(DVector<f64>, DVector<f64>)> = takes.iter().flat_map(parts).collect();
+        let dim = takes[0].positions.nrows();
+        let sum = |of: &dyn Fn(&(DVector<f64>, DVector<f64>)) -> f64| pairs.iter().map(of).sum::<f64>();
+        let power = sum(&|(_, s)| s.norm_squared());
+        let common = sum(&|(d, s)| d.dot(s)) / power;
+        let factor = |axis: usize| {
+            let own = sum(&|(_, s)| s[axis].powi(2));
+            // A channel that hardly moves says nothing of its factor.
+            if own > 1e-6 * power { sum(&|(d, s)| d[axis] * s[axis]) / own } else { common }
+        };
+        let factors = DVector::from_fn(dim, |axis, _| factor(axis));
+        let left = sum(&|(d, s)| (d - s.component_mul(&factors)).norm_squared());
+        // Both ends of a part carry the positions' noise.
+        let noise = 2.0 * noise.positions.iter().flatten().map(|sd| sd * sd).sum::<f64>() * pairs.len() as f64;
+        let moved = sum(&|(d, _)| d.norm_squared());
+        let explained = if left <= NOISE * noise { 1.0 } else { 1.0 - (left - noise) / (moved - noise) };
+        Steps { factors, explained: if explained.is_finite() { explained } else { 0.0 } }
+    }
+}
+
+/// Displacement and what velocities make of it, over parts of a movement.
+fn parts(take: &Take) -> Vec<(DVector<f64>, DVector<f64>)> {
+    let steps = take.n_samples() - 1;
+    let parts = PARTS.min((steps / 2).max(1));
+    let Some(velocities) = &take.velocities else { return Vec::new() };
+    (0..parts)
+        .map(|part| {
+            let (from, to) = (part * steps / parts, (part + 1) * steps / parts);
+            let moved = take.positions.column(to) - take.positions.column(from);
+            let mut said = DVector::zeros(moved.len());
+            for i in from..to {
+                said += (velocities.column(i) + velocities.column(i + 1)) * (0.5 * take.seconds(i));
+            }
+            (moved, said)
+        })
+        .collect()
+}
+
+/// Whether each velocity is the step after it, the step before it, or the mean of both.
+fn made_of_positions(takes: &[Take]) -> bool {
+    let off = |of: &dyn Fn(&Take, usize) -> Option<DVector<f64>>| {
+        let (mut left, mut power) = (0.0, 0.0);
+        for take in takes {
+            let Some(velocities) = &take.velocities else { continue };
+            for i in 1..take.n_samples() - 1 {
+                let Some(made) = of(take, i) else { continue };
+                left += (velocities.column(i) - made).norm_squared();
+                power += velocities.column(i).norm_squared();
+            }
+        }
+        left <= SAME * SAME * power
+    };
+    let after = |take: &Take, i: usize| Some(take.step(i) / take.seconds(i));
+    let before = |take: &Take, i: usize| Some(take.step(i - 1) / take.seconds(i - 1));
+    let both =
+        |take: &Take, i: usize| Some((take.step(i) + take.step(i - 1)) / (take.seconds(i) + take.seconds(i - 1)));
+    off(&after) || off(&before) || off(&both)
+}
+
+/// Velocities in other units than the steps: brought to those of positions and stamps, and said.
+fn mend(takes: &mut [Take], fit: &Steps, channels: &[Channel], notes: &mut Notes) {
+    let (low, high) = (fit.factors.min(), fit.factors.max());
+    let step = takes[0].seconds(0);
+    if step > SLOW && fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(&(factor * 1000.0))) {
+        takes.iter_mut().for_each(Take::in_milliseconds);
+        let what = format!("stamps are {step:.0} apart and velocities 1000 times the steps");
+        notes.decided("time step", format!("{} s", step / 1000.0), format!("{what}: stamps are milliseconds"), "--dt");
+        notes.found(
+            Verdict::Doubtful,
+            format!("{what}: stamps were taken as milliseconds"),
+            "say so in the file (name the column t_ms), or give --dt",
+        );
+        return;
+    }
+    let common = low * high > 0.0 && high / low < AGREE && low / high < AGREE;
+    let factors = if common {
+        let factor = (low * high).sqrt().copysign(low);
+        DVector::repeat(channels.len(), 1.0 / whole(1.0 / factor, step))
+    } else {
+        fit.factors.clone()
+    };
+    for velocities in takes.iter_mut().filter_map(|take| take.velocities.as_mut()) {
+        velocities.column_iter_mut().for_each(|mut column| column.component_mul_assign(&factors));
+    }
+    let (what, next) = if common {
+        let times = 1.0 / factors[0];
+        (format!("velocities are {} times the steps", rounded(times)), guess(times, step).to_owned())
+    } else {
+        let odd = (0..channels.len()).max_by(|&a, &b| fit.factors[a].ln_abs().total_cmp(&fit.factors[b].ln_abs()));
+        let odd = odd.unwrap_or(0);
+        let times = 1.0 / fit.factors[odd];
+        (
+            format!(
+                "velocities of channel {} are {} times its steps, those of others are not",
+                channels[odd].name,
+                rounded(times)
+            ),
+            guess(times, step).to_owned(),
+        )
+    };
+    notes.decided(
+        "velocities",
+        "recorded, times the factor that makes them agree with the steps",
+        what.clone(),
+        "--integration",
+    );
+    notes.found(Verdict::Doubtful, format!("{what}; they were brought to the units of positions and stamps"), next);
+}
+
+trait LnAbs {
+    /// How far from 1, up or down, a change of sign most of all.
+    fn ln_abs(self) -> f64;
+}
+
+impl LnAbs for f64 {
+    fn ln_abs(self) -> f64 {
+        if self < 0.0 { f64::INFINITY } else { self.ln().abs() }
+    }
+}
+
+/// Factors that mistakes have.
+fn usual(step: f64) -> [f64; 6] {
+    [1000.0, 0.001, 1f64.to_degrees(), 1f64.to_radians(), -1.0, step]
+}
+
+/// A factor as mistakes have it, where it is that near: rules of integration differ by some percent.
+fn whole(times: f64, step: f64) -> f64 {
+    usual(step).into_iter().find(|value| (times / value - 1.0).abs() < NEAR).unwrap_or(times)
+}
+
+fn guess(times: f64, step: f64) -> &'static str {
+    const WORDS: [&str; 6] = [
+        "velocities in millimetres, or stamps in milliseconds? Say so in the file (units) or with --dt",
+        "positions in millimetres? Say so in the file (units)",
+        "degrees here and radians there? Use one of them (--degrees)",
+        "degrees here and radians there? Use one of them (--degrees)",
+        "look at the sign: velocities point against the movement",
+        "these are steps, not velocities per second",
+    ];
+    let named = usual(step).into_iter().zip(WORDS).find(|(value, _)| (times / value - 1.0).abs() < NEAR);
+    named.map_or("look at units and time step; --dt sets the latter", |(_, words)| words)
+}
+
+fn rounded(value: f64) -> String {
+    if value.abs() >= 10.0 { format!("{value:.0}") } else { format!("{value:.3}") }
+}

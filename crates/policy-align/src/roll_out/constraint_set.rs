@@ -1,0 +1,213 @@
+use constraints::NullSpaceProjector;
+use nalgebra::{DMatrix, DVector, DVectorView, Point3};
+
+use super::link_point::LinkPoint;
+
+/// From which distance on a ball slows what approaches it, and at which it stops it, in radii: what steps err by stays
+/// outside.
+const BAND: f64 = 0.05;
+const MARGIN: f64 = 0.01;
+/// How often speeds towards balls are taken away in turn, until none is left.
+const ROUNDS: usize = 20;
+
+/// Constraints on a roll-out that hold at their times.
+#[derive(Debug, Clone, Default)]
+pub struct ConstraintSet {
+    pub(crate) parts: Vec<Part>,
+}
+
+/// One of them.
+#[derive(Debug, Clone)]
+pub(crate) struct Part {
+    pub(crate) kind: Kind,
+    /// Seconds: it holds from here (inclusive) …
+    pub(crate) from: f64,
+    /// … to here (exclusive).
+    pub(crate) until: f64,
+}
+
+/// What is constrained.
+#[derive(Debug, Clone)]
+pub(crate) enum Kind {
+    /// The state keeps its value along each row of A, (k, n).
+    Normal(DMatrix<f64>),
+    /// A link's origin keeps its height over a plane through where it is; rows of normals, (k, 3).
+    Plane(LinkPoint, DMatrix<f64>),
+    /// The state does not come nearer than `radius` to `centre`.
+    Ball { centre: DVector<f64>, radius: f64 },
+    /// Nor does a link's origin.
+    LinkBall { link: LinkPoint, centre: Point3<f64>, radius: f64 },
+}
+
+/// What a part says at a state.
+enum Said {
+    /// Rows of A u = 0, in units of the state.
+    Rows(DMatrix<f64>),
+    /// Distance from the ball, its radius, and the gradient of the distance, (n).
+    Distance { clearance: f64, radius: f64, gradient: DVector<f64> },
+}
+
+impl Kind {
+    fn at(&self, state: DVectorView<'_, f64>) -> Result<Said, String> {
+        Ok(match self {
+            Kind::Normal(rows) => Said::Rows(rows.clone()),
+            Kind::Plane(link, normals) => Said::Rows(normals * link.at(state)?.1),
+            Kind::Ball { centre, radius } => {
+                let apart = state - centre;
+                let distance = apart.norm();
+                Said::Distance { clearance: distance - radius, radius: *radius, gradient: apart / distance.max(1e-300) }
+            }
+            Kind::LinkBall { link, centre, radius } => {
+                let (origin, jacobian) = link.at(state)?;
+                let apart = origin - centre;
+                let distance = apart.norm();
+                let gradient = jacobian.tr_mul(&apart) / distance.max(1e-300);
+                Said::Distance { clearance: distance - radius, radius: *radius, gradient }
+            }
+        })
+    }
+
+    /// What must not change while it holds, or for balls must not fall below 0.
+    fn kept(&self, state: DVectorView<'_, f64>) -> Result<(DVector<f64>, bool), String> {
+        let unit_rows = |rows: &DMatrix<f64>| {
+            let mut rows = rows.clone();
+            rows.row_iter_mut().for_each(|mut row| row /= row.norm());
+            rows
+        };
+        Ok(match self {
+            Kind::Normal(rows) => (unit_rows(rows) * state, false),
+            Kind::Plane(link, normals) => (unit_rows(normals) * link.at(state)?.0.coords, false),
+            Kind::Ball { .. } | Kind::LinkBall { .. } => match self.at(state)? {
+                Said::Distance { clearance, .. } => (DVector::from_element(1, clearance), true),
+                Said::Rows(_) => (DVector::zeros(0), true),
+            },
+        })
+    }
+}
+
+/// Which constraint could not be computed, counted from 1, and why.
+pub(crate) type Fault = (usize, String);
+
+impl ConstraintSet {
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.parts.is_empty()
+    }
+
+    /// The least radius of a ball, in its unit.
+    pub(crate) fn least_radius(&self) -> f64 {
+        let radius = |part: &Part| match part.kind {
+            Kind::Ball { radius, .. } | Kind::LinkBall { radius, .. } => radius,
+            Kind::Normal(_) | Kind::Plane(..) => f64::INFINITY,
+        };
+        self.parts.iter().map(radius).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Times at which one begins or ends.
+    pub(crate) fn switches(&self) -> impl Iterator<Item = f64> {
+        self.parts.iter().flat_map(|part| [part.from, part.until])
+    }
+
+    /// What the constraints leave of `wanted`, (n), at a state and a time. `scale` takes states to where constraints act
+    /// at right angles: N = I − A⁺A (3) of A S⁻¹. Near a ball the speed towards it fades to 0 with the distance.
+    pub(crate) fn leave(
+        &self,
+        state: DVectorView<'_, f64>,
+        time: f64,
+        scale: &DVector<f64>,
+        wanted: &mut DVector<f64>,
+    ) -> Result<(), Fault> {
+        if self.parts.is_empty() {
+            return Ok(());
+        }
+        let (mut rows, mut balls) = (Vec::new(), Vec::new());
+        for (at, part) in self.parts.iter().enumerate() {
+            if !(part.from..part.until).contains(&time) {
+                continue;
+            }
+            match part.kind.at(state).map_err(|reason| (at + 1, reason))? {
+                Said::Rows(matrix) => rows.extend(matrix.row_iter().map(|row| row.into_owned())),
+                Said::Distance { clearance, radius, gradient } => {
+                    let bands = (clearance / radius - MARGIN) / (BAND - MARGIN);
+                    balls.push((bands.max(-1.0), gradient.component_div(scale)));
+                }
+            }
+        }
+        wanted.component_mul_assign(scale);
+        let mut matrix = DMatrix::from_fn(rows.len(), state.len(), |row, column| rows[row][column]);
+        matrix.row_iter_mut().for_each(|mut row| row.component_div_assign(&scale.transpose()));
+        let free = NullSpaceProjector::new(&matrix).map_err(|error| (1, error.to_string()))?;
+        free.project_into(wanted.as_view_mut());
+        keep_off(&balls, &free, wanted);
+        wanted.component_div_assign(scale);
+        Ok(())
+    }
+}
+
+/// Takes away what approaches balls, given as distance in bands and gradient of the distance, within what is free. What
+/// is too near is led away.
+fn keep_off(balls: &[(f64, DVector<f64>)], free: &NullSpaceProjector, wanted: &mut DVector<f64>) {
+    let speed = wanted.norm();
+    for _ in 0..ROUNDS {
+        let mut changed = false;
+        for (bands, gradient) in balls.iter().filter(|(bands, _)| *bands < 1.0) {
+            let along = free.project(gradient.as_view());
+            let allowed = bands * gradient.norm() * speed;
+            let excess = -gradient.dot(wanted) - allowed;
+            if excess <= 1e-14 * gradient.norm() * speed {
+                continue;
+            }
+            changed = true;
+            let turn = along.norm_squared();
+            if turn <= 1e-20 * gradient.norm_squared() {
+                // Nothing that is free leads away from it.
+                wanted.fill(0.0);
+                return;
+            }
+            wanted.axpy(excess / turn, &along, 1.0);
+        }
+        if !changed {
+            return;
+        }
+    }
+    // Several balls leave no way that this finds.
+    wanted.fill(0.0);
+}
+
+/// Follows how well constraints are kept.
+#[derive(Debug, Clone)]
+pub(crate) struct Watch<'a> {
+    set: &'a ConstraintSet,
+    /// What each part had to keep when it began to hold.
+    begun: Vec<Option<DVector<f64>>>,
+    /// The largest change so far, or depth within a ball, in units of the state or metres.
+    pub(crate) broken_by: f64,
+    /// Which part that was, counted from 1.
+    pub(crate) worst: usize,
+}
+
+impl<'a> Watch<'a> {
+    pub(crate) fn new(set: &'a ConstraintSet) -> Self {
+        Watch { set, begun: vec![None; set.parts.len()], broken_by: 0.0, worst: 0 }
+    }
+
+    pub(crate) fn see(&mut self, state: DVectorView<'_, f64>, time: f64) -> Result<(), Fault> {
+        for (at, (part, begun)) in self.set.parts.iter().zip(&mut self.begun).enumerate() {
+            // At its end it has held until then.
+            if time < part.from || time > part.until {
+                *begun = None;
+                continue;
+            }
+            let (kept, is_distance) = part.kind.kept(state).map_err(|reason| (at + 1, reason))?;
+            let broken = if is_distance {
+                -kept[0]
+            } else {
+                (&kept - &*begun.get_or_insert_with(|| kept.clone())).amax()
+            };
+            if broken > self.broken_by {
+                (self.broken_by, self.worst) = (broken, at + 1);
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,88 @@
+use thiserror::Error;
+
+/// Why a policy cannot be followed. A message says what and where; [`RollOutError::remedy`] what next.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum RollOutError {
+    /// The start has another length than the state.
+    #[error("the start has {found} numbers, the state {expected}: {}", .names.join(", "))]
+    Start {
+        /// Numbers given.
+        found: usize,
+        /// Channels of the state.
+        expected: usize,
+        /// Their names.
+        names: Vec<String>,
+    },
+    /// The start is not finite.
+    #[error("the start is not finite in channel '{channel}'")]
+    StartNotFinite {
+        /// Which.
+        channel: String,
+    },
+    /// The demonstrations say nothing about the start.
+    #[error("the start is outside of what was shown (support {support:.3}, at least {least:.3} is needed)")]
+    Unsupported {
+        /// The support there.
+        support: f64,
+        /// The support needed.
+        least: f64,
+    },
+    /// A constraint does not allow the start.
+    #[error("the start breaks constraint {constraint} by {by:.3e}")]
+    StartBreaks {
+        /// Counted from 1, as in its file.
+        constraint: usize,
+        /// How far inside a ball.
+        by: f64,
+    },
+    /// Beyond a joint limit from the beginning.
+    #[error("the start is beyond the limit of joint '{joint}'")]
+    StartBeyondLimit {
+        /// Which.
+        joint: String,
+    },
+    /// A duration or a step that cannot be.
+    #[error("{name} is {value}: it must be positive and finite")]
+    NotPositive {
+        /// "seconds".
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// So many samples that nobody wants them.
+    #[error("{samples} samples: that is more than {} million", LONGEST / 1_000_000)]
+    TooLong {
+        /// How many it would be.
+        samples: f64,
+    },
+    /// A constraint cannot be computed at a state.
+    #[error("constraint {constraint} has no value at {time:.3} s: {reason}")]
+    Constraint {
+        /// Counted from 1, as in its file.
+        constraint: usize,
+        /// Seconds from the start.
+        time: f64,
+        /// What is wrong.
+        reason: String,
+    },
+}
+
+/// Samples of a roll-out, at most.
+pub(crate) const LONGEST: usize = 10_000_000;
+
+impl RollOutError {
+    /// What to do next.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            RollOutError::Start { .. } => "give one number for each channel, in this order",
+            RollOutError::StartNotFinite { .. } => "give finite numbers",
+            RollOutError::Unsupported { .. } => "start within the range that `policy-align info` shows",
+            RollOutError::StartBreaks { .. } => "start outside the ball, or make it smaller",
+            RollOutError::StartBeyondLimit { .. } => "start within the limits, in radians or metres",
+            RollOutError::NotPositive { .. } => "give a time in seconds",
+            RollOutError::TooLong { .. } => "a longer step or fewer seconds",
+            RollOutError::Constraint { .. } => "mend the constraint file or the robot description",
+        }
+    }
+}

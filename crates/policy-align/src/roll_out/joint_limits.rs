@@ -1,0 +1,35 @@
+use kinematics::RobotModel;
+use nalgebra::DVectorView;
+
+/// Limits of the channels that are joints of a robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointLimits {
+    /// Channel, joint, lower and upper limit.
+    limits: Vec<(usize, String, f64, f64)>,
+}
+
+impl JointLimits {
+    /// The limits of a robot (the text of its URDF) for the channels that are named like its joints, in radians or metres.
+    ///
+    /// # Errors
+    /// In words: what is wrong with the text, or that no channel is a joint.
+    pub fn from_urdf(text: &str, channels: &[String]) -> Result<Self, String> {
+        let robot = RobotModel::from_urdf(text).map_err(|error| error.to_string())?;
+        let of = |(at, name): (usize, &String)| {
+            let joint = &robot.joints()[robot.joint(name).ok()?];
+            Some((at, name.clone(), joint.lower(), joint.upper()))
+        };
+        let limits: Vec<_> = channels.iter().enumerate().filter_map(of).collect();
+        if limits.is_empty() {
+            let joints: Vec<_> = robot.joints().iter().map(kinematics::Joint::name).collect();
+            return Err(format!("no channel of the state is a joint of this robot, which has {}", joints.join(", ")));
+        }
+        Ok(JointLimits { limits })
+    }
+
+    /// The first joint that is beyond its limits at a state.
+    pub fn beyond(&self, state: DVectorView<'_, f64>) -> Option<&str> {
+        let (_, name, ..) = self.limits.iter().find(|(at, _, lower, upper)| !(*lower..=*upper).contains(&state[*at]))?;
+        Some(name)
+    }
+}

@@ -1,0 +1,231 @@
+//! A learnt policy followed from a start, under constraints that need not have been in the data.
+
+mod constraint_file;
+mod constraint_set;
+mod error;
+mod joint_limits;
+mod link_point;
+mod runge_kutta;
+
+pub use constraint_file::ConstraintFileError;
+pub use constraint_set::ConstraintSet;
+pub use error::RollOutError;
+pub use joint_limits::JointLimits;
+
+use motion::{LearntPolicy as _, Policy as _};
+use nalgebra::{DMatrix, DVector};
+
+use crate::{Model, ModelPolicy};
+use constraint_set::{Fault, Watch};
+use error::LONGEST;
+use runge_kutta::RungeKutta;
+
+/// Error of a step, in spreads of the channels.
+const TOLERANCE: f64 = 1e-4;
+/// And at most this share of the least ball's radius.
+const OF_RADIUS: f64 = 5e-4;
+/// At rest is what is slower than this share of the demonstrated median …
+const AT_REST: f64 = 0.01;
+/// … for so many samples.
+const RESTING: usize = 10;
+/// Duration without another, in durations of the longest episode.
+const TIMES_AS_LONG: f64 = 3.0;
+
+/// How a policy is followed: u = N(x, t) π(x) (3), by steps that adapt.
+#[derive(Debug, Clone, Default)]
+pub struct RollOut {
+    /// What must not be moved along, and when.
+    pub constraints: ConstraintSet,
+    /// Limits at which to stop.
+    pub limits: Option<JointLimits>,
+    /// At most so long, in seconds; three times the longest episode if not given.
+    pub seconds: Option<f64>,
+    /// Between two samples of the result, in seconds; the model's time step if not given.
+    pub step: Option<f64>,
+}
+
+/// A policy that was followed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Path {
+    /// Seconds from the start, (N).
+    pub times: Vec<f64>,
+    /// In the units of the recording, one column a sample, (n, N).
+    pub states: DMatrix<f64>,
+    /// What the constraints left of the action, in units of the state per second, (n, N).
+    pub velocities: DMatrix<f64>,
+    /// Why it ended.
+    pub stop: Stop,
+    /// By how much a constraint was broken at most, in its unit, and which, counted from 1; none if there was none.
+    pub broken_by: Option<(f64, usize)>,
+}
+
+/// Why a roll-out ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Stop {
+    /// Slower than 1 % of the demonstrated median speed for ten samples.
+    AtRest,
+    /// The next state would have been one that nothing was learnt about.
+    LeftTheData,
+    /// The next state would have been beyond the limit of this joint.
+    Limit(String),
+    /// The time was up.
+    Time,
+}
+
+impl RollOut {
+    /// Follows a model's policy from a start (n), in the units of the recording. The path ends with the last state that
+    /// is supported and within limits.
+    ///
+    /// # Errors
+    /// [`RollOutError`].
+    pub fn follow(&self, model: &Model, start: &DVector<f64>) -> Result<Path, RollOutError> {
+        let policy = model.policy();
+        self.check_start(model, &policy, start)?;
+        let step = positive("step", self.step.unwrap_or(model.time_step))?;
+        let seconds = positive("seconds", self.seconds.unwrap_or(TIMES_AS_LONG * model.data.longest))?;
+        let samples = (seconds / step).ceil();
+        if samples > LONGEST as f64 {
+            return Err(RollOutError::TooLong { samples });
+        }
+        let scale = DVector::from_iterator(start.len(), model.state.iter().map(|channel| channel.scale));
+        let run = Run { policy: &policy, constraints: &self.constraints, scale, switches: self.switches(seconds) };
+        self.followed(&run, model, start, (step, seconds))
+    }
+
+    fn followed(
+        &self,
+        run: &Run<'_>,
+        model: &Model,
+        start: &DVector<f64>,
+        (step, seconds): (f64, f64),
+    ) -> Result<Path, RollOutError> {
+        let mut method = RungeKutta::new(tolerance(model).map(|error| error.min(OF_RADIUS * self.constraints.least_radius())));
+        let mut watch = Watch::new(&self.constraints);
+        let (mut times, mut states) = (vec![0.0], vec![start.clone()]);
+        let mut velocities = vec![run.velocity(start, 0.0)?];
+        watch.see(start.as_view(), 0.0).map_err(fault(0.0))?;
+        let mut resting = 0;
+        let stop = loop {
+            let (time, state) = (times[times.len() - 1], &states[states.len() - 1]);
+            if time >= seconds {
+                break Stop::Time;
+            }
+            // Multiples of the step, not sums of it: no rounding adds up.
+            let next_time = (times.len() as f64 * step).min(seconds);
+            let next = run.advance(&mut method, state.clone(), (time, next_time))?;
+            if !run.policy.is_supported(next.as_view()) {
+                break Stop::LeftTheData;
+            }
+            if let Some(joint) = self.limits.as_ref().and_then(|limits| limits.beyond(next.as_view())) {
+                break Stop::Limit(joint.to_owned());
+            }
+            let velocity = run.velocity(&next, next_time)?;
+            watch.see(next.as_view(), next_time).map_err(fault(next_time))?;
+            let slow = velocity.component_mul(&run.scale).norm() < AT_REST * model.data.speed;
+            resting = if slow { resting + 1 } else { 0 };
+            times.push(next_time);
+            states.push(next);
+            velocities.push(velocity);
+            // A constraint that ends later may let it go on.
+            if resting >= RESTING && run.switches.iter().all(|&switch| switch <= next_time) {
+                break Stop::AtRest;
+            }
+        };
+        Ok(Path {
+            times,
+            states: DMatrix::from_columns(&states),
+            velocities: DMatrix::from_columns(&velocities),
+            stop,
+            broken_by: (!self.constraints.is_empty()).then_some((watch.broken_by, watch.worst)),
+        })
+    }
+
+    fn check_start(
+        &self,
+        model: &Model,
+        policy: &ModelPolicy<'_>,
+        start: &DVector<f64>,
+    ) -> Result<(), RollOutError> {
+        let (found, expected) = (start.len(), model.state.len());
+        if found != expected {
+            let names = model.state.iter().map(|channel| channel.name.clone()).collect();
+            return Err(RollOutError::Start { found, expected, names });
+        }
+        if let Some(at) = start.iter().position(|x| !x.is_finite()) {
+            return Err(RollOutError::StartNotFinite { channel: model.state[at].name.clone() });
+        }
+        if !policy.is_supported(start.as_view()) {
+            let (support, least) = (policy.support(start.as_view()), policy.least_support());
+            return Err(RollOutError::Unsupported { support, least });
+        }
+        if let Some(joint) = self.limits.as_ref().and_then(|limits| limits.beyond(start.as_view())) {
+            return Err(RollOutError::StartBeyondLimit { joint: joint.to_owned() });
+        }
+        let mut watch = Watch::new(&self.constraints);
+        watch.see(start.as_view(), 0.0).map_err(fault(0.0))?;
+        if watch.broken_by > 0.0 {
+            return Err(RollOutError::StartBreaks { constraint: watch.worst, by: watch.broken_by });
+        }
+        Ok(())
+    }
+
+    /// Times within the roll-out at which constraints begin or end, ascending.
+    fn switches(&self, seconds: f64) -> Vec<f64> {
+        let mut switches: Vec<f64> = self.constraints.switches().filter(|&t| t > 0.0 && t < seconds).collect();
+        switches.sort_by(f64::total_cmp);
+        switches
+    }
+}
+
+/// What stays the same on the way.
+struct Run<'a> {
+    policy: &'a ModelPolicy<'a>,
+    constraints: &'a ConstraintSet,
+    scale: DVector<f64>,
+    switches: Vec<f64>,
+}
+
+impl Run<'_> {
+    /// N(x, t) π(x).
+    fn velocity(&self, state: &DVector<f64>, time: f64) -> Result<DVector<f64>, RollOutError> {
+        let mut velocity = self.policy.action(state.as_view());
+        self.constraints.leave(state.as_view(), time, &self.scale, &mut velocity).map_err(fault(time))?;
+        Ok(velocity)
+    }
+
+    /// From one time to another, piece by piece where constraints begin or end. Within a piece none does, so that any
+    /// time in it tells which hold.
+    fn advance(
+        &self,
+        method: &mut RungeKutta,
+        mut state: DVector<f64>,
+        (from, to): (f64, f64),
+    ) -> Result<DVector<f64>, RollOutError> {
+        let inside = self.switches.iter().copied().filter(|&switch| switch > from && switch < to);
+        let mut begin = from;
+        for end in inside.chain([to]) {
+            let middle = 0.5 * (begin + end);
+            state = method.follow(|state| self.velocity(state, middle), state, end - begin)?;
+            begin = end;
+        }
+        Ok(state)
+    }
+}
+
+/// A share of every channel's spread; an idle channel has that of the widest.
+fn tolerance(model: &Model) -> DVector<f64> {
+    let spread = |at: usize| model.state[at].high - model.state[at].low;
+    let widest = (0..model.state.len()).map(|at| spread(at) * model.state[at].scale).fold(0.0, f64::max);
+    DVector::from_fn(model.state.len(), |at, _| {
+        let floor = 1e-3 * widest / model.state[at].scale;
+        TOLERANCE * spread(at).max(floor).max(f64::MIN_POSITIVE)
+    })
+}
+
+fn positive(name: &'static str, value: f64) -> Result<f64, RollOutError> {
+    if value > 0.0 && value.is_finite() { Ok(value) } else { Err(RollOutError::NotPositive { name, value }) }
+}
+
+fn fault(time: f64) -> impl Fn(Fault) -> RollOutError {
+    move |(constraint, reason)| RollOutError::Constraint { constraint, time, reason }
+}

@@ -1,0 +1,58 @@
+use serde_json::Value;
+use sha2::{Digest as _, Sha256};
+
+/// SHA-256, hexadecimal, of the canonical text of a value: no white space, members of objects in the order of their
+/// names, numbers as serde_json writes them. White space and order in a file do not change it; everything else does.
+pub(crate) fn checksum(value: &Value) -> String {
+    let mut text = String::new();
+    write(value, &mut text);
+    sha256(text.as_bytes())
+}
+
+/// SHA-256 of bytes, hexadecimal.
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn write(value: &Value, text: &mut String) {
+    match value {
+        Value::Array(elements) => {
+            text.push('[');
+            for element in elements {
+                write(element, text);
+                text.push(',');
+            }
+            text.push(']');
+        }
+        Value::Object(members) => {
+            let mut members: Vec<_> = members.iter().collect();
+            // serde_json keeps the order of the file where any crate of the program wants it to.
+            members.sort_by_key(|(name, _)| *name);
+            text.push('{');
+            for (name, member) in members {
+                text.push_str(&Value::from(name.as_str()).to_string());
+                text.push(':');
+                write(member, text);
+                text.push(',');
+            }
+            text.push('}');
+        }
+        Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_) => text.push_str(&value.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn order_and_space_do_not_count_and_all_else_does() {
+        let of = |text: &str| checksum(&serde_json::from_str(text).unwrap());
+        let one = of(r#"{"a": [1.5, null], "b": "é"}"#);
+        assert_eq!(one, of("{\"b\":\"\\u00e9\",\n\"a\":[1.5,null]}"));
+        for other in [r#"{"a":[1.5],"b":"é"}"#, r#"{"a":[1.25,null],"b":"é"}"#, r#"{"a":[1.5,null],"c":"é"}"#] {
+            assert_ne!(one, of(other));
+        }
+        assert_eq!(sha256(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    }
+}

@@ -1,0 +1,10 @@
+//! Models as files.
+
+mod canonical;
+mod error;
+mod model_file;
+mod whole_file;
+
+pub use canonical::sha256;
+pub use error::ModelError;
+pub use whole_file::write_whole;

@@ -1,0 +1,140 @@
+//! Models as JSON with a checksum. `docs/model-file.md` describes it.
+
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use super::canonical::checksum;
+use super::error::ModelError;
+use super::whole_file::write_whole;
+use crate::{Model, StateChannel};
+
+const FORMAT: &str = "policy-align model";
+
+/// The version that is written; this and all before it are read.
+const VERSION: u64 = 1;
+
+/// What a file says before the model itself.
+#[derive(Serialize)]
+struct Stored<'a> {
+    format: &'static str,
+    version: u64,
+    checksum: String,
+    #[serde(flatten)]
+    model: &'a Model,
+}
+
+impl Model {
+    /// The text of a model file: one JSON document, numbers to their last bit.
+    ///
+    /// # Errors
+    /// [`ModelError::Unwritable`] if it could not be read again, as with a number that is not finite.
+    pub fn to_json(&self) -> Result<String, ModelError> {
+        let unwritable = |path: &str, reason: String| ModelError::Unwritable { path: path.to_owned(), reason };
+        let stored = |checksum| Stored { format: FORMAT, version: VERSION, checksum, model: self };
+        let value = serde_json::to_value(stored(String::new())).map_err(|e| unwritable("model", e.to_string()))?;
+        let checksum = checksum(&without_checksum(value.as_object().cloned().unwrap_or_default()));
+        let text = serde_json::to_string(&stored(checksum)).map_err(|e| unwritable("model", e.to_string()))? + "\n";
+        match Model::from_json(text.as_bytes()) {
+            Ok(_) => Ok(text),
+            Err(ModelError::Member { path, reason, .. }) => Err(ModelError::Unwritable { path, reason }),
+            Err(error) => Err(unwritable("model", error.to_string())),
+        }
+    }
+
+    /// The model of a file's bytes. What it predicts is the same to the last bit as before it was stored.
+    ///
+    /// # Errors
+    /// [`ModelError`], with the place where the text is at fault.
+    pub fn from_json(bytes: &[u8]) -> Result<Model, ModelError> {
+        let value: Value =
+            serde_json::from_slice(bytes).map_err(|error| ModelError::NotJson { reason: error.to_string() })?;
+        let Value::Object(mut members) = value else {
+            return Err(ModelError::NotAModel { found: "nowhere".to_owned() });
+        };
+        check_format(&members)?;
+        let expected = without_checksum(members.clone());
+        let changed = members.get("checksum").and_then(Value::as_str) != Some(checksum(&expected).as_str());
+        let member = |path: &str, reason: String| ModelError::Member { path: path.to_owned(), reason, changed };
+        if !members.get("checksum").is_some_and(Value::is_string) {
+            return Err(member("checksum", "missing, or not a text".to_owned()));
+        }
+        for envelope in ["format", "version", "checksum"] {
+            members.remove(envelope);
+        }
+        let model: Model = serde_path_to_error::deserialize(Value::Object(members))
+            .map_err(|error| member(&error.path().to_string(), one_line(&error.inner().to_string())))?;
+        if changed {
+            return Err(ModelError::Checksum);
+        }
+        match model.fault() {
+            None => Ok(model),
+            Some((path, reason)) => Err(member(&path, reason)),
+        }
+    }
+
+    /// Writes a model file, wholly or not at all.
+    ///
+    /// # Errors
+    /// As [`Model::to_json`], and [`ModelError::File`].
+    pub fn save(&self, path: &Path) -> Result<(), ModelError> {
+        Ok(write_whole(path, self.to_json()?.as_bytes())?)
+    }
+
+    /// Reads a model file.
+    ///
+    /// # Errors
+    /// As [`Model::from_json`], and [`ModelError::File`].
+    pub fn load(path: &Path) -> Result<Model, ModelError> {
+        Model::from_json(&std::fs::read(path)?)
+    }
+
+    /// What contradicts itself, and where.
+    fn fault(&self) -> Option<(String, String)> {
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        let n = self.learnt.policy().dim();
+        if self.state.len() != n {
+            return Some(("state".to_owned(), format!("{} channels for a policy of {n}", self.state.len())));
+        }
+        if !positive(self.time_step) {
+            return Some(("time_step".to_owned(), format!("{} is not a positive time", self.time_step)));
+        }
+        if !positive(self.data.longest) || !(self.data.speed >= 0.0 && self.data.speed.is_finite()) {
+            return Some(("data".to_owned(), "a duration that is not positive or a negative speed".to_owned()));
+        }
+        let sound = |channel: &StateChannel| {
+            positive(channel.scale) && channel.low <= channel.median && channel.median <= channel.high
+        };
+        let at = self.state.iter().position(|channel| !sound(channel))?;
+        Some((format!("state[{at}]"), "a scale that is not positive, or low, median and high out of order".to_owned()))
+    }
+}
+
+fn check_format(members: &Map<String, Value>) -> Result<(), ModelError> {
+    let found = members.get("format").map_or_else(|| "missing".to_owned(), |found| one_line(&found.to_string()));
+    if members.get("format").and_then(Value::as_str) != Some(FORMAT) {
+        return Err(ModelError::NotAModel { found });
+    }
+    let version = members.get("version").and_then(Value::as_u64);
+    match version {
+        Some(1..=VERSION) => Ok(()),
+        Some(found) if found > VERSION => Err(ModelError::Newer { found, known: VERSION }),
+        _ => Err(ModelError::Member {
+            path: "version".to_owned(),
+            reason: "missing, or not a number from 1 on".to_owned(),
+            changed: true,
+        }),
+    }
+}
+
+fn without_checksum(mut members: Map<String, Value>) -> Value {
+    members.remove("checksum");
+    Value::Object(members)
+}
+
+/// Messages of what was found in a file have one line and end some time.
+fn one_line(text: &str) -> String {
+    let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if plain.chars().count() <= 200 { plain } else { plain.chars().take(200).collect::<String>() + " …" }
+}

@@ -1,0 +1,43 @@
+//! Where the policy leads if nothing hinders it.
+
+use motion::{Demonstrations, Policy};
+use nalgebra::DVector;
+
+/// Starts followed, at most.
+const STARTS: usize = 20;
+/// Each for so many times the usual movement, in so many steps.
+const TIMES: f64 = 5.0;
+const STEPS: usize = 200;
+/// Beyond what was shown by this share of its extent, nothing is known.
+const BEYOND: f64 = 0.3;
+
+/// Share of the demonstrated starts from which the policy, followed freely, leaves what was shown.
+pub(crate) fn share_leaving(policy: &dyn Policy, demonstrations: &Demonstrations) -> f64 {
+    let movements = demonstrations.trajectories();
+    let dim = demonstrations.dim();
+    let (mut low, mut high) = (DVector::repeat(dim, f64::INFINITY), DVector::repeat(dim, f64::NEG_INFINITY));
+    for state in movements.iter().flat_map(|movement| movement.states().column_iter()) {
+        let state = state.into_owned();
+        low = low.inf(&state);
+        high = high.sup(&state);
+    }
+    let margin = (&high - &low) * BEYOND;
+    let (low, high) = (low - &margin, high + margin);
+    let mut seconds: Vec<f64> =
+        movements.iter().map(|movement| movement.seconds(0, movement.n_samples() - 1)).collect();
+    let middle = seconds.len() / 2;
+    let step = TIMES * *seconds.select_nth_unstable_by(middle, f64::total_cmp).1 / STEPS as f64;
+    let every = movements.len().div_ceil(STARTS);
+    let starts: Vec<_> = movements.iter().step_by(every).map(|movement| movement.state(0)).collect();
+    let leaves = |start: &nalgebra::DVectorView<'_, f64>| {
+        let mut state = start.into_owned();
+        (0..STEPS).any(|_| {
+            // The midpoint rule: a whirl does not spiral out by its steps alone.
+            let middle = &state + policy.action(state.as_view()) * (step / 2.0);
+            state += policy.action(middle.as_view()) * step;
+            let inside = |axis: usize| (low[axis]..=high[axis]).contains(&state[axis]);
+            !(0..dim).all(inside)
+        })
+    };
+    starts.iter().filter(|start| leaves(start)).count() as f64 / starts.len() as f64
+}

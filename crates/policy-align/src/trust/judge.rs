@@ -1,0 +1,186 @@
+use gp::{Grouping, Reading};
+
+use super::numbers::TrustNumbers;
+use super::words::{direction, percent};
+use crate::{Finding, StateChannel, Trust, Verdict};
+
+/// Left-out error along the path from which a policy is wrong.
+const WRONG: f64 = 0.5;
+/// The same from which it may be.
+const DOUBTFUL: f64 = 0.04;
+/// Expected errors from which it may be: they have been too low by a factor of 3.
+const EXPECTED: f64 = 0.06;
+/// The same of PolicyAlign's policy, most of which is a difference that was measured; and from which it is wrong.
+const MEASURED: f64 = 0.1;
+const FAR: f64 = 0.8;
+/// Difference of what halves of the movements tell from which it may be.
+const HALVES: f64 = 0.15;
+/// An episode whose error is so many times the usual one is named.
+const ODD: f64 = 10.0;
+/// What is free moves in all directions; less coverage than this may be a constraint.
+const SPREAD: f64 = 0.25;
+/// Less coverage than this and one direction is a guess.
+const UNSEEN: f64 = 0.1;
+/// From more starts than this share, and the goal lies outside what was shown.
+const LEAVING: f64 = 0.5;
+
+/// What is known when it comes to a verdict.
+pub(crate) struct Evidence<'a> {
+    pub(crate) numbers: TrustNumbers,
+    /// Found while preparing.
+    pub(crate) findings: &'a [Finding],
+    pub(crate) state: &'a [StateChannel],
+    /// Names of the movements learnt from.
+    pub(crate) episodes: &'a [String],
+}
+
+/// The findings, the worst first, and the verdict that follows.
+pub(crate) fn judge(evidence: Evidence<'_>) -> Trust {
+    let Evidence { numbers, findings, state, episodes } = evidence;
+    let mut findings = findings.to_vec();
+    let mut found = |verdict, what: String, next: &str| findings.push(Finding { verdict, what, next: next.to_owned() });
+    about_reading(&numbers, state, &mut found);
+    about_error(&numbers, &mut found);
+    about_episodes(&numbers, episodes, &mut found);
+    findings.sort_by(|a, b| b.verdict.cmp(&a.verdict));
+    let verdict = findings.first().map_or(Verdict::Good, |finding| finding.verdict);
+    Trust { verdict, findings, numbers }
+}
+
+fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn FnMut(Verdict, String, &str)) {
+    match numbers.reading {
+        Reading::Constrained => {}
+        Reading::Free if numbers.direction_coverage < SPREAD => found(
+            Verdict::Doubtful,
+            format!(
+                "nothing points to a constraint, but movements hardly went along {} (coverage {:.2})",
+                direction(&numbers.unseen_direction, state),
+                numbers.direction_coverage
+            ),
+            "either they want not to, or something always prevents them: record movements that go that way",
+        ),
+        Reading::Free => found(
+            Verdict::Good,
+            "nothing points to a constraint; one that is the same in all movements cannot be seen in them".to_owned(),
+            "if there is one, record movements without it",
+        ),
+        Reading::Ambiguous => found(
+            Verdict::Doubtful,
+            format!(
+                "two readings explain these movements equally well: nothing was constrained, or the same constraint always (they differ by {})",
+                percent(numbers.gap)
+            ),
+            "only you know: --reading free or --reading constrained, or record movements that pass the same places in other directions",
+        ),
+        Reading::Unexplained => found(
+            if numbers.held_out_error > WRONG { Verdict::DoNotUse } else { Verdict::Doubtful },
+            format!(
+                "left-out movements are not predicted: errors {} and {}",
+                percent(numbers.direct_error),
+                percent(numbers.held_out_error)
+            ),
+            "too few movements, too much noise, or the movement does not depend on the place alone (time, load, target)",
+        ),
+        Reading::TooFew => found(
+            Verdict::Doubtful,
+            "too few movements to tell whether constraints acted".to_owned(),
+            "record at least five",
+        ),
+    }
+    if numbers.direction_coverage < UNSEEN {
+        found(
+            Verdict::Doubtful,
+            format!(
+                "hardly anything ever moved along {} (coverage {:.3})",
+                direction(&numbers.unseen_direction, state),
+                numbers.direction_coverage
+            ),
+            "record movements that go that way",
+        );
+    }
+}
+
+fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &str)) {
+    let expected = numbers.expected_error;
+    let measured = numbers.aligned.is_some();
+    if measured && expected > FAR && numbers.halves.is_some_and(|halves| halves < HALVES) {
+        found(
+            Verdict::DoNotUse,
+            format!(
+                "the Gaussian process learns another policy, and is sure of it: they differ by {}",
+                percent(expected)
+            ),
+            "use --learner auto",
+        );
+    } else if expected > if measured { MEASURED } else { EXPECTED } {
+        found(
+            Verdict::Doubtful,
+            format!("the policy expects an error of {} of its variance", percent(expected)),
+            "record more movements, from other starts",
+        );
+    }
+    let held = numbers.held_out_error;
+    if held > WRONG {
+        found(
+            Verdict::DoNotUse,
+            format!("left-out movements are predicted with an error of {}", percent(held)),
+            "record more movements, above all where errors are largest",
+        );
+    } else if held > DOUBTFUL {
+        found(
+            Verdict::Doubtful,
+            format!("left-out movements are predicted with an error of {}", percent(held)),
+            "record more movements, above all where errors are largest",
+        );
+    }
+    if let Some(halves) = numbers.halves.filter(|&halves| halves > HALVES) {
+        found(
+            Verdict::Doubtful,
+            format!(
+                "half of the movements tell another policy than the other half: they differ by {}",
+                percent(halves)
+            ),
+            "record more movements, from other starts; less noise helps as well",
+        );
+    }
+    if numbers.leaving > LEAVING {
+        found(
+            Verdict::Doubtful,
+            format!(
+                "followed freely, the policy leaves what was shown from {} of the starts: its goal lies outside, or time runs backwards",
+                percent(numbers.leaving)
+            ),
+            "look at a roll-out; record movements up to where they should end",
+        );
+    }
+    if numbers.grouping == Grouping::BlocksOfTime {
+        found(
+            Verdict::Doubtful,
+            "prediction was tested on parts of the same movements".to_owned(),
+            "record at least three movements",
+        );
+    }
+}
+
+/// An episode that the others predict much worse than each other: another task, a fault of tracking, or a lone corner.
+fn about_episodes(numbers: &TrustNumbers, episodes: &[String], found: &mut dyn FnMut(Verdict, String, &str)) {
+    let mut errors: Vec<f64> = numbers.episode_errors.iter().map(|&(_, error)| error).collect();
+    let middle = errors.len() / 2;
+    if errors.is_empty() || numbers.grouping == Grouping::BlocksOfTime {
+        return;
+    }
+    let usual = *errors.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let worst = numbers.episode_errors.iter().max_by(|(_, a), (_, b)| a.total_cmp(b));
+    if let Some(&(episode, error)) = worst.filter(|&&(_, error)| error > ODD * usual && error > DOUBTFUL) {
+        found(
+            Verdict::Good,
+            format!(
+                "episode {} is predicted worst: error {}, usual {}",
+                episodes[episode],
+                percent(error),
+                percent(usual)
+            ),
+            "look at it: another task, a fault of tracking, or a place where no other movement went?",
+        );
+    }
+}

@@ -1,0 +1,72 @@
+use gp::{Grouping, ModelKind, Reading};
+use serde::{Deserialize, Serialize};
+
+/// What a verdict rests on. Shares are of 1; errors are squared, as shares of the policy's variance unless said.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrustNumbers {
+    /// Movements learnt from.
+    pub episodes: usize,
+    /// What the data say about hidden constraints.
+    pub reading: Reading,
+    /// E′ of the policy handed out: error along the path of movements left out, as a share of the policy's squares.
+    pub held_out_error: f64,
+    /// The same of every movement that was left out: its place among the episodes, and its error.
+    pub episode_errors: Vec<(usize, f64)>,
+    /// The same of the direct GP, which is what plain averaging would give.
+    pub held_out_error_direct: f64,
+    /// Left-out error of the direct policy in all directions, as a share of its variance.
+    pub direct_error: f64,
+    /// Difference of slope and direct policy.
+    pub gap: f64,
+    /// Error (nUPE) that the Gaussian process expects of its own policy.
+    pub expected_error: f64,
+    /// Difference of the slope policies with and without rotation, where both predict about as well.
+    pub ambiguity: f64,
+    /// Share of left-out movement that the slope GP predicts.
+    pub slope_r_squared: f64,
+    /// Mean squared left-out error over its predicted variance; 1 where error bars are right.
+    pub z_squared: f64,
+    /// n λ_min of the mean of the directions' products: 1 if all directions are seen alike, 0 if one never is.
+    pub direction_coverage: f64,
+    /// The direction seen least, (n).
+    pub unseen_direction: Vec<f64>,
+    /// Posterior over prior variance along the direction that is known least.
+    pub least_known: f64,
+    /// That direction, (n).
+    pub least_known_direction: Vec<f64>,
+    /// Σ‖π̂_rot‖²/Σ‖π̂‖² of the slope GP.
+    pub rotation_share: f64,
+    /// t of the test for rotation; none where there is none.
+    pub rotation_t: Option<f64>,
+    /// Whether the slope policy has a potential.
+    pub model: ModelKind,
+    /// Difference of the slope policies that every other movement alone would give, as a share of the policy's variance;
+    /// none where the direct policy is handed out, or halves are too few.
+    pub halves: Option<f64>,
+    /// Share of the demonstrated starts from which the policy, followed freely, leaves what was shown.
+    pub leaving: f64,
+    /// Share of the squared steps that is noise.
+    pub step_noise: f64,
+    /// What was left out at a time.
+    pub grouping: Grouping,
+    /// What is known of PolicyAlign's policy; none if another learner's is handed out.
+    pub aligned: Option<AlignedNumbers>,
+}
+
+/// What is known of PolicyAlign's policy.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AlignedNumbers {
+    /// Movements kept.
+    pub kept: usize,
+    /// Groups that hang together.
+    pub discarded: usize,
+    /// Root mean square of levelled minus learnt potential, over its standard deviation.
+    pub residual: f64,
+    /// Share of held-out samples that the policy knows nothing of.
+    pub unsupported: f64,
+    /// Difference of what it says of movements left out from the Gaussian process's policy, as a share of that one's
+    /// variance.
+    pub difference: f64,
+}

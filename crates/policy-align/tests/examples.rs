@@ -1,0 +1,88 @@
+//! The examples of the documentation: where they come from, and that they do what is said of them.
+
+mod running;
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use demo_gen::ToySystem;
+use running::{examples, run_in};
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+
+/// Seconds between samples of the toy recording; its policy is faster by as much.
+const TIME_STEP: f64 = 0.05;
+
+/// The toy system of 40 movements down a parabola, each under constraints that change on the way, to a thousandth of a
+/// millimetre.
+fn toy() -> String {
+    let recordings = ToySystem::default().record(&mut ChaCha8Rng::seed_from_u64(5)).unwrap();
+    let mut text = "episode,t,x,y,vx,vy\n".to_owned();
+    for (episode, recording) in recordings.iter().enumerate() {
+        let velocities = recording.observed.velocities().unwrap() / TIME_STEP;
+        for (sample, (x, u)) in recording.observed.states().column_iter().zip(velocities.column_iter()).enumerate() {
+            let t = TIME_STEP * sample as f64;
+            let _ = writeln!(text, "{episode},{t:.2},{:.6},{:.6},{:.6},{:.6}", x[0], x[1], u[0], u[1]);
+        }
+    }
+    text
+}
+
+#[test]
+fn the_toy_recording_is_made_by_a_seed() {
+    let stored = std::fs::read_to_string(examples().join("toy.csv")).unwrap();
+    assert!(stored.len() <= 150_000);
+    assert!(stored == toy(), "write it again: cargo test -p policy-align --test examples -- --ignored");
+}
+
+#[test]
+#[ignore = "writes docs/examples/toy.csv"]
+fn write_the_toy_recording() {
+    std::fs::write(examples().join("toy.csv"), toy()).unwrap();
+}
+
+/// Commands of a page's console blocks, with what they say.
+fn sessions(page: &str) -> Vec<(String, String)> {
+    let mut sessions: Vec<(String, String)> = Vec::new();
+    for block in page.split("```console\n").skip(1) {
+        for line in block.split("```").next().unwrap_or_default().lines() {
+            match (line.strip_prefix("$ policy-align "), sessions.last_mut()) {
+                (Some(command), _) => sessions.push((command.to_owned(), String::new())),
+                (None, Some((_, said))) => *said += &format!("{line}\n"),
+                (None, None) => panic!("a block begins with its command: {line}"),
+            }
+        }
+    }
+    sessions
+}
+
+/// Words alike, numbers within a tenth: machines round differently, and sizes of files hang on it.
+fn alike(found: &str, expected: &str) -> bool {
+    let words = |text: &str| text.split_whitespace().map(ToOwned::to_owned).collect::<Vec<_>>();
+    let (found, expected) = (words(found), words(expected));
+    let number = |word: &str| word.trim_matches(|c: char| !c.is_ascii_digit() && c != '-').parse::<f64>().ok();
+    let same = |a: &String, b: &String| match (number(a), number(b)) {
+        (Some(x), Some(y)) => (x - y).abs() <= 0.1 * x.abs().max(y.abs()) + 1e-12 || x.abs().max(y.abs()) < 1e-9,
+        _ => a == b,
+    };
+    found.len() == expected.len() && found.iter().zip(&expected).all(|(a, b)| same(a, b))
+}
+
+#[test]
+fn the_session_of_the_page_happens() {
+    let page = std::fs::read_to_string(examples().join("../your-own-data.md")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["toy.csv", "wall.toml"] {
+        std::fs::copy(examples().join(name), folder.path().join(name)).unwrap();
+    }
+    let sessions = sessions(&page);
+    assert!(sessions.len() >= 6);
+    for (command, expected) in sessions {
+        let ran = run_in(folder.path(), &command);
+        let said = ran.out + &ran.err;
+        assert!(alike(&said, &expected), "policy-align {command}\nsays\n{said}\nthe page says\n{expected}");
+    }
+    for written in ["toy.json", "toy.trust.html", "toy.svg", "toy.c"] {
+        assert!(Path::new(&folder.path().join(written)).exists(), "{written}");
+    }
+}

@@ -1,0 +1,172 @@
+//! A fit keeps its promises whatever it learns from: bits, units, options, and how it is stopped.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+#[allow(dead_code, reason = "made for more than this")]
+mod cases;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use cases::{Case, Has, Plane, parabola};
+use gp::Reading;
+use nalgebra::DMatrix;
+use policy_align::{
+    EvaluateError, Fit, FitError, FitOptions, LearnerChoice, Learnt, PrepareOptions, Prepared, Progress, Step, Truth,
+    Verdict, evaluate, prepare,
+};
+
+fn few() -> Case {
+    Case::of(&Plane { count: 12, ..Plane::default() }.potential(&parabola(), 5), 12, Has::Velocities)
+}
+
+fn prepared(case: &Case) -> Prepared {
+    prepare(&case.recordings, &PrepareOptions::default()).unwrap()
+}
+
+fn fit(prepared: &Prepared, options: &FitOptions) -> Result<Fit, FitError> {
+    let cancelled = AtomicBool::new(false);
+    policy_align::fit(prepared, options, &mut Progress { cancelled: &cancelled, report: &mut |_| () })
+}
+
+fn small(learner: LearnerChoice) -> FitOptions {
+    FitOptions { learner, max_rows: 150, ..FitOptions::default() }
+}
+
+const LEARNERS: [LearnerChoice; 4] =
+    [LearnerChoice::Auto, LearnerChoice::PolicyAlign, LearnerChoice::Slope, LearnerChoice::Direct];
+
+/// Stored as text: policy, numbers, words and all.
+fn text(fit: &Fit) -> String {
+    serde_json::to_string(&(&fit.learnt, &fit.decisions, &fit.trust)).unwrap()
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bits_at_any_number_of_threads() {
+    let prepared = prepared(&few());
+    let threads = |count| rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
+    for learner in LEARNERS {
+        let one = threads(1).install(|| fit(&prepared, &small(learner)).unwrap());
+        let three = threads(3).install(|| fit(&prepared, &small(learner)).unwrap());
+        assert!(text(&one) == text(&three), "{learner:?}");
+        let same = match (learner, &one.learnt) {
+            (LearnerChoice::Auto, Learnt::Auto(_))
+            | (LearnerChoice::PolicyAlign, Learnt::PolicyAlign(_))
+            | (LearnerChoice::Slope, Learnt::Slope(_))
+            | (LearnerChoice::Direct, Learnt::Direct(_)) => true,
+            _ => false,
+        };
+        assert!(same, "{learner:?}");
+    }
+}
+
+/// Millimetres, or one channel in other units with --scale undoing it, give the policy of metres.
+#[test]
+fn units_do_not_matter() {
+    let metres = prepared(&few());
+    let millimetres = prepared(&few().in_units(&[1000.0, 1000.0]));
+    let mixed = few().in_units(&[1.0, 50.0]);
+    let options = PrepareOptions { scale: vec![("y".to_owned(), 0.02)], ..PrepareOptions::default() };
+    let mixed = prepare(&mixed.recordings, &options).unwrap();
+    let x = metres.demonstrations.trajectories()[3].state(5).into_owned();
+    for learner in LEARNERS {
+        let action = |prepared: &Prepared, unit: f64| {
+            let fit = fit(prepared, &small(learner)).unwrap();
+            (fit.learnt.policy().action((&x * unit).as_view()) / unit, fit.trust.verdict)
+        };
+        let (expected, verdict) = action(&metres, 1.0);
+        assert!(expected.norm() > 0.0);
+        for (found, other) in [action(&millimetres, 1000.0), action(&mixed, 1.0)] {
+            assert!((&found - &expected).norm() < 1e-6 * expected.norm(), "{learner:?}: {found} for {expected}");
+            assert_eq!(other, verdict);
+        }
+    }
+}
+
+#[test]
+fn decisions_say_what_was_done() {
+    let prepared = prepared(&few());
+    let value = |options: &FitOptions, what: &str| {
+        let fit = fit(&prepared, options).unwrap();
+        fit.decisions.iter().find(|decision| decision.what == what).unwrap().value.clone()
+    };
+    assert_eq!(value(&small(LearnerChoice::Auto), "learner"), "slope GP");
+    let free = FitOptions { reading: Some(Reading::Free), ..small(LearnerChoice::Auto) };
+    assert_eq!(value(&free, "learner"), "direct GP");
+    let given = FitOptions {
+        bandwidth: Some(align::Bandwidth::Medium),
+        init_d: Some(7.5),
+        ..small(LearnerChoice::PolicyAlign)
+    };
+    assert_eq!(value(&given, "init_d"), "7.5");
+    assert!(value(&given, "bandwidth").starts_with("medium"));
+    assert_eq!(value(&given, "integration"), "velocity");
+    // Told to take movements for free that are not: the report keeps its own reading.
+    let fit = fit(&prepared, &free).unwrap();
+    assert_eq!(fit.trust.numbers.reading, Reading::Constrained);
+    assert_ne!(fit.trust.verdict, Verdict::Good);
+}
+
+#[test]
+fn it_can_be_stopped_at_every_step() {
+    let prepared = prepared(&few());
+    for learner in LEARNERS {
+        let mut steps = Vec::new();
+        let cancelled = AtomicBool::new(false);
+        let report = &mut |step: Step| steps.push(step);
+        policy_align::fit(&prepared, &small(learner), &mut Progress { cancelled: &cancelled, report }).unwrap();
+        assert!(steps.iter().enumerate().all(|(at, step)| step.done == at && step.of == steps.len()), "{steps:?}");
+        for stop in 1..steps.len() {
+            let cancelled = AtomicBool::new(false);
+            let report = &mut |step: Step| cancelled.store(step.done + 1 == stop, Ordering::Relaxed);
+            let error = policy_align::fit(&prepared, &small(learner), &mut Progress { cancelled: &cancelled, report });
+            assert_eq!(error.unwrap_err(), FitError::Cancelled);
+        }
+    }
+}
+
+#[test]
+fn options_out_of_range() {
+    let prepared = prepared(&few());
+    for options in [
+        FitOptions { folds: 1, ..FitOptions::default() },
+        FitOptions { max_rows: 49, ..FitOptions::default() },
+        FitOptions { init_d: Some(0.0), ..FitOptions::default() },
+        FitOptions { init_d: Some(f64::INFINITY), ..FitOptions::default() },
+    ] {
+        assert!(matches!(fit(&prepared, &options).unwrap_err(), FitError::Option { .. }), "{options:?}");
+    }
+}
+
+#[test]
+fn other_movements_and_the_truth() {
+    let all = Plane { count: 12, ..Plane::default() }.potential(&parabola(), 5);
+    let learnt = fit(&prepared(&Case::of(&all, 12, Has::Velocities)), &small(LearnerChoice::Auto)).unwrap();
+    let others: Vec<_> = all[12..].to_vec();
+    let case = Case::of(&[&others[..], &others[..1]].concat(), others.len(), Has::Velocities);
+    let prepared = prepared(&case);
+    let columns = |values: Vec<DMatrix<f64>>| {
+        let all: Vec<f64> = values.iter().flat_map(|matrix| matrix.iter().copied()).collect();
+        DMatrix::from_vec(2, all.len() / 2, all)
+    };
+    let projectors = others.iter().flat_map(|recording| {
+        let basis = DMatrix::<f64>::identity(2, 2);
+        recording.truth.projectors.iter().map(move |projector| {
+            DMatrix::from_columns(&basis.column_iter().map(|axis| projector.project(axis)).collect::<Vec<_>>())
+        })
+    });
+    let truth = Truth {
+        actions: columns(others.iter().map(|recording| recording.truth.actions.clone()).collect()),
+        projectors: Some(projectors.collect()),
+    };
+    let found = evaluate(learnt.learnt.policy(), &prepared, Some(&truth)).unwrap();
+    assert!(found.slope_error < 1e-9 && found.policy_error < 1e-9, "{found:?}");
+    assert!(found.nupe.unwrap() < 1e-9 && found.ncpe.unwrap() <= found.nupe.unwrap());
+    assert_eq!((found.episodes.len(), found.residuals.len()), (20, 800));
+    assert_eq!(found.supported, 1.0);
+    let without = evaluate(learnt.learnt.policy(), &prepared, None).unwrap();
+    assert_eq!((without.nupe, without.slope_error), (None, found.slope_error));
+    // A policy that stands still explains nothing.
+    let wrong = Truth { projectors: Some(Vec::new()), ..truth };
+    let error = evaluate(learnt.learnt.policy(), &prepared, Some(&wrong)).unwrap_err();
+    assert_eq!(error, EvaluateError::Projectors { found: 0, expected: 800 });
+}

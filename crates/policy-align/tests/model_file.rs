@@ -1,0 +1,184 @@
+//! Model files: what is written is read to the last bit, and nothing else is read.
+
+mod models;
+
+use models::{direct, one_of_each, policy_align, slope, states, toy};
+use motion::{LearntPolicy as _, Policy as _};
+use nalgebra::{DMatrix, DVector};
+use policy_align::{Learnt, Model, ModelError};
+use proptest::prelude::*;
+use serde_json::{Value, json};
+
+/// Everything that a model answers at a state.
+fn answers(model: &Model, states: &DMatrix<f64>) -> Vec<u64> {
+    let policy = model.policy();
+    let mut bits = Vec::new();
+    for state in states.column_iter() {
+        let mut sd = DVector::zeros(2);
+        let known = policy.action_sd_into(state, sd.as_view_mut());
+        let action = policy.action(state);
+        let potential = policy.potential().map_or(0.0, |potential| potential.value(state));
+        bits.push(u64::from(known));
+        bits.extend(action.iter().chain(&sd).chain([&potential, &policy.support(state)]).map(|x| x.to_bits()));
+    }
+    bits
+}
+
+#[test]
+fn a_stored_model_answers_the_same_bits_at_a_thousand_states() {
+    let demonstrations = toy(12, 20);
+    let folder = tempfile::tempdir().unwrap();
+    for (name, model) in one_of_each(&demonstrations) {
+        let path = folder.path().join(name);
+        model.save(&path).unwrap();
+        let read = Model::load(&path).unwrap();
+        let states = states(1000);
+        assert!(answers(&model, &states) == answers(&read, &states), "{name}");
+        assert_eq!(read.to_json().unwrap(), model.to_json().unwrap(), "{name}");
+    }
+}
+
+/// The text with a member changed, and a checksum that fits it.
+fn with(text: &str, pointer: &str, change: impl FnOnce(&mut Value)) -> Result<Model, ModelError> {
+    let mut value: Value = serde_json::from_str(text).unwrap();
+    change(value.pointer_mut(pointer).unwrap());
+    Model::from_json(value.to_string().as_bytes())
+}
+
+fn remove(value: &mut Value, name: &str) {
+    value.as_object_mut().unwrap().remove(name).unwrap();
+}
+
+#[test]
+fn what_is_wrong_is_said_in_one_line_with_its_place() {
+    let text = direct(&toy(3, 4)).to_json().unwrap();
+    let said = |result: Result<Model, ModelError>| {
+        let said = result.unwrap_err().to_string();
+        assert!(!said.contains('\n') && said.len() < 400, "{said}");
+        said
+    };
+    let cases: [(String, &str); 11] = [
+        (said(Model::from_json(b"\xff\xfe")), "not JSON: "),
+        (said(Model::from_json(b"[1]")), "not a model of this program"),
+        (said(Model::from_json(br#"{"format":"urdf"}"#)), r#"`format` is "urdf""#),
+        (said(with(&text, "", |v| v["version"] = json!(2))), "made by a newer policy-align (model version 2, this one reads 1)"),
+        (said(with(&text, "", |v| v["version"] = json!("1"))), "version: missing"),
+        (said(with(&text, "", |v| remove(v, "state"))), "missing field `state`"),
+        (said(with(&text, "", |v| remove(v, "checksum"))), "checksum: missing"),
+        (said(with(&text, "/state/1", |v| remove(v, "scale"))), "state[1]: missing field `scale`"),
+        (said(with(&text, "/state/1/scale", |v| *v = json!("a\nb"))), "state[1].scale: invalid type"),
+        (said(with(&text, "/learnt/direct/direct_gp/states/3", |v| *v = Value::Null)), "learnt.direct"),
+        (said(with(&text, "/state/0/name", |v| *v = json!("y"))), "checksum: "),
+    ];
+    for (said, expected) in cases {
+        assert!(said.contains(expected), "{said}");
+    }
+    let nan = text.replacen("\"time_step\":", "\"time_step\":NaN,\"x\":", 1);
+    assert!(matches!(Model::from_json(nan.as_bytes()), Err(ModelError::NotJson { .. })));
+}
+
+#[test]
+fn numbers_that_cannot_be_read_again_are_not_written() {
+    let good = direct(&toy(3, 4));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.json");
+    good.save(&path).unwrap();
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let mut model = good.clone();
+        model.state[1].median = bad;
+        let error = model.save(&path).unwrap_err().to_string();
+        assert!(error.starts_with("state[1].median: "), "{error}");
+    }
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), good.to_json().unwrap());
+}
+
+#[test]
+fn contradictions_are_refused_though_the_checksum_fits() {
+    let good = direct(&toy(3, 4));
+    let refused = |change: fn(&mut Model), place: &str| {
+        let mut model = good.clone();
+        change(&mut model);
+        let error = model.to_json().unwrap_err().to_string();
+        assert!(error.starts_with(place), "{error}");
+    };
+    refused(|model| drop(model.state.pop()), "state: 1 channels for a policy of 2");
+    refused(|model| model.state[1].scale = 0.0, "state[1]: ");
+    refused(|model| model.state[0].low = 9.0, "state[0]: ");
+    refused(|model| model.time_step = -1.0, "time_step: ");
+    refused(|model| model.data.speed = -1.0, "data: ");
+}
+
+#[test]
+fn no_truncation_is_a_model() {
+    let text = direct(&toy(3, 4)).to_json().unwrap();
+    let text = text.trim_end().as_bytes();
+    for length in 0..text.len() {
+        assert!(Model::from_json(&text[..length]).is_err(), "{length}");
+    }
+    assert!(Model::from_json(text).is_ok());
+}
+
+#[test]
+fn no_flipped_bit_is_another_model() {
+    let model = direct(&toy(3, 4));
+    let text = model.to_json().unwrap();
+    for at in 0..text.len() {
+        let mut bytes = text.clone().into_bytes();
+        bytes[at] ^= 1 << (at % 8);
+        if let Ok(read) = Model::from_json(&bytes) {
+            assert_eq!(read.to_json().unwrap(), text, "byte {at}");
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn no_changed_byte_is_another_model(at in any::<prop::sample::Index>(), byte in any::<u8>(), insert in any::<bool>()) {
+        thread_local! { static TEXT: String = direct(&toy(3, 4)).to_json().unwrap(); }
+        let text = TEXT.with(Clone::clone);
+        let mut bytes = text.clone().into_bytes();
+        let at = at.index(bytes.len());
+        if insert { bytes.insert(at, byte) } else { bytes[at] = byte }
+        if let Ok(read) = Model::from_json(&bytes) {
+            prop_assert_eq!(read.to_json().unwrap(), text);
+        }
+    }
+
+    #[test]
+    fn scales_are_undone(x in -2.0..2.0, y in -2.0..2.0, scale_x in 0.1..10.0, scale_y in 0.1..10.0, shared in any::<bool>()) {
+        thread_local! { static PLAIN: [Model; 2] = [slope(&toy(6, 10)), policy_align(&toy(12, 20))]; }
+        for plain in PLAIN.with(Clone::clone) {
+            let mut model = plain.clone();
+            let scale = [scale_x, if shared { scale_x } else { scale_y }];
+            (model.state[0].scale, model.state[1].scale) = (scale[0], scale[1]);
+            let state = DVector::from_vec(vec![x / scale[0], y / scale[1]]);
+            let seen = DVector::from_fn(2, |k, _| state[k] * scale[k]);
+            let (action, expected) = (model.policy().action(state.as_view()), plain.policy().action(seen.as_view()));
+            prop_assert_eq!(action[0], expected[0] / scale[0]);
+            prop_assert_eq!(action[1], expected[1] / scale[1]);
+
+            // The potential descends by its gradient, which is the policy's where the scales are one.
+            let policy = model.policy();
+            let potential = policy.potential().unwrap();
+            let gradient = potential.gradient(state.as_view());
+            for k in 0..2 {
+                let step = 1e-5 / scale[k];
+                let at = |by: f64| { let mut x = state.clone(); x[k] += by; potential.value(x.as_view()) };
+                let slope = (at(step) - at(-step)) / (2.0 * step);
+                prop_assert!((slope - gradient[k]).abs() < 1e-4 * (1.0 + gradient.amax()), "{} {}", slope, gradient[k]);
+                let expected = if shared { -action[k] } else { -action[k] * scale[k] * scale[k] };
+                prop_assert!((gradient[k] - expected).abs() < 1e-12 * (1.0 + expected.abs()));
+            }
+        }
+    }
+}
+
+#[test]
+fn every_learner_is_named_in_the_file() {
+    let demonstrations = toy(3, 8);
+    for (model, name) in [(slope(&demonstrations), "slope"), (direct(&demonstrations), "direct")] {
+        let value: Value = serde_json::from_str(&model.to_json().unwrap()).unwrap();
+        assert!(value["learnt"].get(name).is_some());
+        assert!(matches!((&model.learnt, name), (Learnt::Slope(_), "slope") | (Learnt::Direct(_), "direct")));
+    }
+}

@@ -1,0 +1,293 @@
+//! What is decided and said before learning, one mistake at a time.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use demo_io::{Channel, Episode, Recordings, Source};
+use nalgebra::DMatrix;
+use policy_align::{PrepareError, PrepareOptions, Prepared, Recorded, VelocityUse, Verdict, prepare};
+use proptest::prelude::*;
+
+const SAMPLES: usize = 40;
+const STEP: f64 = 0.05;
+
+/// x' = −x/2, y' = −y/4 from twelve places, with velocities.
+fn recordings() -> Recordings {
+    let state = ["x", "y"].map(|name| Channel { name: name.to_owned(), unit: None });
+    let episodes = (0..12).map(|k| {
+        let start = [f64::from(k).cos(), 1.5 * (1.7 * f64::from(k)).sin()];
+        let rate = [0.5, 0.25];
+        let value = |axis: usize, i: usize| start[axis] * (-rate[axis] * STEP * i as f64).exp();
+        Episode {
+            name: format!("e{k}"),
+            source: Source { file: "made".to_owned(), rows: None },
+            times: (0..SAMPLES).map(|i| 7.0 + STEP * i as f64).collect(),
+            positions: DMatrix::from_fn(2, SAMPLES, value),
+            velocities: Some(DMatrix::from_fn(2, SAMPLES, |axis, i| -rate[axis] * value(axis, i))),
+            constraint: Some("table".to_owned()),
+        }
+    });
+    Recordings { state: state.to_vec(), episodes: episodes.collect(), notes: Vec::new() }
+}
+
+fn changed(change: impl FnMut(&mut Episode)) -> Recordings {
+    let mut recordings = recordings();
+    recordings.episodes.iter_mut().for_each(change);
+    recordings
+}
+
+fn prepared(recordings: &Recordings) -> Prepared {
+    prepare(recordings, &PrepareOptions::default()).unwrap()
+}
+
+/// The decision about something.
+fn decided<'a>(prepared: &'a Prepared, what: &str) -> &'a str {
+    &prepared.decisions.iter().find(|decision| decision.what == what).unwrap().value
+}
+
+/// The finding that says these words.
+fn verdict(prepared: &Prepared, words: &str) -> Verdict {
+    let found = prepared.findings.iter().find(|finding| finding.what.contains(words));
+    found.unwrap_or_else(|| panic!("'{words}' is not in {:?}", prepared.findings)).verdict
+}
+
+#[test]
+fn nothing_is_said_of_good_recordings() {
+    let prepared = prepared(&recordings());
+    assert_eq!(prepared.findings, []);
+    assert_eq!(prepared.left_out, []);
+    assert_eq!(prepared.recorded, Recorded::Velocities);
+    assert_eq!(prepared.time_step, STEP);
+    assert_eq!(prepared.averaged, 1);
+    assert_eq!(prepared.episodes[3], "e3");
+    assert_eq!(prepared.constraints[3].as_deref(), Some("table"));
+    assert_eq!(decided(&prepared, "time step"), "0.05 s (20 Hz)");
+    assert_eq!(decided(&prepared, "velocities"), "recorded");
+    let original = recordings();
+    for (trajectory, episode) in prepared.demonstrations.trajectories().iter().zip(&original.episodes) {
+        assert_eq!(trajectory.states(), &episode.positions);
+        assert_eq!(trajectory.velocities(), episode.velocities.as_ref());
+        assert_eq!(trajectory.times(), None);
+    }
+    assert_eq!(prepared.state[0].scale, 1.0);
+    assert_eq!(prepared.state[0].high, 1.0);
+}
+
+proptest! {
+    /// Scales and units are the learner's alone: states times the scale, ranges as recorded.
+    #[test]
+    fn scale(factor in 0.01..100.0f64) {
+        let options = PrepareOptions { scale: vec![("y".to_owned(), factor)], ..PrepareOptions::default() };
+        let prepared = prepare(&recordings(), &options).unwrap();
+        let plain = self::prepared(&recordings());
+        prop_assert!((prepared.state[1].high / plain.state[1].high - 1.0).abs() < 1e-12);
+        prop_assert_eq!(prepared.state[1].scale, factor);
+        for (a, b) in prepared.demonstrations.trajectories().iter().zip(plain.demonstrations.trajectories()) {
+            for (a, b) in [(a.states(), b.states()), (a.velocities().unwrap(), b.velocities().unwrap())] {
+                prop_assert_eq!(a.row(0), b.row(0));
+                prop_assert_eq!(a.row(1), b.row(1) * factor);
+            }
+        }
+    }
+
+    /// Velocities times anything are brought back to the steps' units, and it is said.
+    #[test]
+    fn velocities_in_other_units(factor in prop_oneof![2.0..5000.0f64, 1e-4..0.5f64, -5000.0..-0.001f64]) {
+        let prepared = prepared(&changed(|episode| episode.velocities.iter_mut().for_each(|u| *u *= factor)));
+        prop_assert_eq!(verdict(&prepared, "times the steps"), Verdict::Doubtful);
+        let plain = recordings();
+        for (trajectory, episode) in prepared.demonstrations.trajectories().iter().zip(&plain.episodes) {
+            let (found, true_ones) = (trajectory.velocities().unwrap(), episode.velocities.as_ref().unwrap());
+            prop_assert!((found - true_ones).norm() < 0.11 * true_ones.norm());
+        }
+    }
+}
+
+#[test]
+fn factors_have_names() {
+    for (factor, words) in [
+        (1000.0, "millimetres"),
+        (0.001, "positions in millimetres"),
+        (57.3, "degrees"),
+        (-1.0, "sign"),
+        (STEP, "steps, not velocities"),
+        (7.7, "units and time step"),
+    ] {
+        let prepared = prepared(&changed(|episode| episode.velocities.iter_mut().for_each(|u| *u *= factor)));
+        let finding = prepared.findings.iter().find(|finding| finding.what.contains("times the steps")).unwrap();
+        assert!(finding.next.contains(words), "{factor}: {finding:?}");
+    }
+    let one = prepared(&changed(|episode| {
+        *episode.velocities.as_mut().unwrap() = {
+            let mut u = episode.velocities.clone().unwrap();
+            u.row_mut(1).apply(|u| *u *= 57.2958);
+            u
+        }
+    }));
+    assert_eq!(verdict(&one, "velocities of channel y are 57 times its steps"), Verdict::Doubtful);
+}
+
+#[test]
+fn velocities_that_are_none() {
+    let shuffled = prepared(&changed(|episode| episode.velocities.as_mut().unwrap().swap_rows(0, 1)));
+    assert_eq!(verdict(&shuffled, "nothing to do with the steps"), Verdict::Doubtful);
+    assert_eq!(shuffled.recorded, Recorded::Positions);
+    let believed = PrepareOptions { velocities: VelocityUse::Recorded, ..PrepareOptions::default() };
+    let swapped = changed(|episode| episode.velocities.as_mut().unwrap().swap_rows(0, 1));
+    assert_eq!(prepare(&swapped, &believed).unwrap().recorded, Recorded::Velocities);
+    let ignored = PrepareOptions { velocities: VelocityUse::Ignored, ..PrepareOptions::default() };
+    assert_eq!(prepare(&recordings(), &ignored).unwrap().recorded, Recorded::Positions);
+    let mut some = recordings();
+    some.episodes[5].velocities = None;
+    assert_eq!(prepared(&some).recorded, Recorded::Positions);
+}
+
+#[test]
+fn stamps() {
+    let slow = prepared(&changed(|episode| episode.times.iter_mut().for_each(|t| *t *= 1000.0)));
+    assert_eq!(verdict(&slow, "taken as milliseconds"), Verdict::Doubtful);
+    assert!((slow.time_step - STEP).abs() < 1e-12);
+    let positions = changed(|episode| {
+        episode.times.iter_mut().for_each(|t| *t *= 1000.0);
+        episode.velocities = None;
+    });
+    let slow = prepared(&positions);
+    assert_eq!(verdict(&slow, "are stamps milliseconds?"), Verdict::Doubtful);
+    assert_eq!(slow.time_step, 50.0);
+    let given = PrepareOptions { time_step: Some(STEP), ..PrepareOptions::default() };
+    let told = prepare(&positions, &given).unwrap();
+    assert_eq!((told.time_step, told.findings.len()), (STEP, 0));
+    // Half a percent of jitter is even; half a step is not.
+    let jitter = |share: f64| {
+        prepared(&changed(|episode| {
+            let times = episode.times.iter().enumerate();
+            episode.times = times.map(|(i, t)| t + share * STEP * if i % 2 == 0 { 0.5 } else { -0.5 }).collect();
+        }))
+    };
+    assert_eq!(jitter(0.004).demonstrations.trajectories()[0].times(), None);
+    assert!(jitter(0.5).demonstrations.trajectories()[0].times().is_some());
+    let hole = prepared(&changed(|episode| episode.times.iter_mut().skip(20).for_each(|t| *t += 10.0 * STEP)));
+    assert_eq!(verdict(&hole, "samples are missing"), Verdict::Good);
+    assert!((hole.demonstrations.trajectories()[0].seconds(19, 20) - 11.0 * STEP).abs() < 1e-12);
+}
+
+#[test]
+fn what_is_left_out() {
+    let mut twice = recordings();
+    twice.episodes.extend(recordings().episodes.into_iter().take(2));
+    let twice = prepared(&twice);
+    assert_eq!(twice.episodes.len(), 12);
+    assert_eq!(twice.left_out.len(), 2);
+    assert_eq!(twice.left_out[1].why, "the same samples as episode e1");
+    assert_eq!(verdict(&twice, "2 of 14 episodes repeat another"), Verdict::Good);
+    let still = prepared(&changed(|episode| {
+        if episode.name == "e7" {
+            episode.positions.fill(0.3);
+        }
+    }));
+    assert_eq!(still.left_out[0].episode, "e7");
+    assert_eq!(still.left_out[0].why, "never moves");
+}
+
+#[test]
+fn a_jump_is_cut() {
+    let jump = prepared(&changed(|episode| {
+        if episode.name == "e2" {
+            episode.positions.columns_mut(15, 25).add_scalar_mut(2.0);
+        }
+    }));
+    assert_eq!(verdict(&jump, "1 of 12 episodes have a jump (episode e2: the step after sample 14"), Verdict::Good);
+    assert_eq!(jump.episodes.len(), 13);
+    assert_eq!((&*jump.episodes[2], &*jump.episodes[3]), ("e2", "e2 from sample 15"));
+    let lengths: Vec<_> = jump.demonstrations.trajectories()[2..4].iter().map(motion::Trajectory::n_samples).collect();
+    assert_eq!(lengths, [15, 25]);
+    // One sample far off goes; what is before and after it stays.
+    let spike = prepared(&changed(|episode| episode.positions.column_mut(20).add_scalar_mut(3.0)));
+    assert_eq!(spike.episodes.len(), 24);
+    assert_eq!(verdict(&spike, "12 of 12 episodes have a jump"), Verdict::Doubtful);
+}
+
+#[test]
+fn angles_that_wrap_go_on() {
+    let turn = std::f64::consts::TAU;
+    let winding = |wrapped: bool| {
+        changed(|episode| {
+            let start = episode.positions[(0, 0)];
+            for i in 0..SAMPLES {
+                let angle = 2.9 + 0.2 * start + 0.03 * i as f64;
+                episode.positions[(0, i)] = if wrapped { angle - turn * (angle / turn).round() } else { angle };
+                let other = episode.positions[(1, i)];
+                episode.positions[(1, i)] = other;
+            }
+            // One that comes round to the other end fills the range.
+            episode.positions[(0, 0)] = episode.positions[(0, 0)].clamp(-3.14, 3.14);
+            episode.velocities = None;
+        })
+    };
+    let (wrapped, plain) = (prepared(&winding(true)), winding(false));
+    assert_eq!(verdict(&wrapped, "channel x wraps by a whole turn"), Verdict::Doubtful);
+    for (trajectory, episode) in wrapped.demonstrations.trajectories().iter().zip(&plain.episodes) {
+        let off = trajectory.states()[(0, 20)] - episode.positions[(0, 20)];
+        assert!((off / turn - (off / turn).round()).abs() < 1e-9);
+        for i in 2..SAMPLES {
+            let step = trajectory.states()[(0, i)] - trajectory.states()[(0, i - 1)];
+            assert!((step - 0.03).abs() < 1e-9, "{step}");
+        }
+    }
+}
+
+#[test]
+fn remarks() {
+    let mixed = prepared(&changed(|episode| {
+        episode.positions.row_mut(1).apply(|y| *y *= 57.3);
+        episode.velocities = None;
+    }));
+    assert_eq!(verdict(&mixed, "channel y spreads"), Verdict::Doubtful);
+    let mut three = recordings();
+    three.episodes.truncate(3);
+    assert_eq!(verdict(&prepared(&three), "3 movements are too few"), Verdict::Doubtful);
+    let round = prepared(&changed(|episode| {
+        let first = episode.positions.column(0).norm() + 0.5;
+        episode.positions = DMatrix::from_fn(2, SAMPLES, |axis, i| {
+            let angle = std::f64::consts::TAU * i as f64 / (SAMPLES - 1) as f64;
+            first * if axis == 0 { angle.cos() } else { angle.sin() }
+        });
+        episode.velocities = None;
+    }));
+    assert_eq!(verdict(&round, "12 of 12 episodes come back to where they began"), Verdict::Good);
+    let coarse = prepared(&changed(|episode| {
+        episode.positions.apply(|x| *x = (*x * 10.0).round() / 10.0);
+        episode.velocities = None;
+    }));
+    assert_eq!(verdict(&coarse, "positions have few digits"), Verdict::Good);
+    // 0.1 / √12 in each channel, or more.
+    assert!(coarse.noise.positions.as_ref().unwrap().iter().all(|sd| *sd > 0.028));
+}
+
+#[test]
+fn what_cannot_be_learnt_from() {
+    let refused = |recordings: &Recordings| prepare(recordings, &PrepareOptions::default()).unwrap_err();
+    let none = Recordings { episodes: Vec::new(), ..recordings() };
+    assert_eq!(refused(&none), PrepareError::Empty);
+    let turned = Recordings {
+        state: (0..SAMPLES).map(|i| Channel { name: i.to_string(), unit: None }).collect(),
+        ..changed(|episode| {
+            episode.positions = episode.positions.transpose();
+            episode.velocities = None;
+            episode.times.truncate(2);
+        })
+    };
+    assert_eq!(refused(&turned), PrepareError::LooksTransposed { dim: SAMPLES, samples: 2 });
+    let still = changed(|episode| episode.positions.fill(1.0));
+    let why = "the same samples as episode e0".to_owned();
+    assert_eq!(refused(&still), PrepareError::NothingLeft { of: 12, why });
+    let with = |options: PrepareOptions| prepare(&recordings(), &options).unwrap_err();
+    let scale =
+        |name: &str, factor| PrepareOptions { scale: vec![(name.to_owned(), factor)], ..PrepareOptions::default() };
+    let unknown = PrepareError::UnknownChannel { name: "z".to_owned(), known: "x, y".to_owned() };
+    assert_eq!(with(scale("z", 2.0)), unknown);
+    for factor in [0.0, -1.0, f64::INFINITY] {
+        assert_eq!(with(scale("x", factor)), PrepareError::Scale { name: "x".to_owned(), factor });
+        let options = PrepareOptions { time_step: Some(factor), ..PrepareOptions::default() };
+        assert_eq!(with(options), PrepareError::TimeStep { time_step: factor });
+    }
+}

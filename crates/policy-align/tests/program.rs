@@ -1,0 +1,212 @@
+//! The program as its users meet it.
+
+mod running;
+
+use std::io::{Read as _, Write as _};
+use std::process::{Command, Stdio};
+
+use running::{command, folder, run, run_in};
+use serde_json::Value;
+
+const VERBS: [&str; 11] = [
+    "check", "fit", "info", "predict", "rollout", "evaluate", "plot", "convert", "export", "completions", "man",
+];
+
+#[test]
+fn every_help_ends_with_an_example_that_runs() {
+    for verb in VERBS {
+        let help = run(&format!("{verb} --help"));
+        assert_eq!((help.code, help.err.as_str()), (Some(0), ""), "{verb}");
+        assert!(help.out.lines().all(|line| line.chars().count() <= 80), "{verb}:\n{}", help.out);
+        let example = help.out.lines().last().unwrap().trim();
+        let line = example.strip_prefix("policy-align ").unwrap_or_else(|| panic!("{verb}: {example}"));
+        assert!(line.starts_with(verb), "{example}");
+        let ran = run(line);
+        assert_eq!(ran.code, Some(0), "{line}: {}", ran.err);
+        if !matches!(verb, "completions" | "man") {
+            let lines: Vec<&str> = ran.out.lines().collect();
+            assert!(!lines.is_empty() && lines.len() <= 14, "{line}:\n{}", ran.out);
+            assert!(lines.iter().all(|line| line.chars().count() <= 80), "{line}:\n{}", ran.out);
+        }
+    }
+}
+
+#[test]
+fn results_are_json_if_asked_for() {
+    for line in [
+        "check toy.csv",
+        "info toy.json",
+        "predict toy.json --at 0.3,1.2",
+        "rollout toy.json --from 1,1",
+        "evaluate toy.json toy.csv",
+    ] {
+        let ran = run(&format!("{line} --json"));
+        assert_eq!(ran.code, Some(0), "{}", ran.err);
+        let document: Value = serde_json::from_str(&ran.out).unwrap();
+        assert!(document.is_object() && ran.out.lines().count() == 1, "{line}");
+    }
+}
+
+#[test]
+fn errors_have_three_lines_and_a_code() {
+    std::fs::write(folder().join("bad.csv"), "episode,t,x,y\n1,0,0,0\n1,1,NaN,1\n1,2,2,2\n").unwrap();
+    std::fs::write(folder().join("bad.toml"), "[[constraint]]\nnormal = [1]\n").unwrap();
+    std::fs::write(folder().join("no.json"), "{}").unwrap();
+    for (line, code, said) in [
+        ("check nothing.csv", 3, "nothing.csv"),
+        ("check bad.csv", 3, "try: --nan drop"),
+        ("info nothing.json", 3, "cannot be read"),
+        ("info no.json", 3, "not a model of this program"),
+        ("info toy.csv", 3, "not JSON"),
+        ("frobnicate", 2, "unrecognized subcommand"),
+        ("check", 2, "required arguments"),
+        ("fit toy.csv --folds five", 2, "invalid value 'five'"),
+        ("fit toy.csv --learner avto", 2, "auto"),
+        ("fit toy.csv --bandwidth big", 2, "--bandwidth auto"),
+        ("fit toy.csv --hold-out nobody", 2, "there is no episode 'nobody'"),
+        ("fit toy.csv --scale q=2", 1, "q"),
+        ("fit toy.csv -o none/model.json", 3, "cannot be written"),
+        ("predict toy.json --at 1", 2, "one for each of x, y"),
+        ("predict toy.json --at a,b", 2, "--at 0.3,1.2"),
+        ("predict toy.json --at 99,99 --outside error", 1, "nothing was learnt there"),
+        ("predict toy.json no.json", 3, "no.json, line 1"),
+        ("rollout toy.json --from 99,99", 1, "outside of what was shown"),
+        ("rollout toy.json --from 1,1 --seconds 0", 2, "seconds is 0"),
+        ("rollout toy.json --from 1,1 --constraint bad.toml", 2, "constraint 1: `normal` has 1 numbers: it needs 2"),
+        ("rollout toy.json --from 1,1 --constraint none.toml", 3, "none.toml"),
+        ("plot toy.json -o field.gif", 2, ".svg or .png"),
+        ("plot toy.json --dims x,q", 2, "two of x, y"),
+        ("convert toy.csv -o toy.xyz", 2, "use one of"),
+        ("export toy.json --to c --name 1st", 2, "--name policy"),
+        ("evaluate toy.json toy.csv --truth vx", 2, "a column for each channel"),
+    ] {
+        let ran = run(line);
+        let lines: Vec<&str> = ran.err.lines().filter(|line| !line.starts_with("warning: ")).collect();
+        assert_eq!((ran.code, ran.out.as_str()), (Some(code), ""), "{line}: {}", ran.err);
+        assert!(lines.len() == 3, "{line}: {}", ran.err);
+        for (line, start) in lines.iter().zip(["error: ", "  in:  ", "  try: "]) {
+            assert!(line.starts_with(start) && line.len() > start.len(), "{}", ran.err);
+        }
+        assert!(ran.err.contains(said), "{line}: {}", ran.err);
+    }
+    let ran = run("evaluate toy.json toy.csv --require 1e-12");
+    assert_eq!(ran.code, Some(1), "{}", ran.out);
+    assert!(ran.out.contains("not met"));
+}
+
+#[test]
+fn a_closed_pipe_is_no_error() {
+    let mut child =
+        command(folder()).args(["completions", "bash"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut first = [0; 1];
+    let mut stdout = child.stdout.take().unwrap();
+    stdout.read_exact(&mut first).unwrap();
+    drop(stdout);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), output.stderr.len()), (Some(0), 0));
+}
+
+#[test]
+fn no_colour_goes_into_pipes_and_quiet_is_quiet() {
+    for line in ["--help", "check --help", "check toy.csv", "info toy.json"] {
+        let ran = run(line);
+        assert!(!ran.out.contains('\u{1b}') && !ran.err.contains('\u{1b}'), "{line}");
+    }
+    let ran = run("check toy.csv --quiet");
+    assert_eq!((ran.code, ran.err.as_str()), (Some(0), ""));
+}
+
+#[test]
+fn predictions_of_a_file_and_of_standard_input_are_those_of_the_model() {
+    let text = "y,other,x\n1.2,9,0.3\n-0.5,9,0.7\n90,9,90\n";
+    std::fs::write(folder().join("states.csv"), text).unwrap();
+    let ran = run("predict toy.json states.csv");
+    let lines: Vec<Vec<&str>> = ran.out.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(lines[0], ["x", "y", "u_x", "u_y", "potential", "sd_x", "sd_y", "support", "known"]);
+    assert_eq!(lines[1][..2], ["0.3", "1.2"]);
+    let one: Value = serde_json::from_str(&run("predict toy.json --at 0.3,1.2 --json").out).unwrap();
+    let action = &one["predictions"][0]["action"];
+    assert_eq!([lines[1][2], lines[1][3]], [action[0].to_string(), action[1].to_string()]);
+    assert_eq!((lines[1][8], lines[3][8], lines[3][2]), ("1", "0", "0"));
+    assert_eq!(run("predict toy.json states.csv --outside nan").out.lines().last().unwrap().split(',').nth(2), Some("NaN"));
+
+    let mut child = command(folder()).args(["predict", "toy.json", "-"]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    child.stdin.take().unwrap().write_all(b"0.3;1.2\n0.7;-0.5\n").unwrap();
+    let out = String::from_utf8(child.wait_with_output().unwrap().stdout).unwrap();
+    assert_eq!(out.lines().nth(1), ran.out.lines().nth(1));
+    assert_eq!(out.lines().count(), 3);
+}
+
+#[test]
+fn a_configuration_is_complete_and_flags_win() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(running::examples().join("toy.csv"), folder.path().join("toy.csv")).unwrap();
+    let printed = run_in(folder.path(), "fit --print-config --seed 4 --state x,y");
+    assert!(printed.out.contains("seed = 4") && printed.out.contains("state = [\"x,y\"]"), "{}", printed.out);
+    std::fs::write(folder.path().join("c.toml"), &printed.out).unwrap();
+    let again = run_in(folder.path(), "fit --print-config --config c.toml --seed 5");
+    assert_eq!(again.out, printed.out.replace("seed = 4", "seed = 5"));
+    std::fs::write(folder.path().join("c.toml"), "[read]\nstat = ['x']\n").unwrap();
+    let ran = run_in(folder.path(), "check toy.csv --config c.toml");
+    assert_eq!(ran.code, Some(2));
+    assert_eq!(ran.err, "error: unknown key 'stat'\n  in:  c.toml, line 2\n  try: 'state', the nearest key\n");
+    std::fs::write(folder.path().join("c.toml"), "[read]\nstate = ['x']\n").unwrap();
+    assert!(run_in(folder.path(), "check toy.csv --config c.toml --quiet").out.contains("1 state (x)"));
+}
+
+#[test]
+fn a_path_can_be_read_again_and_keeps_its_constraint() {
+    let ran = run("rollout toy.json --from 1.5,1 --constraint wall.toml -o again.csv --plot again.png");
+    assert_eq!(ran.code, Some(0), "{}", ran.err);
+    let text = std::fs::read_to_string(folder().join("again.csv")).unwrap();
+    assert!(text.lines().count() > 10);
+    assert!(std::fs::read(folder().join("again.png")).unwrap().starts_with(b"\x89PNG"));
+    let ran = run("check again.csv --quiet");
+    assert!(ran.out.contains("1 episode") && ran.out.contains("with velocities"), "{} {}", ran.out, ran.err);
+}
+
+#[test]
+fn completions_and_manual_pages_are_well_formed() {
+    let available = |program: &str| {
+        let found = Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
+        if !found {
+            eprintln!("not tried: there is no {program}");
+        }
+        found
+    };
+    for shell in ["bash", "zsh", "fish"] {
+        let ran = run(&format!("completions {shell}"));
+        assert!(ran.code == Some(0) && ran.out.contains("rollout"));
+        let script = folder().join(shell);
+        std::fs::write(&script, ran.out).unwrap();
+        if available(shell) {
+            assert!(Command::new(shell).arg("-n").arg(&script).output().unwrap().status.success(), "{shell}");
+        }
+    }
+    let pages = tempfile::tempdir().unwrap();
+    assert_eq!(run(&format!("man --to {}", pages.path().display())).code, Some(0));
+    assert_eq!(std::fs::read_dir(pages.path()).unwrap().count(), VERBS.len() + 2);
+    if available("man") {
+        for page in std::fs::read_dir(pages.path()).unwrap() {
+            let path = page.unwrap().path();
+            let arguments = ["--warnings", "-E", "UTF-8", "-l", "-Tutf8", "-Z"];
+            let output = Command::new("man").args(arguments).arg(&path).env("MANWIDTH", "80").output().unwrap();
+            assert!(output.stderr.is_empty(), "{}: {}", path.display(), String::from_utf8_lossy(&output.stderr));
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_fit_leaves_the_old_model() {
+    let place = tempfile::tempdir().unwrap();
+    std::fs::copy(running::examples().join("toy.csv"), place.path().join("toy.csv")).unwrap();
+    std::fs::write(place.path().join("toy.json"), "old").unwrap();
+    let child = command(place.path()).args(["fit", "toy.csv", "-o", "toy.json", "--max-rows", "1500"]).stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(700));
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    assert_eq!(std::fs::read_to_string(place.path().join("toy.json")).unwrap(), "old");
+    assert_eq!(std::fs::read_dir(place.path()).unwrap().count(), 2);
+}
