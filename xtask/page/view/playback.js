@@ -11,7 +11,10 @@ class Playback {
       constraint: ids(document.constraints),
       start: Array.from({ length: document.starts }, (_, i) => i),
     };
-    this.choice = { learner: this.options.learner.at(-1), constraint: this.options.constraint[0], start: 0 };
+    // What shows the point: the obstacle that no demonstration shows, which stops the naive learner's hands.
+    const { learner, constraint } = this.options;
+    const unseen = constraint.includes("obstacle") ? "obstacle" : constraint[0];
+    this.choice = { learner: learner.at(-1), constraint: unseen, start: 0 };
     this.all = true;
     this.speed = 5;
     this.playing = false;

@@ -29,7 +29,7 @@ fn every_choice_is_another_picture() {
         "{ all: false }",
         "{ learner: 'expert' }",
         "{ learner: 'naive' }",
-        "{ constraint: 'obstacle' }",
+        "{ constraint: 'gap' }",
         "{ constraint: 'none' }",
         "{ start: 1 }",
         "{ learner: 'all' }",
@@ -37,7 +37,7 @@ fn every_choice_is_another_picture() {
         view::<()>(&mut page, &format!("select({choice})"));
         assert_another(&mut page, &mut before, choice);
     }
-    view::<()>(&mut page, "select({ learner: 'policy_align', constraint: 'gap', start: 0 })");
+    view::<()>(&mut page, "select({ learner: 'slope_gp', constraint: 'obstacle', start: 0 })");
     assert!(picture(&mut page) == first, "the first choice is not drawn as it was");
     assert_eq!(page.complaints(), Vec::<String>::new());
 }
