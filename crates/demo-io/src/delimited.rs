@@ -51,7 +51,10 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<D
     let columns: Vec<Column> = names
         .into_iter()
         .enumerate()
-        .map(|(column, name)| Column { name, content: content(head.iter().map(|(_, record)| dialect.fields(record)), column) })
+        .map(|(column, name)| Column {
+            name,
+            content: content(head.iter().map(|(_, record)| dialect.fields(record)), column),
+        })
         .collect();
     let mut table = Table::new(&columns, (&input.name, &input.stem), "line", input.options)?.with_hint(hint);
     for (line, record) in &head {

@@ -27,7 +27,9 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<D
     match reader {
         Some(Reader::Episodes(episodes)) => episodes.finish(),
         Some(Reader::Samples(rows)) => rows.finish(),
-        None => Err(ReadError::Empty(Fault::new("there is no line", &input.name, "another file: this one holds nothing"))),
+        None => {
+            Err(ReadError::Empty(Fault::new("there is no line", &input.name, "another file: this one holds nothing")))
+        }
     }
 }
 
@@ -66,7 +68,11 @@ impl<R: BufRead> Lines<R> {
             progress(read);
             if read == LONGEST_LINE {
                 let place = format!("{file}, line {}", self.line);
-                return Err(ReadError::TooLarge(Fault::new("a line of more than 1 GB", place, "a line an episode, or a sample")));
+                return Err(ReadError::TooLarge(Fault::new(
+                    "a line of more than 1 GB",
+                    place,
+                    "a line an episode, or a sample",
+                )));
             }
             let text = self.text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&self.text);
             if !text.trim_ascii().is_empty() {

@@ -34,11 +34,19 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<D
             method if method == CompressionMethod::DEFLATE => true,
             method => {
                 let what = format!("'{name}' is compressed by {method:?}");
-                return Err(ReadError::Unsupported(Fault::new(what, file, "numpy.savez or numpy.savez_compressed to write it")));
+                return Err(ReadError::Unsupported(Fault::new(
+                    what,
+                    file,
+                    "numpy.savez or numpy.savez_compressed to write it",
+                )));
             }
         };
         if entries.len() == MOST_ENTRIES {
-            return Err(ReadError::TooLarge(Fault::new(format!("more than {MOST_ENTRIES} arrays"), file, "fewer a file")));
+            return Err(ReadError::TooLarge(Fault::new(
+                format!("more than {MOST_ENTRIES} arrays"),
+                file,
+                "fewer a file",
+            )));
         }
         let described = Described { name: name.to_owned(), shape: Vec::new(), kind: crate::array::Kind::Text };
         entries.push(Entry { described, wayfinder: record.wayfinder(), deflated });
@@ -105,7 +113,9 @@ fn cut(file: &str) -> ReadError {
 fn zip(error: rawzip::Error, file: &str) -> ReadError {
     match error.kind() {
         ErrorKind::MissingEndOfCentralDirectory | ErrorKind::Eof | ErrorKind::InvalidEndOfCentralDirectory => cut(file),
-        _ => ReadError::Corrupt(Fault::new(format!("the archive is damaged: {error}"), file, "another copy of the file")),
+        _ => {
+            ReadError::Corrupt(Fault::new(format!("the archive is damaged: {error}"), file, "another copy of the file"))
+        }
     }
 }
 
@@ -113,4 +123,3 @@ fn zip(error: rawzip::Error, file: &str) -> ReadError {
 pub(crate) fn damaged(error: &std::io::Error, file: &str) -> ReadError {
     ReadError::Corrupt(Fault::new(format!("the data are damaged: {error}"), file, "another copy of the file"))
 }
-

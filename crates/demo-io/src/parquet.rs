@@ -69,7 +69,11 @@ pub(crate) fn read_described(
         progress(u64::try_from(reader.metadata().compressed_size()).unwrap_or(0));
     }
     if row == 0 {
-        return Err(ReadError::Empty(Fault::new("there is no row", &input.name, "another file: this one holds no sample")));
+        return Err(ReadError::Empty(Fault::new(
+            "there is no row",
+            &input.name,
+            "another file: this one holds no sample",
+        )));
     }
     let mut drafts = table.finish();
     drafts.drop_constant &= !listed;
@@ -99,7 +103,11 @@ impl Columns {
 
     fn name(&self, column: usize) -> String {
         let leaf = &self.leaves[self.owners[column]];
-        if leaf.list { format!("{}_{}", leaf.name, column - self.firsts[self.owners[column]]) } else { leaf.name.clone() }
+        if leaf.list {
+            format!("{}_{}", leaf.name, column - self.firsts[self.owners[column]])
+        } else {
+            leaf.name.clone()
+        }
     }
 
     fn expanded(&self) -> Vec<Column> {
@@ -123,7 +131,12 @@ impl Columns {
         }
         if mine.state.is_empty() {
             // Goals are no positions.
-            mine.ignore.extend(self.leaves.iter().filter(|leaf| leaf.name.starts_with("action")).flat_map(|leaf| self.elements_of(&leaf.name)));
+            mine.ignore.extend(
+                self.leaves
+                    .iter()
+                    .filter(|leaf| leaf.name.starts_with("action"))
+                    .flat_map(|leaf| self.elements_of(&leaf.name)),
+            );
         }
         Ok(mine)
     }
@@ -222,10 +235,14 @@ fn failed(error: &ParquetError, input: &Input<'_>) -> ReadError {
     // The directory stands at the end: a file without it is cut off.
     let ends_well = input.ends_with(b"PAR1");
     match error {
-        ParquetError::NYI(what) => {
-            ReadError::Unsupported(Fault::new(what.clone(), file, "in Python: pq.write_table(pq.read_table(IN), OUT, compression='snappy')"))
+        ParquetError::NYI(what) => ReadError::Unsupported(Fault::new(
+            what.clone(),
+            file,
+            "in Python: pq.write_table(pq.read_table(IN), OUT, compression='snappy')",
+        )),
+        _ if !ends_well => {
+            ReadError::Truncated(Fault::new("the file is cut off: its closing mark is missing", file, copy))
         }
-        _ if !ends_well => ReadError::Truncated(Fault::new("the file is cut off: its closing mark is missing", file, copy)),
         _ => ReadError::Corrupt(Fault::new(format!("the file is damaged: {error}"), file, "another copy of the file")),
     }
 }

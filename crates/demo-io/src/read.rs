@@ -85,16 +85,15 @@ fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> 
 #[cfg(not(all(feature = "parquet", feature = "hdf5", feature = "mcap", feature = "mat")))]
 fn not_built(name: &str, feature: &str) -> ReadError {
     let what = format!("this needs the feature '{feature}', which was not built in");
-    ReadError::Unsupported(Fault::new(what, name, format!("cargo build --features {feature}, or convert the file to CSV or NPZ")))
+    ReadError::Unsupported(Fault::new(
+        what,
+        name,
+        format!("cargo build --features {feature}, or convert the file to CSV or NPZ"),
+    ))
 }
 
 /// The files of a folder in natural order, as one set.
-fn folder(
-    path: &Path,
-    name: &str,
-    options: &ReadOptions,
-    progress: &mut dyn FnMut(u64),
-) -> Result<Drafts, ReadError> {
+fn folder(path: &Path, name: &str, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> Result<Drafts, ReadError> {
     let entries = fs::read_dir(path).and_then(Iterator::collect::<Result<Vec<_>, _>>);
     let entries = entries.map_err(|error| unreadable(&error, name))?;
     let mut files: Vec<PathBuf> = entries.iter().map(fs::DirEntry::path).filter(|path| path.is_file()).collect();
@@ -144,7 +143,11 @@ fn join(joined: &mut Drafts, more: Drafts, file: &str) -> Result<(), ReadError> 
     let recorded = |drafts: &Drafts| drafts.episodes.iter().any(|draft| !draft.velocities.is_empty());
     if recorded(joined) != recorded(&more) {
         let what = "velocities are recorded in some of the files only";
-        return Err(ReadError::Lengths(Fault::new(what, file, "--ignore with the names of the velocities, or files of one kind")));
+        return Err(ReadError::Lengths(Fault::new(
+            what,
+            file,
+            "--ignore with the names of the velocities, or files of one kind",
+        )));
     }
     joined.episodes.extend(more.episodes);
     joined.notes.extend(more.notes);

@@ -6,9 +6,9 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use demo_gen::ToySystem;
-use running::{examples, run_in};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
+use running::{examples, run_in};
 
 /// Seconds between samples of the toy recording; its policy is faster by as much.
 const TIME_STEP: f64 = 0.05;

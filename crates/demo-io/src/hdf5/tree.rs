@@ -75,7 +75,9 @@ fn kind(kind: DType) -> Kind {
         DType::U32 => Kind::Number("uint32"),
         DType::U64 => Kind::Number("uint64"),
         DType::String | DType::VariableLengthString => Kind::Text,
-        DType::Other(other) if matches!(*other, hdf5_pure::Datatype::FloatingPoint { size: 2, .. }) => Kind::Number("float16"),
+        DType::Other(other) if matches!(*other, hdf5_pure::Datatype::FloatingPoint { size: 2, .. }) => {
+            Kind::Number("float16")
+        }
         other => Kind::Other(other.to_string()),
     }
 }
@@ -102,9 +104,15 @@ pub(super) fn failed(error: &Error, input: &Input<'_>) -> ReadError {
             ReadError::Truncated(Fault::new("the file is cut off", file, copy))
         }
         Error::Io(error) => crate::input::unreadable(error, file),
-        Error::Format(FormatError::SignatureNotFound) => {
-            ReadError::NotThisFormat(Fault::new("not an HDF5 file: its signature is missing", file, "--as with the format it has"))
-        }
-        _ => ReadError::Corrupt(Fault::new(format!("the file is damaged, or of a kind that is not read: {error}"), file, "h5repack IN OUT, or another copy of the file")),
+        Error::Format(FormatError::SignatureNotFound) => ReadError::NotThisFormat(Fault::new(
+            "not an HDF5 file: its signature is missing",
+            file,
+            "--as with the format it has",
+        )),
+        _ => ReadError::Corrupt(Fault::new(
+            format!("the file is damaged, or of a kind that is not read: {error}"),
+            file,
+            "h5repack IN OUT, or another copy of the file",
+        )),
     }
 }

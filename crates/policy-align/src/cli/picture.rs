@@ -130,7 +130,13 @@ impl<'a> Picture<'a> {
             return None;
         }
         let spacing = (xs[1] - xs[0]).min(ys[1] - ys[0]);
-        Some(Layer::Arrows { arrows, color: ARROW, scale: 1.2 * spacing / longest, width: 1.0, label: Some("learnt".to_owned()) })
+        Some(Layer::Arrows {
+            arrows,
+            color: ARROW,
+            scale: 1.2 * spacing / longest,
+            width: 1.0,
+            label: Some("learnt".to_owned()),
+        })
     }
 }
 

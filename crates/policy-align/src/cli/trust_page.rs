@@ -122,7 +122,8 @@ fn aligned(numbers: &TrustNumbers) -> Markup {
 
 /// A direction, by the channels that it mostly has.
 fn direction(model: &Model, direction: &[f64]) -> String {
-    let mut parts: Vec<(f64, &str)> = direction.iter().copied().zip(model.state.iter().map(|channel| channel.name.as_str())).collect();
+    let mut parts: Vec<(f64, &str)> =
+        direction.iter().copied().zip(model.state.iter().map(|channel| channel.name.as_str())).collect();
     parts.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
     let told: Vec<String> = parts.iter().take(3).map(|(part, name)| format!("{} {name}", short(*part))).collect();
     told.join(", ")

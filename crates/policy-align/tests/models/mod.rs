@@ -9,7 +9,7 @@ use gp::{DirectGp, FrontEnd, ReadingLearner, Rows, SlopeGp};
 use motion::Demonstrations;
 use nalgebra::{DMatrix, DVector};
 use policy_align::{
-    DataSummary, Decision, FileSummary, Finding, LeftOutEpisode, Learnt, MadeBy, Model, StateChannel, Trust,
+    DataSummary, Decision, FileSummary, Finding, Learnt, LeftOutEpisode, MadeBy, Model, StateChannel, Trust,
     TrustNumbers, Verdict,
 };
 use rand::{RngExt as _, SeedableRng as _};
@@ -56,8 +56,7 @@ pub(crate) fn auto(demonstrations: &Demonstrations) -> Model {
 }
 
 pub(crate) fn policy_align(demonstrations: &Demonstrations) -> Model {
-    let aligned =
-        PolicyAlign { bandwidth: Bandwidth::Medium, ..PolicyAlign::default() }.align(demonstrations).unwrap();
+    let aligned = PolicyAlign { bandwidth: Bandwidth::Medium, ..PolicyAlign::default() }.align(demonstrations).unwrap();
     let learnt = aligned.learn(&LwprRegressor::default(), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
     model(Learnt::PolicyAlign(Box::new(learnt)), demonstrations)
 }
@@ -75,8 +74,11 @@ pub(crate) fn one_of_each(demonstrations: &Demonstrations) -> [(&'static str, Mo
 /// A model around a policy.
 pub(crate) fn model(learnt: Learnt, demonstrations: &Demonstrations) -> Model {
     let channel = |axis: usize| {
-        let mut values: Vec<f64> =
-            demonstrations.trajectories().iter().flat_map(|t| t.states().row(axis).iter().copied().collect::<Vec<_>>()).collect();
+        let mut values: Vec<f64> = demonstrations
+            .trajectories()
+            .iter()
+            .flat_map(|t| t.states().row(axis).iter().copied().collect::<Vec<_>>())
+            .collect();
         values.sort_by(f64::total_cmp);
         StateChannel {
             name: ["x", "y", "z"][axis].to_owned(),
@@ -87,9 +89,10 @@ pub(crate) fn model(learnt: Learnt, demonstrations: &Demonstrations) -> Model {
             median: values[values.len() / 2],
         }
     };
-    let velocities = demonstrations.trajectories().iter().flat_map(|t| {
-        t.velocities().unwrap().column_iter().map(|u| u.norm()).collect::<Vec<_>>()
-    });
+    let velocities = demonstrations
+        .trajectories()
+        .iter()
+        .flat_map(|t| t.velocities().unwrap().column_iter().map(|u| u.norm()).collect::<Vec<_>>());
     let mut speeds: Vec<f64> = velocities.collect();
     speeds.sort_by(f64::total_cmp);
     Model {
