@@ -29,11 +29,7 @@ pub(crate) struct Described {
 pub(crate) const STATE: &str = "observation.state";
 
 pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<Drafts, ReadError> {
-    let mut drafts = read_described(input, &Described::default(), progress)?;
-    for channel in &mut drafts.channels {
-        channel.unit = None;
-    }
-    Ok(drafts)
+    read_described(input, &Described::default(), progress)
 }
 
 pub(crate) fn read_described(
@@ -47,7 +43,7 @@ pub(crate) fn read_described(
         let what = "there is no column of numbers";
         return Err(ReadError::Empty(Fault::new(what, &input.name, "another file")));
     }
-    let columns = Columns::new(leaves, described);
+    let columns = Columns::new(leaves);
     let options = columns.options(input.options, described, &input.name)?;
     let names: Vec<Column> = columns.expanded();
     let listed = columns.state_is_list(&options);
@@ -87,7 +83,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn new(leaves: Vec<Leaf>, _described: &Described) -> Self {
+    fn new(leaves: Vec<Leaf>) -> Self {
         let mut firsts = Vec::new();
         let mut owners = Vec::new();
         for (index, leaf) in leaves.iter().enumerate() {
@@ -222,10 +218,20 @@ fn failed(error: &ParquetError, input: &Input<'_>) -> ReadError {
     // The directory stands at the end: a file without it is cut off.
     let ends_well = input.ends_with(b"PAR1");
     match error {
-        ParquetError::NYI(what) => {
-            ReadError::Unsupported(Fault::new(what.clone(), file, "in Python: pq.write_table(pq.read_table(IN), OUT, compression='snappy')"))
+        ParquetError::NYI(what) | ParquetError::General(what) if unsupported(error) => {
+            let remedy = "in Python: pq.write_table(pq.read_table(IN), OUT, compression='snappy')";
+            ReadError::Unsupported(Fault::new(what.clone(), file, remedy))
         }
         _ if !ends_well => ReadError::Truncated(Fault::new("the file is cut off: its closing mark is missing", file, copy)),
         _ => ReadError::Corrupt(Fault::new(format!("the file is damaged: {error}"), file, "another copy of the file")),
+    }
+}
+
+/// Whether the file is fine, but not for us.
+fn unsupported(error: &ParquetError) -> bool {
+    match error {
+        ParquetError::NYI(_) => true,
+        ParquetError::General(what) => what.contains("Disabled feature"),
+        _ => false,
     }
 }
