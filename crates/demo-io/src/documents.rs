@@ -44,7 +44,11 @@ impl<'a> Documents<'a> {
         let mut unknown = None;
         let mut next = 0;
         document.leaves(&mut String::new(), &mut |path, leaf| {
-            let column = if self.names.get(next).is_some_and(|name| name == path) { Some(next) } else { self.index.get(path).copied() };
+            let column = if self.names.get(next).is_some_and(|name| name == path) {
+                Some(next)
+            } else {
+                self.index.get(path).copied()
+            };
             match column {
                 Some(column) => {
                     row[column] = leaf.clone();

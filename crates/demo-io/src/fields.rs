@@ -29,15 +29,60 @@ pub(crate) struct Fields {
 
 /// Best first.
 const STATES: [&str; 22] = [
-    "state", "states", "x", "xs", "q", "qs", "pos", "position", "positions", "joint_pos", "joint_positions", "obs",
-    "observation", "observations", "observation.state", "demo", "demos", "trajectories", "trajectory", "traj", "data", "y",
+    "state",
+    "states",
+    "x",
+    "xs",
+    "q",
+    "qs",
+    "pos",
+    "position",
+    "positions",
+    "joint_pos",
+    "joint_positions",
+    "obs",
+    "observation",
+    "observations",
+    "observation.state",
+    "demo",
+    "demos",
+    "trajectories",
+    "trajectory",
+    "traj",
+    "data",
+    "y",
 ];
 const VELOCITIES: [&str; 16] = [
-    "velocity", "velocities", "v", "vs", "vel", "vels", "xdot", "xd", "dx", "x_dot", "qdot", "dq", "qd", "joint_vel",
-    "joint_velocities", "qvel",
+    "velocity",
+    "velocities",
+    "v",
+    "vs",
+    "vel",
+    "vels",
+    "xdot",
+    "xd",
+    "dx",
+    "x_dot",
+    "qdot",
+    "dq",
+    "qd",
+    "joint_vel",
+    "joint_velocities",
+    "qvel",
 ];
 const NEVER: [&str; 12] = [
-    "action*", "act", "acts", "*reward*", "*done*", "*terminal*", "*effort*", "*torque*", "*current*", "*temperature*", "*image*", "*rgb*",
+    "action*",
+    "act",
+    "acts",
+    "*reward*",
+    "*done*",
+    "*terminal*",
+    "*effort*",
+    "*torque*",
+    "*current*",
+    "*temperature*",
+    "*image*",
+    "*rgb*",
 ];
 
 /// Assigns arrays, of which all belong to one movement or to one set of movements.
@@ -76,7 +121,19 @@ pub(crate) fn assign(described: &[Described], options: &ReadOptions, place: &str
         (0..names.len()).find(fits)
     });
     fields.episode = fields.episode.or_else(|| {
-        let known = ["episode", "episodes", "episode_index", "episode_id", "episode_ids", "ep", "demo_id", "traj_id", "trial", "run", "take"];
+        let known = [
+            "episode",
+            "episodes",
+            "episode_index",
+            "episode_id",
+            "episode_ids",
+            "ep",
+            "demo_id",
+            "traj_id",
+            "trial",
+            "run",
+            "take",
+        ];
         called(&known).filter(|index| !fields.state.contains(index))
     });
     if fields.state.is_empty() {
@@ -97,7 +154,15 @@ pub(crate) fn assign(described: &[Described], options: &ReadOptions, place: &str
 impl Fields {
     fn has_role(&self, index: usize) -> bool {
         let single = [
-            self.time, self.step, self.rate, self.episode, self.ends, self.constraint, self.names, self.units, self.episode_names,
+            self.time,
+            self.step,
+            self.rate,
+            self.episode,
+            self.ends,
+            self.constraint,
+            self.names,
+            self.units,
+            self.episode_names,
         ];
         single.contains(&Some(index)) || self.velocity.contains(&index)
     }
@@ -109,7 +174,8 @@ impl Fields {
     /// The velocity of every array of the state, or none.
     fn guess_velocities(&self, names: &[&str], ignored: &[bool]) -> Vec<usize> {
         let free = |name: &str| {
-            (0..names.len()).find(|&index| !ignored[index] && !self.uses(index) && names[index].eq_ignore_ascii_case(name))
+            (0..names.len())
+                .find(|&index| !ignored[index] && !self.uses(index) && names[index].eq_ignore_ascii_case(name))
         };
         let of = |&state: &usize| {
             let state = names[state].to_lowercase();
@@ -146,13 +212,15 @@ fn guess_state(
         candidates.iter().flat_map(|&index| velocity_names(&described[index].name.to_lowercase())).collect();
     let could = |&&index: &&usize| {
         let array = &described[index];
-        array.shape.iter().filter(|&&length| length > 1).count() >= 2 && !velocities.contains(&array.name.to_lowercase())
+        array.shape.iter().filter(|&&length| length > 1).count() >= 2
+            && !velocities.contains(&array.name.to_lowercase())
     };
     let could: Vec<usize> = candidates.iter().filter(could).copied().collect();
     match could[..] {
         [index] => Ok(vec![index]),
         _ => {
-            let what = if could.is_empty() { "no array could be the state" } else { "several arrays could be the state" };
+            let what =
+                if could.is_empty() { "no array could be the state" } else { "several arrays could be the state" };
             let listed: Vec<String> = described.iter().map(Described::with_shape).collect();
             let remedy = format!("--state with one of (or several, which are joined): {}", shortened(&listed));
             Err(ReadError::NoRoles(Fault::new(what, place, remedy)))
@@ -174,8 +242,7 @@ fn refuse_other_kinds(array: &Described, place: &str) -> Result<(), ReadError> {
         }
         Kind::Pickled => {
             let what = format!("'{name}' holds Python objects, a pickle; reading it would run what is inside");
-            let remedy =
-                "in Python: np.savez(path, **{f'demo_{i}': d for i, d in enumerate(demos)}, dt=0.01), one array a demonstration";
+            let remedy = "in Python: np.savez(path, **{f'demo_{i}': d for i, d in enumerate(demos)}, dt=0.01), one array a demonstration";
             Err(ReadError::Pickled(Fault::new(what, place, remedy)))
         }
         Kind::Other(kind) => {

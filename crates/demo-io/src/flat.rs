@@ -3,10 +3,10 @@
 use crate::array::{Data, Described};
 use crate::draft::{Clock, Draft, Drafts, MOST_EPISODES, Rows, ignored_note, no_time, period};
 use crate::fields::{Fields, assign, channel_names};
+use crate::grouped::{Group, families};
 use crate::input::Input;
 use crate::layout::{Stack, dimensions, lengths, stack};
 use crate::stamps::{Stamp, TicksPerSecond};
-use crate::grouped::{Group, families};
 use crate::{Channel, Fault, Note, ReadError};
 
 /// Reads the numbers of an array by its index.
@@ -43,15 +43,18 @@ impl Set<'_> {
             arrays => Some(self.joined(arrays, load)?),
         };
         if let Some(velocity) = &velocity {
-            let same = (velocity.episodes, velocity.samples, velocity.channels) == (state.episodes, state.samples, state.channels);
+            let same = (velocity.episodes, velocity.samples, velocity.channels)
+                == (state.episodes, state.samples, state.channels);
             if !same {
                 return Err(self.differ(fields.velocity[0]));
             }
         }
         let channels = self.channels(state.channels, load)?;
         let mut notes: Vec<Note> = self.coarse();
-        let unused: Vec<&str> =
-            (0..self.described.len()).filter(|&index| !fields.uses(index)).map(|index| &self.described[index].name[..]).collect();
+        let unused: Vec<&str> = (0..self.described.len())
+            .filter(|&index| !fields.uses(index))
+            .map(|index| &self.described[index].name[..])
+            .collect();
         notes.extend(ignored_note("arrays", &unused, file));
         let ranges = self.ranges(&state, load)?;
         let times = self.times(&state, step, &ranges, load)?;
@@ -63,7 +66,9 @@ impl Set<'_> {
             rows: Rows::consecutive(0, samples.rows.len()),
             times,
             positions: samples.of(&state.numbers, state.channels),
-            velocities: velocity.as_ref().map_or_else(Vec::new, |velocity| samples.of(&velocity.numbers, state.channels)),
+            velocities: velocity
+                .as_ref()
+                .map_or_else(Vec::new, |velocity| samples.of(&velocity.numbers, state.channels)),
             constraint: labels.as_ref().map(|labels| labels[index].clone()).filter(|label| !label.is_empty()),
         });
         Ok(Drafts { channels, episodes: episodes.collect(), notes, word: "sample", drop_constant: false })
@@ -81,7 +86,11 @@ impl Set<'_> {
     fn differ(&self, array: usize) -> ReadError {
         let state = &self.described[self.fields.state[0]];
         let what = format!("{} and {} differ in shape", state.with_shape(), self.described[array].with_shape());
-        ReadError::Lengths(Fault::new(what, &self.input.name, "arrays of equal shape, or --ignore with the other's name"))
+        ReadError::Lengths(Fault::new(
+            what,
+            &self.input.name,
+            "arrays of equal shape, or --ignore with the other's name",
+        ))
     }
 
     fn joined(&self, arrays: &[usize], load: &mut Load<'_>) -> Result<Stack, ReadError> {
@@ -137,7 +146,12 @@ impl Set<'_> {
     }
 
     /// A label of each episode.
-    fn texts(&self, array: Option<usize>, episodes: usize, load: &mut Load<'_>) -> Result<Option<Vec<String>>, ReadError> {
+    fn texts(
+        &self,
+        array: Option<usize>,
+        episodes: usize,
+        load: &mut Load<'_>,
+    ) -> Result<Option<Vec<String>>, ReadError> {
         let Some(index) = array else { return Ok(None) };
         if !self.described[index].is_number() && self.described[index].kind != crate::array::Kind::Text {
             return Ok(None);
@@ -167,7 +181,11 @@ impl Set<'_> {
                 if end < start || end > all {
                     let what = format!("episode {k} ends at sample {end}, of {all}; the one before ends at {start}");
                     let place = format!("{file}, array '{}'", self.described[index].name);
-                    return Err(ReadError::Lengths(Fault::new(what, place, "ends that ascend up to the number of samples")));
+                    return Err(ReadError::Lengths(Fault::new(
+                        what,
+                        place,
+                        "ends that ascend up to the number of samples",
+                    )));
                 }
                 ranges.push(part(k, start..end));
                 start = end;

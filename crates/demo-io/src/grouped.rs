@@ -38,8 +38,11 @@ impl Group<'_> {
             let what = format!("{} demonstrations, more than {MOST_EPISODES}", self.demos.len());
             return Err(ReadError::TooLarge(Fault::new(what, file, "files with fewer")));
         }
-        let arrays: Vec<Described> =
-            first.fields.iter().map(|(name, index)| Described { name: name.clone(), ..self.described[*index].clone() }).collect();
+        let arrays: Vec<Described> = first
+            .fields
+            .iter()
+            .map(|(name, index)| Described { name: name.clone(), ..self.described[*index].clone() })
+            .collect();
         let fields = assign(&arrays, self.input.options, &format!("{file}, {}", first.name))?;
         let step = period(self.input.options)?;
         let mut channels: Option<Vec<Channel>> = None;
@@ -87,7 +90,11 @@ impl One<'_> {
                 let what = format!("velocities of {} channels for {n} of state", velocity.channels);
                 return Err(match velocity.samples {
                     found if found != len => lengths("velocities", len, found, &self.place()),
-                    _ => ReadError::Lengths(Fault::new(what, self.place(), "--velocity with an array of the state's width")),
+                    _ => ReadError::Lengths(Fault::new(
+                        what,
+                        self.place(),
+                        "--velocity with an array of the state's width",
+                    )),
                 });
             }
             velocity.numbers
@@ -236,13 +243,15 @@ pub(crate) fn families(described: &[Described], options: &ReadOptions) -> Option
     }
     let plane = |index: usize| described[index].shape.len() == 2;
     let numbered_plane = demos.iter().flat_map(|demo| &demo.fields).any(|(_, index)| plane(*index));
-    let other_plane = shared.iter().any(|(_, index)| described[*index].shape.len() >= 2 && described[*index].is_number());
+    let other_plane =
+        shared.iter().any(|(_, index)| described[*index].shape.len() >= 2 && described[*index].is_number());
     if !numbered_plane || other_plane {
         return None;
     }
     // A pattern of the user that names every demonstration names the family.
     let asked = crate::selection::flags(&options.state, &names);
-    if asked.iter().any(|&asked| asked) && demos.iter().any(|demo| !demo.fields.iter().any(|(_, index)| asked[*index])) {
+    if asked.iter().any(|&asked| asked) && demos.iter().any(|demo| !demo.fields.iter().any(|(_, index)| asked[*index]))
+    {
         return None;
     }
     demos.sort_by(|a, b| natural::compare(&a.name, &b.name));
@@ -272,7 +281,8 @@ mod tests {
 
     fn planes(names: &[&str]) -> Vec<Described> {
         let shape = |name: &str| if name == "dt" { vec![] } else { vec![12, 2] };
-        let array = |name: &&str| Described { name: (*name).to_owned(), shape: shape(name), kind: Kind::Number("float64") };
+        let array =
+            |name: &&str| Described { name: (*name).to_owned(), shape: shape(name), kind: Kind::Number("float64") };
         names.iter().map(array).collect()
     }
 

@@ -84,7 +84,11 @@ fn side_by_side(tree: &mut Tree<'_>, root: &Folder, data: Option<&Folder>) -> Re
     let described = tree.described();
     if described.is_empty() {
         let what = "there is no array in the file";
-        return Err(ReadError::Empty(Fault::new(what, &tree.input().name, "/data/demo_0/obs/<key> with arrays (samples, channels)")));
+        return Err(ReadError::Empty(Fault::new(
+            what,
+            &tree.input().name,
+            "/data/demo_0/obs/<key> with arrays (samples, channels)",
+        )));
     }
     Ok(described)
 }
@@ -125,10 +129,13 @@ fn number(value: &AttrValue) -> Option<f64> {
 
 fn text(value: &AttrValue) -> Option<&str> {
     match value {
-        AttrValue::String(text) | AttrValue::AsciiString(text) | AttrValue::VarLenString(text) | AttrValue::VarLenAsciiString(text) => {
-            Some(text.trim_end_matches('\0'))
+        AttrValue::String(text)
+        | AttrValue::AsciiString(text)
+        | AttrValue::VarLenString(text)
+        | AttrValue::VarLenAsciiString(text) => Some(text.trim_end_matches('\0')),
+        AttrValue::VarLenStringArray(texts) | AttrValue::VarLenAsciiStringArray(texts) if texts.len() == 1 => {
+            Some(&texts[0])
         }
-        AttrValue::VarLenStringArray(texts) | AttrValue::VarLenAsciiStringArray(texts) if texts.len() == 1 => Some(&texts[0]),
         _ => None,
     }
 }

@@ -40,7 +40,16 @@ impl<'a> Input<'a> {
         let mut head = Vec::new();
         file.take(HEAD).read_to_end(&mut head).map_err(unreadable)?;
         let stem = path.file_stem().map_or_else(|| name.clone(), |stem| stem.to_string_lossy().into_owned());
-        Ok(Self { path: path.to_owned(), name, stem, len, head, options, columns_first: false, budget: Cell::new(len.saturating_mul(64).saturating_add(MEMORY)) })
+        Ok(Self {
+            path: path.to_owned(),
+            name,
+            stem,
+            len,
+            head,
+            options,
+            columns_first: false,
+            budget: Cell::new(len.saturating_mul(64).saturating_add(MEMORY)),
+        })
     }
 
     /// How samples lie in arrays as they are handed on.
@@ -59,7 +68,11 @@ impl<'a> Input<'a> {
             None if self.options.trust => {}
             None => {
                 let what = format!("{} bytes unpack to more than 64 times as much", self.len);
-                return Err(ReadError::TooLarge(Fault::new(what, &self.name, "--trust if the file comes from a friend")));
+                return Err(ReadError::TooLarge(Fault::new(
+                    what,
+                    &self.name,
+                    "--trust if the file comes from a friend",
+                )));
             }
         }
         Ok(())

@@ -52,12 +52,7 @@ pub(crate) fn dimensions(
 }
 
 /// Puts numbers in the order of samples.
-pub(crate) fn stack(
-    array: &Described,
-    numbers: Vec<f64>,
-    input: &Input<'_>,
-    place: &str,
-) -> Result<Stack, ReadError> {
+pub(crate) fn stack(array: &Described, numbers: Vec<f64>, input: &Input<'_>, place: &str) -> Result<Stack, ReadError> {
     let (episodes, samples, channels) = dimensions(array, input, place)?;
     too_many_channels(channels, place)?;
     let columns = input.samples_are() == Some(SamplesAre::Columns) && array.shape.len() > 1;
@@ -86,5 +81,9 @@ impl Stack {
 /// Arrays that belong together differ in length.
 pub(crate) fn lengths(what: &str, expected: usize, found: usize, place: &str) -> ReadError {
     let what = format!("{what}: {found} samples where {expected} are expected");
-    ReadError::Lengths(Fault::new(what, place, "arrays of equal length; --samples-are if rows and columns are exchanged"))
+    ReadError::Lengths(Fault::new(
+        what,
+        place,
+        "arrays of equal length; --samples-are if rows and columns are exchanged",
+    ))
 }

@@ -24,7 +24,11 @@ pub(crate) fn read(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(
         crate::read::add(&mut joined, drafts, &name_of(&file))?;
     }
     let mut drafts = joined.ok_or_else(|| {
-        ReadError::MissingFile(Fault::new("there is no Parquet file in data/", &name, "hf download REPOSITORY --repo-type dataset"))
+        ReadError::MissingFile(Fault::new(
+            "there is no Parquet file in data/",
+            &name,
+            "hf download REPOSITORY --repo-type dataset",
+        ))
     })?;
     if options.episode.is_none() {
         info.refuse_missing(path, &name, &drafts)?;
@@ -57,7 +61,8 @@ impl Info {
         let json: Json = serde_json::from_slice(&text).map_err(|error| {
             ReadError::Json(Fault::new(format!("this is not JSON: {error}"), &place, "another copy of the folder"))
         })?;
-        let period = json.get("fps").and_then(Json::number).map(|fps| 1.0 / fps).filter(|dt| dt.is_finite() && *dt > 0.0);
+        let period =
+            json.get("fps").and_then(Json::number).map(|fps| 1.0 / fps).filter(|dt| dt.is_finite() && *dt > 0.0);
         Ok(Self { json, period })
     }
 
@@ -92,10 +97,16 @@ impl Info {
             let total = self.json.get("total_episodes").and_then(Json::number).unwrap_or(0.0) as u64;
             expected = (0..total.min(crate::draft::MOST_EPISODES as u64)).collect();
         }
-        let Some(missing) = expected.into_iter().find(|index| !found.contains(&index.to_string()[..])) else { return Ok(()) };
+        let Some(missing) = expected.into_iter().find(|index| !found.contains(&index.to_string()[..])) else {
+            return Ok(());
+        };
         let what = format!("episode {missing} is listed in meta/ but not on disk");
         let place = format!("{name}, {}", self.file_of(missing));
-        Err(ReadError::MissingFile(Fault::new(what, place, "hf download REPOSITORY --repo-type dataset (and git lfs pull)")))
+        Err(ReadError::MissingFile(Fault::new(
+            what,
+            place,
+            "hf download REPOSITORY --repo-type dataset (and git lfs pull)",
+        )))
     }
 
     /// Where an episode should stand; the pattern itself if files hold several.

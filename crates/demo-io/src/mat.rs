@@ -24,10 +24,8 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<D
         flatten(variable, &mut variables);
     }
     let mut store = Store::default();
-    let shared: Vec<(String, usize)> = variables
-        .iter()
-        .filter_map(|(name, value)| Some((name.clone(), store.add(name, value)?)))
-        .collect();
+    let shared: Vec<(String, usize)> =
+        variables.iter().filter_map(|(name, value)| Some((name.clone(), store.add(name, value)?))).collect();
     let demos = variables.iter().find_map(|(name, value)| store.demos(name, value));
     let Store { described, data } = store;
     let mut load = |index: usize| Ok(data[index].clone());
@@ -37,7 +35,8 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<D
                 let own: Vec<String> = demo.fields.iter().map(|(name, _)| name.clone()).collect();
                 demo.fields.extend(shared.iter().filter(|(name, _)| !own.contains(name)).cloned());
             }
-            Group { input, described: &described, demos, step: None, name_channels: |_, n| channel_names("x", n) }.drafts(&mut load)
+            Group { input, described: &described, demos, step: None, name_channels: |_, n| channel_names("x", n) }
+                .drafts(&mut load)
         }
         None => flat::drafts(input, &described, &mut load),
     }
@@ -74,7 +73,9 @@ impl Store {
             }
             Value::Text(text) => (Vec::new(), Kind::Text, Data::Text(vec![text.clone()])),
             Value::Cell(values) if values.iter().all(|value| matches!(value, Value::Text(_))) && !values.is_empty() => {
-                let texts = values.iter().filter_map(|value| if let Value::Text(text) = value { Some(text.clone()) } else { None });
+                let texts = values
+                    .iter()
+                    .filter_map(|value| if let Value::Text(text) = value { Some(text.clone()) } else { None });
                 (vec![values.len()], Kind::Text, Data::Text(texts.collect()))
             }
             Value::Other(kind) => (Vec::new(), Kind::Other(kind.clone()), Data::Text(Vec::new())),

@@ -21,7 +21,13 @@ pub(crate) const METADATA: &str = "demo-io";
 const MOST_TOPICS: usize = 4096;
 
 pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<Drafts, ReadError> {
-    let mut bag = Bag { input, schemas: HashMap::new(), topics: Vec::new(), by_channel: HashMap::new(), metadata: BTreeMap::new() };
+    let mut bag = Bag {
+        input,
+        schemas: HashMap::new(),
+        topics: Vec::new(),
+        by_channel: HashMap::new(),
+        metadata: BTreeMap::new(),
+    };
     let end = records::each(input, progress, |record| bag.add(record))?;
     let mut drafts = bag.finish()?;
     if end == End::Cut {
@@ -99,7 +105,11 @@ impl Bag<'_> {
             (Some(topic), true) if topic.is_known() => topic.finish(&self.metadata),
             (Some(topic), true) => no_topic(format!("the topic {topic} has a type that is not read")),
             (Some(_), false) => no_topic("several topics could be the state".to_owned()),
-            (None, _) => no_topic(asked.map_or("no topic has a type that is read".to_owned(), |asked| format!("there is no topic '{asked}'"))),
+            (None, _) => {
+                no_topic(asked.map_or("no topic has a type that is read".to_owned(), |asked| {
+                    format!("there is no topic '{asked}'")
+                }))
+            }
         }
     }
 }

@@ -58,7 +58,13 @@ impl Header {
     }
 
     /// The numbers, of which at most `bytes` bytes are there.
-    pub(crate) fn data(&self, from: &mut dyn Read, bytes: u64, file: &str, input: &Input<'_>) -> Result<Data, ReadError> {
+    pub(crate) fn data(
+        &self,
+        from: &mut dyn Read,
+        bytes: u64,
+        file: &str,
+        input: &Input<'_>,
+    ) -> Result<Data, ReadError> {
         let shape = || crate::array::shape_text(&self.shape);
         let count = self.shape.iter().try_fold(1usize, |count, &length| count.checked_mul(length));
         let needed = count.and_then(|count| count.checked_mul(self.size)).filter(|&needed| needed as u64 <= bytes);

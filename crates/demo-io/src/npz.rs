@@ -23,10 +23,10 @@ struct Entry {
 pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<Drafts, ReadError> {
     let file = &input.name;
     let mut buffer = vec![0; RECOMMENDED_BUFFER_SIZE];
-    let archive = ZipArchive::from_file(input.open()?, &mut buffer).map_err(|error| zip(error, file))?;
+    let archive = ZipArchive::from_file(input.open()?, &mut buffer).map_err(|error| zip(&error, file))?;
     let mut entries: Vec<Entry> = Vec::new();
     let mut directory = archive.entries(&mut buffer);
-    while let Some(record) = directory.next_entry().map_err(|error| zip(error, file))? {
+    while let Some(record) = directory.next_entry().map_err(|error| zip(&error, file))? {
         let path = String::from_utf8_lossy(record.file_path().as_ref()).into_owned();
         let Some(name) = path.strip_suffix(".npy") else { continue };
         let deflated = match record.compression_method() {
@@ -34,11 +34,19 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<D
             method if method == CompressionMethod::DEFLATE => true,
             method => {
                 let what = format!("'{name}' is compressed by {method:?}");
-                return Err(ReadError::Unsupported(Fault::new(what, file, "numpy.savez or numpy.savez_compressed to write it")));
+                return Err(ReadError::Unsupported(Fault::new(
+                    what,
+                    file,
+                    "numpy.savez or numpy.savez_compressed to write it",
+                )));
             }
         };
         if entries.len() == MOST_ENTRIES {
-            return Err(ReadError::TooLarge(Fault::new(format!("more than {MOST_ENTRIES} arrays"), file, "fewer a file")));
+            return Err(ReadError::TooLarge(Fault::new(
+                format!("more than {MOST_ENTRIES} arrays"),
+                file,
+                "fewer a file",
+            )));
         }
         let described = Described { name: name.to_owned(), shape: Vec::new(), kind: crate::array::Kind::Text };
         entries.push(Entry { described, wayfinder: record.wayfinder(), deflated });
@@ -89,7 +97,7 @@ fn opened<T>(
         let what = format!("'{}' grows from {packed} to {unpacked} bytes", entry.described.name);
         return Err(ReadError::TooLarge(Fault::new(what, file, "--trust if the file comes from a friend")));
     }
-    let opened = archive.get_entry(entry.wayfinder).map_err(|error| zip(error, file))?;
+    let opened = archive.get_entry(entry.wayfinder).map_err(|error| zip(&error, file))?;
     if entry.deflated {
         use_it(&mut opened.verifying_reader(DeflateDecoder::new(opened.reader())))
     } else {
@@ -102,10 +110,12 @@ fn cut(file: &str) -> ReadError {
     ReadError::Truncated(Fault::new(what, file, "another copy of the file: this one is not whole"))
 }
 
-fn zip(error: rawzip::Error, file: &str) -> ReadError {
+fn zip(error: &rawzip::Error, file: &str) -> ReadError {
     match error.kind() {
         ErrorKind::MissingEndOfCentralDirectory | ErrorKind::Eof | ErrorKind::InvalidEndOfCentralDirectory => cut(file),
-        _ => ReadError::Corrupt(Fault::new(format!("the archive is damaged: {error}"), file, "another copy of the file")),
+        _ => {
+            ReadError::Corrupt(Fault::new(format!("the archive is damaged: {error}"), file, "another copy of the file"))
+        }
     }
 }
 
@@ -113,4 +123,3 @@ fn zip(error: rawzip::Error, file: &str) -> ReadError {
 pub(crate) fn damaged(error: &std::io::Error, file: &str) -> ReadError {
     ReadError::Corrupt(Fault::new(format!("the data are damaged: {error}"), file, "another copy of the file"))
 }
-

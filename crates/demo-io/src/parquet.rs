@@ -5,7 +5,7 @@ mod leaf;
 use std::collections::HashMap;
 
 use parquet::errors::ParquetError;
-use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 
 use self::leaf::Leaf;
 use crate::draft::Drafts;
@@ -14,7 +14,7 @@ use crate::roles::{Column, Content};
 use crate::selection::select;
 use crate::stamps::{Stamp, TicksPerSecond};
 use crate::table::{Row, Table};
-use crate::{Fault, ReadError, ReadOptions};
+use crate::{Fault, Note, NoteKind, ReadError, ReadOptions};
 
 /// What another file says of the columns.
 #[derive(Debug, Default)]
@@ -49,6 +49,7 @@ pub(crate) fn read_described(
     let listed = columns.state_is_list(&options);
     let mut table = Table::new(&names, (&input.name, &input.stem), "row", &options)?;
     let used = table.used();
+    let mut checked = described.period.filter(|_| input.options.dt.is_none()).and_then(|period| columns.stamps(period));
     let mut row = 0;
     for group in 0..file.num_row_groups() {
         let reader = file.get_row_group(group).map_err(|error| failed(&error, input))?;
@@ -58,6 +59,9 @@ pub(crate) fn read_described(
             let wanted = (*first..first + leaf.width).any(|column| used.contains(&column));
             data.push(if wanted { Some(leaf.read(&*reader, rows, input)?) } else { None });
         }
+        if let Some(stamps) = &mut checked {
+            stamps.check(&*reader, rows, row, input)?;
+        }
         for at in 0..rows {
             table.push(row, &GroupRow { columns: &columns, data: &data, at })?;
             row += 1;
@@ -65,10 +69,15 @@ pub(crate) fn read_described(
         progress(u64::try_from(reader.metadata().compressed_size()).unwrap_or(0));
     }
     if row == 0 {
-        return Err(ReadError::Empty(Fault::new("there is no row", &input.name, "another file: this one holds no sample")));
+        return Err(ReadError::Empty(Fault::new(
+            "there is no row",
+            &input.name,
+            "another file: this one holds no sample",
+        )));
     }
     let mut drafts = table.finish();
     drafts.drop_constant &= !listed;
+    drafts.notes.extend(checked.and_then(|stamps| stamps.note));
     columns.rename(&mut drafts, described);
     Ok(drafts)
 }
@@ -95,7 +104,11 @@ impl Columns {
 
     fn name(&self, column: usize) -> String {
         let leaf = &self.leaves[self.owners[column]];
-        if leaf.list { format!("{}_{}", leaf.name, column - self.firsts[self.owners[column]]) } else { leaf.name.clone() }
+        if leaf.list {
+            format!("{}_{}", leaf.name, column - self.firsts[self.owners[column]])
+        } else {
+            leaf.name.clone()
+        }
     }
 
     fn expanded(&self) -> Vec<Column> {
@@ -119,7 +132,12 @@ impl Columns {
         }
         if mine.state.is_empty() {
             // Goals are no positions.
-            mine.ignore.extend(self.leaves.iter().filter(|leaf| leaf.name.starts_with("action")).flat_map(|leaf| self.elements_of(&leaf.name)));
+            mine.ignore.extend(
+                self.leaves
+                    .iter()
+                    .filter(|leaf| leaf.name.starts_with("action"))
+                    .flat_map(|leaf| self.elements_of(&leaf.name)),
+            );
         }
         Ok(mine)
     }
@@ -179,6 +197,50 @@ impl Columns {
     }
 }
 
+/// Stamps beside a rate: they are not used, since single precision makes them wobble, but must agree with it.
+struct Stamps<'a> {
+    period: f64,
+    stamp: &'a Leaf,
+    frame: &'a Leaf,
+    note: Option<Note>,
+}
+
+impl Columns {
+    fn stamps(&self, period: f64) -> Option<Stamps<'_>> {
+        let leaf = |name: &str| self.leaves.iter().find(|leaf| leaf.name == name && !leaf.list && !leaf.text);
+        Some(Stamps { period, stamp: leaf("timestamp")?, frame: leaf("frame_index")?, note: None })
+    }
+}
+
+impl Stamps<'_> {
+    fn check(
+        &mut self,
+        group: &dyn RowGroupReader,
+        rows: usize,
+        first: u64,
+        input: &Input<'_>,
+    ) -> Result<(), ReadError> {
+        if self.note.is_some() {
+            return Ok(());
+        }
+        let (stamps, frames) = (self.stamp.read(group, rows, input)?, self.frame.read(group, rows, input)?);
+        for row in 0..rows {
+            let (Ok(stamp), Ok(frame)) = (stamps.number(row), frames.number(row)) else { continue };
+            let off = (stamp - frame * self.period).abs();
+            // Single precision after an hour.
+            if off > 1e-4 + stamp.abs() * 1e-7 {
+                let place = format!("{}, row {}", input.name, first + row as u64);
+                let text = format!(
+                    "the stamp {stamp} s does not belong to frame {frame} at this rate; the rate is believed: {place}"
+                );
+                self.note = Some(Note { kind: NoteKind::Uneven, text });
+                break;
+            }
+        }
+        Ok(())
+    }
+}
+
 /// A row of a row group.
 struct GroupRow<'a> {
     columns: &'a Columns,
@@ -222,7 +284,9 @@ fn failed(error: &ParquetError, input: &Input<'_>) -> ReadError {
             let remedy = "in Python: pq.write_table(pq.read_table(IN), OUT, compression='snappy')";
             ReadError::Unsupported(Fault::new(what.clone(), file, remedy))
         }
-        _ if !ends_well => ReadError::Truncated(Fault::new("the file is cut off: its closing mark is missing", file, copy)),
+        _ if !ends_well => {
+            ReadError::Truncated(Fault::new("the file is cut off: its closing mark is missing", file, copy))
+        }
         _ => ReadError::Corrupt(Fault::new(format!("the file is damaged: {error}"), file, "another copy of the file")),
     }
 }

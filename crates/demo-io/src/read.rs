@@ -19,7 +19,8 @@ pub fn read(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -
     read_all(&[path.to_owned()], options, progress)
 }
 
-/// Reads several files as one set: their channels must be equal, their episodes follow each other.
+/// Reads several files as one set: their channels must be equal, their episodes follow each other
+/// and are called after their files: `monday/3`.
 ///
 /// # Errors
 ///
@@ -31,7 +32,11 @@ pub fn read_all(
 ) -> Result<Recordings, ReadError> {
     let mut joined: Option<Drafts> = None;
     for path in paths {
-        add(&mut joined, drafts(path, options, progress)?, &name_of(path))?;
+        let mut drafts = drafts(path, options, progress)?;
+        if paths.len() > 1 {
+            name_by_file(&mut drafts, path);
+        }
+        add(&mut joined, drafts, &name_of(path))?;
     }
     let place = || paths.first().map(|path| name_of(path)).unwrap_or_default();
     let nothing = |what: &str| ReadError::Empty(Fault::new(what, place(), "another file: this one holds no movement"));
@@ -85,16 +90,15 @@ fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> 
 #[cfg(not(all(feature = "parquet", feature = "hdf5", feature = "mcap", feature = "mat")))]
 fn not_built(name: &str, feature: &str) -> ReadError {
     let what = format!("this needs the feature '{feature}', which was not built in");
-    ReadError::Unsupported(Fault::new(what, name, format!("cargo build --features {feature}, or convert the file to CSV or NPZ")))
+    ReadError::Unsupported(Fault::new(
+        what,
+        name,
+        format!("cargo build --features {feature}, or convert the file to CSV or NPZ"),
+    ))
 }
 
 /// The files of a folder in natural order, as one set.
-fn folder(
-    path: &Path,
-    name: &str,
-    options: &ReadOptions,
-    progress: &mut dyn FnMut(u64),
-) -> Result<Drafts, ReadError> {
+fn folder(path: &Path, name: &str, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> Result<Drafts, ReadError> {
     let entries = fs::read_dir(path).and_then(Iterator::collect::<Result<Vec<_>, _>>);
     let entries = entries.map_err(|error| unreadable(&error, name))?;
     let mut files: Vec<PathBuf> = entries.iter().map(fs::DirEntry::path).filter(|path| path.is_file()).collect();
@@ -112,7 +116,7 @@ fn folder(
     })
 }
 
-/// Several episodes of one file in a folder carry its name, since they are numbered in each.
+/// Episodes of one file among several carry its name, since they are numbered in each.
 fn name_by_file(drafts: &mut Drafts, file: &Path) {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     for draft in drafts.episodes.iter_mut().filter(|draft| draft.name != stem) {
@@ -144,7 +148,11 @@ fn join(joined: &mut Drafts, more: Drafts, file: &str) -> Result<(), ReadError> 
     let recorded = |drafts: &Drafts| drafts.episodes.iter().any(|draft| !draft.velocities.is_empty());
     if recorded(joined) != recorded(&more) {
         let what = "velocities are recorded in some of the files only";
-        return Err(ReadError::Lengths(Fault::new(what, file, "--ignore with the names of the velocities, or files of one kind")));
+        return Err(ReadError::Lengths(Fault::new(
+            what,
+            file,
+            "--ignore with the names of the velocities, or files of one kind",
+        )));
     }
     joined.episodes.extend(more.episodes);
     joined.notes.extend(more.notes);

@@ -129,7 +129,11 @@ fn name(format: Format) -> &'static str {
 fn not_this(input: &Input<'_>, asked: Format, found: &str) -> ReadError {
     let article = if matches!(asked, Format::Npy | Format::Npz | Format::Hdf5 | Format::Mcap) { "an" } else { "a" };
     let what = format!("not {article} {} file; it looks like {found}", name(asked));
-    ReadError::NotThisFormat(Fault::new(what, &input.name, "--as with the format it has (csv, jsonl, npz, …), or another file"))
+    ReadError::NotThisFormat(Fault::new(
+        what,
+        &input.name,
+        "--as with the format it has (csv, jsonl, npz, …), or another file",
+    ))
 }
 
 /// Known formats that are not read, with the command that helps.
@@ -141,7 +145,10 @@ fn refuse_unread(input: &Input<'_>, extension: &str) -> Result<(), ReadError> {
             "ros2 bag convert -i BAG -o out.yaml with 'storage_id: mcap' in out.yaml, or rosbags-convert --src BAG --dst OUT --dst-storage mcap",
         )
     } else if head.starts_with(b"#ROSBAG V") {
-        ("a bag of ROS 1, which is not read", "rosbags-convert --src FILE.bag --dst OUT --dst-storage mcap (pip install rosbags)")
+        (
+            "a bag of ROS 1, which is not read",
+            "rosbags-convert --src FILE.bag --dst OUT --dst-storage mcap (pip install rosbags)",
+        )
     } else if is_mat73(head) {
         ("a MAT-file of version 7.3, which is not read", "in MATLAB: save('out.mat', …, '-v7')")
     } else if head.starts_with(b"\x1f\x8b") {
@@ -149,8 +156,7 @@ fn refuse_unread(input: &Input<'_>, extension: &str) -> Result<(), ReadError> {
     } else if head.starts_with(b"\x28\xb5\x2f\xfd") {
         ("a file compressed by zstd, which is not read", "unzstd FILE")
     } else if matches!(extension, "pkl" | "pickle" | "pt" | "pth") || matches!(head, [0x80, 2..=5, ..]) {
-        let remedy =
-            "in Python, with a file you trust: np.savez(path, **{f'demo_{i}': d for i, d in enumerate(demos)}, dt=0.01)";
+        let remedy = "in Python, with a file you trust: np.savez(path, **{f'demo_{i}': d for i, d in enumerate(demos)}, dt=0.01)";
         let what = "a pickle: reading it would run what is inside";
         return Err(ReadError::Pickled(Fault::new(what, &input.name, remedy)));
     } else if matches!(extension, "xlsx" | "xls" | "ods") {

@@ -29,9 +29,15 @@ fn separators_line_ends_and_decimal_commas_give_the_same_numbers() {
     assert_eq!((names(&expected), lengths(&expected)), (vec!["x", "y"], vec![6, 6]));
     assert_eq!(expected.episodes[1].positions[(0, 0)], 36.0 * 0.137);
     assert_eq!(expected.time_step(), 0.1);
-    for (separator, end, comma) in
-        [(";", "\n", "."), (";", "\r\n", ","), ("\t", "\n", ","), ("  ", "\n", "."), (" \t ", "\n", "."), ("|", "\n", "."), (", ", "\r\n", ".")]
-    {
+    for (separator, end, comma) in [
+        (";", "\n", "."),
+        (";", "\r\n", ","),
+        ("\t", "\n", ","),
+        ("  ", "\n", "."),
+        (" \t ", "\n", "."),
+        ("|", "\n", "."),
+        (", ", "\r\n", "."),
+    ] {
         for mark in ["", "\u{feff}", "# made by hand\n", "\n\n"] {
             let text = mark.to_owned() + &two_movements(separator, end, comma);
             let found = parsed("a.txt", &text, &plain()).unwrap();

@@ -131,7 +131,11 @@ impl Expect {
         same("samples", self.samples.as_ref(), &episodes.iter().map(|episode| episode.times.len()).collect())?;
         same("states", self.states.as_ref(), &state.len())?;
         same("names", self.names.as_ref(), &state.iter().map(|channel| channel.name.clone()).collect())?;
-        same("units", self.units.as_ref(), &state.iter().map(|channel| channel.unit.clone().unwrap_or_default()).collect())?;
+        same(
+            "units",
+            self.units.as_ref(),
+            &state.iter().map(|channel| channel.unit.clone().unwrap_or_default()).collect(),
+        )?;
         same("episode names", self.episode_names.as_ref(), &of(|episode| episode.name.clone()))?;
         same("constraints", self.constraints.as_ref(), &of(|episode| episode.constraint.clone().unwrap_or_default()))?;
         if let Some(expected) = self.dt {

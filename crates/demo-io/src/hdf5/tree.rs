@@ -65,10 +65,8 @@ impl<'a> Tree<'a> {
 
 fn halves(bytes: &[u8], dataset: &Dataset) -> Vec<f64> {
     use hdf5_pure::{Datatype, DatatypeByteOrder};
-    let big = matches!(
-        dataset.datatype(),
-        Ok(Datatype::FloatingPoint { byte_order: DatatypeByteOrder::BigEndian, .. })
-    );
+    let big =
+        matches!(dataset.datatype(), Ok(Datatype::FloatingPoint { byte_order: DatatypeByteOrder::BigEndian, .. }));
     let half = |pair: &[u8]| {
         let pair = [pair[0], pair[1]];
         crate::npy::half(if big { u16::from_be_bytes(pair) } else { u16::from_le_bytes(pair) })
@@ -89,7 +87,9 @@ fn kind(kind: DType) -> Kind {
         DType::U32 => Kind::Number("uint32"),
         DType::U64 => Kind::Number("uint64"),
         DType::String | DType::VariableLengthString => Kind::Text,
-        DType::Other(other) if matches!(*other, hdf5_pure::Datatype::FloatingPoint { size: 2, .. }) => Kind::Number("float16"),
+        DType::Other(other) if matches!(*other, hdf5_pure::Datatype::FloatingPoint { size: 2, .. }) => {
+            Kind::Number("float16")
+        }
         other => Kind::Other(other.to_string()),
     }
 }
@@ -116,14 +116,21 @@ pub(super) fn failed(error: &Error, input: &Input<'_>) -> ReadError {
             ReadError::Truncated(Fault::new("the file is cut off", file, copy))
         }
         Error::Io(error) => crate::input::unreadable(error, file),
-        Error::Format(FormatError::SignatureNotFound) => {
-            ReadError::NotThisFormat(Fault::new("not an HDF5 file: its signature is missing", file, "--as with the format it has"))
-        }
+        Error::Format(FormatError::SignatureNotFound) => ReadError::NotThisFormat(Fault::new(
+            "not an HDF5 file: its signature is missing",
+            file,
+            "--as with the format it has",
+        )),
         _ => {
             let text = error.to_string();
             let newer = text.contains("nsupported") || text.contains("version");
-            let what = if newer { "of a kind of HDF5 that is not read" } else { "damaged, or of a kind that is not read" };
-            let fault = Fault::new(format!("the file is {what}: {text}"), file, "h5repack -j 1 -k 2 -f GZIP=4 IN OUT, or another copy of the file");
+            let what =
+                if newer { "of a kind of HDF5 that is not read" } else { "damaged, or of a kind that is not read" };
+            let fault = Fault::new(
+                format!("the file is {what}: {text}"),
+                file,
+                "h5repack -j 1 -k 2 -f GZIP=4 IN OUT, or another copy of the file",
+            );
             if newer { ReadError::Unsupported(fault) } else { ReadError::Corrupt(fault) }
         }
     }

@@ -42,7 +42,11 @@ impl<'a> EpisodeLines<'a> {
         }
         crate::fields::too_many_channels(n, &place)?;
         if self.episodes.len() == MOST_EPISODES {
-            return Err(ReadError::TooLarge(Fault::new(format!("more than {MOST_EPISODES} episodes"), place, "files with fewer")));
+            return Err(ReadError::TooLarge(Fault::new(
+                format!("more than {MOST_EPISODES} episodes"),
+                place,
+                "files with fewer",
+            )));
         }
         let positions = numbers(samples, n, "state", &place)?;
         let velocities = match one_of(line, &["velocity", "velocities"]) {
@@ -57,7 +61,9 @@ impl<'a> EpisodeLines<'a> {
         };
         let channels = channels(line, n);
         match &self.channels {
-            Some(known) if *known != channels => return Err(other_form("names, units or number of channels differ from the first line's")),
+            Some(known) if *known != channels => {
+                return Err(other_form("names, units or number of channels differ from the first line's"));
+            }
             _ => self.channels = Some(channels),
         }
         let label = |keys: &[&str]| one_of(line, keys).map(Json::to_string);
@@ -99,14 +105,14 @@ impl<'a> EpisodeLines<'a> {
         }
     }
 
-    pub(super) fn finish(self) -> Result<Drafts, ReadError> {
-        Ok(Drafts {
+    pub(super) fn finish(self) -> Drafts {
+        Drafts {
             channels: self.channels.unwrap_or_default(),
             episodes: self.episodes,
             notes: Vec::new(),
             word: "sample",
             drop_constant: false,
-        })
+        }
     }
 }
 
@@ -126,7 +132,11 @@ fn numbers(samples: &[Json], n: usize, key: &str, place: &str) -> Result<Vec<f64
         }
         for value in values {
             numbers.push(value.number().ok_or_else(|| {
-                ReadError::NotANumber(Fault::new(format!("'{value}' is not a number"), place(), "numbers, or null where one is missing"))
+                ReadError::NotANumber(Fault::new(
+                    format!("'{value}' is not a number"),
+                    place(),
+                    "numbers, or null where one is missing",
+                ))
             })?);
         }
     }
@@ -140,7 +150,9 @@ fn channels(line: &Json, n: usize) -> Vec<Channel> {
     };
     let units: Vec<Option<String>> = match one_of(line, &["unit", "units"]) {
         Some(Json::Text(unit)) => vec![Some(unit.clone()); n],
-        Some(Json::List(units)) if units.len() == n => units.iter().map(|unit| unit.text().map(str::to_owned)).collect(),
+        Some(Json::List(units)) if units.len() == n => {
+            units.iter().map(|unit| unit.text().map(str::to_owned)).collect()
+        }
         _ => vec![None; n],
     };
     let names = texts(&["names", "columns"]).unwrap_or_else(|| crate::fields::channel_names("x", n));

@@ -66,7 +66,11 @@ impl<'a> Elements<'a> {
         self.input.charge(read as u64)?;
         if read as u64 == most {
             let what = format!("a variable grows from {} to more than {most} bytes", packed.len());
-            return Err(ReadError::TooLarge(Fault::new(what, &self.input.name, "--trust if the file comes from a friend")));
+            return Err(ReadError::TooLarge(Fault::new(
+                what,
+                &self.input.name,
+                "--trust if the file comes from a friend",
+            )));
         }
         Ok(unpacked)
     }
@@ -112,7 +116,8 @@ impl<'a> Elements<'a> {
         let dimensions = self.next()?;
         let dimensions = self.whole(&dimensions)?;
         let shape: Option<Vec<usize>> = dimensions.iter().map(|&length| usize::try_from(length).ok()).collect();
-        let count = shape.as_ref().and_then(|shape| shape.iter().try_fold(1usize, |count, &length| count.checked_mul(length)));
+        let count =
+            shape.as_ref().and_then(|shape| shape.iter().try_fold(1usize, |count, &length| count.checked_mul(length)));
         let (Some(shape), Some(count)) = (shape, count) else { return Err(self.corrupt("a variable has no size")) };
         let name = String::from_utf8_lossy(self.next()?.bytes).trim_end_matches('\0').to_owned();
         let complex = flags & 0x0800 != 0;
@@ -147,7 +152,8 @@ impl<'a> Elements<'a> {
 
     fn structure(&mut self, count: usize, depth: usize) -> Result<Value, ReadError> {
         let length = self.next()?;
-        let length = self.whole(&length)?.first().copied().and_then(|length| usize::try_from(length).ok()).filter(|&l| l > 0);
+        let length =
+            self.whole(&length)?.first().copied().and_then(|length| usize::try_from(length).ok()).filter(|&l| l > 0);
         let length = length.ok_or_else(|| self.corrupt("a structure has no fields"))?;
         let names = self.next()?.bytes;
         let name = |bytes: &[u8]| {
@@ -171,8 +177,7 @@ impl<'a> Elements<'a> {
     }
 
     fn array(&mut self, shape: Vec<usize>, count: usize, class: u32) -> Result<Value, ReadError> {
-        let kinds =
-            ["float64", "float32", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64"];
+        let kinds = ["float64", "float32", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64"];
         let kind = kinds[(class - 6) as usize];
         let element = self.next()?;
         // MATLAB stores whole numbers of any class in the smallest type.
@@ -218,7 +223,7 @@ impl<'a> Elements<'a> {
         let unused = 64 - 8 * size as u32;
         let value = |bytes: &[u8]| {
             let bits = self.bits(bytes) << unused;
-            if signed { bits as i64 >> unused } else { (bits >> unused) as i64 }
+            if signed { bits.cast_signed() >> unused } else { (bits >> unused).cast_signed() }
         };
         Ok(element.bytes.chunks_exact(size).map(value).collect())
     }

@@ -12,7 +12,10 @@ pub(super) enum Value {
     Text(String),
     Cell(Vec<Value>),
     /// All fields of the first element, then all of the second.
-    Struct { fields: Vec<String>, values: Vec<Value> },
+    Struct {
+        fields: Vec<String>,
+        values: Vec<Value>,
+    },
     /// By its name: "complex numbers".
     Other(String),
 }

@@ -21,15 +21,8 @@ pub(super) struct Message<'a> {
     pub(super) velocities: Vec<f64>,
 }
 
-const POSE: [&str; 7] = [
-    "position.x",
-    "position.y",
-    "position.z",
-    "orientation.x",
-    "orientation.y",
-    "orientation.z",
-    "orientation.w",
-];
+const POSE: [&str; 7] =
+    ["position.x", "position.y", "position.z", "orientation.x", "orientation.y", "orientation.z", "orientation.w"];
 const TWIST: [&str; 6] = ["linear.x", "linear.y", "linear.z", "angular.x", "angular.y", "angular.z"];
 
 impl Type {

@@ -54,5 +54,9 @@ pub(super) fn each(
 }
 
 fn damaged(error: &McapError, file: &str) -> ReadError {
-    ReadError::Corrupt(Fault::new(format!("the bag is damaged: {error}"), file, "another copy of the file, or mcap recover FILE"))
+    ReadError::Corrupt(Fault::new(
+        format!("the bag is damaged: {error}"),
+        file,
+        "another copy of the file, or mcap recover FILE",
+    ))
 }

@@ -48,7 +48,17 @@ impl<'a> Topic<'a> {
     pub(super) fn new(input: &'a Input<'a>, name: String, schema: String, encoding: &str) -> Self {
         let kind = Type::of(&schema, encoding);
         let documents = (kind == Some(Type::Json)).then(|| Documents::new(input, "message"));
-        Self { input, name, schema, kind, sets: Vec::new(), by_names: HashMap::new(), documents, messages: 0, fault: None }
+        Self {
+            input,
+            name,
+            schema,
+            kind,
+            sets: Vec::new(),
+            by_names: HashMap::new(),
+            documents,
+            messages: 0,
+            fault: None,
+        }
     }
 
     pub(super) fn is(&self, name: &str, schema: &str) -> bool {
@@ -82,7 +92,11 @@ impl<'a> Topic<'a> {
                 Ok(message) => self.add_message(number, log_time, &message),
                 Err(_) => {
                     let what = format!("a message ends before what it announces ({})", self.schema);
-                    Err(ReadError::Corrupt(Fault::new(what, self.place(number), "another copy of the file, or --topic")))
+                    Err(ReadError::Corrupt(Fault::new(
+                        what,
+                        self.place(number),
+                        "another copy of the file, or --topic",
+                    )))
                 }
             },
         };
@@ -155,7 +169,11 @@ impl<'a> Topic<'a> {
         }
         if self.messages == 0 {
             let remedy = "another bag, or --topic with one that has messages";
-            return Err(ReadError::Empty(Fault::new(format!("there is no message on {self}"), &self.input.name, remedy)));
+            return Err(ReadError::Empty(Fault::new(
+                format!("there is no message on {self}"),
+                &self.input.name,
+                remedy,
+            )));
         }
         if let Some(documents) = self.documents.take() {
             return documents.finish();
@@ -165,10 +183,12 @@ impl<'a> Topic<'a> {
         let set = std::mem::take(&mut self.sets[set]);
         let recorded = !set.velocities.is_empty() && set.velocities.len() == set.positions.len();
         if !set.velocities.is_empty() && !recorded {
-            let text = format!("velocities are left out, since some messages of {self} have none ({})", self.input.name);
+            let text =
+                format!("velocities are left out, since some messages of {self} have none ({})", self.input.name);
             notes.push(Note { kind: NoteKind::Ignored, text });
         }
-        let unwanted = self.input.options.ignore.iter().any(|pattern| matches!(&pattern[..], "velocity" | "velocities" | "*vel*"));
+        let unwanted =
+            self.input.options.ignore.iter().any(|pattern| matches!(&pattern[..], "velocity" | "velocities" | "*vel*"));
         let len = set.numbers.len();
         let pick = |numbers: &[f64]| -> Vec<f64> {
             let samples = numbers.chunks_exact(set.names.len().max(1));
@@ -209,11 +229,13 @@ impl<'a> Topic<'a> {
         if options.state.is_empty() {
             let names = &self.sets[largest].names;
             let ignored = flags(&options.ignore, names);
-            let place = |at: &usize| !ignored[*at] && !(self.kind == Some(Type::Pose) && names[*at].starts_with("orientation"));
+            let place =
+                |at: &usize| !ignored[*at] && !(self.kind == Some(Type::Pose) && names[*at].starts_with("orientation"));
             return Ok((largest, self.sets[largest].in_order((0..names.len()).filter(place).collect())));
         }
         let fits = |at: &usize| select(&options.state, &self.sets[*at].names).is_ok();
-        let fitting = (0..self.sets.len()).filter(fits).max_by_key(|&at| (self.sets[at].numbers.len(), std::cmp::Reverse(at)));
+        let fitting =
+            (0..self.sets.len()).filter(fits).max_by_key(|&at| (self.sets[at].numbers.len(), std::cmp::Reverse(at)));
         let at = fitting.unwrap_or(largest);
         let names: Vec<&str> = self.sets[at].names.iter().map(String::as_str).collect();
         let chosen = select(&options.state, &names);
@@ -250,7 +272,8 @@ impl Set {
 
 /// The episodes that [`crate::write`] noted beside the messages; otherwise all is one.
 fn episodes(draft: Draft, n: usize, metadata: &BTreeMap<String, String>) -> Vec<Draft> {
-    let noted = metadata.get("episodes").and_then(|text| serde_json::from_str::<Vec<Noted>>(text).ok()).unwrap_or_default();
+    let noted =
+        metadata.get("episodes").and_then(|text| serde_json::from_str::<Vec<Noted>>(text).ok()).unwrap_or_default();
     let total: usize = noted.iter().fold(0, |total, episode| total.saturating_add(episode.messages));
     if total != draft.len() {
         return vec![draft];

@@ -115,9 +115,12 @@ mod tests {
 
     #[test]
     fn nonsense_is_refused() {
-        for text in
-            ["", "{'descr': '<f8'}", "{'descr': '<', 'fortran_order': False, 'shape': ()}", "{'descr': '<fé', 'fortran_order': 0, 'shape': (1)}"]
-        {
+        for text in [
+            "",
+            "{'descr': '<f8'}",
+            "{'descr': '<', 'fortran_order': False, 'shape': ()}",
+            "{'descr': '<fé', 'fortran_order': 0, 'shape': (1)}",
+        ] {
             assert_eq!(parsed(text), None, "{text}");
         }
         assert_eq!(parsed("{'descr': '<f8', 'fortran_order': False, 'shape': (-1, 2)}"), None);

@@ -15,7 +15,8 @@ pub(super) fn read(header: &Header, count: usize, from: &mut dyn Read) -> io::Re
     let whole = |convert: fn([u8; 8]) -> i64| move |bytes: &[u8]| convert(widened(bytes, big));
     match (header.letter, size) {
         ('f', 8) => each(size, count, from, number(f64::from_le_bytes)).map(Data::Numbers),
-        ('f', 4) => each(size, count, from, number(|b| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]])))).map(Data::Numbers),
+        ('f', 4) => each(size, count, from, number(|b| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]))))
+            .map(Data::Numbers),
         ('f', 2) => each(size, count, from, number(|b| half(u16::from_le_bytes([b[0], b[1]])))).map(Data::Numbers),
         ('u', 8) => each(size, count, from, number(|b| u64::from_le_bytes(b) as f64)).map(Data::Numbers),
         ('b' | 'u', _) => each(size, count, from, whole(i64::from_le_bytes)).map(Data::Whole),
@@ -23,9 +24,11 @@ pub(super) fn read(header: &Header, count: usize, from: &mut dyn Read) -> io::Re
             let not_a_time = |ticks: Vec<i64>| Data::Dates(ticks, TicksPerSecond(header.ticks));
             each(size, count, from, whole(i64::from_le_bytes)).map(not_a_time)
         }
-        ('i', 1) => each(size, count, from, whole(|b| i64::from(b[0] as i8))).map(Data::Whole),
+        ('i', 1) => each(size, count, from, whole(|b| i64::from(i8::from_le_bytes([b[0]])))).map(Data::Whole),
         ('i', 2) => each(size, count, from, whole(|b| i64::from(i16::from_le_bytes([b[0], b[1]])))).map(Data::Whole),
-        ('i', 4) => each(size, count, from, whole(|b| i64::from(i32::from_le_bytes([b[0], b[1], b[2], b[3]])))).map(Data::Whole),
+        ('i', 4) => {
+            each(size, count, from, whole(|b| i64::from(i32::from_le_bytes([b[0], b[1], b[2], b[3]])))).map(Data::Whole)
+        }
         ('i', 8) => each(size, count, from, whole(i64::from_le_bytes)).map(Data::Whole),
         _ => Err(io::ErrorKind::InvalidData.into()),
     }

@@ -104,7 +104,11 @@ impl Leaf {
         if starts.len() != rows + 1 || !even {
             let what = format!("'{}' holds lists of different lengths, or too few", self.name);
             let place = format!("{}, column '{}'", input.name, self.name);
-            return Err(ReadError::Ragged(Fault::new(what, place, "--state with columns of numbers or lists of one length")));
+            return Err(ReadError::Ragged(Fault::new(
+                what,
+                place,
+                "--state with columns of numbers or lists of one length",
+            )));
         }
         Ok(Values { data, ticks: self.ticks })
     }
@@ -128,25 +132,45 @@ impl Leaf {
     }
 
     /// Values of the first `rows` rows, and where in them each row begins; the last number is how many there are.
-    fn entries(&self, group: &dyn RowGroupReader, rows: usize, input: &Input<'_>) -> Result<(Data, Vec<usize>), ReadError> {
+    fn entries(
+        &self,
+        group: &dyn RowGroupReader,
+        rows: usize,
+        input: &Input<'_>,
+    ) -> Result<(Data, Vec<usize>), ReadError> {
         let reader = group.get_column_reader(self.index).map_err(|error| failed(&error, input))?;
         let missing = f64::NAN;
         let read = match reader {
             ColumnReader::DoubleColumnReader(reader) => self.filled(reader, rows, |value| *value, missing).map(numbers),
-            ColumnReader::FloatColumnReader(reader) => self.filled(reader, rows, |value| f64::from(*value), missing).map(numbers),
+            ColumnReader::FloatColumnReader(reader) => {
+                self.filled(reader, rows, |value| f64::from(*value), missing).map(numbers)
+            }
             ColumnReader::Int64ColumnReader(reader) => self.filled(reader, rows, |value| Some(*value), None).map(whole),
-            ColumnReader::Int32ColumnReader(reader) => self.filled(reader, rows, |value| Some(i64::from(*value)), None).map(whole),
-            ColumnReader::BoolColumnReader(reader) => self.filled(reader, rows, |value| Some(i64::from(*value)), None).map(whole),
-            ColumnReader::Int96ColumnReader(reader) => self.filled(reader, rows, |value| Some(value.to_nanos()), None).map(whole),
-            ColumnReader::ByteArrayColumnReader(reader) => {
-                self.filled(reader, rows, |value| text(value.data()), String::new()).map(|(texts, starts)| (Data::Text(texts), starts))
+            ColumnReader::Int32ColumnReader(reader) => {
+                self.filled(reader, rows, |value| Some(i64::from(*value)), None).map(whole)
             }
+            ColumnReader::BoolColumnReader(reader) => {
+                self.filled(reader, rows, |value| Some(i64::from(*value)), None).map(whole)
+            }
+            ColumnReader::Int96ColumnReader(reader) => {
+                self.filled(reader, rows, |value| Some(value.to_nanos()), None).map(whole)
+            }
+            ColumnReader::ByteArrayColumnReader(reader) => self
+                .filled(reader, rows, |value| text(value.data()), String::new())
+                .map(|(texts, starts)| (Data::Text(texts), starts)),
             ColumnReader::FixedLenByteArrayColumnReader(reader) if self.half => self
-                .filled(reader, rows, |value| value.data().try_into().map_or(missing, |bytes| crate::npy::half(u16::from_le_bytes(bytes))), missing)
+                .filled(
+                    reader,
+                    rows,
+                    |value| {
+                        value.data().try_into().map_or(missing, |bytes| crate::npy::half(u16::from_le_bytes(bytes)))
+                    },
+                    missing,
+                )
                 .map(numbers),
-            ColumnReader::FixedLenByteArrayColumnReader(reader) => {
-                self.filled(reader, rows, |value| text(value.data()), String::new()).map(|(texts, starts)| (Data::Text(texts), starts))
-            }
+            ColumnReader::FixedLenByteArrayColumnReader(reader) => self
+                .filled(reader, rows, |value| text(value.data()), String::new())
+                .map(|(texts, starts)| (Data::Text(texts), starts)),
         };
         read.map_err(|error| failed(&error, input))
     }

@@ -15,9 +15,10 @@ pub(super) fn write(file: impl Write, recordings: &Recordings) -> Result<(), Fai
     let n = recordings.state.len();
     let total: usize = episodes.iter().map(|episode| episode.times.len()).sum();
     let mut archive = ZipArchiveWriter::new(file);
-    let mut array = |name: &str, descr: &str, shape: &[usize], fill: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>| {
-        add(&mut archive, name, &header(descr, shape), fill).map_err(io::Error::other)
-    };
+    let mut array =
+        |name: &str, descr: &str, shape: &[usize], fill: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>| {
+            add(&mut archive, name, &header(descr, shape), fill).map_err(io::Error::other)
+        };
     let matrices = |file: &mut dyn Write, of: &dyn Fn(&Episode) -> Option<&DMatrix<f64>>| {
         episodes.iter().filter_map(of).try_for_each(|numbers| floats(file, numbers.as_slice()))
     };
