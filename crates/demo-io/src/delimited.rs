@@ -4,6 +4,9 @@ mod dialect;
 mod fields;
 mod source;
 
+use std::cell::Cell;
+use std::rc::Rc;
+
 use csv::ByteRecord;
 
 use self::dialect::Dialect;
@@ -17,7 +20,7 @@ use crate::{Fault, Note, NoteKind, ReadError};
 pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<Drafts, ReadError> {
     let dialect = Dialect::of(input)?;
     let source = Guarded::new(input, &dialect, progress)?;
-    let fresh_record = source.fresh_record();
+    let since_record = source.since_record();
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(dialect.delimiter())
         .comment(Some(b'#'))
@@ -25,7 +28,7 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<D
         .flexible(true)
         .buffer_capacity(1 << 16)
         .from_reader(source);
-    let mut rows = Rows { reader: &mut reader, fields: 0, file: input.name.clone() };
+    let mut rows = Rows { reader: &mut reader, fields: 0, file: input.name.clone(), since_record };
     let mut record = ByteRecord::new();
     let mut head: Vec<(u64, ByteRecord)> = Vec::new();
     let header = match dialect.commented_header() {
@@ -62,7 +65,6 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<D
     }
     drop(head);
     while let Some(line) = rows.next(&mut record)? {
-        fresh_record.set(0);
         table.push(line, &dialect.fields(&record))?;
     }
     let mut drafts = table.finish();
@@ -80,6 +82,8 @@ struct Rows<'a, R> {
     /// 0 until it is known.
     fields: usize,
     file: String,
+    /// Bytes read since the last record.
+    since_record: Rc<Cell<usize>>,
 }
 
 impl<R: std::io::Read> Rows<'_, R> {
@@ -90,6 +94,7 @@ impl<R: std::io::Read> Rows<'_, R> {
                 Ok(false) => return Ok(None),
                 Err(error) => return Err(self.unreadable(&error)),
             }
+            self.since_record.set(0);
             let line = record.position().map_or(0, csv::Position::line);
             let blank = record.len() == 1 && record[0].trim_ascii().is_empty();
             if blank && self.fields != 1 {
@@ -115,7 +120,7 @@ impl<R: std::io::Read> Rows<'_, R> {
         let Some(line) = self.next(record)? else { return Ok(None) };
         let fields = dialect.fields(record);
         let number = |column| fields.number(column).is_ok() && !record[column].trim_ascii().is_empty();
-        if (0..record.len()).any(number) {
+        if (0..record.len()).any(number) && !is_counted(record) {
             head.push((line, record.clone()));
             return Ok(None);
         }
@@ -143,6 +148,12 @@ impl<R: std::io::Read> Rows<'_, R> {
             _ => ReadError::Unreadable(Fault::new(error.to_string(), place, "another copy of the file")),
         }
     }
+}
+
+/// What pandas writes where columns have no names: `,0,1,2`.
+fn is_counted(record: &ByteRecord) -> bool {
+    let names = record.iter().enumerate().filter(|(at, field)| *at > 0 || !field.is_empty());
+    record.len() > 2 && names.enumerate().all(|(number, (_, field))| field == number.to_string().as_bytes())
 }
 
 fn no_header_error(file: &str, line: u64, columns: usize) -> ReadError {

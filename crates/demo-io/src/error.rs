@@ -45,11 +45,6 @@ macro_rules! read_error {
             pub fn fault(&self) -> &Fault {
                 match self { $(ReadError::$name(fault) => fault,)+ }
             }
-
-            /// The same, to say more.
-            pub(crate) fn fault_mut(&mut self) -> &mut Fault {
-                match self { $(ReadError::$name(fault) => fault,)+ }
-            }
         }
     };
 }

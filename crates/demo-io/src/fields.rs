@@ -117,8 +117,7 @@ pub(crate) fn assign(described: &[Described], options: &ReadOptions, place: &str
         episode_names: called(&["episode_names"]),
     };
     fields.time = fields.time.or_else(|| {
-        let fits =
-            |&index: &usize| !ignored[index] && (is_time(names[index]) || names[index].eq_ignore_ascii_case("times"));
+        let fits = |&index: &usize| !ignored[index] && is_time(names[index]);
         (0..names.len()).find(fits)
     });
     fields.episode = fields.episode.or_else(|| {

@@ -25,7 +25,7 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<D
         }
     }
     match reader {
-        Some(Reader::Episodes(episodes)) => episodes.finish(),
+        Some(Reader::Episodes(episodes)) => Ok(episodes.finish()),
         Some(Reader::Samples(rows)) => rows.finish(),
         None => {
             Err(ReadError::Empty(Fault::new("there is no line", &input.name, "another file: this one holds nothing")))
@@ -85,9 +85,10 @@ impl<R: BufRead> Lines<R> {
         let place = format!("{file}, line {}, column {}", self.line, error.column());
         let text = error.to_string();
         let what = text.rsplit_once(" at line").map_or(&text[..], |(what, _)| what);
-        let remedy = match self.text.windows(3).any(|letters| letters == b"NaN") {
-            true => "null where a number is missing: NaN is not JSON",
-            false => "correct the line: each must be one JSON document",
+        let remedy = if self.text.windows(3).any(|letters| letters == b"NaN") {
+            "null where a number is missing: NaN is not JSON"
+        } else {
+            "correct the line: each must be one JSON document"
         };
         ReadError::Json(Fault::new(format!("this is not JSON: {what}"), place, remedy))
     }

@@ -1,4 +1,41 @@
 //! Recordings of movements: what a file says, with names, units and stamps, before anybody decides what to make of it.
+//!
+//! [`read`] finds out the format, which columns are time, movement, state and velocity, and the unit of stamps; what is wrong is an
+//! error of three lines ([`ReadError`]), what is odd is a [`Note`]. [`ReadOptions`] overrides whatever was found out.
+//!
+//! ```
+//! use demo_io::{ReadOptions, read, write};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let folder = tempfile::tempdir()?;
+//! # let (table, bag) = (folder.path().join("reach.csv"), folder.path().join("reach.npz"));
+//! std::fs::write(&table, "episode,t,x,y\n0,0.0,1.5,2.0\n0,0.1,1.25,2.5\n0,0.2,1.125,2.75\n")?;
+//! let recordings = read(&table, &ReadOptions::default(), &mut |_bytes| ())?;
+//! assert_eq!(recordings.state[1].name, "y");
+//! assert_eq!(recordings.time_step(), 0.1);
+//! assert_eq!(recordings.episodes[0].positions.shape(), (2, 3), "samples are columns");
+//! write(&bag, &recordings)?;
+//!
+//! std::fs::write(&table, "t,x\n0.0,1.5\n0.1,\n0.2,1.125\n")?;
+//! let error = read(&table, &ReadOptions::default(), &mut |_bytes| ()).unwrap_err();
+//! assert_eq!(error.code(), "NotFinite");
+//! assert!(error.to_string().contains("line 3"));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! | format | feature | what is read |
+//! |---|---|---|
+//! | CSV, TSV, blanks | | a row a sample; header or column numbers; decimal commas; dates |
+//! | NPY, NPZ | | (K, N, n); (M, n) with `episode`, or `episode_ends`; an array a movement |
+//! | JSON lines | | a line a movement, or a line a sample |
+//! | LeRobot, Parquet | `parquet` | `observation.state`; lists of equal length, or columns |
+//! | robomimic, HDF5 | `hdf5` | `/data/demo_0/obs/<key>`, `/mask/<filter>` |
+//! | MCAP | `mcap` | JointState, PoseStamped, TwistStamped, Float64MultiArray, JSON |
+//! | MAT 5 to 7 | `mat` | cells and arrays of structures, matrices; samples are columns |
+//!
+//! A file need not be trusted: nothing is allocated because a header says so, and a file takes at most 64 times its size and
+//! 64 MB of memory unless [`ReadOptions::trust`] is set.
 
 mod array;
 #[cfg(feature = "mcap")]

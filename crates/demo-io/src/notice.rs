@@ -57,7 +57,8 @@ fn leave_out_repeated(drafts: &mut Drafts) {
 /// Gaps and uneven steps, each episode by its own usual step.
 fn time(drafts: &Drafts, notes: &mut Vec<Note>) {
     let overall = recordings::time_step(drafts.episodes.iter().map(|draft| &draft.times[..]));
-    let mut gaps: Vec<(f64, String)> = Vec::new();
+    let mut gap: Option<(f64, String)> = None;
+    let mut gaps = 0;
     let mut uneven: Option<(f64, String)> = None;
     let mut slowest = overall;
     let mut fastest = overall;
@@ -69,18 +70,19 @@ fn time(drafts: &Drafts, notes: &mut Vec<Note>) {
             let step = pair[1] - pair[0];
             let off = (step - own).abs() / own;
             if step > 3.0 * own {
-                gaps.push((step, draft.place(sample + 1, drafts.word)));
+                gaps += 1;
+                gap.get_or_insert_with(|| (step, draft.place(sample + 1, drafts.word)));
             } else if off > 0.01 && uneven.as_ref().is_none_or(|(worst, _)| off > *worst) {
                 uneven = Some((off, draft.place(sample + 1, drafts.word)));
             }
         }
     }
-    if let Some((step, place)) = gaps.first() {
+    if let Some((step, place)) = gap {
         let text = format!(
             "a gap of {} s where {} s are usual: {place}{}; --split-gap SECONDS cuts there",
-            rounded(*step),
+            rounded(step),
             rounded(overall),
-            and_more(gaps.len())
+            and_more(gaps)
         );
         notes.push(Note { kind: NoteKind::Gap, text });
     }
@@ -129,23 +131,33 @@ fn jumps(drafts: &Drafts, statistics: &Statistics, notes: &mut Vec<Note>) {
         if bound == 0.0 {
             continue;
         }
-        let mut found: Vec<(f64, String)> = Vec::new();
+        let mut jump: Option<(f64, String)> = None;
+        let mut jumps = 0;
         for draft in &drafts.episodes {
-            let value = |sample: usize| draft.positions[sample * n + channel];
-            let long: Vec<usize> =
-                (1..draft.len()).filter(|&sample| (value(sample) - value(sample - 1)).abs() > bound).collect();
-            // Three in a row are a fast movement.
-            for run in long.chunk_by(|a, b| a + 1 == *b).filter(|run| run.len() <= 2) {
-                found.push((value(run[0]) - value(run[0] - 1), draft.place(run[0], drafts.word)));
+            let step =
+                |sample: usize| draft.positions[sample * n + channel] - draft.positions[(sample - 1) * n + channel];
+            let mut in_a_row = 0;
+            for sample in 1..=draft.len() {
+                if sample < draft.len() && step(sample).abs() > bound {
+                    in_a_row += 1;
+                    continue;
+                }
+                // Three in a row are a fast movement.
+                if (1..=2).contains(&in_a_row) {
+                    let first = sample - in_a_row;
+                    jumps += 1;
+                    jump.get_or_insert_with(|| (step(first), draft.place(first, drafts.word)));
+                }
+                in_a_row = 0;
             }
         }
-        if let Some((step, place)) = found.first() {
+        if let Some((step, place)) = jump {
             let name = &drafts.channels[channel].name;
-            let usual = rounded(statistics.step[channel]);
             let text = format!(
-                "'{name}' jumps by {} where steps of {usual} are usual: {place}{}",
-                rounded(*step),
-                and_more(found.len())
+                "'{name}' jumps by {} where steps of {} are usual: {place}{}",
+                rounded(step),
+                rounded(statistics.step[channel]),
+                and_more(jumps)
             );
             notes.push(Note { kind: NoteKind::Jump, text });
         }

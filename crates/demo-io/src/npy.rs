@@ -6,7 +6,7 @@ mod values;
 use std::io::Read;
 
 pub(crate) use self::header::Header;
-#[cfg(feature = "parquet")]
+#[cfg(any(feature = "hdf5", feature = "parquet"))]
 pub(crate) use self::values::half;
 use crate::array::{Data, Described, Kind};
 use crate::draft::Drafts;

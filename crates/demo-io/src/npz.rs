@@ -23,10 +23,10 @@ struct Entry {
 pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<Drafts, ReadError> {
     let file = &input.name;
     let mut buffer = vec![0; RECOMMENDED_BUFFER_SIZE];
-    let archive = ZipArchive::from_file(input.open()?, &mut buffer).map_err(|error| zip(error, file))?;
+    let archive = ZipArchive::from_file(input.open()?, &mut buffer).map_err(|error| zip(&error, file))?;
     let mut entries: Vec<Entry> = Vec::new();
     let mut directory = archive.entries(&mut buffer);
-    while let Some(record) = directory.next_entry().map_err(|error| zip(error, file))? {
+    while let Some(record) = directory.next_entry().map_err(|error| zip(&error, file))? {
         let path = String::from_utf8_lossy(record.file_path().as_ref()).into_owned();
         let Some(name) = path.strip_suffix(".npy") else { continue };
         let deflated = match record.compression_method() {
@@ -97,7 +97,7 @@ fn opened<T>(
         let what = format!("'{}' grows from {packed} to {unpacked} bytes", entry.described.name);
         return Err(ReadError::TooLarge(Fault::new(what, file, "--trust if the file comes from a friend")));
     }
-    let opened = archive.get_entry(entry.wayfinder).map_err(|error| zip(error, file))?;
+    let opened = archive.get_entry(entry.wayfinder).map_err(|error| zip(&error, file))?;
     if entry.deflated {
         use_it(&mut opened.verifying_reader(DeflateDecoder::new(opened.reader())))
     } else {
@@ -110,7 +110,7 @@ fn cut(file: &str) -> ReadError {
     ReadError::Truncated(Fault::new(what, file, "another copy of the file: this one is not whole"))
 }
 
-fn zip(error: rawzip::Error, file: &str) -> ReadError {
+fn zip(error: &rawzip::Error, file: &str) -> ReadError {
     match error.kind() {
         ErrorKind::MissingEndOfCentralDirectory | ErrorKind::Eof | ErrorKind::InvalidEndOfCentralDirectory => cut(file),
         _ => {

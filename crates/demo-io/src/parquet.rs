@@ -5,7 +5,7 @@ mod leaf;
 use std::collections::HashMap;
 
 use parquet::errors::ParquetError;
-use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 
 use self::leaf::Leaf;
 use crate::draft::Drafts;
@@ -14,7 +14,7 @@ use crate::roles::{Column, Content};
 use crate::selection::select;
 use crate::stamps::{Stamp, TicksPerSecond};
 use crate::table::{Row, Table};
-use crate::{Fault, ReadError, ReadOptions};
+use crate::{Fault, Note, NoteKind, ReadError, ReadOptions};
 
 /// What another file says of the columns.
 #[derive(Debug, Default)]
@@ -29,11 +29,7 @@ pub(crate) struct Described {
 pub(crate) const STATE: &str = "observation.state";
 
 pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<Drafts, ReadError> {
-    let mut drafts = read_described(input, &Described::default(), progress)?;
-    for channel in &mut drafts.channels {
-        channel.unit = None;
-    }
-    Ok(drafts)
+    read_described(input, &Described::default(), progress)
 }
 
 pub(crate) fn read_described(
@@ -47,12 +43,13 @@ pub(crate) fn read_described(
         let what = "there is no column of numbers";
         return Err(ReadError::Empty(Fault::new(what, &input.name, "another file")));
     }
-    let columns = Columns::new(leaves, described);
+    let columns = Columns::new(leaves);
     let options = columns.options(input.options, described, &input.name)?;
     let names: Vec<Column> = columns.expanded();
     let listed = columns.state_is_list(&options);
     let mut table = Table::new(&names, (&input.name, &input.stem), "row", &options)?;
     let used = table.used();
+    let mut checked = described.period.filter(|_| input.options.dt.is_none()).and_then(|period| columns.stamps(period));
     let mut row = 0;
     for group in 0..file.num_row_groups() {
         let reader = file.get_row_group(group).map_err(|error| failed(&error, input))?;
@@ -61,6 +58,9 @@ pub(crate) fn read_described(
         for (leaf, first) in columns.leaves.iter().zip(&columns.firsts) {
             let wanted = (*first..first + leaf.width).any(|column| used.contains(&column));
             data.push(if wanted { Some(leaf.read(&*reader, rows, input)?) } else { None });
+        }
+        if let Some(stamps) = &mut checked {
+            stamps.check(&*reader, rows, row, input)?;
         }
         for at in 0..rows {
             table.push(row, &GroupRow { columns: &columns, data: &data, at })?;
@@ -77,6 +77,7 @@ pub(crate) fn read_described(
     }
     let mut drafts = table.finish();
     drafts.drop_constant &= !listed;
+    drafts.notes.extend(checked.and_then(|stamps| stamps.note));
     columns.rename(&mut drafts, described);
     Ok(drafts)
 }
@@ -91,7 +92,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn new(leaves: Vec<Leaf>, _described: &Described) -> Self {
+    fn new(leaves: Vec<Leaf>) -> Self {
         let mut firsts = Vec::new();
         let mut owners = Vec::new();
         for (index, leaf) in leaves.iter().enumerate() {
@@ -196,6 +197,50 @@ impl Columns {
     }
 }
 
+/// Stamps beside a rate: they are not used, since single precision makes them wobble, but must agree with it.
+struct Stamps<'a> {
+    period: f64,
+    stamp: &'a Leaf,
+    frame: &'a Leaf,
+    note: Option<Note>,
+}
+
+impl Columns {
+    fn stamps(&self, period: f64) -> Option<Stamps<'_>> {
+        let leaf = |name: &str| self.leaves.iter().find(|leaf| leaf.name == name && !leaf.list && !leaf.text);
+        Some(Stamps { period, stamp: leaf("timestamp")?, frame: leaf("frame_index")?, note: None })
+    }
+}
+
+impl Stamps<'_> {
+    fn check(
+        &mut self,
+        group: &dyn RowGroupReader,
+        rows: usize,
+        first: u64,
+        input: &Input<'_>,
+    ) -> Result<(), ReadError> {
+        if self.note.is_some() {
+            return Ok(());
+        }
+        let (stamps, frames) = (self.stamp.read(group, rows, input)?, self.frame.read(group, rows, input)?);
+        for row in 0..rows {
+            let (Ok(stamp), Ok(frame)) = (stamps.number(row), frames.number(row)) else { continue };
+            let off = (stamp - frame * self.period).abs();
+            // Single precision after an hour.
+            if off > 1e-4 + stamp.abs() * 1e-7 {
+                let place = format!("{}, row {}", input.name, first + row as u64);
+                let text = format!(
+                    "the stamp {stamp} s does not belong to frame {frame} at this rate; the rate is believed: {place}"
+                );
+                self.note = Some(Note { kind: NoteKind::Uneven, text });
+                break;
+            }
+        }
+        Ok(())
+    }
+}
+
 /// A row of a row group.
 struct GroupRow<'a> {
     columns: &'a Columns,
@@ -235,14 +280,22 @@ fn failed(error: &ParquetError, input: &Input<'_>) -> ReadError {
     // The directory stands at the end: a file without it is cut off.
     let ends_well = input.ends_with(b"PAR1");
     match error {
-        ParquetError::NYI(what) => ReadError::Unsupported(Fault::new(
-            what.clone(),
-            file,
-            "in Python: pq.write_table(pq.read_table(IN), OUT, compression='snappy')",
-        )),
+        ParquetError::NYI(what) | ParquetError::General(what) if unsupported(error) => {
+            let remedy = "in Python: pq.write_table(pq.read_table(IN), OUT, compression='snappy')";
+            ReadError::Unsupported(Fault::new(what.clone(), file, remedy))
+        }
         _ if !ends_well => {
             ReadError::Truncated(Fault::new("the file is cut off: its closing mark is missing", file, copy))
         }
         _ => ReadError::Corrupt(Fault::new(format!("the file is damaged: {error}"), file, "another copy of the file")),
+    }
+}
+
+/// Whether the file is fine, but not for us.
+fn unsupported(error: &ParquetError) -> bool {
+    match error {
+        ParquetError::NYI(_) => true,
+        ParquetError::General(what) => what.contains("Disabled feature"),
+        _ => false,
     }
 }

@@ -19,7 +19,8 @@ pub fn read(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -
     read_all(&[path.to_owned()], options, progress)
 }
 
-/// Reads several files as one set: their channels must be equal, their episodes follow each other.
+/// Reads several files as one set: their channels must be equal, their episodes follow each other
+/// and are called after their files: `monday/3`.
 ///
 /// # Errors
 ///
@@ -31,7 +32,11 @@ pub fn read_all(
 ) -> Result<Recordings, ReadError> {
     let mut joined: Option<Drafts> = None;
     for path in paths {
-        add(&mut joined, drafts(path, options, progress)?, &name_of(path))?;
+        let mut drafts = drafts(path, options, progress)?;
+        if paths.len() > 1 {
+            name_by_file(&mut drafts, path);
+        }
+        add(&mut joined, drafts, &name_of(path))?;
     }
     let place = || paths.first().map(|path| name_of(path)).unwrap_or_default();
     let nothing = |what: &str| ReadError::Empty(Fault::new(what, place(), "another file: this one holds no movement"));
@@ -111,7 +116,7 @@ fn folder(path: &Path, name: &str, options: &ReadOptions, progress: &mut dyn FnM
     })
 }
 
-/// Several episodes of one file in a folder carry its name, since they are numbered in each.
+/// Episodes of one file among several carry its name, since they are numbered in each.
 fn name_by_file(drafts: &mut Drafts, file: &Path) {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     for draft in drafts.episodes.iter_mut().filter(|draft| draft.name != stem) {

@@ -38,8 +38,22 @@ pub(crate) struct Roles {
     pub(crate) state_guessed: bool,
 }
 
-const ROW_NUMBERS: [&str; 7] = ["", "unnamed: 0", "index", "frame", "frame_index", "seq", "header.seq"];
-const TIMES: [&str; 9] = ["t", "time", "timestamp", "stamp", "secs", "%time", "header.stamp", "log_time", "time_stamp"];
+const ROW_NUMBERS: [&str; 8] =
+    ["", "unnamed: 0", "__index_level_0__", "index", "frame", "frame_index", "seq", "header.seq"];
+const TIMES: [&str; 12] = [
+    "t",
+    "time",
+    "timestamp",
+    "stamp",
+    "secs",
+    "%time",
+    "header.stamp",
+    "log_time",
+    "time_stamp",
+    "times",
+    "timestamps",
+    "stamps",
+];
 const TIME_UNITS: [&str; 12] =
     ["s", "sec", "secs", "seconds", "ms", "msec", "milliseconds", "us", "usec", "ns", "nsec", "nanoseconds"];
 const EPISODES: [&str; 12] = [

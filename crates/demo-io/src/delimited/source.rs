@@ -36,7 +36,7 @@ impl<'a> Guarded<'a> {
     }
 
     /// To be set to 0 with each record.
-    pub(super) fn fresh_record(&self) -> Rc<Cell<usize>> {
+    pub(super) fn since_record(&self) -> Rc<Cell<usize>> {
         Rc::clone(&self.since_record)
     }
 }

@@ -49,7 +49,8 @@ impl<'a> Tree<'a> {
         self.input.charge(count.and_then(|count| count.checked_mul(size)).unwrap_or(u64::MAX))?;
         let data = match &described.kind {
             Kind::Text => dataset.read_string().map(Data::Text),
-            Kind::Number("uint64" | "float16" | "float32" | "float64") => dataset.read_f64().map(Data::Numbers),
+            Kind::Number("float16") => dataset.read_raw().map(|bytes| Data::Numbers(halves(&bytes, dataset))),
+            Kind::Number("uint64" | "float32" | "float64") => dataset.read_f64().map(Data::Numbers),
             Kind::Number(_) => dataset.read_i64().map(Data::Whole),
             _ => return Ok(Data::Text(Vec::new())),
         };
@@ -60,6 +61,17 @@ impl<'a> Tree<'a> {
         let what = format!("'{}' holds {} values", described.with_shape(), data.len());
         Err(ReadError::Corrupt(Fault::new(what, &self.input.name, "another copy of the file")))
     }
+}
+
+fn halves(bytes: &[u8], dataset: &Dataset) -> Vec<f64> {
+    use hdf5_pure::{Datatype, DatatypeByteOrder};
+    let big =
+        matches!(dataset.datatype(), Ok(Datatype::FloatingPoint { byte_order: DatatypeByteOrder::BigEndian, .. }));
+    let half = |pair: &[u8]| {
+        let pair = [pair[0], pair[1]];
+        crate::npy::half(if big { u16::from_be_bytes(pair) } else { u16::from_le_bytes(pair) })
+    };
+    bytes.chunks_exact(2).map(half).collect()
 }
 
 fn kind(kind: DType) -> Kind {
@@ -109,10 +121,17 @@ pub(super) fn failed(error: &Error, input: &Input<'_>) -> ReadError {
             file,
             "--as with the format it has",
         )),
-        _ => ReadError::Corrupt(Fault::new(
-            format!("the file is damaged, or of a kind that is not read: {error}"),
-            file,
-            "h5repack IN OUT, or another copy of the file",
-        )),
+        _ => {
+            let text = error.to_string();
+            let newer = text.contains("nsupported") || text.contains("version");
+            let what =
+                if newer { "of a kind of HDF5 that is not read" } else { "damaged, or of a kind that is not read" };
+            let fault = Fault::new(
+                format!("the file is {what}: {text}"),
+                file,
+                "h5repack -j 1 -k 2 -f GZIP=4 IN OUT, or another copy of the file",
+            );
+            if newer { ReadError::Unsupported(fault) } else { ReadError::Corrupt(fault) }
+        }
     }
 }

@@ -105,14 +105,14 @@ impl<'a> EpisodeLines<'a> {
         }
     }
 
-    pub(super) fn finish(self) -> Result<Drafts, ReadError> {
-        Ok(Drafts {
+    pub(super) fn finish(self) -> Drafts {
+        Drafts {
             channels: self.channels.unwrap_or_default(),
             episodes: self.episodes,
             notes: Vec::new(),
             word: "sample",
             drop_constant: false,
-        })
+        }
     }
 }
 

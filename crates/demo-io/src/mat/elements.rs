@@ -223,7 +223,7 @@ impl<'a> Elements<'a> {
         let unused = 64 - 8 * size as u32;
         let value = |bytes: &[u8]| {
             let bits = self.bits(bytes) << unused;
-            if signed { bits as i64 >> unused } else { (bits >> unused) as i64 }
+            if signed { bits.cast_signed() >> unused } else { (bits >> unused).cast_signed() }
         };
         Ok(element.bytes.chunks_exact(size).map(value).collect())
     }

@@ -9,7 +9,7 @@ use crate::json::Json;
 use crate::roles::no_column;
 use crate::selection::{flags, select};
 use crate::stamps::{Stamp, TicksPerSecond};
-use crate::{Channel, Fault, Note, NoteKind, ReadError};
+use crate::{Channel, Fault, Note, NoteKind, ReadError, natural};
 
 /// The messages of a topic. What is wrong with them matters only if the topic is chosen.
 pub(super) struct Topic<'a> {
@@ -30,6 +30,8 @@ pub(super) struct Topic<'a> {
 struct Set {
     /// In the order of the first message.
     names: Vec<String>,
+    /// Whether other messages have another order.
+    reordered: bool,
     /// Which message of the topic.
     numbers: Vec<u64>,
     stamps: Vec<i64>,
@@ -150,6 +152,7 @@ impl<'a> Topic<'a> {
         let same_order = set.names.iter().map(String::as_str).eq(names.iter().copied());
         let column = |name: &String| names.iter().position(|other| other == name).unwrap_or(0);
         let columns: Vec<usize> = if same_order { (0..n).collect() } else { set.names.iter().map(column).collect() };
+        set.reordered |= !same_order;
         set.numbers.push(number);
         set.stamps.push(message.stamp.unwrap_or(0));
         set.log_times.push(log_time);
@@ -228,7 +231,7 @@ impl<'a> Topic<'a> {
             let ignored = flags(&options.ignore, names);
             let place =
                 |at: &usize| !ignored[*at] && !(self.kind == Some(Type::Pose) && names[*at].starts_with("orientation"));
-            return Ok((largest, (0..names.len()).filter(place).collect()));
+            return Ok((largest, self.sets[largest].in_order((0..names.len()).filter(place).collect())));
         }
         let fits = |at: &usize| select(&options.state, &self.sets[*at].names).is_ok();
         let fitting =
@@ -237,7 +240,10 @@ impl<'a> Topic<'a> {
         let names: Vec<&str> = self.sets[at].names.iter().map(String::as_str).collect();
         let chosen = select(&options.state, &names);
         let place = format!("{}, topic {}", self.input.name, self.name);
-        chosen.map(|columns| (at, columns)).map_err(|pattern| no_column(&pattern, &names, &place))
+        // A glob names no order.
+        let any = options.state.iter().any(|pattern| pattern.contains('*'));
+        let ordered = |columns| if any { self.sets[at].in_order(columns) } else { columns };
+        chosen.map(|columns| (at, ordered(columns))).map_err(|pattern| no_column(&pattern, &names, &place))
     }
 
     fn left_out(&self, set: usize, columns: &[usize]) -> Vec<Note> {
@@ -251,6 +257,16 @@ impl<'a> Topic<'a> {
         let unused: Vec<&str> = names.filter(|(at, _)| !columns.contains(at)).map(|(_, name)| &name[..]).collect();
         notes.extend(ignored_note("parts of messages", &unused, &self.input.name));
         notes
+    }
+}
+
+impl Set {
+    /// In the natural order of names where messages have no order of their own.
+    fn in_order(&self, mut columns: Vec<usize>) -> Vec<usize> {
+        if self.reordered {
+            columns.sort_by(|&a, &b| natural::compare(&self.names[a], &self.names[b]));
+        }
+        columns
     }
 }
 

@@ -1,4 +1,5 @@
 use parquet::basic::{LogicalType, TimeUnit, Type};
+use parquet::column::page::Page;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
 use parquet::file::reader::{FileReader, RowGroupReader};
@@ -24,6 +25,8 @@ pub(super) struct Leaf {
     most_defined: i16,
     ticks: Option<TicksPerSecond>,
     half: bool,
+    /// Bytes of a floating-point value.
+    float: Option<usize>,
 }
 
 /// Values of a row group, `width` a row.
@@ -73,6 +76,11 @@ impl Leaf {
             most_defined: column.max_def_level(),
             ticks: ticks(column),
             half,
+            float: match physical {
+                Type::FLOAT => Some(4),
+                Type::DOUBLE => Some(8),
+                _ => None,
+            },
         }
     }
 
@@ -90,6 +98,7 @@ impl Leaf {
     /// The values of `rows` rows.
     pub(super) fn read(&self, group: &dyn RowGroupReader, rows: usize, input: &Input<'_>) -> Result<Values, ReadError> {
         input.charge((rows as u64).saturating_mul(8 * self.width as u64))?;
+        self.refuse_damaged_dictionary(group, input)?;
         let (data, starts) = self.entries(group, rows, input)?;
         let even = starts.iter().enumerate().all(|(row, &start)| start == row * self.width);
         if starts.len() != rows + 1 || !even {
@@ -102,6 +111,24 @@ impl Leaf {
             )));
         }
         Ok(Values { data, ticks: self.ticks })
+    }
+
+    /// Pages seldom carry check sums, but a dictionary holds each value once: where one stands twice, bytes were
+    /// overwritten, and samples would silently be wrong.
+    fn refuse_damaged_dictionary(&self, group: &dyn RowGroupReader, input: &Input<'_>) -> Result<(), ReadError> {
+        let Some(size) = self.float else { return Ok(()) };
+        let failed = |error| failed(&error, input);
+        let mut pages = group.get_column_page_reader(self.index).map_err(failed)?;
+        if let Some(Page::DictionaryPage { buf, .. }) = pages.get_next_page().map_err(failed)? {
+            let mut values: Vec<&[u8]> = buf.chunks_exact(size).collect();
+            values.sort_unstable();
+            if values.windows(2).any(|pair| pair[0] == pair[1]) {
+                let what = "the file is damaged: a dictionary holds a value twice";
+                let place = format!("{}, column '{}'", input.name, self.name);
+                return Err(ReadError::Corrupt(Fault::new(what, place, "another copy of the file")));
+            }
+        }
+        Ok(())
     }
 
     /// Values of the first `rows` rows, and where in them each row begins; the last number is how many there are.

@@ -1,0 +1,119 @@
+//! Formats of other communities, in files that their own tools wrote, and there and back through all that we write.
+#![cfg(all(feature = "hdf5", feature = "mat", feature = "mcap", feature = "parquet"))]
+
+mod common;
+
+use std::path::{Path, PathBuf};
+
+use common::{Files, names, read_with};
+use demo_io::{ReadOptions, Recordings, write};
+
+fn kept(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/samples").join(name)
+}
+
+/// Samples of the same three movements.
+const FILES: [&str; 3] = ["lists.parquet", "robomimic.hdf5", "cell.mat"];
+
+/// (cos(k + 2t), sin(k + 1.5t) + 0.3t) at t = 0, 0.05, …, 0.55.
+fn formula(episode: usize, sample: usize) -> [f64; 2] {
+    let (k, t) = (episode as f64, sample as f64 * 0.05);
+    [(k + 2.0 * t).cos(), (k + 1.5 * t).sin() + 0.3 * t]
+}
+
+#[test]
+fn files_of_other_tools_hold_what_was_put_in() {
+    for file in FILES {
+        let found = read_with(&kept(file), &ReadOptions::default()).unwrap();
+        assert_eq!(found.episodes.len(), 3, "{file}");
+        assert_eq!(found.time_step(), 0.05, "{file}");
+        for (k, episode) in found.episodes.iter().enumerate() {
+            assert_eq!(episode.positions.shape(), (2, 12), "{file}");
+            for sample in 0..12 {
+                let expected = formula(k, sample);
+                let found = [episode.positions[(0, sample)], episode.positions[(1, sample)]];
+                assert!(
+                    (0..2).all(|row| (found[row] - expected[row]).abs() < 1e-12),
+                    "{file}: {found:?} for {expected:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn masks_choose_demonstrations() {
+    let filtered = ReadOptions { filter: Some("train".to_owned()), ..ReadOptions::default() };
+    let found = read_with(&kept("robomimic.hdf5"), &filtered).unwrap();
+    let named: Vec<&str> = found.episodes.iter().map(|episode| &episode.name[..]).collect();
+    assert_eq!(named, ["demo_0", "demo_2"]);
+    let unknown = ReadOptions { filter: Some("test".to_owned()), ..ReadOptions::default() };
+    assert_eq!(read_with(&kept("robomimic.hdf5"), &unknown).unwrap_err().code(), "NoColumn");
+    let joined = ReadOptions { state: vec!["robot0_joint_pos,actions".to_owned()], ..ReadOptions::default() };
+    let found = read_with(&kept("robomimic.hdf5"), &joined).unwrap();
+    assert_eq!(names(&found), ["robot0_joint_pos_0", "robot0_joint_pos_1", "actions_0", "actions_1"]);
+}
+
+#[test]
+fn files_cut_off_anywhere_are_refused() {
+    let files = Files::new();
+    for file in FILES {
+        let whole = std::fs::read(kept(file)).unwrap();
+        for part in 1..8 {
+            let cut = files.add(file, &whole[..whole.len() * part / 8]);
+            let error = read_with(&cut, &ReadOptions::default()).expect_err("should be refused");
+            assert!(matches!(error.code(), "Truncated" | "Corrupt" | "Empty"), "{file}, {part}/8: {error}");
+        }
+    }
+}
+
+#[test]
+fn a_folder_of_lerobot_is_read_by_its_rate_and_names() {
+    let files = Files::new();
+    let info = r#"{"codebase_version": "v3.0", "fps": 20, "total_episodes": 3, "data_path": "data/x.parquet",
+        "features": {"observation.state": {"dtype": "float32", "shape": [2], "names": {"motors": ["left", "right"]}}}}"#;
+    files.add("set/meta/info.json", info);
+    files.add("set/data/chunk-000/file-000.parquet", std::fs::read(kept("lists.parquet")).unwrap());
+    let set = files.path().join("set");
+    let found = read_with(&set, &ReadOptions::default()).unwrap();
+    assert_eq!(names(&found), ["left", "right"]);
+    assert_eq!(found.episodes[2].times[3], 3.0 * 0.05);
+    assert!(found.episodes[0].velocities.is_none(), "an action is no velocity");
+    let asked = ReadOptions {
+        velocity: vec!["action".to_owned()],
+        state: vec!["right,left".to_owned()],
+        ..ReadOptions::default()
+    };
+    let found = read_with(&set, &asked).unwrap();
+    assert_eq!(names(&found), ["right", "left"]);
+    assert!(found.episodes[0].velocities.is_some());
+    files.add("set/meta/info.json", info.replace("\"total_episodes\": 3", "\"total_episodes\": 4"));
+    let error = read_with(&set, &ReadOptions::default()).unwrap_err();
+    assert_eq!(error.code(), "MissingFile");
+    assert!(error.to_string().contains("episode 3"), "{error}");
+}
+
+#[test]
+fn all_that_is_written_is_read_to_the_same_bits() {
+    let files = Files::new();
+    for file in FILES {
+        let found = read_with(&kept(file), &ReadOptions::default()).unwrap();
+        for extension in ["csv", "tsv", "npz", "jsonl", "mcap"] {
+            let path = files.path().join(format!("a.{extension}"));
+            write(&path, &found).unwrap();
+            let back = read_with(&path, &ReadOptions::default()).unwrap();
+            same(&found, &back, &format!("{file} as {extension}"));
+        }
+    }
+}
+
+fn same(found: &Recordings, back: &Recordings, what: &str) {
+    assert_eq!(names(found), names(back), "{what}");
+    assert_eq!(found.time_step(), back.time_step(), "{what}");
+    assert_eq!(found.episodes.len(), back.episodes.len(), "{what}");
+    for (found, back) in found.episodes.iter().zip(&back.episodes) {
+        assert_eq!(found.name, back.name, "{what}");
+        assert_eq!((&found.positions, &found.velocities), (&back.positions, &back.velocities), "{what}");
+        assert!(found.times.iter().zip(&back.times).all(|(a, b)| (a - b).abs() < 1e-9), "{what}");
+    }
+}
