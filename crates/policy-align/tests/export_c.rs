@@ -115,7 +115,10 @@ fn compare(name: &str, model: &Model, precision: Precision, tolerance: f64) {
     );
     assert!(relative[0] <= tolerance && relative[1] <= tolerance, "{name}: {relative:?}");
     // What the direct GP knows of constrained movements is in patches, which no distance tells.
-    assert!(wrongly <= 25 && (missed <= 50 || name == "direct"), "{name}: of {known} known {wrongly} wrongly, {missed} missed");
+    assert!(
+        wrongly <= 25 && (missed <= 50 || name == "direct"),
+        "{name}: of {known} known {wrongly} wrongly, {missed} missed"
+    );
 }
 
 /// The same model in other units, one of them another unit than the other's.

@@ -72,7 +72,8 @@ fn every_tensor_is_made_before_it_is_used() {
         let file = to_onnx(&model).unwrap();
         assert_eq!(integers(&file, 1), [8], "{name}");
         assert_eq!(integers(bytes(&file, 8)[0], 2), [17]);
-        let described: Vec<_> = bytes(&file, 14).into_iter().map(|entry| (texts(entry, 1)[0], texts(entry, 2)[0])).collect();
+        let described: Vec<_> =
+            bytes(&file, 14).into_iter().map(|entry| (texts(entry, 1)[0], texts(entry, 2)[0])).collect();
         assert_eq!(described, [("state", "x,y"), ("time_step", "1"), ("trust", "doubtful")]);
         let graph = bytes(&file, 7)[0];
         let mut made: HashSet<&str> = bytes(graph, 11).into_iter().map(|input| texts(input, 1)[0]).collect();
@@ -154,7 +155,11 @@ fn compare(python: &str, name: &str, model: &Model) {
             wrongly += usize::from((found[3] == 1.0) != policy.is_supported(state));
         }
     }
-    eprintln!("{name}: action {:e}, potential {:e}, of 500 {known} known, {wrongly} wrongly or not", error / largest, potential_error / highest);
+    eprintln!(
+        "{name}: action {:e}, potential {:e}, of 500 {known} known, {wrongly} wrongly or not",
+        error / largest,
+        potential_error / highest
+    );
     assert!(error <= 1e-12 * largest && potential_error <= 1e-12 * highest.max(f64::MIN_POSITIVE), "{name}");
     // What the direct GP knows of constrained movements is in patches, which no distance tells.
     assert!(wrongly <= 50 || name == "direct", "{name}: {known} {wrongly}");

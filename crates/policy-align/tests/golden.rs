@@ -34,7 +34,11 @@ fn every_golden_model_is_read_and_acts_as_it_did() {
         let found = actions(&model, &states(expected.len()));
         for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
             // Processors differ in their last bits, in whether products are fused with sums.
-            assert!((found - expected).abs() <= 1e-11 * (1.0 + expected.abs()), "{} {found} {expected}", path.display());
+            assert!(
+                (found - expected).abs() <= 1e-11 * (1.0 + expected.abs()),
+                "{} {found} {expected}",
+                path.display()
+            );
         }
         assert_eq!(model.to_json().unwrap().into_bytes(), std::fs::read(&path).unwrap(), "{}", path.display());
     }

@@ -61,7 +61,10 @@ fn what_is_wrong_is_said_in_one_line_with_its_place() {
         (said(Model::from_json(b"\xff\xfe")), "not JSON: "),
         (said(Model::from_json(b"[1]")), "not a model of this program"),
         (said(Model::from_json(br#"{"format":"urdf"}"#)), r#"`format` is "urdf""#),
-        (said(with(&text, "", |v| v["version"] = json!(2))), "made by a newer policy-align (model version 2, this one reads 1)"),
+        (
+            said(with(&text, "", |v| v["version"] = json!(2))),
+            "made by a newer policy-align (model version 2, this one reads 1)",
+        ),
         (said(with(&text, "", |v| v["version"] = json!("1"))), "version: missing"),
         (said(with(&text, "", |v| remove(v, "state"))), "missing field `state`"),
         (said(with(&text, "", |v| remove(v, "checksum"))), "checksum: missing"),

@@ -8,9 +8,8 @@ use std::process::{Command, Stdio};
 use running::{command, folder, run, run_in};
 use serde_json::Value;
 
-const VERBS: [&str; 11] = [
-    "check", "fit", "info", "predict", "rollout", "evaluate", "plot", "convert", "export", "completions", "man",
-];
+const VERBS: [&str; 11] =
+    ["check", "fit", "info", "predict", "rollout", "evaluate", "plot", "convert", "export", "completions", "man"];
 
 #[test]
 fn every_help_ends_with_an_example_that_runs() {
@@ -128,9 +127,17 @@ fn predictions_of_a_file_and_of_standard_input_are_those_of_the_model() {
     let action = &one["predictions"][0]["action"];
     assert_eq!([lines[1][2], lines[1][3]], [action[0].to_string(), action[1].to_string()]);
     assert_eq!((lines[1][8], lines[3][8], lines[3][2]), ("1", "0", "0"));
-    assert_eq!(run("predict toy.json states.csv --outside nan").out.lines().last().unwrap().split(',').nth(2), Some("NaN"));
+    assert_eq!(
+        run("predict toy.json states.csv --outside nan").out.lines().last().unwrap().split(',').nth(2),
+        Some("NaN")
+    );
 
-    let mut child = command(folder()).args(["predict", "toy.json", "-"]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    let mut child = command(folder())
+        .args(["predict", "toy.json", "-"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
     child.stdin.take().unwrap().write_all(b"0.3;1.2\n0.7;-0.5\n").unwrap();
     let out = String::from_utf8(child.wait_with_output().unwrap().stdout).unwrap();
     assert_eq!(out.lines().nth(1), ran.out.lines().nth(1));
@@ -202,7 +209,11 @@ fn an_interrupted_fit_leaves_the_old_model() {
     let place = tempfile::tempdir().unwrap();
     std::fs::copy(running::examples().join("toy.csv"), place.path().join("toy.csv")).unwrap();
     std::fs::write(place.path().join("toy.json"), "old").unwrap();
-    let child = command(place.path()).args(["fit", "toy.csv", "-o", "toy.json", "--max-rows", "1500"]).stderr(Stdio::piped()).spawn().unwrap();
+    let child = command(place.path())
+        .args(["fit", "toy.csv", "-o", "toy.json", "--max-rows", "1500"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
     std::thread::sleep(std::time::Duration::from_millis(700));
     Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     let output = child.wait_with_output().unwrap();

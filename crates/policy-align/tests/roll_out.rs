@@ -78,7 +78,10 @@ fn it_agrees_with_the_teachers_roll_out_under_a_constraint() {
 #[test]
 fn constraints_hold_at_their_times_only() {
     let set = constraints("[[constraint]]\nnormal = [[2, 0], [0, 1]]\nfrom = 2.5\nuntil = 7.25\n");
-    let path = follow(&RollOut { constraints: set, seconds: Some(20.0), step: Some(0.5), ..RollOut::default() }, dvector![1.0, 1.0]);
+    let path = follow(
+        &RollOut { constraints: set, seconds: Some(20.0), step: Some(0.5), ..RollOut::default() },
+        dvector![1.0, 1.0],
+    );
     let moved = |from: usize, to: usize| (path.states.column(to) - path.states.column(from)).norm();
     assert!(moved(0, 5) > 0.01 && moved(15, 40) > 0.01);
     assert_eq!(moved(5, 14), 0.0);
@@ -89,9 +92,8 @@ fn constraints_hold_at_their_times_only() {
 fn a_ball_is_gone_around() {
     let set = constraints("[[constraint]]\npoint = [0.5, 0.55]\nradius = 0.3\n");
     let free = follow(&RollOut::default(), dvector![1.3, 1.25]);
-    let distance = |path: &Path| {
-        path.states.column_iter().map(|x| (x - dvector![0.5, 0.55]).norm()).fold(f64::INFINITY, f64::min)
-    };
+    let distance =
+        |path: &Path| path.states.column_iter().map(|x| (x - dvector![0.5, 0.55]).norm()).fold(f64::INFINITY, f64::min);
     assert!(distance(&free) < 0.2, "the free movement goes through it: {}", distance(&free));
     let path = follow(&RollOut { constraints: set, seconds: Some(400.0), ..RollOut::default() }, dvector![1.3, 1.25]);
     assert!(distance(&path) >= 0.3 && distance(&path) < 0.32, "{}", distance(&path));
@@ -113,7 +115,8 @@ fn a_hand_stays_in_its_plane_and_out_of_a_ball() {
     assert!(drift < 1e-3 && (path.broken_by.unwrap().0 - drift).abs() < 1e-12, "{drift} {:?}", path.broken_by);
     assert!((last(&path) - dvector![1.2, 0.7]).norm() > 0.2);
 
-    std::fs::write(&file, "[[constraint]]\nrobot = \"arm.urdf\"\nlink = \"hand\"\npoint = [1.6, 1, 0]\nradius = 0.3\n").unwrap();
+    std::fs::write(&file, "[[constraint]]\nrobot = \"arm.urdf\"\nlink = \"hand\"\npoint = [1.6, 1, 0]\nradius = 0.3\n")
+        .unwrap();
     let set = ConstraintSet::load(&file, &channels()).unwrap();
     let distance = |path: &Path| {
         let distances = path.states.column_iter().map(|q| (tip(q).0 - 1.6).hypot(tip(q).1 - 1.0));
@@ -134,13 +137,20 @@ fn limits_and_the_end_of_the_data_stop_it() {
     assert!(JointLimits::from_urdf(TIP, &["a".to_owned()]).unwrap_err().contains("x, y"));
 
     // A policy that runs out of what was shown: always to the right.
-    let to_the_right = motion::Demonstrations::new((0..12).map(|k| {
-        let y = f64::from(k) / 6.0 - 1.0;
-        let states = nalgebra::DMatrix::from_fn(2, 30, |row, i| if row == 0 { i as f64 / 15.0 - 1.0 } else { y });
-        let velocities = nalgebra::DMatrix::from_fn(2, 30, |row, _| if row == 0 { 1.0 / 15.0 } else { 0.0 });
-        motion::Trajectory::new(states, 1.0).unwrap().with_velocities(velocities).unwrap()
-    }).collect()).unwrap();
-    let fit = gp::DirectGp::default().fit(&rows(&to_the_right), &mut rand_chacha::ChaCha8Rng::seed_from_u64(1)).unwrap();
+    let to_the_right = motion::Demonstrations::new(
+        (0..12)
+            .map(|k| {
+                let y = f64::from(k) / 6.0 - 1.0;
+                let states =
+                    nalgebra::DMatrix::from_fn(2, 30, |row, i| if row == 0 { i as f64 / 15.0 - 1.0 } else { y });
+                let velocities = nalgebra::DMatrix::from_fn(2, 30, |row, _| if row == 0 { 1.0 / 15.0 } else { 0.0 });
+                motion::Trajectory::new(states, 1.0).unwrap().with_velocities(velocities).unwrap()
+            })
+            .collect(),
+    )
+    .unwrap();
+    let fit =
+        gp::DirectGp::default().fit(&rows(&to_the_right), &mut rand_chacha::ChaCha8Rng::seed_from_u64(1)).unwrap();
     let model = model(Learnt::Direct(Box::new(fit)), &to_the_right);
     let roll_out = RollOut { seconds: Some(1000.0), ..RollOut::default() };
     let path = roll_out.follow(&model, &dvector![0.0, 0.0]).unwrap();
@@ -191,7 +201,10 @@ fn constraint_files_say_what_is_wrong() {
         ("[[constraint]]\nrobot = \"arm.urdf\"\nplane = [1, 0, 0]", "constraint 1: `robot` and `link` belong together"),
         ("[[constraint]]\nrobot = \"no.urdf\"\nlink = \"hand\"\nplane = [1, 0, 0]", "no.urdf: "),
         ("[[constraint]]\nrobot = \"arm.urdf\"\nlink = \"foot\"\nplane = [1, 0, 0]", "constraint 1: "),
-        ("[[constraint]]\nrobot = \"arm.urdf\"\nlink = \"hand\"\nplane = [1, 0]", "constraint 1: `plane` has 2 numbers"),
+        (
+            "[[constraint]]\nrobot = \"arm.urdf\"\nlink = \"hand\"\nplane = [1, 0]",
+            "constraint 1: `plane` has 2 numbers",
+        ),
     ] {
         let said = said(text);
         assert!(said.contains(expected) && !said.contains('\n'), "{said}");

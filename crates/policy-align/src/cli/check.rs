@@ -35,8 +35,7 @@ impl Check {
         let flags = config.under("read", &self.read)?;
         let options = config.under("prepare", &self.prepare)?.options(flags.dt)?;
         let recordings = read(session, &self.files, &flags.options()?)?;
-        let prepared =
-            prepare(&recordings, &options).map_err(|error| Failure::prepare(&error, named(&self.files)))?;
+        let prepared = prepare(&recordings, &options).map_err(|error| Failure::prepare(&error, named(&self.files)))?;
         let refused = prepared.findings.iter().any(|finding| finding.verdict == Verdict::DoNotUse);
         let exit = if refused { Exit::Refused } else { Exit::Done };
         let (coverage, direction) = directions(&prepared.demonstrations);
@@ -79,7 +78,10 @@ pub(crate) fn about(prepared: &Prepared, files: &str, lines: &mut Lines) {
         ),
     );
     if let Some(first) = prepared.left_out.first() {
-        lines.add("left out", &format!("{} ({}: {})", counted(prepared.left_out.len(), "episode"), first.episode, first.why));
+        lines.add(
+            "left out",
+            &format!("{} ({}: {})", counted(prepared.left_out.len(), "episode"), first.episode, first.why),
+        );
     }
     let rate = 1.0 / prepared.time_step;
     lines.add("time", &format!("dt {} s ({} Hz)", short(prepared.time_step), short(rate)));

@@ -31,7 +31,11 @@ impl Config {
     fn parsed(text: &str, path: &Path) -> Result<Config, Failure> {
         let tables: Table = text.parse().map_err(|error: toml::de::Error| {
             let line = error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
-            Failure::usage(error.message().to_owned(), format!("{}, line {line}", shown(path)), "`policy-align fit --print-config` writes one")
+            Failure::usage(
+                error.message().to_owned(),
+                format!("{}, line {line}", shown(path)),
+                "`policy-align fit --print-config` writes one",
+            )
         })?;
         let names: Vec<String> = groups().map(|(name, _)| name.to_owned()).collect();
         for (name, table) in &tables {
@@ -47,7 +51,13 @@ impl Config {
 
     /// Flags, and the file's where there are none.
     pub(crate) fn under<F: Serialize + DeserializeOwned>(&self, name: &str, flags: &F) -> Result<F, Failure> {
-        let wrong = |reason: &str| Failure::usage(reason.to_owned(), format!("{}, [{name}]", self.place), "`policy-align fit --print-config` writes one");
+        let wrong = |reason: &str| {
+            Failure::usage(
+                reason.to_owned(),
+                format!("{}, [{name}]", self.place),
+                "`policy-align fit --print-config` writes one",
+            )
+        };
         let mut table = match self.tables.get(name) {
             None => Table::new(),
             Some(toml::Value::Table(table)) => table.clone(),
@@ -118,7 +128,8 @@ fn example(argument: &clap::Arg) -> String {
     if !argument.get_action().takes_values() {
         return "true".to_owned();
     }
-    let possible: Vec<_> = argument.get_possible_values().iter().map(|value| format!("{:?}", value.get_name())).collect();
+    let possible: Vec<_> =
+        argument.get_possible_values().iter().map(|value| format!("{:?}", value.get_name())).collect();
     if let Some(first) = possible.first() {
         return first.clone();
     }
@@ -153,7 +164,10 @@ mod tests {
     #[test]
     fn unknown_keys_name_the_nearest() {
         let said = |text: &str| parsed(text).unwrap_err().to_string();
-        assert!(said("[fit]\n\nbandwith = 'wide'\n").contains("line 3") && said("[fit]\nbandwith = 1").contains("'bandwidth'"));
+        assert!(
+            said("[fit]\n\nbandwith = 'wide'\n").contains("line 3")
+                && said("[fit]\nbandwith = 1").contains("'bandwidth'")
+        );
         assert!(said("[rol_out]\nstep = 1\n").contains("'rollout'"));
         assert!(said("[fit\n").contains("line 1"));
         let config = parsed("[fit]\nseed = 'a'\n").unwrap();

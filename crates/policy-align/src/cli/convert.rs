@@ -38,7 +38,15 @@ impl Convert {
         })?;
         let samples = recordings.episodes.iter().map(|episode| episode.times.len()).sum();
         let mut lines = Lines::default();
-        lines.add("written", &format!("{}: {}, {}", self.output.display(), counted(recordings.episodes.len(), "episode"), counted(samples, "sample")));
+        lines.add(
+            "written",
+            &format!(
+                "{}: {}, {}",
+                self.output.display(),
+                counted(recordings.episodes.len(), "episode"),
+                counted(samples, "sample")
+            ),
+        );
         Said::done(lines.next(&format!("policy-align check {}", self.output.display())))
     }
 }

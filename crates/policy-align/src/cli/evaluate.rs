@@ -52,7 +52,11 @@ impl Evaluate {
         let prepared = self.prepared(session, &reading, &options)?;
         let names = |state: &[policy_align::StateChannel]| state.iter().map(|c| c.name.clone()).collect::<Vec<_>>();
         if names(&prepared.state) != names(&model.state) {
-            let what = format!("the channels are {}, the model's {}", names(&prepared.state).join(", "), names(&model.state).join(", "));
+            let what = format!(
+                "the channels are {}, the model's {}",
+                names(&prepared.state).join(", "),
+                names(&model.state).join(", ")
+            );
             return Err(Failure::usage(what, named(&self.files), format!("--state {}", names(&model.state).join(","))));
         }
         let truth = self.truth(session, &reading, &model)?;
@@ -63,7 +67,8 @@ impl Evaluate {
         let failed = self.require.is_some_and(|most| judged.policy_error.is_nan() || judged.policy_error > most);
         let exit = if failed { Exit::Refused } else { Exit::Done };
         if session.json {
-            let document = json!({ "evaluation": judged, "episodes": prepared.episodes, "constraints": by_constraint(&prepared, &judged) });
+            let constraints = by_constraint(&prepared, &judged);
+            let document = json!({ "evaluation": judged, "episodes": prepared.episodes, "constraints": constraints });
             return Ok(Said { text: format!("{document}\n"), exit });
         }
         let mut lines = Lines::default();
@@ -99,17 +104,28 @@ impl Evaluate {
             let what = format!("{} columns for {}", recordings.state.len(), counted(scale.len(), "channel"));
             return Err(Failure::usage(what, "--truth", "a column for each channel, in their order"));
         }
-        let actions = DMatrix::from_columns(&columns.iter().map(|column| column.component_mul(&scale)).collect::<Vec<_>>());
+        let actions =
+            DMatrix::from_columns(&columns.iter().map(|column| column.component_mul(&scale)).collect::<Vec<_>>());
         Ok(Some(Truth { actions, projectors: None }))
     }
 }
 
 fn tell(prepared: &Prepared, judged: &Evaluation, lines: &mut Lines) {
     let count = prepared.demonstrations.n_trajectories();
-    lines.add("held against", &format!("{}, {}", counted(count, "episode"), counted(prepared.demonstrations.n_samples(), "sample")));
-    lines.add("error", &format!("{} of the policy, {} of what was seen (0 explains everything)", short(judged.policy_error), short(judged.slope_error)));
+    lines.add(
+        "held against",
+        &format!("{}, {}", counted(count, "episode"), counted(prepared.demonstrations.n_samples(), "sample")),
+    );
+    lines.add(
+        "error",
+        &format!(
+            "{} of the policy, {} of what was seen (0 explains everything)",
+            short(judged.policy_error),
+            short(judged.slope_error)
+        ),
+    );
     let errors = prepared.episodes.iter().zip(&judged.episodes).filter_map(|(name, error)| Some((name, (*error)?)));
-    if let Some((name, error)) = errors.max_by(|a, b| a.1.total_cmp(&b.1)) {
+    if let Some((name, error)) = errors.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, error)| *error >= 0.01) {
         lines.add("worst", &format!("episode {name}: {} of what was seen", short(error)));
     }
     for (label, error) in by_constraint(prepared, judged) {

@@ -53,14 +53,21 @@ impl Export {
         };
         let bytes = bytes.map_err(|error| match error {
             ExportError::Name { .. } => Failure::usage(error.to_string(), "--name", "--name policy"),
-            error => Failure::new(Exit::Refused, error.to_string(), shown(&self.model), "another learner: `policy-align fit --learner`"),
+            error => Failure::new(
+                Exit::Refused,
+                error.to_string(),
+                shown(&self.model),
+                "another learner: `policy-align fit --learner`",
+            ),
         })?;
         write_whole(&output, &bytes).map_err(|error| Failure::writing(&output, error))?;
         let mut lines = Lines::default();
         lines.add("written", &format!("{} ({})", output.display(), size(bytes.len())));
         let next = match self.to {
             Target::C => format!("cc -std=c99 -O2 -c {}", output.display()),
-            Target::Onnx => format!("python -c \"import onnxruntime as o; o.InferenceSession('{}')\"", output.display()),
+            Target::Onnx => {
+                format!("python -c \"import onnxruntime as o; o.InferenceSession('{}')\"", output.display())
+            }
         };
         Said::done(lines.next(&next))
     }

@@ -42,7 +42,12 @@ impl Failure {
     }
 
     pub(crate) fn writing(path: &Path, reason: impl fmt::Display) -> Self {
-        Failure::new(Exit::File, format!("cannot be written: {reason}"), shown(path), "-o with a folder that you may write to")
+        Failure::new(
+            Exit::File,
+            format!("cannot be written: {reason}"),
+            shown(path),
+            "-o with a folder that you may write to",
+        )
     }
 
     pub(crate) fn reading(path: &Path, reason: impl fmt::Display) -> Self {
@@ -68,7 +73,9 @@ impl Failure {
 
     pub(crate) fn fit(error: &FitError, place: String) -> Self {
         let text = error.to_string();
-        let (what, remedy) = text.rsplit_once("; ").unwrap_or((&text, "more recordings, or `policy-align check` for what is wrong with these"));
+        let (what, remedy) = text
+            .rsplit_once("; ")
+            .unwrap_or((&text, "more recordings, or `policy-align check` for what is wrong with these"));
         let exit = if matches!(error, FitError::Option { .. }) { Exit::Usage } else { Exit::Refused };
         Failure::new(exit, what, place, remedy)
     }
@@ -76,7 +83,11 @@ impl Failure {
     pub(crate) fn constraints(path: &Path, error: &ConstraintFileError) -> Self {
         match error {
             ConstraintFileError::File { file, source } => Failure::reading(Path::new(file), source),
-            _ => Failure::usage(error.to_string(), shown(path), "`policy-align rollout --help` shows what such a file holds"),
+            _ => Failure::usage(
+                error.to_string(),
+                shown(path),
+                "`policy-align rollout --help` shows what such a file holds",
+            ),
         }
     }
 }
@@ -86,7 +97,9 @@ impl From<ReadError> for Failure {
         let fault = error.fault();
         let exit = match error {
             ReadError::Option(_) => Exit::Usage,
-            ReadError::NoColumn(_) | ReadError::AmbiguousColumn(_) | ReadError::NoRoles(_) | ReadError::NoTime(_) => Exit::Usage,
+            ReadError::NoColumn(_) | ReadError::AmbiguousColumn(_) | ReadError::NoRoles(_) | ReadError::NoTime(_) => {
+                Exit::Usage
+            }
             _ => Exit::File,
         };
         Failure::new(exit, &fault.what, &fault.place, &fault.remedy)

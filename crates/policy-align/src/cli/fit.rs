@@ -56,8 +56,7 @@ impl Fit {
         let place = || named(&self.files);
         let recordings = read(session, &self.files, &reading.options()?)?;
         let (recordings, held_out) = divided(recordings, &learning.hold_out, &place())?;
-        let prepared =
-            prepare(&recordings, &prepare_options).map_err(|error| Failure::prepare(&error, place()))?;
+        let prepared = prepare(&recordings, &prepare_options).map_err(|error| Failure::prepare(&error, place()))?;
         let bar = session.bar(4, "{msg}  {bar:30} step {pos} of {len}, {elapsed} gone");
         let never = AtomicBool::new(false);
         let mut report = |step: policy_align::Step| {
@@ -73,7 +72,12 @@ impl Fit {
         let judged = held_out.map(|held_out| judged(&held_out, &prepare_options, &model)).transpose()?;
         model.save(&self.output).map_err(|error| match error {
             policy_align::ModelError::File(reason) => Failure::writing(&self.output, reason),
-            error => Failure::new(Exit::Refused, error.to_string(), place(), "`policy-align check` for what is wrong with the recordings"),
+            error => Failure::new(
+                Exit::Refused,
+                error.to_string(),
+                place(),
+                "`policy-align check` for what is wrong with the recordings",
+            ),
         })?;
         let written = self.reported(&model, &prepared)?;
         self.said(session, &model, &written, judged.as_ref())
@@ -88,7 +92,8 @@ impl Fit {
         let html = trust_page(model, &base_name(&self.output), Some(&prepared.demonstrations));
         write_whole(&page, html.as_bytes()).map_err(|error| Failure::writing(&page, error))?;
         let document = json!({ "trust": model.trust, "decisions": model.decisions, "left_out": model.data.left_out });
-        write_whole(&numbers, format!("{document:#}\n").as_bytes()).map_err(|error| Failure::writing(&numbers, error))?;
+        write_whole(&numbers, format!("{document:#}\n").as_bytes())
+            .map_err(|error| Failure::writing(&numbers, error))?;
         Ok(vec![page, numbers])
     }
 
@@ -101,7 +106,8 @@ impl Fit {
     ) -> Result<Said, Failure> {
         let exit = if model.trust.verdict == Verdict::DoNotUse { Exit::Refused } else { Exit::Done };
         if session.json {
-            let files: Vec<String> = std::iter::once(&self.output).chain(written).map(|path| path.display().to_string()).collect();
+            let files: Vec<String> =
+                std::iter::once(&self.output).chain(written).map(|path| path.display().to_string()).collect();
             let document = json!({
                 "written": files, "trust": model.trust, "decisions": model.decisions, "data": model.data,
                 "hold_out": held_out,
@@ -110,8 +116,12 @@ impl Fit {
         }
         let mut lines = Lines::default();
         let data = &model.data;
-        let left_out = if data.left_out.is_empty() { String::new() } else { format!(", {} left out", data.left_out.len()) };
-        lines.add("learnt from", &format!("{}, {}{left_out}", counted(data.episodes, "episode"), counted(data.samples, "sample")));
+        let left_out =
+            if data.left_out.is_empty() { String::new() } else { format!(", {} left out", data.left_out.len()) };
+        lines.add(
+            "learnt from",
+            &format!("{}, {}{left_out}", counted(data.episodes, "episode"), counted(data.samples, "sample")),
+        );
         if let Some(decision) = model.decisions.iter().find(|decision| decision.what == "learner") {
             lines.add("learner", &format!("{} ({})", decision.value, decision.why));
         }
@@ -125,7 +135,14 @@ impl Fit {
             ),
         );
         if let Some(judged) = held_out {
-            lines.add("hold-out", &format!("error {} of the policy on {}", short(judged.policy_error), counted(judged.episodes.len(), "episode")));
+            lines.add(
+                "hold-out",
+                &format!(
+                    "error {} of the policy on {}",
+                    short(judged.policy_error),
+                    counted(judged.episodes.len(), "episode")
+                ),
+            );
         }
         lines.add("trust", verdict(model));
         findings(&model.trust.findings, 3, &mut lines);
@@ -133,7 +150,10 @@ impl Fit {
         let beside: String = written.iter().map(|path| format!(", {}", path.display())).collect();
         lines.add("written", &format!("{} ({}){beside}", self.output.display(), size(bytes)));
         let next = if exit == Exit::Refused {
-            let page = written.first().map_or_else(|| "policy-align info ".to_owned() + &self.output.display().to_string(), |page| format!("open {}", page.display()));
+            let page = written.first().map_or_else(
+                || "policy-align info ".to_owned() + &self.output.display().to_string(),
+                |page| format!("open {}", page.display()),
+            );
             lines.next(&page)
         } else {
             let (model, picture) = (self.output.display(), self.output.with_extension("svg"));
@@ -153,11 +173,7 @@ pub(crate) fn verdict(model: &Model) -> &'static str {
 }
 
 /// Episodes to learn from, and those held out.
-fn divided(
-    recordings: Recordings,
-    names: &[String],
-    place: &str,
-) -> Result<(Recordings, Option<Recordings>), Failure> {
+fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Recordings, Option<Recordings>), Failure> {
     if names.is_empty() {
         return Ok((recordings, None));
     }
@@ -165,7 +181,11 @@ fn divided(
         if !recordings.episodes.iter().any(|episode| episode.name == *name) {
             let known: Vec<&str> = recordings.episodes.iter().take(5).map(|episode| episode.name.as_str()).collect();
             let remedy = format!("one of {}, …", known.join(", "));
-            return Err(Failure::usage(format!("there is no episode '{name}'"), format!("--hold-out, {place}"), remedy));
+            return Err(Failure::usage(
+                format!("there is no episode '{name}'"),
+                format!("--hold-out, {place}"),
+                remedy,
+            ));
         }
     }
     let (held, kept) = recordings.episodes.into_iter().partition(|episode| names.contains(&episode.name));
@@ -173,11 +193,7 @@ fn divided(
     Ok((of(kept), Some(of(held))))
 }
 
-fn judged(
-    held_out: &Recordings,
-    options: &policy_align::PrepareOptions,
-    model: &Model,
-) -> Result<Evaluation, Failure> {
+fn judged(held_out: &Recordings, options: &policy_align::PrepareOptions, model: &Model) -> Result<Evaluation, Failure> {
     let prepared = prepare(held_out, options).map_err(|error| Failure::prepare(&error, "--hold-out".to_owned()))?;
     evaluate(model.learnt.policy(), &prepared, None)
         .map_err(|error| Failure::new(Exit::Refused, error.to_string(), "--hold-out", "other episodes"))

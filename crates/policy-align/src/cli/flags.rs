@@ -224,5 +224,7 @@ fn number(text: &str, flag: &str) -> Result<f64, Failure> {
 pub(crate) fn numbers(text: &str, flag: &str) -> Result<Vec<f64>, Failure> {
     let numbers = text.split(',').map(|number| number.trim().parse());
     let numbers: Result<Vec<f64>, _> = numbers.collect();
-    numbers.map_err(|_| Failure::usage(format!("'{text}' is not numbers with commas between"), flag, format!("{flag} 0.3,1.2")))
+    numbers.map_err(|_| {
+        Failure::usage(format!("'{text}' is not numbers with commas between"), flag, format!("{flag} 0.3,1.2"))
+    })
 }

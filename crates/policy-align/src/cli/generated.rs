@@ -47,7 +47,8 @@ impl Man {
             write_whole(&path, page(sub, &name)?.as_bytes()).map_err(|error| Failure::writing(&path, error))?;
         }
         let path = folder.join("policy-align.1");
-        write_whole(&path, page(command, "policy-align")?.as_bytes()).map_err(|error| Failure::writing(&path, error))?;
+        write_whole(&path, page(command, "policy-align")?.as_bytes())
+            .map_err(|error| Failure::writing(&path, error))?;
         Said::done(String::new())
     }
 }

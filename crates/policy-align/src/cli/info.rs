@@ -31,7 +31,15 @@ impl Info {
         let mut lines = Lines::default();
         lines.add("made by", &format!("{}, {}", model.made_by.program, model.made_by.time));
         let files: Vec<&str> = model.data.files.iter().take(3).map(|file| file.name.as_str()).collect();
-        lines.add("learnt from", &format!("{}, {} ({})", counted(model.data.episodes, "episode"), counted(model.data.samples, "sample"), files.join(", ")));
+        lines.add(
+            "learnt from",
+            &format!(
+                "{}, {} ({})",
+                counted(model.data.episodes, "episode"),
+                counted(model.data.samples, "sample"),
+                files.join(", ")
+            ),
+        );
         lines.add("learner", &learner(&model));
         let channel = |channel: &policy_align::StateChannel| {
             let unit = channel.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
@@ -43,7 +51,10 @@ impl Info {
             channels.push("…".to_owned());
         }
         lines.add("state", &channels.join(", "));
-        lines.add("time", &format!("dt {} s, the longest episode {} s", short(model.time_step), short(model.data.longest)));
+        lines.add(
+            "time",
+            &format!("dt {} s, the longest episode {} s", short(model.time_step), short(model.data.longest)),
+        );
         lines.add("trust", verdict(&model));
         findings(&model.trust.findings, 4, &mut lines);
         let middle: Vec<String> = model.state.iter().map(|channel| short(channel.median)).collect();
@@ -63,7 +74,9 @@ pub(crate) fn learner(model: &Model) -> String {
         Learnt::Auto(both) => {
             let reading = both.overridden().unwrap_or(both.reading());
             let taken = if both.numbers().takes_slope(reading) { "slope GP" } else { "direct GP" };
-            format!("{taken}, chosen between slope and direct GP (reading: {reading:?})").to_lowercase().replace("gp", "GP")
+            format!("{taken}, chosen between slope and direct GP (reading: {reading:?})")
+                .to_lowercase()
+                .replace("gp", "GP")
         }
     }
 }

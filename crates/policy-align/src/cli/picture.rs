@@ -130,7 +130,13 @@ impl<'a> Picture<'a> {
             return None;
         }
         let spacing = (xs[1] - xs[0]).min(ys[1] - ys[0]);
-        Some(Layer::Arrows { arrows, color: ARROW, scale: 1.2 * spacing / longest, width: 1.0, label: Some("learnt".to_owned()) })
+        Some(Layer::Arrows {
+            arrows,
+            color: ARROW,
+            scale: 1.2 * spacing / longest,
+            width: 1.0,
+            label: Some("learnt".to_owned()),
+        })
     }
 }
 
@@ -156,7 +162,7 @@ fn unknown(x: &[f64], y: &[f64], asked: &[Vec<(f64, bool)>]) -> Vec<Layer> {
 }
 
 /// As SVG or PNG, by the extension.
-pub(crate) fn draw(path: &Path, picture: Picture<'_>) -> Result<Vec<u8>, Failure> {
+pub(crate) fn draw(path: &Path, picture: &Picture<'_>) -> Result<Vec<u8>, Failure> {
     let plane = picture.plane();
     let drawn = plot::Picture::rows(&[&[&plane]]);
     match path.extension().and_then(|extension| extension.to_str()) {

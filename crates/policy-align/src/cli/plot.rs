@@ -20,7 +20,10 @@ use super::session::{Said, Session};
 /// Two channels are drawn; all others are at the median of what was learnt from.
 /// Where nothing was learnt it is grey.
 #[derive(Debug, Args)]
-#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align plot toy.json -o toy.svg --files toy.csv --rollout 1.5,1")]
+#[command(
+    verbatim_doc_comment,
+    after_help = "Example:\n  policy-align plot toy.json -o toy.svg --files toy.csv --rollout 1.5,1"
+)]
 pub(crate) struct Plot {
     /// A model that `fit` has written
     model: PathBuf,
@@ -63,10 +66,20 @@ impl Plot {
             Ok(followed(&flags, &model, &start, from)?.states)
         });
         let picture = Picture::of(&model, dims, shown, paths.collect::<Result<_, Failure>>()?);
-        write_whole(&self.output, &draw(&self.output, picture)?).map_err(|error| Failure::writing(&self.output, error))?;
+        write_whole(&self.output, &draw(&self.output, &picture)?)
+            .map_err(|error| Failure::writing(&self.output, error))?;
         let mut lines = Lines::default();
-        lines.add("written", &format!("{}: {} across, {} up", self.output.display(), model.state[dims[0]].name, model.state[dims[1]].name));
-        let start: Vec<String> = model.state.iter().map(|channel| super::lines::short(channel.high * 0.5 + channel.median * 0.5)).collect();
+        lines.add(
+            "written",
+            &format!(
+                "{}: {} across, {} up",
+                self.output.display(),
+                model.state[dims[0]].name,
+                model.state[dims[1]].name
+            ),
+        );
+        let start: Vec<String> =
+            model.state.iter().map(|channel| super::lines::short(channel.high * 0.5 + channel.median * 0.5)).collect();
         Said::done(lines.next(&format!("policy-align rollout {} --from {}", self.model.display(), start.join(","))))
     }
 }
@@ -75,14 +88,22 @@ impl Plot {
 fn dims(names: &[String], model: &Model) -> Result<[usize; 2], Failure> {
     let known: Vec<&str> = model.state.iter().map(|channel| channel.name.as_str()).collect();
     if known.len() < 2 {
-        return Err(Failure::usage("a state of one channel has no picture", "plot", "`policy-align predict` with states of a file"));
+        return Err(Failure::usage(
+            "a state of one channel has no picture",
+            "plot",
+            "`policy-align predict` with states of a file",
+        ));
     }
     let place = |name: &String| known.iter().position(|known| known == name);
     match names {
         [] => Ok([0, 1]),
         [x, y] => match (place(x), place(y)) {
             (Some(x), Some(y)) if x != y => Ok([x, y]),
-            _ => Err(Failure::usage(format!("'{x},{y}' are not two channels"), "--dims", format!("two of {}", known.join(", ")))),
+            _ => Err(Failure::usage(
+                format!("'{x},{y}' are not two channels"),
+                "--dims",
+                format!("two of {}", known.join(", ")),
+            )),
         },
         _ => Err(Failure::usage("two channels are drawn", "--dims", format!("--dims {},{}", known[0], known[1]))),
     }

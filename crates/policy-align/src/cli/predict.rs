@@ -103,7 +103,14 @@ impl Predict {
         write_whole(path, text.as_bytes()).map_err(|error| Failure::writing(path, error))?;
         let unsupported = predictions.iter().filter(|prediction| !prediction.supported).count();
         let mut lines = Lines::default();
-        lines.add("written", &format!("{}: {}, {unsupported} of them outside of what was shown", path.display(), counted(predictions.len(), "state")));
+        lines.add(
+            "written",
+            &format!(
+                "{}: {}, {unsupported} of them outside of what was shown",
+                path.display(),
+                counted(predictions.len(), "state")
+            ),
+        );
         Said::done(lines.into_text())
     }
 
@@ -154,7 +161,9 @@ fn one_told(model: &Model, prediction: &Prediction) -> String {
 
 fn csv(model: &Model, states: &DMatrix<f64>, predictions: &[Prediction]) -> String {
     let names = || model.state.iter().map(|channel| channel.name.as_str());
-    let quoted = |name: String| if name.contains([',', '"', '\n']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name };
+    let quoted = |name: String| {
+        if name.contains([',', '"', '\n']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name }
+    };
     let mut header: Vec<String> = names().map(|name| quoted(name.to_owned())).collect();
     header.extend(names().map(|name| quoted(format!("u_{name}"))));
     header.push("potential".to_owned());

@@ -33,7 +33,10 @@ use super::session::{Said, Session};
 ///   link = "hand"          # channels have the names of the robot's joints
 ///   plane = [0, 0, 1]
 #[derive(Debug, Args)]
-#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align rollout toy.json --from 1.5,1 --constraint wall.toml -o path.csv")]
+#[command(
+    verbatim_doc_comment,
+    after_help = "Example:\n  policy-align rollout toy.json --from 1.5,1 --constraint wall.toml -o path.csv"
+)]
 pub(crate) struct RollOut {
     /// A model that `fit` has written
     model: PathBuf,
@@ -62,10 +65,12 @@ impl RollOut {
         }
         if let Some(plot) = &self.plot {
             let picture = Picture::of(&model, [0, 1.min(model.state.len() - 1)], vec![], vec![followed.states.clone()]);
-            write_whole(plot, &draw(plot, picture)?).map_err(|error| Failure::writing(plot, error))?;
+            write_whole(plot, &draw(plot, &picture)?).map_err(|error| Failure::writing(plot, error))?;
         }
         if session.json {
-            let columns = |matrix: &nalgebra::DMatrix<f64>| matrix.column_iter().map(|column| column.iter().copied().collect()).collect::<Vec<Vec<f64>>>();
+            let columns = |matrix: &nalgebra::DMatrix<f64>| {
+                matrix.column_iter().map(|column| column.iter().copied().collect()).collect::<Vec<Vec<f64>>>()
+            };
             let document = json!({
                 "times": followed.times, "states": columns(&followed.states),
                 "velocities": columns(&followed.velocities), "stop": stop(&followed.stop),
@@ -80,7 +85,14 @@ impl RollOut {
         let mut lines = Lines::default();
         let (count, last) = (followed.times.len(), followed.times.len() - 1);
         let end = list(followed.states.column(last).iter().copied());
-        lines.add("moved", &format!("{}  →  {end} in {} s", list(followed.states.column(0).iter().copied()), short(followed.times[last])));
+        lines.add(
+            "moved",
+            &format!(
+                "{}  →  {end} in {} s",
+                list(followed.states.column(0).iter().copied()),
+                short(followed.times[last])
+            ),
+        );
         lines.add("ended", &stop(&followed.stop));
         if let Some((by, which)) = followed.broken_by {
             let told = if by == 0.0 { "exactly".to_owned() } else { format!("to {} (constraint {which})", short(by)) };
@@ -89,7 +101,13 @@ impl RollOut {
         lines.add("states", &format!("{}, all within what was shown", counted(count, "sample")));
         match &self.output {
             Some(output) => lines.add("written", &output.display().to_string()),
-            None => return lines.next(&format!("policy-align rollout {} --from {} -o path.csv", self.model.display(), self.from)),
+            None => {
+                return lines.next(&format!(
+                    "policy-align rollout {} --from {} -o path.csv",
+                    self.model.display(),
+                    self.from
+                ));
+            }
         }
         lines.into_text()
     }
@@ -99,7 +117,9 @@ impl RollOut {
 pub(crate) fn followed(flags: &RollOutFlags, model: &Model, start: &DVector<f64>, from: &str) -> Result<Path, Failure> {
     flags.roll_out(model)?.follow(model, start).map_err(|error| {
         let exit = match error {
-            RollOutError::Unsupported { .. } | RollOutError::StartBreaks { .. } | RollOutError::StartBeyondLimit { .. } => Exit::Refused,
+            RollOutError::Unsupported { .. }
+            | RollOutError::StartBreaks { .. }
+            | RollOutError::StartBeyondLimit { .. } => Exit::Refused,
             _ => Exit::Usage,
         };
         Failure::new(exit, error.to_string(), format!("--from {from}"), error.remedy())
@@ -117,7 +137,8 @@ fn stop(stop: &Stop) -> String {
 
 /// A path as a recording of one episode.
 fn recordings(model: &Model, followed: &Path, output: &path::Path) -> Recordings {
-    let channel = |channel: &policy_align::StateChannel| Channel { name: channel.name.clone(), unit: channel.unit.clone() };
+    let channel =
+        |channel: &policy_align::StateChannel| Channel { name: channel.name.clone(), unit: channel.unit.clone() };
     let file = output.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let episode = Episode {
         name: "0".to_owned(),

@@ -34,9 +34,7 @@ impl RollOutFlags {
         let channels: Vec<String> = model.state.iter().map(|channel| channel.name.clone()).collect();
         let constraints = match &self.constraint {
             None => ConstraintSet::default(),
-            Some(path) => {
-                ConstraintSet::load(path, &channels).map_err(|error| Failure::constraints(path, &error))?
-            }
+            Some(path) => ConstraintSet::load(path, &channels).map_err(|error| Failure::constraints(path, &error))?,
         };
         let limits = match &self.limits {
             None => None,

@@ -25,8 +25,13 @@ fn parsed(text: &str, model: &Model, place: &str) -> Result<DMatrix<f64>, Failur
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let first = text.lines().next().unwrap_or_default();
     let separator = [b'\t', b';', b','].into_iter().find(|&s| first.contains(char::from(s))).unwrap_or(b',');
-    let mut reader = csv::ReaderBuilder::new().delimiter(separator).has_headers(false).trim(csv::Trim::All).from_reader(text.as_bytes());
-    let fault = |what: String, line: u64, remedy: &str| Failure::new(Exit::File, what, format!("{place}, line {line}"), remedy);
+    let mut reader = csv::ReaderBuilder::new()
+        .delimiter(separator)
+        .has_headers(false)
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    let fault =
+        |what: String, line: u64, remedy: &str| Failure::new(Exit::File, what, format!("{place}, line {line}"), remedy);
     let (mut columns, mut numbers): (Option<Vec<usize>>, Vec<f64>) = (None, Vec::new());
     for record in reader.records() {
         let record = record.map_err(|error| {
@@ -37,7 +42,11 @@ fn parsed(text: &str, model: &Model, place: &str) -> Result<DMatrix<f64>, Failur
         let Some(columns) = &columns else {
             let found = columns_of(&record, model).ok_or_else(|| {
                 let names: Vec<&str> = model.state.iter().map(|channel| channel.name.as_str()).collect();
-                fault(format!("the first row names not all of {}", names.join(", ")), line, "a header with these names, or these columns alone")
+                fault(
+                    format!("the first row names not all of {}", names.join(", ")),
+                    line,
+                    "a header with these names, or these columns alone",
+                )
             })?;
             let is_header = record.iter().any(|field| field.parse::<f64>().is_err());
             if !is_header {

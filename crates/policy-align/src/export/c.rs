@@ -12,8 +12,8 @@ const TAKEN: [&str; 56] = [
     "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum", "extern", "float",
     "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return", "short", "signed", "sizeof",
     "static", "struct", "switch", "typedef", "union", "unsigned", "void", "volatile", "while", "main", "exp", "sqrt",
-    "isfinite", "NAN", "expf", "sqrtf", "real", "N", "M", "A", "BOUNDS", "C", "Q", "V", "Z", "SCALE", "NORM", "MEAN", "CENTRE",
-    "METRIC", "SLOPE",
+    "isfinite", "NAN", "expf", "sqrtf", "real", "N", "M", "A", "BOUNDS", "C", "Q", "V", "Z", "SCALE", "NORM", "MEAN",
+    "CENTRE", "METRIC", "SLOPE",
 ];
 
 /// How a model is written in C: one file of ISO C99 that needs `math.h` alone.
@@ -83,7 +83,13 @@ impl CSource {
             Verdict::DoNotUse => "DO NOT USE",
         };
         let mut text = format!("/* A learnt policy, written by {}.\n", plain(&model.made_by.program));
-        let _ = writeln!(text, " * Learnt {} from {} episodes, {} samples,", plain(&model.made_by.time), model.data.episodes, model.data.samples);
+        let _ = writeln!(
+            text,
+            " * Learnt {} from {} episodes, {} samples,",
+            plain(&model.made_by.time),
+            model.data.episodes,
+            model.data.samples
+        );
         let _ = writeln!(text, " * one every {} s. Trust: {verdict}.", model.time_step);
         for finding in &model.trust.findings {
             let _ = writeln!(text, " *   {}", plain(&finding.what));
@@ -91,13 +97,20 @@ impl CSource {
         let _ = writeln!(text, " *\n * State x, in this order, and action u, the same per second:");
         for (at, channel) in model.state.iter().enumerate() {
             let unit = channel.unit.as_deref().map_or(String::new(), |unit| format!(" ({})", plain(unit)));
-            let _ = writeln!(text, " *   [{at}] {}{unit}, learnt from {} to {}", plain(&channel.name), channel.low, channel.high);
+            let _ = writeln!(
+                text,
+                " *   [{at}] {}{unit}, learnt from {} to {}",
+                plain(&channel.name),
+                channel.low,
+                channel.high
+            );
         }
         let _ = writeln!(
             text,
             " *\n * int {}(x, u, phi) writes the action u and the potential phi (NaN if the\n \
              * policy has none); u and phi may be NULL. It returns 1 where something was\n \
-             * learnt, and 0 elsewhere: then stop. Limits of speed are up to the caller. */\n#include <math.h>\n\ntypedef {} real;\n",
+             * learnt, and 0 elsewhere: then stop. Limits of speed are up to the caller. */\n\
+             #include <math.h>\n\ntypedef {} real;\n",
             self.name,
             self.real(),
         );
@@ -158,5 +171,10 @@ impl CSource {
 
 /// What can stand in a comment, in one line.
 fn plain(text: &str) -> String {
-    text.replace("*/", "* /").replace("/*", "/ *").replace("??/", "? ?/").chars().map(|c| if c.is_control() || c == '\\' { ' ' } else { c }).collect()
+    text.replace("*/", "* /")
+        .replace("/*", "/ *")
+        .replace("??/", "? ?/")
+        .chars()
+        .map(|c| if c.is_control() || c == '\\' { ' ' } else { c })
+        .collect()
 }

@@ -127,24 +127,36 @@ fn slope_term(c: &CSource, term: Term, dim: usize) -> String {
     match fall {
         Fall::Shape(Shape::SquaredExponential) => format!(
             "        {{ real e = {} * {exp}({} * s); g += e; h += {} * e; }}\n",
-            number(amplitude), number(-0.5 / squared), number(1.0 / squared)
+            number(amplitude),
+            number(-0.5 / squared),
+            number(1.0 / squared)
         ),
         Fall::Shape(Shape::Matern52) => format!(
             "        {{ real r = {sqrt}({five} * s) / {}, e = {} * {exp}(-r); g += ({} + r) * e; h += {} * e; }}\n",
-            number(length), number(amplitude), number(1.0), number(5.0 / squared), five = number(5.0)
+            number(length),
+            number(amplitude),
+            number(1.0),
+            number(5.0 / squared),
+            five = number(5.0)
         ),
         Fall::Shape(Shape::Matern32) => {
             let rate = 3.0_f64.sqrt() / length;
             format!(
                 "        {{ real r = {sqrt}(s), e = {} * {exp}({} * r); g += e; h += {} * e / (r > {tiny} ? r : {tiny}); }}\n",
-                number(amplitude), number(-rate), number(rate), tiny = number(1e-12)
+                number(amplitude),
+                number(-rate),
+                number(rate),
+                tiny = number(1e-12)
             )
         }
         Fall::DivergenceFree => {
             let others = dim as f64 - 1.0;
             format!(
                 "        {{ real r = s / {}, e = {} * {exp}({} * r); g += e * ({} - r); h -= {} * e; }}\n",
-                number(squared), number(amplitude / others.max(1.0)), number(-0.5), number(others),
+                number(squared),
+                number(amplitude / others.max(1.0)),
+                number(-0.5),
+                number(others),
                 number(1.0 / squared)
             )
         }
@@ -159,14 +171,21 @@ fn direct_term(c: &CSource, term: Term) -> String {
     match fall {
         Fall::Shape(Shape::Matern52) => format!(
             "        {{ real r = {sqrt}({} * s) / {}; c += {} * ({one} + r + r * r / {}) * {exp}(-r); }}\n",
-            number(5.0), number(length), number(amplitude), number(3.0), one = number(1.0)
+            number(5.0),
+            number(length),
+            number(amplitude),
+            number(3.0),
+            one = number(1.0)
         ),
         Fall::Shape(Shape::Matern32) => format!(
             "        {{ real r = {sqrt}({} * s) / {}; c += {} * ({} + r) * {exp}(-r); }}\n",
-            number(3.0), number(length), number(amplitude), number(1.0)
+            number(3.0),
+            number(length),
+            number(amplitude),
+            number(1.0)
         ),
-        Fall::Shape(Shape::SquaredExponential) | Fall::DivergenceFree => format!(
-            "        c += {} * {exp}({} * s);\n", number(amplitude), number(-0.5 / (length * length))
-        ),
+        Fall::Shape(Shape::SquaredExponential) | Fall::DivergenceFree => {
+            format!("        c += {} * {exp}({} * s);\n", number(amplitude), number(-0.5 / (length * length)))
+        }
     }
 }

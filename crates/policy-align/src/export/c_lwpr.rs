@@ -9,7 +9,8 @@ use super::lwpr_tables::LwprTables;
 /// f = mean + norm_out Σ w y / Σ w and its gradient, fields that take part above the cutoff.
 pub(super) fn write(c: &CSource, lwpr: &LwprTables, per_unit: f64, text: &mut String) {
     let (n, m) = (lwpr.norm_in.len(), lwpr.fields.len());
-    let table = |entries: usize, of: &dyn Fn(usize, usize) -> f64| DMatrix::from_fn(entries, m, |k, field| of(field, k));
+    let table =
+        |entries: usize, of: &dyn Fn(usize, usize) -> f64| DMatrix::from_fn(entries, m, |k, field| of(field, k));
     let metric = if lwpr.is_full() { n * n } else { n };
     let _ = writeln!(text, "enum {{ M = {m} }}; /* receptive fields */\n");
     c.vector("NORM", &lwpr.norm_in, text);
@@ -30,7 +31,9 @@ pub(super) fn write(c: &CSource, lwpr: &LwprTables, per_unit: f64, text: &mut St
         }
         Kernel::BiSquare => format!(
             "e = {one} - q / {four}; e = e > {zero} ? e : {zero}; w = e * e; dw = -e;",
-            one = number(1.0), four = number(4.0), zero = number(0.0)
+            one = number(1.0),
+            four = number(4.0),
+            zero = number(0.0)
         ),
     };
     let unused = if lwpr.is_full() { "int j; " } else { "" };

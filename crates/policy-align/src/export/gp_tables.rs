@@ -103,10 +103,7 @@ impl SlopeTables {
 }
 
 impl DirectTables {
-    pub(super) fn new(
-        stored: StoredGp<DirectBlock>,
-        reach: impl FnOnce(&Scaled) -> f64,
-    ) -> Result<Self, ExportError> {
+    pub(super) fn new(stored: StoredGp<DirectBlock>, reach: impl FnOnce(&Scaled) -> f64) -> Result<Self, ExportError> {
         let scaled = Scaled::new(&stored, reach)?;
         let (n, rows) = scaled.z.shape();
         if stored.weights.len() != n * rows {

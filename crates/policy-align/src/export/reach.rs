@@ -22,9 +22,8 @@ pub(super) fn squared_reach(model: &Model, scaled: &Scaled) -> f64 {
             let [low, high] = bounds[k];
             low + (high - low) * radical_inverse(index, k)
         });
-        let z = DVector::from_fn(state.len(), |k, _| {
-            (state[k] * model.state[k].scale - scaled.mean[k]) / scaled.spread
-        });
+        let z =
+            DVector::from_fn(state.len(), |k, _| (state[k] * model.state[k].scale - scaled.mean[k]) / scaled.spread);
         let nearest = scaled.z.column_iter().map(|row| (row - &z).norm_squared()).fold(f64::INFINITY, f64::min);
         (nearest, policy.is_supported(state.as_view()))
     });

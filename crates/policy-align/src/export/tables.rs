@@ -32,7 +32,8 @@ impl Tables {
         let scale = DVector::from_iterator(model.state.len(), model.state.iter().map(|channel| channel.scale));
         let shared = scale.iter().all(|&s| s == scale[0]);
         let slope = |fit: &SlopeFit| SlopeTables::new(stored::<_, StoredSlope>(fit)?, |z| squared_reach(model, z));
-        let direct = |fit: &DirectFit| DirectTables::new(stored::<_, StoredDirect>(fit)?.direct_gp, |z| squared_reach(model, z));
+        let direct =
+            |fit: &DirectFit| DirectTables::new(stored::<_, StoredDirect>(fit)?.direct_gp, |z| squared_reach(model, z));
         let learner = match &model.learnt {
             Learnt::PolicyAlign(policy) => {
                 let regression = policy.global_potential().regression();
@@ -41,7 +42,9 @@ impl Tables {
             }
             Learnt::Slope(fit) => LearnerTables::Slope(slope(fit)?),
             Learnt::Direct(fit) => LearnerTables::Direct(direct(fit)?),
-            Learnt::Auto(both) if both.numbers().takes_slope(both.overridden().unwrap_or(both.reading())) => LearnerTables::Slope(slope(both.slope())?),
+            Learnt::Auto(both) if both.numbers().takes_slope(both.overridden().unwrap_or(both.reading())) => {
+                LearnerTables::Slope(slope(both.slope())?)
+            }
             Learnt::Auto(both) => LearnerTables::Direct(direct(both.direct())?),
         };
         Ok(Tables { per_unit: if shared { scale[0].powi(-2) } else { 1.0 }, scale, bounds: model.bounds(), learner })

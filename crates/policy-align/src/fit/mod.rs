@@ -104,7 +104,8 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
 impl Fit {
     /// As it is stored.
     pub fn into_model(self, made_by: MadeBy, files: Vec<FileSummary>) -> Model {
-        let Fit { learnt, decisions, trust, state, time_step, episodes, samples, longest, speed, left_out, seed } = self;
+        let Fit { learnt, decisions, trust, state, time_step, episodes, samples, longest, speed, left_out, seed } =
+            self;
         let data = DataSummary { files, episodes, samples, longest, speed, left_out };
         Model { made_by, state, time_step, data, decisions, seed, trust, learnt }
     }

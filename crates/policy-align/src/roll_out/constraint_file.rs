@@ -174,5 +174,9 @@ fn vector(name: &str, numbers: Vec<f64>, n: usize) -> Result<DVector<f64>, Strin
 }
 
 fn positive(radius: f64) -> Result<f64, String> {
-    if radius > 0.0 && radius.is_finite() { Ok(radius) } else { Err(format!("`radius` is {radius}: it must be positive")) }
+    if radius > 0.0 && radius.is_finite() {
+        Ok(radius)
+    } else {
+        Err(format!("`radius` is {radius}: it must be positive"))
+    }
 }

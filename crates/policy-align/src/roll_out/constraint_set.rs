@@ -199,11 +199,8 @@ impl<'a> Watch<'a> {
                 continue;
             }
             let (kept, is_distance) = part.kind.kept(state).map_err(|reason| (at + 1, reason))?;
-            let broken = if is_distance {
-                -kept[0]
-            } else {
-                (&kept - &*begun.get_or_insert_with(|| kept.clone())).amax()
-            };
+            let broken =
+                if is_distance { -kept[0] } else { (&kept - &*begun.get_or_insert_with(|| kept.clone())).amax() };
             if broken > self.broken_by {
                 (self.broken_by, self.worst) = (broken, at + 1);
             }

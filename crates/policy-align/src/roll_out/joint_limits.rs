@@ -29,7 +29,8 @@ impl JointLimits {
 
     /// The first joint that is beyond its limits at a state.
     pub fn beyond(&self, state: DVectorView<'_, f64>) -> Option<&str> {
-        let (_, name, ..) = self.limits.iter().find(|(at, _, lower, upper)| !(*lower..=*upper).contains(&state[*at]))?;
+        let (_, name, ..) =
+            self.limits.iter().find(|(at, _, lower, upper)| !(*lower..=*upper).contains(&state[*at]))?;
         Some(name)
     }
 }

@@ -99,7 +99,8 @@ impl RollOut {
         start: &DVector<f64>,
         (step, seconds): (f64, f64),
     ) -> Result<Path, RollOutError> {
-        let mut method = RungeKutta::new(tolerance(model).map(|error| error.min(OF_RADIUS * self.constraints.least_radius())));
+        let mut method =
+            RungeKutta::new(tolerance(model).map(|error| error.min(OF_RADIUS * self.constraints.least_radius())));
         let mut watch = Watch::new(&self.constraints);
         let (mut times, mut states) = (vec![0.0], vec![start.clone()]);
         let mut velocities = vec![run.velocity(start, 0.0)?];
@@ -140,12 +141,7 @@ impl RollOut {
         })
     }
 
-    fn check_start(
-        &self,
-        model: &Model,
-        policy: &ModelPolicy<'_>,
-        start: &DVector<f64>,
-    ) -> Result<(), RollOutError> {
+    fn check_start(&self, model: &Model, policy: &ModelPolicy<'_>, start: &DVector<f64>) -> Result<(), RollOutError> {
         let (found, expected) = (start.len(), model.state.len());
         if found != expected {
             let names = model.state.iter().map(|channel| channel.name.clone()).collect();

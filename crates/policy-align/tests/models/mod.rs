@@ -9,7 +9,7 @@ use gp::{DirectGp, FrontEnd, ReadingLearner, Rows, SlopeGp};
 use motion::Demonstrations;
 use nalgebra::{DMatrix, DVector};
 use policy_align::{
-    DataSummary, Decision, FileSummary, Finding, LeftOutEpisode, Learnt, MadeBy, Model, StateChannel, Trust,
+    DataSummary, Decision, FileSummary, Finding, Learnt, LeftOutEpisode, MadeBy, Model, StateChannel, Trust,
     TrustNumbers, Verdict,
 };
 use rand::{RngExt as _, SeedableRng as _};
@@ -40,24 +40,33 @@ pub(crate) fn rows(demonstrations: &Demonstrations) -> Rows {
     FrontEnd::Velocities.rows(demonstrations).unwrap()
 }
 
+/// Few rows: tests want a model, not a good one.
+fn slope_gp() -> SlopeGp {
+    SlopeGp { max_rows: 200, hyper_rows: 80, ..SlopeGp::default() }
+}
+
+fn direct_gp() -> DirectGp {
+    DirectGp { max_rows: 200, hyper_rows: 80, ..DirectGp::default() }
+}
+
 pub(crate) fn slope(demonstrations: &Demonstrations) -> Model {
-    let fit = SlopeGp::default().fit(&rows(demonstrations), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
+    let fit = slope_gp().fit(&rows(demonstrations), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
     model(Learnt::Slope(Box::new(fit)), demonstrations)
 }
 
 pub(crate) fn direct(demonstrations: &Demonstrations) -> Model {
-    let fit = DirectGp::default().fit(&rows(demonstrations), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
+    let fit = direct_gp().fit(&rows(demonstrations), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
     model(Learnt::Direct(Box::new(fit)), demonstrations)
 }
 
 pub(crate) fn auto(demonstrations: &Demonstrations) -> Model {
-    let fit = ReadingLearner::default().fit(&rows(demonstrations), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
+    let learner = ReadingLearner { slope: slope_gp(), direct: direct_gp(), ..ReadingLearner::default() };
+    let fit = learner.fit(&rows(demonstrations), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
     model(Learnt::Auto(Box::new(fit)), demonstrations)
 }
 
 pub(crate) fn policy_align(demonstrations: &Demonstrations) -> Model {
-    let aligned =
-        PolicyAlign { bandwidth: Bandwidth::Medium, ..PolicyAlign::default() }.align(demonstrations).unwrap();
+    let aligned = PolicyAlign { bandwidth: Bandwidth::Medium, ..PolicyAlign::default() }.align(demonstrations).unwrap();
     let learnt = aligned.learn(&LwprRegressor::default(), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
     model(Learnt::PolicyAlign(Box::new(learnt)), demonstrations)
 }
@@ -75,8 +84,11 @@ pub(crate) fn one_of_each(demonstrations: &Demonstrations) -> [(&'static str, Mo
 /// A model around a policy.
 pub(crate) fn model(learnt: Learnt, demonstrations: &Demonstrations) -> Model {
     let channel = |axis: usize| {
-        let mut values: Vec<f64> =
-            demonstrations.trajectories().iter().flat_map(|t| t.states().row(axis).iter().copied().collect::<Vec<_>>()).collect();
+        let mut values: Vec<f64> = demonstrations
+            .trajectories()
+            .iter()
+            .flat_map(|t| t.states().row(axis).iter().copied().collect::<Vec<_>>())
+            .collect();
         values.sort_by(f64::total_cmp);
         StateChannel {
             name: ["x", "y", "z"][axis].to_owned(),
@@ -87,9 +99,10 @@ pub(crate) fn model(learnt: Learnt, demonstrations: &Demonstrations) -> Model {
             median: values[values.len() / 2],
         }
     };
-    let velocities = demonstrations.trajectories().iter().flat_map(|t| {
-        t.velocities().unwrap().column_iter().map(|u| u.norm()).collect::<Vec<_>>()
-    });
+    let velocities = demonstrations
+        .trajectories()
+        .iter()
+        .flat_map(|t| t.velocities().unwrap().column_iter().map(|u| u.norm()).collect::<Vec<_>>());
     let mut speeds: Vec<f64> = velocities.collect();
     speeds.sort_by(f64::total_cmp);
     Model {
