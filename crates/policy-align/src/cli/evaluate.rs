@@ -67,7 +67,8 @@ impl Evaluate {
         let failed = self.require.is_some_and(|most| judged.policy_error.is_nan() || judged.policy_error > most);
         let exit = if failed { Exit::Refused } else { Exit::Done };
         if session.json {
-            let document = json!({ "evaluation": judged, "episodes": prepared.episodes, "constraints": by_constraint(&prepared, &judged) });
+            let constraints = by_constraint(&prepared, &judged);
+            let document = json!({ "evaluation": judged, "episodes": prepared.episodes, "constraints": constraints });
             return Ok(Said { text: format!("{document}\n"), exit });
         }
         let mut lines = Lines::default();
@@ -124,7 +125,7 @@ fn tell(prepared: &Prepared, judged: &Evaluation, lines: &mut Lines) {
         ),
     );
     let errors = prepared.episodes.iter().zip(&judged.episodes).filter_map(|(name, error)| Some((name, (*error)?)));
-    if let Some((name, error)) = errors.max_by(|a, b| a.1.total_cmp(&b.1)) {
+    if let Some((name, error)) = errors.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, error)| *error >= 0.01) {
         lines.add("worst", &format!("episode {name}: {} of what was seen", short(error)));
     }
     for (label, error) in by_constraint(prepared, judged) {

@@ -162,7 +162,7 @@ fn unknown(x: &[f64], y: &[f64], asked: &[Vec<(f64, bool)>]) -> Vec<Layer> {
 }
 
 /// As SVG or PNG, by the extension.
-pub(crate) fn draw(path: &Path, picture: Picture<'_>) -> Result<Vec<u8>, Failure> {
+pub(crate) fn draw(path: &Path, picture: &Picture<'_>) -> Result<Vec<u8>, Failure> {
     let plane = picture.plane();
     let drawn = plot::Picture::rows(&[&[&plane]]);
     match path.extension().and_then(|extension| extension.to_str()) {

@@ -66,7 +66,7 @@ impl Plot {
             Ok(followed(&flags, &model, &start, from)?.states)
         });
         let picture = Picture::of(&model, dims, shown, paths.collect::<Result<_, Failure>>()?);
-        write_whole(&self.output, &draw(&self.output, picture)?)
+        write_whole(&self.output, &draw(&self.output, &picture)?)
             .map_err(|error| Failure::writing(&self.output, error))?;
         let mut lines = Lines::default();
         lines.add(

@@ -65,7 +65,7 @@ impl RollOut {
         }
         if let Some(plot) = &self.plot {
             let picture = Picture::of(&model, [0, 1.min(model.state.len() - 1)], vec![], vec![followed.states.clone()]);
-            write_whole(plot, &draw(plot, picture)?).map_err(|error| Failure::writing(plot, error))?;
+            write_whole(plot, &draw(plot, &picture)?).map_err(|error| Failure::writing(plot, error))?;
         }
         if session.json {
             let columns = |matrix: &nalgebra::DMatrix<f64>| {

@@ -43,8 +43,8 @@ fn opening(model: &Model, title: &str) -> Markup {
             ul .findings { @for finding in &model.trust.findings { (found(finding)) } }
         }
         p { "Learnt by " (learner(model)) ", from " (counted(model.data.episodes, "episode")) " with "
-            (counted(model.data.samples, "sample")) ". All this is found without knowing the true policy: a constraint that "
-            "is the same in every demonstration cannot be seen in data." }
+            (counted(model.data.samples, "sample")) ". All this is found without knowing the true policy: a "
+            "constraint that is the same in every demonstration cannot be seen in data." }
     }
 }
 
@@ -68,8 +68,8 @@ fn field(model: &Model, shown: Option<&Demonstrations>) -> Markup {
     let svg = plot::Picture::rows(&[&[&plane]]).svg();
     let rest = if model.state.len() > 2 { " All other channels are at their median." } else { "" };
     let caption = format!(
-        "Arrows are the learnt action, grey lines its potential where it has one, blue lines what was shown. Grey areas are \
-         outside of what was shown: nothing is known there.{rest}"
+        "Arrows are the learnt action, grey lines its potential where it has one, blue lines what was shown. Grey areas \
+         are outside of what was shown: nothing is known there.{rest}"
     );
     Card { id: "field", title: "What was learnt", caption: &caption, remark: None, svg: &svg }.under("What was learnt")
 }
@@ -87,10 +87,10 @@ fn numbers(model: &Model) -> Markup {
             thead { tr { th { "What" } th .value { "Value" } th { "Good is" } } }
             tbody {
                 (row("Error along movements left out", short(numbers.held_out_error), "below 0.15"))
-                (row("The same of the direct learner, which takes velocities as they are", short(numbers.held_out_error_direct), "for comparison"))
+                (row("The same of averaging (the direct learner)", short(numbers.held_out_error_direct), "for comparison"))
                 (row("Error of the direct learner in all directions", short(numbers.direct_error), "for comparison"))
                 (row("Error that the policy expects of itself", short(numbers.expected_error), "below 0.15"))
-                (row("Difference of slope and direct policy", short(numbers.gap), "for comparison: large where constraints acted"))
+                (row("Difference of slope and direct policy", short(numbers.gap), "large where constraints acted"))
                 @if let Some((_, error)) = numbers.episode_errors.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
                     (row("The worst movement left out", short(*error), "not far from the others"))
                 }
@@ -136,7 +136,10 @@ fn decisions(model: &Model) -> Markup {
             thead { tr { th { "What" } th { "Decided" } th { "Why" } th { "Flag" } } }
             tbody {
                 @for decision in &model.decisions {
-                    tr { td { (decision.what) } td { (decision.value) } td { (decision.why) } td { code { (decision.flag) } } }
+                    tr {
+                        td { (decision.what) } td { (decision.value) } td { (decision.why) }
+                        td { code { (decision.flag) } }
+                    }
                 }
             }
         }
@@ -144,25 +147,28 @@ fn decisions(model: &Model) -> Markup {
 }
 
 fn data(model: &Model) -> Markup {
+    let left_out: Vec<String> =
+        model.data.left_out.iter().map(|left| format!("{} ({})", left.episode, left.why)).collect();
+    let files: Vec<String> =
+        model.data.files.iter().map(|file| format!("{}, SHA-256 {:.16}", file.name, file.sha256)).collect();
     html! {
-        table .numbers {
-            thead { tr { th { "Channel" } th { "Unit" } th .value { "Least, median, largest" } th .value { "Scale" } } }
-            tbody {
-                @for channel in &model.state {
-                    tr {
-                        td { (channel.name) }
-                        td { (channel.unit.as_deref().unwrap_or("not given")) }
-                        td .value { (list([channel.low, channel.median, channel.high])) }
-                        td .value { (short(channel.scale)) }
+            table .numbers {
+                thead { tr { th { "Channel" } th { "Unit" } th .value { "Least, median, largest" } th .value { "Scale" } } }
+                tbody {
+                    @for channel in &model.state {
+                        tr {
+                            td { (channel.name) }
+                            td { (channel.unit.as_deref().unwrap_or("not given")) }
+                            td .value { (list([channel.low, channel.median, channel.high])) }
+                            td .value { (short(channel.scale)) }
+                        }
                     }
                 }
             }
+            @if !model.data.left_out.is_empty() {
+                p { "Left out: " (left_out.join(", ")) "." }
+            }
+            p .where { "Files: "
+    (files.join("; ")) ". " (model.made_by.program) ", " (model.made_by.time) ", seed " (model.seed) "." }
         }
-        @if !model.data.left_out.is_empty() {
-            p { "Left out: " (model.data.left_out.iter().map(|left| format!("{} ({})", left.episode, left.why)).collect::<Vec<_>>().join(", ")) "." }
-        }
-        p .where { "Files: "
-            (model.data.files.iter().map(|file| format!("{}, SHA-256 {}", file.name, &file.sha256[..16.min(file.sha256.len())])).collect::<Vec<_>>().join("; "))
-            ". " (model.made_by.program) ", " (model.made_by.time) ", seed " (model.seed) "." }
-    }
 }

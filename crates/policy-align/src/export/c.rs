@@ -109,7 +109,8 @@ impl CSource {
             text,
             " *\n * int {}(x, u, phi) writes the action u and the potential phi (NaN if the\n \
              * policy has none); u and phi may be NULL. It returns 1 where something was\n \
-             * learnt, and 0 elsewhere: then stop. Limits of speed are up to the caller. */\n#include <math.h>\n\ntypedef {} real;\n",
+             * learnt, and 0 elsewhere: then stop. Limits of speed are up to the caller. */\n\
+             #include <math.h>\n\ntypedef {} real;\n",
             self.name,
             self.real(),
         );

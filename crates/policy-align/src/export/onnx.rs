@@ -6,8 +6,8 @@ use super::{onnx_gp, onnx_lwpr};
 use crate::{Model, Verdict};
 
 /// The version of the operators, and of the format that came with them.
-const OPERATORS: i64 = 17;
-const FORMAT: i64 = 8;
+const OPERATORS: u64 = 17;
+const FORMAT: u64 = 8;
 
 /// A model as ONNX: operators of version 17 on doubles.
 ///

@@ -1,9 +1,9 @@
 use super::protobuf::Message;
 
 /// Types of ONNX tensors.
-const INT64: i64 = 7;
-const BOOL: i64 = 9;
-const DOUBLE: i64 = 11;
+const INT64: u64 = 7;
+const BOOL: u64 = 9;
+const DOUBLE: u64 = 11;
 
 /// Name of a tensor.
 pub(super) type Tensor = String;
@@ -44,13 +44,13 @@ impl Graph {
         self.constant(&[], [value])
     }
 
-    fn axis(&mut self, axis: i64) -> Tensor {
+    fn axis(&mut self, axis: u64) -> Tensor {
         self.tensor(&[1], INT64, &axis.to_le_bytes())
     }
 
-    fn tensor(&mut self, shape: &[usize], kind: i64, bytes: &[u8]) -> Tensor {
+    fn tensor(&mut self, shape: &[usize], kind: u64, bytes: &[u8]) -> Tensor {
         let name = self.name("c");
-        let shaped = shape.iter().fold(Message::default(), |message, &length| message.integer(1, length as i64));
+        let shaped = shape.iter().fold(Message::default(), |message, &length| message.integer(1, length as u64));
         let tensor = shaped.integer(2, kind).text(8, &name).bytes(9, bytes);
         self.constants = std::mem::take(&mut self.constants).message(5, &tensor);
         name
@@ -76,14 +76,14 @@ impl Graph {
     }
 
     /// Sum along an axis, which disappears.
-    pub(super) fn sum(&mut self, tensor: &str, axis: i64) -> Tensor {
+    pub(super) fn sum(&mut self, tensor: &str, axis: u64) -> Tensor {
         let (axis, name) = (self.axis(axis), self.name("t"));
         self.add("ReduceSum", &[tensor, &axis], &name, &[integer("keepdims", 0)]);
         name
     }
 
     /// Least number along an axis, which disappears.
-    pub(super) fn least(&mut self, tensor: &str, axis: i64) -> Tensor {
+    pub(super) fn least(&mut self, tensor: &str, axis: u64) -> Tensor {
         let name = self.name("t");
         let axes = Message::default().text(1, "axes").integer(8, axis).integer(20, 7);
         self.add("ReduceMin", &[tensor], &name, &[axes, integer("keepdims", 0)]);
@@ -91,7 +91,7 @@ impl Graph {
     }
 
     /// With a new axis of length 1.
-    pub(super) fn unsqueezed(&mut self, tensor: &str, axis: i64) -> Tensor {
+    pub(super) fn unsqueezed(&mut self, tensor: &str, axis: u64) -> Tensor {
         let axis = self.axis(axis);
         self.node("Unsqueeze", &[tensor, &axis])
     }
@@ -126,15 +126,15 @@ impl Graph {
 }
 
 /// An attribute that is a whole number.
-fn integer(name: &str, value: i64) -> Message {
+fn integer(name: &str, value: u64) -> Message {
     Message::default().text(1, name).integer(3, value).integer(20, 2)
 }
 
 /// An input or output: its first axis counts states.
-fn value(name: &str, kind: i64, n: Option<usize>) -> Message {
+fn value(name: &str, kind: u64, n: Option<usize>) -> Message {
     let dimension = |dimension: Message| Message::default().message(1, &dimension);
     let shape = dimension(Message::default().text(2, "states"));
-    let shape = n.map_or(shape.clone(), |n| shape.message(1, &Message::default().integer(1, n as i64)));
+    let shape = n.map_or(shape.clone(), |n| shape.message(1, &Message::default().integer(1, n as u64)));
     let tensor = Message::default().integer(1, kind).message(2, &shape);
     Message::default().text(1, name).message(2, &Message::default().message(1, &tensor))
 }

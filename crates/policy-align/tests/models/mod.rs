@@ -40,18 +40,28 @@ pub(crate) fn rows(demonstrations: &Demonstrations) -> Rows {
     FrontEnd::Velocities.rows(demonstrations).unwrap()
 }
 
+/// Few rows: tests want a model, not a good one.
+fn slope_gp() -> SlopeGp {
+    SlopeGp { max_rows: 200, hyper_rows: 80, ..SlopeGp::default() }
+}
+
+fn direct_gp() -> DirectGp {
+    DirectGp { max_rows: 200, hyper_rows: 80, ..DirectGp::default() }
+}
+
 pub(crate) fn slope(demonstrations: &Demonstrations) -> Model {
-    let fit = SlopeGp::default().fit(&rows(demonstrations), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
+    let fit = slope_gp().fit(&rows(demonstrations), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
     model(Learnt::Slope(Box::new(fit)), demonstrations)
 }
 
 pub(crate) fn direct(demonstrations: &Demonstrations) -> Model {
-    let fit = DirectGp::default().fit(&rows(demonstrations), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
+    let fit = direct_gp().fit(&rows(demonstrations), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
     model(Learnt::Direct(Box::new(fit)), demonstrations)
 }
 
 pub(crate) fn auto(demonstrations: &Demonstrations) -> Model {
-    let fit = ReadingLearner::default().fit(&rows(demonstrations), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
+    let learner = ReadingLearner { slope: slope_gp(), direct: direct_gp(), ..ReadingLearner::default() };
+    let fit = learner.fit(&rows(demonstrations), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
     model(Learnt::Auto(Box::new(fit)), demonstrations)
 }
 
