@@ -56,9 +56,7 @@ impl Task {
         let value = fit + columns * factor.half_log_determinant() + prior;
         // c K⁻¹ − AAᵀ: every derivative is half its inner product with that of K.
         let mut slack = factor.inverse();
-        if weights.ncols() > 1 {
-            slack *= columns;
-        }
+        slack *= columns;
         add_product_below(&mut slack, -1.0, view(&weights), view(&weights).transpose());
         let slacks = Arch::new().dispatch(InnerProducts { matrix: &slack, blocks: &self.blocks });
         let noise_slack: f64 = self.noise_weights.iter().enumerate().map(|(i, weight)| weight * slack[(i, i)]).sum();

@@ -186,3 +186,20 @@ fn one_dimension_has_no_rotation_and_two_movements_are_cut() {
     assert_eq!(both.reading(), gp::Reading::TooFew);
     assert_eq!(both.action(two.states().column(0)), both.direct().action(two.states().column(0)));
 }
+
+/// Where the first family predicts exactly, no other is tried; where it does not, all are.
+#[test]
+fn an_exact_family_has_no_rival() {
+    let learner = SlopeGp { curl_test: CurlTest::AssumePotential, ..SlopeGp::default() };
+    let families = |policy: fn(&DVector<f64>) -> DVector<f64>| {
+        let given = rows(2, (8, 12), policy, &mut rng(3));
+        let report = learner.fit(&given, &mut rng(4)).expect("a fit").report().clone();
+        (report.families.len(), report.family, 1.0 - report.r_squared)
+    };
+    let (tried, family, left) = families(|x| -x);
+    assert_eq!((tried, family), (1, Family::Smooth));
+    assert!(left < 1e-8, "{left}");
+    let (tried, _, left) = families(|x| x.map(f64::signum) * -1.0);
+    assert_eq!(tried, 3);
+    assert!(left > 1e-8, "{left}");
+}

@@ -26,8 +26,9 @@ const STEPS: i32 = 20;
 /// Errors below this are told as this.
 const LEAST_ERROR: f64 = 1e-9;
 
-/// Pixels.
+/// Pixels; with a scale of colours.
 const SIZE: (f64, f64) = (330.0, 350.0);
+const SIZE_WITH_SCALE: (f64, f64) = (430.0, 350.0);
 
 pub(super) fn document() -> Document {
     Document::new("beyond_fields", Some("beyond"), fields)
@@ -138,7 +139,7 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
             stroke: Who::Demonstration.stroke(1.4),
             label: None,
         });
-        plane(title, std::iter::once(colors).chain(ways).collect())
+        state_plane(title, EXTENT, std::iter::once(colors).chain(ways).collect(), SIZE_WITH_SCALE)
     };
     let panels: [Plane; 7] = [
         plane("(a) Ten constrained movements", demonstrated::layers(&fields.contours, movements(), 1.6)),
