@@ -63,7 +63,7 @@ fn errors_have_three_lines_and_a_code() {
         ("fit toy.csv --learner avto", 2, "auto"),
         ("fit toy.csv --bandwidth big", 2, "--bandwidth auto"),
         ("fit toy.csv --hold-out nobody", 2, "there is no episode 'nobody'"),
-        ("fit toy.csv --scale q=2", 1, "q"),
+        ("fit toy.csv --scale q=2", 2, "'q'"),
         ("fit toy.csv -o none/model.json", 3, "cannot be written"),
         ("predict toy.json --at 1", 2, "one for each of x, y"),
         ("predict toy.json --at a,b", 2, "--at 0.3,1.2"),

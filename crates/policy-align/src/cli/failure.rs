@@ -68,7 +68,13 @@ impl Failure {
         // Messages say what next after a semicolon.
         let text = error.to_string();
         let (what, remedy) = text.rsplit_once("; ").unwrap_or((&text, "other recordings"));
-        Failure::new(Exit::Refused, what, place, remedy)
+        let exit = match error {
+            PrepareError::UnknownChannel { .. } | PrepareError::Scale { .. } | PrepareError::TimeStep { .. } => {
+                Exit::Usage
+            }
+            _ => Exit::Refused,
+        };
+        Failure::new(exit, what, place, remedy)
     }
 
     pub(crate) fn fit(error: &FitError, place: String) -> Self {

@@ -152,23 +152,23 @@ fn data(model: &Model) -> Markup {
     let files: Vec<String> =
         model.data.files.iter().map(|file| format!("{}, SHA-256 {:.16}", file.name, file.sha256)).collect();
     html! {
-            table .numbers {
-                thead { tr { th { "Channel" } th { "Unit" } th .value { "Least, median, largest" } th .value { "Scale" } } }
-                tbody {
-                    @for channel in &model.state {
-                        tr {
-                            td { (channel.name) }
-                            td { (channel.unit.as_deref().unwrap_or("not given")) }
-                            td .value { (list([channel.low, channel.median, channel.high])) }
-                            td .value { (short(channel.scale)) }
-                        }
+        table .numbers {
+            thead { tr { th { "Channel" } th { "Unit" } th .value { "Least, median, largest" } th .value { "Scale" } } }
+            tbody {
+                @for channel in &model.state {
+                    tr {
+                        td { (channel.name) }
+                        td { (channel.unit.as_deref().unwrap_or("not given")) }
+                        td .value { (list([channel.low, channel.median, channel.high])) }
+                        td .value { (short(channel.scale)) }
                     }
                 }
             }
-            @if !model.data.left_out.is_empty() {
-                p { "Left out: " (left_out.join(", ")) "." }
-            }
-            p .where { "Files: "
-    (files.join("; ")) ". " (model.made_by.program) ", " (model.made_by.time) ", seed " (model.seed) "." }
         }
+        @if !model.data.left_out.is_empty() {
+            p { "Left out: " (left_out.join(", ")) "." }
+        }
+        p .where { "Files: "
+        (files.join("; ")) ". " (model.made_by.program) ", " (model.made_by.time) ", seed " (model.seed) "." }
+    }
 }
