@@ -48,13 +48,13 @@ fn the_same_seed_gives_the_same_bits_at_any_number_of_threads() {
         let one = threads(1).install(|| fit(&prepared, &small(learner)).unwrap());
         let three = threads(3).install(|| fit(&prepared, &small(learner)).unwrap());
         assert!(text(&one) == text(&three), "{learner:?}");
-        let same = match (learner, &one.learnt) {
+        let same = matches!(
+            (learner, &one.learnt),
             (LearnerChoice::Auto, Learnt::Auto(_))
-            | (LearnerChoice::PolicyAlign, Learnt::PolicyAlign(_))
-            | (LearnerChoice::Slope, Learnt::Slope(_))
-            | (LearnerChoice::Direct, Learnt::Direct(_)) => true,
-            _ => false,
-        };
+                | (LearnerChoice::PolicyAlign, Learnt::PolicyAlign(_))
+                | (LearnerChoice::Slope, Learnt::Slope(_))
+                | (LearnerChoice::Direct, Learnt::Direct(_))
+        );
         assert!(same, "{learner:?}");
     }
 }

@@ -17,7 +17,7 @@ use motion::{LearntPolicy, Policy};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::trust::{AlignedNumbers, Evidence, TrustNumbers, judge, share_leaving};
+use crate::trust::{AlignedNumbers, Evidence, TrustNumbers, judge, share_leaving, share_unknown};
 use crate::{
     DataSummary, Decision, FileSummary, FitError, Learnt, LeftOutEpisode, MadeBy, Model, Prepared, StateChannel, Trust,
 };
@@ -241,11 +241,19 @@ fn numbers(
         } else {
             None
         },
+        unknown: unknown(readings, prepared, rows),
         leaving: share_leaving(policy, &prepared.demonstrations),
         step_noise: prepared.noise.step_share,
         grouping: of.grouping,
         aligned: aligned_numbers,
     }
+}
+
+/// What the policy does not know of itself between the movements shown.
+fn unknown(readings: &BothReadings, prepared: &Prepared, rows: &gp::Rows) -> f64 {
+    let states = actions::states(rows);
+    let variance = actions::spread(&actions::actions(readings, &states)) / states.ncols() as f64;
+    share_unknown(readings, &prepared.demonstrations, variance).unwrap_or(1.0)
 }
 
 /// E′ of every movement left out, as if it were as fast as all are.

@@ -45,7 +45,7 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
     let noise = noise::of(&episodes::demonstrations(&takes)?);
     let agreement = velocities::decide(&mut takes, options, &recordings.state, &noise, &mut notes);
     let demonstrations = episodes::demonstrations(&takes)?;
-    let recorded = noise::decide(&demonstrations, &noise, agreement, options, &mut notes);
+    let recorded = noise::decide(&demonstrations, &noise, agreement, &mut notes);
     let averaged = match recorded {
         Recorded::Positions => thinning::decide(&demonstrations, &noise, &mut notes),
         _ => 1,

@@ -3,7 +3,6 @@ use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 use smoothing::PositionNoise;
 
-use super::options::PrepareOptions;
 use super::prepared::{Notes, Recorded};
 use super::velocities::Agreement;
 use crate::Verdict;
@@ -100,7 +99,6 @@ pub(super) fn decide(
     demonstrations: &Demonstrations,
     noise: &Noise,
     agreement: Agreement,
-    _options: &PrepareOptions,
     notes: &mut Notes,
 ) -> Recorded {
     let share = noise.step_share;

@@ -135,22 +135,20 @@ fn parts(take: &Take) -> Vec<(DVector<f64>, DVector<f64>)> {
 
 /// Whether each velocity is the step after it, the step before it, or the mean of both.
 fn made_of_positions(takes: &[Take]) -> bool {
-    let off = |of: &dyn Fn(&Take, usize) -> Option<DVector<f64>>| {
+    let off = |of: &dyn Fn(&Take, usize) -> DVector<f64>| {
         let (mut left, mut power) = (0.0, 0.0);
         for take in takes {
             let Some(velocities) = &take.velocities else { continue };
             for i in 1..take.n_samples() - 1 {
-                let Some(made) = of(take, i) else { continue };
-                left += (velocities.column(i) - made).norm_squared();
+                left += (velocities.column(i) - of(take, i)).norm_squared();
                 power += velocities.column(i).norm_squared();
             }
         }
         left <= SAME * SAME * power
     };
-    let after = |take: &Take, i: usize| Some(take.step(i) / take.seconds(i));
-    let before = |take: &Take, i: usize| Some(take.step(i - 1) / take.seconds(i - 1));
-    let both =
-        |take: &Take, i: usize| Some((take.step(i) + take.step(i - 1)) / (take.seconds(i) + take.seconds(i - 1)));
+    let after = |take: &Take, i: usize| take.step(i) / take.seconds(i);
+    let before = |take: &Take, i: usize| take.step(i - 1) / take.seconds(i - 1);
+    let both = |take: &Take, i: usize| (take.step(i) + take.step(i - 1)) / (take.seconds(i) + take.seconds(i - 1));
     off(&after) || off(&before) || off(&both)
 }
 

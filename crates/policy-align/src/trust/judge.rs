@@ -21,6 +21,8 @@ const ODD: f64 = 10.0;
 const SPREAD: f64 = 0.25;
 /// Less coverage than this and one direction is a guess.
 const UNSEEN: f64 = 0.1;
+/// More of the ways between what was shown unknown than this, and other movements will meet it.
+const UNKNOWN: f64 = 0.1;
 /// From more starts than this share, and the goal lies outside what was shown.
 const LEAVING: f64 = 0.5;
 
@@ -141,6 +143,16 @@ fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &s
                 percent(halves)
             ),
             "record more movements, from other starts; less noise helps as well",
+        );
+    }
+    if numbers.unknown > UNKNOWN {
+        found(
+            Verdict::Doubtful,
+            format!(
+                "between the movements shown, the policy does not know itself on {} of the way",
+                percent(numbers.unknown)
+            ),
+            "record movements from starts in between; a roll-out says where support ends",
         );
     }
     if numbers.leaving > LEAVING {

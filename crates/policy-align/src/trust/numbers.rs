@@ -44,6 +44,9 @@ pub struct TrustNumbers {
     /// Difference of the slope policies that every other movement alone would give, as a share of the policy's variance;
     /// none where the direct policy is handed out, or halves are too few.
     pub halves: Option<f64>,
+    /// Share of the states on free ways from starts between those shown at which the Gaussian process's error bars are
+    /// as large as half of what its policy varies by.
+    pub unknown: f64,
     /// Share of the demonstrated starts from which the policy, followed freely, leaves what was shown.
     pub leaving: f64,
     /// Share of the squared steps that is noise.

@@ -2,11 +2,11 @@
 
 use constraints::{LinearConstraint, PfaffianConstraint, Switching, Unconstrained};
 use demo_gen::beyond::{BeyondSystem, Hindrance, Shown};
-use demo_gen::{Parabola, Recording, Redraw, RollOut, Sinusoidal, ThreeLinkArm, with_position_noise};
+use demo_gen::{Parabola, Recording, RollOut, Sinusoidal, ThreeLinkArm, with_position_noise};
 use demo_io::{Channel, Episode, Recordings, Source};
 use motion::{LearntPolicy, Policy, Potential};
 use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut, dvector};
-use rand::{Rng, RngExt, SeedableRng};
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
@@ -75,6 +75,23 @@ impl Case {
             column.copy_from(&(policy.action(x.as_view()).component_div(&factor) * self.seconds));
         }
         metrics::nupe(&self.actions, &learnt).expect("learnt policies are finite")
+    }
+
+    /// Whether the policy itself claims to know each fresh state: its error bars are below half the spread of policies.
+    pub(crate) fn known(&self, policy: &dyn LearntPolicy, scales: &DVector<f64>) -> Vec<bool> {
+        let factor = self.units.component_mul(scales);
+        let mean = self.actions.column_mean();
+        let spread: f64 = self.actions.column_iter().map(|action| (action - &mean).norm_squared()).sum();
+        let variance = spread / self.actions.ncols() as f64;
+        let mut deviation = DVector::zeros(factor.len());
+        let mut knows = |x: DVector<f64>| {
+            let x = x.component_mul(&factor);
+            if !policy.action_sd_into(x.as_view(), deviation.as_view_mut()) {
+                return policy.support(x.as_view()) > 0.0;
+            }
+            (deviation.component_div(&factor) * self.seconds).norm_squared() < 0.25 * variance
+        };
+        self.states.column_iter().map(|x| knows(x.into_owned())).collect()
     }
 
     /// The same in other units.
@@ -226,7 +243,7 @@ pub(crate) fn arm(count: usize, seed: u64) -> Vec<Recording> {
 
 type Make = Box<dyn Fn(u64) -> Case>;
 
-/// A case by its name, and what is wrong with it, for the table.
+/// A case by its name.
 pub(crate) struct Named {
     pub(crate) name: &'static str,
     pub(crate) make: Make,
@@ -530,11 +547,3 @@ pub(crate) fn all() -> Vec<Named> {
         }),
     ]
 }
-
-#[allow(dead_code, reason = "the generator of a case")]
-pub(crate) fn draw<R: Rng>(rng: &mut R) -> u64 {
-    rng.random()
-}
-
-#[allow(dead_code, reason = "redraw is of the library")]
-pub(crate) type Redrawn = Redraw;

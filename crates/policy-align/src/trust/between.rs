@@ -1,0 +1,46 @@
+//! Does the policy know itself where other movements would go?
+
+use motion::{Demonstrations, LearntPolicy};
+use nalgebra::DVector;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Starts made up.
+const STARTS: usize = 24;
+/// States looked at along each way, and steps between two of them.
+const STATES: usize = 8;
+const STEPS: usize = 10;
+/// A start lies on the line through two that were shown, as far beyond either as this share of their distance.
+const BEYOND: f64 = 0.25;
+/// The policy does not know itself where its error bars are over this share of its standard deviation.
+const SURE: f64 = 0.5;
+
+/// Share of the states on free ways from made-up starts at which the policy's error bars are as large as half of what it
+/// varies by; none if it has no error bars. `variance`: mean of ‖π̂ − mean‖² over what was shown.
+pub(crate) fn share_unknown(policy: &dyn LearntPolicy, demonstrations: &Demonstrations, variance: f64) -> Option<f64> {
+    let movements = demonstrations.trajectories();
+    let mut rng = ChaCha8Rng::seed_from_u64(0);
+    let mut seconds: Vec<f64> =
+        movements.iter().map(|movement| movement.seconds(0, movement.n_samples() - 1)).collect();
+    let middle = seconds.len() / 2;
+    let step = *seconds.select_nth_unstable_by(middle, f64::total_cmp).1 / (STATES * STEPS) as f64;
+    let mut deviation = DVector::zeros(demonstrations.dim());
+    let mut unknown = 0;
+    for _ in 0..STARTS {
+        let [from, to] = [0, 1].map(|_| movements[rng.random_range(0..movements.len())].state(0));
+        let mut state = from + (to - from) * rng.random_range(-BEYOND..1.0 + BEYOND);
+        for _ in 0..STATES {
+            if !policy.action_sd_into(state.as_view(), deviation.as_view_mut()) {
+                return None;
+            }
+            unknown += usize::from(deviation.norm_squared() > SURE * SURE * variance);
+            for _ in 0..STEPS {
+                state += policy.action(state.as_view()) * step;
+            }
+            if state.iter().any(|x| !x.is_finite()) {
+                return Some(1.0);
+            }
+        }
+    }
+    Some(unknown as f64 / (STARTS * STATES) as f64)
+}
