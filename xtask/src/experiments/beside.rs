@@ -202,7 +202,7 @@ mod tests {
         let mut rng = generator(1, 0, 0);
         let recordings = system.record(&mut rng).unwrap();
         let (beside, algorithm) = (toy_beside(FrontEnd::Map, 150), PolicyAlign::default());
-        let sat = beside.sit(&recordings, &[algorithm], &rng).unwrap();
+        let sat = beside.sit(&recordings, std::slice::from_ref(&algorithm), &rng).unwrap();
         let exam = examine(&recordings, &algorithm, &[Pupil::PolicyAlign(toy_regressor())], &mut rng).unwrap();
         assert_eq!(sat.judges(0)[0].samples(), exam.judge().samples());
         assert_eq!(sat.both.slope().report().rows, 150);
