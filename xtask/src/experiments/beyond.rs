@@ -58,7 +58,6 @@ fn cases() -> Vec<Case> {
         ("sinus-2d-positions-noise-5", Sinusoidal, 40, Varying, Positions(0.05), 900),
         ("wells-3d-positions-noise-1", Wells { dim: 3 }, 60, Varying, Positions(0.01), 900),
         ("wells-3d-positions-noise-5", Wells { dim: 3 }, 60, Varying, Positions(0.05), 900),
-        ("wells-22d-positions-noise-1", Wells { dim: 22 }, 100, Varying, Positions(0.01), 500),
         ("limit-cycle-2d-positions-noise-1", LimitCycle, 40, Varying, Positions(0.01), 500),
         ("sinus-2d-free", Sinusoidal, 20, Free, Velocities, 500),
         ("handwriting-free", Handwriting, 7, Free, Velocities, 500),
@@ -93,10 +92,16 @@ pub(crate) fn beyond() -> Experiment {
         decisions: "beyond.md",
         another_reading_of: None,
         contests,
-        setups: (FIRST_SYSTEM..).zip(cases).map(setup).collect(),
+        setups: systems().zip(cases).map(setup).collect(),
         paper,
         explanations,
     }
+}
+
+/// Every case has its own random numbers. The seventeenth was 22 dimensions from noisy positions, where LWPR takes four
+/// minutes a data set; the others kept theirs when it went.
+fn systems() -> impl Iterator<Item = u32> {
+    (FIRST_SYSTEM..).enumerate().filter(|(place, _)| *place != 16).map(|(_, system)| system)
 }
 
 /// A case that can be drawn: its system, by its number, and what learns from it.
