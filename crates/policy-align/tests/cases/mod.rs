@@ -77,23 +77,6 @@ impl Case {
         metrics::nupe(&self.actions, &learnt).expect("learnt policies are finite")
     }
 
-    /// Whether the policy itself claims to know each fresh state: its error bars are below half the spread of policies.
-    pub(crate) fn known(&self, policy: &dyn LearntPolicy, scales: &DVector<f64>) -> Vec<bool> {
-        let factor = self.units.component_mul(scales);
-        let mean = self.actions.column_mean();
-        let spread: f64 = self.actions.column_iter().map(|action| (action - &mean).norm_squared()).sum();
-        let variance = spread / self.actions.ncols() as f64;
-        let mut deviation = DVector::zeros(factor.len());
-        let mut knows = |x: DVector<f64>| {
-            let x = x.component_mul(&factor);
-            if !policy.action_sd_into(x.as_view(), deviation.as_view_mut()) {
-                return policy.support(x.as_view()) > 0.0;
-            }
-            (deviation.component_div(&factor) * self.seconds).norm_squared() < 0.25 * variance
-        };
-        self.states.column_iter().map(|x| knows(x.into_owned())).collect()
-    }
-
     /// The same in other units.
     pub(crate) fn in_units(mut self, units: &[f64]) -> Self {
         self.units = DVector::from_column_slice(units);

@@ -151,6 +151,7 @@ pub(crate) fn model(learnt: Learnt, demonstrations: &Demonstrations) -> Model {
                 rotation_t: None,
                 model: gp::ModelKind::Potential,
                 halves: Some(0.05),
+                unknown: 0.02,
                 leaving: 0.0,
                 step_noise: 0.001,
                 grouping: gp::Grouping::Trajectories,
