@@ -1,12 +1,12 @@
 //! From what a reader found to samples one may believe: finite, in order of time, none twice.
 
+mod finite;
+
+use self::finite::make_finite;
 use crate::draft::{Draft, Drafts};
 use crate::selection::{flags, select};
 use crate::statistics::Statistics;
-use crate::{Fault, Nan, Note, NoteKind, ReadError, ReadOptions, roles};
-
-/// At most this many samples in a row are interpolated.
-const LONGEST_FILL: usize = 3;
+use crate::{Fault, Note, NoteKind, ReadError, ReadOptions, roles};
 
 /// An episode standing still for so many samples is noted.
 pub(crate) const STILL: usize = 10;
@@ -125,77 +125,6 @@ fn degrees_to_radians(drafts: &mut Drafts, options: &ReadOptions) -> Result<(), 
         }
     }
     Ok(())
-}
-
-fn make_finite(draft: &mut Draft, names: &[String], word: &str, nan: Nan) -> Result<(), ReadError> {
-    let n = names.len();
-    let bad: Vec<usize> = (0..draft.len()).filter(|&sample| !is_finite(draft, sample, n)).collect();
-    let Some(&first) = bad.first() else { return Ok(()) };
-    match nan {
-        Nan::Refuse => Err(not_finite(draft, first, names, word)),
-        Nan::Drop => {
-            let mut bad = bad.into_iter().peekable();
-            let kept: Vec<usize> = (0..draft.len()).filter(|sample| bad.next_if_eq(sample).is_none()).collect();
-            draft.keep(&kept, n);
-            Ok(())
-        }
-        Nan::Fill => bad.chunk_by(|a, b| a + 1 == *b).try_for_each(|run| {
-            let (before, after) = (run[0].wrapping_sub(1), run[run.len() - 1] + 1);
-            let fits = run[0] > 0 && after < draft.len() && run.len() <= LONGEST_FILL;
-            if !fits || run.iter().any(|&sample| !draft.times[sample].is_finite()) {
-                return Err(not_finite(draft, run[0], names, word));
-            }
-            interpolate(draft, run, before, after, n);
-            Ok(())
-        }),
-    }
-}
-
-fn is_finite(draft: &Draft, sample: usize, n: usize) -> bool {
-    let columns = sample * n..(sample + 1) * n;
-    draft.times[sample].is_finite()
-        && draft.positions[columns.clone()].iter().all(|value| value.is_finite())
-        && (draft.velocities.is_empty() || draft.velocities[columns].iter().all(|value| value.is_finite()))
-}
-
-/// What of a sample is missing.
-fn not_finite(draft: &Draft, sample: usize, names: &[String], word: &str) -> ReadError {
-    let n = names.len();
-    let here = |numbers: &[f64]| {
-        let values = numbers.get(sample * n..(sample + 1) * n)?;
-        values.iter().enumerate().find(|(_, value)| !value.is_finite()).map(|(channel, &value)| (channel, value))
-    };
-    let (whose, value) = if !draft.times[sample].is_finite() {
-        ("the stamp".to_owned(), draft.times[sample])
-    } else if let Some((channel, value)) = here(&draft.positions) {
-        (format!("'{}'", names[channel]), value)
-    } else {
-        let (channel, value) = here(&draft.velocities).unwrap_or((0, f64::NAN));
-        (format!("the velocity of '{}'", names[channel]), value)
-    };
-    let found = if value.is_nan() { "missing or NaN".to_owned() } else { format!("{value}") };
-    let remedy = "--nan drop (leaves the sample out) or --nan fill (interpolates gaps of up to 3 samples)";
-    ReadError::NotFinite(Fault::new(format!("{whose} is no finite number: {found}"), draft.place(sample, word), remedy))
-}
-
-/// Straight between the samples around a run, in time; only what is missing.
-fn interpolate(draft: &mut Draft, run: &[usize], before: usize, after: usize, n: usize) {
-    let times = &draft.times;
-    for numbers in [&mut draft.positions, &mut draft.velocities] {
-        if numbers.is_empty() {
-            continue;
-        }
-        for &sample in run {
-            let share = (times[sample] - times[before]) / (times[after] - times[before]);
-            let share = if share.is_finite() { share } else { 0.5 };
-            for channel in 0..n {
-                if !numbers[sample * n + channel].is_finite() {
-                    let (low, high) = (numbers[before * n + channel], numbers[after * n + channel]);
-                    numbers[sample * n + channel] = low + share * (high - low);
-                }
-            }
-        }
-    }
 }
 
 /// Into the order of stamps; equal ones keep theirs.

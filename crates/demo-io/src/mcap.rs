@@ -1,13 +1,14 @@
 //! Bags of ROS 2 in MCAP: one topic becomes one recording.
 
 mod messages;
+mod noted;
 mod records;
 mod topic;
 
 use std::collections::{BTreeMap, HashMap};
 
+pub(crate) use self::noted::Noted;
 use self::records::End;
-pub(crate) use self::topic::Noted;
 use self::topic::Topic;
 use crate::draft::Drafts;
 use crate::input::Input;

@@ -1,12 +1,13 @@
 //! Parquet: columns by name as in CSV; a column of lists of equal length is as many states.
 
+mod failure;
 mod leaf;
 
 use std::collections::HashMap;
 
-use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 
+use self::failure::failed;
 use self::leaf::Leaf;
 use crate::draft::Drafts;
 use crate::input::Input;
@@ -271,31 +272,5 @@ impl Row for GroupRow<'_> {
         if let Some((values, at)) = self.values(column) {
             label.push_str(&values.label(at));
         }
-    }
-}
-
-fn failed(error: &ParquetError, input: &Input<'_>) -> ReadError {
-    let file = &input.name;
-    let copy = "another copy of the file: this one is not whole";
-    // The directory stands at the end: a file without it is cut off.
-    let ends_well = input.ends_with(b"PAR1");
-    match error {
-        ParquetError::NYI(what) | ParquetError::General(what) if unsupported(error) => {
-            let remedy = "in Python: pq.write_table(pq.read_table(IN), OUT, compression='snappy')";
-            ReadError::Unsupported(Fault::new(what.clone(), file, remedy))
-        }
-        _ if !ends_well => {
-            ReadError::Truncated(Fault::new("the file is cut off: its closing mark is missing", file, copy))
-        }
-        _ => ReadError::Corrupt(Fault::new(format!("the file is damaged: {error}"), file, "another copy of the file")),
-    }
-}
-
-/// Whether the file is fine, but not for us.
-fn unsupported(error: &ParquetError) -> bool {
-    match error {
-        ParquetError::NYI(_) => true,
-        ParquetError::General(what) => what.contains("Disabled feature"),
-        _ => false,
     }
 }

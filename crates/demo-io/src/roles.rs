@@ -1,7 +1,11 @@
 //! Which column is what, from names alone.
 
+mod names;
+
 use std::collections::HashMap;
 
+use self::names::{base, is_one_of};
+pub(crate) use self::names::{is_time, unit, velocity_names};
 use crate::selection::{flags, glob, select};
 use crate::{Fault, ReadError, ReadOptions};
 
@@ -40,22 +44,6 @@ pub(crate) struct Roles {
 
 const ROW_NUMBERS: [&str; 8] =
     ["", "unnamed: 0", "__index_level_0__", "index", "frame", "frame_index", "seq", "header.seq"];
-const TIMES: [&str; 12] = [
-    "t",
-    "time",
-    "timestamp",
-    "stamp",
-    "secs",
-    "%time",
-    "header.stamp",
-    "log_time",
-    "time_stamp",
-    "times",
-    "timestamps",
-    "stamps",
-];
-const TIME_UNITS: [&str; 12] =
-    ["s", "sec", "secs", "seconds", "ms", "msec", "milliseconds", "us", "usec", "ns", "nsec", "nanoseconds"];
 const EPISODES: [&str; 12] = [
     "episode",
     "ep",
@@ -266,76 +254,6 @@ fn quoted(names: &[&str]) -> String {
 
 fn quoted_at(names: &[&str], indices: &[usize]) -> String {
     quoted(&indices.iter().map(|&index| names[index]).collect::<Vec<_>>())
-}
-
-fn is_one_of(known: &[&str], name: &str) -> bool {
-    let name = base(name);
-    known.contains(&name.as_str())
-}
-
-pub(crate) fn is_time(name: &str) -> bool {
-    let name = base(name);
-    TIMES.contains(&name.as_str())
-        || name.rsplit_once('_').is_some_and(|(stem, unit)| TIMES.contains(&stem) && TIME_UNITS.contains(&unit))
-}
-
-/// Lower case, without a unit in brackets after a blank: `X [m]` is `x`, but `position[0]` stays.
-fn base(name: &str) -> String {
-    let name = name.trim().to_lowercase();
-    match unit_at(&name) {
-        Some(at) => name[..at].trim_end().to_owned(),
-        None => name,
-    }
-}
-
-/// The unit in brackets at the end of a name, if there is one.
-pub(crate) fn unit(name: &str) -> Option<&str> {
-    let name = name.trim();
-    unit_at(name).map(|at| name[at + 1..name.len() - 1].trim()).filter(|unit| !unit.is_empty())
-}
-
-/// Where a bracket with a unit opens: at the end, and with a letter or degree sign inside, since `position[0]` is an element.
-fn unit_at(name: &str) -> Option<usize> {
-    let opening = match name.as_bytes().last()? {
-        b']' => '[',
-        b')' => '(',
-        _ => return None,
-    };
-    let at = name.rfind(opening)?;
-    let inside = &name[at + 1..name.len() - 1];
-    (at > 0 && inside.starts_with(|letter: char| letter.is_alphabetic() || letter == '°')).then_some(at)
-}
-
-/// Names that the velocity of `state` may have, the first of them the best.
-pub(crate) fn velocity_names(state: &str) -> impl Iterator<Item = String> + use<> {
-    let s = state;
-    let mut names = vec![
-        format!("v{s}"),
-        format!("d{s}"),
-        format!("{s}dot"),
-        format!("{s}_dot"),
-        format!("{s}_vel"),
-        format!("{s}.vel"),
-        format!("{s}_velocity"),
-        format!("{s}.velocity"),
-        format!("vel_{s}"),
-        format!("velocity_{s}"),
-        format!("v_{s}"),
-        format!("d_{s}"),
-        format!("{s}_d"),
-    ];
-    if let Some(index) = s.strip_prefix('q') {
-        names.push(format!("qd{index}"));
-        names.push(format!("qdot{index}"));
-        names.push(format!("qd_{index}"));
-    }
-    if s.contains("position") {
-        names.push(s.replacen("position", "velocity", 1));
-    } else if s.contains("pos") {
-        names.push(s.replacen("pos", "vel", 1));
-    }
-    // `dt` is a time step, and `d` nobody's velocity.
-    names.into_iter().filter(|name| name != "dt")
 }
 
 #[cfg(test)]

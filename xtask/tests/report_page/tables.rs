@@ -100,7 +100,8 @@ fn every_cell_is_shown_as_it_is() {
     let second: BTreeMap<_, _> = cells(&second).into_iter().map(|cell| (cell.name.clone(), cell.value)).collect();
     let cells = cells(&results(1));
     assert!(cells.len() > 100, "{} cells", cells.len());
-    for cell in cells {
+    // Learners beside the paper's have tables of their own.
+    for cell in cells.into_iter().filter(|cell| !cell.name[1].contains('/')) {
         let places = shown.remove(&cell.name).unwrap_or_else(|| panic!("{:?} is not on the page", cell.name));
         for place in &places {
             holds(&cell, place);

@@ -2,6 +2,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 
 use super::messages::{Message, Type};
+use super::noted::episodes;
 use crate::documents::Documents;
 use crate::draft::{Clock, Draft, Drafts, Rows, ignored_note, period};
 use crate::input::Input;
@@ -268,41 +269,6 @@ impl Set {
         }
         columns
     }
-}
-
-/// The episodes that [`crate::write`] noted beside the messages; otherwise all is one.
-fn episodes(draft: Draft, n: usize, metadata: &BTreeMap<String, String>) -> Vec<Draft> {
-    let noted =
-        metadata.get("episodes").and_then(|text| serde_json::from_str::<Vec<Noted>>(text).ok()).unwrap_or_default();
-    let total: usize = noted.iter().fold(0, |total, episode| total.saturating_add(episode.messages));
-    if total != draft.len() {
-        return vec![draft];
-    }
-    let mut start = 0;
-    let cut = noted.into_iter().map(|episode| {
-        let samples = start..start + episode.messages;
-        start = samples.end;
-        let columns = samples.start * n..samples.end * n;
-        Draft {
-            name: episode.name,
-            file: draft.file.clone(),
-            rows: draft.rows.chosen(samples.clone()),
-            times: draft.times[samples].to_vec(),
-            positions: draft.positions[columns.clone()].to_vec(),
-            velocities: draft.velocities.get(columns).map_or_else(Vec::new, <[f64]>::to_vec),
-            constraint: episode.constraint,
-        }
-    });
-    cut.collect()
-}
-
-/// An episode beside the messages.
-#[derive(Debug, serde::Serialize, serde::Deserialize)]
-pub(crate) struct Noted {
-    pub(crate) name: String,
-    pub(crate) messages: usize,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) constraint: Option<String>,
 }
 
 impl fmt::Display for Topic<'_> {

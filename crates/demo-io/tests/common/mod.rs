@@ -1,5 +1,7 @@
 //! What all tests of reading need.
 
+#![allow(dead_code, reason = "every test that has this module uses a part of it")]
+
 use std::path::{Path, PathBuf};
 
 use demo_io::{NoteKind, ReadError, ReadOptions, Recordings, read};

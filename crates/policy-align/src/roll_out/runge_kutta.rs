@@ -66,7 +66,9 @@ mod tests {
     #[test]
     fn an_edge_is_passed() {
         let field = |x: &DVector<f64>| Ok::<_, Infallible>(dvector![if x[0] < 0.5 { 1.0 } else { 0.0 }]);
-        let end = RungeKutta::new(dvector![1e-4]).follow(field, dvector![0.0], 2.0).unwrap();
-        assert!((end[0] - 0.5).abs() < 1e-3, "{end}");
+        let tolerance = 1e-4;
+        let end = RungeKutta::new(dvector![tolerance]).follow(field, dvector![0.0], 2.0).unwrap();
+        // A step over an edge is as wrong as it is long: some steps' tolerances, not one.
+        assert!((end[0] - 0.5).abs() < 20.0 * tolerance, "{end}");
     }
 }

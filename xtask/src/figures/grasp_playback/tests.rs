@@ -30,7 +30,7 @@ fn the_document_says_where_the_hands_are() {
     let grasp = grasp().unwrap();
     let robot = grasp.body.robot();
     let playback = grasp_playback(1).unwrap();
-    assert_eq!(playback.movements.len(), 3 * 3 * STARTS);
+    assert_eq!(playback.movements.len(), 3 * LEARNERS.len() * STARTS);
     let links: Vec<LinkId> = robot.links().collect();
     let mut workspace = Workspace::new();
     for movement in &playback.movements {

@@ -85,14 +85,16 @@ fn contests(compared: &Compared<'_>) -> Markup {
         @if let Some(contests) = Contests::of(compared.experiment, compared.result) {
             h3 { "Learners side by side" }
             p { (CAUTION) }
-            table .list .contests {
-                thead { tr { @for name in contests.header() { th scope="col" { (name) } } } }
-                tbody {
-                    @for row in contests.rows() {
-                        tr {
-                            th scope="row" { (row[0]) }
-                            @for (cell, name) in row[1..].iter().zip(&contests.header()[1..]) {
-                                td .number data-label=(name) { (cell) }
+            div .sideways tabindex="0" role="region" aria-label={ "Learners side by side: " (compared.experiment.title) } {
+                table .list .contests {
+                    thead { tr { @for name in contests.header() { th scope="col" { (name) } } } }
+                    tbody {
+                        @for row in contests.rows() {
+                            tr {
+                                th scope="row" { (row[0]) }
+                                @for (cell, name) in row[1..].iter().zip(&contests.header()[1..]) {
+                                    td .number data-label=(name) { (cell) }
+                                }
                             }
                         }
                     }
