@@ -9,7 +9,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use demo_gen::beyond::{BeyondSystem, Shown};
 use demo_gen::{ToyPotential, ToySystem, demonstrations};
 use gp::{CurlTest, DirectGp, Family, FrontEnd, Rows, SlopeFit, SlopeGp};
-use motion::{LearntPolicy, Policy};
+use motion::{LearntPolicy, Policy, Potential};
 use nalgebra::DVector;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

@@ -3,6 +3,23 @@
 //!
 //! `DEMO_IO_FUZZ=1000000 cargo test -p demo-io --all-features --test fuzz` tries so many files of every kind.
 
+#![allow(
+    clippy::unwrap_used,
+    unreachable_pub,
+    clippy::needless_pass_by_value,
+    clippy::almost_swapped,
+    clippy::manual_swap,
+    clippy::precedence,
+    clippy::redundant_closure_for_method_calls,
+    clippy::print_stderr,
+    clippy::format_push_string,
+    clippy::approx_constant,
+    clippy::needless_lifetimes,
+    clippy::decimal_bitwise_operands,
+    clippy::format_collect,
+    reason = "a test that cannot go on has failed"
+)]
+
 mod common;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -1,5 +1,7 @@
 //! Movements with a time stamp for every sample.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 use motion::{MotionError, Trajectory};
 use nalgebra::DMatrix;
 use proptest::prelude::*;

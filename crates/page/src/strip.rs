@@ -47,7 +47,7 @@ impl Strip<'_> {
         let x = |value: f64| INSET + scale.place(value) * (WIDTH - 2.0 * INSET);
         let values = self.values.iter().enumerate().filter_map(|(i, value)| Some((i, (*value)?)));
         // One path, of which every dot is a line without length and with round ends: a page has thousands of dots.
-        let dots: String = values.map(|(i, value)| format!("M{} {}h0", pixels(x(value)), pixels(y(i)))).collect();
+        let dots: Vec<String> = values.map(|(i, value)| format!("M{} {}h0", pixels(x(value)), pixels(y(i)))).collect();
         html! {
             svg .strip viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } width=(WIDTH) height=(HEIGHT) role="img" aria-label=(self.summary()) {
                 @if let Some(Reference { mean, sd }) = self.reference {
@@ -55,7 +55,7 @@ impl Strip<'_> {
                     rect .band x=(pixels(from)) width=(pixels(to - from)) height=(HEIGHT) {}
                     (tick("printed", x(mean), 0.0))
                 }
-                path .dots d=(dots) {}
+                path .dots d=(dots.concat()) {}
                 (tick("median", x(self.median), HEIGHT * 0.6))
                 (tick("mean", x(self.mean), 0.0))
             }

@@ -1,5 +1,16 @@
 //! The program `policy-align`: from recordings to a policy, in a few commands.
 
+#![allow(
+    clippy::format_collect,
+    clippy::format_push_string,
+    clippy::needless_pass_by_value,
+    clippy::redundant_closure_for_method_calls,
+    clippy::struct_field_names,
+    clippy::unnecessary_wraps,
+    clippy::unused_self,
+    reason = "style; to be gone through one by one"
+)]
+
 mod cli;
 
 use std::panic::{PanicHookInfo, catch_unwind};
@@ -17,7 +28,9 @@ fn main() -> ExitCode {
 
 /// A panic is a bug of ours.
 fn report(panic: &PanicHookInfo<'_>) {
-    let what = panic.payload_as_str().unwrap_or("a panic").replace('\n', " ");
+    let payload = panic.payload();
+    let text = payload.downcast_ref::<&str>().copied().or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+    let what = text.unwrap_or("a panic").replace('\n', " ");
     let place = panic.location().map_or_else(String::new, ToString::to_string);
     complain(&format!(
         "error: a bug of policy-align {}: {what}\n  in:  {place}\n  try: please report it, with the command and the file",

@@ -158,10 +158,10 @@ fn same<T: PartialEq + std::fmt::Debug>(what: &str, expected: Option<&T>, found:
 /// SHA-256 of all numbers, sample after sample, as little-endian f64.
 fn hash<'a>(matrices: impl Iterator<Item = &'a DMatrix<f64>>) -> String {
     let mut hasher = Sha256::new();
-    for number in matrices.flat_map(|matrix| matrix.as_slice()) {
+    for number in matrices.flat_map(DMatrix::as_slice) {
         hasher.update(number.to_le_bytes());
     }
-    hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat()
 }
 
 /// The flags of a case.

@@ -101,12 +101,12 @@ impl Step {
 fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let apart: ComingApart = sources.document("figureB1")?;
     let all: Vec<usize> = (0..apart.movements.len()).collect();
-    let mut panels = vec![apart.panel(format!("{} movements", all.len()), &[(&all, &LARGEST)])];
+    let mut panels = vec![apart.panel(&format!("{} movements", all.len()), &[(&all, &LARGEST)])];
     for step in &apart.steps {
         let (largest, rest) = (&step.parts[0], step.parts[1..].concat());
         let cause = step.weak.map_or("no link".to_owned(), |weak| format!("{weak} eigenvalues ≈ 0"));
         let title = format!("{} → {} + {}: {cause}", step.group.len(), largest.len(), rest.len());
-        panels.push(apart.panel(title, &[(&rest, &REST), (largest, &LARGEST)]));
+        panels.push(apart.panel(&title, &[(&rest, &REST), (largest, &LARGEST)]));
     }
     panels.push(apart.outcome());
     for (panel, letter) in panels.iter_mut().zip('a'..) {
@@ -127,7 +127,7 @@ struct Look {
 
 impl ComingApart {
     /// Parts in their looks; all other movements in grey.
-    fn panel(&self, title: String, parts: &[(&Vec<usize>, &Look)]) -> Plane {
+    fn panel(&self, title: &str, parts: &[(&Vec<usize>, &Look)]) -> Plane {
         let within = |at: &usize| parts.iter().any(|(part, _)| part.contains(at));
         let elsewhere: Vec<usize> = (0..self.movements.len()).filter(|at| !within(at)).collect();
         let mut layers = self.layers(&elsewhere, &ELSEWHERE);
@@ -151,12 +151,12 @@ impl ComingApart {
         let discarded: Vec<usize> = (0..self.movements.len()).filter(|at| !self.kept.contains(at)).collect();
         let look = Look { mark: Mark::Cross, ..ELSEWHERE };
         let layers = [self.layers(&discarded, &look), self.layers(&self.kept, &LARGEST)].concat();
-        self.plane(format!("{} are kept", self.kept.len()), layers)
+        self.plane(&format!("{} are kept", self.kept.len()), layers)
     }
 
-    fn plane(&self, title: String, layers: Vec<Layer>) -> Plane {
+    fn plane(&self, title: &str, layers: Vec<Layer>) -> Plane {
         let reach = self.movements.iter().flatten().fold(2.0_f64, |reach, (x, y)| reach.max(x.abs()).max(y.abs()));
-        state_plane(&title, 1.06 * reach, layers, (340.0, 358.0))
+        state_plane(title, 1.06 * reach, layers, (340.0, 358.0))
     }
 
     fn table(&self) -> Csv {

@@ -1,6 +1,11 @@
 //! What all tests of reading need.
 
-#![allow(dead_code, reason = "every test that has this module uses a part of it")]
+#![allow(
+    dead_code,
+    unreachable_pub,
+    clippy::needless_pass_by_value,
+    reason = "every test that has this module uses a part of it"
+)]
 
 use std::path::{Path, PathBuf};
 
