@@ -21,8 +21,8 @@ fn section(compared: &Compared<'_>) -> String {
     let tally = Tally::of([(*experiment, *result)]);
     let title = Style::new().bold().apply_to(experiment.title);
     let mut text = match experiment.section {
-        "none" => format!("{title} ({})\n", experiment.id),
-        section => format!("{title} (Section {section}; {})\n", experiment.id),
+        "none" => format!("{title}\n({})\n", experiment.id),
+        section => format!("{title}\n(Section {section}; {})\n", experiment.id),
     };
     for (row, what) in compared.failures() {
         let _ = writeln!(text, "  {row}: {what}");

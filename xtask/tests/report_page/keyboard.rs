@@ -82,7 +82,8 @@ const CENTRED: &str = "(() => {
     const ends = [picture.top - frame.top, frame.bottom - picture.bottom];
     const centred = ([a, b]) => a > -1 && b > -1 && Math.abs(a - b) < 2;
     // What is taller than the window begins at its top, and is scrolled.
-    return centred(sides) && (centred(ends) || Math.abs(ends[0]) < 2);
+    const scrolled = Math.abs(ends[0]) < 2 && ends[1] < 0 && sides.every(side => side > -1) && Math.abs(sides[0] - sides[1]) < 20;
+    return (centred(sides) && centred(ends)) || scrolled;
 })()";
 
 #[test]
