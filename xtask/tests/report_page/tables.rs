@@ -70,11 +70,13 @@ fn cells(results: &Value) -> Vec<Cell> {
     cells
 }
 
-/// A number as the tables print it: percents with two decimals, errors with four, small ones with six.
+/// A number as the tables print it: percents with two decimals, errors with four, small ones with six, what is nothing but rounding with one.
 fn printed(measure: &str, value: &Value) -> String {
     let Some(value) = value.as_f64() else { return "–".to_owned() };
     if ["disc", "unsupported", "beyond_limits"].contains(&measure) {
         format!("{value:.2}")
+    } else if value != 0.0 && value.abs() < 1e-5 {
+        format!("{value:.0e}")
     } else if value.abs() < 0.001 {
         format!("{value:.6}")
     } else {
