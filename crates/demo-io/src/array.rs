@@ -105,7 +105,7 @@ impl Data {
     }
 
     /// The last index slowest instead of fastest: what Fortran order needs to become C order.
-    pub(crate) fn from_fortran(self, shape: &[usize]) -> Self {
+    pub(crate) fn in_c_order(self, shape: &[usize]) -> Self {
         match self {
             Data::Numbers(numbers) => Data::Numbers(transposed(&numbers, shape)),
             Data::Whole(whole) => Data::Whole(transposed(&whole, shape)),

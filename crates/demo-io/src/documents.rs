@@ -26,12 +26,11 @@ impl<'a> Documents<'a> {
 
     pub(crate) fn push(&mut self, place: u64, document: &Json) -> Result<(), ReadError> {
         let row = self.row(place, document)?;
-        match &mut self.table {
-            Some(table) => table.push(place, &row),
-            None => {
-                self.head.push((place, row));
-                if self.head.len() < HEAD_ROWS { Ok(()) } else { self.begin() }
-            }
+        if let Some(table) = &mut self.table {
+            table.push(place, &row)
+        } else {
+            self.head.push((place, row));
+            if self.head.len() < HEAD_ROWS { Ok(()) } else { self.begin() }
         }
     }
 

@@ -124,7 +124,9 @@ impl Clock {
             Clock::Even(period) => (0..len).map(|sample| sample as f64 * period).collect(),
             Clock::Stamps { mut since, .. } => {
                 if ticks.0 != 1.0 {
-                    since.iter_mut().for_each(|time| *time /= ticks.0);
+                    for time in &mut since {
+                        *time /= ticks.0;
+                    }
                 }
                 since
             }

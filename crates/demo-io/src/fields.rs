@@ -216,15 +216,13 @@ fn guess_state(
             && !velocities.contains(&array.name.to_lowercase())
     };
     let could: Vec<usize> = candidates.iter().filter(could).copied().collect();
-    match could[..] {
-        [index] => Ok(vec![index]),
-        _ => {
-            let what =
-                if could.is_empty() { "no array could be the state" } else { "several arrays could be the state" };
-            let listed: Vec<String> = described.iter().map(Described::with_shape).collect();
-            let remedy = format!("--state with one of (or several, which are joined): {}", shortened(&listed));
-            Err(ReadError::NoRoles(Fault::new(what, place, remedy)))
-        }
+    if let [index] = could[..] {
+        Ok(vec![index])
+    } else {
+        let what = if could.is_empty() { "no array could be the state" } else { "several arrays could be the state" };
+        let listed: Vec<String> = described.iter().map(Described::with_shape).collect();
+        let remedy = format!("--state with one of (or several, which are joined): {}", shortened(&listed));
+        Err(ReadError::NoRoles(Fault::new(what, place, remedy)))
     }
 }
 

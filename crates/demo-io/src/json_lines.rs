@@ -36,14 +36,14 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<D
 /// What a line is, judged by the first.
 enum Reader<'a> {
     Episodes(EpisodeLines<'a>),
-    Samples(Documents<'a>),
+    Samples(Box<Documents<'a>>),
 }
 
 impl<'a> Reader<'a> {
     fn of(first: &Json, input: &'a Input<'a>) -> Self {
         match episode_line::state(first) {
             Some(_) => Reader::Episodes(EpisodeLines::new(input)),
-            None => Reader::Samples(Documents::new(input, "line")),
+            None => Reader::Samples(Box::new(Documents::new(input, "line"))),
         }
     }
 }

@@ -31,8 +31,6 @@ pub(crate) fn dimensions(
         }
     };
     match input.samples_are() {
-        Some(SamplesAre::Rows) => Ok((episodes, first, second)),
-        Some(SamplesAre::Columns) => Ok((episodes, second, first)),
         None if second > first && first > 0 => {
             let mut shape = array.shape.clone();
             let (exchanged, right) = if input.columns_first { ("rows", "columns") } else { ("columns", "rows") };
@@ -47,7 +45,8 @@ pub(crate) fn dimensions(
             let remedy = format!("--samples-are {exchanged}, or --samples-are {right} if it is right as it is");
             Err(ReadError::LooksTransposed(Fault::new(what, place, remedy)))
         }
-        None => Ok((episodes, first, second)),
+        Some(SamplesAre::Columns) => Ok((episodes, second, first)),
+        Some(SamplesAre::Rows) | None => Ok((episodes, first, second)),
     }
 }
 

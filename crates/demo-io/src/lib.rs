@@ -37,19 +37,6 @@
 //! A file need not be trusted: nothing is allocated because a header says so, and a file takes at most 64 times its size and
 //! 64 MB of memory unless [`ReadOptions::trust`] is set.
 
-#![allow(
-    clippy::large_enum_variant,
-    clippy::match_same_arms,
-    clippy::needless_for_each,
-    clippy::nonminimal_bool,
-    clippy::single_match_else,
-    clippy::struct_excessive_bools,
-    clippy::unnecessary_wraps,
-    clippy::unused_self,
-    clippy::wrong_self_convention,
-    reason = "style; to be gone through one by one"
-)]
-
 mod array;
 #[cfg(feature = "mcap")]
 mod cdr;

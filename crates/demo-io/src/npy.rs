@@ -74,7 +74,7 @@ impl Header {
             std::io::ErrorKind::UnexpectedEof => truncated(&shape(), file),
             _ => crate::npz::damaged(&error, file),
         })?;
-        Ok(if self.fortran && self.shape.len() > 1 { data.from_fortran(&self.shape) } else { data })
+        Ok(if self.fortran && self.shape.len() > 1 { data.in_c_order(&self.shape) } else { data })
     }
 }
 

@@ -79,7 +79,7 @@ pub(crate) fn read_described(
     let mut drafts = table.finish();
     drafts.drop_constant &= !listed;
     drafts.notes.extend(checked.and_then(|stamps| stamps.note));
-    columns.rename(&mut drafts, described);
+    rename(&mut drafts, described);
     Ok(drafts)
 }
 
@@ -182,18 +182,18 @@ impl Columns {
     fn state_is_list(&self, options: &ReadOptions) -> bool {
         !options.state.is_empty() || self.leaves.iter().any(|leaf| leaf.list)
     }
+}
 
-    /// Gives channels the names that another file has for them.
-    fn rename(&self, drafts: &mut Drafts, described: &Described) {
-        let given: HashMap<String, &String> = described
-            .elements
-            .iter()
-            .flat_map(|(list, names)| names.iter().enumerate().map(move |(at, name)| (format!("{list}_{at}"), name)))
-            .collect();
-        for channel in &mut drafts.channels {
-            if let Some(name) = given.get(&channel.name) {
-                channel.name = (*name).clone();
-            }
+/// Gives channels the names that another file has for them.
+fn rename(drafts: &mut Drafts, described: &Described) {
+    let given: HashMap<String, &String> = described
+        .elements
+        .iter()
+        .flat_map(|(list, names)| names.iter().enumerate().map(move |(at, name)| (format!("{list}_{at}"), name)))
+        .collect();
+    for channel in &mut drafts.channels {
+        if let Some(name) = given.get(&channel.name) {
+            channel.name = (*name).clone();
         }
     }
 }

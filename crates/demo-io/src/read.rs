@@ -125,12 +125,11 @@ fn name_by_file(drafts: &mut Drafts, file: &Path) {
 }
 
 pub(crate) fn add(joined: &mut Option<Drafts>, drafts: Drafts, file: &str) -> Result<(), ReadError> {
-    match joined {
-        Some(joined) => join(joined, drafts, file),
-        None => {
-            *joined = Some(drafts);
-            Ok(())
-        }
+    if let Some(joined) = joined {
+        join(joined, drafts, file)
+    } else {
+        *joined = Some(drafts);
+        Ok(())
     }
 }
 

@@ -225,12 +225,11 @@ fn named(patterns: &[String], names: &[&str], place: &str) -> Result<Vec<usize>,
 
 fn one(pattern: Option<&str>, flag: &str, names: &[&str], place: &str) -> Result<Option<usize>, ReadError> {
     let Some(pattern) = pattern else { return Ok(None) };
-    match named(&[pattern.to_owned()], names, place)?[..] {
-        [index] => Ok(Some(index)),
-        _ => {
-            let what = format!("{flag} '{pattern}' names several columns");
-            Err(ReadError::AmbiguousColumn(Fault::new(what, place, format!("{flag} with the name of one"))))
-        }
+    if let [index] = named(&[pattern.to_owned()], names, place)?[..] {
+        Ok(Some(index))
+    } else {
+        let what = format!("{flag} '{pattern}' names several columns");
+        Err(ReadError::AmbiguousColumn(Fault::new(what, place, format!("{flag} with the name of one"))))
     }
 }
 

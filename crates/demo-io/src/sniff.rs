@@ -39,8 +39,7 @@ pub(crate) fn format(input: &Input<'_>) -> Result<Format, ReadError> {
         }
         (_, Some(asked)) if is_text(asked) => Ok(asked),
         (_, Some(asked)) => Err(not_this(input, asked, looks_like(content))),
-        (Content::Text, None) => Ok(Format::Csv),
-        (Content::Other, None) => Ok(Format::Csv),
+        (Content::Text | Content::Other, None) => Ok(Format::Csv),
     }
 }
 

@@ -1,21 +1,6 @@
 //! NumPy's files, in every order, size and version.
 
-#![allow(
-    clippy::unwrap_used,
-    unreachable_pub,
-    clippy::needless_pass_by_value,
-    clippy::almost_swapped,
-    clippy::manual_swap,
-    clippy::precedence,
-    clippy::redundant_closure_for_method_calls,
-    clippy::print_stderr,
-    clippy::format_push_string,
-    clippy::approx_constant,
-    clippy::needless_lifetimes,
-    clippy::decimal_bitwise_operands,
-    clippy::format_collect,
-    reason = "a test that cannot go on has failed"
-)]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 mod common;
 

@@ -1,21 +1,6 @@
 //! Formats of other communities, in files that their own tools wrote, and there and back through all that we write.
 
-#![allow(
-    clippy::unwrap_used,
-    unreachable_pub,
-    clippy::needless_pass_by_value,
-    clippy::almost_swapped,
-    clippy::manual_swap,
-    clippy::precedence,
-    clippy::redundant_closure_for_method_calls,
-    clippy::print_stderr,
-    clippy::format_push_string,
-    clippy::approx_constant,
-    clippy::needless_lifetimes,
-    clippy::decimal_bitwise_operands,
-    clippy::format_collect,
-    reason = "a test that cannot go on has failed"
-)]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![cfg(all(feature = "hdf5", feature = "mat", feature = "mcap", feature = "parquet"))]
 
 mod common;

@@ -1,27 +1,13 @@
 //! Text with separators, as people and programs write it.
 
-#![allow(
-    clippy::unwrap_used,
-    unreachable_pub,
-    clippy::needless_pass_by_value,
-    clippy::almost_swapped,
-    clippy::manual_swap,
-    clippy::precedence,
-    clippy::redundant_closure_for_method_calls,
-    clippy::print_stderr,
-    clippy::format_push_string,
-    clippy::approx_constant,
-    clippy::needless_lifetimes,
-    clippy::decimal_bitwise_operands,
-    clippy::format_collect,
-    reason = "a test that cannot go on has failed"
-)]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 mod common;
 
 use common::{Files, kinds, lengths, names, parsed, read_with, refused};
 use demo_io::{Nan, NoteKind, ReadOptions};
 use proptest::prelude::*;
+use std::fmt::Write as _;
 
 fn plain() -> ReadOptions {
     ReadOptions::default()
@@ -86,7 +72,7 @@ fn thousands_of_columns_are_no_trouble() {
     let mut text = format!("t,{}\n", header.join(","));
     for row in 0..4 {
         let fields: Vec<String> = (0..3000).map(|column| format!("{}", row * column + row)).collect();
-        text += &format!("{},{}\n", f64::from(row) * 0.5, fields.join(","));
+        let _ = writeln!(text, "{},{}", f64::from(row) * 0.5, fields.join(","));
     }
     let found = parsed("wide.csv", text, &plain()).unwrap();
     assert_eq!(found.state.len(), 3000);
@@ -165,7 +151,7 @@ fn angles_become_radians_and_continuous() {
     for step in 0..40 {
         let angle = 150.0 + 3.0 * f64::from(step);
         let wrapped = if angle > 180.0 { angle - 360.0 } else { angle };
-        text += &format!("{},{wrapped},{}\n", f64::from(step) * 0.1, 20.0 - 0.31 * f64::from(step));
+        let _ = writeln!(text, "{},{wrapped},{}", f64::from(step) * 0.1, 20.0 - 0.31 * f64::from(step));
     }
     let found = parsed("a.csv", &text, &plain()).unwrap();
     assert!(kinds(&found).contains(&NoteKind::LooksLikeDegrees));
@@ -182,7 +168,7 @@ fn still_ends_are_noted_and_trimmed() {
     let mut text = "t,x\n".to_owned();
     for step in 0..60 {
         let x = f64::from(step).clamp(15.0, 40.0).powi(2) * 0.0137;
-        text += &format!("{},{x}\n", f64::from(step) * 0.1);
+        let _ = writeln!(text, "{},{x}", f64::from(step) * 0.1);
     }
     let found = parsed("a.csv", &text, &plain()).unwrap();
     assert!(kinds(&found).contains(&NoteKind::StandsStill), "{:?}", found.notes);
@@ -225,7 +211,7 @@ proptest! {
         let separator = if tabs { "\t" } else { "," };
         let mut text = format!("t{separator}x{separator}y\n");
         for (row, pair) in values.chunks_exact(2).enumerate() {
-            text += &format!("{row}{separator}{:e}{separator}{}\n", pair[0], pair[1]);
+            let _ = writeln!(text, "{row}{separator}{:e}{separator}{}", pair[0], pair[1]);
         }
         let options = ReadOptions { state: vec!["x".to_owned(), "y".to_owned()], ..plain() };
         let found = parsed("a.csv", text, &options).unwrap();
@@ -239,7 +225,7 @@ proptest! {
     fn interleaved_movements_are_told_apart(labels in proptest::collection::vec(0u8..4, 2..60)) {
         let mut text = "episode,t,x\n".to_owned();
         for (row, label) in labels.iter().enumerate() {
-            text += &format!("take {label},{row},{}\n", row as f64 * 1.25 + 0.1);
+            let _ = writeln!(text, "take {label},{row},{}", row as f64 * 1.25 + 0.1);
         }
         let mut expected: Vec<(u8, Vec<f64>)> = Vec::new();
         for (row, &label) in labels.iter().enumerate() {

@@ -1,15 +1,6 @@
 //! Samples held out: how many, of what, and the same for the same seed.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stderr,
-    clippy::format_push_string,
-    clippy::approx_constant,
-    clippy::needless_lifetimes,
-    clippy::decimal_bitwise_operands,
-    clippy::format_collect,
-    reason = "a test that cannot go on has failed"
-)]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use motion::{Demonstrations, MotionError, SampleIndex, SampleSet};
 use nalgebra::DMatrix;

@@ -7,19 +7,6 @@
 //! A [`Model`] is what is kept: [`Model::save`], [`Model::load`], and [`Model::policy`] in the units of the recording.
 //! [`RollOut`] follows it under constraints, [`CSource`] and [`to_onnx`] make a program of it that needs nothing else.
 
-#![allow(
-    clippy::cast_lossless,
-    clippy::format_collect,
-    clippy::format_push_string,
-    clippy::needless_for_each,
-    clippy::nonminimal_bool,
-    clippy::redundant_closure_for_method_calls,
-    clippy::single_match_else,
-    clippy::type_complexity,
-    clippy::unnecessary_sort_by,
-    reason = "style; to be gone through one by one"
-)]
-
 mod decision;
 mod error;
 mod evaluate;

@@ -1,16 +1,5 @@
 //! The program `policy-align`: from recordings to a policy, in a few commands.
 
-#![allow(
-    clippy::format_collect,
-    clippy::format_push_string,
-    clippy::needless_pass_by_value,
-    clippy::redundant_closure_for_method_calls,
-    clippy::struct_field_names,
-    clippy::unnecessary_wraps,
-    clippy::unused_self,
-    reason = "style; to be gone through one by one"
-)]
-
 mod cli;
 
 use std::panic::{PanicHookInfo, catch_unwind};

@@ -1,21 +1,6 @@
 //! A fit keeps its promises whatever it learns from: bits, units, options, and how it is stopped.
 
-#![allow(
-    clippy::unwrap_used,
-    unreachable_pub,
-    clippy::needless_pass_by_value,
-    clippy::almost_swapped,
-    clippy::manual_swap,
-    clippy::precedence,
-    clippy::redundant_closure_for_method_calls,
-    clippy::print_stderr,
-    clippy::format_push_string,
-    clippy::approx_constant,
-    clippy::needless_lifetimes,
-    clippy::decimal_bitwise_operands,
-    clippy::format_collect,
-    reason = "a test that cannot go on has failed"
-)]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 #[allow(dead_code, reason = "made for more than this")]
 mod cases;

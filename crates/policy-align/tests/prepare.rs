@@ -1,21 +1,6 @@
 //! What is decided and said before learning, one mistake at a time.
 
-#![allow(
-    clippy::unwrap_used,
-    unreachable_pub,
-    clippy::needless_pass_by_value,
-    clippy::almost_swapped,
-    clippy::manual_swap,
-    clippy::precedence,
-    clippy::redundant_closure_for_method_calls,
-    clippy::print_stderr,
-    clippy::format_push_string,
-    clippy::approx_constant,
-    clippy::needless_lifetimes,
-    clippy::decimal_bitwise_operands,
-    clippy::format_collect,
-    reason = "a test that cannot go on has failed"
-)]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use demo_io::{Channel, Episode, Recordings, Source};
 use nalgebra::DMatrix;
@@ -230,11 +215,9 @@ fn angles_that_wrap_go_on() {
             for i in 0..SAMPLES {
                 let angle = 2.9 + 0.2 * start + 0.03 * i as f64;
                 episode.positions[(0, i)] = if wrapped { angle - turn * (angle / turn).round() } else { angle };
-                let other = episode.positions[(1, i)];
-                episode.positions[(1, i)] = other;
             }
             // One that comes round to the other end fills the range.
-            episode.positions[(0, 0)] = episode.positions[(0, 0)].clamp(-3.14, 3.14);
+            episode.positions[(0, 0)] = episode.positions[(0, 0)].clamp(-3.1, 3.1);
             episode.velocities = None;
         })
     };

@@ -1,23 +1,10 @@
 //! Roll-outs: where they go, what they keep, why they end.
 
-#![allow(
-    clippy::unwrap_used,
-    unreachable_pub,
-    clippy::needless_pass_by_value,
-    clippy::almost_swapped,
-    clippy::manual_swap,
-    clippy::precedence,
-    clippy::redundant_closure_for_method_calls,
-    clippy::print_stderr,
-    clippy::format_push_string,
-    clippy::approx_constant,
-    clippy::needless_lifetimes,
-    clippy::decimal_bitwise_operands,
-    clippy::format_collect,
-    reason = "a test that cannot go on has failed"
-)]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 mod models;
+
+use std::f64::consts::TAU;
 
 use demo_gen::RollOut as Teacher;
 use models::{model, rows, slope, toy};
@@ -48,8 +35,8 @@ fn toy_model() -> Model {
     MODEL.get_or_init(|| slope(&toy(20, 40))).clone()
 }
 
-fn follow(roll_out: &RollOut, start: DVector<f64>) -> Path {
-    roll_out.follow(&toy_model(), &start).unwrap()
+fn follow(roll_out: &RollOut, start: &DVector<f64>) -> Path {
+    roll_out.follow(&toy_model(), start).unwrap()
 }
 
 fn last(path: &Path) -> DVector<f64> {
@@ -58,7 +45,7 @@ fn last(path: &Path) -> DVector<f64> {
 
 #[test]
 fn it_comes_to_rest_where_the_potential_is_least() {
-    let path = follow(&RollOut { seconds: Some(400.0), ..RollOut::default() }, dvector![1.5, 1.0]);
+    let path = follow(&RollOut { seconds: Some(400.0), ..RollOut::default() }, &dvector![1.5, 1.0]);
     assert_eq!(path.stop, Stop::AtRest);
     assert!(last(&path).norm() < 0.1, "{}", last(&path));
     assert_eq!((path.times.len(), path.states.shape()), (path.states.ncols(), path.velocities.shape()));
@@ -97,7 +84,7 @@ fn constraints_hold_at_their_times_only() {
     let set = constraints("[[constraint]]\nnormal = [[2, 0], [0, 1]]\nfrom = 2.5\nuntil = 7.25\n");
     let path = follow(
         &RollOut { constraints: set, seconds: Some(20.0), step: Some(0.5), ..RollOut::default() },
-        dvector![1.0, 1.0],
+        &dvector![1.0, 1.0],
     );
     let moved = |from: usize, to: usize| (path.states.column(to) - path.states.column(from)).norm();
     assert!(moved(0, 5) > 0.01 && moved(15, 40) > 0.01);
@@ -108,11 +95,11 @@ fn constraints_hold_at_their_times_only() {
 #[test]
 fn a_ball_is_gone_around() {
     let set = constraints("[[constraint]]\npoint = [0.5, 0.55]\nradius = 0.3\n");
-    let free = follow(&RollOut::default(), dvector![1.3, 1.25]);
+    let free = follow(&RollOut::default(), &dvector![1.3, 1.25]);
     let distance =
         |path: &Path| path.states.column_iter().map(|x| (x - dvector![0.5, 0.55]).norm()).fold(f64::INFINITY, f64::min);
     assert!(distance(&free) < 0.2, "the free movement goes through it: {}", distance(&free));
-    let path = follow(&RollOut { constraints: set, seconds: Some(400.0), ..RollOut::default() }, dvector![1.3, 1.25]);
+    let path = follow(&RollOut { constraints: set, seconds: Some(400.0), ..RollOut::default() }, &dvector![1.3, 1.25]);
     assert!(distance(&path) >= 0.3 && distance(&path) < 0.32, "{}", distance(&path));
     assert_eq!(path.broken_by, Some((0.0, 0)));
     assert!(last(&path).norm() < 0.15, "it goes on behind it: {}", last(&path));
@@ -125,7 +112,7 @@ fn a_hand_stays_in_its_plane_and_out_of_a_ball() {
     let file = folder.path().join("plane.toml");
     std::fs::write(&file, "[[constraint]]\nrobot = \"arm.urdf\"\nlink = \"hand\"\nplane = [0, 1, 0]\n").unwrap();
     let set = ConstraintSet::load(&file, &channels()).unwrap();
-    let path = follow(&RollOut { constraints: set, ..RollOut::default() }, dvector![1.2, 0.7]);
+    let path = follow(&RollOut { constraints: set, ..RollOut::default() }, &dvector![1.2, 0.7]);
     let tip = |q: nalgebra::DVectorView<'_, f64>| (q[0].cos() + (q[0] + q[1]).cos(), q[0].sin() + (q[0] + q[1]).sin());
     let heights: Vec<f64> = path.states.column_iter().map(|q| tip(q).1).collect();
     let drift = heights.iter().map(|height| (height - heights[0]).abs()).fold(0.0, f64::max);
@@ -139,15 +126,15 @@ fn a_hand_stays_in_its_plane_and_out_of_a_ball() {
         let distances = path.states.column_iter().map(|q| (tip(q).0 - 1.6).hypot(tip(q).1 - 1.0));
         distances.fold(f64::INFINITY, f64::min)
     };
-    assert!(distance(&follow(&RollOut::default(), dvector![1.2, 0.7])) < 0.28);
-    let path = follow(&RollOut { constraints: set, ..RollOut::default() }, dvector![1.2, 0.7]);
+    assert!(distance(&follow(&RollOut::default(), &dvector![1.2, 0.7])) < 0.28);
+    let path = follow(&RollOut { constraints: set, ..RollOut::default() }, &dvector![1.2, 0.7]);
     assert!(distance(&path) >= 0.3, "{}", distance(&path));
 }
 
 #[test]
 fn limits_and_the_end_of_the_data_stop_it() {
     let limits = Some(JointLimits::from_urdf(TIP, &channels()).unwrap());
-    let path = follow(&RollOut { limits: limits.clone(), ..RollOut::default() }, dvector![-1.1, 0.1]);
+    let path = follow(&RollOut { limits: limits.clone(), ..RollOut::default() }, &dvector![-1.1, 0.1]);
     assert!(path.stop != Stop::Limit("x".to_owned()));
     let error = RollOut { limits, ..RollOut::default() }.follow(&toy_model(), &dvector![-1.3, 0.1]).unwrap_err();
     assert_eq!(error, RollOutError::StartBeyondLimit { joint: "x".to_owned() });
@@ -237,7 +224,7 @@ proptest! {
 
     #[test]
     fn constraints_act_at_right_angles_in_the_learners_units(
-        angle in 0.0..6.28_f64, scale_x in 0.2..5.0, scale_y in 0.2..5.0, x in -1.0..1.0, y in -1.0..1.0,
+        angle in 0.0..TAU, scale_x in 0.2..5.0, scale_y in 0.2..5.0, x in -1.0..1.0, y in -1.0..1.0,
     ) {
         // The same movement, told in other units, is the same movement.
         let plain = toy_model();

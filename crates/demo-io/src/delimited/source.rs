@@ -55,12 +55,11 @@ impl Read for Guarded<'_> {
             self.since_record.set(since);
             let skipped = self.skip.min(read);
             self.skip -= skipped;
-            let kept = match &mut self.blanks {
-                Some(squeeze) => squeeze.squeeze(buffer, start + skipped..start + read),
-                None => {
-                    buffer.copy_within(skipped..read, 0);
-                    read - skipped
-                }
+            let kept = if let Some(squeeze) = &mut self.blanks {
+                squeeze.squeeze(buffer, start + skipped..start + read)
+            } else {
+                buffer.copy_within(skipped..read, 0);
+                read - skipped
             };
             if kept > 0 || read == 0 {
                 return Ok(kept);

@@ -89,17 +89,14 @@ impl<'a> Topic<'a> {
         let added = match self.kind {
             None => Ok(()),
             Some(Type::Json) => self.add_document(number, log_time, data),
-            Some(kind) => match kind.decode(data) {
-                Ok(message) => self.add_message(number, log_time, &message),
-                Err(_) => {
+            Some(kind) => {
+                let message = kind.decode(data).map_err(|_| {
                     let what = format!("a message ends before what it announces ({})", self.schema);
-                    Err(ReadError::Corrupt(Fault::new(
-                        what,
-                        self.place(number),
-                        "another copy of the file, or --topic",
-                    )))
-                }
-            },
+                    let remedy = "another copy of the file, or --topic";
+                    ReadError::Corrupt(Fault::new(what, self.place(number), remedy))
+                });
+                message.map(|message| self.add_message(number, log_time, &message))
+            }
         };
         self.fault = added.err();
     }
@@ -123,7 +120,7 @@ impl<'a> Topic<'a> {
         }
     }
 
-    fn add_message(&mut self, number: u64, log_time: i64, message: &Message<'_>) -> Result<(), ReadError> {
+    fn add_message(&mut self, number: u64, log_time: i64, message: &Message<'_>) {
         let n = message.positions.len();
         let counted: Vec<String>;
         let names: Vec<&str> = if message.names.is_empty() {
@@ -134,14 +131,14 @@ impl<'a> Topic<'a> {
         };
         if names.len() != n {
             // Some drivers publish velocities or efforts alone.
-            return Ok(());
+            return;
         }
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by_key(|&at| names[at]);
         let key: Vec<String> = order.iter().map(|&at| names[at].to_owned()).collect();
         let at = match self.by_names.get(&key) {
             Some(&at) => at,
-            None if self.sets.len() == MOST_SETS => return Ok(()),
+            None if self.sets.len() == MOST_SETS => return,
             None => {
                 let names = names.iter().map(|&name| name.to_owned()).collect();
                 self.sets.push(Set { names, ..Set::default() });
@@ -161,7 +158,6 @@ impl<'a> Topic<'a> {
         if message.velocities.len() == n {
             set.velocities.extend(columns.iter().map(|&column| message.velocities[column]));
         }
-        Ok(())
     }
 
     pub(super) fn finish(mut self, metadata: &BTreeMap<String, String>) -> Result<Drafts, ReadError> {
@@ -198,9 +194,13 @@ impl<'a> Topic<'a> {
         let stamped = set.stamps.iter().all(|&stamp| stamp != 0);
         let mut clock = Clock::new(period(self.input.options)?);
         let stamps = if stamped { &set.stamps } else { &set.log_times };
-        stamps.iter().for_each(|&stamp| clock.push(Stamp::whole(stamp)));
+        for &stamp in stamps {
+            clock.push(Stamp::whole(stamp));
+        }
         let mut rows = Rows::default();
-        set.numbers.iter().for_each(|&number| rows.push(number));
+        for &number in &set.numbers {
+            rows.push(number);
+        }
         let draft = Draft {
             name: self.input.stem.clone(),
             file: self.input.name.clone(),
@@ -230,8 +230,8 @@ impl<'a> Topic<'a> {
         if options.state.is_empty() {
             let names = &self.sets[largest].names;
             let ignored = flags(&options.ignore, names);
-            let place =
-                |at: &usize| !ignored[*at] && !(self.kind == Some(Type::Pose) && names[*at].starts_with("orientation"));
+            let turned = |at: usize| self.kind == Some(Type::Pose) && names[at].starts_with("orientation");
+            let place = |at: &usize| !(ignored[*at] || turned(*at));
             return Ok((largest, self.sets[largest].in_order((0..names.len()).filter(place).collect())));
         }
         let fits = |at: &usize| select(&options.state, &self.sets[*at].names).is_ok();

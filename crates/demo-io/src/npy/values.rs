@@ -19,7 +19,7 @@ pub(super) fn read(header: &Header, count: usize, from: &mut dyn Read) -> io::Re
             .map(Data::Numbers),
         ('f', 2) => each(size, count, from, number(|b| half(u16::from_le_bytes([b[0], b[1]])))).map(Data::Numbers),
         ('u', 8) => each(size, count, from, number(|b| u64::from_le_bytes(b) as f64)).map(Data::Numbers),
-        ('b' | 'u', _) => each(size, count, from, whole(i64::from_le_bytes)).map(Data::Whole),
+        ('b' | 'u', _) | ('i', 8) => each(size, count, from, whole(i64::from_le_bytes)).map(Data::Whole),
         ('M', 8) => {
             let not_a_time = |ticks: Vec<i64>| Data::Dates(ticks, TicksPerSecond(header.ticks));
             each(size, count, from, whole(i64::from_le_bytes)).map(not_a_time)
@@ -29,7 +29,6 @@ pub(super) fn read(header: &Header, count: usize, from: &mut dyn Read) -> io::Re
         ('i', 4) => {
             each(size, count, from, whole(|b| i64::from(i32::from_le_bytes([b[0], b[1], b[2], b[3]])))).map(Data::Whole)
         }
-        ('i', 8) => each(size, count, from, whole(i64::from_le_bytes)).map(Data::Whole),
         _ => Err(io::ErrorKind::InvalidData.into()),
     }
 }

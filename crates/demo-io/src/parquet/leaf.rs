@@ -14,6 +14,7 @@ use crate::{Fault, ReadError};
 
 /// A column of values in the file: one a row, or lists of equal length.
 #[derive(Debug)]
+#[allow(clippy::struct_excessive_bools, reason = "facts of a schema that have nothing to do with each other")]
 pub(super) struct Leaf {
     pub(super) name: String,
     index: usize,

@@ -47,6 +47,6 @@ impl Convert {
                 counted(samples, "sample")
             ),
         );
-        Said::done(lines.next(&format!("policy-align check {}", self.output.display())))
+        Ok(Said::done(lines.next(&format!("policy-align check {}", self.output.display()))))
     }
 }

@@ -12,10 +12,10 @@ pub(crate) fn directions(demonstrations: &Demonstrations) -> (f64, DVector<f64>)
         .iter()
         .flat_map(|movement| {
             let velocities = movement.velocities().cloned().unwrap_or_else(|| movement.step_velocities());
-            velocities.column_iter().map(|u| u.into_owned()).collect::<Vec<_>>()
+            velocities.column_iter().map(nalgebra::Matrix::into_owned).collect::<Vec<_>>()
         })
         .collect();
-    let mut speeds: Vec<f64> = velocities.iter().map(|u| u.norm()).collect();
+    let mut speeds: Vec<f64> = velocities.iter().map(nalgebra::Matrix::norm).collect();
     speeds.sort_by(f64::total_cmp);
     let least = STILL * speeds[speeds.len() / 2];
     let n = demonstrations.dim();

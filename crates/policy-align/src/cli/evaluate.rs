@@ -98,7 +98,7 @@ impl Evaluate {
         let columns: Vec<DVector<f64>> = recordings
             .episodes
             .iter()
-            .flat_map(|episode| episode.positions.column_iter().map(|column| column.into_owned()).collect::<Vec<_>>())
+            .flat_map(|episode| episode.positions.column_iter().map(nalgebra::Matrix::into_owned).collect::<Vec<_>>())
             .collect();
         if recordings.state.len() != scale.len() {
             let what = format!("{} columns for {}", recordings.state.len(), counted(scale.len(), "channel"));

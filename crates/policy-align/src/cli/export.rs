@@ -69,6 +69,6 @@ impl Export {
                 format!("python -c \"import onnxruntime as o; o.InferenceSession('{}')\"", output.display())
             }
         };
-        Said::done(lines.next(&next))
+        Ok(Said::done(lines.next(&next)))
     }
 }

@@ -41,16 +41,16 @@ pub(crate) struct Fit {
     #[command(flatten)]
     prepare: PrepareFlags,
     #[command(flatten)]
-    fit: FitFlags,
+    learning: FitFlags,
 }
 
 impl Fit {
     pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
         let config = Config::of(session)?;
         let (reading, preparing) = (config.under("read", &self.read)?, config.under("prepare", &self.prepare)?);
-        let learning = config.under("fit", &self.fit)?;
+        let learning = config.under("fit", &self.learning)?;
         if self.print_config {
-            return Said::done(printed(&reading, &preparing, &learning)?);
+            return Ok(Said::done(printed(&reading, &preparing, &learning)?));
         }
         let (prepare_options, fit_options) = (preparing.options(reading.dt)?, learning.options()?);
         let place = || named(&self.files);
@@ -80,7 +80,7 @@ impl Fit {
             ),
         })?;
         let written = self.reported(&model, &prepared)?;
-        self.said(session, &model, &written, judged.as_ref())
+        Ok(self.said(session, &model, &written, judged.as_ref()))
     }
 
     /// Writes the page and its numbers.
@@ -97,13 +97,7 @@ impl Fit {
         Ok(vec![page, numbers])
     }
 
-    fn said(
-        &self,
-        session: &Session,
-        model: &Model,
-        written: &[PathBuf],
-        held_out: Option<&Evaluation>,
-    ) -> Result<Said, Failure> {
+    fn said(&self, session: &Session, model: &Model, written: &[PathBuf], held_out: Option<&Evaluation>) -> Said {
         let exit = if model.trust.verdict == Verdict::DoNotUse { Exit::Refused } else { Exit::Done };
         if session.json {
             let files: Vec<String> =
@@ -112,7 +106,7 @@ impl Fit {
                 "written": files, "trust": model.trust, "decisions": model.decisions, "data": model.data,
                 "hold_out": held_out,
             });
-            return Ok(Said { text: format!("{document}\n"), exit });
+            return Said { text: format!("{document}\n"), exit };
         }
         let mut lines = Lines::default();
         let data = &model.data;
@@ -147,7 +141,7 @@ impl Fit {
         lines.add("trust", verdict(model));
         findings(&model.trust.findings, 3, &mut lines);
         let bytes = std::fs::metadata(&self.output).map_or(0, |found| found.len() as usize);
-        let beside: String = written.iter().map(|path| format!(", {}", path.display())).collect();
+        let beside = written.iter().map(|path| format!(", {}", path.display())).collect::<Vec<_>>().concat();
         lines.add("written", &format!("{} ({}){beside}", self.output.display(), size(bytes)));
         let next = if exit == Exit::Refused {
             let page = written.first().map_or_else(
@@ -159,7 +153,7 @@ impl Fit {
             let (model, picture) = (self.output.display(), self.output.with_extension("svg"));
             lines.next(&format!("policy-align plot {model} -o {}", picture.display()))
         };
-        Ok(Said { text: next, exit })
+        Said { text: next, exit }
     }
 }
 

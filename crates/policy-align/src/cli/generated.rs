@@ -20,7 +20,7 @@ pub(crate) struct Completions {
 }
 
 impl Completions {
-    pub(crate) fn run(&self) -> Result<Said, Failure> {
+    pub(crate) fn run(&self) -> Said {
         let mut text = Vec::new();
         clap_complete::generate(self.shell, &mut Cli::command(), "policy-align", &mut text);
         Said::done(String::from_utf8_lossy(&text).into_owned())
@@ -40,7 +40,7 @@ impl Man {
     pub(crate) fn run(&self) -> Result<Said, Failure> {
         let mut command = Cli::command();
         command.build();
-        let Some(folder) = &self.to else { return Said::done(page(command, "policy-align")?) };
+        let Some(folder) = &self.to else { return Ok(Said::done(page(command, "policy-align")?)) };
         for sub in command.get_subcommands().cloned().collect::<Vec<_>>() {
             let name = format!("policy-align-{}", sub.get_name());
             let path = folder.join(format!("{name}.1"));
@@ -49,7 +49,7 @@ impl Man {
         let path = folder.join("policy-align.1");
         write_whole(&path, page(command, "policy-align")?.as_bytes())
             .map_err(|error| Failure::writing(&path, error))?;
-        Said::done(String::new())
+        Ok(Said::done(String::new()))
     }
 }
 

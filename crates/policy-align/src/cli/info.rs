@@ -26,7 +26,7 @@ impl Info {
                 "made_by": model.made_by, "state": model.state, "time_step": model.time_step, "data": model.data,
                 "learner": learner(&model), "decisions": model.decisions, "seed": model.seed, "trust": model.trust,
             });
-            return Said::done(format!("{document}\n"));
+            return Ok(Said::done(format!("{document}\n")));
         }
         let mut lines = Lines::default();
         lines.add("made by", &format!("{}, {}", model.made_by.program, model.made_by.time));
@@ -58,7 +58,7 @@ impl Info {
         lines.add("trust", verdict(&model));
         findings(&model.trust.findings, 4, &mut lines);
         let middle: Vec<String> = model.state.iter().map(|channel| short(channel.median)).collect();
-        Said::done(lines.next(&format!("policy-align predict {} --at {}", self.model.display(), middle.join(","))))
+        Ok(Said::done(lines.next(&format!("policy-align predict {} --at {}", self.model.display(), middle.join(",")))))
     }
 }
 

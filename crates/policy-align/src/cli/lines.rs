@@ -19,9 +19,8 @@ impl Lines {
     }
 
     /// The last line, set apart: what to do next.
-    pub(crate) fn next(mut self, command: &str) -> String {
-        self.0.push_str(&format!("\nNext:  {command}\n"));
-        self.0
+    pub(crate) fn next(self, command: &str) -> String {
+        self.0 + &format!("\nNext:  {command}\n")
     }
 
     pub(crate) fn count(&self) -> usize {

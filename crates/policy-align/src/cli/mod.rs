@@ -85,7 +85,7 @@ impl Verb {
             Verb::Plot(plot) => plot.run(session),
             Verb::Convert(convert) => convert.run(session),
             Verb::Export(export) => export.run(session),
-            Verb::Completions(completions) => completions.run(),
+            Verb::Completions(completions) => Ok(completions.run()),
             Verb::Man(man) => man.run(),
         }
     }
@@ -96,7 +96,7 @@ fn usage(error: &clap::Error) -> Result<Said, Failure> {
     if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
         // clap colours it as the terminal and NO_COLOR say.
         let _ = error.print();
-        return Said::done(String::new());
+        return Ok(Said::done(String::new()));
     }
     let text = error.render().to_string();
     let what: Vec<&str> = text.lines().take_while(|line| !line.is_empty()).map(str::trim).collect();

@@ -80,7 +80,7 @@ impl Plot {
         );
         let start: Vec<String> =
             model.state.iter().map(|channel| super::lines::short(channel.high * 0.5 + channel.median * 0.5)).collect();
-        Said::done(lines.next(&format!("policy-align rollout {} --from {}", self.model.display(), start.join(","))))
+        Ok(Said::done(lines.next(&format!("policy-align rollout {} --from {}", self.model.display(), start.join(",")))))
     }
 }
 

@@ -76,7 +76,7 @@ impl Predict {
     pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
         let model = load(&self.model)?;
         let states = match (&self.at, &self.states) {
-            (Some(at), _) => self.one(at, &model)?,
+            (Some(at), _) => Self::one(at, &model)?,
             (None, Some(path)) => states(path, &model)?,
             (None, None) => return Err(Failure::usage("no state was given", "predict", "--at 0.3,1.2")),
         };
@@ -93,13 +93,13 @@ impl Predict {
         bar.finish_and_clear();
         let predictions = self.with_outside(predictions)?;
         if session.json {
-            return Said::done(format!("{}\n", document(&model, &states, &predictions)));
+            return Ok(Said::done(format!("{}\n", document(&model, &states, &predictions))));
         }
         if let (Some(_), None) = (&self.at, &self.output) {
-            return Said::done(one_told(&model, &predictions[0]));
+            return Ok(Said::done(one_told(&model, &predictions[0])));
         }
         let text = csv(&model, &states, &predictions);
-        let Some(path) = &self.output else { return Said::done(text) };
+        let Some(path) = &self.output else { return Ok(Said::done(text)) };
         write_whole(path, text.as_bytes()).map_err(|error| Failure::writing(path, error))?;
         let unsupported = predictions.iter().filter(|prediction| !prediction.supported).count();
         let mut lines = Lines::default();
@@ -111,10 +111,10 @@ impl Predict {
                 counted(predictions.len(), "state")
             ),
         );
-        Said::done(lines.into_text())
+        Ok(Said::done(lines.into_text()))
     }
 
-    fn one(&self, at: &str, model: &Model) -> Result<DMatrix<f64>, Failure> {
+    fn one(at: &str, model: &Model) -> Result<DMatrix<f64>, Failure> {
         let numbers = numbers(at, "--at")?;
         if numbers.len() != model.state.len() || !numbers.iter().all(|number| number.is_finite()) {
             let names: Vec<&str> = model.state.iter().map(|channel| channel.name.as_str()).collect();

@@ -76,9 +76,9 @@ impl RollOut {
                 "velocities": columns(&followed.velocities), "stop": stop(&followed.stop),
                 "broken_by": followed.broken_by.map(|(by, _)| by),
             });
-            return Said::done(format!("{document}\n"));
+            return Ok(Said::done(format!("{document}\n")));
         }
-        Said::done(self.told(&followed))
+        Ok(Said::done(self.told(&followed)))
     }
 
     fn told(&self, followed: &Path) -> String {

@@ -77,13 +77,12 @@ impl Take {
     /// Checked.
     pub(super) fn trajectory(&self) -> Result<Trajectory, PrepareError> {
         let of = |source| PrepareError::Episode { episode: self.name.clone(), source };
-        let trajectory = match self.time_step {
-            Some(time_step) => Trajectory::new(self.positions.clone(), time_step).map_err(of)?,
-            None => {
-                let first = self.times.get(1).map_or(1.0, |second| second - self.times[0]);
-                let trajectory = Trajectory::new(self.positions.clone(), first).map_err(of)?;
-                trajectory.with_times(self.times.clone()).map_err(of)?
-            }
+        let trajectory = if let Some(time_step) = self.time_step {
+            Trajectory::new(self.positions.clone(), time_step).map_err(of)?
+        } else {
+            let first = self.times.get(1).map_or(1.0, |second| second - self.times[0]);
+            let trajectory = Trajectory::new(self.positions.clone(), first).map_err(of)?;
+            trajectory.with_times(self.times.clone()).map_err(of)?
         };
         match &self.velocities {
             None => Ok(trajectory),

@@ -17,12 +17,11 @@ pub(super) fn scales(
         if !(*factor > 0.0 && factor.is_finite()) {
             return Err(PrepareError::Scale { name: name.clone(), factor: *factor });
         }
-        match recordings.state.iter().position(|channel| channel.name == *name) {
-            Some(channel) => scales[channel] = *factor,
-            None => {
-                let known: Vec<_> = recordings.state.iter().map(|channel| channel.name.as_str()).collect();
-                return Err(PrepareError::UnknownChannel { name: name.clone(), known: known.join(", ") });
-            }
+        if let Some(channel) = recordings.state.iter().position(|channel| channel.name == *name) {
+            scales[channel] = *factor;
+        } else {
+            let known: Vec<_> = recordings.state.iter().map(|channel| channel.name.as_str()).collect();
+            return Err(PrepareError::UnknownChannel { name: name.clone(), known: known.join(", ") });
         }
         notes.decided("scale", format!("{name} times {factor}"), "given", "--scale");
     }

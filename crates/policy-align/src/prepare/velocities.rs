@@ -42,7 +42,9 @@ pub(super) fn decide(
 ) -> Agreement {
     let recorded = takes.iter().filter(|take| take.velocities.is_some()).count();
     if recorded < takes.len() || options.velocities == VelocityUse::Ignored {
-        takes.iter_mut().for_each(|take| take.velocities = None);
+        for take in takes.iter_mut() {
+            take.velocities = None;
+        }
         let why = match recorded {
             0 => "none recorded".to_owned(),
             _ if recorded < takes.len() => format!("only {recorded} of {} episodes have them", takes.len()),
@@ -57,7 +59,9 @@ pub(super) fn decide(
     }
     let fit = Steps::of(takes, noise);
     if fit.explained < UNRELATED {
-        takes.iter_mut().for_each(|take| take.velocities = None);
+        for take in takes.iter_mut() {
+            take.velocities = None;
+        }
         notes.decided(
             "velocities",
             "from positions",
@@ -85,6 +89,9 @@ pub(super) fn decide(
     Agreement::Own
 }
 
+/// Of a part of a movement: its step D, and S = Σ u δt, which its velocities say; both (n).
+type Part = (DVector<f64>, DVector<f64>);
+
 /// Steps as multiples of what velocities say, over parts of movements: Σ D S / Σ S² in each channel, S = Σ u δt.
 struct Steps {
     /// (n).
@@ -95,9 +102,9 @@ struct Steps {
 
 impl Steps {
     fn of(takes: &[Take], noise: &Noise) -> Self {
-        let pairs: Vec<(DVector<f64>, DVector<f64>)> = takes.iter().flat_map(parts).collect();
+        let pairs: Vec<Part> = takes.iter().flat_map(parts).collect();
         let dim = takes[0].positions.nrows();
-        let sum = |of: &dyn Fn(&(DVector<f64>, DVector<f64>)) -> f64| pairs.iter().map(of).sum::<f64>();
+        let sum = |of: &dyn Fn(&Part) -> f64| pairs.iter().map(of).sum::<f64>();
         let power = sum(&|(_, s)| s.norm_squared());
         let common = sum(&|(d, s)| d.dot(s)) / power;
         let factor = |axis: usize| {

@@ -19,7 +19,9 @@ pub(super) fn unwrap(takes: &mut [Take], channels: &[Channel], notes: &mut Notes
         if wrapped == 0 {
             continue;
         }
-        takes.iter_mut().for_each(|take| go_on(take, channel, turn));
+        for take in takes.iter_mut() {
+            go_on(take, channel, turn);
+        }
         to_common_end(takes, channel, turn);
         let name = &described.name;
         notes.decided(

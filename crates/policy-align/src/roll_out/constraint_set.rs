@@ -126,7 +126,7 @@ impl ConstraintSet {
                 continue;
             }
             match part.kind.at(state).map_err(|reason| (at + 1, reason))? {
-                Said::Rows(matrix) => rows.extend(matrix.row_iter().map(|row| row.into_owned())),
+                Said::Rows(matrix) => rows.extend(matrix.row_iter().map(nalgebra::Matrix::into_owned)),
                 Said::Distance { clearance, radius, gradient } => {
                     let bands = (clearance / radius - MARGIN) / (BAND - MARGIN);
                     balls.push((bands.max(-1.0), gradient.component_div(scale)));

@@ -100,7 +100,8 @@ impl Model {
         if !positive(self.time_step) {
             return Some(("time_step".to_owned(), format!("{} is not a positive time", self.time_step)));
         }
-        if !positive(self.data.longest) || !(self.data.speed >= 0.0 && self.data.speed.is_finite()) {
+        let not_negative = |number: f64| number >= 0.0 && number.is_finite();
+        if !(positive(self.data.longest) && not_negative(self.data.speed)) {
             return Some(("data".to_owned(), "a duration that is not positive or a negative speed".to_owned()));
         }
         let sound = |channel: &StateChannel| {

@@ -1,3 +1,5 @@
+use std::cmp::Reverse;
+
 use gp::{Grouping, Reading};
 
 use super::numbers::TrustNumbers;
@@ -44,7 +46,7 @@ pub(crate) fn judge(evidence: Evidence<'_>) -> Trust {
     about_reading(&numbers, state, &mut found);
     about_error(&numbers, &mut found);
     about_episodes(&numbers, episodes, &mut found);
-    findings.sort_by(|a, b| b.verdict.cmp(&a.verdict));
+    findings.sort_by_key(|finding| Reverse(finding.verdict));
     let verdict = findings.first().map_or(Verdict::Good, |finding| finding.verdict);
     Trust { verdict, findings, numbers }
 }

@@ -1,3 +1,5 @@
+use std::fmt::Write as _;
+
 use crate::StateChannel;
 
 /// A direction in channels' names: "x", "0.7 x − 0.7 y".
@@ -14,10 +16,10 @@ pub(super) fn direction(vector: &[f64], state: &[StateChannel]) -> String {
         let alone = entry.abs() > 0.99;
         match (words.is_empty(), alone) {
             (true, true) => words.push_str(name),
-            (true, false) => words.push_str(&format!("{entry:.1} {name}")),
+            (true, false) => write!(words, "{entry:.1} {name}").expect("a String takes what is written"),
             (false, _) => {
                 let sign = if entry < 0.0 { '−' } else { '+' };
-                words.push_str(&format!(" {sign} {:.1} {name}", entry.abs()));
+                write!(words, " {sign} {:.1} {name}", entry.abs()).expect("a String takes what is written");
             }
         }
     }

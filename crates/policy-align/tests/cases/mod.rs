@@ -95,7 +95,7 @@ impl Case {
 
     /// White noise on recorded velocities, as a share of their root mean square.
     pub(crate) fn velocity_noise(self, share: f64, seed: u64) -> Self {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed ^ 77);
+        let mut rng = ChaCha8Rng::seed_from_u64(seed ^ 0x4d);
         let all: Vec<f64> = self
             .recordings
             .episodes
@@ -215,7 +215,7 @@ pub(crate) fn beyond(shown: Shown, hindrance: Hindrance, count: usize, seed: u64
 }
 
 pub(crate) fn noisy(recordings: &[Recording], share: f64, seed: u64) -> Vec<Recording> {
-    with_position_noise(recordings, share, &mut ChaCha8Rng::seed_from_u64(seed ^ 99)).unwrap()
+    with_position_noise(recordings, share, &mut ChaCha8Rng::seed_from_u64(seed ^ 0x63)).unwrap()
 }
 
 pub(crate) fn arm(count: usize, seed: u64) -> Vec<Recording> {
