@@ -24,7 +24,7 @@ pub(super) fn part(results: &Results) -> Part {
         } }
         p .versions {
             "policy-align " (results.run.version)
-            @if let Some(revision) = &results.run.revision { ", commit " (revision) }
+            @if let Some(revision) = &results.run.revision { ", commit " code { (revision) } }
             ", results.json of form " (results.schema) ", seed " (results.seed) "."
         }
     };
