@@ -35,7 +35,7 @@ pub(crate) fn table1() -> anyhow::Result<Experiment> {
         decisions: "table1.md",
         another_reading_of: None,
         contests: contests(),
-        setups: setups(Redraw::Every(20), 0, 1500),
+        setups: setups(Redraw::Every(20), 0, 1000),
         paper: paper_table(include_str!("../../paper/table1.toml"))?,
         explanations: explanations(include_str!("../../paper/table1-explained.toml"))?,
     })

@@ -28,7 +28,7 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
     let rows = [("policy_align", RowOf::Learner), ("naive", RowOf::Baseline)];
     let rows = rows.map(|(id, of)| Row { id: id.to_owned(), of, tested_on: TESTED_ON });
     let trial = ArmTrial { arm: arm()?, algorithm: PolicyAlign::default(), pupils: pupils()? };
-    let beside = beside(1500);
+    let beside = beside(500);
     let contest =
         |measure| {
             Contest::of(CASE, measure, &beside.contestants())
