@@ -55,7 +55,7 @@ impl<'a> Contests<'a> {
 
     fn row(&self, line: &ContestLine<'_>) -> Vec<String> {
         let measure = line.contest.measure;
-        let mean = |who: &Contestant| line.mean(*who).map_or(NOTHING.to_owned(), |mean| measure.show(mean));
+        let mean = |who: &Contestant| line.mean(*who).map_or(NOTHING.to_owned(), |mean| shown_mean(measure, mean));
         let ratio = self.has_ratio().then(|| line.ratio().map_or(NOTHING.to_owned(), shown_ratio));
         let first = [line.contest.case.clone(), measure.label().to_owned(), line.n.to_string()];
         first.into_iter().chain(self.contestants.iter().map(mean)).chain(ratio).collect()
@@ -78,6 +78,11 @@ impl ContestLine<'_> {
     fn ratio(&self) -> Option<f64> {
         Some(self.mean(Contestant::SlopeGp)? / self.mean(Contestant::PolicyAlign)?)
     }
+}
+
+/// Errors of these learners differ by orders of magnitude: small ones are all told by their exponents.
+fn shown_mean(measure: Measure, mean: f64) -> String {
+    if mean != 0.0 && mean.abs() < 1e-3 { format!("{mean:.0e}") } else { measure.show(mean) }
 }
 
 fn shown_ratio(ratio: f64) -> String {
@@ -137,6 +142,12 @@ mod tests {
         let rows = vec![row("parabola-40x40-narrow", &[Some(0.1)])];
         let result = ExperimentResult { id: "table1".to_owned(), section: "4.1".to_owned(), rows };
         assert!(Contests::of(table1, &result).is_none());
+    }
+
+    #[test]
+    fn small_errors_are_told_by_their_exponents() {
+        let shown = [0.2, 0.000_762, 3e-21, 0.0].map(|mean| shown_mean(Measure::Nupe, mean));
+        assert_eq!(shown, ["0.2000", "8e-4", "3e-21", "0.000000"]);
     }
 
     #[test]

@@ -97,7 +97,32 @@ fn foretold(results: &Results) -> String {
         "median",
         "largest",
     ];
-    format!("Of fits whose true error is at least {WORTH_FORETELLING}:\n\n{}", markdown_table(&header, &lines))
+    let outside = outside(&results.experiments);
+    let named = if outside.is_empty() { "nowhere".to_owned() } else { outside.join(", ") };
+    format!(
+        "Of fits whose true error is at least {WORTH_FORETELLING}:\n\n{}\nMore than ten times off, the slope GP under \
+         constraints that vary: {named}.\n",
+        markdown_table(&header, &lines)
+    )
+}
+
+/// Where the slope GP expects an error more than ten times too high or too low, and how often, under constraints that vary.
+fn outside(results: &[ExperimentResult]) -> Vec<String> {
+    let mut named = Vec::new();
+    for result in results {
+        for (case, row) in rows_of(result, Contestant::SlopeGp).filter(|(case, _)| Under::of(case) == Under::Varying) {
+            let ratios = ratios(row);
+            for (far, word) in [
+                (ratios.iter().filter(|ratio| **ratio > 10.0).count(), "high"),
+                (ratios.iter().filter(|ratio| **ratio < 0.1).count(), "low"),
+            ] {
+                if far > 0 {
+                    named.push(format!("`{} {case}` (too {word} in {far} of {})", result.id, ratios.len()));
+                }
+            }
+        }
+    }
+    named
 }
 
 /// What held movements back.
@@ -207,6 +232,7 @@ mod tests {
             row("b/slope_gp", &[(nupe, [0.1, 1e-9]), (expected, [5.0, 1.0])]),
         ];
         assert_eq!(rows.each_ref().map(ratios), [vec![2.0, 0.5], vec![50.0]]);
+        assert_eq!(outside(&[result("beyond", rows.into())]), ["`beyond b` (too high in 1 of 1)"]);
         assert_eq!(
             ["free/sinus", "half-free/sinus", "sinus-2d-free", "wells-3d", "one-for-all/wells"].map(Under::of),
             [Under::NoneOrOne, Under::Varying, Under::NoneOrOne, Under::Varying, Under::NoneOrOne]
