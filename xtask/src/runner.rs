@@ -32,63 +32,105 @@ impl Plan {
     }
 }
 
+/// All data sets of all setups, in order: those that an earlier run finished have their outcome.
+pub(crate) struct Work<'a> {
+    experiments: &'a [Experiment],
+    plan: Plan,
+    /// All that determines what a data set gives, but its number: by experiment and setup.
+    definitions: Vec<Vec<String>>,
+    /// By experiment, setup and data set.
+    slots: Vec<Vec<Vec<Option<Outcome>>>>,
+}
+
 /// One data set of one setup that is still to be measured, and where its outcome goes.
 struct Job<'a> {
+    /// Its place among all data sets.
+    place: usize,
     setup: &'a Setup,
     data_set: DataSet<'a>,
     slot: &'a mut Option<Outcome>,
 }
 
-/// What was measured.
-pub(crate) struct Measured {
-    /// By experiment and setup.
-    pub(crate) outcomes: Vec<Vec<Outcomes>>,
-    /// How many data sets were finished before.
-    pub(crate) resumed: usize,
-}
-
-/// Measures every data set of every setup, skipping what `records` already holds.
-///
-/// The result depends only on experiments, plan and program: not on the number of threads, nor on what was resumed.
-pub(crate) fn run(experiments: &[Experiment], plan: Plan, records: &Arc<Records>) -> anyhow::Result<Measured> {
-    let definition = |setup: &Setup| Ok(serde_json::to_string(&(setup.system, setup.trial.parameters()?))?);
-    let of_setups = |e: &Experiment| e.setups.iter().map(definition).collect::<anyhow::Result<Vec<String>>>();
-    let definitions = experiments.iter().map(of_setups).collect::<anyhow::Result<Vec<_>>>()?;
-    let mut slots: Vec<Vec<Vec<Option<Outcome>>>> = Vec::new();
-    for (experiment, definitions) in experiments.iter().zip(&definitions) {
-        let slots_of = |(setup, definition): (&Setup, &String)| {
-            let find = |number| find(records, setup, &name(experiment, setup, definition, plan, number));
-            (0..plan.data_sets(experiment, setup)).map(find).collect()
-        };
-        slots.push(experiment.setups.iter().zip(definitions).map(slots_of).collect());
-    }
-    let total: usize = slots.iter().flatten().map(Vec::len).sum();
-    let mut jobs = Vec::new();
-    for ((experiment, definitions), slots) in experiments.iter().zip(&definitions).zip(&mut slots) {
-        for ((setup, definition), slots) in experiment.setups.iter().zip(definitions).zip(slots) {
-            for (number, slot) in (0..).zip(slots).filter(|(_, slot)| slot.is_none()) {
-                jobs.push(Job { setup, data_set: name(experiment, setup, definition, plan, number), slot });
-            }
+impl<'a> Work<'a> {
+    /// Looks for what `records` hold.
+    pub(crate) fn find(experiments: &'a [Experiment], plan: Plan, records: &Records) -> anyhow::Result<Work<'a>> {
+        let definition = |setup: &Setup| Ok(serde_json::to_string(&(setup.system, setup.trial.parameters()?))?);
+        let of_setups = |e: &Experiment| e.setups.iter().map(definition).collect::<anyhow::Result<Vec<String>>>();
+        let definitions = experiments.iter().map(of_setups).collect::<anyhow::Result<Vec<_>>>()?;
+        let mut slots: Vec<Vec<Vec<Option<Outcome>>>> = Vec::new();
+        for (experiment, definitions) in experiments.iter().zip(&definitions) {
+            let slots_of = |(setup, definition): (&Setup, &String)| {
+                let find = |number| find(records, setup, &name(experiment, setup, definition, plan, number));
+                (0..plan.data_sets(experiment, setup)).map(find).collect()
+            };
+            slots.push(experiment.setups.iter().zip(definitions).map(slots_of).collect());
         }
+        Ok(Work { experiments, plan, definitions, slots })
     }
-    let resumed = total - jobs.len();
-    let progress = Progress::start(total, jobs.len(), jobs.iter().map(|job| job.setup.cost).sum());
-    // One job at a time to each thread: data sets of different setups differ a hundredfold in work.
-    jobs.into_par_iter().with_max_len(1).try_for_each(|Job { setup, data_set, slot }| -> anyhow::Result<()> {
-        let mut rng = generator(plan.seed, setup.system, data_set.number);
-        let outcome = Outcome::of(setup.trial.run(&mut rng), setup.rows.len());
-        records.append(&data_set, &outcome)?;
-        *slot = Some(outcome);
-        progress.finished(data_set.experiment, &setup.id, setup.cost);
-        Ok(())
-    })?;
-    progress.done();
-    let take = |slot: Option<Outcome>| slot.unwrap_or_else(|| unreachable!("every slot is resumed or measured"));
-    let outcomes = slots
-        .into_iter()
-        .map(|setups| setups.into_iter().map(|setup| setup.into_iter().map(take).collect()).collect())
-        .collect();
-    Ok(Measured { outcomes, resumed })
+
+    /// How many data sets there are.
+    pub(crate) fn total(&self) -> usize {
+        self.slots.iter().flatten().map(Vec::len).sum()
+    }
+
+    /// Measures every data set that `is_wanted`, by its place, skipping what was found; how many those are.
+    ///
+    /// The result depends only on experiments, plan and program: not on the number of threads, nor on what was found.
+    pub(crate) fn measure(
+        &mut self,
+        is_wanted: impl Fn(usize) -> bool,
+        records: &Arc<Records>,
+    ) -> anyhow::Result<usize> {
+        let wanted = (0..self.total()).filter(|&place| is_wanted(place)).count();
+        let seed = self.plan.seed;
+        let jobs: Vec<Job<'_>> = self.jobs().into_iter().filter(|job| is_wanted(job.place)).collect();
+        let progress = Progress::start(wanted, jobs.len(), jobs.iter().map(|job| job.setup.cost).sum());
+        let measured = jobs.len();
+        // One job at a time to each thread: data sets of different setups differ a hundredfold in work.
+        jobs.into_par_iter().with_max_len(1).try_for_each(
+            |Job { setup, data_set, slot, .. }| -> anyhow::Result<()> {
+                let mut rng = generator(seed, setup.system, data_set.number);
+                let outcome = Outcome::of(setup.trial.run(&mut rng), setup.rows.len());
+                records.append(&data_set, &outcome)?;
+                *slot = Some(outcome);
+                progress.finished(data_set.experiment, &setup.id, setup.cost);
+                Ok(())
+            },
+        )?;
+        progress.done();
+        Ok(measured)
+    }
+
+    /// What is not measured yet: its place, and its name for people.
+    pub(crate) fn missing(&mut self) -> Vec<(usize, String)> {
+        let named = |job: Job<'_>| {
+            let DataSet { experiment, setup, number, .. } = job.data_set;
+            (job.place, format!("{experiment} {setup}, data set {number}"))
+        };
+        self.jobs().into_iter().map(named).collect()
+    }
+
+    /// By experiment and setup, once nothing is missing.
+    pub(crate) fn outcomes(self) -> Vec<Vec<Outcomes>> {
+        let take = |slot: Option<Outcome>| slot.unwrap_or_else(|| unreachable!("every slot is found or measured"));
+        let of_setup = |slots: Vec<Option<Outcome>>| slots.into_iter().map(take).collect();
+        self.slots.into_iter().map(|setups| setups.into_iter().map(of_setup).collect()).collect()
+    }
+
+    fn jobs(&mut self) -> Vec<Job<'_>> {
+        let plan = self.plan;
+        let setups = self.experiments.iter().zip(&self.definitions).zip(&mut self.slots).flat_map(
+            |((experiment, definitions), slots)| {
+                let setups = experiment.setups.iter().zip(definitions).zip(slots);
+                setups.map(move |((setup, definition), slots)| (experiment, setup, definition, slots))
+            },
+        );
+        let data_sets = setups.flat_map(|(experiment, setup, definition, slots)| {
+            (0..).zip(slots).map(move |(number, slot)| (name(experiment, setup, definition, plan, number), setup, slot))
+        });
+        let jobs = data_sets.enumerate().filter(|(_, (_, _, slot))| slot.is_none());
+        jobs.map(|(place, (data_set, setup, slot))| Job { place, setup, data_set, slot }).collect()
+    }
 }
 
 /// What an earlier run finished; nothing if the record is of another number of rows than the setup has.

@@ -231,3 +231,39 @@ fn the_committed_records_are_of_this_code() {
     }
     assert!(compared > 20);
 }
+
+#[test]
+fn shards_are_merged_to_the_run_that_they_share() {
+    const PART: [&str; 5] = ["--only", ROW, "--no-figures", "--data-sets", "7"];
+    let folder = tempfile::tempdir().unwrap();
+    let (whole, merged) = (folder.path().join("whole"), folder.path().join("merged"));
+    let shard = |index: usize| folder.path().join(index.to_string());
+    let merge = |folders: &[usize]| {
+        let mut command = reproduce(&merged, &PART);
+        command.arg("--merge").args(folders.iter().map(|index| shard(*index)));
+        let output = command.output().unwrap();
+        (output.status.success(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    run(&whole, &PART);
+    for index in 1..=3 {
+        run(&shard(index), &[&PART[..], &["--shard", &format!("{index}/3")]].concat());
+    }
+    let sizes = [1, 2, 3].map(|index| lines(&shard(index)));
+    assert_eq!(sizes, [3, 2, 2]);
+
+    let (done, said) = merge(&[1, 3]);
+    assert!(!done && said.contains("2 of 7 data sets are missing"), "{said}");
+    assert!(said.contains("shard 2/3 is not among the folders") && said.contains("--shard 2/3"), "{said}");
+
+    // One digit of the third shard is damaged.
+    let records = shard(3).join("records.jsonl");
+    let sound = fs::read_to_string(&records).unwrap();
+    fs::write(&records, sound.replacen("\"nupe\":0.", "\"nupe\":1.", 1)).unwrap();
+    let (done, said) = merge(&[1, 2, 3]);
+    assert!(!done && said.contains("1 of 7 data sets are missing") && said.contains("shard 3/3 in"), "{said}");
+    fs::write(&records, sound).unwrap();
+
+    let (done, said) = merge(&[3, 1, 2]);
+    assert!(done, "{said}");
+    assert_eq!(results(&merged), results(&whole));
+}

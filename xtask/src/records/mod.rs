@@ -56,15 +56,19 @@ impl Records {
         let (file, bytes) = open(path, earlier).with_context(|| {
             format!("cannot open the records {}; wait for it, or choose another --out", path.display())
         })?;
-        let lines = bytes.split(|&byte| byte == b'\n').filter(|line| !line.is_empty());
-        let records: Vec<Option<Record>> = lines.map(Record::read).collect();
-        Ok(Records {
-            path: path.to_owned(),
-            code: code_identity()?,
-            unreadable: records.iter().filter(|record| record.is_none()).count(),
-            finished: records.into_iter().flatten().map(|record| (record.key, record.outcome)).collect(),
-            file: Mutex::new(file),
-        })
+        let (finished, unreadable) = read(&bytes);
+        Ok(Records { path: path.to_owned(), code: code_identity()?, finished, unreadable, file: Mutex::new(file) })
+    }
+
+    /// Adds what another file holds, which stays as it is.
+    pub(crate) fn add(&mut self, path: &Path) -> anyhow::Result<()> {
+        let bytes = std::fs::read(path).with_context(|| {
+            format!("cannot read {}, the records of a shard: name the folder of each", path.display())
+        })?;
+        let (records, unreadable) = read(&bytes);
+        self.finished.extend(records);
+        self.unreadable += unreadable;
+        Ok(())
     }
 
     /// How many lines were passed over.
@@ -103,6 +107,14 @@ impl Records {
         let definition = hasher.finish();
         format!("{}/{}/{}/{definition:016x}", data_set.experiment, data_set.setup, data_set.number)
     }
+}
+
+/// What the lines of a file hold, and how many are torn or damaged.
+fn read(bytes: &[u8]) -> (HashMap<String, Outcome>, usize) {
+    let lines = bytes.split(|&byte| byte == b'\n').filter(|line| !line.is_empty());
+    let records: Vec<Option<Record>> = lines.map(Record::read).collect();
+    let unreadable = records.iter().filter(|record| record.is_none()).count();
+    (records.into_iter().flatten().map(|record| (record.key, record.outcome)).collect(), unreadable)
 }
 
 /// Opens a file that no other run has open, and reads it; a last line that was torn is ended.

@@ -2,6 +2,7 @@
 
 mod interruption;
 mod selection;
+mod shard;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -23,10 +24,11 @@ use crate::report::{Tally, terminal, write_report, write_tables, written};
 use crate::results::{Results, Run, SCHEMA};
 use crate::revision::revision;
 use crate::run_folder::RunFolder;
-use crate::runner::{Measured, Outcomes, Plan, run};
+use crate::runner::{Outcomes, Plan, Work};
 use crate::summary::summarise;
 use interruption::stop_cleanly;
 use selection::{list, select};
+use shard::{Shard, merged};
 
 /// Data sets a row with `--quick`.
 const QUICK_DATA_SETS: u32 = 3;
@@ -52,8 +54,14 @@ pub(crate) struct Reproduce {
     /// Worker threads; they change the time, never the results [default: one a core]
     #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    /// Measure the I-th of N shares of all data sets, here or on another machine; --merge makes one run of them
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["merge", "list"])]
+    shard: Option<Shard>,
+    /// Make one run of the shards in these folders, by the same program, with the same options but --shard and --out
+    #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with_all = ["list", "fresh"])]
+    merge: Vec<PathBuf>,
     /// Folder for report.html, report.md, results.json, figures/ and the records of finished data sets [default:
-    /// target/reproduce in the repository]
+    /// target/reproduce in the repository; with --shard, target/shards/I-of-N]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Start over: forget the data sets that earlier runs into the same folder finished
@@ -70,11 +78,15 @@ impl Reproduce {
         if self.list {
             return print(&list(&experiments));
         }
-        let folder = self.out.as_deref().map_or_else(RunFolder::of_latest_run, RunFolder::at);
+        let folder = self.folder();
         folder.make()?;
         let records = Arc::new(self.records(&folder)?);
         stop_cleanly(&records)?;
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.map_or(0, usize::from)).build()?;
+        if let Some(shard) = self.shard {
+            let mut work = Work::find(&experiments, self.plan(), &records)?;
+            return pool.install(|| shard.measure(&mut work, &records, &folder));
+        }
         let (results, failures) = self.measure(&experiments, &records, &pool)?;
         let mut sources = Sources { results, documents: BTreeMap::new(), missing: vec![] };
         // The results are safe before anything else may go wrong.
@@ -96,10 +108,26 @@ impl Reproduce {
         printed
     }
 
-    /// The records of the folder, without a word where all of them can be used.
+    fn folder(&self) -> RunFolder {
+        match (&self.out, self.shard) {
+            (Some(out), _) => RunFolder::at(out),
+            (None, Some(shard)) => RunFolder::at(&shard.folder()),
+            (None, None) => RunFolder::of_latest_run(),
+        }
+    }
+
+    fn plan(&self) -> Plan {
+        let quick = |number| self.data_sets.or(self.quick.then_some(number));
+        Plan { data_sets: quick(QUICK_DATA_SETS), of_contestants: quick(1), seed: self.seed }
+    }
+
+    /// The records of the folder, and of all shards to be merged; without a word where all of them can be used.
     fn records(&self, folder: &RunFolder) -> anyhow::Result<Records> {
         let earlier = if self.fresh { Earlier::Forget } else { Earlier::Resume };
-        let records = Records::open(&folder.join("records.jsonl"), earlier)?;
+        let mut records = Records::open(&folder.join("records.jsonl"), earlier)?;
+        for shard in &self.merge {
+            records.add(&shard.join("records.jsonl"))?;
+        }
         match records.unreadable() {
             0 => (),
             lines => say(&format!("{lines} line(s) of records.jsonl are torn, damaged or of an older form: not used")),
@@ -116,9 +144,13 @@ impl Reproduce {
     ) -> anyhow::Result<(Results, Vec<String>)> {
         let started = Instant::now();
         let revision = revision(&repository());
-        let quick = |number| self.data_sets.or(self.quick.then_some(number));
-        let plan = Plan { data_sets: quick(QUICK_DATA_SETS), of_contestants: quick(1), seed: self.seed };
-        let Measured { outcomes, resumed } = pool.install(|| run(experiments, plan, records))?;
+        let mut work = Work::find(experiments, self.plan(), records)?;
+        if !self.merge.is_empty() {
+            merged(&mut work, &self.merge)?;
+        }
+        let measured = pool.install(|| work.measure(|_| true, records))?;
+        let resumed = work.total() - measured;
+        let outcomes = work.outcomes();
         let run = Run {
             command: self.command(),
             threads: pool.current_num_threads(),

@@ -1,0 +1,138 @@
+//! A run shared among machines: `--shard I/N` measures one share of its data sets, `--merge` makes one run of all shares.
+//!
+//! Data sets are dealt out in turn, so that every share has as much of each row. What a data set gives does not depend on
+//! who measures it: the merged run is the single one, to the last bit.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::sync::Arc;
+
+use anyhow::{Context as _, ensure};
+use serde::{Deserialize, Serialize};
+
+use crate::files::{repository, told, typed, write};
+use crate::progress::say;
+use crate::records::Records;
+use crate::run_folder::RunFolder;
+use crate::runner::Work;
+
+/// What a shard leaves beside its records.
+const FILE: &str = "shard.json";
+
+/// Missing data sets that are named.
+const NAMED: usize = 3;
+
+/// One of several shares of the work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub(super) struct Shard {
+    /// Which, from 1.
+    index: u32,
+    /// Of how many.
+    of: u32,
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Shard, String> {
+        let numbers = text.split_once('/').and_then(|(index, of)| Some((index.parse().ok()?, of.parse().ok()?)));
+        match numbers {
+            Some((index, of)) if (1..=of).contains(&index) => Ok(Shard { index, of }),
+            _ => Err("give which of how many, from 1, such as 2/8".to_owned()),
+        }
+    }
+}
+
+impl std::fmt::Display for Shard {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}/{}", self.index, self.of)
+    }
+}
+
+impl Shard {
+    /// Where its records go unless told otherwise.
+    pub(super) fn folder(self) -> PathBuf {
+        repository().join(format!("target/shards/{}-of-{}", self.index, self.of))
+    }
+
+    /// Whether the data set at this place is of its share.
+    fn has(self, place: usize) -> bool {
+        place % self.of as usize == self.index as usize - 1
+    }
+
+    /// Measures its share, and says what to do with it.
+    pub(super) fn measure(self, work: &mut Work<'_>, records: &Arc<Records>, folder: &RunFolder) -> anyhow::Result<()> {
+        write(&folder.join(FILE), serde_json::to_string(&self)?)?;
+        work.measure(|place| self.has(place), records)?;
+        let share = (0..work.total()).filter(|&place| self.has(place)).count();
+        say(&format!(
+            "shard {self}: {share} of {} data sets, in {}",
+            work.total(),
+            told(&folder.join("records.jsonl"))
+        ));
+        say("once all shards are there: the same command with --merge and their folders instead of --shard");
+        Ok(())
+    }
+
+    /// Which share a folder holds.
+    fn read(folder: &Path) -> anyhow::Result<Shard> {
+        let path = folder.join(FILE);
+        let name = told(&path);
+        let text =
+            std::fs::read_to_string(&path).with_context(|| format!("cannot read {name}: no shard was run there"))?;
+        serde_json::from_str(&text).with_context(|| format!("{name} is damaged"))
+    }
+}
+
+/// Fails unless the shards in these folders have measured everything; names those that have not.
+pub(super) fn merged(work: &mut Work<'_>, folders: &[PathBuf]) -> anyhow::Result<()> {
+    let shards: Vec<Shard> = folders.iter().map(|folder| Shard::read(folder)).collect::<anyhow::Result<_>>()?;
+    let of = shards.first().map_or(1, |shard| shard.of);
+    for (shard, folder) in shards.iter().zip(folders) {
+        ensure!(shard.of == of, "{} is shard {shard}, the first is one of {of}: shards of one run only", told(folder));
+    }
+    let missing = work.missing();
+    let Some((first, _)) = missing.first() else { return Ok(()) };
+    let shard_of = |place: usize| Shard { index: (place % of as usize) as u32 + 1, of };
+    let mut lacking: Vec<Shard> = missing.iter().map(|(place, _)| shard_of(*place)).collect();
+    lacking.sort();
+    lacking.dedup();
+    let about = |shard: &Shard| match folders.iter().zip(&shards).find(|(_, other)| *other == shard) {
+        Some((folder, _)) => {
+            format!("shard {shard} in {} is not finished, damaged, or of another program", typed(folder))
+        }
+        None => format!("shard {shard} is not among the folders"),
+    };
+    let names: Vec<&str> = missing.iter().take(NAMED).map(|(_, name)| name.as_str()).collect();
+    let more = if missing.len() > NAMED { "; .." } else { "" };
+    anyhow::bail!(
+        "{} of {} data sets are missing ({}{more}):\n{}\n`cargo xtask reproduce --shard {}` with the same options measures what a shard lacks",
+        missing.len(),
+        work.total(),
+        names.join("; "),
+        lacking.iter().map(about).collect::<Vec<_>>().join("\n"),
+        shard_of(*first)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_data_set_has_one_shard() {
+        for of in 1..9 {
+            let shards: Vec<Shard> = (1..=of).map(|index| format!("{index}/{of}").parse().unwrap()).collect();
+            for place in 0..100 {
+                assert_eq!(shards.iter().filter(|shard| shard.has(place)).count(), 1, "{place} of {of}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_share_is_refused() {
+        for text in ["", "3", "0/3", "4/3", "1/0", "a/b", "-1/2", "1/2/3", "1.0/2"] {
+            assert!(text.parse::<Shard>().unwrap_err().contains("2/8"), "{text}");
+        }
+    }
+}
