@@ -26,6 +26,8 @@ pub(crate) enum Measure {
     NupeAll,
     /// [`Measure::Ncpe`] on held-out samples of all movements.
     NcpeAll,
+    /// [`Measure::Nupe`] on movements from new starts, which nobody learnt from.
+    NupeFresh,
     /// [`Measure::NcpeUnseen`] on held-out samples of all movements.
     NcpeUnseenAll,
     /// [`Measure::Naive`] on held-out samples of all movements.
@@ -88,6 +90,7 @@ impl Measure {
             Measure::PolicyAlign => "policy_align",
             Measure::NupeAll => "nupe_all",
             Measure::NcpeAll => "ncpe_all",
+            Measure::NupeFresh => "nupe_fresh",
             Measure::NcpeUnseenAll => "ncpe_unseen_all",
             Measure::NaiveAll => "naive_all",
             Measure::PolicyAlignAll => "policy_align_all",
@@ -115,6 +118,7 @@ impl Measure {
             Measure::PolicyAlign => "PolicyAlign",
             Measure::NupeAll => "nUPE, all movements",
             Measure::NcpeAll => "nCPE, all movements",
+            Measure::NupeFresh => "nUPE, fresh movements",
             Measure::NcpeUnseenAll => "nCPE, unseen, all movements",
             Measure::NaiveAll => "naive, all movements",
             Measure::PolicyAlignAll => "PolicyAlign, all movements",

@@ -21,3 +21,11 @@ pub(crate) fn beside(rng: &ChaCha8Rng) -> ChaCha8Rng {
     beside.set_word_pos(0);
     beside
 }
+
+/// A generator of movements that nobody learns from, in a stream that neither a data set nor what stands beside it has.
+pub(crate) fn fresh(rng: &ChaCha8Rng) -> ChaCha8Rng {
+    let mut fresh = rng.clone();
+    fresh.set_stream(rng.get_stream() | 1 << 62);
+    fresh.set_word_pos(0);
+    fresh
+}

@@ -73,7 +73,7 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
 fn beside() -> Beside {
     let params = LwprParams { init_d: 5.0, ..regressor().params };
     let naive = Some(DirectPolicyLearning { params, passes: 3, ..DirectPolicyLearning::default() });
-    Beside { naive, gaussians: Gaussians::new(FrontEnd::Map, 1000) }
+    Beside { naive, constraint_consistent: None, gaussians: Gaussians::new(FrontEnd::Map, 1000) }
 }
 
 /// In the order of the rows.

@@ -9,8 +9,10 @@ use motion::{Demonstrations, Learner as _, LearntPolicy, SampleIndex};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
+use super::constraint_consistent::{ConstraintConsistent, RadialBasis};
 use super::contest::{Contest, Contestant, row_id};
 use super::exam::{TESTED_ON, errors};
+use super::fresh;
 use super::gaussians::{Gaussians, reading_of, told_by};
 use super::judge::Judge;
 use super::test_samples::TestSamples;
@@ -26,6 +28,8 @@ pub(super) const DATA_SETS: u32 = 5;
 pub(crate) struct Beside {
     /// The naive learner, where the paper's table has none.
     pub(super) naive: Option<DirectPolicyLearning>,
+    /// Least squares on radial basis functions, where states are planar.
+    pub(super) constraint_consistent: Option<ConstraintConsistent>,
     pub(super) gaussians: Gaussians,
 }
 
@@ -34,6 +38,7 @@ pub(super) struct Sat<'a> {
     /// For each alignment: on samples of the movements that it keeps, and of all.
     judges: Vec<[Judge<'a>; 2]>,
     naive: Option<Box<dyn LearntPolicy>>,
+    radial_basis: Option<RadialBasis>,
     both: BothReadings,
     no_trend: SlopeFit,
 }
@@ -48,7 +53,9 @@ impl Beside {
     /// In the order of the rows.
     pub(super) fn contestants(&self) -> Vec<Contestant> {
         let naive = self.naive.as_ref().map(|_| Contestant::Naive);
-        naive.into_iter().chain([Contestant::SlopeGp, Contestant::SlopeGpNoTrend, Contestant::DirectGp]).collect()
+        let radial_basis = self.constraint_consistent.as_ref().map(|_| Contestant::ConstraintConsistent);
+        let baselines = naive.into_iter().chain(radial_basis);
+        baselines.chain([Contestant::SlopeGp, Contestant::SlopeGpNoTrend, Contestant::DirectGp]).collect()
     }
 
     /// The rows of a case.
@@ -96,6 +103,11 @@ impl Beside {
         Ok(Sat {
             judges: sat.iter().map(judges).collect(),
             naive: self.naive.as_ref().map(learn).transpose().map_err(anyhow::Error::from_boxed)?,
+            radial_basis: self
+                .constraint_consistent
+                .as_ref()
+                .map(|learner| learner.learn(&demonstrations, &held_out))
+                .transpose()?,
             both: self.gaussians.both(&demonstrations, &held_out, &mut own())?,
             no_trend: self.gaussians.slope(Trend::None, &demonstrations, &held_out, &mut own())?,
         })
@@ -107,7 +119,8 @@ impl<'a> Sat<'a> {
     pub(super) fn learnt(&self) -> Vec<&dyn LearntPolicy> {
         let naive = self.naive.as_deref();
         let gaussians: [&dyn LearntPolicy; 3] = [self.both.slope(), &self.no_trend, self.both.direct()];
-        naive.into_iter().chain(gaussians).collect()
+        let radial_basis = self.radial_basis.as_ref().map(|learnt| learnt as &dyn LearntPolicy);
+        naive.into_iter().chain(radial_basis).chain(gaussians).collect()
     }
 
     /// On samples of movements that an alignment keeps, and of all.
@@ -145,11 +158,20 @@ impl<'a> Sat<'a> {
 /// Where recordings come from.
 pub(super) trait Scene: Serialize + Send + Sync {
     fn recordings(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Vec<Recording>>;
+
+    /// Movements that nobody learns from; none where only held-out samples are tested.
+    fn fresh(&self, _rng: &ChaCha8Rng) -> anyhow::Result<Option<Vec<Recording>>> {
+        Ok(None)
+    }
 }
 
 impl Scene for ToySystem {
     fn recordings(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Vec<Recording>> {
         Ok(self.record(rng)?)
+    }
+
+    fn fresh(&self, rng: &ChaCha8Rng) -> anyhow::Result<Option<Vec<Recording>>> {
+        fresh::fresh(self, rng).map(Some)
     }
 }
 
@@ -182,7 +204,12 @@ pub(super) struct BesideTrial<S> {
 impl<S: Scene> Trial for BesideTrial<S> {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.scene.recordings(rng)?;
-        self.beside.sit(&recordings, &self.algorithms, rng)?.rows()
+        let sat = self.beside.sit(&recordings, &self.algorithms, rng)?;
+        let mut rows = sat.rows()?;
+        if let Some(recordings) = self.scene.fresh(rng)? {
+            fresh::add_errors(&mut rows, sat.learnt().into_iter().cycle(), &recordings)?;
+        }
+        Ok(rows)
     }
 }
 
@@ -209,10 +236,11 @@ mod tests {
 
         let rows = sat.rows().unwrap();
         assert_eq!(rows.len(), beside.rows("case").len());
-        let [naive, slope, no_trend, direct] = [0, 1, 2, 3].map(|row| rows[row][&Measure::Nupe]);
+        let [naive, radial_basis, slope, no_trend, direct] = [0, 1, 2, 3, 4].map(|row| rows[row][&Measure::Nupe]);
         // The parabola is in the slope GP's families; without a trend it is not.
         assert!(slope < 1e-12 && slope < no_trend && no_trend < 1e-2, "{slope} {no_trend}");
         assert!(naive > 0.1 && direct > 0.1, "{naive} {direct}");
-        assert_eq!(rows[1][&Measure::ReadConstrained], 100.0);
+        assert!(radial_basis < naive, "{radial_basis}");
+        assert_eq!(rows[2][&Measure::ReadConstrained], 100.0);
     }
 }

@@ -9,6 +9,8 @@ pub(crate) enum Contestant {
     Naive,
     /// The paper's method.
     PolicyAlign,
+    /// Howard's later learner: least squares on radial basis functions.
+    ConstraintConsistent,
     /// The slope GP.
     SlopeGp,
     /// The slope GP whose families hold no quadratic potential.
@@ -20,9 +22,10 @@ pub(crate) enum Contestant {
 }
 
 impl Contestant {
-    pub(crate) const ALL: [Contestant; 6] = [
+    pub(crate) const ALL: [Contestant; 7] = [
         Contestant::Naive,
         Contestant::PolicyAlign,
+        Contestant::ConstraintConsistent,
         Contestant::SlopeGp,
         Contestant::SlopeGpNoTrend,
         Contestant::DirectGp,
@@ -34,6 +37,7 @@ impl Contestant {
         match self {
             Contestant::Naive => "naive",
             Contestant::PolicyAlign => "policy_align",
+            Contestant::ConstraintConsistent => "radial_basis",
             Contestant::SlopeGp => "slope_gp",
             Contestant::SlopeGpNoTrend => "slope_gp_no_trend",
             Contestant::DirectGp => "direct_gp",
@@ -46,6 +50,7 @@ impl Contestant {
         match self {
             Contestant::Naive => "naive",
             Contestant::PolicyAlign => "PolicyAlign",
+            Contestant::ConstraintConsistent => "radial basis",
             Contestant::SlopeGp => "slope GP",
             Contestant::SlopeGpNoTrend => "slope GP, no trend",
             Contestant::DirectGp => "direct GP",

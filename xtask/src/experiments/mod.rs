@@ -3,10 +3,12 @@
 mod asimo22;
 mod beside;
 mod beyond;
+mod constraint_consistent;
 mod contest;
 mod exam;
 mod figure6;
 mod figure9;
+mod fresh;
 mod gaussians;
 mod judge;
 mod parameters;

@@ -9,8 +9,10 @@ use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
 use super::beside::{Beside, BesideTrial, DATA_SETS};
+use super::constraint_consistent::ConstraintConsistent;
 use super::contest::Contest;
 use super::exam::examine;
+use super::fresh::{add_errors, fresh};
 use super::gaussians::Gaussians;
 use super::pupil::Pupil;
 use super::{Experiment, Measures, Row, Setup, Trial};
@@ -112,14 +114,19 @@ fn cases(name: &str, size: usize) -> [String; 3] {
 fn contests() -> Vec<Contest> {
     let beside = toy_beside(FrontEnd::Map, 1);
     let cases = systems().into_iter().flat_map(|(_, name, size, _)| cases(name, size));
-    cases.map(|case| beside.contest(&case, Measure::Nupe)).collect()
+    let lines = |case: String| [Measure::Nupe, Measure::NupeFresh].map(|measure| beside.contest(&case, measure));
+    cases.flat_map(lines).collect()
 }
 
 /// Who learns the toy system beside PolicyAlign.
 pub(crate) fn toy_beside(front_end: FrontEnd, max_rows: usize) -> Beside {
     let LwprRegressor { params, passes, cutoff } = toy_regressor();
     let naive = Some(DirectPolicyLearning { params, passes, cutoff });
-    Beside { naive, gaussians: Gaussians::new(front_end, max_rows) }
+    Beside {
+        naive,
+        constraint_consistent: Some(ConstraintConsistent::default()),
+        gaussians: Gaussians::new(front_end, max_rows),
+    }
 }
 
 /// One row of the table.
@@ -151,6 +158,9 @@ pub(super) fn learning_cost(n_trajectories: usize, n_samples: usize) -> u64 {
 impl Trial for ToyTrial {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.system.record(rng)?;
-        examine(&recordings, &self.algorithm, &self.pupils, rng)?.rows()
+        let exam = examine(&recordings, &self.algorithm, &self.pupils, rng)?;
+        let mut rows = exam.rows()?;
+        add_errors(&mut rows, exam.learnt(), &fresh(&self.system, rng)?)?;
+        Ok(rows)
     }
 }

@@ -82,7 +82,7 @@ const CASE: &str = "grasp";
 
 /// Who learns beside PolicyAlign and the naive learner.
 pub(crate) fn grasp_beside() -> Beside {
-    Beside { naive: None, gaussians: Gaussians::new(FrontEnd::Map, 1000) }
+    Beside { naive: None, constraint_consistent: None, gaussians: Gaussians::new(FrontEnd::Map, 1000) }
 }
 
 /// What is demonstrated.

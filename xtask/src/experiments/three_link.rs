@@ -71,7 +71,7 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
 
 /// Who learns beside PolicyAlign and the naive learner.
 pub(super) fn beside(max_rows: usize) -> Beside {
-    Beside { naive: None, gaussians: Gaussians::new(FrontEnd::Map, max_rows) }
+    Beside { naive: None, constraint_consistent: None, gaussians: Gaussians::new(FrontEnd::Map, max_rows) }
 }
 
 /// The arm of Section 4.4.

@@ -13,7 +13,7 @@ the error of alignment, which follows from the time step) and the naive baseline
 differ by more than a factor of two; it is not judged.";
 
 /// Measures and what they are.
-pub(super) const MEASURES: [(&[Measure], &str); 12] = [
+pub(super) const MEASURES: [(&[Measure], &str); 13] = [
     (&[Measure::PotentialNmse], "error of the learnt potential (A3)"),
     (
         &[Measure::Nupe, Measure::Ncpe],
@@ -23,6 +23,7 @@ pub(super) const MEASURES: [(&[Measure], &str); 12] = [
         &[Measure::NupeAll, Measure::NcpeAll],
         "the same on held-out samples of all movements, not of the kept ones alone",
     ),
+    (&[Measure::NupeFresh], "the same on ten movements from new starts in the same box, which nobody learnt from"),
     (&[Measure::Naive, Measure::PolicyAlign], "error of that learner's policy under the constraint of the row"),
     (&[Measure::NaiveAll, Measure::PolicyAlignAll], "the same on held-out samples of all movements"),
     (&[Measure::AlignmentNmse], "error of the aligned local potentials (A4)"),
