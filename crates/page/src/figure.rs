@@ -75,7 +75,7 @@ fn add(piece: &str, uri: &mut String) {
     for byte in piece.bytes() {
         match byte {
             // What ends an address or an attribute, or may not stand in one.
-            b'"' | b'#' | b'%' | b'&' | b'<' | b'>' | 0..b' ' | 127.. => {
+            b'"' | b'#' | b'%' | b'&' | b'<' | 0..b' ' | 127.. => {
                 let _ = write!(uri, "%{byte:02X}");
             }
             _ => uri.push(char::from(byte)),
@@ -101,8 +101,8 @@ mod tests {
     fn a_picture_is_one_address_with_its_size() {
         let svg = "<svg xmlns=\"x\" width=\"12\" height=\"7.5\"><path stroke=\"#000\" width=\"3\"/>\"é\" isn't 5%\n<g id=\"a'\"/></svg>";
         assert_eq!(size(svg), (Some("12"), Some("7.5")));
-        let expected = "data:image/svg+xml,%3Csvg xmlns='x' width='12' height='7.5'%3E%3Cpath stroke='%23000' width='3'/%3E\
-                        %22%C3%A9%22 isn't 5%25%0A%3Cg id=%22a'%22/%3E%3C/svg%3E";
+        let expected = "data:image/svg+xml,%3Csvg xmlns='x' width='12' height='7.5'>%3Cpath stroke='%23000' width='3'/>\
+                        %22%C3%A9%22 isn't 5%25%0A%3Cg id=%22a'%22/>%3C/svg>";
         assert_eq!(data_uri(svg), expected);
     }
 }

@@ -1,9 +1,19 @@
 "use strict";
 // Which movement is shown, and where in time it is. Knows nothing of drawing.
 
+/** Rows of positions from their steps, which are written in whole parts of a unit. */
+function rows(steps, parts) {
+  const sum = steps[0].map(() => 0);
+  return steps.map((step) => step.map((by, k) => (sum[k] += by) / parts));
+}
+
 class Playback {
   constructor(document) {
     this.document = document;
+    for (const movement of document.movements) {
+      movement.joints = rows(movement.joints, document.parts);
+      movement.palms = rows(movement.palms, document.parts);
+    }
     this.robot = new Robot(document.robot);
     const ids = (options) => options.map(({ id }) => id);
     this.options = {

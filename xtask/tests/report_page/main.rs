@@ -15,7 +15,7 @@ mod words;
 use browser::{Page, report};
 
 /// Bytes that the page may have.
-const LARGEST: u64 = 10_000_000;
+const LARGEST: u64 = 4_500_000;
 
 /// The page, unless there is no browser.
 fn page() -> Option<Page> {

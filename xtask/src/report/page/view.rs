@@ -58,11 +58,37 @@ pub(super) fn view(sources: &Sources, figures: &[&(Figure, String)]) -> Markup {
     }
 }
 
-/// The figure data with the measures of what the figures draw around the robot, so that they are written once.
+/// Parts of a unit to which positions are told: as many as the figure data have digits.
+const PARTS: f64 = 1e4;
+
+/// The figure data with the measures of what the figures draw around the robot, so that they are written once; rows of
+/// positions as steps from row to row, in whole parts of a unit, which takes half the room.
 fn staged(playback: &Value) -> Value {
     let mut playback = playback.clone();
+    for movement in playback["movements"].as_array_mut().into_iter().flatten() {
+        for positions in ["joints", "palms"] {
+            movement[positions] = steps(&movement[positions]);
+        }
+    }
+    playback["parts"] = json!(PARTS);
     playback["scene"]["stage"] = json!({ "plate_top": stage::PLATE_TOP, "board": stage::BOARD, "leg": stage::LEG });
     playback
+}
+
+/// Differences of successive rows, the first from 0.
+fn steps(rows: &Value) -> Value {
+    let parts = |row: &Value| -> Vec<i64> {
+        let row = row.as_array().into_iter().flatten();
+        row.map(|value| (value.as_f64().unwrap_or_default() * PARTS).round() as i64).collect()
+    };
+    let mut before = Vec::new();
+    let rows = rows.as_array().into_iter().flatten().map(|row| {
+        let row = parts(row);
+        let step: Vec<i64> = row.iter().enumerate().map(|(k, part)| part - before.get(k).unwrap_or(&0)).collect();
+        before = row;
+        step
+    });
+    json!(rows.collect::<Vec<_>>())
 }
 
 /// The figures' colours, for the style sheet of the view.
