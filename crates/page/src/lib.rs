@@ -26,6 +26,7 @@ mod emphasis;
 mod figure;
 mod markdown;
 mod scale;
+mod shared_style;
 mod strip;
 
 pub use document::{Document, Part};

@@ -46,9 +46,6 @@ impl Strip<'_> {
     pub fn drawn(&self, scale: Scale) -> Markup {
         let x = |value: f64| INSET + scale.place(value) * (WIDTH - 2.0 * INSET);
         let values = self.values.iter().enumerate().filter_map(|(i, value)| Some((i, (*value)?)));
-        // A hundred equal values are one dot.
-        let different = values.clone().any(|(_, value)| value != self.mean);
-        let values = values.take(if different { usize::MAX } else { 1 });
         // One path, of which every dot is a line without length and with round ends: a page has thousands of dots.
         let dots: Vec<String> = values.map(|(i, value)| format!("M{} {}h0", pixels(x(value)), pixels(y(i)))).collect();
         html! {
