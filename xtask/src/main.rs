@@ -5,6 +5,7 @@ mod conformance;
 mod experiments;
 mod figures;
 mod files;
+mod leverage;
 mod measure;
 mod paper;
 mod progress;
@@ -53,6 +54,8 @@ enum Command {
     Publish(publish::Publish),
     /// Hold a run against the committed records: every mean within 1e-6 of itself, every verdict the same
     Compare(compare::Compare),
+    /// Change every fitted setting by a fifth, and write to docs/leverage.md which printed cells that turns
+    Leverage(leverage::Leverage),
     /// Compare kinematics and LWPR with reference cases that other libraries computed
     Conformance(conformance::Conformance),
     /// Check manifests and sources against the architecture
@@ -65,6 +68,7 @@ fn main() -> ExitCode {
         Command::Report(report) => report.execute(),
         Command::Publish(publish) => publish.execute(),
         Command::Compare(compare) => compare.execute(),
+        Command::Leverage(leverage) => leverage.execute(),
         Command::Conformance(conformance) => conformance.execute(),
         Command::Tidy => tidy::execute(),
     };

@@ -13,6 +13,7 @@ use super::contest::{Contest, Contestant};
 use super::exam::examine;
 use super::gaussians::Gaussians;
 use super::pupil::Pupil;
+use super::settings::{SILENT, Setting};
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::Measure;
 use crate::paper::{explanations, paper_table};
@@ -21,17 +22,18 @@ use crate::robots::upper_body;
 /// The system whose random stream is used.
 const BODY_SYSTEM: u32 = 430;
 
+/// Its only row of the paper.
+const ROW: &str = "policy_align";
+
 /// What its rows of other learners are named after.
 const CASE: &str = "body";
 
 /// The experiment.
 pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
-    let id = "policy_align";
     let scenario = HandInPlane::new(upper_body()?);
-    let trial = BodyTrial { scenario: scenario.clone(), algorithm: PolicyAlign::default(), pupils: pupils() };
     let beside = beside();
     let contest =
-        |measure| Contest::of(CASE, measure, &beside.contestants()).with(Contestant::PolicyAlign, id, measure);
+        |measure| Contest::of(CASE, measure, &beside.contestants()).with(Contestant::PolicyAlign, ROW, measure);
     Ok(Experiment {
         id: "asimo22",
         section: "4.3",
@@ -46,14 +48,7 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
         another_reading_of: None,
         contests: [Measure::Nupe, Measure::Ncpe].map(contest).into(),
         setups: vec![
-            Setup {
-                id: id.to_owned(),
-                rows: vec![Row::of_learner(id)],
-                system: BODY_SYSTEM,
-                data_sets: None,
-                cost: 20_000_000,
-                trial: Box::new(trial),
-            },
+            printed(scenario.clone(), regressor()),
             Setup {
                 id: "beside".to_owned(),
                 rows: beside.rows(CASE),
@@ -76,9 +71,38 @@ fn beside() -> Beside {
     Beside { naive, constraint_consistent: None, gaussians: Gaussians::new(FrontEnd::Map, 1000) }
 }
 
-/// In the order of the rows.
-fn pupils() -> Vec<Pupil> {
-    vec![Pupil::PolicyAlign(regressor())]
+/// The printed row.
+fn printed(scenario: HandInPlane, regressor: LwprRegressor) -> Setup {
+    let pupils = vec![Pupil::PolicyAlign(regressor)];
+    Setup {
+        id: ROW.to_owned(),
+        rows: vec![Row::of_learner(ROW)],
+        system: BODY_SYSTEM,
+        data_sets: None,
+        cost: 20_000_000,
+        trial: Box::new(BodyTrial { scenario, algorithm: PolicyAlign::default(), pupils }),
+    }
+}
+
+/// What is fitted.
+pub(super) fn settings() -> Vec<Setting> {
+    let setting = |name, paper, used, with| Setting { experiment: "asimo22", name, paper, used, with };
+    vec![
+        setting("D of the regression", SILENT, 50.0, |init_d| {
+            let LwprRegressor { params, passes, cutoff } = regressor();
+            let regressor = LwprRegressor { params: LwprParams { init_d, ..params }, passes, cutoff };
+            Ok(vec![printed(HandInPlane::new(upper_body()?), regressor)])
+        }),
+        setting("passes of the regression", SILENT, 20.0, |passes| {
+            let regressor = LwprRegressor { passes: passes.round() as usize, ..regressor() };
+            Ok(vec![printed(HandInPlane::new(upper_body()?), regressor)])
+        }),
+        setting("δt, s", SILENT, 0.5, |time_step| {
+            let mut scenario = HandInPlane::new(upper_body()?);
+            scenario.roll_out.time_step = time_step;
+            Ok(vec![printed(scenario, regressor())])
+        }),
+    ]
 }
 
 fn regressor() -> LwprRegressor {

@@ -15,6 +15,7 @@ mod parameters;
 mod pupil;
 mod readings;
 mod seen;
+mod settings;
 mod table1;
 mod table2;
 mod test_samples;
@@ -26,6 +27,7 @@ pub(crate) use figure6::{BANDWIDTHS, BESIDE_LEFT, BESIDE_RIGHT, NOISE_PERCENT, R
 pub(crate) use figure9::{Distance, TENTHS, line};
 pub(crate) use judge::Judge;
 pub(crate) use parameters::Parameters;
+pub(crate) use settings::{Setting, settings};
 pub(crate) use table1::{PARABOLA_SYSTEM, SINUSOIDAL_SYSTEM, toy_beside, toy_regressor};
 pub(crate) use table2::{GRASP_SYSTEM, grasp, grasp_beside, grasp_naive, grasp_regressor};
 pub(crate) use test_samples::TestSamples;

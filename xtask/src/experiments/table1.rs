@@ -15,6 +15,7 @@ use super::exam::examine;
 use super::fresh::{add_errors, fresh};
 use super::gaussians::Gaussians;
 use super::pupil::Pupil;
+use super::settings::{SILENT, Setting};
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::Measure;
 use crate::paper::{explanations, paper_table};
@@ -37,7 +38,7 @@ pub(crate) fn table1() -> anyhow::Result<Experiment> {
         decisions: "table1.md",
         another_reading_of: None,
         contests: contests(),
-        setups: setups(Redraw::Every(20), 0, 1000),
+        setups: setups(Redraw::Every(REDRAW), 0, 1000),
         paper: paper_table(include_str!("../../paper/table1.toml"))?,
         explanations: explanations(include_str!("../../paper/table1-explained.toml"))?,
     })
@@ -60,6 +61,9 @@ pub(crate) fn table1_literal() -> anyhow::Result<Experiment> {
     })
 }
 
+/// Samples after which the constraint is drawn anew.
+const REDRAW: usize = 20;
+
 /// Rows that the Gaussian processes learn from in the literal reading, which shows them nothing new.
 const LITERAL_ROWS: usize = 500;
 
@@ -76,7 +80,8 @@ fn systems() -> [(u32, &'static str, usize, ToyPotential); 3] {
     ]
 }
 
-fn setups(redraw: Redraw, first_system: u32, max_rows: usize) -> Vec<Setup> {
+/// The printed rows.
+fn printed(redraw: Redraw, first_system: u32, regressor: &LwprRegressor) -> Vec<Setup> {
     let mut setups = Vec::new();
     for (number, name, size, potential) in systems() {
         let system = ToySystem { potential, n_trajectories: size, n_samples: size, redraw };
@@ -85,10 +90,46 @@ fn setups(redraw: Redraw, first_system: u32, max_rows: usize) -> Vec<Setup> {
             let row = Row::of_learner(&id);
             let algorithm = PolicyAlign { bandwidth, ..PolicyAlign::default() };
             let (cost, system_number) = (learning_cost(size, size), first_system + number);
-            let trial = Box::new(ToyTrial { system: system.clone(), algorithm, pupils: toy_pupils() });
+            let pupils = vec![Pupil::PolicyAlign(regressor.clone())];
+            let trial = Box::new(ToyTrial { system: system.clone(), algorithm, pupils });
             setups.push(Setup { id, rows: vec![row], system: system_number, data_sets: None, cost, trial });
         }
     }
+    setups
+}
+
+/// What is fitted.
+pub(super) fn settings() -> Vec<Setting> {
+    let setting = |name, paper, used, with| Setting { experiment: "table1", name, paper, used, with };
+    vec![
+        setting("samples to the next constraint", "\"re-sampled twice\"", REDRAW as f64, |value| {
+            Ok(printed(Redraw::Every(value.round() as usize), 0, &toy_regressor()))
+        }),
+        setting("init_D of the regression", SILENT, 10.0, |init_d| {
+            let LwprRegressor { params, passes, cutoff } = toy_regressor();
+            Ok(tuned(&LwprRegressor { params: LwprParams { init_d, ..params }, passes, cutoff }))
+        }),
+        setting("w_gen of the regression", SILENT, 0.5, |w_gen| {
+            let LwprRegressor { params, passes, cutoff } = toy_regressor();
+            Ok(tuned(&LwprRegressor { params: LwprParams { w_gen, ..params }, passes, cutoff }))
+        }),
+        setting("penalty of the regression", SILENT, 1e-5, |penalty| {
+            let LwprRegressor { params, passes, cutoff } = toy_regressor();
+            Ok(tuned(&LwprRegressor { params: LwprParams { penalty, ..params }, passes, cutoff }))
+        }),
+        setting("passes of the regression", SILENT, 10.0, |passes| {
+            Ok(tuned(&LwprRegressor { passes: passes.round() as usize, ..toy_regressor() }))
+        }),
+    ]
+}
+
+/// The printed rows with another regression.
+fn tuned(regressor: &LwprRegressor) -> Vec<Setup> {
+    printed(Redraw::Every(REDRAW), 0, regressor)
+}
+
+fn setups(redraw: Redraw, first_system: u32, max_rows: usize) -> Vec<Setup> {
+    let mut setups = printed(redraw, first_system, &toy_regressor());
     for (number, name, size, potential) in systems() {
         let scene = ToySystem { potential, n_trajectories: size, n_samples: size, redraw };
         let algorithms = BANDWIDTHS.map(|(_, bandwidth)| PolicyAlign { bandwidth, ..PolicyAlign::default() }).into();

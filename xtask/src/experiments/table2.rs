@@ -15,6 +15,7 @@ use super::contest::{Contest, Contestant};
 use super::exam::examine;
 use super::gaussians::Gaussians;
 use super::pupil::Pupil;
+use super::settings::{SILENT, Setting};
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::Measure;
 use crate::paper::{explanations, paper_table};
@@ -28,7 +29,6 @@ const SPREAD: f64 = 0.3;
 
 /// The experiment.
 pub(crate) fn table2() -> anyhow::Result<Experiment> {
-    let rows = CASES.into_iter().chain(["alignment"]).map(Row::of_learner).collect();
     let beside = grasp_beside();
     let contest = |(case, [measure, _]): (&str, [Measure; 2])| Contest {
         case: case.to_owned(),
@@ -36,9 +36,6 @@ pub(crate) fn table2() -> anyhow::Result<Experiment> {
             .with(Contestant::PolicyAlign, case, Measure::PolicyAlign)
             .with(Contestant::Naive, case, Measure::Naive)
     };
-    // In the order of [`MEASURES`].
-    let pupils = vec![Pupil::PolicyAlign(grasp_regressor()), Pupil::other(grasp_naive())?];
-    let trial = GraspTrial { grasp: grasp()?, algorithm: PolicyAlign::default(), pupils };
     Ok(Experiment {
         id: "table2",
         section: "4.2",
@@ -52,14 +49,7 @@ pub(crate) fn table2() -> anyhow::Result<Experiment> {
         another_reading_of: None,
         contests: CASES.into_iter().zip(ERRORS).map(contest).collect(),
         setups: vec![
-            Setup {
-                id: "grasp".to_owned(),
-                rows,
-                system: GRASP_SYSTEM,
-                data_sets: None,
-                cost: 2_000_000,
-                trial: Box::new(trial),
-            },
+            printed(grasp()?, grasp_regressor(), grasp_naive())?,
             Setup {
                 id: "beside".to_owned(),
                 rows: beside.rows(CASE),
@@ -72,6 +62,53 @@ pub(crate) fn table2() -> anyhow::Result<Experiment> {
         paper: paper_table(include_str!("../../paper/table2.toml"))?,
         explanations: explanations(include_str!("../../paper/table2-explained.toml"))?,
     })
+}
+
+/// The printed rows.
+fn printed(grasp: Grasp, regressor: LwprRegressor, naive: DirectPolicyLearning) -> anyhow::Result<Setup> {
+    // In the order of [`MEASURES`].
+    let pupils = vec![Pupil::PolicyAlign(regressor), Pupil::other(naive)?];
+    Ok(Setup {
+        id: "grasp".to_owned(),
+        rows: CASES.into_iter().chain(["alignment"]).map(Row::of_learner).collect(),
+        system: GRASP_SYSTEM,
+        data_sets: None,
+        cost: 2_000_000,
+        trial: Box::new(GraspTrial { grasp, algorithm: PolicyAlign::default(), pupils }),
+    })
+}
+
+/// The printed rows in another scene.
+fn staged(change: impl Fn(&mut Grasp)) -> anyhow::Result<Vec<Setup>> {
+    let mut grasp = grasp()?;
+    change(&mut grasp);
+    Ok(vec![printed(grasp, grasp_regressor(), grasp_naive())?])
+}
+
+/// What is fitted.
+pub(super) fn settings() -> Vec<Setting> {
+    let setting = |name, paper, used, with| Setting { experiment: "table2", name, paper, used, with };
+    vec![
+        setting("narrowest gap, m", "gaps from N(.25, .1²)", 0.17, |least| staged(|grasp| grasp.gap_least = least)),
+        setting("wall, m in front of the robot", SILENT, 0.35, |wall| staged(|grasp| grasp.scene.wall = wall)),
+        setting("reach of the wall, m", SILENT, 0.09, |reach| staged(|grasp| grasp.scene.wall_influence = reach)),
+        setting("half-width of the unseen obstacle, m", SILENT, 0.13, |half_width| {
+            staged(|grasp| grasp.scene.obstacle_half_width = half_width)
+        }),
+        setting("δt, s", "2 s at 50 Hz", 0.5, |time_step| staged(|grasp| grasp.roll_out.time_step = time_step)),
+        setting("D of PolicyAlign's regression", SILENT, 22.0, |init_d| {
+            let regressor = LwprRegressor { params: params(init_d), ..grasp_regressor() };
+            Ok(vec![printed(grasp()?, regressor, grasp_naive())?])
+        }),
+        setting("D of the naive regression", SILENT, 10.0, |init_d| {
+            let naive = DirectPolicyLearning { params: params(init_d), ..grasp_naive() };
+            Ok(vec![printed(grasp()?, grasp_regressor(), naive)?])
+        }),
+        setting("passes of the naive regression", SILENT, 4.0, |passes| {
+            let naive = DirectPolicyLearning { passes: passes.round() as usize, ..grasp_naive() };
+            Ok(vec![printed(grasp()?, grasp_regressor(), naive)?])
+        }),
+    ]
 }
 
 /// The rows of the printed table.

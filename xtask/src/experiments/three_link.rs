@@ -13,6 +13,7 @@ use super::contest::{Contest, Contestant};
 use super::exam::{TESTED_ON, examine};
 use super::gaussians::Gaussians;
 use super::pupil::Pupil;
+use super::settings::{SILENT, Setting};
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::{Measure, RowOf};
 use crate::paper::{explanations, paper_table};
@@ -25,9 +26,6 @@ const CASE: &str = "arm";
 
 /// The experiment.
 pub(crate) fn three_link() -> anyhow::Result<Experiment> {
-    let rows = [("policy_align", RowOf::Learner), ("naive", RowOf::Baseline)];
-    let rows = rows.map(|(id, of)| Row { id: id.to_owned(), of, tested_on: TESTED_ON });
-    let trial = ArmTrial { arm: arm()?, algorithm: PolicyAlign::default(), pupils: pupils()? };
     let beside = beside(500);
     let contest =
         |measure| {
@@ -47,14 +45,7 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
         another_reading_of: None,
         contests: [Measure::Nupe, Measure::Ncpe].map(contest).into(),
         setups: vec![
-            Setup {
-                id: "three_link".to_owned(),
-                rows: rows.into(),
-                system: ARM_SYSTEM,
-                data_sets: None,
-                cost: 2_000_000,
-                trial: Box::new(trial),
-            },
+            printed(arm()?, regressor(), naive())?,
             Setup {
                 id: "beside".to_owned(),
                 rows: beside.rows(CASE),
@@ -84,10 +75,46 @@ pub(super) fn regressor() -> LwprRegressor {
     LwprRegressor { params: params(20.0), ..LwprRegressor::default() }
 }
 
-/// In the order of the rows.
-fn pupils() -> anyhow::Result<Vec<Pupil>> {
-    let naive = DirectPolicyLearning { params: params(50.0), ..DirectPolicyLearning::default() };
-    Ok(vec![Pupil::PolicyAlign(regressor()), Pupil::other(naive)?])
+fn naive() -> DirectPolicyLearning {
+    DirectPolicyLearning { params: params(50.0), ..DirectPolicyLearning::default() }
+}
+
+/// The printed rows.
+fn printed(arm: ThreeLinkArm, regressor: LwprRegressor, naive: DirectPolicyLearning) -> anyhow::Result<Setup> {
+    let rows = [("policy_align", RowOf::Learner), ("naive", RowOf::Baseline)];
+    // In the order of the rows.
+    let pupils = vec![Pupil::PolicyAlign(regressor), Pupil::other(naive)?];
+    Ok(Setup {
+        id: "three_link".to_owned(),
+        rows: rows.map(|(id, of)| Row { id: id.to_owned(), of, tested_on: TESTED_ON }).into(),
+        system: ARM_SYSTEM,
+        data_sets: None,
+        cost: 2_000_000,
+        trial: Box::new(ArmTrial { arm, algorithm: PolicyAlign::default(), pupils }),
+    })
+}
+
+/// What is fitted.
+pub(super) fn settings() -> Vec<Setting> {
+    let setting = |name, paper, used, with| Setting { experiment: "three_link", name, paper, used, with };
+    vec![
+        setting("D of PolicyAlign's regression", SILENT, 20.0, |init_d| {
+            let regressor = LwprRegressor { params: params(init_d), ..regressor() };
+            Ok(vec![printed(arm()?, regressor, naive())?])
+        }),
+        setting("D of the naive regression", SILENT, 50.0, |init_d| {
+            let naive = DirectPolicyLearning { params: params(init_d), ..naive() };
+            Ok(vec![printed(arm()?, regressor(), naive)?])
+        }),
+        setting("starts within ±, rad", SILENT, 1.0, |range| {
+            Ok(vec![printed(ThreeLinkArm { start_range: range, ..arm()? }, regressor(), naive())?])
+        }),
+        setting("δt, s", SILENT, 0.5, |time_step| {
+            let mut arm = arm()?;
+            arm.roll_out.time_step = time_step;
+            Ok(vec![printed(arm, regressor(), naive())?])
+        }),
+    ]
 }
 
 fn params(init_d: f64) -> LwprParams {

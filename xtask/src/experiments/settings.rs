@@ -1,0 +1,28 @@
+//! What is fitted because the paper does not say it: each setting with the experiment that it makes at another value.
+
+use super::{Setup, asimo22, table1, table2, three_link};
+
+/// One fitted number of an experiment.
+pub(crate) struct Setting {
+    /// The experiment's id.
+    pub(crate) experiment: &'static str,
+    /// Its name, with a unit.
+    pub(crate) name: &'static str,
+    /// What the paper says of it.
+    pub(crate) paper: &'static str,
+    /// What is used here.
+    pub(crate) used: f64,
+    /// The printed rows at another value; whole numbers are rounded.
+    pub(crate) with: fn(f64) -> anyhow::Result<Vec<Setup>>,
+}
+
+/// Where the paper is silent.
+pub(super) const SILENT: &str = "nothing";
+
+/// All of them, experiment by experiment.
+pub(crate) fn settings() -> Vec<Setting> {
+    [table1::settings(), table2::settings(), asimo22::settings(), three_link::settings()]
+        .into_iter()
+        .flatten()
+        .collect()
+}
