@@ -1,44 +1,17 @@
 //! Policies and potentials that were learnt allocate nothing when they are asked.
 
 #![allow(clippy::unwrap_used)] // A panic is how a test fails.
-#![allow(unsafe_code, reason = "counting allocations needs an allocator")]
 
 mod drawn;
-
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 
 use drawn::{descent, rng, rows, vector};
 use gp::{CurlTest, DirectGp, ReadingLearner, SlopeGp};
 use motion::{LearntPolicy, Policy, Potential as _};
 use nalgebra::DVector;
 
-struct Counting;
-
-thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-// SAFETY: everything is left to the system's allocator.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.with(|count| count.set(count.get() + 1));
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
 /// How often this thread allocates in `work`.
-fn allocations(work: impl FnOnce()) -> usize {
-    let before = COUNT.get();
-    work();
-    COUNT.get() - before
+fn allocations(work: impl FnOnce()) -> u64 {
+    allocation_counter::measure(work).count_total
 }
 
 #[test]

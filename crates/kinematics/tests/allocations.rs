@@ -1,44 +1,13 @@
 //! After the first call with a workspace, no question about a configuration allocates.
 #![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
 
-use std::{
-    alloc::{GlobalAlloc, Layout, System},
-    cell::Cell,
-};
-
 use kinematics::{ResolvedRate, RobotModel, SelfCollision, Workspace};
 use nalgebra::{DVector, Matrix3xX, Matrix6xX};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 
-thread_local! {
-    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
-}
-
-/// The system's allocator, with a count for each thread.
-struct Counting;
-
-// SAFETY: every call is handed on unchanged to the system's allocator, which keeps the contract; the count is a plain
-// cell of the calling thread and allocates nothing itself.
-#[allow(unsafe_code, reason = "an allocator cannot be written without")]
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        let _ = ALLOCATIONS.try_with(|count| count.set(count.get() + 1));
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
-fn allocations(mut of: impl FnMut()) -> usize {
+fn allocations(mut of: impl FnMut()) -> u64 {
     of(); // The first call may make room.
-    let before = ALLOCATIONS.get();
-    of();
-    ALLOCATIONS.get() - before
+    allocation_counter::measure(of).count_total
 }
 
 #[test]
