@@ -2,13 +2,13 @@
 
 use align::{Bandwidth, DirectPolicyLearning, Integration, LwprRegressor, PolicyAlign};
 use demo_gen::{Sinusoidal, demonstrations};
-use motion::{Learner as _, LearntPolicy, NegativeGradient, Policy, Potential};
-use nalgebra::{DVector, dvector};
+use motion::{Learner as _, LearntPolicy, NegativeGradient, Policy as _, Potential as _};
+use nalgebra::DVector;
 use plot::{Field, Layer, Picture, Plane};
 use serde::{Deserialize, Serialize};
 
 use super::sound::{Sound, field, some};
-use super::state_plane::state_plane;
+use super::state_plane::{Arrow, actions, compared, on_grid, state_plane};
 use super::{Document, Drawing, Figure, Sources, demonstrated, rounded};
 use crate::experiments::case_on_the_plane;
 use crate::figures::Who;
@@ -19,6 +19,9 @@ const EXTENT: f64 = 2.0;
 
 /// Arrows are drawn as long as this many seconds of movement.
 const ARROW_SECONDS: f64 = 4.0;
+
+/// Longer actions are not meant.
+const LONGEST: f64 = 0.2;
 
 /// Half as many steps of a colour field across the plane.
 const STEPS: i32 = 20;
@@ -43,11 +46,11 @@ pub(super) fn figure() -> Figure {
 struct Fields {
     movements: Vec<Vec<(f64, f64)>>,
     contours: Field,
-    truth: Vec<(f64, f64, f64, f64)>,
-    naive: Vec<(f64, f64, f64, f64)>,
-    policy_align: Vec<(f64, f64, f64, f64)>,
-    direct_gp: Vec<(f64, f64, f64, f64)>,
-    slope_gp: Vec<(f64, f64, f64, f64)>,
+    truth: Vec<Arrow>,
+    naive: Vec<Arrow>,
+    policy_align: Vec<Arrow>,
+    direct_gp: Vec<Arrow>,
+    slope_gp: Vec<Arrow>,
     /// log₁₀ of the standard deviation that the slope GP gives its policy.
     expected: Field,
     /// log₁₀ of how far its policy is from the truth.
@@ -91,47 +94,23 @@ fn fields(seed: u64) -> anyhow::Result<Fields> {
     let logarithm = |value: f64| rounded(value.max(LEAST_ERROR).log10(), 3);
     Ok(Fields {
         movements: recordings.iter().map(points).collect(),
-        contours: on_grid(|x| rounded(potential.value(x.as_view()), 5)),
-        truth: arrows(&truth),
-        naive: arrows(&*naive),
-        policy_align: arrows(&policy_align),
-        direct_gp: arrows(both.direct()),
-        slope_gp: arrows(both.slope()),
-        expected: on_grid(|x| logarithm(expected(x))),
-        error: on_grid(|x| logarithm(error(x))),
+        contours: on_grid(EXTENT, STEPS, |x| rounded(potential.value(x.as_view()), 5)),
+        truth: actions(&truth, LONGEST),
+        naive: actions(&*naive, LONGEST),
+        policy_align: actions(&policy_align, LONGEST),
+        direct_gp: actions(both.direct(), LONGEST),
+        slope_gp: actions(both.slope(), LONGEST),
+        expected: on_grid(EXTENT, STEPS, |x| logarithm(expected(x))),
+        error: on_grid(EXTENT, STEPS, |x| logarithm(error(x))),
     })
-}
-
-fn on_grid(value: impl Fn(&DVector<f64>) -> f64) -> Field {
-    let grid: Vec<f64> = (-STEPS..=STEPS).map(|i| EXTENT * f64::from(i) / f64::from(STEPS)).collect();
-    let values = grid.iter().map(|&y| grid.iter().map(|&x| value(&dvector![x, y])).collect()).collect();
-    Field { x: grid.clone(), y: grid, values }
-}
-
-/// The unconstrained actions of a policy on a grid; longer ones than can be meant are cut.
-fn arrows<P: Policy + ?Sized>(policy: &P) -> Vec<(f64, f64, f64, f64)> {
-    let grid = (0..81).map(|i| (f64::from(i % 9 - 4) * 0.45, f64::from(i / 9 - 4) * 0.45));
-    let arrow = |(x, y): (f64, f64)| {
-        let action = policy.action(dvector![x, y].as_view()).cap_magnitude(0.2);
-        (rounded(x, 4), rounded(y, 4), rounded(action[0], 5), rounded(action[1], 5))
-    };
-    grid.map(arrow).collect()
 }
 
 fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let fields: Fields = sources.document("beyond_fields")?;
     let movements = || fields.movements.iter().map(|movement| (&movement[..], true));
     let plane = |title: &str, layers| state_plane(title, EXTENT, layers, SIZE);
-    let compared = |title: &str, learnt: &[_], who: Who| {
-        let layer = |arrows: &[_], who: Who, width| Layer::Arrows {
-            arrows: arrows.to_vec(),
-            color: who.color(),
-            scale: ARROW_SECONDS,
-            width,
-            label: None,
-        };
-        plane(title, vec![layer(&fields.truth, Who::Expert, 2.6), layer(learnt, who, 1.4)])
-    };
+    let learnt =
+        |title: &str, learnt: &[Arrow], who: Who| plane(title, compared(&fields.truth, learnt, who, ARROW_SECONDS));
     let sure = |title: &str, values: &Field| {
         let colors = Layer::Colors { field: values.clone(), name: "log₁₀ (1/s)".to_owned() };
         let ways = movements().map(|(points, _)| Layer::Path {
@@ -143,10 +122,10 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     };
     let panels: [Plane; 7] = [
         plane("(a) Ten constrained movements", demonstrated::layers(&fields.contours, movements(), 1.6)),
-        compared("(b) Naive (green), truth", &fields.naive, Who::Naive),
-        compared("(c) PolicyAlign (orange), truth", &fields.policy_align, Who::PolicyAlign),
-        compared("(d) Direct GP (green), truth", &fields.direct_gp, Who::Naive),
-        compared("(e) Slope GP (purple), truth", &fields.slope_gp, Who::SlopeGp),
+        learnt("(b) Naive (green), truth", &fields.naive, Who::Naive),
+        learnt("(c) PolicyAlign (orange), truth", &fields.policy_align, Who::PolicyAlign),
+        learnt("(d) Direct GP (green), truth", &fields.direct_gp, Who::Naive),
+        learnt("(e) Slope GP (purple), truth", &fields.slope_gp, Who::SlopeGp),
         sure("(f) Slope GP: how sure it is", &fields.expected),
         sure("(g) Slope GP: its error", &fields.error),
     ];

@@ -3,13 +3,12 @@
 use align::{Bandwidth, DirectPolicyLearning, PolicyAlign};
 use demo_gen::{ToySystem, demonstrations};
 use gp::FrontEnd;
-use motion::{NegativeGradient, Policy, Potential};
-use nalgebra::DVector;
+use motion::{NegativeGradient, Potential as _};
 use plot::{Field, Layer, Picture, Plane};
 use serde::{Deserialize, Serialize};
 
 use super::sound::{Sound, field, some};
-use super::state_plane::state_plane;
+use super::state_plane::{Arrow, actions, compared, on_grid, state_plane};
 use super::{Document, Drawing, Figure, Sources, demonstrated, rounded};
 use crate::experiments::{PARABOLA_SYSTEM, TestSamples, toy_beside, toy_regressor};
 use crate::figures::Who;
@@ -38,12 +37,12 @@ struct Overview {
     movements: Vec<Movement>,
     contours: Field,
     /// (x₁, x₂, u₁, u₂).
-    expert: Vec<(f64, f64, f64, f64)>,
-    naive: Vec<(f64, f64, f64, f64)>,
-    policy_align: Vec<(f64, f64, f64, f64)>,
+    expert: Vec<Arrow>,
+    naive: Vec<Arrow>,
+    policy_align: Vec<Arrow>,
     /// Empty in older figure data.
     #[serde(default)]
-    slope_gp: Vec<(f64, f64, f64, f64)>,
+    slope_gp: Vec<Arrow>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -84,45 +83,28 @@ fn overview(seed: u64) -> anyhow::Result<Overview> {
     };
     Ok(Overview {
         movements: recordings.iter().enumerate().map(movement).collect(),
-        contours: contours(&system.potential),
-        expert: arrows(&NegativeGradient(&system.potential)),
-        naive: arrows(&naive),
-        policy_align: arrows(&learnt),
-        slope_gp: arrows(&slope),
+        contours: on_grid(EXTENT, 40, |x| rounded(system.potential.value(x.as_view()), 5)),
+        expert: actions(&NegativeGradient(&system.potential), f64::INFINITY),
+        naive: actions(&naive, f64::INFINITY),
+        policy_align: actions(&learnt, f64::INFINITY),
+        slope_gp: actions(&slope, f64::INFINITY),
     })
-}
-
-fn contours(potential: &dyn Potential) -> Field {
-    let grid: Vec<f64> = (-40..=40).map(|i| EXTENT * f64::from(i) / 40.0).collect();
-    let value = |x: f64, y: f64| rounded(potential.value(DVector::from_vec(vec![x, y]).as_view()), 5);
-    let values = grid.iter().map(|&y| grid.iter().map(|&x| value(x, y)).collect()).collect();
-    Field { x: grid.clone(), y: grid, values }
-}
-
-/// The unconstrained actions of a policy on a grid.
-fn arrows(policy: &dyn Policy) -> Vec<(f64, f64, f64, f64)> {
-    let grid = (0..81).map(|i| (f64::from(i % 9 - 4) * 0.45, f64::from(i / 9 - 4) * 0.45));
-    let arrow = |(x, y): (f64, f64)| {
-        let action = policy.action(DVector::from_vec(vec![x, y]).as_view());
-        (rounded(x, 4), rounded(y, 4), rounded(action[0], 5), rounded(action[1], 5))
-    };
-    grid.map(arrow).collect()
 }
 
 fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let overview: Overview = sources.document("overview")?;
     let movements = overview.movements.iter().map(|movement| (&movement.points[..], movement.kept));
     let shown = demonstrated::layers(&overview.contours, movements, 1.6);
-    let [shown, naive, learnt] = [
+    let [shown, naive, aligned] = [
         plane("Forty movements under unknown constraints", shown),
-        compared("Direct learning (green) and the truth", &overview, Who::Naive),
-        compared("policy-align (orange) and the truth", &overview, Who::PolicyAlign),
+        learnt("Direct learning (green) and the truth", &overview, Who::Naive),
+        learnt("policy-align (orange) and the truth", &overview, Who::PolicyAlign),
     ];
-    let slope = compared("slope GP (purple) and the truth", &overview, Who::SlopeGp);
+    let slope = learnt("slope GP (purple) and the truth", &overview, Who::SlopeGp);
     let picture = if overview.slope_gp.is_empty() {
-        Picture::rows(&[&[&shown, &naive, &learnt]])
+        Picture::rows(&[&[&shown, &naive, &aligned]])
     } else {
-        Picture::rows(&[&[&shown, &naive], &[&learnt, &slope]])
+        Picture::rows(&[&[&shown, &naive], &[&aligned, &slope]])
     };
     Ok(Drawing { picture, tables: vec![] })
 }
@@ -132,18 +114,11 @@ fn plane(title: &str, layers: Vec<Layer>) -> Plane {
 }
 
 /// The unconstrained actions of the expert and of a learner.
-fn compared(title: &str, overview: &Overview, who: Who) -> Plane {
+fn learnt(title: &str, overview: &Overview, who: Who) -> Plane {
     let learner = match who {
         Who::Naive => &overview.naive,
         Who::SlopeGp => &overview.slope_gp,
         _ => &overview.policy_align,
     };
-    let layer = |arrows: &[_], who: Who, width| Layer::Arrows {
-        arrows: arrows.to_vec(),
-        color: who.color(),
-        scale: ARROW_SECONDS,
-        width,
-        label: None,
-    };
-    plane(title, vec![layer(&overview.expert, Who::Expert, 2.6), layer(learner, who, 1.4)])
+    plane(title, compared(&overview.expert, learner, who, ARROW_SECONDS))
 }
