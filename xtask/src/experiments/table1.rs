@@ -38,7 +38,7 @@ pub(crate) fn table1() -> anyhow::Result<Experiment> {
         decisions: "table1.md",
         another_reading_of: None,
         contests: contests(),
-        setups: setups(Redraw::Every(REDRAW), 0, 1000),
+        setups: setups(Redraw::Every(REDRAW), 0, max_rows),
         paper: paper_table(include_str!("../../paper/table1.toml"))?,
         explanations: explanations(include_str!("../../paper/table1-explained.toml"))?,
     })
@@ -55,7 +55,7 @@ pub(crate) fn table1_literal() -> anyhow::Result<Experiment> {
         decisions: "table1.md",
         another_reading_of: Some("table1"),
         contests: contests(),
-        setups: setups(Redraw::Segments(3), LITERAL, LITERAL_ROWS),
+        setups: setups(Redraw::Segments(3), LITERAL, |_| LITERAL_ROWS),
         paper: paper_table(include_str!("../../paper/table1.toml"))?,
         explanations: explanations(include_str!("../../paper/table1-literal-explained.toml"))?,
     })
@@ -63,6 +63,12 @@ pub(crate) fn table1_literal() -> anyhow::Result<Experiment> {
 
 /// Samples after which the constraint is drawn anew.
 const REDRAW: usize = 20;
+
+/// Rows that the Gaussian processes learn from: all that they take by themselves of the longer movements, where fewer cost
+/// two digits.
+fn max_rows(size: usize) -> usize {
+    if size < 100 { 1000 } else { 1500 }
+}
 
 /// Rows that the Gaussian processes learn from in the literal reading, which shows them nothing new.
 const LITERAL_ROWS: usize = 500;
@@ -128,12 +134,12 @@ fn tuned(regressor: &LwprRegressor) -> Vec<Setup> {
     printed(Redraw::Every(REDRAW), 0, regressor)
 }
 
-fn setups(redraw: Redraw, first_system: u32, max_rows: usize) -> Vec<Setup> {
+fn setups(redraw: Redraw, first_system: u32, max_rows: fn(usize) -> usize) -> Vec<Setup> {
     let mut setups = printed(redraw, first_system, &toy_regressor());
     for (number, name, size, potential) in systems() {
         let scene = ToySystem { potential, n_trajectories: size, n_samples: size, redraw };
         let algorithms = BANDWIDTHS.map(|(_, bandwidth)| PolicyAlign { bandwidth, ..PolicyAlign::default() }).into();
-        let beside = toy_beside(FrontEnd::Map, max_rows);
+        let beside = toy_beside(FrontEnd::Map, max_rows(size));
         setups.push(Setup {
             id: format!("{name}-{size}x{size}-beside"),
             rows: cases(name, size).iter().flat_map(|case| beside.rows(case)).collect(),

@@ -26,7 +26,7 @@ const CASE: &str = "arm";
 
 /// The experiment.
 pub(crate) fn three_link() -> anyhow::Result<Experiment> {
-    let beside = beside(500);
+    let beside = beside(1500);
     let contest =
         |measure| {
             Contest::of(CASE, measure, &beside.contestants())
