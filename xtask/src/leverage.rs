@@ -64,7 +64,7 @@ impl Leverage {
     fn preface(&self) -> String {
         format!(
             "# How much hangs on what is fitted\n\nWritten by `cargo xtask leverage --data-sets {} --seed {}`. The paper leaves these settings open; \
-             they were chosen so that\nthe printed figures come out. Here each is changed by a fifth, one at a time, and the printed cells are \
+             they were chosen so that\nthe printed figures come out. Here each is changed by a fifth (whole numbers to the nearest), one at a time, and the printed cells are \
              named whose verdict is\nthen another than at the value used, on the same data sets. Verdicts are those of \
              [reproduction.md](reproduction.md); with fewer data\nsets they may differ from those there.\n",
             self.data_sets, self.seed
