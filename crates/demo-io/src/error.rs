@@ -107,6 +107,6 @@ impl Fault {
     }
 }
 
-fn in_one_line(text: String) -> String {
+pub(crate) fn in_one_line(text: String) -> String {
     if text.contains(char::is_control) { text.replace(char::is_control, " ") } else { text }
 }

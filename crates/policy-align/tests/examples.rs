@@ -7,8 +7,10 @@ mod running;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use demo_gen::ToySystem;
-use rand::SeedableRng as _;
+use constraints::LinearConstraint;
+use demo_gen::{RollOut, ToySystem};
+use nalgebra::{DMatrix, DVector};
+use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use running::{examples, run_in};
 
@@ -30,17 +32,44 @@ fn toy() -> String {
     text
 }
 
-#[test]
-fn the_toy_recording_is_made_by_a_seed() {
-    let stored = std::fs::read_to_string(examples().join("toy.csv")).unwrap();
-    assert!(stored.len() <= 150_000);
-    assert!(stored == toy(), "write it again: cargo test -p policy-align --test examples -- --ignored");
+/// Rails of three movements each, all in one bowl, with the rail's name.
+const RAILS: [&str; 4] = ["north", "east", "slope", "ramp"];
+
+/// The same bowl along rails that do not change on the way, each with its name.
+fn rails() -> String {
+    let mut rng = ChaCha8Rng::seed_from_u64(6);
+    let roll_out = RollOut { n_samples: 25, ..RollOut::default() };
+    let mut text = "episode,t,x,y,vx,vy,constraint\n".to_owned();
+    for episode in 0..3 * RAILS.len() {
+        let rail = episode % RAILS.len();
+        let angle = 0.4 + std::f64::consts::FRAC_PI_4 * rail as f64;
+        let normal = DMatrix::from_row_slice(1, 2, &[-angle.sin(), angle.cos()]);
+        let start = DVector::from_fn(2, |_, _| rng.random_range(-2.0..2.0));
+        let potential = ToySystem::default().potential;
+        let recording = roll_out.record(&potential, &LinearConstraint::new(normal).unwrap(), start.as_view()).unwrap();
+        let velocities = recording.observed.velocities().unwrap() / TIME_STEP;
+        for (sample, (x, u)) in recording.observed.states().column_iter().zip(velocities.column_iter()).enumerate() {
+            let (t, name) = (TIME_STEP * sample as f64, RAILS[rail]);
+            let _ = writeln!(text, "{episode},{t:.2},{:.6},{:.6},{:.6},{:.6},{name}", x[0], x[1], u[0], u[1]);
+        }
+    }
+    text
 }
 
 #[test]
-#[ignore = "writes docs/examples/toy.csv"]
-fn write_the_toy_recording() {
+fn the_recordings_are_made_by_seeds() {
+    for (name, made) in [("toy.csv", toy()), ("rails.csv", rails())] {
+        let stored = std::fs::read_to_string(examples().join(name)).unwrap();
+        assert!(stored.len() <= 150_000);
+        assert!(stored == made, "write {name} again: cargo test -p policy-align --test examples -- --ignored");
+    }
+}
+
+#[test]
+#[ignore = "writes docs/examples/toy.csv and rails.csv"]
+fn write_the_recordings() {
     std::fs::write(examples().join("toy.csv"), toy()).unwrap();
+    std::fs::write(examples().join("rails.csv"), rails()).unwrap();
 }
 
 /// Commands of a page's console blocks, with what they say.
@@ -76,7 +105,7 @@ fn alike(found: &str, expected: &str) -> bool {
 fn the_session_of_the_page_happens() {
     let page = std::fs::read_to_string(examples().join("../your-own-data.md")).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    for name in ["toy.csv", "wall.toml"] {
+    for name in ["toy.csv", "rails.csv", "wall.toml"] {
         std::fs::copy(examples().join(name), folder.path().join(name)).unwrap();
     }
     let sessions = sessions(&page);
