@@ -7,10 +7,8 @@ mod running;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use constraints::LinearConstraint;
-use demo_gen::{RollOut, ToySystem};
-use nalgebra::{DMatrix, DVector};
-use rand::{RngExt as _, SeedableRng as _};
+use demo_gen::ToySystem;
+use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use running::{examples, run_in};
 
@@ -35,22 +33,21 @@ fn toy() -> String {
 /// Rails of three movements each, all in one bowl, with the rail's name.
 const RAILS: [&str; 4] = ["north", "east", "slope", "ramp"];
 
-/// The same bowl along rails that do not change on the way, each with its name.
+/// π = −2 x per second along rails that do not change on the way, in closed form, each with its name.
 fn rails() -> String {
-    let mut rng = ChaCha8Rng::seed_from_u64(6);
-    let roll_out = RollOut { n_samples: 25, ..RollOut::default() };
     let mut text = "episode,t,x,y,vx,vy,constraint\n".to_owned();
     for episode in 0..3 * RAILS.len() {
-        let rail = episode % RAILS.len();
+        let (k, rail) = (episode as f64, episode % RAILS.len());
         let angle = 0.4 + std::f64::consts::FRAC_PI_4 * rail as f64;
-        let normal = DMatrix::from_row_slice(1, 2, &[-angle.sin(), angle.cos()]);
-        let start = DVector::from_fn(2, |_, _| rng.random_range(-2.0..2.0));
-        let potential = ToySystem::default().potential;
-        let recording = roll_out.record(&potential, &LinearConstraint::new(normal).unwrap(), start.as_view()).unwrap();
-        let velocities = recording.observed.velocities().unwrap() / TIME_STEP;
-        for (sample, (x, u)) in recording.observed.states().column_iter().zip(velocities.column_iter()).enumerate() {
-            let (t, name) = (TIME_STEP * sample as f64, RAILS[rail]);
-            let _ = writeln!(text, "{episode},{t:.2},{:.6},{:.6},{:.6},{:.6},{name}", x[0], x[1], u[0], u[1]);
+        let along = [angle.cos(), angle.sin()];
+        let start = [2.0 * (1.7 * k).cos(), 2.0 * (2.3 * k + 0.5).sin()];
+        let far = along[0] * start[0] + along[1] * start[1];
+        for sample in 0..25 {
+            let t = TIME_STEP * f64::from(sample);
+            let left = (-2.0 * t).exp();
+            let [x, y] = [0, 1].map(|axis| start[axis] + along[axis] * far * (left - 1.0));
+            let [u, v] = [0, 1].map(|axis| -2.0 * along[axis] * far * left);
+            let _ = writeln!(text, "{episode},{t:.2},{x:.6},{y:.6},{u:.6},{v:.6},{}", RAILS[rail]);
         }
     }
     text

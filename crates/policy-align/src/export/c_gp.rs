@@ -22,8 +22,8 @@ pub(super) fn write_slope(c: &CSource, slope: &SlopeTables, per_unit: f64, text:
         text,
         "
 int {name}(const real *x, real *u, real *phi) {{
-    real z[N], sum[N], f = {zero};
-    int k, j, m, known = 0;
+    real z[N], sum[N], f = {zero}, nearest = {far};
+    int k, j, m;
 {entry}    for (m = 0; m < M; m++) {{
         real a[N], s = {zero}, b = {zero}, g = {zero}, h = {zero};
         for (k = 0; k < N; k++) {{
@@ -31,7 +31,7 @@ int {name}(const real *x, real *u, real *phi) {{
             s += a[k] * a[k];
             b += V[m][k] * a[k];
         }}
-        if (s <= REACH[m]) known = 1;
+        if (s < nearest) nearest = s;
 {terms}        f += g * b;
         for (k = 0; k < N; k++) sum[k] += g * V[m][k] - h * b * a[k];
     }}
@@ -43,13 +43,15 @@ int {name}(const real *x, real *u, real *phi) {{
     }}
     {potential}
     for (k = 0; k < N; k++) if (x[k] < BOUNDS[k][0] || x[k] > BOUNDS[k][1]) return 0;
-    return known;
+    return nearest <= {reach};
 }}
 ",
         name = c.name,
         zero = c.number(0.0),
         half = c.number(0.5),
+        far = c.number(f64::from(f32::MAX)),
         speed = c.number(slope.scaled.speed),
+        reach = c.number(slope.scaled.squared_reach),
         entry = entry(c, &slope.scaled),
     );
 }
@@ -64,8 +66,8 @@ pub(super) fn write_direct(c: &CSource, direct: &DirectTables, text: &mut String
         text,
         "
 int {name}(const real *x, real *u, real *phi) {{
-    real z[N], sum[N];
-    int k, m, known = 0;
+    real z[N], sum[N], nearest = {far};
+    int k, m;
 {entry}    if (phi) *phi = NAN;
     for (m = 0; m < M; m++) {{
         real s = {zero}, p = {zero}, c;
@@ -74,18 +76,20 @@ int {name}(const real *x, real *u, real *phi) {{
             s += a * a;
             p += z[k] * Z[m][k];
         }}
-        if (s <= REACH[m]) known = 1;
+        if (s < nearest) nearest = s;
         c = {constant} + p * ({linear} + {quadratic} * p);
 {terms}        for (k = 0; k < N; k++) sum[k] += c * A[m][k];
     }}
     if (u) for (k = 0; k < N; k++) u[k] = {unit} * sum[k] / SCALE[k];
     for (k = 0; k < N; k++) if (x[k] < BOUNDS[k][0] || x[k] > BOUNDS[k][1]) return 0;
-    return known;
+    return nearest <= {reach};
 }}
 ",
         name = c.name,
         zero = c.number(0.0),
+        far = c.number(f64::from(f32::MAX)),
         unit = c.number(direct.scaled.speed),
+        reach = c.number(direct.scaled.squared_reach),
         entry = entry(c, &direct.scaled),
     );
 }
@@ -94,9 +98,6 @@ fn write_scaled(c: &CSource, scaled: &Scaled, text: &mut String) {
     let _ = writeln!(text, "enum {{ M = {} }}; /* learnt states */\n", scaled.z.ncols());
     c.vector("MEAN", &scaled.mean, text);
     c.columns("Z", &scaled.z, text);
-    let largest = f64::from(f32::MAX);
-    let reach: Vec<f64> = scaled.squared_reach.iter().map(|reach| reach.min(largest)).collect();
-    c.vector("REACH", &reach, text);
 }
 
 /// Scaled coordinates; what is not finite is not asked further.

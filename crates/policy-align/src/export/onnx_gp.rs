@@ -21,11 +21,9 @@ fn differences(graph: &mut Graph, scaled: &Scaled, state: &str) -> [String; 3] {
 }
 
 fn support(graph: &mut Graph, scaled: &Scaled, squared: &str) -> String {
-    let reach = graph.constant(&[1, scaled.squared_reach.len()], scaled.squared_reach.iter().map(|r| r.min(f64::MAX)));
-    let beyond = graph.node("Sub", &[squared, &reach]);
-    let beyond = graph.least(&beyond, 1);
-    let zero = graph.number(0.0);
-    graph.node("LessOrEqual", &[&beyond, &zero])
+    let nearest = graph.least(squared, 1);
+    let reach = graph.number(scaled.squared_reach);
+    graph.node("LessOrEqual", &[&nearest, &reach])
 }
 
 /// A matrix (n, M) with a row a column, (M, n).
