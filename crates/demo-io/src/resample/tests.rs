@@ -34,7 +34,9 @@ proptest! {
         rate in 3.0..200.0f64,
     ) {
         let mut times = vec![0.0];
-        steps.iter().for_each(|step| times.push(times[times.len() - 1] + step));
+        for step in &steps {
+            times.push(times[times.len() - 1] + step);
+        }
         let at = |t: f64| values[times.iter().rposition(|&stamp| stamp <= t).unwrap()];
         let made = recordings(times.clone(), at);
         let found = made.resampled(rate);

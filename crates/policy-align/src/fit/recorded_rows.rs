@@ -9,7 +9,7 @@ use crate::{Prepared, Recorded};
 pub(crate) fn rows(prepared: &Prepared) -> Result<Rows, GpError> {
     let demonstrations = averaged(prepared)?;
     let demonstrations = match prepared.recorded {
-        Recorded::PositionsAsTold => with_slopes(&demonstrations).map_err(cleaning)?,
+        Recorded::PositionsAsTold => with_slopes(&demonstrations).map_err(|error| cleaning(&error))?,
         _ => demonstrations,
     };
     let rows = prepared.recorded.front_end().rows(&demonstrations)?;
@@ -24,9 +24,9 @@ pub(crate) fn rows(prepared: &Prepared) -> Result<Rows, GpError> {
 
 /// The movements with samples averaged as decided.
 pub(super) fn averaged(prepared: &Prepared) -> Result<Demonstrations, GpError> {
-    thinned(&prepared.demonstrations, prepared.averaged).map_err(cleaning)
+    thinned(&prepared.demonstrations, prepared.averaged).map_err(|error| cleaning(&error))
 }
 
-fn cleaning(error: MotionError) -> GpError {
+fn cleaning(error: &MotionError) -> GpError {
     GpError::Cleaning { reason: error.to_string() }
 }

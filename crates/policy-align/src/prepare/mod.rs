@@ -51,12 +51,12 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
     let noise = noise::of(&episodes::demonstrations(&takes)?);
     let agreement = velocities::decide(&mut takes, options, &recordings.state, &noise, &mut notes);
     let demonstrations = episodes::demonstrations(&takes)?;
-    let (demonstrations, recorded) = match smooth::as_told(&demonstrations, options.smoothing, &mut notes)? {
-        Some(smoothed) => (smoothed, noise::as_told(&demonstrations, &noise, agreement)),
-        None => {
-            let recorded = noise::decide(&demonstrations, &noise, agreement, &mut notes);
-            (demonstrations, recorded)
-        }
+    let smoothed = smooth::as_told(&demonstrations, options.smoothing, &mut notes)?;
+    let (demonstrations, recorded) = if let Some(smoothed) = smoothed {
+        (smoothed, noise::as_told(&demonstrations, &noise, agreement))
+    } else {
+        let recorded = noise::decide(&demonstrations, &noise, agreement, &mut notes);
+        (demonstrations, recorded)
     };
     let averaged = match recorded {
         Recorded::Positions => thinning::decide(&demonstrations, &noise, &mut notes),
