@@ -101,7 +101,12 @@ read_error! {
 }
 
 impl Fault {
+    /// Each in one line, whatever names of files and columns hold.
     pub(crate) fn new(what: impl Into<String>, place: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { what: what.into(), place: place.into(), remedy: remedy.into() }
+        Self { what: in_one_line(what.into()), place: in_one_line(place.into()), remedy: in_one_line(remedy.into()) }
     }
+}
+
+pub(crate) fn in_one_line(text: String) -> String {
+    if text.contains(char::is_control) { text.replace(char::is_control, " ") } else { text }
 }

@@ -54,6 +54,10 @@ pub(crate) fn dimensions(
 pub(crate) fn stack(array: &Described, numbers: Vec<f64>, input: &Input<'_>, place: &str) -> Result<Stack, ReadError> {
     let (episodes, samples, channels) = dimensions(array, input, place)?;
     too_many_channels(channels, place)?;
+    if channels == 0 {
+        let what = format!("'{}' has shape ({}): no channel", array.name, array.shape_text());
+        return Err(ReadError::Empty(Fault::new(what, place, "--state with another array")));
+    }
     let columns = input.samples_are() == Some(SamplesAre::Columns) && array.shape.len() > 1;
     let numbers = if columns && !numbers.is_empty() {
         // (channels, samples) read as if in Fortran order, episode by episode.

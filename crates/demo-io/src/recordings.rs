@@ -2,6 +2,7 @@ use nalgebra::DMatrix;
 
 use crate::Note;
 use crate::draft::Drafts;
+use crate::error::in_one_line;
 use crate::statistics::median;
 
 /// What was read: n channels of state, and episodes of any length.
@@ -71,7 +72,8 @@ impl Recordings {
             positions: matrix(draft.positions),
             constraint: draft.constraint,
         });
-        Self { state: drafts.channels, episodes: episodes.collect(), notes: drafts.notes }
+        let notes = drafts.notes.into_iter().map(|note| Note { text: in_one_line(note.text), ..note });
+        Self { state: drafts.channels, episodes: episodes.collect(), notes: notes.collect() }
     }
 }
 

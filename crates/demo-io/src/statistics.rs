@@ -61,7 +61,9 @@ impl Statistics {
         let n = self.low.len();
         let near = |sample: &[f64], end: &[f64]| {
             (0..n).all(|channel| {
-                let bound = (4.0 * self.noise[channel]).max(1e-6 * self.spread(channel));
+                // Noise as large as the movement itself is no stand-still.
+                let noise = (4.0 * self.noise[channel]).min(0.1 * self.spread(channel));
+                let bound = noise.max(1e-6 * self.spread(channel));
                 (sample[channel] - end[channel]).abs() <= bound
             })
         };

@@ -6,13 +6,13 @@ mod json_lines;
 mod mcap;
 mod npz;
 
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
 use crate::Recordings;
+use crate::whole_file::{Sink, write_whole};
 
 /// Why nothing was written.
 #[derive(Debug, Error)]
@@ -108,24 +108,10 @@ impl From<WriteError> for Failure {
     }
 }
 
-/// Writes a file beside `path` and renames it, so that nobody sees half of it.
-fn whole(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), Failure>) -> Result<(), WriteError> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let temporary = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
-    let filled = File::create(&temporary).map_err(Failure::Io).and_then(|file| {
-        let mut file = BufWriter::with_capacity(1 << 16, file);
-        fill(&mut file)?;
-        file.flush()?;
-        file.get_ref().sync_all()?;
-        Ok(fs::rename(&temporary, path)?)
-    });
-    filled.map_err(|failure| {
-        // Whatever happened, the message about it matters more than what is left.
-        let _ = fs::remove_file(&temporary);
-        match failure {
-            Failure::Io(source) => WriteError::Io { path: path.to_owned(), source },
-            Failure::Write(error) => error,
-        }
+fn whole(path: &Path, fill: impl FnOnce(&mut dyn Sink) -> Result<(), Failure>) -> Result<(), WriteError> {
+    write_whole(path, fill).map_err(|failure| match failure {
+        Failure::Io(source) => WriteError::Io { path: path.to_owned(), source },
+        Failure::Write(error) => error,
     })
 }
 

@@ -201,3 +201,12 @@ fn numbered_arrays_are_demonstrations() {
     assert_eq!(named, ["demo_9", "demo_10"]);
     assert_eq!(found.time_step(), 0.5);
 }
+
+#[test]
+fn an_array_without_channels_is_refused() {
+    for (shape, samples_are) in [("(5, 0)", None), ("(2, 5, 0)", None), ("(0, 5)", Some(SamplesAre::Columns))] {
+        let options = ReadOptions { samples_are, ..every(0.1) };
+        let file = npy(1, "'<f8'", false, shape, &[]);
+        refused("a.npy", file, &options, "Empty", &["no channel", "--state with another array"]);
+    }
+}

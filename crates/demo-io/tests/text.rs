@@ -254,3 +254,22 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn names_that_hold_line_ends_leave_messages_their_lines() {
+    let table = |middle: &str| format!("t,\"x\ny\",z\n0,1,2\n0.1,{middle},3\n0.2,1,4\n");
+    refused("a.csv", table("NaN").replace("0.2,1", "0.2,2"), &plain(), "NotFinite", &["'x y' is no finite number"]);
+    // A column that never changes is noted.
+    let found = parsed("a.csv", table("1"), &plain()).unwrap();
+    assert!(found.notes[0].text.contains("x y") && found.notes.iter().all(|note| !note.text.contains('\n')));
+}
+
+#[test]
+fn noise_as_large_as_the_movement_is_no_stand_still() {
+    // Numbers that look random, of which 4σ is more than their whole range.
+    let number = |i: u64| (i.wrapping_mul(2_654_435_761) >> 7) % 1000;
+    let mut table = "t,x,y\n".to_owned();
+    (0..200).for_each(|i| writeln!(table, "{}.{:02},{},{}", i / 100, i % 100, number(i), number(i + 500)).unwrap());
+    let found = parsed("a.csv", table, &plain()).unwrap();
+    assert!(!kinds(&found).contains(&NoteKind::StandsStill), "{:?}", found.notes);
+}

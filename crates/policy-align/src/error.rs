@@ -50,6 +50,16 @@ pub enum PrepareError {
         /// The time step given.
         time_step: f64,
     },
+    /// A window that cannot smooth.
+    #[error(
+        "--smooth: a window of {window} samples, {step} s apart; give an odd number from 5 on, as --smooth 9, or so many seconds, as --smooth {:.2e}s", 9.0 * step
+    )]
+    Smoothing {
+        /// Samples in it.
+        window: usize,
+        /// Seconds between them.
+        step: f64,
+    },
     /// Nothing moves.
     #[error("no channel changes in any episode: there is no movement to learn from")]
     NoMotion,

@@ -4,8 +4,8 @@ use motion::LearntPolicy;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use crate::Prepared;
 use crate::fit::{held_out, rows};
+use crate::{FitError, Prepared};
 
 /// A policy held against movements that it was not learnt from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -127,6 +127,15 @@ pub enum EvaluateError {
         /// How many samples there are.
         expected: usize,
     },
+    /// No constraint can be left out.
+    #[error("{found} constraints are named; --constraint-column with a column that names at least two")]
+    Constraints {
+        /// Labels.
+        found: usize,
+    },
+    /// What is left teaches nothing.
+    #[error(transparent)]
+    Fit(#[from] FitError),
     /// The movements cannot be cleaned.
     #[error(transparent)]
     Gp(#[from] GpError),

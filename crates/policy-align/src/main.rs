@@ -10,7 +10,10 @@ use cli::{Exit, complain};
 fn main() -> ExitCode {
     std::panic::set_hook(Box::new(report));
     // Whoever interrupts wants an end at once. Files are written whole or not at all.
-    let _ = ctrlc::set_handler(|| exit(Exit::Interrupted as i32));
+    let _ = ctrlc::set_handler(|| {
+        demo_io::abandon_drafts();
+        exit(Exit::Interrupted as i32)
+    });
     let exit = catch_unwind(cli::run).unwrap_or(Exit::Bug);
     ExitCode::from(exit as u8)
 }

@@ -14,7 +14,7 @@ use std::sync::atomic::AtomicBool;
 
 use cases::{Case, Named};
 use nalgebra::DVector;
-use policy_align::{FitOptions, LearnerChoice, PrepareOptions, Progress, Verdict, fit, prepare};
+use policy_align::{FitOptions, LearnerChoice, PrepareOptions, Progress, TrustNumbers, Verdict, fit, prepare};
 
 /// A policy is right below this error (nUPE).
 const RIGHT: f64 = 0.15;
@@ -33,12 +33,14 @@ struct Said {
     words: String,
     /// True error; none where nothing was learnt.
     error: Option<f64>,
+    /// What the verdict rests on.
+    numbers: Option<TrustNumbers>,
 }
 
 fn said(named: &Named, seed: u64, learner: LearnerChoice) -> Said {
     let case = (named.make)(seed);
     let name = named.name.to_owned();
-    let refused = |words: String| Said { name: name.clone(), verdict: None, words, error: None };
+    let refused = |words: String| Said { name: name.clone(), verdict: None, words, error: None, numbers: None };
     let prepared = match prepare(&case.recordings, &PrepareOptions::default()) {
         Ok(prepared) => prepared,
         Err(error) => return refused(error.to_string()),
@@ -50,7 +52,8 @@ fn said(named: &Named, seed: u64, learner: LearnerChoice) -> Said {
         Err(error) => return refused(error.to_string()),
     };
     let words = fit.trust.findings.first().map_or_else(String::new, |finding| finding.what.clone());
-    Said { name, verdict: Some(fit.trust.verdict), words, error: Some(error(&case, &fit)) }
+    let error = Some(error(&case, &fit));
+    Said { name, verdict: Some(fit.trust.verdict), words, error, numbers: Some(fit.trust.numbers) }
 }
 
 fn error(case: &Case, fit: &policy_align::Fit) -> f64 {
@@ -141,7 +144,7 @@ fn table(all: &[Said]) -> String {
 }
 
 /// Verdicts against the truth on other seeds: `SEEDS=11,12 cargo test --release -p policy-align --test bad_cases --
-/// --ignored --nocapture`; `LEARNER=policy-align` for that one.
+/// --ignored --nocapture`; `LEARNER=policy-align` for that one, `NUMBERS=1` for what verdicts rest on.
 #[test]
 #[ignore = "takes minutes; for whoever changes a threshold"]
 fn confusion() {
@@ -157,6 +160,9 @@ fn confusion() {
         for named in cases::all() {
             let said = said(&named, seed, learner);
             println!("{}{seed} {}", if said.is_lie() { "LIE " } else { "" }, said.line());
+            if std::env::var_os("NUMBERS").is_some() {
+                println!("  {}", serde_json::to_string(&said.numbers).unwrap());
+            }
             *counts.entry((said.verdict(), said.error.is_some_and(|error| error < RIGHT))).or_default() += 1;
         }
     }

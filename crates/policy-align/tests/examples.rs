@@ -30,17 +30,43 @@ fn toy() -> String {
     text
 }
 
-#[test]
-fn the_toy_recording_is_made_by_a_seed() {
-    let stored = std::fs::read_to_string(examples().join("toy.csv")).unwrap();
-    assert!(stored.len() <= 150_000);
-    assert!(stored == toy(), "write it again: cargo test -p policy-align --test examples -- --ignored");
+/// Rails of three movements each, all in one bowl, with the rail's name.
+const RAILS: [&str; 4] = ["north", "east", "slope", "ramp"];
+
+/// π = −2 x per second along rails that do not change on the way, in closed form, each with its name.
+fn rails() -> String {
+    let mut text = "episode,t,x,y,vx,vy,constraint\n".to_owned();
+    for episode in 0..3 * RAILS.len() {
+        let (k, rail) = (episode as f64, episode % RAILS.len());
+        let angle = 0.4 + std::f64::consts::FRAC_PI_4 * rail as f64;
+        let along = [angle.cos(), angle.sin()];
+        let start = [2.0 * (1.7 * k).cos(), 2.0 * (2.3 * k + 0.5).sin()];
+        let far = along[0] * start[0] + along[1] * start[1];
+        for sample in 0..25 {
+            let t = TIME_STEP * f64::from(sample);
+            let left = (-2.0 * t).exp();
+            let [x, y] = [0, 1].map(|axis| start[axis] + along[axis] * far * (left - 1.0));
+            let [u, v] = [0, 1].map(|axis| -2.0 * along[axis] * far * left);
+            let _ = writeln!(text, "{episode},{t:.2},{x:.6},{y:.6},{u:.6},{v:.6},{}", RAILS[rail]);
+        }
+    }
+    text
 }
 
 #[test]
-#[ignore = "writes docs/examples/toy.csv"]
-fn write_the_toy_recording() {
+fn the_recordings_are_made_by_seeds() {
+    for (name, made) in [("toy.csv", toy()), ("rails.csv", rails())] {
+        let stored = std::fs::read_to_string(examples().join(name)).unwrap();
+        assert!(stored.len() <= 150_000);
+        assert!(stored == made, "write {name} again: cargo test -p policy-align --test examples -- --ignored");
+    }
+}
+
+#[test]
+#[ignore = "writes docs/examples/toy.csv and rails.csv"]
+fn write_the_recordings() {
     std::fs::write(examples().join("toy.csv"), toy()).unwrap();
+    std::fs::write(examples().join("rails.csv"), rails()).unwrap();
 }
 
 /// Commands of a page's console blocks, with what they say.
@@ -76,7 +102,7 @@ fn alike(found: &str, expected: &str) -> bool {
 fn the_session_of_the_page_happens() {
     let page = std::fs::read_to_string(examples().join("../your-own-data.md")).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    for name in ["toy.csv", "wall.toml"] {
+    for name in ["toy.csv", "rails.csv", "wall.toml"] {
         std::fs::copy(examples().join(name), folder.path().join(name)).unwrap();
     }
     let sessions = sessions(&page);

@@ -4,7 +4,9 @@
 
 use demo_io::{Channel, Episode, Recordings, Source};
 use nalgebra::DMatrix;
-use policy_align::{PrepareError, PrepareOptions, Prepared, Recorded, VelocityUse, Verdict, prepare};
+use policy_align::{
+    PrepareError, PrepareOptions, Prepared, Recorded, Repair, Smoothing, VelocityUse, Verdict, prepare,
+};
 use proptest::prelude::*;
 
 const SAMPLES: usize = 40;
@@ -259,6 +261,53 @@ fn remarks() {
     assert_eq!(verdict(&coarse, "positions have few digits"), Verdict::Good);
     // 0.1 / √12 in each channel, or more.
     assert!(coarse.noise.positions.as_ref().unwrap().iter().all(|sd| *sd > 0.028));
+}
+
+#[test]
+fn smoothing_as_told() {
+    let told = |recordings: &Recordings, smoothing| {
+        prepare(recordings, &PrepareOptions { smoothing, ..PrepareOptions::default() })
+    };
+    let positions = changed(|episode| {
+        // Noise in every other sample.
+        let noise = |(i, x): (usize, f64)| x + if i % 2 == 0 { 0.01 } else { -0.01 };
+        let noisy: Vec<f64> = episode.positions.row(0).iter().copied().enumerate().map(noise).collect();
+        episode.positions.row_mut(0).copy_from_slice(&noisy);
+        episode.velocities = None;
+    });
+    let off = told(&positions, Smoothing::Off).unwrap();
+    assert_eq!((off.recorded, off.averaged), (Recorded::PositionsAsTold, 1));
+    assert_eq!(decided(&off, "smoothing"), "none: positions as they are");
+    assert_eq!(off.demonstrations.trajectories()[0].states(), &positions.episodes[0].positions);
+    let smoothed = told(&positions, Smoothing::Samples(9)).unwrap();
+    assert_eq!(decided(&smoothed, "smoothing"), "positions, over 9 samples at a time");
+    assert_eq!(
+        smoothed,
+        Prepared { smoothing: Smoothing::Samples(9), ..told(&positions, Smoothing::Seconds(0.44)).unwrap() }
+    );
+    let off_by = |prepared: &Prepared| {
+        let pairs = prepared.demonstrations.trajectories().iter().zip(recordings().episodes);
+        pairs.map(|(movement, episode)| (movement.states() - episode.positions).norm_squared()).sum::<f64>().sqrt()
+    };
+    assert!(off_by(&smoothed) < 0.3 * off_by(&off), "{} {}", off_by(&smoothed), off_by(&off));
+    // Recorded velocities stay, whatever becomes of the positions.
+    let with = told(&recordings(), Smoothing::Samples(5)).unwrap();
+    assert_eq!(with.recorded, Recorded::Velocities);
+    assert_eq!(with.demonstrations.trajectories()[3].velocities(), recordings().episodes[3].velocities.as_ref());
+    for window in [0, 3, 8] {
+        let refused = told(&recordings(), Smoothing::Samples(window)).unwrap_err();
+        assert_eq!(refused, PrepareError::Smoothing { window, step: STEP });
+    }
+    assert!(told(&recordings(), Smoothing::Seconds(0.1)).unwrap_err().to_string().contains("a window of 3 samples"));
+}
+
+#[test]
+fn what_looks_like_a_fault_may_stay() {
+    let spiked = changed(|episode| episode.positions.column_mut(20).add_scalar_mut(3.0));
+    let keep = PrepareOptions { jumps: Repair::Keep, wraps: Repair::Keep, ..PrepareOptions::default() };
+    let kept = prepare(&spiked, &keep).unwrap();
+    assert_eq!(kept.episodes.len(), 12);
+    assert_eq!(kept.demonstrations.trajectories()[0].states(), &spiked.episodes[0].positions);
 }
 
 #[test]

@@ -20,15 +20,18 @@ fn every_help_ends_with_an_example_that_runs() {
         let help = run(&format!("{verb} --help"));
         assert_eq!((help.code, help.err.as_str()), (Some(0), ""), "{verb}");
         assert!(help.out.lines().all(|line| line.chars().count() <= 80), "{verb}:\n{}", help.out);
-        let example = help.out.lines().last().unwrap().trim();
-        let line = example.strip_prefix("policy-align ").unwrap_or_else(|| panic!("{verb}: {example}"));
-        assert!(line.starts_with(verb), "{example}");
-        let ran = run(line);
-        assert_eq!(ran.code, Some(0), "{line}: {}", ran.err);
-        if !matches!(verb, "completions" | "man") {
-            let lines: Vec<&str> = ran.out.lines().collect();
-            assert!(!lines.is_empty() && lines.len() <= 14, "{line}:\n{}", ran.out);
-            assert!(lines.iter().all(|line| line.chars().count() <= 80), "{line}:\n{}", ran.out);
+        let examples: Vec<&str> = help.out.lines().skip_while(|line| !line.starts_with("Example")).skip(1).collect();
+        assert!(!examples.is_empty(), "{verb}");
+        for example in examples {
+            let line = example.trim().strip_prefix("policy-align ").unwrap_or_else(|| panic!("{verb}: {example}"));
+            assert!(line.starts_with(verb), "{example}");
+            let ran = run(line);
+            assert_eq!(ran.code, Some(0), "{line}: {}", ran.err);
+            if !matches!(verb, "completions" | "man") {
+                let lines: Vec<&str> = ran.out.lines().collect();
+                assert!(!lines.is_empty() && lines.len() <= 14, "{line}:\n{}", ran.out);
+                assert!(lines.iter().all(|line| line.chars().count() <= 80), "{line}:\n{}", ran.out);
+            }
         }
     }
 }
@@ -81,6 +84,13 @@ fn errors_have_three_lines_and_a_code() {
         ("convert toy.csv -o toy.xyz", 2, "use one of"),
         ("export toy.json --to c --name 1st", 2, "--name policy"),
         ("evaluate toy.json toy.csv --truth vx", 2, "a column for each channel"),
+        ("evaluate toy.json toy.csv --leave-constraint-out", 1, "--constraint-column"),
+        ("export toy.json --to mcap -o toy.csv", 2, "end in .mcap"),
+        ("export toy.json --to mcap --from 99,99", 1, "outside of what was shown"),
+        ("export toy.json --to c --from 1,1", 2, "--to mcap"),
+        ("convert toy.csv -o slow.csv --resample 0", 2, "a rate of 0 Hz"),
+        ("convert toy.csv -o slow.csv --resample 0.1", 2, "a higher rate"),
+        ("check toy.csv --html none/page.html", 3, "cannot be written"),
     ] {
         let ran = run(line);
         let lines: Vec<&str> = ran.err.lines().filter(|line| !line.starts_with("warning: ")).collect();
@@ -176,6 +186,91 @@ fn a_path_can_be_read_again_and_keeps_its_constraint() {
 }
 
 #[test]
+fn roll_outs_for_viewers_are_those_of_rollout() {
+    assert_eq!(
+        run("export toy.json --to mcap --from 1.5,1 --from -1,0.5 --constraint wall.toml -o two.mcap").code,
+        Some(0)
+    );
+    assert_eq!(run("convert two.mcap -o two.csv").code, Some(0));
+    assert_eq!(run("rollout toy.json --from 1.5,1 --constraint wall.toml -o one.csv").code, Some(0));
+    // Without the column of time: stamps of a bag are whole nanoseconds.
+    let read = |name: &str| {
+        let text = std::fs::read_to_string(folder().join(name)).unwrap();
+        assert!(text.starts_with("episode,t,x,y,"), "{text:.40}");
+        let row = |line: &str| [0, 2, 3, 4, 5].map(|column| line.split(',').nth(column).unwrap().to_owned());
+        text.lines().skip(1).map(row).collect::<Vec<_>>()
+    };
+    let (two, one) = (read("two.csv"), read("one.csv"));
+    assert!(one.len() > 10 && two.len() > one.len());
+    assert_eq!(two[..one.len()], one, "to the last digit");
+    assert_eq!(two[one.len()][..3], ["1", "-1", "0.5"]);
+    // Without starts, as many as there is room for.
+    let ran = run("export toy.json --to mcap -o many.mcap");
+    assert!(ran.out.contains("12 roll-outs"), "{}{}", ran.out, ran.err);
+    let ran = run("check many.mcap --quiet");
+    assert!(ran.out.contains("12 episodes") && ran.out.contains("2 states (x, y) with"), "{}{}", ran.out, ran.err);
+}
+
+#[test]
+fn resampled_recordings_are_as_long() {
+    let ran = run("convert toy.csv -o often.csv --resample 100");
+    assert_eq!(ran.code, Some(0), "{}", ran.err);
+    let ran = run("check often.csv --quiet");
+    // 1.95 s a movement, both ends included.
+    assert!(ran.out.contains("40 episodes, 7840 samples"), "{}", ran.out);
+    assert!(ran.out.contains("0.01 s (100 Hz)"), "{}", ran.out);
+}
+
+#[test]
+fn a_constraint_left_out_is_predicted_by_the_others() {
+    let ran = run("evaluate toy.json rails.csv --leave-constraint-out --json");
+    let document: Value = serde_json::from_str(&ran.out).unwrap();
+    let left_out = document["constraints_left_out"].as_array().unwrap();
+    let labels: Vec<&str> = left_out.iter().map(|left| left["constraint"].as_str().unwrap()).collect();
+    assert_eq!(labels, ["east", "north", "ramp", "slope"]);
+    for left in left_out {
+        assert_eq!(left["learnt_from"], 9);
+        assert_eq!(left["evaluation"]["episodes"].as_array().unwrap().len(), 3);
+        assert!(left["evaluation"]["policy_error"].as_f64().unwrap() < 1e-3, "{left}");
+    }
+    assert_eq!(run("evaluate toy.json rails.csv --leave-constraint-out --require 1e-3").code, Some(0));
+    // Movements of one rail that went the other way are not.
+    let text = std::fs::read_to_string(folder().join("rails.csv")).unwrap();
+    let backwards = |line: &str| {
+        let mut fields: Vec<String> = line.split(',').map(ToOwned::to_owned).collect();
+        if fields[6] == "ramp" {
+            fields[2..6].iter_mut().for_each(|field| *field = (field.parse::<f64>().unwrap() * 0.5 + 0.7).to_string());
+        }
+        fields.join(",")
+    };
+    let other: Vec<String> = text.lines().map(backwards).collect();
+    std::fs::write(folder().join("other.csv"), other.join("\n")).unwrap();
+    let ran = run("evaluate toy.json other.csv --integration displacement --leave-constraint-out --require 1e-3");
+    assert_eq!(ran.code, Some(1), "{}{}", ran.out, ran.err);
+}
+
+#[test]
+fn the_page_of_a_check_says_what_the_check_says() {
+    assert_eq!(run("check toy.csv --html page.html").code, Some(0));
+    let page = std::fs::read_to_string(folder().join("page.html")).unwrap();
+    assert!(page.contains("Nothing speaks against learning") && page.contains("data:image/svg+xml"));
+    let ran = run("check toy.csv --json");
+    let document: Value = serde_json::from_str(&ran.out).unwrap();
+    for decision in document["decisions"].as_array().unwrap() {
+        for key in ["what", "value", "flag"] {
+            assert!(page.contains(decision[key].as_str().unwrap()), "{decision}");
+        }
+    }
+    let text = std::fs::read_to_string(folder().join("toy.csv")).unwrap();
+    let odd = text.replace("episode,t,x,y,vx,vy", "episode,t,x,<y>,v1,v2");
+    std::fs::write(folder().join("odd.csv"), odd).unwrap();
+    let ran = run("check odd.csv --state x,<y> --velocity v1,v2 --scale <y>=100 --html odd.html");
+    assert_eq!(ran.code, Some(0), "{}", ran.err);
+    let page = std::fs::read_to_string(folder().join("odd.html")).unwrap();
+    assert!(page.contains("&lt;y&gt;") && !page.contains("<y>"), "names are text");
+}
+
+#[test]
 fn completions_and_manual_pages_are_well_formed() {
     let available = |program: &str| {
         let found = Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
@@ -204,23 +299,4 @@ fn completions_and_manual_pages_are_well_formed() {
             assert!(output.stderr.is_empty(), "{}: {}", path.display(), String::from_utf8_lossy(&output.stderr));
         }
     }
-}
-
-#[cfg(unix)]
-#[test]
-fn an_interrupted_fit_leaves_the_old_model() {
-    let place = tempfile::tempdir().unwrap();
-    std::fs::copy(running::examples().join("toy.csv"), place.path().join("toy.csv")).unwrap();
-    std::fs::write(place.path().join("toy.json"), "old").unwrap();
-    let child = command(place.path())
-        .args(["fit", "toy.csv", "-o", "toy.json", "--max-rows", "1500"])
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    std::thread::sleep(std::time::Duration::from_millis(700));
-    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(130));
-    assert_eq!(std::fs::read_to_string(place.path().join("toy.json")).unwrap(), "old");
-    assert_eq!(std::fs::read_dir(place.path()).unwrap().count(), 2);
 }

@@ -31,7 +31,7 @@ fn text_reads_back_to_the_same_bits() {
             assert_eq!((&back.velocities, &back.constraint), (&made.velocities, &made.constraint));
         }
     }
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 4, "no temporary file stays");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 4, "no temporary file stays");
 }
 
 #[test]
@@ -42,5 +42,5 @@ fn names_that_would_be_misread_are_refused() {
         assert!(matches!(error, WriteError::Names { .. }), "{names:?}: {error}");
     }
     assert!(matches!(write(Path::new("a.xlsx"), &recordings(&["x"])), Err(WriteError::Extension { .. })));
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }

@@ -1,9 +1,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use policy_align::{Finding, Prepared, Verdict, prepare};
+use policy_align::{Finding, Prepared, Verdict, prepare, write_whole};
 use serde_json::json;
 
+use super::check_page::check_page;
 use super::config::Config;
 use super::coverage::directions;
 use super::failure::{Exit, Failure};
@@ -16,13 +17,19 @@ use super::session::{Said, Session};
 ///
 /// Reads the files, finds out what is state, velocity and time, and looks for
 /// what would spoil a policy: noise, jumps, missing numbers, mixed units,
-/// directions that never move. Nothing is written.
+/// directions that never move. Nothing is written but the page asked for.
 #[derive(Debug, Args)]
-#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align check toy.csv")]
+#[command(
+    verbatim_doc_comment,
+    after_help = "Examples:\n  policy-align check toy.csv\n  policy-align check toy.csv --html toy.check.html"
+)]
 pub(crate) struct Check {
     /// Recordings: CSV, NPZ, JSON lines, LeRobot, HDF5, MCAP, MAT
     #[arg(required = true)]
     files: Vec<PathBuf>,
+    /// A page to write, with everything and a picture
+    #[arg(long, value_name = "FILE.html")]
+    html: Option<PathBuf>,
     #[command(flatten)]
     read: ReadFlags,
     #[command(flatten)]
@@ -39,6 +46,10 @@ impl Check {
         let refused = prepared.findings.iter().any(|finding| finding.verdict == Verdict::DoNotUse);
         let exit = if refused { Exit::Refused } else { Exit::Done };
         let (coverage, direction) = directions(&prepared.demonstrations);
+        if let Some(path) = &self.html {
+            let page = check_page(&prepared, &recordings.notes, &named(&self.files), (coverage, &direction));
+            write_whole(path, page.as_bytes()).map_err(|error| Failure::writing(path, error))?;
+        }
         if session.json {
             let document = json!({
                 "episodes": prepared.episodes, "left_out": prepared.left_out, "state": prepared.state,
@@ -52,7 +63,10 @@ impl Check {
         about(&prepared, &named(&self.files), &mut lines);
         let seen = if coverage < 0.1 { "one is hardly ever seen" } else { "every direction is seen somewhere" };
         lines.add("directions", &format!("{} of 1: {seen}", short(coverage)));
-        findings(&prepared.findings, 12 - 2 - lines.count(), &mut lines);
+        findings(&prepared.findings, 10_usize.saturating_sub(lines.count()), &mut lines);
+        if let Some(path) = &self.html {
+            lines.add("written", &path.display().to_string());
+        }
         if refused {
             return Ok(Said { text: lines.into_text(), exit });
         }

@@ -1,18 +1,21 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use demo_io::WriteError;
 
 use super::config::Config;
-use super::failure::{Failure, shown};
+use super::failure::Failure;
 use super::flags::ReadFlags;
 use super::lines::{Lines, counted};
 use super::recorded::read;
+use super::rollout::unwritten;
 use super::session::{Said, Session};
 
 /// Write recordings in another format
+///
+/// MCAP opens in Rerun, Foxglove and PlotJuggler. Learning needs no even stamps:
+/// resample for other programs only.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  policy-align convert toy.csv -o toy.tsv")]
+#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align convert toy.csv -o toy.tsv --resample 50")]
 pub(crate) struct Convert {
     /// Recordings: CSV, NPZ, JSON lines, LeRobot, HDF5, MCAP, MAT
     #[arg(required = true)]
@@ -20,6 +23,9 @@ pub(crate) struct Convert {
     /// The file to write; its ending is the format
     #[arg(long, short, value_name = "FILE")]
     output: PathBuf,
+    /// So many samples a second, along monotone cubics
+    #[arg(long, value_name = "HZ")]
+    resample: Option<f64>,
     #[command(flatten)]
     read: ReadFlags,
 }
@@ -27,15 +33,15 @@ pub(crate) struct Convert {
 impl Convert {
     pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
         let reading = Config::of(session)?.under("read", &self.read)?;
-        let recordings = read(session, &self.files, &reading.options()?)?;
-        demo_io::write(&self.output, &recordings).map_err(|error| match error {
-            WriteError::Io { source, .. } => Failure::writing(&self.output, source),
-            error => {
+        let mut recordings = read(session, &self.files, &reading.options()?)?;
+        if let Some(rate) = self.resample {
+            recordings = recordings.resampled(rate).map_err(|error| {
                 let text = error.to_string();
-                let (what, remedy) = text.split_once("; ").unwrap_or((&text, "another format"));
-                Failure::usage(what, shown(&self.output), remedy)
-            }
-        })?;
+                let (what, remedy) = text.split_once("; ").unwrap_or((&text, "another rate"));
+                Failure::usage(what, format!("--resample {rate}"), remedy)
+            })?;
+        }
+        demo_io::write(&self.output, &recordings).map_err(|error| unwritten(&self.output, error))?;
         let samples = recordings.episodes.iter().map(|episode| episode.times.len()).sum();
         let mut lines = Lines::default();
         lines.add(

@@ -1,9 +1,13 @@
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 
 use clap::Args;
 use nalgebra::{DMatrix, DVector};
-use policy_align::{Evaluation, Model, PrepareOptions, Prepared, Truth, evaluate, prepare};
+use policy_align::{
+    ConstraintLeftOut, EvaluateError, Evaluation, FitOptions, LearnerChoice, Learnt, Model, PrepareOptions, Prepared,
+    Progress, Truth, evaluate, leave_constraints_out, prepare,
+};
 use serde_json::json;
 
 use super::config::Config;
@@ -14,12 +18,18 @@ use super::lines::{Lines, counted, short};
 use super::recorded::{named, read};
 use super::session::{Said, Session};
 
+/// Constraints that are told of, at most.
+const SHOWN: usize = 5;
+
 /// Hold a model against other recordings
 ///
 /// The error is of what is seen along the movements: 0 explains every one, 1 is
 /// as good as standing still.
 #[derive(Debug, Args)]
-#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align evaluate toy.json toy.csv")]
+#[command(
+    verbatim_doc_comment,
+    after_help = "Examples:\n  policy-align evaluate toy.json toy.csv\n  policy-align evaluate toy.json rails.csv --leave-constraint-out"
+)]
 pub(crate) struct Evaluate {
     /// A model that `fit` has written
     model: PathBuf,
@@ -29,6 +39,9 @@ pub(crate) struct Evaluate {
     /// Columns of the true policy, in the order of the state
     #[arg(long, value_name = "PATTERNS")]
     truth: Vec<String>,
+    /// Learn anew without each constraint in turn, and judge on that one
+    #[arg(long)]
+    leave_constraint_out: bool,
     /// Exit code 1 if the error of the policy is larger
     #[arg(long, value_name = "ERROR")]
     require: Option<f64>,
@@ -64,19 +77,58 @@ impl Evaluate {
             let remedy = "recordings of which no sample is left out, and a column of the truth for each channel";
             Failure::new(Exit::Refused, error.to_string(), named(&self.files), remedy)
         })?;
-        let failed = self.require.is_some_and(|most| judged.policy_error.is_nan() || judged.policy_error > most);
+        let left_out = if self.leave_constraint_out { self.left_out(session, &model, &prepared)? } else { vec![] };
+        let too_large = |judged: &Evaluation, most: f64| judged.policy_error.is_nan() || judged.policy_error > most;
+        let failed = self.require.is_some_and(|most| {
+            too_large(&judged, most) || left_out.iter().any(|left| too_large(&left.evaluation, most))
+        });
         let exit = if failed { Exit::Refused } else { Exit::Done };
         if session.json {
             let constraints = by_constraint(&prepared, &judged);
-            let document = json!({ "evaluation": judged, "episodes": prepared.episodes, "constraints": constraints });
+            let document = json!({
+                "evaluation": judged, "episodes": prepared.episodes, "constraints": constraints,
+                "constraints_left_out": left_out,
+            });
             return Ok(Said { text: format!("{document}\n"), exit });
         }
         let mut lines = Lines::default();
         tell(&prepared, &judged, &mut lines);
+        if self.leave_constraint_out {
+            tell_left_out(&left_out, &mut lines);
+        } else {
+            for (label, error) in by_constraint(&prepared, &judged) {
+                lines.add("constraint", &format!("{label}: {} (median of its episodes)", short(error)));
+            }
+        }
         if let Some(most) = self.require {
             lines.add("required", &format!("at most {}: {}", short(most), if failed { "not met" } else { "met" }));
         }
         Ok(Said { text: lines.into_text(), exit })
+    }
+
+    fn left_out(
+        &self,
+        session: &Session,
+        model: &Model,
+        prepared: &Prepared,
+    ) -> Result<Vec<ConstraintLeftOut>, Failure> {
+        let labels: BTreeSet<_> = prepared.constraints.iter().flatten().collect();
+        let bar =
+            session.bar(labels.len() as u64, "learning  {bar:30} without constraint {pos} of {len}, {elapsed} gone");
+        let never = AtomicBool::new(false);
+        let mut report = |step: policy_align::Step| bar.inc(u64::from(step.done == 0));
+        let options = options_like(model);
+        let left_out =
+            leave_constraints_out(prepared, &options, &mut Progress { cancelled: &never, report: &mut report });
+        bar.finish_and_clear();
+        left_out.map_err(|error| match error {
+            EvaluateError::Fit(error) => Failure::fit(&error, named(&self.files)),
+            error => {
+                let text = error.to_string();
+                let (what, remedy) = text.split_once("; ").unwrap_or((&text, "other recordings"));
+                Failure::new(Exit::Refused, what, named(&self.files), remedy)
+            }
+        })
     }
 
     fn prepared(&self, session: &Session, reading: &ReadFlags, options: &PrepareOptions) -> Result<Prepared, Failure> {
@@ -110,6 +162,17 @@ impl Evaluate {
     }
 }
 
+/// To learn as a model was learnt.
+fn options_like(model: &Model) -> FitOptions {
+    let (learner, reading) = match &model.learnt {
+        Learnt::Auto(both) => (LearnerChoice::Auto, both.overridden()),
+        Learnt::PolicyAlign(_) => (LearnerChoice::PolicyAlign, None),
+        Learnt::Slope(_) => (LearnerChoice::Slope, None),
+        Learnt::Direct(_) => (LearnerChoice::Direct, None),
+    };
+    FitOptions { learner, reading, seed: model.seed, ..FitOptions::default() }
+}
+
 fn tell(prepared: &Prepared, judged: &Evaluation, lines: &mut Lines) {
     let count = prepared.demonstrations.n_trajectories();
     lines.add(
@@ -128,16 +191,24 @@ fn tell(prepared: &Prepared, judged: &Evaluation, lines: &mut Lines) {
     if let Some((name, error)) = errors.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, error)| *error >= 0.01) {
         lines.add("worst", &format!("episode {name}: {} of what was seen", short(error)));
     }
-    for (label, error) in by_constraint(prepared, judged) {
-        lines.add("constraint", &format!("{label}: {} (median of its episodes)", short(error)));
-    }
     lines.add("support", &format!("{} % of the samples are within what was learnt", short(100.0 * judged.supported)));
     if let Some(nupe) = judged.nupe {
         lines.add("truth", &format!("nUPE {} (error of the unconstrained policy)", short(nupe)));
     }
 }
 
-/// Median error of the episodes of each constraint, where the file names them; at most five.
+fn tell_left_out(left_out: &[ConstraintLeftOut], lines: &mut Lines) {
+    for left in left_out.iter().take(SHOWN) {
+        let Evaluation { policy_error, episodes, .. } = &left.evaluation;
+        let (error, count) = (short(*policy_error), counted(episodes.len(), "episode"));
+        lines.add("left out", &format!("{}: error {error} of the policy learnt without ({count})", left.constraint));
+    }
+    if left_out.len() > SHOWN {
+        lines.add("", &format!("and {} more: --json shows all", left_out.len() - SHOWN));
+    }
+}
+
+/// Median error of the episodes of each constraint, where the file names them; the first ones.
 fn by_constraint(prepared: &Prepared, judged: &Evaluation) -> BTreeMap<String, f64> {
     let mut errors: BTreeMap<String, Vec<f64>> = BTreeMap::new();
     for (label, error) in prepared.constraints.iter().zip(&judged.episodes) {
@@ -149,5 +220,5 @@ fn by_constraint(prepared: &Prepared, judged: &Evaluation) -> BTreeMap<String, f
         errors.sort_by(f64::total_cmp);
         errors[errors.len() / 2]
     };
-    errors.into_iter().take(5).map(|(label, errors)| (label, median(errors))).collect()
+    errors.into_iter().take(SHOWN).map(|(label, errors)| (label, median(errors))).collect()
 }

@@ -1,27 +1,40 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use policy_align::{CSource, ExportError, Precision, to_onnx, write_whole};
+use nalgebra::DVector;
+use policy_align::{CSource, ExportError, Model, Precision, spread_starts, to_onnx, write_whole};
 
+use super::config::Config;
 use super::failure::{Exit, Failure, shown};
 use super::fit::load;
-use super::lines::{Lines, size};
+use super::flags::numbers;
+use super::lines::{Lines, counted, list, size};
+use super::rollout::{followed, write_paths};
+use super::rollout_flags::RollOutFlags;
 use super::session::{Said, Session};
 
-/// Write a policy for a robot: one C file, or ONNX
+/// Roll-outs that are exported unless starts are given.
+const STARTS: usize = 12;
+
+/// Write a policy for a robot (one C file, or ONNX) or for viewers (MCAP)
 ///
 /// The C file is ISO C99 and needs nothing but math.h: int policy(const double
 /// *x, double *u, double *phi) returns 1 where something was learnt. ONNX has
 /// operators of version 17 on doubles: x (states, n) to u, phi and support.
+/// MCAP holds roll-outs as joint states of ROS 2, for Rerun, Foxglove and
+/// PlotJuggler: from the starts given, or from twelve spread over the data.
 #[derive(Debug, Args)]
-#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align export toy.json --to c -o toy.c")]
+#[command(
+    verbatim_doc_comment,
+    after_help = "Examples:\n  policy-align export toy.json --to c -o toy.c\n  policy-align export toy.json --to mcap -o toy.mcap"
+)]
 pub(crate) struct Export {
     /// A model that `fit` has written
     model: PathBuf,
     /// What to write
     #[arg(long, value_enum)]
     to: Target,
-    /// The file to write [default: the model's name with .c or .onnx]
+    /// The file to write [default: the model's name with .c, .onnx or .mcap]
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Name of the C function
@@ -30,6 +43,11 @@ pub(crate) struct Export {
     /// C with numbers of single precision
     #[arg(long)]
     float: bool,
+    /// A start of MCAP's roll-outs; any number of times
+    #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
+    from: Vec<String>,
+    #[command(flatten)]
+    follow: RollOutFlags,
 }
 
 /// What a policy can be written as.
@@ -39,17 +57,34 @@ enum Target {
     C,
     /// ONNX, operators of version 17
     Onnx,
+    /// Roll-outs for viewers
+    Mcap,
+}
+
+impl Target {
+    fn extension(self) -> &'static str {
+        match self {
+            Target::C => "c",
+            Target::Onnx => "onnx",
+            Target::Mcap => "mcap",
+        }
+    }
 }
 
 impl Export {
-    pub(crate) fn run(&self, _session: &Session) -> Result<Said, Failure> {
+    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
         let model = load(&self.model)?;
-        let extension = if self.to == Target::C { "c" } else { "onnx" };
-        let output = self.output.clone().unwrap_or_else(|| self.model.with_extension(extension));
+        let output = self.output.clone().unwrap_or_else(|| self.model.with_extension(self.to.extension()));
+        if self.to == Target::Mcap {
+            return self.roll_outs(session, &model, &output);
+        }
+        if !self.from.is_empty() || self.follow != RollOutFlags::default() {
+            return Err(Failure::usage("only MCAP holds roll-outs", "flags for following", "--to mcap"));
+        }
         let precision = if self.float { Precision::Single } else { Precision::Double };
         let bytes = match self.to {
-            Target::C => CSource { name: self.name.clone(), precision }.of(&model).map(String::into_bytes),
             Target::Onnx => to_onnx(&model),
+            _ => CSource { name: self.name.clone(), precision }.of(&model).map(String::into_bytes),
         };
         let bytes = bytes.map_err(|error| match error {
             ExportError::Name { .. } => Failure::usage(error.to_string(), "--name", "--name policy"),
@@ -64,11 +99,39 @@ impl Export {
         let mut lines = Lines::default();
         lines.add("written", &format!("{} ({})", output.display(), size(bytes.len())));
         let next = match self.to {
-            Target::C => format!("cc -std=c99 -O2 -c {}", output.display()),
             Target::Onnx => {
                 format!("python -c \"import onnxruntime as o; o.InferenceSession('{}')\"", output.display())
             }
+            _ => format!("cc -std=c99 -O2 -c {}", output.display()),
         };
         Ok(Said::done(lines.next(&next)))
+    }
+
+    fn roll_outs(&self, session: &Session, model: &Model, output: &Path) -> Result<Said, Failure> {
+        if output.extension().is_none_or(|extension| extension != "mcap") {
+            return Err(Failure::usage("MCAP files end in .mcap", shown(output), "`rollout -o` for other formats"));
+        }
+        let flags = Config::of(session)?.under("rollout", &self.follow)?;
+        let given = self.from.iter().map(|from| Ok(DVector::from_vec(numbers(from, "--from")?)));
+        let mut starts = given.collect::<Result<Vec<_>, Failure>>()?;
+        if starts.is_empty() {
+            starts = spread_starts(model, STARTS);
+        }
+        if starts.is_empty() {
+            let what = "no start was found where something was learnt";
+            return Err(Failure::new(Exit::Refused, what, shown(&self.model), "--from with a state of the recording"));
+        }
+        let paths = starts.iter().map(|start| {
+            let from = list(start.iter().copied());
+            followed(&flags, model, start, &from)
+        });
+        let paths = paths.collect::<Result<Vec<_>, _>>()?;
+        write_paths(output, model, &paths)?;
+        let samples = paths.iter().map(|path| path.times.len()).sum();
+        let mut lines = Lines::default();
+        let told =
+            format!("{}: {}, {}", output.display(), counted(paths.len(), "roll-out"), counted(samples, "sample"));
+        lines.add("written", &told);
+        Ok(Said::done(lines.next(&format!("rerun {}", output.display()))))
     }
 }

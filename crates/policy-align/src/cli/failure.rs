@@ -69,9 +69,10 @@ impl Failure {
         let text = error.to_string();
         let (what, remedy) = text.rsplit_once("; ").unwrap_or((&text, "other recordings"));
         let exit = match error {
-            PrepareError::UnknownChannel { .. } | PrepareError::Scale { .. } | PrepareError::TimeStep { .. } => {
-                Exit::Usage
-            }
+            PrepareError::UnknownChannel { .. }
+            | PrepareError::Scale { .. }
+            | PrepareError::TimeStep { .. }
+            | PrepareError::Smoothing { .. } => Exit::Usage,
             _ => Exit::Refused,
         };
         Failure::new(exit, what, place, remedy)

@@ -4,7 +4,7 @@ use align::Bandwidth;
 use clap::Args;
 use demo_io::ReadOptions;
 use gp::Reading;
-use policy_align::{FitOptions, LearnerChoice, PrepareOptions, VelocityUse};
+use policy_align::{FitOptions, LearnerChoice, PrepareOptions, Repair, Smoothing, VelocityUse};
 use serde::{Deserialize, Serialize};
 
 use super::failure::Failure;
@@ -115,6 +115,18 @@ pub(crate) struct PrepareFlags {
     #[arg(long, value_parser = ["auto", "velocity", "displacement"])]
     #[serde(skip_serializing_if = "Option::is_none")]
     integration: Option<String>,
+    /// Positions: auto, off, a window of samples (9) or of seconds (0.2s)
+    #[arg(long, value_name = "WINDOW")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    smooth: Option<String>,
+    /// Episodes are cut where one step is far too long
+    #[arg(long, value_parser = ["auto", "keep"])]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    jumps: Option<String>,
+    /// Angles that jump by a whole turn go on instead
+    #[arg(long, value_parser = ["auto", "keep"])]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    wraps: Option<String>,
 }
 
 /// How a policy is learnt: table `[fit]`.
@@ -146,7 +158,7 @@ pub(crate) struct FitFlags {
     #[arg(long, value_name = "NUMBER")]
     #[serde(skip_serializing_if = "Option::is_none")]
     seed: Option<u64>,
-    /// Samples a Gaussian process learns from, at most [default: 600]
+    /// Samples a Gaussian process learns from, at most [default: 400]
     #[arg(long, value_name = "NUMBER")]
     #[serde(skip_serializing_if = "Option::is_none")]
     max_rows: Option<usize>,
@@ -176,7 +188,19 @@ impl PrepareFlags {
             Some("displacement") => VelocityUse::Ignored,
             _ => VelocityUse::Auto,
         };
-        Ok(PrepareOptions { scale: scale.collect::<Result<_, _>>()?, time_step: dt, velocities })
+        let smoothing = self.smooth.as_deref().map_or(Ok(Smoothing::Auto), smoothing)?;
+        let repair = |flag: &Option<String>| match flag.as_deref() {
+            Some("keep") => Repair::Keep,
+            _ => Repair::Auto,
+        };
+        Ok(PrepareOptions {
+            scale: scale.collect::<Result<_, _>>()?,
+            time_step: dt,
+            velocities,
+            smoothing,
+            jumps: repair(&self.jumps),
+            wraps: repair(&self.wraps),
+        })
     }
 }
 
@@ -213,6 +237,19 @@ impl FitFlags {
             max_rows: self.max_rows.unwrap_or(default.max_rows),
         })
     }
+}
+
+fn smoothing(text: &str) -> Result<Smoothing, Failure> {
+    let seconds = text.strip_suffix('s').map(|number| number.trim().parse().ok().filter(|s: &f64| *s > 0.0));
+    let smoothing = match (text, seconds) {
+        ("auto", _) => Some(Smoothing::Auto),
+        ("off", _) => Some(Smoothing::Off),
+        (_, Some(seconds)) => seconds.map(Smoothing::Seconds),
+        (samples, None) => samples.parse().ok().map(Smoothing::Samples),
+    };
+    smoothing.ok_or_else(|| {
+        Failure::usage(format!("'{text}' is no window"), "--smooth", "--smooth auto, off, 9 (samples) or 0.2s")
+    })
 }
 
 fn number(text: &str, flag: &str) -> Result<f64, Failure> {

@@ -1,6 +1,7 @@
 //! The program: a verb a file.
 
 mod check;
+mod check_page;
 mod clock;
 mod config;
 mod convert;

@@ -17,7 +17,7 @@ const FINE: usize = 49;
 const MARGIN: f64 = 0.12;
 const SIZE: (f64, f64) = (640.0, 660.0);
 const UNKNOWN: &str = "#e4e4e4";
-const SHOWN: Stroke = Stroke { color: "#56a0d3", width: 1.3, dash: Dash::Solid };
+pub(crate) const SHOWN: Stroke = Stroke { color: "#56a0d3", width: 1.3, dash: Dash::Solid };
 const FOLLOWED: Stroke = Stroke { color: "#d55e00", width: 2.4, dash: Dash::Solid };
 const ARROW: &str = "#6a6a6a";
 

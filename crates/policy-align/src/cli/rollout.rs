@@ -1,13 +1,13 @@
 use std::path::{self, PathBuf};
 
 use clap::Args;
-use demo_io::{Channel, Episode, Recordings, Source};
+use demo_io::{Channel, Episode, Recordings, Source, WriteError};
 use nalgebra::DVector;
 use policy_align::{Model, Path, RollOutError, Stop, write_whole};
 use serde_json::json;
 
 use super::config::Config;
-use super::failure::{Exit, Failure};
+use super::failure::{Exit, Failure, shown};
 use super::fit::load;
 use super::flags::numbers;
 use super::lines::{Lines, counted, list, short};
@@ -60,8 +60,7 @@ impl RollOut {
         let start = DVector::from_vec(numbers(&self.from, "--from")?);
         let followed = followed(&flags, &model, &start, &self.from)?;
         if let Some(output) = &self.output {
-            let recordings = recordings(&model, &followed, output);
-            demo_io::write(output, &recordings).map_err(|error| Failure::writing(output, error))?;
+            write_paths(output, &model, std::slice::from_ref(&followed))?;
         }
         if let Some(plot) = &self.plot {
             let picture = Picture::of(&model, [0, 1.min(model.state.len() - 1)], vec![], vec![followed.states.clone()]);
@@ -135,18 +134,35 @@ fn stop(stop: &Stop) -> String {
     }
 }
 
-/// A path as a recording of one episode.
-fn recordings(model: &Model, followed: &Path, output: &path::Path) -> Recordings {
+/// Writes paths as a recording, an episode each.
+pub(crate) fn write_paths(output: &path::Path, model: &Model, paths: &[Path]) -> Result<(), Failure> {
     let channel =
         |channel: &policy_align::StateChannel| Channel { name: channel.name.clone(), unit: channel.unit.clone() };
     let file = output.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    let episode = Episode {
-        name: "0".to_owned(),
-        source: Source { file, rows: None },
+    let episode = |(at, followed): (usize, &Path)| Episode {
+        name: at.to_string(),
+        source: Source { file: file.clone(), rows: None },
         times: followed.times.clone(),
         positions: followed.states.clone(),
         velocities: Some(followed.velocities.clone()),
         constraint: None,
     };
-    Recordings { state: model.state.iter().map(channel).collect(), episodes: vec![episode], notes: vec![] }
+    let recordings = Recordings {
+        state: model.state.iter().map(channel).collect(),
+        episodes: paths.iter().enumerate().map(episode).collect(),
+        notes: vec![],
+    };
+    demo_io::write(output, &recordings).map_err(|error| unwritten(output, error))
+}
+
+/// Why recordings were not written.
+pub(crate) fn unwritten(output: &path::Path, error: WriteError) -> Failure {
+    match error {
+        WriteError::Io { source, .. } => Failure::writing(output, source),
+        error => {
+            let text = error.to_string();
+            let (what, remedy) = text.split_once("; ").unwrap_or((&text, "another format"));
+            Failure::usage(what, shown(output), remedy)
+        }
+    }
 }

@@ -4,13 +4,13 @@ use maud::{Markup, html};
 use motion::Demonstrations;
 use nalgebra::DMatrix;
 use page::{Card, Document, Part};
-use policy_align::{Finding, Model, TrustNumbers, Verdict};
+use policy_align::{Decision, Finding, LeftOutEpisode, Model, StateChannel, TrustNumbers, Verdict};
 
 use super::info::learner;
 use super::lines::{counted, list, short};
 use super::picture::Picture;
 
-const STYLE: &str = include_str!("trust_page.css");
+pub(crate) const STYLE: &str = include_str!("trust_page.css");
 
 /// The page of a model, with a picture of what was shown if it is given, in the units of the learner.
 pub(crate) fn trust_page(model: &Model, name: &str, shown: Option<&Demonstrations>) -> String {
@@ -21,12 +21,12 @@ pub(crate) fn trust_page(model: &Model, name: &str, shown: Option<&Demonstration
         parts.push(part("field", "What was learnt", &field(model, shown)));
     }
     parts.push(part("numbers", "Numbers", &numbers(model)));
-    parts.push(part("decisions", "What was decided", &decisions(model)));
+    parts.push(part("decisions", "What was decided", &decisions(&model.decisions)));
     parts.push(part("data", "Data", &data(model)));
     Document { title: &title, name, opening, parts, style: STYLE }.html()
 }
 
-fn part(id: &str, title: &str, body: &Markup) -> Part {
+pub(crate) fn part(id: &str, title: &str, body: &Markup) -> Part {
     Part { id: id.to_owned(), title: title.to_owned(), body: html! { h2 { (title) } (body) } }
 }
 
@@ -48,7 +48,7 @@ fn opening(model: &Model, title: &str) -> Markup {
     }
 }
 
-fn found(finding: &Finding) -> Markup {
+pub(crate) fn found(finding: &Finding) -> Markup {
     let label = match finding.verdict {
         Verdict::Good => "Remark",
         Verdict::Doubtful => "Doubtful",
@@ -75,7 +75,7 @@ fn field(model: &Model, shown: Option<&Demonstrations>) -> Markup {
 }
 
 /// A row: what it is, its value, what it should be.
-fn row(what: &str, value: &str, good: &str) -> Markup {
+pub(crate) fn row(what: &str, value: &str, good: &str) -> Markup {
     html! { tr { td { (what) } td .value { (value) } td { (good) } } }
 }
 
@@ -105,8 +105,8 @@ fn numbers(model: &Model) -> Markup {
                 (aligned(numbers))
             }
         }
-        p { "Seen least: " (direction(model, &numbers.unseen_direction)) ". Known least: "
-            (direction(model, &numbers.least_known_direction)) "." }
+        p { "Seen least: " (direction(&model.state, &numbers.unseen_direction)) ". Known least: "
+            (direction(&model.state, &numbers.least_known_direction)) "." }
     }
 }
 
@@ -121,21 +121,21 @@ fn aligned(numbers: &TrustNumbers) -> Markup {
 }
 
 /// A direction, by the channels that it mostly has.
-fn direction(model: &Model, direction: &[f64]) -> String {
+pub(crate) fn direction(state: &[StateChannel], direction: &[f64]) -> String {
     let mut parts: Vec<(f64, &str)> =
-        direction.iter().copied().zip(model.state.iter().map(|channel| channel.name.as_str())).collect();
+        direction.iter().copied().zip(state.iter().map(|channel| channel.name.as_str())).collect();
     parts.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
     let told: Vec<String> = parts.iter().take(3).map(|(part, name)| format!("{} {name}", short(*part))).collect();
     told.join(", ")
 }
 
-fn decisions(model: &Model) -> Markup {
+pub(crate) fn decisions(decisions: &[Decision]) -> Markup {
     html! {
         p { "Everything that was decided for you, and the flag that decides otherwise." }
         table .numbers {
             thead { tr { th { "What" } th { "Decided" } th { "Why" } th { "Flag" } } }
             tbody {
-                @for decision in &model.decisions {
+                @for decision in decisions {
                     tr {
                         td { (decision.what) } td { (decision.value) } td { (decision.why) }
                         td { code { (decision.flag) } }
@@ -147,15 +147,23 @@ fn decisions(model: &Model) -> Markup {
 }
 
 fn data(model: &Model) -> Markup {
-    let left_out: Vec<String> =
-        model.data.left_out.iter().map(|left| format!("{} ({})", left.episode, left.why)).collect();
     let files: Vec<String> =
         model.data.files.iter().map(|file| format!("{}, SHA-256 {:.16}", file.name, file.sha256)).collect();
+    html! {
+        (channels(&model.state))
+        (left_out(&model.data.left_out))
+        p .where { "Files: "
+        (files.join("; ")) ". " (model.made_by.program) ", " (model.made_by.time) ", seed " (model.seed) "." }
+    }
+}
+
+/// Names, units and ranges.
+pub(crate) fn channels(state: &[StateChannel]) -> Markup {
     html! {
         table .numbers {
             thead { tr { th { "Channel" } th { "Unit" } th .value { "Least, median, largest" } th .value { "Scale" } } }
             tbody {
-                @for channel in &model.state {
+                @for channel in state {
                     tr {
                         td { (channel.name) }
                         td { (channel.unit.as_deref().unwrap_or("not given")) }
@@ -165,10 +173,11 @@ fn data(model: &Model) -> Markup {
                 }
             }
         }
-        @if !model.data.left_out.is_empty() {
-            p { "Left out: " (left_out.join(", ")) "." }
-        }
-        p .where { "Files: "
-        (files.join("; ")) ". " (model.made_by.program) ", " (model.made_by.time) ", seed " (model.seed) "." }
     }
+}
+
+/// Episodes that are not learnt from.
+pub(crate) fn left_out(episodes: &[LeftOutEpisode]) -> Markup {
+    let told: Vec<String> = episodes.iter().map(|left| format!("{} ({})", left.episode, left.why)).collect();
+    html! { @if !told.is_empty() { p { "Left out: " (told.join(", ")) "." } } }
 }

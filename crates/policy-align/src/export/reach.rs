@@ -3,6 +3,7 @@ use rayon::prelude::*;
 
 use super::gp_tables::Scaled;
 use crate::Model;
+use crate::halton::between;
 
 /// States at which the model is asked whether it knows them.
 const ASKED: usize = 1000;
@@ -18,10 +19,7 @@ const UNKNOWN: f64 = 0.05;
 pub(super) fn squared_reach(model: &Model, scaled: &Scaled) -> f64 {
     let (policy, bounds) = (model.policy(), model.bounds());
     let asked = (1..=ASKED).into_par_iter().map(|index| {
-        let state = DVector::from_fn(bounds.len(), |k, _| {
-            let [low, high] = bounds[k];
-            low + (high - low) * radical_inverse(index, k)
-        });
+        let state = between(&bounds, index);
         let z =
             DVector::from_fn(state.len(), |k, _| (state[k] * model.state[k].scale - scaled.mean[k]) / scaled.spread);
         let nearest = scaled.z.column_iter().map(|row| (row - &z).norm_squared()).fold(f64::INFINITY, f64::min);
@@ -37,16 +35,4 @@ pub(super) fn squared_reach(model: &Model, scaled: &Scaled) -> f64 {
         }
     }
     reach
-}
-
-/// Halton's sequence: number `index` of an even covering of (0, 1), in dimension `axis`.
-fn radical_inverse(index: usize, axis: usize) -> f64 {
-    let base = (2..).filter(|n| (2..*n).take_while(|d| d * d <= *n).all(|d| n % d != 0)).nth(axis).unwrap_or(2);
-    let (mut left, mut share, mut value) = (index, 1.0 / base as f64, 0.0);
-    while left > 0 {
-        value += share * (left % base) as f64;
-        left /= base;
-        share /= base as f64;
-    }
-    value
 }

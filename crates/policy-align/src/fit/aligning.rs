@@ -14,7 +14,7 @@ use smoothing::SavitzkyGolay;
 use super::options::FitOptions;
 use super::progress::Progress;
 use super::recorded_rows::averaged;
-use crate::{Decision, FitError, Prepared, Recorded};
+use crate::{Decision, FitError, Prepared, Recorded, Smoothing};
 
 /// Positions alone are smoothed if noise makes more than this share of the squared steps.
 const NOISY: f64 = 0.1;
@@ -98,6 +98,10 @@ fn integrable(prepared: &Prepared) -> Result<(Demonstrations, Integration, &'sta
     let averaged = averaged(prepared)?;
     let smooth = || SavitzkyGolay::default().smooth(&averaged);
     Ok(match prepared.recorded {
+        Recorded::PositionsAsTold => (averaged, Integration::Displacement, "positions as smoothing left them"),
+        Recorded::NoisyVelocities(_) if prepared.smoothing != Smoothing::Auto => {
+            (averaged, Integration::Velocity, "recorded; positions as smoothing left them")
+        }
         Recorded::Velocities => (averaged, Integration::Velocity, "recorded; they agree with the steps"),
         Recorded::FusedVelocities | Recorded::NoisyVelocities(_) => {
             (smooth()?, Integration::Velocity, "recorded; positions smoothed (9 samples, degree 2)")

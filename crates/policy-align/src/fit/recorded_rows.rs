@@ -1,13 +1,18 @@
 use gp::{GpError, Rows};
 
-use motion::Demonstrations;
+use motion::{Demonstrations, MotionError};
 
-use crate::prepare::thinned;
+use crate::prepare::{thinned, with_slopes};
 use crate::{Prepared, Recorded};
 
 /// What the Gaussian processes learn from.
 pub(crate) fn rows(prepared: &Prepared) -> Result<Rows, GpError> {
-    let rows = prepared.recorded.front_end().rows(&averaged(prepared)?)?;
+    let demonstrations = averaged(prepared)?;
+    let demonstrations = match prepared.recorded {
+        Recorded::PositionsAsTold => with_slopes(&demonstrations).map_err(|error| cleaning(&error))?,
+        _ => demonstrations,
+    };
+    let rows = prepared.recorded.front_end().rows(&demonstrations)?;
     match prepared.recorded {
         Recorded::NoisyVelocities(variance) => {
             let count = rows.len();
@@ -19,6 +24,9 @@ pub(crate) fn rows(prepared: &Prepared) -> Result<Rows, GpError> {
 
 /// The movements with samples averaged as decided.
 pub(super) fn averaged(prepared: &Prepared) -> Result<Demonstrations, GpError> {
-    thinned(&prepared.demonstrations, prepared.averaged)
-        .map_err(|error| GpError::Cleaning { reason: error.to_string() })
+    thinned(&prepared.demonstrations, prepared.averaged).map_err(|error| cleaning(&error))
+}
+
+fn cleaning(error: &MotionError) -> GpError {
+    GpError::Cleaning { reason: error.to_string() }
 }

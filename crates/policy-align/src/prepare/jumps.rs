@@ -28,7 +28,7 @@ pub(super) fn cut(takes: &mut Vec<Take>, notes: &mut Notes) {
         })
         .collect();
     let Some((name, sample, times)) = first else { return };
-    notes.decided("jumps", format!("{cut} episodes cut"), "one step is far longer than all about it", "--split-gap");
+    notes.decided("jumps", format!("{cut} episodes cut"), "one step is far longer than all about it", "--jumps");
     let verdict = if f64::from(cut) > MANY * episodes as f64 { Verdict::Doubtful } else { Verdict::Good };
     notes.found(
         verdict,

@@ -8,14 +8,16 @@ mod options;
 mod prepared;
 mod remarks;
 mod scale;
+mod smooth;
 mod stamps;
 mod thinning;
 mod velocities;
 mod wraps;
 
 pub use noise::Noise;
-pub use options::{PrepareOptions, VelocityUse};
+pub use options::{PrepareOptions, Repair, Smoothing, VelocityUse};
 pub use prepared::{Prepared, Recorded};
+pub(crate) use smooth::with_slopes;
 pub(crate) use thinning::thinned;
 
 use demo_io::Recordings;
@@ -35,8 +37,12 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
     let mut takes = Take::all(recordings, &scales)?;
     duplicates::leave_out(&mut takes, &mut notes);
     stamps::decide(&mut takes, options, &mut notes)?;
-    wraps::unwrap(&mut takes, &recordings.state, &mut notes);
-    jumps::cut(&mut takes, &mut notes);
+    if options.wraps == Repair::Auto {
+        wraps::unwrap(&mut takes, &recordings.state, &mut notes);
+    }
+    if options.jumps == Repair::Auto {
+        jumps::cut(&mut takes, &mut notes);
+    }
     episodes::leave_out_still(&mut takes, &mut notes);
     if takes.is_empty() {
         let why = notes.left_out.first().map_or_else(String::new, |left_out| left_out.why.clone());
@@ -45,7 +51,13 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
     let noise = noise::of(&episodes::demonstrations(&takes)?);
     let agreement = velocities::decide(&mut takes, options, &recordings.state, &noise, &mut notes);
     let demonstrations = episodes::demonstrations(&takes)?;
-    let recorded = noise::decide(&demonstrations, &noise, agreement, &mut notes);
+    let smoothed = smooth::as_told(&demonstrations, options.smoothing, &mut notes)?;
+    let (demonstrations, recorded) = if let Some(smoothed) = smoothed {
+        (smoothed, noise::as_told(&demonstrations, &noise, agreement))
+    } else {
+        let recorded = noise::decide(&demonstrations, &noise, agreement, &mut notes);
+        (demonstrations, recorded)
+    };
     let averaged = match recorded {
         Recorded::Positions => thinning::decide(&demonstrations, &noise, &mut notes),
         _ => 1,
@@ -53,5 +65,5 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
     let state = scale::channels(recordings, &scales, &demonstrations);
     stamps::doubt(&demonstrations, &mut notes);
     remarks::about(&demonstrations, &state, &noise, &mut notes);
-    Ok(Prepared::new(demonstrations, &takes, state, noise, (recorded, averaged), notes))
+    Ok(Prepared::new(demonstrations, &takes, state, noise, (recorded, options.smoothing, averaged), notes))
 }

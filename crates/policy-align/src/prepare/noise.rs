@@ -94,6 +94,18 @@ fn velocity_noise(demonstrations: &Demonstrations) -> Option<(f64, f64)> {
     Some((noise.deviations.norm_squared(), power / count as f64))
 }
 
+/// What learners are given where the user said how positions are smoothed.
+pub(super) fn as_told(demonstrations: &Demonstrations, noise: &Noise, agreement: Agreement) -> Recorded {
+    if agreement == Agreement::None {
+        return Recorded::PositionsAsTold;
+    }
+    let noisy = noise.velocity_share.is_some_and(|share| share > EXACT_VELOCITIES);
+    match velocity_noise(demonstrations).filter(|_| noisy && agreement == Agreement::Own) {
+        Some((variance, _)) => Recorded::NoisyVelocities(variance / demonstrations.dim() as f64),
+        None => Recorded::Velocities,
+    }
+}
+
 /// What learners are given.
 pub(super) fn decide(
     demonstrations: &Demonstrations,
@@ -126,7 +138,9 @@ pub(super) fn decide(
             format!("noise makes {} of their squares", percent(noisy_velocities.unwrap_or(0.0))),
         ),
         Recorded::Positions if agreement == Agreement::None => ("positions smoothed, piece by piece", words),
-        Recorded::Positions => ("positions smoothed, piece by piece", format!("{words}; velocities are no better")),
+        Recorded::Positions | Recorded::PositionsAsTold => {
+            ("positions smoothed, piece by piece", format!("{words}; velocities are no better"))
+        }
     };
     notes.decided("smoothing", value, why, "--smooth");
     if recorded == Recorded::Positions && share > NOISY {

@@ -7,6 +7,12 @@ pub struct PrepareOptions {
     pub time_step: Option<f64>,
     /// What recorded velocities are used for (`--integration`).
     pub velocities: VelocityUse,
+    /// How positions are smoothed (`--smooth`).
+    pub smoothing: Smoothing,
+    /// Whether episodes are cut where a single step is far too long (`--jumps`).
+    pub jumps: Repair,
+    /// Whether angles that jump by a whole turn go on instead (`--wraps`).
+    pub wraps: Repair,
 }
 
 /// What recorded velocities are used for.
@@ -19,4 +25,28 @@ pub enum VelocityUse {
     Recorded,
     /// They are ignored.
     Ignored,
+}
+
+/// What is done with what looks like a fault.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Repair {
+    /// It is repaired, and said.
+    #[default]
+    Auto,
+    /// It is no fault.
+    Keep,
+}
+
+/// How positions are smoothed before learning.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Smoothing {
+    /// As their noise asks for.
+    #[default]
+    Auto,
+    /// Not at all: where no velocities are known, they are slopes between neighbours.
+    Off,
+    /// Savitzky–Golay of degree 2 over so many samples, an odd number from 5 on.
+    Samples(usize),
+    /// The same over about so many seconds.
+    Seconds(f64),
 }

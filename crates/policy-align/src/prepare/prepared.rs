@@ -4,6 +4,7 @@ use smoothing::Smoother;
 
 use super::episodes::Take;
 use super::noise::Noise;
+use super::options::Smoothing;
 use crate::{Decision, Finding, LeftOutEpisode, StateChannel, Verdict};
 
 /// Demonstrations that can be learnt from, with what was decided and noticed on the way.
@@ -23,6 +24,8 @@ pub struct Prepared {
     pub noise: Noise,
     /// What the learners are given.
     pub recorded: Recorded,
+    /// How the user wanted positions smoothed; those of the demonstrations are, unless it is automatic.
+    pub smoothing: Smoothing,
     /// So many samples in a row become one before learning; 1: all stay.
     pub averaged: usize,
     /// What was decided, in the order of deciding.
@@ -44,13 +47,15 @@ pub enum Recorded {
     NoisyVelocities(f64),
     /// Positions alone.
     Positions,
+    /// Positions alone, taken as they stand: smoothed as the user said, or not at all.
+    PositionsAsTold,
 }
 
 impl Recorded {
     /// How it becomes rows of a Gaussian process.
     pub fn front_end(self) -> FrontEnd {
         match self {
-            Recorded::Velocities | Recorded::NoisyVelocities(_) => FrontEnd::Velocities,
+            Recorded::Velocities | Recorded::NoisyVelocities(_) | Recorded::PositionsAsTold => FrontEnd::Velocities,
             Recorded::FusedVelocities => FrontEnd::Fused(smoothing::Fusion::default()),
             Recorded::Positions => FrontEnd::Smoothed(Smoother::default()),
         }
@@ -86,7 +91,7 @@ impl Prepared {
         takes: &[Take],
         state: Vec<StateChannel>,
         noise: Noise,
-        (recorded, averaged): (Recorded, usize),
+        (recorded, smoothing, averaged): (Recorded, Smoothing, usize),
         notes: Notes,
     ) -> Self {
         let mut steps: Vec<f64> = demonstrations.trajectories().iter().map(motion::Trajectory::time_step).collect();
@@ -101,6 +106,7 @@ impl Prepared {
             time_step,
             noise,
             recorded,
+            smoothing,
             averaged,
             decisions,
             findings,

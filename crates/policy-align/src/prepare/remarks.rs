@@ -8,8 +8,8 @@ use crate::{StateChannel, Verdict};
 
 /// A channel that spreads so many times as much as most others has another unit, it seems.
 const MIXED: f64 = 20.0;
-/// Fewer episodes tell too little of constraints.
-const FEW: usize = 5;
+/// Fewer episodes tell too little of constraints, and of places between them.
+const FEW: usize = 8;
 /// An episode whose ends are this near, as a share of its length, is a loop.
 const LOOP: f64 = 0.05;
 /// Samples at an end that may stand still.

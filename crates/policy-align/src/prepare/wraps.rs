@@ -28,7 +28,7 @@ pub(super) fn unwrap(takes: &mut [Take], channels: &[Channel], notes: &mut Notes
             "angles",
             format!("{name} unwrapped"),
             format!("it jumps by a whole turn in {wrapped} episodes"),
-            "--unwrap",
+            "--wraps",
         );
         notes.found(
             Verdict::Doubtful,

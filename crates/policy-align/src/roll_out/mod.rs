@@ -6,11 +6,13 @@ mod error;
 mod joint_limits;
 mod link_point;
 mod runge_kutta;
+mod starts;
 
 pub use constraint_file::ConstraintFileError;
 pub use constraint_set::ConstraintSet;
 pub use error::RollOutError;
 pub use joint_limits::JointLimits;
+pub use starts::spread_starts;
 
 use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::{DMatrix, DVector};

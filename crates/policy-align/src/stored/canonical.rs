@@ -1,3 +1,7 @@
+use std::fs::File;
+use std::io::{self, Read as _};
+use std::path::Path;
+
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
@@ -11,7 +15,29 @@ pub(crate) fn checksum(value: &Value) -> String {
 
 /// SHA-256 of bytes, hexadecimal.
 pub fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat()
+    hexadecimal(&Sha256::digest(bytes))
+}
+
+/// SHA-256 of what a file holds, and how many bytes that is; read piece by piece.
+///
+/// # Errors
+/// What the system says.
+pub fn sha256_of_file(path: &Path) -> io::Result<(String, u64)> {
+    let (mut file, mut hasher, mut bytes) = (File::open(path)?, Sha256::new(), 0);
+    let mut piece = vec![0; 1 << 16];
+    loop {
+        match file.read(&mut piece)? {
+            0 => return Ok((hexadecimal(&hasher.finalize()), bytes)),
+            count => {
+                hasher.update(&piece[..count]);
+                bytes += count as u64;
+            }
+        }
+    }
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat()
 }
 
 fn write(value: &Value, text: &mut String) {
@@ -54,5 +80,8 @@ mod tests {
             assert_ne!(one, of(other));
         }
         assert_eq!(sha256(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+        let (path, bytes) = (tempfile::NamedTempFile::new().unwrap().into_temp_path(), vec![7; 200_001]);
+        std::fs::write(&path, &bytes).unwrap();
+        assert_eq!(sha256_of_file(&path).unwrap(), (sha256(&bytes), 200_001));
     }
 }

@@ -5,6 +5,6 @@ mod error;
 mod model_file;
 mod whole_file;
 
-pub use canonical::sha256;
+pub use canonical::{sha256, sha256_of_file};
 pub use error::ModelError;
 pub use whole_file::write_whole;

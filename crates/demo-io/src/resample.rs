@@ -1,0 +1,150 @@
+//! The same movements at even times.
+
+use nalgebra::{DMatrix, DMatrixView};
+use thiserror::Error;
+
+use crate::{Episode, Recordings};
+
+/// More numbers than this are refused: a rate in the wrong unit should not fill the memory.
+const MOST_NUMBERS: f64 = 1e9;
+
+/// Why recordings cannot be resampled.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ResampleError {
+    /// No rate.
+    #[error("a rate of {rate} Hz is none; give a positive, finite number")]
+    Rate {
+        /// As given.
+        rate: f64,
+    },
+    /// An episode would have a single sample.
+    #[error("episode {episode} lasts {seconds} s, less than a step at {rate} Hz; give a higher rate")]
+    Short {
+        /// Its name.
+        episode: String,
+        /// How long it lasts.
+        seconds: f64,
+        /// In Hz.
+        rate: f64,
+    },
+    /// Too many samples.
+    #[error("at {rate} Hz there would be {samples:.1e} samples; give a lower rate")]
+    Many {
+        /// In Hz.
+        rate: f64,
+        /// Over all episodes.
+        samples: f64,
+    },
+}
+
+impl Recordings {
+    /// The same movements `rate` times a second, from each one's first sample to the last that fits.
+    ///
+    /// Positions, and velocities where there are some, follow monotone cubics through the samples (Fritsch and Butland):
+    /// between two samples no value is beyond both. For learning nothing need be resampled; steps are taken with their
+    /// own times.
+    ///
+    /// # Errors
+    ///
+    /// [`ResampleError`]: no rate, one so low that an episode is a single sample, or so high that memory would not do.
+    pub fn resampled(&self, rate: f64) -> Result<Recordings, ResampleError> {
+        if !(rate > 0.0 && rate.is_finite()) {
+            return Err(ResampleError::Rate { rate });
+        }
+        let samples: f64 = self.episodes.iter().map(|episode| 1.0 + duration(episode) * rate).sum();
+        if samples * self.state.len() as f64 > MOST_NUMBERS {
+            return Err(ResampleError::Many { rate, samples });
+        }
+        let episodes = self.episodes.iter().map(|episode| resampled(episode, rate));
+        let episodes = episodes.collect::<Result<_, _>>()?;
+        Ok(Recordings { state: self.state.clone(), episodes, notes: self.notes.clone() })
+    }
+}
+
+fn duration(episode: &Episode) -> f64 {
+    episode.times.last().zip(episode.times.first()).map_or(0.0, |(last, first)| last - first)
+}
+
+fn resampled(episode: &Episode, rate: f64) -> Result<Episode, ResampleError> {
+    let (seconds, first) = (duration(episode), episode.times.first().copied().unwrap_or(0.0));
+    // Stamps that were rounded do not cost the last sample.
+    let steps = (seconds * rate * (1.0 + 1e-9)).floor() as usize;
+    if steps == 0 {
+        return Err(ResampleError::Short { episode: episode.name.clone(), seconds, rate });
+    }
+    let times: Vec<f64> = (0..=steps).map(|step| step as f64 / rate).collect();
+    let own: Vec<f64> = episode.times.iter().map(|time| time - first).collect();
+    let along = |values: &DMatrix<f64>| interpolated(&own, values.as_view(), &times);
+    Ok(Episode {
+        name: episode.name.clone(),
+        source: episode.source.clone(),
+        positions: along(&episode.positions),
+        velocities: episode.velocities.as_ref().map(along),
+        times,
+        constraint: episode.constraint.clone(),
+    })
+}
+
+/// Values (n, N) at stamps (N), at other times (M) that ascend: (n, M).
+fn interpolated(stamps: &[f64], values: DMatrixView<'_, f64>, times: &[f64]) -> DMatrix<f64> {
+    let slopes = slopes(stamps, values);
+    let mut interval = 0;
+    let mut result = DMatrix::zeros(values.nrows(), times.len());
+    for (&time, mut column) in times.iter().zip(result.column_iter_mut()) {
+        while interval + 2 < stamps.len() && stamps[interval + 1] <= time {
+            interval += 1;
+        }
+        let width = stamps[interval + 1] - stamps[interval];
+        let t = ((time - stamps[interval]) / width).clamp(0.0, 1.0);
+        // Hermite's basis.
+        let (start, end) = ((1.0 + 2.0 * t) * (1.0 - t).powi(2), t * t * (3.0 - 2.0 * t));
+        let (leaving, arriving) = (t * (1.0 - t).powi(2) * width, t * t * (t - 1.0) * width);
+        for axis in 0..values.nrows() {
+            column[axis] = start * values[(axis, interval)]
+                + end * values[(axis, interval + 1)]
+                + leaving * slopes[(axis, interval)]
+                + arriving * slopes[(axis, interval + 1)];
+        }
+    }
+    result
+}
+
+/// Slope at every stamp, (n, N): 0 at a turn, else a weighted harmonic mean of the slopes on both sides.
+fn slopes(stamps: &[f64], values: DMatrixView<'_, f64>) -> DMatrix<f64> {
+    let last = stamps.len() - 1;
+    let width = |i: usize| stamps[i + 1] - stamps[i];
+    let secant = |axis: usize, i: usize| (values[(axis, i + 1)] - values[(axis, i)]) / width(i);
+    DMatrix::from_fn(values.nrows(), stamps.len(), |axis, i| {
+        if last == 1 {
+            return secant(axis, 0);
+        }
+        if i == 0 {
+            return at_end((width(0), secant(axis, 0)), (width(1), secant(axis, 1)));
+        }
+        if i == last {
+            return at_end((width(i - 1), secant(axis, i - 1)), (width(i - 2), secant(axis, i - 2)));
+        }
+        let (before, after) = (secant(axis, i - 1), secant(axis, i));
+        if before * after <= 0.0 {
+            return 0.0;
+        }
+        let (left, right) = (2.0 * width(i) + width(i - 1), width(i) + 2.0 * width(i - 1));
+        (left + right) / (left / before + right / after)
+    })
+}
+
+/// The slope of the parabola through three samples at the outermost, kept from overshooting.
+fn at_end((width, secant): (f64, f64), (next_width, next): (f64, f64)) -> f64 {
+    let slope = ((2.0 * width + next_width) * secant - width * next) / (width + next_width);
+    if slope * secant <= 0.0 {
+        0.0
+    } else if secant * next <= 0.0 && slope.abs() > 3.0 * secant.abs() {
+        3.0 * secant
+    } else {
+        slope
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,80 @@
+use nalgebra::DMatrix;
+use proptest::prelude::*;
+
+use super::*;
+use crate::{Channel, Source};
+
+fn recordings(times: Vec<f64>, value: impl Fn(f64) -> f64) -> Recordings {
+    let positions = DMatrix::from_iterator(1, times.len(), times.iter().map(|&t| value(t)));
+    let source = Source { file: "made".to_owned(), rows: None };
+    let velocities = Some(positions.clone());
+    let episode = Episode { name: "a".to_owned(), source, times, positions, velocities, constraint: None };
+    let state = vec![Channel { name: "x".to_owned(), unit: None }];
+    Recordings { state, episodes: vec![episode], notes: vec![] }
+}
+
+#[test]
+fn as_by_hand() {
+    // Slopes 46/15, 0, 0, 0 and 20/3: the series turns, stands still, and ends steeply.
+    let expected = [0.0, 1.0 + 23.0 / 60.0, 2.0, 47.0 / 27.0, 34.0 / 27.0, 1.0, 1.0, 13.0 / 6.0, 5.0];
+    let stamps = [0.0, 1.0, 2.5, 3.0, 4.0];
+    let values = DMatrix::from_row_slice(1, 5, &[0.0, 2.0, 1.0, 1.0, 5.0]);
+    let times: Vec<f64> = (0..9).map(|i| 0.5 * f64::from(i)).collect();
+    let found = interpolated(&stamps, values.as_view(), &times);
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn nothing_is_beyond_its_neighbours_and_samples_are_met(
+        steps in prop::collection::vec(0.01..1.0f64, 1..30),
+        values in prop::collection::vec(-5.0..5.0f64, 31),
+        rate in 3.0..200.0f64,
+    ) {
+        let mut times = vec![0.0];
+        for step in &steps {
+            times.push(times[times.len() - 1] + step);
+        }
+        let at = |t: f64| values[times.iter().rposition(|&stamp| stamp <= t).unwrap()];
+        let made = recordings(times.clone(), at);
+        let found = made.resampled(rate);
+        prop_assume!(found.is_ok());
+        let found = found.unwrap();
+        let found = &found.episodes[0];
+        prop_assert_eq!(found.velocities.as_ref(), Some(&found.positions));
+        let last = found.times[found.times.len() - 1];
+        prop_assert!(times[times.len() - 1] - last < 1.0 / rate && last <= times[times.len() - 1] + 1e-6);
+        for (&time, x) in found.times.iter().zip(found.positions.iter()) {
+            let before = times[..times.len() - 1].iter().rposition(|&stamp| stamp <= time + 1e-9).unwrap();
+            let ends = [values[before], values[before + 1]];
+            prop_assert!(*x >= ends[0].min(ends[1]) - 1e-9 && *x <= ends[0].max(ends[1]) + 1e-9);
+        }
+        let again = interpolated(&times, made.episodes[0].positions.as_view(), &times);
+        prop_assert!((again - &made.episodes[0].positions).amax() < 1e-12);
+    }
+
+    #[test]
+    fn straight_lines_stay(rate in 2.0..100.0f64, slope in -3.0..3.0f64, start in 0.0..9.0f64) {
+        let times = [0.0, 0.1, 0.35, 0.4, 1.0].map(|t| start + t).to_vec();
+        let found = recordings(times, |t| slope * (t - start)).resampled(rate).unwrap();
+        for (time, x) in found.episodes[0].times.iter().zip(found.episodes[0].positions.iter()) {
+            prop_assert!((x - slope * time).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn rates_that_make_no_movement_are_refused() {
+    let made = recordings(vec![0.0, 0.5, 1.0], |t| t);
+    for rate in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(made.resampled(rate), Err(ResampleError::Rate { .. })), "{rate}");
+    }
+    assert!(matches!(made.resampled(0.9), Err(ResampleError::Short { .. })));
+    assert!(matches!(made.resampled(1e12), Err(ResampleError::Many { .. })));
+    assert_eq!(made.resampled(1.0).unwrap().episodes[0].times, [0.0, 1.0]);
+    // 30 steps of a tenth of a second, their stamps rounded.
+    let tenths = recordings((0..=30).map(|i| f64::from(i) * 0.1).collect(), |t| t);
+    assert_eq!(tenths.resampled(10.0).unwrap().episodes[0].times.len(), 31);
+}

@@ -1,0 +1,56 @@
+//! Does a policy learnt under some constraints hold under another?
+
+use std::collections::BTreeSet;
+
+use motion::Demonstrations;
+use serde::{Deserialize, Serialize};
+
+use crate::{EvaluateError, Evaluation, FitOptions, Prepared, Progress, evaluate, fit};
+
+/// Movements under one constraint, predicted by what was learnt under all others.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ConstraintLeftOut {
+    /// Its label.
+    pub constraint: String,
+    /// Movements learnt from.
+    pub learnt_from: usize,
+    /// What came of the others.
+    pub evaluation: Evaluation,
+}
+
+/// Learns without each constraint in turn, and judges on it; movements without a label are always learnt from. The same
+/// seed gives the same bits.
+///
+/// # Errors
+/// [`EvaluateError::Constraints`] if there are fewer than two labels, [`EvaluateError::Fit`] if what is left is too
+/// little to learn from, and those of [`evaluate`].
+pub fn leave_constraints_out(
+    prepared: &Prepared,
+    options: &FitOptions,
+    progress: &mut Progress<'_>,
+) -> Result<Vec<ConstraintLeftOut>, EvaluateError> {
+    let labels: BTreeSet<&String> = prepared.constraints.iter().flatten().collect();
+    if labels.len() < 2 {
+        return Err(EvaluateError::Constraints { found: labels.len() });
+    }
+    let without = |label: &String| {
+        let (out, kept): (Vec<usize>, Vec<usize>) =
+            (0..prepared.constraints.len()).partition(|&k| prepared.constraints[k].as_ref() == Some(label));
+        let learnt = fit(&only(prepared, &kept), options, progress)?;
+        let evaluation = evaluate(learnt.learnt.policy(), &only(prepared, &out), None)?;
+        Ok(ConstraintLeftOut { constraint: label.clone(), learnt_from: kept.len(), evaluation })
+    };
+    labels.into_iter().map(without).collect()
+}
+
+/// Some of the movements, prepared as all were.
+fn only(prepared: &Prepared, wanted: &[usize]) -> Prepared {
+    let movements = wanted.iter().map(|&k| prepared.demonstrations.trajectories()[k].clone()).collect();
+    Prepared {
+        demonstrations: Demonstrations::new(movements).expect("movements of one dimension stay so"),
+        episodes: wanted.iter().map(|&k| prepared.episodes[k].clone()).collect(),
+        constraints: wanted.iter().map(|&k| prepared.constraints[k].clone()).collect(),
+        ..prepared.clone()
+    }
+}

@@ -1,0 +1,99 @@
+//! Every decision names the flag that decides otherwise, and there is one.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+#[allow(dead_code, reason = "made for more than this")]
+mod cases;
+mod running;
+
+use std::collections::BTreeSet;
+use std::sync::atomic::AtomicBool;
+
+use cases::{Case, Has, Plane, at_rate, noisy, parabola};
+use demo_io::Recordings;
+use policy_align::{Decision, FitOptions, LearnerChoice, PrepareOptions, Progress, Smoothing, fit, prepare};
+use running::{folder, run, run_in};
+
+fn decisions(recordings: &Recordings, prepare_options: &PrepareOptions, learner: LearnerChoice) -> Vec<Decision> {
+    let prepared = prepare(recordings, prepare_options).unwrap();
+    let cancelled = AtomicBool::new(false);
+    let options = FitOptions { learner, max_rows: 100, ..FitOptions::default() };
+    fit(&prepared, &options, &mut Progress { cancelled: &cancelled, report: &mut |_| () }).unwrap().decisions
+}
+
+/// Recordings of which as much as can be has to be decided.
+fn recordings() -> Vec<Recordings> {
+    let plane = Plane { count: 8, roll_out: at_rate(50.0, 4.0), ..Plane::default() }.potential(&parabola(), 5);
+    let case = |has| Case::of(&plane, 8, has);
+    let wrap = |x: f64| x - std::f64::consts::TAU * (x / std::f64::consts::TAU).round();
+    let wide = Plane { count: 30, reach: 4.5, ..Plane::default() }.potential(&parabola(), 5);
+    let jumps = case(Has::Positions).each(|e| e.positions.columns_mut(90, 110).add_scalar_mut(3.0));
+    vec![
+        case(Has::Velocities).recordings,
+        Case::of(&noisy(&plane, 0.02, 5), 8, Has::Positions).recordings,
+        Case::of(&wide, 30, Has::Positions).each(|e| e.positions.apply(|x| *x = wrap(*x))).recordings,
+        jumps.recordings,
+        case(Has::Velocities).each(|e| e.velocities.iter_mut().for_each(|u| *u *= 1000.0)).recordings,
+        case(Has::Velocities).each(|e| e.times.iter_mut().for_each(|t| *t *= 1000.0)).recordings,
+    ]
+}
+
+#[test]
+fn every_decision_names_a_flag_that_fit_has() {
+    let help = run("fit --help").out;
+    let known = |flag: &str| help.lines().any(|line| line.split([' ', ',']).any(|word| word == flag));
+    assert!(known("--dt") && !known("--d"));
+    let scaled = PrepareOptions {
+        scale: vec![("y".to_owned(), 2.0)],
+        time_step: Some(0.02),
+        smoothing: Smoothing::Samples(7),
+        ..PrepareOptions::default()
+    };
+    let mut all: Vec<Decision> = Vec::new();
+    for recordings in recordings() {
+        for options in [&PrepareOptions::default(), &scaled] {
+            all.extend(decisions(&recordings, options, LearnerChoice::Auto));
+        }
+    }
+    all.extend(decisions(&recordings()[0], &scaled, LearnerChoice::PolicyAlign));
+    for decision in &all {
+        assert!(known(&decision.flag), "{decision:?}");
+        assert!(!decision.what.is_empty() && !decision.value.is_empty() && !decision.why.is_empty(), "{decision:?}");
+    }
+    let about: BTreeSet<&str> = all.iter().map(|decision| decision.what.as_str()).collect();
+    let expected = [
+        "angles",
+        "averaging",
+        "bandwidth",
+        "init_d",
+        "integration",
+        "jumps",
+        "learner",
+        "scale",
+        "smoothing",
+        "time step",
+        "velocities",
+    ];
+    assert_eq!(about, BTreeSet::from(expected));
+}
+
+#[test]
+fn smoothing_can_be_told() {
+    let check = |flags: &str| run(&format!("check toy.csv --integration displacement {flags}"));
+    for (flags, said) in [
+        ("--smooth off", "smoothing    none: positions as they are (told so)"),
+        ("--smooth 7", "smoothing    positions, over 7 samples at a time (told so"),
+        ("--smooth 0.25s", "smoothing    positions, over 5 samples at a time (told so"),
+        ("--smooth auto", "smoothing    positions smoothed, piece by piece"),
+    ] {
+        let ran = check(flags);
+        assert!(ran.code == Some(0) && ran.out.contains(said), "{flags}:\n{}{}", ran.out, ran.err);
+    }
+    for (flags, said) in [("--smooth much", "'much' is no window"), ("--smooth 4", "a window of 4 samples")] {
+        let ran = check(flags);
+        assert!(ran.code == Some(2) && ran.err.contains(said) && ran.err.lines().count() == 3, "{flags}:\n{}", ran.err);
+    }
+    std::fs::write(folder().join("smooth.toml"), "[prepare]\nsmooth = \"7\"\n").unwrap();
+    let ran = run_in(folder(), "check toy.csv --integration displacement --config smooth.toml");
+    assert!(ran.out.contains("over 7 samples"), "{}{}", ran.out, ran.err);
+}

@@ -1,0 +1,138 @@
+//! Whoever ends the program early finds the old file or the new one, never half of one.
+
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+mod running;
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use policy_align::{Model, sha256, write_whole};
+use running::{command, examples, folder};
+
+/// Of the file that the child writes over and over.
+const PLACE: &str = "POLICY_ALIGN_KILLED";
+const BYTES: usize = 3_000_000;
+
+fn contents(round: u8) -> Vec<u8> {
+    vec![b'a' + round % 2; BYTES]
+}
+
+#[test]
+#[ignore = "the child of another test"]
+fn writes_until_it_is_killed() {
+    let Some(place) = std::env::var_os(PLACE) else { return };
+    for round in (0..=255).cycle() {
+        write_whole(Path::new(&place), &contents(round)).unwrap();
+    }
+}
+
+fn names(folder: &Path) -> BTreeSet<String> {
+    fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+}
+
+#[test]
+fn a_killed_writer_leaves_a_whole_file() {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("model.json");
+    fs::write(&path, contents(0)).unwrap();
+    let mut drafts = 0;
+    for round in 0..25 {
+        let mut child = Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", "writes_until_it_is_killed", "--ignored"])
+            .env(PLACE, &path)
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap();
+        // Not before it writes, and then at any moment.
+        let begun = Instant::now();
+        while !names(place.path()).iter().any(|name| Path::new(name).extension().is_some_and(|end| end == "part")) {
+            assert!(begun.elapsed() < Duration::from_secs(60), "the child writes nothing");
+        }
+        sleep(Duration::from_micros(700 * round));
+        child.kill().unwrap(); // SIGKILL
+        child.wait().unwrap();
+        let found = fs::read(&path).unwrap();
+        assert!(found == contents(0) || found == contents(1), "{} bytes", found.len());
+        for draft in names(place.path()).into_iter().filter(|name| name != "model.json") {
+            drafts += 1;
+            fs::remove_file(place.path().join(draft)).unwrap();
+        }
+    }
+    assert!(drafts > 0, "never killed while writing: this test saw nothing");
+}
+
+/// The program on its way to write `toy.json`, once it has begun to learn.
+fn fitting(place: &Path, rows: &str) -> Child {
+    fs::copy(examples().join("toy.csv"), place.join("toy.csv")).unwrap();
+    let arguments = ["fit", "toy.csv", "-o", "toy.json", "--no-report", "--max-rows", rows];
+    command(place).args(arguments).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+#[test]
+fn a_killed_fit_leaves_the_old_model_or_the_new() {
+    let old = fs::read(folder().join("toy.json")).unwrap();
+    let duration = {
+        let place = tempfile::tempdir().unwrap();
+        let begun = Instant::now();
+        assert!(fitting(place.path(), "60").wait().unwrap().success());
+        begun.elapsed()
+    };
+    for part in 1..=6 {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("toy.json");
+        fs::write(&path, &old).unwrap();
+        let mut child = fitting(place.path(), "60");
+        // The last ones when it writes, or thereabouts.
+        sleep(duration.mul_f64(0.7 + 0.07 * f64::from(part)));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        Model::load(&path).unwrap();
+    }
+}
+
+fn interrupt(child: &Child) {
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+}
+
+#[test]
+fn an_interrupted_fit_leaves_the_old_model() {
+    let place = tempfile::tempdir().unwrap();
+    fs::write(place.path().join("toy.json"), "old").unwrap();
+    let child = fitting(place.path(), "1500");
+    sleep(Duration::from_millis(700));
+    interrupt(&child);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    assert_eq!(fs::read_to_string(place.path().join("toy.json")).unwrap(), "old");
+    assert_eq!(names(place.path()), ["toy.csv", "toy.json"].map(ToOwned::to_owned).into());
+}
+
+#[test]
+fn an_interrupted_writer_leaves_no_draft() {
+    let place = tempfile::tempdir().unwrap();
+    let mut text = String::from("t,x,y\n");
+    (0..400_000).for_each(|i| writeln!(text, "{}.{:02},0.{i},{i}", i / 100, i % 100).unwrap());
+    fs::write(place.path().join("long.csv"), &text).unwrap();
+    let old = sha256(text.as_bytes());
+    let child = command(place.path())
+        .args(["convert", "long.csv", "-o", "long.csv", "--quiet"])
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let begun = Instant::now();
+    while names(place.path()).len() < 2 {
+        assert!(begun.elapsed() < Duration::from_secs(120), "nothing is written");
+        sleep(Duration::from_millis(2));
+    }
+    interrupt(&child);
+    assert_eq!(child.wait_with_output().unwrap().status.code(), Some(130));
+    assert_eq!(names(place.path()), ["long.csv".to_owned()].into());
+    assert_eq!(sha256(&fs::read(place.path().join("long.csv")).unwrap()), old);
+}
