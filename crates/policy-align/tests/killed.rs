@@ -103,15 +103,21 @@ fn interrupt(child: &Child) {
 
 #[test]
 fn an_interrupted_fit_leaves_the_old_model() {
-    let place = tempfile::tempdir().unwrap();
-    fs::write(place.path().join("toy.json"), "old").unwrap();
-    let child = fitting(place.path(), "1500");
-    sleep(Duration::from_millis(700));
-    interrupt(&child);
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(130));
-    assert_eq!(fs::read_to_string(place.path().join("toy.json")).unwrap(), "old");
-    assert_eq!(names(place.path()), ["toy.csv", "toy.json"].map(ToOwned::to_owned).into());
+    // On a busy machine the first may come before the program listens.
+    let codes = [300, 700, 1500, 3000].map(|milliseconds| {
+        let place = tempfile::tempdir().unwrap();
+        fs::write(place.path().join("toy.json"), "old").unwrap();
+        let child = fitting(place.path(), "1500");
+        sleep(Duration::from_millis(milliseconds));
+        interrupt(&child);
+        let code = child.wait_with_output().unwrap().status.code();
+        if code != Some(0) {
+            assert_eq!(fs::read_to_string(place.path().join("toy.json")).unwrap(), "old");
+            assert_eq!(names(place.path()), ["toy.csv", "toy.json"].map(ToOwned::to_owned).into());
+        }
+        code
+    });
+    assert!(codes.contains(&Some(130)), "{codes:?}");
 }
 
 #[test]

@@ -203,7 +203,7 @@ fn roll_outs_for_viewers_are_those_of_rollout() {
     let (two, one) = (read("two.csv"), read("one.csv"));
     assert!(one.len() > 10 && two.len() > one.len());
     assert_eq!(two[..one.len()], one, "to the last digit");
-    assert_eq!(two[one.len()][..3], ["1", "-1", "0.5"]);
+    assert_eq!(two[one.len()][..3], ["1", "-1.0", "0.5"]);
     // Without starts, as many as there is room for.
     let ran = run("export toy.json --to mcap -o many.mcap");
     assert!(ran.out.contains("12 roll-outs"), "{}{}", ran.out, ran.err);

@@ -228,7 +228,9 @@ mod tests {
 
     #[test]
     fn where_nothing_is_changed_the_curves_show_table_1() {
-        let table = run(&table1().unwrap(), "parabola-40x40-medium").remove(0);
+        let mut table = run(&table1().unwrap(), "parabola-40x40-medium").remove(0);
+        // Only the table has movements that nobody learns from.
+        assert!(table.remove(&Measure::NupeFresh).is_some());
         let [left, right] = [run(&figure6_left(), "medium"), run(&figure6_right(), "displacement-medium")];
         assert_eq!(left.last(), Some(&table));
         assert_eq!(right.first(), Some(&table));
