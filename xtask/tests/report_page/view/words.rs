@@ -64,7 +64,8 @@ const MISSED: &str = "(() => {
     const { constraint, start } = policyAlignView.state();
     policyAlignView.seek(1e9);
     const { palms } = data.movements.find(m => m.learner == 'policy_align' && m.constraint == constraint && m.start == start);
+    const end = palms.reduce((sum, step) => sum.map((parts, i) => parts + step[i])).map(parts => parts / data.parts);
     const away = (palm, hand) => Math.hypot(...palm.map((x, i) => x - data.scene.target[3 * hand + i]));
     return policyAlignView.hands().some((palm, hand) =>
-        Math.abs(away(palm, hand) - away(palms.at(-1).slice(3 * hand, 3 * hand + 3), hand)) > 0.001);
+        Math.abs(away(palm, hand) - away(end.slice(3 * hand, 3 * hand + 3), hand)) > 0.001);
 })()";
