@@ -16,16 +16,18 @@ pub(crate) fn generator(seed: u64, system: u32, data_set: u32) -> ChaCha8Rng {
 /// A generator beside that of a data set, in a stream that no data set has: what is drawn from it takes nothing from
 /// the other, wherever that one stands.
 pub(crate) fn beside(rng: &ChaCha8Rng) -> ChaCha8Rng {
-    let mut beside = rng.clone();
-    beside.set_stream(rng.get_stream() | 1 << 63);
-    beside.set_word_pos(0);
-    beside
+    apart(rng, 1 << 63)
 }
 
 /// A generator of movements that nobody learns from, in a stream that neither a data set nor what stands beside it has.
 pub(crate) fn fresh(rng: &ChaCha8Rng) -> ChaCha8Rng {
-    let mut fresh = rng.clone();
-    fresh.set_stream(rng.get_stream() | 1 << 62);
-    fresh.set_word_pos(0);
-    fresh
+    apart(rng, 1 << 62)
+}
+
+/// The beginning of the stream of a data set with one more bit, which no data set's number reaches.
+fn apart(rng: &ChaCha8Rng, bit: u64) -> ChaCha8Rng {
+    let mut apart = rng.clone();
+    apart.set_stream(rng.get_stream() | bit);
+    apart.set_word_pos(0);
+    apart
 }

@@ -112,26 +112,23 @@ pub(super) fn settings() -> Vec<Setting> {
             Ok(printed(Redraw::Every(value.round() as usize), 0, &toy_regressor()))
         }),
         setting("init_D of the regression", SILENT, 10.0, |init_d| {
-            let LwprRegressor { params, passes, cutoff } = toy_regressor();
-            Ok(tuned(&LwprRegressor { params: LwprParams { init_d, ..params }, passes, cutoff }))
+            Ok(tuned(|regressor| regressor.params.init_d = init_d))
         }),
-        setting("w_gen of the regression", SILENT, 0.5, |w_gen| {
-            let LwprRegressor { params, passes, cutoff } = toy_regressor();
-            Ok(tuned(&LwprRegressor { params: LwprParams { w_gen, ..params }, passes, cutoff }))
-        }),
+        setting("w_gen of the regression", SILENT, 0.5, |w_gen| Ok(tuned(|regressor| regressor.params.w_gen = w_gen))),
         setting("penalty of the regression", SILENT, 1e-5, |penalty| {
-            let LwprRegressor { params, passes, cutoff } = toy_regressor();
-            Ok(tuned(&LwprRegressor { params: LwprParams { penalty, ..params }, passes, cutoff }))
+            Ok(tuned(|regressor| regressor.params.penalty = penalty))
         }),
         setting("passes of the regression", SILENT, 10.0, |passes| {
-            Ok(tuned(&LwprRegressor { passes: passes.round() as usize, ..toy_regressor() }))
+            Ok(tuned(|regressor| regressor.passes = passes.round() as usize))
         }),
     ]
 }
 
 /// The printed rows with another regression.
-fn tuned(regressor: &LwprRegressor) -> Vec<Setup> {
-    printed(Redraw::Every(REDRAW), 0, regressor)
+fn tuned(change: impl Fn(&mut LwprRegressor)) -> Vec<Setup> {
+    let mut regressor = toy_regressor();
+    change(&mut regressor);
+    printed(Redraw::Every(REDRAW), 0, &regressor)
 }
 
 fn setups(redraw: Redraw, first_system: u32, max_rows: fn(usize) -> usize) -> Vec<Setup> {
