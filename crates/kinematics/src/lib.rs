@@ -28,10 +28,11 @@
 //! ```
 //!
 //! Where to look: `urdf` text to tags; `model` tags to a robot; `nodes` the motion of one link; `forward` poses and
-//! Jacobians; `collision` what touches; `resolved_rate` joint velocities for a task.
+//! Jacobians; `collision` what touches (a feature, on by default); `resolved_rate` joint velocities for a task.
 
 #![allow(clippy::inline_always, reason = "vector dispatch compiles for a newer machine only what is inlined into it")]
 
+#[cfg(feature = "collision")]
 mod collision;
 mod error;
 mod forward;
@@ -41,6 +42,7 @@ mod nodes;
 mod resolved_rate;
 mod urdf;
 
+#[cfg(feature = "collision")]
 pub use collision::{Clearance, MeshShape, Nearby, SelfCollision};
 pub use error::KinematicsError;
 pub use forward::{Chain, LinkPoses, Workspace};

@@ -1,4 +1,4 @@
-use hdf5_pure::{DType, Dataset, Error, File, FormatError, Group};
+use hdf5_pure::{Chunk, DType, Dataset, Error, File, FormatError, Group};
 
 use crate::array::{Data, Described, Kind};
 use crate::input::Input;
@@ -47,6 +47,7 @@ impl<'a> Tree<'a> {
         let count = described.shape.iter().try_fold(1u64, |count, &length| count.checked_mul(length as u64));
         let size = self.ok(dataset.element_size())?.max(8);
         self.input.charge(count.and_then(|count| count.checked_mul(size)).unwrap_or(u64::MAX))?;
+        self.require_whole_chunks(described, dataset)?;
         let data = match &described.kind {
             Kind::Text => dataset.read_string().map(Data::Text),
             Kind::Number("float16") => dataset.read_raw().map(|bytes| Data::Numbers(halves(&bytes, dataset))),
@@ -60,6 +61,18 @@ impl<'a> Tree<'a> {
         }
         let what = format!("'{}' holds {} values", described.with_shape(), data.len());
         Err(ReadError::Corrupt(Fault::new(what, &self.input.name, "another copy of the file")))
+    }
+
+    /// Chunks that lie in the file: the reader takes memory for a chunk before it looks for it.
+    fn require_whole_chunks(&self, described: &Described, dataset: &Dataset) -> Result<(), ReadError> {
+        let outside =
+            |chunk: &Chunk| chunk.address.checked_add(chunk.storage_size).is_none_or(|end| end > self.input.len);
+        // Chunks of the one kind of index that cannot be listed are checked by the reader, one by one.
+        if dataset.is_chunked() && dataset.chunks().is_ok_and(|chunks| chunks.iter().any(outside)) {
+            let what = format!("'{}' has a part beyond the end of the file", described.with_shape());
+            return Err(ReadError::Corrupt(Fault::new(what, &self.input.name, "another copy of the file")));
+        }
+        Ok(())
     }
 }
 

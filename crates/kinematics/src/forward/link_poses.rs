@@ -74,6 +74,7 @@ impl LinkPoses<'_> {
         Ok(())
     }
 
+    #[cfg(feature = "collision")]
     pub(crate) fn n_joints(&self) -> usize {
         self.robot.n_joints()
     }

@@ -13,12 +13,16 @@ mod problem;
 mod scan;
 pub(crate) mod tag;
 
-pub(crate) use document::{UrdfRobot, parsed, read};
+#[cfg(feature = "collision")]
+pub(crate) use document::parsed;
+pub(crate) use document::{UrdfRobot, read};
 pub use element::{Element, UrdfWarning};
 pub(crate) use from_urdf_rs::from_urdf_rs;
 pub use geometry::Geometry;
 pub(crate) use geometry::UrdfCollision;
 pub use joint::JointKind;
 pub(crate) use joint::{Mimic, UrdfJoint, UrdfMotion};
-pub(crate) use number::{LARGEST, bounded};
+#[cfg(feature = "collision")]
+pub(crate) use number::LARGEST;
+pub(crate) use number::bounded;
 pub use problem::UrdfProblem;
