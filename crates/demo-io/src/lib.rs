@@ -48,6 +48,7 @@ mod error;
 mod fields;
 mod flat;
 mod grouped;
+mod guard;
 #[cfg(feature = "hdf5")]
 mod hdf5;
 mod input;
@@ -81,6 +82,7 @@ mod whole_file;
 mod write;
 
 pub use error::{Fault, ReadError};
+pub use guard::catches_panics;
 pub use note::{Note, NoteKind};
 pub use options::{Format, Nan, ReadOptions, SamplesAre};
 pub use read::{read, read_all};

@@ -3,6 +3,8 @@ use std::path::{Path, PathBuf};
 
 use crate::clean::clean;
 use crate::draft::Drafts;
+#[cfg(any(feature = "parquet", feature = "hdf5", feature = "mcap", feature = "mat"))]
+use crate::guard::guarded;
 use crate::input::{Input, name_of, unreadable};
 use crate::notice::notice;
 use crate::sniff::{self, Folder};
@@ -54,7 +56,7 @@ fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> 
     if path.is_dir() {
         return match sniff::folder(path, &name)? {
             #[cfg(feature = "parquet")]
-            Folder::LeRobot => crate::lerobot::read(path, options, progress),
+            Folder::LeRobot => guarded(&name, || crate::lerobot::read(path, options, progress)),
             #[cfg(not(feature = "parquet"))]
             Folder::LeRobot => Err(not_built(&name, "parquet")),
             Folder::Files => folder(path, &name, options, progress),
@@ -69,19 +71,19 @@ fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> 
         Format::Npy => npy::read(&input, progress),
         Format::Npz => npz::read(&input, progress),
         #[cfg(feature = "parquet")]
-        Format::LeRobot | Format::Parquet => crate::parquet::read(&input, progress),
+        Format::LeRobot | Format::Parquet => guarded(&name, || crate::parquet::read(&input, progress)),
         #[cfg(not(feature = "parquet"))]
         Format::LeRobot | Format::Parquet => Err(not_built(&name, "parquet")),
         #[cfg(feature = "hdf5")]
-        Format::Hdf5 => crate::hdf5::read(&input, progress),
+        Format::Hdf5 => guarded(&name, || crate::hdf5::read(&input, progress)),
         #[cfg(not(feature = "hdf5"))]
         Format::Hdf5 => Err(not_built(&name, "hdf5")),
         #[cfg(feature = "mcap")]
-        Format::Mcap => crate::mcap::read(&input, progress),
+        Format::Mcap => guarded(&name, || crate::mcap::read(&input, progress)),
         #[cfg(not(feature = "mcap"))]
         Format::Mcap => Err(not_built(&name, "mcap")),
         #[cfg(feature = "mat")]
-        Format::Mat => crate::mat::read(&input, progress),
+        Format::Mat => guarded(&name, || crate::mat::read(&input, progress)),
         #[cfg(not(feature = "mat"))]
         Format::Mat => Err(not_built(&name, "mat")),
     }

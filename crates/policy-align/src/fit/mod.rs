@@ -214,6 +214,7 @@ fn numbers(
                 / aligned.held_out.samples.max(1) as f64,
         }
     });
+    let limits = halves::Limits { max_rows: options.max_rows, seed: options.seed };
     TrustNumbers {
         episodes: prepared.demonstrations.n_trajectories(),
         reading: readings.reading(),
@@ -237,9 +238,9 @@ fn numbers(
         rotation_t: report.curl_t,
         model: report.model,
         halves: if takes_slope {
-            halves::of_slope(readings.slope(), rows, (options.max_rows, options.seed))
+            halves::of_slope(readings, rows, limits)
         } else {
-            None
+            halves::of_direct(readings, rows, limits)
         },
         unknown: unknown(readings, prepared, rows),
         leaving: share_leaving(policy, &prepared.demonstrations),

@@ -41,8 +41,8 @@ pub struct TrustNumbers {
     pub rotation_t: Option<f64>,
     /// Whether the slope policy has a potential.
     pub model: ModelKind,
-    /// Difference of the slope policies that every other movement alone would give, as a share of the policy's variance;
-    /// none where the direct policy is handed out, or halves are too few.
+    /// Difference of the Gaussian processes' policies that every other movement alone would give, as a share of the
+    /// policy's variance; none where halves are too few.
     pub halves: Option<f64>,
     /// Share of the states on free ways from starts between those shown at which the Gaussian process's error bars are
     /// as large as half of what its policy varies by.

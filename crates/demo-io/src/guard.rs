@@ -1,0 +1,43 @@
+//! Readers of other libraries on damaged files.
+
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use crate::draft::Drafts;
+use crate::{Fault, ReadError};
+
+thread_local! {
+    static CATCHING: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Whether a panic of this thread will be caught and become a [`ReadError`]: a panic hook need not report it.
+pub fn catches_panics() -> bool {
+    CATCHING.get()
+}
+
+/// What `read` says. Libraries for containers panic at some damaged files; that makes the file corrupt.
+#[cfg(any(feature = "parquet", feature = "hdf5", feature = "mcap", feature = "mat"))]
+pub(crate) fn guarded(file: &str, read: impl FnOnce() -> Result<Drafts, ReadError>) -> Result<Drafts, ReadError> {
+    let before = CATCHING.replace(true);
+    let outcome = catch_unwind(AssertUnwindSafe(read));
+    CATCHING.set(before);
+    outcome.unwrap_or_else(|_| {
+        let what = "the file contradicts itself";
+        Err(ReadError::Corrupt(Fault::new(what, file, "another copy of the file, or write it again")))
+    })
+}
+
+#[cfg(all(test, feature = "mcap"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn panics_become_errors() {
+        let outcome = guarded("a.mcap", || {
+            assert!(catches_panics());
+            panic!("of a library")
+        });
+        assert!(matches!(outcome, Err(ReadError::Corrupt(_))));
+        assert!(!catches_panics());
+    }
+}
