@@ -2,6 +2,7 @@
 
 mod failure;
 mod leaf;
+mod lengths;
 
 use std::collections::HashMap;
 
@@ -38,6 +39,7 @@ pub(crate) fn read_described(
     described: &Described,
     progress: &mut dyn FnMut(u64),
 ) -> Result<Drafts, ReadError> {
+    lengths::check_end(input)?;
     let file = SerializedFileReader::new(input.open()?).map_err(|error| failed(&error, input))?;
     let leaves = Leaf::all(&file, input)?;
     if leaves.is_empty() {

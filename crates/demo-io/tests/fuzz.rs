@@ -1,7 +1,8 @@
 //! Damaged files: each reader answers with recordings or an error, within a second and without asking for more memory
 //! than a bound on the file's size.
 //!
-//! `DEMO_IO_FUZZ=1000000 cargo test -p demo-io --all-features --test fuzz` tries so many files of every kind.
+//! `DEMO_IO_FUZZ=1000000 cargo test -p demo-io --all-features --test fuzz` tries so many files of every kind;
+//! `DEMO_IO_FUZZ_ONLY=parquet` one kind, `DEMO_IO_FUZZ_FROM=14986` from a seed on.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -134,6 +135,7 @@ fn peak_memory() -> Option<u64> {
 #[test]
 fn damaged_files_are_read_or_refused() {
     let count: u64 = std::env::var("DEMO_IO_FUZZ").ok().map_or(FILES, |count| count.parse().unwrap());
+    let from: u64 = std::env::var("DEMO_IO_FUZZ_FROM").ok().map_or(0, |from| from.parse().unwrap());
     let only = std::env::var("DEMO_IO_FUZZ_ONLY").unwrap_or_default();
     let files = Files::new();
     for sample in samples().into_iter().filter(|sample| sample.name.contains(&only)) {
@@ -144,7 +146,7 @@ fn damaged_files_are_read_or_refused() {
         let bound = ((64 * sample.content.len() as u64) >> 20) + 64;
         let grown = || peak_memory().zip(before).map(|(after, before)| (after - before) >> 20);
         let (mut readable, mut slowest) = (0, Duration::ZERO);
-        for seed in 0..count {
+        for seed in from..from + count {
             let content = damaged(&sample.content, &mut StdRng::seed_from_u64(seed));
             let path: PathBuf = files.add(sample.name, &content);
             let start = Instant::now();

@@ -114,6 +114,24 @@ impl Rows {
         self.switches.as_deref()
     }
 
+    /// Share of squares by which a step between two samples differs from the velocity there, where velocities were found
+    /// from positions: the median of ‖û_{i+1} − û_i‖²/4‖û_i‖² over samples next to each other. Positions do not tell
+    /// whether what moved went on steadily or in steps of that size.
+    pub fn step_change(&self) -> Option<f64> {
+        self.switches.as_ref()?;
+        let next_to_each_other = |at: &usize| {
+            self.indices[*at + 1] == SampleIndex { sample: self.indices[*at].sample + 1, ..self.indices[*at] }
+        };
+        let change = |at: usize| {
+            let (here, next) = (self.velocities.column(at), self.velocities.column(at + 1));
+            (next - here).norm_squared() / (4.0 * here.norm_squared())
+        };
+        let changes = (0..self.len().saturating_sub(1)).filter(next_to_each_other).map(change);
+        let mut changes: Vec<f64> = changes.filter(|change| change.is_finite()).collect();
+        let middle = changes.len() / 2;
+        (!changes.is_empty()).then(|| *changes.select_nth_unstable_by(middle, f64::total_cmp).1)
+    }
+
     /// Number of rows M.
     pub fn len(&self) -> usize {
         self.indices.len()

@@ -40,7 +40,7 @@ pub(crate) fn report(chosen: &Chosen<'_>) -> TrustReport {
     TrustReport {
         r_squared: taken.left_out.r_squared,
         z_squared: taken.left_out.z_squared,
-        expected_nupe: error + ambiguity,
+        expected_nupe: error + ambiguity + rows.step_change().unwrap_or(0.0),
         ambiguity,
         identifiability: identifiability(&posterior, &prior),
         least_seen: least_seen(&data.n),

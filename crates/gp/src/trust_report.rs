@@ -12,7 +12,8 @@ pub struct TrustReport {
     pub r_squared: f64,
     /// Mean squared left-out error over its predicted variance (S11); over 4 the noise model is wrong.
     pub z_squared: f64,
-    /// Expected normalised error of the policy (nUPE), with what the alternative model says (R6).
+    /// Expected normalised error of the policy (nUPE), with what the alternative model says (R6), and with
+    /// [`Rows::step_change`](crate::Rows::step_change).
     pub expected_nupe: f64,
     /// Difference of the alternative model's policy, where it predicts nearly as well (R6): across the paths the policy
     /// is a guess where this is over .1.
