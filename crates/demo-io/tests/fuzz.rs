@@ -145,14 +145,14 @@ fn damaged_files_are_read_or_refused() {
         let before = peak_memory();
         let bound = ((64 * sample.content.len() as u64) >> 20) + 64;
         let grown = || peak_memory().zip(before).map(|(after, before)| (after - before) >> 20);
-        let (mut readable, mut slowest) = (0, Duration::ZERO);
+        let (mut readable, mut slowest) = (0, (Duration::ZERO, 0));
         for seed in from..from + count {
             let content = damaged(&sample.content, &mut StdRng::seed_from_u64(seed));
             let path: PathBuf = files.add(sample.name, &content);
             let start = Instant::now();
             let outcome = catch_unwind(AssertUnwindSafe(|| read_with(&path, &sample.options)));
             let taken = start.elapsed();
-            slowest = slowest.max(taken);
+            slowest = slowest.max((taken, seed));
             let grown = grown();
             assert!(
                 grown.is_none_or(|grown| grown <= bound),
@@ -170,8 +170,10 @@ fn damaged_files_are_read_or_refused() {
             }
         }
         println!(
-            "{}: {count} damaged files, {readable} readable, slowest {slowest:?}, memory grew by {:?} MB",
+            "{}: {count} damaged files, {readable} readable, slowest {:?} with seed {}, memory grew by {:?} MB",
             sample.name,
+            slowest.0,
+            slowest.1,
             grown()
         );
     }

@@ -37,9 +37,7 @@ pub(super) fn check_end(input: &Input<'_>) -> Result<(), ReadError> {
 
 /// The same of the pages of a column in a group of rows.
 pub(super) fn check_pages(chunk: &ColumnChunkMetaData, input: &Input<'_>) -> Result<(), ReadError> {
-    let start =
-        chunk.dictionary_page_offset().unwrap_or_else(|| chunk.data_page_offset()).min(chunk.data_page_offset());
-    let (Ok(mut at), Ok(size)) = (u64::try_from(start), u64::try_from(chunk.compressed_size())) else { return Ok(()) };
+    let (mut at, size) = chunk.byte_range();
     let end = at.saturating_add(size).min(input.len);
     while at < end {
         let text = bytes(input, at, PAGE.min(end - at))?;
@@ -83,7 +81,7 @@ impl Description<'_> {
         let mut field = 0;
         loop {
             let head = self.byte()?;
-            if head == 0 {
+            if head & 15 == 0 {
                 return Ok(());
             }
             let step = i64::from(head >> 4);
