@@ -1,0 +1,41 @@
+"""The notebook runs, and says what it says."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+from conftest import ROOT, TOY
+
+NOTEBOOK = ROOT / "docs/examples/notebook.ipynb"
+
+
+def words(notebook) -> list[str]:
+    """What cells printed; numbers to two digits, since processors differ in the last bits."""
+    outputs = ["".join(output.get("text", "")) for cell in notebook.cells for output in cell.get("outputs", [])]
+    return [re.sub(r"\d+\.?\d*(e[-+]\d+)?", lambda number: f"{float(number[0]):.1g}", text) for text in outputs]
+
+
+def test_the_notebook_runs(tmp_path: Path) -> None:
+    nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
+    pytest.importorskip("ipykernel")
+    assert NOTEBOOK.stat().st_size < 20_000
+    notebook = nbformat.read(NOTEBOOK, as_version=4)
+    shown = words(notebook)
+    shutil.copy(TOY, tmp_path)
+    nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    assert (tmp_path / "model.json").exists()
+    assert words(notebook) == shown and len(shown) > 5
+
+
+def test_the_readme_shows_what_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shutil.copy(TOY, tmp_path)
+    monkeypatch.chdir(tmp_path)
+    for readme in (ROOT / "README.md", ROOT / "crates/policy-align-py/README.md"):
+        shown = re.findall(r"```python\n(.*?)```", readme.read_text(), re.DOTALL)
+        assert len(shown) == 1
+        exec(compile(shown[0], str(readme), "exec"), {})
+        assert (tmp_path / "model.json").exists()
+        (tmp_path / "model.json").unlink()
