@@ -2,7 +2,7 @@
 
 /// Flags that are arguments here, with the words that are among their values: `--nan drop` is `nan="drop"`. Flags of other
 /// programs (`rosbags-convert --src`) stay as they are.
-const ARGUMENTS: [(&str, &[&str]); 30] = [
+const ARGUMENTS: [(&str, &[&str]); 33] = [
     ("as", &[]),
     ("bandwidth", &["auto"]),
     ("constraint-column", &[]),
@@ -15,6 +15,7 @@ const ARGUMENTS: [(&str, &[&str]); 30] = [
     ("ignore", &[]),
     ("init-d", &["auto"]),
     ("integration", &["velocity", "displacement"]),
+    ("jumps", &["auto", "keep"]),
     ("learner", &[]),
     ("max-rows", &[]),
     ("nan", &["drop", "fill", "refuse"]),
@@ -23,6 +24,7 @@ const ARGUMENTS: [(&str, &[&str]); 30] = [
     ("scale", &[]),
     ("seed", &[]),
     ("separator", &[]),
+    ("smooth", &["auto", "off"]),
     ("sort", &[]),
     ("split-gap", &[]),
     ("state", &[]),
@@ -33,6 +35,7 @@ const ARGUMENTS: [(&str, &[&str]); 30] = [
     ("units", &[]),
     ("unwrap", &[]),
     ("velocity", &[]),
+    ("wraps", &["auto", "keep"]),
 ];
 
 /// What the library's types are called here.
@@ -73,7 +76,7 @@ pub(crate) fn in_python(text: &str) -> String {
 
 /// The same for what is wrong, where an argument is named, not given.
 pub(crate) fn named_in_python(text: &str) -> String {
-    in_python(text).replace("= ", " ")
+    in_python(text).replace("= ", " ").replace("=: ", ": ")
 }
 
 fn argument(name: &str) -> String {
@@ -98,10 +101,10 @@ fn value<'a>(name: &str, words: &[&str], after: &'a str, out: &mut String) -> &'
         *out += &format!("{{\"{channel}\": {factor}}}");
         return rest;
     }
-    let plain = word.trim_end_matches(',');
+    let plain = word.trim_end_matches([',', ';', '.', ':']);
     let is_number = plain.starts_with(|c: char| c.is_ascii_digit());
     let is_name = plain.starts_with('\'') || plain.len() > 1 && plain.chars().all(|c| c.is_ascii_uppercase());
-    if is_number && plain.contains(',') {
+    if is_number && plain.parse::<f64>().is_err() {
         *out += &format!("\"{plain}\"");
     } else if is_number || is_name {
         out.push_str(plain);

@@ -2,7 +2,7 @@
 
 use align::Bandwidth;
 use gp::Reading;
-use policy_align::{FitOptions, LearnerChoice, PrepareOptions, VelocityUse};
+use policy_align::{FitOptions, LearnerChoice, PrepareOptions, Repair, VelocityUse};
 use pyo3::prelude::*;
 
 use crate::refusal::Refusal;
@@ -20,6 +20,9 @@ pub(crate) enum NumberOrWord {
 pub(crate) struct Preparing {
     scale: Vec<(String, f64)>,
     integration: String,
+    smooth: String,
+    jumps: String,
+    wraps: String,
 }
 
 /// How a policy is learnt: items of a dictionary.
@@ -43,7 +46,12 @@ impl Preparing {
             "displacement" => VelocityUse::Ignored,
             other => return Err(unknown(other, "integration", "\"auto\", \"velocity\" or \"displacement\"")),
         };
-        Ok(PrepareOptions { scale: self.scale, time_step: None, velocities })
+        let smoothing = self.smooth.parse();
+        let smoothing = smoothing.map_err(|what: String| {
+            Refusal::new(what, "smooth", "smooth=\"auto\", \"off\", 9 (samples) or \"0.2s\"")
+        })?;
+        let (jumps, wraps) = (repair(&self.jumps, "jumps")?, repair(&self.wraps, "wraps")?);
+        Ok(PrepareOptions { scale: self.scale, time_step: None, velocities, smoothing, jumps, wraps })
     }
 }
 
@@ -81,6 +89,14 @@ impl Learning {
             seed: self.seed,
             max_rows: self.max_rows,
         })
+    }
+}
+
+fn repair(word: &str, name: &str) -> Result<Repair, Refusal> {
+    match word {
+        "auto" => Ok(Repair::Auto),
+        "keep" => Ok(Repair::Keep),
+        other => Err(unknown(other, name, "\"auto\" or \"keep\"")),
     }
 }
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pandas as pd
 import pytest
 from conftest import DT, on_rails
 
@@ -18,7 +17,7 @@ SAME = {
     "object": lambda x: x.astype(object),
     "list": lambda x: x.tolist(),
     "tuples": lambda x: tuple(map(tuple, x)),
-    "data frame": lambda x: pd.DataFrame(x, columns=["x", "y"]),
+    "data frame": lambda x: pytest.importorskip("pandas").DataFrame(x, columns=["x", "y"]),
     "big endian": lambda x: x.astype(">f8"),
     "unaligned": lambda x: _unaligned(x),
 }
@@ -76,8 +75,6 @@ def test_movements_come_in_four_forms(rails: tuple[list[np.ndarray], list[np.nda
     assert np.array_equal(learner.fit(flat, lengths=lengths, dt=DT).predict(states()), usual)
     times = [DT * np.arange(len(x)) for x in rails[0]]
     assert np.array_equal(learner.fit(rails[0], times=times).predict(states()), usual)
-    frames = [pd.DataFrame(x, columns=["left", "up"]) for x in rails[0]]
-    assert learner.fit(frames, dt=DT).feature_names_in_.tolist() == ["left", "up"]
 
 
 def test_no_row_no_action(slope: SlopeGp) -> None:
@@ -153,8 +150,7 @@ def test_movements_that_cannot_be_learnt_from_are_refused() -> None:
     assert "lengths add up to 79" in said(np.concatenate(positions[:2]), lengths=[40, 39]).what
     assert "Expected movements, got 2D array" in said(positions[0]).what
     assert "Expected 2D array, got 1D" in said([np.arange(9.0)]).what
-    assert said([pd.DataFrame({"a": [0.0, 1.0]}), pd.DataFrame({"b": [0.0, 1.0]})]).trajectory == 1
     assert said([np.zeros((5, 40))] * 3).what.startswith("the state has 40 dimensions")
-    for given in ("toy.csv", 3, pd.DataFrame({"x": [1.0]}), None):
+    for given in ("toy.csv", 3, None):
         with pytest.raises(TypeError):
             learner.fit(given, dt=DT)

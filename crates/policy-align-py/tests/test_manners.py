@@ -32,14 +32,11 @@ def test_parameters_are_stored_untouched(learner: type[SlopeGp]) -> None:
 
 @pytest.mark.parametrize("learner", LEARNERS)
 def test_copies_have_the_same_bits(learner: type[SlopeGp], rails, tmp_path) -> None:
-    joblib = pytest.importorskip("joblib")
     model = learner(max_rows=60).fit(rails[0], dt=DT, velocities=rails[1])
-    joblib.dump(model, tmp_path / "model.joblib")
     model.save(tmp_path / "model.json")
     for again in (
         pickle.loads(pickle.dumps(model)),
         copy.deepcopy(model),
-        joblib.load(tmp_path / "model.joblib"),
         learner.load(tmp_path / "model.json"),
         load(tmp_path / "model.json"),
     ):
@@ -53,6 +50,12 @@ def test_copies_have_the_same_bits(learner: type[SlopeGp], rails, tmp_path) -> N
     other = next(one for one in LEARNERS if one is not learner)
     with pytest.raises(PolicyAlignError, match="a model of the learner"):
         other.load(tmp_path / "model.json")
+
+
+def test_joblib_keeps_the_same_bits(slope: SlopeGp, tmp_path) -> None:
+    joblib = pytest.importorskip("joblib")
+    joblib.dump(slope, tmp_path / "model.joblib")
+    assert np.array_equal(joblib.load(tmp_path / "model.joblib").predict(STATES), slope.predict(STATES))
 
 
 def test_recordings_can_be_pickled(toy) -> None:
@@ -80,6 +83,7 @@ def test_what_was_learnt_has_names(toy, aligned: PolicyAlign) -> None:
     assert aligned.feature_names_in_.tolist() == ["x", "y"]
     assert aligned.time_step_ == toy.dt == DT
     assert sorted([*aligned.kept_, *aligned.discarded_]) == list(range(len(toy)))
+    assert f"σ² {aligned.sigma_squared_:.3e}"[:7] in next(str(one) for one in aligned.decisions_ if one.what == "bandwidth")
     assert len(aligned.kept_) == aligned.trust_.numbers["aligned"]["kept"]
     assert {decision.what for decision in aligned.decisions_} >= {"learner", "bandwidth", "init_d", "integration"}
     assert aligned.left_out_ == ()

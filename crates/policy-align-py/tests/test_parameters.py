@@ -34,6 +34,11 @@ LEARNERS = [PolicyAlign, SlopeGp, DirectGp, AutoGp]
         (PolicyAlign(folds=1), "folds is 1: it must be at least 2", None),
         (SlopeGp(max_rows=3), "max_rows is 3: it must be at least 50", None),
         (SlopeGp(integration="euler"), "'euler' is none of the choices", '"auto", "velocity" or "displacement"'),
+        (SlopeGp(smooth="hard"), "'hard' is no window", 'smooth="auto", "off", 9 (samples) or "0.2s"'),
+        (SlopeGp(smooth=9.0), "'9.0' is no window", None),
+        (SlopeGp(smooth=4), "smooth: a window of 4 samples, 0.05 s apart", None),
+        (SlopeGp(jumps="cut"), "'cut' is none of the choices", '"auto" or "keep"'),
+        (SlopeGp(wraps=""), "'' is none of the choices", '"auto" or "keep"'),
         (SlopeGp(scale={"z": 2.0}), "scale names 'z', but the state has x0, x1", "use one of these names"),
         (SlopeGp(scale={"x0": -2.0}), "scale x0=-2: a scale must be positive and finite", None),
         (AutoGp(reading="maybe"), "'maybe' is none of the choices", 'None, "free" or "constrained"'),
@@ -47,6 +52,20 @@ def test_parameters_are_looked_at_in_fit(learner: SlopeGp, what: str, hint: str 
     assert error.value.what == what
     assert hint is None or error.value.hint == hint
     assert isinstance(error.value, ValueError)
+
+
+def test_a_window_is_given_in_samples_or_seconds() -> None:
+    positions, velocities = on_rails()
+
+    def smoothing(smooth: str | int) -> list[str]:
+        model = SlopeGp(smooth=smooth, max_rows=60).fit(positions, dt=DT, velocities=velocities)
+        return [one.value for one in model.decisions_ if one.what == "smoothing"]
+
+    assert smoothing(9) == smoothing("9") == smoothing("0.45s") == ["positions, over 9 samples at a time"]
+    assert smoothing("off") == ["none: positions as they are"]
+    with pytest.raises(PolicyAlignError) as error:
+        smoothing(6)
+    assert error.value.hint == 'give an odd number from 5 on, as smooth=9, or so many seconds, as smooth="4.50e-1s"'
 
 
 @pytest.mark.parametrize("learner", [PolicyAlign(folds=2.5), SlopeGp(random_state="one"), SlopeGp(max_rows=-1)])

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import TOY
+from conftest import TOY, without_time
 
 from policy_align import AutoGp, Demonstrations, DirectGp, PolicyAlign, PolicyAlignError, SlopeGp, load
 
@@ -25,14 +25,6 @@ def run(program: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([program, *arguments], capture_output=True, text=True, check=False)
 
 
-def without_time(text: str) -> str:
-    """The checksum is also of the time."""
-    text, times = re.subn(r'"time":"[^"]*"', '"time":""', text)
-    text, sums = re.subn(r'"checksum":"[0-9a-f]{64}"', '"checksum":""', text)
-    assert (times, sums) == (1, 1)
-    return text
-
-
 @pytest.mark.parametrize("learner", LEARNERS)
 def test_model_files_are_equal_byte_for_byte(learner: str, program: Path, tmp_path: Path) -> None:
     ours, theirs = tmp_path / "ours.json", tmp_path / "theirs.json"
@@ -45,6 +37,16 @@ def test_model_files_are_equal_byte_for_byte(learner: str, program: Path, tmp_pa
     x = np.array([[0.3, 1.2], [-1.0, 0.4]])
     assert np.array_equal(load(theirs).predict(x), load(ours).predict(x))
     assert run(program, "info", str(ours)).returncode == 0
+
+
+def test_settings_are_equal(program: Path, tmp_path: Path) -> None:
+    theirs = tmp_path / "theirs.json"
+    flags = "--learner policy-align --bandwidth medium --init-d 10 --folds 4 --smooth 9 --jumps keep --wraps keep --scale y=2"
+    done = run(program, "fit", str(TOY), "-o", str(theirs), "--max-rows", "100", "--no-report", *flags.split())
+    assert theirs.exists(), done.stderr
+    settings = {"init_d": 10.0, "folds": 4, "smooth": 9, "jumps": "keep", "wraps": "keep", "scale": {"y": 2}}
+    ours = PolicyAlign("medium", max_rows=100, **settings).fit(Demonstrations.read(TOY))._fitted.to_json().decode()
+    assert without_time(ours) == without_time(theirs.read_text())
 
 
 def test_defaults_are_equal(program: Path, tmp_path: Path) -> None:

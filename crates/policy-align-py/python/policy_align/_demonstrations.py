@@ -122,10 +122,17 @@ class Demonstrations:
             read = cls.read(path, **options)
         return cls._of(read._native.with_origin(("[]", read.notes, "the DataFrame")))
 
-    def check(self, *, scale: dict[str, float] | None = None, integration: str = "auto") -> Check:
-        """Everything that can be said before learning."""
-        preparing = {"scale": list((scale or {}).items()), "integration": integration}
-        found = json.loads(self._native.check(preparing))
+    def check(
+        self,
+        *,
+        integration: str = "auto",
+        scale: dict[str, float] | None = None,
+        smooth: str | int = "auto",
+        jumps: str = "auto",
+        wraps: str = "auto",
+    ) -> Check:
+        """Everything that can be said before learning; parameters as of the learners."""
+        found = json.loads(self._native.check(preparing(integration, scale, smooth, jumps, wraps)))
         return Check(
             len(found["episodes"]),
             found["samples"],
@@ -199,6 +206,14 @@ class Demonstrations:
         self = cls.__new__(cls)
         self._native = native
         return self
+
+
+def preparing(
+    integration: str, scale: dict[str, float] | None, smooth: str | int, jumps: str, wraps: str
+) -> dict[str, Any]:
+    """What the native half is told of how recordings are prepared."""
+    factors = list((scale or {}).items())
+    return {"integration": integration, "scale": factors, "smooth": str(smooth), "jumps": jumps, "wraps": wraps}
 
 
 def _restored(movements: tuple[Any, ...], origin: tuple[str, list[str], str]) -> Demonstrations:

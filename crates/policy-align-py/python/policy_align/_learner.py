@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from . import _native
 from ._arrays import Floats, samples
-from ._demonstrations import Demonstrations
+from ._demonstrations import Demonstrations, preparing
 from ._errors import NotFittedError, PolicyAlignError, PolicyAlignWarning
 from ._manners import Manners
 from ._rollout import Constraint, Path, follow
@@ -32,6 +32,9 @@ class Learner(Manners):
     # Parameters that every learner has.
     integration: str
     scale: dict[str, float] | None
+    smooth: str | int
+    jumps: str
+    wraps: str
     max_rows: int
     random_state: int
     n_jobs: int | None
@@ -227,7 +230,7 @@ class Learner(Manners):
         return document
 
     def _preparing(self) -> dict[str, Any]:
-        return {"scale": list((self.scale or {}).items()), "integration": self.integration}
+        return preparing(self.integration, self.scale, self.smooth, self.jumps, self.wraps)
 
     def _learning(self) -> dict[str, Any]:
         return {

@@ -17,10 +17,8 @@ class PolicyAlign(Learner):
     """Local potentials brought to one level, and LWPR: the method of Howard et al.
 
     ``bandwidth``: "auto" (by held-out movements), "narrow", "medium", "wide" or σ². ``init_d``: "auto", or one over the
-    squared width of receptive fields. ``integration``: "auto", "velocity" (recorded ones are believed) or "displacement"
-    (they are ignored). ``scale``: factors of channels' units. ``folds``: parts of the movements that are left out in
-    turn. ``max_rows``: samples that the Gaussian process learns from which judges the policy. ``random_state``: the
-    seed, a whole number. ``n_jobs``: threads, None or -1 for all; results do not depend on it.
+    squared width of receptive fields. ``folds``: parts of the movements that are left out in turn. ``max_rows``: samples
+    that the Gaussian process learns from which judges the policy. Others as of SlopeGp.
     """
 
     _learner = "policy_align"
@@ -32,6 +30,9 @@ class PolicyAlign(Learner):
         init_d: str | float = "auto",
         integration: str = "auto",
         scale: dict[str, float] | None = None,
+        smooth: str | int = "auto",
+        jumps: str = "auto",
+        wraps: str = "auto",
         folds: int = 5,
         max_rows: int = 400,
         random_state: int = 1,
@@ -41,6 +42,9 @@ class PolicyAlign(Learner):
         self.init_d = init_d
         self.integration = integration
         self.scale = scale
+        self.smooth = smooth
+        self.jumps = jumps
+        self.wraps = wraps
         self.folds = folds
         self.max_rows = max_rows
         self.random_state = random_state
@@ -52,6 +56,12 @@ class PolicyAlign(Learner):
         return np.array(self._about["kept"], dtype=np.intp)
 
     @property
+    def sigma_squared_(self) -> float | None:
+        """σ² of the responsibilities, in units of the scaled state squared; None in model files that do not tell."""
+        found: float | None = self._about["trust"]["numbers"]["aligned"].get("sigma_squared")
+        return found
+
+    @property
     def discarded_(self) -> npt.NDArray[np.intp]:
         """Numbers of all others."""
         return np.setdiff1d(np.arange(self._about["data"]["episodes"]), self.kept_)
@@ -59,8 +69,10 @@ class PolicyAlign(Learner):
 
 class _GaussianProcess(Learner):
     """``integration``: "auto", "velocity" (recorded ones are believed) or "displacement" (they are ignored). ``scale``:
-    factors of channels' units. ``max_rows``: samples learnt from, at most. ``random_state``: the seed, a whole number.
-    ``n_jobs``: threads, None or -1 for all; results do not depend on it.
+    factors of channels' units. ``smooth``, of positions: "auto", "off", a window of samples (9) or of seconds ("0.2s").
+    ``jumps``: "auto" cuts movements where one step is far too long, "keep" does not. ``wraps``: with "auto" angles that
+    jump by a whole turn go on instead, with "keep" they jump. ``max_rows``: samples learnt from, at most.
+    ``random_state``: the seed, a whole number. ``n_jobs``: threads, None or -1 for all; results do not depend on it.
     """
 
     def __init__(
@@ -68,12 +80,18 @@ class _GaussianProcess(Learner):
         *,
         integration: str = "auto",
         scale: dict[str, float] | None = None,
+        smooth: str | int = "auto",
+        jumps: str = "auto",
+        wraps: str = "auto",
         max_rows: int = 400,
         random_state: int = 1,
         n_jobs: int | None = None,
     ) -> None:
         self.integration = integration
         self.scale = scale
+        self.smooth = smooth
+        self.jumps = jumps
+        self.wraps = wraps
         self.max_rows = max_rows
         self.random_state = random_state
         self.n_jobs = n_jobs
@@ -107,6 +125,9 @@ class AutoGp(Learner):
         reading: str | None = None,
         integration: str = "auto",
         scale: dict[str, float] | None = None,
+        smooth: str | int = "auto",
+        jumps: str = "auto",
+        wraps: str = "auto",
         max_rows: int = 400,
         random_state: int = 1,
         n_jobs: int | None = None,
@@ -114,6 +135,9 @@ class AutoGp(Learner):
         self.reading = reading
         self.integration = integration
         self.scale = scale
+        self.smooth = smooth
+        self.jumps = jumps
+        self.wraps = wraps
         self.max_rows = max_rows
         self.random_state = random_state
         self.n_jobs = n_jobs
