@@ -7,7 +7,7 @@ from dask.distributed import Client, as_completed
 
 from policy_align import Demonstrations, PolicyAlign
 
-LEARNERS = {width: PolicyAlign(width, n_jobs=1) for width in ("narrow", "medium", "wide")}
+LEARNERS = {width: PolicyAlign(width, init_d=10.0, max_rows=100, n_jobs=1) for width in ("narrow", "medium", "wide")}
 
 
 def learnt(learner, demonstrations):

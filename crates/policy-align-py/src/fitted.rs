@@ -148,6 +148,10 @@ impl Fitted {
         py: Python<'py>,
         states: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        #[allow(
+            clippy::redundant_closure_for_method_calls,
+            reason = "the method is not general enough in its lifetime"
+        )]
         let values = self.of_states(py, &states, |policy, state| policy.is_supported(state))?;
         Ok(PyArray1::from_vec(py, values))
     }

@@ -60,15 +60,12 @@ pub(crate) fn in_python(text: &str) -> String {
         out.push_str(before);
         let length = flag.find(|c: char| !(c.is_ascii_lowercase() || c == '-')).unwrap_or(flag.len());
         let (name, after) = flag.split_at(length);
-        rest = match ARGUMENTS.iter().find(|(known, _)| *known == name) {
-            Some((name, words)) => {
-                out.push_str(&argument(name));
-                value(name, words, after, &mut out)
-            }
-            None => {
-                out.push_str("--");
-                flag
-            }
+        rest = if let Some((name, words)) = ARGUMENTS.iter().find(|(known, _)| *known == name) {
+            out.push_str(&argument(name));
+            value(name, words, after, &mut out)
+        } else {
+            out.push_str("--");
+            flag
         };
     }
     out + rest
@@ -92,20 +89,20 @@ fn value<'a>(name: &str, words: &[&str], after: &'a str, out: &mut String) -> &'
     let Some(given) = after.strip_prefix(' ') else { return after };
     let ends = |word: &str| given[word.len()..].chars().next().is_none_or(|c| !c.is_alphanumeric());
     if let Some(word) = words.iter().find(|word| given.starts_with(**word) && ends(word)) {
-        *out += &format!("\"{word}\"");
+        out.extend(["\"", word, "\""]);
         return &given[word.len()..];
     }
     let end = given.find([' ', ')']).unwrap_or(given.len());
     let (word, rest) = given.split_at(end);
     if let (true, Some((channel, factor))) = (name == "scale" && !word.ends_with(':'), word.split_once('=')) {
-        *out += &format!("{{\"{channel}\": {factor}}}");
+        out.extend(["{\"", channel, "\": ", factor, "}"]);
         return rest;
     }
     let plain = word.trim_end_matches([',', ';', '.', ':']);
     let is_number = plain.starts_with(|c: char| c.is_ascii_digit());
     let is_name = plain.starts_with('\'') || plain.len() > 1 && plain.chars().all(|c| c.is_ascii_uppercase());
     if is_number && plain.parse::<f64>().is_err() {
-        *out += &format!("\"{plain}\"");
+        out.extend(["\"", plain, "\""]);
     } else if is_number || is_name {
         out.push_str(plain);
     } else {

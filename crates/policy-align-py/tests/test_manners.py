@@ -106,7 +106,7 @@ def test_scikit_learn_takes_it() -> None:
     unequal = [x[: 25 + k] for k, x in enumerate(positions)]
     for given in (positions, unequal):
         grid = GridSearchCV(
-            PolicyAlign(init_d=10.0, max_rows=60),
+            PolicyAlign(init_d=10.0, folds=2, max_rows=60),
             {"bandwidth": ["narrow", "medium"]},
             scoring=lambda model, X, y=None: model.score(X),
             cv=3,

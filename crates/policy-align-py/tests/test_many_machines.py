@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import runpy
 import signal
 import subprocess
@@ -20,15 +21,13 @@ from policy_align import Demonstrations, PolicyAlign
 SWEEP = ROOT / "docs/examples/sweep.py"
 
 
-def rails_file(folder: Path, dim: int) -> Path:
-    """Another recording than the toy's."""
-    positions, velocities = on_rails(14, 30, dim)
-    axes = [*(f"x{k}" for k in range(dim)), *(f"vx{k}" for k in range(dim))]
-    rows = [
-        [k, DT * i, *x[i], *u[i]] for k, (x, u) in enumerate(zip(positions, velocities, strict=True)) for i in range(len(x))
-    ]
-    path = folder / f"rails{dim}.csv"
-    path.write_text("\n".join([",".join(["episode", "t", *axes]), *(",".join(map(repr, map(float, row))) for row in rows)]))
+def rails_file(folder: Path, count: int) -> Path:
+    """A small recording."""
+    lines = ["episode,t,x,y,vx,vy"]
+    for k, (x, u) in enumerate(zip(*on_rails(count, 10), strict=True)):
+        lines += [",".join(map(repr, [k, DT * i, *x[i].tolist(), *u[i].tolist()])) for i in range(len(x))]
+    path = folder / f"rails{count}.csv"
+    path.write_text("\n".join(lines))
     return path
 
 
@@ -36,7 +35,8 @@ def rails_file(folder: Path, dim: int) -> Path:
 def running(*command: str) -> Iterator[subprocess.Popen[str]]:
     """A process of its own, which ends with the test."""
     command = (sys.executable, *command)
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    environment = {**os.environ, "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "3s"}
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment)
     try:
         yield process
     finally:
@@ -55,7 +55,7 @@ def until(true: Callable[[], object], seconds: float = 60.0) -> None:
 @pytest.mark.filterwarnings("ignore")
 def test_dask_outlives_a_killed_worker(tmp_path: Path) -> None:
     distributed = pytest.importorskip("distributed")
-    files = [rails_file(tmp_path, dim) for dim in (2, 3)]
+    files = [rails_file(tmp_path, count) for count in (16, 18)]
     address_file = tmp_path / "scheduler.json"
     common = ("--no-dashboard", "--scheduler-file", str(address_file))
     with ExitStack() as stack:
@@ -88,7 +88,7 @@ def test_a_search_in_processes_finds_the_same() -> None:
     positions, _ = on_rails()
 
     def found(jobs: int) -> tuple[np.ndarray, np.ndarray]:
-        learner, grid = PolicyAlign(init_d=10.0, max_rows=60, n_jobs=1), {"bandwidth": ["narrow", "wide"]}
+        learner, grid = PolicyAlign(init_d=10.0, folds=2, max_rows=60, n_jobs=1), {"bandwidth": ["narrow", "wide"]}
         search = GridSearchCV(learner, grid, scoring=lambda model, X, y=None: model.score(X), cv=2, n_jobs=jobs)
         search.fit(positions, dt=DT)
         return search.cv_results_["mean_test_score"], search.predict(positions[0])

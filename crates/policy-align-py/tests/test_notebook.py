@@ -18,7 +18,7 @@ def words(notebook) -> list[str]:
     def rounded(number: re.Match[str]) -> str:
         return f"{float(number[0]):.1g}" if float(number[0]) > 1e-3 else "0"
 
-    outputs = ["".join(output.get("text", "")) for cell in notebook.cells for output in cell.get("outputs", [])]
+    outputs = ["".join(output.get("text", "") for output in cell.get("outputs", [])) for cell in notebook.cells]
     return [re.sub(r"\d+\.?\d*(e[-+]\d+)?", rounded, text) for text in outputs]
 
 
@@ -37,9 +37,8 @@ def test_the_notebook_runs(tmp_path: Path) -> None:
 def test_the_readme_shows_what_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shutil.copy(TOY, tmp_path)
     monkeypatch.chdir(tmp_path)
-    for readme in (ROOT / "README.md", ROOT / "crates/policy-align-py/README.md"):
-        shown = re.findall(r"```python\n(.*?)```", readme.read_text(), re.DOTALL)
-        assert len(shown) == 1
-        exec(compile(shown[0], str(readme), "exec"), {})
-        assert (tmp_path / "model.json").exists()
-        (tmp_path / "model.json").unlink()
+    readmes = (ROOT / "README.md", ROOT / "crates/policy-align-py/README.md")
+    shown, again = (re.findall(r"```python\n(.*?)```", readme.read_text(), re.DOTALL) for readme in readmes)
+    assert shown == again and len(shown) == 1
+    exec(compile(shown[0], "README.md", "exec"), {})
+    assert (tmp_path / "model.json").exists()
