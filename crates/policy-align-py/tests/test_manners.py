@@ -68,6 +68,16 @@ def test_recordings_can_be_pickled(toy) -> None:
     assert '"name":"toy.csv"' in found
 
 
+def test_pickled_arrays_may_lie_at_any_byte(toy) -> None:
+    buffers: list[pickle.PickleBuffer] = []
+    text = pickle.dumps(toy, protocol=5, buffer_callback=buffers.append)
+    shifted = [memoryview(b"?" + buffer.raw().tobytes())[1:] for buffer in buffers]
+    again = pickle.loads(text, buffers=shifted)
+    assert len(buffers) == 3 * len(toy)
+    for one, another in zip((*toy, *toy.velocities, *toy.times), (*again, *again.velocities, *again.times), strict=True):
+        assert np.array_equal(one, another)
+
+
 def test_fitting_again_forgets(rails) -> None:
     model = SlopeGp(max_rows=60)
     first = model.fit(rails[0], dt=DT).predict(STATES)

@@ -217,7 +217,14 @@ def preparing(
 
 
 def _restored(movements: tuple[Any, ...], origin: tuple[str, list[str], str]) -> Demonstrations:
-    return Demonstrations._of(_native.Recordings.of(*movements).with_origin(origin))
+    positions, velocities, (step, times), *rest = movements
+    native = _native.Recordings.of(_aligned(positions), _aligned(velocities), (step, _aligned(times)), *rest)
+    return Demonstrations._of(native.with_origin(origin))
+
+
+def _aligned(arrays: list[Any]) -> list[Any]:
+    """Engines hand over pickled arrays where they lie in a message, which may be at any byte."""
+    return [None if array is None else floats(array, "the pickle") for array in arrays]
 
 
 def _columns(given: list[Any]) -> list[str] | None:
