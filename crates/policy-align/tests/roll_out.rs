@@ -98,14 +98,14 @@ fn rows_and_functions_do_what_a_file_does() {
     let of = |constraints| follow(&RollOut { constraints, seconds: Some(4.0), ..RollOut::default() }, &start);
     let file = of(constraints("[[constraint]]\nnormal = [1, 0.5]"));
     assert_eq!(of(ConstraintSet::normal(dmatrix![1.0, 0.5], 2).unwrap()), file);
-    let function = of(ConstraintSet::function(|_, _| Ok(dmatrix![1.0, 0.5])));
-    let shared = function.states.columns(0, file.states.ncols().min(function.states.ncols()));
-    assert_eq!(shared, file.states.columns(0, shared.ncols()));
+    // A function never lets a movement come to rest, so its path may be the longer one.
+    let begins_as = |path: &Path, other: &Path| {
+        assert!(path.states.ncols() >= other.states.ncols() && other.states.ncols() > 5);
+        assert_eq!(path.states.columns(0, other.states.ncols()), other.states);
+    };
+    begins_as(&of(ConstraintSet::function(|_, _| Ok(dmatrix![1.0, 0.5]))), &file);
     let free = of(ConstraintSet::default());
-    assert_eq!(
-        of(ConstraintSet::function(|_, _| Ok(DMatrix::zeros(0, 2)))).states.columns(0, 20),
-        free.states.columns(0, 20)
-    );
+    begins_as(&of(ConstraintSet::function(|_, _| Ok(DMatrix::zeros(0, 2)))), &free);
 }
 
 #[test]
