@@ -95,7 +95,7 @@ fn constraints_hold_at_their_times_only() {
 #[test]
 fn rows_and_functions_do_what_a_file_does() {
     let start = dvector![1.5, 1.0];
-    let of = |constraints| follow(&RollOut { constraints, seconds: Some(4.0), ..RollOut::default() }, &start);
+    let of = |constraints| follow(&RollOut { constraints, seconds: Some(12.0), ..RollOut::default() }, &start);
     let file = of(constraints("[[constraint]]\nnormal = [1, 0.5]"));
     assert_eq!(of(ConstraintSet::normal(dmatrix![1.0, 0.5], 2).unwrap()), file);
     // A function never lets a movement come to rest, so its path may be the longer one.
