@@ -1,6 +1,9 @@
+use std::io;
+use std::path::Path;
+
 use serde::{Deserialize, Serialize};
 
-use crate::{Decision, Learnt, Trust};
+use crate::{Decision, Learnt, Trust, sha256_of_file};
 
 /// What was learnt, from what, how, and how far to trust it: all that a model file holds.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -80,6 +83,19 @@ pub struct FileSummary {
     pub sha256: String,
     /// Its size.
     pub bytes: u64,
+}
+
+impl FileSummary {
+    /// Of a file as it is now.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn of(path: &Path) -> io::Result<FileSummary> {
+        let (sha256, bytes) = sha256_of_file(path)?;
+        let name =
+            path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
+        Ok(FileSummary { name, sha256, bytes })
+    }
 }
 
 /// An episode that was not learnt from.

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use demo_gen::RollOut as Teacher;
 use models::{model, rows, slope, toy};
 use motion::Policy as _;
-use nalgebra::{DVector, dvector};
+use nalgebra::{DMatrix, DVector, dmatrix, dvector};
 use policy_align::{ConstraintSet, JointLimits, Learnt, Model, Path, RollOut, RollOutError, Stop};
 use proptest::prelude::*;
 use rand::SeedableRng as _;
@@ -90,6 +90,60 @@ fn constraints_hold_at_their_times_only() {
     assert!(moved(0, 5) > 0.01 && moved(15, 40) > 0.01);
     assert_eq!(moved(5, 14), 0.0);
     assert!(path.stop == Stop::Time && path.broken_by == Some((0.0, 0)), "{:?} {:?}", path.stop, path.broken_by);
+}
+
+#[test]
+fn rows_and_functions_do_what_a_file_does() {
+    let start = dvector![1.5, 1.0];
+    let of = |constraints| follow(&RollOut { constraints, seconds: Some(12.0), ..RollOut::default() }, &start);
+    let file = of(constraints("[[constraint]]\nnormal = [1, 0.5]"));
+    assert_eq!(of(ConstraintSet::normal(dmatrix![1.0, 0.5], 2).unwrap()), file);
+    // A function never lets a movement come to rest, so its path may be the longer one.
+    let begins_as = |path: &Path, other: &Path| {
+        assert!(path.states.ncols() >= other.states.ncols() && other.states.ncols() > 5);
+        assert_eq!(path.states.columns(0, other.states.ncols()), other.states);
+    };
+    begins_as(&of(ConstraintSet::function(|_, _| Ok(dmatrix![1.0, 0.5]))), &file);
+    let free = of(ConstraintSet::default());
+    begins_as(&of(ConstraintSet::function(|_, _| Ok(DMatrix::zeros(0, 2)))), &free);
+}
+
+#[test]
+fn a_rail_that_turns_is_followed_at_every_moment() {
+    let normal = |t: f64| dvector![(0.9 * t).cos(), (0.9 * t).sin()];
+    let turning = ConstraintSet::function(move |_, t| Ok(DMatrix::from_row_slice(1, 2, normal(t).as_slice())));
+    let path = follow(&RollOut { constraints: turning, seconds: Some(6.0), ..RollOut::default() }, &dvector![1.5, 1.0]);
+    assert_eq!(path.stop, Stop::Time);
+    assert!(path.times.iter().zip(path.velocities.column_iter()).all(|(&t, u)| normal(t).dot(&u).abs() < 1e-12));
+    // Small steps of Euler's method, with the rail of each moment.
+    let (policy, step) = (toy_model(), 1e-4);
+    let mut x = dvector![1.5, 1.0];
+    for k in 0..60_000 {
+        let (u, a) = (policy.policy().action(x.as_view()), normal((f64::from(k) + 0.5) * step));
+        x += (&u - &a * a.dot(&u)) * step;
+    }
+    assert!((last(&path) - &x).norm() < 1e-3, "{} {x}", last(&path));
+}
+
+#[test]
+fn constraints_that_fit_no_state_are_refused() {
+    for (rows, words) in [
+        (dmatrix![1.0, 0.0, 0.0], "3 numbers"),
+        (dmatrix![0.0, 0.0], "no direction"),
+        (dmatrix![1.0, f64::NAN], "not finite"),
+        (DMatrix::zeros(0, 2), "no direction"),
+    ] {
+        let said = ConstraintSet::normal(rows.clone(), 2).unwrap_err();
+        assert!(said.contains(words), "{said}");
+        let function = ConstraintSet::function(move |_, _| Ok(rows.clone()));
+        let result = RollOut { constraints: function, ..RollOut::default() }.follow(&toy_model(), &dvector![1.5, 1.0]);
+        if words != "no direction" {
+            assert!(matches!(result, Err(RollOutError::Constraint { constraint: 1, .. })), "{result:?}");
+        }
+    }
+    let silent = ConstraintSet::function(|_, _| Err("nobody knows".to_owned()));
+    let error = RollOut { constraints: silent, ..RollOut::default() }.follow(&toy_model(), &dvector![1.5, 1.0]);
+    assert!(error.unwrap_err().to_string().contains("nobody knows"));
 }
 
 #[test]

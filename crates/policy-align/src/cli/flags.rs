@@ -240,16 +240,7 @@ impl FitFlags {
 }
 
 fn smoothing(text: &str) -> Result<Smoothing, Failure> {
-    let seconds = text.strip_suffix('s').map(|number| number.trim().parse().ok().filter(|s: &f64| *s > 0.0));
-    let smoothing = match (text, seconds) {
-        ("auto", _) => Some(Smoothing::Auto),
-        ("off", _) => Some(Smoothing::Off),
-        (_, Some(seconds)) => seconds.map(Smoothing::Seconds),
-        (samples, None) => samples.parse().ok().map(Smoothing::Samples),
-    };
-    smoothing.ok_or_else(|| {
-        Failure::usage(format!("'{text}' is no window"), "--smooth", "--smooth auto, off, 9 (samples) or 0.2s")
-    })
+    text.parse().map_err(|what: String| Failure::usage(what, "--smooth", "--smooth auto, off, 9 (samples) or 0.2s"))
 }
 
 fn number(text: &str, flag: &str) -> Result<f64, Failure> {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use demo_io::{ReadOptions, Recordings};
-use policy_align::{FileSummary, sha256_of_file};
+use policy_align::FileSummary;
 
 use super::failure::{Failure, shown};
 use super::lines::counted;
@@ -24,10 +24,7 @@ pub(crate) fn read(session: &Session, files: &[PathBuf], options: &ReadOptions) 
 
 /// Names and checksums, for the model.
 pub(crate) fn summaries(files: &[PathBuf]) -> Result<Vec<FileSummary>, Failure> {
-    let summary = |path: &PathBuf| {
-        let (sha256, bytes) = sha256_of_file(path).map_err(|error| Failure::reading(path, error))?;
-        Ok(FileSummary { name: base_name(path), sha256, bytes })
-    };
+    let summary = |path: &PathBuf| FileSummary::of(path).map_err(|error| Failure::reading(path, error));
     // Of a folder its files are read, but not listed one by one.
     files.iter().filter(|path| path.is_file()).map(summary).collect()
 }

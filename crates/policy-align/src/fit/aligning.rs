@@ -26,6 +26,8 @@ const BANDWIDTHS: [Bandwidth; 3] = [Bandwidth::Narrow, Bandwidth::Medium, Bandwi
 #[derive(Debug, Clone)]
 pub(crate) struct AlignedFit {
     pub(crate) policy: PotentialPolicy,
+    /// Of the responsibilities.
+    pub(crate) sigma_squared: f64,
     pub(crate) decisions: Vec<Decision>,
     /// Held-out error of every setting's choice.
     pub(crate) held_out: HeldOut,
@@ -145,7 +147,7 @@ pub(super) fn fit(
     let aligned = align.align(&demonstrations)?;
     let policy = aligned.learn(&regressor(best.init_d), &mut ChaCha8Rng::seed_from_u64(options.seed))?;
     let residual = residual(&aligned, &policy);
-    Ok(AlignedFit { policy, decisions, held_out: best.total(), residual })
+    Ok(AlignedFit { policy, sigma_squared: best.sigma_squared, decisions, held_out: best.total(), residual })
 }
 
 fn decision(what: &str, value: String, why: String, flag: &str) -> Decision {

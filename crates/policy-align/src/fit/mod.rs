@@ -205,6 +205,7 @@ fn numbers(
     let aligned_numbers = aligned.map(|aligned| {
         let kept = aligned.policy.kept().map_or(prepared.demonstrations.n_trajectories(), <[usize]>::len);
         AlignedNumbers {
+            sigma_squared: Some(aligned.sigma_squared),
             kept,
             discarded: prepared.demonstrations.n_trajectories() - kept,
             residual: aligned.residual,

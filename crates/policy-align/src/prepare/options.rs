@@ -1,3 +1,5 @@
+use std::str::FromStr;
+
 /// What a user may decide before learning; by default everything is decided from the data.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PrepareOptions {
@@ -49,4 +51,20 @@ pub enum Smoothing {
     Samples(usize),
     /// The same over about so many seconds.
     Seconds(f64),
+}
+
+/// "auto", "off", "9" (samples) or "0.2s"; what is none of them is said in words.
+impl FromStr for Smoothing {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let seconds = text.strip_suffix('s').map(|number| number.trim().parse().ok().filter(|s: &f64| *s > 0.0));
+        let smoothing = match (text, seconds) {
+            ("auto", _) => Some(Smoothing::Auto),
+            ("off", _) => Some(Smoothing::Off),
+            (_, Some(seconds)) => seconds.map(Smoothing::Seconds),
+            (samples, None) => samples.parse().ok().map(Smoothing::Samples),
+        };
+        smoothing.ok_or_else(|| format!("'{text}' is no window"))
+    }
 }

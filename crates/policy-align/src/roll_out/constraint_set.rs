@@ -1,3 +1,6 @@
+use std::fmt;
+use std::sync::Arc;
+
 use constraints::NullSpaceProjector;
 use nalgebra::{DMatrix, DVector, DVectorView, Point3};
 
@@ -26,11 +29,16 @@ pub(crate) struct Part {
     pub(crate) until: f64,
 }
 
+/// A(x, t), (k, n), or why it has no value there.
+type Rows = dyn Fn(DVectorView<'_, f64>, f64) -> Result<DMatrix<f64>, String> + Send + Sync;
+
 /// What is constrained.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub(crate) enum Kind {
     /// The state keeps its value along each row of A, (k, n).
     Normal(DMatrix<f64>),
+    /// It does not move along rows that change with state and time.
+    Function(Arc<Rows>),
     /// A link's origin keeps its height over a plane through where it is; rows of normals, (k, 3).
     Plane(LinkPoint, DMatrix<f64>),
     /// The state does not come nearer than `radius` to `centre`.
@@ -47,10 +55,25 @@ enum Said {
     Distance { clearance: f64, radius: f64, gradient: DVector<f64> },
 }
 
+impl fmt::Debug for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Kind::Normal(rows) => f.debug_tuple("Normal").field(rows).finish(),
+            Kind::Function(_) => f.write_str("Function"),
+            Kind::Plane(link, normals) => f.debug_tuple("Plane").field(link).field(normals).finish(),
+            Kind::Ball { centre, radius } => f.debug_tuple("Ball").field(centre).field(radius).finish(),
+            Kind::LinkBall { link, centre, radius } => {
+                f.debug_tuple("LinkBall").field(link).field(centre).field(radius).finish()
+            }
+        }
+    }
+}
+
 impl Kind {
-    fn at(&self, state: DVectorView<'_, f64>) -> Result<Said, String> {
+    fn at(&self, state: DVectorView<'_, f64>, time: f64) -> Result<Said, String> {
         Ok(match self {
             Kind::Normal(rows) => Said::Rows(rows.clone()),
+            Kind::Function(rows) => Said::Rows(fitting(rows(state, time)?, state.len())?),
             Kind::Plane(link, normals) => Said::Rows(normals * link.at(state)?.1),
             Kind::Ball { centre, radius } => {
                 let apart = state - centre;
@@ -68,7 +91,7 @@ impl Kind {
     }
 
     /// What must not change while it holds, or for balls must not fall below 0.
-    fn kept(&self, state: DVectorView<'_, f64>) -> Result<(DVector<f64>, bool), String> {
+    fn kept(&self, state: DVectorView<'_, f64>, time: f64) -> Result<(DVector<f64>, bool), String> {
         let unit_rows = |rows: &DMatrix<f64>| {
             let mut rows = rows.clone();
             rows.row_iter_mut().for_each(|mut row| row /= row.norm());
@@ -76,8 +99,10 @@ impl Kind {
         };
         Ok(match self {
             Kind::Normal(rows) => (unit_rows(rows) * state, false),
+            // Rows that change forbid directions; there need not be anything that they keep.
+            Kind::Function(_) => (DVector::zeros(0), false),
             Kind::Plane(link, normals) => (unit_rows(normals) * link.at(state)?.0.coords, false),
-            Kind::Ball { .. } | Kind::LinkBall { .. } => match self.at(state)? {
+            Kind::Ball { .. } | Kind::LinkBall { .. } => match self.at(state, time)? {
                 Said::Distance { clearance, .. } => (DVector::from_element(1, clearance), true),
                 Said::Rows(_) => (DVector::zeros(0), true),
             },
@@ -88,17 +113,62 @@ impl Kind {
 /// Which constraint could not be computed, counted from 1, and why.
 pub(crate) type Fault = (usize, String);
 
+/// Rows of as many finite numbers as the state has.
+fn fitting(rows: DMatrix<f64>, n: usize) -> Result<DMatrix<f64>, String> {
+    if rows.ncols() != n {
+        return Err(format!("its rows have {} numbers, the state {n}", rows.ncols()));
+    }
+    if rows.iter().any(|number| !number.is_finite()) {
+        return Err("it has a number that is not finite".to_owned());
+    }
+    Ok(rows)
+}
+
 impl ConstraintSet {
+    /// The state (n) keeps its value along each row of A, (k, n), from beginning to end.
+    ///
+    /// # Errors
+    /// In words: rows of another length than the state, without a direction, or not finite.
+    pub fn normal(rows: DMatrix<f64>, n: usize) -> Result<ConstraintSet, String> {
+        let rows = fitting(rows, n)?;
+        if rows.nrows() == 0 || rows.row_iter().any(|row| row.norm() == 0.0) {
+            return Err("a constraint has no direction: give numbers that are not all 0".to_owned());
+        }
+        Ok(ConstraintSet::always(Kind::Normal(rows)))
+    }
+
+    /// A(x, t) u = 0, from beginning to end, with A as a function of state (n) and seconds. It gives (k, n), where k may
+    /// change, or in words why it has no value there.
+    ///
+    /// Rows that change forbid directions of movement; whether they keep anything, and so [`Path::broken_by`], only who
+    /// made the function knows: it is 0 here.
+    ///
+    /// [`Path::broken_by`]: crate::Path::broken_by
+    pub fn function(
+        rows: impl Fn(DVectorView<'_, f64>, f64) -> Result<DMatrix<f64>, String> + Send + Sync + 'static,
+    ) -> ConstraintSet {
+        ConstraintSet::always(Kind::Function(Arc::new(rows)))
+    }
+
+    fn always(kind: Kind) -> ConstraintSet {
+        ConstraintSet { parts: vec![Part { kind, from: f64::NEG_INFINITY, until: f64::INFINITY }] }
+    }
+
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.parts.is_empty()
+    }
+
+    /// Whether one is a function, which may change at any time.
+    pub(crate) fn changes(&self) -> bool {
+        self.parts.iter().any(|part| matches!(part.kind, Kind::Function(_)))
     }
 
     /// The least radius of a ball, in its unit.
     pub(crate) fn least_radius(&self) -> f64 {
         let radius = |part: &Part| match part.kind {
             Kind::Ball { radius, .. } | Kind::LinkBall { radius, .. } => radius,
-            Kind::Normal(_) | Kind::Plane(..) => f64::INFINITY,
+            Kind::Normal(_) | Kind::Function(_) | Kind::Plane(..) => f64::INFINITY,
         };
         self.parts.iter().map(radius).fold(f64::INFINITY, f64::min)
     }
@@ -125,7 +195,7 @@ impl ConstraintSet {
             if !(part.from..part.until).contains(&time) {
                 continue;
             }
-            match part.kind.at(state).map_err(|reason| (at + 1, reason))? {
+            match part.kind.at(state, time).map_err(|reason| (at + 1, reason))? {
                 Said::Rows(matrix) => rows.extend(matrix.row_iter().map(nalgebra::Matrix::into_owned)),
                 Said::Distance { clearance, radius, gradient } => {
                     let bands = (clearance / radius - MARGIN) / (BAND - MARGIN);
@@ -198,7 +268,7 @@ impl<'a> Watch<'a> {
                 *begun = None;
                 continue;
             }
-            let (kept, is_distance) = part.kind.kept(state).map_err(|reason| (at + 1, reason))?;
+            let (kept, is_distance) = part.kind.kept(state, time).map_err(|reason| (at + 1, reason))?;
             let broken =
                 if is_distance { -kept[0] } else { (&kept - &*begun.get_or_insert_with(|| kept.clone())).amax() };
             if broken > self.broken_by {

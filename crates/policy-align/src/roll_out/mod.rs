@@ -64,7 +64,7 @@ pub struct Path {
 /// Why a roll-out ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Stop {
-    /// Slower than 1 % of the demonstrated median speed for ten samples.
+    /// Slower than 1 % of the demonstrated median speed for ten samples, with no constraint left that may change.
     AtRest,
     /// The next state would have been one that nothing was learnt about.
     LeftTheData,
@@ -129,8 +129,9 @@ impl RollOut {
             times.push(next_time);
             states.push(next);
             velocities.push(velocity);
-            // A constraint that ends later may let it go on.
-            if resting >= RESTING && run.switches.iter().all(|&switch| switch <= next_time) {
+            // A constraint that ends later may let it go on, and so may one that changes.
+            let stays = !self.constraints.changes() && run.switches.iter().all(|&switch| switch <= next_time);
+            if resting >= RESTING && stays {
                 break Stop::AtRest;
             }
         };
@@ -191,8 +192,8 @@ impl Run<'_> {
         Ok(velocity)
     }
 
-    /// From one time to another, piece by piece where constraints begin or end. Within a piece none does, so that any
-    /// time in it tells which hold.
+    /// From one time to another, piece by piece where constraints begin or end. Within a piece none does; its end is no
+    /// part of it.
     fn advance(
         &self,
         method: &mut RungeKutta,
@@ -202,8 +203,9 @@ impl Run<'_> {
         let inside = self.switches.iter().copied().filter(|&switch| switch > from && switch < to);
         let mut begin = from;
         for end in inside.chain([to]) {
-            let middle = 0.5 * (begin + end);
-            state = method.follow(|state| self.velocity(state, middle), state, end - begin)?;
+            let field =
+                |state: &DVector<f64>, elapsed: f64| self.velocity(state, (begin + elapsed).min(end.next_down()));
+            state = method.follow(field, state, end - begin)?;
             begin = end;
         }
         Ok(state)

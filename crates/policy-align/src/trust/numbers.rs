@@ -61,6 +61,9 @@ pub struct TrustNumbers {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AlignedNumbers {
+    /// σ² of the responsibilities, in the learner's units squared; none in files of before it was kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sigma_squared: Option<f64>,
     /// Movements kept.
     pub kept: usize,
     /// Groups that hang together.

@@ -1,0 +1,35 @@
+"""Learn movement policies from demonstrations made under constraints that nobody tells.
+
+>>> from policy_align import SlopeGp                                   # doctest: +SKIP
+>>> model = SlopeGp().fit(trajectories, dt=0.05)                       # doctest: +SKIP
+>>> u, std = model.predict(X, return_std=True)                         # doctest: +SKIP
+
+``PolicyAlign``, ``SlopeGp`` and ``DirectGp`` are the learners, ``AutoGp`` takes the Gaussian process that the data
+support; ``Demonstrations`` holds recordings, of files or of memory; ``load`` reads a model file, whoever wrote it.
+Rows are samples everywhere.
+"""
+
+from ._demonstrations import Check, Demonstrations
+from ._errors import NotFittedError, PolicyAlignError, PolicyAlignWarning
+from ._learners import AutoGp, DirectGp, PolicyAlign, SlopeGp, load
+from ._native import __version__
+from ._rollout import Path
+from ._trust import Decision, Finding, Trust
+
+__all__ = [
+    "AutoGp",
+    "Check",
+    "Decision",
+    "Demonstrations",
+    "DirectGp",
+    "Finding",
+    "NotFittedError",
+    "Path",
+    "PolicyAlign",
+    "PolicyAlignError",
+    "PolicyAlignWarning",
+    "SlopeGp",
+    "Trust",
+    "__version__",
+    "load",
+]

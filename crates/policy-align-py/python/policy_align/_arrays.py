@@ -1,0 +1,66 @@
+"""Whatever looks like numbers, as the C-ordered double precision that the native half takes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._errors import PolicyAlignError
+
+Floats = npt.NDArray[np.float64]
+
+
+def floats(values: Any, name: str) -> Floats:
+    """Real numbers of any type and layout; a C-ordered array of doubles is not copied."""
+    if type(values) is np.ndarray and values.dtype == np.float64:
+        if values.flags.c_contiguous and values.flags.aligned:
+            return values
+    try:
+        array = np.asarray(values)
+    except ValueError as error:
+        raise TypeError(f"{name} is no array: {error}") from None
+    if array.dtype.kind not in "fiubO":
+        raise TypeError(f"{name} holds {array.dtype}; numbers are needed")
+    try:
+        return np.require(array, np.float64, ["C", "A"])
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"{name} holds what is not a number: {error}") from None
+
+
+def samples(values: Any, name: str, columns: int | None = None, of: str = "") -> Floats:
+    """An (N, n) array, a row a sample."""
+    array = floats(values, name)
+    if array.ndim != 2:
+        hint = "reshape(1, -1) if it holds a single sample, reshape(-1, 1) if a single channel"
+        raise PolicyAlignError(f"Expected 2D array, got {array.ndim}D array instead", name, hint)
+    if columns is not None and array.shape[1] != columns:
+        found = array.shape[1]
+        raise PolicyAlignError(
+            f"{name} has {found} features, but {of} is expecting {columns} features as input",
+            name,
+            "the channels that were learnt from, in their order",
+        )
+    return array
+
+
+def episodes(values: Any, lengths: Sequence[int] | None, name: str) -> list[Any]:
+    """A list of movements: of a list, of a (K, N, n) array, or of a flat (M, n) array with lengths."""
+    if lengths is not None:
+        flat = samples(values, name)
+        counts = [int(count) for count in lengths]
+        if sum(counts) != len(flat) or any(count < 0 for count in counts):
+            what = f"lengths add up to {sum(counts)}, {name} has {len(flat)} rows"
+            raise PolicyAlignError(what, "lengths", "the number of samples of each movement")
+        ends = np.cumsum(counts)
+        return [flat[end - count : end] for count, end in zip(counts, ends, strict=True)]
+    if isinstance(values, np.ndarray) and values.dtype != object:
+        if values.ndim == 3:
+            return list(values)
+        hint = "a list of (N, n) arrays, an array (K, N, n), or lengths=[...] with a flat one"
+        raise PolicyAlignError(f"Expected movements, got {values.ndim}D array instead", name, hint)
+    if isinstance(values, (str, bytes)) or not hasattr(values, "__iter__") or hasattr(values, "columns"):
+        raise TypeError(f"{name} must be a list of movements, not {type(values).__name__}")
+    return list(values)

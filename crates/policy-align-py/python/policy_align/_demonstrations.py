@@ -1,0 +1,261 @@
+"""Recordings, of files or of memory."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from . import _native
+from ._arrays import Floats, episodes, floats, samples
+from ._errors import PolicyAlignError, PolicyAlignWarning
+from ._trust import Decision, Finding, decisions, findings
+
+_LISTS = {"state", "velocity", "ignore", "units", "degrees", "unwrap"}
+
+
+@dataclass(frozen=True)
+class Check:
+    """What would be learnt from, and what gives reason for doubt: the program's ``check``."""
+
+    episodes: int
+    samples: int
+    channels: tuple[str, ...]
+    time_step: float
+    left_out: tuple[tuple[str, str], ...]
+    decisions: tuple[Decision, ...]
+    findings: tuple[Finding, ...]
+
+    def __str__(self) -> str:
+        head = f"{self.episodes} episodes, {self.samples} samples, states {', '.join(self.channels)}"
+        left_out = [f"left out {name}: {why}" for name, why in self.left_out]
+        return "\n".join([head, *left_out, *map(str, self.decisions), *(f"- {finding}" for finding in self.findings)])
+
+
+class Demonstrations:
+    """Movements with names, stamps and units.
+
+    ``len`` is their number; iterating gives (N, n) arrays of positions. Estimators take it in the place of arrays.
+    """
+
+    def __init__(
+        self,
+        trajectories: Any,
+        *,
+        dt: float | None = None,
+        times: Iterable[Any] | None = None,
+        velocities: Any = None,
+        lengths: Sequence[int] | None = None,
+        names: Sequence[str] | None = None,
+        channels: Sequence[str] | None = None,
+        units: Sequence[str | None] | None = None,
+        constraints: Sequence[str | None] | None = None,
+    ) -> None:
+        """Of arrays: a list of (N, n), an array (K, N, n), or a flat (M, n) with ``lengths``.
+
+        ``dt``: seconds between samples, or ``times``: the stamps of each movement. ``velocities``: as trajectories.
+        A DataFrame for each movement names the ``channels``.
+        """
+        given = episodes(trajectories, lengths, "trajectories")
+        if channels is None:
+            channels = _columns(given)
+        count = len(given)
+        positions = [_one(samples, values, "trajectories", k) for k, values in enumerate(given)]
+        width = positions[0].shape[1] if positions else 0
+        channels = [f"x{column}" for column in range(width)] if channels is None else [str(name) for name in channels]
+        _same_length(channels, width, "channels", "columns")
+        speeds = None
+        if velocities is not None:
+            listed = episodes(velocities, lengths, "velocities")
+            _same_length(listed, count, "velocities", "trajectories")
+            speeds = [_one(samples, values, "velocities", k) for k, values in enumerate(listed)]
+        stamps = None
+        if times is not None:
+            stamps = [_stamps(values) for values in times]
+            _same_length(stamps, count, "times", "trajectories")
+        elif dt is None:
+            hint = "dt=SECONDS (the time between samples), or times=[...] with the stamps of each movement"
+            raise PolicyAlignError("neither stamps nor a time step are known", "trajectories", hint, "NoTime")
+        names = [str(k) for k in range(count)] if names is None else [str(name) for name in names]
+        labels = [None] * count if constraints is None else list(constraints)
+        unit_names = [None] * width if units is None else list(units)
+        for listed_names, expected, what in ((names, count, "names"), (labels, count, "constraints")):
+            _same_length(listed_names, expected, what, "trajectories")
+        _same_length(unit_names, width, "units", "columns")
+        step = None if stamps is not None else float(dt)  # type: ignore[arg-type]
+        self._native = _native.Recordings.of(positions, speeds, (step, stamps), (names, channels), labels, unit_names)
+
+    @classmethod
+    def read(cls, *paths: str | os.PathLike[str], **options: Any) -> Demonstrations:
+        """Reads files as one set: CSV, NPZ, JSON lines, LeRobot, HDF5, MCAP, MAT.
+
+        Options are the program's flags: ``state``, ``velocity``, ``time``, ``episode``, ``constraint_column``,
+        ``ignore``, ``dt``, ``units``, ``degrees``, ``unwrap``, ``nan``, ``sort``, ``split_gap``, ``trim_still``,
+        ``filter``, ``samples_are``, ``separator``, ``decimal``, ``topic``, ``format`` and ``trust``. What was noticed is
+        warned of, and stays in ``notes``.
+        """
+        plain = {name: value for name, value in options.items() if value is not None}
+        if "format" in plain:
+            plain["as"] = plain.pop("format")
+        for name in _LISTS & plain.keys():
+            plain[name] = [plain[name]] if isinstance(plain[name], str) else [str(entry) for entry in plain[name]]
+        found = cls._of(_native.Recordings.read([os.fspath(path) for path in paths], json.dumps(plain)))
+        for note in found.notes:
+            warnings.warn(note, PolicyAlignWarning, stacklevel=2)
+        return found
+
+    @classmethod
+    def from_frame(cls, frame: Any, **options: Any) -> Demonstrations:
+        """Of a pandas or polars DataFrame, read as the CSV file it would make, with the options of ``read``."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "frame.csv")
+            if hasattr(frame, "to_csv"):
+                frame.to_csv(path, index=False)
+            elif hasattr(frame, "write_csv"):
+                frame.write_csv(path)
+            else:
+                raise TypeError(f"a DataFrame is needed, not {type(frame).__name__}")
+            read = cls.read(path, **options)
+        return cls._of(read._native.with_origin(("[]", read.notes, "the DataFrame")))
+
+    def check(
+        self,
+        *,
+        integration: str = "auto",
+        scale: dict[str, float] | None = None,
+        smooth: str | int = "auto",
+        jumps: str = "auto",
+        wraps: str = "auto",
+    ) -> Check:
+        """Everything that can be said before learning; parameters as of the learners."""
+        found = json.loads(self._native.check(preparing(integration, scale, smooth, jumps, wraps)))
+        return Check(
+            len(found["episodes"]),
+            found["samples"],
+            tuple(channel["name"] for channel in found["state"]),
+            found["time_step"],
+            tuple((entry["episode"], entry["why"]) for entry in found["left_out"]),
+            decisions(found["decisions"]),
+            findings(found["findings"]),
+        )
+
+    @property
+    def trajectories(self) -> list[Floats]:
+        """Positions of each movement, (N, n)."""
+        return list(self)
+
+    @property
+    def velocities(self) -> list[Floats] | None:
+        """Velocities of each movement, (N, n); None if some have none."""
+        found = [self._native.samples(k)[2] for k in range(len(self))]
+        return None if any(one is None for one in found) else [one for one in found if one is not None]
+
+    @property
+    def times(self) -> list[Floats]:
+        """Stamps of each movement, (N), in seconds."""
+        return [self._native.samples(k)[0] for k in range(len(self))]
+
+    @property
+    def dt(self) -> float:
+        """The usual time between samples, in seconds."""
+        return self._native.time_step
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the movements."""
+        return self._native.names
+
+    @property
+    def channels(self) -> list[str]:
+        """Names of the state's dimensions."""
+        return [name for name, _ in self._native.channels]
+
+    @property
+    def constraints(self) -> list[str | None]:
+        """Label of the constraint of each movement, where there is one."""
+        return self._native.constraints
+
+    @property
+    def notes(self) -> list[str]:
+        """What was noticed while reading."""
+        return self._native.notes
+
+    def __len__(self) -> int:
+        return len(self._native)
+
+    def __iter__(self) -> Iterator[Floats]:
+        return (self._native.samples(k)[1] for k in range(len(self)))
+
+    def __repr__(self) -> str:
+        total = sum(len(one) for one in self)
+        return f"<Demonstrations: {len(self)} movements, {total} samples of {', '.join(self.channels)}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        native = self._native
+        times, positions, velocities = zip(*(native.samples(k) for k in range(len(self))), strict=True)
+        channels, units = (list(listed) for listed in zip(*native.channels, strict=True))
+        state = (list(positions), list(velocities), (None, list(times)), (native.names, channels))
+        return _restored, ((*state, native.constraints, units), native.origin)
+
+    @classmethod
+    def _of(cls, native: _native.Recordings) -> Demonstrations:
+        self = cls.__new__(cls)
+        self._native = native
+        return self
+
+
+def preparing(
+    integration: str, scale: dict[str, float] | None, smooth: str | int, jumps: str, wraps: str
+) -> dict[str, Any]:
+    """What the native half is told of how recordings are prepared."""
+    factors = list((scale or {}).items())
+    return {"integration": integration, "scale": factors, "smooth": str(smooth), "jumps": jumps, "wraps": wraps}
+
+
+def _restored(movements: tuple[Any, ...], origin: tuple[str, list[str], str]) -> Demonstrations:
+    positions, velocities, (step, times), *rest = movements
+    native = _native.Recordings.of(_aligned(positions), _aligned(velocities), (step, _aligned(times)), *rest)
+    return Demonstrations._of(native.with_origin(origin))
+
+
+def _aligned(arrays: list[Any]) -> list[Any]:
+    """Engines hand over pickled arrays where they lie in a message, which may be at any byte."""
+    return [None if array is None else floats(array, "the pickle") for array in arrays]
+
+
+def _columns(given: list[Any]) -> list[str] | None:
+    """Names of the columns, where every movement is a DataFrame; they must be alike."""
+    if not given or not all(hasattr(values, "columns") for values in given):
+        return None
+    names = [str(name) for name in given[0].columns]
+    for k, values in enumerate(given):
+        found = [str(name) for name in values.columns]
+        if found != names:
+            what = f"columns of movement {k} are {', '.join(found)}, those of movement 0 {', '.join(names)}"
+            raise PolicyAlignError(what, "trajectories", "the same columns in the same order", trajectory=k)
+    return names
+
+
+def _one(convert: Any, values: Any, name: str, k: int) -> Floats:
+    try:
+        found: Floats = convert(values, f"{name}[{k}]")
+    except PolicyAlignError as error:
+        error.trajectory = k
+        raise
+    return found
+
+
+def _stamps(values: Any) -> Floats:
+    stamps = floats(values, "times")
+    if stamps.ndim != 1:
+        raise PolicyAlignError(f"Expected 1D array, got {stamps.ndim}D array instead", "times", "one stamp a sample")
+    return stamps
+
+
+def _same_length(given: Sequence[Any], expected: int, name: str, what: str) -> None:
+    if len(given) != expected:
+        raise PolicyAlignError(f"there are {len(given)} {name} for {expected} {what}", name, "one each")

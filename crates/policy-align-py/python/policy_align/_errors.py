@@ -1,0 +1,44 @@
+"""Errors and warnings."""
+
+from __future__ import annotations
+
+
+class PolicyAlignError(ValueError):
+    """What is wrong, where, and what helps: the program's three lines.
+
+    ``what``, ``place``, ``hint``: the lines. ``code``: the name of an error of reading, as "NotFinite".
+    ``trajectory``, ``sample``, ``column``: where it is, counted from 0, as far as that is known; else None.
+    """
+
+    def __init__(
+        self,
+        what: str,
+        place: str | None = None,
+        hint: str | None = None,
+        code: str | None = None,
+        trajectory: int | None = None,
+        sample: int | None = None,
+        column: int | None = None,
+    ) -> None:
+        # All of them are arguments of the exception, so that it can be pickled.
+        super().__init__(what, place, hint, code, trajectory, sample, column)
+        self.what = what
+        self.place = place
+        self.hint = hint
+        self.code = code
+        self.trajectory = trajectory
+        self.sample = sample
+        self.column = column
+
+    def __str__(self) -> str:
+        place = "" if self.place is None else f"\n  in:  {self.place}"
+        hint = "" if self.hint is None else f"\n  try: {self.hint}"
+        return f"{self.what}{place}{hint}"
+
+
+class NotFittedError(ValueError, AttributeError):
+    """Something was asked of an estimator that has learnt nothing; as scikit-learn's error of this name."""
+
+
+class PolicyAlignWarning(UserWarning):
+    """What gives reason to doubt recordings or a policy."""

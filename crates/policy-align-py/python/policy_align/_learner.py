@@ -1,0 +1,269 @@
+"""What the learners share."""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+import warnings
+from collections.abc import Iterable, Sequence
+from functools import cached_property
+from typing import Any, ClassVar, Literal, Self, overload
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _native
+from ._arrays import Floats, samples
+from ._demonstrations import Demonstrations, preparing
+from ._errors import NotFittedError, PolicyAlignError, PolicyAlignWarning
+from ._manners import Manners
+from ._rollout import Constraint, Path, follow
+from ._trust import Decision, Trust, decisions, findings
+
+
+class Learner(Manners):
+    """fit, predict, and what was learnt."""
+
+    #: The name of the learner in a model file.
+    _learner: ClassVar[str]
+    _fitted: _native.Fitted | None = None
+
+    # Parameters that every learner has.
+    integration: str
+    scale: dict[str, float] | None
+    smooth: str | int
+    jumps: str
+    wraps: str
+    max_rows: int
+    random_state: int
+    n_jobs: int | None
+
+    def fit(
+        self,
+        X: Any,
+        y: object = None,
+        *,
+        dt: float | None = None,
+        times: Iterable[Any] | None = None,
+        velocities: Any = None,
+        lengths: Sequence[int] | None = None,
+    ) -> Self:
+        """Learns from movements: a list of (N, n) arrays or DataFrames, an array (K, N, n), a flat (M, n) with
+        ``lengths``, or ``Demonstrations``.
+
+        ``dt``: seconds between samples, or ``times``: the stamps of each movement. ``velocities``, as X: recorded ones,
+        better than differences of positions. ``y`` is ignored. Ctrl-C ends it.
+        """
+        threads = _threads(self.n_jobs)
+        demonstrations = _demonstrations(X, dt, times, velocities, lengths)
+        made_at = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
+        fitted = _native.Fitted.fit(demonstrations._native, self._preparing(), self._learning(), threads, made_at)
+        self._take(fitted)
+        trust = self.trust_
+        if trust.verdict != "good":
+            more = len([finding for finding in trust.findings if finding.verdict != "good"]) - 1
+            rest = f" (and {more} more: see trust_)" if more else ""
+            verdict = trust.verdict.replace("_", " ")
+            warnings.warn(f"{verdict}: {trust.findings[0]}{rest}", PolicyAlignWarning, stacklevel=2)
+        return self
+
+    @overload
+    def predict(self, X: Any, return_std: Literal[False] = False) -> Floats: ...
+    @overload
+    def predict(self, X: Any, return_std: Literal[True]) -> tuple[Floats, Floats]: ...
+    @overload
+    def predict(self, X: Any, return_std: bool) -> Floats | tuple[Floats, Floats]: ...
+    def predict(self, X: Any, return_std: bool = False) -> Floats | tuple[Floats, Floats]:
+        """The action at each state, (N, n), in units of the state per second; with ``return_std`` also the standard
+        deviation of every component, (N, n)."""
+        fitted = self._fitted
+        if fitted is None:
+            fitted = self._needed()
+        states = samples(X, "X", fitted.dim, type(self).__name__)
+        if not return_std:
+            return fitted.predict(states)
+        deviation = fitted.deviation(states)
+        if deviation is None:
+            hint = "SlopeGp or AutoGp; supports(X) says where PolicyAlign was taught"
+            raise PolicyAlignError(f"{type(self).__name__} does not know how sure it is", "return_std=True", hint)
+        return fitted.predict(states), deviation
+
+    def potential(self, X: Any) -> Floats:
+        """The potential at each state, (N), in units of the state squared per second; the policy is downhill."""
+        fitted = self._needed()
+        found = fitted.potential(samples(X, "X", fitted.dim, type(self).__name__))
+        if found is None:
+            raise PolicyAlignError("this policy has no potential", "potential(X)", "PolicyAlign or SlopeGp")
+        return found
+
+    def support(self, X: Any) -> Floats:
+        """How much the demonstrations say about each state, from 0 to 1, (N)."""
+        fitted = self._needed()
+        return fitted.support(samples(X, "X", fitted.dim, type(self).__name__))
+
+    def supports(self, X: Any) -> npt.NDArray[np.bool_]:
+        """Whether that is enough to act on, (N)."""
+        fitted = self._needed()
+        return fitted.supports(samples(X, "X", fitted.dim, type(self).__name__))
+
+    def rollout(
+        self,
+        x0: Any,
+        seconds: float | None = None,
+        *,
+        step: float | None = None,
+        constraint: Constraint = None,
+        limits: str | os.PathLike[str] | None = None,
+    ) -> Path:
+        """Follows the policy from a state (n), under constraints that nobody need have demonstrated.
+
+        ``constraint``: A with A u = 0, rows (k, n) or one row (n); a function A(x, t); or the name of a file of
+        constraints, as the program reads it. ``limits``: a robot's URDF, whose joints have the channels' names.
+        ``seconds``: three times the longest demonstration if not given; ``step``: between two samples of the path.
+        """
+        return follow(self._needed(), x0, seconds, step, constraint, limits)
+
+    def score(
+        self,
+        X: Any,
+        y: object = None,
+        *,
+        dt: float | None = None,
+        times: Iterable[Any] | None = None,
+        velocities: Any = None,
+        lengths: Sequence[int] | None = None,
+    ) -> float:
+        """1 − slope error on other movements: 1 explains every one, 0 is as good as standing still.
+
+        Arguments as of ``fit``; without ``dt`` and ``times`` the time step is that of what was learnt from.
+        """
+        fitted = self._needed()
+        if dt is None and times is None and not isinstance(X, Demonstrations):
+            dt = self.time_step_
+        held_out = _demonstrations(X, dt, times, velocities, lengths)
+        judged: dict[str, float] = json.loads(fitted.evaluate(held_out._native, self._preparing()))
+        return 1.0 - judged["slope_error"]
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes a model file, the same as the program's, wholly or not at all."""
+        self._needed().save(path)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Reads a model file that this learner, or the program with it, has written.
+
+        The file tells what was learnt, not the parameters; these have their defaults, but for the seed.
+        """
+        fitted = _native.Fitted.load(path)
+        found = json.loads(fitted.about())["learner"]
+        if found != cls._learner:
+            hint = f"policy_align.load({os.fspath(path)!r}), which takes any"
+            raise PolicyAlignError(f"a model of the learner {found!r}, not {cls._learner!r}", os.fspath(path), hint)
+        return cls._of(fitted)
+
+    @property
+    def trust_(self) -> Trust:
+        """How far to trust the policy."""
+        trust = self._about["trust"]
+        return Trust(trust["verdict"], findings(trust["findings"]), trust["numbers"])
+
+    @property
+    def decisions_(self) -> tuple[Decision, ...]:
+        """What was decided for the user."""
+        return decisions(self._about["decisions"])
+
+    @property
+    def left_out_(self) -> tuple[tuple[str, str], ...]:
+        """Names of the movements that were not learnt from, and why."""
+        return tuple((entry["episode"], entry["why"]) for entry in self._about["data"]["left_out"])
+
+    @property
+    def n_features_in_(self) -> int:
+        """Dimension of the state."""
+        return self._needed().dim
+
+    @property
+    def feature_names_in_(self) -> npt.NDArray[np.object_]:
+        """Names of the state's dimensions, (n)."""
+        return np.array([channel["name"] for channel in self._about["state"]], dtype=object)
+
+    @property
+    def time_step_(self) -> float:
+        """The median time between samples, in seconds."""
+        return float(self._about["time_step"])
+
+    def __sklearn_is_fitted__(self) -> bool:
+        return self._fitted is not None
+
+    def __getstate__(self) -> dict[str, Any]:
+        state = {name: value for name, value in self.__dict__.items() if name not in ("_fitted", "_document")}
+        return state if self._fitted is None else {**state, "_fitted": self._fitted.to_json()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        text = state.pop("_fitted", None)
+        self.__dict__.update(state)
+        if text is not None:
+            self._take(_native.Fitted.from_json(text, "the pickled model"))
+
+    def _take(self, fitted: _native.Fitted) -> None:
+        self.__dict__.pop("_document", None)
+        self._fitted = fitted
+
+    def _needed(self) -> _native.Fitted:
+        if self._fitted is None:
+            name = type(self).__name__
+            raise NotFittedError(
+                f"This {name} instance is not fitted yet. Call 'fit' with appropriate arguments before using this "
+                "estimator."
+            )
+        return self._fitted
+
+    @property
+    def _about(self) -> dict[str, Any]:
+        self._needed()
+        return self._document
+
+    @cached_property
+    def _document(self) -> dict[str, Any]:
+        document: dict[str, Any] = json.loads(self._needed().about())
+        return document
+
+    def _preparing(self) -> dict[str, Any]:
+        return preparing(self.integration, self.scale, self.smooth, self.jumps, self.wraps)
+
+    def _learning(self) -> dict[str, Any]:
+        return {
+            "learner": self._learner,
+            "reading": getattr(self, "reading", None),
+            "bandwidth": getattr(self, "bandwidth", "auto"),
+            "init_d": getattr(self, "init_d", "auto"),
+            "folds": getattr(self, "folds", 5),
+            "max_rows": self.max_rows,
+            "seed": self.random_state,
+        }
+
+    @classmethod
+    def _of(cls, fitted: _native.Fitted) -> Self:
+        self = cls()
+        self._take(fitted)
+        self.random_state = json.loads(fitted.about())["seed"]
+        return self
+
+
+def _demonstrations(
+    X: Any, dt: float | None, times: Iterable[Any] | None, velocities: Any, lengths: Sequence[int] | None
+) -> Demonstrations:
+    if not isinstance(X, Demonstrations):
+        return Demonstrations(X, dt=dt, times=times, velocities=velocities, lengths=lengths)
+    if any(given is not None for given in (dt, times, velocities, lengths)):
+        raise TypeError("Demonstrations have their own times and velocities")
+    return X
+
+
+def _threads(n_jobs: int | None) -> int:
+    if n_jobs is None or n_jobs == -1:
+        return 0
+    if n_jobs < 1:
+        raise PolicyAlignError(f"n_jobs is {n_jobs}: it must be None, -1 or at least 1", "n_jobs", "n_jobs=None")
+    return n_jobs

@@ -1,0 +1,69 @@
+"""Roll-outs."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from . import _native
+from ._arrays import Floats, floats
+from ._errors import PolicyAlignError
+
+#: A, as rows (k, n) or one row (n); the name of a file of constraints; or A(x, t) as a function.
+Constraint = Any
+
+
+@dataclass(frozen=True)
+class Path:
+    """A policy that was followed.
+
+    ``times`` (N), seconds; ``states`` and ``velocities`` (N, n), the latter what the constraint left of the action;
+    ``stop``: "at rest", "left the data", "time" or a joint's limit; ``broken_by``: by how much a constraint was broken
+    at most, None without constraints.
+    """
+
+    times: Floats
+    states: Floats
+    velocities: Floats
+    stop: str
+    broken_by: float | None
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+
+def follow(
+    fitted: _native.Fitted,
+    start: Any,
+    seconds: float | None,
+    step: float | None,
+    constraint: Constraint,
+    limits: str | os.PathLike[str] | None,
+) -> Path:
+    """The native roll-out with a user's arguments."""
+    start = floats(start, "x0")
+    if start.ndim != 1:
+        raise PolicyAlignError(f"Expected 1D array, got {start.ndim}D array instead", "x0", "one state, (n,)")
+    path = fitted.roll_out(start, seconds, step, _rows(constraint), limits)
+    return Path(path.times, path.states, path.velocities, path.stop, path.broken_by)
+
+
+def _rows(constraint: Constraint) -> Any:
+    if constraint is None or isinstance(constraint, (str, os.PathLike)):
+        return constraint
+    if callable(constraint):
+        return _as_rows(constraint)
+    return np.atleast_2d(floats(constraint, "constraint"))
+
+
+def _as_rows(constraint: Callable[[Floats, float], Any]) -> Callable[[Floats, float], Floats]:
+    def rows(state: Floats, time: float) -> Floats:
+        found = np.atleast_2d(floats(constraint(state, time), "constraint"))
+        # A list without rows has no columns either.
+        return found if found.size else np.zeros((0, len(state)))
+
+    return rows

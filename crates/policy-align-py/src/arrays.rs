@@ -1,0 +1,25 @@
+//! Arrays of Python, copied once.
+
+use nalgebra::DMatrix;
+use numpy::{PyArray1, PyArray2, PyArrayMethods as _, PyReadonlyArray2, PyUntypedArrayMethods as _};
+use pyo3::prelude::*;
+
+/// An (N, n) array as the (n, N) matrix that it is. Another thread may write to the array while nobody holds the lock,
+/// so nothing is computed on it in place.
+///
+/// `as_slice` is content with Fortran's order, too, and would hand out the transpose.
+pub(crate) fn matrix(array: &PyReadonlyArray2<'_, f64>) -> DMatrix<f64> {
+    let (samples, dim) = (array.shape()[0], array.shape()[1]);
+    let numbers = match array.as_slice() {
+        Ok(numbers) if array.is_c_contiguous() => numbers.to_vec(),
+        _ => array.as_array().iter().copied().collect(),
+    };
+    DMatrix::from_vec(dim, samples, numbers)
+}
+
+/// An (n, N) matrix as an (N, n) array.
+pub(crate) fn array(py: Python<'_>, matrix: DMatrix<f64>) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    let shape = [matrix.ncols(), matrix.nrows()];
+    let numbers: Vec<f64> = matrix.data.into();
+    PyArray1::from_vec(py, numbers).reshape(shape)
+}

@@ -1,0 +1,225 @@
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use motion::{LearntPolicy as _, Policy as _};
+use nalgebra::{DMatrix, DVectorView};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use policy_align::{
+    Evaluation, MadeBy, Model, ModelError, ModelPolicy, PrepareOptions, Progress, evaluate, fit, prepare,
+};
+use pyo3::exceptions::PyOSError;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use crate::arrays::{array, matrix};
+use crate::interruptible::interruptible;
+use crate::options::{Learning, Preparing};
+use crate::recordings::{Recorded, Recordings, names_of};
+use crate::refusal::Refusal;
+use crate::rolling::{self, Constraint};
+use crate::{model_words, pool};
+
+/// A learnt policy.
+#[pyclass(frozen, module = "policy_align._native")]
+pub(crate) struct Fitted {
+    model: Arc<Model>,
+}
+
+#[pymethods]
+impl Fitted {
+    /// Learns; `made_at` is the time in UTC, ISO 8601.
+    #[staticmethod]
+    fn fit(
+        py: Python<'_>,
+        recordings: &Recordings,
+        preparing: Preparing,
+        learning: Learning,
+        threads: usize,
+        made_at: String,
+    ) -> PyResult<Self> {
+        let (inner, preparing, learning) = (Arc::clone(&recordings.inner), preparing.options()?, learning.options()?);
+        let program = concat!("policy-align ", env!("CARGO_PKG_VERSION")).to_owned();
+        let model = interruptible(py, move |cancelled| {
+            pool::on(threads, || {
+                let Recorded { recordings, files, place, .. } = &*inner;
+                let prepared = prepare(recordings, &preparing)
+                    .map_err(|error| Refusal::prepare(&error, place, &names_of(recordings)))?;
+                let mut progress = Progress { cancelled, report: &mut |_| () };
+                let learnt = fit(&prepared, &learning, &mut progress).map_err(|error| Refusal::fit(&error, place))?;
+                Ok(learnt.into_model(MadeBy { program, time: made_at }, files.clone()))
+            })
+        })?;
+        let model: Result<Model, Refusal> = model?;
+        Ok(Fitted { model: Arc::new(model?) })
+    }
+
+    /// Of a model file's bytes.
+    #[staticmethod]
+    fn from_json(py: Python<'_>, text: &[u8], place: &str) -> PyResult<Self> {
+        let model = py.detach(|| Model::from_json(text)).map_err(|error| Refusal::model(&error, place))?;
+        Ok(Fitted { model: Arc::new(model) })
+    }
+
+    /// The bytes of a model file.
+    fn to_json<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let text = py.detach(|| self.model.to_json()).map_err(|error| Refusal::model(&error, "the model"))?;
+        Ok(PyBytes::new(py, text.as_bytes()))
+    }
+
+    /// Reads a model file.
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let model = py.detach(|| Model::load(&path)).map_err(|error| file_or(error, &path))?;
+        Ok(Fitted { model: Arc::new(model) })
+    }
+
+    /// Writes a model file, wholly or not at all.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        py.detach(|| self.model.save(&path)).map_err(|error| file_or(error, &path))
+    }
+
+    /// Everything in the model but the policy itself, as JSON.
+    fn about(&self) -> String {
+        model_words::about(&self.model)
+    }
+
+    /// Dimension of the state.
+    #[getter]
+    fn dim(&self) -> usize {
+        self.model.state.len()
+    }
+
+    /// π at each state, (N, n).
+    fn predict<'py>(&self, py: Python<'py>, states: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let mut states = self.states(&states)?;
+        py.detach(|| {
+            let policy = self.model.policy();
+            let mut action = nalgebra::DVector::zeros(states.nrows());
+            for mut column in states.column_iter_mut() {
+                policy.action_into(column.as_view(), action.as_view_mut());
+                column.copy_from(&action);
+            }
+        });
+        array(py, states)
+    }
+
+    /// Standard deviation of every component of π at each state, (N, n); none if the learner does not know it.
+    fn deviation<'py>(
+        &self,
+        py: Python<'py>,
+        states: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let mut states = self.states(&states)?;
+        let known = py.detach(|| {
+            let policy = self.model.policy();
+            let mut deviation = nalgebra::DVector::zeros(states.nrows());
+            let mut known = !matches!(self.model.learnt, policy_align::Learnt::PolicyAlign(_));
+            for mut column in states.column_iter_mut() {
+                known &= policy.action_sd_into(column.as_view(), deviation.as_view_mut());
+                column.copy_from(&deviation);
+            }
+            known
+        });
+        known.then(|| array(py, states)).transpose()
+    }
+
+    /// φ at each state, (N); none if the policy has no potential.
+    fn potential<'py>(
+        &self,
+        py: Python<'py>,
+        states: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
+        if self.model.policy().potential().is_none() {
+            return Ok(None);
+        }
+        let values = self.of_states(py, &states, |policy, state| policy.potential().map(|phi| phi.value(state)))?;
+        Ok(Some(PyArray1::from_iter(py, values.into_iter().flatten())))
+    }
+
+    /// How much the demonstrations say about each state, from 0 to 1, (N).
+    fn support<'py>(&self, py: Python<'py>, states: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let values = self.of_states(py, &states, |policy, state| policy.support(state))?;
+        Ok(PyArray1::from_vec(py, values))
+    }
+
+    /// Whether that is enough to act on, (N).
+    fn supports<'py>(
+        &self,
+        py: Python<'py>,
+        states: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        #[allow(
+            clippy::redundant_closure_for_method_calls,
+            reason = "the method is not general enough in its lifetime"
+        )]
+        let values = self.of_states(py, &states, |policy, state| policy.is_supported(state))?;
+        Ok(PyArray1::from_vec(py, values))
+    }
+
+    /// Holds the policy against movements; as JSON.
+    fn evaluate(&self, py: Python<'_>, recordings: &Recordings, preparing: Preparing) -> PyResult<String> {
+        let scale = self.model.state.iter().filter(|channel| channel.scale != 1.0);
+        let scale = scale.map(|channel| (channel.name.clone(), channel.scale)).collect();
+        let options = PrepareOptions { scale, ..preparing.options()? };
+        let (inner, model) = (Arc::clone(&recordings.inner), Arc::clone(&self.model));
+        let judged = interruptible(py, move |_: &_| {
+            let Recorded { recordings, place, .. } = &*inner;
+            let prepared = prepare(recordings, &options)
+                .map_err(|error| Refusal::prepare(&error, place, &names_of(recordings)))?;
+            evaluate(model.learnt.policy(), &prepared, None).map_err(|error| Refusal::evaluate(&error))
+        })?;
+        let judged: Result<Evaluation, Refusal> = judged;
+        Ok(serde_json::json!(judged?).to_string())
+    }
+
+    /// Follows the policy from a start (n).
+    #[pyo3(signature = (start, seconds, step, constraint, limits))]
+    fn roll_out(
+        &self,
+        py: Python<'_>,
+        start: PyReadonlyArray1<'_, f64>,
+        seconds: Option<f64>,
+        step: Option<f64>,
+        constraint: Constraint<'_>,
+        limits: Option<PathBuf>,
+    ) -> PyResult<rolling::Path> {
+        rolling::follow(py, &self.model, start.as_array().to_vec(), (seconds, step), constraint, limits.as_deref())
+    }
+}
+
+impl Fitted {
+    /// States as columns, checked.
+    fn states(&self, states: &PyReadonlyArray2<'_, f64>) -> PyResult<DMatrix<f64>> {
+        let states = matrix(states);
+        if let Some(at) = states.iter().position(|x| !x.is_finite()) {
+            let (sample, column) = (at / states.nrows(), at % states.nrows());
+            let name = &self.model.state[column].name;
+            return Err(Refusal::not_finite(sample, column, name, "X").into());
+        }
+        Ok(states)
+    }
+
+    fn of_states<T: Send>(
+        &self,
+        py: Python<'_>,
+        states: &PyReadonlyArray2<'_, f64>,
+        of: impl Fn(&ModelPolicy<'_>, DVectorView<'_, f64>) -> T + Sync,
+    ) -> PyResult<Vec<T>> {
+        let states = self.states(states)?;
+        Ok(py.detach(|| {
+            let policy = self.model.policy();
+            states.column_iter().map(|state| of(&policy, state)).collect()
+        }))
+    }
+}
+
+/// What the system refuses is an `OSError`, as everywhere in Python.
+fn file_or(error: ModelError, path: &Path) -> PyErr {
+    match error {
+        ModelError::File(error) => match error.raw_os_error() {
+            Some(code) => PyOSError::new_err((code, error.to_string(), path.to_owned())),
+            None => error.into(),
+        },
+        error => Refusal::model(&error, &path.display().to_string()).into(),
+    }
+}

@@ -1,0 +1,120 @@
+//! The program's hints name its flags, and those of the library Rust's types. Whoever writes Python has arguments.
+
+/// Flags that are arguments here, with the words that are among their values: `--nan drop` is `nan="drop"`. Flags of other
+/// programs (`rosbags-convert --src`) stay as they are.
+const ARGUMENTS: [(&str, &[&str]); 33] = [
+    ("as", &[]),
+    ("bandwidth", &["auto"]),
+    ("constraint-column", &[]),
+    ("decimal", &[".", ","]),
+    ("degrees", &[]),
+    ("dt", &[]),
+    ("episode", &[]),
+    ("filter", &[]),
+    ("folds", &[]),
+    ("ignore", &[]),
+    ("init-d", &["auto"]),
+    ("integration", &["velocity", "displacement"]),
+    ("jumps", &["auto", "keep"]),
+    ("learner", &[]),
+    ("max-rows", &[]),
+    ("nan", &["drop", "fill", "refuse"]),
+    ("reading", &["free", "constrained"]),
+    ("samples-are", &["rows", "columns"]),
+    ("scale", &[]),
+    ("seed", &[]),
+    ("separator", &[]),
+    ("smooth", &["auto", "off"]),
+    ("sort", &[]),
+    ("split-gap", &[]),
+    ("state", &[]),
+    ("time", &[]),
+    ("topic", &[]),
+    ("trim-still", &[]),
+    ("trust", &[]),
+    ("units", &[]),
+    ("unwrap", &[]),
+    ("velocity", &[]),
+    ("wraps", &["auto", "keep"]),
+];
+
+/// What the library's types are called here.
+const TYPES: [(&str, &str); 5] = [
+    ("Bandwidth::Fixed", "bandwidth=NUMBER"),
+    ("Trajectory::with_velocities", "velocities=[...]"),
+    ("Integration::Displacement", "integration=\"displacement\""),
+    ("raise PolicyAlign::memory_limit", "a computer with more"),
+    ("--learner auto", "AutoGp"),
+];
+
+/// The same text with `--split-gap` as `split_gap=`, and `Bandwidth::Fixed(0.1)` as `bandwidth=0.1`.
+pub(crate) fn in_python(text: &str) -> String {
+    let mut text = with_number(text);
+    for (rust, python) in TYPES {
+        text = text.replace(rust, python);
+    }
+    let mut out = String::new();
+    let mut rest = text.as_str();
+    while let Some(at) = rest.find("--") {
+        let (before, flag) = (&rest[..at], &rest[at + 2..]);
+        out.push_str(before);
+        let length = flag.find(|c: char| !(c.is_ascii_lowercase() || c == '-')).unwrap_or(flag.len());
+        let (name, after) = flag.split_at(length);
+        rest = if let Some((name, words)) = ARGUMENTS.iter().find(|(known, _)| *known == name) {
+            out.push_str(&argument(name));
+            value(name, words, after, &mut out)
+        } else {
+            out.push_str("--");
+            flag
+        };
+    }
+    out + rest
+}
+
+/// The same for what is wrong, where an argument is named, not given.
+pub(crate) fn named_in_python(text: &str) -> String {
+    in_python(text).replace("= ", " ").replace("=: ", ": ")
+}
+
+fn argument(name: &str) -> String {
+    match name {
+        "as" => "format=".to_owned(),
+        "seed" => "random_state=".to_owned(),
+        name => name.replace('-', "_") + "=",
+    }
+}
+
+/// Writes the value of a flag where it is one; gives back what follows it.
+fn value<'a>(name: &str, words: &[&str], after: &'a str, out: &mut String) -> &'a str {
+    let Some(given) = after.strip_prefix(' ') else { return after };
+    let ends = |word: &str| given[word.len()..].chars().next().is_none_or(|c| !c.is_alphanumeric());
+    if let Some(word) = words.iter().find(|word| given.starts_with(**word) && ends(word)) {
+        out.extend(["\"", word, "\""]);
+        return &given[word.len()..];
+    }
+    let end = given.find([' ', ')']).unwrap_or(given.len());
+    let (word, rest) = given.split_at(end);
+    if let (true, Some((channel, factor))) = (name == "scale" && !word.ends_with(':'), word.split_once('=')) {
+        out.extend(["{\"", channel, "\": ", factor, "}"]);
+        return rest;
+    }
+    let plain = word.trim_end_matches([',', ';', '.', ':']);
+    let is_number = plain.starts_with(|c: char| c.is_ascii_digit());
+    let is_name = plain.starts_with('\'') || plain.len() > 1 && plain.chars().all(|c| c.is_ascii_uppercase());
+    if is_number && plain.parse::<f64>().is_err() {
+        out.extend(["\"", plain, "\""]);
+    } else if is_number || is_name {
+        out.push_str(plain);
+    } else {
+        return after;
+    }
+    &given[plain.len()..]
+}
+
+/// σ² in the place of the type that holds it.
+fn with_number(text: &str) -> String {
+    match text.split_once("Bandwidth::Fixed(").and_then(|(before, after)| Some((before, after.split_once(')')?))) {
+        Some((before, (number, after))) => format!("{before}bandwidth={number}{after}"),
+        None => text.to_owned(),
+    }
+}

@@ -1,0 +1,36 @@
+//! The native half of the Python package `policy_align`: what `python/policy_align/*.py` stand on.
+//!
+//! Python checks types and makes arrays C-ordered; here they are copied once, and whatever computes does so without the
+//! interpreter's lock, on memory of its own. Rows are samples in Python and columns in Rust, so that a C-ordered (N, n)
+//! array is an (n, N) matrix as it lies.
+
+mod arrays;
+mod fitted;
+mod hints;
+mod interruptible;
+mod model_words;
+mod options;
+mod pool;
+mod recordings;
+mod refusal;
+mod rolling;
+
+use pyo3::prelude::*;
+
+/// What `policy_align` is made of.
+#[pymodule]
+mod _native {
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use crate::fitted::Fitted;
+    #[pymodule_export]
+    use crate::recordings::Recordings;
+    #[pymodule_export]
+    use crate::rolling::Path;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

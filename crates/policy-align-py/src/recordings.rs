@@ -1,0 +1,195 @@
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use demo_io::{Channel, Episode, ReadOptions, Source, read_all};
+use motion::{MotionError, Trajectory};
+use nalgebra::DMatrix;
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use policy_align::{FileSummary, PrepareError, prepare};
+use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::prelude::*;
+use serde_json::json;
+
+use crate::arrays::{array, matrix};
+use crate::hints::in_python;
+use crate::interruptible::interruptible;
+use crate::options::Preparing;
+use crate::refusal::Refusal;
+
+/// Movements, as they were read or given.
+#[pyclass(frozen, module = "policy_align._native")]
+pub(crate) struct Recordings {
+    pub(crate) inner: Arc<Recorded>,
+}
+
+/// What an estimator needs of them.
+pub(crate) struct Recorded {
+    pub(crate) recordings: demo_io::Recordings,
+    pub(crate) files: Vec<FileSummary>,
+    /// What was noticed while reading.
+    notes: Vec<String>,
+    /// For messages: the file, or the argument.
+    pub(crate) place: String,
+}
+
+/// Of a movement: times (N), positions (N, n), velocities (N, n) or none.
+type Samples<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>, Option<Bound<'py, PyArray2<f64>>>);
+
+#[pymethods]
+impl Recordings {
+    /// Reads files as one set; `options` are the program's, as JSON.
+    #[staticmethod]
+    fn read(py: Python<'_>, paths: Vec<PathBuf>, options: &str) -> PyResult<Self> {
+        let place = match &paths[..] {
+            [path] => path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            paths => format!("{} files", paths.len()),
+        };
+        let options: ReadOptions = serde_json::from_str(options).map_err(|error| {
+            let text = error.to_string();
+            Refusal::new(text.split(" at line").next().unwrap_or(&text), "read()", "help(Demonstrations.read)")
+        })?;
+        let read = move |_: &_| {
+            let recordings = read_all(&paths, &options, &mut |_bytes| ()).map_err(|error| Refusal::read(&error))?;
+            let plain = paths.iter().filter(|path| path.is_file());
+            let files: Result<Vec<_>, _> = plain.map(|path| FileSummary::of(path)).collect();
+            let unread =
+                |error: std::io::Error| Refusal::new(format!("cannot be read: {error}"), &place, "another file");
+            let notes = recordings.notes.iter().map(|note| in_python(&note.text)).collect();
+            Ok(Recorded { recordings, notes, files: files.map_err(unread)?, place })
+        };
+        let inner: Result<Recorded, Refusal> = interruptible(py, read)?;
+        Ok(Recordings { inner: Arc::new(inner?) })
+    }
+
+    /// Movements in memory: positions (N, n) and velocities of the same shape, each C-ordered; seconds between samples,
+    /// or the stamps of each movement, (N).
+    #[staticmethod]
+    fn of(
+        positions: Vec<PyReadonlyArray2<'_, f64>>,
+        velocities: Option<Vec<Option<PyReadonlyArray2<'_, f64>>>>,
+        dt_or_times: (Option<f64>, Option<Vec<PyReadonlyArray1<'_, f64>>>),
+        names_and_channels: (Vec<String>, Vec<String>),
+        constraints: Vec<Option<String>>,
+        units: Vec<Option<String>>,
+    ) -> PyResult<Self> {
+        let ((dt, times), (names, channels)) = (dt_or_times, names_and_channels);
+        let mut episodes = Vec::with_capacity(positions.len());
+        for (k, (positions, name)) in positions.iter().zip(names).enumerate() {
+            let positions = matrix(positions);
+            let times = match (dt, &times) {
+                (_, Some(times)) => times[k].as_array().to_vec(),
+                (dt, None) => (0..positions.ncols()).map(|sample| sample as f64 * dt.unwrap_or(f64::NAN)).collect(),
+            };
+            let velocities = velocities.as_ref().and_then(|velocities| velocities[k].as_ref().map(matrix));
+            let source = Source { file: String::new(), rows: None };
+            let constraint = constraints.get(k).cloned().flatten();
+            episodes.push(Episode { name, source, times, positions, velocities, constraint });
+        }
+        let state = channels.into_iter().zip(units).map(|(name, unit)| Channel { name, unit }).collect();
+        let recordings = demo_io::Recordings { state, episodes, notes: vec![] };
+        let place = "trajectories".to_owned();
+        check(&recordings, dt).map_err(|error| Refusal::prepare(&error, &place, &names_of(&recordings)))?;
+        Ok(Recordings { inner: Arc::new(Recorded { recordings, notes: vec![], files: vec![], place }) })
+    }
+
+    fn __len__(&self) -> usize {
+        self.inner.recordings.episodes.len()
+    }
+
+    /// Times, positions and velocities of a movement.
+    fn samples<'py>(&self, py: Python<'py>, k: usize) -> PyResult<Samples<'py>> {
+        let episode = self.inner.recordings.episodes.get(k).ok_or_else(|| PyIndexError::new_err("no such movement"))?;
+        let velocities = episode.velocities.clone().map(|velocities| array(py, velocities)).transpose()?;
+        Ok((PyArray1::from_slice(py, &episode.times), array(py, episode.positions.clone())?, velocities))
+    }
+
+    /// Names of the movements.
+    #[getter]
+    fn names(&self) -> Vec<String> {
+        names_of(&self.inner.recordings)
+    }
+
+    /// Labels of their constraints.
+    #[getter]
+    fn constraints(&self) -> Vec<Option<String>> {
+        self.inner.recordings.episodes.iter().map(|episode| episode.constraint.clone()).collect()
+    }
+
+    /// Names and units of the state's dimensions.
+    #[getter]
+    fn channels(&self) -> Vec<(String, Option<String>)> {
+        self.inner.recordings.state.iter().map(|channel| (channel.name.clone(), channel.unit.clone())).collect()
+    }
+
+    /// What was noticed while reading.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.inner.notes.clone()
+    }
+
+    /// Where they come from: files as JSON, notes, and the name of all that in messages.
+    #[getter]
+    fn origin(&self) -> (String, Vec<String>, String) {
+        let Recorded { files, notes, place, .. } = &*self.inner;
+        (json!(files).to_string(), notes.clone(), place.clone())
+    }
+
+    /// The same movements as if they came from elsewhere.
+    fn with_origin(&self, origin: (String, Vec<String>, String)) -> PyResult<Self> {
+        let (files, notes, place) = origin;
+        let files = serde_json::from_str(&files).map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let recordings = self.inner.recordings.clone();
+        Ok(Recordings { inner: Arc::new(Recorded { recordings, files, notes, place }) })
+    }
+
+    /// The usual time between samples, in seconds.
+    #[getter]
+    fn time_step(&self) -> f64 {
+        self.inner.recordings.time_step()
+    }
+
+    /// What would be learnt from, and what gives reason for doubt, as JSON.
+    fn check(&self, py: Python<'_>, preparing: Preparing) -> PyResult<String> {
+        let (inner, options) = (Arc::clone(&self.inner), preparing.options()?);
+        let prepared = interruptible(py, move |_: &_| {
+            prepare(&inner.recordings, &options)
+                .map_err(|error| Refusal::prepare(&error, &inner.place, &names_of(&inner.recordings)))
+        })??;
+        let document = json!({
+            "episodes": prepared.episodes, "samples": prepared.demonstrations.n_samples(),
+            "state": prepared.state, "time_step": prepared.time_step, "left_out": prepared.left_out,
+            "decisions": prepared.decisions, "findings": prepared.findings,
+        });
+        Ok(document.to_string())
+    }
+}
+
+pub(crate) fn names_of(recordings: &demo_io::Recordings) -> Vec<String> {
+    recordings.episodes.iter().map(|episode| episode.name.clone()).collect()
+}
+
+/// What readers of files check before they hand out recordings.
+fn check(recordings: &demo_io::Recordings, dt: Option<f64>) -> Result<(), PrepareError> {
+    let dim = recordings.state.len();
+    for (k, episode) in recordings.episodes.iter().enumerate() {
+        let of = |source| PrepareError::Episode { episode: episode.name.clone(), source };
+        let found = episode.positions.nrows();
+        if found != dim {
+            return Err(of(MotionError::Dimensions { trajectory: k, found, expected: dim }));
+        }
+        let movement = movement(episode, dt).map_err(of)?;
+        if let Some(velocities) = &episode.velocities {
+            movement.with_velocities(DMatrix::clone(velocities)).map_err(of)?;
+        }
+    }
+    Ok(())
+}
+
+fn movement(episode: &Episode, dt: Option<f64>) -> Result<Trajectory, MotionError> {
+    let positions = episode.positions.clone();
+    match dt {
+        Some(dt) => Trajectory::new(positions, dt),
+        // The stamps' own check says more than that of their first difference.
+        None => Trajectory::new(positions, 1.0)?.with_times(episode.times.clone()),
+    }
+}

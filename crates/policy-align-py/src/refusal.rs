@@ -1,0 +1,121 @@
+//! Errors of the Rust crates as `PolicyAlignError`: the program's three lines, what next in Python's words.
+
+use align::AlignError;
+use demo_io::ReadError;
+use motion::MotionError;
+use policy_align::{ConstraintFileError, EvaluateError, FitError, ModelError, PrepareError, RollOutError};
+use pyo3::PyErr;
+
+use crate::hints::{in_python, named_in_python};
+
+mod python {
+    pyo3::import_exception!(policy_align._errors, PolicyAlignError);
+}
+
+/// What is wrong, where, what next, and the numbers of it.
+#[derive(Debug, Default)]
+pub(crate) struct Refusal {
+    what: String,
+    place: Option<String>,
+    hint: Option<String>,
+    code: Option<&'static str>,
+    trajectory: Option<usize>,
+    sample: Option<usize>,
+    column: Option<usize>,
+}
+
+impl Refusal {
+    pub(crate) fn new(what: impl Into<String>, place: impl Into<String>, hint: impl Into<String>) -> Self {
+        Refusal { what: what.into(), place: Some(place.into()), hint: Some(hint.into()), ..Refusal::default() }
+    }
+
+    /// Of a message that says what next after its last semicolon.
+    fn of_text(text: &str, place: &str, otherwise: &str) -> Self {
+        let (what, hint) = text.rsplit_once("; ").unwrap_or((text, otherwise));
+        Refusal::new(what, place, hint)
+    }
+
+    /// A number that is not finite.
+    pub(crate) fn not_finite(sample: usize, column: usize, name: &str, place: &str) -> Self {
+        let what = format!("sample {sample} is not finite in channel '{name}'");
+        let found = Refusal::new(what, place, "give finite numbers");
+        Refusal { sample: Some(sample), column: Some(column), ..found }
+    }
+
+    pub(crate) fn read(error: &ReadError) -> Self {
+        let fault = error.fault();
+        Refusal { code: Some(error.code()), ..Refusal::new(&fault.what, &fault.place, &fault.remedy) }
+    }
+
+    /// `episodes`: their names, to find the number of the one at fault.
+    pub(crate) fn prepare(error: &PrepareError, place: &str, episodes: &[String]) -> Self {
+        let refusal = Refusal::of_text(&error.to_string(), place, "other recordings");
+        match error {
+            PrepareError::Episode { episode, source } => {
+                let trajectory = episodes.iter().position(|name| name == episode);
+                Refusal { trajectory, ..refusal.with_motion(source) }
+            }
+            _ => refusal,
+        }
+    }
+
+    pub(crate) fn fit(error: &FitError, place: &str) -> Self {
+        let otherwise = match error {
+            FitError::Option { .. } => "another number",
+            _ => "more recordings, or Demonstrations.check() for what is wrong with these",
+        };
+        let refusal = Refusal::of_text(&error.to_string(), place, otherwise);
+        let (trajectory, sample, column) = match error {
+            FitError::Align(
+                AlignError::NoVelocities { trajectory }
+                | AlignError::PotentialUnderflow { trajectory, .. }
+                | AlignError::OffsetOverflow { trajectory },
+            ) => (Some(*trajectory), None, None),
+            FitError::Align(AlignError::PotentialOverflow { trajectory, sample }) => {
+                (Some(*trajectory), Some(*sample), None)
+            }
+            FitError::Align(AlignError::SpanOverflow { dimension, .. }) => (None, None, Some(*dimension)),
+            _ => (None, None, None),
+        };
+        Refusal { trajectory, sample, column, ..refusal }
+    }
+
+    pub(crate) fn model(error: &ModelError, place: &str) -> Self {
+        let hint = match error {
+            ModelError::Newer { .. } => "a newer policy-align",
+            ModelError::NotAModel { .. } => "a file that save() or `policy-align fit` has written",
+            _ => "another copy of the file, or fit again",
+        };
+        Refusal::new(error.to_string(), place, hint)
+    }
+
+    pub(crate) fn evaluate(error: &EvaluateError) -> Self {
+        Refusal::of_text(&error.to_string(), "score()", "other recordings")
+    }
+
+    pub(crate) fn roll_out(error: &RollOutError) -> Self {
+        Refusal::new(error.to_string(), "rollout()", error.remedy())
+    }
+
+    pub(crate) fn constraints(error: &ConstraintFileError, place: &str) -> Self {
+        Refusal::new(error.to_string(), place, "`policy-align rollout --help` shows what such a file holds")
+    }
+
+    fn with_motion(self, error: &MotionError) -> Self {
+        match error {
+            MotionError::NotFinite { sample, dimension, .. } => {
+                Refusal { sample: Some(*sample), column: Some(*dimension), ..self }
+            }
+            MotionError::StampOrder { sample, .. } => Refusal { sample: Some(*sample), ..self },
+            _ => self,
+        }
+    }
+}
+
+impl From<Refusal> for PyErr {
+    fn from(refusal: Refusal) -> PyErr {
+        let Refusal { what, place, hint, code, trajectory, sample, column } = refusal;
+        let hint = hint.as_deref().map(in_python);
+        python::PolicyAlignError::new_err((named_in_python(&what), place, hint, code, trajectory, sample, column))
+    }
+}

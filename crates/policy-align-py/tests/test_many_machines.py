@@ -1,0 +1,97 @@
+"""Engines of others share the work out; the result is the single process's, bit for bit."""
+
+from __future__ import annotations
+
+import os
+import runpy
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import DT, ROOT, on_rails, without_time
+
+from policy_align import Demonstrations, PolicyAlign
+
+SWEEP = ROOT / "docs/examples/sweep.py"
+
+
+def rails_file(folder: Path, count: int) -> Path:
+    """A small recording."""
+    lines = ["episode,t,x,y,vx,vy"]
+    for k, (x, u) in enumerate(zip(*on_rails(count, 10), strict=True)):
+        lines += [",".join(map(repr, [k, DT * i, *x[i].tolist(), *u[i].tolist()])) for i in range(len(x))]
+    path = folder / f"rails{count}.csv"
+    path.write_text("\n".join(lines))
+    return path
+
+
+@contextmanager
+def running(*command: str) -> Iterator[subprocess.Popen[str]]:
+    """A process of its own, which ends with the test."""
+    command = (sys.executable, *command)
+    environment = {**os.environ, "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "3s"}
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment)
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+
+
+def until(true: Callable[[], object], seconds: float = 60.0) -> None:
+    """Waits for what must become true."""
+    end = time.monotonic() + seconds
+    while not true():
+        assert time.monotonic() < end, "it never came true"
+        time.sleep(0.02)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_dask_outlives_a_killed_worker(tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed")
+    files = [rails_file(tmp_path, count) for count in (16, 18)]
+    address_file = tmp_path / "scheduler.json"
+    common = ("--no-dashboard", "--scheduler-file", str(address_file))
+    with ExitStack() as stack:
+        stack.enter_context(running("-m", "dask", "scheduler", *common, "--host", "127.0.0.1", "--port", "0"))
+        until(address_file.exists)
+        worker = ("-m", "dask", "worker", *common, "--nthreads", "1", "--no-nanny", "--name")
+        workers = {name: stack.enter_context(running(*worker, name)) for name in ("first", "second")}
+        client = stack.enter_context(distributed.Client(scheduler_file=str(address_file)))
+        client.wait_for_workers(2, timeout=60)
+        addresses = {worker["name"]: address for address, worker in client.scheduler_info()["workers"].items()}
+        address = client.scheduler.address
+        sweep = stack.enter_context(running(str(SWEEP), address, str(tmp_path), *map(str, files)))
+        assert sweep.stdout is not None and sweep.stdout.readline().startswith("rails"), "nothing was learnt"
+        until(lambda: client.processing()[addresses["second"]])
+        workers["second"].send_signal(signal.SIGKILL)
+        assert sweep.wait(300) == 0
+        assert len(client.scheduler_info()["workers"]) == 1
+    for file in files:
+        for width, learner in runpy.run_path(str(SWEEP))["LEARNERS"].items():
+            learner.fit(Demonstrations.read(file)).save(tmp_path / "alone.json")
+            found = (tmp_path / f"{file.stem}-{width}.json").read_text()
+            assert without_time(found) == without_time((tmp_path / "alone.json").read_text())
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_search_in_processes_finds_the_same() -> None:
+    pytest.importorskip("sklearn")
+    from sklearn.model_selection import GridSearchCV
+
+    positions, _ = on_rails()
+
+    def found(jobs: int) -> tuple[np.ndarray, np.ndarray]:
+        learner, grid = PolicyAlign(init_d=10.0, folds=2, max_rows=60, n_jobs=1), {"bandwidth": ["narrow", "wide"]}
+        search = GridSearchCV(learner, grid, scoring=lambda model, X, y=None: model.score(X), cv=2, n_jobs=jobs)
+        search.fit(positions, dt=DT)
+        return search.cv_results_["mean_test_score"], search.predict(positions[0])
+
+    for one, two in zip(found(1), found(2), strict=True):
+        assert np.array_equal(one, two) and np.all(np.isfinite(one))
