@@ -56,9 +56,11 @@ impl HeldOut {
         self.squares / self.seen
     }
 
-    /// E′: as a share of the policy, for a policy may be right where constraints hardly let it move.
+    /// E′: as a share of the policy, for a policy may be right where constraints hardly let it move. One that wants
+    /// nothing misses all.
     pub(crate) fn to_judge(self) -> f64 {
-        if self.wanted > 0.0 { self.squares / self.wanted } else { f64::INFINITY }
+        let share = self.squares / self.wanted;
+        if share.is_finite() { share } else { 1.0 }
     }
 
     fn plus(self, other: HeldOut) -> HeldOut {
