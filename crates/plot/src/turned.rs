@@ -96,7 +96,7 @@ mod tests {
         assert_eq!(up.len(), level.len());
         for (area, (right, down, share)) in up.iter().zip(level) {
             let Primitive::Rect { x, y, opacity, .. } = area else { panic!("{area:?}") };
-            let expected = (100.0 + down / 2.0, 80.0 - (right + 1.0) / 2.0);
+            let expected = (100.0 + 0.5 * down, 80.0 - 0.5 * (right + 1.0));
             assert!((x - expected.0).abs() + (y - expected.1).abs() < 1e-9 && *opacity == Some(share));
         }
         assert_eq!(drawn(words(None), None).len(), 1);

@@ -76,7 +76,7 @@ class Controls {
       this.curves.element,
       this.slider,
       make("div", { class: "view-times" }, this.play, this.time, make("label", {}, "Speed ", this.speed),
-        make("label", {}, this.loop, " again and again")),
+        make("label", {}, this.loop, " Loop")),
       make("div", { class: "view-choices" }, learner.element, constraint.element, start.element),
       this.words);
   }

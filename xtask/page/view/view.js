@@ -14,9 +14,10 @@ const HELP = "Drag or arrow keys: turn. Right button or Shift and drag, two fing
 const IN_SIGHT = 0.6;
 /** Milliseconds without a change after which the address is written. */
 const SETTLED = 400;
-const LEGEND = "A path is strong up to now and faint ahead; dots are the palms and their places at the ball. Blue plates "
-  + "are in the way: in the pale space around them a hand moves neither forwards nor back. A plate goes on upwards beyond "
-  + "what is drawn; where its side has no dark edge, it goes on sideways too.";
+const LEGEND = "Paths are solid up to the current time, faint after it; dots are the palms and their places at the ball. Blue plates "
+  + "are in the way: in the pale space around them a hand moves neither forwards nor back. Only hands feel them: "
+  + "the trunk may lean through. A plate goes on upwards beyond what is drawn; where its side has no dark edge, it goes on sideways "
+  + "too.";
 
 /** Builds the view in an element. Where nothing can be drawn it says so, with a link to `data-still`. */
 function startView(element, data) {

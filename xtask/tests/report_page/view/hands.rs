@@ -59,7 +59,7 @@ const FAULTS: &str = "(() => {
                 policyAlignView.hands().forEach((palm, hand) => courses[hand].push(palm));
             }
             policyAlignView.render();
-            const line = document.querySelector('.view-words').textContent.split('\n').find((l) => l.startsWith(label));
+            const line = document.querySelector('.view-words').textContent.split('\\n').find((l) => l.startsWith(label));
             const deep = courses.flat().some(([x, y, z]) => (
                 Math.hypot(x - ball.centre[0], y - ball.centre[1], z - ball.centre[2]) < ball.diameter / 2 - 0.01
             ));
