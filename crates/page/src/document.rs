@@ -68,9 +68,13 @@ impl Document<'_> {
         html! {
             nav aria-label="Contents" {
                 p .name { (self.name) }
-                ol {
-                    @for part in std::iter::once(&self.opening).chain(&self.parts) {
-                        li { a href={ "#" (part.id) } { (part.title) } }
+                // The script folds it on a phone.
+                details open {
+                    summary { "Contents" }
+                    ol {
+                        @for part in std::iter::once(&self.opening).chain(&self.parts) {
+                            li { a href={ "#" (part.id) } { (part.title) } }
+                        }
                     }
                 }
             }

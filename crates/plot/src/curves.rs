@@ -75,11 +75,24 @@ impl Panel for Curves {
         let layout = with_axes(titled(&plots, &self.title, self.size), &x, &y);
         let mut layout = layout.with_x_tick_step(self.x_step).with_grid_line_width(0.6);
         if self.y_axis == Axis::Logarithmic {
-            let plainly = TickFormat::Custom(Arc::new(|tick| tick.to_string()));
+            let plainly = TickFormat::Custom(Arc::new(power));
             layout = layout.with_log_y().with_y_tick_format(plainly);
         }
         Sketch::new(render_multiple(plots, layout))
     }
+}
+
+/// A value of a logarithmic axis: plainly, or where that is long as a power of ten.
+fn power(tick: f64) -> String {
+    let exponent = tick.log10().round();
+    if exponent.abs() <= 3.0 || (tick / 10_f64.powf(exponent) - 1.0).abs() > 1e-9 {
+        return tick.to_string();
+    }
+    let raised = |letter: char| match letter {
+        '-' => '⁻',
+        digit => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit.to_digit(10).unwrap_or(0) as usize],
+    };
+    format!("10{}", exponent.to_string().chars().map(raised).collect::<String>())
 }
 
 impl Curves {
@@ -123,6 +136,12 @@ mod tests {
             prop_assert!(low > 0.0 && high == mean + sd);
             prop_assert!((mean / low - high / mean).abs() <= 1e-9 * (high / mean));
         }
+    }
+
+    #[test]
+    fn ticks_are_short() {
+        let texts = [1e-10, 1e-4, 1e-3, 0.1, 1.0, 1000.0, 1e4, 0.00002].map(power);
+        assert_eq!(texts, ["10⁻¹⁰", "10⁻⁴", "0.001", "0.1", "1", "1000", "10⁴", "0.00002"]);
     }
 
     #[test]

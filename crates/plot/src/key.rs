@@ -36,16 +36,28 @@ const LETTER: f64 = 7.6;
 impl Panel for Key {
     fn sketch(&self) -> Sketch {
         let mut scene = Scene::new(self.width, ROW * self.rows.len() as f64);
-        let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
-        let letters = self.rows.iter().flatten().map(|entry| entry.name.chars().count()).max().unwrap_or(0);
-        let column = SAMPLE + GAP + LETTER * letters as f64 + 3.0 * GAP;
-        let left = ((self.width - column * columns as f64) / 2.0).max(0.0);
+        let columns = self.columns();
+        let left = ((self.width - columns.iter().sum::<f64>()) / 2.0).max(0.0);
         for (row, entries) in self.rows.iter().enumerate() {
-            for (place, entry) in entries.iter().enumerate() {
-                entry.draw((left + column * place as f64, ROW * (row as f64 + 0.5)), &mut scene);
+            let mut x = left;
+            for (entry, column) in entries.iter().zip(&columns) {
+                entry.draw((x, ROW * (row as f64 + 0.5)), &mut scene);
+                x += column;
             }
         }
         Sketch::new(scene)
+    }
+}
+
+impl Key {
+    /// How wide each column is, by the longest of its names.
+    fn columns(&self) -> Vec<f64> {
+        let most = self.rows.iter().map(Vec::len).max().unwrap_or(0);
+        let letters = |column: usize| {
+            let names = self.rows.iter().filter_map(|row| row.get(column));
+            names.map(|entry| entry.name.chars().count()).max().unwrap_or(0)
+        };
+        (0..most).map(|column| SAMPLE + GAP + LETTER * letters(column) as f64 + 3.0 * GAP).collect()
     }
 }
 
@@ -72,5 +84,35 @@ impl Entry {
             bold: false,
             color: None,
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use kuva::render::render::Primitive;
+
+    use super::*;
+    use crate::{Dash, Filling, Mark};
+
+    #[test]
+    fn columns_are_as_wide_as_their_names_and_all_is_on_the_panel() {
+        let entry = |name: &str| Entry {
+            name: name.to_owned(),
+            stroke: Stroke { color: "#000000", width: 1.0, dash: Dash::Solid },
+            sign: Sign { mark: Mark::Star, filling: Filling::Full },
+        };
+        let rows =
+            vec![vec![entry("a"), entry("a rather long name of something"), entry("b")], vec![entry("c"), entry("d")]];
+        let key = Key { rows, width: 480.0 };
+        let starts: Vec<f64> = key
+            .sketch()
+            .scene
+            .elements
+            .iter()
+            .filter_map(|element| if let Primitive::Text { x, .. } = element { Some(*x) } else { None })
+            .collect();
+        assert!((starts[0] - starts[3]).abs() + (starts[1] - starts[4]).abs() < 1e-9, "{starts:?}");
+        assert!(starts[1] - starts[0] < 0.4 * (starts[2] - starts[1]), "{starts:?}");
+        assert!(starts[0] > 0.0 && starts[2] + LETTER < key.width, "{starts:?}");
     }
 }

@@ -44,8 +44,10 @@ mod relief;
 mod samples;
 mod sheet;
 mod sign;
+mod smooth;
 mod space;
 mod style;
+mod turned;
 
 pub use curves::{Axis, Curve, Curves};
 pub use error::PlotError;

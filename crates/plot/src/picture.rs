@@ -3,7 +3,7 @@ use kuva::backend::svg::SvgBackend;
 use kuva::render::render::{Primitive, Scene};
 
 use crate::raster::{DOTS, Raster};
-use crate::{Panel, PlotError, Sketch, dashes, decimals};
+use crate::{Panel, PlotError, Sketch, dashes, decimals, turned};
 
 /// Pixels between panels.
 const GAP: f64 = 10.0;
@@ -53,7 +53,9 @@ impl Picture {
         let Sketch { scene, rasters } = &self.0;
         let mut sheet = Scene::new(scene.width, scene.height);
         sheet.font_family.clone_from(&scene.font_family);
-        sheet.elements = scene.elements.iter().flat_map(|element| dotted(element, rasters)).collect();
+        let font = scene.font_family.as_ref();
+        let elements = scene.elements.iter().flat_map(|element| dotted(element, rasters));
+        sheet.elements = elements.flat_map(|element| turned::drawn(element, font)).collect();
         let backend = RasterBackend::new().with_scale(DOTS as f32);
         backend.render_scene(&sheet).map_err(|reason| PlotError::Pixels { reason })
     }

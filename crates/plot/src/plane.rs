@@ -6,14 +6,14 @@ use kuva::render::render::render_multiple;
 use crate::samples::{self, Sample};
 use crate::sheet::{Edge, titled, with_axes};
 use crate::style::heights;
-use crate::{Field, Mark, Panel, Sketch, Stroke, colour_scale};
+use crate::{Field, Mark, Panel, Sketch, Stroke, colour_scale, smooth};
 
 /// One thing drawn in the plane; later layers lie on top.
 #[derive(Debug, Clone)]
 pub enum Layer {
     /// Lines of equal value.
     Contours(Field),
-    /// A field in colours, light where it is high, with a scale of this name.
+    /// A field in colours that go smoothly, light where it is high, with a scale of this name.
     Colors {
         /// Values on an even grid.
         field: Field,
@@ -136,13 +136,15 @@ impl Panel for Plane {
             .with_equal_aspect();
         layout.annotations = self.layers.iter().filter_map(words).collect();
         let mut scene = render_multiple(plots, layout);
+        let mut rasters = vec![];
         for layer in &self.layers {
-            if let Layer::Colors { name, .. } = layer {
+            if let Layer::Colors { name, field } = layer {
                 colour_scale::name(name, &mut scene);
+                rasters.extend(smooth::instead_of_squares(field, rasters.len(), &mut scene));
             }
         }
         samples::draw(&self.names(), &mut scene);
-        Sketch::new(scene)
+        Sketch { scene, rasters }
     }
 }
 

@@ -13,6 +13,8 @@ pub(crate) const DOTS: usize = 2;
 pub(crate) struct Raster {
     /// Where its upper left corner is, pixels.
     pub(crate) corner: (f64, f64),
+    /// How wide and high a dot is, pixels.
+    pub(crate) side: f64,
     /// Dots in a row.
     pub(crate) width: usize,
     /// Red, green, blue, and how much of it there is; row by row.
@@ -26,15 +28,16 @@ impl Raster {
 
     /// As an element of a drawing.
     pub(crate) fn svg(&self) -> String {
-        let ((x, y), [width, height]) =
-            (self.corner, [self.width, self.height()].map(|dots| dots as f64 / DOTS as f64));
+        let ((x, y), [width, height]) = (self.corner, [self.width, self.height()].map(|dots| dots as f64 * self.side));
         let data = base64(&self.png());
         format!(r#"<image x="{x}" y="{y}" width="{width}" height="{height}" href="data:image/png;base64,{data}"/>"#)
     }
 
     /// As areas of one colour each, which have whole dots as their sides.
     pub(crate) fn areas(&self) -> Vec<Primitive> {
-        let side = 1.0 / DOTS as f64;
+        let side = self.side;
+        // Where dots are not those of the file, neighbours lie a little on each other, or their edges would shine through.
+        let lap = if (side * DOTS as f64 - 1.0).abs() < 1e-12 { 0.0 } else { side / 2.0 };
         let mut areas = vec![];
         for (row, dots) in self.dots.chunks(self.width).enumerate() {
             let mut column = 0;
@@ -44,8 +47,8 @@ impl Raster {
                     areas.push(Primitive::Rect {
                         x: self.corner.0 + column as f64 * side,
                         y: self.corner.1 + row as f64 * side,
-                        width: run.len() as f64 * side,
-                        height: side,
+                        width: run.len() as f64 * side + lap,
+                        height: side + lap,
                         fill: Color::Rgb(red, green, blue),
                         stroke: None,
                         stroke_width: None,
@@ -98,7 +101,7 @@ mod tests {
     #[test]
     fn areas_are_runs_of_one_colour_and_nothing_where_nothing_is() {
         let (red, none) = ([255, 0, 0, 255], [0; 4]);
-        let raster = Raster { corner: (3.0, 4.0), width: 3, dots: vec![red, red, none, none, none, red] };
+        let raster = Raster { corner: (3.0, 4.0), side: 0.5, width: 3, dots: vec![red, red, none, none, none, red] };
         let areas: Vec<_> = raster
             .areas()
             .iter()

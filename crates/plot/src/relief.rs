@@ -1,9 +1,9 @@
-use kuva::plot::{ColorMap, Scatter3DPlot, Surface3DPlot};
+use kuva::plot::{Scatter3DPlot, Surface3DPlot};
 use kuva::render::plots::Plot;
 use kuva::render::render::{Primitive, render_multiple};
 
 use crate::sheet::titled;
-use crate::style::heights;
+use crate::style::{heights, heights_of_dots};
 use crate::{Field, Panel, Sketch};
 
 /// Heights above the plane in perspective, x to the right and y away from the reader; light is high.
@@ -50,7 +50,7 @@ impl Panel for Relief {
         }
         if !self.dots.is_empty() {
             let dots = Scatter3DPlot::new().with_data(points(&self.dots)).with_size(DOT);
-            plots.push(Plot::Scatter3D(dots.with_z_colormap(ColorMap::Cividis)));
+            plots.push(Plot::Scatter3D(dots.with_z_colormap(heights_of_dots())));
         }
         let layout = titled(&plots, &self.title, self.size);
         let mut layout = layout.with_force_margins(ROOM.0, ROOM.0).with_force_margins_y(TITLE, ROOM.1);

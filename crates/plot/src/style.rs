@@ -47,6 +47,8 @@ pub enum Mark {
     Down,
     /// Two lines across each other.
     Cross,
+    /// With five points.
+    Star,
 }
 
 impl From<Mark> for MarkerShape {
@@ -57,15 +59,35 @@ impl From<Mark> for MarkerShape {
             Mark::Up => MarkerShape::Triangle,
             Mark::Down => MarkerShape::TriangleDown,
             Mark::Cross => MarkerShape::Cross,
+            Mark::Star => MarkerShape::Star,
         }
     }
 }
 
-/// Colours of heights: from blue by grey to yellow, the higher the lighter, on all of which black can be seen.
+/// From the lowest height to the highest, evenly spaced.
+const HEIGHTS: [[f64; 3]; 4] =
+    [[92.0, 142.0, 214.0], [121.0, 196.0, 203.0], [190.0, 226.0, 162.0], [255.0, 240.0, 150.0]];
+
+/// The colour of a height, 0 to 1: from blue by green to yellow, the higher the lighter, on all of which black can be seen.
+pub(crate) fn height(height: f64) -> [u8; 3] {
+    let along = height.clamp(0.0, 1.0) * (HEIGHTS.len() - 1) as f64;
+    let below = (along as usize).min(HEIGHTS.len() - 2);
+    let share = along - below as f64;
+    std::array::from_fn(|i| (HEIGHTS[below][i] * (1.0 - share) + HEIGHTS[below + 1][i] * share).round() as u8)
+}
+
+/// The same, darker: dots are small, and on white.
+pub(crate) fn heights_of_dots() -> ColorMap {
+    ColorMap::Custom(Arc::new(|at| {
+        let [r, g, b] = height(at).map(|part| u16::from(part) * 7 / 10);
+        format!("#{r:02x}{g:02x}{b:02x}")
+    }))
+}
+
+/// [`height`] for the plotting crate.
 pub(crate) fn heights() -> ColorMap {
-    ColorMap::Custom(Arc::new(|height| {
-        let (r, g, b) = ColorMap::Cividis.map_rgb(height).unwrap_or_default();
-        let [r, g, b] = [r, g, b].map(|channel| 255 - (255 - channel) / 5 * 3);
+    ColorMap::Custom(Arc::new(|at| {
+        let [r, g, b] = height(at);
         format!("#{r:02x}{g:02x}{b:02x}")
     }))
 }

@@ -46,7 +46,7 @@ class Controls {
     const { document: data } = playback;
     const named = (list) => list.map(({ id, label }) => ({ value: id, label }));
     const learners = data.learners.map(({ id, label }) => ({ value: id, label, swatch: id }));
-    const starts = playback.options.start.map((value) => ({ value, label: `${value + 1}` }));
+    const starts = playback.options.start.map((value) => ({ value, label: `${playback.options.start.indexOf(value) + 1}` }));
     this.options = {
       learner: new Options("Who moves the robot", learners, (learner) => actions.select({ learner })),
       constraint: new Options("What is in the way", named(data.constraints), (constraint) => (
@@ -55,11 +55,15 @@ class Controls {
       start: new Options("Start", starts, (start) => actions.select({ start })),
     };
     this.all = make("input", { type: "checkbox", onchange: () => actions.select({ all: this.all.checked }) });
-    this.options.learner.element.append(make("label", {}, this.all, "paths of all"));
+    this.ghost = make("input", { type: "checkbox", onchange: () => actions.select({ ghost: this.ghost.checked }) });
+    this.options.learner.element.append(
+      make("label", {}, this.all, "paths of all"), make("label", {}, this.ghost, "the expert’s robot as a ghost"));
+    this.loop = make("input", { type: "checkbox", onchange: () => actions.select({ loop: this.loop.checked }) });
+    this.curves = new DistanceCurves(actions.seek);
     this.play = make("button", { type: "button", class: "view-play", onclick: actions.toggle });
     this.sliding = false;
     this.slider = make("input", {
-      type: "range", min: 0, step: 1, "aria-label": "Time",
+      type: "range", class: "view-slider", min: 0, step: 1, "aria-label": "Time",
       oninput: () => { this.sliding = true; actions.seek(this.slider.valueAsNumber); },
       onchange: () => { this.sliding = false; actions.seek(this.slider.valueAsNumber); },
     });
@@ -69,7 +73,10 @@ class Controls {
     this.words = make("p", { class: "view-words" });
     const { learner, constraint, start } = this.options;
     this.element = make("div", { class: "view-controls" },
-      make("div", { class: "view-times" }, this.play, this.slider, this.time, make("label", {}, "Speed ", this.speed)),
+      this.curves.element,
+      this.slider,
+      make("div", { class: "view-times" }, this.play, this.time, make("label", {}, "Speed ", this.speed),
+        make("label", {}, this.loop, " Loop")),
       make("div", { class: "view-choices" }, learner.element, constraint.element, start.element),
       this.words);
   }
@@ -77,7 +84,9 @@ class Controls {
   /** Shows the present state. */
   show(playback) {
     for (const [name, options] of Object.entries(this.options)) options.show(playback.choice[name]);
-    this.all.checked = playback.all;
+    for (const name of ["all", "ghost", "loop"]) this[name].checked = playback[name];
+    this.ghost.disabled = playback.choice.learner === "expert";
+    this.curves.show(playback);
     this.speed.value = playback.speed;
     write(this.play, playback.playing ? "❚❚ Pause" : "▶ Play");
     this.play.setAttribute("aria-label", playback.playing ? "Pause" : "Play");
@@ -94,14 +103,29 @@ class Controls {
     if (!this.sliding) write(this.words, Controls.inWords(playback));
   }
 
+  /** Which hands a plate holds, and why. */
+  static held([left, right]) {
+    const who = left && right ? "hands are" : left ? "left hand is" : right ? "right hand is" : "";
+    return who && ` Its ${who} held by the plate before ${left && right ? "their places" : "its place"}: `
+      + "the policy wants nothing but straight on.";
+  }
+
   static inWords(playback) {
     const told = (distances) => `${distances.map((metres) => (100 * metres).toFixed(1)).join(" and ")} cm`;
     const line = (learner) => {
       const { label } = playback.document.learners.find(({ id }) => id === learner);
-      const [now, end] = [playback.sample, playback.lastSample].map((sample) => playback.distances(learner, sample));
+      const now = playback.distances(learner, playback.sample);
+      const course = playback.course(learner);
+      const end = course.at(-1);
+      const closest = [0, 1].map((hand) => Math.min(...course.map((both) => both[hand])));
       const wanted = playback.wantedDistances(learner, playback.lastSample);
       const short = wanted.some((distance, hand) => Math.abs(distance - end[hand]) > WORTH_TELLING);
-      return `${label}: now ${told(now)}, at the end ${told(end)}${short ? ` (its policy wants ${told(wanted)})` : ""}.`;
+      const remarks = [
+        short && ` Its policy wants ${told(wanted)}.`,
+        Controls.held(playback.held(learner)),
+        playback.withinBall(learner) > 0 && " A palm goes through the ball, which stops nobody here.",
+      ];
+      return `${label}: now ${told(now)}, closest ${told(closest)}, at the end ${told(end)}.${remarks.filter(Boolean).join("")}`;
     };
     const tracking = playback.movement().error_mm.toFixed(1);
     return [
@@ -117,7 +141,7 @@ function viewButtons(look, zoom) {
   const views = Object.entries(VIEWS).map(([name, { label }]) => (
     make("button", { type: "button", onclick: () => look(name) }, label)
   ));
-  const nearer = make("button", { type: "button", "aria-label": "Nearer", onclick: () => zoom(1 / 1.2) }, "+");
-  const farther = make("button", { type: "button", "aria-label": "Farther", onclick: () => zoom(1.2) }, "−");
+  const nearer = make("button", { type: "button", "aria-label": "Nearer (+)", onclick: () => zoom(1 / 1.2) }, "+");
+  const farther = make("button", { type: "button", "aria-label": "Farther (−)", onclick: () => zoom(1.2) }, "−");
   return make("div", { class: "view-buttons", role: "group", "aria-label": "Camera" }, ...views, nearer, farther);
 }

@@ -14,17 +14,34 @@ const KEYS = {
   Home: (camera) => camera.look("start"),
 };
 
-/** Moves the camera as the canvas is dragged, pinched, scrolled and typed at; then calls `changed`. */
-function listen(canvas, camera, changed) {
+/** Where an event is in the picture: from its middle to the right and up, in parts of half its height; and its shape. */
+function within(canvas, [x, y]) {
+  const { left, top, width, height } = canvas.getBoundingClientRect();
+  return { at: [(2 * (x - left) - width) / height, 1 - 2 * (y - top) / height], aspect: width / height };
+}
+
+/**
+ * Moves the camera as the canvas is dragged, pinched, scrolled and typed at; then calls `changed`. `pick` finds the place
+ * that is seen in a place of the picture.
+ */
+function listen(canvas, camera, pick, changed) {
   listenToPointers(canvas, camera, changed);
   // The page keeps the wheel until the picture is asked for by a click or the keyboard.
   canvas.addEventListener("wheel", (event) => {
     if (!event.ctrlKey && document.activeElement !== canvas) return;
     event.preventDefault();
     const pixels = event.deltaY * (event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? 1 : 30);
-    camera.zoom(Math.exp(pixels * (event.ctrlKey ? 0.01 : 0.0015)));
+    const { at, aspect } = within(canvas, [event.clientX, event.clientY]);
+    camera.zoom(Math.exp(pixels * (event.ctrlKey ? 0.01 : 0.0015)), at, aspect);
     changed();
   }, { passive: false });
+  canvas.addEventListener("dblclick", (event) => {
+    const { at, aspect } = within(canvas, [event.clientX, event.clientY]);
+    const place = pick(camera.eye(), camera.sight(at, aspect));
+    if (place) camera.focus(place);
+    changed();
+  });
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
   canvas.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || !Object.hasOwn(KEYS, event.key)) return;
     event.preventDefault();
@@ -33,7 +50,7 @@ function listen(canvas, camera, changed) {
   });
 }
 
-/** One pointer turns; two turn by their middle and zoom by their distance. */
+/** One pointer turns, or with the right button or Shift moves the picture; two move it and zoom by their distance. */
 function listenToPointers(canvas, camera, changed) {
   const pointers = new Map();
   const middle = () => times([...pointers.values()].reduce(plus, [0, 0]), 1 / pointers.size);
@@ -47,8 +64,14 @@ function listenToPointers(canvas, camera, changed) {
     const before = { middle: middle(), spread: spread() };
     pointers.set(event.pointerId, [event.clientX, event.clientY]);
     const [dx, dy] = minus(middle(), before.middle);
-    camera.orbit(-dx * TURN_PER_PIXEL, dy * TURN_PER_PIXEL);
-    if (pointers.size > 1) camera.zoom(before.spread / spread());
+    if (pointers.size > 1 || event.shiftKey || event.buttons & 2) {
+      const { at, aspect } = within(canvas, middle());
+      const half = canvas.clientHeight / 2;
+      camera.pan([dx / half, -dy / half], aspect);
+      if (pointers.size > 1) camera.zoom(before.spread / spread(), at, aspect);
+    } else {
+      camera.orbit(-dx * TURN_PER_PIXEL, dy * TURN_PER_PIXEL);
+    }
     changed();
   });
   for (const end of ["pointerup", "pointercancel"]) {

@@ -37,6 +37,15 @@ function rotationAbout([x, y, z], angle) {
   ];
 }
 
+/** The pose of what lies along z around the middle of two points. */
+function between(from, to) {
+  const along = unit(minus(to, from));
+  const aside = unit(cross(Math.abs(along[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0], along));
+  const columns = [aside, cross(along, aside), along];
+  const rotation = [0, 1, 2].flatMap((row) => columns.map((column) => column[row]));
+  return { rotation, translation: mix(from, to, 0.5) };
+}
+
 /** The pose as a matrix. */
 function matrix({ rotation: r, translation: t }) {
   return [r[0], r[3], r[6], 0, r[1], r[4], r[7], 0, r[2], r[5], r[8], 0, t[0], t[1], t[2], 1];

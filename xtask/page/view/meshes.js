@@ -94,6 +94,16 @@ function cylinder(radius, length) {
   return mesh;
 }
 
+/** A cylinder along z with a half ball at either end. */
+function capsule(radius, length) {
+  const mesh = new Mesh();
+  mesh.add(cylinder(radius, length), IDENTITY);
+  for (const end of [-length / 2, length / 2]) {
+    mesh.add(sphere(radius), { rotation: IDENTITY.rotation, translation: [0, 0, end] });
+  }
+  return mesh;
+}
+
 /** A shape of the figure data, as its robot's URDF has it. */
 function primitive({ kind, size }) {
   if (kind === "sphere") return sphere(size[0]);

@@ -7,6 +7,11 @@ function rows(steps, parts) {
   return steps.map((step) => step.map((by, k) => (sum[k] += by) / parts));
 }
 
+/** Slower than this a hand is at rest, metres a second. */
+const AT_REST = 0.001;
+/** Palms are in the middle of hands 3.5 cm thick: deeper than this the ball is not held but gone through, metres. */
+const DEEP = 0.01;
+
 class Playback {
   constructor(document) {
     this.document = document;
@@ -19,21 +24,24 @@ class Playback {
     this.options = {
       learner: ids(document.learners),
       constraint: ids(document.constraints),
-      start: Array.from({ length: document.starts }, (_, i) => i),
+      start: document.starts,
     };
     // What shows the point: the obstacle that no demonstration shows, which stops the naive learner's hands.
     const { learner, constraint } = this.options;
     const unseen = constraint.includes("obstacle") ? "obstacle" : constraint[0];
-    this.choice = { learner: learner.at(-1), constraint: unseen, start: 0 };
+    this.choice = { learner: learner.at(-1), constraint: unseen, start: document.starts[0] };
     this.all = true;
+    this.ghost = false;
+    this.loop = false;
+    this.courses = new Map();
     this.speed = 5;
     this.playing = false;
     // The last picture says most: hands at the ball, their paths behind them.
     this.sample = this.lastSample;
   }
 
-  /** Changes some of learner, constraint, start; the learner "all" shows everybody's paths. */
-  select({ all = this.all, ...choice }) {
+  /** Changes some of learner, constraint, start; "all" shows everybody's paths, "ghost" the expert's robot too. */
+  select({ all = this.all, ghost = this.ghost, loop = this.loop, ...choice }) {
     if (choice.learner === "all") {
       all = true;
       delete choice.learner;
@@ -42,7 +50,7 @@ class Playback {
       if (!this.options[name]?.includes(value)) throw new RangeError(`no ${name} is called ${value}`);
     }
     Object.assign(this.choice, choice);
-    this.all = all;
+    Object.assign(this, { all, ghost, loop });
   }
 
   /** The movement chosen, or that of another learner from the same start. */
@@ -78,7 +86,9 @@ class Playback {
   /** So many seconds go by in front of the screen. */
   advance(seconds) {
     this.seek(this.sample + seconds * this.speed / this.document.time_step);
-    if (this.sample === this.lastSample) this.pause();
+    if (this.sample < this.lastSample) return;
+    if (this.loop) this.sample = 0;
+    else this.pause();
   }
 
   /** A row of a movement at a time, between samples on a straight line. */
@@ -101,6 +111,35 @@ class Playback {
   /** How far the robot's palms are from their places at the ball, left and right, metres. */
   distances(learner, sample) {
     return this.toPlaces(this.robot.hands(this.joints(learner, sample)));
+  }
+
+  /** How far the robot's palms are at every sample, a row each; left and right, metres. */
+  course(learner) {
+    const name = [this.choice.constraint, this.choice.start, learner].join();
+    if (!this.courses.has(name)) {
+      const course = this.movement(learner).joints.map((joints) => this.toPlaces(this.robot.hands(joints)));
+      this.courses.set(name, course);
+    }
+    return this.courses.get(name);
+  }
+
+  /** Which hands a plate holds at the end of a movement: before it, in the space where it is felt, and at rest. */
+  held(learner) {
+    const { palms, plates } = this.movement(learner);
+    const { wall, target } = this.document.scene;
+    return [0, 3].map((hand) => {
+      const [before, [x, y, z]] = palms.slice(-2).map((row) => row.slice(hand, hand + 3));
+      const behind = plates.some(([from, to]) => y >= (from ?? -Infinity) && y <= (to ?? Infinity));
+      const rests = length(minus([x, y, z], before)) < AT_REST * this.document.time_step;
+      return x < wall.x && wall.x - x < wall.reach + 0.01 && target[hand] > wall.x && behind && rests;
+    });
+  }
+
+  /** How many samples a palm of the robot is within the ball, deeper than what hides in a hand. */
+  withinBall(learner) {
+    const { centre, diameter } = this.document.scene.ball;
+    const inside = (palm) => length(minus(palm, centre)) < diameter / 2 - DEEP;
+    return this.movement(learner).joints.filter((joints) => this.robot.hands(joints).some(inside)).length;
   }
 
   /** How far they would be if its joints could follow. */

@@ -1,10 +1,15 @@
 "use strict";
-// Forward kinematics: from joint positions to the poses of all links, in the frame of the first.
+// Forward kinematics: from joint positions to the poses of all links, in the frame of the first; and legs, which are
+// drawn and not computed with: hips go with the trunk, feet stand.
 
 class Robot {
-  /** `document.robot` of the figure data: links, parents first. */
-  constructor({ links, shapes, hands }) {
-    Object.assign(this, { links, shapes, handLinks: hands });
+  /** `document.robot` of the figure data: links, parents first; `legs` as the page adds them. */
+  constructor({ links, shapes, hands, legs }) {
+    Object.assign(this, { links, shapes, handLinks: hands, legs });
+    const { rotation, translation } = this.poses([])[legs.trunk];
+    // Hips in the trunk's frame, which is not turned while all joints are at 0.
+    if (rotation.some((value, i) => value !== IDENTITY.rotation[i])) throw new Error("the trunk is turned at rest");
+    this.hips = legs.hips.map((hip) => minus(hip, translation));
   }
 
   /** The pose of each link at joint positions, radians and metres. */
@@ -13,7 +18,7 @@ class Robot {
     for (const link of this.links) {
       const parent = link.parent === null ? IDENTITY : poses[link.parent];
       const origin = composed(parent, { rotation: link.rotation, translation: link.translation });
-      const position = link.joint === null ? 0 : joints[link.joint];
+      const position = joints[link.joint] ?? 0;
       poses.push(composed(origin, Robot.moved(link, position)));
     }
     return poses;
@@ -23,6 +28,24 @@ class Robot {
   hands(joints) {
     const poses = this.poses(joints);
     return this.handLinks.map((link) => poses[link].translation);
+  }
+
+  /** Ankle, knee and hip of the left leg and of the right one, metres. */
+  limbs(poses) {
+    const { rotation, translation } = poses[this.legs.trunk];
+    return this.hips.map((at, side) => {
+      const [hip, ankle] = [plus(turned(rotation, at), translation), this.legs.ankles[side]];
+      return [ankle, Robot.knee(hip, ankle, this.legs.bone), hip];
+    });
+  }
+
+  /** Between bones of one length, in front of the line from hip to ankle; on that line where they are too short. */
+  static knee(hip, ankle, bone) {
+    const down = minus(ankle, hip);
+    const along = unit(down);
+    const forward = unit(minus([1, 0, 0], times(along, along[0])));
+    const bend = Math.sqrt(Math.max(bone ** 2 - dot(down, down) / 4, 0));
+    return plus(mix(hip, ankle, 0.5), times(forward, bend));
   }
 
   /** What a joint adds to its origin. */

@@ -5,6 +5,9 @@
 const DASHES = { expert: [1, 1], naive: [0.016, 0.5], policy_align: [0.045, 0.66], slope_gp: [1, 1] };
 const PATH_RADIUS = 0.0055;
 const PLATE_THICKNESS = 0.008;
+const GHOST = 0.22;
+/** Eyes look out of the head, at these angles from where it faces, radians. */
+const EYE = { radius: 0.022, aside: 0.38, up: 0.12 };
 
 class Scene {
   constructor(renderer, playback) {
@@ -24,6 +27,10 @@ class Scene {
       for (const shape of shapes) mesh.add(primitive(shape), shape);
       return upload(mesh);
     });
+    const { bone, radius } = robot.legs;
+    this.bone = upload(capsule(radius, bone));
+    this.eye = upload(sphere(EYE.radius));
+    this.head = robot.links.findIndex(({ name }) => name === "head");
     this.extent = this.corners();
     // A palm is a point; the hand around it is the nearest link with a body.
     this.handLinks = robot.handLinks.map((link) => {
@@ -85,11 +92,54 @@ class Scene {
   }
 
   robotThings(palette) {
-    const { robot, choice: { learner } } = this.playback;
+    const { playback, playback: { choice: { learner } } } = this;
+    const shown = this.bodies(playback.joints(), (hand) => (hand ? palette[learner] : palette.robot), palette.eye);
+    if (!playback.ghost || learner === "expert") return shown;
+    const ghost = this.bodies(playback.joints("expert"), () => palette.expert, palette.eye);
+    return [...shown, ...ghost.map((thing) => ({ ...thing, opacity: GHOST, shadow: false }))];
+  }
+
+  /** The robot in one posture. */
+  bodies(joints, color, eye) {
+    const { robot } = this.playback;
+    const poses = robot.poses(joints);
+    const links = this.links.map((mesh, link) => ({ mesh, pose: poses[link], color: color(this.handLinks.includes(link)) }));
+    const bones = robot.limbs(poses).flatMap(([ankle, knee, hip]) => [between(ankle, knee), between(knee, hip)]);
+    const legs = bones.map((pose) => ({ mesh: this.bone, pose, color: color(false) }));
+    const eyes = this.eyes().map((at) => ({ mesh: this.eye, pose: composed(poses[this.head], Scene.at(at)), color: eye, shadow: false }));
+    return [...links.filter(({ mesh }) => mesh), ...legs, ...eyes];
+  }
+
+  /** Where eyes are in the frame of the head. */
+  eyes() {
+    const skull = this.playback.robot.shapes.find(({ link, kind }) => link === this.head && kind === "sphere");
+    if (!skull) return [];
+    const out = skull.size[0] - EYE.radius / 3;
+    return [-EYE.aside, EYE.aside].map((aside) => {
+      const level = Math.cos(EYE.up);
+      return plus(skull.translation, times([level * Math.cos(aside), level * Math.sin(aside), Math.sin(EYE.up)], out));
+    });
+  }
+
+  /** The place of the ball, of a body of the robot or of the table top that is first seen along a line of sight. */
+  pick(eye, sight) {
+    const { playback: { robot }, scene: { ball, table } } = this;
     const poses = robot.poses(this.playback.joints());
-    const color = (link) => this.handLinks.includes(link) ? palette[learner] : palette.robot;
-    const things = this.links.map((mesh, link) => ({ mesh, pose: poses[link], color: color(link) }));
-    return things.filter(({ mesh }) => mesh);
+    const round = robot.shapes.map((shape) => ({
+      centre: plus(turned(poses[shape.link].rotation, shape.translation), poses[shape.link].translation),
+      radius: Math.max(...shape.size) / (shape.kind === "sphere" ? 1 : 2),
+    }));
+    const hits = [{ centre: ball.centre, radius: ball.diameter / 2 }, ...round].flatMap(({ centre, radius }) => {
+      const along = dot(minus(centre, eye), sight);
+      return along > 0 && length(minus(plus(eye, times(sight, along)), centre)) < radius ? [{ along, place: centre }] : [];
+    });
+    for (const height of [table.top, 0]) {
+      const along = (height - eye[2]) / sight[2];
+      const place = plus(eye, times(sight, along));
+      const there = height === 0 || (place[0] > table.near && place[0] < table.far && Math.abs(place[1]) < table.half_width);
+      if (along > 0 && there) hits.push({ along, place });
+    }
+    return hits.sort((a, b) => a.along - b.along)[0]?.place;
   }
 
   /**

@@ -1,17 +1,23 @@
 "use strict";
 // The interactive view: a robot reaches for a ball, and one can walk around it. It wants the figure data
 // "grasp_playback" and an element, and is made of matrix.js, robot.js, meshes.js, shaders.js, renderer.js, camera.js,
-// gestures.js, playback.js, scene.js, controls.js and this file, in this order in one script; view.css is its style.
+// gestures.js, playback.js, scene.js, curves.js, controls.js, address.js and this file, in this order in one script;
+// view.css is its style.
 
 const COLOR_NAMES = [
-  "background", "sky", "ground", "floor", "grid", "robot", "table", "ball", "plate", "target",
+  "background", "sky", "ground", "floor", "grid", "robot", "table", "ball", "plate", "target", "eye",
   "expert", "naive", "policy_align", "slope_gp",
 ];
-const HELP = "Drag or arrow keys: turn. Pinch, wheel (after a click) or + and −: nearer, farther. "
-  + "Space: play, pause. Home: reset.";
-const LEGEND = "A path is strong up to now and faint ahead; dots are the palms and their places at the ball. Blue plates "
-  + "are in the way: in the pale space around them a hand moves neither forwards nor back. A plate goes on upwards beyond "
-  + "what is drawn; where its side has no dark edge, it goes on sideways too.";
+const HELP = "Drag or arrow keys: turn. Right button or Shift and drag, two fingers: move. Pinch, wheel (after a click) or + "
+  + "and −: nearer, farther. Double-click: look at what is there. Space: play, pause. Home: reset. The address keeps what is shown.";
+/** So much of the picture has to be seen before it plays by itself. */
+const IN_SIGHT = 0.6;
+/** Milliseconds without a change after which the address is written. */
+const SETTLED = 400;
+const LEGEND = "Paths are solid up to the current time, faint after it; dots are the palms and their places at the ball. Blue plates "
+  + "are in the way: in the pale space around them a hand moves neither forwards nor back. Only hands feel them: "
+  + "the trunk may lean through. A plate goes on upwards beyond what is drawn; where its side has no dark edge, it goes on sideways "
+  + "too.";
 
 /** Builds the view in an element. Where nothing can be drawn it says so, with a link to `data-still`. */
 function startView(element, data) {
@@ -42,6 +48,8 @@ class View {
     Object.assign(this, { element, canvas, playback: new Playback(data) });
     this.restful = matchMedia("(prefers-reduced-motion: reduce)");
     this.last = null;
+    // It plays once by itself, unless somebody has begun with it.
+    this.fresh = true;
     this.build(renderer);
     this.camera = new Camera(this.scene.extent);
     this.controls = new Controls(this.playback, {
@@ -50,8 +58,9 @@ class View {
       seek: (sample) => { this.playback.pause(); this.seek(sample); },
       setSpeed: (speed) => { this.playback.speed = speed; },
     });
+    this.follow(location.hash);
     const look = (name) => this.look(name);
-    const zoom = (factor) => { this.camera.zoom(factor); this.ask(); };
+    const zoom = (factor) => { this.camera.zoom(factor); this.changed(); };
     const stage = make("div", { class: "view-stage" }, canvas, viewButtons(look, zoom));
     const help = make("p", { class: "view-help" }, LEGEND, make("br"), make("span", { id: "view-keys" }, HELP));
     element.replaceChildren(stage, this.controls.element, help);
@@ -68,7 +77,8 @@ class View {
 
   listen() {
     const { canvas } = this;
-    listen(canvas, this.camera, () => this.ask());
+    listen(canvas, this.camera, (eye, sight) => this.scene.pick(eye, sight), () => this.changed());
+    window.addEventListener("hashchange", () => this.follow(location.hash));
     canvas.addEventListener("keydown", (event) => {
       if (event.key !== " ") return;
       event.preventDefault();
@@ -77,7 +87,12 @@ class View {
     canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     canvas.addEventListener("webglcontextrestored", () => { this.build(new Renderer(canvas)); this.ask(); });
     new ResizeObserver(() => this.ask()).observe(canvas);
-    new IntersectionObserver(([entry]) => { this.visible = entry.isIntersecting; this.ask(); }).observe(canvas);
+    const seen = ([entry]) => {
+      this.visible = entry.isIntersecting;
+      if (entry.intersectionRatio >= IN_SIGHT) this.begin();
+      this.ask();
+    };
+    new IntersectionObserver(seen, { threshold: [0, IN_SIGHT] }).observe(canvas);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.ask());
     window.addEventListener("beforeprint", () => this.print(true));
     window.addEventListener("afterprint", () => this.print(false));
@@ -91,33 +106,65 @@ class View {
     if (starts) this.canvas.after(make("img", { class: "view-paper", alt: "The robot and the ball", src: this.canvas.toDataURL() }));
   }
 
+  /** Plays from the beginning, once, for who sees it for the first time and has not asked for rest. */
+  begin() {
+    if (!this.fresh || this.restful.matches) return;
+    this.fresh = false;
+    this.playback.seek(0);
+    this.playback.play();
+  }
+
+  /** Shows what an address tells, if it is about the view; what it tells wrongly is left as it is. */
+  follow(hash) {
+    const told = readAddress(hash);
+    if (!told) return;
+    const known = Object.entries(this.playback.options).filter(([name, values]) => values.includes(told[name]));
+    this.playback.pause();
+    this.playback.select(Object.fromEntries(known.map(([name]) => [name, told[name]])));
+    this.scene.choose();
+    if (told.sample !== undefined) this.playback.seek(told.sample);
+    if (told.camera) this.camera.put(told.camera);
+    this.fresh = false;
+    this.element.scrollIntoView({ behavior: "instant" });
+    this.ask();
+  }
+
   // What the reader, and tests, may do.
+
+  /** Draws, and when all has settled writes the address. */
+  changed() {
+    this.fresh = false;
+    this.ask();
+    clearTimeout(this.settling);
+    const write = () => history.replaceState(null, "", writeAddress(this.playback, this.camera));
+    this.settling = setTimeout(write, SETTLED);
+  }
 
   select(choice) {
     this.playback.select(choice);
     this.scene.choose();
-    this.ask();
+    this.changed();
   }
 
   play() {
     this.playback.play();
-    this.ask();
+    this.changed();
   }
 
   pause() {
     this.playback.pause();
-    this.ask();
+    this.changed();
   }
 
   seek(sample) {
     this.playback.seek(sample);
-    this.ask();
+    this.changed();
   }
 
   look(name) {
     this.camera.look(name);
     if (this.restful.matches) this.camera.arrive();
-    this.ask();
+    this.changed();
   }
 
   // Drawing: only when something was asked for, and only what can be seen.
@@ -174,15 +221,17 @@ class View {
       play: () => this.play(),
       pause: () => this.pause(),
       seek: (sample) => this.seek(sample),
-      orbit: (dx, dy) => { camera.orbit(dx, dy); this.ask(); },
+      orbit: (dx, dy) => { camera.orbit(dx, dy); this.changed(); },
       look: (name) => this.look(name),
       render: () => this.render(),
       hands: () => playback.robot.hands(playback.joints()),
+      limbs: () => playback.robot.limbs(playback.robot.poses(playback.joints())),
+      starts: () => playback.options.start,
       project: (place) => this.project(place),
       state: () => {
-        const { choice, all, sample, playing, speed } = playback;
-        const { azimuth, elevation, distance } = camera;
-        return { ...choice, all, sample, playing, speed, azimuth, elevation, distance };
+        const { choice, all, ghost, loop, sample, playing, speed } = playback;
+        const { azimuth, elevation, distance, x, y, z } = camera;
+        return { ...choice, all, ghost, loop, sample, playing, speed, azimuth, elevation, distance, x, y, z };
       },
     };
   }

@@ -33,7 +33,7 @@ impl Error {
 /// From the largest to the smallest in the paper.
 pub(super) const ERRORS: [Error; 3] = [
     Error { measure: Measure::Nupe, name: "π (nUPE)", color: "#d55e00", mark: Mark::Circle },
-    Error { measure: Measure::Ncpe, name: "Nπ (nCPE)", color: "#56b4e9", mark: Mark::Square },
+    Error { measure: Measure::Ncpe, name: "Nπ (nCPE)", color: "#0072b2", mark: Mark::Square },
     Error { measure: Measure::PotentialNmse, name: "φ (nMSE)", color: "#4d4d4d", mark: Mark::Up },
 ];
 
@@ -51,7 +51,7 @@ pub(super) const SECOND: Style = Style { dash: Dash::Dashed, filling: Filling::H
 pub(super) const BESIDE: [(Error, &str); 2] = [
     (Error { measure: Measure::Nupe, name: "π, slope GP", color: "#cc79a7", mark: Mark::Down }, "slope_gp"),
     (
-        Error { measure: Measure::Nupe, name: "π, slope GP without trend", color: "#0072b2", mark: Mark::Cross },
+        Error { measure: Measure::Nupe, name: "π, slope GP without trend", color: "#7a4b94", mark: Mark::Cross },
         "slope_gp_no_trend",
     ),
 ];

@@ -1,11 +1,11 @@
 //! The robot: what it is made of, and where its 22 joints are.
 
 use kinematics::{LinkId, MotionKind, Workspace};
-use nalgebra::{Point3, Vector3};
+use nalgebra::{IsometryMatrix3, Point3, Vector3};
 use plot::{Camera, Dash, Item, Paint, Picture, Space, Stroke};
 use serde::{Deserialize, Serialize};
 
-use super::shapes::{self, Shape};
+use super::shapes::{self, Kind, Shape};
 use super::sound::{self, Sound, some};
 use super::{Document, Drawing, Figure, Sources, rounded};
 use crate::robots::upper_body;
@@ -67,19 +67,23 @@ fn ready() -> anyhow::Result<Robot> {
 fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let robot: Robot = sources.document("figure1")?;
     let title = format!("{} joints", robot.joints.len());
-    let view = |title: &str, azimuth, width, over: Vec<Item>| Space {
+    let view = |title: &str, width, over: Vec<Item>| Space {
         title: title.to_owned(),
-        camera: Camera { azimuth, elevation: 14.0 },
-        items: shapes::items(&robot.shapes, |link| Part::of(link).paint()),
+        camera: Camera { azimuth: 38.0, elevation: 14.0 },
+        items: shapes::items(&robot.shapes, &IsometryMatrix3::identity(), |link| Part::of(link).paint()),
         over,
         frame: None,
         extent: None,
         size: (width, 560.0),
     };
-    let counted = view(&title, 38.0, 700.0, heel().into_iter().chain(counts(&robot.joints)).collect());
-    let axes = view("Their axes", -28.0, 400.0, heel().into_iter().chain(axes(&robot.joints)).collect());
+    let counted = view(&title, 700.0, heel().into_iter().chain(counts(&robot.joints)).collect());
+    let axes = axes(&robot.joints).into_iter().chain(height(&robot.shapes));
+    let axes = view("Their axes", 480.0, heel().into_iter().chain(axes).collect());
     Ok(Drawing { picture: Picture::rows(&[&[&counted, &axes]]), tables: vec![] })
 }
+
+/// So far to the robot's left its height stands, metres.
+const BESIDE: f64 = 0.55;
 
 /// Parts of the body, by the names of links and joints.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -130,6 +134,21 @@ fn heel() -> Vec<Item> {
     let name = Item::Note { at: Point3::origin(), text: "heel".to_owned(), shift: (46.0, 46.0), color: "#1a1a1a" };
     let axes = [("x", Vector3::x()), ("y", Vector3::y()), ("z", Vector3::z())].into_iter().flat_map(axis);
     axes.chain([name]).collect()
+}
+
+/// How high the head reaches: a scale beside the robot, metres.
+fn height(shapes: &[Shape]) -> Vec<Item> {
+    let top = |shape: &Shape| (shape.kind == Kind::Sphere).then(|| shape.translation[2] + shape.size[0]);
+    let top = shapes.iter().filter_map(top).fold(0.0, f64::max);
+    let at = |z| Point3::new(0.0, BESIDE, z);
+    let stroke = Stroke { color: "#5a5a5a", width: 1.2, dash: Dash::Solid };
+    let end = |z| {
+        let points = vec![Point3::new(0.0, BESIDE - 0.03, z), Point3::new(0.0, BESIDE + 0.03, z)];
+        Item::Path { points, stroke, label: None }
+    };
+    let line = Item::Path { points: vec![at(0.0), at(top)], stroke, label: None };
+    let words = Item::Note { at: at(0.25 * top), text: format!("{top:.1} m"), shift: (6.0, 0.0), color: "#5a5a5a" };
+    vec![line, end(0.0), end(top), words]
 }
 
 /// How many joints meet in one point, and which.

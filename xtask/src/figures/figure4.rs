@@ -158,12 +158,16 @@ fn coarse(field: &Field) -> Field {
 }
 
 fn layers(shown: &Shown) -> Vec<Layer> {
-    let arrows = |arrows: &[_], color, width, label| Layer::Arrows {
-        arrows: arrows.to_vec(),
+    // Whose tip is outside would be cut at the frame.
+    let inside = |&&(x, y, u, v): &&(f64, f64, f64, f64)| {
+        [x + ARROW_SECONDS * u, y + ARROW_SECONDS * v].iter().all(|tip| tip.abs() < EXTENT)
+    };
+    let arrows = |arrows: &[_], color, width, label: Option<&str>| Layer::Arrows {
+        arrows: arrows.iter().filter(inside).copied().collect(),
         color,
         scale: ARROW_SECONDS,
         width,
-        label: Some(str::to_owned(label)),
+        label: label.map(str::to_owned),
     };
     let marks =
         |points: &[_], mark| Layer::Marks { points: points.to_vec(), mark, color: "#000000", size: 6.0, label: None };
@@ -172,9 +176,17 @@ fn layers(shown: &Shown) -> Vec<Layer> {
         Layer::Contours(shown.potential.clone()),
         marks(&shown.maxima, Mark::Up),
         marks(&shown.minima, Mark::Down),
-        arrows(&shown.constrained, "#d55e00", 2.2, "x₁ blocked"),
-        arrows(&shown.unconstrained, "#000000", 1.2, "unconstrained"),
+        // Around shafts that are long enough for one.
+        arrows(&longer(&shown.constrained), "#ffffff", 5.0, None),
+        arrows(&shown.constrained, "#c04a00", 2.4, Some("x₁ blocked")),
+        arrows(&shown.unconstrained, "#000000", 1.2, Some("unconstrained")),
     ]
+}
+
+/// Arrows whose shaft can be seen.
+fn longer(arrows: &[(f64, f64, f64, f64)]) -> Vec<(f64, f64, f64, f64)> {
+    const SHAFT: f64 = 0.12;
+    arrows.iter().filter(|(_, _, u, v)| ARROW_SECONDS * u.hypot(*v) > SHAFT).copied().collect()
 }
 
 fn arrows(name: &'static str, arrows: &[(f64, f64, f64, f64)]) -> Csv {

@@ -1,7 +1,7 @@
 //! Fig. 6: errors on the parabola against the amount of data, and against noise.
 
 use anyhow::Context as _;
-use plot::{Axis, Curves, Entry, Key, Picture};
+use plot::{Axis, Curve, Curves, Entry, Key, Picture};
 
 use super::errors::{BESIDE, ERRORS, FIRST, SECOND, Series, Style};
 use super::{Csv, Drawing, Figure, Sources};
@@ -11,7 +11,10 @@ use crate::experiments::{BANDWIDTHS, BESIDE_LEFT, BESIDE_RIGHT, NOISE_PERCENT, R
 const STYLES: [Style; 2] = [FIRST, SECOND];
 
 /// Pixels.
-const SIZE: (f64, f64) = (600.0, 430.0);
+const SIZE: (f64, f64) = (640.0, 430.0);
+
+/// No axis reaches farther down: below, errors are those of rounding, and what is to be compared would have no room.
+const LOWEST: f64 = 1e-6;
 
 pub(super) fn left() -> Figure {
     Figure::new("figure6_left", Some("figure6_left"), &["figure6_left"], draw_left)
@@ -31,7 +34,7 @@ fn draw_left(sources: &Sources) -> anyhow::Result<Drawing> {
             x: [0.0, 105.0],
             x_step: 20.0,
             y: [1e-3, 10.0],
-            ..panel("Learning from fewer movements", &series)
+            ..panel("Learning from fewer trajectories", &series)
         },
     );
     let tables = tables(&series, ["narrow", "medium"], "trajectories_percent");
@@ -52,11 +55,14 @@ fn draw_right(sources: &Sources) -> anyhow::Result<Drawing> {
     let (fused, smoothed) = (fused?, smoothed?);
     let panels = [
         with(&fused, panel("Potentials from recorded velocities", &velocity, [1e-3, 1.0])),
-        with(&smoothed, panel("Potentials from displacements (9)", &displacement, [1e-3, 1e4])),
+        Curves {
+            size: (0.75 * SIZE.0, SIZE.1),
+            ..with(&smoothed, panel("For comparison: displacements, eq. (9)", &displacement, [1e-3, 1e4]))
+        },
     ];
     let mut all = tables(&velocity, ["velocity-narrow", "velocity-medium"], "noise_percent");
     all.extend(tables(&displacement, ["displacement-narrow", "displacement-medium"], "noise_percent"));
-    let key = key(2.0 * SIZE.0, &fused);
+    let key = key(1.75 * SIZE.0, &fused);
     Ok(Drawing { picture: Picture::rows(&[&[&panels[0], &panels[1]], &[&key]]), tables: all })
 }
 
@@ -81,9 +87,18 @@ fn panel(title: &str, series: &[Series<'_>]) -> Curves {
         x: [0.0; 2],
         y: [0.0; 2],
         x_step: 0.0,
-        lines: series.iter().flat_map(Series::curves).collect(),
+        lines: series.iter().zip([true, false]).flat_map(|(series, banded)| curves(series, banded)).collect(),
         size: SIZE,
     }
+}
+
+/// The three errors, with or without bands: those of both bandwidths lie on each other.
+fn curves(series: &Series<'_>, banded: bool) -> Vec<Curve> {
+    let bare = |mut curve: Curve| {
+        curve.points.iter_mut().filter(|_| !banded).for_each(|point| point.2 = 0.0);
+        curve
+    };
+    series.curves().map(bare).collect()
 }
 
 /// A series for each learner beside PolicyAlign; empty ones where they were not run.
@@ -93,13 +108,16 @@ fn beside<'a>(sources: &'a Sources, id: &str, case: &str, percent: &[f64]) -> an
     Ok(BESIDE.map(|(_, learner)| Series { result, rows: of(learner), style: FIRST }).into())
 }
 
-/// The curves of the learners beside, on an axis that reaches down to them.
+/// The curves of the learners beside, on an axis that reaches down to them, or to [`LOWEST`]: what is below lies on its edge.
 fn with(beside: &[Series<'_>], mut panel: Curves) -> Curves {
     for (series, (error, _)) in beside.iter().zip(BESIDE) {
-        let curve = series.curve(error);
+        let mut curve = series.curve(error);
         let least = curve.points.iter().map(|point| point.1).filter(|mean| *mean > 0.0).fold(f64::INFINITY, f64::min);
         if least < panel.y[0] {
-            panel.y[0] = 10_f64.powf(least.log10().floor());
+            panel.y[0] = 10_f64.powf(least.log10().floor()).max(LOWEST);
+        }
+        for point in curve.points.iter_mut().filter(|point| point.1 < panel.y[0]) {
+            (point.1, point.2) = (panel.y[0], 0.0);
         }
         if !curve.points.is_empty() {
             panel.lines.push(curve);

@@ -10,7 +10,7 @@ use super::{Drawing, Figure, Sources, stage};
 use crate::figures::Who;
 
 /// Postures that are shown.
-const FRAMES: usize = 5;
+const FRAMES: usize = 6;
 
 pub(crate) fn figure() -> Figure {
     Figure::new("figure7", Some("table2"), &["grasp_playback"], draw)
@@ -25,7 +25,8 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let frames: Vec<Space> =
         stages.map(|sample| frame(&playback, &actor, shown, sample)).collect::<anyhow::Result<_>>()?;
     let panels: Vec<&dyn Panel> = frames.iter().map(|frame| frame as &dyn Panel).collect();
-    Ok(Drawing { picture: Picture::rows(&[&panels]), tables: vec![] })
+    let rows: Vec<&[&dyn Panel]> = panels.chunks(FRAMES / 2).collect();
+    Ok(Drawing { picture: Picture::rows(&rows), tables: vec![] })
 }
 
 /// Samples at which the hands have gone equal shares of their way.
@@ -47,13 +48,13 @@ fn frame(playback: &GraspPlayback, actor: &Actor, movement: &Movement, sample: u
     items.extend(stage::plates(&playback.scene, &movement.plates));
     let side = playback.scene.table.half_width;
     Ok(Space {
-        title: format!("t = {} s", sample as f64 * playback.time_step),
+        title: format!("{:.0} % of the time", 100.0 * sample as f64 / (movement.joints.len() - 1) as f64),
         camera: Camera { azimuth: 30.0, elevation: 25.0 },
         items,
         over: stage::ways(&movement.palms[..=sample], Who::Demonstration.stroke(1.6)).to_vec(),
         frame: None,
-        extent: Some([Point3::new(-0.2, -side, 0.0), Point3::new(playback.scene.table.far, side, 1.08)]),
-        size: (252.0, 310.0),
+        extent: Some([Point3::new(-0.15, -side, 0.0), Point3::new(playback.scene.table.far - 0.1, side, 1.13)]),
+        size: (360.0, 392.0),
     })
 }
 
@@ -76,6 +77,6 @@ mod tests {
         let stages = stages(&palms);
         assert_eq!((stages[0], stages[2]), (0, 1));
         assert_eq!(stages.len(), FRAMES);
-        assert!(stages.is_sorted() && stages[4] > 40);
+        assert!(stages.is_sorted() && stages[FRAMES - 1] > 40);
     }
 }

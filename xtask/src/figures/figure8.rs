@@ -18,12 +18,12 @@ const EVERY: f64 = 5.0;
 fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let playback: GraspPlayback = sources.document("grasp_playback")?;
     let frame = frame(&playback);
-    let above = view("From above", Camera::ABOVE, &playback, &frame);
-    let behind = view("From behind", Camera::BEHIND, &playback, &frame);
+    let above = view("From above", Camera::ABOVE, &playback, &frame, playback.starts);
+    let behind = view("From behind, two of the starts", Camera::BEHIND, &playback, &frame, 2);
     let distances =
         shown(&playback).map(|learner| Distances::of(&playback, learner)).collect::<anyhow::Result<Vec<_>>>()?;
     let curves = curves(&distances, playback.time_step);
-    let key = Key { rows: vec![distances.iter().map(Distances::entry).collect()], width: 1240.0 };
+    let key = Key { rows: vec![distances.iter().map(Distances::entry).collect()], width: 1250.0 };
     let picture = Picture::rows(&[&[&above, &behind, &curves], &[&key]]);
     Ok(Drawing { picture, tables: vec![ends(&playback), over_time(&distances)] })
 }
@@ -65,14 +65,15 @@ fn frame(playback: &GraspPlayback) -> Frame {
     }
 }
 
-fn view(title: &str, camera: Camera, playback: &GraspPlayback, frame: &Frame) -> Space {
+/// The ways from the first so many starts.
+fn view(title: &str, camera: Camera, playback: &GraspPlayback, frame: &Frame, starts: usize) -> Space {
     let ball = &playback.scene.ball;
     let (centre, radius) = (Point3::from(ball.centre), ball.diameter / 2.0);
     let mut items = walls(playback, frame);
     items.push(Item::Ball { centre, radius, paint: Paint { color: stage::BALL, opacity: 0.45 } });
-    let mut over = vec![];
+    let mut over: Vec<Item> = items.iter().filter_map(named).collect();
     for (id, who) in shown(playback) {
-        for movement in movements(playback, id) {
+        for movement in movements(playback, id).filter(|movement| movement.start < starts) {
             over.extend(stage::ways(&movement.palms, who.stroke(1.8)));
             let points = [0, 1].iter().filter_map(|&hand| palm(movement, hand).last()).collect();
             over.push(Item::Dots { points, color: who.color(), radius: 3.2 });
@@ -80,6 +81,13 @@ fn view(title: &str, camera: Camera, playback: &GraspPlayback, frame: &Frame) ->
     }
     let (title, frame) = (title.to_owned(), Some(frame.clone()));
     Space { title, camera, items, over, frame, extent: None, size: (400.0, 440.0) }
+}
+
+/// The name of a place where a plate stood.
+fn named(item: &Item) -> Option<Item> {
+    let Item::Block { pose, .. } = item else { return None };
+    let (at, text) = (pose.translation.vector.into(), "plates".to_owned());
+    Some(Item::Note { at, text, shift: (0.0, 0.0), color: "#5a5a5a" })
 }
 
 /// Where hands were stopped in the demonstrations: beside a gap as wide as those of the shown ones on average.
@@ -144,8 +152,8 @@ fn curves(distances: &[Distances], time_step: f64) -> Curves {
     let end = distances[0].over_time.last().map_or(0.0, |last| last.0);
     Curves {
         title: "Distance from the ball's sides".to_owned(),
-        x_label: "time (s)".to_owned(),
-        y_label: "distance (m)".to_owned(),
+        x_label: "Time (s)".to_owned(),
+        y_label: "Distance (m)".to_owned(),
         y_axis: Axis::Linear,
         x: [0.0, 1.02 * end],
         y: [0.0, 0.8],

@@ -7,6 +7,7 @@ mod policies;
 mod robot;
 mod scene;
 mod starts;
+mod starts_shown;
 
 use anyhow::ensure;
 use serde::{Deserialize, Serialize};
@@ -22,6 +23,7 @@ pub(crate) use movements::Movement;
 pub(crate) use policies::LEARNERS;
 pub(crate) use robot::{Robot, robot};
 pub(crate) use scene::Scene;
+pub(crate) use starts_shown::starts_shown;
 
 /// Start postures that are shown.
 const STARTS: usize = 4;

@@ -17,6 +17,7 @@ mod figure8;
 mod figure9;
 mod figure_b1;
 mod grasp_playback;
+pub(crate) mod legs;
 mod overview;
 mod shapes;
 mod sound;
@@ -39,7 +40,7 @@ use crate::results::{ExperimentResult, Results};
 use sound::Sound;
 use words::{Words, words};
 
-pub(crate) use grasp_playback::LEARNERS;
+pub(crate) use grasp_playback::{GraspPlayback, LEARNERS, Movement, starts_shown};
 pub(crate) use who::Who;
 
 /// What a run computes for the figures, from fixed data sets.

@@ -4,7 +4,7 @@ use align::{Bandwidth, DirectPolicyLearning, PolicyAlign};
 use demo_gen::{ToySystem, demonstrations};
 use gp::FrontEnd;
 use motion::{NegativeGradient, Potential as _};
-use plot::{Field, Layer, Picture, Plane};
+use plot::{Field, Layer, Mark, Picture, Plane};
 use serde::{Deserialize, Serialize};
 
 use super::sound::{Sound, field, some};
@@ -16,6 +16,9 @@ use crate::seed::{beside, generator};
 
 /// Starts of the movements are drawn from [−2, 2]².
 const EXTENT: f64 = 2.0;
+
+/// Shown is a little more: movements leave that square.
+const SHOWN: f64 = 2.2;
 
 /// Rows that the slope GP learns from.
 const ROWS: usize = 500;
@@ -94,13 +97,14 @@ fn overview(seed: u64) -> anyhow::Result<Overview> {
 fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let overview: Overview = sources.document("overview")?;
     let movements = overview.movements.iter().map(|movement| (&movement.points[..], movement.kept));
-    let shown = demonstrated::layers(&overview.contours, movements, 1.6);
+    let mut shown = demonstrated::layers(&overview.contours, movements, 1.6);
+    shown.extend([ends(&overview.movements), goal()]);
     let [shown, naive, aligned] = [
         plane("Forty movements under unknown constraints", shown),
-        learnt("Direct learning (green) and the truth", &overview, Who::Naive),
-        learnt("policy-align (orange) and the truth", &overview, Who::PolicyAlign),
+        learnt("Direct learning (green)", &overview, Who::Naive),
+        learnt("policy-align (orange)", &overview, Who::PolicyAlign),
     ];
-    let slope = learnt("slope GP (purple) and the truth", &overview, Who::SlopeGp);
+    let slope = learnt("slope GP (purple)", &overview, Who::SlopeGp);
     let picture = if overview.slope_gp.is_empty() {
         Picture::rows(&[&[&shown, &naive, &aligned]])
     } else {
@@ -110,7 +114,7 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
 }
 
 fn plane(title: &str, layers: Vec<Layer>) -> Plane {
-    state_plane(title, EXTENT, layers, Plane::SQUARE)
+    state_plane(title, SHOWN, layers, Plane::SQUARE)
 }
 
 /// The unconstrained actions of the expert and of a learner.
@@ -120,5 +124,61 @@ fn learnt(title: &str, overview: &Overview, who: Who) -> Plane {
         Who::SlopeGp => &overview.slope_gp,
         _ => &overview.policy_align,
     };
-    plane(title, compared(&overview.expert, learner, who, ARROW_SECONDS))
+    let mut layers = compared(&overview.expert, learner, who, ARROW_SECONDS);
+    layers.push(goal());
+    let error = error(&overview.expert, learner);
+    let error = if error < 0.001 { "below 0.001".to_owned() } else { format!("{error:.2}") };
+    plane(&format!("{title}: error {error}"), layers)
+}
+
+/// The squared error of the arrows over their variance: as nUPE, at these arrows.
+fn error(truth: &[Arrow], learnt: &[Arrow]) -> f64 {
+    let n = truth.len() as f64;
+    let mean = truth.iter().fold((0.0, 0.0), |sum, arrow| (sum.0 + arrow.2 / n, sum.1 + arrow.3 / n));
+    let far = |a: &Arrow, (u, v): (f64, f64)| (a.2 - u).powi(2) + (a.3 - v).powi(2);
+    let variance: f64 = truth.iter().map(|arrow| far(arrow, mean)).sum();
+    truth.iter().zip(learnt).map(|(truth, learnt)| far(truth, (learnt.2, learnt.3))).sum::<f64>() / variance
+}
+
+/// Where the policy goes.
+fn goal() -> Layer {
+    Layer::Marks { points: vec![(0.0, 0.0)], mark: Mark::Star, color: "#1a1a1a", size: 7.0, label: None }
+}
+
+/// Heads at the ends of movements: where they go to.
+fn ends(movements: &[Movement]) -> Layer {
+    const HEAD: f64 = 0.13;
+    let head = |movement: &Movement| {
+        let (&(x, y), before) = movement.points.split_last()?;
+        let &(from_x, from_y) = before.iter().rev().find(|from| (x - from.0).hypot(y - from.1) > HEAD / 2.0)?;
+        let scale = HEAD / (x - from_x).hypot(y - from_y);
+        let (u, v) = (scale * (x - from_x), scale * (y - from_y));
+        Some((x - u, y - v, u, v))
+    };
+    let arrows = movements.iter().filter_map(head).collect();
+    Layer::Arrows { arrows, color: Who::Demonstration.color(), scale: 1.0, width: 1.6, label: None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_error_is_none_of_the_truth_and_one_of_its_mean() {
+        let truth: Vec<Arrow> = (0..9).map(|i| (0.0, 0.0, f64::from(i % 3), f64::from(i / 3))).collect();
+        assert!(error(&truth, &truth) == 0.0);
+        let mean: Vec<Arrow> = truth.iter().map(|_| (0.0, 0.0, 1.0, 1.0)).collect();
+        assert!((error(&truth, &mean) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn heads_point_where_a_movement_goes_and_end_where_it_ends() {
+        let Layer::Arrows { arrows, .. } =
+            ends(&[Movement { kept: true, points: vec![(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 1.0)] }])
+        else {
+            panic!("no arrows")
+        };
+        let [(x, y, u, v)] = arrows[..] else { panic!("{arrows:?}") };
+        assert!((x + u - 1.0).abs() + (y + v - 1.0).abs() + v.abs() < 1e-12 && u > 0.1);
+    }
 }

@@ -6,6 +6,7 @@ use nalgebra::{IsometryMatrix3, Matrix3, Point3, Rotation3, Translation3, Vector
 use plot::{Item, Paint};
 use serde::{Deserialize, Serialize};
 
+use super::legs::{eyes, standing};
 use super::rounded;
 
 /// A shape and its pose, metres: as documents hold it. `Link` says which link it is a part of: by name, then its pose is
@@ -28,6 +29,10 @@ pub(crate) enum Kind {
     Cylinder,
     Box,
 }
+
+/// Links that are drawn with more than their shapes.
+const HEEL: &str = "heel";
+const HEAD: &str = "head";
 
 /// Two spheres and a cylinder whose ends and radii differ by less than this are one limb, metres.
 const SAME: f64 = 1e-4;
@@ -71,16 +76,18 @@ pub(super) fn pose(translation: &[f64; 3], rotation: &[f64; 9]) -> IsometryMatri
     IsometryMatrix3::from_parts(Translation3::from(Vector3::from(*translation)), rotation)
 }
 
-/// The shapes as things in space, each painted after its link; a cylinder with a sphere at either end is a limb.
-pub(super) fn items(shapes: &[Shape], paint: impl Fn(&str) -> Paint) -> Vec<Item> {
-    let limbs: Vec<(&Shape, [usize; 2])> =
-        shapes.iter().filter_map(|shape| Some((shape, caps(shape, shapes)?))).collect();
-    let is_cap = |index: usize| limbs.iter().any(|(_, caps)| caps.contains(&index));
+/// The shapes as things in space, each painted after its link; a cylinder with a sphere at either end is a limb. Legs are
+/// bent as the trunk has moved from where it is at rest, and a head has eyes.
+pub(super) fn items(shapes: &[Shape], trunk: &IsometryMatrix3<f64>, paint: impl Fn(&str) -> Paint) -> Vec<Item> {
+    let limbs = limbs(shapes);
+    let legs = standing(shapes, &HEEL.to_owned());
+    let is_cap = |index: usize| limbs.iter().any(|(_, caps, _)| caps.contains(&index));
     let item = |(index, shape): (usize, &Shape)| {
         let paint = paint(&shape.link);
-        let limb = limbs.iter().any(|(cylinder, _)| std::ptr::eq(*cylinder, shape));
+        let limb = limbs.iter().any(|(cylinder, ..)| *cylinder == index);
         let pose = pose(&shape.translation, &shape.rotation);
         match (shape.kind, &shape.size[..]) {
+            _ if legs.iter().any(|leg| leg.parts.contains(&index)) => None,
             (Kind::Sphere, _) if is_cap(index) => None,
             (Kind::Sphere, &[radius]) => Some(Item::Ball { centre: pose * Point3::origin(), radius, paint }),
             (Kind::Cylinder, &[radius, length]) if limb => {
@@ -91,11 +98,20 @@ pub(super) fn items(shapes: &[Shape], paint: impl Fn(&str) -> Paint) -> Vec<Item
             _ => None,
         }
     };
-    shapes.iter().enumerate().filter_map(item).collect()
+    let drawn = shapes.iter().enumerate().filter_map(item);
+    let legs = legs.iter().flat_map(|leg| leg.items(trunk, paint(HEEL)));
+    let heads = shapes.iter().filter(|shape| shape.link == HEAD);
+    drawn.chain(legs).chain(heads.flat_map(eyes)).collect()
 }
 
-/// The spheres of the same link and radius at the ends of a cylinder.
-fn caps(shape: &Shape, shapes: &[Shape]) -> Option<[usize; 2]> {
+/// Cylinders with a sphere at either end: places of all three, and the ends.
+pub(super) fn limbs<Link: PartialEq>(shapes: &[Shape<Link>]) -> Vec<(usize, [usize; 2], [Point3<f64>; 2])> {
+    let limb = |(at, shape)| caps(shape, shapes).map(|(caps, ends)| (at, caps, ends));
+    shapes.iter().enumerate().filter_map(limb).collect()
+}
+
+/// The spheres of the same link and radius at the ends of a cylinder, and the ends.
+fn caps<Link: PartialEq>(shape: &Shape<Link>, shapes: &[Shape<Link>]) -> Option<([usize; 2], [Point3<f64>; 2])> {
     let (Kind::Cylinder, &[radius, length]) = (shape.kind, &shape.size[..]) else { return None };
     let [bottom, top] = ends(&pose(&shape.translation, &shape.rotation), length);
     let at = |end: Point3<f64>| {
@@ -104,7 +120,7 @@ fn caps(shape: &Shape, shapes: &[Shape]) -> Option<[usize; 2]> {
             other.kind == Kind::Sphere && other.link == shape.link && near && (other.size[0] - radius).abs() < SAME
         })
     };
-    Some([at(bottom)?, at(top)?])
+    Some(([at(bottom)?, at(top)?], [bottom, top]))
 }
 
 fn ends(pose: &IsometryMatrix3<f64>, length: f64) -> [Point3<f64>; 2] {
@@ -124,14 +140,14 @@ mod tests {
         let mut workspace = Workspace::new();
         let poses = body.robot().forward_kinematics(body.ready().as_view(), &mut workspace).unwrap();
         let shapes = posed(body.robot(), &poses).unwrap();
-        let items = items(&shapes, |_| Paint::opaque("#ffffff"));
+        let items = items(&shapes, &IsometryMatrix3::identity(), |_| Paint::opaque("#ffffff"));
         let count = |is: fn(&Item) -> bool| items.iter().filter(|item| is(item)).count();
-        // Two legs, two upper arms, two forearms; the head; the neck; feet, body in three, hands.
-        assert_eq!(count(|item| matches!(item, Item::Capsule { .. })), 6);
-        assert_eq!(count(|item| matches!(item, Item::Ball { .. })), 1);
+        // Two shins and thighs, two upper arms, two forearms; head and eyes; the neck; feet, body in three, hands.
+        assert_eq!(count(|item| matches!(item, Item::Capsule { .. })), 8);
+        assert_eq!(count(|item| matches!(item, Item::Ball { .. })), 3);
         assert_eq!(count(|item| matches!(item, Item::Cylinder { .. })), 1);
         assert_eq!(count(|item| matches!(item, Item::Block { .. })), 7);
-        assert_eq!(items.len(), 15);
+        assert_eq!(items.len(), 19);
     }
 
     #[test]

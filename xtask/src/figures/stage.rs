@@ -2,8 +2,8 @@
 
 use anyhow::ensure;
 use demo_gen::UpperBody;
-use kinematics::{Joint, Workspace};
-use nalgebra::{DVectorView, Point3, Translation3, Vector3};
+use kinematics::{Joint, LinkId, Workspace};
+use nalgebra::{DVector, DVectorView, IsometryMatrix3, Point3, Translation3, Vector3};
 use plot::{Item, Paint, Stroke};
 
 use super::grasp_playback::Scene;
@@ -23,6 +23,9 @@ pub(crate) const PLATE: &str = "#56b4e9";
 /// The robot in configurations of these joints, by its model: drawn is the robot that the document is about, or nothing.
 pub(super) struct Actor {
     body: UpperBody,
+    trunk: LinkId,
+    /// The trunk's pose while all joints are at 0.
+    at_rest: IsometryMatrix3<f64>,
 }
 
 impl Actor {
@@ -30,7 +33,10 @@ impl Actor {
         let body = upper_body()?;
         let same = body.robot().joints().iter().map(Joint::name).eq(joints.iter().map(String::as_str));
         ensure!(same, "the figure data are of a robot with other joints; the command of their run writes them again");
-        Ok(Actor { body })
+        let trunk = body.robot().link("torso")?;
+        let rest = DVector::zeros(joints.len());
+        let at_rest = body.robot().forward_kinematics(rest.as_view(), &mut Workspace::new())?.pose(trunk);
+        Ok(Actor { body, trunk, at_rest })
     }
 
     /// Its shapes, each painted after its link.
@@ -38,7 +44,8 @@ impl Actor {
         let mut workspace = Workspace::new();
         let robot = self.body.robot();
         let poses = robot.forward_kinematics(DVectorView::from_slice(joints, joints.len()), &mut workspace)?;
-        Ok(shapes::items(&shapes::posed(robot, &poses)?, paint))
+        let moved = poses.pose(self.trunk) * self.at_rest.inverse();
+        Ok(shapes::items(&shapes::posed(robot, &poses)?, &moved, paint))
     }
 }
 

@@ -125,17 +125,31 @@ impl Page {
 
     /// Presses the left button in one place and lets it go in another.
     pub(crate) fn drag(&mut self, from: Point, to: Point) {
+        self.drag_with("left", 0, from, to);
+    }
+
+    /// Clicks twice.
+    pub(crate) fn double_click(&mut self, at: Point) {
+        for (kind, count) in [("mousePressed", 1), ("mouseReleased", 1), ("mousePressed", 2), ("mouseReleased", 2)] {
+            let event = json!({ "type": kind, "x": at.0, "y": at.1, "button": "left", "clickCount": count });
+            self.call("Input.dispatchMouseEvent", &event);
+        }
+    }
+
+    /// Drags with a button, "left" or "right", and the modifiers of the protocol: 8 is Shift.
+    pub(crate) fn drag_with(&mut self, button: &str, modifiers: u32, from: Point, to: Point) {
+        let pressed = if button == "left" { 1 } else { 2 };
         let middle = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
         for (kind, at, buttons) in [
             ("mouseMoved", from, 0),
-            ("mousePressed", from, 1),
-            ("mouseMoved", middle, 1),
-            ("mouseMoved", to, 1),
+            ("mousePressed", from, pressed),
+            ("mouseMoved", middle, pressed),
+            ("mouseMoved", to, pressed),
             ("mouseReleased", to, 0),
         ] {
-            let button = if kind == "mouseMoved" && buttons == 0 { "none" } else { "left" };
-            let event =
-                json!({ "type": kind, "x": at.0, "y": at.1, "button": button, "buttons": buttons, "clickCount": 1 });
+            let button = if kind == "mouseMoved" && buttons == 0 { "none" } else { button };
+            let event = json!({ "type": kind, "x": at.0, "y": at.1, "button": button, "buttons": buttons,
+                                "modifiers": modifiers, "clickCount": 1 });
             self.call("Input.dispatchMouseEvent", &event);
         }
     }

@@ -15,8 +15,8 @@ fn tab_reaches_everything_in_order_and_it_is_seen() {
     );
     // One stop for a group of radio buttons.
     page.evaluate::<()>("void (all = all.filter(e => e.type != 'radio' || e.checked))");
-    // What is in a closed dialog is not there yet.
-    page.evaluate::<()>("void (all = all.filter(e => !e.closest('dialog')))");
+    // What is in a closed dialog is not there yet; contents fold on a phone only.
+    page.evaluate::<()>("void (all = all.filter(e => !e.closest('dialog, nav summary')))");
     let stops: i64 = page.evaluate("all.length");
     assert!(stops > 10, "{stops} stops");
     for stop in 0..stops {

@@ -108,3 +108,18 @@ fn the_contents_lead_to_every_part_and_tell_where_one_is() {
         );
     }
 }
+
+#[test]
+fn a_phone_folds_the_contents() {
+    let Some(mut page) = page() else { return };
+    let open = "document.querySelector('nav details').open";
+    assert!(page.evaluate::<bool>(open));
+    page.resize(390, 844);
+    page.wait_until(&format!("!{open}"));
+    assert!(page.evaluate::<f64>("document.querySelector('nav').getBoundingClientRect().height") < 100.0);
+    let menu = page.middle_of("nav summary");
+    page.click(menu);
+    page.wait_until(open);
+    page.resize(1280, 900);
+    page.wait_until(open);
+}

@@ -8,10 +8,10 @@ const SHEET: u32 = 688;
 #[test]
 fn what_is_folded_is_left_out() {
     let Some(mut page) = page() else { return };
-    page.evaluate::<()>("document.querySelector('details').open = true, undefined");
+    page.evaluate::<()>("document.querySelector('main details').open = true, undefined");
     page.show_as_printed();
     let printed: Vec<bool> = page.evaluate(
-        "[...document.querySelectorAll('details')].map(details => details.getBoundingClientRect().height > 0)",
+        "[...document.querySelectorAll('main details')].map(details => details.getBoundingClientRect().height > 0)",
     );
     assert!(printed.len() > 2 && printed[0], "what was opened is not printed");
     assert!(!printed[1..].contains(&true), "what is folded is printed");

@@ -189,7 +189,12 @@ impl Canvas {
             [part(sum[0]), part(sum[1]), part(sum[2]), share]
         };
         let Point2 { coords: corner } = self.window.corner;
-        Raster { corner: (corner.x, corner.y), width, dots: (0..width * height).map(dot).collect() }
+        Raster {
+            corner: (corner.x, corner.y),
+            side: 1.0 / DOTS as f64,
+            width,
+            dots: (0..width * height).map(dot).collect(),
+        }
     }
 }
 

@@ -27,6 +27,7 @@ fn every_choice_is_another_picture() {
     let mut before = first.clone();
     for choice in [
         "{ all: false }",
+        "{ ghost: true }",
         "{ learner: 'expert' }",
         "{ learner: 'naive' }",
         "{ constraint: 'gap' }",
@@ -37,7 +38,7 @@ fn every_choice_is_another_picture() {
         view::<()>(&mut page, &format!("select({choice})"));
         assert_another(&mut page, &mut before, choice);
     }
-    view::<()>(&mut page, "select({ learner: 'slope_gp', constraint: 'obstacle', start: 0 })");
+    view::<()>(&mut page, "select({ learner: 'slope_gp', constraint: 'obstacle', start: 0, ghost: false })");
     assert!(picture(&mut page) == first, "the first choice is not drawn as it was");
     assert_eq!(page.complaints(), Vec::<String>::new());
 }

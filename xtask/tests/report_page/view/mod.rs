@@ -1,9 +1,13 @@
 //! The interactive view: it draws, does as it is told, and its hands are where forward kinematics has them.
 
+mod address;
+mod camera;
 mod controls;
 mod drawing;
 mod hands;
+mod legs;
 mod looks;
+mod playing;
 mod scene;
 mod words;
 
@@ -33,10 +37,17 @@ fn run() -> &'static Path {
     })
 }
 
-/// The page with the view, unless there is no browser.
-fn page() -> Option<Page> {
+/// The page with the view, unless there is no browser; before one gets to the view, so that it has not begun to play.
+fn opened() -> Option<Page> {
     let mut page = Page::open(&run().join("report.html"))?;
     page.wait_until("'policyAlignView' in window");
+    Some(page)
+}
+
+/// The view, which does not play by itself.
+fn page() -> Option<Page> {
+    let mut page = opened()?;
+    view::<()>(&mut page, "pause()");
     page.middle_of(CANVAS);
     Some(page)
 }

@@ -12,7 +12,7 @@ const WRITTEN: &str = "new Promise(done => requestAnimationFrame(() => requestAn
 /// Moves the thumb.
 fn slide(to: u32, event: &str) -> String {
     format!(
-        "(slider => {{ slider.value = {to}; slider.dispatchEvent(new Event('{event}')); }})(document.querySelector('.view-times input'))"
+        "(slider => {{ slider.value = {to}; slider.dispatchEvent(new Event('{event}')); }})(document.querySelector('input.view-slider'))"
     )
 }
 
@@ -39,11 +39,43 @@ fn words_are_written_only_when_they_change() {
 }
 
 #[test]
+fn what_holds_the_expert_is_said() {
+    let Some(mut page) = page() else { return };
+    let mut said = |learner: &str, start: usize| -> String {
+        view::<()>(&mut page, &format!("select({{ learner: '{learner}', constraint: 'obstacle', start: {start} }})"));
+        view::<()>(&mut page, "render()");
+        let told: String = page.evaluate("document.querySelector('.view-words').textContent");
+        told.lines().find(|line| line.starts_with(learner)).unwrap().to_owned()
+    };
+    assert!(!said("expert", 0).contains("is held"));
+    assert!(said("naive", 0).contains("Its left hand is held by the plate before its place"));
+    let held = said("expert", 1);
+    assert!(held.contains("Its left hand is held") && !held.contains("right hand is held"), "{held}");
+    let above: String = page.evaluate("document.getElementById('walk').nextElementSibling.textContent");
+    assert!(above.contains("From start 2 the obstacle stops the expert too"), "{above}");
+}
+
+#[test]
+fn the_closest_is_told_beside_the_end() {
+    let Some(mut page) = page() else { return };
+    view::<()>(&mut page, "select({ learner: 'policy_align', constraint: 'gap', start: 0 })");
+    view::<()>(&mut page, "render()");
+    let told: String = page.evaluate("document.querySelector('.view-words').textContent");
+    let line = told.lines().find(|line| line.starts_with("policy-align")).unwrap().to_owned();
+    let numbers = |from: &str| -> Vec<f64> {
+        let words = line.split(from).nth(1).unwrap().split(" cm").next().unwrap();
+        words.split(" and ").map(|number| number.trim().parse().unwrap()).collect()
+    };
+    let (closest, end) = (numbers("closest "), numbers("at the end "));
+    assert!(closest.iter().zip(&end).all(|(closest, end)| closest <= end) && closest[0] < end[0] - 5.0, "{line}");
+}
+
+#[test]
 fn what_the_policy_wants_is_told_where_the_robot_misses_it() {
     let Some(mut page) = page() else { return };
     let words = "document.querySelector('.view-words').textContent";
     for constraint in ["gap", "obstacle", "none"] {
-        for start in 0..4 {
+        for start in view::<Vec<usize>>(&mut page, "starts()") {
             view::<()>(
                 &mut page,
                 &format!("select({{ learner: 'policy_align', constraint: '{constraint}', start: {start} }})"),

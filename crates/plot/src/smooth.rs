@@ -1,0 +1,65 @@
+//! Fields in colours without visible squares: dots between the places of their grid.
+
+use kuva::render::render::{Primitive, Scene};
+
+use crate::raster::Raster;
+use crate::style::height;
+use crate::{Field, Sketch};
+
+/// Dots from one place of the grid to the next.
+const DOTS: usize = 3;
+
+/// Takes the squares of a field out of a scene and puts the place of pixels there that show the same; the pixels.
+pub(crate) fn instead_of_squares(field: &Field, number: usize, scene: &mut Scene) -> Option<Raster> {
+    let squares = (field.x.len() - 1) * (field.y.len() - 1);
+    let is_field = |element: &Primitive| matches!(element, Primitive::RectBatch { x, .. } if x.len() == squares);
+    let at = scene.elements.iter().position(is_field)?;
+    let Primitive::RectBatch { x, y, .. } = &scene.elements[at] else { return None };
+    let lowest = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
+    let highest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let corner = (lowest(x), lowest(y));
+    // From the first square to the last; one unit is as long on either axis.
+    let square = (highest(x) - corner.0) / (field.x.len() - 2).max(1) as f64;
+    scene.elements.splice(at..=at, [Sketch::group(number), Primitive::GroupEnd]);
+    Some(Raster { corner, side: square / DOTS as f64, width: DOTS * (field.x.len() - 1), dots: dots(field) })
+}
+
+/// Colours of the dots, row by row from above.
+fn dots(Field { x, y, values }: &Field) -> Vec<[u8; 4]> {
+    let all = || values.iter().flatten().copied();
+    let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+    let [width, rows] = [x, y].map(|grid| DOTS * (grid.len() - 1));
+    let place = |dot: usize| {
+        let along = (dot as f64 + 0.5) / DOTS as f64;
+        (along as usize, along.fract())
+    };
+    let dot = |row: usize, column: usize| {
+        let ((i, up), (j, right)) = (place(row), place(column));
+        let level = |i: usize| values[i][j] * (1.0 - right) + values[i][j + 1] * right;
+        let value = level(i) * (1.0 - up) + level(i + 1) * up;
+        let [r, g, b] = height((value - low) / (high - low));
+        [r, g, b, 255]
+    };
+    (0..rows)
+        .rev()
+        .flat_map(|row| (0..width).map(move |column| (row, column)))
+        .map(|(row, column)| dot(row, column))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_go_evenly_from_the_lowest_place_to_the_highest() {
+        let grid: Vec<f64> = (0..5).map(f64::from).collect();
+        let values = grid.iter().map(|y| grid.iter().map(|_| *y).collect()).collect();
+        let dots = dots(&Field { x: grid.clone(), y: grid, values });
+        assert_eq!(dots.len(), 12 * 12);
+        let column: Vec<_> = dots.iter().step_by(12).collect();
+        let light = |dot: &[u8; 4]| dot[..3].iter().map(|&part| i32::from(part)).sum::<i32>();
+        assert!(column.windows(2).all(|pair| light(pair[0]) > light(pair[1])), "{column:?}");
+        assert!(dots[..12].iter().all(|dot| dot == &dots[0]));
+    }
+}

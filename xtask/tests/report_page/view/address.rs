@@ -1,0 +1,43 @@
+//! The state of the view in the address of the page.
+
+use serde_json::Value;
+
+use super::{page, view};
+use crate::browser::Page;
+
+/// What is kept.
+fn kept(page: &mut Page) -> Value {
+    page.evaluate(
+        "(({ learner, constraint, start, sample, azimuth, elevation, distance, x, y, z }) =>
+            ({ learner, constraint, start, sample, camera: [azimuth, elevation, distance, x, y, z].map((v) => v.toFixed(2)) })
+        )(policyAlignView.state())",
+    )
+}
+
+#[test]
+fn what_was_shown_is_shown_again() {
+    let Some(mut page) = page() else { return };
+    view::<()>(&mut page, "select({ learner: 'naive', constraint: 'gap', start: 1 })");
+    view::<()>(&mut page, "seek(33)");
+    view::<()>(&mut page, "orbit(.4, .1)");
+    page.wait_until("location.hash.includes('naive') && location.hash.includes('sample=33')");
+    let (address, before): (String, _) = (page.evaluate("location.hash"), kept(&mut page));
+    view::<()>(&mut page, "select({ learner: 'expert', constraint: 'none', start: 0 })");
+    view::<()>(&mut page, "seek(2)");
+    view::<()>(&mut page, "look('top')");
+    page.wait_until("location.hash.includes('expert')");
+    page.evaluate::<()>(&format!("void (location.hash = {address:?})"));
+    page.wait_until("policyAlignView.state().learner === 'naive'");
+    assert_eq!(kept(&mut page), before);
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}
+
+#[test]
+fn what_an_address_tells_wrongly_is_left() {
+    let Some(mut page) = page() else { return };
+    let before = kept(&mut page);
+    page.evaluate::<()>("void (location.hash = '#walk&learner=teacher&start=9&sample=x&camera=1,2,,4,5,6')");
+    page.evaluate::<()>("new Promise(done => setTimeout(done, 100))");
+    assert_eq!(kept(&mut page), before);
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}

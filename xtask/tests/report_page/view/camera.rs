@@ -1,0 +1,69 @@
+//! The camera's centre: what is dragged, zoomed in on or clicked twice.
+
+use super::{CANVAS, page, state, view};
+use crate::browser::{Page, Point};
+
+/// Where the ball is in the window.
+fn ball(page: &mut Page) -> Point {
+    page.evaluate(
+        "(() => {
+            const { centre } = JSON.parse(document.getElementById('grasp-playback').textContent).scene.ball;
+            const [right, up] = policyAlignView.project(centre);
+            const { x, y, width, height } = document.querySelector('#view canvas').getBoundingClientRect();
+            return [x + width * (1 + right) / 2, y + height * (1 - up) / 2];
+        })()",
+    )
+}
+
+fn apart(a: Point, b: Point) -> f64 {
+    (a.0 - b.0).hypot(a.1 - b.1)
+}
+
+#[test]
+fn right_button_and_shift_move_the_picture_with_the_mouse() {
+    let Some(mut page) = page() else { return };
+    let (x, y) = page.middle_of(CANVAS);
+    for (button, modifiers) in [("right", 0), ("left", 8)] {
+        view::<()>(&mut page, "look('front')");
+        page.prefer("prefers-reduced-motion", "reduce");
+        view::<()>(&mut page, "look('start')");
+        let (before, azimuth) = (ball(&mut page), state(&mut page, "azimuth"));
+        page.drag_with(button, modifiers, (x, y), (x + 60.0, y - 40.0));
+        assert!(state(&mut page, "azimuth").to_bits() == azimuth.to_bits(), "{button} turns");
+        let moved = ball(&mut page);
+        // The ball is a little nearer than the centre.
+        assert!(apart(moved, (before.0 + 60.0, before.1 - 40.0)) < 12.0, "{button}: {before:?}, then {moved:?}");
+    }
+}
+
+#[test]
+fn the_wheel_keeps_what_is_under_the_mouse() {
+    let Some(mut page) = page() else { return };
+    page.prefer("prefers-reduced-motion", "reduce");
+    view::<()>(&mut page, "look('front')");
+    page.evaluate::<()>("document.querySelector('#view canvas').focus()");
+    let mut at = ball(&mut page);
+    for _ in 0..6 {
+        let distance = state(&mut page, "distance");
+        page.wheel(at, -200.0);
+        page.wait_until(&format!("policyAlignView.state().distance < {distance}"));
+        let now = ball(&mut page);
+        assert!(apart(at, now) < 25.0, "{at:?}, then {now:?}");
+        at = now;
+    }
+    assert!(state(&mut page, "distance") < 1.2);
+}
+
+#[test]
+fn a_double_click_looks_at_what_is_there() {
+    let Some(mut page) = page() else { return };
+    page.prefer("prefers-reduced-motion", "reduce");
+    view::<()>(&mut page, "look('side')");
+    let at = ball(&mut page);
+    page.double_click(at);
+    page.wait_until("Math.abs(policyAlignView.state().x - 0.7) + Math.abs(policyAlignView.state().y) < 0.15");
+    let (middle, now) = (page.middle_of(CANVAS), ball(&mut page));
+    assert!(apart(now, middle) < 60.0 && state(&mut page, "distance") < 1.5, "{now:?}, not {middle:?}");
+    view::<()>(&mut page, "look('start')");
+    assert!((state(&mut page, "x") - 0.45).abs() < 1e-9, "Reset leaves the centre elsewhere");
+}
