@@ -32,7 +32,7 @@ pub(super) fn check_end(input: &Input<'_>) -> Result<(), ReadError> {
     let length = u64::from(u32::from_le_bytes([a, b, c, d]));
     let Some(start) = start.checked_sub(length) else { return Ok(()) };
     let text = bytes(input, start, length)?;
-    refuse(Description { left: &text, page_size: None }.structure(DEPTH), input).map(|_| ())
+    refuse(&Description { left: &text, page_size: None }.structure(DEPTH), input).map(|_| ())
 }
 
 /// The same of the pages of a column in a group of rows.
@@ -42,7 +42,7 @@ pub(super) fn check_pages(chunk: &ColumnChunkMetaData, input: &Input<'_>) -> Res
     while at < end {
         let text = bytes(input, at, PAGE.min(end - at))?;
         let mut description = Description { left: &text, page_size: None };
-        let whole = refuse(description.structure(DEPTH), input)?;
+        let whole = refuse(&description.structure(DEPTH), input)?;
         let taken = (text.len() - description.left.len()) as u64;
         let Some(page) = description.page_size.filter(|_| whole) else { return Ok(()) };
         at = at.saturating_add(taken).saturating_add(page);
@@ -51,7 +51,7 @@ pub(super) fn check_pages(chunk: &ColumnChunkMetaData, input: &Input<'_>) -> Res
 }
 
 /// Whether a description was followed to its end.
-fn refuse(outcome: Result<(), Stop>, input: &Input<'_>) -> Result<bool, ReadError> {
+fn refuse(outcome: &Result<(), Stop>, input: &Input<'_>) -> Result<bool, ReadError> {
     match outcome {
         Ok(()) => Ok(true),
         Err(Stop::Unreadable) => Ok(false),
@@ -81,15 +81,16 @@ impl Description<'_> {
         let mut field = 0;
         loop {
             let head = self.byte()?;
-            if head & 15 == 0 {
+            let kind = head & 15;
+            if kind == 0 {
                 return Ok(());
             }
             let step = i64::from(head >> 4);
             field = if step == 0 { zigzag(self.number()?) } else { field + step };
-            if (depth, field, head & 15) == (DEPTH, 3, 5) {
+            if (depth, field, kind) == (DEPTH, 3, 5) {
                 self.page_size = u64::try_from(zigzag(self.number()?)).ok();
-            } else if !matches!(head & 15, 1 | 2) {
-                self.value(head & 15, depth)?; // a truth value is its kind
+            } else if !matches!(kind, 1 | 2) {
+                self.value(kind, depth)?; // a truth value is its kind
             }
         }
     }

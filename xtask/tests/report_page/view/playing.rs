@@ -12,7 +12,7 @@ fn it_plays_once_when_it_is_seen() {
     view::<()>(&mut page, "seek(95)");
     page.wait_until("!policyAlignView.state().playing");
     let end = state(&mut page, "sample");
-    page.evaluate::<()>("scrollTo({ top: 0, behavior: 'instant' })");
+    page.evaluate::<()>("void scrollTo({ top: 0, behavior: 'instant' })");
     page.evaluate::<()>("new Promise(done => setTimeout(done, 200))");
     page.middle_of(CANVAS);
     page.evaluate::<()>("new Promise(done => setTimeout(done, 200))");

@@ -85,7 +85,7 @@ fn what_the_policy_wants_is_told_where_the_robot_misses_it() {
             assert!(told.starts_with("From the robot’s left and right palm"), "{told}");
             let missed: bool = page.evaluate(MISSED);
             let line = told.lines().find(|line| line.starts_with("policy-align")).unwrap().to_owned();
-            assert_eq!(line.contains("its policy wants"), missed, "{constraint}, start {start}: {line}");
+            assert_eq!(line.contains("Its policy wants"), missed, "{constraint}, start {start}: {line}");
         }
     }
 }
