@@ -81,13 +81,19 @@ impl<'a> Input<'a> {
     /// Whether these are the file's last bytes.
     #[cfg(feature = "parquet")]
     pub(crate) fn ends_with(&self, mark: &[u8]) -> bool {
+        let length = mark.len() as u64;
+        let end = self.open().and_then(|mut file| self.part(&mut file, self.len.saturating_sub(length), length));
+        end.is_ok_and(|end| end == mark)
+    }
+
+    /// So many bytes from here on of the open file; fewer where it ends.
+    #[cfg(feature = "parquet")]
+    pub(crate) fn part(&self, file: &mut File, start: u64, length: u64) -> Result<Vec<u8>, ReadError> {
         use std::io::{Seek as _, SeekFrom};
-        let mut end = Vec::new();
-        let read = self.open().ok().and_then(|mut file| {
-            file.seek(SeekFrom::End(-i64::try_from(mark.len()).ok()?)).ok()?;
-            file.read_to_end(&mut end).ok()
-        });
-        read.is_some() && end == mark
+        let mut bytes = Vec::new();
+        let read = file.seek(SeekFrom::Start(start)).and_then(|_| file.take(length).read_to_end(&mut bytes));
+        read.map_err(|error| unreadable(&error, &self.name))?;
+        Ok(bytes)
     }
 
     /// All bytes of the file.

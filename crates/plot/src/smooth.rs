@@ -15,19 +15,23 @@ pub(crate) fn instead_of_squares(field: &Field, number: usize, scene: &mut Scene
     let is_field = |element: &Primitive| matches!(element, Primitive::RectBatch { x, .. } if x.len() == squares);
     let at = scene.elements.iter().position(is_field)?;
     let Primitive::RectBatch { x, y, .. } = &scene.elements[at] else { return None };
-    let lowest = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
-    let highest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let corner = (lowest(x), lowest(y));
+    let ([left, right], [top, _]) = (range(x), range(y));
     // From the first square to the last; one unit is as long on either axis.
-    let square = (highest(x) - corner.0) / (field.x.len() - 2).max(1) as f64;
+    let square = (right - left) / (field.x.len() - 2).max(1) as f64;
     scene.elements.splice(at..=at, [Sketch::group(number), Primitive::GroupEnd]);
-    Some(Raster { corner, side: square / DOTS as f64, width: DOTS * (field.x.len() - 1), dots: dots(field) })
+    let (side, width) = (square / DOTS as f64, DOTS * (field.x.len() - 1));
+    Some(Raster { corner: (left, top), side, width, dots: dots(field) })
+}
+
+/// The least and the largest.
+fn range<'a>(values: impl IntoIterator<Item = &'a f64>) -> [f64; 2] {
+    let wider = |[low, high]: [f64; 2], &value: &f64| [low.min(value), high.max(value)];
+    values.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], wider)
 }
 
 /// Colours of the dots, row by row from above.
 fn dots(Field { x, y, values }: &Field) -> Vec<[u8; 4]> {
-    let all = || values.iter().flatten().copied();
-    let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+    let [low, high] = range(values.iter().flatten());
     let [width, rows] = [x, y].map(|grid| DOTS * (grid.len() - 1));
     let place = |dot: usize| {
         let along = (dot as f64 + 0.5) / DOTS as f64;

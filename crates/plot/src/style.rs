@@ -76,18 +76,19 @@ pub(crate) fn height(height: f64) -> [u8; 3] {
     std::array::from_fn(|i| (HEIGHTS[below][i] * (1.0 - share) + HEIGHTS[below + 1][i] * share).round() as u8)
 }
 
-/// The same, darker: dots are small, and on white.
-pub(crate) fn heights_of_dots() -> ColorMap {
-    ColorMap::Custom(Arc::new(|at| {
-        let [r, g, b] = height(at).map(|part| u16::from(part) * 7 / 10);
-        format!("#{r:02x}{g:02x}{b:02x}")
-    }))
-}
-
 /// [`height`] for the plotting crate.
 pub(crate) fn heights() -> ColorMap {
-    ColorMap::Custom(Arc::new(|at| {
-        let [r, g, b] = height(at);
+    color_map(height)
+}
+
+/// The same, darker: dots are small, and on white.
+pub(crate) fn heights_of_dots() -> ColorMap {
+    color_map(|at| height(at).map(|part| (u16::from(part) * 7 / 10) as u8))
+}
+
+fn color_map(color: fn(f64) -> [u8; 3]) -> ColorMap {
+    ColorMap::Custom(Arc::new(move |at| {
+        let [r, g, b] = color(at);
         format!("#{r:02x}{g:02x}{b:02x}")
     }))
 }

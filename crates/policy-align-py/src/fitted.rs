@@ -83,6 +83,12 @@ impl Fitted {
         model_words::about(&self.model)
     }
 
+    /// The name of what has learnt.
+    #[getter]
+    fn learner(&self) -> &'static str {
+        model_words::learner(&self.model.learnt)
+    }
+
     /// Dimension of the state.
     #[getter]
     fn dim(&self) -> usize {
@@ -158,9 +164,7 @@ impl Fitted {
 
     /// Holds the policy against movements; as JSON.
     fn evaluate(&self, py: Python<'_>, recordings: &Recordings, preparing: Preparing) -> PyResult<String> {
-        let scale = self.model.state.iter().filter(|channel| channel.scale != 1.0);
-        let scale = scale.map(|channel| (channel.name.clone(), channel.scale)).collect();
-        let options = PrepareOptions { scale, ..preparing.options()? };
+        let options = PrepareOptions { scale: self.model.scale(), ..preparing.options()? };
         let (inner, model) = (Arc::clone(&recordings.inner), Arc::clone(&self.model));
         let judged = interruptible(py, move |_: &_| {
             let Recorded { recordings, place, .. } = &*inner;

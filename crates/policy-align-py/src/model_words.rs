@@ -6,18 +6,19 @@ use serde_json::{Value, json};
 pub(crate) fn about(model: &Model) -> String {
     let policy = model.policy();
     let mut document = json!({
-        "learner": learner(&model.learnt), "made_by": model.made_by, "state": model.state,
-        "time_step": model.time_step, "data": model.data, "decisions": model.decisions, "seed": model.seed,
-        "trust": model.trust, "kept": policy.kept(), "warnings": policy.warnings(),
+        "made_by": model.made_by, "state": model.state, "time_step": model.time_step, "data": model.data,
+        "decisions": model.decisions, "seed": model.seed, "trust": model.trust, "kept": policy.kept(),
+        "warnings": policy.warnings(),
     });
-    if document["learner"] == "policy_align" && document["kept"].is_null() {
+    if matches!(model.learnt, Learnt::PolicyAlign(_)) && document["kept"].is_null() {
         document["kept"] = json!((0..model.data.episodes).collect::<Vec<_>>());
     }
     hints(&mut document["trust"]["findings"]);
     document.to_string()
 }
 
-fn learner(learnt: &Learnt) -> &'static str {
+/// The name of the learner, as a model file has it.
+pub(crate) fn learner(learnt: &Learnt) -> &'static str {
     match learnt {
         Learnt::Auto(_) => "auto",
         Learnt::PolicyAlign(_) => "policy_align",

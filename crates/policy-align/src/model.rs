@@ -73,6 +73,15 @@ pub struct DataSummary {
     pub left_out: Vec<LeftOutEpisode>,
 }
 
+impl Model {
+    /// Factors by which recordings are multiplied as those learnt from were, as
+    /// [`PrepareOptions::scale`](crate::PrepareOptions::scale) takes them: of channels that have one.
+    pub fn scale(&self) -> Vec<(String, f64)> {
+        let scaled = self.state.iter().filter(|channel| channel.scale != 1.0);
+        scaled.map(|channel| (channel.name.clone(), channel.scale)).collect()
+    }
+}
+
 /// A file, by its name without folders.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

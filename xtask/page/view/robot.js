@@ -3,9 +3,9 @@
 // drawn and not computed with: hips go with the trunk, feet stand.
 
 class Robot {
-  /** `document.robot` of the figure data: links, parents first; `legs` as the page adds them. */
-  constructor({ links, shapes, hands, legs }) {
-    Object.assign(this, { links, shapes, handLinks: hands, legs });
+  /** `document.robot` of the figure data: links, parents first; `legs` and `eye` as the page adds them. */
+  constructor({ links, shapes, hands, legs, eye }) {
+    Object.assign(this, { links, shapes, handLinks: hands, legs, eye });
     const { rotation, translation } = this.poses([])[legs.trunk];
     // Hips in the trunk's frame, which is not turned while all joints are at 0.
     if (rotation.some((value, i) => value !== IDENTITY.rotation[i])) throw new Error("the trunk is turned at rest");

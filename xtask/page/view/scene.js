@@ -6,8 +6,6 @@ const DASHES = { expert: [1, 1], naive: [0.016, 0.5], policy_align: [0.045, 0.66
 const PATH_RADIUS = 0.0055;
 const PLATE_THICKNESS = 0.008;
 const GHOST = 0.22;
-/** Eyes look out of the head, at these angles from where it faces, radians. */
-const EYE = { radius: 0.022, aside: 0.38, up: 0.12 };
 
 class Scene {
   constructor(renderer, playback) {
@@ -29,7 +27,7 @@ class Scene {
     });
     const { bone, radius } = robot.legs;
     this.bone = upload(capsule(radius, bone));
-    this.eye = upload(sphere(EYE.radius));
+    this.eye = upload(sphere(robot.eye.radius));
     this.head = robot.links.findIndex(({ name }) => name === "head");
     this.extent = this.corners();
     // A palm is a point; the hand around it is the nearest link with a body.
@@ -114,11 +112,11 @@ class Scene {
   eyes() {
     const skull = this.playback.robot.shapes.find(({ link, kind }) => link === this.head && kind === "sphere");
     if (!skull) return [];
-    const out = skull.size[0] - EYE.radius / 3;
-    return [-EYE.aside, EYE.aside].map((aside) => {
-      const level = Math.cos(EYE.up);
-      return plus(skull.translation, times([level * Math.cos(aside), level * Math.sin(aside), Math.sin(EYE.up)], out));
-    });
+    const { radius, aside, up } = this.playback.robot.eye;
+    const [out, level] = [skull.size[0] - radius / 3, Math.cos(up)];
+    return [-aside, aside].map((turn) => (
+      plus(skull.translation, times([level * Math.cos(turn), level * Math.sin(turn), Math.sin(up)], out))
+    ));
   }
 
   /** The place of the ball, of a body of the robot or of the table top that is first seen along a line of sight. */

@@ -3,6 +3,7 @@
 
 use nalgebra::{IsometryMatrix3, Point3, Vector3};
 use plot::{Item, Paint};
+use serde::Serialize;
 
 use super::shapes::{Kind, Shape, limbs, pose};
 
@@ -10,8 +11,16 @@ use super::shapes::{Kind, Shape, limbs, pose};
 /// than both, the bones are drawn apart by what is missing, which knees hide.
 pub(crate) const BONE: f64 = 0.265;
 
-/// An eye's radius, and its angles from where the head faces: to either side and up, metres and radians.
-const EYE: (f64, f64, f64) = (0.022, 0.38, 0.12);
+/// Eyes look out of the head.
+pub(crate) const EYE: Eye = Eye { radius: 0.022, aside: 0.38, up: 0.12 };
+
+/// Metres; and angles from where the head faces, to either side and up, radians.
+#[derive(Serialize)]
+pub(crate) struct Eye {
+    radius: f64,
+    aside: f64,
+    up: f64,
+}
 
 /// The legs of a robot: ends of the limbs of this link, the lower one first.
 pub(crate) fn standing<Link: PartialEq>(shapes: &[Shape<Link>], heel: &Link) -> Vec<Leg> {
@@ -54,7 +63,7 @@ pub(crate) fn knee(hip: &Point3<f64>, ankle: &Point3<f64>) -> Point3<f64> {
 
 /// Eyes on the ball of a head.
 pub(super) fn eyes(head: &Shape) -> Vec<Item> {
-    let (radius, aside, up) = EYE;
+    let Eye { radius, aside, up } = EYE;
     let (Kind::Sphere, &[skull]) = (head.kind, &head.size[..]) else { return vec![] };
     let eye = |aside: f64| {
         let out = Vector3::new(up.cos() * aside.cos(), up.cos() * aside.sin(), up.sin()) * (skull - radius / 3.0);

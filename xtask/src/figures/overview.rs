@@ -4,6 +4,7 @@ use align::{Bandwidth, DirectPolicyLearning, PolicyAlign};
 use demo_gen::{ToySystem, demonstrations};
 use gp::FrontEnd;
 use motion::{NegativeGradient, Potential as _};
+use nalgebra::DMatrix;
 use plot::{Field, Layer, Mark, Picture, Plane};
 use serde::{Deserialize, Serialize};
 
@@ -101,13 +102,13 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     shown.extend([ends(&overview.movements), goal()]);
     let [shown, naive, aligned] = [
         plane("Forty movements under unknown constraints", shown),
-        learnt("Direct learning (green)", &overview, Who::Naive),
-        learnt("policy-align (orange)", &overview, Who::PolicyAlign),
+        learnt("Direct learning (green)", &overview, Who::Naive)?,
+        learnt("policy-align (orange)", &overview, Who::PolicyAlign)?,
     ];
-    let slope = learnt("slope GP (purple)", &overview, Who::SlopeGp);
     let picture = if overview.slope_gp.is_empty() {
         Picture::rows(&[&[&shown, &naive, &aligned]])
     } else {
+        let slope = learnt("slope GP (purple)", &overview, Who::SlopeGp)?;
         Picture::rows(&[&[&shown, &naive], &[&aligned, &slope]])
     };
     Ok(Drawing { picture, tables: vec![] })
@@ -118,7 +119,7 @@ fn plane(title: &str, layers: Vec<Layer>) -> Plane {
 }
 
 /// The unconstrained actions of the expert and of a learner.
-fn learnt(title: &str, overview: &Overview, who: Who) -> Plane {
+fn learnt(title: &str, overview: &Overview, who: Who) -> anyhow::Result<Plane> {
     let learner = match who {
         Who::Naive => &overview.naive,
         Who::SlopeGp => &overview.slope_gp,
@@ -126,18 +127,15 @@ fn learnt(title: &str, overview: &Overview, who: Who) -> Plane {
     };
     let mut layers = compared(&overview.expert, learner, who, ARROW_SECONDS);
     layers.push(goal());
-    let error = error(&overview.expert, learner);
+    let error = error(&overview.expert, learner)?;
     let error = if error < 0.001 { "below 0.001".to_owned() } else { format!("{error:.2}") };
-    plane(&format!("{title}: error {error}"), layers)
+    Ok(plane(&format!("{title}: error {error}"), layers))
 }
 
-/// The squared error of the arrows over their variance: as nUPE, at these arrows.
-fn error(truth: &[Arrow], learnt: &[Arrow]) -> f64 {
-    let n = truth.len() as f64;
-    let mean = truth.iter().fold((0.0, 0.0), |sum, arrow| (sum.0 + arrow.2 / n, sum.1 + arrow.3 / n));
-    let far = |a: &Arrow, (u, v): (f64, f64)| (a.2 - u).powi(2) + (a.3 - v).powi(2);
-    let variance: f64 = truth.iter().map(|arrow| far(arrow, mean)).sum();
-    truth.iter().zip(learnt).map(|(truth, learnt)| far(truth, (learnt.2, learnt.3))).sum::<f64>() / variance
+/// nUPE at these arrows.
+fn error(truth: &[Arrow], learnt: &[Arrow]) -> anyhow::Result<f64> {
+    let actions = |arrows: &[Arrow]| DMatrix::from_fn(2, arrows.len(), |row, at| [arrows[at].2, arrows[at].3][row]);
+    Ok(metrics::nupe(&actions(truth), &actions(learnt))?)
 }
 
 /// Where the policy goes.
@@ -166,9 +164,9 @@ mod tests {
     #[test]
     fn the_error_is_none_of_the_truth_and_one_of_its_mean() {
         let truth: Vec<Arrow> = (0..9).map(|i| (0.0, 0.0, f64::from(i % 3), f64::from(i / 3))).collect();
-        assert!(error(&truth, &truth) == 0.0);
+        assert!(error(&truth, &truth).unwrap() == 0.0);
         let mean: Vec<Arrow> = truth.iter().map(|_| (0.0, 0.0, 1.0, 1.0)).collect();
-        assert!((error(&truth, &mean) - 1.0).abs() < 1e-12);
+        assert!((error(&truth, &mean).unwrap() - 1.0).abs() < 1e-12);
     }
 
     #[test]

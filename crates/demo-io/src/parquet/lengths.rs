@@ -3,11 +3,9 @@
 //!
 //! Descriptions are in Thrift's compact protocol: fields of a kind each, up to a kind 0.
 
-use std::io::{Read as _, Seek as _, SeekFrom};
-
 use parquet::file::metadata::ColumnChunkMetaData;
 
-use crate::input::{Input, unreadable};
+use crate::input::Input;
 use crate::{Fault, ReadError};
 
 /// Bytes at the end: length of the closing description, and the mark.
@@ -28,19 +26,21 @@ enum Stop {
 /// Refuses a closing description with a list that is longer than itself.
 pub(super) fn check_end(input: &Input<'_>) -> Result<(), ReadError> {
     let Some(start) = input.len.checked_sub(END) else { return Ok(()) };
-    let Some(&[a, b, c, d]) = bytes(input, start, 4)?.first_chunk() else { return Ok(()) };
+    let mut file = input.open()?;
+    let Some(&[a, b, c, d]) = input.part(&mut file, start, 4)?.first_chunk() else { return Ok(()) };
     let length = u64::from(u32::from_le_bytes([a, b, c, d]));
     let Some(start) = start.checked_sub(length) else { return Ok(()) };
-    let text = bytes(input, start, length)?;
+    let text = input.part(&mut file, start, length)?;
     refuse(&Description { left: &text, page_size: None }.structure(DEPTH), input).map(|_| ())
 }
 
 /// The same of the pages of a column in a group of rows.
 pub(super) fn check_pages(chunk: &ColumnChunkMetaData, input: &Input<'_>) -> Result<(), ReadError> {
+    let mut file = input.open()?;
     let (mut at, size) = chunk.byte_range();
     let end = at.saturating_add(size).min(input.len);
     while at < end {
-        let text = bytes(input, at, PAGE.min(end - at))?;
+        let text = input.part(&mut file, at, PAGE.min(end - at))?;
         let mut description = Description { left: &text, page_size: None };
         let whole = refuse(&description.structure(DEPTH), input)?;
         let taken = (text.len() - description.left.len()) as u64;
@@ -60,14 +60,6 @@ fn refuse(outcome: &Result<(), Stop>, input: &Input<'_>) -> Result<bool, ReadErr
             Err(ReadError::Corrupt(Fault::new(what, &input.name, "another copy of the file")))
         }
     }
-}
-
-fn bytes(input: &Input<'_>, start: u64, length: u64) -> Result<Vec<u8>, ReadError> {
-    let mut file = input.open()?;
-    let mut bytes = Vec::new();
-    let read = file.seek(SeekFrom::Start(start)).and_then(|_| file.take(length).read_to_end(&mut bytes));
-    read.map_err(|error| unreadable(&error, &input.name))?;
-    Ok(bytes)
 }
 
 struct Description<'a> {

@@ -39,6 +39,26 @@ class Learner(Manners):
     random_state: int
     n_jobs: int | None
 
+    def __init__(
+        self,
+        *,
+        integration: str = "auto",
+        scale: dict[str, float] | None = None,
+        smooth: str | int = "auto",
+        jumps: str = "auto",
+        wraps: str = "auto",
+        max_rows: int = 400,
+        random_state: int = 1,
+        n_jobs: int | None = None,
+    ) -> None:
+        """``integration``: "auto", "velocity" (recorded ones are believed) or "displacement" (they are ignored). ``scale``:
+        factors of channels' units. ``smooth``, of positions: "auto", "off", a window of samples (9) or of seconds ("0.2s").
+        ``jumps``: "auto" cuts movements where one step is far too long, "keep" does not. ``wraps``: with "auto" angles that
+        jump by a whole turn go on instead, with "keep" they jump. ``max_rows``: samples learnt from, at most.
+        ``random_state``: the seed, a whole number. ``n_jobs``: threads, None or -1 for all; results do not depend on it.
+        """
+        self._store(locals())
+
     def fit(
         self,
         X: Any,
@@ -156,7 +176,7 @@ class Learner(Manners):
         The file tells what was learnt, not the parameters; these have their defaults, but for the seed.
         """
         fitted = _native.Fitted.load(path)
-        found = json.loads(fitted.about())["learner"]
+        found = fitted.learner
         if found != cls._learner:
             hint = f"policy_align.load({os.fspath(path)!r}), which takes any"
             raise PolicyAlignError(f"a model of the learner {found!r}, not {cls._learner!r}", os.fspath(path), hint)
@@ -247,7 +267,7 @@ class Learner(Manners):
     def _of(cls, fitted: _native.Fitted) -> Self:
         self = cls()
         self._take(fitted)
-        self.random_state = json.loads(fitted.about())["seed"]
+        self.random_state = self._about["seed"]
         return self
 
 

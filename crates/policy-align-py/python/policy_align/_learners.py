@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from typing import Any
 
@@ -22,6 +21,9 @@ class PolicyAlign(Learner):
     """
 
     _learner = "policy_align"
+    bandwidth: str | float
+    init_d: str | float
+    folds: int
 
     def __init__(
         self,
@@ -38,17 +40,7 @@ class PolicyAlign(Learner):
         random_state: int = 1,
         n_jobs: int | None = None,
     ) -> None:
-        self.bandwidth = bandwidth
-        self.init_d = init_d
-        self.integration = integration
-        self.scale = scale
-        self.smooth = smooth
-        self.jumps = jumps
-        self.wraps = wraps
-        self.folds = folds
-        self.max_rows = max_rows
-        self.random_state = random_state
-        self.n_jobs = n_jobs
+        self._store(locals())
 
     @property
     def kept_(self) -> npt.NDArray[np.intp]:
@@ -67,47 +59,17 @@ class PolicyAlign(Learner):
         return np.setdiff1d(np.arange(self._about["data"]["episodes"]), self.kept_)
 
 
-class _GaussianProcess(Learner):
-    """``integration``: "auto", "velocity" (recorded ones are believed) or "displacement" (they are ignored). ``scale``:
-    factors of channels' units. ``smooth``, of positions: "auto", "off", a window of samples (9) or of seconds ("0.2s").
-    ``jumps``: "auto" cuts movements where one step is far too long, "keep" does not. ``wraps``: with "auto" angles that
-    jump by a whole turn go on instead, with "keep" they jump. ``max_rows``: samples learnt from, at most.
-    ``random_state``: the seed, a whole number. ``n_jobs``: threads, None or -1 for all; results do not depend on it.
-    """
-
-    def __init__(
-        self,
-        *,
-        integration: str = "auto",
-        scale: dict[str, float] | None = None,
-        smooth: str | int = "auto",
-        jumps: str = "auto",
-        wraps: str = "auto",
-        max_rows: int = 400,
-        random_state: int = 1,
-        n_jobs: int | None = None,
-    ) -> None:
-        self.integration = integration
-        self.scale = scale
-        self.smooth = smooth
-        self.jumps = jumps
-        self.wraps = wraps
-        self.max_rows = max_rows
-        self.random_state = random_state
-        self.n_jobs = n_jobs
-
-
-class SlopeGp(_GaussianProcess):
+class SlopeGp(Learner):
     __doc__ = f"""A Gaussian process on uᵀπ = uᵀu, which holds under any constraint.
 
-    {_GaussianProcess.__doc__}"""
+    {Learner.__init__.__doc__}"""
     _learner = "slope"
 
 
-class DirectGp(_GaussianProcess):
+class DirectGp(Learner):
     __doc__ = f"""A Gaussian process on the velocities as they are: right where nothing was constrained.
 
-    {_GaussianProcess.__doc__}"""
+    {Learner.__init__.__doc__}"""
     _learner = "direct"
 
 
@@ -118,6 +80,7 @@ class AutoGp(Learner):
     """
 
     _learner = "auto"
+    reading: str | None
 
     def __init__(
         self,
@@ -132,21 +95,12 @@ class AutoGp(Learner):
         random_state: int = 1,
         n_jobs: int | None = None,
     ) -> None:
-        self.reading = reading
-        self.integration = integration
-        self.scale = scale
-        self.smooth = smooth
-        self.jumps = jumps
-        self.wraps = wraps
-        self.max_rows = max_rows
-        self.random_state = random_state
-        self.n_jobs = n_jobs
+        self._store(locals())
 
 
 def load(path: str | os.PathLike[str]) -> PolicyAlign | SlopeGp | DirectGp | AutoGp:
     """Reads any model file, of this package or of the program, as the estimator that learns such models."""
+    known: dict[str, Any] = {one._learner: one for one in (PolicyAlign, SlopeGp, DirectGp, AutoGp)}
     fitted = _native.Fitted.load(path)
-    learner: Any = json.loads(fitted.about())["learner"]
-    known: list[type[PolicyAlign] | type[SlopeGp] | type[DirectGp] | type[AutoGp]]
-    known = [PolicyAlign, SlopeGp, DirectGp, AutoGp]
-    return next(one for one in known if one._learner == learner)._of(fitted)
+    loaded: PolicyAlign | SlopeGp | DirectGp | AutoGp = known[fitted.learner]._of(fitted)
+    return loaded

@@ -9,8 +9,13 @@ from typing import Any, Self
 class Manners:
     """``get_params``, ``set_params``, ``repr`` and tags: ``clone``, ``GridSearchCV`` and ``Pipeline`` work with these.
 
-    ``__init__`` stores every parameter untouched under its name; ``fit`` looks at them.
+    ``__init__`` stores every parameter untouched under its name, and does nothing else; ``fit`` looks at them.
     """
+
+    def _store(self, given: dict[str, Any]) -> None:
+        """The last word of every ``__init__``: ``self._store(locals())``."""
+        for name in self._parameters():
+            setattr(self, name, given[name])
 
     @classmethod
     def _parameters(cls) -> dict[str, inspect.Parameter]:

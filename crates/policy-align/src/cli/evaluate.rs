@@ -61,7 +61,7 @@ impl Evaluate {
         }
         let mut options = config.under("prepare", &self.prepare)?.options(reading.dt)?;
         // The learner saw the state times these, whatever is said now.
-        options.scale = model.state.iter().filter(|c| c.scale != 1.0).map(|c| (c.name.clone(), c.scale)).collect();
+        options.scale = model.scale();
         let prepared = self.prepared(session, &reading, &options)?;
         let names = |state: &[policy_align::StateChannel]| state.iter().map(|c| c.name.clone()).collect::<Vec<_>>();
         if names(&prepared.state) != names(&model.state) {

@@ -4,7 +4,7 @@ use maud::{Markup, PreEscaped, html};
 use serde::Deserialize as _;
 use serde_json::{Value, json};
 
-use crate::figures::legs::{BONE, Leg, standing};
+use crate::figures::legs::{BONE, EYE, Leg, standing};
 use crate::figures::{Figure, GraspPlayback, LEARNERS, Movement, Sources, stage, starts_shown};
 
 /// The experiment beside which it stands.
@@ -93,6 +93,7 @@ fn staged(playback: &Value) -> Option<Stage> {
         "trunk": trunk, "bone": BONE, "radius": legs.first()?.radius,
         "hips": places(|leg| leg.hip.into()), "ankles": places(|leg| leg.ankle.into()),
     });
+    playback["robot"]["eye"] = json!(EYE);
     let mut place = 0..;
     let is_leg = |at: usize| legs.iter().any(|leg| leg.parts.contains(&at));
     playback["robot"]["shapes"].as_array_mut()?.retain(|_| !place.next().is_some_and(is_leg));
