@@ -2,7 +2,6 @@
 
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
-use std::hash::{DefaultHasher, Hash, Hasher};
 
 use crate::clean::rounded;
 use crate::draft::Drafts;
@@ -24,14 +23,16 @@ pub(crate) fn notice(drafts: &mut Drafts, options: &ReadOptions) {
     drafts.notes.append(&mut notes);
 }
 
+/// Spreads bits, as multiplication by any large odd number does.
+const ODD: u64 = 0x517c_c1b7_2722_0a95;
+
 /// An episode with the same positions as an earlier one.
 fn leave_out_repeated(drafts: &mut Drafts) {
     let mut seen: HashMap<u64, Vec<usize>> = HashMap::new();
     let mut repeats: Vec<Option<usize>> = Vec::with_capacity(drafts.episodes.len());
     for (index, draft) in drafts.episodes.iter().enumerate() {
-        let mut hasher = DefaultHasher::new();
-        draft.positions.iter().for_each(|value| value.to_bits().hash(&mut hasher));
-        let alike = seen.entry(hasher.finish()).or_default();
+        let mix = |sum: u64, value: &f64| (sum.rotate_left(5) ^ value.to_bits()).wrapping_mul(ODD);
+        let alike = seen.entry(draft.positions.iter().fold(0, mix)).or_default();
         let first = alike.iter().copied().find(|&other| drafts.episodes[other].positions == draft.positions);
         if first.is_none() {
             alike.push(index);

@@ -1,8 +1,9 @@
 //! Parquet: columns by name as in CSV; a column of lists of equal length is as many states.
 
+mod descriptions;
 mod failure;
+mod fields;
 mod leaf;
-mod lengths;
 
 use std::collections::HashMap;
 
@@ -39,7 +40,7 @@ pub(crate) fn read_described(
     described: &Described,
     progress: &mut dyn FnMut(u64),
 ) -> Result<Drafts, ReadError> {
-    lengths::check_end(input)?;
+    descriptions::check_end(input)?;
     let file = SerializedFileReader::new(input.open()?).map_err(|error| failed(&error, input))?;
     let leaves = Leaf::all(&file, input)?;
     if leaves.is_empty() {

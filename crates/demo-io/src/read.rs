@@ -44,6 +44,9 @@ pub fn read_all(
     let nothing = |what: &str| ReadError::Empty(Fault::new(what, place(), "another file: this one holds no movement"));
     let mut drafts = joined.ok_or_else(|| nothing("no file was given"))?;
     clean(&mut drafts, options)?;
+    if drafts.channels.is_empty() {
+        return Err(nothing("there is no state of one number or more"));
+    }
     notice(&mut drafts, options);
     if drafts.episodes.is_empty() {
         return Err(nothing("there is no episode of two samples or more"));

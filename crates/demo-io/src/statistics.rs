@@ -15,7 +15,7 @@ pub(crate) struct Statistics {
 }
 
 /// Medians are taken over at most so many values, evenly chosen, since they would need a copy of all.
-const MOST_VALUES: usize = 500_000;
+const MOST_VALUES: usize = 100_000;
 
 impl Statistics {
     pub(crate) fn of(drafts: &Drafts) -> Self {

@@ -5,7 +5,7 @@ use parquet::data_type::DataType;
 use parquet::file::reader::{FileReader, RowGroupReader};
 use parquet::schema::types::ColumnDescriptor;
 
-use super::{failed, lengths};
+use super::{descriptions, failed};
 use crate::array::Data;
 use crate::draft::MOST_CHANNELS;
 use crate::input::Input;
@@ -89,7 +89,7 @@ impl Leaf {
         for group in 0..file.num_row_groups() {
             let reader = file.get_row_group(group).map_err(|error| failed(&error, input))?;
             if reader.metadata().num_rows() > 0 {
-                lengths::check_pages(reader.metadata().column(self.index), input)?;
+                descriptions::check_pages(reader.metadata().column(self.index), input)?;
                 let (_, starts) = self.entries(&*reader, 1, input)?;
                 return Ok(starts.get(1).copied().filter(|&width| width > 0));
             }
@@ -100,7 +100,7 @@ impl Leaf {
     /// The values of `rows` rows.
     pub(super) fn read(&self, group: &dyn RowGroupReader, rows: usize, input: &Input<'_>) -> Result<Values, ReadError> {
         input.charge((rows as u64).saturating_mul(8 * self.width as u64))?;
-        lengths::check_pages(group.metadata().column(self.index), input)?;
+        descriptions::check_pages(group.metadata().column(self.index), input)?;
         self.refuse_damaged_dictionary(group, input)?;
         let (data, starts) = self.entries(group, rows, input)?;
         let even = starts.iter().enumerate().all(|(row, &start)| start == row * self.width);

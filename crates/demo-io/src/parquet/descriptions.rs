@@ -1,0 +1,213 @@
+//! A file's own descriptions, followed before the library believes them: it reads a field as what the format says is there,
+//! whatever the file says, and counts a list of two thousand million truth values through, though the file has no byte for
+//! them.
+//!
+//! Descriptions are in Thrift's compact protocol: fields of a kind each, up to a kind 0.
+
+use parquet::file::metadata::ColumnChunkMetaData;
+
+use super::fields::{FILE, Fields, Holds, PAGE};
+use crate::input::Input;
+use crate::{Fault, ReadError};
+
+/// Bytes at the end: length of the closing description, and the mark.
+const END: u64 = 8;
+/// Room for a page's description; what is longer is left to the library.
+const ROOM: u64 = 64 << 10;
+/// Descriptions in descriptions; the library follows as many.
+const DEPTH: usize = 64;
+
+/// Why a description cannot be followed further.
+enum Stop {
+    /// It ends, or is none: the library says what is wrong with it.
+    Unreadable,
+    /// A list has more elements than there are bytes.
+    Overlong,
+    /// A field holds something else than the format says.
+    Other,
+}
+
+/// Refuses a closing description that the library would misread.
+pub(super) fn check_end(input: &Input<'_>) -> Result<(), ReadError> {
+    let Some(start) = input.len.checked_sub(END) else { return Ok(()) };
+    let mut file = input.open()?;
+    let Some(&[a, b, c, d]) = input.part(&mut file, start, 4)?.first_chunk() else { return Ok(()) };
+    let length = u64::from(u32::from_le_bytes([a, b, c, d]));
+    let Some(start) = start.checked_sub(length) else { return Ok(()) };
+    let text = input.part(&mut file, start, length)?;
+    refuse(&Description { left: &text, sizes: [None; 3] }.structure(FILE, DEPTH), input).map(|_| ())
+}
+
+/// The same of the pages of a column in a group of rows. At the end of the file the library does not notice that bytes which
+/// it skips are not there, and goes on skipping.
+pub(super) fn check_pages(chunk: &ColumnChunkMetaData, input: &Input<'_>) -> Result<(), ReadError> {
+    let mut file = input.open()?;
+    let (mut at, size) = chunk.byte_range();
+    let end = at.saturating_add(size).min(input.len);
+    while at < end {
+        let room = ROOM.min(input.len - at);
+        let text = input.part(&mut file, at, room)?;
+        let mut description = Description { left: &text, sizes: [None; 3] };
+        let whole = refuse(&description.structure(PAGE, DEPTH), input)?;
+        if !whole && at + room == input.len {
+            return Err(damaged("it ends within the description of a page", input));
+        }
+        let [page, in_file, values] = description.sizes;
+        if values.zip(page).is_some_and(|(values, page)| values > page) {
+            return Err(damaged("a dictionary has more values than bytes", input));
+        }
+        let taken = (text.len() - description.left.len()) as u64;
+        let Some(in_file) = in_file.filter(|_| whole) else { return Ok(()) };
+        at = at.saturating_add(taken).saturating_add(in_file);
+    }
+    Ok(())
+}
+
+/// Whether a description was followed to its end.
+fn refuse(outcome: &Result<(), Stop>, input: &Input<'_>) -> Result<bool, ReadError> {
+    match outcome {
+        Ok(()) => Ok(true),
+        Err(Stop::Unreadable) => Ok(false),
+        Err(Stop::Overlong) => Err(damaged("it describes a list longer than itself", input)),
+        Err(Stop::Other) => Err(damaged("a field of its description holds something else than the format says", input)),
+    }
+}
+
+fn damaged(how: &str, input: &Input<'_>) -> ReadError {
+    let what = format!("the file is damaged: {how}");
+    ReadError::Corrupt(Fault::new(what, &input.name, "another copy of the file"))
+}
+
+const BYTE: u8 = 3;
+const DOUBLE: u8 = 7;
+const BYTES: u8 = 8;
+const STRUCTURE: u8 = 12;
+
+impl Holds {
+    fn is(&self, kind: u8) -> bool {
+        match self {
+            Holds::Truth => matches!(kind, 1 | 2),
+            Holds::Byte => kind == BYTE,
+            Holds::Integer | Holds::Size(_) => (4..=6).contains(&kind),
+            Holds::Double => kind == DOUBLE,
+            Holds::Bytes => kind == BYTES,
+            Holds::List(_) => matches!(kind, 9 | 10),
+            Holds::Fields(_) => kind == STRUCTURE,
+        }
+    }
+}
+
+struct Description<'a> {
+    left: &'a [u8],
+    /// In the order of `Size`.
+    sizes: [Option<u64>; 3],
+}
+
+impl Description<'_> {
+    fn structure(&mut self, fields: &Fields, depth: usize) -> Result<(), Stop> {
+        let depth = depth.checked_sub(1).ok_or(Stop::Unreadable)?;
+        let mut number = 0_i16;
+        loop {
+            let head = self.byte()?;
+            let kind = head & 15;
+            if kind == 0 {
+                return Ok(());
+            }
+            // As the library counts: a number of its own is cut to two bytes.
+            number = match i16::from(head >> 4) {
+                0 => zigzag(self.integer()?) as i16,
+                step => number.checked_add(step).ok_or(Stop::Unreadable)?,
+            };
+            let holds = fields.iter().find(|field| field.0 == number).map(|field| &field.1);
+            if holds.is_some_and(|holds| !holds.is(kind)) {
+                return Err(Stop::Other);
+            }
+            self.value(kind, holds, depth)?;
+        }
+    }
+
+    /// What stands after the kind; of truth values nothing, as they are their kind.
+    fn value(&mut self, kind: u8, holds: Option<&Holds>, depth: usize) -> Result<(), Stop> {
+        match kind {
+            1 | 2 => Ok(()),
+            BYTE => self.skip(1),
+            4..=6 => {
+                let integer = zigzag(self.integer()?) as i32;
+                if let Some(Holds::Size(size)) = holds {
+                    self.sizes[*size as usize] = u64::try_from(integer).ok();
+                }
+                Ok(())
+            }
+            DOUBLE => self.skip(8),
+            BYTES => {
+                let length = self.integer()?;
+                self.skip(length)
+            }
+            9 | 10 => {
+                let head = self.byte()?;
+                let length = if head >> 4 == 15 { self.integer()? } else { u64::from(head >> 4) };
+                let element = if let Some(Holds::List(element)) = holds { Some(*element) } else { None };
+                self.elements(length, &[(head & 15, element)], depth)
+            }
+            11 => match self.integer()? {
+                0 => Ok(()),
+                length => {
+                    let kinds = self.byte()?;
+                    self.elements(length, &[(kinds >> 4, None), (kinds & 15, None)], depth)
+                }
+            },
+            STRUCTURE => {
+                let fields = if let Some(Holds::Fields(fields)) = holds { *fields } else { &[] };
+                self.structure(fields, depth)
+            }
+            13 => self.skip(16),
+            _ => Err(Stop::Unreadable),
+        }
+    }
+
+    /// Of a list, or of a map keys and values in turn.
+    fn elements(&mut self, length: u64, kinds: &[(u8, Option<&Holds>)], depth: usize) -> Result<(), Stop> {
+        let depth = depth.checked_sub(1).ok_or(Stop::Unreadable)?;
+        if length > self.left.len() as u64 {
+            return Err(Stop::Overlong);
+        }
+        if length > 0 && kinds.iter().any(|(kind, holds)| holds.is_some_and(|holds| !holds.is(*kind))) {
+            return Err(Stop::Other);
+        }
+        for _ in 0..length {
+            for &(kind, holds) in kinds {
+                self.value(kind, holds, depth)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn byte(&mut self) -> Result<u8, Stop> {
+        let (&first, left) = self.left.split_first().ok_or(Stop::Unreadable)?;
+        self.left = left;
+        Ok(first)
+    }
+
+    fn skip(&mut self, length: u64) -> Result<(), Stop> {
+        let length = usize::try_from(length).map_err(|_| Stop::Unreadable)?;
+        self.left = self.left.get(length..).ok_or(Stop::Unreadable)?;
+        Ok(())
+    }
+
+    /// Seven bits a byte, the last one below 128.
+    fn integer(&mut self) -> Result<u64, Stop> {
+        let mut integer = 0;
+        for shift in (0..64).step_by(7) {
+            let byte = self.byte()?;
+            integer |= u64::from(byte & 127) << shift;
+            if byte < 128 {
+                return Ok(integer);
+            }
+        }
+        Err(Stop::Unreadable)
+    }
+}
+
+fn zigzag(integer: u64) -> i64 {
+    (integer >> 1).cast_signed() ^ -((integer & 1).cast_signed())
+}
