@@ -180,16 +180,12 @@ fn plot(layer: &Layer) -> Option<Plot> {
     })
 }
 
-/// A field as squares between four places of its grid each, with their mean.
-fn colors(field: &Field) -> Heatmap {
-    let mean = |low: &[f64], high: &[f64]| (low[0] + low[1] + high[0] + high[1]) / 4.0;
-    let row = |rows: &[Vec<f64>]| {
-        rows[0].windows(2).zip(rows[1].windows(2)).map(|(low, high)| mean(low, high)).collect::<Vec<_>>()
-    };
-    let cells: Vec<_> = field.values.windows(2).map(row).collect();
-    let (x, y) = (&field.x, &field.y);
+/// A stand-in for a field, as wide and with colours for the same numbers: its scale is drawn from it, its four squares give
+/// way to [`smooth::instead_of_squares`].
+fn colors(Field { x, y, values }: &Field) -> Heatmap {
+    let [low, high] = smooth::range(values.iter().flatten());
     Heatmap::new()
-        .with_data(cells)
+        .with_data(vec![vec![low, high]; 2])
         .with_x_range(x[0], x[x.len() - 1])
         .with_y_range(y[0], y[y.len() - 1])
         .with_cell_size(1.0)

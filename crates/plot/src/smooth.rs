@@ -9,22 +9,20 @@ use crate::{Field, Sketch};
 /// Dots from one place of the grid to the next.
 const DOTS: usize = 3;
 
-/// Takes the squares of a field out of a scene and puts the place of pixels there that show the same; the pixels.
+/// Takes a field's stand-in of two by two squares out of a scene and puts the place of pixels there; the pixels.
 pub(crate) fn instead_of_squares(field: &Field, number: usize, scene: &mut Scene) -> Option<Raster> {
-    let squares = (field.x.len() - 1) * (field.y.len() - 1);
-    let is_field = |element: &Primitive| matches!(element, Primitive::RectBatch { x, .. } if x.len() == squares);
-    let at = scene.elements.iter().position(is_field)?;
+    let at = scene.elements.iter().position(|element| matches!(element, Primitive::RectBatch { .. }))?;
     let Primitive::RectBatch { x, y, .. } = &scene.elements[at] else { return None };
     let ([left, right], [top, _]) = (range(x), range(y));
-    // From the first square to the last; one unit is as long on either axis.
-    let square = (right - left) / (field.x.len() - 2).max(1) as f64;
+    // Two squares are as wide as the field; one unit is as long on either axis.
+    let width = DOTS * (field.x.len() - 1);
+    let side = 2.0 * (right - left) / width as f64;
     scene.elements.splice(at..=at, [Sketch::group(number), Primitive::GroupEnd]);
-    let (side, width) = (square / DOTS as f64, DOTS * (field.x.len() - 1));
     Some(Raster { corner: (left, top), side, width, dots: dots(field) })
 }
 
 /// The least and the largest.
-fn range<'a>(values: impl IntoIterator<Item = &'a f64>) -> [f64; 2] {
+pub(crate) fn range<'a>(values: impl IntoIterator<Item = &'a f64>) -> [f64; 2] {
     let wider = |[low, high]: [f64; 2], &value: &f64| [low.min(value), high.max(value)];
     values.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], wider)
 }

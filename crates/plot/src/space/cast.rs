@@ -2,8 +2,8 @@
 
 use nalgebra::{Point2, Vector3};
 
-use super::item::{Item, Paint};
-use super::shade::{self, Rgb};
+use super::item::Item;
+use super::shade::{self, Rgb, Tint};
 use super::solid::{Hit, Solid};
 use super::view::View;
 use crate::raster::{DOTS, Raster};
@@ -12,7 +12,7 @@ use crate::raster::{DOTS, Raster};
 #[derive(Debug, Clone)]
 pub(super) struct Body {
     pub(super) solid: Solid,
-    pub(super) paint: Paint,
+    pub(super) tint: Tint,
 }
 
 /// Samples along a side of a dot, and of a pixel.
@@ -25,14 +25,14 @@ const SAME_FACE: f64 = 0.7;
 
 /// All bodies of the items.
 pub(super) fn bodies(items: &[Item], view: &View) -> Vec<Body> {
-    let body = |item: &Item| Some(Body { paint: item.paint()?, solid: Solid::of(item, view)? });
+    let body = |item: &Item| Some(Body { tint: item.paint()?.into(), solid: Solid::of(item, view)? });
     items.iter().filter_map(body).collect()
 }
 
 /// A picture of the bodies on a panel of this size, pixels; none where there are no bodies.
 pub(super) fn raster(bodies: &[Body], size: (f64, f64)) -> Option<Raster> {
     let mut canvas = Canvas::over(Window::around(bodies, size)?);
-    let (opaque, veils): (Vec<&Body>, Vec<&Body>) = bodies.iter().partition(|body| body.paint.opacity >= 1.0);
+    let (opaque, veils): (Vec<&Body>, Vec<&Body>) = bodies.iter().partition(|body| body.tint.opacity >= 1.0);
     for body in opaque {
         for (at, depth, color) in canvas.window.samples_of(body) {
             if depth > canvas.depths[at] {
@@ -80,9 +80,9 @@ impl Window {
         let sample = |(at, hit): (usize, &Option<Hit>)| {
             let Hit { depth, normal } = (*hit)?;
             let (color, share) = if inked[at] {
-                (shade::ink(&body.paint), 1.0)
+                (shade::ink(&body.tint), 1.0)
             } else {
-                (shade::seen(&body.paint, &normal), body.paint.opacity)
+                (shade::seen(&body.tint, &normal), body.tint.opacity)
             };
             let [red, green, blue] = color;
             let (column, row) = (part.columns.start + at % part.width(), part.rows.start + at / part.width());
@@ -201,18 +201,18 @@ impl Canvas {
 /// The colour of something small at a place of the panel and so near: nothing where a body hides it, and tinted by what
 /// it is seen through.
 pub(super) fn seen(color: Rgb, at: &Point2<f64>, depth: f64, bodies: &[Body]) -> Option<Rgb> {
-    let mut veils: Vec<(f64, &Paint)> = vec![];
-    for Body { solid, paint } in bodies {
+    let mut veils: Vec<(f64, &Tint)> = vec![];
+    for Body { solid, tint } in bodies {
         match solid.hit(at) {
-            Some(hit) if hit.depth > depth && paint.opacity >= 1.0 => return None,
-            Some(hit) if hit.depth > depth => veils.push((hit.depth, paint)),
+            Some(hit) if hit.depth > depth && tint.opacity >= 1.0 => return None,
+            Some(hit) if hit.depth > depth => veils.push((hit.depth, tint)),
             _ => {}
         }
     }
     veils.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let tinted = |below: Rgb, (_, paint): &(f64, &Paint)| {
-        let veil = shade::seen(paint, &Vector3::z());
-        std::array::from_fn(|i| paint.opacity * veil[i] + (1.0 - paint.opacity) * below[i])
+    let tinted = |below: Rgb, (_, tint): &(f64, &Tint)| {
+        let veil = shade::seen(tint, &Vector3::z());
+        std::array::from_fn(|i| tint.opacity * veil[i] + (1.0 - tint.opacity) * below[i])
     };
     Some(veils.iter().fold(color, tinted))
 }

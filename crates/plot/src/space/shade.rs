@@ -8,6 +8,19 @@ use super::Paint;
 /// Red, green and blue, from 0 to 255.
 pub(super) type Rgb = [f64; 3];
 
+/// A [`Paint`] whose colour has been read.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tint {
+    color: Rgb,
+    pub(super) opacity: f64,
+}
+
+impl From<Paint> for Tint {
+    fn from(paint: Paint) -> Self {
+        Tint { color: rgb(paint.color), opacity: paint.opacity }
+    }
+}
+
 /// What is in full shadow keeps this share of its lightness.
 const SHADOW: f64 = 0.66;
 
@@ -17,14 +30,14 @@ pub(super) fn light() -> Vector3<f64> {
 }
 
 /// The colour of a body where its surface has this outward normal, of length 1; what is not opaque is not shaded.
-pub(super) fn seen(paint: &Paint, normal: &Vector3<f64>) -> Rgb {
-    let lit = if paint.opacity < 1.0 { 1.0 } else { f64::midpoint(normal.dot(&light()), 1.0) };
-    rgb(paint.color).map(|part| part * (SHADOW + (1.0 - SHADOW) * lit))
+pub(super) fn seen(tint: &Tint, normal: &Vector3<f64>) -> Rgb {
+    let lit = if tint.opacity < 1.0 { 1.0 } else { f64::midpoint(normal.dot(&light()), 1.0) };
+    tint.color.map(|part| part * (SHADOW + (1.0 - SHADOW) * lit))
 }
 
 /// The colour of outlines: dark, or where things behind can be seen less so.
-pub(super) fn ink(paint: &Paint) -> Rgb {
-    rgb(paint.color).map(|part| part * if paint.opacity < 1.0 { 0.6 } else { 0.3 })
+pub(super) fn ink(tint: &Tint) -> Rgb {
+    tint.color.map(|part| part * if tint.opacity < 1.0 { 0.6 } else { 0.3 })
 }
 
 /// Black or white, whichever can be read on a colour.
@@ -61,7 +74,7 @@ mod tests {
 
     #[test]
     fn the_side_towards_the_light_is_lighter() {
-        let brightness = |normal: Vector3<f64>| seen(&Paint::opaque("#ffffff"), &normal)[0];
+        let brightness = |normal: Vector3<f64>| seen(&Paint::opaque("#ffffff").into(), &normal)[0];
         assert!((brightness(light()) - 255.0).abs() < 1e-9);
         let [top, front, right] = [-Vector3::y(), Vector3::z(), Vector3::x()].map(brightness);
         assert!(top > front - 3.0 && front > right && right > 150.0);
