@@ -21,7 +21,7 @@ pub(crate) enum Verdict {
     Differs,
 }
 
-/// A printed share of 0 ± 0 agrees with anything that would be printed so: below .005 percent.
+/// A printed share of 0 ± 0 agrees with anything that would be printed so: below 0.005 percent.
 const PRINTED_ZERO: f64 = 0.005;
 
 /// Judges our mean: it agrees within one printed s.d. Only an error that is left to the learner can be lower or higher.

@@ -8,7 +8,7 @@ use crate::kept::{Grouping, RowsDropped};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrustReport {
-    /// Share of left-out movement that is predicted (S11): below .9 poor, below .5 not to be used.
+    /// Share of left-out movement that is predicted (S11): below 0.9 poor, below 0.5 not to be used.
     pub r_squared: f64,
     /// Mean squared left-out error over its predicted variance (S11); over 4 the noise model is wrong.
     pub z_squared: f64,
@@ -16,7 +16,7 @@ pub struct TrustReport {
     /// [`Rows::step_change`](crate::Rows::step_change).
     pub expected_nupe: f64,
     /// Difference of the alternative model's policy, where it predicts nearly as well (R6): across the paths the policy
-    /// is a guess where this is over .1.
+    /// is a guess where this is over 0.1.
     pub ambiguity: f64,
     /// What of the policy the demonstrations let be seen.
     pub identifiability: Identifiability,

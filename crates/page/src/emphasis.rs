@@ -91,7 +91,7 @@ mod tests {
             "uniform in <span class=\"term\">[-1, 1]<sup>3</sup>,</span> plain"
         );
         assert_eq!(shown("line (rows r-c). The"), "line (rows <span class=\"term\">r-c).</span> The");
-        assert_eq!(shown("well-known, δt = .5 s"), "well-known, δt\u{a0}=\u{a0}.5 s");
+        assert_eq!(shown("well-known, δt = 0.5 s"), "well-known, δt\u{a0}=\u{a0}0.5 s");
         assert_eq!(shown("an open [ bracket in a line"), "an open [ bracket in a line");
     }
 }

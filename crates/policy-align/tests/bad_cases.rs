@@ -83,7 +83,7 @@ impl Said {
     fn error(&self) -> String {
         match self.error {
             None => "–".to_owned(),
-            Some(error) if error < NEGLIGIBLE => "< .001".to_owned(),
+            Some(error) if error < NEGLIGIBLE => "< 0.001".to_owned(),
             Some(error) if error < 10.0 => format!("{error:.3}"),
             Some(error) => format!("{error:.0}"),
         }
@@ -133,7 +133,7 @@ fn table(all: &[Said]) -> String {
     let mut text = "# What is said of good and bad recordings\n\n\
         Written by `UPDATE_CASES=1 cargo test --release -p policy-align --test bad_cases`, which also compares it. Every case goes\n\
         through `prepare` and `fit` without a flag; the last column is what they cannot know, the error of the unconstrained\n\
-        policy (nUPE) on 20 fresh movements: 0 is perfect, 1 as bad as the best constant, and below .15 a policy is called right.\n\
+        policy (nUPE) on 20 fresh movements: 0 is perfect, 1 as bad as the best constant, and below 0.15 a policy is called right.\n\
         No line may be \"good\" and wrong, or \"do not use\" and right. Why these numbers: [decisions/trust.md](decisions/trust.md).\n\n\
         | case | what it says first | verdict | true error |\n| --- | --- | --- | --- |\n"
         .to_owned();

@@ -7,7 +7,7 @@ use crate::windows::{Energy, MAX_COLUMNS};
 /// The prior variance of the offset is so many times that of the samples: τ₀² = 4c.
 const OFFSET_VARIANCE: f64 = 4.0;
 
-/// Prior standard deviations fall by this factor with every degree: τ_k² = c · .15^(2k).
+/// Prior standard deviations fall by this factor with every degree: τ_k² = c · 0.15^(2k).
 const DECAY: f64 = 0.15;
 
 /// The noise model at one noise variance s²: what (S15) needs of a window besides its energy.

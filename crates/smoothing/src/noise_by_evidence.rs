@@ -52,7 +52,7 @@ pub(crate) fn most_likely(scaled: &Scaled<'_>, log_evidence: impl Fn(f64) -> f64
     10f64.powf(at)
 }
 
-/// (median |third difference| / .6745)² / 20 over all axes: 20 is the sum of squared binomials.
+/// (median |third difference| / 0.6745)² / 20 over all axes: 20 is the sum of squared binomials.
 fn first_guess(scaled: &Scaled<'_>) -> f64 {
     let mut differences: Vec<f64> = scaled
         .movements

@@ -39,10 +39,10 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
         section: "4.3",
         title: "22 joints of a humanoid, a hand in a plane",
         data_sets: 50,
-        remark: "The robot, its posture \"ready\" (shoulder pitch .3, roll ±.3, elbow -1.6) and the attractor (upright, arms hanging) \
-                 are fitted; starts from N(ready, .1 I), δt = .5 s, plain Euler, narrow bandwidth. Regression with a fixed diagonal \
+        remark: "The robot, its posture \"ready\" (shoulder pitch 0.3, roll ±0.3, elbow -1.6) and the attractor (upright, arms hanging) \
+                 are fitted; starts from N(ready, 0.1 I), δt = 0.5 s, plain Euler, narrow bandwidth. Regression with a fixed diagonal \
                  metric, D = 50, 20 passes; receptive fields speak down to an activation of 1e-9, because a single start far from all \
-                 others, for which none speaks above .001, would rule the error of the potential. Starts are within the joints' limits; \
+                 others, for which none speaks above 0.001, would rule the error of the potential. Starts are within the joints' limits; \
                  movements are not held there, and most leave them somewhere (beyond limits %).",
         decisions: "asimo22.md",
         another_reading_of: None,
@@ -63,8 +63,8 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
     })
 }
 
-/// Who learns beside PolicyAlign. The naive learner has wider fields than PolicyAlign: with these its error is lower, .067
-/// instead of .084 (seed 1, first data set), and it learns in a tenth of the time.
+/// Who learns beside PolicyAlign. The naive learner has wider fields than PolicyAlign: with these its error is lower, 0.067
+/// instead of 0.084 (seed 1, first data set), and it learns in a tenth of the time.
 fn beside() -> Beside {
     let params = LwprParams { init_d: 5.0, ..regressor().params };
     let naive = Some(DirectPolicyLearning { params, passes: 3, ..DirectPolicyLearning::default() });

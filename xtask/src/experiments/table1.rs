@@ -34,7 +34,7 @@ pub(crate) fn table1() -> anyhow::Result<Experiment> {
         title: "Table 1: the toy system",
         data_sets: 100,
         remark: "The constraint is drawn anew every 20 samples, two draws at 40 samples and five at 100, which makes the printed discard \
-                 rates come out. Regression, the same in all rows: init_D 10, w_gen .5, penalty 1e-5, adaptive diagonal metric, 10 passes.",
+                 rates come out. Regression, the same in all rows: init_D 10, w_gen 0.5, penalty 1e-5, adaptive diagonal metric, 10 passes.",
         decisions: "table1.md",
         another_reading_of: None,
         contests: contests(),

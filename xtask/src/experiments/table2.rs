@@ -41,9 +41,9 @@ pub(crate) fn table2() -> anyhow::Result<Experiment> {
         section: "4.2",
         title: "Table 2: grasping a ball",
         data_sets: 50,
-        remark: "Fitted, because the paper does not give them: the robot's posture, ball (x = .7), wall (x = .35, felt from .09 m before it), \
-                 half-width of the unseen obstacle (.13), no gap narrower than .17 m, regressions. δt = .5 s, plain Euler, narrow \
-                 bandwidth. Fixed diagonal metrics, inputs divided by .3 m: PolicyAlign D = 22, 10 passes; naive D = 10, 4 passes. The printed errors of \
+        remark: "Fitted, because the paper does not give them: the robot's posture, ball (x = 0.7), wall (x = 0.35, felt from 0.09 m before it), \
+                 half-width of the unseen obstacle (0.13), no gap narrower than 0.17 m, regressions. δt = 0.5 s, plain Euler, narrow \
+                 bandwidth. Fixed diagonal metrics, inputs divided by 0.3 m: PolicyAlign D = 22, 10 passes; naive D = 10, 4 passes. The printed errors of \
                  the naive learner are held against its errors on held-out samples of all movements.",
         decisions: "table2.md",
         another_reading_of: None,
@@ -89,7 +89,7 @@ fn staged(change: impl Fn(&mut Grasp)) -> anyhow::Result<Vec<Setup>> {
 pub(super) fn settings() -> Vec<Setting> {
     let setting = |name, paper, used, with| Setting { experiment: "table2", name, paper, used, with };
     vec![
-        setting("narrowest gap, m", "gaps from N(.25, .1²)", 0.17, |least| staged(|grasp| grasp.gap_least = least)),
+        setting("narrowest gap, m", "gaps from N(0.25, 0.1²)", 0.17, |least| staged(|grasp| grasp.gap_least = least)),
         setting("wall, m in front of the robot", SILENT, 0.35, |wall| staged(|grasp| grasp.scene.wall = wall)),
         setting("reach of the wall, m", SILENT, 0.09, |reach| staged(|grasp| grasp.scene.wall_influence = reach)),
         setting("half-width of the unseen obstacle, m", SILENT, 0.13, |half_width| {

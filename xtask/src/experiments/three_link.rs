@@ -38,7 +38,7 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
         section: "4.4",
         title: "The three-link arm, pathological constraints",
         data_sets: 50,
-        remark: "Unit links, starts uniform in [-1, 1]^3, δt = .5 s, plain Euler, narrow bandwidth. Regression with fixed diagonal \
+        remark: "Unit links, starts uniform in [-1, 1]^3, δt = 0.5 s, plain Euler, narrow bandwidth. Regression with fixed diagonal \
                  metrics, 10 passes: D = 20 for PolicyAlign, 50 for the naive baseline. The printed errors of the naive baseline are held against \
                  its errors on held-out samples of all movements.",
         decisions: "three-link.md",

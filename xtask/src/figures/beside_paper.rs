@@ -20,10 +20,10 @@ fn cell<'s>(sources: &'s Sources, experiment: &str, row: &str, measure: Measure)
     &rows.iter().find(|result| result.id == row).unwrap().measures[&measure]
 }
 
-/// Two digits that count, as texts have them: .0028, .43, 8.4.
+/// Two digits that count, as texts have them: 0.0028, 0.43, 8.4.
 fn short(value: f64) -> String {
     let decimals = (1.0 - value.log10().floor()).max(0.0) as usize;
-    format!("{value:.decimals$}").trim_start_matches('0').to_owned()
+    format!("{value:.decimals$}")
 }
 
 fn assert_says(id: &str, words: &str) {
@@ -33,7 +33,7 @@ fn assert_says(id: &str, words: &str) {
 
 const ERRORS: [(&str, Measure); 3] = [("π", Nupe), ("Nπ", Ncpe), ("φ", PotentialNmse)];
 
-/// "π from .18 to .43", between two rows.
+/// "π from 0.18 to 0.43", between two rows.
 fn assert_says_from_to(sources: &Sources, id: &str, [from, to]: [&str; 2], errors: &[(&str, Measure)]) {
     for (name, measure) in errors {
         let [from, to] = [from, to].map(|row| short(cell(sources, id, row, *measure).mean));

@@ -253,7 +253,7 @@ mod tests {
     fn ends_are_as_said_beside_the_paper_s_figure() {
         let playback: GraspPlayback = beside_paper::records().document("grasp_playback").unwrap();
         let ends = shown(&playback).map(|learner| 100.0 * Distances::of(&playback, learner).unwrap().at_end());
-        let ends = ends.map(|end| format!("{end:.1}").trim_start_matches('0').to_owned());
+        let ends = ends.map(|end| format!("{end:.1}"));
         for (words, end) in
             std::iter::zip(["ends {} cm from", "ends {} cm away. The learnt", "ends {} cm away, where"], ends)
         {

@@ -7,7 +7,7 @@ pub(super) const RULE: &str = "\
 Errors are mean squared errors as a share of the variance of the true policy or potential: 0 is perfect.
 \"ours\" is the mean ± the sample standard deviation over data sets, \"n\" how many there are, \"paper\" what is printed. \"z\" is the
 difference of the two means over its standard error (both spreads count): how sure it is that there is a difference, not how large it is.
-A mean **agrees** if it is within one printed standard deviation of the printed mean (printed 0 ± 0: below .005 %). An error that is left to
+A mean **agrees** if it is within one printed standard deviation of the printed mean (printed 0 ± 0: below 0.005 %). An error that is left to
 the learner is else **lower** or **higher**; lower can mean an easier set-up or a smoother regression. What the set-up decides (discard rates,
 the error of alignment, which follows from the time step) and the naive baseline **differ**. \"s.d.\" is ours over the printed one, where they
 differ by more than a factor of two; it is not judged.";

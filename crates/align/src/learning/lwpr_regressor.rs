@@ -11,7 +11,7 @@ use crate::{AlignError, GlobalPotential, Regressor};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LwprRegressor {
-    /// Parameters of LWPR, in units of `norm_in`: by default `init_d` 10, `w_gen` .5 and `penalty` 1e-5, the rest as in
+    /// Parameters of LWPR, in units of `norm_in`: by default `init_d` 10, `w_gen` 0.5 and `penalty` 1e-5, the rest as in
     /// [`LwprParams::default`]. Where `norm_in` is `None`, all dimensions are divided by one number, the root mean square
     /// of their standard deviations. `norm_out` must be `None`.
     pub params: LwprParams,

@@ -18,7 +18,7 @@ const START: [f64; 2] = [1.0, -2.4];
 /// Where the box begins, metres along x: the face that stops the tip.
 pub(super) const FACE: f64 = 0.07;
 
-/// Steps of .1 ms: the tip enters the box by no more than it moves in one. Eight seconds, until all is at rest.
+/// Steps of 0.1 ms: the tip enters the box by no more than it moves in one. Eight seconds, until all is at rest.
 const ROLL_OUT: RollOut = RollOut { time_step: 0.05, n_samples: 161, sub_steps: 500 };
 
 /// Two links in the plane, and the policy that stretches them.
