@@ -7,7 +7,6 @@
 //! A [`Model`] is what is kept: [`Model::save`], [`Model::load`], and [`Model::policy`] in the units of the recording.
 //! [`RollOut`] follows it under constraints, [`CSource`] and [`to_onnx`] make a program of it that needs nothing else.
 
-mod decision;
 mod error;
 mod evaluate;
 mod export;
@@ -17,21 +16,22 @@ mod learnt;
 mod leave_out;
 mod model;
 mod model_policy;
-mod prepare;
 mod roll_out;
 mod stored;
 mod trust;
 
-pub use decision::Decision;
-pub use error::{FitError, PrepareError};
+pub use error::FitError;
 pub use evaluate::{EvaluateError, Evaluation, Truth, evaluate};
 pub use export::{CSource, ExportError, Precision, to_onnx};
 pub use fit::{Fit, FitOptions, LearnerChoice, Progress, Step, fit};
 pub use learnt::Learnt;
 pub use leave_out::{ConstraintLeftOut, leave_constraints_out};
-pub use model::{DataSummary, FileSummary, LeftOutEpisode, MadeBy, Model, StateChannel};
+pub use model::{DataSummary, FileSummary, MadeBy, Model};
 pub use model_policy::{ModelPolicy, ModelPotential};
-pub use prepare::{Noise, PrepareOptions, Prepared, Recorded, Repair, Smoothing, VelocityUse, prepare};
+pub use prepare::{
+    Decision, Finding, LeftOutEpisode, Noise, PrepareError, PrepareOptions, Prepared, Recorded, Repair, Smoothing,
+    StateChannel, VelocityUse, Verdict, prepare,
+};
 pub use roll_out::{ConstraintFileError, ConstraintSet, JointLimits, Path, RollOut, RollOutError, Stop, spread_starts};
 pub use stored::{ModelError, sha256, sha256_of_file, write_whole};
-pub use trust::{AlignedNumbers, Finding, Trust, TrustNumbers, Verdict};
+pub use trust::{AlignedNumbers, Trust, TrustNumbers};

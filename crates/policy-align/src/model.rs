@@ -3,7 +3,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Decision, Learnt, Trust, sha256_of_file};
+use crate::{Decision, Learnt, LeftOutEpisode, StateChannel, Trust, sha256_of_file};
 
 /// What was learnt, from what, how, and how far to trust it: all that a model file holds.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -35,24 +35,6 @@ pub struct MadeBy {
     pub program: String,
     /// Coordinated universal time, ISO 8601.
     pub time: String,
-}
-
-/// A dimension of the state, in the user's units.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StateChannel {
-    /// As in the recording.
-    pub name: String,
-    /// If the recording or the user said.
-    pub unit: Option<String>,
-    /// The learner saw the state times this.
-    pub scale: f64,
-    /// Least value learnt from.
-    pub low: f64,
-    /// Largest value learnt from.
-    pub high: f64,
-    /// Median of the values learnt from.
-    pub median: f64,
 }
 
 /// What a model was learnt from.
@@ -105,14 +87,4 @@ impl FileSummary {
             path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
         Ok(FileSummary { name, sha256, bytes })
     }
-}
-
-/// An episode that was not learnt from.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LeftOutEpisode {
-    /// Its name.
-    pub episode: String,
-    /// "not connected".
-    pub why: String,
 }

@@ -1,12 +1,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use policy_align::{Finding, Prepared, Verdict, prepare, write_whole};
+use policy_align::{Finding, Prepared, Verdict, write_whole};
+use prepare::{directions, prepare};
 use serde_json::json;
 
 use super::check_page::check_page;
 use super::config::Config;
-use super::coverage::directions;
 use super::failure::{Exit, Failure};
 use super::flags::{PrepareFlags, ReadFlags};
 use super::lines::{Lines, counted, short};

@@ -5,7 +5,6 @@ mod check_page;
 mod clock;
 mod config;
 mod convert;
-mod coverage;
 mod evaluate;
 mod export;
 mod failure;

@@ -1,8 +1,7 @@
 use gp::{GpError, Rows};
-
 use motion::{Demonstrations, MotionError};
+use prepare::{thinned, with_slopes};
 
-use crate::prepare::{thinned, with_slopes};
 use crate::{Prepared, Recorded};
 
 /// What the Gaussian processes learn from.

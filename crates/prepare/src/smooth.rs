@@ -4,15 +4,15 @@ use motion::{Demonstrations, MotionError, Trajectory};
 use nalgebra::DMatrix;
 use smoothing::{SavitzkyGolay, SmoothingError};
 
-use super::options::Smoothing;
-use super::prepared::Notes;
 use crate::PrepareError;
+use crate::options::Smoothing;
+use crate::prepared::Notes;
 
 /// Fewer samples in a window than this smooth nothing: a parabola goes through three.
 const LEAST: usize = 5;
 
 /// The movements as told; none if nothing was.
-pub(super) fn as_told(
+pub(crate) fn as_told(
     demonstrations: &Demonstrations,
     smoothing: Smoothing,
     notes: &mut Notes,
@@ -46,7 +46,10 @@ fn nearest_odd(samples: f64) -> usize {
 }
 
 /// The same movements; velocities are slopes of the parabola through a sample and its neighbours.
-pub(crate) fn with_slopes(demonstrations: &Demonstrations) -> Result<Demonstrations, MotionError> {
+///
+/// # Errors
+/// Where slopes overflow.
+pub fn with_slopes(demonstrations: &Demonstrations) -> Result<Demonstrations, MotionError> {
     let with = |movement: &Trajectory| movement.clone().with_velocities(slopes(movement));
     Demonstrations::new(demonstrations.trajectories().iter().map(with).collect::<Result<_, _>>()?)
 }

@@ -3,9 +3,9 @@ use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 use smoothing::PositionNoise;
 
-use super::prepared::{Notes, Recorded};
-use super::velocities::Agreement;
 use crate::Verdict;
+use crate::prepared::{Notes, Recorded};
+use crate::velocities::Agreement;
 
 /// Positions count as exact if noise makes less than this share of the squared steps.
 const EXACT: f64 = 0.01;
@@ -34,7 +34,7 @@ pub struct Noise {
 }
 
 /// Of positions, and of velocities where they were recorded.
-pub(super) fn of(demonstrations: &Demonstrations) -> Noise {
+pub(crate) fn of(demonstrations: &Demonstrations) -> Noise {
     let positions = PositionNoise::of(demonstrations).ok().map(|noise| with_resolution(demonstrations, noise));
     let velocity_share = velocity_noise(demonstrations).map(|(variance, power)| variance / power);
     Noise {
@@ -65,7 +65,7 @@ fn with_resolution(demonstrations: &Demonstrations, noise: PositionNoise) -> Pos
 }
 
 /// The step of which all differences between a channel's values are multiples, if there are few values.
-pub(super) fn resolution(demonstrations: &Demonstrations, axis: usize) -> Option<f64> {
+pub(crate) fn resolution(demonstrations: &Demonstrations, axis: usize) -> Option<f64> {
     let movements = demonstrations.trajectories().iter();
     let mut values: Vec<f64> =
         movements.flat_map(|movement| movement.states().row(axis).iter().copied().collect::<Vec<_>>()).collect();
@@ -95,7 +95,7 @@ fn velocity_noise(demonstrations: &Demonstrations) -> Option<(f64, f64)> {
 }
 
 /// What learners are given where the user said how positions are smoothed.
-pub(super) fn as_told(demonstrations: &Demonstrations, noise: &Noise, agreement: Agreement) -> Recorded {
+pub(crate) fn as_told(demonstrations: &Demonstrations, noise: &Noise, agreement: Agreement) -> Recorded {
     if agreement == Agreement::None {
         return Recorded::PositionsAsTold;
     }
@@ -107,7 +107,7 @@ pub(super) fn as_told(demonstrations: &Demonstrations, noise: &Noise, agreement:
 }
 
 /// What learners are given.
-pub(super) fn decide(
+pub(crate) fn decide(
     demonstrations: &Demonstrations,
     noise: &Noise,
     agreement: Agreement,

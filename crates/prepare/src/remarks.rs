@@ -2,8 +2,8 @@
 
 use motion::{Demonstrations, Trajectory};
 
-use super::noise::{Noise, resolution};
-use super::prepared::Notes;
+use crate::noise::{Noise, resolution};
+use crate::prepared::Notes;
 use crate::{StateChannel, Verdict};
 
 /// A channel that spreads so many times as much as most others has another unit, it seems.
@@ -17,7 +17,7 @@ const STANDING: usize = 10;
 /// Positions have few digits if a step of the last digit is this share of a channel's spread.
 const COARSE: f64 = 0.01;
 
-pub(super) fn about(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise, notes: &mut Notes) {
+pub(crate) fn about(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise, notes: &mut Notes) {
     let spreads = spreads(demonstrations);
     mixed_units(&spreads, state, notes);
     few(demonstrations, notes);

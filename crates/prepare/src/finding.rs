@@ -1,7 +1,5 @@
 use serde::{Deserialize, Serialize};
 
-use super::numbers::TrustNumbers;
-
 /// Whether a policy may be used. The worst of its findings decides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -24,16 +22,4 @@ pub struct Finding {
     pub what: String,
     /// What to do next.
     pub next: String,
-}
-
-/// How far to trust a policy; computed without knowing the truth.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Trust {
-    /// The worst of the findings; good if there is none.
-    pub verdict: Verdict,
-    /// Why, the worst first; those called good are mere remarks.
-    pub findings: Vec<Finding>,
-    /// What it rests on.
-    pub numbers: TrustNumbers,
 }

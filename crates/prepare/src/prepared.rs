@@ -2,9 +2,9 @@ use gp::FrontEnd;
 use motion::Demonstrations;
 use smoothing::Smoother;
 
-use super::episodes::Take;
-use super::noise::Noise;
-use super::options::Smoothing;
+use crate::episodes::Take;
+use crate::noise::Noise;
+use crate::options::Smoothing;
 use crate::{Decision, Finding, LeftOutEpisode, StateChannel, Verdict};
 
 /// Demonstrations that can be learnt from, with what was decided and noticed on the way.
@@ -64,29 +64,29 @@ impl Recorded {
 
 /// What is said while preparing.
 #[derive(Debug, Default)]
-pub(super) struct Notes {
-    pub(super) decisions: Vec<Decision>,
-    pub(super) findings: Vec<Finding>,
-    pub(super) left_out: Vec<LeftOutEpisode>,
+pub(crate) struct Notes {
+    pub(crate) decisions: Vec<Decision>,
+    pub(crate) findings: Vec<Finding>,
+    pub(crate) left_out: Vec<LeftOutEpisode>,
 }
 
 impl Notes {
-    pub(super) fn decided(&mut self, what: &str, value: impl Into<String>, why: impl Into<String>, flag: &str) {
+    pub(crate) fn decided(&mut self, what: &str, value: impl Into<String>, why: impl Into<String>, flag: &str) {
         let (what, flag) = (what.to_owned(), flag.to_owned());
         self.decisions.push(Decision { what, value: value.into(), why: why.into(), flag });
     }
 
-    pub(super) fn found(&mut self, verdict: Verdict, what: impl Into<String>, next: impl Into<String>) {
+    pub(crate) fn found(&mut self, verdict: Verdict, what: impl Into<String>, next: impl Into<String>) {
         self.findings.push(Finding { verdict, what: what.into(), next: next.into() });
     }
 
-    pub(super) fn left_out(&mut self, episode: &str, why: impl Into<String>) {
+    pub(crate) fn left_out(&mut self, episode: &str, why: impl Into<String>) {
         self.left_out.push(LeftOutEpisode { episode: episode.to_owned(), why: why.into() });
     }
 }
 
 impl Prepared {
-    pub(super) fn new(
+    pub(crate) fn new(
         demonstrations: Demonstrations,
         takes: &[Take],
         state: Vec<StateChannel>,

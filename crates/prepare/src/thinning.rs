@@ -3,8 +3,8 @@
 use motion::{Demonstrations, MotionError, Trajectory};
 use nalgebra::DMatrix;
 
-use super::noise::Noise;
-use super::prepared::Notes;
+use crate::noise::Noise;
+use crate::prepared::Notes;
 
 /// Samples are averaged until noise makes at most this share of the squared steps.
 const CALM: f64 = 0.3;
@@ -14,7 +14,7 @@ const LEAST: usize = 40;
 /// How many samples in a row become one: 1 leaves all as they are.
 ///
 /// The mean of k samples has a k-th of their noise's variance, and steps between such means are k times as long.
-pub(super) fn decide(demonstrations: &Demonstrations, noise: &Noise, notes: &mut Notes) -> usize {
+pub(crate) fn decide(demonstrations: &Demonstrations, noise: &Noise, notes: &mut Notes) -> usize {
     let Some(deviations) = &noise.positions else { return 1 };
     let variance: f64 = deviations.iter().map(|sd| sd * sd).sum();
     let mut lengths: Vec<usize> = demonstrations.trajectories().iter().map(Trajectory::n_samples).collect();
@@ -50,7 +50,10 @@ fn mean_squared_step(demonstrations: &Demonstrations) -> f64 {
 }
 
 /// Means of so many samples in a row; a rest shorter than that is left out. Movements of fewer than two means stay.
-pub(crate) fn thinned(demonstrations: &Demonstrations, taken: usize) -> Result<Demonstrations, MotionError> {
+///
+/// # Errors
+/// Where means overflow.
+pub fn thinned(demonstrations: &Demonstrations, taken: usize) -> Result<Demonstrations, MotionError> {
     let movements = demonstrations.trajectories().iter().map(|movement| means(movement, taken));
     Demonstrations::new(movements.collect::<Result<_, _>>()?)
 }

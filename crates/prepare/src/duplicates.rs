@@ -1,11 +1,11 @@
 use std::collections::HashMap;
 
-use super::episodes::Take;
-use super::prepared::Notes;
 use crate::Verdict;
+use crate::episodes::Take;
+use crate::prepared::Notes;
 
 /// The same movement twice counts once: it would be left out to test the prediction of itself.
-pub(super) fn leave_out(takes: &mut Vec<Take>, notes: &mut Notes) {
+pub(crate) fn leave_out(takes: &mut Vec<Take>, notes: &mut Notes) {
     let mut first = HashMap::<Vec<u64>, String>::new();
     let before = takes.len();
     takes.retain(|take| {

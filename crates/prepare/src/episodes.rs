@@ -2,27 +2,27 @@ use demo_io::Recordings;
 use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
 
-use super::prepared::Notes;
 use crate::PrepareError;
+use crate::prepared::Notes;
 
 /// A movement on its way from the file to the learner.
 #[derive(Debug, Clone)]
-pub(super) struct Take {
-    pub(super) name: String,
-    pub(super) constraint: Option<String>,
+pub(crate) struct Take {
+    pub(crate) name: String,
+    pub(crate) constraint: Option<String>,
     /// Seconds, (N).
-    pub(super) times: Vec<f64>,
+    pub(crate) times: Vec<f64>,
     /// Seconds between two samples, where they are even.
-    pub(super) time_step: Option<f64>,
+    pub(crate) time_step: Option<f64>,
     /// (n, N).
-    pub(super) positions: DMatrix<f64>,
+    pub(crate) positions: DMatrix<f64>,
     /// (n, N), per second.
-    pub(super) velocities: Option<DMatrix<f64>>,
+    pub(crate) velocities: Option<DMatrix<f64>>,
 }
 
 impl Take {
     /// Every episode, in scaled units.
-    pub(super) fn all(recordings: &Recordings, scales: &DVector<f64>) -> Result<Vec<Take>, PrepareError> {
+    pub(crate) fn all(recordings: &Recordings, scales: &DVector<f64>) -> Result<Vec<Take>, PrepareError> {
         let longest = recordings.episodes.iter().map(|episode| episode.times.len()).max().ok_or(PrepareError::Empty)?;
         let dim = recordings.state.len();
         if 2 * longest < dim {
@@ -44,12 +44,12 @@ impl Take {
         Ok(recordings.episodes.iter().map(take).collect())
     }
 
-    pub(super) fn n_samples(&self) -> usize {
+    pub(crate) fn n_samples(&self) -> usize {
         self.times.len()
     }
 
     /// Samples `from` to `to`, the last not included.
-    pub(super) fn part(&self, from: usize, to: usize) -> Take {
+    pub(crate) fn part(&self, from: usize, to: usize) -> Take {
         let columns = |values: &DMatrix<f64>| values.columns(from, to - from).into_owned();
         Take {
             times: self.times[from..to].to_vec(),
@@ -60,22 +60,22 @@ impl Take {
     }
 
     /// Seconds from a sample to the next.
-    pub(super) fn seconds(&self, sample: usize) -> f64 {
+    pub(crate) fn seconds(&self, sample: usize) -> f64 {
         self.time_step.unwrap_or_else(|| self.times[sample + 1] - self.times[sample])
     }
 
     /// What was taken as seconds were milliseconds.
-    pub(super) fn in_milliseconds(&mut self) {
+    pub(crate) fn in_milliseconds(&mut self) {
         self.times.iter_mut().for_each(|time| *time /= 1000.0);
         self.time_step = self.time_step.map(|step| step / 1000.0);
     }
 
-    pub(super) fn step(&self, sample: usize) -> DVector<f64> {
+    pub(crate) fn step(&self, sample: usize) -> DVector<f64> {
         self.positions.column(sample + 1) - self.positions.column(sample)
     }
 
     /// Checked.
-    pub(super) fn trajectory(&self) -> Result<Trajectory, PrepareError> {
+    pub(crate) fn trajectory(&self) -> Result<Trajectory, PrepareError> {
         let of = |source| PrepareError::Episode { episode: self.name.clone(), source };
         let trajectory = if let Some(time_step) = self.time_step {
             Trajectory::new(self.positions.clone(), time_step).map_err(of)?
@@ -92,14 +92,14 @@ impl Take {
 }
 
 /// All of them, checked.
-pub(super) fn demonstrations(takes: &[Take]) -> Result<Demonstrations, PrepareError> {
+pub(crate) fn demonstrations(takes: &[Take]) -> Result<Demonstrations, PrepareError> {
     let trajectories = takes.iter().map(Take::trajectory).collect::<Result<_, _>>()?;
     // Takes are of one dimension, as recordings are.
     Demonstrations::new(trajectories).map_err(|source| PrepareError::Episode { episode: takes[0].name.clone(), source })
 }
 
 /// Episodes in which nothing ever changes.
-pub(super) fn leave_out_still(takes: &mut Vec<Take>, notes: &mut Notes) {
+pub(crate) fn leave_out_still(takes: &mut Vec<Take>, notes: &mut Notes) {
     takes.retain(|take| {
         let moves = take.n_samples() > 1 && take.positions.column_iter().any(|state| state != take.positions.column(0));
         if !moves {

@@ -1,8 +1,8 @@
 use motion::{Demonstrations, Trajectory};
 
-use super::episodes::Take;
-use super::options::PrepareOptions;
-use super::prepared::Notes;
+use crate::episodes::Take;
+use crate::options::PrepareOptions;
+use crate::prepared::Notes;
 use crate::{PrepareError, Verdict};
 
 /// Stamps that differ by less than this share of a step are even.
@@ -10,12 +10,12 @@ const EVEN: f64 = 0.01;
 /// A time step this near to a whole rate is that rate.
 const WHOLE: f64 = 1e-3;
 /// Longer steps than this are hardly seconds.
-pub(super) const SLOW: f64 = 5.0;
+pub(crate) const SLOW: f64 = 5.0;
 /// A step over so many usual ones is a gap.
 const GAP: f64 = 3.0;
 
 /// The time step of every movement, or its stamps where they are uneven.
-pub(super) fn decide(takes: &mut [Take], options: &PrepareOptions, notes: &mut Notes) -> Result<(), PrepareError> {
+pub(crate) fn decide(takes: &mut [Take], options: &PrepareOptions, notes: &mut Notes) -> Result<(), PrepareError> {
     if let Some(time_step) = options.time_step {
         if !(time_step > 0.0 && time_step.is_finite()) {
             return Err(PrepareError::TimeStep { time_step });
@@ -73,7 +73,7 @@ fn say(takes: &[Take], (uneven, worst, gaps): (usize, f64, usize), notes: &mut N
 }
 
 /// A time step that is hardly one in seconds.
-pub(super) fn doubt(demonstrations: &Demonstrations, notes: &mut Notes) {
+pub(crate) fn doubt(demonstrations: &Demonstrations, notes: &mut Notes) {
     let steps = demonstrations.trajectories().iter().map(Trajectory::time_step).collect();
     let Some(usual) = median(steps).filter(|&usual| usual > SLOW) else { return };
     let movement = &demonstrations.trajectories()[0];

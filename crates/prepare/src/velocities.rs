@@ -1,12 +1,12 @@
 use demo_io::Channel;
 use nalgebra::DVector;
 
-use super::episodes::Take;
-use super::noise::Noise;
-use super::options::{PrepareOptions, VelocityUse};
-use super::prepared::Notes;
-use super::stamps::SLOW;
 use crate::Verdict;
+use crate::episodes::Take;
+use crate::noise::Noise;
+use crate::options::{PrepareOptions, VelocityUse};
+use crate::prepared::Notes;
+use crate::stamps::SLOW;
 
 /// Velocities agree with the steps up to this factor.
 const AGREE: f64 = 1.25;
@@ -23,7 +23,7 @@ const SAME: f64 = 1e-6;
 
 /// What recorded velocities are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Agreement {
+pub(crate) enum Agreement {
     /// There are none, or they are of no use.
     None,
     /// Differences of the positions: they know nothing that positions do not.
@@ -33,7 +33,7 @@ pub(super) enum Agreement {
 }
 
 /// Compares velocities with the steps; brings them to the steps' units, or drops them.
-pub(super) fn decide(
+pub(crate) fn decide(
     takes: &mut [Take],
     options: &PrepareOptions,
     channels: &[Channel],

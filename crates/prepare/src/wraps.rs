@@ -2,9 +2,9 @@ use std::f64::consts::TAU;
 
 use demo_io::Channel;
 
-use super::episodes::Take;
-use super::prepared::Notes;
 use crate::Verdict;
+use crate::episodes::Take;
+use crate::prepared::Notes;
 
 /// A step over this share of a turn is a wrap.
 const WRAP: f64 = 0.75;
@@ -12,7 +12,7 @@ const WRAP: f64 = 0.75;
 const RANGE: std::ops::RangeInclusive<f64> = 0.9..=1.02;
 
 /// Angles that jump by a whole turn go on instead; every movement ends within half a turn of where all end.
-pub(super) fn unwrap(takes: &mut [Take], channels: &[Channel], notes: &mut Notes) {
+pub(crate) fn unwrap(takes: &mut [Take], channels: &[Channel], notes: &mut Notes) {
     for (channel, described) in channels.iter().enumerate() {
         let Some(turn) = turn(takes, channel) else { continue };
         let wrapped = takes.iter().filter(|take| has_wraps(take, channel, turn)).count();

@@ -1,6 +1,6 @@
-use super::episodes::Take;
-use super::prepared::Notes;
 use crate::Verdict;
+use crate::episodes::Take;
+use crate::prepared::Notes;
 
 /// A step so many times the usual one, and so many times most of those about it, is a jump.
 const LONG: f64 = 10.0;
@@ -12,7 +12,7 @@ const LEAST: usize = 4;
 const MANY: f64 = 0.2;
 
 /// Cuts episodes where a single step stands out from all about it: samples are missing there, or one is wrong.
-pub(super) fn cut(takes: &mut Vec<Take>, notes: &mut Notes) {
+pub(crate) fn cut(takes: &mut Vec<Take>, notes: &mut Notes) {
     let (episodes, mut cut, mut first) = (takes.len(), 0, None);
     *takes = takes
         .drain(..)

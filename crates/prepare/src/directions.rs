@@ -6,7 +6,7 @@ const STILL: f64 = 0.01;
 
 /// How evenly directions are seen: n times the least eigenvalue of the mean of d dᵀ, d = u/‖u‖, 1 if all alike and 0 if
 /// one never is, and that direction, (n).
-pub(crate) fn directions(demonstrations: &Demonstrations) -> (f64, DVector<f64>) {
+pub fn directions(demonstrations: &Demonstrations) -> (f64, DVector<f64>) {
     let velocities: Vec<DVector<f64>> = demonstrations
         .trajectories()
         .iter()

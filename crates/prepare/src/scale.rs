@@ -2,12 +2,12 @@ use demo_io::Recordings;
 use motion::Demonstrations;
 use nalgebra::DVector;
 
-use super::options::PrepareOptions;
-use super::prepared::Notes;
+use crate::options::PrepareOptions;
+use crate::prepared::Notes;
 use crate::{PrepareError, StateChannel};
 
 /// Factor of every channel, (n).
-pub(super) fn scales(
+pub(crate) fn scales(
     recordings: &Recordings,
     options: &PrepareOptions,
     notes: &mut Notes,
@@ -29,7 +29,7 @@ pub(super) fn scales(
 }
 
 /// Names, units and ranges, in the user's units.
-pub(super) fn channels(
+pub(crate) fn channels(
     recordings: &Recordings,
     scales: &DVector<f64>,
     demonstrations: &Demonstrations,

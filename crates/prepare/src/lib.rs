@@ -1,8 +1,14 @@
 //! From what a file says to what a learner can use, with a line for everything that was decided on the way.
 
+mod channel;
+mod decision;
+mod directions;
 mod duplicates;
 mod episodes;
+mod error;
+mod finding;
 mod jumps;
+mod left_out;
 mod noise;
 mod options;
 mod prepared;
@@ -14,15 +20,20 @@ mod thinning;
 mod velocities;
 mod wraps;
 
+pub use channel::StateChannel;
+pub use decision::Decision;
+pub use directions::directions;
+pub use error::PrepareError;
+pub use finding::{Finding, Verdict};
+pub use left_out::LeftOutEpisode;
 pub use noise::Noise;
 pub use options::{PrepareOptions, Repair, Smoothing, VelocityUse};
 pub use prepared::{Prepared, Recorded};
-pub(crate) use smooth::with_slopes;
-pub(crate) use thinning::thinned;
+pub use smooth::with_slopes;
+pub use thinning::thinned;
 
 use demo_io::Recordings;
 
-use crate::PrepareError;
 use episodes::Take;
 use prepared::Notes;
 

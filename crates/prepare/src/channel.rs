@@ -1,0 +1,19 @@
+use serde::{Deserialize, Serialize};
+
+/// A dimension of the state, in the user's units.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StateChannel {
+    /// As in the recording.
+    pub name: String,
+    /// If the recording or the user said.
+    pub unit: Option<String>,
+    /// The learner saw the state times this.
+    pub scale: f64,
+    /// Least value learnt from.
+    pub low: f64,
+    /// Largest value learnt from.
+    pub high: f64,
+    /// Median of the values learnt from.
+    pub median: f64,
+}

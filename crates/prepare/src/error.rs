@@ -1,0 +1,72 @@
+use motion::MotionError;
+use thiserror::Error;
+
+/// Why recordings cannot be learnt from. Samples count from 0.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum PrepareError {
+    /// There is nothing.
+    #[error("there is no episode; give at least one")]
+    Empty,
+    /// Nothing is left.
+    #[error("no episode is left: all {of} were left out ({why}); record movements")]
+    NothingLeft {
+        /// How many there were.
+        of: usize,
+        /// Why the first was left out.
+        why: String,
+    },
+    /// Rows and columns seem to be exchanged.
+    #[error(
+        "the state has {dim} dimensions and the longest episode {samples} samples: rows and columns seem to be exchanged; read the samples the other way (--samples-are)"
+    )]
+    LooksTransposed {
+        /// Dimensions of the state.
+        dim: usize,
+        /// Samples of the longest episode.
+        samples: usize,
+    },
+    /// A scale for something that is not there.
+    #[error("--scale names '{name}', but the state has {known}; use one of these names")]
+    UnknownChannel {
+        /// The name given.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// A scale that is none.
+    #[error("--scale {name}={factor}: a scale must be positive and finite")]
+    Scale {
+        /// The channel.
+        name: String,
+        /// The factor given.
+        factor: f64,
+    },
+    /// A time step that is none.
+    #[error("--dt {time_step}: a time step must be a positive, finite number of seconds")]
+    TimeStep {
+        /// The time step given.
+        time_step: f64,
+    },
+    /// A window that cannot smooth.
+    #[error(
+        "--smooth: a window of {window} samples, {step} s apart; give an odd number from 5 on, as --smooth 9, or so many seconds, as --smooth {:.2e}s", 9.0 * step
+    )]
+    Smoothing {
+        /// Samples in it.
+        window: usize,
+        /// Seconds between them.
+        step: f64,
+    },
+    /// Nothing moves.
+    #[error("no channel changes in any episode: there is no movement to learn from")]
+    NoMotion,
+    /// An episode is not a movement.
+    #[error("episode '{episode}': {source}")]
+    Episode {
+        /// Its name.
+        episode: String,
+        /// What is wrong with it.
+        source: MotionError,
+    },
+}
