@@ -4,11 +4,15 @@
 
 mod models;
 
+use std::time::{Duration, Instant};
+
 use models::{direct, one_of_each, policy_align, slope, states, toy};
 use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::{DMatrix, DVector};
 use policy_align::{Learnt, Model, ModelError};
 use proptest::prelude::*;
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 
 /// Everything that a model answers at a state.
@@ -133,6 +137,61 @@ fn no_flipped_bit_is_another_model() {
         if let Ok(read) = Model::from_json(&bytes) {
             assert_eq!(read.to_json().unwrap(), text, "byte {at}");
         }
+    }
+}
+
+/// Damages a text in a few places.
+fn damaged(text: &str, random: &mut ChaCha8Rng) -> Vec<u8> {
+    let mut bytes = text.as_bytes().to_vec();
+    for _ in 0..random.random_range(1..5) {
+        let at = random.random_range(0..bytes.len().max(1));
+        let end = (at + random.random_range(1..40)).min(bytes.len());
+        match random.random_range(0..6) {
+            0 => bytes.truncate(at),
+            1 => drop(bytes.drain(at.min(end)..end)),
+            2 => {
+                let piece = bytes[at.min(end)..end].to_vec();
+                let to = random.random_range(0..=bytes.len());
+                bytes.splice(to..to, piece);
+            }
+            3 => {
+                let number = ["1e999", "-0", "18446744073709551615", "1e-320", "null", "[]", "{}"];
+                bytes.splice(at.min(end)..end, number[random.random_range(0..7)].bytes());
+            }
+            4 => bytes.insert(at, random.random()),
+            _ => bytes
+                .iter_mut()
+                .skip(at)
+                .take(1)
+                .for_each(|byte| *byte = b"0123456789,:[]{}\"-.e"[random.random_range(0..21)]),
+        }
+    }
+    bytes
+}
+
+/// `POLICY_ALIGN_FUZZ=1000000` tries so many of every learner.
+#[test]
+fn damaged_models_are_refused_in_one_line_at_once() {
+    let count: u64 = std::env::var("POLICY_ALIGN_FUZZ").ok().map_or(300, |count| count.parse().unwrap());
+    for (name, model) in one_of_each(&toy(3, 4)) {
+        let text = model.to_json().unwrap();
+        let mut slowest = (Duration::ZERO, 0);
+        for seed in 0..count {
+            let bytes = damaged(&text, &mut ChaCha8Rng::seed_from_u64(seed));
+            let start = Instant::now();
+            match Model::from_json(&bytes) {
+                Ok(read) => assert_eq!(read.to_json().unwrap(), text, "{name} seed {seed}"),
+                Err(error) => assert_eq!(error.to_string().lines().count(), 1, "{name} seed {seed}: {error}"),
+            }
+            slowest = slowest.max((start.elapsed(), seed));
+        }
+        assert!(slowest.0 < Duration::from_secs(5), "{name} seed {} takes {:?}", slowest.1, slowest.0);
+        println!(
+            "{name}: {count} damaged models of {} bytes, slowest {:?} with seed {}",
+            text.len(),
+            slowest.0,
+            slowest.1
+        );
     }
 }
 
