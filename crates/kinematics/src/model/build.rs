@@ -72,6 +72,7 @@ impl RobotModel {
 /// assert_eq!(RobotModel::try_from(&read)?.name(), "post");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[cfg(feature = "urdf-rs")]
 impl TryFrom<&urdf_rs::Robot> for RobotModel {
     /// [`KinematicsError::Urdf`] with the link or joint that breaks a rule.
     type Error = KinematicsError;

@@ -3,6 +3,7 @@
 
 mod document;
 mod element;
+#[cfg(feature = "urdf-rs")]
 mod from_urdf_rs;
 mod geometry;
 mod joint;
@@ -17,6 +18,7 @@ pub(crate) mod tag;
 pub(crate) use document::parsed;
 pub(crate) use document::{UrdfRobot, read};
 pub use element::{Element, UrdfWarning};
+#[cfg(feature = "urdf-rs")]
 pub(crate) use from_urdf_rs::from_urdf_rs;
 pub use geometry::Geometry;
 pub(crate) use geometry::UrdfCollision;
