@@ -39,8 +39,8 @@ struct Cli {
 enum Command {
     /// Run the paper's experiments and show the tables beside the printed ones
     ///
-    /// Every finished data set is kept at once: after Ctrl-C or a crash the same command goes on where it stopped and
-    /// ends with the identical result.
+    /// Every finished data set is kept at once: after Ctrl-C or a crash the same
+    /// command goes on where it stopped and ends with the identical result.
     ///
     /// Examples:
     ///   cargo xtask reproduce                        everything

@@ -11,7 +11,7 @@ use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::{DMatrix, DVector};
 use policy_align::{Learnt, Model, ModelError};
 use proptest::prelude::*;
-use rand::{RngExt as _, SeedableRng as _};
+use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 

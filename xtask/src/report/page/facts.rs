@@ -32,7 +32,7 @@ pub(super) fn facts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
                 }
             }
             @if let Some(second) = contents.second {
-                div { dt { "Beside it" } dd { "the committed run of seed " (second.seed) ". " (beside(second, all)) } }
+                div { dt { "Another run" } dd { "seed " (second.seed) ": "  (beside(second, all)) } }
             }
         }
         (missing(contents))

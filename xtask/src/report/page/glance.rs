@@ -32,6 +32,12 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
     }
 }
 
+/// What is not the paper's; each experiment names its own.
+const FITTED: &str = "What the paper does not give was fitted, so that its numbers come out: how often a toy constraint is drawn anew (every 20 \
+                      samples; twice a movement is the text read literally); where ball, wall and obstacle are, and how the robot stands \
+                      (Table 2); the 22 joints' posture and attractor; and the regression's widths and passes, one setting for each learner of \
+                      an experiment. Each experiment names its own.";
+
 /// How many cells are reached: in total, and for each experiment.
 fn how_it_went(all: &[Compared<'_>]) -> Markup {
     let first_readings = all.iter().filter(|compared| compared.experiment.another_reading_of.is_none());
@@ -44,15 +50,18 @@ fn how_it_went(all: &[Compared<'_>]) -> Markup {
                 (bar(&total))
                 p .rule {
                     @for (verdict, _) in total.counts() { (meaning(verdict)) " " }
-                    "How sure that is: " b { (total.alike()) } " of the " (total.total()) " means are within two standard errors of the printed \
-                     ones; the others differ by more than chance. "
                     a href="#method" { "The rule in full" }
+                }
+                p {
+                    "How sure that is: " b { (total.alike()) } " of the " (total.total()) " means are within two standard errors of the printed \
+                     ones; the others, also among those that agree, differ by more than chance."
                 }
             }
             table .tallies {
                 thead { tr { th scope="col" { "Experiment" } th scope="col" { "Section" } th scope="col" colspan="2" { "Printed numbers" } } }
                 tbody { @for compared in all { (tally_of(compared)) } }
             }
+            p .rule { (FITTED) " What a fifth more or less of each turns: " code { "docs/leverage.md" } "." }
         }
     }
 }
@@ -61,10 +70,10 @@ fn how_it_went(all: &[Compared<'_>]) -> Markup {
 fn meaning(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Agrees => "Agree: our mean is within one printed standard deviation of the printed mean.",
-        Verdict::Lower => "Lower: an error of the learner below that.",
-        Verdict::Higher => "Higher: an error of the learner above that.",
+        Verdict::Lower => "Lower: an error of the learner, smaller than printed by more.",
+        Verdict::Higher => "Higher: an error of the learner, larger than printed by more.",
         Verdict::Differs => {
-            "Differ: a figure outside that which is not left to the learner (discard rate, alignment error, naive baseline)."
+            "Differ: a number on which the learner has no influence (discard rate, alignment error, naive baseline), off by more."
         }
     }
 }
@@ -77,7 +86,7 @@ fn tally_of(compared: &Compared<'_>) -> Markup {
             tr {
                 th scope="row" {
                     a href={ "#" (experiment.id) } { (experiment.title) }
-                    @if experiment.another_reading_of.is_some() { " (another reading; not in the total)" }
+                    @if experiment.another_reading_of.is_some() { " (a second reading of the paper's text, not in the total)" }
                 }
                 td { (experiment.section) }
                 td { (bar(&tally)) }
@@ -87,12 +96,16 @@ fn tally_of(compared: &Compared<'_>) -> Markup {
     }
 }
 
+/// What the next words are.
+const NAMES: &str = "nUPE and nCPE: squared error of the learnt policy π, free and under the demonstrations' constraints (Nπ), over its variance; \
+                     nMSE: the same of the potential φ. Rule (9): how the paper integrates φ along a movement.";
+
 /// The cells that are higher than printed or otherwise off, each with what is known of it.
 fn not_reached(all: &[Compared<'_>]) -> Markup {
     let (others, first): (Vec<_>, Vec<_>) =
         all.iter().partition(|compared| compared.experiment.another_reading_of.is_some());
     html! {
-        (missed("Higher or different", &first))
+        (missed("Numbers that are higher or differ", &first))
         (missed("The same in the literal reading of Table 1, which is not counted above", &others))
     }
 }
@@ -106,6 +119,7 @@ fn missed(heading: &str, among: &[&Compared<'_>]) -> Markup {
     html! {
         @if !cells.is_empty() {
             h2 .small { (heading) }
+            p .rule { (NAMES) }
             dl .reasons {
                 @for (experiment, line) in cells {
                     div .{ "is-" (line.verdict()) } {
