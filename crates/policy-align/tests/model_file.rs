@@ -140,6 +140,9 @@ fn no_flipped_bit_is_another_model() {
     }
 }
 
+/// What JSON is made of.
+const MARKS: &[u8] = b"0123456789,:[]{}\"-.e";
+
 /// Damages a text in a few places.
 fn damaged(text: &str, random: &mut ChaCha8Rng) -> Vec<u8> {
     let mut bytes = text.as_bytes().to_vec();
@@ -156,14 +159,14 @@ fn damaged(text: &str, random: &mut ChaCha8Rng) -> Vec<u8> {
             }
             3 => {
                 let number = ["1e999", "-0", "18446744073709551615", "1e-320", "null", "[]", "{}"];
-                bytes.splice(at.min(end)..end, number[random.random_range(0..7)].bytes());
+                bytes.splice(at.min(end)..end, number[random.random_range(0..number.len())].bytes());
             }
             4 => bytes.insert(at, random.random()),
-            _ => bytes
-                .iter_mut()
-                .skip(at)
-                .take(1)
-                .for_each(|byte| *byte = b"0123456789,:[]{}\"-.e"[random.random_range(0..21)]),
+            _ => {
+                if let Some(byte) = bytes.get_mut(at) {
+                    *byte = MARKS[random.random_range(0..MARKS.len())];
+                }
+            }
         }
     }
     bytes
