@@ -63,7 +63,7 @@ fn what_is_wrong_is_said_in_one_line_with_its_place() {
         assert!(!said.contains('\n') && said.len() < 400, "{said}");
         said
     };
-    let cases: [(String, &str); 11] = [
+    let cases: [(String, &str); 12] = [
         (said(Model::from_json(b"\xff\xfe")), "not JSON: "),
         (said(Model::from_json(b"[1]")), "not a model of this program"),
         (said(Model::from_json(br#"{"format":"urdf"}"#)), r#"`format` is "urdf""#),
@@ -77,6 +77,7 @@ fn what_is_wrong_is_said_in_one_line_with_its_place() {
         (said(with(&text, "/state/1", |v| remove(v, "scale"))), "state[1]: missing field `scale`"),
         (said(with(&text, "/state/1/scale", |v| *v = json!("a\nb"))), "state[1].scale: invalid type"),
         (said(with(&text, "/learnt/direct/direct_gp/states/3", |v| *v = Value::Null)), "learnt.direct"),
+        (said(with(&text, "/state/1", |v| v["a\nb"] = json!(1))), "state[1].a b: unknown field"),
         (said(with(&text, "/state/0/name", |v| *v = json!("y"))), "checksum: "),
     ];
     for (said, expected) in cases {

@@ -64,7 +64,7 @@ impl Model {
             members.remove(envelope);
         }
         let model: Model = serde_path_to_error::deserialize(Value::Object(members))
-            .map_err(|error| member(&error.path().to_string(), one_line(&error.inner().to_string())))?;
+            .map_err(|error| member(&one_line(&error.path().to_string()), one_line(&error.inner().to_string())))?;
         if changed {
             return Err(ModelError::Checksum);
         }

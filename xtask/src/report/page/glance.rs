@@ -96,7 +96,7 @@ fn tally_of(compared: &Compared<'_>) -> Markup {
     }
 }
 
-/// What the next words are.
+/// What stands behind the measures.
 const NAMES: &str = "nUPE and nCPE: squared error of the learnt policy π, free and under the demonstrations' constraints (Nπ), over its variance; \
                      nMSE: the same of the potential φ. Rule (9): how the paper integrates φ along a movement.";
 
@@ -107,6 +107,7 @@ fn not_reached(all: &[Compared<'_>]) -> Markup {
     html! {
         (missed("Numbers that are higher or differ", &first))
         (missed("The same in the literal reading of Table 1, which is not counted above", &others))
+        p .rule { (NAMES) }
     }
 }
 
@@ -119,7 +120,6 @@ fn missed(heading: &str, among: &[&Compared<'_>]) -> Markup {
     html! {
         @if !cells.is_empty() {
             h2 .small { (heading) }
-            p .rule { (NAMES) }
             dl .reasons {
                 @for (experiment, line) in cells {
                     div .{ "is-" (line.verdict()) } {
