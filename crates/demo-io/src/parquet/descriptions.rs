@@ -6,9 +6,10 @@
 
 use parquet::file::metadata::ColumnChunkMetaData;
 
+use super::failure::damaged;
 use super::fields::{FILE, Fields, Holds, PAGE};
+use crate::ReadError;
 use crate::input::Input;
-use crate::{Fault, ReadError};
 
 /// Bytes at the end: length of the closing description, and the mark.
 const END: u64 = 8;
@@ -50,11 +51,11 @@ pub(super) fn check_pages(chunk: &ColumnChunkMetaData, input: &Input<'_>) -> Res
         let mut description = Description { left: &text, sizes: [None; 3] };
         let whole = refuse(&description.structure(PAGE, DEPTH), input)?;
         if !whole && at + room == input.len {
-            return Err(damaged("it ends within the description of a page", input));
+            return Err(damaged("it ends within the description of a page", &input.name));
         }
         let [page, in_file, values] = description.sizes;
         if values.zip(page).is_some_and(|(values, page)| values > page) {
-            return Err(damaged("a dictionary has more values than bytes", input));
+            return Err(damaged("a dictionary has more values than bytes", &input.name));
         }
         let taken = (text.len() - description.left.len()) as u64;
         let Some(in_file) = in_file.filter(|_| whole) else { return Ok(()) };
@@ -68,14 +69,11 @@ fn refuse(outcome: &Result<(), Stop>, input: &Input<'_>) -> Result<bool, ReadErr
     match outcome {
         Ok(()) => Ok(true),
         Err(Stop::Unreadable) => Ok(false),
-        Err(Stop::Overlong) => Err(damaged("it describes a list longer than itself", input)),
-        Err(Stop::Other) => Err(damaged("a field of its description holds something else than the format says", input)),
+        Err(Stop::Overlong) => Err(damaged("it describes a list longer than itself", &input.name)),
+        Err(Stop::Other) => {
+            Err(damaged("a field of its description holds something else than the format says", &input.name))
+        }
     }
-}
-
-fn damaged(how: &str, input: &Input<'_>) -> ReadError {
-    let what = format!("the file is damaged: {how}");
-    ReadError::Corrupt(Fault::new(what, &input.name, "another copy of the file"))
 }
 
 const BYTE: u8 = 3;

@@ -1,5 +1,7 @@
 //! What the library's errors mean for whoever has the file.
 
+use std::fmt::Display;
+
 use parquet::errors::ParquetError;
 
 use crate::input::Input;
@@ -18,8 +20,13 @@ pub(super) fn failed(error: &ParquetError, input: &Input<'_>) -> ReadError {
         _ if !ends_well => {
             ReadError::Truncated(Fault::new("the file is cut off: its closing mark is missing", file, copy))
         }
-        _ => ReadError::Corrupt(Fault::new(format!("the file is damaged: {error}"), file, "another copy of the file")),
+        _ => damaged(error, file),
     }
+}
+
+/// How the file contradicts itself, and where.
+pub(super) fn damaged(how: impl Display, place: &str) -> ReadError {
+    ReadError::Corrupt(Fault::new(format!("the file is damaged: {how}"), place, "another copy of the file"))
 }
 
 /// Whether the file is fine, but not for us.

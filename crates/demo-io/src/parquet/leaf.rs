@@ -5,7 +5,8 @@ use parquet::data_type::DataType;
 use parquet::file::reader::{FileReader, RowGroupReader};
 use parquet::schema::types::ColumnDescriptor;
 
-use super::{descriptions, failed};
+use super::descriptions;
+use super::failure::{damaged, failed};
 use crate::array::Data;
 use crate::draft::MOST_CHANNELS;
 use crate::input::Input;
@@ -126,9 +127,8 @@ impl Leaf {
             let mut values: Vec<&[u8]> = buf.chunks_exact(size).collect();
             values.sort_unstable();
             if values.windows(2).any(|pair| pair[0] == pair[1]) {
-                let what = "the file is damaged: a dictionary holds a value twice";
                 let place = format!("{}, column '{}'", input.name, self.name);
-                return Err(ReadError::Corrupt(Fault::new(what, place, "another copy of the file")));
+                return Err(damaged("a dictionary holds a value twice", &place));
             }
         }
         Ok(())
