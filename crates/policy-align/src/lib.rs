@@ -1,6 +1,6 @@
 //! From a laboratory's recordings to a policy that one can trust, or to the reason why not.
 //!
-//! [`prepare`] makes demonstrations of [`demo_io::Recordings`]; [`fit`] learns from them and says how far to trust what
+//! [`prepare()`] makes demonstrations of [`demo_io::Recordings`]; [`fit`] learns from them and says how far to trust what
 //! came of it; [`evaluate`] holds a policy against other recordings. Every decision that is taken for the user is a
 //! [`Decision`], every doubt a [`Finding`].
 //!
