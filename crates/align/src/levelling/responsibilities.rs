@@ -20,7 +20,7 @@ pub(crate) struct Responsibilities {
 pub(crate) struct Block {
     /// The models with a responsibility above the floor at some sample, ascending.
     pub(crate) models: Vec<usize>,
-    /// For each model in turn q_km, one a sample, filled up with 0.
+    /// For each model in turn q_km at every sample, filled up with 0.
     pub(crate) shares: Vec<Lanes>,
     /// For each model in turn f_km − f_om, where o is the trajectory itself: φ̂ of the nearest samples (10).
     pub(crate) rises: Vec<Lanes>,

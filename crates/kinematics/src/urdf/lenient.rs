@@ -1,4 +1,4 @@
-//! The usual readers of URDF are no strict XML readers, and files that only they accept are about. What is mended here
+//! The usual readers of URDF are lenient about XML, and many published files are not well formed. What is mended here
 //! says nothing about a robot: comments with two hyphens in them, text before the XML declaration, undeclared prefixes.
 
 use roxmltree::{Document, Error, ParsingOptions};
