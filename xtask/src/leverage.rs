@@ -1,7 +1,8 @@
 //! `cargo xtask leverage`: how much hangs on what is fitted.
 //!
 //! Every setting that the paper does not give is changed by a fifth, up and down, one at a time, on the first data sets of
-//! a seed; the printed cells whose verdict is another than at the value used are named.
+//! a seed; the printed cells whose verdict is another than at the value used are named. What texts quote of other values is
+//! measured beside.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -11,7 +12,7 @@ use anyhow::Context as _;
 use clap::Args;
 use page::markdown_table;
 
-use crate::experiments::{Experiment, Setting, registry, settings};
+use crate::experiments::{Experiment, Setting, Setup, registry, settings, unfitted};
 use crate::files::{repository, write};
 use crate::measure::Measure;
 use crate::progress::say;
@@ -19,6 +20,7 @@ use crate::records::{Earlier, Records};
 use crate::results::ExperimentResult;
 use crate::runner::{Plan, Work};
 use crate::summary::summarise;
+use crate::variants::{Cell, Quote, Variants, quotes};
 use crate::verdict::Verdict;
 
 /// By how much settings are changed.
@@ -37,8 +39,16 @@ pub(crate) struct Leverage {
     out: Option<PathBuf>,
 }
 
+/// What the README quotes of Table 1's system with fewer movements.
+const README: &str = "\
+    is {movements = 10: parabola-40x40-medium nupe_fresh} with 10 movements, \
+    {movements = 15: parabola-40x40-medium nupe_fresh} with 15, {movements = 20: parabola-40x40-medium nupe_fresh} with 20 and \
+    {movements = 30: parabola-40x40-medium nupe_fresh} with 30; on its sinusoid \
+    {movements = 10: sinusoidal-40x40-medium nupe_fresh}, {movements = 15: sinusoidal-40x40-medium nupe_fresh}, \
+    {movements = 20: sinusoidal-40x40-medium nupe_fresh} and {movements = 30: sinusoidal-40x40-medium nupe_fresh}.";
+
 /// The verdict of every printed cell.
-type Verdicts = Vec<((String, Measure), Verdict)>;
+type Verdicts = Vec<(Cell, Verdict)>;
 
 impl Leverage {
     pub(crate) fn execute(&self) -> anyhow::Result<()> {
@@ -57,8 +67,30 @@ impl Leverage {
         }
         add_table(&mut text, experiment, &rows);
         write(&repository().join("docs/leverage.md"), text)?;
-        say("written: docs/leverage.md");
+        self.quoted(&records)?.commit()?;
+        say("written: docs/leverage.md, docs/records/variants.json");
         Ok(())
+    }
+
+    /// What texts quote of other settings.
+    fn quoted(&self, records: &Arc<Records>) -> anyhow::Result<Variants> {
+        let mut variants = Variants::from_seed(self.seed);
+        for experiment in registry()? {
+            let of_readme = if experiment.id == "table1" { readme_quotes()? } else { Vec::new() };
+            for (quote, cell) in experiment.explanations.quotes.iter().chain(&of_readme) {
+                let mut known = settings().into_iter().chain(unfitted());
+                let setting =
+                    known.find(|setting| setting.experiment == experiment.id && setting.name == quote.setting);
+                let setting = setting.with_context(|| format!("{} has no setting {}", experiment.id, quote.setting))?;
+                let of_cell = |setup: &Setup| setup.rows.iter().any(|row| row.id == cell.0);
+                let result = self.result(&setting, quote.value, of_cell, records)?;
+                let row = result.rows.iter().find(|row| row.id == cell.0);
+                let found = row.and_then(|row| row.measures.get(&cell.1));
+                let found = found.with_context(|| format!("{} has no {} {}", experiment.id, cell.0, cell.1.name()))?;
+                variants.add(experiment.id, quote, cell, found.values.iter().flatten().copied().collect());
+            }
+        }
+        Ok(variants)
     }
 
     fn preface(&self) -> String {
@@ -83,20 +115,37 @@ impl Leverage {
     }
 
     fn verdicts(&self, setting: &Setting, value: f64, records: &Arc<Records>) -> anyhow::Result<Verdicts> {
+        Ok(verdicts(&self.result(setting, value, |_| true, records)?).collect())
+    }
+
+    /// The experiment at a setting's value, as far as its setups are wanted.
+    fn result(
+        &self,
+        setting: &Setting,
+        value: f64,
+        wanted: impl Fn(&Setup) -> bool,
+        records: &Arc<Records>,
+    ) -> anyhow::Result<ExperimentResult> {
         let found = registry()?.into_iter().find(|experiment| experiment.id == setting.experiment);
         let mut experiment = found.with_context(|| format!("there is no experiment {}", setting.experiment))?;
         experiment.setups = (setting.with)(value)?;
+        experiment.setups.retain(wanted);
         let experiments: [Experiment; 1] = [experiment];
         let plan = Plan { data_sets: Some(self.data_sets), of_contestants: Some(0), seed: self.seed };
         let mut work = Work::find(&experiments, plan, records)?;
         work.measure(|_| true, records)?;
-        Ok(summarise(&experiments, &work.outcomes())?.iter().flat_map(verdicts).collect())
+        summarise(&experiments, &work.outcomes())?.pop().context("one experiment has one result")
     }
 }
 
-fn verdicts(result: &ExperimentResult) -> Verdicts {
+fn readme_quotes() -> anyhow::Result<Vec<(Quote, Cell)>> {
+    // Every one names its cell.
+    quotes(&(String::new(), Measure::NupeFresh), README)
+}
+
+fn verdicts(result: &ExperimentResult) -> impl Iterator<Item = (Cell, Verdict)> {
     let cells = result.rows.iter().flat_map(|row| row.measures.iter().map(move |(measure, cell)| (row, measure, cell)));
-    cells.filter_map(|(row, measure, cell)| Some(((row.id.clone(), *measure), cell.verdict?))).collect()
+    cells.filter_map(|(row, measure, cell)| Some(((row.id.clone(), *measure), cell.verdict?)))
 }
 
 /// Cells whose verdict is another, from what to what.
@@ -140,6 +189,14 @@ mod tests {
                 assert_ne!(parameters[0], parameters[1], "{} {}", setting.experiment, setting.name);
             }
         }
+    }
+
+    #[test]
+    fn the_readme_quotes_what_was_measured() {
+        let readme = std::fs::read_to_string(repository().join("README.md")).unwrap();
+        let readme = readme.split_whitespace().collect::<Vec<_>>().join(" ");
+        let quoted = Variants::committed().unwrap().filled("table1", &(String::new(), Measure::Nupe), README).unwrap();
+        assert!(readme.contains(&quoted), "the README does not say: {quoted}");
     }
 
     #[test]

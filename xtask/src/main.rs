@@ -21,6 +21,7 @@ mod runner;
 mod seed;
 mod summary;
 mod tidy;
+mod variants;
 mod verdict;
 
 use std::process::ExitCode;

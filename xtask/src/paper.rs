@@ -6,6 +6,7 @@ use anyhow::Context as _;
 use serde::{Deserialize, Serialize};
 
 use crate::measure::Measure;
+use crate::variants::{Cell, Quote, Variants, quotes};
 
 /// Mean and standard deviation over data sets, as printed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -24,10 +25,28 @@ pub(crate) fn paper_table(text: &str) -> anyhow::Result<PaperTable> {
     toml::from_str(text).context("the paper's figures (xtask/paper/*.toml) cannot be read")
 }
 
-/// Sentences on single cells, by row and measure.
-pub(crate) type Explanations = BTreeMap<String, BTreeMap<Measure, String>>;
+/// Why single cells stand out.
+#[derive(Debug, Default)]
+pub(crate) struct Explanations {
+    /// Sentences, by row and measure.
+    pub(crate) texts: BTreeMap<String, BTreeMap<Measure, String>>,
+    /// What they quote, each with its cell.
+    pub(crate) quotes: Vec<(Quote, Cell)>,
+}
 
-/// Reads why single cells stand out, from one of the files in `xtask/paper`.
-pub(crate) fn explanations(text: &str) -> anyhow::Result<Explanations> {
-    toml::from_str(text).context("the explanations (xtask/paper/*-explained.toml) cannot be read")
+/// Reads why single cells of an experiment stand out, from one of the files in `xtask/paper`.
+pub(crate) fn explanations(experiment: &str, text: &str) -> anyhow::Result<Explanations> {
+    let read = || {
+        let mut explanations = Explanations { texts: toml::from_str(text)?, quotes: Vec::new() };
+        let variants = Variants::committed()?;
+        for (row, texts) in &mut explanations.texts {
+            for (&measure, text) in texts {
+                let own = (row.clone(), measure);
+                explanations.quotes.extend(quotes(&own, text)?);
+                *text = variants.filled(experiment, &own, text)?;
+            }
+        }
+        Ok::<_, anyhow::Error>(explanations)
+    };
+    read().context("the explanations (xtask/paper/*-explained.toml) cannot be read")
 }

@@ -41,7 +41,7 @@ impl Progress {
             return Progress { display: Display::Lines(Mutex::new(lines)) };
         }
         let bar = ProgressBar::new(work);
-        let style = ProgressStyle::with_template("{bar:20} {percent:>3} %  {elapsed} gone{msg}");
+        let style = ProgressStyle::with_template("{bar:20} {percent:>3} %  {elapsed} gone{wide_msg}");
         bar.set_style(style.unwrap_or_else(|_| unreachable!("the template is valid")));
         bar.enable_steady_tick(Duration::from_millis(200));
         Progress { display: Display::Bar(bar) }

@@ -164,3 +164,32 @@ impl Cell {
         self.values.iter().flatten().count()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Names from a file go into Markdown, a page and the hint of a command.
+    #[test]
+    fn hostile_names_are_damage() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("results.json");
+        let file = |row: &str| {
+            let results = serde_json::json!({
+                "schema": SCHEMA, "seed": 1, "quick": false,
+                "run": { "command": "cargo xtask reproduce", "threads": 1, "resumed": 0, "wall_seconds": 1.0,
+                         "cpu_seconds": 1.0, "version": "0.1.0" },
+                "experiments": [{ "id": "table1", "section": "4.1", "rows": [
+                    { "id": row, "tested_on": "held-out samples", "data_sets": 1, "failed": 0, "measures": {} }
+                ] }],
+            });
+            std::fs::write(&path, results.to_string()).unwrap();
+            Results::read(&path)
+        };
+        assert_eq!(file("parabola-40x40-narrow").unwrap().experiments.len(), 1);
+        for row in ["|a|b|", "<script>alert(1)</script>", "$(rm -rf .)", "a\nb", "\u{1b}[2J", "`id`"] {
+            let error = file(row).unwrap_err().to_string();
+            assert!(error.contains("is damaged") && error.contains("no name of a row"), "{row:?}: {error}");
+        }
+    }
+}

@@ -176,7 +176,7 @@ fn a_run_that_is_told_to_stop_says_what_is_kept() {
         assert!(sent.success());
         let output = child.wait_with_output().unwrap();
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(said.contains("stopped: what was finished is kept"), "{signal}: {said}");
+        assert!(said.contains("Stopped. Finished data sets are saved"), "{signal}: {said}");
         assert_eq!(output.status.code(), Some(130), "{signal}");
     }
 }

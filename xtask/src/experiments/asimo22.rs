@@ -41,8 +41,8 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
         data_sets: 50,
         remark: "The robot, its posture \"ready\" (shoulder pitch 0.3, roll ±0.3, elbow -1.6) and the attractor (upright, arms hanging) \
                  are fitted; starts from N(ready, 0.1 I), δt = 0.5 s, plain Euler, narrow bandwidth. Regression with a fixed diagonal \
-                 metric, D = 50, 20 passes; receptive fields speak down to an activation of 1e-9, because a single start far from all \
-                 others, for which none speaks above 0.001, would rule the error of the potential. Starts are within the joints' limits; \
+                 metric, D = 50, 20 passes, chosen for the lower error, not for the printed one; receptive fields count down to an activation of 1e-9, \
+                 because a single start far from all others, where none reaches 0.001, would rule the error of the potential. Starts are within the joints' limits; \
                  movements are not held there, and most leave them somewhere (beyond limits %).",
         decisions: "asimo22.md",
         another_reading_of: None,
@@ -59,7 +59,7 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
             },
         ],
         paper: paper_table(include_str!("../../paper/asimo22.toml"))?,
-        explanations: explanations(include_str!("../../paper/asimo22-explained.toml"))?,
+        explanations: explanations("asimo22", include_str!("../../paper/asimo22-explained.toml"))?,
     })
 }
 

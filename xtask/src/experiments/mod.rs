@@ -27,7 +27,7 @@ pub(crate) use figure6::{BANDWIDTHS, BESIDE_LEFT, BESIDE_RIGHT, NOISE_PERCENT, R
 pub(crate) use figure9::{Distance, TENTHS, line};
 pub(crate) use judge::Judge;
 pub(crate) use parameters::Parameters;
-pub(crate) use settings::{Setting, settings};
+pub(crate) use settings::{Setting, settings, unfitted};
 pub(crate) use table1::{PARABOLA_SYSTEM, SINUSOIDAL_SYSTEM, toy_beside, toy_regressor};
 pub(crate) use table2::{GRASP_SYSTEM, grasp, grasp_beside, grasp_naive, grasp_regressor};
 pub(crate) use test_samples::TestSamples;
@@ -86,7 +86,7 @@ impl Experiment {
         for row in self.rows().filter(of_paper) {
             ensure!(self.paper.contains_key(&row.id), "{}: xtask/paper has no row {}", self.id, row.id);
         }
-        for id in self.paper.keys().chain(self.explanations.keys()) {
+        for id in self.paper.keys().chain(self.explanations.texts.keys()) {
             ensure!(self.rows().any(|row| row.id == *id), "{}: xtask/paper has a row {id} that is not run", self.id);
         }
         for entry in self.contests.iter().flat_map(|contest| &contest.entries) {
@@ -98,7 +98,7 @@ impl Experiment {
 
     /// Why a cell stands out, if that is known.
     pub(crate) fn explain(&self, row: &str, measure: Measure) -> Option<&str> {
-        self.explanations.get(row)?.get(&measure).map(String::as_str)
+        self.explanations.texts.get(row)?.get(&measure).map(String::as_str)
     }
 }
 

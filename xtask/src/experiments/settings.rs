@@ -26,3 +26,8 @@ pub(crate) fn settings() -> Vec<Setting> {
         .flatten()
         .collect()
 }
+
+/// What is not fitted, but asked about in texts: the same at other values.
+pub(crate) fn unfitted() -> Vec<Setting> {
+    table1::unfitted()
+}

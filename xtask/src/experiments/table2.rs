@@ -44,7 +44,9 @@ pub(crate) fn table2() -> anyhow::Result<Experiment> {
         remark: "Fitted, because the paper does not give them: the robot's posture, ball (x = 0.7), wall (x = 0.35, felt from 0.09 m before it), \
                  half-width of the unseen obstacle (0.13), no gap narrower than 0.17 m, regressions. δt = 0.5 s, plain Euler, narrow \
                  bandwidth. Fixed diagonal metrics, inputs divided by 0.3 m: PolicyAlign D = 22, 10 passes; naive D = 10, 4 passes. The printed errors of \
-                 the naive learner are held against its errors on held-out samples of all movements.",
+                 the naive learner are held against its errors on held-out samples of all movements. The clip at 0.17 m widens 21 % of the gaps, and decides \
+                 which cells agree (docs/leverage.md); the unseen obstacle stops the expert, too, in half of the movements (from 0.06 m down it \
+                 stops none, and the naive cell is lost); movements last 50 s, the printed ones 2 s.",
         decisions: "table2.md",
         another_reading_of: None,
         contests: CASES.into_iter().zip(ERRORS).map(contest).collect(),
@@ -60,7 +62,7 @@ pub(crate) fn table2() -> anyhow::Result<Experiment> {
             },
         ],
         paper: paper_table(include_str!("../../paper/table2.toml"))?,
-        explanations: explanations(include_str!("../../paper/table2-explained.toml"))?,
+        explanations: explanations("table2", include_str!("../../paper/table2-explained.toml"))?,
     })
 }
 

@@ -56,7 +56,7 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
             },
         ],
         paper: paper_table(include_str!("../../paper/three_link.toml"))?,
-        explanations: explanations(include_str!("../../paper/three_link-explained.toml"))?,
+        explanations: explanations("three_link", include_str!("../../paper/three_link-explained.toml"))?,
     })
 }
 

@@ -4,6 +4,7 @@ use super::{Figure, Sources, figures};
 use crate::measure::Measure::{self, Ncpe, Nupe, PotentialNmse};
 use crate::results::Cell;
 use crate::run_folder::RunFolder;
+use crate::variants::two_digits;
 
 /// The full run that the texts speak of.
 pub(super) fn records() -> Sources {
@@ -20,12 +21,6 @@ fn cell<'s>(sources: &'s Sources, experiment: &str, row: &str, measure: Measure)
     &rows.iter().find(|result| result.id == row).unwrap().measures[&measure]
 }
 
-/// Two digits that count, as texts have them: 0.0028, 0.43, 8.4.
-fn short(value: f64) -> String {
-    let decimals = (1.0 - value.log10().floor()).max(0.0) as usize;
-    format!("{value:.decimals$}")
-}
-
 fn assert_says(id: &str, words: &str) {
     let text = text(id);
     assert!(text.contains(words), "{id} does not say {words:?}: {text}");
@@ -36,7 +31,7 @@ const ERRORS: [(&str, Measure); 3] = [("π", Nupe), ("Nπ", Ncpe), ("φ", Potent
 /// "π from 0.18 to 0.43", between two rows.
 fn assert_says_from_to(sources: &Sources, id: &str, [from, to]: [&str; 2], errors: &[(&str, Measure)]) {
     for (name, measure) in errors {
-        let [from, to] = [from, to].map(|row| short(cell(sources, id, row, *measure).mean));
+        let [from, to] = [from, to].map(|row| two_digits(cell(sources, id, row, *measure).mean));
         assert_says(id, &format!("{name} from {from} to {to}"));
     }
 }
@@ -61,7 +56,7 @@ fn order(sources: &Sources, experiment: &str, row: &str) -> (bool, bool) {
 fn figure_6_left_is_as_said() {
     let (sources, id) = (records(), "figure6_left");
     assert_says_from_to(&sources, id, ["narrow-20", "narrow-100"], &ERRORS);
-    let median = short(cell(&sources, id, "narrow-20", PotentialNmse).median);
+    let median = two_digits(cell(&sources, id, "narrow-20", PotentialNmse).median);
     assert_says(id, &format!("the median of φ is {median}"));
     assert_says(id, "with the narrow bandwidth from 40 % on, with the medium one from 80 % on");
     for (bandwidth, first) in [("narrow", 40), ("medium", 80)] {
@@ -83,7 +78,7 @@ fn figure_6_right_is_as_said() {
         }
     }
     let [narrow, medium] =
-        ["displacement-narrow-5", "displacement-medium-5"].map(|row| short(cell(&sources, id, row, Nupe).mean));
+        ["displacement-narrow-5", "displacement-medium-5"].map(|row| two_digits(cell(&sources, id, row, Nupe).mean));
     assert_says(id, &format!("at 5 % the error of π is {narrow} and {medium}"));
 }
 
@@ -92,4 +87,30 @@ fn figure_9_is_as_said() {
     let (sources, id) = (records(), "figure9");
     assert_says_from_to(&sources, id, ["d-0.1", "d-1.0"], &ERRORS);
     assert_says_from_to(&sources, id, ["r-0.1", "r-1.0"], &[ERRORS[0], ERRORS[2]]);
+}
+
+/// What is said of a cell of a table.
+fn explained(experiment: &str, row: &str, measure: Measure) -> String {
+    let all = crate::experiments::registry().unwrap();
+    let experiment = all.into_iter().find(|other| other.id == experiment).unwrap();
+    experiment.explain(row, measure).unwrap().to_owned()
+}
+
+#[test]
+fn other_readings_of_tables_are_quoted_as_they_are() {
+    let sources = records();
+    let numbers = |row, measure| {
+        ["table1", "table1-literal"].map(|experiment| two_digits(cell(&sources, experiment, row, measure).mean))
+    };
+    for measure in [PotentialNmse, Nupe, Ncpe] {
+        let [two, three] = numbers("parabola-40x40-wide", measure);
+        let text = explained("table1-literal", "parabola-40x40-wide", measure);
+        assert!(text.contains(&format!("{two} with two, {three} with three")), "{two} {three}: {text}");
+        let [five, three] = numbers("sinusoidal-100x100-wide", measure);
+        let text = explained("table1-literal", "sinusoidal-100x100-wide", measure);
+        assert!(text.contains(&format!("{three} with three, {five} with five")), "{three} {five}: {text}");
+    }
+    let kept = two_digits(cell(&sources, "three_link", "naive", Ncpe).mean);
+    let text = explained("three_link", "naive", Measure::NcpeAll);
+    assert!(text.contains(&format!("on kept movements alone it is {kept}")), "{kept}: {text}");
 }

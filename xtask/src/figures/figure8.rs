@@ -252,14 +252,26 @@ mod tests {
     #[test]
     fn ends_are_as_said_beside_the_paper_s_figure() {
         let playback: GraspPlayback = beside_paper::records().document("grasp_playback").unwrap();
-        let ends = shown(&playback).map(|learner| 100.0 * Distances::of(&playback, learner).unwrap().at_end());
-        let ends = ends.map(|end| format!("{end:.1}"));
+        let end = |learner| 100.0 * Distances::of(&playback, learner).unwrap().at_end();
+        let ends: Vec<f64> = shown(&playback).map(end).collect();
         for (words, end) in
-            std::iter::zip(["ends {} cm from", "ends {} cm away. The learnt", "ends {} cm away, where"], ends)
+            std::iter::zip(["ends {} cm from", "ends {} cm away. The learnt", "ends {} cm away, where"], &ends)
         {
-            let words = words.replace("{}", &end);
+            let words = words.replace("{}", &format!("{end:.1}"));
             assert!(beside_paper::text("figure8").contains(&words), "{words}");
         }
+        let readme = std::fs::read_to_string(crate::files::repository().join("README.md")).unwrap();
+        let learnt = ends[2];
+        let (id, _) = shown(&playback).nth(2).unwrap();
+        let hands =
+            movements(&playback, id).flat_map(|movement| [0, 1].map(|hand| distance(&playback, movement, hand)));
+        let closest: Vec<f64> = hands.map(|distances| 100.0 * distances.fold(f64::INFINITY, f64::min)).collect();
+        let closest = Summary::of(&closest).unwrap().mean;
+        assert!(
+            readme.contains(&format!("miss the ball by {closest:.1} cm and end {learnt:.1} cm away")),
+            "{closest} {learnt}"
+        );
+        assert!(beside_paper::text("figure8").contains(&format!("within {closest:.1} cm and ends {learnt:.1} cm")));
     }
 
     #[test]

@@ -57,6 +57,13 @@ mod tests {
     use super::*;
 
     #[test]
+    fn an_outcome_of_another_number_of_rows_is_not_taken() {
+        let outcome = Outcome::of(Ok(vec![BTreeMap::from([(Measure::Nupe, 1.0)])]), 1);
+        assert!(outcome.is_of_rows(1) && !outcome.is_of_rows(2));
+        assert!(Outcome::Failed("no motion".to_owned()).is_of_rows(2));
+    }
+
+    #[test]
     fn what_cannot_be_summed_up_is_a_failure() {
         let row = |value: f64| BTreeMap::from([(Measure::Nupe, value)]);
         assert_eq!(Outcome::of(Ok(vec![row(0.5)]), 1), Outcome::Measured(vec![row(0.5)]));

@@ -87,7 +87,7 @@ fn shown_mean(measure: Measure, mean: f64) -> String {
 
 fn shown_ratio(ratio: f64) -> String {
     match ratio {
-        _ if ratio < NEGLIGIBLE => "0".to_owned(),
+        _ if ratio < NEGLIGIBLE => format!("< {NEGLIGIBLE:.0e}"),
         _ if ratio < 1e-2 => format!("{ratio:.0e}"),
         _ => format!("{ratio:.2}"),
     }
@@ -152,6 +152,6 @@ mod tests {
 
     #[test]
     fn ratios_show_what_they_can() {
-        assert_eq!([2.5, 0.004, 3e-21].map(shown_ratio), ["2.50", "4e-3", "0"]);
+        assert_eq!([2.5, 0.004, 3e-21].map(shown_ratio), ["2.50", "4e-3", "< 1e-9"]);
     }
 }

@@ -72,7 +72,10 @@ fn section(compared: &Compared<'_>, seed: u64) -> String {
 /// Learners side by side, where there are several.
 fn contests(compared: &Compared<'_>) -> String {
     let Some(contests) = Contests::of(compared.experiment, compared.result) else { return String::new() };
-    format!("### Learners side by side\n\n{CAUTION}\n\n{}\n", markdown_table(&contests.header(), &contests.rows()))
+    let table = markdown_table(&contests.header(), &contests.rows());
+    format!(
+        "### Learners side by side\n\n<details><summary>Their errors</summary>\n\n{CAUTION}\n\n{table}\n</details>\n\n"
+    )
 }
 
 /// A column: what stands over it and in it.
@@ -88,6 +91,7 @@ fn judged<'a>() -> Vec<Column<'a>> {
         column("measure", |line| line.measure.name().to_owned()),
         column("ours", Line::ours),
         column("paper", Line::paper),
+        column("s.d.", |line| line.spread_ratio().unwrap_or_default()),
         column("z", Line::z),
         column("verdict", |line| line.verdict().to_owned()),
     ]

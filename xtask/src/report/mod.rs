@@ -78,7 +78,7 @@ impl Report {
 /// What to look at.
 pub(crate) fn written(out: &RunFolder) -> String {
     let [page, text, figures] = ["report.html", "report.md", "figures"].map(|name| told(&out.join(name)));
-    format!("written: {page} (open it in a browser), {text}, {figures}")
+    format!("written: {page} (open it in a browser),\n         {text}, {figures}")
 }
 
 /// What cannot be drawn, and what to do about it.

@@ -203,9 +203,7 @@ impl Reproduce {
             say(&format!("in all: {}", total.sentence()));
         }
         let Run { threads, wall_seconds, cpu_seconds, .. } = &results.run;
-        say(&format!(
-            "{wall_seconds:.1} s on {threads} thread(s), {cpu_seconds:.1} s of processor time for the tables"
-        ));
+        say(&format!("{wall_seconds:.1} s on {threads} thread(s), {cpu_seconds:.1} s of processor time"));
         say(&if self.no_figures {
             format!("written: {} and results.json", told(&folder.join("report.md")))
         } else {

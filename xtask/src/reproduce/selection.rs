@@ -23,8 +23,8 @@ pub(super) fn select(mut experiments: Vec<Experiment>, only: &[String]) -> anyho
             let ids: Vec<&str> = experiments.iter().map(|experiment| experiment.id).collect();
             let nearest = nearest(wanted, &experiments).map_or(String::new(), |name| format!("; do you mean {name}?"));
             bail!(
-                "--only {wanted:?}: no such experiment or row{nearest}\nexperiments: {}\n`cargo xtask reproduce --list` shows the rows",
-                ids.join(", ")
+                "--only {wanted:?}: no such experiment or row{nearest}\nexperiments:\n    {}\n`cargo xtask reproduce --list` shows the rows",
+                ids.join("\n    ")
             );
         }
     }
@@ -46,11 +46,17 @@ fn nearest<'a>(wanted: &str, experiments: &'a [Experiment]) -> Option<&'a str> {
     alike.filter(|(alike, _)| *alike > LIKE).max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, name)| name)
 }
 
-/// Every experiment with its rows.
+/// Units of [`Setup::cost`](crate::experiments::Setup::cost) that a second of processor time does, as measured.
+const COST_A_SECOND: f64 = 1e7;
+
+/// Every experiment with its rows, and how long it takes.
 pub(super) fn list(experiments: &[Experiment]) -> String {
     let line = |e: &Experiment| {
         let rows: Vec<String> = e.rows().map(|row| format!("    {}\n", row.id)).collect();
-        format!("{}: {} (Section {}), {} data sets a row\n{}", e.id, e.title, e.section, e.data_sets, rows.concat())
+        let cost = |setup: &Setup| u64::from(setup.data_sets.unwrap_or(e.data_sets)) * setup.cost;
+        let seconds = e.setups.iter().map(cost).sum::<u64>() as f64 / COST_A_SECOND;
+        let time = if seconds < 90.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) };
+        format!("{}: {}\n  {} data sets a row, {time} of processor time\n{}", e.id, e.title, e.data_sets, rows.concat())
     };
     experiments.iter().map(line).collect()
 }

@@ -9,7 +9,7 @@ use crate::experiments::{TestSamples, grasp_beside, grasp_naive, grasp_regressor
 use crate::figures::Who;
 use crate::seed::beside;
 
-/// A roll-out leaves the data now and then: receptive fields take part as soon as they are felt at all.
+/// A roll-out leaves the data now and then: there every receptive field counts, however small its activation.
 const CUTOFF: f64 = 1e-9;
 
 /// Who is shown, each with its id.

@@ -11,13 +11,17 @@ use crate::report::compared::{Compared, Line, NOTHING, Second};
 /// Rows from which the paper's layout is easier to read than a list.
 const MANY_ROWS: usize = 4;
 
-/// One scale for each measure of an experiment.
+/// One scale for each measure of an experiment; learners that are columns of one table share theirs.
 pub(super) type Scales = BTreeMap<Measure, Scale>;
+
+/// Errors of learners side by side.
+const SIDE_BY_SIDE: [Measure; 4] = [Measure::Naive, Measure::NaiveAll, Measure::PolicyAlign, Measure::PolicyAlignAll];
 
 pub(super) fn scales(compared: &Compared<'_>) -> Scales {
     let measures = compared.lines().map(|line| line.measure);
+    let share = |a, b| a == b || (SIDE_BY_SIDE.contains(&a) && SIDE_BY_SIDE.contains(&b));
     let scale = |measure| {
-        let lines: Vec<Line<'_>> = compared.lines().filter(|line| line.measure == measure).collect();
+        let lines: Vec<Line<'_>> = compared.lines().filter(|line| share(line.measure, measure)).collect();
         let values = lines.iter().flat_map(|line| line.cell.values.iter().copied().flatten());
         Scale::around(values, lines.iter().filter_map(reference))
     };
