@@ -1,7 +1,8 @@
 //! Arrays of Python, copied once.
 
 use nalgebra::DMatrix;
-use numpy::{PyArray1, PyArray2, PyArrayMethods as _, PyReadonlyArray2, PyUntypedArrayMethods as _};
+use numpy::ndarray::Array2;
+use numpy::{PyArray2, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
 
 /// An (N, n) array as the (n, N) matrix that it is. Another thread may write to the array while nobody holds the lock,
@@ -18,8 +19,9 @@ pub(crate) fn matrix(array: &PyReadonlyArray2<'_, f64>) -> DMatrix<f64> {
 }
 
 /// An (n, N) matrix as an (N, n) array.
-pub(crate) fn array(py: Python<'_>, matrix: DMatrix<f64>) -> PyResult<Bound<'_, PyArray2<f64>>> {
-    let shape = [matrix.ncols(), matrix.nrows()];
+pub(crate) fn array(py: Python<'_>, matrix: DMatrix<f64>) -> Bound<'_, PyArray2<f64>> {
+    let shape = (matrix.ncols(), matrix.nrows());
     let numbers: Vec<f64> = matrix.data.into();
-    PyArray1::from_vec(py, numbers).reshape(shape)
+    let array = Array2::from_shape_vec(shape, numbers).unwrap_or_else(|_| unreachable!("as many numbers as entries"));
+    PyArray2::from_owned_array(py, array)
 }

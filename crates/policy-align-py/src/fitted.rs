@@ -106,7 +106,7 @@ impl Fitted {
                 column.copy_from(&action);
             }
         });
-        array(py, states)
+        Ok(array(py, states))
     }
 
     /// Standard deviation of every component of π at each state, (N, n); none if the learner does not know it.
@@ -126,7 +126,7 @@ impl Fitted {
             }
             known
         });
-        known.then(|| array(py, states)).transpose()
+        Ok(known.then(|| array(py, states)))
     }
 
     /// φ at each state, (N); none if the policy has no potential.

@@ -99,8 +99,8 @@ impl Recordings {
     /// Times, positions and velocities of a movement.
     fn samples<'py>(&self, py: Python<'py>, k: usize) -> PyResult<Samples<'py>> {
         let episode = self.inner.recordings.episodes.get(k).ok_or_else(|| PyIndexError::new_err("no such movement"))?;
-        let velocities = episode.velocities.clone().map(|velocities| array(py, velocities)).transpose()?;
-        Ok((PyArray1::from_slice(py, &episode.times), array(py, episode.positions.clone())?, velocities))
+        let velocities = episode.velocities.clone().map(|velocities| array(py, velocities));
+        Ok((PyArray1::from_slice(py, &episode.times), array(py, episode.positions.clone()), velocities))
     }
 
     /// Names of the movements.

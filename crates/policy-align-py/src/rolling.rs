@@ -37,13 +37,13 @@ impl Path {
 
     /// (N, n).
     #[getter]
-    fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn states<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         array(py, self.path.states.clone())
     }
 
     /// What the constraint left of the action, (N, n).
     #[getter]
-    fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn velocities<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         array(py, self.path.velocities.clone())
     }
 
