@@ -187,7 +187,11 @@ fn an_unknown_name_says_where_the_known_ones_are() {
     let output = reproduce(folder.path(), &["--only", "table9"]).output().unwrap();
     assert!(!output.status.success());
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(said.contains("table9") && said.contains("-literal, figure6_left") && said.contains("--list"), "{said}");
+    assert!(
+        said.contains("table9") && said.contains("-literal\n    figure6_left\n") && said.contains("--list"),
+        "{said}"
+    );
+    assert!(said.lines().all(|line| line.chars().count() <= 80), "{said}");
 }
 
 #[test]
