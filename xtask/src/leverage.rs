@@ -12,7 +12,7 @@ use anyhow::Context as _;
 use clap::Args;
 use page::markdown_table;
 
-use crate::experiments::{Experiment, Setting, Setup, registry, settings, unfitted};
+use crate::experiments::{Experiment, Setting, Setup, quotable, registry, settings};
 use crate::files::{repository, write};
 use crate::measure::Measure;
 use crate::progress::say;
@@ -78,9 +78,8 @@ impl Leverage {
         for experiment in registry()? {
             let of_readme = if experiment.id == "table1" { readme_quotes()? } else { Vec::new() };
             for (quote, cell) in experiment.explanations.quotes.iter().chain(&of_readme) {
-                let mut known = settings().into_iter().chain(unfitted());
-                let setting =
-                    known.find(|setting| setting.experiment == experiment.id && setting.name == quote.setting);
+                let is_meant = |setting: &Setting| setting.experiment == experiment.id && setting.name == quote.setting;
+                let setting = quotable().find(is_meant);
                 let setting = setting.with_context(|| format!("{} has no setting {}", experiment.id, quote.setting))?;
                 let of_cell = |setup: &Setup| setup.rows.iter().any(|row| row.id == cell.0);
                 let result = self.result(&setting, quote.value, of_cell, records)?;

@@ -137,7 +137,7 @@ fn complete(experiments: &[Experiment], results: &Results) -> anyhow::Result<()>
         let result = results.experiments.iter().find(|result| result.id == experiment.id);
         let beside = |setup: &Setup| setup.data_sets.is_some() || experiment.section == "none";
         let setups = experiment.setups.iter().filter(|setup| results.seed == FIRST_SEED || !beside(setup));
-        let rows = |setup: &'_ Setup| setup.data_sets.unwrap_or(experiment.data_sets) as usize;
+        let rows = |setup: &'_ Setup| setup.data_sets_of(experiment) as usize;
         for (row, wanted) in setups.flat_map(|setup| setup.rows.iter().map(move |row| (row, rows(setup)))) {
             let result = result.with_context(|| format!("{} is missing", experiment.id))?;
             let result = result.rows.iter().find(|result| result.id == row.id);
@@ -196,7 +196,7 @@ fn verdicts(experiments: &[Experiment], results: &Results) -> String {
 fn total(experiments: &[Experiment], results: &Results) -> String {
     let of = |result: &'_ ExperimentResult| experiments.iter().find(|experiment| experiment.id == result.id);
     let pairs = results.experiments.iter().filter_map(|result| Some((of(result)?, result)));
-    Tally::of(pairs.filter(|(experiment, _)| experiment.another_reading_of.is_none())).sentence()
+    Tally::of_first_readings(pairs).sentence()
 }
 
 /// One line a row: ours, and the paper's in brackets.
@@ -228,7 +228,7 @@ fn summary(experiments: &[Experiment], results: &Results, result: &ExperimentRes
     let tally = Tally::of(experiment.map(|experiment| (experiment, result))).sentence();
     let all = total(experiments, results);
     format!(
-        "In all: {all}\n\n{title}: ours, and in brackets the paper's; bold where ours is lower. nUPE is the squared error of the policy over its\n\
+        "**{all}**\n\n{title}: ours, and in brackets the paper's; bold where ours is lower. nUPE is the squared error of the policy over its\n\
          variance, nCPE the same under the demonstrations' constraints, discarded the movements that alignment leaves out; the last column is nUPE\n\
          on movements from new starts, which the paper does not print. {tally}\n\n{table}"
     )

@@ -26,7 +26,7 @@ pub(crate) struct Plan {
 impl Plan {
     /// Repetitions of a setup of an experiment; of one that has its own number, no more than that.
     pub(crate) fn data_sets(&self, experiment: &Experiment, setup: &Setup) -> u32 {
-        let own = setup.data_sets.unwrap_or(experiment.data_sets);
+        let own = setup.data_sets_of(experiment);
         let asked = if setup.is_of_contestants() { self.of_contestants } else { self.data_sets };
         asked.map_or(own, |asked| if setup.data_sets.is_some() { asked.min(own) } else { asked })
     }

@@ -140,7 +140,7 @@ pub(crate) fn quote(written: &str, own: &Cell) -> anyhow::Result<(Quote, Cell)> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiments::{registry, settings, unfitted};
+    use crate::experiments::{quotable, registry};
     use crate::seed::generator;
 
     fn cell(row: &str, measure: Measure) -> Cell {
@@ -187,7 +187,7 @@ mod tests {
     fn committed_variants_are_what_the_program_computes() {
         let variants = Variants::committed().unwrap();
         for name in ["passes of the regression", "movements"] {
-            let setting = settings().into_iter().chain(unfitted()).find(|setting| setting.name == name).unwrap();
+            let setting = quotable().find(|setting| setting.name == name).unwrap();
             let found = variants.cells["table1"].iter().find(|(variant, _)| variant.starts_with(name));
             let (variant, cells) = found.unwrap();
             let value: f64 = variant.rsplit_once(" = ").unwrap().1.parse().unwrap();

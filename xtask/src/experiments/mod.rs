@@ -27,7 +27,7 @@ pub(crate) use figure6::{BANDWIDTHS, BESIDE_LEFT, BESIDE_RIGHT, NOISE_PERCENT, R
 pub(crate) use figure9::{Distance, TENTHS, line};
 pub(crate) use judge::Judge;
 pub(crate) use parameters::Parameters;
-pub(crate) use settings::{Setting, settings, unfitted};
+pub(crate) use settings::{Setting, quotable, settings};
 pub(crate) use table1::{PARABOLA_SYSTEM, SINUSOIDAL_SYSTEM, toy_beside, toy_regressor};
 pub(crate) use table2::{GRASP_SYSTEM, grasp, grasp_beside, grasp_naive, grasp_regressor};
 pub(crate) use test_samples::TestSamples;
@@ -119,6 +119,11 @@ pub(crate) struct Setup {
 }
 
 impl Setup {
+    /// How many data sets it sees in its experiment.
+    pub(crate) fn data_sets_of(&self, experiment: &Experiment) -> u32 {
+        self.data_sets.unwrap_or(experiment.data_sets)
+    }
+
     /// Whether its rows only hold learners against each other.
     pub(crate) fn is_of_contestants(&self) -> bool {
         self.rows.iter().all(|row| row.of == RowOf::Contestant)

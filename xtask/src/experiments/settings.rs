@@ -27,7 +27,7 @@ pub(crate) fn settings() -> Vec<Setting> {
         .collect()
 }
 
-/// What is not fitted, but asked about in texts: the same at other values.
-pub(crate) fn unfitted() -> Vec<Setting> {
-    table1::unfitted()
+/// These, and what is not fitted but asked about in texts.
+pub(crate) fn quotable() -> impl Iterator<Item = Setting> {
+    settings().into_iter().chain(table1::unfitted())
 }

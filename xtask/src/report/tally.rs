@@ -30,6 +30,13 @@ impl Tally {
         tally
     }
 
+    /// In all: of another reading of a table no cell counts again.
+    pub(crate) fn of_first_readings<'a>(
+        results: impl IntoIterator<Item = (&'a Experiment, &'a ExperimentResult)>,
+    ) -> Tally {
+        Tally::of(results.into_iter().filter(|(experiment, _)| experiment.another_reading_of.is_none()))
+    }
+
     /// Printed cells whose means differ by no more than two standard errors.
     pub(crate) fn alike(&self) -> usize {
         self.alike

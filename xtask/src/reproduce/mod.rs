@@ -197,8 +197,7 @@ impl Reproduce {
                 say(&format!("{}: {}", experiment.id, tally.sentence()));
             }
         }
-        let first_readings = measured.iter().copied().filter(|(experiment, _)| experiment.another_reading_of.is_none());
-        let total = Tally::of(first_readings);
+        let total = Tally::of_first_readings(measured);
         if total.total() > 0 {
             say(&format!("in all: {}", total.sentence()));
         }

@@ -46,17 +46,24 @@ fn nearest<'a>(wanted: &str, experiments: &'a [Experiment]) -> Option<&'a str> {
     alike.filter(|(alike, _)| *alike > LIKE).max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, name)| name)
 }
 
-/// Units of [`Setup::cost`](crate::experiments::Setup::cost) that a second of processor time does, as measured.
-const COST_A_SECOND: f64 = 1e7;
+/// Units of [`Setup::cost`] that a second of processor time does, over a whole run (1,130 s); a single experiment takes up
+/// to twice as long, or half.
+const COST_A_SECOND: f64 = 8e6;
 
 /// Every experiment with its rows, and how long it takes.
 pub(super) fn list(experiments: &[Experiment]) -> String {
     let line = |e: &Experiment| {
         let rows: Vec<String> = e.rows().map(|row| format!("    {}\n", row.id)).collect();
-        let cost = |setup: &Setup| u64::from(setup.data_sets.unwrap_or(e.data_sets)) * setup.cost;
+        let cost = |setup: &Setup| u64::from(setup.data_sets_of(e)) * setup.cost;
         let seconds = e.setups.iter().map(cost).sum::<u64>() as f64 / COST_A_SECOND;
         let time = if seconds < 90.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) };
-        format!("{}: {}\n  {} data sets a row, {time} of processor time\n{}", e.id, e.title, e.data_sets, rows.concat())
+        format!(
+            "{}: {}\n  {} data sets a row, about {time} of processor time\n{}",
+            e.id,
+            e.title,
+            e.data_sets,
+            rows.concat()
+        )
     };
     experiments.iter().map(line).collect()
 }

@@ -40,8 +40,7 @@ const FITTED: &str = "What the paper does not give was fitted, so that its numbe
 
 /// How many cells are reached: in total, and for each experiment.
 fn how_it_went(all: &[Compared<'_>]) -> Markup {
-    let first_readings = all.iter().filter(|compared| compared.experiment.another_reading_of.is_none());
-    let total = Tally::of(first_readings.map(|compared| (compared.experiment, compared.result)));
+    let total = Tally::of_first_readings(all.iter().map(|compared| (compared.experiment, compared.result)));
     html! {
         @if total.total() > 0 {
             div .total {
