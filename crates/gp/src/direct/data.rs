@@ -1,0 +1,137 @@
+use nalgebra::{DMatrix, DVector};
+
+use crate::direct::model::DirectModel;
+use crate::evidence::family_fit::{FamilyFit, fit_family};
+use crate::evidence::{Evidence, Task};
+use crate::kernel::direct_block::{DirectBlock, DirectCovariance};
+use crate::left_out::LeftOut;
+use crate::left_out::level::Conditions;
+use crate::rows::kept::Kept;
+use crate::rows::noise_weights::direct_weights;
+use crate::rows::scaling::Scaling;
+use crate::{GpError, Rows};
+
+/// What the direct GP is conditioned on: velocities, in scaled coordinates and with noise weights.
+///
+/// For fits of one's own use [`DirectGp`](crate::DirectGp); this is for those who set the amplitudes themselves.
+#[derive(Debug, Clone)]
+pub struct DirectData {
+    pub(crate) scaling: Scaling,
+    /// ū² = (1/M) Σ|u|²/n.
+    pub(crate) unit: f64,
+    /// Scaled states z, (n, M).
+    pub(crate) z: DMatrix<f64>,
+    /// Y = u/ū, (M, n).
+    targets: DMatrix<f64>,
+    noise_weights: Vec<f64>,
+    /// Σ w|Y − Ȳ|², w = 1/D.
+    spread: f64,
+    groups: Vec<Vec<usize>>,
+}
+
+impl DirectData {
+    /// Every row, with noise weights D, (M); rows of a trajectory need not be contiguous.
+    ///
+    /// # Errors
+    /// [`GpError::Lengths`], [`GpError::OneState`], [`GpError::NoMotion`], [`GpError::Overflow`], or [`GpError::Value`]
+    /// for a weight that is not positive.
+    pub fn new(rows: &Rows, noise_weights: Vec<f64>) -> Result<Self, GpError> {
+        let (found, expected) = (noise_weights.len(), rows.len());
+        if found != expected {
+            return Err(GpError::Lengths { what: "noise weights", found, expected });
+        }
+        if let Some(row) = noise_weights.iter().position(|&weight| !(weight > 0.0 && weight.is_finite())) {
+            return Err(GpError::Value { what: "noise weight", row, value: noise_weights[row] });
+        }
+        let mut groups = std::collections::BTreeMap::<usize, Vec<usize>>::new();
+        for (row, index) in rows.indices().iter().enumerate() {
+            groups.entry(index.trajectory).or_default().push(row);
+        }
+        Self::of(rows.states(), rows.velocities(), |_| noise_weights, groups.into_values().collect())
+    }
+
+    pub(crate) fn from_kept(kept: &Kept) -> Result<Self, GpError> {
+        let weights = |unit_squared: f64| match &kept.variances {
+            None => vec![1.0; kept.speeds.len()],
+            Some(variances) => direct_weights(variances, unit_squared),
+        };
+        Self::of(&kept.states, &kept.velocities, weights, kept.groups.clone())
+    }
+
+    fn of(
+        states: &DMatrix<f64>,
+        velocities: &DMatrix<f64>,
+        noise_weights: impl FnOnce(f64) -> Vec<f64>,
+        groups: Vec<Vec<usize>>,
+    ) -> Result<Self, GpError> {
+        let scaling = Scaling::of(states)?;
+        let unit_squared = velocities.norm_squared() / velocities.len() as f64;
+        if unit_squared == 0.0 {
+            return Err(GpError::NoMotion);
+        }
+        let noise_weights = noise_weights(unit_squared);
+        let unit = unit_squared.sqrt();
+        let targets = velocities.transpose() / unit;
+        let total: f64 = noise_weights.iter().map(|d| 1.0 / d).sum();
+        let mut mean = DVector::zeros(targets.ncols());
+        for (target, d) in targets.row_iter().zip(&noise_weights) {
+            mean += target.transpose() / (d * total);
+        }
+        let each = targets.row_iter().zip(&noise_weights);
+        let spread = each.map(|(target, d)| (target.transpose() - &mean).norm_squared() / d).sum();
+        Ok(DirectData { z: scaling.apply(states), scaling, unit, targets, noise_weights, spread, groups })
+    }
+
+    /// μ and S: z = (x − μ)/S.
+    pub fn scaling(&self) -> (&[f64], f64) {
+        (&self.scaling.mean, self.scaling.scale)
+    }
+
+    /// ū, the unit of speed, in units of the state per second.
+    pub fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    /// (R2) on all rows at θ = (log a_1 .. log a_B, log σ²); none if the covariance has no Cholesky factor.
+    ///
+    /// # Panics
+    /// If there is not one θ a block and one more.
+    pub fn evidence(&self, blocks: &[DirectBlock], theta: &[f64]) -> Option<Evidence> {
+        let all: Vec<usize> = (0..self.z.ncols()).collect();
+        let task = Task::of(&self.covariance(blocks), &all, &self.conditions());
+        task.evidence(&DVector::from_column_slice(theta))
+    }
+
+    /// The model at θ with noise raised by κ, and what it predicts of each trajectory left out (R3); none if the
+    /// covariance has no Cholesky factor.
+    ///
+    /// # Panics
+    /// If there is not one θ a block and one more.
+    pub fn condition(&self, blocks: &[DirectBlock], theta: &[f64], kappa: f64) -> Option<(DirectModel, LeftOut)> {
+        let fit = FamilyFit::at(&self.covariance(blocks), theta, kappa, &self.conditions())?;
+        let left_out = fit.level.left_out.clone();
+        Some((self.model(blocks.to_vec(), fit), left_out))
+    }
+
+    /// Amplitudes by evidence on the hyper rows, noise by prediction.
+    pub(crate) fn fit(&self, blocks: &[DirectBlock], hyper: &[usize]) -> Option<FamilyFit> {
+        fit_family(&self.covariance(blocks), hyper, &self.conditions())
+    }
+
+    pub(crate) fn model(&self, blocks: Vec<DirectBlock>, fit: FamilyFit) -> DirectModel {
+        let FamilyFit { amplitudes, level } = fit;
+        let scaled = (self.scaling.clone(), self.unit);
+        let weights = level.weights.transpose();
+        let noise = (level.noise, self.noise_weights.clone());
+        DirectModel::new(scaled, (blocks, amplitudes), self.z.clone(), weights, noise, level.factor)
+    }
+
+    fn covariance<'a>(&'a self, blocks: &'a [DirectBlock]) -> DirectCovariance<'a> {
+        DirectCovariance { blocks, z: &self.z }
+    }
+
+    fn conditions(&self) -> Conditions<'_> {
+        let DirectData { targets, noise_weights, groups, spread, .. } = self;
+        Conditions { targets, noise_weights, groups, spread: *spread }
+    }
+}

@@ -1,0 +1,123 @@
+use nalgebra::DMatrix;
+use rand::Rng;
+use serde::{Deserialize, Serialize};
+
+use crate::direct::data::DirectData;
+use crate::direct::model::DirectModel;
+use crate::evidence::family_fit::{FamilyFit, each_until_exact};
+use crate::kernel::family::Family;
+use crate::left_out::LeftOut;
+use crate::rows::kept::{Kept, Selection};
+use crate::{GpError, Rows};
+
+/// A Gaussian process on velocities: what is learnt if nothing was constrained. One covariance for all components.
+///
+/// It takes the same rows as [`SlopeGp`](crate::SlopeGp) and chooses its family, amplitudes and noise in the same way.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DirectGp {
+    /// Families tried; the one that predicts left-out trajectories best is kept, ties to the first. If the first predicts
+    /// all but 1e-8 of the variance, no other is.
+    pub families: Vec<Family>,
+    /// Rows learnt from, at most; random ones are left out. Time grows with its cube, memory with its square.
+    pub max_rows: usize,
+    /// Rows that amplitudes are chosen on.
+    pub hyper_rows: usize,
+    /// Rows of uncertain velocity count if |u|² exceeds this squared times the variance of u.
+    pub least_snr: f64,
+    /// Rows count if |u| exceeds this share of the largest.
+    pub least_speed: f64,
+}
+
+impl Default for DirectGp {
+    fn default() -> Self {
+        DirectGp { families: Family::ALL.to_vec(), max_rows: 1500, hyper_rows: 400, least_snr: 1.5, least_speed: 1e-6 }
+    }
+}
+
+/// What a direct GP learnt. Stored by serde and read back, it predicts the same to the last bit.
+#[derive(Debug, Clone)]
+pub struct DirectFit {
+    pub(crate) model: DirectModel,
+    pub(crate) family: Family,
+    pub(crate) r_squared: f64,
+    pub(crate) z_squared: f64,
+}
+
+/// The model taken, and what it predicts of left-out trajectories.
+pub(crate) struct DirectOutcome {
+    pub(crate) fit: DirectFit,
+    pub(crate) left_out: LeftOut,
+    /// û at the rows, (n, M).
+    pub(crate) actions: DMatrix<f64>,
+}
+
+impl DirectGp {
+    /// Learns from rows. The generator draws one permutation and nothing else.
+    ///
+    /// # Errors
+    /// [`GpError::Parameter`], or what the rows are refused for: too few, no motion, one state, no Cholesky factor.
+    pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<DirectFit, GpError> {
+        let kept = self.selection()?.keep(rows, rng)?;
+        Ok(self.outcome(&kept)?.fit)
+    }
+
+    fn selection(&self) -> Result<Selection, GpError> {
+        if self.families.is_empty() {
+            let requirement = "name at least one family";
+            return Err(GpError::Parameter { name: "families", value: 0.0, requirement });
+        }
+        let &DirectGp { max_rows, hyper_rows, least_snr, least_speed, .. } = self;
+        Ok(Selection { max_rows, hyper_rows, least_snr, least_speed })
+    }
+
+    pub(crate) fn outcome(&self, kept: &Kept) -> Result<DirectOutcome, GpError> {
+        let data = DirectData::from_kept(kept)?;
+        let fit = |family: Family| data.fit(&family.direct_blocks(), &kept.hyper);
+        let tried = each_until_exact(&self.families, fit, |fit| &fit.level.left_out);
+        let tried = tried.into_iter().filter_map(|(family, fit)| Some((family, fit?)));
+        let better = |best: (Family, FamilyFit), next: (Family, FamilyFit)| {
+            if best.1.level.left_out.r_squared >= next.1.level.left_out.r_squared { best } else { next }
+        };
+        let (family, fit) = tried.reduce(better).ok_or(GpError::NoFactor)?;
+        let blocks = family.direct_blocks();
+        let left_out = fit.level.left_out.clone();
+        let model = data.model(blocks, fit);
+        let actions = model.actions(&kept.states);
+        let fit = DirectFit { model, family, r_squared: left_out.r_squared, z_squared: left_out.z_squared };
+        Ok(DirectOutcome { fit, left_out, actions })
+    }
+}
+
+impl DirectFit {
+    /// û and its variance (R4), the variance not yet times max(1, z²).
+    pub fn model(&self) -> &DirectModel {
+        &self.model
+    }
+
+    /// The family kept.
+    pub fn family(&self) -> Family {
+        self.family
+    }
+
+    /// Share of left-out movement that is predicted (R3); 1 minus it is the error to expect.
+    pub fn r_squared(&self) -> f64 {
+        self.r_squared
+    }
+
+    /// Mean squared left-out error over its predicted variance (R3).
+    pub fn z_squared(&self) -> f64 {
+        self.z_squared
+    }
+
+    /// What gives reason to doubt the policy, one sentence each.
+    pub fn doubts(&self) -> Vec<String> {
+        match self.r_squared {
+            r2 if r2 < 0.5 => {
+                vec![format!("left-out movements are not predicted (R² {r2:.2}): do not use this policy")]
+            }
+            r2 if r2 < 0.9 => vec![format!("left-out movements are predicted poorly (R² {r2:.2})")],
+            _ => Vec::new(),
+        }
+    }
+}

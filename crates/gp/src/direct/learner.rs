@@ -1,0 +1,54 @@
+//! The seam: what the direct GP and its policy share with all other learners.
+
+use motion::{Demonstrations, LearnError, Learner, LearntPolicy, Policy, SampleIndex};
+use nalgebra::{DVectorView, DVectorViewMut};
+use rand::Rng;
+use serde::Serialize;
+
+use crate::FrontEnd;
+use crate::direct::direct_gp::{DirectFit, DirectGp};
+
+/// The direct GP as a learner.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct DirectLearner {
+    /// How recordings become rows.
+    pub front_end: FrontEnd,
+    /// What learns from them.
+    pub gp: DirectGp,
+}
+
+impl Learner for DirectLearner {
+    fn learn(
+        &self,
+        demonstrations: &Demonstrations,
+        held_out: &[SampleIndex],
+        rng: &mut dyn Rng,
+    ) -> Result<Box<dyn LearntPolicy>, LearnError> {
+        Ok(Box::new(self.gp.fit(&self.front_end.rows_but(demonstrations, held_out)?, rng)?))
+    }
+}
+
+impl Policy for DirectFit {
+    fn dim(&self) -> usize {
+        self.model.dim()
+    }
+
+    fn action_into(&self, state: DVectorView<'_, f64>, action: DVectorViewMut<'_, f64>) {
+        self.model.action_into(state, action);
+    }
+}
+
+impl LearntPolicy for DirectFit {
+    fn support(&self, state: DVectorView<'_, f64>) -> f64 {
+        1.0 - (self.model.variance(state) / self.model.prior_variance(state)).clamp(0.0, 1.0)
+    }
+
+    fn action_sd_into(&self, state: DVectorView<'_, f64>, mut deviation: DVectorViewMut<'_, f64>) -> bool {
+        deviation.fill((self.z_squared.max(1.0) * self.model.variance(state).max(0.0)).sqrt());
+        true
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.doubts()
+    }
+}

@@ -1,0 +1,142 @@
+#![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
+
+use motion::Policy;
+use nalgebra::{DMatrix, DVectorView, DVectorViewMut};
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+use crate::dimension::require;
+use crate::kernel::chunks::{CHUNK, Chunks, sum};
+use crate::kernel::covariance::{Covariance, add_noise};
+use crate::kernel::direct_block::{DirectBlock, DirectCovariance, combined, covariances_with};
+use crate::kernel::factor::Factor;
+use crate::rows::scaling::Scaling;
+
+/// The direct GP conditioned on rows: û and its variance (R4).
+#[derive(Debug, Clone)]
+pub struct DirectModel {
+    pub(crate) scaling: Scaling,
+    pub(crate) unit: f64,
+    pub(crate) blocks: Vec<DirectBlock>,
+    pub(crate) amplitudes: Vec<f64>,
+    pub(crate) z: DMatrix<f64>,
+    /// A, (n, M).
+    pub(crate) weights: DMatrix<f64>,
+    pub(crate) noise: f64,
+    pub(crate) noise_weights: Vec<f64>,
+    factor: Factor,
+    states: Chunks,
+    weight_chunks: Chunks,
+}
+
+impl DirectModel {
+    pub(crate) fn new(
+        (scaling, unit): (Scaling, f64),
+        (blocks, amplitudes): (Vec<DirectBlock>, Vec<f64>),
+        z: DMatrix<f64>,
+        weights: DMatrix<f64>,
+        (noise, noise_weights): (f64, Vec<f64>),
+        factor: Factor,
+    ) -> Self {
+        let (states, weight_chunks) = (Chunks::new(&z), Chunks::new(&weights));
+        DirectModel {
+            scaling,
+            unit,
+            blocks,
+            amplitudes,
+            z,
+            weights,
+            noise,
+            noise_weights,
+            factor,
+            states,
+            weight_chunks,
+        }
+    }
+
+    /// The model of which the mean is known already; none if its covariance has no Cholesky factor.
+    pub(crate) fn restored(
+        scaled: (Scaling, f64),
+        prior: (Vec<DirectBlock>, Vec<f64>),
+        z: DMatrix<f64>,
+        weights: DMatrix<f64>,
+        noise: (f64, Vec<f64>),
+    ) -> Option<Self> {
+        let mut matrix = DirectCovariance { blocks: &prior.0, z: &z }.sum(&prior.1);
+        add_noise(&mut matrix, noise.0, noise.1.iter().copied());
+        Some(Self::new(scaled, prior, z, weights, noise, Factor::new(matrix)?))
+    }
+
+    /// (R4): variance of every component at a state, in squared units of the state per second. Costs M².
+    pub fn variance(&self, state: DVectorView<'_, f64>) -> f64 {
+        require(self.dim(), &[state.len()]);
+        let z = self.scaling.of_state(state);
+        let mut known = DMatrix::zeros(self.z.ncols(), 1);
+        for (chunk, place) in known.as_mut_slice().chunks_mut(CHUNK).enumerate() {
+            let values = covariances_with(z.as_slice(), self.states.get(chunk), &self.blocks, &self.amplitudes);
+            place.copy_from_slice(&values[..place.len()]);
+        }
+        self.factor.whiten(&mut known);
+        self.prior_variance(state) - self.unit.powi(2) * known.norm_squared()
+    }
+
+    /// The same before anything was observed.
+    pub fn prior_variance(&self, state: DVectorView<'_, f64>) -> f64 {
+        let z = self.scaling.of_state(state);
+        let each = self.blocks.iter().zip(&self.amplitudes);
+        let scaled: f64 = each.map(|(block, amplitude)| amplitude * block.covariance(z.as_view(), z.as_view())).sum();
+        self.unit.powi(2) * scaled
+    }
+
+    /// û at each of the states (n, M), (n, M).
+    pub(crate) fn actions(&self, states: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut actions = DMatrix::zeros(states.nrows(), states.ncols());
+        let places = actions.as_mut_slice().par_chunks_mut(states.nrows());
+        places
+            .zip(states.as_slice().par_chunks(states.nrows()))
+            .for_each(|(action, state)| Arch::new().dispatch(Action { model: self, state, place: action }));
+        actions
+    }
+}
+
+/// û(x) = ū k(x)ᵀA.
+struct Action<'a> {
+    model: &'a DirectModel,
+    state: &'a [f64],
+    place: &'a mut [f64],
+}
+
+impl WithSimd for Action<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let Action { model, state, place: action } = self;
+        action.fill(0.0);
+        let z = |k: usize| model.scaling.coordinate(k, state[k]);
+        for chunk in 0..model.states.len() {
+            let covariances = combined(z, model.states.get(chunk), &model.blocks, &model.amplitudes);
+            for (action, weights) in action.iter_mut().zip(model.weight_chunks.get(chunk)) {
+                let mut terms = [0.0; CHUNK];
+                for lane in 0..CHUNK {
+                    terms[lane] = covariances[lane] * weights[lane];
+                }
+                *action += sum(&terms);
+            }
+        }
+        for action in action {
+            *action *= model.unit;
+        }
+    }
+}
+
+impl Policy for DirectModel {
+    fn dim(&self) -> usize {
+        self.z.nrows()
+    }
+
+    fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
+        require(self.dim(), &[state.len(), action.len()]);
+        Arch::new().dispatch(Action { model: self, state: state.as_slice(), place: action.as_mut_slice() });
+    }
+}

@@ -1,0 +1,85 @@
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+use crate::evidence::Task;
+use crate::evidence::lbfgs::{Bounds, ITERATIONS, minimise};
+use crate::kernel::covariance::Covariance;
+use crate::kernel::family::Family;
+use crate::left_out::LeftOut;
+use crate::left_out::level::{Conditions, Level};
+
+/// A family whose amplitudes evidence has chosen and whose noise prediction has raised.
+#[derive(Debug)]
+pub(crate) struct FamilyFit {
+    /// a_b, (B).
+    pub(crate) amplitudes: Vec<f64>,
+    pub(crate) level: Level,
+}
+
+impl FamilyFit {
+    /// At a given θ = (log a_1 .. log a_B, log σ²) and κ; none if the covariance has no Cholesky factor.
+    ///
+    /// # Panics
+    /// If there is not one θ a block and one more.
+    pub(crate) fn at(
+        covariance: &impl Covariance,
+        theta: &[f64],
+        kappa: f64,
+        conditions: &Conditions<'_>,
+    ) -> Option<FamilyFit> {
+        let blocks = covariance.n_blocks();
+        assert_eq!(theta.len(), blocks + 1, "one log amplitude a block, and the noise");
+        let amplitudes: Vec<f64> = theta[..blocks].iter().map(|log| log.exp()).collect();
+        let level = Level::at(&covariance.sum(&amplitudes), theta[blocks].exp(), kappa, conditions)?;
+        Some(FamilyFit { amplitudes, level })
+    }
+}
+
+/// Where the search begins: log a_b and log σ².
+const AMPLITUDE: f64 = 0.3;
+const NOISE: f64 = 1e-2;
+/// From so many hyper rows on, half of them are searched first: an eighth of the work leads most of the way.
+const WORTH_TWO_SEARCHES: usize = 200;
+/// Iterations that are left for all of them then.
+const LAST_ITERATIONS: usize = 12;
+
+/// Minimises (S8) on the hyper rows, then climbs κ on all rows; none if there is no Cholesky factor even at κ = 1.
+pub(crate) fn fit_family(
+    covariance: &impl Covariance,
+    hyper: &[usize],
+    conditions: &Conditions<'_>,
+) -> Option<FamilyFit> {
+    let blocks = covariance.n_blocks();
+    let among = |rows: &[usize]| Task::of(covariance, rows, conditions);
+    let or_noise =
+        |amplitude: f64, noise: f64| DVector::from_fn(blocks + 1, |k, _| if k < blocks { amplitude } else { noise });
+    let start = or_noise(AMPLITUDE.ln(), NOISE.ln());
+    let bounds = Bounds { lower: or_noise(-23.0, 1e-12_f64.ln()), upper: or_noise(12.0, 2.0) };
+    let search = |task: &Task, start: &DVector<f64>, iterations| {
+        minimise(|theta| task.evidence(theta), start, &bounds, iterations)
+    };
+    let theta = if hyper.len() < WORTH_TWO_SEARCHES {
+        search(&among(hyper), &start, ITERATIONS)
+    } else {
+        let half: Vec<usize> = hyper.iter().step_by(2).copied().collect();
+        let near = search(&among(&half), &start, ITERATIONS);
+        search(&among(hyper), &near, LAST_ITERATIONS)
+    };
+    let amplitudes: Vec<f64> = theta.iter().take(blocks).map(|log| log.exp()).collect();
+    let level = Level::best(&covariance.sum(&amplitudes), theta[blocks].exp(), conditions)?;
+    Some(FamilyFit { amplitudes, level })
+}
+
+/// Tries one family, and if that does not predict exactly, all others at once. In the order of the families.
+pub(crate) fn each_until_exact<T: Send>(
+    families: &[Family],
+    attempt: impl Fn(Family) -> Option<T> + Sync,
+    left_out: impl Fn(&T) -> &LeftOut,
+) -> Vec<(Family, Option<T>)> {
+    let Some((&first, others)) = families.split_first() else { return Vec::new() };
+    let mut tried = vec![(first, attempt(first))];
+    if !tried[0].1.as_ref().is_some_and(|first| left_out(first).is_exact()) {
+        tried.par_extend(others.par_iter().map(|&family| (family, attempt(family))));
+    }
+    tried
+}

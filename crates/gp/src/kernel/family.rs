@@ -1,0 +1,73 @@
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::kernel::block::Block;
+use crate::kernel::shape::Shape;
+
+/// What kind of policy is looked for. Evidence chooses the amplitudes within a family, prediction of left-out
+/// trajectories chooses the family.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Family {
+    /// Squared exponential: for policies without an edge.
+    Smooth,
+    /// Matérn 5/2: for policies that turn quickly, and for noisy ones.
+    Medium,
+    /// Matérn 3/2: for policies that may jump, that is potentials with kinks.
+    Rough,
+}
+
+/// Whether a potential may have a trend beside its shapes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Trend {
+    /// A linear and a quadratic potential are in every family.
+    #[default]
+    Quadratic,
+    /// Shapes alone: shows what is left when the family does not contain the truth.
+    None,
+}
+
+impl Family {
+    /// All of them, in the order in which a tie is decided.
+    pub const ALL: [Family; 3] = [Family::Smooth, Family::Medium, Family::Rough];
+
+    /// Its shape.
+    pub fn shape(self) -> Shape {
+        match self {
+            Family::Smooth => Shape::SquaredExponential,
+            Family::Medium => Shape::Matern52,
+            Family::Rough => Shape::Matern32,
+        }
+    }
+
+    /// Its blocks in the slope GP: the trend, then one shape at four scales.
+    pub fn blocks(self, trend: Trend) -> Vec<Block> {
+        let scales = match self {
+            Family::Smooth => [0.25, 0.5, 1.0, 2.0],
+            Family::Medium | Family::Rough => [0.5, 1.0, 2.0, 4.0],
+        };
+        let trend: &[Block] = match trend {
+            Trend::Quadratic => &[Block::Linear, Block::Quadratic],
+            Trend::None => &[],
+        };
+        trend.iter().copied().chain(scales.map(|scale| Block::Potential(self.shape(), scale))).collect()
+    }
+
+    /// The same with blocks for rotation: a Helmholtz decomposition, which has no potential.
+    pub fn helmholtz_blocks(self, trend: Trend) -> Vec<Block> {
+        let rotation = [Block::Skew].into_iter().chain([0.25, 0.5, 1.0, 2.0].map(Block::DivergenceFree));
+        self.blocks(trend).into_iter().chain(rotation).collect()
+    }
+}
+
+impl fmt::Display for Family {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Family::Smooth => "smooth",
+            Family::Medium => "medium",
+            Family::Rough => "rough",
+        })
+    }
+}

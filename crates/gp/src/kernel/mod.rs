@@ -1,0 +1,10 @@
+//! Priors: families of blocks, their covariances and the factors of these.
+
+pub(crate) mod block;
+pub(crate) mod chunks;
+pub(crate) mod covariance;
+pub(crate) mod direct_block;
+pub(crate) mod factor;
+pub(crate) mod family;
+pub(crate) mod shape;
+pub(crate) mod slope_covariance;

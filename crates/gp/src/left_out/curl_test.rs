@@ -1,0 +1,92 @@
+//! Is there a potential at all? (S12), (R5).
+
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+
+use crate::left_out::LeftOut;
+use crate::left_out::comparison::{difference, t_of_mean};
+
+/// Whether a model with rotation is tried beside those with a potential.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CurlTest {
+    /// A Helmholtz decomposition is fitted too, and taken if left-out trajectories speak for it.
+    #[default]
+    Fit,
+    /// The policy is taken to have a potential.
+    AssumePotential,
+}
+
+/// t above which rotation is seen.
+const LEAST_T: f64 = 2.5;
+/// Two models differ if their policies do by more than this share.
+const DIFFERS: f64 = 0.05;
+/// A potential is kept if it predicts better by so much.
+const BETTER: f64 = 1.1;
+
+/// Policies at the rows, (n, M), and what was predicted of left-out trajectories.
+#[derive(Debug)]
+pub(crate) struct Contender<'a> {
+    pub(crate) actions: &'a DMatrix<f64>,
+    pub(crate) left_out: &'a LeftOut,
+}
+
+/// (S12): t of the gain per trajectory, Δ_T = Σ w (e² with a potential − e² without), w = 1/D.
+pub(crate) fn curl_t(potential: &LeftOut, rotation: &LeftOut, noise_weights: &[f64], groups: &[Vec<usize>]) -> f64 {
+    let gain = |row: usize| {
+        let square = |left_out: &LeftOut| left_out.residuals.row(row).norm_squared();
+        (square(potential) - square(rotation)) / noise_weights[row]
+    };
+    let gains: Vec<f64> = groups.iter().map(|rows| rows.iter().map(|&row| gain(row)).sum()).collect();
+    t_of_mean(&gains)
+}
+
+/// What a potential must leave unpredicted, as a share, before prediction alone can speak against it.
+const UNPREDICTED: f64 = 1e-3;
+/// Share of that, at most, which a model with rotation leaves then.
+const DECISIVE: f64 = 1e-3;
+
+/// Whether rotation is taken: seen by (S12); or because it leaves next to nothing where the potential does not predict,
+/// whatever t is, which one movement with a large gain can hold down; or by (R5) because dropping the potential changes
+/// the policy and costs less than a tenth in prediction.
+pub(crate) fn takes_rotation(t: f64, potential: &Contender<'_>, rotation: &Contender<'_>) -> bool {
+    let (r2_potential, r2_rotation) = (potential.left_out.r_squared, rotation.left_out.r_squared);
+    let seen = t > LEAST_T && r2_rotation > r2_potential;
+    let (left_by_potential, left_by_rotation) = (1.0 - r2_potential, 1.0 - r2_rotation);
+    let decisive = left_by_potential > UNPREDICTED && left_by_rotation < DECISIVE * left_by_potential;
+    let changes = difference(potential.actions, rotation.actions) > DIFFERS;
+    let costs_little = left_by_rotation <= BETTER * left_by_potential;
+    let hides_less = rotation.actions.norm_squared() <= potential.actions.norm_squared();
+    seen || decisive || (changes && costs_little && hides_less)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn left_out(r_squared: f64) -> LeftOut {
+        LeftOut { residuals: DMatrix::zeros(1, 1), variances: vec![1.0], r_squared, z_squared: 1.0 }
+    }
+
+    /// Of equal length, and much alike or not at all.
+    fn taken(t: f64, [potential, rotation]: [f64; 2], alike: bool) -> bool {
+        let actions = DMatrix::from_column_slice(1, 3, &[1.0, 2.0, 3.0]);
+        let others = if alike { actions.clone() } else { DMatrix::from_column_slice(1, 3, &[3.0, 2.0, 1.0]) };
+        let (potential, rotation) = (left_out(potential), left_out(rotation));
+        takes_rotation(
+            t,
+            &Contender { actions: &actions, left_out: &potential },
+            &Contender { actions: &others, left_out: &rotation },
+        )
+    }
+
+    #[test]
+    fn rotation_is_seen_by_t_or_where_it_alone_predicts() {
+        assert!(taken(2.6, [0.5, 0.6], true) && !taken(2.4, [0.5, 0.6], true));
+        // A gain that one movement makes most of has a small t; but nothing else predicts.
+        assert!(taken(0.5, [-5.8, 1.0 - 4e-9], true));
+        // Where both predict well, prediction alone decides nothing.
+        assert!(!taken(0.5, [1.0 - 1e-4, 1.0 - 1e-9], true));
+        assert!(taken(0.5, [0.5, 0.5], false) && !taken(0.5, [0.5, 0.2], false));
+    }
+}

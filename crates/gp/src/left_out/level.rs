@@ -1,0 +1,76 @@
+//! How much noise evidence has missed, found by prediction of left-out trajectories.
+
+use nalgebra::DMatrix;
+
+use crate::kernel::covariance::{NOISE_FLOOR, add_noise};
+use crate::kernel::factor::Factor;
+use crate::left_out::{LeftOut, left_out};
+
+/// What a model is conditioned on.
+#[derive(Debug)]
+pub(crate) struct Conditions<'a> {
+    /// y, (M, c), scaled.
+    pub(crate) targets: &'a DMatrix<f64>,
+    /// D, (M).
+    pub(crate) noise_weights: &'a [f64],
+    /// Rows of each trajectory.
+    pub(crate) groups: &'a [Vec<usize>],
+    /// Σ w|y|² that R² compares with.
+    pub(crate) spread: f64,
+}
+
+/// A model at one level of noise.
+#[derive(Debug)]
+pub(crate) struct Level {
+    /// κ: by how much σ² was raised.
+    pub(crate) kappa: f64,
+    /// σ² used, without the floor.
+    pub(crate) noise: f64,
+    pub(crate) factor: Factor,
+    /// K⁻¹y, (M, c).
+    pub(crate) weights: DMatrix<f64>,
+    pub(crate) left_out: LeftOut,
+}
+
+/// σ² at a factor κ; κ = 1 leaves it as it is.
+pub(crate) fn raised(noise: f64, kappa: f64) -> f64 {
+    if kappa == 1.0 { noise } else { (kappa * (noise + NOISE_FLOOR)).min(3.0_f64.exp()) }
+}
+
+impl Level {
+    /// The model with noise κ(σ² + 1e-10), given Σ a_b K_b; none without Cholesky factor.
+    pub(crate) fn at(covariance: &DMatrix<f64>, noise: f64, kappa: f64, conditions: &Conditions<'_>) -> Option<Self> {
+        let noise = raised(noise, kappa);
+        let mut matrix = covariance.clone();
+        add_noise(&mut matrix, noise, conditions.noise_weights.iter().copied());
+        let factor = Factor::new(matrix)?;
+        let mut weights = conditions.targets.clone();
+        factor.solve(&mut weights);
+        let &Conditions { groups, noise_weights, spread, .. } = conditions;
+        let left_out = left_out(&factor, &weights, groups, noise_weights, spread)?;
+        Some(Level { kappa, noise, factor, weights, left_out })
+    }
+
+    /// The best of κ = 1, 4, 16 .. 4¹⁰ by R², given up after two in a row that are not better, or where there is nothing
+    /// to gain.
+    pub(crate) fn best(covariance: &DMatrix<f64>, noise: f64, conditions: &Conditions<'_>) -> Option<Self> {
+        let mut best = Level::at(covariance, noise, 1.0, conditions)?;
+        if best.left_out.is_exact() {
+            return Some(best);
+        }
+        let mut worse = 0;
+        for power in 1..=10 {
+            let Some(level) = Level::at(covariance, noise, 4.0_f64.powi(power), conditions) else { break };
+            if level.left_out.r_squared > best.left_out.r_squared {
+                best = level;
+                worse = 0;
+            } else {
+                worse += 1;
+                if worse == 2 {
+                    break;
+                }
+            }
+        }
+        Some(best)
+    }
+}

@@ -1,0 +1,80 @@
+//! Prediction of trajectories left out, and what it decides: noise, and whether there is a potential.
+
+pub(crate) mod comparison;
+pub(crate) mod curl_test;
+pub(crate) mod level;
+
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Par};
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+use crate::kernel::factor::{Factor, view, view_mut};
+
+/// What the other trajectories predict of each: leave-one-trajectory-out in closed form, (S10), (S11), (R3).
+#[derive(Debug, Clone, PartialEq)]
+pub struct LeftOut {
+    /// y − its prediction without the row's trajectory, (M, c), scaled.
+    pub residuals: DMatrix<f64>,
+    /// Variance of that prediction, (M), scaled.
+    pub variances: Vec<f64>,
+    /// R² = 1 − Σ w|e|² / spread.
+    pub r_squared: f64,
+    /// Mean of e²/v: 1 where the noise model is right.
+    pub z_squared: f64,
+}
+
+/// Left-out error, as a share of the variance, below which nothing is left to choose by prediction.
+const EXACT: f64 = 1e-8;
+
+impl LeftOut {
+    /// Whether prediction is so good that more noise and other families need not be tried.
+    pub(crate) fn is_exact(&self) -> bool {
+        1.0 - self.r_squared < EXACT
+    }
+}
+
+/// Of every group of rows T: V_T = ((K⁻¹)_TT)⁻¹ and e_T = V_T α_T, (K⁻¹)_TT = X_Tᵀ X_T with X = L⁻¹. None if a
+/// block cannot be inverted.
+///
+/// `spread` is Σ w|y|² about whatever is predicted without a model.
+pub(crate) fn left_out(
+    factor: &Factor,
+    weights: &DMatrix<f64>,
+    groups: &[Vec<usize>],
+    noise_weights: &[f64],
+    spread: f64,
+) -> Option<LeftOut> {
+    let x = factor.inverse_triangle();
+    let blocks: Vec<_> = groups.par_iter().map(|rows| block(&x, weights, rows)).collect();
+    let mut residuals = DMatrix::zeros(weights.nrows(), weights.ncols());
+    let mut variances = vec![0.0; weights.nrows()];
+    for (rows, block) in groups.iter().zip(blocks) {
+        let (errors, block_variances) = block?;
+        for (at, &row) in rows.iter().enumerate() {
+            residuals.row_mut(row).copy_from(&errors.row(at));
+            variances[row] = block_variances[at];
+        }
+    }
+    let squares: Vec<f64> = residuals.row_iter().map(|row| row.norm_squared()).collect();
+    let weighted: f64 = squares.iter().zip(noise_weights).map(|(square, weight)| square / weight).sum();
+    let standardised: f64 = squares.iter().zip(&variances).map(|(square, variance)| square / variance).sum();
+    let r_squared = 1.0 - weighted / spread;
+    let z_squared = standardised / residuals.len() as f64;
+    (r_squared.is_finite() && z_squared.is_finite()).then_some(LeftOut { residuals, variances, r_squared, z_squared })
+}
+
+/// e_T and the diagonal of V_T.
+fn block(x: &DMatrix<f64>, weights: &DMatrix<f64>, rows: &[usize]) -> Option<(DMatrix<f64>, Vec<f64>)> {
+    // L⁻¹ is zero above the first of these rows.
+    let first = *rows.iter().min()?;
+    let columns = x.rows_range(first..).select_columns(rows);
+    let mut precision = DMatrix::zeros(rows.len(), rows.len());
+    matmul(view_mut(&mut precision), Accum::Replace, view(&columns).transpose(), view(&columns), 1.0, Par::Seq);
+    let factor = Factor::new(precision)?;
+    let mut errors = weights.select_rows(rows);
+    factor.solve(&mut errors);
+    let inverse = factor.inverse_triangle();
+    let variances = inverse.column_iter().map(|column| column.norm_squared()).collect();
+    Some((errors, variances))
+}

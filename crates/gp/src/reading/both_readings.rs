@@ -1,0 +1,168 @@
+use motion::{Demonstrations, LearnError, Learner, LearntPolicy, Policy, Potential, SampleIndex};
+use nalgebra::{DVectorView, DVectorViewMut};
+use rand::Rng;
+use serde::{Deserialize, Serialize};
+
+use crate::direct::direct_gp::{DirectFit, DirectGp};
+use crate::reading::Reading;
+use crate::reading::numbers::{Compared, ReadingNumbers, TrajectoryErrors};
+use crate::slope::fit::SlopeFit;
+use crate::slope::judgement::{Chosen, report};
+use crate::slope::search::outcome;
+use crate::slope::slope_gp::SlopeGp;
+use crate::{FrontEnd, GpError, Rows};
+
+/// Fits the slope GP and the direct GP to the same rows, compares them on left-out demonstrations, and hands out the
+/// policy that the data support. No learner is right for both free and constrained movement.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct ReadingLearner {
+    /// How recordings become rows.
+    pub front_end: FrontEnd,
+    /// The learner for constrained movement; its limits on rows hold for both.
+    pub slope: SlopeGp,
+    /// The learner for free movement.
+    pub direct: DirectGp,
+    /// The user's own reading, which overrides that of the data.
+    pub reading: Option<Reading>,
+}
+
+/// Both policies, and which of them the data support.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BothReadings {
+    pub(crate) slope: SlopeFit,
+    pub(crate) direct: DirectFit,
+    pub(crate) numbers: ReadingNumbers,
+    pub(crate) overridden: Option<Reading>,
+    /// Models that were stored before this was kept have none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) left_out: Vec<TrajectoryErrors>,
+}
+
+impl ReadingLearner {
+    /// Learns from rows. The generator draws one permutation and nothing else.
+    ///
+    /// # Errors
+    /// As [`SlopeGp::fit`] and [`DirectGp::fit`].
+    pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<BothReadings, GpError> {
+        let kept = self.slope.selection()?.keep(rows, rng)?;
+        let (slope, direct) = rayon::join(|| outcome(&self.slope, &kept), || self.direct.outcome(&kept));
+        let (slope, direct) = (slope?, direct?);
+        let compared = Compared {
+            speeds: &kept.speeds,
+            grouping: kept.grouping,
+            trajectories: &kept.trajectories,
+            data: &slope.data,
+            slope: (&slope.taken.left_out, &slope.taken.actions),
+            direct: (&direct.left_out, &direct.actions),
+            direct_unit: direct.fit.model.unit,
+        };
+        let (numbers, left_out) = (ReadingNumbers::compared(&compared), compared.errors());
+        let mut report = report(&Chosen { outcome: &slope, kept: &kept, rows });
+        if numbers.reading() != Reading::Constrained {
+            // (R6): how far the other reading's policy is away is an error to expect.
+            report.expected_nupe = report.expected_nupe.max(numbers.gap);
+        }
+        let slope = SlopeFit { model: slope.taken.model, report };
+        Ok(BothReadings { slope, direct: direct.fit, numbers, overridden: self.reading, left_out })
+    }
+}
+
+impl Learner for ReadingLearner {
+    fn learn(
+        &self,
+        demonstrations: &Demonstrations,
+        held_out: &[SampleIndex],
+        rng: &mut dyn Rng,
+    ) -> Result<Box<dyn LearntPolicy>, LearnError> {
+        Ok(Box::new(self.fit(&self.front_end.rows_but(demonstrations, held_out)?, rng)?))
+    }
+}
+
+impl BothReadings {
+    /// What the data say.
+    pub fn reading(&self) -> Reading {
+        self.numbers.reading()
+    }
+
+    /// The user's own reading, if there is one.
+    pub fn overridden(&self) -> Option<Reading> {
+        self.overridden
+    }
+
+    /// What the reading rests on.
+    pub fn numbers(&self) -> &ReadingNumbers {
+        &self.numbers
+    }
+
+    /// How each trajectory was predicted without it.
+    pub fn left_out(&self) -> &[TrajectoryErrors] {
+        &self.left_out
+    }
+
+    /// The policy for constrained movement.
+    pub fn slope(&self) -> &SlopeFit {
+        &self.slope
+    }
+
+    /// The policy for free movement.
+    pub fn direct(&self) -> &DirectFit {
+        &self.direct
+    }
+
+    /// Error (nUPE) to expect of the policy handed out (R6).
+    pub fn expected_nupe(&self) -> f64 {
+        match (self.takes_slope(), self.reading()) {
+            (true, _) => self.slope.report.expected_nupe,
+            (false, Reading::Constrained) => self.numbers.p_d.max(self.numbers.gap),
+            (false, _) => self.numbers.p_d,
+        }
+    }
+
+    /// The reading in words, for the user.
+    pub fn text(&self) -> String {
+        let text = self.numbers.text(self.slope.report.expected_nupe);
+        match self.overridden {
+            None => text,
+            Some(reading) => format!("{text} You decided: {reading:?}."),
+        }
+    }
+
+    fn takes_slope(&self) -> bool {
+        self.numbers.takes_slope(self.overridden.unwrap_or(self.reading()))
+    }
+
+    fn handed_out(&self) -> &dyn LearntPolicy {
+        if self.takes_slope() { &self.slope } else { &self.direct }
+    }
+}
+
+impl Policy for BothReadings {
+    fn dim(&self) -> usize {
+        self.handed_out().dim()
+    }
+
+    fn action_into(&self, state: DVectorView<'_, f64>, action: DVectorViewMut<'_, f64>) {
+        self.handed_out().action_into(state, action);
+    }
+}
+
+impl LearntPolicy for BothReadings {
+    fn potential(&self) -> Option<&dyn Potential> {
+        self.handed_out().potential()
+    }
+
+    fn support(&self, state: DVectorView<'_, f64>) -> f64 {
+        self.handed_out().support(state)
+    }
+
+    fn action_sd_into(&self, state: DVectorView<'_, f64>, deviation: DVectorViewMut<'_, f64>) -> bool {
+        self.handed_out().action_sd_into(state, deviation)
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let doubtful = matches!(self.reading(), Reading::Ambiguous | Reading::Unexplained | Reading::TooFew);
+        let text = doubtful.then(|| self.text());
+        text.into_iter().chain(self.handed_out().warnings()).collect()
+    }
+}

@@ -1,0 +1,116 @@
+//! Whether the demonstrations were constrained.
+
+pub(crate) mod both_readings;
+pub(crate) mod near_passes;
+pub(crate) mod numbers;
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::reading::numbers::ReadingNumbers;
+use crate::report::identifiability::direction;
+use crate::rows::kept::Grouping;
+
+/// What the demonstrations say about hidden constraints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reading {
+    /// Nothing points to one: the direct policy.
+    Free,
+    /// They hid part of the policy, and differed: the slope policy.
+    Constrained,
+    /// Two readings explain the same data: the direct policy.
+    Ambiguous,
+    /// Neither predicts: no policy should be trusted.
+    Unexplained,
+    /// Too few demonstrations to tell: the direct policy.
+    TooFew,
+}
+
+/// The two policies agree so well that no question is left.
+const SAME: f64 = 0.03;
+/// They agree well enough where all directions are seen.
+const CLOSE: f64 = 0.1;
+/// Every direction is seen if the least is, by this share of an even one.
+const SEEN: f64 = 0.1;
+/// Demonstrations below which nothing is called constrained.
+const DEMONSTRATIONS: usize = 5;
+/// Left-out error above which nothing is explained.
+const UNEXPLAINED: f64 = 0.5;
+
+impl ReadingNumbers {
+    /// (R8), in its order.
+    pub fn reading(&self) -> Reading {
+        match () {
+            () if self.grouping == Grouping::BlocksOfTime => Reading::TooFew,
+            () if self.gap <= SAME => {
+                if self.seen() {
+                    Reading::Free
+                } else {
+                    Reading::Ambiguous
+                }
+            }
+            () if self.trajectories >= DEMONSTRATIONS && self.speaks_for_constraints() => Reading::Constrained,
+            () if self.p_d > UNEXPLAINED => Reading::Unexplained,
+            () if self.gap <= CLOSE && self.seen() => Reading::Free,
+            () => Reading::Ambiguous,
+        }
+    }
+
+    /// Whether something moved in every direction.
+    pub fn seen(&self) -> bool {
+        self.least_seen.share * self.least_seen.direction.len() as f64 >= SEEN
+    }
+
+    /// Whether knowing the direction a movement was let go in predicts its speed far better than the place alone.
+    pub fn speaks_for_constraints(&self) -> bool {
+        self.a_s <= 0.8 && ((self.q <= 0.4 && self.t >= 2.0) || (self.lambda >= 0.5 && self.t_lambda >= 2.0))
+    }
+
+    /// The policy to hand out: whether it is the slope GP's.
+    pub fn takes_slope(&self, reading: Reading) -> bool {
+        match reading {
+            Reading::Constrained => true,
+            Reading::Unexplained => self.a_s < self.a_d,
+            Reading::Free | Reading::Ambiguous | Reading::TooFew => false,
+        }
+    }
+
+    /// The reading in words, for the user. `expected_nupe` is the slope policy's.
+    pub fn text(&self, expected_nupe: f64) -> String {
+        let &ReadingNumbers { a_s, a_d, p_d, gap, hidden, .. } = self;
+        let (a_s, a_d, p_d, gap, hidden) = (Percent(a_s), Percent(a_d), Percent(p_d), Percent(gap), Percent(hidden));
+        let leans = self.trajectories < DEMONSTRATIONS && self.speaks_for_constraints();
+        let few = if leans { " It leans towards constraints; record at least five demonstrations." } else { "" };
+        match self.reading() {
+            Reading::Free => format!(
+                "Nothing in these demonstrations points to a hidden constraint: left-out movements are predicted from the place alone with an error of {p_d} of their variance, and the policy that allows for constraints agrees within {gap}. The direct policy is used. A constraint that is the same in every demonstration cannot be seen in data."
+            ),
+            Reading::Constrained => format!(
+                "Constraints hid part of the policy, and they differed: knowing the direction a movement was let go in predicts its speed far better than the place alone (squared error {a_s} against {a_d}). The slope policy is used; about {hidden} of its length was hidden from view. Expected error {expected_nupe:.1e}."
+            ),
+            Reading::Ambiguous if self.gap <= SAME => format!(
+                "Nothing ever moved along {}: either it wants not to, or it is always blocked there.",
+                direction(&self.least_seen.direction)
+            ),
+            Reading::Ambiguous => format!(
+                "Two readings explain these demonstrations equally well. (a) Nothing was constrained: then the direct policy is right (used; left-out error {p_d}). (b) The same constraint acted always: then the policy is unknown across it, and the slope policy is one guess; the two differ by {gap}. Only you know: `--reading free` or `--reading constrained`, or record a few demonstrations that pass the same places in other directions.{few}"
+            ),
+            Reading::Unexplained => format!(
+                "Neither reading predicts left-out movements (errors {p_d} and {a_s}). Too few demonstrations, too much noise, or the movement does not depend on the place alone (time, load, target).{} No policy should be trusted.",
+                if self.lambda >= 0.5 && !leans { " It leans towards constraints." } else { few }
+            ),
+            Reading::TooFew => "Too few demonstrations to tell whether constraints acted: the direct policy is used; record at least five.".to_owned(),
+        }
+    }
+}
+
+struct Percent(f64);
+
+impl fmt::Display for Percent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let percent = 100.0 * self.0;
+        if percent.abs() < 1.0 { write!(f, "{percent:.2} %") } else { write!(f, "{percent:.0} %") }
+    }
+}

@@ -1,0 +1,144 @@
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+
+use crate::Rows;
+use crate::direct::model::DirectModel;
+use crate::left_out::LeftOut;
+use crate::left_out::comparison::{difference, t_of_mean};
+use crate::report::identifiability::LeastSeen;
+use crate::rows::kept::Grouping;
+use crate::slope::data::SlopeData;
+use crate::slope::model::SlopeModel;
+
+/// ε of (R7): errors below this share count as none.
+const NEGLIGIBLE: f64 = 1e-4;
+
+/// What the choice of a reading rests on (R7). Both learners predict the speed along the direction in which a left-out
+/// movement went; the slope GP is told that direction, the direct GP is not.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReadingNumbers {
+    /// Left-out squared error of the slope GP, as a share.
+    pub a_s: f64,
+    /// The same of the direct GP.
+    pub a_d: f64,
+    /// Their ratio.
+    pub q: f64,
+    /// t of the mean gain per trajectory.
+    pub t: f64,
+    /// Mean over trajectories of the log ratio of their errors.
+    pub lambda: f64,
+    /// t of λ.
+    pub t_lambda: f64,
+    /// Left-out error of the direct policy, as a share of its variance.
+    pub p_d: f64,
+    /// Difference of the two policies at the rows, as a share of the slope policy's variance.
+    pub gap: f64,
+    /// The direction in which the least moved.
+    pub least_seen: LeastSeen,
+    /// About what share of the slope policy's length was hidden.
+    pub hidden: f64,
+    /// Trajectories with rows.
+    pub trajectories: usize,
+    /// What was left out at a time.
+    pub grouping: Grouping,
+}
+
+/// How a trajectory was predicted without it: weighted sums of squares along the direction of motion (R7), in squared
+/// units of the state per second.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrajectoryErrors {
+    /// The trajectory; of one or two that were cut into blocks of time, each block is an entry.
+    pub trajectory: usize,
+    /// E^s of the slope GP.
+    pub slope: f64,
+    /// E^d of the direct GP.
+    pub direct: f64,
+    /// R: what there was to predict.
+    pub seen: f64,
+}
+
+/// Two models of the same rows.
+pub(crate) struct Compared<'a> {
+    pub(crate) speeds: &'a [f64],
+    pub(crate) grouping: Grouping,
+    /// The trajectory that each group of the data is of.
+    pub(crate) trajectories: &'a [usize],
+    pub(crate) data: &'a SlopeData,
+    /// What the slope GP predicts of left-out trajectories, and its policy at the rows, (n, M).
+    pub(crate) slope: (&'a LeftOut, &'a DMatrix<f64>),
+    /// The same of the direct GP.
+    pub(crate) direct: (&'a LeftOut, &'a DMatrix<f64>),
+    /// ū.
+    pub(crate) direct_unit: f64,
+}
+
+impl Compared<'_> {
+    /// E^s_T, E^d_T and R_T of (R7).
+    pub(crate) fn errors(&self) -> Vec<TrajectoryErrors> {
+        let &Compared { speeds, data, slope, direct, direct_unit, .. } = self;
+        let mean_weight = data.noise_weights.iter().map(|d| 1.0 / d).sum::<f64>() / data.noise_weights.len() as f64;
+        let weight = |row: usize| 1.0 / (data.noise_weights[row] * mean_weight);
+        let errors = |(rows, &trajectory): (&Vec<usize>, &usize)| {
+            let power = |of: &dyn Fn(usize) -> f64| rows.iter().map(|&row| weight(row) * of(row).powi(2)).sum();
+            TrajectoryErrors {
+                trajectory,
+                slope: power(&|row| data.speed * slope.0.residuals[(row, 0)]),
+                direct: power(&|row| direct_unit * (direct.0.residuals.row(row) * data.n.column(row)).x),
+                seen: power(&|row| speeds[row]),
+            }
+        };
+        data.groups.iter().zip(self.trajectories).map(errors).collect()
+    }
+}
+
+impl ReadingNumbers {
+    /// Of two models that were conditioned on all of these rows, each with what it predicts of left-out trajectories.
+    pub fn of(
+        rows: &Rows,
+        data: &SlopeData,
+        (slope, slope_left_out): (&SlopeModel, &LeftOut),
+        (direct, direct_left_out): (&DirectModel, &LeftOut),
+    ) -> Self {
+        let trajectories: Vec<usize> =
+            data.groups.iter().map(|rows_of| rows.indices()[rows_of[0]].trajectory).collect();
+        let speeds: Vec<f64> = rows.velocities().column_iter().map(|velocity| velocity.norm()).collect();
+        Self::compared(&Compared {
+            speeds: &speeds,
+            grouping: Grouping::Trajectories,
+            trajectories: &trajectories,
+            data,
+            slope: (slope_left_out, &slope.actions(rows.states())),
+            direct: (direct_left_out, &direct.actions(rows.states())),
+            direct_unit: direct.unit,
+        })
+    }
+
+    pub(crate) fn compared(compared: &Compared<'_>) -> Self {
+        let &Compared { speeds, grouping, data, slope, direct, .. } = compared;
+        let errors = compared.errors();
+        let each = |of: fn(&TrajectoryErrors) -> f64| -> Vec<f64> { errors.iter().map(of).collect() };
+        let (e_s, e_d, r) = (each(|of| of.slope), each(|of| of.direct), each(|of| of.seen));
+        let total = |values: &[f64]| values.iter().sum::<f64>();
+        let (a_s, a_d) = (total(&e_s) / total(&r), total(&e_d) / total(&r));
+        let gains: Vec<f64> = e_d.iter().zip(&e_s).map(|(d, s)| d - s).collect();
+        let log_ratio = |k: usize| ((e_d[k] + NEGLIGIBLE * r[k]) / (e_s[k] + NEGLIGIBLE * r[k])).ln();
+        let log_ratios: Vec<f64> = (0..r.len()).map(log_ratio).collect();
+        let seen: f64 = speeds.iter().map(|r| r * r).sum();
+        ReadingNumbers {
+            a_s,
+            a_d,
+            q: (a_s + NEGLIGIBLE) / (a_d + NEGLIGIBLE),
+            t: t_of_mean(&gains),
+            lambda: total(&log_ratios) / log_ratios.len() as f64,
+            t_lambda: t_of_mean(&log_ratios),
+            p_d: 1.0 - direct.0.r_squared,
+            gap: difference(slope.1, direct.1),
+            least_seen: LeastSeen::of(&data.n),
+            hidden: (1.0 - seen / slope.1.norm_squared()).max(0.0),
+            trajectories: data.groups.len(),
+            grouping,
+        }
+    }
+}

@@ -1,0 +1,124 @@
+use serde::{Deserialize, Serialize};
+
+use crate::kernel::block::Block;
+use crate::kernel::family::Family;
+use crate::report::identifiability::{Identifiability, LeastSeen, direction};
+use crate::rows::kept::{Grouping, RowsDropped};
+
+/// How far a slope GP can be trusted: plain numbers, from section to section as the fit found them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrustReport {
+    /// Share of left-out movement that is predicted (S11): below 0.9 poor, below 0.5 not to be used.
+    pub r_squared: f64,
+    /// Mean squared left-out error over its predicted variance (S11); over 4 the noise model is wrong.
+    pub z_squared: f64,
+    /// Expected normalised error of the policy (nUPE), with what the alternative model says (R6), and with
+    /// [`Rows::step_change`](crate::Rows::step_change).
+    pub expected_nupe: f64,
+    /// Difference of the alternative model's policy, where it predicts nearly as well (R6): across the paths the policy
+    /// is a guess where this is over 0.1.
+    pub ambiguity: f64,
+    /// What of the policy the demonstrations let be seen.
+    pub identifiability: Identifiability,
+    /// The direction in which the least moved.
+    pub least_seen: LeastSeen,
+    /// t of (S12); none where no model with rotation was fitted.
+    pub curl_t: Option<f64>,
+    /// Σ|π̂_rot|²/Σ|π̂|²; 0 for a potential.
+    pub rotational_share: f64,
+    /// What was chosen.
+    pub model: ModelKind,
+    /// The family chosen.
+    pub family: Family,
+    /// Every model fitted.
+    pub families: Vec<FamilyReport>,
+    /// Rows learnt from.
+    pub rows: usize,
+    /// Rows not learnt from.
+    pub rows_dropped: RowsDropped,
+    /// What was left out at a time.
+    pub grouping: Grouping,
+    /// Standard deviation of the noise on positions that the front end found, in units of the state.
+    pub noise: Option<f64>,
+    /// Number of samples before which a constraint probably switched.
+    pub switches: Option<usize>,
+}
+
+/// Whether the policy has a potential.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ModelKind {
+    /// π = −∇φ.
+    Potential,
+    /// With a rotational part.
+    Helmholtz,
+}
+
+/// One model that was fitted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FamilyReport {
+    /// Its family.
+    pub family: Family,
+    /// With or without rotation.
+    pub model: ModelKind,
+    /// What came of it; none if its covariance has no Cholesky factor.
+    pub fit: Option<FamilyNumbers>,
+}
+
+/// What came of a fit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FamilyNumbers {
+    /// (S11).
+    pub r_squared: f64,
+    /// By how much noise was raised over what evidence found.
+    pub kappa: f64,
+    /// Standard deviation of the noise, in units of the state per second.
+    pub noise: f64,
+    /// Blocks and their amplitudes a_b.
+    pub amplitudes: Vec<(Block, f64)>,
+}
+
+impl TrustReport {
+    /// What gives reason to doubt the policy, one sentence each.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if self.r_squared < 0.5 {
+            let r2 = self.r_squared;
+            warnings.push(format!("left-out movements are not predicted (R² {r2:.2}): do not use this policy"));
+        } else if self.r_squared < 0.9 {
+            warnings.push(format!("left-out movements are predicted poorly (R² {:.2})", self.r_squared));
+        }
+        if self.z_squared > 4.0 {
+            warnings.push(format!(
+                "errors are {:.1} times those expected: the noise model is wrong",
+                self.z_squared.sqrt()
+            ));
+        }
+        if self.identifiability.warns() {
+            warnings.push(format!(
+                "the demonstrations hardly let the direction {} be seen (posterior/prior variance {:.2}): what is shown there is the prior",
+                direction(&self.identifiability.direction),
+                self.identifiability.least
+            ));
+        }
+        if self.least_seen.share * (self.least_seen.direction.len() as f64) < 1e-6 {
+            warnings.push(format!("nothing ever moved along {}", direction(&self.least_seen.direction)));
+        }
+        if self.ambiguity > 0.1 {
+            warnings.push(format!(
+                "with and without rotation the slope policy differs by {:.0} %: across the paths it is a guess",
+                100.0 * self.ambiguity
+            ));
+        }
+        if self.grouping == Grouping::BlocksOfTime {
+            warnings.push(
+                "one or two movements only: blocks of time were left out instead of movements, R² is too good"
+                    .to_owned(),
+            );
+        }
+        warnings
+    }
+}

@@ -1,0 +1,105 @@
+use motion::{Demonstrations, SampleIndex, SampleSet, Trajectory};
+use nalgebra::DMatrix;
+use serde::Serialize;
+use smoothing::{Fusion, Smoother, SmoothingError};
+
+use crate::{GpError, Rows};
+
+/// How what was recorded becomes rows of states and velocities.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub enum FrontEnd {
+    /// Velocities or commands were recorded and are believed: (x_i, u_i) for all i.
+    Velocities,
+    /// Positions of a simulator that takes Euler steps: u_i = (x_{i+1} − x_i)/δt for all samples but the last. Exact
+    /// there, because the simulator is that map; elsewhere the policy found is too steep.
+    #[default]
+    Map,
+    /// Positions of anything real: states and velocities of the smoother, velocities with their variance.
+    Smoothed(Smoother),
+    /// Noisy positions with clean velocities or commands: fused states, velocities as recorded. The states' remaining
+    /// error is left out.
+    Fused(Fusion),
+}
+
+/// States and velocities of a movement, (n, N) each; the states may have one sample more.
+type Movement = (DMatrix<f64>, DMatrix<f64>);
+
+impl FrontEnd {
+    /// The rows of all trajectories, in order.
+    ///
+    /// # Errors
+    /// [`GpError::NoVelocities`] if they are needed, [`GpError::Cleaning`] if the smoother refuses, [`GpError::Overflow`]
+    /// if squares of speeds are not finite.
+    pub fn rows(&self, demonstrations: &Demonstrations) -> Result<Rows, GpError> {
+        match self {
+            FrontEnd::Velocities => rows_of(recorded(demonstrations, |trajectory| trajectory.states().clone())?),
+            FrontEnd::Map => rows_of(demonstrations.trajectories().iter().map(steps)),
+            FrontEnd::Smoothed(smoother) => smoothed(smoother, demonstrations),
+            FrontEnd::Fused(fusion) => fused(fusion, demonstrations),
+        }
+    }
+
+    /// The rows of samples that are not held out.
+    pub(crate) fn rows_but(&self, demonstrations: &Demonstrations, held_out: &[SampleIndex]) -> Result<Rows, GpError> {
+        let held_out = SampleSet::of(held_out);
+        let rows = self.rows(demonstrations)?;
+        Ok(rows.without(|trajectory, sample| held_out.contains(SampleIndex { trajectory, sample })))
+    }
+}
+
+/// Recorded velocities at states of one's choice.
+fn recorded(
+    demonstrations: &Demonstrations,
+    states: impl FnMut(&Trajectory) -> DMatrix<f64>,
+) -> Result<Vec<Movement>, GpError> {
+    let velocities =
+        demonstrations.trajectories().iter().enumerate().map(|(index, trajectory)| {
+            trajectory.velocities().cloned().ok_or(GpError::NoVelocities { trajectory: index })
+        });
+    let velocities = velocities.collect::<Result<Vec<_>, _>>()?;
+    Ok(demonstrations.trajectories().iter().map(states).zip(velocities).collect())
+}
+
+/// (x_{i+1} − x_i)/δt.
+fn steps(trajectory: &Trajectory) -> Movement {
+    (trajectory.states().clone(), trajectory.step_velocities())
+}
+
+fn smoothed(smoother: &Smoother, demonstrations: &Demonstrations) -> Result<Rows, GpError> {
+    let smoothed = smoother.smooth(demonstrations).map_err(cleaning)?;
+    let variances = smoothed.movements.iter().flat_map(|movement| movement.velocity_variance.iter().copied()).collect();
+    let switches = smoothed.movements.iter().map(|movement| movement.window_begins.iter().copied().collect()).collect();
+    let noise = smoothed.noise.norm() / (smoothed.noise.len() as f64).sqrt();
+    let movements = smoothed.movements.into_iter().map(|movement| (movement.states, movement.velocities));
+    Ok(rows_of(movements)?.with_variances(variances)?.with_findings(noise, Some(switches)))
+}
+
+fn fused(fusion: &Fusion, demonstrations: &Demonstrations) -> Result<Rows, GpError> {
+    let fused = fusion.fuse(demonstrations).map_err(cleaning)?;
+    let mut movements = fused.movements.into_iter();
+    let states = |trajectory: &Trajectory| {
+        movements.next().map_or_else(|| trajectory.states().clone(), |movement| movement.states)
+    };
+    Ok(rows_of(recorded(demonstrations, states)?)?.with_findings(fused.noise_variance.sqrt(), None))
+}
+
+fn cleaning(error: SmoothingError) -> GpError {
+    match error {
+        SmoothingError::NoVelocities { trajectory } => GpError::NoVelocities { trajectory },
+        error => GpError::Cleaning { reason: error.to_string() },
+    }
+}
+
+/// One row for every velocity.
+fn rows_of(movements: impl IntoIterator<Item = Movement>) -> Result<Rows, GpError> {
+    let (mut states, mut velocities, mut indices) = (Vec::new(), Vec::new(), Vec::new());
+    let mut dim = 0;
+    for (trajectory, (x, u)) in movements.into_iter().enumerate() {
+        dim = x.nrows();
+        states.extend_from_slice(&x.as_slice()[..u.len()]);
+        velocities.extend_from_slice(u.as_slice());
+        indices.extend((0..u.ncols()).map(|sample| SampleIndex { trajectory, sample }));
+    }
+    let matrix = |numbers| DMatrix::from_vec(dim, indices.len(), numbers);
+    Rows::new(matrix(states), matrix(velocities), indices.clone())
+}

@@ -1,0 +1,156 @@
+//! What is learnt from: states, velocities, how well they are known, and which of them are kept.
+
+pub(crate) mod front_end;
+pub(crate) mod kept;
+pub(crate) mod noise_weights;
+pub(crate) mod scaling;
+
+use motion::SampleIndex;
+use nalgebra::DMatrix;
+
+use crate::GpError;
+
+/// Observed motion, one row a sample: where it was, how fast it moved, and how well that is known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rows {
+    states: DMatrix<f64>,
+    velocities: DMatrix<f64>,
+    variances: Option<Vec<f64>>,
+    indices: Vec<SampleIndex>,
+    noise: Option<f64>,
+    switches: Option<Vec<Vec<f64>>>,
+}
+
+impl Rows {
+    /// Rows with certain velocities: `states` and `velocities` (n, M), one column a row, velocities in units of the
+    /// state per second; `indices` (M) tells from which trajectory and sample each comes.
+    ///
+    /// # Errors
+    /// [`GpError::Lengths`], [`GpError::Value`] for what is not finite, or [`GpError::Overflow`] for speeds whose squares
+    /// are not.
+    pub fn new(states: DMatrix<f64>, velocities: DMatrix<f64>, indices: Vec<SampleIndex>) -> Result<Self, GpError> {
+        let expected = states.ncols();
+        let same =
+            |what, found| if found == expected { Ok(()) } else { Err(GpError::Lengths { what, found, expected }) };
+        same("velocities", velocities.ncols())?;
+        same("indices", indices.len())?;
+        if states.nrows() == 0 || velocities.nrows() != states.nrows() {
+            let (found, expected) = (velocities.nrows(), states.nrows());
+            return Err(GpError::Lengths {
+                what: "dimensions of velocities (states need at least 1)",
+                found,
+                expected,
+            });
+        }
+        for (what, matrix) in [("state", &states), ("velocity", &velocities)] {
+            if let Some(at) = matrix.iter().position(|value| !value.is_finite()) {
+                return Err(GpError::Value { what, row: at / matrix.nrows(), value: matrix[at] });
+            }
+            // Room for sums over rows and dimensions.
+            if !(0.0..1e300).contains(&matrix.norm_squared()) {
+                return Err(GpError::Overflow { what: if what == "state" { "distance" } else { "speed" } });
+            }
+        }
+        Ok(Rows { states, velocities, variances: None, indices, noise: None, switches: None })
+    }
+
+    /// The same with uncertain velocities: `variances` (M), of each row's velocity along every axis.
+    ///
+    /// # Errors
+    /// [`GpError::Lengths`], or [`GpError::Value`] for what is negative or not finite.
+    pub fn with_variances(self, variances: Vec<f64>) -> Result<Self, GpError> {
+        let (found, expected) = (variances.len(), self.len());
+        if found != expected {
+            return Err(GpError::Lengths { what: "variances", found, expected });
+        }
+        match variances.iter().position(|&variance| !(0.0..1e300).contains(&variance)) {
+            Some(row) => Err(GpError::Value { what: "variance", row, value: variances[row] }),
+            None => Ok(Rows { variances: Some(variances), ..self }),
+        }
+    }
+
+    /// The same with what the front end found: the standard deviation of its noise, in units of the state, and for
+    /// every sample of every trajectory the probability that a constraint switched before it.
+    #[must_use]
+    pub fn with_findings(self, noise: f64, switches: Option<Vec<Vec<f64>>>) -> Self {
+        Rows { noise: Some(noise), switches, ..self }
+    }
+
+    /// The rows whose sample is not held out: `held_out(trajectory, sample)`.
+    #[must_use]
+    pub fn without(self, held_out: impl Fn(usize, usize) -> bool) -> Self {
+        let stays = |&row: &usize| !held_out(self.indices[row].trajectory, self.indices[row].sample);
+        let rows: Vec<usize> = (0..self.len()).filter(stays).collect();
+        Rows {
+            states: self.states.select_columns(&rows),
+            velocities: self.velocities.select_columns(&rows),
+            variances: self.variances.map(|variances| rows.iter().map(|&row| variances[row]).collect()),
+            indices: rows.iter().map(|&row| self.indices[row]).collect(),
+            ..self
+        }
+    }
+
+    /// States x, (n, M).
+    pub fn states(&self) -> &DMatrix<f64> {
+        &self.states
+    }
+
+    /// Velocities u, (n, M).
+    pub fn velocities(&self) -> &DMatrix<f64> {
+        &self.velocities
+    }
+
+    /// Variance of every row's velocity along each axis, (M); none if they are certain.
+    pub fn variances(&self) -> Option<&[f64]> {
+        self.variances.as_deref()
+    }
+
+    /// Which sample of which trajectory every row is.
+    pub fn indices(&self) -> &[SampleIndex] {
+        &self.indices
+    }
+
+    /// Standard deviation of the noise on recorded positions that the front end found, in units of the state.
+    pub fn noise(&self) -> Option<f64> {
+        self.noise
+    }
+
+    /// For every trajectory and sample the probability that a constraint switched before it, where the front end finds
+    /// such.
+    pub fn switches(&self) -> Option<&[Vec<f64>]> {
+        self.switches.as_deref()
+    }
+
+    /// Share of squares by which a step between two samples differs from the velocity there, where velocities were found
+    /// from positions: the median of ‖û_{i+1} − û_i‖²/4‖û_i‖² over samples next to each other. Positions do not tell
+    /// whether what moved went on steadily or in steps of that size.
+    pub fn step_change(&self) -> Option<f64> {
+        self.switches.as_ref()?;
+        let next_to_each_other = |at: &usize| {
+            self.indices[*at + 1] == SampleIndex { sample: self.indices[*at].sample + 1, ..self.indices[*at] }
+        };
+        let change = |at: usize| {
+            let (here, next) = (self.velocities.column(at), self.velocities.column(at + 1));
+            (next - here).norm_squared() / (4.0 * here.norm_squared())
+        };
+        let changes = (0..self.len().saturating_sub(1)).filter(next_to_each_other).map(change);
+        let mut changes: Vec<f64> = changes.filter(|change| change.is_finite()).collect();
+        let middle = changes.len() / 2;
+        (!changes.is_empty()).then(|| *changes.select_nth_unstable_by(middle, f64::total_cmp).1)
+    }
+
+    /// Number of rows M.
+    pub fn len(&self) -> usize {
+        self.indices.len()
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.indices.is_empty()
+    }
+
+    /// Dimension n of the state.
+    pub fn dim(&self) -> usize {
+        self.states.nrows()
+    }
+}

@@ -1,0 +1,136 @@
+use nalgebra::{DMatrix, DVector};
+
+use crate::evidence::family_fit::{FamilyFit, fit_family};
+use crate::evidence::{Evidence, Task};
+use crate::kernel::block::Block;
+use crate::kernel::slope_covariance::SlopeCovariance;
+use crate::left_out::LeftOut;
+use crate::left_out::level::Conditions;
+use crate::rows::kept::Kept;
+use crate::rows::scaling::Scaling;
+use crate::slope::expansion::Expansion;
+use crate::slope::model::SlopeModel;
+use crate::{GpError, Rows};
+
+/// What the slope GP is conditioned on: (S1), in scaled coordinates and with noise weights.
+///
+/// For fits of one's own use [`SlopeGp`](crate::SlopeGp); this is for those who set the amplitudes themselves.
+#[derive(Debug, Clone)]
+pub struct SlopeData {
+    pub(crate) scaling: Scaling,
+    /// r̄² = Σ(r²/D)/Σ(1/D).
+    pub(crate) speed: f64,
+    /// Scaled states z, (n, M).
+    pub(crate) z: DMatrix<f64>,
+    /// Directions of motion n = u/r, (n, M).
+    pub(crate) n: DMatrix<f64>,
+    /// y = r/r̄, (M, 1).
+    pub(crate) targets: DMatrix<f64>,
+    /// D, (M).
+    pub(crate) noise_weights: Vec<f64>,
+    /// Σ w y² with w = 1/D.
+    spread: f64,
+    pub(crate) groups: Vec<Vec<usize>>,
+}
+
+impl SlopeData {
+    /// Every row, with noise weights D, (M); rows of a trajectory need not be contiguous.
+    ///
+    /// # Errors
+    /// [`GpError::Lengths`], [`GpError::OneState`], [`GpError::Overflow`], or [`GpError::Value`] for a row that stands
+    /// still or a weight that is not positive.
+    pub fn new(rows: &Rows, noise_weights: Vec<f64>) -> Result<Self, GpError> {
+        let (found, expected) = (noise_weights.len(), rows.len());
+        if found != expected {
+            return Err(GpError::Lengths { what: "noise weights", found, expected });
+        }
+        let speeds: Vec<f64> = rows.velocities().column_iter().map(|velocity| velocity.norm()).collect();
+        for (what, values) in [("speed", &speeds), ("noise weight", &noise_weights)] {
+            if let Some(row) = values.iter().position(|&value| !(value > 0.0 && value.is_finite())) {
+                return Err(GpError::Value { what, row, value: values[row] });
+            }
+        }
+        let mut groups = std::collections::BTreeMap::<usize, Vec<usize>>::new();
+        for (row, index) in rows.indices().iter().enumerate() {
+            groups.entry(index.trajectory).or_default().push(row);
+        }
+        let groups = groups.into_values().collect();
+        Self::of(rows.states(), rows.velocities(), &speeds, noise_weights, groups)
+    }
+
+    pub(crate) fn from_kept(kept: &Kept, noise_weights: Vec<f64>) -> Result<Self, GpError> {
+        Self::of(&kept.states, &kept.velocities, &kept.speeds, noise_weights, kept.groups.clone())
+    }
+
+    fn of(
+        states: &DMatrix<f64>,
+        velocities: &DMatrix<f64>,
+        speeds: &[f64],
+        noise_weights: Vec<f64>,
+        groups: Vec<Vec<usize>>,
+    ) -> Result<Self, GpError> {
+        let scaling = Scaling::of(states)?;
+        let power: f64 = speeds.iter().zip(&noise_weights).map(|(r, d)| r * r / d).sum();
+        let speed = (power / noise_weights.iter().map(|d| 1.0 / d).sum::<f64>()).sqrt();
+        let targets = DMatrix::from_iterator(speeds.len(), 1, speeds.iter().map(|r| r / speed));
+        let spread = targets.iter().zip(&noise_weights).map(|(y, d)| y * y / d).sum();
+        let mut n = velocities.clone();
+        for (mut direction, r) in n.column_iter_mut().zip(speeds) {
+            direction /= *r;
+        }
+        Ok(SlopeData { z: scaling.apply(states), scaling, speed, n, targets, noise_weights, spread, groups })
+    }
+
+    /// μ and S: z = (x − μ)/S.
+    pub fn scaling(&self) -> (&[f64], f64) {
+        (&self.scaling.mean, self.scaling.scale)
+    }
+
+    /// r̄, the unit of speed, in units of the state per second.
+    pub fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    /// (S8), (S9) on all rows at θ = (log a_1 .. log a_B, log σ²); none if the covariance has no Cholesky factor.
+    ///
+    /// # Panics
+    /// If there is not one θ a block and one more.
+    pub fn evidence(&self, blocks: &[Block], theta: &[f64]) -> Option<Evidence> {
+        let all: Vec<usize> = (0..self.z.ncols()).collect();
+        let task = Task::of(&self.covariance(blocks), &all, &self.conditions());
+        task.evidence(&DVector::from_column_slice(theta))
+    }
+
+    /// The model at θ with noise raised by κ, and what it predicts of each trajectory left out; none if the covariance
+    /// has no Cholesky factor.
+    ///
+    /// # Panics
+    /// If there is not one θ a block and one more.
+    pub fn condition(&self, blocks: &[Block], theta: &[f64], kappa: f64) -> Option<(SlopeModel, LeftOut)> {
+        let fit = FamilyFit::at(&self.covariance(blocks), theta, kappa, &self.conditions())?;
+        let left_out = fit.level.left_out.clone();
+        Some((self.model(blocks.to_vec(), fit), left_out))
+    }
+
+    /// Amplitudes by evidence on the hyper rows, noise by prediction: (S8), (S11).
+    pub(crate) fn fit(&self, blocks: &[Block], hyper: &[usize]) -> Option<FamilyFit> {
+        fit_family(&self.covariance(blocks), hyper, &self.conditions())
+    }
+
+    pub(crate) fn model(&self, blocks: Vec<Block>, fit: FamilyFit) -> SlopeModel {
+        let FamilyFit { amplitudes, level } = fit;
+        let scaled = (self.scaling.clone(), self.speed);
+        let weights = level.weights.as_slice().to_vec();
+        let expansion = Expansion::new(scaled, (blocks, amplitudes), (self.z.clone(), self.n.clone()), weights);
+        SlopeModel::new(expansion, self.noise_weights.clone(), level.noise, level.factor)
+    }
+
+    fn covariance<'a>(&'a self, blocks: &'a [Block]) -> SlopeCovariance<'a> {
+        SlopeCovariance { blocks, z: &self.z, n: &self.n }
+    }
+
+    fn conditions(&self) -> Conditions<'_> {
+        let SlopeData { targets, noise_weights, groups, spread, .. } = self;
+        Conditions { targets, noise_weights, groups, spread: *spread }
+    }
+}

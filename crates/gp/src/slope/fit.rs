@@ -1,0 +1,59 @@
+use nalgebra::{DMatrix, DVectorView};
+use rand::Rng;
+
+use crate::report::trust_report::TrustReport;
+use crate::slope::judgement::{Chosen, report};
+use crate::slope::model::SlopeModel;
+use crate::slope::policy::{SlopePolicy, SlopePotential};
+use crate::slope::search::outcome;
+use crate::slope::slope_gp::SlopeGp;
+use crate::{GpError, Rows};
+
+/// What a slope GP learnt: a policy, its uncertainty, and how far it can be trusted.
+///
+/// Stored by serde and read back, it predicts the same to the last bit.
+#[derive(Debug, Clone)]
+pub struct SlopeFit {
+    pub(crate) model: SlopeModel,
+    pub(crate) report: TrustReport,
+}
+
+impl SlopeGp {
+    /// Learns from rows. The generator draws one permutation and nothing else.
+    ///
+    /// # Errors
+    /// [`GpError::Parameter`], or what the rows are refused for: too few, no motion, one state, no Cholesky factor.
+    pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<SlopeFit, GpError> {
+        let kept = self.selection()?.keep(rows, rng)?;
+        let outcome = outcome(self, &kept)?;
+        let report = report(&Chosen { outcome: &outcome, kept: &kept, rows });
+        Ok(SlopeFit { model: outcome.taken.model, report })
+    }
+}
+
+impl SlopeFit {
+    /// π̂.
+    pub fn policy(&self) -> &SlopePolicy {
+        self.model.policy()
+    }
+
+    /// φ̂; none if the model allows for rotation.
+    pub fn potential(&self) -> Option<&SlopePotential> {
+        self.model.potential()
+    }
+
+    /// (S13): cov π(x), (n, n), in squared units of the state per second, not yet times max(1, z²). Costs n M².
+    pub fn uncertainty(&self, state: DVectorView<'_, f64>) -> DMatrix<f64> {
+        self.model.covariance(state)
+    }
+
+    /// φ̂(x) − φ̂(x₀) and its variance (S14); none if there is no potential.
+    pub fn potential_difference(&self, x: DVectorView<'_, f64>, from: DVectorView<'_, f64>) -> Option<(f64, f64)> {
+        self.model.potential_difference(x, from)
+    }
+
+    /// How far to trust it.
+    pub fn report(&self) -> &TrustReport {
+        &self.report
+    }
+}

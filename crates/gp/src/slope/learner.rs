@@ -1,0 +1,61 @@
+//! The seam: what the slope GP and its policy share with all other learners.
+
+use motion::{Demonstrations, LearnError, Learner, LearntPolicy, Policy, Potential, SampleIndex};
+use nalgebra::{DVectorView, DVectorViewMut};
+use rand::Rng;
+use serde::Serialize;
+
+use crate::FrontEnd;
+use crate::slope::fit::SlopeFit;
+use crate::slope::slope_gp::SlopeGp;
+
+/// The slope GP as a learner: what was recorded, and what is made of it.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct SlopeLearner {
+    /// How recordings become rows.
+    pub front_end: FrontEnd,
+    /// What learns from them.
+    pub gp: SlopeGp,
+}
+
+impl Learner for SlopeLearner {
+    fn learn(
+        &self,
+        demonstrations: &Demonstrations,
+        held_out: &[SampleIndex],
+        rng: &mut dyn Rng,
+    ) -> Result<Box<dyn LearntPolicy>, LearnError> {
+        Ok(Box::new(self.gp.fit(&self.front_end.rows_but(demonstrations, held_out)?, rng)?))
+    }
+}
+
+impl Policy for SlopeFit {
+    fn dim(&self) -> usize {
+        self.model.policy().dim()
+    }
+
+    fn action_into(&self, state: DVectorView<'_, f64>, action: DVectorViewMut<'_, f64>) {
+        self.model.policy().action_into(state, action);
+    }
+}
+
+impl LearntPolicy for SlopeFit {
+    fn potential(&self) -> Option<&dyn Potential> {
+        self.model.potential().map(|potential| potential as &dyn Potential)
+    }
+
+    fn support(&self, state: DVectorView<'_, f64>) -> f64 {
+        1.0 - (self.model.covariance(state).trace() / self.model.prior_covariance(state).trace()).clamp(0.0, 1.0)
+    }
+
+    fn action_sd_into(&self, state: DVectorView<'_, f64>, mut deviation: DVectorViewMut<'_, f64>) -> bool {
+        let factor = self.report.z_squared.max(1.0);
+        let variances = self.model.covariance(state).diagonal();
+        deviation.copy_from(&variances.map(|variance| (factor * variance.max(0.0)).sqrt()));
+        true
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.report.warnings()
+    }
+}

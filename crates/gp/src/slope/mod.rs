@@ -1,0 +1,11 @@
+//! The slope GP.
+
+pub(crate) mod data;
+pub(crate) mod expansion;
+pub(crate) mod fit;
+pub(crate) mod judgement;
+pub(crate) mod learner;
+pub(crate) mod model;
+pub(crate) mod policy;
+pub(crate) mod search;
+pub(crate) mod slope_gp;

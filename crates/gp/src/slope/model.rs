@@ -1,0 +1,119 @@
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector, DVectorView};
+
+use crate::kernel::covariance::{Covariance, add_noise};
+use crate::kernel::factor::Factor;
+use crate::kernel::slope_covariance::SlopeCovariance;
+use crate::slope::expansion::Expansion;
+use crate::slope::policy::{SlopePolicy, SlopePotential};
+
+/// The slope GP conditioned on rows: mean (S7) and uncertainty (S13), (S14).
+#[derive(Debug, Clone)]
+pub struct SlopeModel {
+    pub(crate) policy: SlopePolicy,
+    potential: Option<SlopePotential>,
+    /// D, (M).
+    pub(crate) noise_weights: Vec<f64>,
+    /// σ² without the floor.
+    pub(crate) noise: f64,
+    pub(crate) factor: Factor,
+}
+
+impl SlopeModel {
+    /// The model of which the mean is known already; none if its covariance has no Cholesky factor.
+    pub(crate) fn restored(expansion: Expansion, noise_weights: Vec<f64>, noise: f64) -> Option<Self> {
+        let covariance = SlopeCovariance { blocks: &expansion.blocks, z: &expansion.z, n: &expansion.n };
+        let mut matrix = covariance.sum(&expansion.amplitudes);
+        add_noise(&mut matrix, noise, noise_weights.iter().copied());
+        let factor = Factor::new(matrix)?;
+        Some(Self::new(expansion, noise_weights, noise, factor))
+    }
+
+    pub(crate) fn new(expansion: Expansion, noise_weights: Vec<f64>, noise: f64, factor: Factor) -> Self {
+        let has_potential = expansion.blocks.iter().all(|block| block.has_potential());
+        let expansion = Arc::new(expansion);
+        let potential = has_potential.then(|| SlopePotential { expansion: Arc::clone(&expansion) });
+        SlopeModel { policy: SlopePolicy { expansion }, potential, noise_weights, noise, factor }
+    }
+
+    /// π̂.
+    pub fn policy(&self) -> &SlopePolicy {
+        &self.policy
+    }
+
+    /// φ̂; none if the model allows for rotation.
+    pub fn potential(&self) -> Option<&SlopePotential> {
+        self.potential.as_ref()
+    }
+
+    /// α = K⁻¹y, (M).
+    pub fn weights(&self) -> &[f64] {
+        &self.expansion().weights
+    }
+
+    /// The part of π̂ that has no potential.
+    pub fn rotational_part(&self) -> SlopePolicy {
+        SlopePolicy { expansion: Arc::new(self.expansion().part(|block| !block.has_potential())) }
+    }
+
+    /// (S13): cov π(x), (n, n), in squared units of the state per second. Costs n M².
+    pub fn covariance(&self, state: DVectorView<'_, f64>) -> DMatrix<f64> {
+        self.covariances(&[state]).remove(0)
+    }
+
+    /// The same before anything was observed.
+    pub fn prior_covariance(&self, state: DVectorView<'_, f64>) -> DMatrix<f64> {
+        let (expansion, z) = (self.expansion(), self.expansion().scaling.of_state(state));
+        let basis = DMatrix::<f64>::identity(z.len(), z.len());
+        let z = z.as_view();
+        let entry = |i: usize, j: usize| {
+            let each = expansion.blocks.iter().zip(&expansion.amplitudes);
+            each.map(|(block, a)| a * block.slope_slope(z, basis.column(i), z, basis.column(j))).sum::<f64>()
+        };
+        DMatrix::from_fn(z.len(), z.len(), entry) * expansion.speed.powi(2)
+    }
+
+    /// (S13) at several states: one solution of triangular systems for all.
+    pub(crate) fn covariances(&self, states: &[DVectorView<'_, f64>]) -> Vec<DMatrix<f64>> {
+        let (expansion, dim) = (self.expansion(), self.expansion().dim());
+        let mut whitened = DMatrix::zeros(self.factor.len(), dim * states.len());
+        for (at, state) in states.iter().enumerate() {
+            whitened.columns_mut(at * dim, dim).copy_from(&expansion.policy_with_rows(*state));
+        }
+        self.factor.whiten(&mut whitened);
+        let posterior = |(at, state): (usize, &DVectorView<'_, f64>)| {
+            let known = whitened.columns(at * dim, dim);
+            self.prior_covariance(*state) - known.tr_mul(&known) * expansion.speed.powi(2)
+        };
+        states.iter().enumerate().map(posterior).collect()
+    }
+
+    /// φ̂(x) − φ̂(x₀) and its variance (S14), in units of the state squared per second, and their square; none if there
+    /// is no potential.
+    pub fn potential_difference(&self, x: DVectorView<'_, f64>, from: DVectorView<'_, f64>) -> Option<(f64, f64)> {
+        let (expansion, _) = (self.expansion(), self.potential.as_ref()?);
+        let value = expansion.potential(x.as_slice()) - expansion.potential(from.as_slice());
+        let (z, z0) = (expansion.scaling.of_state(x), expansion.scaling.of_state(from));
+        let mut known = expansion.potential_with_rows(&z) - expansion.potential_with_rows(&z0);
+        self.factor.whiten(&mut known);
+        let prior = |a: &DVector<f64>, b: &DVector<f64>| {
+            let each = expansion.blocks.iter().zip(&expansion.amplitudes);
+            each.map(|(block, amplitude)| {
+                amplitude * block.potential_potential(a.as_view(), b.as_view()).unwrap_or(0.0)
+            })
+            .sum::<f64>()
+        };
+        let scaled = prior(&z, &z) + prior(&z0, &z0) - 2.0 * prior(&z, &z0) - known.norm_squared();
+        Some((value, (expansion.speed * expansion.scaling.scale).powi(2) * scaled))
+    }
+
+    /// π̂ at each of the states (n, M), (n, M).
+    pub(crate) fn actions(&self, states: &DMatrix<f64>) -> DMatrix<f64> {
+        self.expansion().actions(states)
+    }
+
+    pub(crate) fn expansion(&self) -> &Expansion {
+        &self.policy.expansion
+    }
+}

@@ -1,0 +1,47 @@
+use std::sync::Arc;
+
+use motion::{Policy, Potential};
+use nalgebra::{DVectorView, DVectorViewMut};
+
+use crate::dimension::require;
+use crate::slope::expansion::Expansion;
+
+/// π̂ of (S7). Cheap to clone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SlopePolicy {
+    pub(crate) expansion: Arc<Expansion>,
+}
+
+/// φ̂ of (S7), whose negative gradient is π̂. Only differences of it have a meaning. Cheap to clone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SlopePotential {
+    pub(crate) expansion: Arc<Expansion>,
+}
+
+impl Policy for SlopePolicy {
+    fn dim(&self) -> usize {
+        self.expansion.dim()
+    }
+
+    fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
+        require(self.dim(), &[state.len(), action.len()]);
+        self.expansion.action_into(state.as_slice(), action.as_mut_slice());
+    }
+}
+
+impl Potential for SlopePotential {
+    fn dim(&self) -> usize {
+        self.expansion.dim()
+    }
+
+    fn value(&self, state: DVectorView<'_, f64>) -> f64 {
+        require(self.dim(), &[state.len()]);
+        self.expansion.potential(state.as_slice())
+    }
+
+    fn gradient_into(&self, state: DVectorView<'_, f64>, mut gradient: DVectorViewMut<'_, f64>) {
+        require(self.dim(), &[state.len(), gradient.len()]);
+        self.expansion.action_into(state.as_slice(), gradient.as_mut_slice());
+        gradient.neg_mut();
+    }
+}

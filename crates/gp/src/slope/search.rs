@@ -1,0 +1,179 @@
+//! Families and rotation tried one after the other: steps 3 to 7 of a fit.
+
+use nalgebra::DMatrix;
+
+use crate::GpError;
+use crate::evidence::family_fit::{FamilyFit, each_until_exact};
+use crate::kernel::block::Block;
+use crate::kernel::family::Family;
+use crate::left_out::LeftOut;
+use crate::left_out::curl_test::{Contender, CurlTest, curl_t, takes_rotation};
+use crate::report::trust_report::{FamilyNumbers, FamilyReport, ModelKind};
+use crate::rows::kept::Kept;
+use crate::rows::noise_weights::slope_weights;
+use crate::slope::data::SlopeData;
+use crate::slope::model::SlopeModel;
+use crate::slope::slope_gp::SlopeGp;
+
+/// R² above which a potential predicts so well that one model with rotation is enough.
+const NEARLY_EXACT: f64 = 0.999;
+/// First guess of the policy's length, in root mean squares of the speeds seen.
+const HIDDEN: f64 = 1.3;
+/// How often noise weights are taken anew from a policy with rotation.
+const ROUNDS: usize = 3;
+
+/// A model and how it came about.
+#[derive(Debug, Clone)]
+pub(crate) struct Candidate {
+    pub(crate) family: Family,
+    pub(crate) kind: ModelKind,
+    pub(crate) model: SlopeModel,
+    pub(crate) left_out: LeftOut,
+    /// π̂ at the rows, (n, M).
+    pub(crate) actions: DMatrix<f64>,
+    kappa: f64,
+}
+
+/// The model taken, the one not taken, and everything tried.
+pub(crate) struct Outcome {
+    pub(crate) data: SlopeData,
+    pub(crate) taken: Candidate,
+    pub(crate) other: Option<Candidate>,
+    pub(crate) curl_t: Option<f64>,
+    pub(crate) families: Vec<FamilyReport>,
+}
+
+/// The search, a line a step.
+pub(crate) fn outcome(gp: &SlopeGp, kept: &Kept) -> Result<Outcome, GpError> {
+    let data = weighted(gp, kept)?;
+    let mut families = Vec::new();
+    let tried = each_until_exact(
+        &gp.families,
+        |family| candidate(gp, &data, kept, family, ModelKind::Potential),
+        |candidate| &candidate.left_out,
+    );
+    let best = best_of(tried.into_iter(), ModelKind::Potential, &mut families).ok_or(GpError::NoFactor)?;
+    let rotation = rotation(gp, &data, kept, &best, &mut families);
+    let Some(rotation) = rotation else {
+        return Ok(Outcome { data, taken: best, other: None, curl_t: None, families });
+    };
+    let t = curl_t(&best.left_out, &rotation.left_out, &data.noise_weights, &data.groups);
+    if !takes_rotation(t, &best.contender(), &rotation.contender()) {
+        return Ok(Outcome { data, taken: best, other: Some(rotation), curl_t: Some(t), families });
+    }
+    let (data, taken) = reweighted(gp, kept, data, rotation)?;
+    Ok(Outcome { data, taken, other: Some(best), curl_t: Some(t), families })
+}
+
+/// Steps 3 and 4: noise weights, first from a guess of the policy's length, then from a pilot policy.
+fn weighted(gp: &SlopeGp, kept: &Kept) -> Result<SlopeData, GpError> {
+    let Some(variances) = &kept.variances else {
+        return SlopeData::from_kept(kept, vec![1.0; kept.speeds.len()]);
+    };
+    let mean_square = kept.speeds.iter().map(|r| r * r).sum::<f64>() / kept.speeds.len() as f64;
+    let guess = vec![HIDDEN * mean_square.sqrt(); kept.speeds.len()];
+    let data = SlopeData::from_kept(kept, slope_weights(variances, &kept.speeds, &guess))?;
+    match candidate(gp, &data, kept, Family::Medium, ModelKind::Potential) {
+        Some(pilot) => SlopeData::from_kept(kept, slope_weights(variances, &kept.speeds, &pilot.lengths())),
+        None => Ok(data),
+    }
+}
+
+/// Step 5 for one family; none if its covariance has no Cholesky factor.
+fn candidate(gp: &SlopeGp, data: &SlopeData, kept: &Kept, family: Family, kind: ModelKind) -> Option<Candidate> {
+    let blocks = match kind {
+        ModelKind::Potential => family.blocks(gp.trend),
+        ModelKind::Helmholtz => family.helmholtz_blocks(gp.trend),
+    };
+    let fit = data.fit(&blocks, &kept.hyper)?;
+    Some(Candidate::new(data, kept, (family, kind), blocks, fit))
+}
+
+/// Step 6: the highest R², ties to the first; notes all of them.
+fn best_of(
+    tried: impl Iterator<Item = (Family, Option<Candidate>)>,
+    model: ModelKind,
+    families: &mut Vec<FamilyReport>,
+) -> Option<Candidate> {
+    let mut best: Option<Candidate> = None;
+    for (family, candidate) in tried {
+        families.push(FamilyReport { family, model, fit: candidate.as_ref().map(Candidate::numbers) });
+        let Some(candidate) = candidate else { continue };
+        if best.as_ref().is_none_or(|best| candidate.left_out.r_squared > best.left_out.r_squared) {
+            best = Some(candidate);
+        }
+    }
+    best
+}
+
+/// Step 7: the best family with rotation, and `smooth` unless that predicts nearly exactly.
+fn rotation(
+    gp: &SlopeGp,
+    data: &SlopeData,
+    kept: &Kept,
+    best: &Candidate,
+    families: &mut Vec<FamilyReport>,
+) -> Option<Candidate> {
+    if gp.curl_test == CurlTest::AssumePotential || kept.states.nrows() == 1 {
+        return None;
+    }
+    let with = |family| candidate(gp, data, kept, family, ModelKind::Helmholtz);
+    let first = with(best.family);
+    let exact = first.as_ref().is_some_and(|candidate| candidate.left_out.r_squared >= NEARLY_EXACT);
+    let mut tried = vec![(best.family, first)];
+    if !exact && best.family != Family::Smooth {
+        tried.push((Family::Smooth, with(Family::Smooth)));
+    }
+    best_of(tried.into_iter(), ModelKind::Helmholtz, families)
+}
+
+/// Step 4 again with the policy that has rotation, as often as is worth it, fitting anew each time.
+fn reweighted(
+    gp: &SlopeGp,
+    kept: &Kept,
+    mut data: SlopeData,
+    mut taken: Candidate,
+) -> Result<(SlopeData, Candidate), GpError> {
+    let Some(variances) = &kept.variances else { return Ok((data, taken)) };
+    for _ in 0..ROUNDS {
+        let weights = slope_weights(variances, &kept.speeds, &taken.lengths());
+        let anew = SlopeData::from_kept(kept, weights)?;
+        let Some(candidate) = candidate(gp, &anew, kept, taken.family, taken.kind) else { break };
+        (data, taken) = (anew, candidate);
+    }
+    Ok((data, taken))
+}
+
+impl Candidate {
+    fn new(
+        data: &SlopeData,
+        kept: &Kept,
+        (family, kind): (Family, ModelKind),
+        blocks: Vec<Block>,
+        fit: FamilyFit,
+    ) -> Self {
+        let (kappa, left_out) = (fit.level.kappa, fit.level.left_out.clone());
+        let model = data.model(blocks, fit);
+        let actions = model.actions(&kept.states);
+        Candidate { family, kind, model, left_out, actions, kappa }
+    }
+
+    pub(crate) fn contender(&self) -> Contender<'_> {
+        Contender { actions: &self.actions, left_out: &self.left_out }
+    }
+
+    /// |π̂| at the rows.
+    fn lengths(&self) -> Vec<f64> {
+        self.actions.column_iter().map(|action| action.norm()).collect()
+    }
+
+    fn numbers(&self) -> FamilyNumbers {
+        let expansion = self.model.expansion();
+        FamilyNumbers {
+            r_squared: self.left_out.r_squared,
+            kappa: self.kappa,
+            noise: expansion.speed * self.model.noise.sqrt(),
+            amplitudes: expansion.blocks.iter().copied().zip(expansion.amplitudes.iter().copied()).collect(),
+        }
+    }
+}

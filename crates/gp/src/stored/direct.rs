@@ -1,0 +1,78 @@
+use nalgebra::DMatrix;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::{Stored, VERSION, check_scales, stored};
+use crate::GpError;
+use crate::direct::direct_gp::DirectFit;
+use crate::direct::model::DirectModel;
+use crate::kernel::direct_block::DirectBlock;
+use crate::kernel::family::Family;
+
+/// A [`DirectFit`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DirectRecord {
+    direct_gp: Stored<DirectBlock>,
+    family: Family,
+    r_squared: f64,
+    z_squared: f64,
+}
+
+impl From<&DirectFit> for DirectRecord {
+    fn from(fit: &DirectFit) -> Self {
+        let &DirectFit { ref model, family, r_squared, z_squared } = fit;
+        DirectRecord {
+            direct_gp: Stored {
+                version: VERSION,
+                dim: model.z.nrows(),
+                scaling: model.scaling.clone(),
+                unit: model.unit,
+                blocks: model.blocks.iter().copied().zip(model.amplitudes.iter().copied()).collect(),
+                noise: model.noise,
+                states: model.z.as_slice().to_vec(),
+                noise_weights: model.noise_weights.clone(),
+                weights: model.weights.as_slice().to_vec(),
+            },
+            family,
+            r_squared,
+            z_squared,
+        }
+    }
+}
+
+impl TryFrom<DirectRecord> for DirectFit {
+    type Error = GpError;
+
+    fn try_from(record: DirectRecord) -> Result<Self, GpError> {
+        let DirectRecord { direct_gp, family, r_squared, z_squared } = record;
+        let rows = direct_gp.check(direct_gp.dim)?;
+        let dim = direct_gp.dim;
+        check_scales(direct_gp.blocks.iter().map(|(block, _)| match block {
+            DirectBlock::Shape(_, scale) => *scale,
+            DirectBlock::Constant | DirectBlock::Linear | DirectBlock::Quadratic => 1.0,
+        }))?;
+        let matrix = |numbers| DMatrix::from_vec(dim, rows, numbers);
+        let model = DirectModel::restored(
+            (direct_gp.scaling, direct_gp.unit),
+            direct_gp.blocks.into_iter().unzip(),
+            matrix(direct_gp.states),
+            matrix(direct_gp.weights),
+            (direct_gp.noise, direct_gp.noise_weights),
+        );
+        let model = model.ok_or_else(|| stored("its covariance has no Cholesky factor"))?;
+        Ok(DirectFit { model, family, r_squared, z_squared })
+    }
+}
+
+impl Serialize for DirectFit {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        DirectRecord::from(self).serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for DirectFit {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        DirectRecord::deserialize(deserializer)?.try_into().map_err(D::Error::custom)
+    }
+}

@@ -1,0 +1,70 @@
+//! Fits as they are stored: what their policies are made of, to the last bit. The Cholesky factor, which only the
+//! uncertainty needs, is made again.
+
+mod direct;
+mod slope;
+
+use serde::{Deserialize, Serialize};
+
+use crate::GpError;
+use crate::rows::scaling::Scaling;
+
+/// The form below. A later one reads this too.
+const VERSION: u32 = 1;
+
+/// Numbers that both kinds of model have; matrices column after column.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Stored<B> {
+    version: u32,
+    dim: usize,
+    scaling: Scaling,
+    /// Unit of speed.
+    unit: f64,
+    blocks: Vec<(B, f64)>,
+    noise: f64,
+    /// z, (n, M).
+    states: Vec<f64>,
+    noise_weights: Vec<f64>,
+    /// (M) for slopes, (n, M) for velocities.
+    weights: Vec<f64>,
+}
+
+impl<B> Stored<B> {
+    /// The number of rows; `weights_a_row` numbers of `weights` belong to each.
+    fn check(&self, weights_a_row: usize) -> Result<usize, GpError> {
+        let rows = self.noise_weights.len();
+        let finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
+        let positive = |number: f64| number > 0.0 && number.is_finite();
+        let amplitudes = || self.blocks.iter().map(|(_, amplitude)| *amplitude);
+        let checks = [
+            (self.version == VERSION, "it has another version than 1; use a newer program"),
+            (self.dim > 0 && rows > 0 && !self.blocks.is_empty(), "it is empty"),
+            (self.scaling.mean.len() == self.dim, "the mean has not one number a dimension"),
+            (self.states.len() == rows.saturating_mul(self.dim), "there is not one state a row"),
+            (self.weights.len() == rows.saturating_mul(weights_a_row), "there is not one weight a row"),
+            (finite(&self.states) && finite(&self.weights) && finite(&self.scaling.mean), "a number is not finite"),
+            (positive(self.scaling.scale) && positive(self.unit), "a unit is not positive"),
+            (amplitudes().all(|a| a >= 0.0 && a.is_finite()), "an amplitude is negative or not finite"),
+            (self.noise >= 0.0 && self.noise.is_finite(), "the noise is negative or not finite"),
+            (self.noise_weights.iter().all(|&weight| positive(weight)), "a noise weight is not positive"),
+        ];
+        match checks.into_iter().find(|(fine, _)| !fine) {
+            None => Ok(rows),
+            Some((_, reason)) => Err(stored(reason)),
+        }
+    }
+}
+
+fn stored(reason: &str) -> GpError {
+    GpError::Stored { reason: reason.to_owned() }
+}
+
+/// Refuses scales outside 1e-9 to 1e9.
+fn check_scales(mut scales: impl Iterator<Item = f64>) -> Result<(), GpError> {
+    if scales.all(|scale| scale > 1e-9 && scale < 1e9) {
+        Ok(())
+    } else {
+        Err(stored("a block has a scale that cannot be"))
+    }
+}
