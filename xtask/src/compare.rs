@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::bail;
 use clap::Args;
 
-use crate::files::told;
+use crate::files::relative;
 use crate::measure::Measure;
 use crate::progress::say;
 use crate::results::{Cell, Results, RowResult};
@@ -33,7 +33,7 @@ impl Compare {
         let other = self.other.as_deref().map_or_else(|| RunFolder::committed(run.seed), RunFolder::at).results()?;
         let Comparison { cells, widest, new, faults } = Comparison::of(&run, &other);
         if cells == 0 {
-            bail!("{} has no cell in common with the other run", told(&self.run));
+            bail!("{} has no cell in common with the other run", relative(&self.run));
         }
         let (difference, place) = widest;
         say(&format!(
@@ -163,7 +163,7 @@ mod tests {
     type Damage = fn(&mut Results);
 
     #[test]
-    fn every_difference_is_told() {
+    fn every_difference_is_reported() {
         let recorded = committed();
         let damages: [(Damage, &str); 4] = [
             (|run| scaled(run, 1.0 + 2e-6), "mean"),
@@ -171,11 +171,14 @@ mod tests {
             (|run| cell(run).values[7] = None, "99 of 100 data sets have a value, 100 had one"),
             (|run| drop(run.experiments[0].rows[3].measures.remove(&Measure::Nupe)), "is not there any more"),
         ];
-        for (damage, told) in damages {
+        for (damage, reported) in damages {
             let mut run = recorded.clone();
             damage(&mut run);
             let faults = Comparison::of(&run, &recorded).faults;
-            assert!(faults.len() == 1 && faults[0].contains(told) && faults[0].contains("narrow nupe"), "{faults:?}");
+            assert!(
+                faults.len() == 1 && faults[0].contains(reported) && faults[0].contains("narrow nupe"),
+                "{faults:?}"
+            );
         }
         let mut before = recorded.clone();
         before.experiments[0].rows[3].measures.remove(&Measure::Nupe);

@@ -12,7 +12,7 @@ pub(crate) fn repository() -> PathBuf {
 }
 
 /// A path as one would write it in the current folder.
-pub(crate) fn told(path: &Path) -> String {
+pub(crate) fn relative(path: &Path) -> String {
     let here = std::env::current_dir().unwrap_or_default();
     let path = path.strip_prefix(here).unwrap_or(path);
     if path.as_os_str().is_empty() { ".".to_owned() } else { path.display().to_string() }
@@ -20,7 +20,7 @@ pub(crate) fn told(path: &Path) -> String {
 
 /// A path as one would type it in a shell, in the current folder.
 pub(crate) fn typed(path: &Path) -> String {
-    let path = told(path);
+    let path = relative(path);
     let plain = |c: char| c.is_alphanumeric() || "/._-+:,@%".contains(c);
     let path = if path.starts_with('-') { format!("./{path}") } else { path };
     if path.chars().all(plain) { path } else { format!("'{}'", path.replace('\'', r"'\''")) }
@@ -32,7 +32,7 @@ pub(crate) fn write(path: &Path, contents: impl AsRef<[u8]>) -> anyhow::Result<(
     draft.push(format!(".{}.part", std::process::id()));
     fs::write(&draft, contents)
         .and_then(|()| fs::rename(&draft, path))
-        .with_context(|| format!("cannot write {}", told(path)))
+        .with_context(|| format!("cannot write {}", relative(path)))
 }
 
 #[cfg(test)]
@@ -44,9 +44,9 @@ mod tests {
         assert_eq!(typed(Path::new("runs/seed-1")), "runs/seed-1");
         assert_eq!(typed(Path::new("-o")), "./-o");
         for name in ["m/a b 'ö`", "$HOME", "a;b", "a\nb", "~", "*", "a\\b", "\"", "''", "a&b", "#", "(", "!!"] {
-            let told = typed(Path::new(name));
-            let heard = std::process::Command::new("sh").args(["-c", &format!("printf %s {told}")]).output().unwrap();
-            assert_eq!(String::from_utf8(heard.stdout).unwrap(), name, "{told}");
+            let quoted = typed(Path::new(name));
+            let heard = std::process::Command::new("sh").args(["-c", &format!("printf %s {quoted}")]).output().unwrap();
+            assert_eq!(String::from_utf8(heard.stdout).unwrap(), name, "{quoted}");
         }
     }
 

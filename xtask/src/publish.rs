@@ -10,7 +10,7 @@ use page::markdown_table;
 
 use crate::experiments::{Experiment, Setup, registry};
 use crate::figures::{Figure, Sources, figures};
-use crate::files::{repository, told, write};
+use crate::files::{relative, repository, write};
 use crate::measure::Measure;
 use crate::progress::say;
 use crate::report::{Section, Tally, draw, key, learners, sections};
@@ -53,13 +53,13 @@ impl Publish {
     pub(crate) fn execute(&self) -> anyhow::Result<()> {
         let experiments = registry()?;
         // All or none.
-        let runs: Vec<Sources> = self.runs.iter().map(|run| fit(&experiments, run)).collect::<anyhow::Result<_>>()?;
+        let runs: Vec<Sources> = self.runs.iter().map(|run| publishable(&experiments, run)).collect::<anyhow::Result<_>>()?;
         for (run, path) in runs.iter().zip(&self.runs) {
             let seed = run.results.seed;
             RunFolder::committed(seed).keep(run)?;
-            say(&format!("docs/records/seed-{seed} is now the run in {}", told(path)));
+            say(&format!("docs/records/seed-{seed} is now the run in {}", relative(path)));
         }
-        let records = Records::read(&experiments)?;
+        let records = Committed::read(&experiments)?;
         for (path, text) in records.pages(&experiments)? {
             write(&path, text)?;
         }
@@ -72,15 +72,15 @@ impl Publish {
 }
 
 /// A run that may become the committed one of its seed: a full one, with the figure data that the pages show.
-fn fit(experiments: &[Experiment], run: &Path) -> anyhow::Result<Sources> {
+fn publishable(experiments: &[Experiment], run: &Path) -> anyhow::Result<Sources> {
     let mut sources = RunFolder::at(run).sources()?;
     let seed = sources.results.seed;
-    complete(experiments, &sources.results).with_context(|| format!("{} is no full run", told(run)))?;
-    check(experiments, &sources.results).with_context(|| format!("{} is damaged", told(run)))?;
-    ensure!([FIRST_SEED, SECOND_SEED].contains(&seed), "{} is of seed {seed}, not 1 or 2", told(run));
+    complete(experiments, &sources.results).with_context(|| format!("{} is no full run", relative(run)))?;
+    check(experiments, &sources.results).with_context(|| format!("{} is damaged", relative(run)))?;
+    ensure!([FIRST_SEED, SECOND_SEED].contains(&seed), "{} is of seed {seed}, not 1 or 2", relative(run));
     // The pages show the figures of the first seed only.
     if seed == FIRST_SEED {
-        ensure!(sources.missing.is_empty(), "{} has no figure data {}", told(run), sources.missing.join(", "));
+        ensure!(sources.missing.is_empty(), "{} has no figure data {}", relative(run), sources.missing.join(", "));
     } else {
         sources.documents.clear();
     }
@@ -88,19 +88,19 @@ fn fit(experiments: &[Experiment], run: &Path) -> anyhow::Result<Sources> {
 }
 
 /// The committed runs.
-struct Records {
+struct Committed {
     first: Sources,
     second: Results,
 }
 
-impl Records {
-    fn read(experiments: &[Experiment]) -> anyhow::Result<Records> {
+impl Committed {
+    fn read(experiments: &[Experiment]) -> anyhow::Result<Committed> {
         let first = RunFolder::committed(FIRST_SEED).sources()?;
         let second = RunFolder::committed(SECOND_SEED).results()?;
         for results in [&first.results, &second] {
             complete(experiments, results).with_context(|| format!("docs/records/seed-{}", results.seed))?;
         }
-        Ok(Records { first, second })
+        Ok(Committed { first, second })
     }
 
     /// Every generated page with its text.
@@ -151,8 +151,8 @@ fn complete(experiments: &[Experiment], results: &Results) -> anyhow::Result<()>
 }
 
 /// Contents, key, and each experiment with its figures; last the figures that belong to none.
-fn reproduction(experiments: &[Experiment], records: &Records) -> String {
-    let Records { first, second } = records;
+fn reproduction(experiments: &[Experiment], records: &Committed) -> String {
+    let Committed { first, second } = records;
     let figures: Vec<Figure> = figures().into_iter().filter(|figure| figure.can_be_drawn(first)).collect();
     let of = |experiment: Option<&str>| {
         figures.iter().filter(|figure| figure.experiment == experiment).map(pictured).collect::<String>()
@@ -241,7 +241,7 @@ mod tests {
     #[test]
     fn the_committed_pages_show_the_committed_results() {
         let experiments = registry().unwrap();
-        for (path, text) in Records::read(&experiments).unwrap().pages(&experiments).unwrap() {
+        for (path, text) in Committed::read(&experiments).unwrap().pages(&experiments).unwrap() {
             let committed = fs::read_to_string(&path).unwrap();
             assert!(committed == text, "{} is stale; run `cargo xtask publish`", path.display());
         }
@@ -253,14 +253,14 @@ mod tests {
         let mut results = RunFolder::committed(SECOND_SEED).results().unwrap();
         complete(&experiments, &results).unwrap();
         results.experiments[0].rows[2].failed = 1;
-        let told = format!("{:#}", complete(&experiments, &results).unwrap_err());
-        assert_eq!(told, "table1 parabola-40x40-wide: 1 of 100 data sets failed");
+        let error = format!("{:#}", complete(&experiments, &results).unwrap_err());
+        assert_eq!(error, "table1 parabola-40x40-wide: 1 of 100 data sets failed");
     }
 
     /// Words and digits as drawn; the last digits of a place on the sheet may differ between machines.
     #[test]
     fn the_committed_pictures_show_the_committed_figure_data() {
-        let records = Records::read(&registry().unwrap()).unwrap();
+        let records = Committed::read(&registry().unwrap()).unwrap();
         for (path, svg) in records.pictures().unwrap() {
             let committed = fs::read_to_string(&path).unwrap();
             let fault = first_difference(&committed, &svg);

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize, Serializer, ser::Error as _};
 use serde_json::Value;
 
 use crate::experiments::Experiment;
-use crate::files::told;
+use crate::files::relative;
 use crate::measure::Measure;
 use crate::paper::Printed;
 use crate::verdict::Verdict;
@@ -37,7 +37,7 @@ pub(crate) struct Results {
 impl Results {
     /// Reads a `results.json`.
     pub(crate) fn read(path: &Path) -> anyhow::Result<Results> {
-        let name = told(path);
+        let name = relative(path);
         let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {name}"))?;
         let value: Value = serde_json::from_str(&text).map_err(|error| anyhow!("{name} is damaged ({error})"))?;
         let schema = value["schema"].as_u64().with_context(|| format!("{name} is not a results.json"))?;

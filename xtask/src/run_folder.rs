@@ -10,7 +10,7 @@ use anyhow::{Context as _, anyhow, bail};
 use serde_json::Value;
 
 use crate::figures::{Figure, Sources, documents, figures};
-use crate::files::{repository, told, typed, write};
+use crate::files::{relative, repository, typed, write};
 use crate::results::Results;
 
 /// A folder that a run writes to.
@@ -52,7 +52,7 @@ impl RunFolder {
     /// Makes the folder, and in it the one of the figures.
     pub(crate) fn make(&self) -> anyhow::Result<()> {
         let figures = self.figures();
-        fs::create_dir_all(&figures).with_context(|| format!("cannot make the folder {}", told(&figures)))
+        fs::create_dir_all(&figures).with_context(|| format!("cannot make the folder {}", relative(&figures)))
     }
 
     fn results_path(&self) -> PathBuf {
@@ -105,7 +105,7 @@ impl RunFolder {
 
     /// Reads the results alone.
     pub(crate) fn results(&self) -> anyhow::Result<Results> {
-        let folder = told(&self.0);
+        let folder = relative(&self.0);
         let again = format!("`cargo xtask reproduce --out {}`", typed(&self.0));
         if !self.is_finished() {
             bail!(
@@ -124,7 +124,7 @@ impl RunFolder {
     /// Takes away what an earlier run drew of a figure.
     pub(crate) fn forget(&self, figure: &Figure) -> anyhow::Result<()> {
         let folder = self.figures();
-        let entries = fs::read_dir(&folder).with_context(|| format!("cannot read the folder {}", told(&folder)))?;
+        let entries = fs::read_dir(&folder).with_context(|| format!("cannot read the folder {}", relative(&folder)))?;
         let table = format!("{}-", figure.id);
         for path in entries.filter_map(|entry| Some(entry.ok()?.path())) {
             let part = |part: Option<&OsStr>| part.and_then(OsStr::to_str).unwrap_or_default().to_owned();
@@ -139,16 +139,16 @@ impl RunFolder {
 }
 
 fn read_document(path: &Path) -> anyhow::Result<Value> {
-    let text = fs::read_to_string(path).with_context(|| format!("cannot read {}", told(path)))?;
+    let text = fs::read_to_string(path).with_context(|| format!("cannot read {}", relative(path)))?;
     serde_json::from_str(&text)
-        .map_err(|error| anyhow!("{} is damaged ({error}); the command of its run writes it again", told(path)))
+        .map_err(|error| anyhow!("{} is damaged ({error}); the command of its run writes it again", relative(path)))
 }
 
 /// Removes a file that may not be there.
 fn remove(path: &Path) -> anyhow::Result<()> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => {
-            Err(error).with_context(|| format!("cannot remove {}", told(path)))
+            Err(error).with_context(|| format!("cannot remove {}", relative(path)))
         }
         _ => Ok(()),
     }

@@ -102,8 +102,8 @@ mod tests {
         for (number, damage) in damages.iter().enumerate() {
             let mut damaged = committed.clone();
             damage(damaged.experiments[0].rows[3].measures.get_mut(&Measure::Nupe).unwrap());
-            let told = format!("{:#}", check(&experiments, &damaged).unwrap_err());
-            assert!(told.starts_with("table1 sinusoidal-40x40-narrow: nupe "), "{number}: {told}");
+            let error = format!("{:#}", check(&experiments, &damaged).unwrap_err());
+            assert!(error.starts_with("table1 sinusoidal-40x40-narrow: nupe "), "{number}: {error}");
         }
     }
 }

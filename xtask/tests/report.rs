@@ -53,25 +53,28 @@ fn what_is_missing_is_said_and_not_drawn() {
     let figures = folder.path().join("run/figures");
     fs::remove_file(figures.join("figure1.json")).unwrap();
     fs::remove_file(figures.join("figureB1.json")).unwrap();
-    let told = said(folder.path(), &["report", "--from", "run"]);
+    let printed = said(folder.path(), &["report", "--from", "run"]);
     let command = "cargo xtask reproduce --data-sets 1 --only table1/parabola-40x40-narrow --seed 1";
     let expected = format!(
         "not drawn: figure1, figureB1, as the run has no figure data figure1, figureB1; `{command} --out run` computes"
     );
-    assert!(told.contains(&expected), "{told}");
-    assert!(told.contains("written: run/report.html"), "{told}");
+    assert!(printed.contains(&expected), "{printed}");
+    assert!(printed.contains("written: run/report.html"), "{printed}");
     assert!(figures.join("figure2.svg").exists() && !figures.join("figure1.svg").exists());
     let page = fs::read_to_string(folder.path().join("run/report.html")).unwrap();
     assert!(page.contains("figure data are missing: Figure 1; Figure B1.") && page.contains(command));
 
     fs::write(figures.join("figure2.json"), "{").unwrap();
-    let told = refused(folder.path());
-    assert!(told.contains("run/figures/figure2.json is damaged") && told.contains("the command of its run"), "{told}");
-    fs::write(figures.join("figure2.json"), "{}").unwrap();
-    let told = refused(folder.path());
+    let printed = refused(folder.path());
     assert!(
-        told.contains("figure2") && told.contains("another form") && told.contains("the command of its run"),
-        "{told}"
+        printed.contains("run/figures/figure2.json is damaged") && printed.contains("the command of its run"),
+        "{printed}"
+    );
+    fs::write(figures.join("figure2.json"), "{}").unwrap();
+    let printed = refused(folder.path());
+    assert!(
+        printed.contains("figure2") && printed.contains("another form") && printed.contains("the command of its run"),
+        "{printed}"
     );
 }
 
@@ -79,8 +82,8 @@ fn what_is_missing_is_said_and_not_drawn() {
 fn results_that_cannot_be_used_are_refused_with_the_next_step() {
     let folder = tempfile::tempdir().unwrap();
     let next = "`cargo xtask reproduce --out run`";
-    let told = refused(folder.path());
-    assert!(told.contains("no run has ended in run") && told.contains(next), "{told}");
+    let printed = refused(folder.path());
+    assert!(printed.contains("no run has ended in run") && printed.contains(next), "{printed}");
 
     let row = "table1/parabola-40x40-narrow";
     said(folder.path(), &["reproduce", "--out", "run", "--only", row, "--data-sets", "1", "--no-figures"]);
@@ -95,12 +98,15 @@ fn results_that_cannot_be_used_are_refused_with_the_next_step() {
         ("{}".to_owned(), "is not a results.json"),
     ] {
         fs::write(&path, results).unwrap();
-        let told = refused(folder.path());
-        assert!(told.contains("run/results.json") && told.contains(why) && told.contains(next), "{why}: {told}");
+        let printed = refused(folder.path());
+        assert!(
+            printed.contains("run/results.json") && printed.contains(why) && printed.contains(next),
+            "{why}: {printed}"
+        );
     }
     fs::write(&path, whole.replace("\"table1\"", "\"table9\"")).unwrap();
-    let told = refused(folder.path());
-    assert!(told.contains("no experiment \"table9\""), "{told}");
+    let printed = refused(folder.path());
+    assert!(printed.contains("no experiment \"table9\""), "{printed}");
 }
 
 #[test]
@@ -109,13 +115,14 @@ fn a_run_that_left_its_figures_out_leaves_none_of_an_earlier_one() {
     reproduce(folder.path(), "table1/parabola-40x40-narrow");
     assert!(folder.path().join("run/figures/figure5-local.csv").exists());
     let row = "table1/parabola-40x40-medium";
-    let told = said(folder.path(), &["reproduce", "--out", "run", "--only", row, "--data-sets", "1", "--no-figures"]);
-    assert!(told.contains("written: run/report.md and results.json"), "{told}");
+    let printed =
+        said(folder.path(), &["reproduce", "--out", "run", "--only", row, "--data-sets", "1", "--no-figures"]);
+    assert!(printed.contains("written: run/report.md and results.json"), "{printed}");
     for name in ["figures/overview.json", "figures/overview.svg", "figures/figure5-local.csv", "report.html"] {
         assert!(!folder.path().join("run").join(name).exists(), "{name}");
     }
-    let told = said(folder.path(), &["report", "--from", "run", "--out", "elsewhere"]);
-    assert!(told.contains("not drawn: overview, figure1"), "{told}");
+    let printed = said(folder.path(), &["report", "--from", "run", "--out", "elsewhere"]);
+    assert!(printed.contains("not drawn: overview, figure1"), "{printed}");
     assert!(folder.path().join("elsewhere/report.html").exists());
     assert!(!folder.path().join("elsewhere/results.json").exists());
 }

@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::levelling::bipartition::bipartition;
 use crate::levelling::offsets::group_offsets;
-use crate::levelling::responsibilities::{Responsibilities, reach};
+use crate::levelling::responsibilities::{Responsibilities, squared_radius};
 use crate::scrutiny::scrutinise;
 use crate::search::{NearestSamples, SearchSpace};
 use crate::{AlignError, Aligned, AlignmentObjective, Bandwidth, Integration, Warning};
@@ -41,9 +41,9 @@ impl Default for PolicyAlign {
 impl PolicyAlign {
     /// Aligns the local potentials of all trajectories, and leaves out those whose level the data do not determine.
     ///
-    /// Time and memory grow with the number of pairs of samples within reach of the bandwidth: with K trajectories of N
-    /// samples, up to 28 bytes for each of K²N. Coordinates are compared as they are: unwrap continuous angles
-    /// beforehand.
+    /// Time and memory grow with the number of pairs of samples within the bandwidth's search radius: with K
+    /// trajectories of N samples, up to 28 bytes for each of K²N. Coordinates are compared as they are: unwrap continuous
+    /// angles beforehand.
     ///
     /// # Errors
     /// [`AlignError`] for parameters out of range, missing velocities, an undefined bandwidth, overflow, underflow or
@@ -65,17 +65,17 @@ impl PolicyAlign {
         })
     }
 
-    /// The bandwidth, and the nearest samples within reach of it.
+    /// The bandwidth, and the nearest samples within its search radius.
     fn search(&self, space: &SearchSpace) -> Result<(f64, NearestSamples), AlignError> {
-        let reach = |sigma_squared| reach(sigma_squared, self.responsibility_floor);
+        let squared_radius = |sigma_squared| squared_radius(sigma_squared, self.responsibility_floor);
         if self.bandwidth == Bandwidth::Wide {
-            // Nearly everything will be within reach, and shows all distances between trajectories.
+            // Nearly everything will be within the search radius, and shows all distances between trajectories.
             let nearest = space.nearest(f64::INFINITY, self.memory_limit)?;
             let sigma_squared = self.bandwidth.sigma_squared(&nearest.distances())?;
-            return Ok((sigma_squared, nearest.within(reach(sigma_squared))));
+            return Ok((sigma_squared, nearest.within(squared_radius(sigma_squared))));
         }
         let sigma_squared = self.bandwidth.among(space)?;
-        Ok((sigma_squared, space.nearest(reach(sigma_squared), self.memory_limit)?))
+        Ok((sigma_squared, space.nearest(squared_radius(sigma_squared), self.memory_limit)?))
     }
 
     fn check(&self) -> Result<(), AlignError> {

@@ -18,8 +18,8 @@ pub enum Axis {
 }
 
 impl Axis {
-    /// From where to where a band reaches.
-    fn reach(self, mean: f64, sd: f64) -> [f64; 2] {
+    /// Lower and upper end of a band.
+    fn band(self, mean: f64, sd: f64) -> [f64; 2] {
         let low = match self {
             Axis::Linear => mean - sd,
             Axis::Logarithmic => mean * mean / (mean + sd),
@@ -99,7 +99,7 @@ impl Curves {
     /// The band around a curve, as far as the axis goes.
     fn band(&self, curve: &Curve) -> Plot {
         let edge = |end: usize| {
-            let at = move |&(_, mean, sd): &(f64, f64, f64)| self.y_axis.reach(mean, sd)[end];
+            let at = move |&(_, mean, sd): &(f64, f64, f64)| self.y_axis.band(mean, sd)[end];
             curve.points.iter().map(at).map(|value| value.clamp(self.y[0], self.y[1]))
         };
         let band = BandPlot::new(curve.points.iter().map(|point| point.0), edge(0), edge(1));
@@ -130,9 +130,9 @@ mod tests {
         #[test]
         fn a_band_is_as_wide_on_either_side_and_never_reaches_0_on_a_logarithmic_axis(mean in 1e-6..1e6, share in 0.0..1e3) {
             let sd = mean * share;
-            let [low, high] = Axis::Linear.reach(mean, sd);
+            let [low, high] = Axis::Linear.band(mean, sd);
             prop_assert!(((mean - low) - (high - mean)).abs() <= 1e-12 * high);
-            let [low, high] = Axis::Logarithmic.reach(mean, sd);
+            let [low, high] = Axis::Logarithmic.band(mean, sd);
             prop_assert!(low > 0.0 && high == mean + sd);
             prop_assert!((mean / low - high / mean).abs() <= 1e-9 * (high / mean));
         }

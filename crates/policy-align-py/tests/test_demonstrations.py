@@ -12,9 +12,9 @@ def test_what_is_noticed_is_warned_of(tmp_path) -> None:
     path = tmp_path / "gap.csv"
     stamps = [0.1 * k for k in range(10)] + [3.0 + 0.1 * k for k in range(10)]
     path.write_text("t,x\n" + "".join(f"{t},{np.sin(t)}\n" for t in stamps))
-    with pytest.warns(PolicyAlignWarning, match="split_gap=SECONDS cuts there") as told:
+    with pytest.warns(PolicyAlignWarning, match="split_gap=SECONDS cuts there") as warned:
         found = Demonstrations.read(path)
-    assert found.notes == [str(warning.message) for warning in told]
+    assert found.notes == [str(warning.message) for warning in warned]
 
 
 def test_check_says_what_would_be_learnt_from(toy: Demonstrations) -> None:
@@ -24,7 +24,7 @@ def test_check_says_what_would_be_learnt_from(toy: Demonstrations) -> None:
     assert "40 episodes, 1600 samples, states x, y" in str(check)
     assert repr(toy) == "<Demonstrations: 40 movements, 1600 samples of x, y>"
     ignored = toy.check(integration="displacement")
-    assert any("told to ignore them" in decision.why for decision in ignored.decisions)
+    assert any("ignored as requested" in decision.why for decision in ignored.decisions)
 
 
 def test_arrays_carry_names_units_and_labels() -> None:

@@ -126,7 +126,7 @@ def test_hints_name_arguments(tmp_path) -> None:
         Demonstrations.read(TOY, speed="x")
 
 
-def test_files_that_do_not_exist_are_told_of(tmp_path) -> None:
+def test_files_that_do_not_exist_are_reported(tmp_path) -> None:
     with pytest.raises(PolicyAlignError) as error:
         Demonstrations.read(tmp_path / "none.csv")
     assert error.value.code in ("MissingFile", "Unreadable")
@@ -139,11 +139,11 @@ def test_files_that_do_not_exist_are_told_of(tmp_path) -> None:
 
 def test_doubts_are_warned_of_once_and_stay() -> None:
     positions, velocities = on_rails()
-    with pytest.warns(PolicyAlignWarning) as told:
+    with pytest.warns(PolicyAlignWarning) as warned:
         model = DirectGp(max_rows=60).fit(positions, dt=DT, velocities=velocities)
-    assert len(told) == 1 and told[0].filename == __file__
+    assert len(warned) == 1 and warned[0].filename == __file__
     assert model.trust_.verdict != "good"
-    assert model.trust_.findings[0].what in str(told[0].message)
+    assert model.trust_.findings[0].what in str(warned[0].message)
     assert "<b>" in model.trust_._repr_html_()
 
 

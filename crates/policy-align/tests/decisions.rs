@@ -78,12 +78,12 @@ fn every_decision_names_a_flag_that_fit_has() {
 }
 
 #[test]
-fn smoothing_can_be_told() {
+fn smoothing_can_be_requested() {
     let check = |flags: &str| run(&format!("check toy.csv --integration displacement {flags}"));
     for (flags, said) in [
-        ("--smooth off", "smoothing    none: positions as they are (told so)"),
-        ("--smooth 7", "smoothing    positions, over 7 samples at a time (told so"),
-        ("--smooth 0.25s", "smoothing    positions, over 5 samples at a time (told so"),
+        ("--smooth off", "smoothing    none: positions as they are (as requested)"),
+        ("--smooth 7", "smoothing    positions, over 7 samples at a time (as requested"),
+        ("--smooth 0.25s", "smoothing    positions, over 5 samples at a time (as requested"),
         ("--smooth auto", "smoothing    positions smoothed, piece by piece"),
     ] {
         let ran = check(flags);

@@ -156,8 +156,8 @@ fn stamps() {
     assert_eq!(verdict(&slow, "are stamps milliseconds?"), Verdict::Doubtful);
     assert_eq!(slow.time_step, 50.0);
     let given = PrepareOptions { time_step: Some(STEP), ..PrepareOptions::default() };
-    let told = prepare(&positions, &given).unwrap();
-    assert_eq!((told.time_step, told.findings.len()), (STEP, 0));
+    let fixed = prepare(&positions, &given).unwrap();
+    assert_eq!((fixed.time_step, fixed.findings.len()), (STEP, 0));
     // Half a percent of jitter is even; half a step is not.
     let jitter = |share: f64| {
         prepared(&changed(|episode| {
@@ -264,8 +264,8 @@ fn remarks() {
 }
 
 #[test]
-fn smoothing_as_told() {
-    let told = |recordings: &Recordings, smoothing| {
+fn smoothing_as_requested() {
+    let smoothed_by = |recordings: &Recordings, smoothing| {
         prepare(recordings, &PrepareOptions { smoothing, ..PrepareOptions::default() })
     };
     let positions = changed(|episode| {
@@ -275,15 +275,15 @@ fn smoothing_as_told() {
         episode.positions.row_mut(0).copy_from_slice(&noisy);
         episode.velocities = None;
     });
-    let off = told(&positions, Smoothing::Off).unwrap();
-    assert_eq!((off.recorded, off.averaged), (Recorded::PositionsAsTold, 1));
+    let off = smoothed_by(&positions, Smoothing::Off).unwrap();
+    assert_eq!((off.recorded, off.averaged), (Recorded::PositionsAsRequested, 1));
     assert_eq!(decided(&off, "smoothing"), "none: positions as they are");
     assert_eq!(off.demonstrations.trajectories()[0].states(), &positions.episodes[0].positions);
-    let smoothed = told(&positions, Smoothing::Samples(9)).unwrap();
+    let smoothed = smoothed_by(&positions, Smoothing::Samples(9)).unwrap();
     assert_eq!(decided(&smoothed, "smoothing"), "positions, over 9 samples at a time");
     assert_eq!(
         smoothed,
-        Prepared { smoothing: Smoothing::Samples(9), ..told(&positions, Smoothing::Seconds(0.44)).unwrap() }
+        Prepared { smoothing: Smoothing::Samples(9), ..smoothed_by(&positions, Smoothing::Seconds(0.44)).unwrap() }
     );
     let off_by = |prepared: &Prepared| {
         let pairs = prepared.demonstrations.trajectories().iter().zip(recordings().episodes);
@@ -291,14 +291,16 @@ fn smoothing_as_told() {
     };
     assert!(off_by(&smoothed) < 0.3 * off_by(&off), "{} {}", off_by(&smoothed), off_by(&off));
     // Recorded velocities stay, whatever becomes of the positions.
-    let with = told(&recordings(), Smoothing::Samples(5)).unwrap();
+    let with = smoothed_by(&recordings(), Smoothing::Samples(5)).unwrap();
     assert_eq!(with.recorded, Recorded::Velocities);
     assert_eq!(with.demonstrations.trajectories()[3].velocities(), recordings().episodes[3].velocities.as_ref());
     for window in [0, 3, 8] {
-        let refused = told(&recordings(), Smoothing::Samples(window)).unwrap_err();
+        let refused = smoothed_by(&recordings(), Smoothing::Samples(window)).unwrap_err();
         assert_eq!(refused, PrepareError::Smoothing { window, step: STEP });
     }
-    assert!(told(&recordings(), Smoothing::Seconds(0.1)).unwrap_err().to_string().contains("a window of 3 samples"));
+    assert!(
+        smoothed_by(&recordings(), Smoothing::Seconds(0.1)).unwrap_err().to_string().contains("a window of 3 samples")
+    );
 }
 
 #[test]

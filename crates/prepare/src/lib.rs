@@ -62,9 +62,9 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
     let noise = noise::of(&episodes::demonstrations(&takes)?);
     let agreement = velocities::decide(&mut takes, options, &recordings.state, &noise, &mut notes);
     let demonstrations = episodes::demonstrations(&takes)?;
-    let smoothed = smooth::as_told(&demonstrations, options.smoothing, &mut notes)?;
+    let smoothed = smooth::as_requested(&demonstrations, options.smoothing, &mut notes)?;
     let (demonstrations, recorded) = if let Some(smoothed) = smoothed {
-        (smoothed, noise::as_told(&demonstrations, &noise, agreement))
+        (smoothed, noise::as_requested(&demonstrations, &noise, agreement))
     } else {
         let recorded = noise::decide(&demonstrations, &noise, agreement, &mut notes);
         (demonstrations, recorded)

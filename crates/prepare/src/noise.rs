@@ -95,9 +95,9 @@ fn velocity_noise(demonstrations: &Demonstrations) -> Option<(f64, f64)> {
 }
 
 /// What learners are given where the user said how positions are smoothed.
-pub(crate) fn as_told(demonstrations: &Demonstrations, noise: &Noise, agreement: Agreement) -> Recorded {
+pub(crate) fn as_requested(demonstrations: &Demonstrations, noise: &Noise, agreement: Agreement) -> Recorded {
     if agreement == Agreement::None {
-        return Recorded::PositionsAsTold;
+        return Recorded::PositionsAsRequested;
     }
     let noisy = noise.velocity_share.is_some_and(|share| share > EXACT_VELOCITIES);
     match velocity_noise(demonstrations).filter(|_| noisy && agreement == Agreement::Own) {
@@ -138,7 +138,7 @@ pub(crate) fn decide(
             format!("noise makes {} of their squares", percent(noisy_velocities.unwrap_or(0.0))),
         ),
         Recorded::Positions if agreement == Agreement::None => ("positions smoothed, piece by piece", words),
-        Recorded::Positions | Recorded::PositionsAsTold => {
+        Recorded::Positions | Recorded::PositionsAsRequested => {
             ("positions smoothed, piece by piece", format!("{words}; velocities are no better"))
         }
     };

@@ -48,14 +48,16 @@ pub enum Recorded {
     /// Positions alone.
     Positions,
     /// Positions alone, taken as they stand: smoothed as the user said, or not at all.
-    PositionsAsTold,
+    PositionsAsRequested,
 }
 
 impl Recorded {
     /// How it becomes rows of a Gaussian process.
     pub fn front_end(self) -> FrontEnd {
         match self {
-            Recorded::Velocities | Recorded::NoisyVelocities(_) | Recorded::PositionsAsTold => FrontEnd::Velocities,
+            Recorded::Velocities | Recorded::NoisyVelocities(_) | Recorded::PositionsAsRequested => {
+                FrontEnd::Velocities
+            }
             Recorded::FusedVelocities => FrontEnd::Fused(smoothing::Fusion::default()),
             Recorded::Positions => FrontEnd::Smoothed(Smoother::default()),
         }

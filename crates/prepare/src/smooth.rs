@@ -11,8 +11,8 @@ use crate::prepared::Notes;
 /// Fewer samples in a window than this smooth nothing: a parabola goes through three.
 const LEAST: usize = 5;
 
-/// The movements as told; none if nothing was.
-pub(crate) fn as_told(
+/// The movements as requested; none if nothing was.
+pub(crate) fn as_requested(
     demonstrations: &Demonstrations,
     smoothing: Smoothing,
     notes: &mut Notes,
@@ -21,7 +21,7 @@ pub(crate) fn as_told(
     let window = match smoothing {
         Smoothing::Auto => return Ok(None),
         Smoothing::Off => {
-            notes.decided("smoothing", "none: positions as they are", "told so", "--smooth");
+            notes.decided("smoothing", "none: positions as they are", "as requested", "--smooth");
             return Ok(Some(demonstrations.clone()));
         }
         Smoothing::Samples(window) => window,
@@ -36,7 +36,7 @@ pub(crate) fn as_told(
         _ => PrepareError::Smoothing { window, step },
     })?;
     let value = format!("positions, over {window} samples at a time");
-    notes.decided("smoothing", value, "told so; parabolas through them", "--smooth");
+    notes.decided("smoothing", value, "as requested; parabolas through them", "--smooth");
     Ok(Some(smoothed))
 }
 

@@ -48,13 +48,13 @@ pub(crate) fn decide(
         let why = match recorded {
             0 => "none recorded".to_owned(),
             _ if recorded < takes.len() => format!("only {recorded} of {} episodes have them", takes.len()),
-            _ => "told to ignore them".to_owned(),
+            _ => "ignored as requested".to_owned(),
         };
         notes.decided("velocities", "from positions", why, "--integration");
         return Agreement::None;
     }
     if options.velocities == VelocityUse::Recorded {
-        notes.decided("velocities", "recorded", "told to believe them", "--integration");
+        notes.decided("velocities", "recorded", "believed as requested", "--integration");
         return Agreement::Own;
     }
     let fit = Steps::of(takes, noise);

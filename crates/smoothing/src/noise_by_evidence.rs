@@ -6,7 +6,7 @@ use crate::noise::{median, third_differences};
 use crate::scaled::Scaled;
 use crate::windows::{Bases, Energy, energies};
 
-/// So many trajectories, evenly spread, are enough to tell the noise.
+/// So many trajectories, evenly spread, are enough to estimate the noise.
 const TRAJECTORIES: usize = 12;
 
 /// The hill climb over log₁₀ s²: first step, what it is divided by at a top, the step at which it ends, most rounds.
@@ -18,11 +18,11 @@ const ROUNDS: usize = 12;
 /// Least s², in units of the samples' variance: below it the evidence is rounding.
 const LEAST: f64 = 1e-13;
 
-/// Energies of the trajectories that the noise is told by: index and windows.
-pub(crate) type Told = Vec<(usize, Vec<Energy>)>;
+/// Energies of the trajectories from which the noise is estimated: index and windows.
+pub(crate) type SomeEnergies = Vec<(usize, Vec<Energy>)>;
 
 /// Energies of up to 12 evenly spread trajectories.
-pub(crate) fn told_by(scaled: &Scaled<'_>, bases: &Bases, longest: usize) -> Told {
+pub(crate) fn some_energies(scaled: &Scaled<'_>, bases: &Bases, longest: usize) -> SomeEnergies {
     let all = scaled.movements.len();
     let chosen: Vec<usize> = (0..all.min(TRAJECTORIES)).map(|i| i * all / all.min(TRAJECTORIES)).collect();
     chosen.into_par_iter().map(|k| (k, energies(&scaled.movements[k], bases, longest))).collect()

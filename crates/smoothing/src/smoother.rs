@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::SmoothingError;
 use crate::averages::Averages;
 use crate::evidence::NoiseModel;
-use crate::noise_by_evidence::{most_likely, told_by};
+use crate::noise_by_evidence::{most_likely, some_energies};
 use crate::scaled::{Scaled, ScaledMovement};
 use crate::segmentation::Segmentation;
 use crate::smoothed::{Smoothed, SmoothedMovement};
@@ -138,13 +138,13 @@ impl Run<'_> {
     }
 
     fn noise_by_evidence(&self) -> f64 {
-        let told = told_by(self.scaled, &self.bases, self.longest);
+        let chosen = some_energies(self.scaled, &self.bases, self.longest);
         most_likely(self.scaled, |noise_variance| {
             let model = self.model(noise_variance);
             let evidence = |(k, energies): &(usize, Vec<Energy>)| {
                 self.segmentation(&self.scaled.movements[*k], energies, &model).log_evidence()
             };
-            let each: Vec<f64> = told.par_iter().map(evidence).collect();
+            let each: Vec<f64> = chosen.par_iter().map(evidence).collect();
             each.iter().sum()
         })
     }

@@ -7,16 +7,16 @@ const PLACE = "#walk";
 function readAddress(hash) {
   const [place, ...rest] = hash.split("&");
   if (place !== PLACE || rest.length === 0) return null;
-  const told = new URLSearchParams(rest.join("&"));
+  const parameters = new URLSearchParams(rest.join("&"));
   const number = (text) => (text !== null && text.trim() !== "" && Number.isFinite(Number(text)) ? Number(text) : undefined);
-  const camera = (told.get("camera") ?? "").split(",").map(number);
+  const camera = (parameters.get("camera") ?? "").split(",").map(number);
   const names = ["azimuth", "elevation", "distance", "x", "y", "z"];
   const whole = camera.length === names.length && camera.every((value) => value !== undefined);
   return {
-    learner: told.get("learner") ?? undefined,
-    constraint: told.get("constraint") ?? undefined,
-    start: number(told.get("start")),
-    sample: number(told.get("sample")),
+    learner: parameters.get("learner") ?? undefined,
+    constraint: parameters.get("constraint") ?? undefined,
+    start: number(parameters.get("start")),
+    sample: number(parameters.get("sample")),
     camera: whole ? Object.fromEntries(names.map((name, i) => [name, camera[i]])) : undefined,
   };
 }
@@ -24,6 +24,6 @@ function readAddress(hash) {
 /** The address that says this. */
 function writeAddress({ choice: { learner, constraint, start }, sample }, camera) {
   const place = Object.values(camera.place()).map((value) => Number(value.toFixed(3)));
-  const told = { learner, constraint, start, sample: Number(sample.toFixed(1)), camera: place.join(",") };
-  return [PLACE, ...Object.entries(told).map(([name, value]) => `${name}=${value}`)].join("&");
+  const parameters = { learner, constraint, start, sample: Number(sample.toFixed(1)), camera: place.join(",") };
+  return [PLACE, ...Object.entries(parameters).map(([name, value]) => `${name}=${value}`)].join("&");
 }

@@ -36,11 +36,11 @@ class Options {
   }
 }
 
-/** Metres by which the distances of robot and policy have to differ for both to be told. */
+/** Metres by which the distances of robot and policy have to differ for both to be shown. */
 const WORTH_TELLING = 0.001;
 const SPEEDS = [1, 2, 5, 10, 20];
 
-/** What the view is told by its reader: `actions` has a function for each thing that can be asked for. */
+/** What its reader asks of the view: `actions` has a function for each thing that can be asked for. */
 class Controls {
   constructor(playback, actions) {
     const { document: data } = playback;
@@ -111,7 +111,7 @@ class Controls {
   }
 
   static inWords(playback) {
-    const told = (distances) => `${distances.map((metres) => (100 * metres).toFixed(1)).join(" and ")} cm`;
+    const inCentimetres = (distances) => `${distances.map((metres) => (100 * metres).toFixed(1)).join(" and ")} cm`;
     const line = (learner) => {
       const { label } = playback.document.learners.find(({ id }) => id === learner);
       const now = playback.distances(learner, playback.sample);
@@ -121,11 +121,11 @@ class Controls {
       const wanted = playback.wantedDistances(learner, playback.lastSample);
       const short = wanted.some((distance, hand) => Math.abs(distance - end[hand]) > WORTH_TELLING);
       const remarks = [
-        short && ` Its policy wants ${told(wanted)}.`,
+        short && ` Its policy wants ${inCentimetres(wanted)}.`,
         Controls.held(playback.held(learner)),
         playback.withinBall(learner) > 0 && " A palm goes through the ball, which stops nobody here.",
       ];
-      return `${label}: now ${told(now)}, closest ${told(closest)}, at the end ${told(end)}.${remarks.filter(Boolean).join("")}`;
+      return `${label}: now ${inCentimetres(now)}, closest ${inCentimetres(closest)}, at the end ${inCentimetres(end)}.${remarks.filter(Boolean).join("")}`;
     };
     const tracking = playback.movement().error_mm.toFixed(1);
     return [

@@ -116,14 +116,14 @@ class View {
 
   /** Shows what an address tells, if it is about the view; what it tells wrongly is left as it is. */
   follow(hash) {
-    const told = readAddress(hash);
-    if (!told) return;
-    const known = Object.entries(this.playback.options).filter(([name, values]) => values.includes(told[name]));
+    const address = readAddress(hash);
+    if (!address) return;
+    const known = Object.entries(this.playback.options).filter(([name, values]) => values.includes(address[name]));
     this.playback.pause();
-    this.playback.select(Object.fromEntries(known.map(([name]) => [name, told[name]])));
+    this.playback.select(Object.fromEntries(known.map(([name]) => [name, address[name]])));
     this.scene.choose();
-    if (told.sample !== undefined) this.playback.seek(told.sample);
-    if (told.camera) this.camera.put(told.camera);
+    if (address.sample !== undefined) this.playback.seek(address.sample);
+    if (address.camera) this.camera.put(address.camera);
     this.fresh = false;
     this.element.scrollIntoView({ behavior: "instant" });
     this.ask();

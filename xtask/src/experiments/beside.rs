@@ -13,7 +13,7 @@ use super::constraint_consistent::{ConstraintConsistent, RadialBasis};
 use super::contest::{Contest, Contestant, row_id};
 use super::exam::{TESTED_ON, errors};
 use super::fresh;
-use super::gaussians::{Gaussians, reading_of, told_by};
+use super::gaussians::{Gaussians, own_expectations, reading_of};
 use super::judge::Judge;
 use super::test_samples::TestSamples;
 use super::{Measures, Row, Trial};
@@ -146,11 +146,11 @@ impl<'a> Sat<'a> {
     /// What the learners say of themselves, into the last rows.
     fn add_doubts(&self, rows: &mut Measures) {
         let expected = BTreeMap::from([(Measure::ExpectedNupe, 1.0 - self.both.direct().r_squared())]);
-        let mut of_slope = told_by(self.both.slope());
+        let mut of_slope = own_expectations(self.both.slope());
         of_slope.extend(reading_of(&self.both));
         let first = rows.len() - 3;
-        for (row, told) in rows[first..].iter_mut().zip([of_slope, told_by(&self.no_trend), expected]) {
-            row.extend(told);
+        for (row, of_learner) in rows[first..].iter_mut().zip([of_slope, own_expectations(&self.no_trend), expected]) {
+            row.extend(of_learner);
         }
     }
 }

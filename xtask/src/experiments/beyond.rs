@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use super::contest::{Contest, Contestant, row_id};
 use super::exam::errors;
-use super::gaussians::{Gaussians, reading_of, told_by};
+use super::gaussians::{Gaussians, own_expectations, reading_of};
 use super::judge::Judge;
 use super::seen::{Seen, samples_of};
 use super::{Experiment, Measures, Row, Setup, Trial};
@@ -174,16 +174,16 @@ impl Trial for BeyondTrial {
         let naive = naive.learn(&demonstrations, &[], rng).map_err(anyhow::Error::from_boxed)?;
         let both = self.gaussians.both(&demonstrations, &[], &mut beside(rng))?;
         let no_trend = self.gaussians.slope(Trend::None, &demonstrations, &[], &mut beside(rng))?;
-        let with = |mut row: BTreeMap<Measure, f64>, told: BTreeMap<Measure, f64>| {
-            row.extend(told);
+        let with = |mut row: BTreeMap<Measure, f64>, expected: BTreeMap<Measure, f64>| {
+            row.extend(expected);
             row
         };
         let expects = |nupe| BTreeMap::from([(Measure::ExpectedNupe, nupe)]);
         Ok(vec![
             errors(&judge, &*naive)?,
             self.policy_align(&demonstrations, &judge, rng),
-            with(errors(&judge, both.slope())?, told_by(both.slope())),
-            with(errors(&judge, &no_trend)?, told_by(&no_trend)),
+            with(errors(&judge, both.slope())?, own_expectations(both.slope())),
+            with(errors(&judge, &no_trend)?, own_expectations(&no_trend)),
             with(errors(&judge, both.direct())?, expects(1.0 - both.direct().r_squared())),
             with(with(errors(&judge, &both)?, expects(both.expected_nupe())), reading_of(&both)),
         ])

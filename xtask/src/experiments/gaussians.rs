@@ -67,7 +67,7 @@ impl Gaussians {
 }
 
 /// What a slope GP expects of itself.
-pub(super) fn told_by(fit: &SlopeFit) -> BTreeMap<Measure, f64> {
+pub(super) fn own_expectations(fit: &SlopeFit) -> BTreeMap<Measure, f64> {
     let report = fit.report();
     BTreeMap::from([
         (Measure::ExpectedNupe, report.expected_nupe),

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::contest::{Contest, Contestant, row_id};
 use super::exam::errors;
-use super::gaussians::{Gaussians, reading_of, told_by};
+use super::gaussians::{Gaussians, own_expectations, reading_of};
 use super::judge::Judge;
 use super::seen::{Seen, samples_of};
 use super::{Experiment, Measures, Row, Setup, Trial};
@@ -136,7 +136,7 @@ impl Trial for ReadingTrial {
         let both = self.gaussians.both(&demonstrations(&recordings[..learnt_from])?, &[], &mut beside(rng))?;
         let expects = |nupe| BTreeMap::from([(Measure::ExpectedNupe, nupe)]);
         let mut rows = vec![errors(&judge, both.slope())?, errors(&judge, both.direct())?, errors(&judge, &both)?];
-        rows[0].extend(told_by(both.slope()));
+        rows[0].extend(own_expectations(both.slope()));
         rows[1].extend(expects(1.0 - both.direct().r_squared()));
         rows[2].extend(expects(both.expected_nupe()));
         rows[2].extend(reading_of(&both));

@@ -93,7 +93,7 @@ pub(super) fn settings() -> Vec<Setting> {
     vec![
         setting("narrowest gap, m", "gaps from N(0.25, 0.1²)", 0.17, |least| staged(|grasp| grasp.gap_least = least)),
         setting("wall, m in front of the robot", SILENT, 0.35, |wall| staged(|grasp| grasp.scene.wall = wall)),
-        setting("reach of the wall, m", SILENT, 0.09, |reach| staged(|grasp| grasp.scene.wall_influence = reach)),
+        setting("influence of the wall, m", SILENT, 0.09, |metres| staged(|grasp| grasp.scene.wall_influence = metres)),
         setting("half-width of the unseen obstacle, m", SILENT, 0.13, |half_width| {
             staged(|grasp| grasp.scene.obstacle_half_width = half_width)
         }),

@@ -5,7 +5,7 @@ use crate::experiments::{Contest, Contestant, Experiment};
 use crate::measure::Measure;
 use crate::results::{Cell, ExperimentResult};
 
-/// A ratio below this is told as "0": it says nothing but that rounding is left.
+/// A ratio below this is shown as "0": it says nothing but that rounding is left.
 const NEGLIGIBLE: f64 = 1e-9;
 
 /// The contests of an experiment, as far as they were run.
@@ -80,7 +80,7 @@ impl ContestLine<'_> {
     }
 }
 
-/// Errors of these learners differ by orders of magnitude: small ones are all told by their exponents.
+/// Errors of these learners differ by orders of magnitude: small ones are all shown by their exponents.
 fn shown_mean(measure: Measure, mean: f64) -> String {
     if mean != 0.0 && mean.abs() < 1e-3 { format!("{mean:.0e}") } else { measure.show(mean) }
 }
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn small_errors_are_told_by_their_exponents() {
+    fn small_errors_are_shown_by_their_exponents() {
         let shown = [0.2, 0.000_762, 3e-21, 0.0].map(|mean| shown_mean(Measure::Nupe, mean));
         assert_eq!(shown, ["0.2000", "8e-4", "3e-21", "0.000000"]);
     }

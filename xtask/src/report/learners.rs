@@ -225,7 +225,7 @@ mod tests {
 
     /// Of rows with errors of all movements these count, and errors that are as good as none do not.
     #[test]
-    fn what_was_foretold_is_held_against_what_came() {
+    fn what_was_predicted_is_held_against_what_came() {
         let (nupe, all, expected) = (Measure::Nupe, Measure::NupeAll, Measure::ExpectedNupe);
         let rows = [
             row("a/slope_gp", &[(nupe, [0.5, 0.5]), (all, [0.1, 0.2]), (expected, [0.2, 0.1])]),

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 
 use crate::experiments::{Experiment, registry};
 use crate::figures::{Drawing, Figure, Sources, figures};
-use crate::files::{repository, told, write};
+use crate::files::{relative, repository, write};
 use crate::progress::say;
 use crate::results::Results;
 use crate::run_folder::RunFolder;
@@ -77,7 +77,7 @@ impl Report {
 
 /// What to look at.
 pub(crate) fn written(out: &RunFolder) -> String {
-    let [page, text, figures] = ["report.html", "report.md", "figures"].map(|name| told(&out.join(name)));
+    let [page, text, figures] = ["report.html", "report.md", "figures"].map(|name| relative(&out.join(name)));
     format!("written: {page} (open it in a browser),\n         {text}, {figures}")
 }
 

@@ -17,7 +17,7 @@ use cpu_time::ProcessTime;
 
 use crate::experiments::{Experiment, registry};
 use crate::figures::{Sources, compute};
-use crate::files::{repository, told};
+use crate::files::{relative, repository};
 use crate::progress::say;
 use crate::records::{Earlier, Outcome, Records};
 use crate::report::{Tally, terminal, write_report, write_tables, written};
@@ -204,7 +204,7 @@ impl Reproduce {
         let Run { threads, wall_seconds, cpu_seconds, .. } = &results.run;
         say(&format!("{wall_seconds:.1} s on {threads} thread(s), {cpu_seconds:.1} s of processor time"));
         say(&if self.no_figures {
-            format!("written: {} and results.json", told(&folder.join("report.md")))
+            format!("written: {} and results.json", relative(&folder.join("report.md")))
         } else {
             written(folder)
         });

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use anyhow::{Context as _, ensure};
 use serde::{Deserialize, Serialize};
 
-use crate::files::{repository, told, typed, write};
+use crate::files::{relative, repository, typed, write};
 use crate::progress::say;
 use crate::records::Records;
 use crate::run_folder::RunFolder;
@@ -68,7 +68,7 @@ impl Shard {
         say(&format!(
             "shard {self}: {share} of {} data sets, in {}",
             work.total(),
-            told(&folder.join("records.jsonl"))
+            relative(&folder.join("records.jsonl"))
         ));
         say("once all shards are there: the same command with --merge and their folders instead of --shard");
         Ok(())
@@ -77,7 +77,7 @@ impl Shard {
     /// Which share a folder holds.
     fn read(folder: &Path) -> anyhow::Result<Shard> {
         let path = folder.join(FILE);
-        let name = told(&path);
+        let name = relative(&path);
         let text =
             std::fs::read_to_string(&path).with_context(|| format!("cannot read {name}: no shard was run there"))?;
         serde_json::from_str(&text).with_context(|| format!("{name} is damaged"))
@@ -89,7 +89,11 @@ pub(super) fn merged(work: &mut Work<'_>, folders: &[PathBuf]) -> anyhow::Result
     let shards: Vec<Shard> = folders.iter().map(|folder| Shard::read(folder)).collect::<anyhow::Result<_>>()?;
     let of = shards.first().map_or(1, |shard| shard.of);
     for (shard, folder) in shards.iter().zip(folders) {
-        ensure!(shard.of == of, "{} is shard {shard}, the first is one of {of}: shards of one run only", told(folder));
+        ensure!(
+            shard.of == of,
+            "{} is shard {shard}, the first is one of {of}: shards of one run only",
+            relative(folder)
+        );
     }
     let missing = work.missing();
     let Some((first, _)) = missing.first() else { return Ok(()) };

@@ -176,12 +176,12 @@ fn the_opening_counts_every_printed_cell() {
 }
 
 #[test]
-fn what_is_not_reached_is_told_at_once() {
+fn what_is_not_reached_is_shown_at_once() {
     let Some(mut page) = page() else { return };
-    let told: String = page.evaluate("document.getElementById('glance').textContent");
+    let text: String = page.evaluate("document.getElementById('glance').textContent");
     let missed = |cell: &Cell| ["higher", "differs"].map(Value::from).contains(&cell.value["verdict"]);
     for cell in cells(&results(1)).into_iter().filter(missed) {
         let ours = printed(&cell.name[2], &cell.value["mean"]);
-        assert!(told.contains(&cell.name[1]) && told.contains(&ours), "{:?}: {ours} is not told", cell.name);
+        assert!(text.contains(&cell.name[1]) && text.contains(&ours), "{:?}: {ours} is not shown", cell.name);
     }
 }

@@ -6,7 +6,7 @@ use crate::browser::report;
 use crate::page;
 
 #[test]
-fn the_rule_is_told_of_verdicts_that_occur() {
+fn the_rule_is_given_for_verdicts_that_occur() {
     let Some(mut page) = page() else { return };
     let rule: String = page.evaluate("document.querySelector('.rule').textContent");
     let occurring: Vec<String> =
@@ -108,17 +108,17 @@ fn nothing_of_a_figure_is_read_out_twice() {
         "[...document.querySelectorAll('figcaption p:first-child strong')].map(title => title.textContent.replace(/\\.$/, ''))",
     );
     assert!(titles.len() > 8, "{titles:?}");
-    let told = page.accessible();
+    let spoken = page.accessible();
     for title in titles {
         // In the contents, in a heading or in a caption.
         let again = |(role, name): &&(String, String)| {
             name.contains(&title) && !["link", "heading", "StaticText", "InlineTextBox"].contains(&role.as_str())
         };
-        assert_eq!(told.iter().find(again), None);
-        let in_text = told.iter().filter(|(role, name)| role == "StaticText" && *name == format!("{title}.")).count();
-        let in_heading = told.iter().filter(|(role, name)| role == "heading" && *name == title).count();
+        assert_eq!(spoken.iter().find(again), None);
+        let in_text = spoken.iter().filter(|(role, name)| role == "StaticText" && *name == format!("{title}.")).count();
+        let in_heading = spoken.iter().filter(|(role, name)| role == "heading" && *name == title).count();
         assert_eq!(in_text + in_heading, 1, "{title}");
     }
-    let name = told.iter().find(|(role, _)| role == "application").map(|(_, name)| name.as_str());
+    let name = spoken.iter().find(|(role, _)| role == "application").map(|(_, name)| name.as_str());
     assert_eq!(name, Some("The robot and the ball"));
 }

@@ -17,12 +17,12 @@ pub(crate) fn linear_term(responsibilities: &Responsibilities, offsets: &[Option
     let mut linear = vec![CompensatedSum::default(); offsets.len()];
     let mut constant = CompensatedSum::default();
     for (block, term) in responsibilities.blocks.iter().zip(terms) {
-        let Some(BlockTerm { hub, flows, misfit }) = term else { continue };
-        // What flows to a model flows from the hub: whatever rounding does to it, both agree, and a weak link is not
-        // drowned by the rounding of strong ones.
-        for (&model, flow) in block.models.iter().zip(flows).filter(|&(&model, _)| model != hub) {
+        let Some(BlockTerm { reference, flows, misfit }) = term else { continue };
+        // What flows to a model flows from the reference: whatever rounding does to it, both agree, and a weak link
+        // is not drowned by the rounding of strong ones.
+        for (&model, flow) in block.models.iter().zip(flows).filter(|&(&model, _)| model != reference) {
             linear[model].add(flow);
-            linear[hub].add(-flow);
+            linear[reference].add(-flow);
         }
         constant.add(misfit);
     }
@@ -32,7 +32,7 @@ pub(crate) fn linear_term(responsibilities: &Responsibilities, offsets: &[Option
 /// What the samples of one trajectory add.
 struct BlockTerm {
     /// The trajectory itself, or the first member of the group if it is outside.
-    hub: usize,
+    reference: usize,
     /// Σ_m Σ_j q_km q_jm (v_km − v_jm) for each model k of the block, 0 for those outside.
     flows: Vec<f64>,
     /// ½ Σ_m Σ_k Σ_j q_km q_jm (v_km − v_jm)².
@@ -41,11 +41,11 @@ struct BlockTerm {
 
 fn block_term(block: &Block, owner: usize, offsets: &[Option<f64>]) -> Option<BlockTerm> {
     let first = block.models.iter().copied().find(|&model| offsets[model].is_some())?;
-    let hub = if offsets[owner].is_some() { owner } else { first };
+    let reference = if offsets[owner].is_some() { owner } else { first };
     // Values are relative to those of the trajectory itself, which has most of the weight.
     let level = offsets[owner].unwrap_or(0.0);
     let (flows, misfit) = Arch::new().dispatch(Flows { block, offsets, level });
-    Some(BlockTerm { hub, flows, misfit })
+    Some(BlockTerm { reference, flows, misfit })
 }
 
 /// With v = f + b, s = Σ_j q_j over the group and v̄ = Σ_j q_j v_j / s,
@@ -63,9 +63,9 @@ impl WithSimd for Flows<'_> {
     fn with_simd<S: Simd>(self, _simd: S) -> Self::Output {
         let mut share = vec![[0.0; LANES]; self.block.groups];
         let mut mean = vec![[0.0; LANES]; self.block.groups];
-        for (model, q, rises) in self.block.models() {
+        for (model, q, differences) in self.block.models() {
             if let Some(offset) = self.offsets[model] {
-                add_to_mean(q, rises, offset - self.level, &mut share, &mut mean);
+                add_to_mean(q, differences, offset - self.level, &mut share, &mut mean);
             }
         }
         for (mean, share) in mean.as_flattened_mut().iter_mut().zip(share.as_flattened()) {
@@ -73,9 +73,9 @@ impl WithSimd for Flows<'_> {
         }
         let mut flows = vec![0.0; self.block.models.len()];
         let mut misfit = 0.0;
-        for ((model, q, rises), flow) in self.block.models().zip(&mut flows) {
+        for ((model, q, differences), flow) in self.block.models().zip(&mut flows) {
             if let Some(offset) = self.offsets[model] {
-                let (sum, square) = deviation(q, rises, offset - self.level, &share, &mean);
+                let (sum, square) = deviation(q, differences, offset - self.level, &share, &mean);
                 *flow = sum;
                 misfit += square;
             }
@@ -85,23 +85,23 @@ impl WithSimd for Flows<'_> {
 }
 
 #[inline(always)]
-fn add_to_mean(q: &[Lanes], rises: &[Lanes], rise: f64, share: &mut [Lanes], mean: &mut [Lanes]) {
-    for (((q, rises), share), mean) in q.iter().zip(rises).zip(share).zip(mean) {
+fn add_to_mean(q: &[Lanes], differences: &[Lanes], offset: f64, share: &mut [Lanes], mean: &mut [Lanes]) {
+    for (((q, differences), share), mean) in q.iter().zip(differences).zip(share).zip(mean) {
         for lane in 0..LANES {
             share[lane] += q[lane];
-            mean[lane] += q[lane] * (rises[lane] + rise);
+            mean[lane] += q[lane] * (differences[lane] + offset);
         }
     }
 }
 
 /// Σ s q (v − v̄) and Σ s q (v − v̄)².
 #[inline(always)]
-fn deviation(q: &[Lanes], rises: &[Lanes], rise: f64, share: &[Lanes], mean: &[Lanes]) -> (f64, f64) {
+fn deviation(q: &[Lanes], differences: &[Lanes], offset: f64, share: &[Lanes], mean: &[Lanes]) -> (f64, f64) {
     let mut flow = [0.0; LANES];
     let mut misfit = [0.0; LANES];
-    for (((q, rises), share), mean) in q.iter().zip(rises).zip(share).zip(mean) {
+    for (((q, differences), share), mean) in q.iter().zip(differences).zip(share).zip(mean) {
         for lane in 0..LANES {
-            let deviation = rises[lane] + rise - mean[lane];
+            let deviation = differences[lane] + offset - mean[lane];
             let weighted = share[lane] * q[lane] * deviation;
             flow[lane] += weighted;
             misfit[lane] += weighted * deviation;

@@ -41,7 +41,7 @@ pub(crate) fn group_offsets(
 mod tests {
     use super::*;
     use crate::levelling::bipartition::bipartition;
-    use crate::levelling::responsibilities::reach;
+    use crate::levelling::responsibilities::squared_radius;
     use crate::search::SearchSpace;
     use motion::Demonstrations;
     use nalgebra::DMatrix;
@@ -64,7 +64,7 @@ mod tests {
     ) -> (Vec<usize>, DVector<f64>, f64) {
         let demonstrations = Demonstrations::from_states(positions.to_vec(), 1.0).unwrap();
         let nearest =
-            SearchSpace::new(&demonstrations).unwrap().nearest(reach(sigma_squared, 1e-20), u64::MAX).unwrap();
+            SearchSpace::new(&demonstrations).unwrap().nearest(squared_radius(sigma_squared, 1e-20), u64::MAX).unwrap();
         let responsibilities = Responsibilities::new(&nearest, potentials, sigma_squared);
         let objective = AlignmentObjective::new(&responsibilities);
         let partition = bipartition(&objective.laplacian, 1e-8).unwrap();
@@ -75,17 +75,17 @@ mod tests {
     proptest! {
         #[test]
         fn a_raised_potential_is_lowered_again(
-            (positions, potentials) in movements(), rises in vec(-100.0_f64..100.0, 8), exponent in -3.0_f64..0.0,
+            (positions, potentials) in movements(), raises in vec(-100.0_f64..100.0, 8), exponent in -3.0_f64..0.0,
         ) {
             let sigma_squared = 10.0_f64.powf(exponent);
             let (group, offsets, _) = level(&positions, &potentials, sigma_squared);
             let raised: Vec<Vec<f64>> =
-                potentials.iter().zip(&rises).map(|(p, rise)| p.iter().map(|value| value + rise).collect()).collect();
+                potentials.iter().zip(&raises).map(|(p, raise)| p.iter().map(|value| value + raise).collect()).collect();
             let (same_group, lowered, _) = level(&positions, &raised, sigma_squared);
             prop_assert_eq!(&group, &same_group);
-            let mean = group.iter().map(|&k| rises[k]).sum::<f64>() / group.len() as f64;
+            let mean = group.iter().map(|&k| raises[k]).sum::<f64>() / group.len() as f64;
             for (at, &k) in group.iter().enumerate() {
-                let expected = offsets[at] - (rises[k] - mean);
+                let expected = offsets[at] - (raises[k] - mean);
                 // Adding 100 costs the potentials themselves 1e-14, and weak links pass that on 1e8-fold at most.
                 prop_assert!((lowered[at] - expected).abs() < 1e-10, "{} {expected}", lowered[at]);
             }

@@ -23,14 +23,14 @@ pub(crate) struct Block {
     /// For each model in turn q_km at every sample, filled up with 0.
     pub(crate) shares: Vec<Lanes>,
     /// For each model in turn f_km − f_om, where o is the trajectory itself: φ̂ of the nearest samples (10).
-    pub(crate) rises: Vec<Lanes>,
+    pub(crate) differences: Vec<Lanes>,
     /// Groups of samples.
     pub(crate) groups: usize,
 }
 
 /// The squared distance beyond which weights are below `floor` and dropped: at a sample of the data the own trajectory
 /// has weight 1, the largest there can be.
-pub(crate) fn reach(sigma_squared: f64, floor: f64) -> f64 {
+pub(crate) fn squared_radius(sigma_squared: f64, floor: f64) -> f64 {
     // Not 2σ² first, which may overflow.
     sigma_squared * (-2.0 * floor.ln())
 }
@@ -53,26 +53,34 @@ impl Block {
     fn new(owner: usize, nearest: &NearestSamples, potentials: &[Vec<f64>], sigma_squared: f64) -> Self {
         let near = (0..potentials.len()).filter_map(|model| Some((model, nearest.of(owner, model)?)));
         let near: Vec<(usize, Nearest<'_>)> = near.collect();
-        let own = near.iter().find(|&&(model, _)| model == owner).expect("a trajectory is within reach of itself").1;
+        let own = near
+            .iter()
+            .find(|&&(model, _)| model == owner)
+            .expect("a trajectory is within the search radius of itself")
+            .1;
         let own: Vec<Lanes> = own.samples.iter().map(|samples| look_up(&potentials[owner], samples)).collect();
         let groups = groups_of(potentials[owner].len());
         let mut shares = Vec::with_capacity(groups * near.len());
-        let mut rises = Vec::with_capacity(groups * near.len());
+        let mut differences = Vec::with_capacity(groups * near.len());
         for (model, nearest) in &near {
             let values = nearest.samples.iter().map(|samples| look_up(&potentials[*model], samples));
-            rises.extend(values.zip(&own).map(|(value, own)| std::array::from_fn(|lane| value[lane] - own[lane])));
+            differences
+                .extend(values.zip(&own).map(|(value, own)| std::array::from_fn(|lane| value[lane] - own[lane])));
             shares.extend_from_slice(nearest.squared_distances);
         }
-        to_weights(shares.as_flattened_mut(), sigma_squared, nearest.reach());
+        to_weights(shares.as_flattened_mut(), sigma_squared, nearest.squared_radius());
         Arch::new().dispatch(Normalise { weights: &mut shares, groups });
-        Block { models: near.into_iter().map(|(model, _)| model).collect(), shares, rises, groups }
+        Block { models: near.into_iter().map(|(model, _)| model).collect(), shares, differences, groups }
     }
 
     /// (model, q, f − f of the own trajectory) for each model of the block.
     pub(crate) fn models(&self) -> impl Iterator<Item = (usize, &[Lanes], &[Lanes])> {
         let shares = self.shares.chunks_exact(self.groups);
-        let rises = self.rises.chunks_exact(self.groups);
-        self.models.iter().zip(shares.zip(rises)).map(|(&model, (shares, rises))| (model, shares, rises))
+        let differences = self.differences.chunks_exact(self.groups);
+        self.models
+            .iter()
+            .zip(shares.zip(differences))
+            .map(|(&model, (shares, differences))| (model, shares, differences))
     }
 }
 

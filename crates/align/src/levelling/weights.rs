@@ -5,15 +5,15 @@
 use lanes::exp_in_bulk;
 use pulp::{Arch, Simd, WithSimd};
 
-/// Replaces each squared distance d by exp(−d / 2σ²), or by 0 where d > `reach`.
-pub(crate) fn to_weights(squared_distances: &mut [f64], sigma_squared: f64, reach: f64) {
-    Arch::new().dispatch(ToWeights { squared_distances, sigma_squared, reach });
+/// Replaces each squared distance d by exp(−d / 2σ²), or by 0 where d > `squared_radius`.
+pub(crate) fn to_weights(squared_distances: &mut [f64], sigma_squared: f64, squared_radius: f64) {
+    Arch::new().dispatch(ToWeights { squared_distances, sigma_squared, squared_radius });
 }
 
 struct ToWeights<'a> {
     squared_distances: &'a mut [f64],
     sigma_squared: f64,
-    reach: f64,
+    squared_radius: f64,
 }
 
 impl WithSimd for ToWeights<'_> {
@@ -24,7 +24,7 @@ impl WithSimd for ToWeights<'_> {
         for value in self.squared_distances {
             // Halved last: 2σ² may overflow.
             let weight = exp_in_bulk(-0.5 * (*value / self.sigma_squared));
-            *value = if *value <= self.reach { weight } else { 0.0 };
+            *value = if *value <= self.squared_radius { weight } else { 0.0 };
         }
     }
 }
@@ -36,13 +36,13 @@ mod tests {
 
     proptest! {
         #[test]
-        fn weights_are_cut_at_the_reach(
-            d in proptest::collection::vec(0.0..100.0, 0..40), sigma_squared in 0.01..10.0, reach in 0.0..100.0,
+        fn weights_are_cut_at_the_radius(
+            d in proptest::collection::vec(0.0..100.0, 0..40), sigma_squared in 0.01..10.0, radius in 0.0..100.0,
         ) {
             let mut weights = d.clone();
-            to_weights(&mut weights, sigma_squared, reach);
+            to_weights(&mut weights, sigma_squared, radius);
             for (d, w) in d.into_iter().zip(weights) {
-                let expected = if d <= reach { exp_in_bulk(-d / (2.0 * sigma_squared)) } else { 0.0 };
+                let expected = if d <= radius { exp_in_bulk(-d / (2.0 * sigma_squared)) } else { 0.0 };
                 prop_assert_eq!(w.to_bits(), expected.to_bits());
             }
         }

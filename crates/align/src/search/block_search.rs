@@ -1,5 +1,5 @@
 //! The innermost loop of the alignment: squared distances between the samples of two trajectories, of which only the
-//! smallest of every row and every column is kept. Segments whose boxes are beyond reach are passed over.
+//! smallest of every row and every column is kept. Segments whose boxes are beyond the search radius are passed over.
 
 #![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
 
@@ -17,9 +17,9 @@ use super::tiles::{ROWS, Tiles};
 #[derive(Debug)]
 pub(crate) struct BlockSearch<'a> {
     one: &'a Tiles,
-    reach: f64,
-    /// The segments of the other trajectory within reach of the segment at hand, in runs of neighbours.
-    in_reach: Vec<Range<usize>>,
+    squared_radius: f64,
+    /// The segments of the other trajectory within the search radius of the segment at hand, in runs of neighbours.
+    within_radius: Vec<Range<usize>>,
     /// For the samples of this trajectory, the nearest of the other.
     pub(crate) of_rows: Minima,
     /// For the samples of the other trajectory, the nearest of this.
@@ -27,29 +27,29 @@ pub(crate) struct BlockSearch<'a> {
 }
 
 impl<'a> BlockSearch<'a> {
-    /// A search for samples at squared distances of at most `reach` from those of one trajectory.
-    pub(crate) fn new(one: &'a Tiles, reach: f64) -> Self {
+    /// A search for samples at squared distances of at most `squared_radius` from those of one trajectory.
+    pub(crate) fn new(one: &'a Tiles, squared_radius: f64) -> Self {
         let (of_rows, of_columns) = (Minima::default(), Minima::default());
-        BlockSearch { one, reach, in_reach: Vec::new(), of_rows, of_columns }
+        BlockSearch { one, squared_radius, within_radius: Vec::new(), of_rows, of_columns }
     }
 
     /// Finds what is nearest for the samples of both trajectories, and the smallest squared distance of all.
     ///
-    /// A sample whose nearest is beyond reach gets some squared distance beyond it, finite or not.
+    /// A sample whose nearest is beyond the search radius gets some squared distance beyond it, finite or not.
     pub(crate) fn run(&mut self, other: &Tiles) -> f64 {
         self.of_rows.reset(self.one.n_samples);
         self.of_columns.reset(other.n_samples);
         self.one.arch.dispatch(Block { search: self, other })
     }
 
-    /// Finds the segments of the other trajectory within reach of one of this, in runs of neighbours.
-    fn find_in_reach(&mut self, segment: usize, other: &Tiles) {
-        self.in_reach.clear();
+    /// Finds the segments of the other trajectory within the search radius of one of this, in runs of neighbours.
+    fn find_within_radius(&mut self, segment: usize, other: &Tiles) {
+        self.within_radius.clear();
         for b in 0..other.boxes.len() {
-            if self.one.boxes.squared_gap(segment, &other.boxes, b) <= self.reach {
-                match self.in_reach.last_mut() {
+            if self.one.boxes.squared_gap(segment, &other.boxes, b) <= self.squared_radius {
+                match self.within_radius.last_mut() {
                     Some(run) if run.end == b => run.end = b + 1,
-                    _ => self.in_reach.push(b..b + 1),
+                    _ => self.within_radius.push(b..b + 1),
                 }
             }
         }
@@ -91,20 +91,20 @@ impl Block<'_, '_> {
         let mut smallest = infinity;
 
         for segment in 0..search.one.boxes.len() {
-            search.find_in_reach(segment, other);
-            let BlockSearch { one, in_reach, of_rows, of_columns, .. } = &mut *search;
+            search.find_within_radius(segment, other);
+            let BlockSearch { one, within_radius, of_rows, of_columns, .. } = &mut *search;
             let row_distances = of_rows.distances.as_flattened_mut();
             let row_samples = of_rows.samples.as_flattened_mut();
             let column_distances = S::as_mut_simd_f64s(of_columns.distances.as_flattened_mut()).0;
             let column_samples = S::as_mut_simd_f64s(of_columns.samples.as_flattened_mut()).0;
             let groups = one.rows.chunks_exact(dim).enumerate();
             let groups = groups.skip(segment * SEGMENT / ROWS).take(SEGMENT / ROWS);
-            for (group, rows) in groups.take(if in_reach.is_empty() { 0 } else { SEGMENT }) {
+            for (group, rows) in groups.take(if within_radius.is_empty() { 0 } else { SEGMENT }) {
                 let index: [usize; ROWS] = std::array::from_fn(|r| (ROWS * group + r).min(n_rows - 1));
                 let names = index.map(|i| simd.splat_f64s(i as f64));
                 let mut nearest = [infinity; ROWS];
                 let mut samples = [infinity; ROWS];
-                for run in in_reach.iter() {
+                for run in within_radius.iter() {
                     let first = run.start * SEGMENT / S::F64_LANES;
                     let last = (run.end * SEGMENT / S::F64_LANES).min(tiles.len() / dim);
                     let mut here = simd.add_f64s(count, simd.splat_f64s((run.start * SEGMENT) as f64));
@@ -209,18 +209,18 @@ mod tests {
         }
 
         #[test]
-        fn finds_the_same_within_reach((one, other) in two_trajectories(), reach in prop_oneof![0.0..1.0, 0.0..20.0]) {
+        fn finds_the_same_within_the_radius((one, other) in two_trajectories(), limit in prop_oneof![0.0..1.0, 0.0..20.0]) {
             for arch in kinds() {
                 let [tiles, others] = [&one, &other].map(|states| Tiles::new(states, arch));
-                let mut search = BlockSearch::new(&tiles, reach);
+                let mut search = BlockSearch::new(&tiles, limit);
                 let smallest = search.run(&others);
                 let [of_one, of_other] = [nearest(&other, &one), nearest(&one, &other)];
                 let least = of_one.iter().fold(f64::INFINITY, |least, (d, _)| least.min(*d));
-                prop_assert!(if least <= reach { smallest == least } else { smallest > reach }, "{smallest} {least}");
+                prop_assert!(if least <= limit { smallest == least } else { smallest > limit }, "{smallest} {least}");
                 let all = [(&search.of_rows, of_one), (&search.of_columns, of_other)];
                 for (minima, nearest) in all {
                     for (found, nearest) in found(minima, nearest.len()).into_iter().zip(nearest) {
-                        prop_assert!(if nearest.0 <= reach { found == nearest } else { found.0 > reach }, "{found:?}");
+                        prop_assert!(if nearest.0 <= limit { found == nearest } else { found.0 > limit }, "{found:?}");
                     }
                 }
             }

@@ -48,9 +48,10 @@ impl Boxes {
     }
 
     /// Whether the boxes of any two segments are as near as that.
-    pub(crate) fn is_within(&self, reach: f64, other: &Boxes) -> bool {
+    pub(crate) fn is_within(&self, squared_radius: f64, other: &Boxes) -> bool {
         let mut pairs = (0..self.len()).flat_map(|a| (0..other.len()).map(move |b| (a, b)));
-        self.squared_gap_of_all(other) <= reach && pairs.any(|(a, b)| self.squared_gap(a, other, b) <= reach)
+        self.squared_gap_of_all(other) <= squared_radius
+            && pairs.any(|(a, b)| self.squared_gap(a, other, b) <= squared_radius)
     }
 }
 
@@ -89,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn far_segments_are_not_within_reach_of_each_other() {
+    fn far_segments_are_not_within_the_radius_of_each_other() {
         // Two corners: their boxes as a whole meet, those of their segments do not.
         let corner =
             |far: f64| DMatrix::from_fn(2, 2 * SEGMENT, move |c, i| if (c == 0) == (i < SEGMENT) { far } else { 0.0 });

@@ -6,15 +6,15 @@ use super::block_search::BlockSearch;
 use super::minima::Minima;
 use super::tiles::Tiles;
 
-/// For every sample of every trajectory, its nearest sample in each trajectory within reach: the search behind (10) and
+/// For every sample of every trajectory, its nearest sample in each trajectory within a radius: behind (10) and
 /// (11).
 ///
 /// Each pair of trajectories is one block of squared distances, looked at once: it tells the samples of both what is
 /// nearest in the other. Distances are sums of squared differences, exact to rounding even for distant clouds.
 #[derive(Debug)]
 pub(crate) struct NearestSamples {
-    reach: f64,
-    /// At i, those of trajectories i, i + 1, … whose boxes are within reach of those of trajectory i, ascending.
+    squared_radius: f64,
+    /// At i, those of trajectories i, i + 1, … whose boxes are within the radius of those of trajectory i, ascending.
     neighbours: Vec<Vec<usize>>,
     /// At i, for the samples of trajectory i: the nearest of its neighbours, one after the other.
     toward_later: Vec<NearestList>,
@@ -25,46 +25,46 @@ pub(crate) struct NearestSamples {
 /// For the samples of one trajectory, the nearest ones of another.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Nearest<'a> {
-    /// Squared distances, filled up with infinity; of samples whose nearest is beyond reach some number beyond it.
+    /// Squared distances, filled up with infinity; of samples whose nearest is beyond the radius some number beyond it.
     pub(crate) squared_distances: &'a [Lanes],
-    /// Indices, filled up with 0; the lowest of those equally near. Of samples whose nearest is beyond reach any.
+    /// Indices, filled up with 0; the lowest of those equally near. Of samples whose nearest is beyond the radius any.
     pub(crate) samples: &'a [[u32; LANES]],
     /// The smallest squared distance of all.
     smallest: f64,
 }
 
 impl NearestSamples {
-    /// Searches all pairs of trajectories for samples at a squared distance of at most `reach`.
-    pub(crate) fn search(trajectories: &[Tiles], neighbours: Vec<Vec<usize>>, reach: f64) -> Self {
+    /// Searches all pairs of trajectories for samples at a squared distance of at most `squared_radius`.
+    pub(crate) fn search(trajectories: &[Tiles], neighbours: Vec<Vec<usize>>, squared_radius: f64) -> Self {
         let blocks = (0..trajectories.len()).into_par_iter().map(|i| {
-            let mut search = BlockSearch::new(&trajectories[i], reach);
+            let mut search = BlockSearch::new(&trajectories[i], squared_radius);
             let own = groups_of(trajectories[i].n_samples);
             let groups = neighbours[i].iter().map(|&j| groups_of(trajectories[j].n_samples));
             let mut of_rows = NearestList::with_capacity(own * neighbours[i].len());
             let mut of_columns = NearestList::with_capacity(groups.sum());
             for &j in &neighbours[i] {
-                // Boxes within reach may have no samples that are.
+                // Boxes within the search radius may have no samples that are.
                 let smallest = search.run(&trajectories[j]);
-                of_rows.push(&search.of_rows, smallest, reach);
-                of_columns.push(&search.of_columns, smallest, reach);
+                of_rows.push(&search.of_rows, smallest, squared_radius);
+                of_columns.push(&search.of_columns, smallest, squared_radius);
             }
             (of_rows, of_columns)
         });
         let (toward_later, toward_earlier) = blocks.unzip();
-        NearestSamples { reach, neighbours, toward_later, toward_earlier }
+        NearestSamples { squared_radius, neighbours, toward_later, toward_earlier }
     }
 
-    /// The squared distance beyond which nothing is told.
-    pub(crate) fn reach(&self) -> f64 {
-        self.reach
+    /// The squared distance beyond which nothing is searched.
+    pub(crate) fn squared_radius(&self) -> f64 {
+        self.squared_radius
     }
 
-    /// The same, of which only what is within this smaller reach is told.
-    pub(crate) fn within(self, reach: f64) -> Self {
-        NearestSamples { reach, ..self }
+    /// The same, of which only what is within this smaller radius counts.
+    pub(crate) fn within(self, squared_radius: f64) -> Self {
+        NearestSamples { squared_radius, ..self }
     }
 
-    /// d_kj = min_{n,m} ‖x_kn − x_jm‖² (18), shape (K, K), zero on the diagonal; infinite beyond reach.
+    /// d_kj = min_{n,m} ‖x_kn − x_jm‖² (18), shape (K, K), zero on the diagonal; infinite beyond the radius.
     pub(crate) fn distances(&self) -> DMatrix<f64> {
         let count = self.n_trajectories();
         DMatrix::from_fn(count, count, |j, k| self.of(k, j).map_or(f64::INFINITY, |nearest| nearest.smallest))
@@ -75,12 +75,12 @@ impl NearestSamples {
         self.neighbours.len()
     }
 
-    /// The nearest samples in trajectory `model` to each sample of trajectory `owner`; none if all are beyond reach.
+    /// The nearest samples in trajectory `model` to each sample of `owner`; none if all are beyond the radius.
     pub(crate) fn of(&self, owner: usize, model: usize) -> Option<Nearest<'_>> {
         let (first, second) = (owner.min(model), owner.max(model));
         let at = self.neighbours[first].binary_search(&second).ok()?;
         let lists = if model >= owner { &self.toward_later } else { &self.toward_earlier };
-        lists[first].get(at).filter(|nearest| nearest.smallest <= self.reach)
+        lists[first].get(at).filter(|nearest| nearest.smallest <= self.squared_radius)
     }
 }
 
@@ -103,8 +103,8 @@ impl NearestList {
         }
     }
 
-    fn push(&mut self, minima: &Minima, smallest: f64, reach: f64) {
-        if smallest <= reach {
+    fn push(&mut self, minima: &Minima, smallest: f64, squared_radius: f64) {
+        if smallest <= squared_radius {
             self.squared_distances.extend_from_slice(&minima.distances);
             self.samples.extend(minima.samples.iter().map(|samples| samples.map(whole)));
         }

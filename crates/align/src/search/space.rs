@@ -9,7 +9,7 @@ use super::nearest::NearestSamples;
 use super::tiles::Tiles;
 use crate::AlignError;
 
-/// Bytes for each sample and each trajectory that it may be within reach of: squared distance and index of the nearest,
+/// Bytes for each sample and each trajectory that may be within the radius: squared distance and index of the nearest,
 /// responsibility and rise.
 const PER_SAMPLE_AND_TRAJECTORY: u64 = 8 + 4 + 8 + 8;
 
@@ -64,17 +64,17 @@ impl SearchSpace {
         others().filter(|&j| j != first).fold(found, nearer)
     }
 
-    /// The nearest samples of all pairs of trajectories, where their squared distance is at most `reach`.
+    /// The nearest samples of all pairs of trajectories, where their squared distance is at most `squared_radius`.
     ///
     /// # Errors
     /// [`AlignError::Memory`] if they and what is made of them could take more bytes than that.
-    pub(crate) fn nearest(&self, reach: f64, memory_limit: u64) -> Result<NearestSamples, AlignError> {
-        let neighbours = self.neighbours(reach);
+    pub(crate) fn nearest(&self, squared_radius: f64, memory_limit: u64) -> Result<NearestSamples, AlignError> {
+        let neighbours = self.neighbours(squared_radius);
         let needed = self.bytes(&neighbours);
         if needed > memory_limit {
             return Err(AlignError::Memory { needed, limit: memory_limit });
         }
-        Ok(NearestSamples::search(&self.trajectories, neighbours, reach))
+        Ok(NearestSamples::search(&self.trajectories, neighbours, squared_radius))
     }
 
     /// How much memory the alignment takes at most, if these are the neighbours.
@@ -85,11 +85,11 @@ impl SearchSpace {
         PER_SAMPLE_AND_TRAJECTORY * linked + PER_PAIR * (neighbours.len() as u64).pow(2)
     }
 
-    /// For each trajectory i, those of i, i + 1, … whose boxes are within reach of its own, ascending.
-    fn neighbours(&self, reach: f64) -> Vec<Vec<usize>> {
+    /// For each trajectory i, those of i, i + 1, … whose boxes are within the search radius of its own, ascending.
+    fn neighbours(&self, squared_radius: f64) -> Vec<Vec<usize>> {
         let of = |i: usize| -> Vec<usize> {
             let own = &self.trajectories[i].boxes;
-            let within = |&j: &usize| own.is_within(reach, &self.trajectories[j].boxes);
+            let within = |&j: &usize| own.is_within(squared_radius, &self.trajectories[j].boxes);
             (i..self.n_trajectories()).filter(within).collect()
         };
         (0..self.n_trajectories()).into_par_iter().map(of).collect()

@@ -7,8 +7,8 @@ use rand::{Rng, RngExt};
 /// Points along the line.
 const POINTS: usize = 120;
 
-/// How far along the line, in units of the state, its neighbourhood reaches.
-const REACH: f64 = 0.2;
+/// Standard deviation of the weights about the nearest point of the line, in units of the state.
+const WIDTH: f64 = 0.2;
 
 /// A policy that writes a wavy line from left to right on the plane and comes to rest at its end: near the line it
 /// follows it, beside it, it returns. Free movement of this kind is no gradient flow, and all of it lies in a corridor.
@@ -55,7 +55,7 @@ impl Policy for Handwriting {
         let nearest = self.line.iter().map(|(point, _)| squared(point)).fold(f64::INFINITY, f64::min);
         let (mut wanted, mut total) = (Vector2::zeros(), 0.0);
         for (point, velocity) in &self.line {
-            let weight = ((nearest - squared(point)) / (2.0 * REACH * REACH)).exp();
+            let weight = ((nearest - squared(point)) / (2.0 * WIDTH * WIDTH)).exp();
             wanted += weight * (velocity + self.back * (point - state));
             total += weight;
         }

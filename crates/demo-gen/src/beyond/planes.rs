@@ -53,8 +53,8 @@ impl Potential for Planes {
 
     fn value(&self, state: DVectorView<'_, f64>) -> f64 {
         let planes = self.normals.column_iter().zip(&self.offsets);
-        let rises: f64 = planes.map(|(normal, offset)| self.rise(normal.dot(&state) - offset)).sum();
-        self.slope * rises + self.bowl * state.norm_squared()
+        let ramps: f64 = planes.map(|(normal, offset)| self.rise(normal.dot(&state) - offset)).sum();
+        self.slope * ramps + self.bowl * state.norm_squared()
     }
 
     fn gradient_into(&self, state: DVectorView<'_, f64>, mut gradient: DVectorViewMut<'_, f64>) {

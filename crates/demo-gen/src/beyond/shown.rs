@@ -44,8 +44,8 @@ pub(super) struct Scene {
     pub(super) field: Field,
     /// Middle of the cube of starts, (n).
     pub(super) middle: Vec<f64>,
-    /// Half its edge.
-    pub(super) reach: f64,
+    /// Half its edge, in units of the state.
+    pub(super) half_width: f64,
 }
 
 impl Shown {
@@ -73,8 +73,9 @@ impl Shown {
 
     pub(super) fn draw<R: Rng + ?Sized>(self, rng: &mut R) -> Scene {
         let middle = vec![0.0; self.dim()];
-        let potential = |potential| Scene { field: Field::OfPotential(potential), middle: middle.clone(), reach: 2.0 };
-        let policy = |policy, reach| Scene { field: Field::OfPolicy(policy), middle: middle.clone(), reach };
+        let potential =
+            |potential| Scene { field: Field::OfPotential(potential), middle: middle.clone(), half_width: 2.0 };
+        let policy = |policy, half_width| Scene { field: Field::OfPolicy(policy), middle: middle.clone(), half_width };
         match self {
             Shown::Sinusoidal => potential(Box::new(Sinusoidal { amplitude: 0.1 })),
             Shown::Wells { dim } => potential(Box::new(Wells::draw(dim, rng))),
@@ -84,7 +85,7 @@ impl Shown {
             Shown::Handwriting => {
                 let line = Handwriting::draw(rng);
                 let middle = line.start().iter().copied().collect();
-                Scene { field: Field::OfPolicy(Box::new(line)), middle, reach: 0.25 }
+                Scene { field: Field::OfPolicy(Box::new(line)), middle, half_width: 0.25 }
             }
         }
     }

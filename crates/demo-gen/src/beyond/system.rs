@@ -105,7 +105,7 @@ impl BeyondSystem {
 
 impl Scene {
     fn start<R: Rng + ?Sized>(&self, rng: &mut R) -> DVector<f64> {
-        let from_middle = self.middle.iter().map(|middle| middle + rng.random_range(-self.reach..self.reach));
+        let from_middle = self.middle.iter().map(|middle| middle + rng.random_range(-self.half_width..self.half_width));
         DVector::from_iterator(self.middle.len(), from_middle)
     }
 

@@ -50,24 +50,24 @@ impl NearPasses {
         if rows.is_empty() {
             return Ok(NearPasses { pairs: 0, samples: 0, share: None });
         }
-        let reach = squared_reach(rows, distance);
+        let squared_radius = squared_radius(rows, distance);
         let mut fast = fast(rows);
         if fast.len() > SAMPLES {
             let mut drawn = index::sample(rng, fast.len(), SAMPLES).into_vec();
             drawn.sort_unstable();
             fast = drawn.into_iter().map(|at| fast[at]).collect();
         }
-        Ok(Self::among(rows, &fast, reach))
+        Ok(Self::among(rows, &fast, squared_radius))
     }
 
-    fn among(rows: &Rows, fast: &[usize], reach: f64) -> Self {
+    fn among(rows: &Rows, fast: &[usize], squared_radius: f64) -> Self {
         // Count, Σ|u_i − u_j|² and Σ(|u_i|² + |u_j|²) of every pair of trajectories.
         let mut meetings = BTreeMap::<(usize, usize), (usize, f64, f64)>::new();
         let (x, u) = (rows.states(), rows.velocities());
         for (at, &i) in fast.iter().enumerate() {
             for &j in &fast[at + 1..] {
                 let (k, l) = (rows.indices()[i].trajectory, rows.indices()[j].trajectory);
-                if k == l || (x.column(i) - x.column(j)).norm_squared() > reach {
+                if k == l || (x.column(i) - x.column(j)).norm_squared() > squared_radius {
                     continue;
                 }
                 let (count, apart, both) = meetings.entry((k.min(l), k.max(l))).or_default();
@@ -99,7 +99,7 @@ impl fmt::Display for NearPasses {
 }
 
 /// distance² · 2 Σ_k var x_k, variances over all samples.
-fn squared_reach(rows: &Rows, distance: f64) -> f64 {
+fn squared_radius(rows: &Rows, distance: f64) -> f64 {
     let mean: DVector<f64> = rows.states().column_mean();
     let squares: f64 = rows.states().column_iter().map(|x| (x - &mean).norm_squared()).sum();
     distance * distance * 2.0 * squares / rows.len() as f64

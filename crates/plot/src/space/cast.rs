@@ -119,9 +119,9 @@ fn inked(hits: &[Option<Hit>], width: usize) -> Vec<bool> {
     let mut inked = vec![false; hits.len()];
     let outline = INK * SAMPLES as f64;
     let mut stamp = |at: usize, radius: f64| {
-        let (column, row, reach) = (at % width, at / width, radius.floor() as usize);
-        for y in row.saturating_sub(reach)..(row + reach + 1).min(hits.len() / width) {
-            for x in column.saturating_sub(reach)..(column + reach + 1).min(width) {
+        let (column, row, pixels) = (at % width, at / width, radius.floor() as usize);
+        for y in row.saturating_sub(pixels)..(row + pixels + 1).min(hits.len() / width) {
+            for x in column.saturating_sub(pixels)..(column + pixels + 1).min(width) {
                 let aside = x.abs_diff(column).pow(2) + y.abs_diff(row).pow(2);
                 if (aside as f64) < radius * radius {
                     inked[x + y * width] = true;

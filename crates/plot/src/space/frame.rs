@@ -6,7 +6,7 @@ use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 use super::item::WORDS;
 use super::legend;
-use super::view::{Reach, Room, View, corners};
+use super::view::{Extent, Room, View, corners};
 use super::words::{area, polyline};
 
 /// A box with axes.
@@ -33,10 +33,10 @@ const APART: f64 = 45.0;
 
 impl Frame {
     /// What must be on the panel for it to be readable.
-    pub(super) fn reaches(&self) -> Vec<Reach> {
+    pub(super) fn extents(&self) -> Vec<Extent> {
         let room = LABEL + 8.0;
         let around = Room { left: room, right: room, up: 8.0, down: room };
-        corners([self.lowest, self.highest]).map(|at| Reach { at, room: around }).to_vec()
+        corners([self.lowest, self.highest]).map(|at| Extent { at, room: around }).to_vec()
     }
 
     /// Draws faces, grid, ticks and labels.
@@ -110,8 +110,8 @@ impl Frame {
         let across = Vector2::new(-along.y, along.x).normalize();
         let outward = if across.y.abs() > 0.35 { across * across.y.signum() } else { -across * across.x.signum() };
         let starts = (0..8).filter(|corner| corner >> axis & 1 == 0);
-        let reach = |corner: &usize| outward.dot(&view.place(&all[*corner]).xy().coords);
-        let start = starts.max_by(|a, b| reach(a).total_cmp(&reach(b)))?;
+        let outwards = |corner: &usize| outward.dot(&view.place(&all[*corner]).xy().coords);
+        let start = starts.max_by(|a, b| outwards(a).total_cmp(&outwards(b)))?;
         Some((outward, [all[start], all[start + (1 << axis)]]))
     }
 

@@ -1,6 +1,6 @@
 use nalgebra::{IsometryMatrix3, Point3, Vector3};
 
-use super::view::{Reach, Room, corners};
+use super::view::{Extent, Room, corners};
 use super::{Camera, legend, stroke};
 use crate::Stroke;
 
@@ -135,9 +135,9 @@ impl Item {
     }
 
     /// What must be on the panel for all of it to be there.
-    pub(super) fn reaches(&self, camera: &Camera) -> Vec<Reach> {
+    pub(super) fn extents(&self, camera: &Camera) -> Vec<Extent> {
         let around = |radius| Room { left: radius, right: radius, up: radius, down: radius };
-        let bare = |points: &[Point3<f64>]| points.iter().copied().map(Reach::bare).collect();
+        let bare = |points: &[Point3<f64>]| points.iter().copied().map(Extent::bare).collect();
         match self {
             Item::Path { points, stroke, .. } => with_room(points, around(stroke.width / 2.0)),
             Item::Arrow { from, to, stroke } => with_room(&[*from, *to], around(stroke::head(stroke))),
@@ -145,20 +145,20 @@ impl Item {
             Item::Plate { corners, .. } => bare(corners),
             Item::Ball { centre, radius, .. } => bare(&square(centre, *radius, camera)),
             Item::Capsule { ends, radius, .. } | Item::Cylinder { ends, radius, .. } => {
-                ends.iter().flat_map(|end| square(end, *radius, camera)).map(Reach::bare).collect()
+                ends.iter().flat_map(|end| square(end, *radius, camera)).map(Extent::bare).collect()
             }
             Item::Block { pose, size, .. } => {
                 let half = Point3::from(size / 2.0);
-                corners([-half, half]).map(|corner| Reach::bare(pose * corner)).to_vec()
+                corners([-half, half]).map(|corner| Extent::bare(pose * corner)).to_vec()
             }
-            Item::Note { at, text, shift, .. } => vec![Reach { at: *at, room: note_room(text, *shift) }],
+            Item::Note { at, text, shift, .. } => vec![Extent { at: *at, room: note_room(text, *shift) }],
             Item::Mark { at, .. } => with_room(&[*at], around(DISC + 1.0)),
         }
     }
 }
 
-fn with_room(points: &[Point3<f64>], room: Room) -> Vec<Reach> {
-    points.iter().map(|&at| Reach { at, room }).collect()
+fn with_room(points: &[Point3<f64>], room: Room) -> Vec<Extent> {
+    points.iter().map(|&at| Extent { at, room }).collect()
 }
 
 /// Points right, left, above and below that hold a ball in between.

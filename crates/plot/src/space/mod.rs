@@ -24,7 +24,7 @@ pub use item::{Item, Paint};
 
 use crate::raster::Raster;
 use crate::{Panel, Sketch};
-use view::{Area, Reach, View};
+use view::{Area, Extent, View};
 
 /// Pixels kept free at the edges.
 const MARGIN: f64 = 10.0;
@@ -78,15 +78,15 @@ impl Space {
     /// Where things come to lie on the panel.
     fn view(&self) -> View {
         let items = || self.items.iter().chain(&self.over);
-        let mut reaches: Vec<Reach> = match self.extent {
-            Some(corners) => view::corners(corners).map(Reach::bare).to_vec(),
-            None => items().flat_map(|item| item.reaches(&self.camera)).collect(),
+        let mut extents: Vec<Extent> = match self.extent {
+            Some(corners) => view::corners(corners).map(Extent::bare).to_vec(),
+            None => items().flat_map(|item| item.extents(&self.camera)).collect(),
         };
-        reaches.extend(self.frame.iter().flat_map(Frame::reaches));
+        extents.extend(self.frame.iter().flat_map(Frame::extents));
         let top = MARGIN + if self.title.is_empty() { 0.0 } else { TITLE };
         let bottom = self.size.1 - MARGIN - legend::height(&legend::names(items()), self.size.0);
         let area = Area { x: [MARGIN, self.size.0 - MARGIN], y: [top, bottom] };
-        View::fit(&self.camera, &reaches, area)
+        View::fit(&self.camera, &extents, area)
     }
 
     /// Draws bodies, then what they do not hide, then what nothing hides, then words.

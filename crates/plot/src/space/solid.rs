@@ -172,8 +172,11 @@ fn slab(at: &Point2<f64>, middle: &Point3<f64>, axis: &Vector3<f64>, half: f64) 
     if axis.z.abs() < EDGE_ON {
         return (start.abs() <= half).then_some(Span::ENDLESS);
     }
-    let (centre, reach) = (-start / axis.z, half / axis.z.abs());
-    Some(Span { enters: Hit { depth: centre + reach, normal: axis * axis.z.signum() }, leaves: centre - reach })
+    let (centre, half_length) = (-start / axis.z, half / axis.z.abs());
+    Some(Span {
+        enters: Hit { depth: centre + half_length, normal: axis * axis.z.signum() },
+        leaves: centre - half_length,
+    })
 }
 
 /// Where a line of sight enters what several shapes have in common: where it enters the last of them.

@@ -13,14 +13,14 @@ pub(super) struct Room {
 
 /// What has to be on the panel: a point, with room around it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Reach {
+pub(super) struct Extent {
     pub(super) at: Point3<f64>,
     pub(super) room: Room,
 }
 
-impl Reach {
+impl Extent {
     pub(super) fn bare(at: Point3<f64>) -> Self {
-        Reach { at, room: Room::default() }
+        Extent { at, room: Room::default() }
     }
 }
 
@@ -48,26 +48,26 @@ impl View {
     /// The largest view that has everything in an area, in its middle.
     ///
     /// Words too long for the area are cut off, and the scene is as large as without them.
-    pub(super) fn fit(camera: &Camera, reaches: &[Reach], area: Area) -> Self {
-        let view = Self::fit_all(camera, reaches, area);
+    pub(super) fn fit(camera: &Camera, extents: &[Extent], area: Area) -> Self {
+        let view = Self::fit_all(camera, extents, area);
         if view.scale > 0.0 {
             return view;
         }
-        let bare: Vec<_> = reaches.iter().map(|reach| Reach::bare(reach.at)).collect();
+        let bare: Vec<_> = extents.iter().map(|extent| Extent::bare(extent.at)).collect();
         Self::fit_all(camera, &bare, area)
     }
 
-    fn fit_all(camera: &Camera, reaches: &[Reach], area: Area) -> Self {
+    fn fit_all(camera: &Camera, extents: &[Extent], area: Area) -> Self {
         let mut axes = camera.axes();
         axes.row_mut(1).neg_mut();
         let spans = |scale| {
-            let across = reaches.iter().map(|r| ((axes.row(0) * r.at.coords)[0] * scale, r.room.left, r.room.right));
-            let down = reaches.iter().map(|r| ((axes.row(1) * r.at.coords)[0] * scale, r.room.up, r.room.down));
+            let across = extents.iter().map(|r| ((axes.row(0) * r.at.coords)[0] * scale, r.room.left, r.room.right));
+            let down = extents.iter().map(|r| ((axes.row(1) * r.at.coords)[0] * scale, r.room.up, r.room.down));
             [span(across), span(down)]
         };
         let sides = [area.x[1] - area.x[0], area.y[1] - area.y[0]];
         let fits = |scale: f64| spans(scale).iter().zip(sides).all(|([low, high], side)| high - low <= side);
-        let size = reaches.iter().map(|r| (r.at - reaches[0].at).norm()).fold(0.0, f64::max);
+        let size = extents.iter().map(|r| (r.at - extents[0].at).norm()).fold(0.0, f64::max);
         let [mut scale, mut above] = [0.0, 4.0 * (sides[0] + sides[1]) / size.max(1e-9)];
         for _ in 0..HALVINGS {
             let middle = f64::midpoint(scale, above);
@@ -94,11 +94,11 @@ impl View {
     }
 }
 
-/// From where to where things reach: (place, room before, room after).
+/// From the first to the last pixel that things take: (place, room before, room after).
 fn span(things: impl Iterator<Item = (f64, f64, f64)>) -> [f64; 2] {
-    let reach =
+    let widen =
         |[low, high]: [f64; 2], (at, before, after): (f64, f64, f64)| [low.min(at - before), high.max(at + after)];
-    let [low, high] = things.fold([f64::INFINITY, f64::NEG_INFINITY], reach);
+    let [low, high] = things.fold([f64::INFINITY, f64::NEG_INFINITY], widen);
     if low <= high { [low, high] } else { [0.0, 0.0] }
 }
 

@@ -18,7 +18,7 @@ use super::lines::{Lines, counted, short};
 use super::recorded::{named, read};
 use super::session::{Said, Session};
 
-/// Constraints that are told of, at most.
+/// Constraints that are listed, at most.
 const SHOWN: usize = 5;
 
 /// Hold a model against other recordings

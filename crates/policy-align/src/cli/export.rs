@@ -129,9 +129,9 @@ impl Export {
         write_paths(output, model, &paths)?;
         let samples = paths.iter().map(|path| path.times.len()).sum();
         let mut lines = Lines::default();
-        let told =
+        let written =
             format!("{}: {}, {}", output.display(), counted(paths.len(), "roll-out"), counted(samples, "sample"));
-        lines.add("written", &told);
+        lines.add("written", &written);
         Ok(Said::done(lines.next(&format!("rerun {}", output.display()))))
     }
 }

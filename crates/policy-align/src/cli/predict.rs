@@ -96,7 +96,7 @@ impl Predict {
             return Ok(Said::done(format!("{}\n", document(&model, &states, &predictions))));
         }
         if let (Some(_), None) = (&self.at, &self.output) {
-            return Ok(Said::done(one_told(&model, &predictions[0])));
+            return Ok(Said::done(one_prediction(&model, &predictions[0])));
         }
         let text = csv(&model, &states, &predictions);
         let Some(path) = &self.output else { return Ok(Said::done(text)) };
@@ -143,7 +143,7 @@ impl Predict {
     }
 }
 
-fn one_told(model: &Model, prediction: &Prediction) -> String {
+fn one_prediction(model: &Model, prediction: &Prediction) -> String {
     let mut lines = Lines::default();
     let actions = model.state.iter().zip(prediction.action.iter());
     let action: Vec<String> = actions.map(|(channel, action)| format!("{} {}", channel.name, short(*action))).collect();

@@ -77,10 +77,10 @@ impl RollOut {
             });
             return Ok(Said::done(format!("{document}\n")));
         }
-        Ok(Said::done(self.told(&followed)))
+        Ok(Said::done(self.summary(&followed)))
     }
 
-    fn told(&self, followed: &Path) -> String {
+    fn summary(&self, followed: &Path) -> String {
         let mut lines = Lines::default();
         let (count, last) = (followed.times.len(), followed.times.len() - 1);
         let end = list(followed.states.column(last).iter().copied());
@@ -94,8 +94,8 @@ impl RollOut {
         );
         lines.add("ended", &stop(&followed.stop));
         if let Some((by, which)) = followed.broken_by {
-            let told = if by == 0.0 { "exactly".to_owned() } else { format!("to {} (constraint {which})", short(by)) };
-            lines.add("constraints", &format!("kept {told}"));
+            let how = if by == 0.0 { "exactly".to_owned() } else { format!("to {} (constraint {which})", short(by)) };
+            lines.add("constraints", &format!("kept {how}"));
         }
         lines.add("states", &format!("{}, all within what was shown", counted(count, "sample")));
         match &self.output {

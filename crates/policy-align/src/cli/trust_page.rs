@@ -125,8 +125,8 @@ pub(crate) fn direction(state: &[StateChannel], direction: &[f64]) -> String {
     let mut parts: Vec<(f64, &str)> =
         direction.iter().copied().zip(state.iter().map(|channel| channel.name.as_str())).collect();
     parts.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
-    let told: Vec<String> = parts.iter().take(3).map(|(part, name)| format!("{} {name}", short(*part))).collect();
-    told.join(", ")
+    let listed: Vec<String> = parts.iter().take(3).map(|(part, name)| format!("{} {name}", short(*part))).collect();
+    listed.join(", ")
 }
 
 pub(crate) fn decisions(decisions: &[Decision]) -> Markup {
@@ -178,6 +178,6 @@ pub(crate) fn channels(state: &[StateChannel]) -> Markup {
 
 /// Episodes that are not learnt from.
 pub(crate) fn left_out(episodes: &[LeftOutEpisode]) -> Markup {
-    let told: Vec<String> = episodes.iter().map(|left| format!("{} ({})", left.episode, left.why)).collect();
-    html! { @if !told.is_empty() { p { "Left out: " (told.join(", ")) "." } } }
+    let listed: Vec<String> = episodes.iter().map(|left| format!("{} ({})", left.episode, left.why)).collect();
+    html! { @if !listed.is_empty() { p { "Left out: " (listed.join(", ")) "." } } }
 }

@@ -43,7 +43,7 @@ int {name}(const real *x, real *u, real *phi) {{
     }}
     {potential}
     for (k = 0; k < N; k++) if (x[k] < BOUNDS[k][0] || x[k] > BOUNDS[k][1]) return 0;
-    return nearest <= {reach};
+    return nearest <= {squared_radius};
 }}
 ",
         name = c.name,
@@ -51,7 +51,7 @@ int {name}(const real *x, real *u, real *phi) {{
         half = c.number(0.5),
         far = c.number(f64::from(f32::MAX)),
         speed = c.number(slope.scaled.speed),
-        reach = c.number(slope.scaled.squared_reach),
+        squared_radius = c.number(slope.scaled.squared_radius),
         entry = entry(c, &slope.scaled),
     );
 }
@@ -82,14 +82,14 @@ int {name}(const real *x, real *u, real *phi) {{
     }}
     if (u) for (k = 0; k < N; k++) u[k] = {unit} * sum[k] / SCALE[k];
     for (k = 0; k < N; k++) if (x[k] < BOUNDS[k][0] || x[k] > BOUNDS[k][1]) return 0;
-    return nearest <= {reach};
+    return nearest <= {squared_radius};
 }}
 ",
         name = c.name,
         zero = c.number(0.0),
         far = c.number(f64::from(f32::MAX)),
         unit = c.number(direct.scaled.speed),
-        reach = c.number(direct.scaled.squared_reach),
+        squared_radius = c.number(direct.scaled.squared_radius),
         entry = entry(c, &direct.scaled),
     );
 }

@@ -11,7 +11,7 @@ pub(super) struct Scaled {
     pub(super) speed: f64,
     pub(super) z: DMatrix<f64>,
     /// A state counts as known within this squared distance of a learnt one, in scaled coordinates.
-    pub(super) squared_reach: f64,
+    pub(super) squared_radius: f64,
 }
 
 /// A term that falls with distance, at a length.
@@ -58,7 +58,7 @@ fn length(scale: f64, dim: usize) -> f64 {
 }
 
 impl Scaled {
-    fn new<B>(stored: &StoredGp<B>, reach: impl FnOnce(&Scaled) -> f64) -> Result<Self, ExportError> {
+    fn new<B>(stored: &StoredGp<B>, squared_radius: impl FnOnce(&Scaled) -> f64) -> Result<Self, ExportError> {
         let (dim, numbers) = (stored.dim, stored.states.len());
         if stored.scaling.mean.len() != dim || numbers == 0 || !numbers.is_multiple_of(dim) {
             return Err(ExportError::Form { reason: "not one state a row".to_owned() });
@@ -68,17 +68,17 @@ impl Scaled {
             spread: stored.scaling.scale,
             speed: stored.unit,
             z: DMatrix::from_column_slice(dim, numbers / dim, &stored.states),
-            squared_reach: 0.0,
+            squared_radius: 0.0,
         };
-        scaled.squared_reach = reach(&scaled);
+        scaled.squared_radius = squared_radius(&scaled);
         Ok(scaled)
     }
 }
 
 impl SlopeTables {
-    pub(super) fn new(stored: StoredSlope, reach: impl FnOnce(&Scaled) -> f64) -> Result<Self, ExportError> {
+    pub(super) fn new(stored: StoredSlope, squared_radius: impl FnOnce(&Scaled) -> f64) -> Result<Self, ExportError> {
         let StoredSlope { slope_gp, directions } = stored;
-        let scaled = Scaled::new(&slope_gp, reach)?;
+        let scaled = Scaled::new(&slope_gp, squared_radius)?;
         let (n, rows) = scaled.z.shape();
         if directions.len() != n * rows || slope_gp.weights.len() != rows {
             return Err(ExportError::Form { reason: "not one direction and one weight a row".to_owned() });
@@ -103,8 +103,11 @@ impl SlopeTables {
 }
 
 impl DirectTables {
-    pub(super) fn new(stored: StoredGp<DirectBlock>, reach: impl FnOnce(&Scaled) -> f64) -> Result<Self, ExportError> {
-        let scaled = Scaled::new(&stored, reach)?;
+    pub(super) fn new(
+        stored: StoredGp<DirectBlock>,
+        squared_radius: impl FnOnce(&Scaled) -> f64,
+    ) -> Result<Self, ExportError> {
+        let scaled = Scaled::new(&stored, squared_radius)?;
         let (n, rows) = scaled.z.shape();
         if stored.weights.len() != n * rows {
             return Err(ExportError::Form { reason: "not n weights a row".to_owned() });

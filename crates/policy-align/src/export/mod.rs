@@ -11,7 +11,7 @@ mod onnx_gp;
 mod onnx_graph;
 mod onnx_lwpr;
 mod protobuf;
-mod reach;
+mod support_radius;
 mod tables;
 
 pub use c::{CSource, Precision};

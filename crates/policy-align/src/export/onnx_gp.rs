@@ -22,8 +22,8 @@ fn differences(graph: &mut Graph, scaled: &Scaled, state: &str) -> [String; 3] {
 
 fn support(graph: &mut Graph, scaled: &Scaled, squared: &str) -> String {
     let nearest = graph.least(squared, 1);
-    let reach = graph.number(scaled.squared_reach);
-    graph.node("LessOrEqual", &[&nearest, &reach])
+    let squared_radius = graph.number(scaled.squared_radius);
+    graph.node("LessOrEqual", &[&nearest, &squared_radius])
 }
 
 /// A matrix (n, M) with a row a column, (M, n).

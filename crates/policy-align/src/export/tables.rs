@@ -6,7 +6,7 @@ use serde::de::DeserializeOwned;
 use super::error::ExportError;
 use super::gp_tables::{DirectTables, SlopeTables};
 use super::lwpr_tables::LwprTables;
-use super::reach::squared_reach;
+use super::support_radius::squared_radius;
 use crate::{Learnt, Model};
 
 /// A policy as tables of numbers, with what every learner's has in common.
@@ -31,9 +31,10 @@ impl Tables {
     pub(super) fn of(model: &Model) -> Result<Tables, ExportError> {
         let scale = DVector::from_iterator(model.state.len(), model.state.iter().map(|channel| channel.scale));
         let shared = scale.iter().all(|&s| s == scale[0]);
-        let slope = |fit: &SlopeFit| SlopeTables::new(stored::<_, StoredSlope>(fit)?, |z| squared_reach(model, z));
-        let direct =
-            |fit: &DirectFit| DirectTables::new(stored::<_, StoredDirect>(fit)?.direct_gp, |z| squared_reach(model, z));
+        let slope = |fit: &SlopeFit| SlopeTables::new(stored::<_, StoredSlope>(fit)?, |z| squared_radius(model, z));
+        let direct = |fit: &DirectFit| {
+            DirectTables::new(stored::<_, StoredDirect>(fit)?.direct_gp, |z| squared_radius(model, z))
+        };
         let learner = match &model.learnt {
             Learnt::PolicyAlign(policy) => {
                 let regression = policy.global_potential().regression();

@@ -102,7 +102,7 @@ fn integrable(prepared: &Prepared) -> Result<(Demonstrations, Integration, &'sta
     let averaged = averaged(prepared)?;
     let smooth = || SavitzkyGolay::default().smooth(&averaged);
     Ok(match prepared.recorded {
-        Recorded::PositionsAsTold => (averaged, Integration::Displacement, "positions as smoothing left them"),
+        Recorded::PositionsAsRequested => (averaged, Integration::Displacement, "positions as smoothing left them"),
         Recorded::NoisyVelocities(_) if prepared.smoothing != Smoothing::Auto => {
             (averaged, Integration::Velocity, "recorded; positions as smoothing left them")
         }

@@ -8,7 +8,7 @@ use crate::{Prepared, Recorded};
 pub(crate) fn rows(prepared: &Prepared) -> Result<Rows, GpError> {
     let demonstrations = averaged(prepared)?;
     let demonstrations = match prepared.recorded {
-        Recorded::PositionsAsTold => with_slopes(&demonstrations).map_err(|error| cleaning(&error))?,
+        Recorded::PositionsAsRequested => with_slopes(&demonstrations).map_err(|error| cleaning(&error))?,
         _ => demonstrations,
     };
     let rows = prepared.recorded.front_end().rows(&demonstrations)?;

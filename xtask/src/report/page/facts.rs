@@ -9,10 +9,10 @@ use crate::report::tally::Tally;
 use crate::report::undrawn;
 use crate::results::Results;
 
-/// Seconds from which a time is told in minutes.
+/// Seconds from which a time is shown in minutes.
 const MINUTES_FROM: f64 = 120.0;
 
-/// Seconds from which a time is told in hours.
+/// Seconds from which a time is shown in hours.
 const HOURS_FROM: f64 = 7200.0;
 
 /// A line of facts.
@@ -87,8 +87,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_told_in_fitting_units() {
-        let told = [0.4, 98.9, 119.0, 120.0, 3599.0, 9000.0].map(time);
-        assert_eq!(told, ["0 s", "99 s", "119 s", "2 min", "60 min", "2.5 h"]);
+    fn times_are_shown_in_fitting_units() {
+        let shown = [0.4, 98.9, 119.0, 120.0, 3599.0, 9000.0].map(time);
+        assert_eq!(shown, ["0 s", "99 s", "119 s", "2 min", "60 min", "2.5 h"]);
     }
 }

@@ -62,7 +62,7 @@ pub(super) fn view(sources: &Sources, figures: &[&(Figure, String)]) -> Markup {
     }
 }
 
-/// Parts of a unit to which positions are told: as many as the figure data have digits.
+/// Parts of a unit to which positions are rounded: as many as the figure data have digits.
 const PARTS: f64 = 1e4;
 
 /// What the view plays.

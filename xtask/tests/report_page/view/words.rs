@@ -44,8 +44,8 @@ fn what_holds_the_expert_is_said() {
     let mut said = |learner: &str, start: usize| -> String {
         view::<()>(&mut page, &format!("select({{ learner: '{learner}', constraint: 'obstacle', start: {start} }})"));
         view::<()>(&mut page, "render()");
-        let told: String = page.evaluate("document.querySelector('.view-words').textContent");
-        told.lines().find(|line| line.starts_with(learner)).unwrap().to_owned()
+        let text: String = page.evaluate("document.querySelector('.view-words').textContent");
+        text.lines().find(|line| line.starts_with(learner)).unwrap().to_owned()
     };
     assert!(!said("expert", 0).contains("is held"));
     assert!(said("naive", 0).contains("Its left hand is held by the plate before its place"));
@@ -56,12 +56,12 @@ fn what_holds_the_expert_is_said() {
 }
 
 #[test]
-fn the_closest_is_told_beside_the_end() {
+fn the_closest_is_named_beside_the_end() {
     let Some(mut page) = page() else { return };
     view::<()>(&mut page, "select({ learner: 'policy_align', constraint: 'gap', start: 0 })");
     view::<()>(&mut page, "render()");
-    let told: String = page.evaluate("document.querySelector('.view-words').textContent");
-    let line = told.lines().find(|line| line.starts_with("policy-align")).unwrap().to_owned();
+    let text: String = page.evaluate("document.querySelector('.view-words').textContent");
+    let line = text.lines().find(|line| line.starts_with("policy-align")).unwrap().to_owned();
     let numbers = |from: &str| -> Vec<f64> {
         let words = line.split(from).nth(1).unwrap().split(" cm").next().unwrap();
         words.split(" and ").map(|number| number.trim().parse().unwrap()).collect()
@@ -71,7 +71,7 @@ fn the_closest_is_told_beside_the_end() {
 }
 
 #[test]
-fn what_the_policy_wants_is_told_where_the_robot_misses_it() {
+fn what_the_policy_wants_is_named_where_the_robot_misses_it() {
     let Some(mut page) = page() else { return };
     let words = "document.querySelector('.view-words').textContent";
     for constraint in ["gap", "obstacle", "none"] {
@@ -81,10 +81,10 @@ fn what_the_policy_wants_is_told_where_the_robot_misses_it() {
                 &format!("select({{ learner: 'policy_align', constraint: '{constraint}', start: {start} }})"),
             );
             view::<()>(&mut page, "render()");
-            let told: String = page.evaluate(words);
-            assert!(told.starts_with("From the robot’s left and right palm"), "{told}");
+            let text: String = page.evaluate(words);
+            assert!(text.starts_with("From the robot’s left and right palm"), "{text}");
             let missed: bool = page.evaluate(MISSED);
-            let line = told.lines().find(|line| line.starts_with("policy-align")).unwrap().to_owned();
+            let line = text.lines().find(|line| line.starts_with("policy-align")).unwrap().to_owned();
             assert_eq!(line.contains("Its policy wants"), missed, "{constraint}, start {start}: {line}");
         }
     }

@@ -7,16 +7,16 @@ use crate::halton::between;
 
 /// States at which the model is asked whether it knows them.
 const ASKED: usize = 1000;
-/// Share of the states within reach that the model may not know.
+/// Share of the states within the radius that the model may not know.
 const UNKNOWN: f64 = 0.05;
 
 /// How far from a learnt state a state still counts as known in an exported Gaussian process, squared, in its scaled
 /// coordinates; negative if nothing does.
 ///
 /// The variance that decides in the model itself needs a matrix of the size of all samples squared. What is exported asks
-/// for the nearest learnt state instead: it reaches as far as 95 % of the states within it, evenly spread over the
+/// for the nearest learnt state instead: the radius goes as far as 95 % of the states within it, evenly spread over the
 /// model's bounds, are known to the model.
-pub(super) fn squared_reach(model: &Model, scaled: &Scaled) -> f64 {
+pub(super) fn squared_radius(model: &Model, scaled: &Scaled) -> f64 {
     let (policy, bounds) = (model.policy(), model.bounds());
     let asked = (1..=ASKED).into_par_iter().map(|index| {
         let state = between(&bounds, index);
@@ -27,12 +27,12 @@ pub(super) fn squared_reach(model: &Model, scaled: &Scaled) -> f64 {
     });
     let mut asked: Vec<_> = asked.collect();
     asked.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (mut unknown, mut reach) = (0, -1.0);
+    let (mut unknown, mut squared_radius) = (0, -1.0);
     for (count, (squared, known)) in asked.into_iter().enumerate() {
         unknown += usize::from(!known);
         if known && unknown as f64 <= UNKNOWN * (count + 1) as f64 {
-            reach = squared;
+            squared_radius = squared;
         }
     }
-    reach
+    squared_radius
 }
