@@ -1,13 +1,18 @@
 //! Bags of ROS 2 in MCAP: one topic becomes one recording.
 
+mod fields;
+pub(crate) mod format;
 mod messages;
 mod noted;
+mod record;
 mod records;
+mod source;
 mod topic;
 
 use std::collections::{BTreeMap, HashMap};
 
 pub(crate) use self::noted::Noted;
+use self::record::Record;
 use self::records::End;
 use self::topic::Topic;
 use crate::draft::Drafts;
@@ -51,15 +56,14 @@ struct Bag<'a> {
 }
 
 impl Bag<'_> {
-    fn add(&mut self, record: mcap::records::Record<'_>) -> Result<(), ReadError> {
-        use mcap::records::Record;
+    fn add(&mut self, record: Record<'_>) -> Result<(), ReadError> {
         match record {
-            Record::Schema { header, .. } => {
-                self.schemas.insert(header.id, header.name);
+            Record::Schema { id, name } => {
+                self.schemas.insert(id, name.to_owned());
             }
-            Record::Channel(channel) => {
-                let schema = self.schemas.get(&channel.schema_id).cloned().unwrap_or_default();
-                let known = self.topics.iter().position(|topic| topic.is(&channel.topic, &schema));
+            Record::Channel { id, schema, topic: name, encoding } => {
+                let schema = self.schemas.get(&schema).cloned().unwrap_or_default();
+                let known = self.topics.iter().position(|topic| topic.is(name, &schema));
                 let topic = match known {
                     Some(topic) => topic,
                     None if self.topics.len() == MOST_TOPICS => {
@@ -67,19 +71,19 @@ impl Bag<'_> {
                         return Err(ReadError::TooLarge(Fault::new(what, &self.input.name, "a bag with fewer")));
                     }
                     None => {
-                        self.topics.push(Topic::new(self.input, channel.topic, schema, &channel.message_encoding));
+                        self.topics.push(Topic::new(self.input, name.to_owned(), schema, encoding));
                         self.topics.len() - 1
                     }
                 };
-                self.by_channel.insert(channel.id, topic);
+                self.by_channel.insert(id, topic);
             }
-            Record::Message { header, data } => {
-                if let Some(&topic) = self.by_channel.get(&header.channel_id) {
-                    self.topics[topic].add(header.log_time, &data);
+            Record::Message { channel, log_time, data } => {
+                if let Some(&topic) = self.by_channel.get(&channel) {
+                    self.topics[topic].add(log_time, data);
                 }
             }
-            Record::Metadata(metadata) if metadata.name == METADATA => self.metadata = metadata.metadata,
-            _ => {}
+            Record::Metadata { name, entries } if name == METADATA => self.metadata = entries,
+            Record::Metadata { .. } => {}
         }
         Ok(())
     }

@@ -1,9 +1,9 @@
-use std::io::Read as _;
+use std::io::{self, BufReader, Read};
 
-use mcap::McapError;
-use mcap::records::Record;
-use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
-
+use super::fields::{Fields, Misfit};
+use super::format::{MAGIC, opcode};
+use super::record::Record;
+use super::source::{Summed, Watched, content, head, skip};
 use crate::input::{Input, unreadable};
 use crate::{Fault, ReadError};
 
@@ -15,47 +15,162 @@ pub(super) enum End {
     Cut,
 }
 
-/// Read at once.
-const BLOCK: usize = 256 << 10;
-
 /// Calls `visit` with the records of a bag, in the order of the file, whatever its index says.
+///
+/// Records are unpacked one after another, so that a bag need not fit into memory and what a killed recorder left can be read.
 pub(super) fn each(
     input: &Input<'_>,
     progress: &mut dyn FnMut(u64),
     mut visit: impl FnMut(Record<'_>) -> Result<(), ReadError>,
 ) -> Result<End, ReadError> {
-    let longest = input.len.saturating_mul(64).saturating_add(1 << 20).min(1 << 31);
-    let options = LinearReaderOptions::default()
-        .with_validate_chunk_crcs(true)
-        .with_validate_data_section_crc(true)
-        .with_record_length_limit(longest as usize);
-    let mut reader = LinearReader::new_with_options(options);
-    let mut file = input.open()?;
-    let mut exhausted = false;
-    while let Some(event) = reader.next_event() {
-        match event {
-            Ok(LinearReadEvent::ReadRequest(wanted)) => {
-                // The length asked for may come from a header: no more is taken than a block.
-                let block = reader.insert(wanted.clamp(1, BLOCK));
-                let read = file.read(block).map_err(|error| unreadable(&error, &input.name))?;
-                reader.notify_read(read);
-                exhausted = read == 0;
-                progress(read as u64);
-            }
-            Ok(LinearReadEvent::Record { opcode, data }) => {
-                input.charge(data.len() as u64)?;
-                visit(mcap::parse_record(opcode, data).map_err(|error| damaged(&error, &input.name))?)?;
-            }
-            Err(McapError::UnexpectedEof) if exhausted => return Ok(End::Cut),
-            Err(error) => return Err(damaged(&error, &input.name)),
-        }
+    let mut file = Summed::new(Watched::new(input.open()?, progress));
+    let mut reader = Reader { input, visit: &mut visit, buffer: Vec::new() };
+    match reader.bag(&mut file) {
+        Ok(()) => Ok(End::Whole),
+        Err(Stop::Refused(error)) => Err(error),
+        Err(Stop::Bytes(error)) if error.raw_os_error().is_some() => Err(unreadable(&error, &input.name)),
+        // Whatever was missing is behind the end of the file.
+        Err(Stop::Bytes(_)) if file.ended() => Ok(End::Cut),
+        Err(Stop::Bytes(error)) => Err(damaged(&format!("what was packed cannot be unpacked ({error})"), &input.name)),
+        Err(Stop::Damaged(what)) => Err(damaged(&what, &input.name)),
     }
-    Ok(End::Whole)
 }
 
-fn damaged(error: &McapError, file: &str) -> ReadError {
+/// Why reading ends early.
+enum Stop {
+    /// Bytes that cannot be had, from the file or unpacked.
+    Bytes(io::Error),
+    Damaged(String),
+    Refused(ReadError),
+}
+
+impl From<io::Error> for Stop {
+    fn from(error: io::Error) -> Self {
+        Stop::Bytes(error)
+    }
+}
+
+impl From<ReadError> for Stop {
+    fn from(error: ReadError) -> Self {
+        Stop::Refused(error)
+    }
+}
+
+impl From<Misfit> for Stop {
+    fn from(_: Misfit) -> Self {
+        Stop::Damaged("a record does not hold what its kind asks for".to_owned())
+    }
+}
+
+struct Reader<'a, 'v> {
+    input: &'a Input<'a>,
+    visit: &'v mut dyn FnMut(Record<'_>) -> Result<(), ReadError>,
+    /// Content of a record.
+    buffer: Vec<u8>,
+}
+
+impl Reader<'_, '_> {
+    fn bag<R: Read>(&mut self, file: &mut Summed<R>) -> Result<(), Stop> {
+        magic(file, "begin")?;
+        loop {
+            let sum = file.sum();
+            let (kind, length) = head(file)?.ok_or_else(|| io::Error::from(io::ErrorKind::UnexpectedEof))?;
+            match kind {
+                opcode::CHUNK => self.chunk(file, length)?,
+                opcode::DATA_END => {
+                    let stated = Fields::new(content(file, length, &mut self.buffer)?).u32()?;
+                    agree(stated, sum, "the data")?;
+                }
+                opcode::FOOTER => {
+                    skip(file, length)?;
+                    return magic(file, "end");
+                }
+                _ => self.record(kind, length, file)?,
+            }
+        }
+    }
+
+    /// A record outside of chunks or in one.
+    fn record(&mut self, kind: u8, length: u64, source: &mut impl Read) -> Result<(), Stop> {
+        if kind == 0 {
+            return Err(Stop::Damaged("there is a record of kind 0".to_owned()));
+        }
+        if !Record::is_of_use(kind) {
+            return Ok(skip(source, length)?);
+        }
+        if let Some(record) = Record::parse(kind, content(source, length, &mut self.buffer)?)? {
+            (self.visit)(record)?;
+        }
+        Ok(())
+    }
+
+    fn chunk<R: Read>(&mut self, file: &mut Summed<R>, length: u64) -> Result<(), Stop> {
+        let mut packed = file.take(length);
+        let mut fixed = [0; 32];
+        packed.read_exact(&mut fixed)?;
+        let mut fields = Fields::new(&fixed[16..]);
+        let (unpacked, stated, name) = (fields.u64()?, fields.u32()?, fields.u32()?);
+        let compression =
+            String::from_utf8_lossy(content(&mut packed, u64::from(name), &mut self.buffer)?).into_owned();
+        let mut rest = [0; 8];
+        packed.read_exact(&mut rest)?;
+        if u64::from_le_bytes(rest) > packed.limit() {
+            return Err(Stop::Damaged("a chunk is longer than its record".to_owned()));
+        }
+        self.input.charge(unpacked)?;
+        let unpacking: Box<dyn Read + '_> = match &compression[..] {
+            "" => Box::new(&mut packed),
+            "lz4" => Box::new(lz4_flex::frame::FrameDecoder::new(&mut packed)),
+            "zstd" => {
+                let mut decoder = zstd::stream::read::Decoder::new(&mut packed)?;
+                decoder.window_log_max(self.largest_window())?;
+                Box::new(BufReader::new(decoder))
+            }
+            other => {
+                let what = format!("a chunk is compressed with {other:?}, which is neither lz4 nor zstd");
+                return Err(Stop::Damaged(what));
+            }
+        };
+        let mut records = Summed::new(unpacking).take(unpacked);
+        while let Some((kind, length)) = head(&mut records)? {
+            if length > records.limit() {
+                return Err(Stop::Damaged("a record is longer than its chunk".to_owned()));
+            }
+            self.record(kind, length, &mut records)?;
+        }
+        if records.limit() > 0 {
+            return Err(Stop::Bytes(io::ErrorKind::UnexpectedEof.into()));
+        }
+        agree(stated, records.get_ref().sum(), "a chunk")?;
+        drop(records);
+        let behind = packed.limit();
+        Ok(skip(&mut packed, behind)?)
+    }
+
+    /// As the power of two. A packed chunk may ask for so much memory before its first byte comes.
+    fn largest_window(&self) -> u32 {
+        if self.input.len < 1 << 20 { 26 } else { 27 }
+    }
+}
+
+fn magic(file: &mut impl Read, which: &str) -> Result<(), Stop> {
+    let mut found = [0; MAGIC.len()];
+    file.read_exact(&mut found)?;
+    if found == MAGIC { Ok(()) } else { Err(Stop::Damaged(format!("it does not {which} as bags do"))) }
+}
+
+/// A sum of 0 was not computed.
+fn agree(stated: u32, sum: u32, what: &str) -> Result<(), Stop> {
+    if stated == 0 || stated == sum {
+        Ok(())
+    } else {
+        Err(Stop::Damaged(format!("{what} does not have its check sum")))
+    }
+}
+
+fn damaged(what: &str, file: &str) -> ReadError {
     ReadError::Corrupt(Fault::new(
-        format!("the bag is damaged: {error}"),
+        format!("the bag is damaged: {what}"),
         file,
         "another copy of the file, or mcap recover FILE",
     ))

@@ -1,9 +1,10 @@
+mod bag;
+mod record;
+
 use std::collections::BTreeMap;
-use std::io::{self, Seek, Write};
+use std::io::{self, Write};
 
-use mcap::records::{MessageHeader, Metadata};
-use mcap::{Compression, McapError, WriteOptions};
-
+use self::bag::{Bag, Topic};
 use super::{Failure, has_velocities};
 use crate::Recordings;
 use crate::cdr::Writer;
@@ -36,30 +37,19 @@ const START: u64 = 1_000_000_000;
 const PAUSE: u64 = 5_000_000_000;
 
 /// Messages of `sensor_msgs/msg/JointState`, a message a sample; names of movements and units stand in a metadata record.
-pub(super) fn write(file: impl Write + Seek, recordings: &Recordings) -> Result<(), Failure> {
+pub(super) fn write(file: impl Write, recordings: &Recordings) -> Result<(), Failure> {
     has_velocities(recordings)?;
-    let io = |error: McapError| match error {
-        McapError::Io(error) => error,
-        other => io::Error::other(other),
-    };
-    let options = WriteOptions::new().compression(Some(Compression::Zstd)).profile("ros2").library("demo-io");
-    let mut bag = options.create(file).map_err(io)?;
-    let schema = bag.add_schema(TYPE, "ros2msg", SCHEMA.as_bytes()).map_err(io)?;
-    let channel_id = bag.add_channel(schema, TOPIC, "cdr", &BTreeMap::new()).map_err(io)?;
+    let mut bag = Bag::create(file, Topic { name: TOPIC, schema: (TYPE, SCHEMA) })?;
     let mut start = START;
-    let mut sequence = 0;
     for episode in &recordings.episodes {
         let mut stamp = start;
         for (sample, time) in episode.times.iter().enumerate() {
             stamp = start + (time * 1e9).round() as u64;
-            let header = MessageHeader { channel_id, sequence, log_time: stamp, publish_time: stamp };
-            bag.write_to_known_channel(&header, &message(recordings, episode, sample, stamp)).map_err(io)?;
-            sequence = sequence.wrapping_add(1);
+            bag.message(stamp, &message(recordings, episode, sample, stamp))?;
         }
         start = stamp + PAUSE;
     }
-    bag.write_metadata(&metadata(recordings)?).map_err(io)?;
-    bag.finish().map_err(io)?;
+    bag.finish(METADATA, &metadata(recordings)?)?;
     Ok(())
 }
 
@@ -79,7 +69,7 @@ fn message(recordings: &Recordings, episode: &crate::Episode, sample: usize, sta
     writer.message()
 }
 
-fn metadata(recordings: &Recordings) -> Result<Metadata, io::Error> {
+fn metadata(recordings: &Recordings) -> io::Result<BTreeMap<String, String>> {
     let noted: Vec<Noted> = recordings
         .episodes
         .iter()
@@ -95,5 +85,5 @@ fn metadata(recordings: &Recordings) -> Result<Metadata, io::Error> {
             metadata.insert(format!("unit/{}", channel.name), unit.clone());
         }
     }
-    Ok(Metadata { name: METADATA.to_owned(), metadata })
+    Ok(metadata)
 }

@@ -1,0 +1,59 @@
+use std::collections::BTreeMap;
+
+use super::fields::{Fields, Misfit};
+use super::format::opcode;
+
+/// What of a bag is of use here.
+#[derive(Debug, PartialEq)]
+pub(super) enum Record<'a> {
+    Schema {
+        id: u16,
+        name: &'a str,
+    },
+    Channel {
+        id: u16,
+        schema: u16,
+        topic: &'a str,
+        encoding: &'a str,
+    },
+    Message {
+        channel: u16,
+        /// Nanoseconds since 1970.
+        log_time: u64,
+        data: &'a [u8],
+    },
+    Metadata {
+        name: &'a str,
+        entries: BTreeMap<String, String>,
+    },
+}
+
+impl<'a> Record<'a> {
+    /// Nothing of it is of use where the kind is another.
+    pub(super) fn parse(kind: u8, content: &'a [u8]) -> Result<Option<Self>, Misfit> {
+        let mut fields = Fields::new(content);
+        Ok(Some(match kind {
+            opcode::SCHEMA => Record::Schema { id: fields.u16()?, name: fields.text()? },
+            opcode::CHANNEL => Record::Channel {
+                id: fields.u16()?,
+                schema: fields.u16()?,
+                topic: fields.text()?,
+                encoding: fields.text()?,
+            },
+            opcode::MESSAGE => {
+                let channel = fields.u16()?;
+                let _sequence = fields.u32()?;
+                let log_time = fields.u64()?;
+                let _published = fields.u64()?;
+                Record::Message { channel, log_time, data: fields.rest() }
+            }
+            opcode::METADATA => Record::Metadata { name: fields.text()?, entries: fields.map()? },
+            _ => return Ok(None),
+        }))
+    }
+
+    /// Whether records of this kind are worth being kept in memory.
+    pub(super) fn is_of_use(kind: u8) -> bool {
+        matches!(kind, opcode::SCHEMA | opcode::CHANNEL | opcode::MESSAGE | opcode::METADATA)
+    }
+}
