@@ -3,8 +3,7 @@
 
 mod urdf_text;
 
-use std::time::{Duration, Instant};
-
+use cpu_time::ThreadTime;
 use kinematics::{Element, KinematicsError, MeshShape, RobotModel, SelfCollision, UrdfProblem, Workspace};
 use nalgebra::{DVector, Matrix6xX, Point3};
 use proptest::prelude::*;
@@ -57,22 +56,36 @@ fn tags_of_very_many_attributes_are_refused() {
     }
 }
 
-/// Every joint follows the one before it in the row and after it in the file.
+/// A row of prismatic joints along x, the last one first in the file: each follows the one before it, or none does.
+fn row(n: usize, mimic: impl Fn(usize) -> String) -> String {
+    let links: Vec<String> = (0..=n).map(|i| format!("l{i}")).collect();
+    let one = |i: usize| {
+        let inside = format!("{LIMIT}{}", if i == 0 { String::new() } else { mimic(i - 1) });
+        joint(&format!("j{i}"), "prismatic", &links[i], &links[i + 1], &inside)
+    };
+    let joints: String = (0..n).rev().map(one).collect();
+    robot(&links.join(" "), &joints)
+}
+
+/// Processor time of this thread, the least of three: what else the machine does takes no part in it.
+fn seconds_to_load(text: &str) -> f64 {
+    let load = || {
+        let started = ThreadTime::now();
+        assert!(RobotModel::from_urdf(text).is_ok());
+        started.elapsed().as_secs_f64()
+    };
+    (0..3).map(|_| load()).fold(f64::INFINITY, f64::min)
+}
+
+/// Walking down the chain anew for every joint takes 300 times as long.
 #[test]
-fn a_chain_of_20_000_mimic_joints_takes_as_long_as_it_is() {
+fn a_chain_of_20_000_mimic_joints_takes_as_long_as_as_many_free_ones() {
     const N: usize = 20_000;
-    let links: Vec<String> = (0..=N).map(|i| format!("l{i}")).collect();
-    let joints: String = (0..N)
-        .rev()
-        .map(|i| {
-            let follows = if i == 0 { String::new() } else { format!(r#"<mimic joint="j{}" offset="0.25"/>"#, i - 1) };
-            let inside = format!("{LIMIT}{follows}");
-            joint(&format!("j{i}"), "prismatic", &links[i], &links[i + 1], &inside)
-        })
-        .collect();
-    let started = Instant::now();
-    let robot = RobotModel::from_urdf(&robot(&links.join(" "), &joints)).unwrap();
-    assert!(started.elapsed() < Duration::from_secs(15), "{:?}", started.elapsed());
+    let chain = row(N, |follows| format!(r#"<mimic joint="j{follows}" offset="0.25"/>"#));
+    let free = row(N, |_| String::new());
+    let [chained, alone] = [&chain, &free].map(|text| seconds_to_load(text));
+    assert!(chained < 20.0 * alone, "{chained} s, without mimic {alone} s");
+    let robot = RobotModel::from_urdf(&chain).unwrap();
     let mut workspace = Workspace::new();
     let poses = robot.forward_kinematics(DVector::repeat(1, 0.5).as_view(), &mut workspace).unwrap();
     let slides: f64 = (0..N).map(|i| 0.5 + 0.25 * i as f64).sum();

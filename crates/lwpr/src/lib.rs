@@ -29,7 +29,7 @@
 //! # What to choose
 //!
 //! - `norm_in`, `norm_out`: the spread of each dimension. All other numbers speak of data divided by these.
-//! - `init_d`: the one that matters most. A field reaches about 2/√`init_d`; start with a few tens in 2 dimensions, less in
+//! - `init_d`: the one that matters most. Fields are about 2/√`init_d` wide; start with a few tens in 2 dimensions, less in
 //!   more, double it while a validation error falls. Too small, and one field covers everything; too large, and fields
 //!   multiply until each knows only a few samples.
 //! - [`Metric::Diagonal`] is right nearly always. [`Metric::Full`] turns fields along valleys, at O(n³) a sample and field.

@@ -19,7 +19,7 @@ impl Field {
         let mut field = Field {
             beta0: template.map_or(y, |field| field.beta0),
             sum_e2: 0.0,
-            ss_p: 0.0,
+            degrees_of_freedom: 0.0,
             trust: 0.0,
             directions: Vec::new(),
             rows: Rows::zeros(layout.directions()),
@@ -50,7 +50,7 @@ impl Field {
     pub(crate) fn grow(&mut self, settings: &Settings) {
         let p = &settings.params;
         self.add_direction(settings, 1.0, p.tau_lambda * p.init_lambda + p.final_lambda * (1.0 - p.tau_lambda));
-        self.ss_p = 0.0;
+        self.degrees_of_freedom = 0.0;
     }
 
     /// Appends a direction along the next axis.
@@ -58,12 +58,12 @@ impl Field {
         let (width, k) = (settings.width, self.directions.len());
         self.directions.push(Direction {
             beta: 0.0,
-            ss2: settings.params.init_s2,
-            ss_y: 0.0,
+            sum_ws2: settings.params.init_s2,
+            sum_wst: 0.0,
             h: 0.0,
             r: 0.0,
             sum_w: NEXT_TO_NOTHING,
-            sum_e_cv2: 0.0,
+            sum_loo_error2: 0.0,
             n_data,
             lambda,
             s: 0.0,

@@ -15,14 +15,14 @@ pub(crate) struct Direction<T = f64> {
     /// Regression coefficient along the direction.
     pub(crate) beta: T,
     /// Σ w s² and Σ w s t.
-    pub(crate) ss2: T,
-    pub(crate) ss_y: T,
+    pub(crate) sum_ws2: T,
+    pub(crate) sum_wst: T,
     /// Memory of the leave-one-out derivative.
     pub(crate) h: T,
     pub(crate) r: T,
     pub(crate) sum_w: T,
     /// Σ w e² of the leave-one-out errors.
-    pub(crate) sum_e_cv2: T,
+    pub(crate) sum_loo_error2: T,
     pub(crate) n_data: T,
     pub(crate) lambda: T,
     /// Loading of the current sample; not state.
@@ -35,7 +35,7 @@ pub(crate) struct Field<T = f64> {
     pub(crate) beta0: T,
     pub(crate) sum_e2: T,
     /// Σ w² s²/Σ w s² over all directions: the degrees of freedom that the regression has used up.
-    pub(crate) ss_p: T,
+    pub(crate) degrees_of_freedom: T,
     /// 1 once the field has learnt enough to predict, 0 before.
     pub(crate) trust: T,
     pub(crate) directions: Vec<Direction<T>>,
@@ -66,7 +66,7 @@ pub(crate) struct MetricRows<'a> {
 /// The rows of one direction.
 pub(crate) struct DirectionRows<'a> {
     pub(crate) covariance: &'a mut [f64],
-    pub(crate) ss_x: &'a mut [f64],
+    pub(crate) sum_wsx: &'a mut [f64],
     pub(crate) u: &'a mut [f64],
     pub(crate) p: &'a mut [f64],
 }
@@ -112,9 +112,9 @@ impl<T> Field<T> {
         let rows = self.rows[layout.directions()..].chunks_exact_mut(DIRECTION_ROWS * layout.width);
         self.directions.iter_mut().zip(rows).map(move |(direction, rows)| {
             let (covariance, rows) = rows.split_at_mut(layout.width);
-            let (ss_x, rows) = rows.split_at_mut(layout.width);
+            let (sum_wsx, rows) = rows.split_at_mut(layout.width);
             let (u, p) = rows.split_at_mut(layout.width);
-            (direction, DirectionRows { covariance, ss_x, u, p })
+            (direction, DirectionRows { covariance, sum_wsx, u, p })
         })
     }
 }

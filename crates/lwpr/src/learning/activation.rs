@@ -1,4 +1,4 @@
-//! Which fields a sample reaches, and how strongly it activates them.
+//! Which fields a sample activates, and how strongly.
 
 use lanes::{LANES, Number, Register};
 use pulp::Simd;
@@ -11,15 +11,15 @@ use crate::learning::memory::Seen;
 use crate::settings::Settings;
 use crate::settings::kernel::Activation;
 
-/// A field within reach of a sample, its squared distance and activation.
+/// A field that a sample activates, its squared distance and activation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Reached {
+pub(crate) struct ActivatedField {
     pub(crate) field: usize,
     pub(crate) q: f64,
     pub(crate) activation: Activation<f64>,
 }
 
-/// The fields within reach of a sample, in list order, with what belongs to each at the same place.
+/// The fields that a sample activates, in list order, with what belongs to each at the same place.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Near {
     len: usize,
@@ -29,15 +29,15 @@ pub(crate) struct Near {
 }
 
 impl Near {
-    /// Looks for the fields closer than `reach` to the padded, normalised sample `x`; those it has `seen` are not compared
-    /// again, for which there must be no table.
+    /// Looks for the fields closer than the radius to the padded, normalised sample `x`; those it has `seen` are not
+    /// compared again, for which there must be no table.
     #[inline(always)]
     pub(crate) fn find<S: Simd>(
         &mut self,
         simd: S,
         settings: &Settings,
         (fields, table): (&[Field], &ActivationTable),
-        (x, reach): (&[f64], f64),
+        (x, squared_radius): (&[f64], f64),
         scratch: &mut [f64],
         seen: Option<&mut Seen>,
     ) {
@@ -47,17 +47,17 @@ impl Near {
             None => 0,
         };
         if settings.narrow() {
-            table.look(simd, settings, x, reach, self);
+            table.look(simd, settings, x, squared_radius, self);
         } else if settings.params.metric == Metric::Diagonal {
             if settings.width == 24 {
-                self.look::<S>(simd, (fields, from), (&x[..24], reach), &mut scratch[..24]);
+                self.look::<S>(simd, (fields, from), (&x[..24], squared_radius), &mut scratch[..24]);
             } else {
-                self.look::<S>(simd, (fields, from), (x, reach), &mut scratch[..settings.width]);
+                self.look::<S>(simd, (fields, from), (x, squared_radius), &mut scratch[..settings.width]);
             }
         } else {
             let layout = Layout::new(settings, settings.width);
             for (k, field) in fields.iter().enumerate().skip(from) {
-                self.see(k, full_distance(field, layout, x, &mut scratch[..layout.width]), reach);
+                self.see(k, full_distance(field, layout, x, &mut scratch[..layout.width]), squared_radius);
             }
         }
         if let Some(seen) = seen {
@@ -84,11 +84,11 @@ impl Near {
         &mut self,
         simd: S,
         (fields, from): (&[Field], usize),
-        (x, reach): (&[f64], f64),
+        (x, squared_radius): (&[f64], f64),
         scratch: &mut [f64],
     ) {
         for (k, field) in fields.iter().enumerate().skip(from) {
-            self.see(k, diagonal_distance(simd, field, x, scratch), reach);
+            self.see(k, diagonal_distance(simd, field, x, scratch), squared_radius);
         }
     }
 
@@ -114,12 +114,12 @@ impl Near {
         }
     }
 
-    /// Keeps field and distance if it is below `reach`, without a branch: which fields are near cannot be predicted.
+    /// Keeps field and distance if it is within the radius, without a branch: which fields are near cannot be predicted.
     #[inline(always)]
-    pub(super) fn see(&mut self, field: usize, q: f64, reach: f64) {
+    pub(super) fn see(&mut self, field: usize, q: f64, squared_radius: f64) {
         self.fields[self.len] = field;
         self.q[self.len] = q;
-        self.len += usize::from(q < reach);
+        self.len += usize::from(q < squared_radius);
     }
 
     /// Distances become activations, several at a time; what lies beyond the end is never looked at.
@@ -140,10 +140,10 @@ impl Near {
 
     /// Field, squared distance and activation of each.
     #[inline(always)]
-    pub(crate) fn iter(&self) -> impl Iterator<Item = Reached> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = ActivatedField> {
         let Activation { w, slope, curvature } = &self.activation;
         let numbers = self.q.iter().zip(w).zip(slope).zip(curvature);
-        self.fields[..self.len].iter().zip(numbers).map(|(&field, (((&q, &w), &slope), &curvature))| Reached {
+        self.fields[..self.len].iter().zip(numbers).map(|(&field, (((&q, &w), &slope), &curvature))| ActivatedField {
             field,
             q,
             activation: Activation { w, slope, curvature },

@@ -75,11 +75,11 @@ impl ActivationTable {
         }
     }
 
-    /// Takes note of every field whose squared distance from `x` is below `reach`, in list order.
+    /// Takes note of every field whose squared distance from `x` is below `squared_radius`, in list order.
     #[inline(always)]
-    pub(super) fn look<S: Simd>(&self, simd: S, settings: &Settings, x: &[f64], reach: f64, near: &mut Near) {
+    pub(super) fn look<S: Simd>(&self, simd: S, settings: &Settings, x: &[f64], squared_radius: f64, near: &mut Near) {
         let n = settings.n_in;
-        let limit = Register::splat(simd, reach);
+        let limit = Register::splat(simd, squared_radius);
         let mut dx = [[0.0; LANES]; LANES];
         for (b, block) in self.blocks.chunks_exact(n + settings.shape_len()).enumerate() {
             let (centres, metric) = block.split_at(n);
@@ -95,7 +95,7 @@ impl ActivationTable {
             }
             if close {
                 for (lane, &q) in q.iter().enumerate() {
-                    near.see(b * LANES + lane, q, reach);
+                    near.see(b * LANES + lane, q, squared_radius);
                 }
             }
         }

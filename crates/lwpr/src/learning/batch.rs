@@ -182,8 +182,8 @@ impl BatchTraining<'_> {
         (mut start, end): (usize, usize),
     ) -> Option<(usize, f64)> {
         loop {
-            let (sample, q) = self.chunk.find(simd, shape, (start, end), self.settings.reach)?;
-            if q < self.settings.training_reach {
+            let (sample, q) = self.chunk.find(simd, shape, (start, end), self.settings.squared_radius)?;
+            if q < self.settings.training_squared_radius {
                 return Some((sample, q));
             }
             self.see(sample, k, self.settings.params.kernel.at(q).w);

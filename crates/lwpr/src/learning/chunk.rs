@@ -18,7 +18,7 @@ pub(crate) struct Chunk {
     blocks: Vec<Lanes>,
 }
 
-/// Where a field is and how far it reaches.
+/// Where a field is and how wide it is.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Shape {
     kind: Metric,
@@ -109,7 +109,7 @@ impl Chunk {
         &self.rows[sample * self.width..][..self.width]
     }
 
-    /// The first sample from `start` on, before `end`, that is closer than `reach`, and its squared distance. The order of
+    /// The first sample from `start` on, before `end`, closer than the radius, and its squared distance. The order of
     /// the sum is the activation table's.
     #[inline(always)]
     pub(crate) fn find<S: Simd>(
@@ -117,11 +117,11 @@ impl Chunk {
         simd: S,
         shape: &Shape,
         (start, end): (usize, usize),
-        reach: f64,
+        squared_radius: f64,
     ) -> Option<(usize, f64)> {
         let n = S::F64_LANES;
         let mut first = start / n * n;
-        let near = Register::splat(simd, reach);
+        let near = Register::splat(simd, squared_radius);
         while first < end {
             let block = &self.blocks[first / LANES * self.n_in..][..self.n_in];
             let q = shape.distance(simd, block, first % LANES / n);

@@ -26,15 +26,15 @@ pub(crate) struct LaneBlock<S: Simd> {
 
 impl<T> Direction<T> {
     fn numbers(&mut self) -> [&mut T; 9] {
-        let Direction { beta, ss2, ss_y, h, r, sum_w, sum_e_cv2, n_data, lambda, s: _ } = self;
-        [beta, ss2, ss_y, h, r, sum_w, sum_e_cv2, n_data, lambda]
+        let Direction { beta, sum_ws2, sum_wst, h, r, sum_w, sum_loo_error2, n_data, lambda, s: _ } = self;
+        [beta, sum_ws2, sum_wst, h, r, sum_w, sum_loo_error2, n_data, lambda]
     }
 }
 
 impl<T> Field<T> {
     fn numbers(&mut self) -> impl Iterator<Item = &mut T> {
-        let Field { beta0, sum_e2, ss_p, trust, directions, rows: _ } = self;
-        [beta0, sum_e2, ss_p, trust].into_iter().chain(directions.iter_mut().flat_map(Direction::numbers))
+        let Field { beta0, sum_e2, degrees_of_freedom, trust, directions, rows: _ } = self;
+        [beta0, sum_e2, degrees_of_freedom, trust].into_iter().chain(directions.iter_mut().flat_map(Direction::numbers))
     }
 }
 
@@ -45,12 +45,12 @@ impl<S: Simd> LaneBlock<S> {
         let width = settings.n_in * S::F64_LANES;
         let direction = Direction {
             beta: one,
-            ss2: one,
-            ss_y: one,
+            sum_ws2: one,
+            sum_wst: one,
             h: one,
             r: one,
             sum_w: one,
-            sum_e_cv2: one,
+            sum_loo_error2: one,
             n_data: one,
             lambda: one,
             s: one,
@@ -61,7 +61,7 @@ impl<S: Simd> LaneBlock<S> {
             field: Field {
                 beta0: one,
                 sum_e2: one,
-                ss_p: one,
+                degrees_of_freedom: one,
                 trust: one,
                 directions: vec![direction; n_directions],
                 rows: Rows::zeros(len),
@@ -169,7 +169,7 @@ impl<S: Simd, M: metric::Shape, const N: usize> pulp::WithSimd for TrainLanes<'_
         let width = const { N * S::F64_LANES };
         let LaneBlock { simd, field, x, y, workspace, .. } = block;
         let simd = *simd;
-        let Workspace { rows, mmt } = workspace;
+        let Workspace { rows, gram } = workspace;
         let wanted = train::<Register<S>, Register<S>, M>(
             (simd, simd),
             field,
@@ -177,7 +177,7 @@ impl<S: Simd, M: metric::Shape, const N: usize> pulp::WithSimd for TrainLanes<'_
             (&x[..width], *y),
             activation,
             &mut rows[..SCRATCH_ROWS * width],
-            mmt,
+            gram,
         );
         let (zero, one) = (Register::splat(simd, 0.0), Register::splat(simd, 1.0));
         wanted.map(|mask| one.or_else(mask, zero))

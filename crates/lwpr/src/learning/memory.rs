@@ -6,13 +6,13 @@ use crate::settings::Settings;
 /// Samples, times outputs, for which distances are remembered at most.
 const MOST: usize = 1 << 20;
 
-/// For each output and each sample of a batch the fields in reach.
+/// For each output and each sample of a batch the fields that it activates.
 #[derive(Debug)]
 pub(crate) struct Memory {
     outputs: Vec<Vec<Seen>>,
 }
 
-/// The fields in reach of a sample, among those that it has been compared with.
+/// The fields that a sample activates, among those that it has been compared with.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Seen {
     pub(super) fields: Vec<usize>,
@@ -21,7 +21,7 @@ pub(crate) struct Seen {
 }
 
 impl Memory {
-    /// For as many passes over as many samples; `None` where metrics adapt, fields vanish, or finding the fields in reach is
+    /// For as many passes over as many samples; `None` where metrics adapt, fields vanish, or finding the activated fields is
     /// quick anyway.
     pub(crate) fn new(settings: &Settings, n_samples: usize, passes: usize) -> Option<Self> {
         let stays = settings.params.adaptation == MetricAdaptation::Fixed && settings.params.w_prune == 1.0;

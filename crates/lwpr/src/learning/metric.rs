@@ -154,21 +154,21 @@ impl<T: Number> Step<T> {
         sample: &Absorbed<T>,
         rate: Option<f64>,
     ) -> Self {
-        let &Absorbed { e, e_cv, error_sum, leverage, sum_p_h, sum_pp_r, .. } = sample;
+        let &Absorbed { e, loo_error, error_sum, leverage, sum_p_h, sum_p2_r, .. } = sample;
         let inverse = field.directions[0].sum_w.recip();
         let ratio = field.sum_e2 * (error_sum + 1e-10).recip();
         let square = ratio * ratio;
-        let cross = e * sum_p_h + sum_pp_r;
+        let cross = e * sum_p_h + sum_p2_r;
         let j1_second = if rate.is_some() {
             let memory = (e * inverse + e * leverage) * sum_p_h;
-            let errors = (e * e * leverage - e_cv * e_cv * inverse) * 2.0;
+            let errors = (e * e * leverage - loo_error * loo_error * inverse) * 2.0;
             (errors + error_sum * inverse * inverse + memory * 4.0) * inverse
         } else {
             e.like(0.0)
         };
         Step {
             activation,
-            j1: (e_cv * e_cv - error_sum * inverse - cross * 2.0) * inverse,
+            j1: (loo_error * loo_error - error_sum * inverse - cross * 2.0) * inverse,
             j1_second,
             omega: activation.w * inverse,
             gamma: 2.0 * settings.params.penalty / settings.n_in as f64,
@@ -233,9 +233,9 @@ impl<T: Number> Step<T> {
 fn remember<T: Number>(directions: &mut [Direction<T>], sample: &Absorbed<T>, w: T, share: T) {
     let lambda0 = directions[0].lambda;
     for direction in directions {
-        let (lambda, step) = (direction.lambda, share * sample.e_cv * direction.s);
+        let (lambda, step) = (direction.lambda, share * sample.loo_error * direction.s);
         let active = T::both(w.token(), sample.settled, settled(direction, lambda0));
-        let (h, r) = (lambda * direction.h + step, lambda * direction.r + step * w * sample.e_cv * direction.s);
+        let (h, r) = (lambda * direction.h + step, lambda * direction.r + step * w * sample.loo_error * direction.s);
         direction.h = h.or_else(active, direction.h);
         direction.r = r.or_else(active, direction.r);
     }

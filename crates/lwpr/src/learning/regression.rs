@@ -21,13 +21,13 @@ const LEAST_SPREAD: f64 = 1e-150;
 pub(crate) struct Absorbed<T: Number> {
     /// Error after the sample was absorbed, and before (leave-one-out).
     pub(crate) e: T,
-    pub(crate) e_cv: T,
+    pub(crate) loo_error: T,
     /// Σ w e² of the leave-one-out errors.
     pub(crate) error_sum: T,
     /// Σⱼ sⱼ pⱼ, Σⱼ pⱼ Hⱼ and Σⱼ pⱼ² rⱼ over settled directions, with pⱼ = sⱼ/Σ w sⱼ².
     pub(crate) leverage: T,
     pub(crate) sum_p_h: T,
-    pub(crate) sum_pp_r: T,
+    pub(crate) sum_p2_r: T,
     /// Mean squared leave-one-out errors' numerators and weights of the last direction but one, and of the last.
     pub(crate) errors: [(T, T); 2],
     /// Whether the field has seen enough for its errors to count: about a hundred samples by default.
@@ -90,18 +90,18 @@ pub(crate) fn update_regression<T: Number, E: Element<T>>(
     let (mut old_sum, mut target, mut prediction, mut used_up) = (zero, t, zero, zero);
     let mut sample = Absorbed {
         e: t,
-        e_cv: zero,
+        loo_error: zero,
         error_sum: zero,
         leverage: zero,
         sum_p_h: zero,
-        sum_pp_r: zero,
+        sum_p2_r: zero,
         errors: [(zero, zero); 2],
         settled: first_settled,
     };
     for (j, (direction, mut rows)) in field.directions_mut(layout).enumerate() {
         let s = E::dot(token, rows.u, residual);
         old_sum += direction.beta * s;
-        let e_cv = t - old_sum;
+        let loo_error = t - old_sum;
         let inverse = update_scalars(direction, (s, target), w);
         update_rows::<T, E>(token, &mut rows, [direction.lambda, s, w * s, w * target, inverse], residual);
 
@@ -110,27 +110,27 @@ pub(crate) fn update_regression<T: Number, E: Element<T>>(
             *fresh = (E::of(token, *fresh) - E::of(token, p) * direction.s).raw();
         }
         used_up += (w * s) * (w * s) * inverse;
-        target = e_cv;
+        target = loo_error;
 
-        let errors = direction.lambda * direction.sum_e_cv2 + w * e_cv * e_cv;
-        direction.sum_e_cv2 = errors.or_else(first_settled, direction.sum_e_cv2);
-        sample.errors = [sample.errors[1], (direction.sum_e_cv2, direction.sum_w)];
+        let errors = direction.lambda * direction.sum_loo_error2 + w * loo_error * loo_error;
+        direction.sum_loo_error2 = errors.or_else(first_settled, direction.sum_loo_error2);
+        sample.errors = [sample.errors[1], (direction.sum_loo_error2, direction.sum_w)];
         let next = prediction + direction.beta * direction.s;
         if j + 1 < r {
-            (prediction, sample.e_cv, sample.error_sum) = (next, e_cv, direction.sum_e_cv2);
+            (prediction, sample.loo_error, sample.error_sum) = (next, loo_error, direction.sum_loo_error2);
         } else {
             // A last direction that has seen little is trained, but not used. If it is the only one, its errors count all the same.
             prediction = next.or_else(last_counts, prediction);
-            sample.e_cv = e_cv.or_else(last_counts, sample.e_cv);
-            let errors = direction.sum_e_cv2.or_else(last_counts, sample.error_sum);
-            sample.error_sum = if r == 1 { direction.sum_e_cv2 } else { errors };
+            sample.loo_error = loo_error.or_else(last_counts, sample.loo_error);
+            let errors = direction.sum_loo_error2.or_else(last_counts, sample.error_sum);
+            sample.error_sum = if r == 1 { direction.sum_loo_error2 } else { errors };
         }
         let p = (direction.s * inverse).or_else(settled(direction, lambda0), zero);
         sample.leverage += direction.s * p;
         sample.sum_p_h += p * direction.h;
-        sample.sum_pp_r += p * p * direction.r;
+        sample.sum_p2_r += p * p * direction.r;
     }
-    field.ss_p = last_lambda * field.ss_p + used_up;
+    field.degrees_of_freedom = last_lambda * field.degrees_of_freedom + used_up;
     sample.e = t - prediction;
     let errors = last_lambda * field.sum_e2 + w * sample.e * sample.e;
     field.sum_e2 = errors.or_else(first_settled, field.sum_e2);
@@ -142,10 +142,10 @@ pub(crate) fn update_regression<T: Number, E: Element<T>>(
 fn update_scalars<T: Number>(direction: &mut Direction<T>, (s, t): (T, T), w: T) -> T {
     let (lambda, ws) = (direction.lambda, w * s);
     direction.sum_w = lambda * direction.sum_w + w;
-    direction.ss2 = (lambda * direction.ss2 + ws * s).larger(lambda.like(LEAST_SPREAD));
-    direction.ss_y = lambda * direction.ss_y + ws * t;
-    let inverse = direction.ss2.recip();
-    direction.beta = direction.ss_y * inverse;
+    direction.sum_ws2 = (lambda * direction.sum_ws2 + ws * s).larger(lambda.like(LEAST_SPREAD));
+    direction.sum_wst = lambda * direction.sum_wst + ws * t;
+    let inverse = direction.sum_ws2.recip();
+    direction.beta = direction.sum_wst * inverse;
     inverse
 }
 
@@ -159,15 +159,15 @@ fn update_rows<T: Number, E: Element<T>>(
     residual: &mut [f64],
 ) {
     let slow = lambda * 0.1 + 0.9;
-    let statistics = E::elements_mut(rows.covariance).iter_mut().zip(E::elements_mut(rows.ss_x));
+    let statistics = E::elements_mut(rows.covariance).iter_mut().zip(E::elements_mut(rows.sum_wsx));
     let residuals = E::elements_mut(residual).iter_mut().zip(E::elements_mut(rows.p));
-    for ((covariance, ss_x), (residual, p)) in statistics.zip(residuals) {
+    for ((covariance, sum_wsx), (residual, p)) in statistics.zip(residuals) {
         let x = E::of(token, *residual);
-        let new_ss_x = E::of(token, *ss_x) * lambda + x * ws;
+        let new_sum_wsx = E::of(token, *sum_wsx) * lambda + x * ws;
         *covariance = (E::of(token, *covariance) * slow + x * wt).raw();
-        *ss_x = new_ss_x.raw();
+        *sum_wsx = new_sum_wsx.raw();
         *residual = (x - E::of(token, *p) * s).raw();
-        *p = (new_ss_x * inverse).raw();
+        *p = (new_sum_wsx * inverse).raw();
     }
 }
 

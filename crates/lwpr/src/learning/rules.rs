@@ -3,7 +3,7 @@
 use lanes::Register;
 use pulp::Simd;
 
-use super::activation::{Near, Reached};
+use super::activation::{ActivatedField, Near};
 use super::full_metric::FullScratch;
 use super::metric::{Diagonal, Full, Shape, update_metric};
 use super::regression::{Sample, age, update_means, update_regression};
@@ -21,14 +21,14 @@ pub(crate) const SCRATCH_ROWS: usize = 5;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Workspace {
     pub(crate) rows: Rows,
-    pub(crate) mmt: Rows,
+    pub(crate) gram: Rows,
 }
 
 impl Workspace {
     /// For rows of `width` numbers.
     pub(crate) fn new(settings: &Settings, width: usize) -> Self {
-        let mmt = if settings.params.metric == Metric::Full { settings.n_in * width } else { 0 };
-        Workspace { rows: Rows::zeros(SCRATCH_ROWS * width), mmt: Rows::zeros(mmt) }
+        let gram = if settings.params.metric == Metric::Full { settings.n_in * width } else { 0 };
+        Workspace { rows: Rows::zeros(SCRATCH_ROWS * width), gram: Rows::zeros(gram) }
     }
 }
 
@@ -36,10 +36,10 @@ impl Workspace {
 #[repr(align(64))]
 struct Scratch<const WIDTH: usize> {
     rows: [[f64; WIDTH]; SCRATCH_ROWS],
-    mmt: [[f64; WIDTH]; WIDTH],
+    gram: [[f64; WIDTH]; WIDTH],
 }
 
-/// All fields in reach of a padded, normalised sample learn from it.
+/// All fields that a padded, normalised sample activates learn from it.
 pub(crate) struct LearnFromOne<'a> {
     pub(crate) settings: &'a Settings,
     pub(crate) fields: &'a mut [Field],
@@ -85,18 +85,18 @@ impl LearnFromOne<'_> {
         simd.vectorize(OfAnyWidth::<M, REGISTERS> { learn: self, shape: M::default() });
     }
 
-    /// Works in `rows` and `mmt`; the length of `x` is that of rows.
+    /// Works in `rows` and `gram`; the length of `x` is that of rows.
     #[inline(always)]
     fn all<M: Shape, E: Element<f64>>(
         (settings, fields, near): (&Settings, &mut [Field], &Near),
         token: E::Token,
         (x, y): (&[f64], f64),
-        (rows, mmt): (&mut [f64], &mut [f64]),
+        (rows, gram): (&mut [f64], &mut [f64]),
     ) {
-        for Reached { field, q, activation } in near.iter() {
-            if q < settings.training_reach {
+        for ActivatedField { field, q, activation } in near.iter() {
+            if q < settings.training_squared_radius {
                 let field = &mut fields[field];
-                let wanted = train::<f64, E, M>(((), token), field, settings, (x, y), activation, rows, mmt);
+                let wanted = train::<f64, E, M>(((), token), field, settings, (x, y), activation, rows, gram);
                 if wanted.is_some() {
                     field.grow(settings);
                 }
@@ -118,9 +118,9 @@ impl<M: Shape, const WIDTH: usize> pulp::WithSimd for OfWidth<'_, M, WIDTH> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let LearnFromOne { settings, fields, near, x, y, .. } = self.learn;
-        let scratch = &mut Scratch { rows: [[0.0; WIDTH]; SCRATCH_ROWS], mmt: [[0.0; WIDTH]; WIDTH] };
-        let Scratch { rows, mmt } = scratch;
-        let scratch = (rows.as_flattened_mut(), mmt.as_flattened_mut());
+        let scratch = &mut Scratch { rows: [[0.0; WIDTH]; SCRATCH_ROWS], gram: [[0.0; WIDTH]; WIDTH] };
+        let Scratch { rows, gram } = scratch;
+        let scratch = (rows.as_flattened_mut(), gram.as_flattened_mut());
         let (all, sample) = ((settings, fields, near), (&x[..WIDTH], y));
         if const { WIDTH.is_multiple_of(S::F64_LANES) } {
             LearnFromOne::all::<M, Register<S>>(all, simd, sample, scratch);
@@ -143,7 +143,7 @@ impl<M: Shape, const REGISTERS: bool> pulp::WithSimd for OfAnyWidth<'_, M, REGIS
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let LearnFromOne { settings, fields, near, x, y, workspace } = self.learn;
-        let scratch = (&mut workspace.rows[..], &mut workspace.mmt[..]);
+        let scratch = (&mut workspace.rows[..], &mut workspace.gram[..]);
         let (all, sample) = ((settings, fields, near), (&x[..settings.width], y));
         if const { REGISTERS } {
             LearnFromOne::all::<M, Register<S>>(all, simd, sample, scratch);
@@ -163,13 +163,13 @@ pub(crate) fn train<T: Element<T>, E: Element<T>, M: Shape>(
     (x, y): (&[f64], T),
     activation: Activation<T>,
     scratch: &mut [f64],
-    mmt: &mut [f64],
+    gram: &mut [f64],
 ) -> Option<T::Mask> {
     let (token, width) = (tokens.1, x.len());
     let (dx, rest) = scratch.split_at_mut(width);
     let (residual, rest) = rest.split_at_mut(width);
     let (fresh, rest) = rest.split_at_mut(width);
-    let (t, md) = rest.split_at_mut(width);
+    let (t, penalty_column) = rest.split_at_mut(width);
     let centre = E::elements(&field.rows[..width]);
     for ((dx, &x), &c) in E::elements_mut(dx).iter_mut().zip(E::elements(x)).zip(centre) {
         *dx = (E::of(token, x) - E::of(token, c)).raw();
@@ -177,7 +177,7 @@ pub(crate) fn train<T: Element<T>, E: Element<T>, M: Shape>(
     let layout = Layout::new(settings, width);
     let target = update_means::<T, E>(token, field, Sample { x, y, w: activation.w }, residual);
     let absorbed = update_regression::<T, E>(token, field, settings, layout, (target, activation.w), residual, fresh);
-    let mut scratch = FullScratch { t, md: &mut md[..width], mmt };
+    let mut scratch = FullScratch { t, penalty_column: &mut penalty_column[..width], gram };
     update_metric::<T, E, M>(tokens, field, settings, activation, &absorbed, dx, &mut scratch);
     age(&mut field.directions, settings, &absorbed)
 }

@@ -2,7 +2,7 @@
 
 use crate::Pruning;
 use crate::field::Field;
-use crate::learning::activation::{Near, Reached};
+use crate::learning::activation::{ActivatedField, Near};
 use crate::learning::activation_table::ActivationTable;
 use crate::learning::memory::Seen;
 use crate::learning::rules::{LearnFromOne, Workspace};
@@ -16,9 +16,9 @@ pub(crate) struct SubModel {
     pub(crate) n_pruned: usize,
 }
 
-/// The fields in reach of a sample, and the strongest of them.
+/// The fields that a sample activates, and the strongest of them.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct InReach {
+pub(crate) struct Activated {
     near: Near,
     pub(crate) strongest: Strongest,
 }
@@ -60,7 +60,7 @@ impl Strongest {
 }
 
 impl SubModel {
-    /// Finds the fields in reach of the normalised sample `x`, of which some may have been `seen`, and their activations.
+    /// Finds the fields that the normalised sample `x` activates, some of which may have been `seen`, and how strongly.
     #[inline(always)]
     pub(crate) fn activate<S: pulp::Simd>(
         &self,
@@ -68,13 +68,13 @@ impl SubModel {
         settings: &Settings,
         x: &[f64],
         workspace: &mut Workspace,
-        (reach, seen): (&mut InReach, Option<&mut Seen>),
+        (squared_radius, seen): (&mut Activated, Option<&mut Seen>),
     ) {
-        let (fields, sample) = ((&self.fields[..], &self.table), (x, settings.reach));
-        reach.near.find(simd, settings, fields, sample, &mut workspace.rows, seen);
-        reach.strongest = Strongest::default();
-        for Reached { field, activation, .. } in reach.near.iter() {
-            reach.strongest.see(field, activation.w);
+        let (fields, sample) = ((&self.fields[..], &self.table), (x, settings.squared_radius));
+        squared_radius.near.find(simd, settings, fields, sample, &mut workspace.rows, seen);
+        squared_radius.strongest = Strongest::default();
+        for ActivatedField { field, activation, .. } in squared_radius.near.iter() {
+            squared_radius.strongest.see(field, activation.w);
         }
     }
 
@@ -87,14 +87,14 @@ impl SubModel {
         x: &[f64],
         y: f64,
         workspace: &mut Workspace,
-        reach: &InReach,
+        squared_radius: &Activated,
     ) {
-        let near = &reach.near;
+        let near = &squared_radius.near;
         LearnFromOne { settings, fields: &mut self.fields, near, x, y, workspace }.run(simd);
-        for Reached { field, .. } in near.iter() {
+        for ActivatedField { field, .. } in near.iter() {
             self.table.set_metric(settings, field, &self.fields[field]);
         }
-        let strongest = reach.strongest;
+        let strongest = squared_radius.strongest;
         if strongest.asks_for_field(settings) {
             self.create(settings, x, y, strongest);
         } else if strongest.second > settings.params.w_prune {

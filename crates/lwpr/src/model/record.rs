@@ -36,7 +36,8 @@ struct OutputRecord {
 struct FieldRecord {
     beta0: f64,
     sum_e2: f64,
-    ss_p: f64,
+    #[serde(rename = "ss_p")]
+    degrees_of_freedom: f64,
     trustworthy: bool,
     centre: Vec<f64>,
     mean: Vec<f64>,
@@ -51,16 +52,20 @@ struct FieldRecord {
 #[serde(deny_unknown_fields)]
 struct DirectionRecord {
     beta: f64,
-    ss2: f64,
-    ss_y: f64,
+    #[serde(rename = "ss2")]
+    sum_ws2: f64,
+    #[serde(rename = "ss_y")]
+    sum_wst: f64,
     h: f64,
     r: f64,
     sum_w: f64,
-    sum_e_cv2: f64,
+    #[serde(rename = "sum_e_cv2")]
+    sum_loo_error2: f64,
     n_data: f64,
     lambda: f64,
     covariance: Vec<f64>,
-    ss_x: Vec<f64>,
+    #[serde(rename = "ss_x")]
+    sum_wsx: Vec<f64>,
     u: Vec<f64>,
     p: Vec<f64>,
 }
@@ -86,10 +91,10 @@ fn pad(rows: &mut Vec<f64>, numbers: &[f64], n_rows: usize, settings: &Settings)
 /// for prediction or learning, and is not stored.
 fn is_finite(field: &Field) -> bool {
     let direction_is = |direction: &Direction| {
-        let &Direction { beta, ss2, ss_y, h, r, sum_w, sum_e_cv2, n_data, lambda, s: _ } = direction;
-        [beta, ss2, ss_y, h, r, sum_w, sum_e_cv2, n_data, lambda].iter().all(|number| number.is_finite())
+        let &Direction { beta, sum_ws2, sum_wst, h, r, sum_w, sum_loo_error2, n_data, lambda, s: _ } = direction;
+        [beta, sum_ws2, sum_wst, h, r, sum_w, sum_loo_error2, n_data, lambda].iter().all(|number| number.is_finite())
     };
-    [field.beta0, field.sum_e2, field.ss_p].iter().chain(&*field.rows).all(|number| number.is_finite())
+    [field.beta0, field.sum_e2, field.degrees_of_freedom].iter().chain(&*field.rows).all(|number| number.is_finite())
         && field.directions.iter().all(direction_is)
 }
 
@@ -106,7 +111,7 @@ impl FieldRecord {
         FieldRecord {
             beta0: field.beta0,
             sum_e2: field.sum_e2,
-            ss_p: field.ss_p,
+            degrees_of_freedom: field.degrees_of_freedom,
             trustworthy: field.is_trustworthy(),
             centre: take(layout.width),
             mean: take(layout.width),
@@ -127,9 +132,9 @@ impl FieldRecord {
         let n = settings.n_in;
         let metric = if settings.params.metric == Metric::Full { n } else { 1 };
         let meta = if settings.meta() { metric } else { 0 };
-        let &FieldRecord { beta0, sum_e2, ss_p, trustworthy, .. } = self;
+        let &FieldRecord { beta0, sum_e2, degrees_of_freedom, trustworthy, .. } = self;
         let fine = (n.min(2)..=n).contains(&self.directions.len())
-            && [beta0, sum_e2, ss_p].iter().all(|number| number.is_finite());
+            && [beta0, sum_e2, degrees_of_freedom].iter().all(|number| number.is_finite());
         if !fine {
             return None;
         }
@@ -143,7 +148,7 @@ impl FieldRecord {
         Some(Field {
             beta0,
             sum_e2,
-            ss_p,
+            degrees_of_freedom,
             trust: if trustworthy { 1.0 } else { 0.0 },
             directions: directions?,
             rows: Rows::from(&rows[..]),
@@ -153,27 +158,41 @@ impl FieldRecord {
 
 impl DirectionRecord {
     fn new(direction: &Direction, rows: &[f64], settings: &Settings) -> Self {
-        let &Direction { beta, ss2, ss_y, h, r, sum_w, sum_e_cv2, n_data, lambda, s: _ } = direction;
+        let &Direction { beta, sum_ws2, sum_wst, h, r, sum_w, sum_loo_error2, n_data, lambda, s: _ } = direction;
         let row = |k: usize| unpad(&rows[k * settings.width..][..settings.width], settings);
-        let (covariance, ss_x, u, p) = (row(0), row(1), row(2), row(3));
-        DirectionRecord { beta, ss2, ss_y, h, r, sum_w, sum_e_cv2, n_data, lambda, covariance, ss_x, u, p }
-    }
-
-    fn restore(&self, settings: &Settings, rows: &mut Vec<f64>) -> Option<Direction> {
-        let &DirectionRecord { beta, ss2, ss_y, h, r, sum_w, sum_e_cv2, n_data, lambda, .. } = self;
-        for row in [&self.covariance, &self.ss_x, &self.u, &self.p] {
-            pad(rows, row, 1, settings)?;
-        }
-        let finite = [beta, ss_y, h, r, sum_e_cv2, n_data, lambda].iter().all(|number| number.is_finite());
-        let positive = [ss2, sum_w].iter().all(|&number| number > 0.0 && number.is_finite());
-        (finite && positive && n_data >= 0.0 && lambda > 0.0 && lambda <= 1.0).then_some(Direction {
+        let (covariance, sum_wsx, u, p) = (row(0), row(1), row(2), row(3));
+        DirectionRecord {
             beta,
-            ss2,
-            ss_y,
+            sum_ws2,
+            sum_wst,
             h,
             r,
             sum_w,
-            sum_e_cv2,
+            sum_loo_error2,
+            n_data,
+            lambda,
+            covariance,
+            sum_wsx,
+            u,
+            p,
+        }
+    }
+
+    fn restore(&self, settings: &Settings, rows: &mut Vec<f64>) -> Option<Direction> {
+        let &DirectionRecord { beta, sum_ws2, sum_wst, h, r, sum_w, sum_loo_error2, n_data, lambda, .. } = self;
+        for row in [&self.covariance, &self.sum_wsx, &self.u, &self.p] {
+            pad(rows, row, 1, settings)?;
+        }
+        let finite = [beta, sum_wst, h, r, sum_loo_error2, n_data, lambda].iter().all(|number| number.is_finite());
+        let positive = [sum_ws2, sum_w].iter().all(|&number| number > 0.0 && number.is_finite());
+        (finite && positive && n_data >= 0.0 && lambda > 0.0 && lambda <= 1.0).then_some(Direction {
+            beta,
+            sum_ws2,
+            sum_wst,
+            h,
+            r,
+            sum_w,
+            sum_loo_error2,
             n_data,
             lambda,
             s: 0.0,

@@ -10,7 +10,7 @@ use super::sweep::Wanted;
 use super::{Prediction, is_query};
 use crate::field::element::{Element, add_scaled};
 use crate::field::{DIRECTION_ROWS, Field, Layout};
-use crate::learning::activation::{Near, Reached};
+use crate::learning::activation::{ActivatedField, Near};
 use crate::learning::sub_model::SubModel;
 use crate::settings::Settings;
 use crate::{Lwpr, Metric};
@@ -112,14 +112,14 @@ impl pulp::WithSimd for Ask<'_> {
         for ((x, raw), norm) in x.iter_mut().zip(self.x).zip(&self.settings.norm_in) {
             *x = raw / norm;
         }
-        let reach = if self.wanted.max_activation.is_some() {
+        let squared_radius = if self.wanted.max_activation.is_some() {
             f64::INFINITY
         } else {
             // Where rounding might decide, the activation itself does.
-            self.settings.params.kernel.reach(self.cutoff.min(1.0)) + 1e-6
+            self.settings.params.kernel.squared_radius(self.cutoff.min(1.0)) + 1e-6
         };
         let fields = (&self.sub_model.fields[..], &self.sub_model.table);
-        near.find(simd, self.settings, fields, (x, reach), rest, None);
+        near.find(simd, self.settings, fields, (x, squared_radius), rest, None);
         terms.clear();
         if S::F64_LANES > 1 && width.is_multiple_of(S::F64_LANES) {
             self.answer::<Register<S>>(simd)
@@ -137,7 +137,7 @@ impl Ask<'_> {
         let width = settings.width;
         let (x, rest) = rows.split_at_mut(width);
         let (mut nearest, mut sum_w, mut sum_wy) = (0.0, 0.0, 0.0);
-        for Reached { field, activation, .. } in near.iter() {
+        for ActivatedField { field, activation, .. } in near.iter() {
             nearest = if activation.w > nearest { activation.w } else { nearest };
             let field = &sub_model.fields[field];
             if activation.w <= cutoff || !field.is_trustworthy() {
@@ -225,7 +225,7 @@ impl Local<'_> {
             let s = E::dot(token, u, residual);
             add_scaled::<f64, E>(token, residual, -s, p);
             y += direction.beta * s;
-            squares += s * s / direction.ss2;
+            squares += s * s / direction.sum_ws2;
         }
         slope.fill(0.0);
         for j in (0..usable).rev() {

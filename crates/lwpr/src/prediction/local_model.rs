@@ -110,7 +110,7 @@ impl Affine {
                 let factor = -f64::dot((), p(i), &loading);
                 add_scaled::<f64, f64>((), &mut loading, factor, u(i));
             }
-            let scale = 1.0 / field.directions[j].ss2.sqrt();
+            let scale = 1.0 / field.directions[j].sum_ws2.sqrt();
             loadings.extend(loading[..n].iter().map(|a| a * scale));
         }
         let mean = field.rows[w..][..n].to_vec();
@@ -123,6 +123,6 @@ impl Affine {
 /// Γ = Σ w e² / (Σ w − p): the noise variance, once leave-one-out errors have been collected.
 pub(super) fn noise(field: &Field, usable: usize) -> Option<f64> {
     let last = &field.directions[usable.checked_sub(1)?];
-    let weight = last.sum_w - field.ss_p;
-    (last.sum_e_cv2 > 0.0 && weight > 0.0).then(|| last.sum_e_cv2 / weight)
+    let weight = last.sum_w - field.degrees_of_freedom;
+    (last.sum_loo_error2 > 0.0 && weight > 0.0).then(|| last.sum_loo_error2 / weight)
 }

@@ -20,7 +20,7 @@ use crate::{Kernel, Lwpr, LwprError};
 pub struct Predictor {
     kernel: Kernel,
     cutoff: f64,
-    reach: f64,
+    squared_radius: f64,
     norm_in: Vec<f64>,
     /// 1 / norm_in: a division costs as much as ten products.
     per_norm_in: Vec<f64>,
@@ -61,7 +61,7 @@ impl Predictor {
             kernel,
             cutoff,
             // Where rounding might decide, the activation itself does.
-            reach: kernel.reach(cutoff.min(1.0)) + 1e-6,
+            squared_radius: kernel.squared_radius(cutoff.min(1.0)) + 1e-6,
             per_norm_in: norm_in.iter().map(|norm| 1.0 / norm).collect(),
             outputs: outputs.into_iter().map(fields).collect(),
             norm_in,
@@ -212,8 +212,8 @@ impl Predictor {
         if !is_query(x, self.n_in()) {
             return None;
         }
-        let Predictor { kernel, reach, ref per_norm_in, .. } = *self;
-        sweep(&fields.table, Query { kernel, reach, x: x.as_slice(), per_norm_in, norm_out }, wanted)
+        let Predictor { kernel, squared_radius, ref per_norm_in, .. } = *self;
+        sweep(&fields.table, Query { kernel, squared_radius, x: x.as_slice(), per_norm_in, norm_out }, wanted)
     }
 
     fn check_queries(&self, xs: DMatrixView<'_, f64>) -> Result<(), LwprError> {

@@ -15,7 +15,7 @@ use crate::Kernel;
 pub(super) struct Query<'a> {
     pub(super) kernel: Kernel,
     /// Squared distance beyond which activations are below the cutoff.
-    pub(super) reach: f64,
+    pub(super) squared_radius: f64,
     pub(super) x: &'a [f64],
     pub(super) per_norm_in: &'a [f64],
     pub(super) norm_out: f64,
@@ -34,7 +34,7 @@ pub(super) struct Wanted<'a> {
     pub(super) max_activation: Option<&'a mut f64>,
 }
 
-/// A block with fields in reach: squared distances, activations, 2 dw/dq, local predictions.
+/// A block with activated fields: squared distances, activations, 2 dw/dq, local predictions.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Active {
     pub(super) block: usize,
@@ -144,27 +144,27 @@ impl pulp::WithSimd for Sweep<'_> {
     }
 }
 
-/// Finds the blocks in reach, and how many they are.
+/// Finds the blocks with activated fields, and how many they are.
 #[inline(always)]
 fn find<S: Simd>(simd: S, table: &FieldTable, query: Query<'_>, x: &[f64], active: &mut [Active]) -> (Sums, usize) {
-    let (reach, zero) = (Register::splat(simd, query.reach), Register::splat(simd, 0.0));
+    let (squared_radius, zero) = (Register::splat(simd, query.squared_radius), Register::splat(simd, 0.0));
     let (mut sum_w, mut sum_wy, mut nearest) = ([0.0; LANES], [0.0; LANES], [f64::INFINITY; LANES]);
     let mut count = 0;
     for (b, block) in table.blocks().enumerate() {
         let (mut distance, mut local) = ([0.0; LANES], [0.0; LANES]);
-        let mut in_reach = false;
+        let mut near = false;
         for part in 0..Register::<S>::parts() {
             let (q, y) = if table.is_full() {
                 full_distance(simd, block, x, part)
             } else {
                 diagonal_distance(simd, block, x, part)
             };
-            in_reach |= Register::<S>::any(simd, reach.above(q));
+            near |= Register::<S>::any(simd, squared_radius.above(q));
             q.store(&mut distance, part);
             y.store(&mut local, part);
             q.smaller(Register::load(simd, &nearest, part)).store(&mut nearest, part);
         }
-        if !in_reach {
+        if !near {
             continue;
         }
         let found = &mut active[count];

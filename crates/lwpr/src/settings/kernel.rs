@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 /// Shape of a receptive field: activation w as a function of q = (x − c)ᵀD(x − c).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Kernel {
-    /// w = exp(−q/2): smooth, reaches everywhere.
+    /// w = exp(−q/2): smooth, positive everywhere.
     #[default]
     Gaussian,
     /// w = (1 − q/4)² for q < 4, zero beyond: compact support.
@@ -38,7 +38,7 @@ impl Kernel {
     }
 
     /// The squared distance at which the activation has fallen to `w`, in (0, 1].
-    pub(crate) fn reach(self, w: f64) -> f64 {
+    pub(crate) fn squared_radius(self, w: f64) -> f64 {
         match self {
             Kernel::Gaussian => -2.0 * w.ln(),
             Kernel::BiSquare => 4.0 * (1.0 - w.sqrt()),

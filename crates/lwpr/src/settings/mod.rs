@@ -31,9 +31,9 @@ pub(crate) struct Settings {
     /// M with D = MᵀM: its diagonal (one row), or its columns (`n_in` rows).
     pub(crate) init_m: Vec<f64>,
     /// Squared distance within which a field learns from a sample.
-    pub(crate) training_reach: f64,
+    pub(crate) training_squared_radius: f64,
     /// Squared distance beyond which a field matters neither for learning nor for making fields.
-    pub(crate) reach: f64,
+    pub(crate) squared_radius: f64,
 }
 
 impl Settings {
@@ -51,8 +51,8 @@ impl Settings {
         Ok(Settings {
             norm_in: norm(params.norm_in.as_ref(), n_in, Side::Input)?,
             norm_out: norm(params.norm_out.as_ref(), n_out, Side::Output)?,
-            training_reach: params.kernel.reach(TRAINING_FLOOR),
-            reach: params.kernel.reach(TRAINING_FLOOR.min(0.1 * params.w_gen)),
+            training_squared_radius: params.kernel.squared_radius(TRAINING_FLOOR),
+            squared_radius: params.kernel.squared_radius(TRAINING_FLOOR.min(0.1 * params.w_gen)),
             params,
             n_in,
             n_out,
