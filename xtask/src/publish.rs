@@ -53,7 +53,8 @@ impl Publish {
     pub(crate) fn execute(&self) -> anyhow::Result<()> {
         let experiments = registry()?;
         // All or none.
-        let runs: Vec<Sources> = self.runs.iter().map(|run| publishable(&experiments, run)).collect::<anyhow::Result<_>>()?;
+        let runs: Vec<Sources> =
+            self.runs.iter().map(|run| publishable(&experiments, run)).collect::<anyhow::Result<_>>()?;
         for (run, path) in runs.iter().zip(&self.runs) {
             let seed = run.results.seed;
             RunFolder::committed(seed).keep(run)?;

@@ -41,20 +41,23 @@ pub(crate) fn curl_t(potential: &LeftOut, rotation: &LeftOut, noise_weights: &[f
     t_of_mean(&gains)
 }
 
+/// What rotation must change of the policy, as a share of what a potential leaves unpredicted, before t can speak for it.
+const NOTICEABLE: f64 = 0.05;
 /// What a potential must leave unpredicted, as a share, before prediction alone can speak against it.
 const UNPREDICTED: f64 = 1e-3;
 /// Share of that, at most, which a model with rotation leaves then.
 const DECISIVE: f64 = 1e-3;
 
-/// Whether rotation is taken: seen by (S12); or because it leaves next to nothing where the potential does not predict,
-/// whatever t is, which one movement with a large gain can hold down; or by (R5) because dropping the potential changes
-/// the policy and costs less than a tenth in prediction.
+/// Whether rotation is taken: seen by (S12), and not so small that what is unpredicted has other reasons; or because it
+/// leaves next to nothing where the potential does not predict, whatever t is, which one movement with a large gain can
+/// hold down; or by (R5) because dropping the potential changes the policy and costs less than a tenth in prediction.
 pub(crate) fn takes_rotation(t: f64, potential: &Contender<'_>, rotation: &Contender<'_>) -> bool {
     let (r2_potential, r2_rotation) = (potential.left_out.r_squared, rotation.left_out.r_squared);
-    let seen = t > LEAST_T && r2_rotation > r2_potential;
     let (left_by_potential, left_by_rotation) = (1.0 - r2_potential, 1.0 - r2_rotation);
+    let differ_by = difference(potential.actions, rotation.actions);
+    let seen = t > LEAST_T && r2_rotation > r2_potential && differ_by > NOTICEABLE * left_by_potential;
     let decisive = left_by_potential > UNPREDICTED && left_by_rotation < DECISIVE * left_by_potential;
-    let changes = difference(potential.actions, rotation.actions) > DIFFERS;
+    let changes = differ_by > DIFFERS;
     let costs_little = left_by_rotation <= BETTER * left_by_potential;
     let hides_less = rotation.actions.norm_squared() <= potential.actions.norm_squared();
     seen || decisive || (changes && costs_little && hides_less)
@@ -68,10 +71,14 @@ mod tests {
         LeftOut { residuals: DMatrix::zeros(1, 1), variances: vec![1.0], r_squared, z_squared: 1.0 }
     }
 
-    /// Of equal length, and much alike or not at all.
-    fn taken(t: f64, [potential, rotation]: [f64; 2], alike: bool) -> bool {
-        let actions = DMatrix::from_column_slice(1, 3, &[1.0, 2.0, 3.0]);
-        let others = if alike { actions.clone() } else { DMatrix::from_column_slice(1, 3, &[3.0, 2.0, 1.0]) };
+    /// The others' actions, and how much of the first's they differ by: not at all, 4.5 %, or all.
+    const SAME: [f64; 3] = [1.0, 2.0, 3.0];
+    const ALIKE: [f64; 3] = [1.0, 2.0, 2.7];
+    const OTHER: [f64; 3] = [3.0, 2.0, 1.0];
+
+    fn taken(t: f64, [potential, rotation]: [f64; 2], others: [f64; 3]) -> bool {
+        let actions = DMatrix::from_column_slice(1, 3, &SAME);
+        let others = DMatrix::from_column_slice(1, 3, &others);
         let (potential, rotation) = (left_out(potential), left_out(rotation));
         takes_rotation(
             t,
@@ -82,11 +89,18 @@ mod tests {
 
     #[test]
     fn rotation_is_seen_by_t_or_where_it_alone_predicts() {
-        assert!(taken(2.6, [0.5, 0.6], true) && !taken(2.4, [0.5, 0.6], true));
+        assert!(taken(2.6, [0.5, 0.6], ALIKE) && !taken(2.4, [0.5, 0.6], ALIKE));
         // A gain that one movement makes most of has a small t; but nothing else predicts.
-        assert!(taken(0.5, [-5.8, 1.0 - 4e-9], true));
+        assert!(taken(0.5, [-5.8, 1.0 - 4e-9], ALIKE));
         // Where both predict well, prediction alone decides nothing.
-        assert!(!taken(0.5, [1.0 - 1e-4, 1.0 - 1e-9], true));
-        assert!(taken(0.5, [0.5, 0.5], false) && !taken(0.5, [0.5, 0.2], false));
+        assert!(!taken(0.5, [1.0 - 1e-4, 1.0 - 1e-9], ALIKE));
+        assert!(taken(0.5, [0.5, 0.5], OTHER) && !taken(0.5, [0.5, 0.2], OTHER));
+    }
+
+    /// However sure t is, a rotation of nothing is none.
+    #[test]
+    fn rotation_that_changes_nothing_is_not_seen() {
+        assert!(!taken(9.0, [0.5, 0.6], SAME));
+        assert!(taken(9.0, [1.0 - 1e-6, 1.0 - 1e-9], ALIKE));
     }
 }

@@ -7,7 +7,7 @@ use crate::direct::direct_gp::{DirectFit, DirectGp};
 use crate::reading::Reading;
 use crate::reading::numbers::{Compared, ReadingNumbers, TrajectoryErrors};
 use crate::slope::fit::SlopeFit;
-use crate::slope::judgement::{Chosen, report};
+use crate::slope::judgement::{Across, Chosen, report};
 use crate::slope::search::outcome;
 use crate::slope::slope_gp::SlopeGp;
 use crate::{FrontEnd, GpError, Rows};
@@ -58,8 +58,12 @@ impl ReadingLearner {
             direct_unit: direct.fit.model.unit,
         };
         let (numbers, left_out) = (ReadingNumbers::compared(&compared), compared.errors());
-        let mut report = report(&Chosen { outcome: &slope, kept: &kept, rows });
-        if numbers.reading() != Reading::Constrained {
+        let across = match numbers.reading() {
+            Reading::Constrained => Across::Tested,
+            Reading::Free | Reading::Ambiguous | Reading::Unexplained | Reading::TooFew => Across::Untested,
+        };
+        let mut report = report(&Chosen { outcome: &slope, kept: &kept, rows, across });
+        if across == Across::Untested {
             // (R6): how far the other reading's policy is away is an error to expect.
             report.expected_nupe = report.expected_nupe.max(numbers.gap);
         }

@@ -2,7 +2,7 @@ use nalgebra::{DMatrix, DVectorView};
 use rand::Rng;
 
 use crate::report::trust_report::TrustReport;
-use crate::slope::judgement::{Chosen, report};
+use crate::slope::judgement::{Across, Chosen, report};
 use crate::slope::model::SlopeModel;
 use crate::slope::policy::{SlopePolicy, SlopePotential};
 use crate::slope::search::outcome;
@@ -26,7 +26,7 @@ impl SlopeGp {
     pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<SlopeFit, GpError> {
         let kept = self.selection()?.keep(rows, rng)?;
         let outcome = outcome(self, &kept)?;
-        let report = report(&Chosen { outcome: &outcome, kept: &kept, rows });
+        let report = report(&Chosen { outcome: &outcome, kept: &kept, rows, across: Across::Untested });
         Ok(SlopeFit { model: outcome.taken.model, report })
     }
 }

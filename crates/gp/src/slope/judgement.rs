@@ -20,21 +20,35 @@ const NEARLY_AS_GOOD: f64 = 1.5;
 /// Probability from which a switch is counted.
 const SWITCHED: f64 = 0.5;
 
+/// By how much a posterior that left-out movements confirm was too narrow, at most.
+const OPTIMISTIC: f64 = 3.0;
+
 /// What a report is about.
 pub(crate) struct Chosen<'a> {
     pub(crate) outcome: &'a Outcome,
     pub(crate) kept: &'a Kept,
     pub(crate) rows: &'a Rows,
+    pub(crate) across: Across,
+}
+
+/// Whether movements passed the same places in other directions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Across {
+    /// Constraints varied: left-out movements test the policy across the paths of the others.
+    Tested,
+    /// As far as is known, everything went alike, and what is across was never tested.
+    Untested,
 }
 
 pub(crate) fn report(chosen: &Chosen<'_>) -> TrustReport {
-    let Chosen { outcome, kept, rows } = chosen;
+    let Chosen { outcome, kept, rows, across } = chosen;
     let Outcome { data, taken, other, curl_t, families } = outcome;
     let (posterior, prior) = mean_covariances(&taken.model, &kept.states);
     let ambiguity = other.as_ref().map_or(0.0, |other| ambiguity(taken, other));
     let states = every_so_many(kept.states.ncols());
     let variance = spread(&taken.actions.select_columns(&states)) / states.len() as f64;
-    let error = posterior.trace() * taken.left_out.z_squared.max(1.0) / variance;
+    let calibration = calibration(taken.left_out.z_squared, noise_share(taken), *across);
+    let error = posterior.trace() * calibration / variance;
     // Before its first sample every movement begins.
     let after_first = |switches: &Vec<f64>| switches.iter().skip(1).filter(|&&p| p > SWITCHED).count();
     let count = |switches: &[Vec<f64>]| switches.iter().map(after_first).sum();
@@ -56,6 +70,24 @@ pub(crate) fn report(chosen: &Chosen<'_>) -> TrustReport {
         noise: rows.noise(),
         switches: rows.switches().map(count),
     }
+}
+
+/// Share of noise in the variance predicted of left-out movements, by the weights of (S11).
+fn noise_share(taken: &Candidate) -> f64 {
+    let SlopeModel { noise, noise_weights, .. } = &taken.model;
+    let predicted = taken.left_out.variances.iter().zip(noise_weights).map(|(variance, weight)| variance / weight);
+    noise * noise_weights.len() as f64 / predicted.sum::<f64>()
+}
+
+/// Factor on the posterior's variance, from how left-out movements were predicted: z² (S11) where that is over 1, since
+/// the posterior is then too narrow. A z² under 1 tells something of the posterior only as far as noise is a small part of the
+/// variance predicted, and of all directions only where movements left out went in others than those learnt from.
+fn calibration(z_squared: f64, noise_share: f64, across: Across) -> f64 {
+    let least = match across {
+        Across::Tested => (OPTIMISTIC * z_squared).max(noise_share).min(1.0),
+        Across::Untested => 1.0,
+    };
+    z_squared.max(least)
 }
 
 /// Δ of (R6).
@@ -92,6 +124,27 @@ fn rotational_share(taken: &Candidate, states: &DMatrix<f64>) -> f64 {
         ModelKind::Helmholtz => {
             let rotation = taken.model.rotational_part().expansion.actions(states);
             rotation.norm_squared() / taken.actions.norm_squared()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// Errors larger than predicted always widen; smaller ones narrow only what they have tested, and never below three
+        /// times what they say or the share of noise.
+        #[test]
+        fn a_posterior_is_narrowed_only_by_what_tested_it(z_squared in 0.0f64..9.0, noise in 0.0f64..1.0) {
+            let tested = calibration(z_squared, noise, Across::Tested);
+            let untested = calibration(z_squared, noise, Across::Untested);
+            prop_assert_eq!(untested, z_squared.max(1.0));
+            prop_assert!(tested <= untested && tested >= z_squared && tested >= noise);
+            prop_assert!(tested >= (3.0 * z_squared).min(1.0));
+            prop_assert!(tested == untested || tested == 3.0 * z_squared || tested == noise);
         }
     }
 }
