@@ -99,7 +99,8 @@ impl Committed {
         let first = RunFolder::committed(FIRST_SEED).sources()?;
         let second = RunFolder::committed(SECOND_SEED).results()?;
         for results in [&first.results, &second] {
-            complete(experiments, results).with_context(|| format!("docs/records/seed-{}", results.seed))?;
+            let place = || format!("docs/records/seed-{}", results.seed);
+            complete(experiments, results).and_then(|()| check(experiments, results)).with_context(place)?;
         }
         Ok(Committed { first, second })
     }
@@ -256,6 +257,42 @@ mod tests {
         results.experiments[0].rows[2].failed = 1;
         let error = format!("{:#}", complete(&experiments, &results).unwrap_err());
         assert_eq!(error, "table1 parabola-40x40-wide: 1 of 100 data sets failed");
+    }
+
+    /// A copy of the second committed run, but for what `change` does to one of its cells, offered for publication.
+    fn offered(change: impl FnOnce(&mut serde_json::Value)) -> anyhow::Result<()> {
+        let committed = fs::read_to_string(RunFolder::committed(SECOND_SEED).join("results.json"))?;
+        let mut results: serde_json::Value = serde_json::from_str(&committed)?;
+        change(results.pointer_mut("/experiments/0/rows/1/measures/nupe").unwrap());
+        let folder = tempfile::tempdir()?;
+        fs::write(folder.path().join("results.json"), results.to_string())?;
+        publishable(&registry()?, folder.path()).map(drop)
+    }
+
+    /// Means, spreads, medians and verdicts are made anew from the data sets' values, and the printed figures from the
+    /// paper's: a file in which one of them is another is refused, however little it differs.
+    #[test]
+    fn a_file_whose_means_are_not_those_of_its_data_sets_is_refused() {
+        offered(|_| ()).unwrap();
+        let why = "is damaged: table1 parabola-40x40-medium: nupe is not what its values come to";
+        let next: fn(f64) -> f64 = f64::next_up;
+        let numbers = ["/mean", "/sd", "/median", "/paper/mean", "/paper/sd"].map(|name| (name, next));
+        // One bit of one value may leave the mean as it is.
+        let more: fn(f64) -> f64 = |value| value * (1.0 + 1e-9);
+        for (name, change) in numbers.into_iter().chain([("/values/7", more)]) {
+            let error = offered(|cell| {
+                let number = cell.pointer_mut(name).unwrap();
+                *number = change(number.as_f64().unwrap()).into();
+            });
+            let error = format!("{:#}", error.unwrap_err());
+            assert!(error.ends_with(why), "{name}: {error}");
+        }
+        for (name, doctored) in [("verdict", "agrees".into()), ("paper", serde_json::Value::Null)] {
+            let error = format!("{:#}", offered(|cell| cell[name] = doctored).unwrap_err());
+            assert!(error.ends_with(why), "{name}: {error}");
+        }
+        let shorter = offered(|cell| drop(cell["values"].as_array_mut().unwrap().pop()));
+        assert!(format!("{:#}", shorter.unwrap_err()).ends_with("nupe has 99 values of 100 data sets"));
     }
 
     /// Words and digits as drawn; the last digits of a place on the sheet may differ between machines.

@@ -104,7 +104,11 @@ fn dependency_faults(manifest: &Manifest, allowed: &BTreeMap<String, Allowed>) -
         (!list.iter().any(|allowed| allowed == dependency))
             .then(|| format!("crate {name} may not depend on {what} {dependency}"))
     };
-    named.iter().copied().filter_map(fault).chain(unused).collect()
+    let listed: Vec<&String> = own.siblings.iter().chain(&own.third_party).collect();
+    let again = |(at, name): (usize, &&String)| listed[..at].contains(name);
+    let twice = listed.iter().enumerate().filter(|&entry| again(entry));
+    let twice = twice.map(|(_, again)| format!("crate {name} lists {again} twice; delete it once from its entry"));
+    named.iter().copied().filter_map(fault).chain(unused).chain(twice).collect()
 }
 
 fn source_faults(folder: &Path, faults: &mut Vec<String>) -> anyhow::Result<()> {
@@ -176,7 +180,7 @@ mod tests {
     #[test]
     fn a_learner_that_names_the_truth_is_found() {
         let allowed = toml::from_str(
-            "align = { siblings = ['motion'], third_party = ['faer', 'rayon'] }\n\
+            "align = { siblings = ['motion'], third_party = ['faer', 'rayon', 'faer'] }\n\
              motion = { siblings = [], third_party = [] }\n\
              metrics = { siblings = [], third_party = [] }",
         )
@@ -190,6 +194,7 @@ mod tests {
                 "crate align may not depend on the third-party crate libc",
                 "crate align may not depend on the sibling metrics",
                 "crate align does not use rayon; delete it from its entry",
+                "crate align lists faer twice; delete it once from its entry",
             ]
         );
     }

@@ -2,9 +2,10 @@
 
 #![allow(clippy::unwrap_used)]
 
+use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
 
 fn xtask(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_xtask")).current_dir(folder).args(arguments).output().unwrap()
@@ -76,6 +77,42 @@ fn what_is_missing_is_said_and_not_drawn() {
         printed.contains("figure2") && printed.contains("another form") && printed.contains("the command of its run"),
         "{printed}"
     );
+}
+
+/// Every file in a folder and the folders in it, by its path.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
+    let files = files.into_iter().map(|path| (path.clone(), fs::read(path).unwrap()));
+    files.chain(folders.iter().flat_map(|folder| self::files(folder))).collect()
+}
+
+/// Each writes every file whole, to a name of its own first: whoever comes last, the report is one.
+#[test]
+fn reports_into_one_folder_at_the_same_time_leave_a_whole_one() {
+    let folder = tempfile::tempdir().unwrap();
+    reproduce(folder.path(), "table1/parabola-40x40-narrow");
+    said(folder.path(), &["report", "--from", "run", "--out", "shared"]);
+    let shared = folder.path().join("shared");
+    let alone = files(&shared);
+    assert!(alone.contains_key(&shared.join("report.html")) && alone.contains_key(&shared.join("figures/figure1.png")));
+    fs::remove_dir_all(&shared).unwrap();
+    let report = |_| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));
+        command.current_dir(folder.path()).args(["report", "--from", "run", "--out", "shared"]);
+        command.stderr(Stdio::piped()).spawn().unwrap()
+    };
+    let reports: Vec<_> = (0..4).map(report).collect();
+    for report in reports {
+        let output = report.wait_with_output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    let together = files(&shared);
+    let names = |files: &BTreeMap<PathBuf, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
+    assert_eq!(names(&together), names(&alone), "drafts are left, or files are missing");
+    for (name, contents) in &alone {
+        assert!(together[name] == *contents, "{} is another one", name.display());
+    }
 }
 
 #[test]

@@ -108,3 +108,57 @@ impl<'a> Exam<'a> {
         100.0 * (unsupported.count() as f64 / samples.len() as f64)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use align::{Bandwidth, DirectPolicyLearning, LwprRegressor};
+    use demo_gen::{ToyPotential, ToySystem};
+    use gp::{ReadingLearner, SlopeGp, SlopeLearner};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::seed::generator;
+
+    fn pupils() -> Vec<Pupil> {
+        let slope = || SlopeGp { max_rows: 60, hyper_rows: 40, ..SlopeGp::default() };
+        vec![
+            Pupil::PolicyAlign(LwprRegressor { passes: 2, ..LwprRegressor::default() }),
+            Pupil::other(DirectPolicyLearning::default()).unwrap(),
+            Pupil::other(SlopeLearner { gp: slope(), ..SlopeLearner::default() }).unwrap(),
+            Pupil::other(ReadingLearner { slope: slope(), ..ReadingLearner::default() }).unwrap(),
+        ]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4))]
+
+        /// The truth of other movements changes every mark and no bit of what is learnt.
+        #[test]
+        fn the_truth_is_for_the_judge_alone(seed in 1_u64..1000, forger in 1000_u64..2000, samples in 20_usize..40) {
+            let record = |potential, seed| {
+                let system = ToySystem { potential, n_trajectories: 12, n_samples: samples, ..ToySystem::default() };
+                system.record(&mut generator(seed, 0, 0)).unwrap()
+            };
+            let recordings = record(ToyPotential::parabola(), seed);
+            let others = record(ToyPotential::sinusoidal(), forger);
+            let swap = |(recording, other): (&Recording, Recording)| Recording { truth: other.truth, ..recording.clone() };
+            let forged: Vec<Recording> = recordings.iter().zip(others).map(swap).collect();
+            let algorithm = PolicyAlign { bandwidth: Bandwidth::Medium, ..PolicyAlign::default() };
+            let [exam, of_forged] = [&recordings, &forged]
+                .map(|recordings| examine(recordings, &algorithm, &pupils(), &mut generator(seed, 0, 1)).unwrap());
+            prop_assert_eq!(&exam.aligned, &of_forged.aligned);
+            prop_assert_eq!(exam.judge.samples(), of_forged.judge.samples());
+            for (ours, theirs) in exam.learnt().zip(of_forged.learnt()) {
+                prop_assert_eq!((ours.kept(), ours.warnings()), (theirs.kept(), theirs.warnings()));
+                for state in recordings.iter().flat_map(|recording| recording.observed.states().column_iter()) {
+                    let bits = |learnt: &dyn LearntPolicy| learnt.action(state).map(f64::to_bits);
+                    prop_assert_eq!(bits(ours), bits(theirs));
+                    prop_assert_eq!(ours.support(state).to_bits(), theirs.support(state).to_bits());
+                }
+            }
+            for (ours, theirs) in exam.rows().unwrap().iter().zip(of_forged.rows().unwrap()) {
+                prop_assert!(ours[&Measure::Nupe] != theirs[&Measure::Nupe], "a mark that does not know the truth");
+            }
+        }
+    }
+}

@@ -1,12 +1,13 @@
 use align::{Bandwidth, LwprRegressor, PolicyAlign, PotentialPolicy};
+use gp::{FrontEnd, SlopeGp};
 use motion::{Demonstrations, LearntPolicy, Policy};
 use nalgebra::{DMatrix, dvector};
 use rand::{SeedableRng, rngs::StdRng};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = std::env::args().nth(1).unwrap_or_else(|| "policy.json".to_owned());
+    let demonstrations = Demonstrations::from_states(recorded(), 0.5)?; // seconds between two samples
     if !std::path::Path::new(&path).exists() {
-        let demonstrations = Demonstrations::from_states(recorded(), 0.5)?; // seconds between two samples
         let aligned = PolicyAlign { bandwidth: Bandwidth::Medium, ..Default::default() }.align(&demonstrations)?;
         let learnt = aligned.learn(&LwprRegressor::default(), &mut StdRng::seed_from_u64(1))?;
         println!("kept {} of {}; {:?}", aligned.kept().len(), demonstrations.n_trajectories(), learnt.warnings());
@@ -15,6 +16,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let learnt: PotentialPolicy = serde_json::from_str(&std::fs::read_to_string(&path)?)?;
     let x = dvector![0.5, -0.2];
     println!("action {:.3?}, support {:.2}", learnt.action(x.as_view()).as_slice(), learnt.support(x.as_view()));
+
+    // A second learner, which knows how sure it is.
+    let gp = SlopeGp { max_rows: 150, ..SlopeGp::default() };
+    let fit = gp.fit(&FrontEnd::Map.rows(&demonstrations)?, &mut StdRng::seed_from_u64(1))?;
+    let (action, mut deviation) = (fit.action(x.as_view()), dvector![0.0, 0.0]);
+    fit.action_sd_into(x.as_view(), deviation.as_view_mut());
+    println!("slope GP: action {:.3?} ± {:.1e?}", action.as_slice(), deviation.as_slice());
+    println!("support {:.2}, expected error {:.1e}", fit.support(x.as_view()), fit.report().expected_nupe);
     Ok(())
 }
 
