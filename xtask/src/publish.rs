@@ -287,7 +287,7 @@ mod tests {
             let error = format!("{:#}", error.unwrap_err());
             assert!(error.ends_with(why), "{name}: {error}");
         }
-        for (name, doctored) in [("verdict", "agrees".into()), ("paper", serde_json::Value::Null)] {
+        for (name, doctored) in [("verdict", "higher".into()), ("paper", serde_json::Value::Null)] {
             let error = format!("{:#}", offered(|cell| cell[name] = doctored).unwrap_err());
             assert!(error.ends_with(why), "{name}: {error}");
         }

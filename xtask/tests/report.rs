@@ -97,12 +97,12 @@ fn reports_into_one_folder_at_the_same_time_leave_a_whole_one() {
     let alone = files(&shared);
     assert!(alone.contains_key(&shared.join("report.html")) && alone.contains_key(&shared.join("figures/figure1.png")));
     fs::remove_dir_all(&shared).unwrap();
-    let report = |_| {
+    let report = |()| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));
         command.current_dir(folder.path()).args(["report", "--from", "run", "--out", "shared"]);
         command.stderr(Stdio::piped()).spawn().unwrap()
     };
-    let reports: Vec<_> = (0..4).map(report).collect();
+    let reports = [(); 2].map(report);
     for report in reports {
         let output = report.wait_with_output().unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let fit = gp.fit(&FrontEnd::Map.rows(&demonstrations)?, &mut StdRng::seed_from_u64(1))?;
     let (action, mut deviation) = (fit.action(x.as_view()), dvector![0.0, 0.0]);
     fit.action_sd_into(x.as_view(), deviation.as_view_mut());
-    println!("slope GP: action {:.3?} ± {:.1e?}", action.as_slice(), deviation.as_slice());
+    println!("slope GP: action {:.3?} ± {:.0e}", action.as_slice(), deviation.amax());
     println!("support {:.2}, expected error {:.1e}", fit.support(x.as_view()), fit.report().expected_nupe);
     Ok(())
 }
