@@ -9,7 +9,7 @@ use clap::Args;
 use page::markdown_table;
 
 use crate::experiments::{Experiment, Setup, registry};
-use crate::figures::{Figure, Sources, figures};
+use crate::figures::{Figure, Sources, compute, figures};
 use crate::files::{relative, repository, write};
 use crate::measure::Measure;
 use crate::progress::say;
@@ -30,6 +30,9 @@ const END: &str = "<!-- end of what is generated -->\n";
 /// The opening of `docs/reproduction.md`.
 const TITLE: &str = "# The paper's tables, reproduced\n\n";
 
+/// The figure that it opens with.
+const HERO: &str = "overview";
+
 /// What follows.
 const PREFACE: &str = "\
 Written by `cargo xtask publish` from [records/](records/), the results of `cargo xtask reproduce --seed 1` and `--seed 2`.
@@ -47,6 +50,9 @@ pub(crate) struct Publish {
     /// First make these finished runs the committed records, one of seed 1 and one of seed 2
     #[arg(value_name = "RUN")]
     runs: Vec<PathBuf>,
+    /// First compute the committed figure data anew: they depend on the seed alone, so that a new figure needs no new run
+    #[arg(long, conflicts_with = "runs")]
+    figures: bool,
 }
 
 impl Publish {
@@ -59,6 +65,13 @@ impl Publish {
             let seed = run.results.seed;
             RunFolder::committed(seed).keep(run)?;
             say(&format!("docs/records/seed-{seed} is now the run in {}", relative(path)));
+        }
+        if self.figures {
+            let folder = RunFolder::committed(FIRST_SEED);
+            let results = folder.results()?;
+            let documents = compute(&experiments, results.seed)?;
+            folder.keep(&Sources { results, documents, missing: vec![] })?;
+            say("docs/records/seed-1/figures is computed anew");
         }
         let records = Committed::read(&experiments)?;
         for (path, text) in records.pages(&experiments)? {
@@ -165,20 +178,35 @@ fn reproduction(experiments: &[Experiment], records: &Committed) -> String {
     let mut parts: Vec<_> = sections(experiments, &first.results, Some(second)).map(experiment).collect();
     let ideas = "The idea in pictures";
     parts.push(("ideas", ideas, format!("## {ideas}\n\n{}", of(None))));
+    let hero = figures.iter().find(|figure| figure.id == HERO).map_or(String::new(), picture);
     let entry = |(id, title, _): &(&str, &str, String)| format!("- [{title}](#{id})\n");
     let part = |(id, _, text): &(&str, &str, String)| format!("<a id=\"{id}\"></a>\n\n{text}");
     let contents: String = parts.iter().map(entry).collect();
     let body: String = parts.iter().map(part).collect();
     let total = total(experiments, &first.results);
     let zeros = "Cells printed as 0 ± 0 count among the last where ours is below 0.005 %.";
-    format!("{TITLE}**{total}** {zeros}\n\n{PREFACE}{contents}\n{}{}\n", key(), body.trim_end())
+    let (tallies, key) = (verdicts(experiments, &first.results), key());
+    let key = folded("How to read the tables", key.trim_end());
+    format!("{TITLE}{hero}**{total}** {zeros}\n\n{tallies}\n{PREFACE}{contents}\n{key}{}\n", body.trim_end())
 }
 
-/// A figure with its caption, and how it compares.
+/// A figure with what differs; folded, its caption and how it compares.
 fn pictured(figure: &Figure) -> String {
-    let Figure { id, title, caption, beside_paper, .. } = figure;
-    let beside = beside_paper.map_or(String::new(), |text| format!("*Beside the paper's figure.* {text}\n\n"));
-    format!("### {title}\n\n![{title}](pictures/{id}.svg)\n\n{caption}\n\n{beside}")
+    let Figure { id, title, caption, beside_paper, differs, .. } = figure;
+    let beside = beside_paper.map_or(String::new(), |text| format!("\n\n*Beside the paper's figure.* {text}"));
+    let differs = differs.map_or(String::new(), |text| format!("What differs: {text}\n\n"));
+    let picture = if *id == HERO { String::new() } else { picture(figure) };
+    let what = if beside.is_empty() { "What it shows" } else { "What it shows, beside the paper's" };
+    format!("### {title}\n\n{picture}{differs}{}", folded(what, &format!("{caption}{beside}")))
+}
+
+fn picture(Figure { id, title, .. }: &Figure) -> String {
+    format!("![{title}](pictures/{id}.svg)\n\n")
+}
+
+/// What is seen only by who opens it. Markdown within needs the empty lines.
+fn folded(summary: &str, text: &str) -> String {
+    format!("<details><summary>{summary}</summary>\n\n{text}\n\n</details>\n\n")
 }
 
 /// One line an experiment with printed figures: how many printed figures are reached.

@@ -68,7 +68,7 @@ impl Document<'_> {
         html! {
             nav aria-label="Contents" {
                 p .name { (self.name) }
-                // The script folds it on a phone.
+                // The script folds it in a narrow window.
                 details open {
                     summary { "Contents" }
                     ol {

@@ -1,4 +1,4 @@
-// The report works without this; it adds where one is in the contents, which it folds on a phone, and enlarged figures.
+// The report works without this; it adds where one is in the contents, which it folds in a narrow window, and enlarged figures.
 "use strict";
 
 // Marks the part that is being read in the contents.
@@ -17,10 +17,10 @@ addEventListener("scroll", mark, { passive: true });
 addEventListener("resize", mark);
 mark();
 
-const phone = matchMedia("(max-width: 40rem)");
+const narrow = matchMedia("(max-width: 75rem)");
 const contents = document.querySelector("nav details");
-const fold = () => { contents.open = !phone.matches; };
-phone.addEventListener("change", fold);
+const fold = () => { contents.open = !narrow.matches; };
+narrow.addEventListener("change", fold);
 contents.addEventListener("click", (event) => { if (event.target.closest("a")) fold(); });
 fold();
 

@@ -2,7 +2,7 @@ use kuva::backend::raster::RasterBackend;
 use kuva::backend::svg::SvgBackend;
 use kuva::render::render::{Primitive, Scene};
 
-use crate::raster::{DOTS, Raster};
+use crate::raster::{DOTS, Raster, with_density};
 use crate::{Panel, PlotError, Sketch, dashes, decimals, turned};
 
 /// Pixels between panels.
@@ -44,7 +44,7 @@ impl Picture {
         svg
     }
 
-    /// As a PNG file, two dots to a pixel of the SVG.
+    /// As a PNG file, two dots to a pixel of the SVG, of which an inch has 96.
     ///
     /// # Errors
     ///
@@ -57,7 +57,8 @@ impl Picture {
         let elements = scene.elements.iter().flat_map(|element| dotted(element, rasters));
         sheet.elements = elements.flat_map(|element| turned::drawn(element, font)).collect();
         let backend = RasterBackend::new().with_scale(DOTS as f32);
-        backend.render_scene(&sheet).map_err(|reason| PlotError::Pixels { reason })
+        let file = backend.render_scene(&sheet).map_err(|reason| PlotError::Pixels { reason })?;
+        Ok(with_density(file))
     }
 }
 
@@ -151,6 +152,8 @@ mod tests {
         assert!(images[0] != images[1] && !svg.contains("data-raster"));
         let png = Picture::rows(&[&[&ball("#ff0000"), &ball("#0000ff")]]).png().unwrap();
         let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().unwrap();
+        let density = reader.info().pixel_dims.unwrap();
+        assert_eq!((density.xppu, density.yppu, density.unit), (7559, 7559, png::Unit::Meter));
         let mut dots = vec![0; reader.output_buffer_size().unwrap()];
         let frame = reader.next_frame(&mut dots).unwrap();
         let dot = |x: usize, y: usize| dots[4 * (y * frame.width as usize + x)..][..3].to_vec();

@@ -67,6 +67,10 @@ class Controls {
       oninput: () => { this.sliding = true; actions.seek(this.slider.valueAsNumber); },
       onchange: () => { this.sliding = false; actions.seek(this.slider.valueAsNumber); },
     });
+    const step = (samples, sign, name) => (
+      make("button", { type: "button", "aria-label": name, title: name, onclick: () => actions.step(samples) }, sign)
+    );
+    const steps = [step(-1, "◂❘", "A step back (,)"), step(1, "❘▸", "A step on (.)")];
     this.time = make("span", { class: "view-time" });
     const speeds = SPEEDS.map((speed) => make("option", { value: speed }, `${speed} ×`));
     this.speed = make("select", { onchange: () => actions.setSpeed(Number(this.speed.value)) }, ...speeds);
@@ -75,7 +79,7 @@ class Controls {
     this.element = make("div", { class: "view-controls" },
       this.curves.element,
       this.slider,
-      make("div", { class: "view-times" }, this.play, this.time, make("label", {}, "Speed ", this.speed),
+      make("div", { class: "view-times" }, this.play, ...steps, this.time, make("label", {}, "Speed ", this.speed),
         make("label", {}, this.loop, " Loop")),
       make("div", { class: "view-choices" }, learner.element, constraint.element, start.element),
       this.words);
@@ -136,12 +140,15 @@ class Controls {
   }
 }
 
-/** Buttons over the picture: views, nearer, farther. */
-function viewButtons(look, zoom) {
+/** Buttons over the picture: views, nearer, farther, full screen. */
+function viewButtons(look, zoom, fill) {
   const views = Object.entries(VIEWS).map(([name, { label }]) => (
     make("button", { type: "button", onclick: () => look(name) }, label)
   ));
   const nearer = make("button", { type: "button", "aria-label": "Nearer (+)", onclick: () => zoom(1 / 1.2) }, "+");
   const farther = make("button", { type: "button", "aria-label": "Farther (−)", onclick: () => zoom(1.2) }, "−");
-  return make("div", { class: "view-buttons", role: "group", "aria-label": "Camera" }, ...views, nearer, farther);
+  const whole = make("button", { type: "button", onclick: fill }, "Full screen");
+  // Where the browser lets nothing fill the screen, nothing offers it.
+  const last = document.fullscreenEnabled ? [whole] : [];
+  return make("div", { class: "view-buttons", role: "group", "aria-label": "Camera" }, ...views, nearer, farther, ...last);
 }

@@ -9,7 +9,8 @@ const COLOR_NAMES = [
   "expert", "naive", "policy_align", "slope_gp",
 ];
 const HELP = "Drag or arrow keys: turn. Right button or Shift and drag, two fingers: move. Pinch, wheel (after a click) or + "
-  + "and −: nearer, farther. Double-click: look at what is there. Space: play, pause. Home: reset. The address keeps what is shown.";
+  + "and −: nearer, farther. Double-click: look at what is there. Space: play, pause. , and .: a step back, on. F: full screen. "
+  + "Home: reset. The address keeps what is shown.";
 /** So much of the picture has to be seen before it plays by itself. */
 const IN_SIGHT = 0.6;
 /** Milliseconds without a change after which the address is written. */
@@ -56,12 +57,14 @@ class View {
       select: (choice) => this.select(choice),
       toggle: () => (this.playback.playing ? this.pause() : this.play()),
       seek: (sample) => { this.playback.pause(); this.seek(sample); },
-      setSpeed: (speed) => { this.playback.speed = speed; },
+      step: (samples) => this.step(samples),
+      setSpeed: (speed) => this.setSpeed(speed),
     });
     this.follow(location.hash);
     const look = (name) => this.look(name);
     const zoom = (factor) => { this.camera.zoom(factor); this.changed(); };
-    const stage = make("div", { class: "view-stage" }, canvas, viewButtons(look, zoom));
+    const fill = () => this.fillScreen();
+    const stage = make("div", { class: "view-stage" }, canvas, viewButtons(look, zoom, fill));
     const help = make("p", { class: "view-help" }, LEGEND, make("br"), make("span", { id: "view-keys" }, HELP));
     element.replaceChildren(stage, this.controls.element, help);
     this.listen();
@@ -79,10 +82,17 @@ class View {
     const { canvas } = this;
     listen(canvas, this.camera, (eye, sight) => this.scene.pick(eye, sight), () => this.changed());
     window.addEventListener("hashchange", () => this.follow(location.hash));
+    const keys = {
+      " ": () => this.controls.play.click(),
+      ",": () => this.step(-1),
+      ".": () => this.step(1),
+      f: () => this.fillScreen(),
+    };
     canvas.addEventListener("keydown", (event) => {
-      if (event.key !== " ") return;
+      const key = event.key.toLowerCase();
+      if (event.ctrlKey || event.metaKey || event.altKey || !Object.hasOwn(keys, key)) return;
       event.preventDefault();
-      this.controls.play.click();
+      keys[key]();
     });
     canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     canvas.addEventListener("webglcontextrestored", () => { this.build(new Renderer(canvas)); this.ask(); });
@@ -119,8 +129,10 @@ class View {
     const address = readAddress(hash);
     if (!address) return;
     const known = Object.entries(this.playback.options).filter(([name, values]) => values.includes(address[name]));
+    const { all, ghost, loop } = address;
     this.playback.pause();
-    this.playback.select(Object.fromEntries(known.map(([name]) => [name, address[name]])));
+    this.playback.select({ all, ghost, loop, ...Object.fromEntries(known.map(([name]) => [name, address[name]])) });
+    if (SPEEDS.includes(address.speed)) this.playback.speed = address.speed;
     this.scene.choose();
     if (address.sample !== undefined) this.playback.seek(address.sample);
     if (address.camera) this.camera.put(address.camera);
@@ -159,6 +171,24 @@ class View {
   seek(sample) {
     this.playback.seek(sample);
     this.changed();
+  }
+
+  /** So many samples on, or back; it stands still at a whole one. */
+  step(samples) {
+    const { sample } = this.playback;
+    this.playback.pause();
+    this.seek(samples > 0 ? Math.floor(sample) + samples : Math.ceil(sample) + samples);
+  }
+
+  setSpeed(speed) {
+    this.playback.speed = speed;
+    this.changed();
+  }
+
+  /** The view on all of the screen, and back. */
+  fillScreen() {
+    if (document.fullscreenElement) document.exitFullscreen();
+    else this.element.requestFullscreen?.().catch(() => {});
   }
 
   look(name) {
@@ -221,6 +251,8 @@ class View {
       play: () => this.play(),
       pause: () => this.pause(),
       seek: (sample) => this.seek(sample),
+      step: (samples) => this.step(samples),
+      setSpeed: (speed) => this.setSpeed(speed),
       orbit: (dx, dy) => { camera.orbit(dx, dy); this.changed(); },
       look: (name) => this.look(name),
       render: () => this.render(),

@@ -45,6 +45,7 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
                  because a single start far from all others, where none reaches 0.001, would rule the error of the potential. Starts are within the joints' limits; \
                  movements are not held there, and most leave them somewhere (beyond limits %).",
         decisions: "asimo22.md",
+        contests_remark: None,
         another_reading_of: None,
         contests: [Measure::Nupe, Measure::Ncpe].map(contest).into(),
         setups: vec![

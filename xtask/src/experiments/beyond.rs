@@ -102,6 +102,7 @@ pub(crate) fn beyond() -> Experiment {
                  data set. Nothing is held out: the policy is hidden at the states that are seen. \"As read\" is the slope GP or the direct \
                  GP, as the data are read.",
         decisions: "beyond.md",
+        contests_remark: None,
         another_reading_of: None,
         contests,
         setups: (FIRST_SYSTEM..).zip(cases).map(setup).collect(),

@@ -73,6 +73,11 @@ pub(crate) fn figure6_right() -> Experiment {
                  recorded velocities are clean. Potentials are integrated from velocities, or from displacements (9). \
                  Regression as in Table 1; errors are against the truth at the true states.",
         contests: RULES.into_iter().zip(BESIDE_RIGHT).flat_map(contests).collect(),
+        contests_remark: Some(
+            "Not all learn from the same here: naive learner and radial basis take the recorded velocities, which are clean, in all rows. \
+             In the rows `fused-…` PolicyAlign takes them too, and the Gaussian processes positions and velocities together; in the rows \
+             `smoothed-…` PolicyAlign and the Gaussian processes have noisy positions alone, of which the latter are smoothed.",
+        ),
         setups: setups.chain(RULES.into_iter().zip(BESIDE_RIGHT).map(beside)).collect(),
         ..curves()
     }
@@ -129,6 +134,7 @@ fn curves() -> Experiment {
         data_sets: 20,
         remark: "",
         decisions: "figure6.md",
+        contests_remark: None,
         another_reading_of: None,
         contests: vec![],
         setups: vec![],

@@ -59,6 +59,8 @@ pub(crate) struct Experiment {
     pub(crate) decisions: &'static str,
     /// The experiment of which it is another reading: its cells are no further figures of the paper.
     pub(crate) another_reading_of: Option<&'static str>,
+    /// What has to be said beside the table of learners.
+    pub(crate) contests_remark: Option<&'static str>,
     /// Learners held against each other, a line for each error; empty where there is one learner alone.
     pub(crate) contests: Vec<Contest>,
     /// What is measured, in the table's order.

@@ -97,6 +97,7 @@ pub(crate) fn readings() -> Experiment {
                  all under the same constraint. Handwriting is free movement in a corridor, learnt from five demonstrations and tested on \
                  two others. The Gaussian processes learn from at most 400 rows.",
         decisions: "beyond.md",
+        contests_remark: None,
         another_reading_of: None,
         contests,
         setups: (FIRST_SYSTEM..).zip(kinds()).map(setup).collect(),

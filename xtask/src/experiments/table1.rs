@@ -38,6 +38,7 @@ pub(crate) fn table1() -> anyhow::Result<Experiment> {
                  statements of Section 4.1 do not hold here: the error of alignment is not \"only marginally different\" from the \
                  potential's (docs/decisions/table1.md), and on the sinusoid nUPE changes from narrow to medium the other way round.",
         decisions: "table1.md",
+        contests_remark: None,
         another_reading_of: None,
         contests: contests(),
         setups: setups(Redraw::Every(REDRAW), 0, max_rows),
@@ -55,6 +56,7 @@ pub(crate) fn table1_literal() -> anyhow::Result<Experiment> {
         data_sets: 100,
         remark: "As Table 1, but the constraint is \"re-sampled twice\" during each movement to the letter: three segments of equal length.",
         decisions: "table1.md",
+        contests_remark: None,
         another_reading_of: Some("table1"),
         contests: contests(),
         setups: setups(Redraw::Segments(3), LITERAL, |_| LITERAL_ROWS),

@@ -48,6 +48,7 @@ pub(crate) fn table2() -> anyhow::Result<Experiment> {
                  which cells agree (docs/leverage.md); the unseen obstacle stops the expert, too, in half of the movements (from 0.06 m down it \
                  stops none, and the naive cell is lost); movements last 50 s, the printed ones 2 s.",
         decisions: "table2.md",
+        contests_remark: None,
         another_reading_of: None,
         contests: CASES.into_iter().zip(ERRORS).map(contest).collect(),
         setups: vec![
@@ -206,5 +207,49 @@ impl Trial for GraspTrial {
         let alignment = [Measure::AlignmentNmse, Measure::PotentialNmse, Measure::Disc, Measure::Unsupported];
         rows.push(BTreeMap::from(alignment.map(|measure| (measure, of_learners[0][&measure]))));
         Ok(rows)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use motion::NegativeGradient;
+
+    use super::*;
+    use crate::experiments::quotable;
+    use crate::seed::generator;
+
+    /// Numbers in the remark that no record has: they follow from the set-up.
+    #[test]
+    fn the_remark_is_as_the_scene_is() {
+        let remark = table2().unwrap().remark;
+        for setting in quotable().filter(|setting| setting.experiment == "table2") {
+            assert!(remark.contains(&setting.used.to_string()), "{} is not told", setting.name);
+        }
+        let grasp = grasp().unwrap();
+        let mut rng = generator(1, GRASP_SYSTEM, 0);
+        let starts: Vec<_> = (0..grasp.n_trajectories).map(|_| grasp.start(&mut rng).unwrap()).collect();
+        // Of a normal distribution 21.2 % lie below 0.8 standard deviations under its mean.
+        let below = (grasp.gap_mean - grasp.gap_least) / grasp.gap_deviation;
+        assert!((below - 0.8).abs() < 1e-12 && remark.contains("widens 21 % of the gaps"));
+        let widened = starts.iter().filter(|start| start.gap <= grasp.gap_least).count();
+        assert!((10..=35).contains(&widened), "{widened}");
+
+        let (expert, target) = (NegativeGradient(grasp.scene.potential()), grasp.scene.target());
+        let stopped = |half_width: f64| {
+            let mut scene = grasp.scene.clone();
+            scene.obstacle_half_width = half_width;
+            let obstacle = scene.central_obstacle().unwrap();
+            let far = |start: &&demo_gen::GraspStart| {
+                let trajectory = grasp.roll_out.follow(&expert, &obstacle, start.palms.as_view()).unwrap();
+                let off = trajectory.state(trajectory.n_samples() - 1) - &target;
+                off.fixed_rows::<3>(0).norm().max(off.fixed_rows::<3>(3).norm()) > 0.2
+            };
+            starts.iter().filter(far).count()
+        };
+        assert!(remark.contains("in half of the movements (from 0.06 m down it stops none"));
+        let (used, narrow) = (stopped(grasp.scene.obstacle_half_width), stopped(0.06));
+        assert!((45..=60).contains(&used) && narrow == 0, "{used} {narrow}");
+        let seconds = grasp.roll_out.time_step * grasp.roll_out.n_samples as f64;
+        assert!(remark.contains(&format!("movements last {seconds} s, the printed ones 2 s")));
     }
 }

@@ -42,6 +42,7 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
                  metrics, 10 passes: D = 20 for PolicyAlign, 50 for the naive baseline. The printed errors of the naive baseline are held against \
                  its errors on held-out samples of all movements.",
         decisions: "three-link.md",
+        contests_remark: None,
         another_reading_of: None,
         contests: [Measure::Nupe, Measure::Ncpe].map(contest).into(),
         setups: vec![

@@ -114,3 +114,48 @@ fn other_readings_of_tables_are_quoted_as_they_are() {
     let text = explained("three_link", "naive", Measure::NcpeAll);
     assert!(text.contains(&format!("on kept movements alone it is {kept}")), "{kept}: {text}");
 }
+
+/// Numbers of the paper that stand in what is said of cells are printed there.
+#[test]
+fn what_is_called_printed_is() {
+    let number = |word: &str| {
+        let word = word.trim_matches(|c: char| !c.is_ascii_digit());
+        word.parse::<f64>().ok().map(|value| (value, word.split_once('.').map_or(0, |(_, decimals)| decimals.len())))
+    };
+    let mut found = 0;
+    for experiment in crate::experiments::registry().unwrap() {
+        let printed: Vec<f64> = experiment.paper.values().flat_map(|row| row.values()).map(|cell| cell.mean).collect();
+        let is_printed = |(value, decimals): (f64, usize)| {
+            printed.iter().any(|mean| (mean - value).abs() <= 0.500_001 * 10_f64.powi(-(decimals as i32)))
+        };
+        for text in experiment.explanations.texts.values().flat_map(|row| row.values()) {
+            let words: Vec<&str> = text.split_whitespace().collect();
+            let after = words.windows(2).filter(|pair| pair[0].ends_with("printed")).map(|pair| pair[1]);
+            let before = words.windows(3).filter(|three| three[1..] == ["is", "printed."]).map(|three| three[0]);
+            for told in after.chain(before).filter_map(number) {
+                assert!(is_printed(told), "{}: {told:?} is not printed: {text}", experiment.id);
+                found += 1;
+            }
+        }
+    }
+    assert!(found > 10, "{found}");
+}
+
+/// What plain Euler steps of the grasp's potential do, and how far its hands get in the paper's two seconds.
+#[test]
+fn the_grasp_s_rates_are_as_said() {
+    let grasp = crate::experiments::grasp().unwrap();
+    let rate = 2.0 * grasp.scene.potential().weight;
+    let way = 100.0 * (1.0 - (-2.0 * rate).exp());
+    assert_says("figure7", &format!("in 2 s this potential moves a hand over {way:.0} %"));
+    let seconds = grasp.roll_out.time_step * grasp.roll_out.n_samples as f64;
+    assert_says("figure7", &format!("movements last 2 s, ours {seconds}"));
+    let step = rate / 2.0 * grasp.roll_out.time_step;
+    let alone = (step / (1.0 - step)).powi(2);
+    let text = explained("table2", "alignment", Measure::AlignmentNmse);
+    assert!(text.contains(&format!("1/(1 - {step})")) && text.contains(&format!("{:.2}e-4", 1e4 * alone)), "{text}");
+    let registry = crate::experiments::registry().unwrap();
+    let table = registry.iter().find(|experiment| experiment.id == "table2").unwrap();
+    let above = 100.0 * (table.paper("alignment", Measure::AlignmentNmse).unwrap().mean / alone - 1.0);
+    assert!(text.contains(&format!("{above:.0} percent above")), "{above}: {text}");
+}

@@ -84,7 +84,7 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
         down(policy, second, shown),
     ];
     let mut averaged = vec![arrow(policy, GREY, 1.2), name(policy, "π", (-2.0, -9.0), GREY)];
-    averaged.extend([arrow(mean, naive, 2.4), name(mean, "mean", (8.0, 7.0), naive)]);
+    averaged.extend([arrow(mean, naive, 2.4), name(mean, "⟨x⟩ (mean)", (8.0, 7.0), naive)]);
     averaged.extend(mean_seen.map(|end| down(mean, end, naive)));
     averaged.push(Item::Dots { points: mean_seen.map(Point3::from).to_vec(), color: naive, radius: 4.0 });
     let alike = [
@@ -103,9 +103,9 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
         name([0.0, -0.78, 0.0], "horizontal", (8.0, -2.0), GREY),
     ];
     let panels = [
-        space("(a) two views of one policy", both(), [&planes[..], &observed, &names, &seen].concat()),
+        space("(a) two observations of one policy", both(), [&planes[..], &observed, &names, &seen].concat()),
         space("(b) their mean explains neither", both(), [&planes[..], &observed, &names, &averaged].concat()),
-        space("(c) two policies, one view", vec![plane(HORIZONTAL)], [&planes[1..], &alike].concat()),
+        space("(c) two policies, one observation", vec![plane(HORIZONTAL)], [&planes[1..], &alike].concat()),
     ];
     let [a, b, c] = &panels;
     Ok(Drawing { picture: Picture::rows(&[&[a, b, c]]), tables: vec![] })

@@ -1,9 +1,10 @@
-//! Reaching with nothing in the way: expert, naive learner and PolicyAlign.
+//! Reaching with nothing in the way: the expert, the learners, and PolicyAlign where the goal was shown from all sides.
 
 use metrics::Summary;
 use nalgebra::{Point3, Translation3, Vector3};
-use plot::{Axis, Camera, Curve, Curves, Entry, Filling, Frame, Item, Key, Mark, Paint, Picture, Sign, Space};
+use plot::{Axis, Camera, Curve, Curves, Entry, Filling, Frame, Item, Key, Mark, Paint, Picture, Sign, Space, Stroke};
 
+use super::grasp_playback::all_around::AllAround;
 use super::grasp_playback::{GraspPlayback, LEARNERS, Movement};
 use super::{Csv, Drawing, Figure, Sources, rounded, stage};
 use crate::figures::Who;
@@ -15,22 +16,36 @@ pub(crate) fn figure() -> Figure {
 /// From mark to mark on a curve, seconds.
 const EVERY: f64 = 5.0;
 
+/// Who is drawn here alone.
+const ALL_AROUND: (&str, Who) = ("all_around", Who::PolicyAlignAllAround);
+
 fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
-    let playback: GraspPlayback = sources.document("grasp_playback")?;
+    let playback = played(sources)?;
     let frame = frame(&playback);
     let above = view("From above", Camera::ABOVE, &playback, &frame, playback.starts);
     let behind = view("From behind, two of the starts", Camera::BEHIND, &playback, &frame, 2);
     let distances =
         shown(&playback).map(|learner| Distances::of(&playback, learner)).collect::<anyhow::Result<Vec<_>>>()?;
     let curves = curves(&distances, playback.time_step);
-    let key = Key { rows: vec![distances.iter().map(Distances::entry).collect()], width: 1250.0 };
+    let entries: Vec<Entry> = distances.iter().map(Distances::entry).collect();
+    let key = Key { rows: entries.chunks(3).map(<[Entry]>::to_vec).collect(), width: 1250.0 };
     let picture = Picture::rows(&[&[&above, &behind, &curves], &[&key]]);
     Ok(Drawing { picture, tables: vec![ends(&playback), over_time(&distances)] })
 }
 
+/// The movements of everybody; older figure data have none of those who saw the goal from all sides.
+fn played(sources: &Sources) -> anyhow::Result<GraspPlayback> {
+    const ID: &str = "grasp_all_around";
+    let mut playback: GraspPlayback = sources.document("grasp_playback")?;
+    if sources.documents.contains_key(ID) {
+        playback.movements.extend(sources.document::<AllAround>(ID)?.movements(ALL_AROUND.0));
+    }
+    Ok(playback)
+}
+
 /// Those of the learners whose movements there are: older figure data have fewer.
 fn shown(playback: &GraspPlayback) -> impl Iterator<Item = (&'static str, Who)> {
-    LEARNERS.into_iter().filter(|(id, _)| movements(playback, id).next().is_some())
+    LEARNERS.into_iter().chain([ALL_AROUND]).filter(|(id, _)| movements(playback, id).next().is_some())
 }
 
 fn movements<'p>(playback: &'p GraspPlayback, learner: &'p str) -> impl Iterator<Item = &'p Movement> {
@@ -74,7 +89,7 @@ fn view(title: &str, camera: Camera, playback: &GraspPlayback, frame: &Frame, st
     let mut over: Vec<Item> = items.iter().filter_map(named).collect();
     for (id, who) in shown(playback) {
         for movement in movements(playback, id).filter(|movement| movement.start < starts) {
-            over.extend(stage::ways(&movement.palms, who.stroke(1.8)));
+            over.extend(stage::ways(&movement.palms, stroke(who)));
             let points = [0, 1].iter().filter_map(|&hand| palm(movement, hand).last()).collect();
             over.push(Item::Dots { points, color: who.color(), radius: 3.2 });
         }
@@ -138,13 +153,13 @@ impl Distances {
         let last = self.over_time.len().saturating_sub(1);
         let marked = self.over_time.iter().enumerate().filter(|(at, _)| at.is_multiple_of(every) || *at == last);
         let points = marked.map(|(_, point)| *point).collect();
-        Curve { points, stroke: self.who.stroke(1.8), sign: sign(self.who) }
+        Curve { points, stroke: stroke(self.who), sign: sign(self.who) }
     }
 
     /// In the key: who, and how far the hands are away at the end.
     fn entry(&self) -> Entry {
         let name = format!("{}: at the end {:.1} cm away", self.who.name(), 100.0 * self.at_end());
-        Entry { name, stroke: self.who.stroke(1.8), sign: sign(self.who) }
+        Entry { name, stroke: stroke(self.who), sign: sign(self.who) }
     }
 }
 
@@ -163,10 +178,16 @@ fn curves(distances: &[Distances], time_step: f64) -> Curves {
     }
 }
 
+/// The expert's line is broad, so that it is seen under one that covers it.
+fn stroke(who: Who) -> Stroke {
+    who.stroke(if who == Who::Expert { 5.0 } else { 1.8 })
+}
+
 fn sign(who: Who) -> Sign {
     let mark = match who {
         Who::Naive => Mark::Square,
         Who::PolicyAlign => Mark::Up,
+        Who::PolicyAlignAllAround => Mark::Star,
         Who::SlopeGp => Mark::Down,
         _ => Mark::Circle,
     };

@@ -15,6 +15,9 @@ use crate::seed::generator;
 /// Data sets of Table 1 among which one is chosen.
 const DATA_SETS: u32 = 30;
 
+/// Panels in a row.
+const COLUMNS: usize = 4;
+
 /// More steps would not fit in two rows of panels.
 const MOST_STEPS: usize = 6;
 
@@ -101,20 +104,69 @@ impl Step {
 fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let apart: ComingApart = sources.document("figureB1")?;
     let all: Vec<usize> = (0..apart.movements.len()).collect();
-    let mut panels = vec![apart.panel(&format!("{} movements", all.len()), &[(&all, &LARGEST)])];
+    let names = Names::of(&apart.steps);
+    let mut panels = vec![apart.panel(&format!("{} movements", names.told(&all)), &[(&all, &LARGEST)])];
     for step in &apart.steps {
         let (largest, rest) = (&step.parts[0], step.parts[1..].concat());
-        let cause = step.weak.map_or("no link".to_owned(), |weak| format!("{weak} eigenvalues ≈ 0"));
-        let title = format!("{} → {} + {}: {cause}", step.group.len(), largest.len(), rest.len());
+        let cause = step.weak.map_or("no link".to_owned(), |weak| format!("{weak} λ ≈ 0"));
+        let title = format!("{} → {}: {cause}", names.told(&step.group), names.parts(&step.parts));
         panels.push(apart.panel(&title, &[(&rest, &REST), (largest, &LARGEST)]));
     }
-    panels.push(apart.outcome());
+    panels.push(apart.outcome(&names));
+    let below = panels.len().saturating_sub(COLUMNS);
+    for (at, panel) in panels.iter_mut().enumerate() {
+        // All axes are the same: they are named at the left and below.
+        if at % COLUMNS > 0 {
+            panel.y_label.clear();
+        }
+        if at < below {
+            panel.x_label.clear();
+        }
+    }
     for (panel, letter) in panels.iter_mut().zip('a'..) {
         panel.title = format!("({letter}) {}", panel.title);
     }
     let panels: Vec<&dyn Panel> = panels.iter().map(|panel| panel as &dyn Panel).collect();
-    let rows: Vec<&[&dyn Panel]> = panels.chunks(4).collect();
+    let rows: Vec<&[&dyn Panel]> = panels.chunks(COLUMNS).collect();
     Ok(Drawing { picture: Picture::rows(&rows), tables: vec![apart.table()] })
+}
+
+/// Groups by letters, in the order in which they come about: A is all movements.
+struct Names<'a>(Vec<&'a [usize]>);
+
+impl<'a> Names<'a> {
+    fn of(steps: &'a [Step]) -> Self {
+        let all = steps.first().map(|step| &step.group[..]);
+        // The others of several parts are only told by their number, unless they come apart later.
+        let told = |step: &Step, at: usize| at == 0 || step.parts.len() == 2;
+        let later = |part: &Vec<usize>| steps.iter().any(|step| step.group == *part);
+        let parts = steps.iter().flat_map(|step| {
+            step.parts
+                .iter()
+                .enumerate()
+                .filter(move |(at, part)| told(step, *at) || later(part))
+                .map(|(_, part)| &part[..])
+        });
+        Names(all.into_iter().chain(parts).collect())
+    }
+
+    /// The letter of a group and how many movements it has.
+    fn told(&self, group: &[usize]) -> String {
+        let letter = self.0.iter().zip('A'..='Z').find(|(other, _)| **other == group).map(|(_, letter)| letter);
+        letter.map_or(String::new(), |letter| format!("{letter} ")) + &group.len().to_string()
+    }
+
+    /// The largest part and the other; several others by their number alone.
+    fn parts(&self, parts: &[Vec<usize>]) -> String {
+        match parts {
+            [largest, rest] => format!("{} + {}", self.told(largest), self.told(rest)),
+            [largest, rest @ ..] => {
+                let alone = rest.iter().map(Vec::len).sum::<usize>();
+                format!("{} + {alone} in {}", self.told(largest), rest.len())
+            }
+            [] => String::new(),
+        }
+    }
 }
 
 /// How the movements of a part are drawn.
@@ -147,11 +199,11 @@ impl ComingApart {
     }
 
     /// What is kept, and what is discarded.
-    fn outcome(&self) -> Plane {
+    fn outcome(&self, names: &Names<'_>) -> Plane {
         let discarded: Vec<usize> = (0..self.movements.len()).filter(|at| !self.kept.contains(at)).collect();
         let look = Look { mark: Mark::Cross, ..ELSEWHERE };
         let layers = [self.layers(&discarded, &look), self.layers(&self.kept, &LARGEST)].concat();
-        self.plane(&format!("{} are kept", self.kept.len()), layers)
+        self.plane(&format!("{} are kept", names.told(&self.kept)), layers)
     }
 
     fn plane(&self, title: &str, layers: Vec<Layer>) -> Plane {

@@ -1,7 +1,9 @@
 //! Grasping as all joints carry it out, for figures 7 and 8 and the view in space: expert, naive learner and PolicyAlign
 //! from the same starts, under the constraint of the demonstrations, under one that they do not show, and under none.
 
+pub(crate) mod all_around;
 mod constraint;
+mod data_set;
 mod movements;
 mod policies;
 mod robot;

@@ -106,6 +106,7 @@ pub(crate) fn documents() -> Vec<Document> {
         figure9::document(),
         figure_b1::document(),
         grasp_playback::document(),
+        grasp_playback::all_around::document(),
         beyond::document(),
     ]
 }

@@ -15,10 +15,7 @@ use crate::experiments::{PARABOLA_SYSTEM, TestSamples, toy_beside, toy_regressor
 use crate::figures::Who;
 use crate::seed::{beside, generator};
 
-/// Starts of the movements are drawn from [−2, 2]².
-const EXTENT: f64 = 2.0;
-
-/// Shown is a little more: movements leave that square.
+/// Starts of the movements are drawn from [−2, 2]²; shown is a little more, as movements leave that square.
 const SHOWN: f64 = 2.2;
 
 /// Rows that the slope GP learns from.
@@ -87,7 +84,7 @@ fn overview(seed: u64) -> anyhow::Result<Overview> {
     };
     Ok(Overview {
         movements: recordings.iter().enumerate().map(movement).collect(),
-        contours: on_grid(EXTENT, 40, |x| rounded(system.potential.value(x.as_view()), 5)),
+        contours: on_grid(SHOWN, 44, |x| rounded(system.potential.value(x.as_view()), 5)),
         expert: actions(&NegativeGradient(&system.potential), f64::INFINITY),
         naive: actions(&naive, f64::INFINITY),
         policy_align: actions(&learnt, f64::INFINITY),

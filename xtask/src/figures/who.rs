@@ -11,6 +11,8 @@ pub(crate) enum Who {
     Naive,
     /// Aligned potentials.
     PolicyAlign,
+    /// Aligned potentials, from demonstrations that come to the goal from all around too.
+    PolicyAlignAllAround,
     /// A Gaussian process on the potential, seen through slopes.
     SlopeGp,
     /// Constrained movements that are learnt from.
@@ -24,6 +26,7 @@ impl Who {
             Who::Expert => "#1a1a1a",
             Who::Naive => "#009e73",
             Who::PolicyAlign => "#d55e00",
+            Who::PolicyAlignAllAround => "#7b3fb8",
             Who::SlopeGp => "#cc79a7",
             Who::Demonstration => "#0072b2",
         }
@@ -34,7 +37,7 @@ impl Who {
         match self {
             Who::Expert | Who::Demonstration | Who::SlopeGp => Dash::Solid,
             Who::Naive => Dash::Dotted,
-            Who::PolicyAlign => Dash::Dashed,
+            Who::PolicyAlign | Who::PolicyAlignAllAround => Dash::Dashed,
         }
     }
 
@@ -44,6 +47,7 @@ impl Who {
             Who::Expert => "expert",
             Who::Naive => "naive",
             Who::PolicyAlign => "policy-align",
+            Who::PolicyAlignAllAround => "policy-align, goal shown from all sides",
             Who::SlopeGp => "slope GP",
             Who::Demonstration => "demonstration",
         }

@@ -10,6 +10,8 @@ const NEGLIGIBLE: f64 = 1e-9;
 
 /// The contests of an experiment, as far as they were run.
 pub(crate) struct Contests<'a> {
+    /// What has to be said of them.
+    pub(crate) remark: Option<&'static str>,
     /// Who has a column.
     pub(crate) contestants: Vec<Contestant>,
     pub(crate) lines: Vec<ContestLine<'a>>,
@@ -38,7 +40,7 @@ impl<'a> Contests<'a> {
         let lines: Vec<_> = experiment.contests.iter().filter_map(line).collect();
         let takes_part = |who: &Contestant| lines.iter().any(|line| line.mean(*who).is_some());
         let contestants: Vec<_> = Contestant::ALL.into_iter().filter(takes_part).collect();
-        (!lines.is_empty()).then_some(Contests { contestants, lines })
+        (!lines.is_empty()).then_some(Contests { remark: experiment.contests_remark, contestants, lines })
     }
 
     /// What stands over the columns.
@@ -95,7 +97,7 @@ fn shown_ratio(ratio: f64) -> String {
 
 /// What has to be said with such a table.
 pub(crate) const CAUTION: &str = "\
-Means over the first data sets, the same recordings and test samples for all. \
+Means over the first n data sets (few: errors differ by factors of a thousand), the same recordings and test samples for all. \
 Parabola, grasp, body and arm have quadratic potentials, which the slope GP's families contain: where the class contains the truth and \
 velocities are exact, exact recovery is no feat. The column \"no trend\" is the slope GP without them.";
 

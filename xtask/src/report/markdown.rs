@@ -51,9 +51,13 @@ fn title(experiment: &Experiment) -> String {
 fn section(compared: &Compared<'_>, seed: u64) -> String {
     let Compared { experiment, result, .. } = compared;
     let mut text = format!("## {}\n\n", title(experiment));
-    let _ = writeln!(text, "{}\n", experiment.remark);
     let _ =
         writeln!(text, "{}\n", format!("Seed {seed}. {}", Tally::of([(*experiment, *result)]).sentence()).trim_end());
+    let _ = writeln!(
+        text,
+        "<details><summary>How it was set up, and what is fitted</summary>\n\n{}\n\n</details>\n",
+        experiment.remark
+    );
     for (row, what) in compared.failures() {
         let _ = writeln!(text, "**`{row}`: {what}.**\n");
     }
@@ -73,9 +77,8 @@ fn section(compared: &Compared<'_>, seed: u64) -> String {
 fn contests(compared: &Compared<'_>) -> String {
     let Some(contests) = Contests::of(compared.experiment, compared.result) else { return String::new() };
     let table = markdown_table(&contests.header(), &contests.rows());
-    format!(
-        "### Learners side by side\n\n<details><summary>Their errors</summary>\n\n{CAUTION}\n\n{table}\n</details>\n\n"
-    )
+    let remark = contests.remark.map_or(String::new(), |remark| format!("{remark}\n\n"));
+    format!("<details><summary>Learners side by side</summary>\n\n{CAUTION}\n\n{remark}{table}\n</details>\n\n")
 }
 
 /// A column: what stands over it and in it.
@@ -136,7 +139,8 @@ fn explanations(compared: &Compared<'_>) -> String {
     if words.is_empty() {
         words
     } else {
-        format!("What stands out (numbers quoted are of the full run of seed 1):\n\n{words}\n")
+        let what = "What stands out, and why (numbers quoted are of the full run of seed 1)";
+        format!("<details><summary>{what}</summary>\n\n{words}\n</details>\n\n")
     }
 }
 

@@ -28,6 +28,9 @@ const BOX: &str = "#3c3c3c";
 /// Arrows are drawn as long as so many seconds of movement.
 const ARROW_SECONDS: f64 = 0.17;
 
+/// Shorter ones, radians as drawn, would be a head and nothing else.
+const SHORTEST_ARROW: f64 = 0.14;
+
 pub(crate) fn document() -> Document {
     Document::new("figure2", None, |_| shown())
 }
@@ -138,8 +141,9 @@ fn postures(movement: &Movement, times: [(f64, &'static str, &'static str); 5]) 
 
 /// Both movements in the space of the angles, radians.
 fn angles(shown: &Shown) -> Plane {
+    let long = |&&(_, _, u, v): &&(f64, f64, f64, f64), seconds: f64| seconds * u.hypot(v) >= SHORTEST_ARROW;
     let arrows = |arrows: &[_], color, width, seconds, label| Layer::Arrows {
-        arrows: arrows.to_vec(),
+        arrows: arrows.iter().filter(|arrow| long(arrow, seconds)).copied().collect(),
         color,
         scale: seconds,
         width,
@@ -162,7 +166,7 @@ fn angles(shown: &Shown) -> Plane {
         inside,
         arrows(&shown.unconstrained, FREE, 1.0, ARROW_SECONDS, "policy"),
         path(&shown.free, FREE, 2.0, Dash::Dashed, "free movement"),
-        path(&shown.stopped, STOPPED, 3.0, Dash::Solid, "along the box"),
+        path(&shown.stopped, STOPPED, 3.0, Dash::Solid, "with the box"),
         arrows(&shown.constrained, STOPPED, 1.8, 2.0 * ARROW_SECONDS, "at the box (× 2)"),
         start,
         Layer::Words { at: (-0.3, 0.43), text: "in the box".to_owned() },

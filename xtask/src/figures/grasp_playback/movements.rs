@@ -1,6 +1,6 @@
 //! Who moves under what, and how all joints do it.
 
-use anyhow::{Context as _, ensure};
+use anyhow::Context as _;
 use constraints::{Barrier, PfaffianConstraint, Unconstrained};
 use demo_gen::{Grasp, GraspStart, UpperBody};
 use motion::Policy;
@@ -11,16 +11,14 @@ use serde::{Deserialize, Serialize};
 
 use super::STARTS;
 use super::constraint::Constraint;
+use super::data_set::DataSet;
 use super::policies::{LEARNERS, policies};
 use super::robot::FARTHEST;
-use super::starts::chosen;
-use crate::experiments::GRASP_SYSTEM;
 use crate::figures::rounded;
 use crate::figures::sound::{grid, some, within};
-use crate::seed::generator;
 
 /// Decimals of joints and palms: a tenth of a millimetre.
-const DECIMALS: i32 = 4;
+pub(super) const DECIMALS: i32 = 4;
 
 /// One movement from one start.
 #[derive(Serialize, Deserialize)]
@@ -42,6 +40,12 @@ pub(crate) struct Movement {
 }
 
 impl Movement {
+    /// What a learner's policy wants with nothing in the way, carried out by nobody.
+    pub(super) fn of_palms(learner: &str, start: usize, palms: Vec<Vec<f64>>) -> Movement {
+        let (constraint, learner) = (Constraint::None.id().to_owned(), learner.to_owned());
+        Movement { constraint, learner, start, plates: vec![], joints: vec![], palms, error_mm: 0.0 }
+    }
+
     /// Whether there is a configuration of all joints, and a place for both palms, at every sample.
     pub(super) fn check(&self, n_joints: usize) -> anyhow::Result<()> {
         some("samples of a movement", &self.palms)?;
@@ -53,13 +57,9 @@ impl Movement {
 
 /// All movements: by constraint, then by learner, then by start.
 pub(super) fn movements(grasp: &Grasp, seed: u64) -> anyhow::Result<Vec<Movement>> {
-    let mut rng = generator(seed, GRASP_SYSTEM, 0);
-    let starts = (0..grasp.n_trajectories).map(|_| grasp.start(&mut rng)).collect::<Result<Vec<_>, _>>()?;
-    let recordings = starts.iter().map(|start| grasp.movement(start)).collect::<Result<Vec<_>, _>>()?;
+    let DataSet { recordings, shown, mut rng } = DataSet::draw(grasp, seed)?;
     let policies = policies(grasp, &recordings, &mut rng)?;
-    let shown = chosen(&grasp.body, &starts, STARTS);
-    ensure!(shown.len() == STARTS, "of {} starts only {} differ enough to be shown", starts.len(), shown.len());
-    let stage = Stage { grasp, policies, starts: shown.into_iter().map(|at| &starts[at]).collect() };
+    let stage = Stage { grasp, policies, starts: shown };
     let all = Constraint::ALL.into_iter().flat_map(|constraint| {
         let of = move |learner| (0..STARTS).map(move |start| (constraint, learner, start));
         (0..LEARNERS.len()).flat_map(of)
@@ -76,13 +76,13 @@ pub(super) fn movements(grasp: &Grasp, seed: u64) -> anyhow::Result<Vec<Movement
 struct Stage<'a> {
     grasp: &'a Grasp,
     policies: [Box<dyn Policy>; 4],
-    starts: Vec<&'a GraspStart>,
+    starts: Vec<GraspStart>,
 }
 
 impl Stage<'_> {
     fn movement(&self, constraint: Constraint, learner: usize, number: usize) -> anyhow::Result<Movement> {
         let Stage { grasp, policies, starts } = self;
-        let (policy, start) = (&*policies[learner], starts[number]);
+        let (policy, start) = (&*policies[learner], &starts[number]);
         let barrier = constraint.barrier(grasp, start)?;
         let free = Unconstrained { dim: policy.dim() };
         let hindrance: &dyn PfaffianConstraint = barrier.as_ref().map_or(&free, |barrier| barrier);
@@ -118,6 +118,6 @@ fn largest_error_mm(body: &UpperBody, joints: &DMatrix<f64>, palms: &DMatrix<f64
 }
 
 /// One row a sample.
-fn rows(columns: &DMatrix<f64>) -> Vec<Vec<f64>> {
+pub(super) fn rows(columns: &DMatrix<f64>) -> Vec<Vec<f64>> {
     columns.column_iter().map(|column| column.iter().copied().collect()).collect()
 }

@@ -10,7 +10,7 @@ use crate::figures::Who;
 use crate::seed::beside;
 
 /// A roll-out leaves the data now and then: there every receptive field counts, however small its activation.
-const CUTOFF: f64 = 1e-9;
+pub(super) const CUTOFF: f64 = 1e-9;
 
 /// Who is shown, each with its id.
 pub(crate) const LEARNERS: [(&str, Who); 4] =

@@ -85,6 +85,7 @@ fn contests(compared: &Compared<'_>) -> Markup {
         @if let Some(contests) = Contests::of(compared.experiment, compared.result) {
             h3 { "Learners side by side" }
             p { (CAUTION) }
+            @if let Some(remark) = contests.remark { p { (emphasised(remark)) } }
             div .sideways tabindex="0" role="region" aria-label={ "Learners side by side: " (compared.experiment.id) } {
                 table .list .contests {
                     thead { tr { @for name in contests.header() { th scope="col" { (name) } } } }

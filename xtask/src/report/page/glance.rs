@@ -16,10 +16,15 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
     html! {
         header #glance {
             h1 { "Learn the movement, not the constraint" }
-            p .lead {
-                "Demonstrations are made under unknown, changing constraints, which hide the policy. Howard, Klanke, Gienger, Goerick and Vijayakumar showed how to recover it ("
-                cite { "Behaviour Generation in Humanoids by Learning Potential-based Policies from Constrained Motion" }
-                "). policy-align repeats their experiments; this page compares our results with the paper's numbers."
+            div .first {
+                // In this order on a phone: the picture before the numbers.
+                p .lead {
+                    "Demonstrations are made under unknown, changing constraints, which hide the policy. Howard, Klanke, Gienger, Goerick and Vijayakumar showed how to recover it ("
+                    cite { "Behaviour Generation in Humanoids by Learning Potential-based Policies from Constrained Motion" }
+                    "). policy-align repeats their experiments; this page compares our results with the paper's numbers."
+                }
+                @if let Some((figure, svg)) = overview { (super::card(figure, svg, "")) }
+                (total(all))
             }
             (how_it_went(all))
             (facts(contents, all))
@@ -27,7 +32,6 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
                 p .notice { "With fewer than " (FEW) " data sets a row single numbers mean little." }
             } @else { (not_reached(all)) (pictures::otherwise(contents)) }
         }
-        @if let Some((figure, svg)) = overview { (super::card(figure, svg, "")) }
         (view::way(contents.sources))
     }
 }
@@ -38,27 +42,40 @@ const FITTED: &str = "What the paper does not give was fitted, so that its numbe
                       (Table 2); the 22 joints' posture and attractor; and the regression's widths and passes, one setting for each learner of \
                       an experiment. Each experiment names its own.";
 
-/// How many cells are reached: in total, and for each experiment.
-fn how_it_went(all: &[Compared<'_>]) -> Markup {
-    let total = Tally::of_first_readings(all.iter().map(|compared| (compared.experiment, compared.result)));
+fn in_all(all: &[Compared<'_>]) -> Tally {
+    Tally::of_first_readings(all.iter().map(|compared| (compared.experiment, compared.result)))
+}
+
+/// How many cells are reached in total, and how sure that is.
+fn total(all: &[Compared<'_>]) -> Markup {
+    let total = in_all(all);
     html! {
         @if total.total() > 0 {
             div .total {
                 p .asked { "Of " b { (total.total()) } " numbers that the paper prints" }
                 (words(&total))
                 (bar(&total))
-                p .rule {
-                    @for (verdict, _) in total.counts() { (meaning(verdict)) " " }
-                    a href="#method" { "The rule in full" }
-                }
                 p {
                     "How sure that is: " b { (total.alike()) } " of the " (total.total()) " means are within two standard errors of the printed \
                      ones; the others, also among those that agree, differ by more than chance."
                 }
             }
+        }
+    }
+}
+
+/// How many cells of each experiment are reached.
+fn how_it_went(all: &[Compared<'_>]) -> Markup {
+    let total = in_all(all);
+    html! {
+        @if total.total() > 0 {
             table .tallies {
                 thead { tr { th scope="col" { "Experiment" } th scope="col" { "Section" } th scope="col" colspan="2" { "Printed numbers" } } }
                 tbody { @for compared in all { (tally_of(compared)) } }
+            }
+            p .rule {
+                @for (verdict, _) in total.counts() { (meaning(verdict)) " " }
+                a href="#method" { "The rule in full" }
             }
             p .rule { (FITTED) " What a fifth more or less of each turns: " code { "docs/leverage.md" } "." }
         }

@@ -51,3 +51,50 @@ fn mouse_wheel_and_keys_move_the_camera() {
     page.wait_until("!policyAlignView.state().playing");
     assert_eq!(page.complaints(), Vec::<String>::new());
 }
+
+#[test]
+fn it_goes_on_and_back_by_a_step() {
+    let Some(mut page) = page() else { return };
+    let (x, y) = page.middle_of(CANVAS);
+    page.click((x, y));
+    view::<()>(&mut page, "seek(10.4)");
+    for (character, sample) in [('.', 11.0), ('.', 12.0), (',', 11.0)] {
+        page.type_character(character);
+        assert!((state(&mut page, "sample") - sample).abs() < 1e-9, "{character}");
+    }
+    for (name, sample) in [("A step back (,)", 10.0), ("A step on (.)", 11.0)] {
+        let button = page.middle_of(&format!("#view [aria-label='{name}']"));
+        page.click(button);
+        page.wait_until(&format!("policyAlignView.state().sample === {sample}"));
+    }
+    view::<()>(&mut page, "seek(0)");
+    view::<()>(&mut page, "step(-1)");
+    assert!(state(&mut page, "sample") == 0.0, "one gets before the beginning");
+    view::<()>(&mut page, "play()");
+    view::<()>(&mut page, "step(1)");
+    assert!(!view::<bool>(&mut page, "state().playing"), "it plays on after a step");
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}
+
+#[test]
+fn it_fills_the_screen_and_goes_back() {
+    let Some(mut page) = page() else { return };
+    let height = "document.querySelector('#view canvas').clientHeight";
+    let before: f64 = page.evaluate(height);
+    page.evaluate::<()>(
+        "void ([...document.querySelectorAll('#view .view-buttons button')].find(b => b.innerText === 'Full screen').id = 'whole')",
+    );
+    let button = page.middle_of("#whole");
+    page.click(button);
+    page.wait_until("document.fullscreenElement?.id === 'view'");
+    let all: f64 = page.evaluate(height);
+    assert!(
+        all > 0.0 && page.evaluate::<bool>("document.querySelector('.view-slider').offsetHeight > 0"),
+        "{before} {all}"
+    );
+    let (x, y) = page.middle_of(CANVAS);
+    page.click((x, y));
+    page.type_character('f');
+    page.wait_until("document.fullscreenElement === null");
+    assert_eq!(page.complaints(), Vec::<String>::new());
+}
