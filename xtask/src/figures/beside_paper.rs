@@ -130,7 +130,9 @@ fn what_is_called_printed_is() {
         };
         for text in experiment.explanations.texts.values().flat_map(|row| row.values()) {
             let words: Vec<&str> = text.split_whitespace().collect();
-            let after = words.windows(2).filter(|pair| pair[0].ends_with("printed")).map(|pair| pair[1]);
+            let is_number = |word: &str| word.starts_with(|c: char| c.is_ascii_digit());
+            let tells = |pair: &&[&str]| (pair[0].ends_with("printed") || pair[0] == "for") && is_number(pair[1]);
+            let after = words.windows(2).filter(tells).map(|pair| pair[1]);
             let before = words.windows(3).filter(|three| three[1..] == ["is", "printed."]).map(|three| three[0]);
             for told in after.chain(before).filter_map(number) {
                 assert!(is_printed(told), "{}: {told:?} is not printed: {text}", experiment.id);

@@ -272,7 +272,7 @@ mod tests {
 
     #[test]
     fn ends_are_as_said_beside_the_paper_s_figure() {
-        let playback: GraspPlayback = beside_paper::records().document("grasp_playback").unwrap();
+        let playback = played(&beside_paper::records()).unwrap();
         let end = |learner| 100.0 * Distances::of(&playback, learner).unwrap().at_end();
         let ends: Vec<f64> = shown(&playback).map(end).collect();
         for (words, end) in
@@ -281,6 +281,8 @@ mod tests {
             let words = words.replace("{}", &format!("{end:.1}"));
             assert!(beside_paper::text("figure8").contains(&words), "{words}");
         }
+        let mended = format!("from all around, they end {:.1} cm away", ends[4]);
+        assert!(beside_paper::text("figure8").contains(&mended), "{mended}");
         let readme = std::fs::read_to_string(crate::files::repository().join("README.md")).unwrap();
         let learnt = ends[2];
         let (id, _) = shown(&playback).nth(2).unwrap();
@@ -292,6 +294,7 @@ mod tests {
             readme.contains(&format!("miss the ball by {closest:.1} cm and end {learnt:.1} cm away")),
             "{closest} {learnt}"
         );
+        assert!(readme.contains(&mended), "{mended}");
         assert!(beside_paper::text("figure8").contains(&format!("within {closest:.1} cm and ends {learnt:.1} cm")));
     }
 

@@ -174,9 +174,12 @@ mod tests {
         let results = Results { schema: SCHEMA, seed: 3, quick: false, run, experiments: vec![result] };
         let text = markdown(&experiments, &results, None);
         let (_, section) = text.split_once("## ").unwrap();
-        let lines: Vec<&str> = section.lines().filter(|line| !line.is_empty()).skip(2).collect();
+        let lines: Vec<&str> = section.lines().filter(|line| !line.is_empty()).skip(1).collect();
         let expected = [
             "Seed 3.",
+            "<details><summary>How it was set up, and what is fitted</summary>",
+            curves.remark,
+            "</details>",
             "**`a-row`: 1 of 3 data sets failed.**",
             "<details><summary>All 1 means</summary>",
             "| row     | measure | ours            | median | n |",

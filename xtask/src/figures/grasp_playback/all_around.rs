@@ -4,7 +4,7 @@ use align::{LwprRegressor, PolicyAlign};
 use constraints::Unconstrained;
 use demo_gen::{Grasp, GraspStart, Recording, demonstrations};
 use motion::Policy as _;
-use nalgebra::DVector;
+use nalgebra::{DVector, Point3};
 use rand::{Rng, RngExt as _};
 use serde::{Deserialize, Serialize};
 
@@ -69,13 +69,14 @@ fn all_around(seed: u64) -> anyhow::Result<AllAround> {
     Ok(AllAround { palms: shown.iter().map(palms).collect::<anyhow::Result<_>>()? })
 }
 
-/// Movements that begin around the palms' places at the ball, where the wall is not felt.
+/// Movements that begin around the palms' places at the ball, above the table, where the wall is not felt.
 fn from_all_around<R: Rng>(grasp: &Grasp, number: usize, rng: &mut R) -> anyhow::Result<Vec<Recording>> {
     let (scene, target) = (&grasp.scene, grasp.scene.target());
     let free = Unconstrained { dim: target.len() };
-    let movement = |_| {
-        let start: DVector<f64> = target.map(|place| place + rng.random_range(-AROUND..=AROUND));
-        Ok(grasp.roll_out.record(&scene.potential(), &free, start.as_view())?)
+    let below = |start: &DVector<f64>| {
+        [0, 3].iter().any(|&hand| scene.is_below_the_table(&Point3::from(start.fixed_rows::<3>(hand).into_owned())))
     };
-    (0..number).map(movement).collect()
+    let starts = std::iter::repeat_with(|| target.map(|place| place + rng.random_range(-AROUND..=AROUND)));
+    let starts = starts.filter(|start| !below(start)).take(number);
+    starts.map(|start| Ok(grasp.roll_out.record(&scene.potential(), &free, start.as_view())?)).collect()
 }
