@@ -120,14 +120,14 @@ fn other_readings_of_tables_are_quoted_as_they_are() {
 fn what_is_called_printed_is() {
     let number = |word: &str| {
         let word = word.trim_matches(|c: char| !c.is_ascii_digit());
-        word.parse::<f64>().ok().map(|value| (value, word.split_once('.').map_or(0, |(_, decimals)| decimals.len())))
+        let last_place = 0.1_f64.powf(word.split_once('.').map_or(0.0, |(_, decimals)| decimals.len() as f64));
+        word.parse::<f64>().ok().map(|value| (value, last_place))
     };
     let mut found = 0;
     for experiment in crate::experiments::registry().unwrap() {
         let printed: Vec<f64> = experiment.paper.values().flat_map(|row| row.values()).map(|cell| cell.mean).collect();
-        let is_printed = |(value, decimals): (f64, usize)| {
-            printed.iter().any(|mean| (mean - value).abs() <= 0.500_001 * 10_f64.powi(-(decimals as i32)))
-        };
+        let is_printed =
+            |(value, last_place): (f64, f64)| printed.iter().any(|mean| (mean - value).abs() <= 0.500_001 * last_place);
         for text in experiment.explanations.texts.values().flat_map(|row| row.values()) {
             let words: Vec<&str> = text.split_whitespace().collect();
             let is_number = |word: &str| word.starts_with(|c: char| c.is_ascii_digit());
