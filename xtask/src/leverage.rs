@@ -157,7 +157,11 @@ fn turned(base: &Verdicts, other: &Verdicts) -> Vec<String> {
 /// As short as it was written.
 fn number(value: f64) -> String {
     let rounded = format!("{value:.6}");
-    if value < 1e-3 { format!("{value:.1e}") } else { rounded.trim_end_matches('0').trim_end_matches('.').to_owned() }
+    if value.abs() < 1e-3 {
+        format!("{value:.1e}")
+    } else {
+        rounded.trim_end_matches('0').trim_end_matches('.').to_owned()
+    }
 }
 
 fn add_table(text: &mut String, experiment: &str, rows: &[Vec<String>]) {
@@ -203,6 +207,6 @@ mod tests {
         let cell = |verdict| vec![(("narrow".to_owned(), Measure::Nupe), verdict)];
         assert_eq!(turned(&cell(Verdict::Agrees), &cell(Verdict::Agrees)), Vec::<String>::new());
         assert_eq!(turned(&cell(Verdict::Agrees), &cell(Verdict::Lower)), ["narrow nUPE: agrees → lower"]);
-        assert_eq!([0.17, 20.0, 1e-5, 24.0].map(number), ["0.17", "20", "1.0e-5", "24"]);
+        assert_eq!([0.17, 20.0, 1e-5, 24.0, -7.2].map(number), ["0.17", "20", "1.0e-5", "24", "-7.2"]);
     }
 }

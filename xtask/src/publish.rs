@@ -13,7 +13,7 @@ use crate::figures::{Figure, Sources, compute, figures};
 use crate::files::{relative, repository, write};
 use crate::measure::Measure;
 use crate::progress::say;
-use crate::report::{Section, Tally, draw, key, learners, sections};
+use crate::report::{Section, Tally, draw, folded, key, learners, sections};
 use crate::results::{ExperimentResult, Results, RowResult};
 use crate::run_folder::RunFolder;
 use crate::summary::check;
@@ -202,11 +202,6 @@ fn pictured(figure: &Figure) -> String {
 
 fn picture(Figure { id, title, .. }: &Figure) -> String {
     format!("![{title}](pictures/{id}.svg)\n\n")
-}
-
-/// What is seen only by who opens it. Markdown within needs the empty lines.
-fn folded(summary: &str, text: &str) -> String {
-    format!("<details><summary>{summary}</summary>\n\n{text}\n\n</details>\n\n")
 }
 
 /// One line an experiment with printed figures: how many printed figures are reached.

@@ -44,11 +44,13 @@ pub(crate) struct Roles {
 
 const ROW_NUMBERS: [&str; 8] =
     ["", "unnamed: 0", "__index_level_0__", "index", "frame", "frame_index", "seq", "header.seq"];
-const EPISODES: [&str; 12] = [
+const EPISODES: [&str; 14] = [
     "episode",
     "ep",
     "episode_index",
     "episode_id",
+    "movement",
+    "demonstration",
     "demo",
     "demo_id",
     "trial",

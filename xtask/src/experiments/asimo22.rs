@@ -98,6 +98,15 @@ pub(super) fn settings() -> Vec<Setting> {
             let regressor = LwprRegressor { passes: passes.round() as usize, ..regressor() };
             Ok(vec![printed(HandInPlane::new(upper_body()?), regressor)])
         }),
+        setting("cutoff of the regression, power of ten", SILENT, -9.0, |exponent| {
+            let regressor = LwprRegressor { cutoff: 10.0_f64.powf(exponent), ..regressor() };
+            Ok(vec![printed(HandInPlane::new(upper_body()?), regressor)])
+        }),
+        setting("from \"ready\" to the attractor, of the way to hanging arms", SILENT, 1.0, |share| {
+            let mut scenario = HandInPlane::new(upper_body()?);
+            scenario.potential.centre += scenario.body.ready() * (1.0 - share);
+            Ok(vec![printed(scenario, regressor())])
+        }),
         setting("δt, s", SILENT, 0.5, |time_step| {
             let mut scenario = HandInPlane::new(upper_body()?);
             scenario.roll_out.time_step = time_step;

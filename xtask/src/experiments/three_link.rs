@@ -103,6 +103,14 @@ pub(super) fn settings() -> Vec<Setting> {
             let regressor = LwprRegressor { params: params(init_d), ..regressor() };
             Ok(vec![printed(arm()?, regressor, naive())?])
         }),
+        setting("passes of PolicyAlign's regression", SILENT, 10.0, |passes| {
+            let regressor = LwprRegressor { passes: passes.round() as usize, ..regressor() };
+            Ok(vec![printed(arm()?, regressor, naive())?])
+        }),
+        setting("passes of the naive regression", SILENT, 10.0, |passes| {
+            let naive = DirectPolicyLearning { passes: passes.round() as usize, ..naive() };
+            Ok(vec![printed(arm()?, regressor(), naive)?])
+        }),
         setting("D of the naive regression", SILENT, 50.0, |init_d| {
             let naive = DirectPolicyLearning { params: params(init_d), ..naive() };
             Ok(vec![printed(arm()?, regressor(), naive)?])

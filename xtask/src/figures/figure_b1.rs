@@ -105,11 +105,11 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let apart: ComingApart = sources.document("figureB1")?;
     let all: Vec<usize> = (0..apart.movements.len()).collect();
     let names = Names::of(&apart.steps);
-    let mut panels = vec![apart.panel(&format!("{} movements", names.told(&all)), &[(&all, &LARGEST)])];
+    let mut panels = vec![apart.panel(&format!("{} movements", names.label(&all)), &[(&all, &LARGEST)])];
     for step in &apart.steps {
         let (largest, rest) = (&step.parts[0], step.parts[1..].concat());
         let cause = step.weak.map_or("no link".to_owned(), |weak| format!("{weak} λ ≈ 0"));
-        let title = format!("{} → {}: {cause}", names.told(&step.group), names.parts(&step.parts));
+        let title = format!("{} → {}: {cause}", names.label(&step.group), names.parts(&step.parts));
         panels.push(apart.panel(&title, &[(&rest, &REST), (largest, &LARGEST)]));
     }
     panels.push(apart.outcome(&names));
@@ -137,21 +137,21 @@ struct Names<'a>(Vec<&'a [usize]>);
 impl<'a> Names<'a> {
     fn of(steps: &'a [Step]) -> Self {
         let all = steps.first().map(|step| &step.group[..]);
-        // The others of several parts are only told by their number, unless they come apart later.
-        let told = |step: &Step, at: usize| at == 0 || step.parts.len() == 2;
+        // The others of several parts are shown only by their number, unless they come apart later.
+        let shown = |step: &Step, at: usize| at == 0 || step.parts.len() == 2;
         let later = |part: &Vec<usize>| steps.iter().any(|step| step.group == *part);
         let parts = steps.iter().flat_map(|step| {
             step.parts
                 .iter()
                 .enumerate()
-                .filter(move |(at, part)| told(step, *at) || later(part))
+                .filter(move |(at, part)| shown(step, *at) || later(part))
                 .map(|(_, part)| &part[..])
         });
         Names(all.into_iter().chain(parts).collect())
     }
 
     /// The letter of a group and how many movements it has.
-    fn told(&self, group: &[usize]) -> String {
+    fn label(&self, group: &[usize]) -> String {
         let letter = self.0.iter().zip('A'..='Z').find(|(other, _)| **other == group).map(|(_, letter)| letter);
         letter.map_or(String::new(), |letter| format!("{letter} ")) + &group.len().to_string()
     }
@@ -159,10 +159,10 @@ impl<'a> Names<'a> {
     /// The largest part and the other; several others by their number alone.
     fn parts(&self, parts: &[Vec<usize>]) -> String {
         match parts {
-            [largest, rest] => format!("{} + {}", self.told(largest), self.told(rest)),
+            [largest, rest] => format!("{} + {}", self.label(largest), self.label(rest)),
             [largest, rest @ ..] => {
                 let alone = rest.iter().map(Vec::len).sum::<usize>();
-                format!("{} + {alone} in {}", self.told(largest), rest.len())
+                format!("{} + {alone} in {}", self.label(largest), rest.len())
             }
             [] => String::new(),
         }
@@ -203,7 +203,7 @@ impl ComingApart {
         let discarded: Vec<usize> = (0..self.movements.len()).filter(|at| !self.kept.contains(at)).collect();
         let look = Look { mark: Mark::Cross, ..ELSEWHERE };
         let layers = [self.layers(&discarded, &look), self.layers(&self.kept, &LARGEST)].concat();
-        self.plane(&format!("{} are kept", names.told(&self.kept)), layers)
+        self.plane(&format!("{} are kept", names.label(&self.kept)), layers)
     }
 
     fn plane(&self, title: &str, layers: Vec<Layer>) -> Plane {

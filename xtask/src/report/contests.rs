@@ -1,5 +1,7 @@
 //! Learners held against each other: a line for each error, a column for each learner.
 
+use page::markdown_table;
+
 use super::compared::NOTHING;
 use crate::experiments::{Contest, Contestant, Experiment};
 use crate::measure::Measure;
@@ -41,6 +43,11 @@ impl<'a> Contests<'a> {
         let takes_part = |who: &Contestant| lines.iter().any(|line| line.mean(*who).is_some());
         let contestants: Vec<_> = Contestant::ALL.into_iter().filter(takes_part).collect();
         (!lines.is_empty()).then_some(Contests { remark: experiment.contests_remark, contestants, lines })
+    }
+
+    /// As a table.
+    pub(crate) fn markdown(&self) -> String {
+        markdown_table(&self.header(), &self.rows())
     }
 
     /// What stands over the columns.

@@ -10,7 +10,7 @@ use crate::experiments::{Contestant, Experiment};
 use crate::measure::Measure;
 use crate::results::{ExperimentResult, Results, RowResult};
 
-/// Errors below this are as good as none, and need not be foretold.
+/// Errors below this are as good as none, and need no forecast.
 const WORTH_FORETELLING: f64 = 1e-3;
 
 /// Cases of policies that have no potential begin with one of these.
@@ -23,7 +23,7 @@ pub(crate) fn learners(experiments: &[Experiment], results: &Results) -> String 
     for experiment in experiments {
         let contests = result(experiment.id).and_then(|result| Contests::of(experiment, result));
         if let Some(contests) = contests {
-            let table = markdown_table(&contests.header(), &contests.rows());
+            let table = contests.markdown();
             let remark = contests.remark.map_or(String::new(), |remark| format!("{remark}\n\n"));
             let _ = write!(text, "### {}: `{}`\n\n{remark}{table}\n", experiment.title, experiment.id);
         }
@@ -31,7 +31,7 @@ pub(crate) fn learners(experiments: &[Experiment], results: &Results) -> String 
     if let Some(readings) = result("readings") {
         let _ = write!(text, "### How movements are read\n\n{}\n{}\n", confusion(readings), free(readings));
     }
-    let _ = write!(text, "### How far to trust it\n\n{}\n{}", foretold(results), rotation(results));
+    let _ = write!(text, "### How far to trust it\n\n{}\n{}", expected(results), rotation(results));
     text
 }
 
@@ -96,7 +96,7 @@ fn free(readings: &ExperimentResult) -> String {
 }
 
 /// Expected over true error of every fit of the slope GP and of the direct GP that errs by something.
-fn foretold(results: &Results) -> String {
+fn expected(results: &Results) -> String {
     let line = |(under, who): (Under, Contestant)| {
         let rows = results.experiments.iter().flat_map(|result| rows_of(result, who));
         let mut ratios: Vec<f64> =

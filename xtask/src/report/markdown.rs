@@ -53,11 +53,7 @@ fn section(compared: &Compared<'_>, seed: u64) -> String {
     let mut text = format!("## {}\n\n", title(experiment));
     let _ =
         writeln!(text, "{}\n", format!("Seed {seed}. {}", Tally::of([(*experiment, *result)]).sentence()).trim_end());
-    let _ = writeln!(
-        text,
-        "<details><summary>How it was set up, and what is fitted</summary>\n\n{}\n\n</details>\n",
-        experiment.remark
-    );
+    text += &folded("How it was set up, and what is fitted", experiment.remark);
     for (row, what) in compared.failures() {
         let _ = writeln!(text, "**`{row}`: {what}.**\n");
     }
@@ -65,9 +61,7 @@ fn section(compared: &Compared<'_>, seed: u64) -> String {
         let _ = writeln!(text, "{}", table(compared, &judged(), |line| line.cell.paper.is_some()));
     }
     if let Some(n) = Some(compared.lines().count()).filter(|&n| n > 0) {
-        // Markdown within the fold needs the empty lines.
-        let all = table(compared, &in_full(compared), |_| true);
-        let _ = writeln!(text, "<details><summary>All {n} means</summary>\n\n{all}\n</details>\n");
+        text += &folded(&format!("All {n} means"), &table(compared, &in_full(compared), |_| true));
         text += &explanations(compared);
     }
     text + &contests(compared)
@@ -76,9 +70,13 @@ fn section(compared: &Compared<'_>, seed: u64) -> String {
 /// Learners side by side, where there are several.
 fn contests(compared: &Compared<'_>) -> String {
     let Some(contests) = Contests::of(compared.experiment, compared.result) else { return String::new() };
-    let table = markdown_table(&contests.header(), &contests.rows());
     let remark = contests.remark.map_or(String::new(), |remark| format!("{remark}\n\n"));
-    format!("<details><summary>Learners side by side</summary>\n\n{CAUTION}\n\n{remark}{table}\n</details>\n\n")
+    folded("Learners side by side", &format!("{CAUTION}\n\n{remark}{}", contests.markdown()))
+}
+
+/// What is seen only by who opens it. Markdown within needs the empty lines.
+pub(crate) fn folded(summary: &str, text: &str) -> String {
+    format!("<details><summary>{summary}</summary>\n\n{}\n\n</details>\n\n", text.trim_end())
 }
 
 /// A column: what stands over it and in it.
@@ -136,12 +134,8 @@ fn explanations(compared: &Compared<'_>) -> String {
     }
     let word = |(line, word): &(Line<'_>, &str)| format!("- `{}`, {}: {word}\n", line.row.id, line.measure.name());
     let words: String = compared.standing_out().iter().map(word).collect();
-    if words.is_empty() {
-        words
-    } else {
-        let what = "What stands out, and why (numbers quoted are of the full run of seed 1)";
-        format!("<details><summary>{what}</summary>\n\n{words}\n</details>\n\n")
-    }
+    let what = "What stands out, and why (numbers quoted are of the full run of seed 1)";
+    if words.is_empty() { words } else { folded(what, &words) }
 }
 
 #[cfg(test)]

@@ -22,7 +22,7 @@ use crate::results::Results;
 use crate::run_folder::RunFolder;
 
 pub(crate) use learners::learners;
-pub(crate) use markdown::{Section, key, markdown, sections};
+pub(crate) use markdown::{Section, folded, key, markdown, sections};
 pub(crate) use tally::Tally;
 pub(crate) use terminal::terminal;
 

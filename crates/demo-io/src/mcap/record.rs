@@ -3,6 +3,27 @@ use std::collections::BTreeMap;
 use super::fields::{Fields, Misfit};
 use super::format::opcode;
 
+/// The kinds of records that are of use here.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Kind {
+    Schema,
+    Channel,
+    Message,
+    Metadata,
+}
+
+impl Kind {
+    pub(super) fn of(opcode: u8) -> Option<Kind> {
+        match opcode {
+            opcode::SCHEMA => Some(Kind::Schema),
+            opcode::CHANNEL => Some(Kind::Channel),
+            opcode::MESSAGE => Some(Kind::Message),
+            opcode::METADATA => Some(Kind::Metadata),
+            _ => None,
+        }
+    }
+}
+
 /// What of a bag is of use here.
 #[derive(Debug, PartialEq)]
 pub(super) enum Record<'a> {
@@ -29,31 +50,24 @@ pub(super) enum Record<'a> {
 }
 
 impl<'a> Record<'a> {
-    /// Nothing of it is of use where the kind is another.
-    pub(super) fn parse(kind: u8, content: &'a [u8]) -> Result<Option<Self>, Misfit> {
+    pub(super) fn parse(kind: Kind, content: &'a [u8]) -> Result<Self, Misfit> {
         let mut fields = Fields::new(content);
-        Ok(Some(match kind {
-            opcode::SCHEMA => Record::Schema { id: fields.u16()?, name: fields.text()? },
-            opcode::CHANNEL => Record::Channel {
+        Ok(match kind {
+            Kind::Schema => Record::Schema { id: fields.u16()?, name: fields.text()? },
+            Kind::Channel => Record::Channel {
                 id: fields.u16()?,
                 schema: fields.u16()?,
                 topic: fields.text()?,
                 encoding: fields.text()?,
             },
-            opcode::MESSAGE => {
+            Kind::Message => {
                 let channel = fields.u16()?;
                 let _sequence = fields.u32()?;
                 let log_time = fields.u64()?;
                 let _published = fields.u64()?;
                 Record::Message { channel, log_time, data: fields.rest() }
             }
-            opcode::METADATA => Record::Metadata { name: fields.text()?, entries: fields.map()? },
-            _ => return Ok(None),
-        }))
-    }
-
-    /// Whether records of this kind are worth being kept in memory.
-    pub(super) fn is_of_use(kind: u8) -> bool {
-        matches!(kind, opcode::SCHEMA | opcode::CHANNEL | opcode::MESSAGE | opcode::METADATA)
+            Kind::Metadata => Record::Metadata { name: fields.text()?, entries: fields.map()? },
+        })
     }
 }

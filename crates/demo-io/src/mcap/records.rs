@@ -2,7 +2,7 @@ use std::io::{self, BufReader, Read};
 
 use super::fields::{Fields, Misfit};
 use super::format::{MAGIC, opcode};
-use super::record::Record;
+use super::record::{Kind, Record};
 use super::source::{Summed, Watched, content, head, skip};
 use crate::input::{Input, unreadable};
 use crate::{Fault, ReadError};
@@ -95,13 +95,9 @@ impl Reader<'_, '_> {
         if kind == 0 {
             return Err(Stop::Damaged("there is a record of kind 0".to_owned()));
         }
-        if !Record::is_of_use(kind) {
-            return Ok(skip(source, length)?);
-        }
-        if let Some(record) = Record::parse(kind, content(source, length, &mut self.buffer)?)? {
-            (self.visit)(record)?;
-        }
-        Ok(())
+        let Some(kind) = Kind::of(kind) else { return Ok(skip(source, length)?) };
+        let record = Record::parse(kind, content(source, length, &mut self.buffer)?)?;
+        Ok((self.visit)(record)?)
     }
 
     fn chunk<R: Read>(&mut self, file: &mut Summed<R>, length: u64) -> Result<(), Stop> {

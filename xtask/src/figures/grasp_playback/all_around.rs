@@ -1,8 +1,7 @@
 //! What mends figure 8: demonstrations that come to the ball from all around, beside those through the gap.
 
-use align::{LwprRegressor, PolicyAlign};
 use constraints::Unconstrained;
-use demo_gen::{Grasp, GraspStart, Recording, demonstrations};
+use demo_gen::{Grasp, GraspStart, Recording};
 use motion::Policy as _;
 use nalgebra::{DVector, Point3};
 use rand::{Rng, RngExt as _};
@@ -11,9 +10,9 @@ use serde::{Deserialize, Serialize};
 use super::STARTS;
 use super::data_set::DataSet;
 use super::movements::{DECIMALS, Movement, rows};
-use super::policies::CUTOFF;
+use super::policies::Learnt;
 use super::robot::FARTHEST;
-use crate::experiments::{TestSamples, grasp, grasp_regressor};
+use crate::experiments::grasp;
 use crate::figures::sound::{Sound, as_many, grid, some, within};
 use crate::figures::{Document, rounded};
 use crate::seed::beside;
@@ -57,10 +56,7 @@ fn all_around(seed: u64) -> anyhow::Result<AllAround> {
     let grasp = grasp()?;
     let DataSet { mut recordings, shown, mut rng } = DataSet::draw(&grasp, seed)?;
     recordings.extend(from_all_around(&grasp, recordings.len(), &mut beside(&rng))?);
-    let aligned = PolicyAlign::default().align(&demonstrations(&recordings)?)?;
-    let test = TestSamples::draw(&aligned, &mut rng)?;
-    let regressor = LwprRegressor { cutoff: CUTOFF, ..grasp_regressor() };
-    let policy = aligned.learn_without(&test.of_all, &regressor, &mut rng)?;
+    let Learnt { policy, .. } = Learnt::from(&recordings, &mut rng)?;
     let free = Unconstrained { dim: policy.dim() };
     let palms = |start: &GraspStart| {
         let trajectory = grasp.roll_out.follow(&policy, &free, start.palms.as_view())?;

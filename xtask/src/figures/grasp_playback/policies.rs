@@ -1,6 +1,6 @@
 //! Whose policies are rolled out: the truth, and what is learnt of the table's first data set.
 
-use align::{DirectPolicyLearning, LwprRegressor, PolicyAlign};
+use align::{Aligned, DirectPolicyLearning, LwprRegressor, PolicyAlign, PotentialPolicy};
 use demo_gen::{Grasp, Recording, demonstrations};
 use motion::{NegativeGradient, Policy};
 use rand_chacha::ChaCha8Rng;
@@ -10,11 +10,28 @@ use crate::figures::Who;
 use crate::seed::beside;
 
 /// A roll-out leaves the data now and then: there every receptive field counts, however small its activation.
-pub(super) const CUTOFF: f64 = 1e-9;
+const CUTOFF: f64 = 1e-9;
 
 /// Who is shown, each with its id.
 pub(crate) const LEARNERS: [(&str, Who); 4] =
     [("expert", Who::Expert), ("naive", Who::Naive), ("policy_align", Who::PolicyAlign), ("slope_gp", Who::SlopeGp)];
+
+/// What PolicyAlign learns, as for the table.
+pub(super) struct Learnt {
+    pub(super) aligned: Aligned,
+    pub(super) test: TestSamples,
+    pub(super) policy: PotentialPolicy,
+}
+
+impl Learnt {
+    pub(super) fn from(recordings: &[Recording], rng: &mut ChaCha8Rng) -> anyhow::Result<Learnt> {
+        let aligned = PolicyAlign::default().align(&demonstrations(recordings)?)?;
+        let test = TestSamples::draw(&aligned, rng)?;
+        let regressor = LwprRegressor { cutoff: CUTOFF, ..grasp_regressor() };
+        let policy = aligned.learn_without(&test.of_all, &regressor, rng)?;
+        Ok(Learnt { aligned, test, policy })
+    }
+}
 
 /// The policies, in the order of [`LEARNERS`]; learnt as for the table, from what is left of its random numbers.
 pub(super) fn policies(
@@ -22,14 +39,11 @@ pub(super) fn policies(
     recordings: &[Recording],
     rng: &mut ChaCha8Rng,
 ) -> anyhow::Result<[Box<dyn Policy>; 4]> {
-    let aligned = PolicyAlign::default().align(&demonstrations(recordings)?)?;
-    let test = TestSamples::draw(&aligned, rng)?;
     // In the table's order.
-    let regressor = LwprRegressor { cutoff: CUTOFF, ..grasp_regressor() };
-    let policy_align = aligned.learn_without(&test.of_all, &regressor, rng)?;
+    let Learnt { aligned, test, policy } = Learnt::from(recordings, rng)?;
     let naive = DirectPolicyLearning { cutoff: CUTOFF, ..grasp_naive() };
     let naive = naive.learn_policy(aligned.demonstrations(), &test.of_all, rng)?;
     let slope = grasp_beside().slope(aligned.demonstrations(), &test.of_all, &mut beside(rng))?;
     let expert = NegativeGradient(grasp.scene.potential());
-    Ok([Box::new(expert), Box::new(naive), Box::new(policy_align), Box::new(slope)])
+    Ok([Box::new(expert), Box::new(naive), Box::new(policy), Box::new(slope)])
 }

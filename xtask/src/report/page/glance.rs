@@ -12,6 +12,7 @@ use crate::report::tally::Tally;
 use crate::verdict::Verdict;
 
 pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
+    let tally = Tally::of_first_readings(all.iter().map(|compared| (compared.experiment, compared.result)));
     let overview = contents.figures.iter().find(|(figure, _)| figure.id == OVERVIEW);
     html! {
         header #glance {
@@ -24,9 +25,9 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
                     "). policy-align repeats their experiments; this page compares our results with the paper's numbers."
                 }
                 @if let Some((figure, svg)) = overview { (super::card(figure, svg, "")) }
-                (total(all))
+                (total(&tally))
             }
-            (how_it_went(all))
+            (how_it_went(&tally, all))
             (facts(contents, all))
             @if all.iter().any(Compared::is_glimpse) {
                 p .notice { "With fewer than " (FEW) " data sets a row single numbers mean little." }
@@ -42,19 +43,14 @@ const FITTED: &str = "What the paper does not give was fitted, so that its numbe
                       (Table 2); the 22 joints' posture and attractor; and the regression's widths and passes, one setting for each learner of \
                       an experiment. Each experiment names its own.";
 
-fn in_all(all: &[Compared<'_>]) -> Tally {
-    Tally::of_first_readings(all.iter().map(|compared| (compared.experiment, compared.result)))
-}
-
 /// How many cells are reached in total, and how sure that is.
-fn total(all: &[Compared<'_>]) -> Markup {
-    let total = in_all(all);
+fn total(total: &Tally) -> Markup {
     html! {
         @if total.total() > 0 {
             div .total {
                 p .asked { "Of " b { (total.total()) } " numbers that the paper prints" }
-                (words(&total))
-                (bar(&total))
+                (words(total))
+                (bar(total))
                 p {
                     "How sure that is: " b { (total.alike()) } " of the " (total.total()) " means are within two standard errors of the printed \
                      ones; the others, also among those that agree, differ by more than chance."
@@ -65,8 +61,7 @@ fn total(all: &[Compared<'_>]) -> Markup {
 }
 
 /// How many cells of each experiment are reached.
-fn how_it_went(all: &[Compared<'_>]) -> Markup {
-    let total = in_all(all);
+fn how_it_went(total: &Tally, all: &[Compared<'_>]) -> Markup {
     html! {
         @if total.total() > 0 {
             table .tallies {
