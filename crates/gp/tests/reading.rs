@@ -79,9 +79,16 @@ fn the_rule_in_its_order() {
         (ReadingNumbers { a_s: 0.81, ..constrained() }, Reading::Ambiguous),
         (ReadingNumbers { trajectories: 4, ..constrained() }, Reading::Ambiguous),
         (ReadingNumbers { trajectories: 4, p_d: 0.51, ..constrained() }, Reading::Unexplained),
-        (ReadingNumbers { lambda: 0.5, t_lambda: 2.0, ..numbers() }, Reading::Constrained),
-        (ReadingNumbers { lambda: 0.49, t_lambda: 2.0, ..numbers() }, Reading::Ambiguous),
-        (ReadingNumbers { lambda: 0.5, t_lambda: 1.99, ..numbers() }, Reading::Ambiguous),
+        (ReadingNumbers { lambda: 0.75, t_lambda: 2.0, ..numbers() }, Reading::Constrained),
+        (ReadingNumbers { lambda: 0.74, t_lambda: 2.0, ..numbers() }, Reading::Ambiguous),
+        (ReadingNumbers { lambda: 0.75, t_lambda: 1.99, ..numbers() }, Reading::Ambiguous),
+        (ReadingNumbers { lambda: 0.5, t_lambda: 2.0, p_d: 0.51, ..numbers() }, Reading::Constrained),
+        (ReadingNumbers { lambda: 0.49, t_lambda: 2.0, p_d: 0.51, ..numbers() }, Reading::Unexplained),
+        (ReadingNumbers { hidden: 0.07, ..constrained() }, Reading::Constrained),
+        (ReadingNumbers { hidden: 0.08, p_d: 0.41, ..constrained() }, Reading::Constrained),
+        (ReadingNumbers { hidden: 0.07, p_d: 0.41, ..constrained() }, Reading::Free),
+        (ReadingNumbers { hidden: 0.07, p_d: 0.51, ..constrained() }, Reading::Free),
+        (ReadingNumbers { hidden: 0.07, p_d: 0.41, least_seen: unseen(), ..constrained() }, Reading::Ambiguous),
         (ReadingNumbers { p_d: 0.51, ..numbers() }, Reading::Unexplained),
         (ReadingNumbers { gap: 0.1, ..numbers() }, Reading::Free),
         (ReadingNumbers { gap: 0.1, least_seen: unseen(), ..numbers() }, Reading::Ambiguous),
@@ -99,7 +106,12 @@ fn the_policy_follows_the_reading() {
     assert!(n.takes_slope(Reading::Constrained));
     assert!(!n.takes_slope(Reading::Free) && !n.takes_slope(Reading::Ambiguous) && !n.takes_slope(Reading::TooFew));
     assert!(n.takes_slope(Reading::Unexplained));
-    assert!(!ReadingNumbers { a_s: 0.04, ..n }.takes_slope(Reading::Unexplained));
+    assert!(!ReadingNumbers { a_s: 0.04, ..n.clone() }.takes_slope(Reading::Unexplained));
+    // Free, and far better explained by a potential.
+    let potential = ReadingNumbers { q: 0.4, t: 2.0, hidden: 0.07, p_d: 0.41, ..n };
+    assert!(potential.takes_slope(potential.reading()) && potential.text(0.1).contains("The slope policy is used"));
+    let same = ReadingNumbers { gap: 0.03, ..potential };
+    assert!(!same.takes_slope(same.reading()) && same.text(0.1).contains("The direct policy is used"));
 }
 
 #[test]

@@ -33,6 +33,9 @@ pub struct BothReadings {
     pub(crate) slope: SlopeFit,
     pub(crate) direct: DirectFit,
     pub(crate) numbers: ReadingNumbers,
+    /// What the data said when this was learnt; models stored before it was kept are read by the rule of today.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) reading: Option<Reading>,
     pub(crate) overridden: Option<Reading>,
     /// Models that were stored before this was kept have none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -58,17 +61,24 @@ impl ReadingLearner {
             direct_unit: direct.fit.model.unit,
         };
         let (numbers, left_out) = (ReadingNumbers::compared(&compared), compared.errors());
-        let across = match numbers.reading() {
-            Reading::Constrained => Across::Tested,
-            Reading::Free | Reading::Ambiguous | Reading::Unexplained | Reading::TooFew => Across::Untested,
-        };
+        let reading = numbers.reading();
+        // Left-out movements test the slope policy in all directions if it is the better one whichever way they went.
+        let tested = reading != Reading::Unexplained && numbers.takes_slope(reading);
+        let across = if tested { Across::Tested } else { Across::Untested };
         let mut report = report(&Chosen { outcome: &slope, kept: &kept, rows, across });
         if across == Across::Untested {
             // (R6): how far the other reading's policy is away is an error to expect.
             report.expected_nupe = report.expected_nupe.max(numbers.gap);
         }
         let slope = SlopeFit { model: slope.taken.model, report };
-        Ok(BothReadings { slope, direct: direct.fit, numbers, overridden: self.reading, left_out })
+        Ok(BothReadings {
+            slope,
+            direct: direct.fit,
+            numbers,
+            reading: Some(reading),
+            overridden: self.reading,
+            left_out,
+        })
     }
 }
 
@@ -86,7 +96,7 @@ impl Learner for ReadingLearner {
 impl BothReadings {
     /// What the data say.
     pub fn reading(&self) -> Reading {
-        self.numbers.reading()
+        self.reading.unwrap_or_else(|| self.numbers.reading())
     }
 
     /// The user's own reading, if there is one.
