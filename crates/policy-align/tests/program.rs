@@ -106,6 +106,19 @@ fn errors_have_three_lines_and_a_code() {
     assert!(ran.out.contains("not met"));
 }
 
+/// A recorder that writes the same movement a thousand times gets a few lines, and how many more there are.
+#[test]
+fn warnings_of_one_kind_are_counted() {
+    let sample = |episode: i32, i: i32| format!("{episode},{},{}\n", f64::from(i) * 0.1, f64::from(i * i + i));
+    let rows: String = (0..9).flat_map(|episode| (0..12).map(move |i| sample(episode, i))).collect();
+    std::fs::write(folder().join("again.csv"), format!("movement,t,x\n{rows}")).unwrap();
+    let ran = run("convert again.csv -o once.csv");
+    let warnings: Vec<&str> =
+        ran.err.lines().filter(|line| line.contains("repeats") || line.contains("more")).collect();
+    assert_eq!((ran.code, warnings.len()), (Some(0), 4), "{}", ran.err);
+    assert!(warnings[3].ends_with("and 5 more like this one: check --html lists all"), "{}", ran.err);
+}
+
 #[test]
 fn a_closed_pipe_is_no_error() {
     let mut child =

@@ -1,13 +1,17 @@
 //! Recordings of the files that a command names.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use demo_io::{ReadOptions, Recordings};
+use demo_io::{Note, NoteKind, ReadOptions, Recordings};
 use policy_align::FileSummary;
 
 use super::failure::{Failure, shown};
 use super::lines::counted;
 use super::session::Session;
+
+/// Warnings of a kind that are shown: a recorder that repeats itself would fill the screen.
+const SHOWN: usize = 3;
 
 /// Reads them, with a bar if it takes long; says what was noticed.
 pub(crate) fn read(session: &Session, files: &[PathBuf], options: &ReadOptions) -> Result<Recordings, Failure> {
@@ -16,10 +20,24 @@ pub(crate) fn read(session: &Session, files: &[PathBuf], options: &ReadOptions) 
     let recordings = demo_io::read_all(files, options, &mut |read| bar.inc(read));
     bar.finish_and_clear();
     let recordings = recordings?;
-    for note in &recordings.notes {
-        session.warn(&note.text);
-    }
+    warn(session, &recordings.notes);
     Ok(recordings)
+}
+
+/// Says what was noticed, kind by kind.
+fn warn(session: &Session, notes: &[Note]) {
+    let mut by_kind: BTreeMap<NoteKind, Vec<&Note>> = BTreeMap::new();
+    for note in notes {
+        by_kind.entry(note.kind).or_default().push(note);
+    }
+    for notes in by_kind.values() {
+        for note in notes.iter().take(SHOWN) {
+            session.warn(&note.text);
+        }
+        if notes.len() > SHOWN {
+            session.warn(&format!("and {} more like this one: check --html lists all", notes.len() - SHOWN));
+        }
+    }
 }
 
 /// Names and checksums, for the model.
