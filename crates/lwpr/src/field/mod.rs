@@ -78,10 +78,15 @@ impl Layout {
     /// `width` is passed apart so that it can be a constant.
     #[inline(always)]
     pub(crate) fn new(settings: &Settings, width: usize) -> Self {
-        let metric = match settings.params.metric {
-            Metric::Diagonal => width,
-            Metric::Full => settings.n_in * width,
-        };
+        Layout::of(settings, width, settings.params.metric == Metric::Full)
+    }
+
+    /// The same where the kind of metric is a constant too.
+    #[inline(always)]
+    pub(crate) fn of(settings: &Settings, width: usize, full: bool) -> Self {
+        // Rows of two are neither padded nor shared by fields, so that M has two: then all is a constant.
+        let n_in = if width == 2 { 2 } else { settings.n_in };
+        let metric = if full { n_in * width } else { width };
         Layout { width, metric, meta: if settings.meta() { metric } else { 0 } }
     }
 

@@ -6,7 +6,7 @@ use pulp::Simd;
 use crate::Metric;
 use crate::field::Field;
 use crate::learning::activation::Near;
-use crate::settings::Settings;
+use crate::settings::{Settings, padded};
 
 /// Centres and metrics of all fields, in blocks of eight: for each dimension eight centres, then, eight by eight, what
 /// decides about distances ([`distance`]).
@@ -43,11 +43,19 @@ impl ActivationTable {
         if !settings.narrow() {
             return;
         }
-        let (n, lane) = (settings.n_in, k % LANES);
-        let size = n + settings.shape_len();
-        let rows = &mut self.blocks[k / LANES * size..][n..size];
         let m = field.m(settings);
-        if settings.params.metric == Metric::Diagonal {
+        match (settings.params.metric, settings.n_in) {
+            (Metric::Diagonal, 2) => self.set_metric_of((Metric::Diagonal, 2), k, m),
+            (Metric::Full, 2) => self.set_metric_of((Metric::Full, 2), k, m),
+            shape => self.set_metric_of(shape, k, m),
+        }
+    }
+
+    #[inline(always)]
+    fn set_metric_of(&mut self, (metric, n): (Metric, usize), k: usize, m: &[f64]) {
+        let (lane, size) = (k % LANES, n + metric.len(n));
+        let rows = &mut self.blocks[k / LANES * size..][n..size];
+        if metric == Metric::Diagonal {
             for (row, m) in rows.iter_mut().zip(m) {
                 row[lane] = m * m;
             }
@@ -56,7 +64,7 @@ impl ActivationTable {
         let mut rows = rows.iter_mut();
         for i in 0..n {
             for (column, row) in (i..n).zip(&mut rows) {
-                row[lane] = m[column * settings.width + i];
+                row[lane] = m[column * padded(n) + i];
             }
         }
     }
@@ -75,21 +83,38 @@ impl ActivationTable {
         }
     }
 
-    /// Takes note of every field whose squared distance from `x` is below `squared_radius`, in list order.
+    /// Takes note of every field whose squared distance from `x` is below `squared_radius`, in list order. With two
+    /// dimensions, which the compiler then knows, arithmetic is shorter than loops around it.
     #[inline(always)]
     pub(super) fn look<S: Simd>(&self, simd: S, settings: &Settings, x: &[f64], squared_radius: f64, near: &mut Near) {
-        let n = settings.n_in;
+        match (settings.params.metric, settings.n_in) {
+            (Metric::Diagonal, 2) => self.look_with(simd, (Metric::Diagonal, 2), x, squared_radius, near),
+            (Metric::Full, 2) => self.look_with(simd, (Metric::Full, 2), x, squared_radius, near),
+            shape => self.look_with(simd, shape, x, squared_radius, near),
+        }
+    }
+
+    /// [`look`](Self::look) for one kind of metric and one number of dimensions.
+    #[inline(always)]
+    fn look_with<S: Simd>(
+        &self,
+        simd: S,
+        (metric, n): (Metric, usize),
+        x: &[f64],
+        squared_radius: f64,
+        near: &mut Near,
+    ) {
         let limit = Register::splat(simd, squared_radius);
         let mut dx = [[0.0; LANES]; LANES];
-        for (b, block) in self.blocks.chunks_exact(n + settings.shape_len()).enumerate() {
-            let (centres, metric) = block.split_at(n);
+        for (b, block) in self.blocks.chunks_exact(n + metric.len(n)).enumerate() {
+            let (centres, elements) = block.split_at(n);
             let mut q = [0.0; LANES];
             let mut close = false;
             for part in 0..Register::<S>::parts() {
                 for ((dx, centre), &x) in dx.iter_mut().zip(centres).zip(x) {
                     (Register::splat(simd, x) - Register::load(simd, centre, part)).store(dx, part);
                 }
-                let distance = distance(simd, settings.params.metric, (&dx[..n], metric), part);
+                let distance = distance(simd, metric, (&dx[..n], elements), part);
                 close |= Register::<S>::any(simd, limit.above(distance));
                 distance.store(&mut q, part);
             }

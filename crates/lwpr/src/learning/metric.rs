@@ -79,7 +79,7 @@ impl<E: Number> Derivatives<E> {
 pub(crate) fn update_metric<T: Element<T>, E: Element<T>, M: Shape>(
     tokens: (T::Token, E::Token),
     field: &mut Field<T>,
-    settings: &Settings,
+    (settings, layout): (&Settings, Layout),
     activation: Activation<T>,
     sample: &Absorbed<T>,
     dx: &[f64],
@@ -94,7 +94,7 @@ pub(crate) fn update_metric<T: Element<T>, E: Element<T>, M: Shape>(
         return;
     }
     let mut step = Step::new(field, settings, activation, sample, rate);
-    let mut rows = field.metric_rows(Layout::new(settings, dx.len()));
+    let mut rows = field.metric_rows(layout);
     step.limit = E::largest(tokens.1, rows.m) * 0.1;
     if const { M::FULL } {
         full_step::<T, E>(tokens, &mut rows, &step, dx, scratch);

@@ -174,10 +174,10 @@ pub(crate) fn train<T: Element<T>, E: Element<T>, M: Shape>(
     for ((dx, &x), &c) in E::elements_mut(dx).iter_mut().zip(E::elements(x)).zip(centre) {
         *dx = (E::of(token, x) - E::of(token, c)).raw();
     }
-    let layout = Layout::new(settings, width);
+    let layout = Layout::of(settings, width, M::FULL);
     let target = update_means::<T, E>(token, field, Sample { x, y, w: activation.w }, residual);
     let absorbed = update_regression::<T, E>(token, field, settings, layout, (target, activation.w), residual, fresh);
     let mut scratch = FullScratch { t, penalty_column: &mut penalty_column[..width], gram };
-    update_metric::<T, E, M>(tokens, field, settings, activation, &absorbed, dx, &mut scratch);
+    update_metric::<T, E, M>(tokens, field, (settings, layout), activation, &absorbed, dx, &mut scratch);
     age(&mut field.directions, settings, &absorbed)
 }

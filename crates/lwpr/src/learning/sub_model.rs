@@ -33,18 +33,22 @@ pub(crate) struct Strongest {
 }
 
 impl Strongest {
-    /// Takes note of another field; of equal ones the earlier counts as stronger.
+    /// With another field; of equal ones the earlier counts as stronger. Values are chosen, not branches, since which field
+    /// is the strongest cannot be predicted.
     #[inline(always)]
-    pub(crate) fn see(&mut self, field: usize, w: f64) {
-        if w > self.first {
-            (self.second, self.second_field) = (self.first, self.first_field);
-            (self.first, self.first_field) = (w, field);
-        } else if w > self.second {
-            (self.second, self.second_field) = (w, field);
-        }
+    fn with(self, field: usize, w: f64) -> Self {
+        let stronger = w > self.first;
+        let ((first, first_field), (next, next_field)) = if stronger {
+            ((w, field), (self.first, self.first_field))
+        } else {
+            ((self.first, self.first_field), (w, field))
+        };
+        let follows = stronger || next > self.second;
+        let (second, second_field) = if follows { (next, next_field) } else { (self.second, self.second_field) };
+        Strongest { first, second, first_field, second_field }
     }
 
-    /// The same where fields come in any order; only the strongest is kept.
+    /// Takes note of another field where they come in any order, and of equal ones the first in the list counts; only the strongest is kept.
     #[inline(always)]
     pub(crate) fn see_unordered(&mut self, field: usize, w: f64) {
         if w > self.first || (w >= self.first && field < self.first_field) {
@@ -72,10 +76,11 @@ impl SubModel {
     ) {
         let (fields, sample) = ((&self.fields[..], &self.table), (x, settings.squared_radius));
         squared_radius.near.find(simd, settings, fields, sample, &mut workspace.rows, seen);
-        squared_radius.strongest = Strongest::default();
-        for ActivatedField { field, activation, .. } in squared_radius.near.iter() {
-            squared_radius.strongest.see(field, activation.w);
-        }
+        let fields = squared_radius.near.iter();
+        squared_radius.strongest = fields
+            .fold(Strongest::default(), |strongest, ActivatedField { field, activation, .. }| {
+                strongest.with(field, activation.w)
+            });
     }
 
     /// One step of learning from the normalised sample (x, y): 1.4 of the algorithm for one output.

@@ -3,7 +3,7 @@
 use lanes::{Lanes, Number, Register};
 use pulp::Simd;
 
-use super::field_table::{Block, FAR, FieldTable, OFFSET};
+use super::field_table::{Block, FAR, OFFSET};
 
 /// q = (x − c)ᵀD(x − c) with diagonal D, and the local prediction.
 #[inline(always)]
@@ -55,19 +55,9 @@ pub(super) fn differences<S: Simd>(simd: S, block: Block<'_>, x: &[f64], dx: &mu
     }
 }
 
-/// Element `i` of v = D(x − c).
+/// Element `i` of v = D(x − c) with full D.
 #[inline(always)]
-pub(super) fn turned<S: Simd>(
-    simd: S,
-    table: &FieldTable,
-    block: Block<'_>,
-    dx: &[Lanes],
-    i: usize,
-    part: usize,
-) -> Register<S> {
-    if !table.is_full() {
-        return Register::load(simd, &dx[i], part) * Register::load(simd, &block.metric[i], part);
-    }
+pub(super) fn turned<S: Simd>(simd: S, block: Block<'_>, dx: &[Lanes], i: usize, part: usize) -> Register<S> {
     // Row j of the triangle begins n, n − 1, … further on.
     let mut at = i;
     let mut sum = Register::splat(simd, 0.0);

@@ -3,6 +3,7 @@
 use lanes::{LANES, Lanes};
 
 use super::local_model::LocalModel;
+use crate::field::rows::Rows;
 
 /// Rows of a block before those of the dimensions: 0 for each field and infinity for each lane without; the activation
 /// above which a field takes part, infinite for those that are not trustworthy; offset; noise variance, and 1 where it is
@@ -20,15 +21,46 @@ pub(super) const AXIS: usize = 2;
 /// All fields of an output, in blocks of eight.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct FieldTable {
-    n_in: usize,
-    /// Rows of a metric: the diagonal of D, or its upper triangle row after row.
-    metric: usize,
+    shape: BlockShape,
     /// For each block its head, its dimensions, its metric.
-    rows: Vec<Lanes>,
+    rows: Rows,
     /// What only confidence asks for: for each block the mean, then as many rows a direction as there are inputs.
-    loadings: Vec<Lanes>,
+    loadings: Rows,
     /// Where each block's loadings begin, and where the last one's end.
     starts: Vec<usize>,
+}
+
+/// How many rows the parts of a block have. Passed to what reads blocks, so that it can be a constant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct BlockShape {
+    pub(super) n_in: usize,
+    /// The diagonal of D, or its upper triangle row after row.
+    metric: usize,
+}
+
+impl BlockShape {
+    #[inline(always)]
+    pub(super) const fn new(n_in: usize, full: bool) -> Self {
+        BlockShape { n_in, metric: if full { n_in * (n_in + 1) / 2 } else { n_in } }
+    }
+
+    /// Whether fields may turn.
+    #[inline(always)]
+    pub(super) const fn is_full(self) -> bool {
+        self.metric != self.n_in
+    }
+
+    #[inline(always)]
+    const fn size(self) -> usize {
+        HEAD + AXIS * self.n_in + self.metric
+    }
+
+    #[inline(always)]
+    fn named(self, rows: &[Lanes]) -> Block<'_> {
+        let (head, rest) = rows.split_first_chunk().expect("a block has its head");
+        let (axes, metric) = rest.split_at(AXIS * self.n_in);
+        Block { head, axes: axes.as_chunks().0, metric }
+    }
 }
 
 /// One block.
@@ -42,58 +74,20 @@ pub(super) struct Block<'a> {
 impl FieldTable {
     /// Fields of `n_in` inputs, of which the trustworthy take part above `cutoff`.
     pub(super) fn new(n_in: usize, models: &[LocalModel], cutoff: f64) -> Self {
-        let full = models.iter().any(|model| model.metric.len() != n_in);
-        let metric = if full { n_in * (n_in + 1) / 2 } else { n_in };
-        let mut table = FieldTable { n_in, metric, rows: Vec::new(), loadings: Vec::new(), starts: vec![0] };
-        for fields in models.chunks(LANES) {
-            table.push(fields, cutoff);
+        let shape = BlockShape::new(n_in, models.iter().any(|model| model.metric.len() != n_in));
+        let mut rows = vec![[0.0; LANES]; models.len().div_ceil(LANES) * shape.size()];
+        let (mut loadings, mut starts) = (Vec::new(), vec![0]);
+        for (fields, rows) in models.chunks(LANES).zip(rows.chunks_exact_mut(shape.size())) {
+            fill_block(shape, rows, fields, cutoff);
+            push_loadings(n_in, &mut loadings, fields);
+            starts.push(loadings.len());
         }
-        table
+        let (rows, loadings) = (Rows::from(rows.as_flattened()), Rows::from(loadings.as_flattened()));
+        FieldTable { shape, rows, loadings, starts }
     }
 
-    fn push(&mut self, fields: &[LocalModel], cutoff: f64) {
-        let (n, start, from) = (self.n_in, self.rows.len(), self.loadings.len());
-        let directions = fields.iter().filter_map(|model| Some(model.affine.as_ref()?.loadings.len() / n)).max();
-        self.rows.resize(start + self.size(), [0.0; LANES]);
-        self.loadings.resize(from + n * (1 + directions.unwrap_or(0)), [0.0; LANES]);
-        let (rows, loadings) = (&mut self.rows[start..], &mut self.loadings[from..]);
-        (rows[FAR], rows[CUTOFF]) = ([f64::INFINITY; LANES], [f64::INFINITY; LANES]);
-        for (lane, model) in fields.iter().enumerate() {
-            rows[FAR][lane] = 0.0;
-            let (axes, metric) = rows[HEAD..].split_at_mut(AXIS * n);
-            for (axis, &centre) in axes.iter_mut().step_by(AXIS).zip(&model.centre) {
-                axis[lane] = centre;
-            }
-            for (k, row) in metric.iter_mut().enumerate() {
-                row[lane] = model.metric[if self.metric == n { k } else { place_in_triangle(n, k) }];
-            }
-            let Some(affine) = &model.affine else { continue };
-            for (axis, &slope) in axes[1..].iter_mut().step_by(AXIS).zip(&affine.slope) {
-                axis[lane] = slope;
-            }
-            rows[CUTOFF][lane] = cutoff;
-            rows[OFFSET][lane] = affine.offset;
-            rows[NOISE][lane] = affine.noise.unwrap_or(0.0);
-            rows[NOISE_KNOWN][lane] = if affine.noise.is_some() { 1.0 } else { 0.0 };
-            for (row, &value) in loadings.iter_mut().zip(affine.mean.iter().chain(&affine.loadings)) {
-                row[lane] = value;
-            }
-        }
-        self.starts.push(self.loadings.len());
-    }
-
-    fn size(&self) -> usize {
-        HEAD + AXIS * self.n_in + self.metric
-    }
-
-    pub(super) fn n_in(&self) -> usize {
-        self.n_in
-    }
-
-    /// Whether fields may turn.
-    #[inline(always)]
-    pub(super) fn is_full(&self) -> bool {
-        self.metric != self.n_in
+    pub(super) fn shape(&self) -> BlockShape {
+        self.shape
     }
 
     #[inline(always)]
@@ -101,29 +95,59 @@ impl FieldTable {
         self.starts.len() - 1
     }
 
+    /// Block `b`; `shape` is that of the table.
     #[inline(always)]
-    pub(super) fn block(&self, b: usize) -> Block<'_> {
-        let size = self.size();
-        self.named(&self.rows[b * size..][..size])
+    pub(super) fn block(&self, shape: BlockShape, b: usize) -> Block<'_> {
+        shape.named(&self.rows.as_chunks().0[b * shape.size()..][..shape.size()])
     }
 
-    /// All blocks in order.
+    /// All blocks in order; `shape` is that of the table.
     #[inline(always)]
-    pub(super) fn blocks(&self) -> impl Iterator<Item = Block<'_>> {
-        self.rows.chunks_exact(self.size()).map(|rows| self.named(rows))
-    }
-
-    #[inline(always)]
-    fn named<'a>(&self, rows: &'a [Lanes]) -> Block<'a> {
-        let (head, rest) = rows.split_first_chunk().expect("a block has its head");
-        let (axes, metric) = rest.split_at(AXIS * self.n_in);
-        Block { head, axes: axes.as_chunks().0, metric }
+    pub(super) fn blocks(&self, shape: BlockShape) -> impl Iterator<Item = Block<'_>> {
+        self.rows.as_chunks().0.chunks_exact(shape.size()).map(move |rows| shape.named(rows))
     }
 
     /// Mean of a block's fields, and their loadings, direction after direction.
     #[inline(always)]
     pub(super) fn loadings(&self, b: usize) -> (&[Lanes], &[Lanes]) {
-        self.loadings[self.starts[b]..self.starts[b + 1]].split_at(self.n_in)
+        self.loadings.as_chunks().0[self.starts[b]..self.starts[b + 1]].split_at(self.shape.n_in)
+    }
+}
+
+/// Writes the rows of a block, which are zero.
+fn fill_block(shape: BlockShape, rows: &mut [Lanes], fields: &[LocalModel], cutoff: f64) {
+    let n = shape.n_in;
+    (rows[FAR], rows[CUTOFF]) = ([f64::INFINITY; LANES], [f64::INFINITY; LANES]);
+    for (lane, model) in fields.iter().enumerate() {
+        rows[FAR][lane] = 0.0;
+        let (axes, metric) = rows[HEAD..].split_at_mut(AXIS * n);
+        for (axis, &centre) in axes.iter_mut().step_by(AXIS).zip(&model.centre) {
+            axis[lane] = centre;
+        }
+        for (k, row) in metric.iter_mut().enumerate() {
+            row[lane] = model.metric[if shape.is_full() { place_in_triangle(n, k) } else { k }];
+        }
+        let Some(affine) = &model.affine else { continue };
+        for (axis, &slope) in axes[1..].iter_mut().step_by(AXIS).zip(&affine.slope) {
+            axis[lane] = slope;
+        }
+        rows[CUTOFF][lane] = cutoff;
+        rows[OFFSET][lane] = affine.offset;
+        rows[NOISE][lane] = affine.noise.unwrap_or(0.0);
+        rows[NOISE_KNOWN][lane] = if affine.noise.is_some() { 1.0 } else { 0.0 };
+    }
+}
+
+/// Appends what a block's confidence asks for.
+fn push_loadings(n_in: usize, loadings: &mut Vec<Lanes>, fields: &[LocalModel]) {
+    let directions = fields.iter().filter_map(|model| Some(model.affine.as_ref()?.loadings.len() / n_in)).max();
+    let start = loadings.len();
+    loadings.resize(start + n_in * (1 + directions.unwrap_or(0)), [0.0; LANES]);
+    for (lane, model) in fields.iter().enumerate() {
+        let Some(affine) = &model.affine else { continue };
+        for (row, &value) in loadings[start..].iter_mut().zip(affine.mean.iter().chain(&affine.loadings)) {
+            row[lane] = value;
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! What a model says about an input.
 
+mod confidence;
 mod distance;
 mod field_table;
 mod hessian;

@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 use super::field_table::FieldTable;
 use super::local_model::LocalModel;
 use super::record::PredictorRecord;
-use super::sweep::{Query, Wanted, sweep};
+use super::sweep::{Query, Scale, Wanted, sweep};
 use super::{Prediction, is_query};
 use crate::error::Side;
-use crate::{Kernel, Lwpr, LwprError};
+use crate::{Lwpr, LwprError};
 
 /// An immutable snapshot of a model that predicts; made by [`Lwpr::predictor`]. Threads may share it.
 ///
@@ -18,12 +18,9 @@ use crate::{Kernel, Lwpr, LwprError};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "PredictorRecord", into = "PredictorRecord")]
 pub struct Predictor {
-    kernel: Kernel,
     cutoff: f64,
-    squared_radius: f64,
+    scale: Scale,
     norm_in: Vec<f64>,
-    /// 1 / norm_in: a division costs as much as ten products.
-    per_norm_in: Vec<f64>,
     norm_out: Vec<f64>,
     outputs: Vec<OutputFields>,
 }
@@ -58,11 +55,13 @@ impl Predictor {
         let fields =
             |models: Vec<LocalModel>| OutputFields { table: FieldTable::new(norm_in.len(), &models, cutoff), models };
         Predictor {
-            kernel,
             cutoff,
-            // Where rounding might decide, the activation itself does.
-            squared_radius: kernel.squared_radius(cutoff.min(1.0)) + 1e-6,
-            per_norm_in: norm_in.iter().map(|norm| 1.0 / norm).collect(),
+            scale: Scale {
+                kernel,
+                // Where rounding might decide, the activation itself does.
+                squared_radius: kernel.squared_radius(cutoff.min(1.0)) + 1e-6,
+                per_norm_in: norm_in.iter().map(|norm| 1.0 / norm).collect(),
+            },
             outputs: outputs.into_iter().map(fields).collect(),
             norm_in,
             norm_out,
@@ -71,7 +70,7 @@ impl Predictor {
 
     pub(super) fn record(&self) -> PredictorRecord {
         PredictorRecord {
-            kernel: self.kernel,
+            kernel: self.scale.kernel,
             cutoff: self.cutoff,
             norm_in: self.norm_in.clone(),
             norm_out: self.norm_out.clone(),
@@ -207,13 +206,12 @@ impl Predictor {
         self.norm_out.len()
     }
 
-    fn ask(&self, x: DVectorView<'_, f64>, output: usize, wanted: Wanted<'_>) -> Option<f64> {
-        let (fields, norm_out) = (&self.outputs[output], self.norm_out[output]);
+    fn ask(&self, x: DVectorView<'_, f64>, output: usize, mut wanted: Wanted<'_>) -> Option<f64> {
+        let (table, norm_out) = (&self.outputs[output].table, self.norm_out[output]);
         if !is_query(x, self.n_in()) {
             return None;
         }
-        let Predictor { kernel, squared_radius, ref per_norm_in, .. } = *self;
-        sweep(&fields.table, Query { kernel, squared_radius, x: x.as_slice(), per_norm_in, norm_out }, wanted)
+        sweep(&Query { table, scale: &self.scale, x: x.as_slice(), norm_out }, &mut wanted)
     }
 
     fn check_queries(&self, xs: DMatrixView<'_, f64>) -> Result<(), LwprError> {

@@ -5,19 +5,29 @@ use std::cell::RefCell;
 use lanes::{LANES, Lanes, Number, Register, total};
 use pulp::Simd;
 
+use super::confidence::Confidence;
 use super::distance::{diagonal_distance, differences, full_distance, turned};
-use super::field_table::{CUTOFF, FieldTable, NOISE, NOISE_KNOWN};
-use super::hessian::write_hessian;
+use super::field_table::{BlockShape, CUTOFF, FieldTable};
+use super::hessian::Hessian;
 use crate::Kernel;
+use crate::field::rows::Rows;
 
-/// What a query needs to know besides the fields.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Query<'a> {
+/// What all queries of a snapshot share.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Scale {
     pub(super) kernel: Kernel,
     /// Squared distance beyond which activations are below the cutoff.
     pub(super) squared_radius: f64,
+    /// 1 / `norm_in`: a division costs as much as ten products.
+    pub(super) per_norm_in: Vec<f64>,
+}
+
+/// A question to one output.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Query<'a> {
+    pub(super) table: &'a FieldTable,
+    pub(super) scale: &'a Scale,
     pub(super) x: &'a [f64],
-    pub(super) per_norm_in: &'a [f64],
     pub(super) norm_out: f64,
 }
 
@@ -36,12 +46,13 @@ pub(super) struct Wanted<'a> {
 
 /// A block with activated fields: squared distances, activations, 2 dw/dq, local predictions.
 #[derive(Debug, Clone, Copy, Default)]
+#[repr(align(64))]
 pub(super) struct Active {
-    pub(super) block: usize,
     pub(super) q: Lanes,
     pub(super) w: Lanes,
     pub(super) dw: Lanes,
     pub(super) y: Lanes,
+    pub(super) block: usize,
 }
 
 /// What a query works in; each thread has one, so that none allocates more than once.
@@ -50,145 +61,202 @@ struct Scratch {
     x: Vec<f64>,
     active: Vec<Active>,
     /// x − c of a block.
-    dx: Vec<Lanes>,
+    dx: Rows,
     /// D(x − c) of every active block, for second derivatives.
     v: Vec<Lanes>,
     /// Sums of the gradient, dimension by dimension.
-    sums: Vec<Lanes>,
+    sums: Rows,
 }
 
 thread_local! {
     static SCRATCH: RefCell<Scratch> = RefCell::default();
 }
 
-/// Sums over all fields that take part.
-#[derive(Debug, Clone, Copy)]
-struct Sums {
-    w: f64,
-    wy: f64,
-    /// The least squared distances of all fields, in each lane.
-    nearest: Lanes,
-}
-
 /// The weighted mean of the local predictions, and what else is wanted; `None` without support.
-pub(super) fn sweep(table: &FieldTable, query: Query<'_>, wanted: Wanted<'_>) -> Option<f64> {
-    SCRATCH.with_borrow_mut(|scratch| pulp::Arch::new().dispatch(Sweep { table, query, wanted, scratch }))
+///
+/// Two dimensions have code of their own, since their arithmetic is shorter than loops around it, and so has a full metric
+/// of two or six.
+pub(super) fn sweep(query: &Query<'_>, wanted: &mut Wanted<'_>) -> Option<f64> {
+    SCRATCH.with_borrow_mut(|scratch| {
+        scratch.make_room(query.table);
+        let arch = pulp::Arch::new();
+        let sweep = Sweep { query, wanted, scratch };
+        match (query.table.shape().is_full(), query.table.shape().n_in) {
+            (false, 2) => arch.dispatch(Known::<false, 2>(sweep)),
+            (false, _) => arch.dispatch(Known::<false, ANY>(sweep)),
+            (true, 2) => arch.dispatch(Known::<true, 2>(sweep)),
+            (true, 6) => arch.dispatch(Known::<true, 6>(sweep)),
+            (true, _) => arch.dispatch(Known::<true, ANY>(sweep)),
+        }
+    })
 }
 
 impl Scratch {
     #[inline(always)]
     fn make_room(&mut self, table: &FieldTable) {
-        let n = table.n_in();
-        if self.x.len() < n {
-            self.x.resize(n, 0.0);
-            self.dx.resize(n, [0.0; LANES]);
-            self.sums.resize(n, [0.0; LANES]);
+        if self.x.len() < table.shape().n_in || self.active.len() < table.n_blocks() {
+            self.grow(table);
         }
-        if self.active.len() < table.n_blocks() {
-            self.active.resize(table.n_blocks(), Active::default());
-        }
+    }
+
+    #[cold]
+    fn grow(&mut self, table: &FieldTable) {
+        let n = self.x.len().max(table.shape().n_in);
+        self.x.resize(n, 0.0);
+        (self.dx, self.sums) = (Rows::zeros(n * LANES), Rows::zeros(n * LANES));
+        self.active.resize(self.active.len().max(table.n_blocks()), Active::default());
     }
 }
 
-/// [`sweep`], compiled for the processor at hand.
-struct Sweep<'a> {
-    table: &'a FieldTable,
-    query: Query<'a>,
-    wanted: Wanted<'a>,
+/// A query on its way.
+struct Sweep<'a, 'w> {
+    query: &'a Query<'a>,
+    wanted: &'a mut Wanted<'w>,
     scratch: &'a mut Scratch,
 }
 
-impl pulp::WithSimd for Sweep<'_> {
+/// Any number of dimensions.
+const ANY: usize = 0;
+
+/// A [`Sweep`], compiled for the processor at hand, for one kind of metric and, unless it is [`ANY`], for one number of
+/// dimensions: loops over these unroll, and sums stay in registers.
+struct Known<'a, 'w, const FULL: bool, const N: usize>(Sweep<'a, 'w>);
+
+impl<const FULL: bool, const N: usize> pulp::WithSimd for Known<'_, '_, FULL, N> {
     type Output = Option<f64>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Option<f64> {
-        let Sweep { table, query, wanted, scratch } = self;
-        scratch.make_room(table);
+        if const { S::F64_LANES == 1 } {
+            return without_vectors::<FULL>(self.0);
+        }
+        self.0.run::<S, FULL, N>(simd)
+    }
+}
+
+/// For a processor without vector instructions, where nothing unrolls; not inlined, so that nobody else carries it along.
+#[cold]
+#[inline(never)]
+fn without_vectors<const FULL: bool>(sweep: Sweep<'_, '_>) -> Option<f64> {
+    sweep.run::<pulp::Scalar, FULL, ANY>(pulp::Scalar::new())
+}
+
+impl Sweep<'_, '_> {
+    #[inline(always)]
+    fn run<S: Simd, const FULL: bool, const N: usize>(self, simd: S) -> Option<f64> {
+        let Sweep { query, wanted, scratch } = self;
+        let Query { table, scale: Scale { kernel, squared_radius, per_norm_in }, .. } = *query;
+        let n = if const { N == ANY } { table.shape().n_in } else { N };
+        let shape = BlockShape::new(n, FULL);
+        let (mut few_x, mut few_dx, mut few_sums) = ([0.0; N], [[0.0; LANES]; N], [[0.0; LANES]; N]);
         let Scratch { x, active, dx, v, sums } = scratch;
-        let n = table.n_in();
-        let (x, dx, sums) = (&mut x[..n], &mut dx[..n], &mut sums[..n]);
-        for ((x, raw), per_norm) in x.iter_mut().zip(query.x).zip(query.per_norm_in) {
+        let (x, dx, sums) = if const { N == ANY } {
+            (&mut x[..n], &mut dx.as_chunks_mut().0[..n], &mut sums.as_chunks_mut().0[..n])
+        } else {
+            (&mut few_x[..], &mut few_dx[..], &mut few_sums[..])
+        };
+        let per_norm_in = &per_norm_in[..n];
+        for ((x, raw), per_norm) in x.iter_mut().zip(&query.x[..n]).zip(per_norm_in) {
             *x = raw * per_norm;
         }
-        let (found, count) = find(simd, table, query, x, active);
-        let active = &active[..count];
-        if let Some(max_activation) = wanted.max_activation {
-            let mut nearest = f64::INFINITY;
-            for q in found.nearest {
-                nearest = if q < nearest { q } else { nearest };
-            }
-            *max_activation = query.kernel.at(nearest).w;
+        let (nearest, count) = find(simd, (table, shape), *squared_radius, x, active);
+        let active = &mut active[..count];
+        if let Some(max_activation) = &mut wanted.max_activation {
+            **max_activation = kernel.at(least(nearest)).w;
         }
-        if found.w <= 0.0 {
+        let (sum_w, sum_wy) = weigh(simd, (table, shape), *kernel, active);
+        if sum_w <= 0.0 {
             return None;
         }
-        let per_w = 1.0 / found.w;
-        let (value, scale) = (found.wy * per_w, query.norm_out * per_w);
-        if let Some(confidence) = wanted.confidence {
-            *confidence = scale * spread(simd, table, x, active, value);
+        let per_w = 1.0 / sum_w;
+        let (value, scale) = (sum_wy * per_w, query.norm_out * per_w);
+        if let Some(confidence) = &mut wanted.confidence {
+            **confidence = scale * simd.vectorize(Confidence { table, x, active, value });
         }
         if wanted.gradient.is_some() || wanted.hessian.is_some() {
-            add_gradients(simd, table, x, active, value, (dx, sums));
+            add_gradients(simd, (table, shape), x, active, value, (dx, sums));
         }
-        if let Some((gradient, stride)) = wanted.gradient {
-            for ((gradient, sum), per_norm) in gradient.iter_mut().step_by(stride).zip(&*sums).zip(query.per_norm_in) {
+        if let Some((gradient, stride)) = &mut wanted.gradient {
+            for ((gradient, sum), per_norm) in gradient.iter_mut().step_by(*stride).zip(&*sums).zip(per_norm_in) {
                 *gradient = total(*sum) * (scale * per_norm);
             }
         }
-        if let Some(hessian) = wanted.hessian {
-            let gradients = (&*sums, found.w);
-            write_hessian(simd, table, (query, scale, value), (x, active), (dx, v, gradients), hessian);
+        if let Some(hessian) = &mut wanted.hessian {
+            simd.vectorize(Hessian { query, scale, value, x, active, dx, v, sums, sum_w, into: hessian });
         }
         Some(value * query.norm_out)
     }
 }
 
-/// Finds the blocks with activated fields, and how many they are.
 #[inline(always)]
-fn find<S: Simd>(simd: S, table: &FieldTable, query: Query<'_>, x: &[f64], active: &mut [Active]) -> (Sums, usize) {
-    let (squared_radius, zero) = (Register::splat(simd, query.squared_radius), Register::splat(simd, 0.0));
-    let (mut sum_w, mut sum_wy, mut nearest) = ([0.0; LANES], [0.0; LANES], [f64::INFINITY; LANES]);
+fn least(numbers: Lanes) -> f64 {
+    numbers.into_iter().fold(f64::INFINITY, |least, q| if q < least { q } else { least })
+}
+
+/// Finds the blocks with activated fields, and how many they are; without a branch, since which are near cannot be
+/// predicted. Returns the least squared distances of all fields, in each lane, too.
+#[inline(always)]
+fn find<S: Simd>(
+    simd: S,
+    (table, shape): (&FieldTable, BlockShape),
+    squared_radius: f64,
+    x: &[f64],
+    active: &mut [Active],
+) -> (Lanes, usize) {
+    let squared_radius = Register::splat(simd, squared_radius);
+    let mut nearest = [f64::INFINITY; LANES];
     let mut count = 0;
-    for (b, block) in table.blocks().enumerate() {
-        let (mut distance, mut local) = ([0.0; LANES], [0.0; LANES]);
+    for (b, block) in table.blocks(shape).enumerate() {
+        let found = &mut active[count];
         let mut near = false;
         for part in 0..Register::<S>::parts() {
-            let (q, y) = if table.is_full() {
+            let (q, y) = if shape.is_full() {
                 full_distance(simd, block, x, part)
             } else {
                 diagonal_distance(simd, block, x, part)
             };
             near |= Register::<S>::any(simd, squared_radius.above(q));
-            q.store(&mut distance, part);
-            y.store(&mut local, part);
+            q.store(&mut found.q, part);
+            y.store(&mut found.y, part);
             q.smaller(Register::load(simd, &nearest, part)).store(&mut nearest, part);
         }
-        if !near {
-            continue;
-        }
-        let found = &mut active[count];
-        count += 1;
-        (found.block, found.q, found.y) = (b, distance, local);
+        found.block = b;
+        count += usize::from(near);
+    }
+    (nearest, count)
+}
+
+/// Distances become activations of the fields that take part. Returns Σ w and Σ w y.
+#[inline(always)]
+fn weigh<S: Simd>(
+    simd: S,
+    (table, shape): (&FieldTable, BlockShape),
+    kernel: Kernel,
+    active: &mut [Active],
+) -> (f64, f64) {
+    let zero = Register::splat(simd, 0.0);
+    let (mut sum_w, mut sum_wy) = ([0.0; LANES], [0.0; LANES]);
+    for found in active {
+        let block = table.block(shape, found.block);
         for part in 0..Register::<S>::parts() {
-            let activation = query.kernel.at(Register::load(simd, &distance, part));
+            let activation = kernel.at(Register::load(simd, &found.q, part));
             let counts = activation.w.above(Register::load(simd, &block.head[CUTOFF], part));
             let w = activation.w.or_else(counts, zero);
             w.store(&mut found.w, part);
             (activation.slope * 2.0).or_else(counts, zero).store(&mut found.dw, part);
             (Register::load(simd, &sum_w, part) + w).store(&mut sum_w, part);
             let sum = Register::load(simd, &sum_wy, part);
-            w.mul_add(Register::load(simd, &local, part), sum).store(&mut sum_wy, part);
+            w.mul_add(Register::load(simd, &found.y, part), sum).store(&mut sum_wy, part);
         }
     }
-    (Sums { w: total(sum_w), wy: total(sum_wy), nearest }, count)
+    (total(sum_w), total(sum_wy))
 }
 
 /// Σ w ∂y/∂x + Σ ∂w/∂x (y − `value`), in each lane; `dx` is a row of scratch.
 #[inline(always)]
 fn add_gradients<S: Simd>(
     simd: S,
-    table: &FieldTable,
+    (table, shape): (&FieldTable, BlockShape),
     x: &[f64],
     active: &[Active],
     value: f64,
@@ -198,17 +266,17 @@ fn add_gradients<S: Simd>(
         *sum = [0.0; LANES];
     }
     for found in active {
-        let block = table.block(found.block);
-        if table.is_full() {
+        let block = table.block(shape, found.block);
+        if shape.is_full() {
             differences(simd, block, x, dx);
         }
         for part in 0..Register::<S>::parts() {
             let w = Register::load(simd, &found.w, part);
             let off = Register::load(simd, &found.y, part) - Register::splat(simd, value);
             let off = off * Register::load(simd, &found.dw, part);
-            if table.is_full() {
+            if shape.is_full() {
                 for (i, ([_, slope], sum)) in block.axes.iter().zip(&mut *sums).enumerate() {
-                    let v = turned(simd, table, block, dx, i, part);
+                    let v = turned(simd, block, dx, i, part);
                     let so_far = w.mul_add(Register::load(simd, slope, part), Register::load(simd, sum, part));
                     off.mul_add(v, so_far).store(sum, part);
                 }
@@ -221,35 +289,4 @@ fn add_gradients<S: Simd>(
             }
         }
     }
-}
-
-/// √(Σ w σ² + Σ w (y − `value`)²), with variances σ² = Γ(1 + w Σ s²/Σ w s²); fields without errors add their spread, but no
-/// noise of their own. Infinite if none has errors.
-#[inline(always)]
-fn spread<S: Simd>(simd: S, table: &FieldTable, x: &[f64], active: &[Active], value: f64) -> f64 {
-    let (mut sums, mut known) = ([0.0; LANES], [0.0; LANES]);
-    for found in active {
-        let block = table.block(found.block);
-        let (mean, loadings) = table.loadings(found.block);
-        for part in 0..Register::<S>::parts() {
-            let mut squares = Register::splat(simd, 0.0);
-            for direction in loadings.chunks_exact(x.len()) {
-                let mut s = Register::splat(simd, 0.0);
-                for ((a, mean), &x) in direction.iter().zip(mean).zip(x) {
-                    let z = Register::splat(simd, x) - Register::load(simd, mean, part);
-                    s = Register::load(simd, a, part).mul_add(z, s);
-                }
-                squares = s.mul_add(s, squares);
-            }
-            let w = Register::load(simd, &found.w, part);
-            let off = Register::load(simd, &found.y, part) - Register::splat(simd, value);
-            let noise = Register::load(simd, &block.head[NOISE], part) * (w * squares + 1.0);
-            let sum = w.mul_add(off.mul_add(off, noise), Register::load(simd, &sums, part));
-            sum.store(&mut sums, part);
-            let known_too =
-                w.mul_add(Register::load(simd, &block.head[NOISE_KNOWN], part), Register::load(simd, &known, part));
-            known_too.store(&mut known, part);
-        }
-    }
-    if total(known) > 0.0 { total(sums).sqrt() } else { f64::INFINITY }
 }

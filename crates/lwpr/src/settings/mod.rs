@@ -84,12 +84,8 @@ impl Settings {
     }
 
     /// How many numbers of M decide about distances: its diagonal, or its upper triangle.
-    #[inline(always)]
     pub(crate) fn shape_len(&self) -> usize {
-        match self.params.metric {
-            Metric::Diagonal => self.n_in,
-            Metric::Full => self.n_in * (self.n_in + 1) / 2,
-        }
+        self.params.metric.len(self.n_in)
     }
 
     /// Refuses what is not finite, or so large that its powers would not be.
@@ -127,7 +123,19 @@ fn is_usable(value: f64) -> bool {
     value.abs() <= LARGEST
 }
 
+impl Metric {
+    /// How many numbers of M decide about distances in `n` dimensions.
+    #[inline(always)]
+    pub(crate) fn len(self, n: usize) -> usize {
+        match self {
+            Metric::Diagonal => n,
+            Metric::Full => n * (n + 1) / 2,
+        }
+    }
+}
+
 /// `n` rounded up so that rows fill whole vector registers without wasting many lanes.
+#[inline(always)]
 pub(crate) fn padded(n: usize) -> usize {
     if n <= 8 { n.next_power_of_two() } else { n.next_multiple_of(8) }
 }
