@@ -133,6 +133,18 @@ fn what_is_missing_is_dropped_or_filled() {
     refused("a.csv", at_end, &ReadOptions { nan: Nan::Fill, ..plain() }, "NotFinite", &["line 4"]);
 }
 
+/// A pose as rosbag's exporter writes it: x, y, z of the place and of the quaternion, stamps in whole nanoseconds.
+#[test]
+fn exported_poses_are_read_by_the_numbers_of_their_columns() {
+    let text = "rosbagTimestamp,x,y,z,x,y,z,w\n\
+                1498555031990452357,-0.25,0.5,1,0,0,0,1\n1498555032010452357,-0.5,0.75,1,0,0,0,1\n";
+    refused("a.csv", text, &plain(), "AmbiguousColumn", &["'x'", "columns 1 and 4", "--state 1,2,3"]);
+    let options = ReadOptions { state: vec!["1,2,3".to_owned()], ..plain() };
+    let found = parsed("a.csv", text, &options).unwrap();
+    assert_eq!(found.episodes[0].times, [0.0, 0.02]);
+    assert_eq!(found.episodes[0].positions.as_slice(), [-0.25, 0.5, 1.0, -0.5, 0.75, 1.0]);
+}
+
 #[test]
 fn stamps_are_sorted_cut_and_kept_once() {
     let text = "t,x\n0,0\n2,2\n1,1\n1,9\n8,8.5\n9,9.5\n";

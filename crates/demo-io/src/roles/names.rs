@@ -1,6 +1,6 @@
 //! What a column's name says: a time, a unit, whose velocity.
 
-const TIMES: [&str; 12] = [
+const TIMES: [&str; 14] = [
     "t",
     "time",
     "timestamp",
@@ -13,6 +13,8 @@ const TIMES: [&str; 12] = [
     "times",
     "timestamps",
     "stamps",
+    "rosbagtimestamp",
+    "__time",
 ];
 const TIME_UNITS: [&str; 12] =
     ["s", "sec", "secs", "seconds", "ms", "msec", "milliseconds", "us", "usec", "ns", "nsec", "nanoseconds"];
