@@ -67,6 +67,11 @@ impl Tally {
             )
         }
     }
+
+    /// [`sentence`](Self::sentence) on two lines, for a terminal of 80 columns.
+    pub(crate) fn on_two_lines(&self) -> String {
+        self.sentence().replace("; ", ";\n")
+    }
 }
 
 /// Difference of our mean and the printed one over its standard error; none where nothing is printed, or nothing varies.

@@ -194,12 +194,12 @@ impl Reproduce {
         for &(experiment, result) in &measured {
             let tally = Tally::of([(experiment, result)]);
             if tally.total() > 0 {
-                say(&format!("{}: {}", experiment.id, tally.sentence()));
+                say(&format!("{}: {}", experiment.id, tally.on_two_lines()));
             }
         }
         let total = Tally::of_first_readings(measured);
         if total.total() > 0 {
-            say(&format!("in all: {}", total.sentence()));
+            say(&format!("in all: {}", total.on_two_lines()));
         }
         let Run { threads, wall_seconds, cpu_seconds, .. } = &results.run;
         say(&format!("{wall_seconds:.1} s on {threads} thread(s), {cpu_seconds:.1} s of processor time"));
