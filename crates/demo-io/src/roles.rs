@@ -214,9 +214,8 @@ fn refuse_twins(names: &[&str], ignored: &[bool], options: &ReadOptions, place: 
     for (index, name) in names.iter().enumerate().filter(|(index, name)| !name.is_empty() && !ignored[*index]) {
         if let Some(twin) = first.insert(name, index) {
             let what = format!("'{name}' names columns {twin} and {index}");
-            let once: Vec<String> = (twin..index).map(|column| column.to_string()).collect();
-            let remedy =
-                format!("rename one, or choose columns by number, which count from 0: --state {}", once.join(","));
+            let last = index - 1;
+            let remedy = format!("rename one, or choose columns by number, which count from 0: --state {twin}-{last}");
             return Err(ReadError::AmbiguousColumn(Fault::new(what, place, remedy)));
         }
     }

@@ -138,8 +138,8 @@ fn what_is_missing_is_dropped_or_filled() {
 fn exported_poses_are_read_by_the_numbers_of_their_columns() {
     let text = "rosbagTimestamp,x,y,z,x,y,z,w\n\
                 1498555031990452357,-0.25,0.5,1,0,0,0,1\n1498555032010452357,-0.5,0.75,1,0,0,0,1\n";
-    refused("a.csv", text, &plain(), "AmbiguousColumn", &["'x'", "columns 1 and 4", "--state 1,2,3"]);
-    let options = ReadOptions { state: vec!["1,2,3".to_owned()], ..plain() };
+    refused("a.csv", text, &plain(), "AmbiguousColumn", &["'x'", "columns 1 and 4", "--state 1-3"]);
+    let options = ReadOptions { state: vec!["1-3".to_owned()], ..plain() };
     let found = parsed("a.csv", text, &options).unwrap();
     assert_eq!(found.episodes[0].times, [0.0, 0.02]);
     assert_eq!(found.episodes[0].positions.as_slice(), [-0.25, 0.5, 1.0, -0.5, 0.75, 1.0]);

@@ -11,7 +11,7 @@ use crate::measure::Measure;
 use crate::results::{ExperimentResult, Results, RowResult};
 
 /// Errors below this are as good as none, and need no forecast.
-const WORTH_FORETELLING: f64 = 1e-3;
+const WORTH_A_FORECAST: f64 = 1e-3;
 
 /// Cases of policies that have no potential begin with one of these.
 const ROTATIONAL: [&str; 2] = ["swirl", "limit-cycle"];
@@ -127,7 +127,7 @@ fn expected(results: &Results) -> String {
     let [all, apart] =
         [|_: &str| true, |case: &str| !case.starts_with("handwriting")].map(|wanted| share(results, wanted));
     format!(
-        "Of fits whose true error is at least {WORTH_FORETELLING}:\n\n{}\nThe slope GP is within ten times in {all} fits, in {apart} of \
+        "Of fits whose true error is at least {WORTH_A_FORECAST}:\n\n{}\nThe slope GP is within ten times in {all} fits, in {apart} of \
          those that are not of handwriting; nine in ten were hoped for. More than ten times off, under constraints that vary: {named}.\n",
         markdown_table(&header, &lines)
     )
@@ -188,7 +188,7 @@ fn ratios(row: &RowResult) -> Vec<f64> {
     let errors = if all.is_empty() { values(row, Measure::Nupe) } else { all };
     let both = values(row, Measure::ExpectedNupe).iter().zip(errors);
     let both = both.filter_map(|(expected, error)| Some(((*expected)?, (*error)?)));
-    both.filter(|(_, error)| *error >= WORTH_FORETELLING).map(|(expected, error)| expected / error).collect()
+    both.filter(|(_, error)| *error >= WORTH_A_FORECAST).map(|(expected, error)| expected / error).collect()
 }
 
 /// How often rotation is found where there is some, and where there is none.

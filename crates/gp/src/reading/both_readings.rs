@@ -62,8 +62,8 @@ impl ReadingLearner {
         };
         let (numbers, left_out) = (ReadingNumbers::compared(&compared), compared.errors());
         let reading = numbers.reading();
-        // Left-out movements test the slope policy in all directions if it is the better one whichever way they went.
-        let tested = reading != Reading::Unexplained && numbers.takes_slope(reading);
+        // Left-out movements test the slope policy in all directions where it is the better one whichever way they went.
+        let tested = reading == Reading::Constrained || numbers.shows_a_potential();
         let across = if tested { Across::Tested } else { Across::Untested };
         let mut report = report(&Chosen { outcome: &slope, kept: &kept, rows, across });
         if across == Across::Untested {
@@ -142,7 +142,8 @@ impl BothReadings {
         }
     }
 
-    fn takes_slope(&self) -> bool {
+    /// Whether the policy handed out is the slope GP's.
+    pub fn takes_slope(&self) -> bool {
         self.numbers.takes_slope(self.overridden.unwrap_or(self.reading()))
     }
 

@@ -16,11 +16,12 @@ use crate::rows::kept::Grouping;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reading {
-    /// Nothing points to one: the direct policy.
+    /// Nothing points to one: the direct policy, or that of the slope GP where movements descend a potential that it learns
+    /// far better.
     Free,
     /// They hid part of the policy, and differed: the slope policy.
     Constrained,
-    /// Two readings explain the same data: the direct policy.
+    /// Two readings explain the same data: mostly the direct policy.
     Ambiguous,
     /// Neither predicts: no policy should be trusted.
     Unexplained,
@@ -46,18 +47,14 @@ impl ReadingNumbers {
     pub fn reading(&self) -> Reading {
         match () {
             () if self.grouping == Grouping::BlocksOfTime => Reading::TooFew,
-            () if self.gap <= SAME => {
+            () if self.gap <= SAME || self.shows_a_potential() => {
                 if self.seen() {
                     Reading::Free
                 } else {
                     Reading::Ambiguous
                 }
             }
-            () if self.trajectories >= DEMONSTRATIONS && self.direction_tells() => match () {
-                () if self.hides() => Reading::Constrained,
-                () if self.seen() => Reading::Free,
-                () => Reading::Ambiguous,
-            },
+            () if self.trajectories >= DEMONSTRATIONS && self.direction_tells() => Reading::Constrained,
             () if self.p_d > UNEXPLAINED => Reading::Unexplained,
             () if self.gap <= CLOSE && self.seen() => Reading::Free,
             () => Reading::Ambiguous,
@@ -94,7 +91,7 @@ impl ReadingNumbers {
     }
 
     /// Nothing was hidden, and the slope GP is far better nevertheless.
-    fn shows_a_potential(&self) -> bool {
+    pub(crate) fn shows_a_potential(&self) -> bool {
         self.gap > SAME && self.trajectories >= DEMONSTRATIONS && self.direction_tells() && !self.hides()
     }
 

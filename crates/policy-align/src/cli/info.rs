@@ -73,7 +73,7 @@ pub(crate) fn learner(model: &Model) -> String {
         Learnt::Direct(_) => "direct GP: velocities as they were seen".to_owned(),
         Learnt::Auto(both) => {
             let reading = both.overridden().unwrap_or(both.reading());
-            let taken = if both.numbers().takes_slope(reading) { "slope GP" } else { "direct GP" };
+            let taken = if both.takes_slope() { "slope GP" } else { "direct GP" };
             format!("{taken}, chosen between slope and direct GP (reading: {reading:?})")
                 .to_lowercase()
                 .replace("gp", "GP")

@@ -43,9 +43,7 @@ impl Tables {
             }
             Learnt::Slope(fit) => LearnerTables::Slope(slope(fit)?),
             Learnt::Direct(fit) => LearnerTables::Direct(direct(fit)?),
-            Learnt::Auto(both) if both.numbers().takes_slope(both.overridden().unwrap_or(both.reading())) => {
-                LearnerTables::Slope(slope(both.slope())?)
-            }
+            Learnt::Auto(both) if both.takes_slope() => LearnerTables::Slope(slope(both.slope())?),
             Learnt::Auto(both) => LearnerTables::Direct(direct(both.direct())?),
         };
         Ok(Tables { per_unit: if shared { scale[0].powi(-2) } else { 1.0 }, scale, bounds: model.bounds(), learner })
