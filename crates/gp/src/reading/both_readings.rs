@@ -67,8 +67,7 @@ impl ReadingLearner {
         let across = if tested { Across::Tested } else { Across::Untested };
         let mut report = report(&Chosen { outcome: &slope, kept: &kept, rows, across });
         if across == Across::Untested {
-            // (R6): how far the other reading's policy is away is an error to expect.
-            report.expected_nupe = report.expected_nupe.max(numbers.gap);
+            report.expected_nupe = numbers.expected_beside(reading, report.expected_nupe);
         }
         let slope = SlopeFit { model: slope.taken.model, report };
         Ok(BothReadings {

@@ -5,6 +5,7 @@ use rand::Rng;
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
+use crate::rows::thinning::thinned;
 use crate::{GpError, Rows};
 
 /// Which rows a fit keeps.
@@ -33,7 +34,7 @@ pub struct RowsDropped {
     pub still: usize,
     /// Slower than their noise.
     pub noisy: usize,
-    /// Beyond `max_rows`, chosen at random.
+    /// Beyond `max_rows`: kept are the first of every movement, and of the others evenly many of every stretch of time.
     pub thinned: usize,
 }
 
@@ -75,7 +76,8 @@ impl Selection {
         Ok(())
     }
 
-    /// Keeps rows that move more than their noise, at most `max_rows` of them. Draws one permutation, nothing else.
+    /// Keeps rows that move more than their noise, at most `max_rows` of them. Draws one permutation, and before it
+    /// what [`thinned`] does.
     pub(crate) fn keep<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<Kept, GpError> {
         self.check()?;
         let speeds: Vec<f64> = rows.velocities().column_iter().map(|velocity| velocity.norm()).collect();
@@ -98,8 +100,9 @@ impl Selection {
             thinned: usable.len().saturating_sub(self.max_rows),
         };
         let enough = grouped(rows, &usable)?;
+        let trajectory = |row: usize| rows.indices()[row].trajectory;
+        usable = thinned(usable.chunk_by(|&a, &b| trajectory(a) == trajectory(b)), self.max_rows, rng);
         usable.shuffle(rng);
-        usable.truncate(self.max_rows);
         let mut hyper = usable[..usable.len().min(self.hyper_rows)].to_vec();
         let in_time = |&row: &usize| (rows.indices()[row], row);
         usable.sort_by_key(in_time);

@@ -4,6 +4,7 @@ pub(crate) mod front_end;
 pub(crate) mod kept;
 pub(crate) mod noise_weights;
 pub(crate) mod scaling;
+pub(crate) mod thinning;
 
 use motion::SampleIndex;
 use nalgebra::DMatrix;

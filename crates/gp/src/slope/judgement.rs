@@ -11,6 +11,9 @@ use crate::rows::kept::Kept;
 use crate::slope::model::SlopeModel;
 use crate::slope::search::{Candidate, Outcome};
 
+/// As large an error as that of the mean alone: a posterior that is wider says no more.
+pub(crate) const NOTHING_KNOWN: f64 = 1.0;
+
 /// States at which uncertainty is averaged, at most.
 const STATES: usize = 200;
 /// States whose triangular systems are solved together.
@@ -21,7 +24,7 @@ const NEARLY_AS_GOOD: f64 = 1.5;
 const SWITCHED: f64 = 0.5;
 
 /// By how much a posterior that left-out movements confirm was too narrow, at most.
-const OPTIMISTIC: f64 = 3.0;
+const OPTIMISTIC: f64 = 2.0;
 
 /// What a report is about.
 pub(crate) struct Chosen<'a> {
@@ -55,7 +58,7 @@ pub(crate) fn report(chosen: &Chosen<'_>) -> TrustReport {
     TrustReport {
         r_squared: taken.left_out.r_squared,
         z_squared: taken.left_out.z_squared,
-        expected_nupe: error + ambiguity + rows.step_change().unwrap_or(0.0),
+        expected_nupe: (error + ambiguity + rows.step_change().unwrap_or(0.0)).min(NOTHING_KNOWN),
         ambiguity,
         identifiability: Identifiability::of(&posterior, &prior),
         least_seen: LeastSeen::of(&data.n),
@@ -135,16 +138,16 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// Errors larger than predicted always widen; smaller ones narrow only what they have tested, and never below three
-        /// times what they say or the share of noise.
+        /// Errors larger than predicted always widen; smaller ones narrow only what they have tested, and never below
+        /// twice what they say or the share of noise.
         #[test]
         fn a_posterior_is_narrowed_only_by_what_tested_it(z_squared in 0.0f64..9.0, noise in 0.0f64..1.0) {
             let tested = calibration(z_squared, noise, Across::Tested);
             let untested = calibration(z_squared, noise, Across::Untested);
             prop_assert_eq!(untested, z_squared.max(1.0));
             prop_assert!(tested <= untested && tested >= z_squared && tested >= noise);
-            prop_assert!(tested >= (3.0 * z_squared).min(1.0));
-            prop_assert!(tested == untested || tested == 3.0 * z_squared || tested == noise);
+            prop_assert!(tested >= (2.0 * z_squared).min(1.0));
+            prop_assert!(tested == untested || tested == 2.0 * z_squared || tested == noise);
         }
     }
 }

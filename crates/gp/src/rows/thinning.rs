@@ -1,0 +1,94 @@
+//! Which rows to learn from where there are more than a fit can take.
+
+use rand::{Rng, RngExt};
+
+/// At most `most` rows of these movements; all if they are no more.
+///
+/// The first row of every movement, and of the others evenly many of every stretch of time. Drawn at random, rows leave gaps,
+/// and most of all at the starts: a movement is fast there, and its first sample is often the only one at the rim of
+/// where anything was recorded. Where starts alone would be more than half of the rows, they count as any other.
+pub(super) fn thinned<'a, R: Rng + ?Sized>(
+    movements: impl Iterator<Item = &'a [usize]> + Clone,
+    most: usize,
+    rng: &mut R,
+) -> Vec<usize> {
+    let all = || movements.clone().flatten().copied();
+    if all().count() <= most {
+        return all().collect();
+    }
+    let starts: Vec<usize> = movements.clone().map(|rows| rows[0]).collect();
+    if 2 * starts.len() > most {
+        return evenly(&all().collect::<Vec<_>>(), most, rng).collect();
+    }
+    let others: Vec<usize> = movements.flat_map(|rows| &rows[1..]).copied().collect();
+    let room = most - starts.len();
+    starts.into_iter().chain(evenly(&others, room, rng)).collect()
+}
+
+/// So many of the rows, equally far from each other, from a random one on.
+fn evenly<R: Rng + ?Sized>(rows: &[usize], count: usize, rng: &mut R) -> impl Iterator<Item = usize> {
+    let offset: f64 = rng.random();
+    let apart = rows.len() as f64 / count as f64;
+    (0..count).map(move |at| rows[((at as f64 + offset) * apart) as usize])
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use proptest::prelude::*;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+
+    /// Movements of these lengths, their rows numbered throughout.
+    fn movements(lengths: &[usize]) -> Vec<Vec<usize>> {
+        let begins = lengths.iter().scan(0, |sum, length| {
+            *sum += length;
+            Some(*sum - length)
+        });
+        begins.zip(lengths).map(|(begin, length)| (begin..begin + length).collect()).collect()
+    }
+
+    proptest! {
+        /// As many as asked for, none twice, every start, and no stretch left out that is longer than the others by more than
+        /// a row or a start between.
+        #[test]
+        fn starts_and_every_stretch_of_time_are_kept(
+            lengths in prop::collection::vec(1usize..40, 1..12),
+            share in 0.02f64..1.2,
+            seed in any::<u64>(),
+        ) {
+            let movements = movements(&lengths);
+            let count: usize = lengths.iter().sum();
+            let most = ((count as f64 * share) as usize).max(1);
+            let taken = thinned(movements.iter().map(Vec::as_slice), most, &mut ChaCha8Rng::seed_from_u64(seed));
+            let kept: BTreeSet<usize> = taken.iter().copied().collect();
+            prop_assert_eq!(taken.len(), most.min(count));
+            prop_assert_eq!(kept.len(), taken.len());
+            prop_assert!(kept.iter().all(|&row| row < count));
+            let starts: BTreeSet<usize> = movements.iter().map(|rows| rows[0]).collect();
+            let all_starts = 2 * starts.len() <= most || count <= most;
+            prop_assert!(!all_starts || starts.is_subset(&kept));
+            let regular = |row: &usize| !(all_starts && starts.contains(row));
+            let candidates: Vec<usize> = (0..count).filter(regular).collect();
+            let of_them = candidates.iter().filter(|row| kept.contains(row)).count();
+            let apart = candidates.len() as f64 / of_them.max(1) as f64;
+            for left_out in candidates.split(|row| kept.contains(row)) {
+                prop_assert!(of_them == 0 || (left_out.len() as f64) < apart + 1.0, "{} of {}", left_out.len(), apart);
+            }
+        }
+
+        /// Where nothing has to go, nothing is drawn, and the order stays.
+        #[test]
+        fn few_rows_stay_as_they_are(lengths in prop::collection::vec(1usize..40, 1..12), more in 0usize..5, seed in any::<u64>()) {
+            let movements = movements(&lengths);
+            let all = movements.concat();
+            let (mut rng, mut untouched) = (ChaCha8Rng::seed_from_u64(seed), ChaCha8Rng::seed_from_u64(seed));
+            let taken = thinned(movements.iter().map(Vec::as_slice), all.len() + more, &mut rng);
+            prop_assert_eq!(taken, all);
+            prop_assert_eq!(rng.random::<u64>(), untouched.random::<u64>());
+        }
+    }
+}
