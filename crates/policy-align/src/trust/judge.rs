@@ -9,14 +9,14 @@ use crate::{Finding, StateChannel, Trust, Verdict};
 /// Left-out error along the path from which a policy is wrong.
 const WRONG: f64 = 0.5;
 /// The same from which it may be.
-const DOUBTFUL: f64 = 0.04;
+const DOUBTFUL: f64 = 0.035;
 /// Expected errors from which it may be: they have been too low by a factor of 3.
 const EXPECTED: f64 = 0.06;
 /// The same of PolicyAlign's policy, most of which is a difference that was measured; and from which it is wrong.
 const MEASURED: f64 = 0.1;
 const FAR: f64 = 0.8;
 /// Difference of what halves of the movements tell from which it may be.
-const HALVES: f64 = 0.15;
+const HALVES: f64 = 0.12;
 /// An episode whose error is so many times the usual one is named.
 const ODD: f64 = 10.0;
 /// What is free moves in all directions; less coverage than this may be a constraint.
