@@ -59,6 +59,31 @@ impl Contestant {
     }
 }
 
+impl Contestant {
+    /// What it learns from and how, in a line.
+    pub(crate) fn description(self) -> &'static str {
+        match self {
+            Contestant::Naive => {
+                "direct policy learning, the paper's baseline: LWPR on the velocities as they were seen, which averages what constraints let through"
+            }
+            Contestant::PolicyAlign => {
+                "the paper's method: potentials are integrated along each trajectory, aligned, and learnt by LWPR; the policy is their negative gradient"
+            }
+            Contestant::ConstraintConsistent => {
+                "a later method of Howard and others: a policy of radial basis functions whose part along each observed movement is as long as that movement"
+            }
+            Contestant::SlopeGp => {
+                "a Gaussian process on the potential, which is told of every sample how long the policy is along the movement; nothing is aligned or discarded, and it has error bars"
+            }
+            Contestant::SlopeGpNoTrend => {
+                "the same without quadratic potentials among its families: what is left where they do not contain the truth"
+            }
+            Contestant::DirectGp => "a Gaussian process on the velocities as they were seen: a stronger direct learner",
+            Contestant::Reading => "the slope GP or the direct GP, whichever the data support",
+        }
+    }
+}
+
 /// One line of such a table: an error of each learner on the same data sets.
 pub(crate) struct Contest {
     /// What was learnt from.

@@ -113,8 +113,9 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
         |title: &str, learnt: &[Arrow], who: Who| plane(title, compared(&fields.truth, learnt, who, ARROW_SECONDS));
     let sure = |title: &str, values: &Field| {
         let colors = Layer::Colors { field: values.clone(), name: "log₁₀ (1/s)".to_owned() };
+        let inside = |(x, y): &(f64, f64)| x.abs() <= EXTENT && y.abs() <= EXTENT;
         let ways = movements().map(|(points, _)| Layer::Path {
-            points: points.to_vec(),
+            points: points.iter().copied().filter(inside).collect(),
             stroke: Who::Demonstration.stroke(1.4),
             label: None,
         });
@@ -124,7 +125,7 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
         plane("(a) Ten constrained movements", demonstrated::layers(&fields.contours, movements(), 1.6)),
         learnt("(b) Naive (green), truth", &fields.naive, Who::Naive),
         learnt("(c) PolicyAlign (orange), truth", &fields.policy_align, Who::PolicyAlign),
-        learnt("(d) Direct GP (green), truth", &fields.direct_gp, Who::Naive),
+        learnt("(d) Direct GP (olive), truth", &fields.direct_gp, Who::DirectGp),
         learnt("(e) Slope GP (purple), truth", &fields.slope_gp, Who::SlopeGp),
         sure("(f) Slope GP: how sure it is", &fields.expected),
         sure("(g) Slope GP: its error", &fields.error),

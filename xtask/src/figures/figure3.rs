@@ -84,7 +84,7 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
         down(policy, second, shown),
     ];
     let mut averaged = vec![arrow(policy, GREY, 1.2), name(policy, "π", (-2.0, -9.0), GREY)];
-    averaged.extend([arrow(mean, naive, 2.4), name(mean, "⟨x⟩ (mean)", (8.0, 7.0), naive)]);
+    averaged.extend([arrow(mean, naive, 2.4), name(mean, "mean of both", (8.0, 7.0), naive)]);
     averaged.extend(mean_seen.map(|end| down(mean, end, naive)));
     averaged.push(Item::Dots { points: mean_seen.map(Point3::from).to_vec(), color: naive, radius: 4.0 });
     let alike = [

@@ -48,7 +48,7 @@ fn frame(playback: &GraspPlayback, actor: &Actor, movement: &Movement, sample: u
     items.extend(stage::plates(&playback.scene, &movement.plates));
     let side = playback.scene.table.half_width;
     Ok(Space {
-        title: format!("{:.0} % of the time", 100.0 * sample as f64 / (movement.joints.len() - 1) as f64),
+        title: format!("after {:.1} s", playback.time_step * sample as f64),
         camera: Camera { azimuth: 30.0, elevation: 25.0 },
         items,
         over: stage::ways(&movement.palms[..=sample], Who::Demonstration.stroke(1.6)).to_vec(),

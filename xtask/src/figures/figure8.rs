@@ -2,7 +2,9 @@
 
 use metrics::Summary;
 use nalgebra::{Point3, Translation3, Vector3};
-use plot::{Axis, Camera, Curve, Curves, Entry, Filling, Frame, Item, Key, Mark, Paint, Picture, Sign, Space, Stroke};
+use plot::{
+    Axis, Camera, Curve, Curves, Dash, Entry, Filling, Frame, Item, Key, Mark, Paint, Picture, Sign, Space, Stroke,
+};
 
 use super::grasp_playback::all_around::AllAround;
 use super::grasp_playback::{GraspPlayback, LEARNERS, Movement};
@@ -16,6 +18,9 @@ pub(crate) fn figure() -> Figure {
 /// From mark to mark on a curve, seconds.
 const EVERY: f64 = 5.0;
 
+/// Of a metre.
+const CENTIMETRES: f64 = 100.0;
+
 /// Who is drawn here alone.
 const ALL_AROUND: (&str, Who) = ("all_around", Who::PolicyAlignAllAround);
 
@@ -27,7 +32,7 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let distances =
         shown(&playback).map(|learner| Distances::of(&playback, learner)).collect::<anyhow::Result<Vec<_>>>()?;
     let curves = curves(&distances, playback.time_step);
-    let entries: Vec<Entry> = distances.iter().map(Distances::entry).collect();
+    let entries: Vec<Entry> = distances.iter().map(Distances::entry).chain([plates()]).collect();
     let key = Key { rows: entries.chunks(3).map(<[Entry]>::to_vec).collect(), width: 1250.0 };
     let picture = Picture::rows(&[&[&above, &behind, &curves], &[&key]]);
     Ok(Drawing { picture, tables: vec![ends(&playback), over_time(&distances)] })
@@ -86,7 +91,7 @@ fn view(title: &str, camera: Camera, playback: &GraspPlayback, frame: &Frame, st
     let (centre, radius) = (Point3::from(ball.centre), ball.diameter / 2.0);
     let mut items = walls(playback, frame);
     items.push(Item::Ball { centre, radius, paint: Paint { color: stage::BALL, opacity: 0.45 } });
-    let mut over: Vec<Item> = items.iter().filter_map(named).collect();
+    let mut over = vec![];
     for (id, who) in shown(playback) {
         for movement in movements(playback, id).filter(|movement| movement.start < starts) {
             over.extend(stage::ways(&movement.palms, stroke(who)));
@@ -98,12 +103,15 @@ fn view(title: &str, camera: Camera, playback: &GraspPlayback, frame: &Frame, st
     Space { title, camera, items, over, frame, extent: None, size: (400.0, 440.0) }
 }
 
-/// The name of a place where a plate stood.
-fn named(item: &Item) -> Option<Item> {
-    let Item::Block { pose, .. } = item else { return None };
-    let (at, text) = (pose.translation.vector.into(), "plates".to_owned());
-    Some(Item::Note { at, text, shift: (0.0, 0.0), color: "#5a5a5a" })
+/// In the key: what is grey.
+fn plates() -> Entry {
+    let stroke = Stroke { color: PLATES.color, width: 0.0, dash: Dash::Solid };
+    let sign = Sign { mark: Mark::Square, filling: Filling::Full };
+    Entry { name: "plates stopped hands here".to_owned(), stroke, sign }
 }
+
+/// Of the places where plates stood.
+const PLATES: Paint = Paint { color: "#a8a8a8", opacity: 0.25 };
 
 /// Where hands were stopped in the demonstrations: beside a gap as wide as those of the shown ones on average.
 fn walls(playback: &GraspPlayback, frame: &Frame) -> Vec<Item> {
@@ -114,8 +122,7 @@ fn walls(playback: &GraspPlayback, frame: &Frame) -> Vec<Item> {
     let block = |from: f64, to: f64| {
         let low = Vector3::new(wall.x - wall.reach, from, frame.lowest.z);
         let high = Vector3::new(wall.x + wall.reach, to, frame.highest.z);
-        let paint = Paint { color: "#a8a8a8", opacity: 0.25 };
-        Item::Block { pose: Translation3::from((low + high) / 2.0).into(), size: high - low, paint }
+        Item::Block { pose: Translation3::from((low + high) / 2.0).into(), size: high - low, paint: PLATES }
     };
     let sides = [(frame.lowest.y, -edge), (edge, frame.highest.y)];
     sides.into_iter().filter(|(from, to)| from < to).map(|(from, to)| block(from, to)).collect()
@@ -152,13 +159,13 @@ impl Distances {
         let every = (EVERY / time_step).round().max(1.0) as usize;
         let last = self.over_time.len().saturating_sub(1);
         let marked = self.over_time.iter().enumerate().filter(|(at, _)| at.is_multiple_of(every) || *at == last);
-        let points = marked.map(|(_, point)| *point).collect();
+        let points = marked.map(|(_, &(time, mean, sd))| (time, CENTIMETRES * mean, CENTIMETRES * sd)).collect();
         Curve { points, stroke: stroke(self.who), sign: sign(self.who) }
     }
 
     /// In the key: who, and how far the hands are away at the end.
     fn entry(&self) -> Entry {
-        let name = format!("{}: at the end {:.1} cm away", self.who.name(), 100.0 * self.at_end());
+        let name = format!("{}: ends {:.1} cm away", self.who.name(), CENTIMETRES * self.at_end());
         Entry { name, stroke: stroke(self.who), sign: sign(self.who) }
     }
 }
@@ -168,10 +175,10 @@ fn curves(distances: &[Distances], time_step: f64) -> Curves {
     Curves {
         title: "Distance from the ball's sides".to_owned(),
         x_label: "Time (s)".to_owned(),
-        y_label: "Distance (m)".to_owned(),
+        y_label: "Distance (cm)".to_owned(),
         y_axis: Axis::Linear,
         x: [0.0, 1.02 * end],
-        y: [0.0, 0.8],
+        y: [0.0, 80.0],
         x_step: 10.0,
         lines: distances.iter().map(|distances| distances.curve(time_step)).collect(),
         size: (400.0, 440.0),
@@ -266,7 +273,7 @@ mod tests {
         let distances = LEARNERS.map(|learner| Distances::of(&playback, learner).unwrap());
         let (time, mean, sd) = distances[2].over_time[2];
         assert!((time - 1.0).abs() + (mean - 0.1).abs() + (sd - 0.02_f64.sqrt()).abs() < 1e-12);
-        assert_eq!(distances[2].entry().name, "policy-align: at the end 10.0 cm away");
+        assert_eq!(distances[2].entry().name, "PolicyAlign: ends 10.0 cm away");
         assert_eq!(over_time(&distances).rows[2].len(), 9);
     }
 

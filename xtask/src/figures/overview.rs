@@ -99,8 +99,8 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     shown.extend([ends(&overview.movements), goal()]);
     let [shown, naive, aligned] = [
         plane("Forty movements under unknown constraints", shown),
-        learnt("Direct learning (green)", &overview, Who::Naive)?,
-        learnt("policy-align (orange)", &overview, Who::PolicyAlign)?,
+        learnt("Naive learner (green)", &overview, Who::Naive)?,
+        learnt("PolicyAlign (orange)", &overview, Who::PolicyAlign)?,
     ];
     let picture = if overview.slope_gp.is_empty() {
         Picture::rows(&[&[&shown, &naive, &aligned]])

@@ -15,19 +15,22 @@ pub(crate) enum Who {
     PolicyAlignAllAround,
     /// A Gaussian process on the potential, seen through slopes.
     SlopeGp,
+    /// A Gaussian process on the velocities.
+    DirectGp,
     /// Constrained movements that are learnt from.
     Demonstration,
 }
 
 impl Who {
     /// The colour, as in HTML.
-    pub(crate) fn color(self) -> &'static str {
+    pub(crate) const fn color(self) -> &'static str {
         match self {
             Who::Expert => "#1a1a1a",
             Who::Naive => "#009e73",
             Who::PolicyAlign => "#d55e00",
-            Who::PolicyAlignAllAround => "#7b3fb8",
+            Who::PolicyAlignAllAround => "#7a3200",
             Who::SlopeGp => "#cc79a7",
+            Who::DirectGp => "#b39b00",
             Who::Demonstration => "#0072b2",
         }
     }
@@ -36,7 +39,7 @@ impl Who {
     pub(crate) fn dash(self) -> Dash {
         match self {
             Who::Expert | Who::Demonstration | Who::SlopeGp => Dash::Solid,
-            Who::Naive => Dash::Dotted,
+            Who::Naive | Who::DirectGp => Dash::Dotted,
             Who::PolicyAlign | Who::PolicyAlignAllAround => Dash::Dashed,
         }
     }
@@ -46,9 +49,10 @@ impl Who {
         match self {
             Who::Expert => "expert",
             Who::Naive => "naive",
-            Who::PolicyAlign => "policy-align",
-            Who::PolicyAlignAllAround => "policy-align, goal shown from all sides",
+            Who::PolicyAlign => "PolicyAlign",
+            Who::PolicyAlignAllAround => "PolicyAlign, shown from all sides",
             Who::SlopeGp => "slope GP",
+            Who::DirectGp => "direct GP",
             Who::Demonstration => "demonstration",
         }
     }

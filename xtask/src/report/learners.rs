@@ -25,11 +25,17 @@ pub(crate) fn learners(experiments: &[Experiment], results: &Results) -> String 
         if let Some(contests) = contests {
             let table = contests.markdown();
             let remark = contests.remark.map_or(String::new(), |remark| format!("{remark}\n\n"));
-            let _ = write!(text, "### {}: `{}`\n\n{remark}{table}\n", experiment.title, experiment.id);
+            let (title, id, findings) = (experiment.title, experiment.id, contests.findings());
+            let _ = write!(text, "### {title}: `{id}`\n\n{findings}\n\n{remark}{table}\n");
         }
     }
     if let Some(readings) = result("readings") {
-        let _ = write!(text, "### How movements are read\n\n{}\n{}\n", confusion(readings), free(readings));
+        let _ = write!(
+            text,
+            "### How movements are read\n\n{}\n{}\n",
+            markdown_table(&READ_AS, &confusion(readings)),
+            free(readings)
+        );
     }
     let _ = write!(text, "### How far to trust it\n\n{}\n{}", expected(results), rotation(results));
     text
@@ -48,8 +54,12 @@ fn values(row: &RowResult, measure: Measure) -> &[Option<f64>] {
     row.measures.get(&measure).map_or(&[], |cell| &cell.values)
 }
 
+/// Over the columns of [`confusion`].
+pub(super) const READ_AS: [&str; 6] =
+    ["movements are", "data sets", "read as free", "constrained", "ambiguous", "unexplained"];
+
 /// How often movements of each kind are read as what.
-fn confusion(readings: &ExperimentResult) -> String {
+pub(super) fn confusion(readings: &ExperimentResult) -> Vec<Vec<String>> {
     const READ: [Measure; 4] =
         [Measure::ReadFree, Measure::ReadConstrained, Measure::ReadAmbiguous, Measure::ReadUnexplained];
     let mut kinds: Vec<(&str, [usize; 5])> = Vec::new();
@@ -67,8 +77,7 @@ fn confusion(readings: &ExperimentResult) -> String {
     let line = |(kind, counts): &(&str, [usize; 5])| {
         std::iter::once((*kind).to_owned()).chain(counts.iter().map(usize::to_string)).collect()
     };
-    let header = ["movements are", "data sets", "read as free", "constrained", "ambiguous", "unexplained"];
-    markdown_table(&header, &kinds.iter().map(line).collect::<Vec<_>>())
+    kinds.iter().map(line).collect()
 }
 
 /// Which free movements are not always read as free, and what the slope GP makes of corridors: it cannot be read as
@@ -252,13 +261,10 @@ mod tests {
             reading("one-for-all/wells/reading", [0.0, 0.0], [100.0, 100.0]),
         ];
         let result = result("readings", rows);
-        let table = confusion(&result);
+        let lines = confusion(&result);
         let rest = free(&result);
         assert_eq!(rest, "Of free movements, read as free: all are but `wells` in 1 of 2.\n");
-        let cells = |line: &str| line.split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
-        let lines: Vec<_> = table.lines().skip(2).map(cells).collect();
-        assert_eq!(lines[0][1..7], ["free", "4", "3", "0", "1", "0"]);
-        assert_eq!(lines[1][1..7], ["one-for-all", "2", "0", "0", "2", "0"]);
+        assert_eq!(lines, [["free", "4", "3", "0", "1", "0"], ["one-for-all", "2", "0", "0", "2", "0"]]);
     }
 
     /// Of rows with errors of all movements these count, and errors that are as good as none do not.

@@ -22,7 +22,7 @@ pub(crate) fn markdown(experiments: &[Experiment], results: &Results, second: Op
 pub(crate) fn key() -> String {
     let measures =
         MEASURES.map(|(measures, meaning)| format!("| {} | {meaning} |\n", names(measures, Measure::name))).concat();
-    format!("{RULE}\n\n| measure | is |\n| --- | --- |\n{measures}\n")
+    format!("{RULE}\n\n{CAUTION}\n\n| measure | is |\n| --- | --- |\n{measures}\n")
 }
 
 /// An experiment with its tables.
@@ -71,7 +71,7 @@ fn section(compared: &Compared<'_>, seed: u64) -> String {
 fn contests(compared: &Compared<'_>) -> String {
     let Some(contests) = Contests::of(compared.experiment, compared.result) else { return String::new() };
     let remark = contests.remark.map_or(String::new(), |remark| format!("{remark}\n\n"));
-    folded("Learners side by side", &format!("{CAUTION}\n\n{remark}{}", contests.markdown()))
+    folded("Learners side by side", &format!("{}\n\n{remark}{}", contests.findings(), contests.markdown()))
 }
 
 /// What is seen only by who opens it. Markdown within needs the empty lines.

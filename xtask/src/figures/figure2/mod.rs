@@ -10,20 +10,22 @@ use serde::{Deserialize, Serialize};
 
 use self::contact::{FACE, Finger, Movement, touching};
 use super::sound::{Sound, as_many, some, within};
-use super::{Csv, Document, Drawing, Figure, Sources, rounded};
+use super::{Csv, Document, Drawing, Figure, Sources, Who, rounded};
 
 /// Seconds at which postures are drawn, and the colours, ever darker, of the free and of the stopped finger.
 const POSTURES: [(f64, &str, &str, &str); 5] = [
-    (0.0, "at 0 s", "#f3c6a5", "#d0d0d0"),
-    (0.35, "0.35 s", "#e8a070", "#a8a8a8"),
-    (0.8, "0.8 s", "#dd7a38", "#808080"),
-    (1.5, "1.5 s", "#d55e00", "#505050"),
-    (8.0, "8 s", "#7a3600", "#000000"),
+    (0.0, "at 0 s", "#d0d0d0", "#c6dbef"),
+    (0.35, "0.35 s", "#a8a8a8", "#94c0e0"),
+    (0.8, "0.8 s", "#808080", "#539ecd"),
+    (1.5, "1.5 s", "#505050", "#0072b2"),
+    (8.0, "8 s", "#000000", "#003a5c"),
 ];
 
-const FREE: &str = "#d55e00";
-const STOPPED: &str = "#000000";
+/// The policy is the expert's, what the box leaves of it is what is demonstrated: as in every picture.
+const FREE: &str = Who::Expert.color();
+const STOPPED: &str = Who::Demonstration.color();
 const BOX: &str = "#3c3c3c";
+const TIP: &str = "#009e73";
 
 /// Arrows are drawn as long as so many seconds of movement.
 const ARROW_SECONDS: f64 = 0.17;
@@ -125,7 +127,7 @@ fn postures(movement: &Movement, times: [(f64, &'static str, &'static str); 5]) 
     let tip = movement.places.iter().map(|places| places[2]).collect();
     let way = Layer::Path {
         points: tip,
-        stroke: Stroke { color: "#0072b2", width: 1.4, dash: Dash::Dotted },
+        stroke: Stroke { color: TIP, width: 1.4, dash: Dash::Dotted },
         label: Some("tip".to_owned()),
     };
     let posture = |(time, label, color): (f64, &'static str, &'static str)| {
@@ -157,7 +159,7 @@ fn angles(shown: &Shown) -> Plane {
     let start = Layer::Marks {
         points: vec![shown.free.angles[0]],
         mark: Mark::Circle,
-        color: "#0072b2",
+        color: TIP,
         size: 4.0,
         label: Some("start".to_owned()),
     };

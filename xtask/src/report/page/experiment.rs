@@ -5,9 +5,9 @@ use page::{emphasised, key};
 
 use super::table::{columns, grid, is_printed, list, scales};
 use super::verdict_bar::{bar, words};
-use super::{Contents, view};
+use super::{Contents, readings, view};
 use crate::report::compared::{Compared, Line};
-use crate::report::contests::{CAUTION, Contests};
+use crate::report::contests::Contests;
 use crate::report::tally::Tally;
 use crate::verdict::Verdict;
 
@@ -34,7 +34,7 @@ pub(super) fn section(compared: &Compared<'_>, contents: &Contents<'_>) -> Marku
             (standing_out(compared)) (contests(compared)) (left_open(compared))
         } @else {
             @for (figure, svg) in &figures { (super::card(figure, svg, experiment.title)) }
-            (contests(compared)) (left_open(compared))
+            (readings::counts(compared)) (contests(compared)) (left_open(compared))
             @if compared.rows().next().is_some() { (curves(compared)) }
         }
     }
@@ -84,7 +84,7 @@ fn contests(compared: &Compared<'_>) -> Markup {
     html! {
         @if let Some(contests) = Contests::of(compared.experiment, compared.result) {
             h3 { "Learners side by side" }
-            p { (CAUTION) }
+            p { (emphasised(&contests.findings())) " " a href={ "#" (super::learners::ID) } { "Who they are" } }
             @if let Some(remark) = contests.remark { p { (emphasised(remark)) } }
             div .sideways tabindex="0" role="region" aria-label={ "Learners side by side: " (compared.experiment.id) } {
                 table .list .contests {
@@ -138,7 +138,9 @@ pub(super) fn sentence(word: &str) -> String {
 fn left_open(compared: &Compared<'_>) -> Markup {
     let experiment = compared.experiment;
     html! {
-        h3 { "What the paper leaves open, and what is used here" }
+        h3 {
+            @if experiment.section == "none" { "How it is set up" } @else { "What the paper leaves open, and what is used here" }
+        }
         p {
             (emphasised(experiment.remark))
             " More in " code { "docs/decisions/" (experiment.decisions) } "."

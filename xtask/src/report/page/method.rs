@@ -3,8 +3,7 @@
 use maud::html;
 use page::{Part, emphasised};
 
-use crate::measure::Measure;
-use crate::report::legend::{MEASURES, RULE, names};
+use crate::report::legend::RULE;
 use crate::results::Results;
 
 /// The last part of the page.
@@ -13,9 +12,6 @@ pub(super) fn part(results: &Results) -> Part {
     let body = html! {
         h2 { (title) }
         p { (emphasised(RULE)) }
-        dl .measures {
-            @for (measures, meaning) in MEASURES { div { dt { (names(measures, Measure::label)) } dd { (meaning) } } }
-        }
         h3 { "Again, on your machine" }
         pre tabindex="0" { code {
             (results.run.command) "    # these numbers; on one machine, to the last bit\n"

@@ -3,8 +3,10 @@
 mod experiment;
 mod facts;
 mod glance;
+mod learners;
 mod method;
 mod pictures;
+mod readings;
 mod table;
 mod verdict_bar;
 mod view;
@@ -53,7 +55,7 @@ fn parts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Vec<Part> {
         title: compared.experiment.title.to_owned(),
         body: experiment::section(compared, contents),
     };
-    let mut parts: Vec<Part> = all.iter().map(experiment).collect();
+    let mut parts: Vec<Part> = std::iter::once(learners::part()).chain(all.iter().map(experiment)).collect();
     let shown = |id: Option<&str>| id.is_some_and(|id| all.iter().any(|compared| compared.experiment.id == id));
     let others: Vec<_> =
         contents.figures.iter().filter(|(figure, _)| !shown(figure.experiment) && figure.id != OVERVIEW).collect();

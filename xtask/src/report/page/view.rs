@@ -48,7 +48,7 @@ pub(super) fn view(sources: &Sources, figures: &[&(Figure, String)]) -> Markup {
             p {
                 "Both hands reach for the ball, led by the expert’s policy or by one that was learnt from demonstrations: past \
                  the wall that was in their way, past an obstacle that no demonstration shows, and with nothing in the way. " (held) " \
-                 policy-align knows where to go from the first step on, but all demonstrations reach the ball from one side, so the potential fitted \
+                 PolicyAlign knows where to go from the first step on, but all demonstrations reach the ball from one side, so the potential fitted \
                  there keeps sloping beyond it: its hands drift past the ball in the end, sometimes farther than the robot’s arms can follow. The slope GP goes where the \
                  expert goes: the expert’s potential is quadratic, and its families contain those. Table 2 compares \
                  actions at the samples of the demonstrations, not where movements end."
