@@ -1,30 +1,17 @@
 //! `cargo xtask report`: draws the figures of a finished run and writes its report, from what the run left behind.
 
-mod compared;
-mod contests;
-mod learners;
-mod legend;
-mod markdown;
-mod page;
-mod tally;
-mod terminal;
-
 use std::path::PathBuf;
 
 use clap::Args;
+use experiments::results::Results;
+use experiments::{Experiment, registry};
+use figures::{Drawing, Figure, Sources, draw, figures, undrawn};
 use rayon::prelude::*;
+use report::{Contents, markdown, page};
 
-use crate::experiments::{Experiment, registry};
-use crate::figures::{Drawing, Figure, Sources, figures};
 use crate::files::{relative, repository, write};
 use crate::progress::say;
-use crate::results::Results;
 use crate::run_folder::RunFolder;
-
-pub(crate) use learners::learners;
-pub(crate) use markdown::{Section, folded, key, markdown, sections};
-pub(crate) use tally::Tally;
-pub(crate) use terminal::terminal;
 
 #[derive(Debug, Args)]
 pub(crate) struct Report {
@@ -92,11 +79,6 @@ fn missing(sources: &Sources, from: &RunFolder) -> String {
     )
 }
 
-/// Figures that are not drawn only because their figure data are missing.
-fn undrawn(sources: &Sources) -> Vec<Figure> {
-    figures().into_iter().filter(|figure| figure.misses(sources)).collect()
-}
-
 /// The committed results of a seed other than this run's, to hold beside it; none for a quick run.
 fn results_of_another_seed(results: &Results) -> Option<Results> {
     let other = RunFolder::committed(if results.seed == 2 { 1 } else { 2 });
@@ -105,13 +87,6 @@ fn results_of_another_seed(results: &Results) -> Option<Results> {
     }
     let other = other.results().map_err(|error| say(&format!("shown without the committed run: {error:#}")));
     other.ok()
-}
-
-/// Draws every figure that there are numbers for.
-pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Vec<(Figure, Drawing)>> {
-    let drawn = |figure: Figure| Ok(figure.draw(sources)?.map(|drawing| (figure, drawing)));
-    let drawn: Vec<_> = figures().into_par_iter().map(drawn).collect::<anyhow::Result<_>>()?;
-    Ok(drawn.into_iter().flatten().collect())
 }
 
 /// Writes `report.html`, `report.md` and `figures/`.
@@ -131,8 +106,8 @@ pub(crate) fn write_report(experiments: &[Experiment], sources: &Sources, out: &
     };
     let figures = drawn.into_par_iter().map(keep).collect::<anyhow::Result<_>>()?;
     let second = results_of_another_seed(&sources.results);
-    let contents = page::Contents { experiments, sources, second: second.as_ref(), figures };
-    write(&out.join("report.html"), page::page(&contents))?;
+    let contents = Contents { experiments, sources, second: second.as_ref(), figures };
+    write(&out.join("report.html"), page(&contents))?;
     write(&out.join("report.md"), markdown(experiments, &sources.results, second.as_ref()))
 }
 

@@ -1,5 +1,5 @@
-//! `cargo xtask conformance`: kinematics, LWPR, smoothing and Gaussian processes against reference cases that other programs computed,
-//! and files that other programs wrote.
+//! Kinematics, LWPR, smoothing and Gaussian processes against reference cases that other programs computed, and files that
+//! other programs wrote.
 
 mod agreement;
 mod auto_fit_cases;
@@ -15,18 +15,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail, ensure};
-use clap::Args;
 use serde::de::DeserializeOwned;
 
 use self::agreement::Agreement;
-use crate::progress::say;
-
-#[derive(Debug, Args)]
-pub(crate) struct Conformance {
-    /// Folder with lwpr/*.json, kinematics/*.json and their robots, slope_gp/*.json, reading/*.json, urdf_traps/expected.json and files/expected.json with their files
-    #[arg(long, value_name = "DIR")]
-    vectors: PathBuf,
-}
 
 /// One reference file and how far we are from it.
 struct Checked {
@@ -60,47 +51,49 @@ const READING: [(&str, Check); 3] = [
     ("readings", reading_cases::check_readings),
 ];
 
-impl Conformance {
-    /// Fails if a file disagrees, or if there is none.
-    pub(crate) fn execute(&self) -> anyhow::Result<()> {
-        let mut disagreeing = 0;
-        let mut files = 0;
-        for (folder, check) in
-            [("lwpr", lwpr_cases::check as fn(&Path) -> anyhow::Result<f64>), ("kinematics", kinematics_cases::check)]
-        {
-            for file in json_files(&self.vectors.join(folder))? {
-                let worst = check(&file).with_context(|| format!("{} cannot be compared", file.display()))?;
-                disagreeing += usize::from(Checked { file, worst }.report() > TOLERANCE);
+/// Compares everything in a folder with lwpr/*.json, kinematics/*.json and their robots, slope_gp/*.json, reading/*.json,
+/// urdf_traps/expected.json and files/expected.json with their files; says, line by line, how far each is off.
+///
+/// # Errors
+/// If a file disagrees, or if there is none.
+pub fn compare(vectors: &Path, say: fn(&str)) -> anyhow::Result<()> {
+    let mut disagreeing = 0;
+    let mut files = 0;
+    for (folder, check) in
+        [("lwpr", lwpr_cases::check as fn(&Path) -> anyhow::Result<f64>), ("kinematics", kinematics_cases::check)]
+    {
+        for file in json_files(&vectors.join(folder))? {
+            let worst = check(&file).with_context(|| format!("{} cannot be compared", file.display()))?;
+            disagreeing += usize::from(Checked { file, worst }.report(say) > TOLERANCE);
+            files += 1;
+        }
+    }
+    for (folder, checks) in [("slope_gp", &SLOPE_GP[..]), ("reading", &READING[..])] {
+        for file in json_files(&vectors.join(folder))? {
+            if let Some(agrees) = check_by_name(&file, checks, say)? {
+                disagreeing += usize::from(!agrees);
                 files += 1;
             }
         }
-        for (folder, checks) in [("slope_gp", &SLOPE_GP[..]), ("reading", &READING[..])] {
-            for file in json_files(&self.vectors.join(folder))? {
-                if let Some(agrees) = check_by_name(&file, checks)? {
-                    disagreeing += usize::from(!agrees);
-                    files += 1;
-                }
-            }
-        }
-        let odd = urdf_cases::check(&self.vectors.join("urdf_traps/expected.json"))?;
-        let recordings = file_cases::check(&self.vectors.join("files/expected.json"))?;
-        let compared = files + odd.files + recordings.compared;
-        ensure!(compared > 0, "there is no reference file in {}", self.vectors.display());
-        for fault in odd.faults.iter().chain(&recordings.faults) {
-            say(fault);
-        }
-        let wrong = disagreeing + odd.faults.len() + recordings.faults.len();
-        if wrong > 0 {
-            bail!("{wrong} of {compared} reference cases disagree (tolerance {TOLERANCE:.0e} unless said)");
-        }
-        say(&format!("conformance: {compared} reference cases agree (tolerance {TOLERANCE:.0e} unless said)"));
-        Ok(())
     }
+    let odd = urdf_cases::check(&vectors.join("urdf_traps/expected.json"))?;
+    let recordings = file_cases::check(&vectors.join("files/expected.json"))?;
+    let compared = files + odd.files + recordings.compared;
+    ensure!(compared > 0, "there is no reference file in {}", vectors.display());
+    for fault in odd.faults.iter().chain(&recordings.faults) {
+        say(fault);
+    }
+    let wrong = disagreeing + odd.faults.len() + recordings.faults.len();
+    if wrong > 0 {
+        bail!("{wrong} of {compared} reference cases disagree (tolerance {TOLERANCE:.0e} unless said)");
+    }
+    say(&format!("conformance: {compared} reference cases agree (tolerance {TOLERANCE:.0e} unless said)"));
+    Ok(())
 }
 
 impl Checked {
     /// Says the difference and returns it; NaN counts as infinitely far.
-    fn report(&self) -> f64 {
+    fn report(&self, say: fn(&str)) -> f64 {
         let worst = if self.worst.is_nan() { f64::INFINITY } else { self.worst };
         say(&format!("{worst:9.1e}  {}", self.file.display()));
         worst
@@ -108,7 +101,7 @@ impl Checked {
 }
 
 /// Whether all kinds of numbers of a file agree, and says how far each is off; none if the file's name is not known.
-fn check_by_name(file: &Path, checks: &[(&str, Check)]) -> anyhow::Result<Option<bool>> {
+fn check_by_name(file: &Path, checks: &[(&str, Check)], say: fn(&str)) -> anyhow::Result<Option<bool>> {
     let name = file.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
     let Some((_, check)) = checks.iter().find(|(begins, _)| name.starts_with(begins)) else { return Ok(None) };
     let agreements = check(file).with_context(|| format!("{} cannot be compared", file.display()))?;

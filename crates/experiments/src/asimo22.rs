@@ -59,8 +59,8 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
                 trial: Box::new(BesideTrial { scene: scenario, algorithms: vec![PolicyAlign::default()], beside }),
             },
         ],
-        paper: paper_table(include_str!("../../paper/asimo22.toml"))?,
-        explanations: explanations("asimo22", include_str!("../../paper/asimo22-explained.toml"))?,
+        paper: paper_table(include_str!("../paper/asimo22.toml"))?,
+        explanations: explanations("asimo22", include_str!("../paper/asimo22-explained.toml"))?,
     })
 }
 

@@ -25,7 +25,7 @@ pub(super) const DATA_SETS: u32 = 5;
 
 /// Who learns beside.
 #[derive(Serialize)]
-pub(crate) struct Beside {
+pub struct Beside {
     /// The naive learner, where the paper's table has none.
     pub(super) naive: Option<DirectPolicyLearning>,
     /// Least squares on radial basis functions, where states are planar.
@@ -70,7 +70,10 @@ impl Beside {
     }
 
     /// The slope GP alone.
-    pub(crate) fn slope(
+    ///
+    /// # Errors
+    /// If nothing can be learnt from them.
+    pub fn slope(
         &self,
         demonstrations: &Demonstrations,
         held_out: &[SampleIndex],
@@ -218,7 +221,7 @@ mod tests {
     use super::super::exam::examine;
     use super::super::table1::{toy_beside, toy_regressor};
     use super::*;
-    use crate::experiments::pupil::Pupil;
+    use crate::pupil::Pupil;
     use crate::seed::generator;
     use gp::FrontEnd;
 

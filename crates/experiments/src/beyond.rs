@@ -112,7 +112,7 @@ pub(crate) fn beyond() -> Experiment {
 }
 
 /// A case that can be drawn: its system, by its number, and what learns from it.
-pub(crate) fn case_on_the_plane() -> (u32, BeyondSystem, Gaussians) {
+pub fn case_on_the_plane() -> (u32, BeyondSystem, Gaussians) {
     let case = cases().swap_remove(0);
     let (system, gaussians) = (case.system(), case.gaussians());
     (FIRST_SYSTEM, system, gaussians)

@@ -135,9 +135,9 @@ mod tests {
     use demo_gen::{ToySystem, demonstrations};
 
     use super::*;
-    use crate::experiments::judge::Judge;
-    use crate::experiments::seen::samples_of;
+    use crate::judge::Judge;
     use crate::seed::generator;
+    use crate::seen::samples_of;
 
     /// On clean movements it finds the policy, and −∇φ is what its potential says.
     #[test]

@@ -4,7 +4,7 @@ use crate::measure::Measure;
 
 /// Whom such tables have a column for, in its order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Contestant {
+pub enum Contestant {
     /// LWPR on the velocities.
     Naive,
     /// The paper's method.
@@ -22,7 +22,8 @@ pub(crate) enum Contestant {
 }
 
 impl Contestant {
-    pub(crate) const ALL: [Contestant; 7] = [
+    /// In the order of the columns.
+    pub const ALL: [Contestant; 7] = [
         Contestant::Naive,
         Contestant::PolicyAlign,
         Contestant::ConstraintConsistent,
@@ -33,7 +34,7 @@ impl Contestant {
     ];
 
     /// Its name in rows.
-    pub(crate) fn id(self) -> &'static str {
+    pub fn id(self) -> &'static str {
         match self {
             Contestant::Naive => "naive",
             Contestant::PolicyAlign => "policy_align",
@@ -46,7 +47,7 @@ impl Contestant {
     }
 
     /// Its name for readers.
-    pub(crate) fn label(self) -> &'static str {
+    pub fn label(self) -> &'static str {
         match self {
             Contestant::Naive => "naive",
             Contestant::PolicyAlign => "PolicyAlign",
@@ -60,20 +61,23 @@ impl Contestant {
 }
 
 /// One line of such a table: an error of each learner on the same data sets.
-pub(crate) struct Contest {
+pub struct Contest {
     /// What was learnt from.
-    pub(crate) case: String,
+    pub case: String,
     /// The error.
-    pub(crate) measure: Measure,
+    pub measure: Measure,
     /// Where each learner's error stands among the experiment's rows.
-    pub(crate) entries: Vec<Entry>,
+    pub entries: Vec<Entry>,
 }
 
 /// The cell of one learner.
-pub(crate) struct Entry {
-    pub(crate) contestant: Contestant,
-    pub(crate) row: String,
-    pub(crate) measure: Measure,
+pub struct Entry {
+    /// Who.
+    pub contestant: Contestant,
+    /// In which row.
+    pub row: String,
+    /// Which error of the row.
+    pub measure: Measure,
 }
 
 impl Contest {

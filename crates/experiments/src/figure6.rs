@@ -18,16 +18,16 @@ use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::Measure;
 
 /// What is learnt from, percent of the trajectories.
-pub(crate) const TRAJECTORIES_PERCENT: [f64; 6] = [10.0, 20.0, 40.0, 60.0, 80.0, 100.0];
+pub const TRAJECTORIES_PERCENT: [f64; 6] = [10.0, 20.0, 40.0, 60.0, 80.0, 100.0];
 
 /// Noise, percent of each dimension's standard deviation.
-pub(crate) const NOISE_PERCENT: [f64; 6] = [0.0, 2.5, 5.0, 10.0, 15.0, 20.0];
+pub const NOISE_PERCENT: [f64; 6] = [0.0, 2.5, 5.0, 10.0, 15.0, 20.0];
 
 /// Names in rows.
-pub(crate) const BANDWIDTHS: [(&str, Bandwidth); 2] = [("narrow", Bandwidth::Narrow), ("medium", Bandwidth::Medium)];
+pub const BANDWIDTHS: [(&str, Bandwidth); 2] = [("narrow", Bandwidth::Narrow), ("medium", Bandwidth::Medium)];
 
 /// Names in rows.
-pub(crate) const RULES: [(&str, Integration); 2] =
+pub const RULES: [(&str, Integration); 2] =
     [("velocity", Integration::Velocity), ("displacement", Integration::Displacement)];
 
 /// The left panel: errors against the amount of data.
@@ -84,9 +84,9 @@ pub(crate) fn figure6_right() -> Experiment {
 }
 
 /// Cases of the learners beside PolicyAlign.
-pub(crate) const BESIDE_LEFT: &str = "map";
+pub const BESIDE_LEFT: &str = "map";
 /// In the order of [`RULES`].
-pub(crate) const BESIDE_RIGHT: [&str; 2] = ["fused", "smoothed"];
+pub const BESIDE_RIGHT: [&str; 2] = ["fused", "smoothed"];
 
 /// Rows that the Gaussian processes learn from.
 const ROWS: usize = 500;
@@ -222,8 +222,8 @@ impl Trial for CurveTrial {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiments::table1::table1;
     use crate::seed::generator;
+    use crate::table1::table1;
 
     fn run(experiment: &Experiment, id: &str) -> Measures {
         let setup = experiment.setups.iter().find(|setup| setup.id == id).unwrap();

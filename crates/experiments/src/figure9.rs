@@ -18,7 +18,7 @@ use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::{Measure, RowOf};
 
 /// Bounds on the distance, in tenths of a radian.
-pub(crate) const TENTHS: std::ops::RangeInclusive<u32> = 1..=10;
+pub const TENTHS: std::ops::RangeInclusive<u32> = 1..=10;
 
 /// Fewer test samples than this give no value: the variance that errors are divided by would be chance.
 const FEWEST_SAMPLES: usize = 10;
@@ -82,7 +82,7 @@ fn cases() -> Vec<String> {
 
 /// How far a posture is from the one that the policy aims at, in two parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Distance {
+pub enum Distance {
     /// d = |q·l|.
     Along,
     /// r = ‖q − (q·l) l‖.
@@ -90,7 +90,8 @@ pub(crate) enum Distance {
 }
 
 impl Distance {
-    pub(crate) const BOTH: [Distance; 2] = [Distance::Along, Distance::Around];
+    /// In the order of the rows.
+    pub const BOTH: [Distance; 2] = [Distance::Along, Distance::Around];
 
     /// Its letter in the paper.
     pub(crate) fn letter(self) -> &'static str {
@@ -101,7 +102,7 @@ impl Distance {
     }
 
     /// The row of the samples nearer than so many tenths.
-    pub(crate) fn row(self, tenths: u32) -> String {
+    pub fn row(self, tenths: u32) -> String {
         format!("{}-{}.{}", self.letter(), tenths / 10, tenths % 10)
     }
 
@@ -117,7 +118,7 @@ impl Distance {
 
 /// The direction l of the line through 0 where movements end: at the stretched posture the hand is 3, 2 and 1 links away
 /// from the joints, so that every constraint that holds there at all holds q₁, q₂, q₃ back along (3, 2, 1).
-pub(crate) fn line() -> Vector3<f64> {
+pub fn line() -> Vector3<f64> {
     Vector3::new(3.0, 2.0, 1.0).normalize()
 }
 

@@ -11,7 +11,7 @@ use crate::measure::Measure;
 
 /// The slope GP and the direct GP, both as they come, from at most so many rows.
 #[derive(Serialize)]
-pub(crate) struct Gaussians {
+pub struct Gaussians {
     /// What was recorded.
     pub(super) front_end: FrontEnd,
     /// Rows learnt from.
@@ -29,7 +29,10 @@ impl Gaussians {
     }
 
     /// Both, and which of them the data support: the slope GP's and the direct GP's fits are what each alone would be.
-    pub(crate) fn both(
+    ///
+    /// # Errors
+    /// If nothing can be learnt from them.
+    pub fn both(
         &self,
         demonstrations: &Demonstrations,
         held_out: &[SampleIndex],

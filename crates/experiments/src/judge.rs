@@ -8,7 +8,7 @@ use motion::{Policy, Potential, SampleIndex};
 use nalgebra::{DMatrix, DVector, DVectorView};
 
 /// The truth at some samples.
-pub(crate) struct Judge<'a> {
+pub struct Judge<'a> {
     samples: Vec<SampleIndex>,
     states: DMatrix<f64>,
     /// Empty where the policy descends none.
@@ -19,7 +19,7 @@ pub(crate) struct Judge<'a> {
 
 impl<'a> Judge<'a> {
     /// Looks up the truth of samples, which are in ascending order.
-    pub(crate) fn new(recordings: &'a [Recording], samples: &[SampleIndex]) -> Self {
+    pub fn new(recordings: &'a [Recording], samples: &[SampleIndex]) -> Self {
         let truth = || samples.iter().map(|at| (&recordings[at.trajectory].truth, at.sample));
         let columns = |of: fn(&Truth) -> &DMatrix<f64>| {
             DMatrix::from_columns(&truth().map(|(truth, n)| of(truth).column(n)).collect::<Vec<_>>())
@@ -34,6 +34,7 @@ impl<'a> Judge<'a> {
     }
 
     /// The same test at some of the states: variances are then of these alone.
+    #[must_use]
     pub(crate) fn among(&self, wanted: impl Fn(DVectorView<'_, f64>) -> bool) -> Judge<'a> {
         let chosen: Vec<usize> = (0..self.n_samples()).filter(|&sample| wanted(self.states.column(sample))).collect();
         Judge {
@@ -75,14 +76,20 @@ impl<'a> Judge<'a> {
     }
 
     /// Error of a learnt potential (A3).
-    pub(crate) fn potential(&self, potential: &dyn Potential) -> anyhow::Result<f64> {
+    ///
+    /// # Errors
+    /// If the true one does not vary, or a value is not finite.
+    pub fn potential(&self, potential: &dyn Potential) -> anyhow::Result<f64> {
         let values = self.states.column_iter().map(|state| potential.value(state));
         let learnt = DVector::from_iterator(self.n_samples(), values);
         Ok(potential_nmse(&self.potential, &learnt)?)
     }
 
     /// Error of the aligned local potentials (A4); all samples are of trajectories that are kept.
-    pub(crate) fn alignment(&self, aligned: &Aligned) -> anyhow::Result<f64> {
+    ///
+    /// # Errors
+    /// As [`Judge::potential`].
+    pub fn alignment(&self, aligned: &Aligned) -> anyhow::Result<f64> {
         Ok(alignment_nmse(&self.potential, &aligned.samples().only(&self.samples).values())?)
     }
 

@@ -1,4 +1,12 @@
-//! The registry: every table and figure of the paper that can be reproduced, one file each.
+//! The experiments of the paper: every table and figure of it that can be reproduced, one file each, with what the paper
+//! prints and what a run of them comes to.
+//!
+//! - [`registry`]: all of them. An [`Experiment`] has [`Setup`]s, and each of these a [`Trial`], which makes a data set from a
+//!   generator of [`seed`], learns from it and scores what was learnt: an [`outcome::Outcome`].
+//! - [`summary`]: what outcomes come to, beside the printed figures; [`results`]: the form in which that is kept.
+//! - [`settings`]: what is fitted; [`variants`]: numbers that texts quote of other settings.
+//!
+//! Whoever runs them decides on threads, files and progress.
 
 mod asimo22;
 mod beside;
@@ -11,27 +19,39 @@ mod figure9;
 mod fresh;
 mod gaussians;
 mod judge;
+pub mod measure;
+pub mod outcome;
+pub mod paper;
 mod parameters;
 mod pupil;
 mod readings;
+pub mod results;
+mod robots;
+pub mod seed;
 mod seen;
 mod settings;
+pub mod summary;
 mod table1;
 mod table2;
 mod test_samples;
 mod three_link;
+pub mod variants;
+pub mod verdict;
 
-pub(crate) use beyond::case_on_the_plane;
-pub(crate) use contest::{Contest, Contestant};
-pub(crate) use figure6::{BANDWIDTHS, BESIDE_LEFT, BESIDE_RIGHT, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
-pub(crate) use figure9::{Distance, TENTHS, line};
-pub(crate) use judge::Judge;
-pub(crate) use parameters::Parameters;
-pub(crate) use settings::{Setting, quotable, settings};
-pub(crate) use table1::{PARABOLA_SYSTEM, SINUSOIDAL_SYSTEM, toy_beside, toy_regressor};
-pub(crate) use table2::{GRASP_SYSTEM, grasp, grasp_beside, grasp_naive, grasp_regressor};
-pub(crate) use test_samples::TestSamples;
-pub(crate) use three_link::{ARM_SYSTEM, arm};
+pub use beside::Beside;
+pub use beyond::case_on_the_plane;
+pub use contest::{Contest, Contestant, Entry};
+pub use figure6::{BANDWIDTHS, BESIDE_LEFT, BESIDE_RIGHT, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
+pub use figure9::{Distance, TENTHS, line};
+pub use gaussians::Gaussians;
+pub use judge::Judge;
+pub use parameters::Parameters;
+pub use robots::upper_body;
+pub use settings::{Setting, quotable, settings};
+pub use table1::{PARABOLA_SYSTEM, SINUSOIDAL_SYSTEM, toy_beside, toy_regressor};
+pub use table2::{GRASP_SYSTEM, grasp, grasp_beside, grasp_naive, grasp_regressor};
+pub use test_samples::TestSamples;
+pub use three_link::{ARM_SYSTEM, arm};
 
 use std::collections::BTreeMap;
 
@@ -44,41 +64,41 @@ use crate::measure::{Measure, RowOf};
 use crate::paper::{Explanations, PaperTable, Printed};
 
 /// A table or figure.
-pub(crate) struct Experiment {
+pub struct Experiment {
     /// Identifier on the command line and in the results.
-    pub(crate) id: &'static str,
+    pub id: &'static str,
     /// Section of the paper.
-    pub(crate) section: &'static str,
+    pub section: &'static str,
     /// One line for people.
-    pub(crate) title: &'static str,
+    pub title: &'static str,
     /// Repetitions of each setup in the paper.
-    pub(crate) data_sets: u32,
+    pub data_sets: u32,
     /// What is fitted or left open by the paper, in a sentence or two.
-    pub(crate) remark: &'static str,
+    pub remark: &'static str,
     /// The page of `docs/decisions` on why it is done so.
-    pub(crate) decisions: &'static str,
+    pub decisions: &'static str,
     /// The experiment of which it is another reading: its cells are no further figures of the paper.
-    pub(crate) another_reading_of: Option<&'static str>,
+    pub another_reading_of: Option<&'static str>,
     /// What has to be said beside the table of learners.
-    pub(crate) contests_remark: Option<&'static str>,
+    pub contests_remark: Option<&'static str>,
     /// Learners held against each other, a line for each error; empty where there is one learner alone.
-    pub(crate) contests: Vec<Contest>,
+    pub contests: Vec<Contest>,
     /// What is measured, in the table's order.
-    pub(crate) setups: Vec<Setup>,
-    /// The printed figures: `xtask/paper/*.toml`; empty where the paper shows curves only.
-    pub(crate) paper: PaperTable,
-    /// Why single cells stand out: `xtask/paper/*-explained.toml`.
-    pub(crate) explanations: Explanations,
+    pub setups: Vec<Setup>,
+    /// The printed figures: `crates/experiments/paper/*.toml`; empty where the paper shows curves only.
+    pub paper: PaperTable,
+    /// Why single cells stand out: `crates/experiments/paper/*-explained.toml`.
+    pub explanations: Explanations,
 }
 
 impl Experiment {
     /// All rows, in the table's order.
-    pub(crate) fn rows(&self) -> impl Iterator<Item = &Row> {
+    pub fn rows(&self) -> impl Iterator<Item = &Row> {
         self.setups.iter().flat_map(|setup| &setup.rows)
     }
 
     /// The printed figure of a cell.
-    pub(crate) fn paper(&self, row: &str, measure: Measure) -> Option<Printed> {
+    pub fn paper(&self, row: &str, measure: Measure) -> Option<Printed> {
         self.paper.get(row)?.get(&measure).copied()
     }
 
@@ -86,10 +106,14 @@ impl Experiment {
     fn checked(self) -> anyhow::Result<Self> {
         let of_paper = |row: &&Row| !self.paper.is_empty() && row.of != RowOf::Contestant;
         for row in self.rows().filter(of_paper) {
-            ensure!(self.paper.contains_key(&row.id), "{}: xtask/paper has no row {}", self.id, row.id);
+            ensure!(self.paper.contains_key(&row.id), "{}: crates/experiments/paper has no row {}", self.id, row.id);
         }
         for id in self.paper.keys().chain(self.explanations.texts.keys()) {
-            ensure!(self.rows().any(|row| row.id == *id), "{}: xtask/paper has a row {id} that is not run", self.id);
+            ensure!(
+                self.rows().any(|row| row.id == *id),
+                "{}: crates/experiments/paper has a row {id} that is not run",
+                self.id
+            );
         }
         for entry in self.contests.iter().flat_map(|contest| &contest.entries) {
             let (id, row) = (self.id, &entry.row);
@@ -99,45 +123,45 @@ impl Experiment {
     }
 
     /// Why a cell stands out, if that is known.
-    pub(crate) fn explain(&self, row: &str, measure: Measure) -> Option<&str> {
+    pub fn explain(&self, row: &str, measure: Measure) -> Option<&str> {
         self.explanations.texts.get(row)?.get(&measure).map(String::as_str)
     }
 }
 
 /// Independent data sets, each of which gives one value for every measure of every row.
-pub(crate) struct Setup {
+pub struct Setup {
     /// Identifier, unique within the experiment.
-    pub(crate) id: String,
+    pub id: String,
     /// The rows, in the order of what [`Trial::run`] returns.
-    pub(crate) rows: Vec<Row>,
+    pub rows: Vec<Row>,
     /// The system whose random stream is used: equal numbers see equal data sets.
-    pub(crate) system: u32,
+    pub system: u32,
     /// How many data sets it sees, where not as many as the experiment has: then the first ones.
-    pub(crate) data_sets: Option<u32>,
+    pub data_sets: Option<u32>,
     /// Work of one data set, in any unit that all setups share; used for the time left.
-    pub(crate) cost: u64,
+    pub cost: u64,
     /// How a data set is made, learnt and scored.
-    pub(crate) trial: Box<dyn Trial>,
+    pub trial: Box<dyn Trial>,
 }
 
 impl Setup {
     /// How many data sets it sees in its experiment.
-    pub(crate) fn data_sets_of(&self, experiment: &Experiment) -> u32 {
+    pub fn data_sets_of(&self, experiment: &Experiment) -> u32 {
         self.data_sets.unwrap_or(experiment.data_sets)
     }
 
     /// Whether its rows only hold learners against each other.
-    pub(crate) fn is_of_contestants(&self) -> bool {
+    pub fn is_of_contestants(&self) -> bool {
         self.rows.iter().all(|row| row.of == RowOf::Contestant)
     }
 }
 
 /// One row of a table.
-pub(crate) struct Row {
+pub struct Row {
     /// Identifier, unique within the experiment.
-    pub(crate) id: String,
+    pub id: String,
     /// Whose errors stand in it.
-    pub(crate) of: RowOf,
+    pub of: RowOf,
     /// Which samples its errors are of.
     pub(crate) tested_on: &'static str,
 }
@@ -150,16 +174,22 @@ impl Row {
 }
 
 /// What one data set gives: the measures of each row of its setup.
-pub(crate) type Measures = Vec<BTreeMap<Measure, f64>>;
+pub type Measures = Vec<BTreeMap<Measure, f64>>;
 
 /// Everything that one data set of a setup needs.
-pub(crate) trait Trial: Parameters + Send + Sync {
+pub trait Trial: Parameters + Send + Sync {
     /// Makes a data set, learns from it and scores what was learnt, row by row.
+    ///
+    /// # Errors
+    /// If it cannot be made, learnt or scored.
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures>;
 }
 
 /// All experiments, in the paper's order.
-pub(crate) fn registry() -> anyhow::Result<Vec<Experiment>> {
+///
+/// # Errors
+/// If what the paper prints, or a file of a robot, does not fit them.
+pub fn registry() -> anyhow::Result<Vec<Experiment>> {
     let experiments = [
         table1::table1()?,
         table1::table1_literal()?,

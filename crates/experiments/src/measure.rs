@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// A figure of the paper, in the order of its tables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Measure {
+pub enum Measure {
     /// Error of the learnt potential (A3).
     PotentialNmse,
     /// Error of the unconstrained policy (A1).
@@ -67,7 +67,7 @@ pub(crate) enum Kind {
 
 /// Whose errors stand in a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum RowOf {
+pub enum RowOf {
     /// A learner that is to be as good as it can.
     Learner,
     /// The baseline.
@@ -78,7 +78,7 @@ pub(crate) enum RowOf {
 
 impl Measure {
     /// The measure's name in tables and records.
-    pub(crate) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Measure::PotentialNmse => "potential_nmse",
             Measure::Nupe => "nupe",
@@ -106,7 +106,7 @@ impl Measure {
     }
 
     /// The measure's name for readers.
-    pub(crate) fn label(self) -> &'static str {
+    pub fn label(self) -> &'static str {
         match self {
             Measure::PotentialNmse => "potential nMSE",
             Measure::Nupe => "nUPE",
@@ -155,13 +155,13 @@ impl Measure {
     }
 
     /// A figure of the paper: with the digits that it was printed with, as far as they say something.
-    pub(crate) fn show_printed(self, value: f64) -> String {
+    pub fn show_printed(self, value: f64) -> String {
         let shown = format!("{value:.4}");
         if self.is_share() || shown.parse() != Ok(value) { self.show(value) } else { shown }
     }
 
     /// A value as tables print it.
-    pub(crate) fn show(self, value: f64) -> String {
+    pub fn show(self, value: f64) -> String {
         match self {
             _ if self.is_share() => format!("{value:.2}"),
             // What is exact but for rounding.

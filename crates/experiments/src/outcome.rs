@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use anyhow::ensure;
 use serde::{Deserialize, Serialize};
 
-use crate::experiments::Measures;
+use crate::Measures;
 use crate::measure::Measure;
 
 /// What one data set of one setup gave.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Outcome {
+pub enum Outcome {
     /// The measures of each row.
     Measured(Measures),
     /// Why there are none.
@@ -20,7 +20,7 @@ pub(crate) enum Outcome {
 
 impl Outcome {
     /// What a trial gave that was to measure `n_rows` rows. A value that is not a number is a failure of the data set.
-    pub(crate) fn of(measured: anyhow::Result<Measures>, n_rows: usize) -> Outcome {
+    pub fn of(measured: anyhow::Result<Measures>, n_rows: usize) -> Outcome {
         match measured.and_then(|rows| checked(rows, n_rows)) {
             Ok(rows) => Outcome::Measured(rows),
             Err(error) => Outcome::Failed(format!("{error:#}")),
@@ -28,7 +28,7 @@ impl Outcome {
     }
 
     /// Whether it can be the outcome of a setup with so many rows.
-    pub(crate) fn is_of_rows(&self, n_rows: usize) -> bool {
+    pub fn is_of_rows(&self, n_rows: usize) -> bool {
         match self {
             Outcome::Measured(rows) => rows.len() == n_rows,
             Outcome::Failed(_) => true,
@@ -43,6 +43,9 @@ impl Outcome {
         }
     }
 }
+
+/// The outcomes of one setup, by data set.
+pub type Outcomes = Vec<Outcome>;
 
 fn checked(rows: Measures, n_rows: usize) -> anyhow::Result<Measures> {
     ensure!(rows.len() == n_rows, "{} rows were measured, the setup has {n_rows}", rows.len());

@@ -10,31 +10,31 @@ use crate::variants::{Cell, Quote, Variants, quotes};
 
 /// Mean and standard deviation over data sets, as printed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Printed {
+pub struct Printed {
     /// Mean.
-    pub(crate) mean: f64,
+    pub mean: f64,
     /// Sample standard deviation.
-    pub(crate) sd: f64,
+    pub sd: f64,
 }
 
 /// Printed figures by row and measure.
-pub(crate) type PaperTable = BTreeMap<String, BTreeMap<Measure, Printed>>;
+pub type PaperTable = BTreeMap<String, BTreeMap<Measure, Printed>>;
 
-/// Reads one of the files in `xtask/paper`.
+/// Reads one of the files in `crates/experiments/paper`.
 pub(crate) fn paper_table(text: &str) -> anyhow::Result<PaperTable> {
-    toml::from_str(text).context("the paper's figures (xtask/paper/*.toml) cannot be read")
+    toml::from_str(text).context("the paper's figures (crates/experiments/paper/*.toml) cannot be read")
 }
 
 /// Why single cells stand out.
 #[derive(Debug, Default)]
-pub(crate) struct Explanations {
+pub struct Explanations {
     /// Sentences, by row and measure.
-    pub(crate) texts: BTreeMap<String, BTreeMap<Measure, String>>,
+    pub texts: BTreeMap<String, BTreeMap<Measure, String>>,
     /// What they quote, each with its cell.
-    pub(crate) quotes: Vec<(Quote, Cell)>,
+    pub quotes: Vec<(Quote, Cell)>,
 }
 
-/// Reads why single cells of an experiment stand out, from one of the files in `xtask/paper`.
+/// Reads why single cells of an experiment stand out, from one of the files in `crates/experiments/paper`.
 pub(crate) fn explanations(experiment: &str, text: &str) -> anyhow::Result<Explanations> {
     let read = || {
         let mut explanations = Explanations { texts: toml::from_str(text)?, quotes: Vec::new() };
@@ -48,5 +48,5 @@ pub(crate) fn explanations(experiment: &str, text: &str) -> anyhow::Result<Expla
         }
         Ok::<_, anyhow::Error>(explanations)
     };
-    read().context("the explanations (xtask/paper/*-explained.toml) cannot be read")
+    read().context("the explanations (crates/experiments/paper/*-explained.toml) cannot be read")
 }

@@ -4,12 +4,18 @@ use serde::Serialize;
 use serde_json::Value;
 
 /// Parameters that can be written down. Robots are left out: their files are part of the program, which the keys hold too.
-pub(crate) trait Parameters {
+pub trait Parameters {
     /// All of them, by name.
+    ///
+    /// # Errors
+    /// If they cannot be written as JSON.
     fn parameters(&self) -> serde_json::Result<Value>;
 }
 
 impl<T: Serialize> Parameters for T {
+    ///
+    /// # Errors
+    /// If they cannot be written as JSON.
     fn parameters(&self) -> serde_json::Result<Value> {
         serde_json::to_value(self)
     }
@@ -17,7 +23,7 @@ impl<T: Serialize> Parameters for T {
 
 #[cfg(test)]
 mod tests {
-    use crate::experiments::registry;
+    use crate::registry;
 
     /// Setups that see the same data sets differ in something else, or records of one would be taken for another's.
     #[test]

@@ -1,45 +1,44 @@
 //! The results of a run, as written to `results.json`.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use anyhow::{Context as _, anyhow, bail, ensure};
 use serde::{Deserialize, Serialize, Serializer, ser::Error as _};
 use serde_json::Value;
 
-use crate::experiments::Experiment;
-use crate::files::relative;
+use crate::Experiment;
 use crate::measure::Measure;
 use crate::paper::Printed;
 use crate::verdict::Verdict;
 
 /// Version of the form of `results.json`.
-pub(crate) const SCHEMA: u32 = 3;
+pub const SCHEMA: u32 = 3;
 
 /// The oldest form that is still read: it does not say what ran.
 const OLDEST_SCHEMA: u32 = 2;
 
 /// The whole file. All but `run` is the same to the bit for the same seed and program.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Results {
+pub struct Results {
     /// Version of this form.
-    pub(crate) schema: u32,
+    pub schema: u32,
     /// Seed of all random numbers.
-    pub(crate) seed: u64,
+    pub seed: u64,
     /// Whether only few data sets a row were asked for.
-    pub(crate) quick: bool,
+    pub quick: bool,
     /// What differs between two runs of the same thing.
-    pub(crate) run: Run,
+    pub run: Run,
     /// Tables and figures.
-    pub(crate) experiments: Vec<ExperimentResult>,
+    pub experiments: Vec<ExperimentResult>,
 }
 
 impl Results {
-    /// Reads a `results.json`.
-    pub(crate) fn read(path: &Path) -> anyhow::Result<Results> {
-        let name = relative(path);
-        let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {name}"))?;
-        let value: Value = serde_json::from_str(&text).map_err(|error| anyhow!("{name} is damaged ({error})"))?;
+    /// Reads the text of a `results.json`, which has this name for people.
+    ///
+    /// # Errors
+    /// What is damaged, or of a form that is not read.
+    pub fn read(name: &str, text: &str) -> anyhow::Result<Results> {
+        let value: Value = serde_json::from_str(text).map_err(|error| anyhow!("{name} is damaged ({error})"))?;
         let schema = value["schema"].as_u64().with_context(|| format!("{name} is not a results.json"))?;
         ensure!(
             (u64::from(OLDEST_SCHEMA)..=u64::from(SCHEMA)).contains(&schema),
@@ -63,7 +62,10 @@ impl Results {
     }
 
     /// Fails where there are results of other experiments than these.
-    pub(crate) fn check_known(&self, experiments: &[Experiment]) -> anyhow::Result<()> {
+    ///
+    /// # Errors
+    /// Says of which.
+    pub fn check_known(&self, experiments: &[Experiment]) -> anyhow::Result<()> {
         let known = |id: &str| experiments.iter().any(|experiment| experiment.id == id);
         match self.experiments.iter().find(|result| !known(&result.id)) {
             Some(result) => bail!("there is no experiment {:?}, but the run has results of it", result.id),
@@ -72,7 +74,10 @@ impl Results {
     }
 
     /// As written to `results.json`.
-    pub(crate) fn json(&self) -> anyhow::Result<String> {
+    ///
+    /// # Errors
+    /// If a number is not finite.
+    pub fn json(&self) -> anyhow::Result<String> {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }
 }
@@ -89,78 +94,78 @@ fn on_one_line<S: Serializer>(values: &Vec<Option<f64>>, serializer: S) -> Resul
 
 /// Circumstances of the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Run {
+pub struct Run {
     /// The command that gives the same again.
-    pub(crate) command: String,
+    pub command: String,
     /// Worker threads.
-    pub(crate) threads: usize,
+    pub threads: usize,
     /// Data sets that earlier calls of the command had finished; the times are without them.
-    pub(crate) resumed: usize,
+    pub resumed: usize,
     /// Elapsed seconds.
-    pub(crate) wall_seconds: f64,
+    pub wall_seconds: f64,
     /// Processor seconds of all threads.
-    pub(crate) cpu_seconds: f64,
+    pub cpu_seconds: f64,
     /// Version of the program.
-    pub(crate) version: String,
+    pub version: String,
     /// The commit it was built from, with `-dirty` where files were changed; none outside of a checkout.
     #[serde(default)]
-    pub(crate) revision: Option<String>,
+    pub revision: Option<String>,
     /// The compiler that built it.
     #[serde(default)]
-    pub(crate) rustc: String,
+    pub rustc: String,
     /// What it was built for.
     #[serde(default)]
-    pub(crate) target: String,
+    pub target: String,
 }
 
 /// One table or figure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct ExperimentResult {
+pub struct ExperimentResult {
     /// Identifier.
-    pub(crate) id: String,
+    pub id: String,
     /// Section of the paper.
-    pub(crate) section: String,
+    pub section: String,
     /// Rows, in the table's order.
-    pub(crate) rows: Vec<RowResult>,
+    pub rows: Vec<RowResult>,
 }
 
 /// One row of a table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct RowResult {
+pub struct RowResult {
     /// Identifier.
-    pub(crate) id: String,
+    pub id: String,
     /// Which samples the errors are of.
     #[serde(default)]
-    pub(crate) tested_on: String,
+    pub tested_on: String,
     /// Data sets asked for.
-    pub(crate) data_sets: usize,
+    pub data_sets: usize,
     /// Data sets that could not be measured; they are counted here and left out of the measures.
-    pub(crate) failed: usize,
+    pub failed: usize,
     /// Summaries over the other data sets, as far as they have values.
-    pub(crate) measures: BTreeMap<Measure, Cell>,
+    pub measures: BTreeMap<Measure, Cell>,
 }
 
 /// One figure: ours, the paper's, and how they compare.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Cell {
+pub struct Cell {
     /// Mean over data sets.
-    pub(crate) mean: f64,
+    pub mean: f64,
     /// Sample standard deviation over data sets; null for a single data set.
-    pub(crate) sd: Option<f64>,
+    pub sd: Option<f64>,
     /// Median over data sets.
-    pub(crate) median: f64,
+    pub median: f64,
     /// The value of each data set, in their order; null where it could not be measured or has no value.
     #[serde(serialize_with = "on_one_line")]
-    pub(crate) values: Vec<Option<f64>>,
+    pub values: Vec<Option<f64>>,
     /// The printed figure, where there is one.
-    pub(crate) paper: Option<Printed>,
+    pub paper: Option<Printed>,
     /// The comparison, where there is one.
-    pub(crate) verdict: Option<Verdict>,
+    pub verdict: Option<Verdict>,
 }
 
 impl Cell {
     /// How many data sets gave a value.
-    pub(crate) fn n(&self) -> usize {
+    pub fn n(&self) -> usize {
         self.values.iter().flatten().count()
     }
 }
@@ -172,8 +177,6 @@ mod tests {
     /// Names from a file go into Markdown, a page and the hint of a command.
     #[test]
     fn hostile_names_are_damage() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("results.json");
         let file = |row: &str| {
             let results = serde_json::json!({
                 "schema": SCHEMA, "seed": 1, "quick": false,
@@ -183,8 +186,7 @@ mod tests {
                     { "id": row, "tested_on": "held-out samples", "data_sets": 1, "failed": 0, "measures": {} }
                 ] }],
             });
-            std::fs::write(&path, results.to_string()).unwrap();
-            Results::read(&path)
+            Results::read("results.json", &results.to_string())
         };
         assert_eq!(file("parabola-40x40-narrow").unwrap().experiments.len(), 1);
         for row in ["|a|b|", "<script>alert(1)</script>", "$(rm -rf .)", "a\nb", "\u{1b}[2J", "`id`"] {

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 ///
 /// The stream depends on nothing else, so that rows which differ only in a learner's parameters see the same
 /// demonstrations, and one row alone equals that row of a full run.
-pub(crate) fn generator(seed: u64, system: u32, data_set: u32) -> ChaCha8Rng {
+pub fn generator(seed: u64, system: u32, data_set: u32) -> ChaCha8Rng {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(u64::from(system) << 32 | u64::from(data_set));
     rng
@@ -15,7 +15,7 @@ pub(crate) fn generator(seed: u64, system: u32, data_set: u32) -> ChaCha8Rng {
 
 /// A generator beside that of a data set, in a stream that no data set has: what is drawn from it takes nothing from
 /// the other, wherever that one stands.
-pub(crate) fn beside(rng: &ChaCha8Rng) -> ChaCha8Rng {
+pub fn beside(rng: &ChaCha8Rng) -> ChaCha8Rng {
     apart(rng, 1 << 63)
 }
 

@@ -3,24 +3,24 @@
 use super::{Setup, asimo22, table1, table2, three_link};
 
 /// One fitted number of an experiment.
-pub(crate) struct Setting {
+pub struct Setting {
     /// The experiment's id.
-    pub(crate) experiment: &'static str,
+    pub experiment: &'static str,
     /// Its name, with a unit.
-    pub(crate) name: &'static str,
+    pub name: &'static str,
     /// What the paper says of it.
-    pub(crate) paper: &'static str,
+    pub paper: &'static str,
     /// What is used here.
-    pub(crate) used: f64,
+    pub used: f64,
     /// The printed rows at another value; whole numbers are rounded.
-    pub(crate) with: fn(f64) -> anyhow::Result<Vec<Setup>>,
+    pub with: fn(f64) -> anyhow::Result<Vec<Setup>>,
 }
 
 /// Where the paper is silent.
 pub(super) const SILENT: &str = "nothing";
 
 /// All of them, experiment by experiment.
-pub(crate) fn settings() -> Vec<Setting> {
+pub fn settings() -> Vec<Setting> {
     [table1::settings(), table2::settings(), asimo22::settings(), three_link::settings()]
         .into_iter()
         .flatten()
@@ -28,6 +28,6 @@ pub(crate) fn settings() -> Vec<Setting> {
 }
 
 /// These, and what is not fitted but asked about in texts.
-pub(crate) fn quotable() -> impl Iterator<Item = Setting> {
+pub fn quotable() -> impl Iterator<Item = Setting> {
     settings().into_iter().chain(table1::unfitted())
 }

@@ -5,17 +5,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use anyhow::{Context as _, ensure};
 use metrics::Summary;
 
-use crate::experiments::{Experiment, Row};
 use crate::measure::Measure;
+use crate::outcome::Outcomes;
 use crate::results::{Cell, ExperimentResult, Results, RowResult};
-use crate::runner::Outcomes;
 use crate::verdict::verdict;
+use crate::{Experiment, Row};
 
 /// Sums up the outcomes of every setup, which stand in the order of `experiments`.
-pub(crate) fn summarise(
-    experiments: &[Experiment],
-    outcomes: &[Vec<Outcomes>],
-) -> anyhow::Result<Vec<ExperimentResult>> {
+///
+/// # Errors
+/// If no data set of a row has a value.
+pub fn summarise(experiments: &[Experiment], outcomes: &[Vec<Outcomes>]) -> anyhow::Result<Vec<ExperimentResult>> {
     let experiment = |(experiment, outcomes): (&Experiment, &Vec<Outcomes>)| {
         let mut rows = Vec::new();
         for (setup, outcomes) in experiment.setups.iter().zip(outcomes) {
@@ -29,7 +29,10 @@ pub(crate) fn summarise(
 }
 
 /// Fails unless every cell is what its values come to, beside the figures that the paper prints.
-pub(crate) fn check(experiments: &[Experiment], results: &Results) -> anyhow::Result<()> {
+///
+/// # Errors
+/// Says which is not.
+pub fn check(experiments: &[Experiment], results: &Results) -> anyhow::Result<()> {
     results.check_known(experiments)?;
     for experiment in experiments {
         let result = results.experiments.iter().filter(|result| result.id == experiment.id);
@@ -80,14 +83,14 @@ fn cell(experiment: &Experiment, row: &Row, measure: Measure, values: Vec<Option
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiments::registry;
-    use crate::run_folder::RunFolder;
+    use crate::registry;
     use crate::verdict::Verdict;
 
     #[test]
     fn a_cell_that_is_not_of_its_values_is_found() {
         let experiments = registry().unwrap();
-        let mut committed = RunFolder::committed(2).results().unwrap();
+        let text = include_str!("../../../docs/records/seed-2/results.json");
+        let mut committed = Results::read("results.json", text).unwrap();
         committed.experiments.retain(|result| result.id == "table1");
         check(&experiments, &committed).unwrap();
         let damages: [fn(&mut Cell); 7] = [

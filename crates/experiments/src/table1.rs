@@ -20,9 +20,10 @@ use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::Measure;
 use crate::paper::{explanations, paper_table};
 
-/// The systems of the table, by their random streams; those of the literal reading follow from 100.
-pub(crate) const PARABOLA_SYSTEM: u32 = 0;
-pub(crate) const SINUSOIDAL_SYSTEM: u32 = 1;
+/// The systems of the table, by their random streams; those of the literal reading follow from 100. The parabola.
+pub const PARABOLA_SYSTEM: u32 = 0;
+/// The sinusoid.
+pub const SINUSOIDAL_SYSTEM: u32 = 1;
 const LONG_SINUSOIDAL_SYSTEM: u32 = 2;
 const LITERAL: u32 = 100;
 
@@ -42,8 +43,8 @@ pub(crate) fn table1() -> anyhow::Result<Experiment> {
         another_reading_of: None,
         contests: contests(),
         setups: setups(Redraw::Every(REDRAW), 0, max_rows),
-        paper: paper_table(include_str!("../../paper/table1.toml"))?,
-        explanations: explanations("table1", include_str!("../../paper/table1-explained.toml"))?,
+        paper: paper_table(include_str!("../paper/table1.toml"))?,
+        explanations: explanations("table1", include_str!("../paper/table1-explained.toml"))?,
     })
 }
 
@@ -60,8 +61,8 @@ pub(crate) fn table1_literal() -> anyhow::Result<Experiment> {
         another_reading_of: Some("table1"),
         contests: contests(),
         setups: setups(Redraw::Segments(3), LITERAL, |_| LITERAL_ROWS),
-        paper: paper_table(include_str!("../../paper/table1.toml"))?,
-        explanations: explanations("table1-literal", include_str!("../../paper/table1-literal-explained.toml"))?,
+        paper: paper_table(include_str!("../paper/table1.toml"))?,
+        explanations: explanations("table1-literal", include_str!("../paper/table1-literal-explained.toml"))?,
     })
 }
 
@@ -191,7 +192,7 @@ fn contests() -> Vec<Contest> {
 }
 
 /// Who learns the toy system beside PolicyAlign.
-pub(crate) fn toy_beside(front_end: FrontEnd, max_rows: usize) -> Beside {
+pub fn toy_beside(front_end: FrontEnd, max_rows: usize) -> Beside {
     let LwprRegressor { params, passes, cutoff } = toy_regressor();
     let naive = Some(DirectPolicyLearning { params, passes, cutoff });
     Beside {
@@ -215,7 +216,7 @@ pub(super) fn toy_pupils() -> Vec<Pupil> {
 }
 
 /// The regression of all rows.
-pub(crate) fn toy_regressor() -> LwprRegressor {
+pub fn toy_regressor() -> LwprRegressor {
     let norm_in = Some(DVector::repeat(2, 1.0));
     let params = LwprParams { init_d: 10.0, w_gen: 0.5, penalty: 1e-5, norm_in, ..LwprParams::default() };
     LwprRegressor { params, passes: 10, ..LwprRegressor::default() }

@@ -22,7 +22,7 @@ use crate::paper::{explanations, paper_table};
 use crate::robots::upper_body;
 
 /// The system that data sets are drawn for.
-pub(crate) const GRASP_SYSTEM: u32 = 420;
+pub const GRASP_SYSTEM: u32 = 420;
 
 /// Typical spread of a palm's coordinates, metres: the divisor of all inputs of the regressions.
 const SPREAD: f64 = 0.3;
@@ -62,8 +62,8 @@ pub(crate) fn table2() -> anyhow::Result<Experiment> {
                 trial: Box::new(GraspBeside { grasp: grasp()?, algorithm: PolicyAlign::default(), beside }),
             },
         ],
-        paper: paper_table(include_str!("../../paper/table2.toml"))?,
-        explanations: explanations("table2", include_str!("../../paper/table2-explained.toml"))?,
+        paper: paper_table(include_str!("../paper/table2.toml"))?,
+        explanations: explanations("table2", include_str!("../paper/table2-explained.toml"))?,
     })
 }
 
@@ -127,22 +127,25 @@ const CASES: [&str; 3] = ["training", "unseen_barrier", "unconstrained"];
 const CASE: &str = "grasp";
 
 /// Who learns beside PolicyAlign and the naive learner.
-pub(crate) fn grasp_beside() -> Beside {
+pub fn grasp_beside() -> Beside {
     Beside { naive: None, constraint_consistent: None, gaussians: Gaussians::new(FrontEnd::Map, 1000) }
 }
 
 /// What is demonstrated.
-pub(crate) fn grasp() -> anyhow::Result<Grasp> {
+///
+/// # Errors
+/// If the robot's files are damaged.
+pub fn grasp() -> anyhow::Result<Grasp> {
     Ok(Grasp::new(upper_body()?))
 }
 
 /// The regression on aligned potentials.
-pub(crate) fn grasp_regressor() -> LwprRegressor {
+pub fn grasp_regressor() -> LwprRegressor {
     LwprRegressor { params: params(22.0), passes: 10, ..LwprRegressor::default() }
 }
 
 /// The naive learner.
-pub(crate) fn grasp_naive() -> DirectPolicyLearning {
+pub fn grasp_naive() -> DirectPolicyLearning {
     DirectPolicyLearning { params: params(10.0), passes: 4, ..DirectPolicyLearning::default() }
 }
 
@@ -221,7 +224,7 @@ mod tests {
     use motion::NegativeGradient;
 
     use super::*;
-    use crate::experiments::quotable;
+    use crate::quotable;
     use crate::seed::generator;
 
     /// Numbers in the remark that no record has: they follow from the set-up.

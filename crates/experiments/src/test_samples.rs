@@ -10,17 +10,20 @@ use crate::seed::beside;
 pub(crate) const HELD_OUT: f64 = 0.1;
 
 /// The samples of one data set that are held out, ascending.
-pub(crate) struct TestSamples {
+pub struct TestSamples {
     /// Of the trajectories that alignment keeps.
-    pub(crate) of_kept: Vec<SampleIndex>,
+    pub of_kept: Vec<SampleIndex>,
     /// Of all trajectories: the same and a tenth of the samples of the discarded ones.
-    pub(crate) of_all: Vec<SampleIndex>,
+    pub of_all: Vec<SampleIndex>,
 }
 
 impl TestSamples {
     /// Draws them. Those of discarded trajectories come from a stream of their own, so that they change none of the
     /// random numbers that learning goes on with.
-    pub(crate) fn draw(aligned: &Aligned, rng: &mut ChaCha8Rng) -> anyhow::Result<TestSamples> {
+    ///
+    /// # Errors
+    /// If there is nothing to draw from.
+    pub fn draw(aligned: &Aligned, rng: &mut ChaCha8Rng) -> anyhow::Result<TestSamples> {
         let demonstrations = aligned.demonstrations();
         let of_kept = demonstrations.hold_out_samples(aligned.kept(), HELD_OUT, rng)?;
         let mut of_all = of_kept.clone();

@@ -19,7 +19,7 @@ use crate::measure::{Measure, RowOf};
 use crate::paper::{explanations, paper_table};
 
 /// The system whose random stream is used.
-pub(crate) const ARM_SYSTEM: u32 = 440;
+pub const ARM_SYSTEM: u32 = 440;
 
 /// What its rows of other learners are named after.
 const CASE: &str = "arm";
@@ -56,8 +56,8 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
                 trial: Box::new(BesideTrial { scene: arm()?, algorithms: vec![PolicyAlign::default()], beside }),
             },
         ],
-        paper: paper_table(include_str!("../../paper/three_link.toml"))?,
-        explanations: explanations("three_link", include_str!("../../paper/three_link-explained.toml"))?,
+        paper: paper_table(include_str!("../paper/three_link.toml"))?,
+        explanations: explanations("three_link", include_str!("../paper/three_link-explained.toml"))?,
     })
 }
 
@@ -67,7 +67,10 @@ pub(super) fn beside(max_rows: usize) -> Beside {
 }
 
 /// The arm of Section 4.4.
-pub(crate) fn arm() -> anyhow::Result<ThreeLinkArm> {
+///
+/// # Errors
+/// If the robot's file is damaged.
+pub fn arm() -> anyhow::Result<ThreeLinkArm> {
     Ok(ThreeLinkArm::new(include_str!("../../../robots/planar_three_link.urdf"))?)
 }
 

@@ -1,6 +1,6 @@
 //! Numbers that texts quote of settings that are not used: what a cell reads if one setting has another value.
 //!
-//! `{passes of the regression = 1}` in `xtask/paper/*-explained.toml` stands for the explained cell's mean over the first
+//! `{passes of the regression = 1}` in `paper/*-explained.toml` stands for the explained cell's mean over the first
 //! data sets of a seed; `{passes of the regression = 1: row measure}` for that of another cell. `cargo xtask leverage`
 //! measures them.
 
@@ -10,32 +10,31 @@ use anyhow::Context as _;
 use metrics::Summary;
 use serde::{Deserialize, Serialize};
 
-use crate::files::{repository, write};
 use crate::measure::Measure;
 
 /// The committed ones.
-const COMMITTED: &str = include_str!("../../docs/records/variants.json");
+const COMMITTED: &str = include_str!("../../../docs/records/variants.json");
 
 /// Row and measure.
-pub(crate) type Cell = (String, Measure);
+pub type Cell = (String, Measure);
 
 /// The values of cells over the data sets, by row and measure.
 type Cells = BTreeMap<String, BTreeMap<Measure, Vec<f64>>>;
 
 /// A cell of an experiment at another value of a setting.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Quote {
+pub struct Quote {
     /// The setting's name.
-    pub(crate) setting: String,
+    pub setting: String,
     /// Its value.
-    pub(crate) value: f64,
+    pub value: f64,
     /// Both, as they are written.
     variant: String,
 }
 
 /// What was measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Variants {
+pub struct Variants {
     /// Seed of the data sets.
     seed: u64,
     /// By experiment and "setting = value".
@@ -44,22 +43,28 @@ pub(crate) struct Variants {
 
 impl Variants {
     /// None yet.
-    pub(crate) fn from_seed(seed: u64) -> Variants {
+    pub fn from_seed(seed: u64) -> Variants {
         Variants { seed, cells: BTreeMap::new() }
     }
 
     /// Those that texts quote.
-    pub(crate) fn committed() -> anyhow::Result<Variants> {
+    ///
+    /// # Errors
+    /// If they are damaged.
+    pub fn committed() -> anyhow::Result<Variants> {
         serde_json::from_str(COMMITTED).context("docs/records/variants.json is damaged")
     }
 
-    /// Writes them to the place of the committed ones.
-    pub(crate) fn commit(&self) -> anyhow::Result<()> {
-        write(&repository().join("docs/records/variants.json"), serde_json::to_string_pretty(self)? + "\n")
+    /// As the committed ones are written.
+    ///
+    /// # Errors
+    /// If a number is not finite.
+    pub fn json(&self) -> anyhow::Result<String> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
     }
 
     /// Adds the values of a cell.
-    pub(crate) fn add(&mut self, experiment: &str, quote: &Quote, (row, measure): &Cell, values: Vec<f64>) {
+    pub fn add(&mut self, experiment: &str, quote: &Quote, (row, measure): &Cell, values: Vec<f64>) {
         let variants = self.cells.entry(experiment.to_owned()).or_default();
         let cells = variants.entry(quote.variant.clone()).or_default();
         cells.entry(row.clone()).or_default().insert(*measure, values);
@@ -72,7 +77,10 @@ impl Variants {
     }
 
     /// A text on a cell with numbers for what it quotes; what was not measured stays in braces.
-    pub(crate) fn filled(&self, experiment: &str, own: &Cell, text: &str) -> anyhow::Result<String> {
+    ///
+    /// # Errors
+    /// If it quotes what is no setting and value, or no cell.
+    pub fn filled(&self, experiment: &str, own: &Cell, text: &str) -> anyhow::Result<String> {
         let mut filled = String::new();
         for part in parts(text, own)? {
             match part {
@@ -88,13 +96,16 @@ impl Variants {
 }
 
 /// Two digits that count, as texts have them: 0.0028, 0.43, 8.4.
-pub(crate) fn two_digits(value: f64) -> String {
+pub fn two_digits(value: f64) -> String {
     let decimals = (1.0 - value.log10().floor()).max(0.0) as usize;
     format!("{value:.decimals$}")
 }
 
 /// What a text on a cell quotes, each with its own cell.
-pub(crate) fn quotes(own: &Cell, text: &str) -> anyhow::Result<Vec<(Quote, Cell)>> {
+///
+/// # Errors
+/// As [`Variants::filled`].
+pub fn quotes(own: &Cell, text: &str) -> anyhow::Result<Vec<(Quote, Cell)>> {
     let quoted = |part| match part {
         Part::Words(_) => None,
         Part::Quote(_, quote, cell) => Some((quote, cell)),
@@ -122,7 +133,7 @@ fn parts<'t>(text: &'t str, own: &Cell) -> anyhow::Result<Vec<Part<'t>>> {
 }
 
 /// `setting = value` of a text's own cell, or `setting = value: row measure`.
-pub(crate) fn quote(written: &str, own: &Cell) -> anyhow::Result<(Quote, Cell)> {
+fn quote(written: &str, own: &Cell) -> anyhow::Result<(Quote, Cell)> {
     let (variant, cell) = written.split_once(": ").map_or((written, None), |(variant, cell)| (variant, Some(cell)));
     let (setting, value) = variant.rsplit_once(" = ").with_context(|| format!("not setting = value: {written}"))?;
     let value = value.parse().with_context(|| format!("not a number: {written}"))?;
@@ -140,8 +151,8 @@ pub(crate) fn quote(written: &str, own: &Cell) -> anyhow::Result<(Quote, Cell)> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiments::{quotable, registry};
     use crate::seed::generator;
+    use crate::{quotable, registry};
 
     fn cell(row: &str, measure: Measure) -> Cell {
         (row.to_owned(), measure)

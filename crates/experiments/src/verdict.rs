@@ -8,7 +8,7 @@ use crate::paper::Printed;
 /// How our mean compares with the printed one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Verdict {
+pub enum Verdict {
     /// Within the band around the printed mean.
     Agrees,
     /// An error of the learner below the band.
@@ -41,7 +41,7 @@ pub(crate) fn verdict(kind: Kind, ours: f64, paper: Printed) -> Verdict {
 
 impl Verdict {
     /// The word beside one cell.
-    pub(crate) fn word(self) -> &'static str {
+    pub fn word(self) -> &'static str {
         match self {
             Verdict::Agrees => "agrees",
             Verdict::Lower => "lower",
@@ -51,7 +51,7 @@ impl Verdict {
     }
 
     /// The words after one cell.
-    pub(crate) fn singular(self) -> &'static str {
+    pub fn singular(self) -> &'static str {
         match self {
             Verdict::Agrees => "agrees",
             Verdict::Lower => "is lower",
@@ -61,7 +61,7 @@ impl Verdict {
     }
 
     /// The words after a number of cells.
-    pub(crate) fn plural(self) -> &'static str {
+    pub fn plural(self) -> &'static str {
         match self {
             Verdict::Agrees => "agree",
             Verdict::Lower => "are lower",
@@ -71,7 +71,7 @@ impl Verdict {
     }
 
     /// Whether the figure is at least as low as the paper's.
-    pub(crate) fn reached(self) -> bool {
+    pub fn reached(self) -> bool {
         matches!(self, Verdict::Agrees | Verdict::Lower)
     }
 }

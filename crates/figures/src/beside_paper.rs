@@ -1,14 +1,23 @@
 //! Tests: captions are true of every run, and what is said beside the paper's figures is what the committed records show.
 
+use std::fs;
+use std::path::Path;
+
+use experiments::measure::Measure::{self, Ncpe, Nupe, PotentialNmse};
+use experiments::results::{Cell, Results};
+use experiments::variants::two_digits;
+
 use super::{Figure, Sources, figures};
-use crate::measure::Measure::{self, Ncpe, Nupe, PotentialNmse};
-use crate::results::Cell;
-use crate::run_folder::RunFolder;
-use crate::variants::two_digits;
 
 /// The full run that the texts speak of.
 pub(super) fn records() -> Sources {
-    RunFolder::committed(1).sources().unwrap()
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/records/seed-1");
+    let results = Results::read("results.json", &fs::read_to_string(folder.join("results.json")).unwrap()).unwrap();
+    let document = |id: &str| {
+        let text = fs::read_to_string(folder.join(format!("figures/{id}.json")))?;
+        Ok(Some(serde_json::from_str(&text)?))
+    };
+    Sources::of(results, document).unwrap()
 }
 
 /// What stands beside a figure.
@@ -40,7 +49,7 @@ fn assert_says_from_to(sources: &Sources, id: &str, [from, to]: [&str; 2], error
 fn captions_are_of_every_run_and_comparisons_of_one() {
     for Figure { id, caption, beside_paper, needs, .. } in figures() {
         assert!(!caption.contains("paper") && !caption.contains("seed"), "{id}: {caption}");
-        let of_results = needs.iter().any(|need| crate::experiments::registry().unwrap().iter().any(|e| e.id == *need));
+        let of_results = needs.iter().any(|need| experiments::registry().unwrap().iter().any(|e| e.id == *need));
         let names_the_run = beside_paper.is_some_and(|text| text.starts_with("In the full run of seed 1"));
         assert!(names_the_run || !(of_results || id == "figure8"), "{id}: {beside_paper:?}");
     }
@@ -91,7 +100,7 @@ fn figure_9_is_as_said() {
 
 /// What is said of a cell of a table.
 fn explained(experiment: &str, row: &str, measure: Measure) -> String {
-    let all = crate::experiments::registry().unwrap();
+    let all = experiments::registry().unwrap();
     let experiment = all.into_iter().find(|other| other.id == experiment).unwrap();
     experiment.explain(row, measure).unwrap().to_owned()
 }
@@ -124,7 +133,7 @@ fn what_is_called_printed_is() {
         word.parse::<f64>().ok().map(|value| (value, last_place))
     };
     let mut found = 0;
-    for experiment in crate::experiments::registry().unwrap() {
+    for experiment in experiments::registry().unwrap() {
         let printed: Vec<f64> = experiment.paper.values().flat_map(|row| row.values()).map(|cell| cell.mean).collect();
         let is_printed =
             |(value, last_place): (f64, f64)| printed.iter().any(|mean| (mean - value).abs() <= 0.500_001 * last_place);
@@ -146,7 +155,7 @@ fn what_is_called_printed_is() {
 /// What plain Euler steps of the grasp's potential do, and how far its hands get in the paper's two seconds.
 #[test]
 fn the_grasp_s_rates_are_as_said() {
-    let grasp = crate::experiments::grasp().unwrap();
+    let grasp = experiments::grasp().unwrap();
     let rate = 2.0 * grasp.scene.potential().weight;
     let way = 100.0 * (1.0 - (-2.0 * rate).exp());
     assert_says("figure7", &format!("in 2 s this potential moves a hand over {way:.0} %"));
@@ -156,7 +165,7 @@ fn the_grasp_s_rates_are_as_said() {
     let alone = (step / (1.0 - step)).powi(2);
     let text = explained("table2", "alignment", Measure::AlignmentNmse);
     assert!(text.contains(&format!("1/(1 - {step})")) && text.contains(&format!("{:.2}e-4", 1e4 * alone)), "{text}");
-    let registry = crate::experiments::registry().unwrap();
+    let registry = experiments::registry().unwrap();
     let table = registry.iter().find(|experiment| experiment.id == "table2").unwrap();
     let above = 100.0 * (table.paper("alignment", Measure::AlignmentNmse).unwrap().mean / alone - 1.0);
     assert!(text.contains(&format!("{above:.0} percent above")), "{above}: {text}");

@@ -2,6 +2,8 @@
 
 use align::{Bandwidth, DirectPolicyLearning, Integration, LwprRegressor, PolicyAlign};
 use demo_gen::{Sinusoidal, demonstrations};
+use experiments::case_on_the_plane;
+use experiments::seed::generator;
 use motion::{Learner as _, LearntPolicy, NegativeGradient, Policy as _, Potential as _};
 use nalgebra::DVector;
 use plot::{Field, Layer, Picture, Plane};
@@ -10,9 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::sound::{Sound, field, some};
 use super::state_plane::{Arrow, actions, compared, on_grid, state_plane};
 use super::{Document, Drawing, Figure, Sources, demonstrated, rounded};
-use crate::experiments::case_on_the_plane;
-use crate::figures::Who;
-use crate::seed::generator;
+use crate::Who;
 
 /// Starts of the movements are drawn from [−2, 2]².
 const EXTENT: f64 = 2.0;

@@ -2,7 +2,7 @@
 
 use plot::{Field, Layer};
 
-use crate::figures::Who;
+use crate::Who;
 
 /// Movements that alignment leaves out: a light blue.
 const LEFT_OUT: &str = "#8fc1e3";

@@ -1,10 +1,10 @@
 //! Curves of errors: mean and spread over data sets against what is varied, in the same colours and marks everywhere.
 
+use experiments::measure::Measure;
+use experiments::results::{Cell, ExperimentResult};
 use plot::{Curve, Dash, Entry, Filling, Mark, Sign, Stroke};
 
 use super::Csv;
-use crate::measure::Measure;
-use crate::results::{Cell, ExperimentResult};
 
 /// The error of one thing that is learnt.
 #[derive(Debug, Clone, Copy)]
@@ -108,8 +108,9 @@ impl Series<'_> {
 mod tests {
     use std::collections::BTreeMap;
 
+    use experiments::results::RowResult;
+
     use super::*;
-    use crate::results::RowResult;
 
     #[test]
     fn rows_that_were_not_run_or_have_no_value_leave_no_point() {

@@ -1,5 +1,6 @@
 //! The robot: what it is made of, and where its 22 joints are.
 
+use experiments::upper_body;
 use kinematics::{LinkId, MotionKind, Workspace};
 use nalgebra::{IsometryMatrix3, Point3, Vector3};
 use plot::{Camera, Dash, Item, Paint, Picture, Space, Stroke};
@@ -8,7 +9,6 @@ use serde::{Deserialize, Serialize};
 use super::shapes::{self, Kind, Shape};
 use super::sound::{self, Sound, some};
 use super::{Document, Drawing, Figure, Sources, rounded};
-use crate::robots::upper_body;
 
 pub(crate) fn document() -> Document {
     Document::new("figure1", None, |_| ready())

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::sound::Sound;
 use super::{Document, Drawing, Figure, Sources, rounded};
-use crate::figures::Who;
+use crate::Who;
 
 /// What a system wants to do: forwards, towards the reader, upwards.
 const POLICY: [f64; 3] = [0.8, -0.6, 0.7];

@@ -1,11 +1,11 @@
 //! Fig. 6: errors on the parabola against the amount of data, and against noise.
 
 use anyhow::Context as _;
+use experiments::{BANDWIDTHS, BESIDE_LEFT, BESIDE_RIGHT, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
 use plot::{Axis, Curve, Curves, Entry, Key, Picture};
 
 use super::errors::{BESIDE, ERRORS, FIRST, SECOND, Series, Style};
 use super::{Csv, Drawing, Figure, Sources};
-use crate::experiments::{BANDWIDTHS, BESIDE_LEFT, BESIDE_RIGHT, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
 
 /// In the order of [`BANDWIDTHS`].
 const STYLES: [Style; 2] = [FIRST, SECOND];

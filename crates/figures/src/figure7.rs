@@ -7,7 +7,7 @@ use plot::{Camera, Paint, Panel, Picture, Space};
 use super::grasp_playback::{GraspPlayback, Movement};
 use super::stage::Actor;
 use super::{Drawing, Figure, Sources, stage};
-use crate::figures::Who;
+use crate::Who;
 
 /// Postures that are shown.
 const FRAMES: usize = 6;

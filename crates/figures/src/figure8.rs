@@ -7,7 +7,7 @@ use plot::{Axis, Camera, Curve, Curves, Entry, Filling, Frame, Item, Key, Mark, 
 use super::grasp_playback::all_around::AllAround;
 use super::grasp_playback::{GraspPlayback, LEARNERS, Movement};
 use super::{Csv, Drawing, Figure, Sources, rounded, stage};
-use crate::figures::Who;
+use crate::Who;
 
 pub(crate) fn figure() -> Figure {
     Figure::new("figure8", Some("table2"), &["grasp_playback"], draw)
@@ -283,7 +283,7 @@ mod tests {
         }
         let mended = format!("from all around, they end {:.1} cm away", ends[4]);
         assert!(beside_paper::text("figure8").contains(&mended), "{mended}");
-        let readme = std::fs::read_to_string(crate::files::repository().join("README.md")).unwrap();
+        let readme = include_str!("../../../README.md");
         let learnt = ends[2];
         let (id, _) = shown(&playback).nth(2).unwrap();
         let hands =

@@ -3,14 +3,14 @@
 use align::{Aligned, PolicyAlign, Split, SplitCause};
 use anyhow::Context as _;
 use demo_gen::{ToyPotential, ToySystem, demonstrations};
+use experiments::SINUSOIDAL_SYSTEM;
+use experiments::seed::generator;
 use plot::{Dash, Layer, Mark, Panel, Picture, Plane, Stroke};
 use serde::{Deserialize, Serialize};
 
 use super::sound::{Sound, among, some};
 use super::state_plane::state_plane;
 use super::{Csv, Document, Drawing, Figure, Sources, rounded};
-use crate::experiments::SINUSOIDAL_SYSTEM;
-use crate::seed::generator;
 
 /// Data sets of Table 1 among which one is chosen.
 const DATA_SETS: u32 = 30;

@@ -12,11 +12,11 @@ mod starts;
 mod starts_shown;
 
 use anyhow::ensure;
+use experiments::grasp;
 use serde::{Deserialize, Serialize};
 
 use super::Document;
 use super::sound::{Sound, as_many, some};
-use crate::experiments::grasp;
 use constraint::Constraint;
 use movements::movements;
 use scene::scene;

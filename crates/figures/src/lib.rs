@@ -17,85 +17,89 @@ mod figure8;
 mod figure9;
 mod figure_b1;
 mod grasp_playback;
-pub(crate) mod legs;
+mod legs;
 mod overview;
 mod shapes;
 mod sound;
-pub(crate) mod stage;
+mod stage;
 mod state_plane;
+pub mod view;
 mod who;
 mod words;
 
 use std::collections::BTreeMap;
 
 use anyhow::{Context as _, anyhow, bail};
+use experiments::Experiment;
+use experiments::results::{ExperimentResult, Results};
 use plot::Picture;
 use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use crate::experiments::Experiment;
-use crate::results::{ExperimentResult, Results};
 use sound::Sound;
 use words::{Words, words};
 
-pub(crate) use grasp_playback::{GraspPlayback, LEARNERS, Movement, starts_shown};
-pub(crate) use who::Who;
+use who::Who;
 
 /// What a run computes for the figures, from fixed data sets.
-pub(crate) struct Document {
+pub struct Document {
     /// Names the file.
-    pub(crate) id: &'static str,
+    pub id: &'static str,
     /// The experiment whose run it goes with; without one every run computes it.
-    pub(crate) experiment: Option<&'static str>,
+    experiment: Option<&'static str>,
     compute: Box<dyn Fn(u64) -> anyhow::Result<Value> + Sync>,
 }
 
 /// A figure of the paper.
-pub(crate) struct Figure {
+pub struct Figure {
     /// Names the files.
-    pub(crate) id: &'static str,
+    pub id: &'static str,
     /// As over the figure in the report.
-    pub(crate) title: &'static str,
+    pub title: &'static str,
     /// What is drawn: true of every run.
-    pub(crate) caption: &'static str,
+    pub caption: &'static str,
     /// How it compares with the paper's figure, where that has one. What depends on the run is said of the full run of
     /// seed 1, by that name: it stands under the figures of all runs.
-    pub(crate) beside_paper: Option<&'static str>,
+    pub beside_paper: Option<&'static str>,
     /// What the full run shows otherwise than the paper's figure, in a line.
-    pub(crate) differs: Option<&'static str>,
+    pub differs: Option<&'static str>,
     /// The experiment it stands beside in the report.
-    pub(crate) experiment: Option<&'static str>,
+    pub experiment: Option<&'static str>,
     /// Documents and experiments that it is drawn from.
     needs: &'static [&'static str],
     draw: fn(&Sources) -> anyhow::Result<Drawing>,
 }
 
 /// A picture, and the numbers of its curves.
-pub(crate) struct Drawing {
-    pub(crate) picture: Picture,
+pub struct Drawing {
+    /// What is seen.
+    pub picture: Picture,
     /// Written as `figures/<figure>-<name>.csv`.
-    pub(crate) tables: Vec<Csv>,
+    pub tables: Vec<Csv>,
 }
 
 /// A table of numbers for other programs.
-pub(crate) struct Csv {
-    pub(crate) name: &'static str,
-    pub(crate) header: Vec<String>,
-    pub(crate) rows: Vec<Vec<f64>>,
+pub struct Csv {
+    /// Ends the file's name.
+    pub name: &'static str,
+    header: Vec<String>,
+    rows: Vec<Vec<f64>>,
 }
 
 /// All that figures may be drawn from.
-pub(crate) struct Sources {
-    pub(crate) results: Results,
-    pub(crate) documents: BTreeMap<String, Value>,
+pub struct Sources {
+    /// What was measured.
+    pub results: Results,
+    /// By id.
+    pub documents: BTreeMap<String, Value>,
     /// Ids of documents that belong to the run and are not there.
-    pub(crate) missing: Vec<&'static str>,
+    pub missing: Vec<&'static str>,
 }
 
 /// All documents.
-pub(crate) fn documents() -> Vec<Document> {
+pub fn documents() -> Vec<Document> {
     vec![
         overview::document(),
         figure1::document(),
@@ -112,7 +116,7 @@ pub(crate) fn documents() -> Vec<Document> {
 }
 
 /// All figures, in the paper's order.
-pub(crate) fn figures() -> Vec<Figure> {
+pub fn figures() -> Vec<Figure> {
     vec![
         overview::figure(),
         figure1::figure(),
@@ -131,7 +135,10 @@ pub(crate) fn figures() -> Vec<Figure> {
 }
 
 /// Computes the documents that go with these experiments.
-pub(crate) fn compute(experiments: &[Experiment], seed: u64) -> anyhow::Result<BTreeMap<String, Value>> {
+///
+/// # Errors
+/// If something cannot be made or learnt.
+pub fn compute(experiments: &[Experiment], seed: u64) -> anyhow::Result<BTreeMap<String, Value>> {
     let mut wanted = documents();
     wanted.retain(|document| document.experiment.is_none_or(|id| experiments.iter().any(|e| e.id == id)));
     let document = |document: &Document| {
@@ -153,7 +160,7 @@ impl Document {
 }
 
 impl Figure {
-    /// A figure with the words that `xtask/paper/figures.toml` has for it.
+    /// A figure with the words that `crates/figures/words.toml` has for it.
     fn new(
         id: &'static str,
         experiment: Option<&'static str>,
@@ -166,18 +173,18 @@ impl Figure {
     }
 
     /// Whether all that it needs was run.
-    pub(crate) fn can_be_drawn(&self, sources: &Sources) -> bool {
+    pub fn can_be_drawn(&self, sources: &Sources) -> bool {
         let there = |id: &&str| sources.documents.contains_key(*id) || sources.experiment(id).is_some();
         self.needs.iter().all(there)
     }
 
     /// Whether it cannot be drawn only because documents are missing.
-    pub(crate) fn misses(&self, sources: &Sources) -> bool {
+    fn misses(&self, sources: &Sources) -> bool {
         !self.can_be_drawn(sources) && self.needs.iter().any(|id| sources.missing.contains(id))
     }
 
     /// Draws it; nothing where what it needs was not run.
-    pub(crate) fn draw(&self, sources: &Sources) -> anyhow::Result<Option<Drawing>> {
+    fn draw(&self, sources: &Sources) -> anyhow::Result<Option<Drawing>> {
         if !self.can_be_drawn(sources) {
             return Ok(None);
         }
@@ -185,9 +192,40 @@ impl Figure {
     }
 }
 
+/// Draws every figure that there are numbers for.
+///
+/// # Errors
+/// Documents that are damaged.
+pub fn draw(sources: &Sources) -> anyhow::Result<Vec<(Figure, Drawing)>> {
+    let drawn = |figure: Figure| Ok(figure.draw(sources)?.map(|drawing| (figure, drawing)));
+    let drawn: Vec<_> = figures().into_par_iter().map(drawn).collect::<anyhow::Result<_>>()?;
+    Ok(drawn.into_iter().flatten().collect())
+}
+
+/// Figures that are not drawn only because their documents are missing.
+pub fn undrawn(sources: &Sources) -> Vec<Figure> {
+    figures().into_iter().filter(|figure| figure.misses(sources)).collect()
+}
+
 impl Sources {
+    /// Results, and the documents that belong to them as far as `read` finds them by their ids.
+    ///
+    /// # Errors
+    /// Those of `read`.
+    pub fn of(results: Results, read: impl Fn(&str) -> anyhow::Result<Option<Value>>) -> anyhow::Result<Sources> {
+        let mut sources = Sources { results, documents: BTreeMap::new(), missing: vec![] };
+        for document in documents() {
+            if let Some(found) = read(document.id)? {
+                sources.documents.insert(document.id.to_owned(), found);
+            } else if document.experiment.is_none_or(|id| sources.experiment(id).is_some()) {
+                sources.missing.push(document.id);
+            }
+        }
+        Ok(sources)
+    }
+
     /// The results of one experiment.
-    pub(crate) fn experiment(&self, id: &str) -> Option<&ExperimentResult> {
+    pub fn experiment(&self, id: &str) -> Option<&ExperimentResult> {
         self.results.experiments.iter().find(|result| result.id == id)
     }
 
@@ -206,7 +244,7 @@ impl Sources {
 
 impl Csv {
     /// As comma-separated values; what is not a number is an empty cell.
-    pub(crate) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let cell = |value: &f64| if value.is_finite() { value.to_string() } else { String::new() };
         let row = |row: &Vec<f64>| row.iter().map(cell).collect::<Vec<_>>().join(",") + "\n";
         self.header.join(",") + "\n" + &self.rows.iter().map(row).collect::<String>()

@@ -2,6 +2,8 @@
 
 use align::{Bandwidth, DirectPolicyLearning, PolicyAlign};
 use demo_gen::{ToySystem, demonstrations};
+use experiments::seed::{beside, generator};
+use experiments::{PARABOLA_SYSTEM, TestSamples, toy_beside, toy_regressor};
 use gp::FrontEnd;
 use motion::{NegativeGradient, Potential as _};
 use nalgebra::DMatrix;
@@ -11,9 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::sound::{Sound, field, some};
 use super::state_plane::{Arrow, actions, compared, on_grid, state_plane};
 use super::{Document, Drawing, Figure, Sources, demonstrated, rounded};
-use crate::experiments::{PARABOLA_SYSTEM, TestSamples, toy_beside, toy_regressor};
-use crate::figures::Who;
-use crate::seed::{beside, generator};
+use crate::Who;
 
 /// Starts of the movements are drawn from [−2, 2]²; shown is a little more, as movements leave that square.
 const SHOWN: f64 = 2.2;

@@ -129,10 +129,10 @@ fn ends(pose: &IsometryMatrix3<f64>, length: f64) -> [Point3<f64>; 2] {
 
 #[cfg(test)]
 mod tests {
+    use experiments::upper_body;
     use kinematics::Workspace;
 
     use super::*;
-    use crate::robots::upper_body;
 
     #[test]
     fn limbs_are_in_one_piece() {

@@ -82,7 +82,7 @@ pub(super) fn size(kind: Kind, size: &[f64]) -> anyhow::Result<()> {
 mod tests {
     use super::super::{Sources, figures};
     use super::*;
-    use crate::run_folder::RunFolder;
+    use crate::beside_paper::records;
 
     /// Places of one number and of one list of each kind in a document: the last of many alike.
     fn places(value: &Value, at: &str, kind: &str, all: &mut std::collections::BTreeMap<String, String>) {
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn numbers_out_of_all_proportion_are_refused_as_damaged() {
-        let mut sources = RunFolder::committed(1).sources().unwrap();
+        let mut sources = records();
         for id in sources.documents.keys().cloned().collect::<Vec<_>>() {
             let mut all = std::collections::BTreeMap::new();
             places(&sources.documents[&id], "", "", &mut all);
@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn lists_that_have_lost_everything_are_refused_or_drawn_without() {
-        let mut sources = RunFolder::committed(1).sources().unwrap();
+        let mut sources = records();
         for id in sources.documents.keys().cloned().collect::<Vec<_>>() {
             let mut all = std::collections::BTreeMap::new();
             places(&sources.documents[&id], "", "", &mut all);
@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn rows_that_are_short_of_a_value_are_refused() {
-        let mut sources = RunFolder::committed(1).sources().unwrap();
+        let mut sources = records();
         let rows = [
             ("figure2", "/free/places"),
             ("figure2", "/stopped/angles"),

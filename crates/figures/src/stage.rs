@@ -2,13 +2,13 @@
 
 use anyhow::ensure;
 use demo_gen::UpperBody;
+use experiments::upper_body;
 use kinematics::{Joint, LinkId, Workspace};
 use nalgebra::{DVector, DVectorView, IsometryMatrix3, Point3, Translation3, Vector3};
 use plot::{Item, Paint, Stroke};
 
 use super::grasp_playback::Scene;
 use super::shapes;
-use crate::robots::upper_body;
 
 /// Plates reach from the ground to this height, metres.
 pub(crate) const PLATE_TOP: f64 = 1.0;

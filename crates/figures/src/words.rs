@@ -1,4 +1,4 @@
-//! What stands beside the figures, from `xtask/paper/figures.toml`.
+//! What stands beside the figures, from `crates/figures/words.toml`.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -17,8 +17,7 @@ pub(super) struct Words {
 
 /// The words of all figures, by id.
 static ALL: LazyLock<BTreeMap<String, Words>> = LazyLock::new(|| {
-    toml::from_str(include_str!("../../paper/figures.toml"))
-        .expect("xtask/paper/figures.toml has words for each figure")
+    toml::from_str(include_str!("../words.toml")).expect("crates/figures/words.toml has words for each figure")
 });
 
 /// The words of a figure that has some.
@@ -29,7 +28,7 @@ pub(super) fn words(id: &str) -> &'static Words {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figures::figures;
+    use crate::figures;
 
     #[test]
     fn every_figure_has_words_and_all_words_have_a_figure() {

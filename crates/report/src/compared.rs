@@ -1,11 +1,12 @@
 //! What there is to say of each cell: ours beside the paper's and beside another seed's, how sure the difference is, and
 //! why it stands out. The Markdown and the page say the same.
 
+use experiments::Experiment;
+use experiments::measure::{Measure, RowOf};
+use experiments::results::{Cell, ExperimentResult, Results, RowResult};
+use experiments::verdict::Verdict;
+
 use super::tally::z;
-use crate::experiments::Experiment;
-use crate::measure::{Measure, RowOf};
-use crate::results::{Cell, ExperimentResult, Results, RowResult};
-use crate::verdict::Verdict;
 
 /// Standard deviations by which an error must undercut the paper's before the report has to say why.
 const REMARKABLY_LOWER: f64 = 2.0;

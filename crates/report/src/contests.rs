@@ -1,11 +1,11 @@
 //! Learners held against each other: a line for each error, a column for each learner.
 
+use experiments::measure::Measure;
+use experiments::results::{Cell, ExperimentResult};
+use experiments::{Contest, Contestant, Experiment};
 use page::markdown_table;
 
 use super::compared::NOTHING;
-use crate::experiments::{Contest, Contestant, Experiment};
-use crate::measure::Measure;
-use crate::results::{Cell, ExperimentResult};
 
 /// A ratio below this is shown as "0": it says nothing but that rounding is left.
 const NEGLIGIBLE: f64 = 1e-9;
@@ -112,9 +112,10 @@ velocities are exact, exact recovery is no feat. The column \"no trend\" is the 
 mod tests {
     use std::collections::BTreeMap;
 
+    use experiments::registry;
+    use experiments::results::RowResult;
+
     use super::*;
-    use crate::experiments::registry;
-    use crate::results::RowResult;
 
     fn row(id: &str, values: &[Option<f64>]) -> RowResult {
         let known: Vec<f64> = values.iter().flatten().copied().collect();

@@ -3,12 +3,12 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
+use experiments::measure::Measure;
+use experiments::results::{ExperimentResult, Results, RowResult};
+use experiments::{Contestant, Experiment};
 use page::markdown_table;
 
 use super::contests::{CAUTION, Contests};
-use crate::experiments::{Contestant, Experiment};
-use crate::measure::Measure;
-use crate::results::{ExperimentResult, Results, RowResult};
 
 /// Errors below this are as good as none, and need no forecast.
 const WORTH_FORETELLING: f64 = 1e-3;
@@ -17,7 +17,7 @@ const WORTH_FORETELLING: f64 = 1e-3;
 const ROTATIONAL: [&str; 2] = ["swirl", "limit-cycle"];
 
 /// All of it, as Markdown.
-pub(crate) fn learners(experiments: &[Experiment], results: &Results) -> String {
+pub fn learners(experiments: &[Experiment], results: &Results) -> String {
     let result = |id: &str| results.experiments.iter().find(|result| result.id == id);
     let mut text = format!("{CAUTION}\n\n");
     for experiment in experiments {
@@ -224,8 +224,9 @@ fn rotation(results: &Results) -> String {
 mod tests {
     use std::collections::BTreeMap;
 
+    use experiments::results::Cell;
+
     use super::*;
-    use crate::results::Cell;
 
     fn row(id: &str, measures: &[(Measure, [f64; 2])]) -> RowResult {
         let cell = |&(measure, values): &(Measure, [f64; 2])| {

@@ -1,6 +1,6 @@
 //! How to read the tables.
 
-use crate::measure::Measure;
+use experiments::measure::Measure;
 
 /// What stands in the columns and how cells are judged; `**` is about what is emphasised.
 pub(super) const RULE: &str = "\

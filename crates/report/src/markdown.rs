@@ -2,37 +2,39 @@
 
 use std::fmt::Write as _;
 
+use experiments::Experiment;
+use experiments::measure::Measure;
+use experiments::results::Results;
 use page::markdown_table;
 
 use super::compared::{Compared, FEW, Line, compared};
 use super::contests::{CAUTION, Contests};
 use super::legend::{MEASURES, RULE, names};
 use super::tally::Tally;
-use crate::experiments::Experiment;
-use crate::measure::Measure;
-use crate::results::Results;
 
 /// All tables of `results`; `second`, a run from another seed, adds its means as a column.
-pub(crate) fn markdown(experiments: &[Experiment], results: &Results, second: Option<&Results>) -> String {
+pub fn markdown(experiments: &[Experiment], results: &Results, second: Option<&Results>) -> String {
     let sections = sections(experiments, results, second).map(|section| section.text);
     format!("{}{}", key(), sections.collect::<String>())
 }
 
 /// How to read the tables.
-pub(crate) fn key() -> String {
+pub fn key() -> String {
     let measures =
         MEASURES.map(|(measures, meaning)| format!("| {} | {meaning} |\n", names(measures, Measure::name))).concat();
     format!("{RULE}\n\n| measure | is |\n| --- | --- |\n{measures}\n")
 }
 
 /// An experiment with its tables.
-pub(crate) struct Section<'a> {
-    pub(crate) experiment: &'a Experiment,
-    pub(crate) text: String,
+pub struct Section<'a> {
+    /// Which.
+    pub experiment: &'a Experiment,
+    /// As Markdown.
+    pub text: String,
 }
 
 /// What there is on each experiment.
-pub(crate) fn sections<'a>(
+pub fn sections<'a>(
     experiments: &'a [Experiment],
     results: &'a Results,
     second: Option<&'a Results>,
@@ -75,7 +77,7 @@ fn contests(compared: &Compared<'_>) -> String {
 }
 
 /// What is seen only by who opens it. Markdown within needs the empty lines.
-pub(crate) fn folded(summary: &str, text: &str) -> String {
+pub fn folded(summary: &str, text: &str) -> String {
     format!("<details><summary>{summary}</summary>\n\n{}\n\n</details>\n\n", text.trim_end())
 }
 
@@ -142,10 +144,11 @@ fn explanations(compared: &Compared<'_>) -> String {
 mod tests {
     use std::collections::BTreeMap;
 
+    use experiments::measure::Measure;
+    use experiments::registry;
+    use experiments::results::{Cell, ExperimentResult, RowResult, Run, SCHEMA};
+
     use super::*;
-    use crate::experiments::registry;
-    use crate::measure::Measure;
-    use crate::results::{Cell, ExperimentResult, RowResult, Run, SCHEMA};
 
     #[test]
     fn what_the_paper_shows_as_curves_has_no_columns_for_printed_figures() {

@@ -2,22 +2,22 @@
 
 use std::collections::BTreeMap;
 
-use crate::experiments::Experiment;
-use crate::results::{Cell, ExperimentResult};
-use crate::verdict::Verdict;
+use experiments::Experiment;
+use experiments::results::{Cell, ExperimentResult};
+use experiments::verdict::Verdict;
 
 /// Standard errors within which two means may well be the same.
 const STANDARD_ERRORS: f64 = 2.0;
 
 /// How many of the printed cells are reached, and how.
-pub(crate) struct Tally {
+pub struct Tally {
     counts: BTreeMap<Verdict, usize>,
     alike: usize,
 }
 
 impl Tally {
     /// Counts the cells of experiments.
-    pub(crate) fn of<'a>(results: impl IntoIterator<Item = (&'a Experiment, &'a ExperimentResult)>) -> Tally {
+    pub fn of<'a>(results: impl IntoIterator<Item = (&'a Experiment, &'a ExperimentResult)>) -> Tally {
         let mut tally = Tally { counts: BTreeMap::new(), alike: 0 };
         for (experiment, result) in results {
             for cell in result.rows.iter().flat_map(|row| row.measures.values()) {
@@ -31,9 +31,7 @@ impl Tally {
     }
 
     /// In all: of another reading of a table no cell counts again.
-    pub(crate) fn of_first_readings<'a>(
-        results: impl IntoIterator<Item = (&'a Experiment, &'a ExperimentResult)>,
-    ) -> Tally {
+    pub fn of_first_readings<'a>(results: impl IntoIterator<Item = (&'a Experiment, &'a ExperimentResult)>) -> Tally {
         Tally::of(results.into_iter().filter(|(experiment, _)| experiment.another_reading_of.is_none()))
     }
 
@@ -43,7 +41,7 @@ impl Tally {
     }
 
     /// Printed cells.
-    pub(crate) fn total(&self) -> usize {
+    pub fn total(&self) -> usize {
         self.counts.values().sum()
     }
 
@@ -53,7 +51,7 @@ impl Tally {
     }
 
     /// As a sentence; nothing where no cells are printed.
-    pub(crate) fn sentence(&self) -> String {
+    pub fn sentence(&self) -> String {
         let words: Vec<String> =
             self.counts().map(|(verdict, count)| format!("{count} {}", after(verdict, count))).collect();
         if words.is_empty() {

@@ -3,16 +3,16 @@
 use std::fmt::Write as _;
 
 use console::Style;
+use experiments::Experiment;
+use experiments::results::Results;
+use experiments::verdict::Verdict;
 
 use super::compared::{Compared, Line, compared};
 use super::contests::Contests;
 use super::tally::Tally;
-use crate::experiments::Experiment;
-use crate::results::Results;
-use crate::verdict::Verdict;
 
 /// A table an experiment; colours are left out where the standard output is no terminal, and by `NO_COLOR`.
-pub(crate) fn terminal(experiments: &[Experiment], results: &Results) -> String {
+pub fn terminal(experiments: &[Experiment], results: &Results) -> String {
     compared(experiments, results, None).iter().map(section).collect()
 }
 
@@ -77,17 +77,17 @@ fn line(name: &str, measure: &str, numbers: [&str; 3], verdict: &str) -> String 
 #[cfg(test)]
 mod tests {
     use console::measure_text_width;
+    use experiments::registry;
 
     use super::*;
-    use crate::experiments::registry;
-    use crate::run_folder::RunFolder;
 
     /// Columns of the narrowest terminal that is catered for.
     const COLUMNS: usize = 80;
 
     #[test]
     fn the_committed_tables_fit_a_narrow_terminal() {
-        let results = RunFolder::committed(1).results().unwrap();
+        let text = include_str!("../../../docs/records/seed-1/results.json");
+        let results = Results::read("results.json", text).unwrap();
         let text = terminal(&registry().unwrap(), &results);
         let widest = text.lines().max_by_key(|line| measure_text_width(line)).unwrap();
         assert!(measure_text_width(widest) <= COLUMNS, "{widest}");

@@ -7,7 +7,7 @@ use motion::{NegativeGradient, Policy};
 use nalgebra::{DMatrix, DVector, DVectorView, dmatrix};
 use serde::{Deserialize, Serialize};
 
-use crate::figures::rounded;
+use crate::rounded;
 
 /// Lengths of the two links, metres.
 const LINKS: [f64; 2] = [0.05, 0.04];

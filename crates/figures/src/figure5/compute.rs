@@ -1,15 +1,15 @@
 use align::{Aligned, PolicyAlign};
 use anyhow::Context as _;
 use demo_gen::{Recording, ToySystem, demonstrations};
+use experiments::seed::generator;
+use experiments::{Judge, PARABOLA_SYSTEM, TestSamples, toy_regressor};
 use motion::{LearntPolicy, Potential};
 use nalgebra::DVector;
 use plot::Field;
 use rand_chacha::ChaCha8Rng;
 
 use super::{Levels, Movement};
-use crate::experiments::{Judge, PARABOLA_SYSTEM, TestSamples, toy_regressor};
-use crate::figures::rounded;
-use crate::seed::generator;
+use crate::rounded;
 
 /// Movements that alignment leaves out in the paper's picture.
 const LEFT_OUT: usize = 3;

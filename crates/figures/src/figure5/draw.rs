@@ -1,8 +1,8 @@
 use plot::{Field, Picture, Plane, Relief};
 
 use super::{Levels, Movement};
-use crate::figures::state_plane::state_plane;
-use crate::figures::{Csv, Drawing, Sources, demonstrated};
+use crate::state_plane::state_plane;
+use crate::{Csv, Drawing, Sources, demonstrated};
 
 /// What is seen from above: [−2, 2]².
 const EXTENT: f64 = 2.0;

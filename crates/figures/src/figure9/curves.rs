@@ -1,11 +1,11 @@
 //! Errors among the samples near the goal along the line, and near the line.
 
 use anyhow::Context as _;
+use experiments::{Distance, TENTHS};
 use plot::{Axis, Curve, Curves, Key};
 
-use crate::experiments::{Distance, TENTHS};
-use crate::figures::errors::{BESIDE, ERRORS, FIRST, Series};
-use crate::figures::{Csv, Sources};
+use crate::errors::{BESIDE, ERRORS, FIRST, Series};
+use crate::{Csv, Sources};
 
 /// Pixels.
 const SIZE: (f64, f64) = (620.0, 400.0);

@@ -3,13 +3,13 @@
 mod curves;
 mod scenes;
 
+use experiments::seed::generator;
+use experiments::{ARM_SYSTEM, arm};
 use plot::Picture;
 use serde::{Deserialize, Serialize};
 
 use super::sound::{Sound, some};
 use super::{Document, Drawing, Figure, Sources, rounded};
-use crate::experiments::{ARM_SYSTEM, arm};
-use crate::seed::generator;
 use curves::Panels;
 
 pub(super) fn document() -> Document {

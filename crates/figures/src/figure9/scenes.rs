@@ -1,10 +1,10 @@
 //! Movements in joint space: where they end, and what distances along and from that line mean.
 
+use experiments::line;
 use nalgebra::{Point3, Vector3};
 use plot::{Camera, Dash, Frame, Item, Paint, Space, Stroke};
 
-use crate::experiments::line;
-use crate::figures::Who;
+use crate::Who;
 
 /// So many movements are drawn.
 const SHOWN: usize = 50;

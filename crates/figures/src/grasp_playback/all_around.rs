@@ -2,6 +2,8 @@
 
 use constraints::Unconstrained;
 use demo_gen::{Grasp, GraspStart, Recording};
+use experiments::grasp;
+use experiments::seed::beside;
 use motion::Policy as _;
 use nalgebra::{DVector, Point3};
 use rand::{Rng, RngExt as _};
@@ -12,10 +14,8 @@ use super::data_set::DataSet;
 use super::movements::{DECIMALS, Movement, rows};
 use super::policies::Learnt;
 use super::robot::FARTHEST;
-use crate::experiments::grasp;
-use crate::figures::sound::{Sound, as_many, grid, some, within};
-use crate::figures::{Document, rounded};
-use crate::seed::beside;
+use crate::sound::{Sound, as_many, grid, some, within};
+use crate::{Document, rounded};
 
 /// Palms start around their places at the ball: each coordinate is at most this far off, metres.
 const AROUND: f64 = 0.1;

@@ -2,12 +2,12 @@
 
 use anyhow::ensure;
 use demo_gen::{Grasp, GraspStart, Recording};
+use experiments::GRASP_SYSTEM;
+use experiments::seed::generator;
 use rand_chacha::ChaCha8Rng;
 
 use super::STARTS;
 use super::starts::chosen;
-use crate::experiments::GRASP_SYSTEM;
-use crate::seed::generator;
 
 /// What is learnt from.
 pub(super) struct DataSet {

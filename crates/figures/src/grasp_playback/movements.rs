@@ -14,8 +14,8 @@ use super::constraint::Constraint;
 use super::data_set::DataSet;
 use super::policies::{LEARNERS, policies};
 use super::robot::FARTHEST;
-use crate::figures::rounded;
-use crate::figures::sound::{grid, some, within};
+use crate::rounded;
+use crate::sound::{grid, some, within};
 
 /// Decimals of joints and palms: a tenth of a millimetre.
 pub(super) const DECIMALS: i32 = 4;

@@ -2,12 +2,12 @@
 
 use align::{Aligned, DirectPolicyLearning, LwprRegressor, PolicyAlign, PotentialPolicy};
 use demo_gen::{Grasp, Recording, demonstrations};
+use experiments::seed::beside;
+use experiments::{TestSamples, grasp_beside, grasp_naive, grasp_regressor};
 use motion::{NegativeGradient, Policy};
 use rand_chacha::ChaCha8Rng;
 
-use crate::experiments::{TestSamples, grasp_beside, grasp_naive, grasp_regressor};
-use crate::figures::Who;
-use crate::seed::beside;
+use crate::Who;
 
 /// A roll-out leaves the data now and then: there every receptive field counts, however small its activation.
 const CUTOFF: f64 = 1e-9;

@@ -6,8 +6,8 @@ use kinematics::{CollisionShape, JointMotion, LinkId, MotionKind, RobotModel};
 use nalgebra::IsometryMatrix3;
 use serde::{Deserialize, Serialize};
 
-use crate::figures::shapes::{Shape, form, numbers};
-use crate::figures::sound::{self, among, within};
+use crate::shapes::{Shape, form, numbers};
+use crate::sound::{self, among, within};
 
 /// No link is farther away, metres.
 pub(super) const FARTHEST: f64 = 10.0;

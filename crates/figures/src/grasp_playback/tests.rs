@@ -1,12 +1,12 @@
 use demo_gen::Side;
+use experiments::upper_body;
 use kinematics::{LinkId, Workspace};
 use nalgebra::{DVector, IsometryMatrix3, Translation3, Unit, Vector3};
 use playback::PalmTracking;
 
 use super::robot::Motion;
 use super::*;
-use crate::figures::shapes;
-use crate::robots::upper_body;
+use crate::shapes;
 
 /// Poses of all links in a configuration, by the tree of the document alone: as the script of the page has them.
 fn poses(robot: &Robot, joints: &[f64]) -> Vec<IsometryMatrix3<f64>> {

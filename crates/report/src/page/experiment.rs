@@ -1,15 +1,15 @@
 //! An experiment: its tables, its figures, what stands out, what the paper leaves open.
 
+use experiments::verdict::Verdict;
 use maud::{Markup, html};
 use page::{emphasised, key};
 
 use super::table::{columns, grid, is_printed, list, scales};
 use super::verdict_bar::{bar, words};
 use super::{Contents, view};
-use crate::report::compared::{Compared, Line};
-use crate::report::contests::{CAUTION, Contests};
-use crate::report::tally::Tally;
-use crate::verdict::Verdict;
+use crate::compared::{Compared, Line};
+use crate::contests::{CAUTION, Contests};
+use crate::tally::Tally;
 
 /// The section of an experiment.
 pub(super) fn section(compared: &Compared<'_>, contents: &Contents<'_>) -> Markup {

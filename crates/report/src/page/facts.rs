@@ -1,13 +1,13 @@
 //! What is to be known of the run: seed, number of data sets, time.
 
+use experiments::Setup;
+use experiments::results::Results;
+use figures::undrawn;
 use maud::{Markup, html};
 
 use super::Contents;
-use crate::experiments::Setup;
-use crate::report::compared::Compared;
-use crate::report::tally::Tally;
-use crate::report::undrawn;
-use crate::results::Results;
+use crate::compared::Compared;
+use crate::tally::Tally;
 
 /// Seconds from which a time is shown in minutes.
 const MINUTES_FROM: f64 = 120.0;

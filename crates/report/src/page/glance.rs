@@ -1,5 +1,6 @@
 //! The opening: what was asked and how it went.
 
+use experiments::verdict::Verdict;
 use maud::{Markup, html};
 use page::emphasised;
 
@@ -7,9 +8,8 @@ use super::experiment::sentence;
 use super::facts::facts;
 use super::verdict_bar::{bar, words};
 use super::{Contents, OVERVIEW, pictures, view};
-use crate::report::compared::{Compared, FEW, Line};
-use crate::report::tally::Tally;
-use crate::verdict::Verdict;
+use crate::compared::{Compared, FEW, Line};
+use crate::tally::Tally;
 
 pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
     let tally = Tally::of_first_readings(all.iter().map(|compared| (compared.experiment, compared.result)));

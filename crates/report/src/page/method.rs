@@ -1,11 +1,11 @@
 //! How it was measured, and how to measure it again.
 
+use experiments::measure::Measure;
+use experiments::results::Results;
 use maud::html;
 use page::{Part, emphasised};
 
-use crate::measure::Measure;
-use crate::report::legend::{MEASURES, RULE, names};
-use crate::results::Results;
+use crate::legend::{MEASURES, RULE, names};
 
 /// The last part of the page.
 pub(super) fn part(results: &Results) -> Part {

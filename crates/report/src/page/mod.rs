@@ -9,29 +9,31 @@ mod table;
 mod verdict_bar;
 mod view;
 
+use experiments::Experiment;
+use experiments::results::Results;
+use figures::{Figure, Sources};
 use maud::{Markup, html};
 use page::{Card, Document, Part};
 
 use super::compared::{Compared, compared};
-use crate::experiments::Experiment;
-use crate::figures::{Figure, Sources};
-use crate::results::Results;
 
 /// The figure that says what it is about.
 const OVERVIEW: &str = "overview";
 
 /// What the page shows.
-pub(crate) struct Contents<'a> {
-    pub(crate) experiments: &'a [Experiment],
-    pub(crate) sources: &'a Sources,
+pub struct Contents<'a> {
+    /// All that there are.
+    pub experiments: &'a [Experiment],
+    /// The run.
+    pub sources: &'a Sources,
     /// The same from another seed.
-    pub(crate) second: Option<&'a Results>,
+    pub second: Option<&'a Results>,
     /// Every figure that could be drawn, as SVG.
-    pub(crate) figures: Vec<(Figure, String)>,
+    pub figures: Vec<(Figure, String)>,
 }
 
 /// The page, as HTML.
-pub(crate) fn page(contents: &Contents<'_>) -> String {
+pub fn page(contents: &Contents<'_>) -> String {
     let results = &contents.sources.results;
     let all = compared(contents.experiments, results, contents.second);
     let body = glance::opening(contents, &all);

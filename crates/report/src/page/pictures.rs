@@ -1,10 +1,10 @@
 //! Figures whose picture differs from the paper's, for the opening. What stands beside them says it in full.
 
+use figures::undrawn;
 use maud::{Markup, html};
 use page::emphasised;
 
 use super::Contents;
-use crate::report::undrawn;
 
 /// The figures of this run that differ, each with what differs. A quick run is too coarse to tell.
 pub(super) fn otherwise(contents: &Contents<'_>) -> Markup {

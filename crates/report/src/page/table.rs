@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use experiments::measure::Measure;
 use maud::{Markup, html};
 use page::{Reference, Scale, Strip, axis};
 
-use crate::measure::Measure;
-use crate::report::compared::{Compared, Line, NOTHING, Second};
+use crate::compared::{Compared, Line, NOTHING, Second};
 
 /// Rows from which the paper's layout is easier to read than a list.
 const MANY_ROWS: usize = 4;

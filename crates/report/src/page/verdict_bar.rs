@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::report::tally::{Tally, after};
+use crate::tally::{Tally, after};
 
 /// The bar alone; it says the same as the words beside it.
 pub(super) fn bar(tally: &Tally) -> Markup {
