@@ -12,7 +12,7 @@ use serde::Deserialize;
 use smoothing::Smoother;
 
 use super::slope_cases::view;
-use super::{Agreement, read_json};
+use super::{Agreement, columns, read_json};
 
 /// Trajectories of samples of numbers.
 type Series = Vec<Vec<Vec<f64>>>;
@@ -104,8 +104,4 @@ impl System {
         }
         Ok(())
     }
-}
-
-fn columns(samples: &[Vec<f64>]) -> DMatrix<f64> {
-    DMatrix::from_fn(samples.first().map_or(0, Vec::len), samples.len(), |k, i| samples[i][k])
 }

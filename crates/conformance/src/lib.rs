@@ -15,6 +15,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail, ensure};
+use nalgebra::DMatrix;
 use serde::de::DeserializeOwned;
 
 use self::agreement::Agreement;
@@ -127,4 +128,9 @@ fn json_files(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
 fn read_json<T: DeserializeOwned>(file: &Path) -> anyhow::Result<T> {
     let text = fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
     serde_json::from_str(&text).with_context(|| format!("{} has another form than expected", file.display()))
+}
+
+/// Rows of a file, one a sample, become columns.
+fn columns(rows: &[Vec<f64>]) -> DMatrix<f64> {
+    DMatrix::from_fn(rows.first().map_or(0, Vec::len), rows.len(), |i, j| rows[j][i])
 }

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use anyhow::ensure;
 use lwpr::{Kernel, Lwpr, LwprParams, Metric, MetricAdaptation, Predictor};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use serde::Deserialize;
 
-use super::read_json;
+use super::{columns, read_json};
 
 /// Confidence from here on means that no receptive field was in reach.
 const NO_SUPPORT: f64 = 1e18;
@@ -151,9 +151,4 @@ impl Difference {
     fn relative(&self) -> f64 {
         if self.difference == 0.0 { 0.0 } else { self.difference / self.reference }
     }
-}
-
-/// Rows of the file become columns.
-fn columns(rows: &[Vec<f64>]) -> DMatrix<f64> {
-    DMatrix::from_fn(rows.first().map_or(0, Vec::len), rows.len(), |i, j| rows[j][i])
 }

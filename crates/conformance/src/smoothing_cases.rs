@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use anyhow::ensure;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use serde::Deserialize;
 use smoothing::{AxisScale, Fusion, NoiseVariance, Smoothed, Smoother, Stamped};
 
-use super::{Agreement, read_json};
+use super::{Agreement, columns, read_json};
 
 /// Movements as rows: the time stamps (K, N), positions and velocities (K, N, n).
 type Rows = Vec<Vec<Vec<f64>>>;
@@ -93,11 +93,6 @@ pub(super) fn check_fusion(file: &Path) -> anyhow::Result<Vec<Agreement>> {
 fn stamped(times: &[Vec<f64>], positions: &Rows) -> anyhow::Result<Vec<Stamped>> {
     let movements = times.iter().zip(positions).map(|(times, x)| Stamped::new(times.clone(), columns(x)));
     Ok(movements.collect::<Result<_, _>>()?)
-}
-
-/// Rows of the file become columns.
-fn columns(rows: &[Vec<f64>]) -> DMatrix<f64> {
-    DMatrix::from_fn(rows.first().map_or(0, Vec::len), rows.len(), |i, j| rows[j][i])
 }
 
 /// Sample by sample, as our matrices lie in memory.
