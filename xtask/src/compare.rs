@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::Args;
+use experiments::measure::Measure;
+use experiments::results::{Cell, Results, RowResult};
 
 use crate::files::relative;
-use crate::measure::Measure;
 use crate::progress::say;
-use crate::results::{Cell, Results, RowResult};
 use crate::run_folder::RunFolder;
 
 /// How far a mean may be from the recorded one, as a share of it: sums may be taken in another order.
@@ -117,8 +117,9 @@ impl Comparison {
 
 #[cfg(test)]
 mod tests {
+    use experiments::verdict::Verdict;
+
     use super::*;
-    use crate::verdict::Verdict;
 
     fn committed() -> Results {
         let mut results = RunFolder::committed(2).results().unwrap();

@@ -10,18 +10,18 @@ use std::sync::Arc;
 
 use anyhow::Context as _;
 use clap::Args;
+use experiments::measure::Measure;
+use experiments::results::ExperimentResult;
+use experiments::summary::summarise;
+use experiments::variants::{Cell, Quote, Variants, quotes};
+use experiments::verdict::Verdict;
+use experiments::{Experiment, Setting, Setup, quotable, registry, settings};
 use page::markdown_table;
 
-use crate::experiments::{Experiment, Setting, Setup, quotable, registry, settings};
 use crate::files::{repository, write};
-use crate::measure::Measure;
 use crate::progress::say;
 use crate::records::{Earlier, Records};
-use crate::results::ExperimentResult;
 use crate::runner::{Plan, Work};
-use crate::summary::summarise;
-use crate::variants::{Cell, Quote, Variants, quotes};
-use crate::verdict::Verdict;
 
 /// By how much settings are changed.
 const FACTORS: [f64; 2] = [0.8, 1.2];
@@ -67,7 +67,7 @@ impl Leverage {
         }
         add_table(&mut text, experiment, &rows);
         write(&repository().join("docs/leverage.md"), text)?;
-        self.quoted(&records)?.commit()?;
+        write(&repository().join("docs/records/variants.json"), self.quoted(&records)?.json()?)?;
         say("written: docs/leverage.md, docs/records/variants.json");
         Ok(())
     }

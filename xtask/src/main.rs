@@ -2,27 +2,17 @@
 
 mod compare;
 mod conformance;
-mod experiments;
-mod figures;
 mod files;
 mod leverage;
-mod measure;
-mod paper;
 mod progress;
 mod publish;
 mod records;
 mod report;
 mod reproduce;
-mod results;
 mod revision;
-mod robots;
 mod run_folder;
 mod runner;
-mod seed;
-mod summary;
 mod tidy;
-mod variants;
-mod verdict;
 
 use std::process::ExitCode;
 

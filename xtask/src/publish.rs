@@ -6,18 +6,18 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
 use clap::Args;
+use experiments::measure::Measure;
+use experiments::results::{ExperimentResult, Results, RowResult};
+use experiments::summary::check;
+use experiments::verdict::Verdict;
+use experiments::{Experiment, Setup, registry};
+use figures::{Figure, Sources, compute, draw, figures};
 use page::markdown_table;
+use report::{Section, Tally, folded, key, learners, sections};
 
-use crate::experiments::{Experiment, Setup, registry};
-use crate::figures::{Figure, Sources, compute, figures};
 use crate::files::{relative, repository, write};
-use crate::measure::Measure;
 use crate::progress::say;
-use crate::report::{Section, Tally, draw, folded, key, learners, sections};
-use crate::results::{ExperimentResult, Results, RowResult};
 use crate::run_folder::RunFolder;
-use crate::summary::check;
-use crate::verdict::Verdict;
 
 /// Seeds of the committed runs.
 const FIRST_SEED: u64 = 1;
@@ -37,7 +37,7 @@ const HERO: &str = "overview";
 const PREFACE: &str = "\
 Written by `cargo xtask publish` from [records/](records/), the results of `cargo xtask reproduce --seed 1` and `--seed 2`.
 The last column of each table is the same experiment from another seed. One function decides the verdicts
-([`verdict.rs`](../xtask/src/verdict.rs)).
+([`verdict.rs`](../crates/experiments/src/verdict.rs)).
 
 The paper leaves many settings open. What is used here was *fitted*: settings under which the printed figures come out. All rows of a
 table share one scene; PolicyAlign and the naive baseline each have a regression of their own in Table 2 and Section 4.4. The settings are

@@ -1,17 +1,16 @@
 //! The folder of a run: what is written there, and read again by whoever draws or publishes it.
 
-use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow, bail};
+use experiments::results::Results;
+use figures::{Figure, Sources, documents, figures};
 use serde_json::Value;
 
-use crate::figures::{Figure, Sources, documents, figures};
 use crate::files::{relative, repository, typed, write};
-use crate::results::Results;
 
 /// A folder that a run writes to.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -90,17 +89,11 @@ impl RunFolder {
 
     /// Reads what a run ended with.
     pub(crate) fn sources(&self) -> anyhow::Result<Sources> {
-        let results = self.results()?;
-        let (mut found, mut missing) = (BTreeMap::new(), vec![]);
-        for document in documents() {
-            let path = self.document_path(document.id);
-            if path.exists() {
-                found.insert(document.id.to_owned(), read_document(&path)?);
-            } else if document.experiment.is_none_or(|id| results.experiments.iter().any(|result| result.id == id)) {
-                missing.push(document.id);
-            }
-        }
-        Ok(Sources { results, documents: found, missing })
+        let document = |id: &str| {
+            let path = self.document_path(id);
+            path.exists().then(|| read_document(&path)).transpose()
+        };
+        Sources::of(self.results()?, document)
     }
 
     /// Reads the results alone.
@@ -112,7 +105,7 @@ impl RunFolder {
                 "no run has ended in {folder}: where one was stopped, the same command goes on, with the same --out; else {again} makes one"
             );
         }
-        Results::read(&self.results_path()).map_err(|error| anyhow!("{error:#}; {again} makes another"))
+        read_results(&self.results_path()).map_err(|error| anyhow!("{error:#}; {again} makes another"))
     }
 
     /// Takes away the page and the pictures of an earlier run.
@@ -136,6 +129,12 @@ impl RunFolder {
         }
         Ok(())
     }
+}
+
+fn read_results(path: &Path) -> anyhow::Result<Results> {
+    let name = relative(path);
+    let text = fs::read_to_string(path).with_context(|| format!("cannot read {name}"))?;
+    Results::read(&name, &text)
 }
 
 fn read_document(path: &Path) -> anyhow::Result<Value> {

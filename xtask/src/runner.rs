@@ -2,15 +2,13 @@
 
 use std::sync::Arc;
 
+use experiments::outcome::{Outcome, Outcomes};
+use experiments::seed::generator;
+use experiments::{Experiment, Setup};
 use rayon::prelude::*;
 
-use crate::experiments::{Experiment, Setup};
 use crate::progress::Progress;
-use crate::records::{DataSet, Outcome, Records};
-use crate::seed::generator;
-
-/// The outcomes of one setup, by data set.
-pub(crate) type Outcomes = Vec<Outcome>;
+use crate::records::{DataSet, Records};
 
 /// What to run: how many data sets a setup, from which seed.
 #[derive(Debug, Clone, Copy)]

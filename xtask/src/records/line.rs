@@ -2,10 +2,9 @@
 
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
+use experiments::outcome::Outcome;
 use serde::{Deserialize, Serialize};
 use serde_json::value::{RawValue, to_raw_value};
-
-use super::Outcome;
 
 /// What is kept of one data set of one setup.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -49,10 +48,10 @@ fn hash(record: &RawValue) -> String {
 mod tests {
     use std::collections::BTreeMap;
 
+    use experiments::measure::Measure;
     use proptest::prelude::*;
 
     use super::*;
-    use crate::measure::Measure;
 
     fn record(value: f64) -> Record {
         let outcome = Outcome::Measured(vec![BTreeMap::from([(Measure::Nupe, value), (Measure::Ncpe, 0.25)])]);

@@ -1,7 +1,6 @@
 //! Finished data sets, kept one JSON line each so that nothing but what is in flight is ever lost.
 
 mod line;
-mod outcome;
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
@@ -11,9 +10,9 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use anyhow::Context as _;
+use experiments::outcome::Outcome;
 
 use line::Record;
-pub(crate) use outcome::Outcome;
 
 /// Names one data set of one setup of an experiment.
 #[derive(Debug, Clone, Copy)]
@@ -146,8 +145,9 @@ fn code_identity() -> anyhow::Result<u64> {
 mod tests {
     use std::collections::BTreeMap;
 
+    use experiments::measure::Measure;
+
     use super::*;
-    use crate::measure::Measure;
 
     const DATA_SET: DataSet<'static> =
         DataSet { experiment: "table1", setup: "narrow", definition: "K = 40", seed: 1, number: 7 };

@@ -1,8 +1,7 @@
 //! Which experiments are run: `--only`, and the list of what there is.
 
 use anyhow::bail;
-
-use crate::experiments::{Experiment, Setup};
+use experiments::{Experiment, Setup};
 
 /// Names that are as alike as this may be meant for each other (Jaro and Winkler's measure: 1 for equal names).
 const LIKE: f64 = 0.8;

@@ -1,0 +1,56 @@
+//! What a trial is, as data: it is part of the records' keys.
+
+use serde::Serialize;
+use serde_json::Value;
+
+/// Parameters that can be written down. Robots are left out: their files are part of the program, which the keys hold too.
+pub trait Parameters {
+    /// All of them, by name.
+    ///
+    /// # Errors
+    /// If they cannot be written as JSON.
+    fn parameters(&self) -> serde_json::Result<Value>;
+}
+
+impl<T: Serialize> Parameters for T {
+    ///
+    /// # Errors
+    /// If they cannot be written as JSON.
+    fn parameters(&self) -> serde_json::Result<Value> {
+        serde_json::to_value(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::registry;
+
+    /// Setups that see the same data sets differ in something else, or records of one would be taken for another's.
+    #[test]
+    fn no_two_setups_of_an_experiment_have_the_same_parameters() {
+        for experiment in registry().unwrap() {
+            let all: Vec<_> = experiment.setups.iter().map(|s| (s.system, s.trial.parameters().unwrap())).collect();
+            for (at, one) in all.iter().enumerate() {
+                assert!(one.1.is_object(), "{one:?}");
+                assert!(!all[..at].contains(one), "{} {}", experiment.id, experiment.setups[at].id);
+            }
+        }
+    }
+
+    #[test]
+    fn parameters_name_data_alignment_and_learners() {
+        let experiments = registry().unwrap();
+        let of = |id: &str| {
+            let experiment = experiments.iter().find(|experiment| experiment.id == id).unwrap();
+            experiment.setups[0].trial.parameters().unwrap()
+        };
+        let toy = of("table1");
+        assert_eq!(toy["system"]["n_trajectories"], 40);
+        assert_eq!(toy["pupils"][0]["PolicyAlign"]["passes"], 10);
+        let arm = of("three_link");
+        assert_eq!(arm["arm"]["roll_out"]["time_step"], 0.5);
+        assert_eq!(arm["pupils"][1]["Other"]["parameters"]["params"]["init_d"], 50.0);
+        assert_eq!(of("table2")["grasp"]["gap_least"], 0.17);
+        assert_eq!(of("asimo22")["scenario"]["start_variance"], 0.1);
+    }
+}

@@ -1,0 +1,197 @@
+//! The results of a run, as written to `results.json`.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Context as _, anyhow, bail, ensure};
+use serde::{Deserialize, Serialize, Serializer, ser::Error as _};
+use serde_json::Value;
+
+use crate::Experiment;
+use crate::measure::Measure;
+use crate::paper::Printed;
+use crate::verdict::Verdict;
+
+/// Version of the form of `results.json`.
+pub const SCHEMA: u32 = 3;
+
+/// The oldest form that is still read: it does not say what ran.
+const OLDEST_SCHEMA: u32 = 2;
+
+/// The whole file. All but `run` is the same to the bit for the same seed and program.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Results {
+    /// Version of this form.
+    pub schema: u32,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Whether only few data sets a row were asked for.
+    pub quick: bool,
+    /// What differs between two runs of the same thing.
+    pub run: Run,
+    /// Tables and figures.
+    pub experiments: Vec<ExperimentResult>,
+}
+
+impl Results {
+    /// Reads the text of a `results.json`, which has this name for people.
+    ///
+    /// # Errors
+    /// What is damaged, or of a form that is not read.
+    pub fn read(name: &str, text: &str) -> anyhow::Result<Results> {
+        let value: Value = serde_json::from_str(text).map_err(|error| anyhow!("{name} is damaged ({error})"))?;
+        let schema = value["schema"].as_u64().with_context(|| format!("{name} is not a results.json"))?;
+        ensure!(
+            (u64::from(OLDEST_SCHEMA)..=u64::from(SCHEMA)).contains(&schema),
+            "{name} is of form {schema}, which this version does not read (but forms {OLDEST_SCHEMA} to {SCHEMA})"
+        );
+        let results: Results = serde_json::from_value(value).map_err(|error| anyhow!("{name} is damaged ({error})"))?;
+        if let Some(text) = results.texts().into_iter().find(|text| !is_plain(text)) {
+            bail!("{name} is damaged ({text:?} is no name of a row or experiment and no command of a run)");
+        }
+        Ok(results)
+    }
+
+    /// What is shown to people as it stands.
+    fn texts(&self) -> Vec<&str> {
+        let mut texts = vec![self.run.command.as_str()];
+        for result in &self.experiments {
+            texts.extend([result.id.as_str(), &result.section]);
+            texts.extend(result.rows.iter().map(|row| row.id.as_str()));
+        }
+        texts
+    }
+
+    /// Fails where there are results of other experiments than these.
+    ///
+    /// # Errors
+    /// Says of which.
+    pub fn check_known(&self, experiments: &[Experiment]) -> anyhow::Result<()> {
+        let known = |id: &str| experiments.iter().any(|experiment| experiment.id == id);
+        match self.experiments.iter().find(|result| !known(&result.id)) {
+            Some(result) => bail!("there is no experiment {:?}, but the run has results of it", result.id),
+            None => Ok(()),
+        }
+    }
+
+    /// As written to `results.json`.
+    ///
+    /// # Errors
+    /// If a number is not finite.
+    pub fn json(&self) -> anyhow::Result<String> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+}
+
+/// Whether a text means nothing to a shell, to Markdown or to a terminal.
+fn is_plain(text: &str) -> bool {
+    text.chars().all(|c| c.is_ascii_alphanumeric() || " ._,/-".contains(c))
+}
+
+/// Hundreds of numbers in a row are for machines.
+fn on_one_line<S: Serializer>(values: &Vec<Option<f64>>, serializer: S) -> Result<S::Ok, S::Error> {
+    serde_json::value::to_raw_value(values).map_err(S::Error::custom)?.serialize(serializer)
+}
+
+/// Circumstances of the run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// The command that gives the same again.
+    pub command: String,
+    /// Worker threads.
+    pub threads: usize,
+    /// Data sets that earlier calls of the command had finished; the times are without them.
+    pub resumed: usize,
+    /// Elapsed seconds.
+    pub wall_seconds: f64,
+    /// Processor seconds of all threads.
+    pub cpu_seconds: f64,
+    /// Version of the program.
+    pub version: String,
+    /// The commit it was built from, with `-dirty` where files were changed; none outside of a checkout.
+    #[serde(default)]
+    pub revision: Option<String>,
+    /// The compiler that built it.
+    #[serde(default)]
+    pub rustc: String,
+    /// What it was built for.
+    #[serde(default)]
+    pub target: String,
+}
+
+/// One table or figure.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ExperimentResult {
+    /// Identifier.
+    pub id: String,
+    /// Section of the paper.
+    pub section: String,
+    /// Rows, in the table's order.
+    pub rows: Vec<RowResult>,
+}
+
+/// One row of a table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RowResult {
+    /// Identifier.
+    pub id: String,
+    /// Which samples the errors are of.
+    #[serde(default)]
+    pub tested_on: String,
+    /// Data sets asked for.
+    pub data_sets: usize,
+    /// Data sets that could not be measured; they are counted here and left out of the measures.
+    pub failed: usize,
+    /// Summaries over the other data sets, as far as they have values.
+    pub measures: BTreeMap<Measure, Cell>,
+}
+
+/// One figure: ours, the paper's, and how they compare.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Cell {
+    /// Mean over data sets.
+    pub mean: f64,
+    /// Sample standard deviation over data sets; null for a single data set.
+    pub sd: Option<f64>,
+    /// Median over data sets.
+    pub median: f64,
+    /// The value of each data set, in their order; null where it could not be measured or has no value.
+    #[serde(serialize_with = "on_one_line")]
+    pub values: Vec<Option<f64>>,
+    /// The printed figure, where there is one.
+    pub paper: Option<Printed>,
+    /// The comparison, where there is one.
+    pub verdict: Option<Verdict>,
+}
+
+impl Cell {
+    /// How many data sets gave a value.
+    pub fn n(&self) -> usize {
+        self.values.iter().flatten().count()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Names from a file go into Markdown, a page and the hint of a command.
+    #[test]
+    fn hostile_names_are_damage() {
+        let file = |row: &str| {
+            let results = serde_json::json!({
+                "schema": SCHEMA, "seed": 1, "quick": false,
+                "run": { "command": "cargo xtask reproduce", "threads": 1, "resumed": 0, "wall_seconds": 1.0,
+                         "cpu_seconds": 1.0, "version": "0.1.0" },
+                "experiments": [{ "id": "table1", "section": "4.1", "rows": [
+                    { "id": row, "tested_on": "held-out samples", "data_sets": 1, "failed": 0, "measures": {} }
+                ] }],
+            });
+            Results::read("results.json", &results.to_string())
+        };
+        assert_eq!(file("parabola-40x40-narrow").unwrap().experiments.len(), 1);
+        for row in ["|a|b|", "<script>alert(1)</script>", "$(rm -rf .)", "a\nb", "\u{1b}[2J", "`id`"] {
+            let error = file(row).unwrap_err().to_string();
+            assert!(error.contains("is damaged") && error.contains("no name of a row"), "{row:?}: {error}");
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! The one rule by which a figure of ours is held against the paper's.
+
+use serde::{Deserialize, Serialize};
+
+use crate::measure::Kind;
+use crate::paper::Printed;
+
+/// How our mean compares with the printed one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Within the band around the printed mean.
+    Agrees,
+    /// An error of the learner below the band.
+    #[serde(alias = "better")]
+    Lower,
+    /// An error of the learner above the band.
+    #[serde(alias = "worse")]
+    Higher,
+    /// Outside the band, where neither direction is to be preferred.
+    Differs,
+}
+
+/// A printed share of 0 ± 0 agrees with anything that would be printed so: below 0.005 percent.
+const PRINTED_ZERO: f64 = 0.005;
+
+/// Judges our mean: it agrees within one printed s.d. Only an error that is left to the learner can be lower or higher.
+pub(crate) fn verdict(kind: Kind, ours: f64, paper: Printed) -> Verdict {
+    let difference = ours - paper.mean;
+    let band = match kind {
+        Kind::Share if paper.mean == 0.0 && paper.sd == 0.0 => PRINTED_ZERO,
+        _ => paper.sd,
+    };
+    match kind {
+        _ if difference.abs() <= band => Verdict::Agrees,
+        Kind::Share | Kind::BaselineError | Kind::SetUpError => Verdict::Differs,
+        Kind::LearnerError if difference < 0.0 => Verdict::Lower,
+        Kind::LearnerError => Verdict::Higher,
+    }
+}
+
+impl Verdict {
+    /// The word beside one cell.
+    pub fn word(self) -> &'static str {
+        match self {
+            Verdict::Agrees => "agrees",
+            Verdict::Lower => "lower",
+            Verdict::Higher => "higher",
+            Verdict::Differs => "differs",
+        }
+    }
+
+    /// The words after one cell.
+    pub fn singular(self) -> &'static str {
+        match self {
+            Verdict::Agrees => "agrees",
+            Verdict::Lower => "is lower",
+            Verdict::Higher => "is higher",
+            Verdict::Differs => "differs",
+        }
+    }
+
+    /// The words after a number of cells.
+    pub fn plural(self) -> &'static str {
+        match self {
+            Verdict::Agrees => "agree",
+            Verdict::Lower => "are lower",
+            Verdict::Higher => "are higher",
+            Verdict::Differs => "differ",
+        }
+    }
+
+    /// Whether the figure is at least as low as the paper's.
+    pub fn reached(self) -> bool {
+        matches!(self, Verdict::Agrees | Verdict::Lower)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_and_shares_are_judged_by_their_own_band() {
+        let printed = |mean, sd| Printed { mean, sd };
+        for (kind, ours, paper, expected) in [
+            (Kind::LearnerError, 0.625, printed(0.5, 0.125), Verdict::Agrees),
+            (Kind::LearnerError, 0.375, printed(0.5, 0.125), Verdict::Agrees),
+            (Kind::LearnerError, 0.0625, printed(0.0625, 0.0), Verdict::Agrees),
+            (Kind::LearnerError, 0.0501, printed(0.04, 0.01), Verdict::Higher),
+            (Kind::LearnerError, 0.0299, printed(0.04, 0.01), Verdict::Lower),
+            (Kind::Share, 12.0, printed(10.0, 2.0), Verdict::Agrees),
+            (Kind::Share, 7.9, printed(10.0, 2.0), Verdict::Differs),
+            (Kind::Share, 12.1, printed(10.0, 2.0), Verdict::Differs),
+            (Kind::BaselineError, 0.85, printed(0.75, 0.125), Verdict::Agrees),
+            (Kind::BaselineError, 0.9, printed(0.75, 0.125), Verdict::Differs),
+            (Kind::SetUpError, 0.4, printed(0.75, 0.125), Verdict::Differs),
+            (Kind::SetUpError, 0.7, printed(0.75, 0.125), Verdict::Agrees),
+            (Kind::Share, 0.004, printed(0.0, 0.0), Verdict::Agrees),
+            (Kind::Share, 0.006, printed(0.0, 0.0), Verdict::Differs),
+        ] {
+            assert_eq!(verdict(kind, ours, paper), expected, "{kind:?} {ours} against {paper:?}");
+        }
+    }
+}

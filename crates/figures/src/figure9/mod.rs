@@ -1,0 +1,49 @@
+//! Fig. 9: where the three-link arm's movements end, and what can be learnt there.
+
+mod curves;
+mod scenes;
+
+use experiments::seed::generator;
+use experiments::{ARM_SYSTEM, arm};
+use plot::Picture;
+use serde::{Deserialize, Serialize};
+
+use super::sound::{Sound, some};
+use super::{Document, Drawing, Figure, Sources, rounded};
+use curves::Panels;
+
+pub(super) fn document() -> Document {
+    Document::new("figure9_movements", Some("figure9"), movements)
+}
+
+pub(super) fn figure() -> Figure {
+    Figure::new("figure9", Some("figure9"), &["figure9_movements", "figure9"], draw)
+}
+
+/// Movements of the first data set, (q₁, q₂, q₃) in radians.
+#[derive(Serialize, Deserialize)]
+struct Movements(Vec<Vec<(f64, f64, f64)>>);
+
+impl Sound for Movements {
+    const LARGEST: f64 = 10.0;
+
+    fn check(&self) -> anyhow::Result<()> {
+        some("movements", &self.0)?;
+        self.0.iter().try_for_each(|movement| some("samples of a movement", movement))
+    }
+}
+
+fn movements(seed: u64) -> anyhow::Result<Movements> {
+    let recordings = arm()?.record(&mut generator(seed, ARM_SYSTEM, 0))?;
+    let posture = |q: nalgebra::DVectorView<'_, f64>| (rounded(q[0], 4), rounded(q[1], 4), rounded(q[2], 4));
+    let movement = |recording: &demo_gen::Recording| recording.truth.states.column_iter().map(posture).collect();
+    Ok(Movements(recordings.iter().map(movement).collect()))
+}
+
+fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+    let Movements(movements) = sources.document("figure9_movements")?;
+    let [joint_space, planes, cylinder] = scenes::scenes(&movements);
+    let Panels { along, around, key, tables } = curves::panels(sources)?;
+    let picture = Picture::rows(&[&[&joint_space, &planes, &cylinder], &[&along, &around], &[&key]]);
+    Ok(Drawing { picture, tables })
+}

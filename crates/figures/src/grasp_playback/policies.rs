@@ -1,0 +1,49 @@
+//! Whose policies are rolled out: the truth, and what is learnt of the table's first data set.
+
+use align::{Aligned, DirectPolicyLearning, LwprRegressor, PolicyAlign, PotentialPolicy};
+use demo_gen::{Grasp, Recording, demonstrations};
+use experiments::seed::beside;
+use experiments::{TestSamples, grasp_beside, grasp_naive, grasp_regressor};
+use motion::{NegativeGradient, Policy};
+use rand_chacha::ChaCha8Rng;
+
+use crate::Who;
+
+/// A roll-out leaves the data now and then: there every receptive field counts, however small its activation.
+const CUTOFF: f64 = 1e-9;
+
+/// Who is shown, each with its id.
+pub(crate) const LEARNERS: [(&str, Who); 4] =
+    [("expert", Who::Expert), ("naive", Who::Naive), ("policy_align", Who::PolicyAlign), ("slope_gp", Who::SlopeGp)];
+
+/// What PolicyAlign learns, as for the table.
+pub(super) struct Learnt {
+    pub(super) aligned: Aligned,
+    pub(super) test: TestSamples,
+    pub(super) policy: PotentialPolicy,
+}
+
+impl Learnt {
+    pub(super) fn from(recordings: &[Recording], rng: &mut ChaCha8Rng) -> anyhow::Result<Learnt> {
+        let aligned = PolicyAlign::default().align(&demonstrations(recordings)?)?;
+        let test = TestSamples::draw(&aligned, rng)?;
+        let regressor = LwprRegressor { cutoff: CUTOFF, ..grasp_regressor() };
+        let policy = aligned.learn_without(&test.of_all, &regressor, rng)?;
+        Ok(Learnt { aligned, test, policy })
+    }
+}
+
+/// The policies, in the order of [`LEARNERS`]; learnt as for the table, from what is left of its random numbers.
+pub(super) fn policies(
+    grasp: &Grasp,
+    recordings: &[Recording],
+    rng: &mut ChaCha8Rng,
+) -> anyhow::Result<[Box<dyn Policy>; 4]> {
+    // In the table's order.
+    let Learnt { aligned, test, policy } = Learnt::from(recordings, rng)?;
+    let naive = DirectPolicyLearning { cutoff: CUTOFF, ..grasp_naive() };
+    let naive = naive.learn_policy(aligned.demonstrations(), &test.of_all, rng)?;
+    let slope = grasp_beside().slope(aligned.demonstrations(), &test.of_all, &mut beside(rng))?;
+    let expert = NegativeGradient(grasp.scene.potential());
+    Ok([Box::new(expert), Box::new(naive), Box::new(policy), Box::new(slope)])
+}

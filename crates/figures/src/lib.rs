@@ -1,0 +1,259 @@
+//! The paper's figures. A run computes documents, plain numbers kept as `figures/*.json`; figures are drawn from these
+//! and from the results, and from nothing else, so that they can be drawn again without a run.
+
+#[cfg(test)]
+mod beside_paper;
+mod beyond;
+mod demonstrated;
+mod errors;
+mod figure1;
+mod figure2;
+mod figure3;
+mod figure4;
+mod figure5;
+mod figure6;
+mod figure7;
+mod figure8;
+mod figure9;
+mod figure_b1;
+mod grasp_playback;
+mod legs;
+mod overview;
+mod shapes;
+mod sound;
+mod stage;
+mod state_plane;
+pub mod view;
+mod who;
+mod words;
+
+use std::collections::BTreeMap;
+
+use anyhow::{Context as _, anyhow, bail};
+use experiments::Experiment;
+use experiments::results::{ExperimentResult, Results};
+use plot::Picture;
+use rayon::prelude::*;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+use sound::Sound;
+use words::{Words, words};
+
+use who::Who;
+pub use who::color_of;
+
+/// What a run computes for the figures, from fixed data sets.
+pub struct Document {
+    /// Names the file.
+    pub id: &'static str,
+    /// The experiment whose run it goes with; without one every run computes it.
+    experiment: Option<&'static str>,
+    compute: Box<dyn Fn(u64) -> anyhow::Result<Value> + Sync>,
+}
+
+/// A figure of the paper.
+pub struct Figure {
+    /// Names the files.
+    pub id: &'static str,
+    /// As over the figure in the report.
+    pub title: &'static str,
+    /// What is drawn: true of every run.
+    pub caption: &'static str,
+    /// How it compares with the paper's figure, where that has one. What depends on the run is said of the full run of
+    /// seed 1, by that name: it stands under the figures of all runs.
+    pub beside_paper: Option<&'static str>,
+    /// What the full run shows otherwise than the paper's figure, in a line.
+    pub differs: Option<&'static str>,
+    /// The experiment it stands beside in the report.
+    pub experiment: Option<&'static str>,
+    /// Documents and experiments that it is drawn from.
+    needs: &'static [&'static str],
+    draw: fn(&Sources) -> anyhow::Result<Drawing>,
+}
+
+/// A picture, and the numbers of its curves.
+pub struct Drawing {
+    /// What is seen.
+    pub picture: Picture,
+    /// Written as `figures/<figure>-<name>.csv`.
+    pub tables: Vec<Csv>,
+}
+
+/// A table of numbers for other programs.
+pub struct Csv {
+    /// Ends the file's name.
+    pub name: &'static str,
+    header: Vec<String>,
+    rows: Vec<Vec<f64>>,
+}
+
+/// All that figures may be drawn from.
+pub struct Sources {
+    /// What was measured.
+    pub results: Results,
+    /// By id.
+    pub documents: BTreeMap<String, Value>,
+    /// Ids of documents that belong to the run and are not there.
+    pub missing: Vec<&'static str>,
+}
+
+/// All documents.
+pub fn documents() -> Vec<Document> {
+    vec![
+        overview::document(),
+        figure1::document(),
+        figure2::document(),
+        figure3::document(),
+        figure4::document(),
+        figure5::document(),
+        figure9::document(),
+        figure_b1::document(),
+        grasp_playback::document(),
+        grasp_playback::all_around::document(),
+        beyond::document(),
+    ]
+}
+
+/// All figures, in the paper's order.
+pub fn figures() -> Vec<Figure> {
+    vec![
+        overview::figure(),
+        figure1::figure(),
+        figure2::figure(),
+        figure3::figure(),
+        figure4::figure(),
+        figure5::figure(),
+        figure6::left(),
+        figure6::right(),
+        figure7::figure(),
+        figure8::figure(),
+        figure9::figure(),
+        figure_b1::figure(),
+        beyond::figure(),
+    ]
+}
+
+/// Computes the documents that go with these experiments.
+///
+/// # Errors
+/// If something cannot be made or learnt.
+pub fn compute(experiments: &[Experiment], seed: u64) -> anyhow::Result<BTreeMap<String, Value>> {
+    let mut wanted = documents();
+    wanted.retain(|document| document.experiment.is_none_or(|id| experiments.iter().any(|e| e.id == id)));
+    let document = |document: &Document| {
+        let value = (document.compute)(seed).with_context(|| format!("figure data {}", document.id))?;
+        Ok((document.id.to_owned(), value))
+    };
+    wanted.par_iter().with_max_len(1).map(document).collect()
+}
+
+impl Document {
+    /// A document that `compute` makes from a seed.
+    fn new<D: Serialize + 'static>(
+        id: &'static str,
+        experiment: Option<&'static str>,
+        compute: fn(u64) -> anyhow::Result<D>,
+    ) -> Document {
+        Document { id, experiment, compute: Box::new(move |seed| Ok(serde_json::to_value(compute(seed)?)?)) }
+    }
+}
+
+impl Figure {
+    /// A figure with the words that `crates/figures/words.toml` has for it.
+    fn new(
+        id: &'static str,
+        experiment: Option<&'static str>,
+        needs: &'static [&'static str],
+        draw: fn(&Sources) -> anyhow::Result<Drawing>,
+    ) -> Figure {
+        let Words { title, caption, beside_paper, differs } = words(id);
+        let (beside_paper, differs) = (beside_paper.as_deref(), differs.as_deref());
+        Figure { id, title, caption, beside_paper, differs, experiment, needs, draw }
+    }
+
+    /// Whether all that it needs was run.
+    pub fn can_be_drawn(&self, sources: &Sources) -> bool {
+        let there = |id: &&str| sources.documents.contains_key(*id) || sources.experiment(id).is_some();
+        self.needs.iter().all(there)
+    }
+
+    /// Whether it cannot be drawn only because documents are missing.
+    fn misses(&self, sources: &Sources) -> bool {
+        !self.can_be_drawn(sources) && self.needs.iter().any(|id| sources.missing.contains(id))
+    }
+
+    /// Draws it; nothing where what it needs was not run.
+    fn draw(&self, sources: &Sources) -> anyhow::Result<Option<Drawing>> {
+        if !self.can_be_drawn(sources) {
+            return Ok(None);
+        }
+        (self.draw)(sources).with_context(|| format!("{} cannot be drawn", self.id)).map(Some)
+    }
+}
+
+/// Draws every figure that there are numbers for.
+///
+/// # Errors
+/// Documents that are damaged.
+pub fn draw(sources: &Sources) -> anyhow::Result<Vec<(Figure, Drawing)>> {
+    let drawn = |figure: Figure| Ok(figure.draw(sources)?.map(|drawing| (figure, drawing)));
+    let drawn: Vec<_> = figures().into_par_iter().map(drawn).collect::<anyhow::Result<_>>()?;
+    Ok(drawn.into_iter().flatten().collect())
+}
+
+/// Figures that are not drawn only because their documents are missing.
+pub fn undrawn(sources: &Sources) -> Vec<Figure> {
+    figures().into_iter().filter(|figure| figure.misses(sources)).collect()
+}
+
+impl Sources {
+    /// Results, and the documents that belong to them as far as `read` finds them by their ids.
+    ///
+    /// # Errors
+    /// Those of `read`.
+    pub fn of(results: Results, read: impl Fn(&str) -> anyhow::Result<Option<Value>>) -> anyhow::Result<Sources> {
+        let mut sources = Sources { results, documents: BTreeMap::new(), missing: vec![] };
+        for document in documents() {
+            if let Some(found) = read(document.id)? {
+                sources.documents.insert(document.id.to_owned(), found);
+            } else if document.experiment.is_none_or(|id| sources.experiment(id).is_some()) {
+                sources.missing.push(document.id);
+            }
+        }
+        Ok(sources)
+    }
+
+    /// The results of one experiment.
+    pub fn experiment(&self, id: &str) -> Option<&ExperimentResult> {
+        self.results.experiments.iter().find(|result| result.id == id)
+    }
+
+    /// A document, which has to be there.
+    fn document<D: DeserializeOwned + Sound>(&self, id: &str) -> anyhow::Result<D> {
+        const AGAIN: &str = "the command of its run writes it again";
+        let value = self.documents.get(id).with_context(|| format!("figure data {id} is missing"))?;
+        if let Some(number) = sound::beyond(value, D::LARGEST) {
+            bail!("figure data {id} is damaged: it holds the number {number:e}; {AGAIN}");
+        }
+        let document = D::deserialize(value).with_context(|| format!("figure data {id} has another form; {AGAIN}"))?;
+        document.check().map_err(|error| anyhow!("figure data {id} is damaged: {error:#}; {AGAIN}"))?;
+        Ok(document)
+    }
+}
+
+impl Csv {
+    /// As comma-separated values; what is not a number is an empty cell.
+    pub fn text(&self) -> String {
+        let cell = |value: &f64| if value.is_finite() { value.to_string() } else { String::new() };
+        let row = |row: &Vec<f64>| row.iter().map(cell).collect::<Vec<_>>().join(",") + "\n";
+        self.header.join(",") + "\n" + &self.rows.iter().map(row).collect::<String>()
+    }
+}
+
+/// Rounds to so many decimals: documents hold what can be seen, not what can be computed.
+fn rounded(value: f64, decimals: i32) -> f64 {
+    let scale = 10_f64.powi(decimals);
+    (value * scale).round() / scale
+}

@@ -1,0 +1,178 @@
+//! What there is to say of each cell: ours beside the paper's and beside another seed's, how sure the difference is, and
+//! why it stands out. The Markdown and the page say the same.
+
+use experiments::Experiment;
+use experiments::measure::{Measure, RowOf};
+use experiments::results::{Cell, ExperimentResult, Results, RowResult};
+use experiments::verdict::Verdict;
+
+use super::tally::z;
+
+/// Standard deviations by which an error must undercut the paper's before the report has to say why.
+const REMARKABLY_LOWER: f64 = 2.0;
+
+/// Data sets below which single cells are not worth an explanation.
+pub(super) const FEW: usize = 20;
+
+/// What stands where there is nothing to say.
+pub(super) const NOTHING: &str = "–";
+
+/// One experiment of a run, beside the paper and another seed.
+pub(super) struct Compared<'a> {
+    pub(super) experiment: &'a Experiment,
+    pub(super) result: &'a ExperimentResult,
+    /// The same from another seed.
+    pub(super) second: Option<Second<'a>>,
+}
+
+/// The same experiment from another seed.
+#[derive(Clone, Copy)]
+pub(super) struct Second<'a> {
+    pub(super) seed: u64,
+    result: &'a ExperimentResult,
+}
+
+/// One measure of one row.
+#[derive(Clone, Copy)]
+pub(super) struct Line<'a> {
+    pub(super) row: &'a RowResult,
+    pub(super) measure: Measure,
+    pub(super) cell: &'a Cell,
+    /// The same cell from another seed.
+    second: Option<&'a Cell>,
+    /// Data sets of the paper.
+    paper_n: u32,
+}
+
+/// Every experiment that was run, in the order of the results.
+pub(super) fn compared<'a>(
+    experiments: &'a [Experiment],
+    results: &'a Results,
+    second: Option<&'a Results>,
+) -> Vec<Compared<'a>> {
+    let beside = |result: &'a ExperimentResult| {
+        let second = second.and_then(|second| {
+            let result = second.experiments.iter().find(|other| other.id == result.id)?;
+            Some(Second { seed: second.seed, result })
+        });
+        let experiment = experiments.iter().find(|experiment| experiment.id == result.id)?;
+        Some(Compared { experiment, result, second })
+    };
+    results.experiments.iter().filter_map(beside).collect()
+}
+
+impl<'a> Compared<'a> {
+    /// Whether the paper prints figures; else it shows curves.
+    pub(super) fn is_printed(&self) -> bool {
+        !self.experiment.paper.is_empty()
+    }
+
+    /// The cells of a row, in the order of the paper's tables.
+    pub(super) fn lines_of(&self, row: &'a RowResult) -> impl Iterator<Item = Line<'a>> {
+        let second = self.second.and_then(|second| second.result.rows.iter().find(|other| other.id == row.id));
+        let paper_n = self.experiment.data_sets;
+        let line = move |(&measure, cell)| {
+            let second = second.and_then(|row| row.measures.get(&measure));
+            Line { row, measure, cell, second, paper_n }
+        };
+        row.measures.iter().map(line)
+    }
+
+    /// The rows of the paper's own learners; the others stand in tables of learners.
+    pub(super) fn rows(&self) -> impl Iterator<Item = &'a RowResult> {
+        let contestant = |id: &str| self.experiment.rows().any(|row| row.id == id && row.of == RowOf::Contestant);
+        self.result.rows.iter().filter(move |row| !contestant(&row.id))
+    }
+
+    /// Their cells.
+    pub(super) fn lines(&self) -> impl Iterator<Item = Line<'a>> {
+        self.rows().flat_map(|row| self.lines_of(row))
+    }
+
+    /// Whether there are too few data sets for single cells to mean much.
+    pub(super) fn is_glimpse(&self) -> bool {
+        self.rows().any(|row| row.data_sets < FEW)
+    }
+
+    /// The cells that need a word, each with it.
+    pub(super) fn standing_out(&self) -> Vec<(Line<'a>, &'a str)> {
+        let word = |line: &Line<'_>| self.experiment.explain(&line.row.id, line.measure);
+        let lines = self.lines().filter(|line| needs_a_word(line.cell));
+        lines.map(|line| (line, word(&line).unwrap_or("no explanation has been found yet."))).collect()
+    }
+
+    /// Rows of which not every data set could be measured.
+    pub(super) fn failures(&self) -> impl Iterator<Item = (&'a str, String)> {
+        let failed = self.result.rows.iter().filter(|row| row.failed > 0);
+        failed.map(|row| (row.id.as_str(), format!("{} of {} data sets failed", row.failed, row.data_sets)))
+    }
+}
+
+impl Line<'_> {
+    /// Data sets that have a value.
+    pub(super) fn n(&self) -> usize {
+        self.cell.n()
+    }
+
+    /// Our mean.
+    pub(super) fn mean(&self) -> String {
+        self.measure.show(self.cell.mean)
+    }
+
+    /// Our standard deviation.
+    pub(super) fn spread(&self) -> String {
+        self.cell.sd.map_or(NOTHING.to_owned(), |sd| self.measure.show(sd))
+    }
+
+    /// Our mean ± standard deviation.
+    pub(super) fn ours(&self) -> String {
+        format!("{}\u{a0}±\u{a0}{}", self.mean(), self.spread())
+    }
+
+    /// Our median.
+    pub(super) fn median(&self) -> String {
+        self.measure.show(self.cell.median)
+    }
+
+    /// The printed mean ± standard deviation.
+    pub(super) fn paper(&self) -> String {
+        let show = |value| self.measure.show_printed(value);
+        self.cell
+            .paper
+            .map_or(NOTHING.to_owned(), |paper| format!("{}\u{a0}±\u{a0}{}", show(paper.mean), show(paper.sd)))
+    }
+
+    /// Difference of the two means over its standard error.
+    pub(super) fn z(&self) -> String {
+        z(self.cell, self.paper_n).map_or(NOTHING.to_owned(), |z| format!("{z:+.1}"))
+    }
+
+    /// How many times our standard deviation is the printed one, where they differ by more than a factor of two.
+    pub(super) fn spread_ratio(&self) -> Option<String> {
+        let (paper, sd) = self.cell.paper.zip(self.cell.sd)?;
+        let ratio = sd / paper.sd;
+        (paper.sd > 0.0 && !(0.5..=2.0).contains(&ratio)).then(|| format!("× {ratio:.2}"))
+    }
+
+    /// The verdict's word.
+    pub(super) fn verdict(&self) -> &'static str {
+        self.cell.verdict.map_or(NOTHING, Verdict::word)
+    }
+
+    /// The other seed's mean.
+    pub(super) fn second(&self) -> String {
+        self.second.map_or(NOTHING.to_owned(), |cell| self.measure.show(cell.mean))
+    }
+
+    /// The other seed's verdict, where there is one.
+    pub(super) fn second_verdict(&self) -> &'static str {
+        self.second.and_then(|cell| cell.verdict).map_or("", Verdict::word)
+    }
+}
+
+/// Figures that are not reached, and errors that are lower by far, must be explained.
+fn needs_a_word(cell: &Cell) -> bool {
+    let (Some(paper), Some(verdict)) = (cell.paper, cell.verdict) else { return false };
+    let far_lower = verdict == Verdict::Lower && paper.mean - cell.mean > REMARKABLY_LOWER * paper.sd;
+    !verdict.reached() || far_lower
+}

@@ -1,0 +1,217 @@
+//! Learners held against each other: a line for each error, a column for each learner.
+
+use std::collections::BTreeMap;
+
+use experiments::measure::Measure;
+use experiments::results::{Cell, ExperimentResult};
+use experiments::{Contest, Contestant, Experiment};
+use page::markdown_table;
+
+use super::compared::NOTHING;
+
+/// So many lines are named one by one.
+const FEW: usize = 5;
+
+/// A ratio below this is shown as "0": it says nothing but that rounding is left.
+const NEGLIGIBLE: f64 = 1e-9;
+
+/// The contests of an experiment, as far as they were run.
+pub(crate) struct Contests<'a> {
+    /// What has to be said of them.
+    pub(crate) remark: Option<&'static str>,
+    /// Who has a column.
+    pub(crate) contestants: Vec<Contestant>,
+    pub(crate) lines: Vec<ContestLine<'a>>,
+}
+
+/// One error of several learners, on the data sets that all of them have.
+pub(crate) struct ContestLine<'a> {
+    pub(crate) contest: &'a Contest,
+    pub(crate) n: usize,
+    cells: Vec<(Contestant, &'a Cell)>,
+}
+
+impl<'a> Contests<'a> {
+    /// Nothing where an experiment has none, or none was run.
+    pub(crate) fn of(experiment: &'a Experiment, result: &'a ExperimentResult) -> Option<Contests<'a>> {
+        let cell = |row: &str, measure: Measure| {
+            result.rows.iter().find(|other| other.id == row).and_then(|row| row.measures.get(&measure))
+        };
+        let line = |contest: &'a Contest| {
+            let found = contest.entries.iter();
+            let cells: Vec<_> =
+                found.filter_map(|entry| Some((entry.contestant, cell(&entry.row, entry.measure)?))).collect();
+            let n = cells.iter().map(|(_, cell)| cell.values.len()).min()?;
+            cells.iter().any(|(who, _)| *who == Contestant::SlopeGp).then_some(ContestLine { contest, n, cells })
+        };
+        let lines: Vec<_> = experiment.contests.iter().filter_map(line).collect();
+        let takes_part = |who: &Contestant| lines.iter().any(|line| line.mean(*who).is_some());
+        let contestants: Vec<_> = Contestant::ALL.into_iter().filter(takes_part).collect();
+        (!lines.is_empty()).then_some(Contests { remark: experiment.contests_remark, contestants, lines })
+    }
+
+    /// As a table.
+    pub(crate) fn markdown(&self) -> String {
+        markdown_table(&self.header(), &self.rows())
+    }
+
+    /// What stands over the columns.
+    pub(crate) fn header(&self) -> Vec<&'static str> {
+        let learners = self.contestants.iter().map(|who| who.label());
+        let ratio = self.has_ratio().then_some("slope GP / PolicyAlign");
+        ["learnt from", "error of", "n"].into_iter().chain(learners).chain(ratio).collect()
+    }
+
+    /// One line a contest: its case, its error, its data sets, each learner's mean, and a ratio of means.
+    pub(crate) fn rows(&self) -> Vec<Vec<String>> {
+        self.lines.iter().map(|line| self.row(line)).collect()
+    }
+
+    fn row(&self, line: &ContestLine<'_>) -> Vec<String> {
+        let measure = line.contest.measure;
+        let mean = |who: &Contestant| line.mean(*who).map_or(NOTHING.to_owned(), |mean| shown_mean(measure, mean));
+        let ratio = self.has_ratio().then(|| line.ratio().map_or(NOTHING.to_owned(), shown_ratio));
+        let first = [line.contest.case.clone(), measure.label().to_owned(), line.n.to_string()];
+        first.into_iter().chain(self.contestants.iter().map(mean)).chain(ratio).collect()
+    }
+
+    /// Who errs least, and where PolicyAlign errs more than another method of its time.
+    pub(crate) fn findings(&self) -> String {
+        let mut least: BTreeMap<Contestant, usize> = BTreeMap::new();
+        for line in &self.lines {
+            *least.entry(line.least()).or_default() += 1;
+        }
+        let mut ranked: Vec<(Contestant, usize)> = least.into_iter().collect();
+        ranked.sort_by_key(|&(_, times)| std::cmp::Reverse(times));
+        let won: Vec<String> = ranked.iter().map(|(who, times)| format!("{} in {times}", who.label())).collect();
+        let mut text = format!("Least error, of {}: {}.", self.lines.len(), won.join(", "));
+        for (who, name) in
+            [(Contestant::Naive, "The naive learner"), (Contestant::ConstraintConsistent, "Radial basis")]
+        {
+            let ahead: Vec<String> =
+                self.lines.iter().filter(|line| line.is_ahead_of_policy_align(who)).map(ContestLine::name).collect();
+            text += &match ahead.len() {
+                0 => String::new(),
+                few @ 1..=FEW => format!(" {name} errs less than PolicyAlign in {few}: {}.", ahead.join(", ")),
+                many => format!(" {name} errs less than PolicyAlign in {many}."),
+            };
+        }
+        text
+    }
+
+    fn has_ratio(&self) -> bool {
+        self.contestants.contains(&Contestant::PolicyAlign)
+    }
+}
+
+impl ContestLine<'_> {
+    /// The mean over the data sets that all have.
+    pub(crate) fn mean(&self, who: Contestant) -> Option<f64> {
+        let (_, cell) = self.cells.iter().find(|(other, _)| *other == who)?;
+        let values: Vec<f64> = cell.values[..self.n].iter().flatten().copied().collect();
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    }
+
+    /// Whose mean is the smallest; "as read" and "no trend" are no learners of their own.
+    fn least(&self) -> Contestant {
+        let means =
+            self.cells.iter().filter(|(who, _)| !matches!(who, Contestant::Reading | Contestant::SlopeGpNoTrend));
+        let means = means.filter_map(|(who, _)| Some((*who, self.mean(*who)?)));
+        let least = means.min_by(|(_, a), (_, b)| a.total_cmp(b));
+        least.map_or(Contestant::SlopeGp, |(who, _)| who)
+    }
+
+    fn is_ahead_of_policy_align(&self, who: Contestant) -> bool {
+        self.mean(who).zip(self.mean(Contestant::PolicyAlign)).is_some_and(|(who, policy_align)| who < policy_align)
+    }
+
+    /// Its case, and of which error.
+    fn name(&self) -> String {
+        format!("`{}` {}", self.contest.case, self.contest.measure.label())
+    }
+
+    /// The slope GP's mean over PolicyAlign's.
+    fn ratio(&self) -> Option<f64> {
+        Some(self.mean(Contestant::SlopeGp)? / self.mean(Contestant::PolicyAlign)?)
+    }
+}
+
+/// Errors of these learners differ by orders of magnitude: small ones are all shown by their exponents.
+fn shown_mean(measure: Measure, mean: f64) -> String {
+    if mean != 0.0 && mean.abs() < 1e-3 { format!("{mean:.0e}") } else { measure.show(mean) }
+}
+
+fn shown_ratio(ratio: f64) -> String {
+    match ratio {
+        _ if ratio < NEGLIGIBLE => format!("< {NEGLIGIBLE:.0e}"),
+        _ if ratio < 1e-2 => format!("{ratio:.0e}"),
+        _ => format!("{ratio:.2}"),
+    }
+}
+
+/// What has to be said of such tables.
+pub(crate) const CAUTION: &str = "\
+Where learners stand side by side, numbers are means over the first n data sets, fewer than in the paper's tables (errors differ by factors of a \
+thousand), of the same recordings and test samples for all. Parabola, grasp, body and arm have quadratic potentials, which the slope GP's \
+families contain: where the class contains the truth and velocities are exact, exact recovery is no feat. The column \"no trend\" shows what is \
+left without them.";
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use experiments::registry;
+    use experiments::results::RowResult;
+
+    use super::*;
+
+    fn row(id: &str, values: &[Option<f64>]) -> RowResult {
+        let known: Vec<f64> = values.iter().flatten().copied().collect();
+        let mean = known.iter().sum::<f64>() / known.len() as f64;
+        let cell = Cell { mean, sd: None, median: mean, values: values.to_vec(), paper: None, verdict: None };
+        let measures = BTreeMap::from([(Measure::Nupe, cell)]);
+        RowResult { id: id.to_owned(), tested_on: String::new(), data_sets: values.len(), failed: 0, measures }
+    }
+
+    /// PolicyAlign has more data sets than the others: only the first ones count, and a set without a value for nobody
+    /// but its own learner.
+    #[test]
+    fn means_are_over_the_data_sets_that_all_have() {
+        let experiments = registry().unwrap();
+        let table1 = experiments.iter().find(|experiment| experiment.id == "table1").unwrap();
+        let case = "parabola-40x40-narrow";
+        let rows = vec![
+            row(case, &[Some(0.1), Some(0.3), Some(9.0)]),
+            row(&format!("{case}/slope_gp"), &[Some(0.001), Some(0.003)]),
+            row(&format!("{case}/naive"), &[None, Some(0.5)]),
+        ];
+        let result = ExperimentResult { id: "table1".to_owned(), section: "4.1".to_owned(), rows };
+        let contests = Contests::of(table1, &result).unwrap();
+        assert_eq!(contests.contestants, [Contestant::Naive, Contestant::PolicyAlign, Contestant::SlopeGp]);
+        let findings = "Least error, of 1: slope GP in 1.";
+        assert_eq!(contests.findings(), findings);
+        let expected = [case, "nUPE", "2", "0.5000", "0.2000", "0.0020", "0.01"];
+        assert_eq!(contests.rows(), [expected.map(str::to_owned).to_vec()]);
+        assert_eq!(contests.header().len(), expected.len());
+    }
+
+    #[test]
+    fn where_the_slope_gp_was_not_run_there_is_no_table() {
+        let experiments = registry().unwrap();
+        let table1 = experiments.iter().find(|experiment| experiment.id == "table1").unwrap();
+        let rows = vec![row("parabola-40x40-narrow", &[Some(0.1)])];
+        let result = ExperimentResult { id: "table1".to_owned(), section: "4.1".to_owned(), rows };
+        assert!(Contests::of(table1, &result).is_none());
+    }
+
+    #[test]
+    fn small_errors_are_shown_by_their_exponents() {
+        let shown = [0.2, 0.000_762, 3e-21, 0.0].map(|mean| shown_mean(Measure::Nupe, mean));
+        assert_eq!(shown, ["0.2000", "8e-4", "3e-21", "0.000000"]);
+    }
+
+    #[test]
+    fn ratios_show_what_they_can() {
+        assert_eq!([2.5, 0.004, 3e-21].map(shown_ratio), ["2.50", "4e-3", "< 1e-9"]);
+    }
+}

@@ -1,0 +1,44 @@
+//! How to read the tables.
+
+use experiments::measure::Measure;
+
+/// What stands in the columns and how cells are judged; `**` is about what is emphasised.
+pub(super) const RULE: &str = "\
+Errors are mean squared errors as a share of the variance of the true policy or potential: 0 is perfect.
+\"ours\" is the mean ± the sample standard deviation over data sets, \"n\" how many there are, \"paper\" what is printed. \"z\" is the
+difference of the two means over its standard error (both spreads count): how sure it is that there is a difference, not how large it is.
+A mean **agrees** if it is within one printed standard deviation of the printed mean (printed 0 ± 0: below 0.005 %). An error that is left to
+the learner is else **lower** or **higher**; lower can mean an easier set-up or a smoother regression. What the set-up decides (discard rates,
+the error of alignment, which follows from the time step) and the naive baseline **differ**. \"s.d.\" is ours over the printed one, where they
+differ by more than a factor of two; it is not judged.";
+
+/// Measures and what they are.
+pub(super) const MEASURES: [(&[Measure], &str); 13] = [
+    (&[Measure::PotentialNmse], "error of the learnt potential (A3)"),
+    (
+        &[Measure::Nupe, Measure::Ncpe],
+        "error of the learnt policy, unconstrained (A1) and under the constraints of the demonstrations (A2)",
+    ),
+    (
+        &[Measure::NupeAll, Measure::NcpeAll],
+        "the same on held-out samples of all movements, not of the kept ones alone",
+    ),
+    (&[Measure::NupeFresh], "the same on ten movements from new starts in the same box, which nobody learnt from"),
+    (&[Measure::Naive, Measure::PolicyAlign], "error of that learner's policy under the constraint of the row"),
+    (&[Measure::NaiveAll, Measure::PolicyAlignAll], "the same on held-out samples of all movements"),
+    (&[Measure::AlignmentNmse], "error of the aligned local potentials (A4)"),
+    (&[Measure::Disc], "trajectories left out, %"),
+    (&[Measure::Unsupported], "test samples outside every receptive field, %"),
+    (&[Measure::BeyondLimits], "movements that leave the robot's joint limits somewhere, %"),
+    (&[Measure::ExpectedNupe], "what a Gaussian process expects nupe to be"),
+    (&[Measure::Rotation], "data sets in which the slope GP finds that there is no potential, %"),
+    (
+        &[Measure::ReadFree, Measure::ReadConstrained, Measure::ReadAmbiguous, Measure::ReadUnexplained],
+        "data sets that are read so, %",
+    ),
+];
+
+/// Names of measures, one after the other.
+pub(super) fn names(measures: &[Measure], name: fn(Measure) -> &'static str) -> String {
+    measures.iter().map(|&measure| name(measure)).collect::<Vec<_>>().join(", ")
+}

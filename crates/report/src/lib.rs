@@ -1,0 +1,21 @@
+//! What a run says, beside the paper and beside another seed's run: in words, tables and a page.
+//!
+//! - [`terminal`]: the printed cells. [`markdown()`]: everything, and its parts. [`page()`]: everything with its figures.
+//! - [`learners()`]: learners held against each other. [`Tally`]: how many printed cells got which verdict.
+//!
+//! It is given experiments, results and drawn figures; to read and write is up to whoever asks.
+
+mod compared;
+mod contests;
+mod learners;
+mod legend;
+mod markdown;
+mod page;
+mod tally;
+mod terminal;
+
+pub use self::page::{Contents, page};
+pub use learners::learners;
+pub use markdown::{Section, folded, key, markdown, sections};
+pub use tally::Tally;
+pub use terminal::terminal;

@@ -1,0 +1,159 @@
+//! An experiment: its tables, its figures, what stands out, what the paper leaves open.
+
+use experiments::verdict::Verdict;
+use maud::{Markup, html};
+use page::{emphasised, key};
+
+use super::table::{columns, grid, is_printed, list, scales};
+use super::verdict_bar::{bar, words};
+use super::{Contents, readings, view};
+use crate::compared::{Compared, Line};
+use crate::contests::Contests;
+use crate::tally::Tally;
+
+/// The section of an experiment.
+pub(super) fn section(compared: &Compared<'_>, contents: &Contents<'_>) -> Markup {
+    let experiment = compared.experiment;
+    let tally = Tally::of([(compared.experiment, compared.result)]);
+    let figures: Vec<_> =
+        contents.figures.iter().filter(|(figure, _)| figure.experiment == Some(experiment.id)).collect();
+    html! {
+        header {
+            h2 { (experiment.title) }
+            p .where {
+                @if experiment.section != "none" { "Section " (experiment.section) " of the paper · " }
+                code { (experiment.id) }
+            }
+            @if tally.total() > 0 { (bar(&tally)) (words(&tally)) }
+        }
+        @for (row, what) in compared.failures() { p .notice { code { (row) } ": " (what) "." } }
+        @if compared.is_printed() {
+            (printed(compared))
+            @if experiment.id == view::EXPERIMENT { (view::view(contents.sources, &figures)) }
+            @for (figure, svg) in &figures { (super::card(figure, svg, experiment.title)) }
+            (standing_out(compared)) (contests(compared)) (left_open(compared))
+        } @else {
+            @for (figure, svg) in &figures { (super::card(figure, svg, experiment.title)) }
+            (readings::counts(compared)) (contests(compared)) (left_open(compared))
+            @if compared.rows().next().is_some() { (curves(compared)) }
+        }
+    }
+}
+
+/// The printed cells, and folded away what more there is to know.
+fn printed(compared: &Compared<'_>) -> Markup {
+    let scales = scales(compared);
+    let columns = columns(compared);
+    html! {
+        @match columns {
+            Some(columns) => {
+                (grid(compared, &columns, &scales))
+                (key("the paper’s mean ± s.d."))
+                details {
+                    summary { "Every cell: median, z, second seed, and what the paper does not print" }
+                    (list(compared, &scales, |_| true))
+                }
+            }
+            None => {
+                (list(compared, &scales, is_printed))
+                (key("the paper’s mean ± s.d."))
+                @if compared.lines().any(|line| !is_printed(&line)) {
+                    details {
+                        summary { "What the paper does not print" }
+                        (list(compared, &scales, |line| !is_printed(line)))
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The numbers behind curves.
+fn curves(compared: &Compared<'_>) -> Markup {
+    html! {
+        details {
+            summary { "The numbers behind the curves" }
+            (list(compared, &scales(compared), |_| true))
+            (key("the paper’s mean ± s.d."))
+        }
+    }
+}
+
+/// Learners side by side, where there are several.
+fn contests(compared: &Compared<'_>) -> Markup {
+    html! {
+        @if let Some(contests) = Contests::of(compared.experiment, compared.result) {
+            h3 { "Learners side by side" }
+            p { (emphasised(&contests.findings())) " " a href={ "#" (super::learners::ID) } { "Who they are" } }
+            @if let Some(remark) = contests.remark { p { (emphasised(remark)) } }
+            div .sideways tabindex="0" role="region" aria-label={ "Learners side by side: " (compared.experiment.id) } {
+                table .list .contests {
+                    thead { tr { @for name in contests.header() { th scope="col" { (name) } } } }
+                    tbody {
+                        @for row in contests.rows() {
+                            tr {
+                                th scope="row" { (row[0]) }
+                                @for (cell, name) in row[1..].iter().zip(&contests.header()[1..]) {
+                                    td .number data-label=(name) { (cell) }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn standing_out(compared: &Compared<'_>) -> Markup {
+    let cells = compared.standing_out();
+    html! {
+        @if !compared.is_glimpse() && !cells.is_empty() {
+            h3 { "What stands out" }
+            p .minor { "Numbers quoted here are of the full run of seed 1." }
+            dl .reasons {
+                // Neighbours of which the same is to be said stand together.
+                @for alike in cells.chunk_by(|(_, a), (_, b)| a == b) {
+                    div .{ "is-" (worst(alike)) } {
+                        @for (line, _) in alike { dt { code { (line.row.id) } " " (line.measure.label()) } }
+                        dd { (emphasised(&sentence(alike[0].1))) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The word of the worst verdict among cells.
+fn worst(cells: &[(Line<'_>, &str)]) -> &'static str {
+    cells.iter().filter_map(|(line, _)| line.cell.verdict).max().map_or("", Verdict::word)
+}
+
+/// With a capital.
+pub(super) fn sentence(word: &str) -> String {
+    let mut letters = word.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+fn left_open(compared: &Compared<'_>) -> Markup {
+    let experiment = compared.experiment;
+    html! {
+        h3 {
+            @if experiment.section == "none" { "How it is set up" } @else { "What the paper leaves open, and what is used here" }
+        }
+        p {
+            (emphasised(experiment.remark))
+            " More in " code { "docs/decisions/" (experiment.decisions) } "."
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sentence_begins_with_a_capital() {
+        assert_eq!(["as in", "Über", ""].map(sentence), ["As in", "Über", ""]);
+    }
+}

@@ -1,0 +1,39 @@
+//! Who learns, and what the errors are: what the tables take for known.
+
+use experiments::Contestant;
+use experiments::measure::Measure;
+use figures::color_of;
+use maud::{Markup, html};
+use page::{Part, emphasised};
+
+use crate::contests::CAUTION;
+use crate::legend::{MEASURES, names};
+
+/// Its address within the page.
+pub(super) const ID: &str = "learners";
+
+/// The part after the opening.
+pub(super) fn part() -> Part {
+    let title = "Learners and errors".to_owned();
+    let body = html! {
+        h2 { (title) }
+        dl .measures {
+            @for who in Contestant::ALL { div { dt { (swatch(who)) (who.label()) } dd { (who.description()) } } }
+        }
+        p { (emphasised(CAUTION)) }
+        h3 { "What the errors are" }
+        p {
+            "π is a policy, φ its potential, N the projector on what a constraint lets through. Errors are mean squared errors as a share of the \
+             variance of the true policy or potential: 0 is perfect, 1 as bad as the best constant. (A1) to (A4) and (9) are the paper’s equations."
+        }
+        dl .measures {
+            @for (measures, meaning) in MEASURES { div { dt { (names(measures, Measure::label)) } dd { (meaning) } } }
+        }
+    };
+    Part { id: ID.to_owned(), title, body }
+}
+
+/// Its colour in the figures, where it has one.
+fn swatch(who: Contestant) -> Markup {
+    html! { @if let Some(color) = color_of(who) { span .swatch style={ "background:" (color) } {} } }
+}

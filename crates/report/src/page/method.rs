@@ -1,0 +1,28 @@
+//! How it was measured, and how to measure it again.
+
+use experiments::results::Results;
+use maud::html;
+use page::{Part, emphasised};
+
+use crate::legend::RULE;
+
+/// The last part of the page.
+pub(super) fn part(results: &Results) -> Part {
+    let title = "How it was measured".to_owned();
+    let body = html! {
+        h2 { (title) }
+        p { (emphasised(RULE)) }
+        h3 { "Again, on your machine" }
+        pre tabindex="0" { code {
+            (results.run.command) "    # these numbers; on one machine, to the last bit\n"
+            "cargo xtask reproduce --list      # experiments and rows, for --only\n"
+            "cargo xtask report                # this page from a finished run"
+        } }
+        p .versions {
+            "policy-align " (results.run.version)
+            @if let Some(revision) = &results.run.revision { ", commit " code { (revision) } }
+            ", results.json of form " (results.schema) ", seed " (results.seed) "."
+        }
+    };
+    Part { id: "method".to_owned(), title, body }
+}

@@ -1,0 +1,28 @@
+//! How movements of each kind are read, where that was measured.
+
+use maud::{Markup, html};
+
+use crate::compared::Compared;
+use crate::learners::{READ_AS, confusion};
+
+/// The experiment of which it is the result.
+const EXPERIMENT: &str = "readings";
+
+/// A table: kinds of movements, and how many data sets of each are read as what.
+pub(super) fn counts(compared: &Compared<'_>) -> Markup {
+    html! {
+        @if compared.experiment.id == EXPERIMENT {
+            table .counted {
+                thead { tr { @for (at, name) in READ_AS.iter().enumerate() { th scope="col" .number[at > 0] { (name) } } } }
+                tbody {
+                    @for row in confusion(compared.result) {
+                        tr {
+                            th scope="row" { (row[0]) }
+                            @for count in &row[1..] { td .number { (count) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! The tables of an experiment: the paper's own layout where every row has the same measures, and all cells line by line.
+
+use std::collections::BTreeMap;
+
+use experiments::measure::Measure;
+use maud::{Markup, html};
+use page::{Reference, Scale, Strip, axis};
+
+use crate::compared::{Compared, Line, NOTHING, Second};
+
+/// Rows from which the paper's layout is easier to read than a list.
+const MANY_ROWS: usize = 4;
+
+/// One scale for each measure of an experiment; learners that are columns of one table share theirs.
+pub(super) type Scales = BTreeMap<Measure, Scale>;
+
+/// Errors of learners side by side.
+const SIDE_BY_SIDE: [Measure; 4] = [Measure::Naive, Measure::NaiveAll, Measure::PolicyAlign, Measure::PolicyAlignAll];
+
+pub(super) fn scales(compared: &Compared<'_>) -> Scales {
+    let measures = compared.lines().map(|line| line.measure);
+    let share = |a, b| a == b || (SIDE_BY_SIDE.contains(&a) && SIDE_BY_SIDE.contains(&b));
+    let scale = |measure| {
+        let lines: Vec<Line<'_>> = compared.lines().filter(|line| share(line.measure, measure)).collect();
+        let values = lines.iter().flat_map(|line| line.cell.values.iter().copied().flatten());
+        Scale::around(values, lines.iter().filter_map(reference))
+    };
+    measures.map(|measure| (measure, scale(measure))).collect()
+}
+
+/// The measures that are printed in every row, where these are all that is printed.
+pub(super) fn columns(compared: &Compared<'_>) -> Option<Vec<Measure>> {
+    let printed = |row| compared.lines_of(row).filter(is_printed).map(|line| line.measure).collect::<Vec<_>>();
+    let mut rows = compared.rows().map(printed);
+    let first = rows.next()?;
+    (compared.rows().count() >= MANY_ROWS && !first.is_empty() && rows.all(|row| row == first)).then_some(first)
+}
+
+/// What the paper prints for a cell.
+fn reference(line: &Line<'_>) -> Option<Reference> {
+    line.cell.paper.map(|paper| Reference { mean: paper.mean, sd: paper.sd })
+}
+
+/// Every data set of a cell.
+fn strip(line: &Line<'_>, scale: Scale) -> Markup {
+    let show = |value| line.measure.show(value);
+    let (mean, median) = (line.cell.mean, line.cell.median);
+    Strip { values: &line.cell.values, mean, median, reference: reference(line), show: &show }.drawn(scale)
+}
+
+pub(super) fn is_printed(line: &Line<'_>) -> bool {
+    line.cell.paper.is_some()
+}
+
+/// As in the paper: a line for each row, a column for each measure.
+pub(super) fn grid(compared: &Compared<'_>, columns: &[Measure], scales: &Scales) -> Markup {
+    html! {
+        table .grid {
+            thead {
+                tr {
+                    th scope="col" { "Row" }
+                    @for measure in columns { th scope="col" { (measure.label()) (axis(scales[measure])) } }
+                }
+            }
+            tbody {
+                @for row in compared.rows() {
+                    tr {
+                        th scope="row" { (parts(&row.id)) }
+                        @for line in compared.lines_of(row).filter(|line| columns.contains(&line.measure)) {
+                            td data-row=(row.id) data-measure=(line.measure.name()) {
+                                div .judged data-label=(line.measure.label()) { (verdict(&line)) (ours(&line)) }
+                                span .minor { "paper " span .paper { (line.paper()) } }
+                                (strip(&line, scales[&line.measure]))
+                                (axis(scales[&line.measure]))
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A name that may be broken after each of its parts.
+fn parts(name: &str) -> Markup {
+    html! { @for part in name.split_inclusive('-') { (part) wbr; } }
+}
+
+/// Whether a list has columns for what is printed.
+#[derive(Clone, Copy, PartialEq)]
+enum Columns {
+    BesidePaper,
+    Alone,
+}
+
+/// A line for each cell that is wanted.
+pub(super) fn list(compared: &Compared<'_>, scales: &Scales, wanted: fn(&Line<'_>) -> bool) -> Markup {
+    let with_paper = compared.lines().any(|line| wanted(&line) && is_printed(&line));
+    let columns = if with_paper { Columns::BesidePaper } else { Columns::Alone };
+    html! {
+        table .list {
+            thead {
+                tr {
+                    th scope="col" { "Row" }
+                    th scope="col" { "Measure" }
+                    th scope="col" .number { "Ours" }
+                    @if columns == Columns::BesidePaper {
+                        th scope="col" .number { "Paper" }
+                        th scope="col" { "Verdict" }
+                    }
+                    @if let Some(second) = compared.second { th scope="col" .number { "Seed " (second.seed) } }
+                    th scope="col" { "Each data set" }
+                }
+            }
+            @for row in compared.rows() {
+                @let lines: Vec<Line<'_>> = compared.lines_of(row).filter(wanted).collect();
+                @if !lines.is_empty() {
+                    tbody {
+                        @for (i, line) in lines.iter().enumerate() {
+                            tr data-row=(row.id) data-measure=(line.measure.name()) {
+                                @if i == 0 { th scope="rowgroup" rowspan=(lines.len()) { (parts(&row.id)) } }
+                                th scope="row" { (line.measure.label()) }
+                                (cells(line, columns))
+                                @if let Some(second) = compared.second { (beside(second, line)) }
+                                td .dots data-label="Each data set" { (strip(line, scales[&line.measure])) (axis(scales[&line.measure])) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Ours, and the paper's where there is any.
+fn cells(line: &Line<'_>, columns: Columns) -> Markup {
+    html! {
+        td .number data-label="Ours" {
+            (ours(line))
+            span .minor { "median " span .median { (line.median()) } ", n " span .n { (line.n()) } }
+        }
+        @if columns == Columns::BesidePaper {
+            td .number data-label="Paper" {
+                span .paper { (line.paper()) }
+                @if is_printed(line) { span .minor { "z " span .z { (line.z().replace('-', "−")) } @if let Some(ratio) = line.spread_ratio() { ", s.d. " (ratio) } } }
+            }
+            td data-label="Verdict" { (verdict(line)) }
+        }
+    }
+}
+
+/// The same from another seed.
+fn beside(second: Second<'_>, line: &Line<'_>) -> Markup {
+    html! {
+        td .number data-label={ "Seed " (second.seed) } {
+            span .second { (line.second()) }
+            span .minor { (line.second_verdict()) }
+        }
+    }
+}
+
+/// Our mean ± standard deviation.
+fn ours(line: &Line<'_>) -> Markup {
+    html! { span .ours { b { (line.mean()) } "\u{a0}±\u{a0}" (line.spread()) } }
+}
+
+/// The verdict as a word in its colour.
+fn verdict(line: &Line<'_>) -> Markup {
+    html! {
+        @if line.cell.verdict.is_some() { span .verdict .{ "is-" (line.verdict()) } { (line.verdict()) } }
+        @else { (NOTHING) }
+    }
+}
