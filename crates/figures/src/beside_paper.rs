@@ -168,5 +168,5 @@ fn the_grasp_s_rates_are_as_said() {
     let registry = experiments::registry().unwrap();
     let table = registry.iter().find(|experiment| experiment.id == "table2").unwrap();
     let above = 100.0 * (table.paper("alignment", Measure::AlignmentNmse).unwrap().mean / alone - 1.0);
-    assert!(text.contains(&format!("{above:.0} percent above")), "{above}: {text}");
+    assert!(text.contains(&format!("{above:.0} percent larger")), "{above}: {text}");
 }

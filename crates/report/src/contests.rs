@@ -83,8 +83,8 @@ impl<'a> Contests<'a> {
         }
         let mut ranked: Vec<(Contestant, usize)> = least.into_iter().collect();
         ranked.sort_by_key(|&(_, times)| std::cmp::Reverse(times));
-        let won: Vec<String> = ranked.iter().map(|(who, times)| format!("{} in {times}", who.label())).collect();
-        let mut text = format!("Least error, of {}: {}.", self.lines.len(), won.join(", "));
+        let won: Vec<String> = ranked.iter().map(|(who, times)| format!("{} {times}", who.label())).collect();
+        let mut text = format!("Least error in {} comparisons: {}.", self.lines.len(), won.join(", "));
         for (who, name) in
             [(Contestant::Naive, "The naive learner"), (Contestant::ConstraintConsistent, "Radial basis")]
         {
@@ -188,7 +188,7 @@ mod tests {
         let result = ExperimentResult { id: "table1".to_owned(), section: "4.1".to_owned(), rows };
         let contests = Contests::of(table1, &result).unwrap();
         assert_eq!(contests.contestants, [Contestant::Naive, Contestant::PolicyAlign, Contestant::SlopeGp]);
-        let findings = "Least error, of 1: slope GP in 1.";
+        let findings = "Least error in 1 comparisons: slope GP 1.";
         assert_eq!(contests.findings(), findings);
         let expected = [case, "nUPE", "2", "0.5000", "0.2000", "0.0020", "0.01"];
         assert_eq!(contests.rows(), [expected.map(str::to_owned).to_vec()]);

@@ -87,15 +87,13 @@ fn contests(compared: &Compared<'_>) -> Markup {
             p { (emphasised(&contests.findings())) " " a href={ "#" (super::learners::ID) } { "Who they are" } }
             @if let Some(remark) = contests.remark { p { (emphasised(remark)) } }
             div .sideways tabindex="0" role="region" aria-label={ "Learners side by side: " (compared.experiment.id) } {
-                table .list .contests {
-                    thead { tr { @for name in contests.header() { th scope="col" { (name) } } } }
+                table .contests {
+                    thead { tr { @for (at, name) in contests.header().iter().enumerate() { th scope="col" .number[at > 1] { (name) } } } }
                     tbody {
                         @for row in contests.rows() {
                             tr {
                                 th scope="row" { (row[0]) }
-                                @for (cell, name) in row[1..].iter().zip(&contests.header()[1..]) {
-                                    td .number data-label=(name) { (cell) }
-                                }
+                                @for (at, cell) in row[1..].iter().enumerate() { td .number[at > 0] { (cell) } }
                             }
                         }
                     }

@@ -73,7 +73,7 @@ const WORKS: f64 = 0.5;
 fn fitted() -> Markup {
     html! {
         h2 .small { "What was fitted" }
-        ul .differ {
+        ul .points {
             li {
                 (settings().len()) " settings that the paper does not print were chosen so that its numbers come out: how often the toy’s constraint \
                  is drawn anew, where ball, wall and obstacle are, the 22 joints’ attractor, time steps, the regressions’ widths and passes (with 22 joints \

@@ -12,7 +12,7 @@ const EXPERIMENT: &str = "readings";
 pub(super) fn counts(compared: &Compared<'_>) -> Markup {
     html! {
         @if compared.experiment.id == EXPERIMENT {
-            table .counted {
+            div .sideways tabindex="0" role="region" aria-label="How movements are read" { table .counted {
                 thead { tr { @for (at, name) in READ_AS.iter().enumerate() { th scope="col" .number[at > 0] { (name) } } } }
                 tbody {
                     @for row in confusion(compared.result) {
@@ -22,7 +22,7 @@ pub(super) fn counts(compared: &Compared<'_>) -> Markup {
                         }
                     }
                 }
-            }
+            } }
         }
     }
 }

@@ -61,7 +61,7 @@ fn the_closest_is_named_beside_the_end() {
     view::<()>(&mut page, "select({ learner: 'policy_align', constraint: 'gap', start: 0 })");
     view::<()>(&mut page, "render()");
     let text: String = page.evaluate("document.querySelector('.view-words').textContent");
-    let line = text.lines().find(|line| line.starts_with("policy-align")).unwrap().to_owned();
+    let line = text.lines().find(|line| line.starts_with("PolicyAlign")).unwrap().to_owned();
     let numbers = |from: &str| -> Vec<f64> {
         let words = line.split(from).nth(1).unwrap().split(" cm").next().unwrap();
         words.split(" and ").map(|number| number.trim().parse().unwrap()).collect()
@@ -84,7 +84,7 @@ fn what_the_policy_wants_is_named_where_the_robot_misses_it() {
             let text: String = page.evaluate(words);
             assert!(text.starts_with("From the robot’s left and right palm"), "{text}");
             let missed: bool = page.evaluate(MISSED);
-            let line = text.lines().find(|line| line.starts_with("policy-align")).unwrap().to_owned();
+            let line = text.lines().find(|line| line.starts_with("PolicyAlign")).unwrap().to_owned();
             assert_eq!(line.contains("Its policy wants"), missed, "{constraint}, start {start}: {line}");
         }
     }
