@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use experiments::results::Results;
 use experiments::{Experiment, registry};
-use figures::{Drawing, Figure, Sources, draw, figures, undrawn};
+use figures::{Drawing, Figure, Sources, draw, drawn_in_part, figures, undrawn};
 use rayon::prelude::*;
 use report::{Contents, markdown, page};
 
@@ -70,10 +70,15 @@ pub(crate) fn written(out: &RunFolder) -> String {
 
 /// What cannot be drawn, and what to do about it.
 fn missing(sources: &Sources, from: &RunFolder) -> String {
-    let ids: Vec<&str> = undrawn(sources).iter().map(|figure| figure.id).collect();
+    let ids = |figures: &[Figure]| figures.iter().map(|figure| figure.id).collect::<Vec<_>>().join(", ");
+    let (undrawn, in_part) = (undrawn(sources), drawn_in_part(sources));
+    let what = match (undrawn.is_empty(), in_part.is_empty()) {
+        (false, false) => format!("not drawn: {}; drawn in part: {}", ids(&undrawn), ids(&in_part)),
+        (true, false) => format!("drawn in part: {}", ids(&in_part)),
+        _ => format!("not drawn: {}", ids(&undrawn)),
+    };
     format!(
-        "not drawn: {}, as the run has no figure data {}; `{}` computes them",
-        ids.join(", "),
+        "{what}, as the run has no figure data {}; `{}` computes them",
         sources.missing.join(", "),
         from.command(&sources.results)
     )

@@ -163,3 +163,22 @@ fn a_run_that_left_its_figures_out_leaves_none_of_an_earlier_one() {
     assert!(folder.path().join("elsewhere/report.html").exists());
     assert!(!folder.path().join("elsewhere/results.json").exists());
 }
+
+/// Older runs know nothing of the movements that were shown from all sides.
+#[test]
+fn a_figure_that_is_drawn_in_part_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let (records, run) =
+        (Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/records/seed-1"), folder.path().join("run"));
+    fs::create_dir_all(run.join("figures")).unwrap();
+    fs::copy(records.join("results.json"), run.join("results.json")).unwrap();
+    for document in fs::read_dir(records.join("figures")).unwrap().map(|entry| entry.unwrap().path()) {
+        if !document.ends_with("grasp_all_around.json") {
+            fs::copy(&document, run.join("figures").join(document.file_name().unwrap())).unwrap();
+        }
+    }
+    let printed = said(folder.path(), &["report", "--from", "run"]);
+    assert!(printed.contains("drawn in part: figure8, as the run has no figure data grasp_all_around"), "{printed}");
+    let page = fs::read_to_string(run.join("report.html")).unwrap();
+    assert!(page.contains("Drawn in part, as their figure data are missing: Figure 8."));
+}

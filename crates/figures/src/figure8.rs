@@ -12,7 +12,7 @@ use super::{Csv, Drawing, Figure, Sources, rounded, stage};
 use crate::Who;
 
 pub(crate) fn figure() -> Figure {
-    Figure::new("figure8", Some("table2"), &["grasp_playback"], draw)
+    Figure::new("figure8", Some("table2"), &["grasp_playback"], draw).with(&[ALL_AROUND_DOCUMENT])
 }
 
 /// From mark to mark on a curve, seconds.
@@ -38,12 +38,14 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     Ok(Drawing { picture, tables: vec![ends(&playback), over_time(&distances)] })
 }
 
+/// The movements of those who saw the goal from all sides.
+const ALL_AROUND_DOCUMENT: &str = "grasp_all_around";
+
 /// The movements of everybody; older figure data have none of those who saw the goal from all sides.
 fn played(sources: &Sources) -> anyhow::Result<GraspPlayback> {
-    const ID: &str = "grasp_all_around";
     let mut playback: GraspPlayback = sources.document("grasp_playback")?;
-    if sources.documents.contains_key(ID) {
-        playback.movements.extend(sources.document::<AllAround>(ID)?.movements(ALL_AROUND.0));
+    if sources.documents.contains_key(ALL_AROUND_DOCUMENT) {
+        playback.movements.extend(sources.document::<AllAround>(ALL_AROUND_DOCUMENT)?.movements(ALL_AROUND.0));
     }
     Ok(playback)
 }

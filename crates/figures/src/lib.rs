@@ -70,6 +70,8 @@ pub struct Figure {
     pub experiment: Option<&'static str>,
     /// Documents and experiments that it is drawn from.
     needs: &'static [&'static str],
+    /// Documents that add to it.
+    also: &'static [&'static str],
     draw: fn(&Sources) -> anyhow::Result<Drawing>,
 }
 
@@ -170,7 +172,12 @@ impl Figure {
     ) -> Figure {
         let Words { title, caption, beside_paper, differs } = words(id);
         let (beside_paper, differs) = (beside_paper.as_deref(), differs.as_deref());
-        Figure { id, title, caption, beside_paper, differs, experiment, needs, draw }
+        Figure { id, title, caption, beside_paper, differs, experiment, needs, also: &[], draw }
+    }
+
+    /// Drawn with more in it where these documents are there, too; figure data of older runs lack some.
+    fn with(self, also: &'static [&'static str]) -> Figure {
+        Figure { also, ..self }
     }
 
     /// Whether all that it needs was run.
@@ -182,6 +189,11 @@ impl Figure {
     /// Whether it cannot be drawn only because documents are missing.
     fn misses(&self, sources: &Sources) -> bool {
         !self.can_be_drawn(sources) && self.needs.iter().any(|id| sources.missing.contains(id))
+    }
+
+    /// Whether it is drawn, but not all of it, because documents are missing.
+    fn is_drawn_in_part(&self, sources: &Sources) -> bool {
+        self.can_be_drawn(sources) && self.also.iter().any(|id| sources.missing.contains(id))
     }
 
     /// Draws it; nothing where what it needs was not run.
@@ -206,6 +218,11 @@ pub fn draw(sources: &Sources) -> anyhow::Result<Vec<(Figure, Drawing)>> {
 /// Figures that are not drawn only because their documents are missing.
 pub fn undrawn(sources: &Sources) -> Vec<Figure> {
     figures().into_iter().filter(|figure| figure.misses(sources)).collect()
+}
+
+/// Figures of which something is not drawn because documents are missing.
+pub fn drawn_in_part(sources: &Sources) -> Vec<Figure> {
+    figures().into_iter().filter(|figure| figure.is_drawn_in_part(sources)).collect()
 }
 
 impl Sources {

@@ -2,7 +2,7 @@
 
 use experiments::Setup;
 use experiments::results::Results;
-use figures::undrawn;
+use figures::{Figure, Sources, drawn_in_part, undrawn};
 use maud::{Markup, html};
 
 use super::Contents;
@@ -39,17 +39,20 @@ pub(super) fn facts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
     }
 }
 
-/// Figures that would be here if their data were.
+/// Figures, or parts of them, that would be here if their data were.
 fn missing(contents: &Contents<'_>) -> Markup {
-    let names: Vec<&str> = undrawn(contents.sources).iter().map(|figure| page::name(figure.title)).collect();
-    html! {
-        @if !names.is_empty() {
-            p .notice {
-                "Not drawn, as their figure data are missing: " (names.join("; ")) ". " code { (contents.sources.results.run.command) }
-                " computes them."
+    let notice = |what: &str, find: fn(&Sources) -> Vec<Figure>| {
+        let names: Vec<&str> = find(contents.sources).iter().map(|figure| page::name(figure.title)).collect();
+        html! {
+            @if !names.is_empty() {
+                p .notice {
+                    (what) ", as their figure data are missing: " (names.join("; ")) ". " code { (contents.sources.results.run.command) }
+                    " computes them."
+                }
             }
         }
-    }
+    };
+    html! { (notice("Not drawn", undrawn)) (notice("Drawn in part", drawn_in_part)) }
 }
 
 /// How the other run went, in what was run here.
