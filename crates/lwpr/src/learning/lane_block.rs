@@ -173,7 +173,7 @@ impl<S: Simd, M: metric::Shape, const N: usize> pulp::WithSimd for TrainLanes<'_
         let wanted = train::<Register<S>, Register<S>, M>(
             (simd, simd),
             field,
-            settings,
+            (settings, Layout::of(settings, width, (M::METRIC, N))),
             (&x[..width], *y),
             activation,
             &mut rows[..SCRATCH_ROWS * width],
