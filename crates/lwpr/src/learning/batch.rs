@@ -7,6 +7,7 @@
 
 use std::cmp::Reverse;
 
+use lanes::LANES;
 use pulp::Simd;
 
 use crate::field::Field;
@@ -120,10 +121,12 @@ impl BatchTraining<'_> {
             *task = self.next_field(&mut block, lane, &mut queue);
         }
         while 3 * tasks.iter().flatten().count() > S::F64_LANES {
-            let (w, wanted) = block.train(self.settings);
+            let (activation, wanted) = block.train(self.settings);
+            let mut w = [0.0; LANES];
+            activation.store(&mut w, 0);
             for lane in 0..S::F64_LANES {
                 let Some(Task { field: k, sample }) = tasks[lane] else { continue };
-                self.see(sample, k, w.get(lane));
+                self.see(sample, k, w[lane]);
                 let grows = wanted.is_some_and(|wanted| wanted.get(lane) > 0.0);
                 let next = if grows { None } else { self.next_sample(&mut block, lane, k, sample + 1) };
                 tasks[lane] = next;
