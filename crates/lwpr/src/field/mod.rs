@@ -48,6 +48,7 @@ pub(crate) struct Field<T = f64> {
 /// several fields side by side.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Layout {
+    pub(crate) n_in: usize,
     pub(crate) width: usize,
     /// Length of M.
     pub(crate) metric: usize,
@@ -78,16 +79,16 @@ impl Layout {
     /// `width` is passed apart so that it can be a constant.
     #[inline(always)]
     pub(crate) fn new(settings: &Settings, width: usize) -> Self {
-        Layout::of(settings, width, settings.params.metric == Metric::Full)
+        // Rows of two are neither padded nor shared by fields: then all is a constant.
+        let n_in = if width == 2 { 2 } else { settings.n_in };
+        Layout::of(settings, width, (settings.params.metric, n_in))
     }
 
-    /// The same where the kind of metric is a constant too.
+    /// The same where more may be constants.
     #[inline(always)]
-    pub(crate) fn of(settings: &Settings, width: usize, full: bool) -> Self {
-        // Rows of two are neither padded nor shared by fields, so that M has two: then all is a constant.
-        let n_in = if width == 2 { 2 } else { settings.n_in };
-        let metric = if full { n_in * width } else { width };
-        Layout { width, metric, meta: if settings.meta() { metric } else { 0 } }
+    pub(crate) fn of(settings: &Settings, width: usize, (metric, n_in): (Metric, usize)) -> Self {
+        let metric = if metric == Metric::Full { n_in * width } else { width };
+        Layout { n_in, width, metric, meta: if settings.meta() { metric } else { 0 } }
     }
 
     /// Where the rows of the directions begin.
@@ -95,6 +96,12 @@ impl Layout {
     pub(crate) fn directions(self) -> usize {
         2 * self.width + 2 * self.metric + 2 * self.meta
     }
+}
+
+/// All directions. With two inputs there are two, from birth on, which the compiler is told.
+#[inline(always)]
+pub(crate) fn known_directions<T>(directions: &mut [Direction<T>], layout: Layout) -> &mut [Direction<T>] {
+    if layout.n_in == 2 { &mut directions[..2] } else { directions }
 }
 
 impl<T> Field<T> {
@@ -115,7 +122,8 @@ impl<T> Field<T> {
         layout: Layout,
     ) -> impl Iterator<Item = (&mut Direction<T>, DirectionRows<'_>)> {
         let rows = self.rows[layout.directions()..].chunks_exact_mut(DIRECTION_ROWS * layout.width);
-        self.directions.iter_mut().zip(rows).map(move |(direction, rows)| {
+        let directions = known_directions(&mut self.directions, layout);
+        directions.iter_mut().zip(rows).map(move |(direction, rows)| {
             let (covariance, rows) = rows.split_at_mut(layout.width);
             let (sum_wsx, rows) = rows.split_at_mut(layout.width);
             let (u, p) = rows.split_at_mut(layout.width);

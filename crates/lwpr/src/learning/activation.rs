@@ -1,15 +1,15 @@
 //! Which fields a sample activates, and how strongly.
 
-use lanes::{LANES, Number, Register};
+use lanes::{LANES, Lanes, Number, Register, groups_of};
 use pulp::Simd;
 
-use crate::Metric;
 use crate::field::element::{Element, add_scaled};
 use crate::field::{Field, Layout};
 use crate::learning::activation_table::ActivationTable;
 use crate::learning::memory::Seen;
 use crate::settings::Settings;
 use crate::settings::kernel::Activation;
+use crate::{Kernel, Metric};
 
 /// A field that a sample activates, its squared distance and activation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,13 +19,38 @@ pub(crate) struct ActivatedField {
     pub(crate) activation: Activation<f64>,
 }
 
-/// The fields that a sample activates, in list order, with what belongs to each at the same place.
+/// Eight squared distances side by side, and the activations that follow.
+#[derive(Debug, Clone, Copy, Default)]
+#[repr(align(64))]
+struct Group {
+    q: Lanes,
+    activation: Activation<Lanes>,
+}
+
+impl Group {
+    /// Takes in the distances of part `part`. Returns the activations.
+    #[inline(always)]
+    fn activate<S: Simd>(&mut self, kernel: Kernel, q: Register<S>, part: usize) -> Register<S> {
+        let activation = kernel.at(q);
+        q.store(&mut self.q, part);
+        activation.w.store(&mut self.activation.w, part);
+        activation.slope.store(&mut self.activation.slope, part);
+        activation.curvature.store(&mut self.activation.curvature, part);
+        activation.w
+    }
+}
+
+/// The fields that a sample activates, in list order.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Near {
     len: usize,
     fields: Vec<usize>,
-    q: Vec<f64>,
-    activation: Activation<Vec<f64>>,
+    /// Distances and activations: of a narrow model's fields where they have their place among all, so that nothing is moved
+    /// about between vector registers; of other models' in list order.
+    groups: Vec<Group>,
+    among_all: bool,
+    /// The strongest activation, unless it is beyond the radius.
+    largest: f64,
 }
 
 impl Near {
@@ -42,13 +67,15 @@ impl Near {
         seen: Option<&mut Seen>,
     ) {
         self.clear(fields.len());
+        if settings.narrow() {
+            table.look(simd, settings, x, squared_radius, self);
+            return;
+        }
         let from = match &seen {
             Some(seen) => self.recall(seen),
             None => 0,
         };
-        if settings.narrow() {
-            table.look(simd, settings, x, squared_radius, self);
-        } else if settings.params.metric == Metric::Diagonal {
+        if settings.params.metric == Metric::Diagonal {
             if settings.width == 24 {
                 self.look::<S>(simd, (fields, from), (&x[..24], squared_radius), &mut scratch[..24]);
             } else {
@@ -63,18 +90,18 @@ impl Near {
         if let Some(seen) = seen {
             let known = seen.fields.len();
             seen.fields.extend_from_slice(&self.fields[known..self.len]);
-            seen.q.extend_from_slice(&self.q[known..self.len]);
+            seen.q.extend((known..self.len).map(|place| self.groups[place / LANES].q[place % LANES]));
             seen.n_compared = fields.len();
         }
-        self.activate(simd, settings);
+        self.activate(simd, settings.params.kernel);
     }
 
     /// Takes over what is known of a sample. Returns with how many fields it has been compared.
     #[inline(always)]
     fn recall(&mut self, seen: &Seen) -> usize {
-        self.len = seen.fields.len();
-        self.fields[..self.len].copy_from_slice(&seen.fields);
-        self.q[..self.len].copy_from_slice(&seen.q);
+        for (&field, &q) in seen.fields.iter().zip(&seen.q) {
+            self.see(field, q, f64::INFINITY);
+        }
         seen.n_compared
     }
 
@@ -96,57 +123,103 @@ impl Near {
     #[inline(always)]
     pub(crate) fn only(&mut self, field: usize, q: f64, activation: Activation<f64>) {
         self.clear(1);
-        self.len = 1;
-        (self.fields[0], self.q[0]) = (field, q);
-        (self.activation.w[0], self.activation.slope[0], self.activation.curvature[0]) =
-            (activation.w, activation.slope, activation.curvature);
+        (self.len, self.fields[0]) = (1, field);
+        let Group { q: first, activation: Activation { w, slope, curvature } } = &mut self.groups[0];
+        (first[0], w[0], slope[0], curvature[0]) = (q, activation.w, activation.slope, activation.curvature);
     }
 
+    #[inline(always)]
     fn clear(&mut self, n_fields: usize) {
-        self.len = 0;
-        let room = n_fields.next_multiple_of(LANES);
-        if self.q.len() < room {
-            self.fields.resize(room, 0);
-            let Activation { w, slope, curvature } = &mut self.activation;
-            for numbers in [&mut self.q, w, slope, curvature] {
-                numbers.resize(room, 0.0);
-            }
+        (self.len, self.among_all, self.largest) = (0, false, 0.0);
+        if self.fields.len() < n_fields {
+            self.make_room(groups_of(n_fields));
         }
+    }
+
+    #[cold]
+    fn make_room(&mut self, n_groups: usize) {
+        self.fields.resize(n_groups * LANES, 0);
+        self.groups.resize(n_groups, Group::default());
     }
 
     /// Keeps field and distance if it is within the radius, without a branch: which fields are near cannot be predicted.
     #[inline(always)]
-    pub(super) fn see(&mut self, field: usize, q: f64, squared_radius: f64) {
+    fn see(&mut self, field: usize, q: f64, squared_radius: f64) {
         self.fields[self.len] = field;
-        self.q[self.len] = q;
+        self.groups[self.len / LANES].q[self.len % LANES] = q;
         self.len += usize::from(q < squared_radius);
     }
 
-    /// Distances become activations, several at a time; what lies beyond the end is never looked at.
+    /// Distances of the fields seen become activations, several at a time.
     #[inline(always)]
-    fn activate<S: Simd>(&mut self, simd: S, settings: &Settings) {
-        let room = self.len.next_multiple_of(LANES);
-        let Activation { w, slope, curvature } = &mut self.activation;
-        let out = Register::<S>::elements_mut(&mut w[..room]).iter_mut();
-        let out = out.zip(Register::<S>::elements_mut(&mut slope[..room]));
-        let out = out.zip(Register::<S>::elements_mut(&mut curvature[..room]));
-        for (&q, ((w, slope), curvature)) in Register::<S>::elements(&self.q[..room]).iter().zip(out) {
-            let activation = settings.params.kernel.at(Register::of(simd, q));
-            *w = activation.w.raw();
-            *slope = activation.slope.raw();
-            *curvature = activation.curvature.raw();
+    fn activate<S: Simd>(&mut self, simd: S, kernel: Kernel) {
+        let mut largest = Register::splat(simd, 0.0);
+        for (g, group) in self.groups[..groups_of(self.len)].iter_mut().enumerate() {
+            for (lane, q) in group.q.iter_mut().enumerate() {
+                // What lies beyond the end is infinitely far away.
+                *q = if g * LANES + lane < self.len { *q } else { f64::INFINITY };
+            }
+            for part in 0..Register::<S>::parts() {
+                let q = Register::load(simd, &group.q, part);
+                largest = group.activate(kernel, q, part).larger(largest);
+            }
         }
+        self.largest = largest.largest();
+    }
+
+    /// [`see`](Self::see) and [`activate`](Self::activate) for the eight fields of group `g` of a narrow model. Returns the
+    /// larger of their activations and `largest`.
+    #[inline(always)]
+    pub(super) fn see_group<S: Simd>(
+        &mut self,
+        kernel: Kernel,
+        (g, q): (usize, &Lanes),
+        squared_radius: f64,
+        mut largest: Register<S>,
+    ) -> Register<S> {
+        let (simd, group) = (largest.token(), &mut self.groups[g]);
+        let limit = Register::splat(simd, squared_radius);
+        let mut close = false;
+        for part in 0..Register::<S>::parts() {
+            let q = Register::load(simd, q, part);
+            if Register::<S>::any(simd, limit.above(q)) {
+                largest = group.activate(kernel, q, part).larger(largest);
+                close = true;
+            }
+        }
+        if close {
+            let fields = &mut self.fields[self.len..][..LANES];
+            let mut count = 0;
+            for (lane, &q) in q.iter().enumerate() {
+                fields[count % LANES] = g * LANES + lane;
+                count += usize::from(q < squared_radius);
+            }
+            self.len += count;
+        }
+        largest
+    }
+
+    /// All fields of a narrow model have been seen.
+    #[inline(always)]
+    pub(super) fn all_seen<S: Simd>(&mut self, largest: Register<S>) {
+        (self.among_all, self.largest) = (true, largest.largest());
+    }
+
+    /// Whether the sample needs a field of its own.
+    #[inline(always)]
+    pub(crate) fn asks_for_field(&self, settings: &Settings) -> bool {
+        self.largest <= settings.params.w_gen
     }
 
     /// Field, squared distance and activation of each.
     #[inline(always)]
     pub(crate) fn iter(&self) -> impl Iterator<Item = ActivatedField> {
-        let Activation { w, slope, curvature } = &self.activation;
-        let numbers = self.q.iter().zip(w).zip(slope).zip(curvature);
-        self.fields[..self.len].iter().zip(numbers).map(|(&field, (((&q, &w), &slope), &curvature))| ActivatedField {
-            field,
-            q,
-            activation: Activation { w, slope, curvature },
+        self.fields[..self.len].iter().enumerate().map(|(place, &field)| {
+            let place = if self.among_all { field } else { place };
+            let (group, lane) = (&self.groups[place / LANES], place % LANES);
+            let Activation { w, slope, curvature } = &group.activation;
+            let activation = Activation { w: w[lane], slope: slope[lane], curvature: curvature[lane] };
+            ActivatedField { field, q: group.q[lane], activation }
         })
     }
 }

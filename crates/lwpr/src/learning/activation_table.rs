@@ -3,10 +3,10 @@
 use lanes::{LANES, Lanes, Number, Register};
 use pulp::Simd;
 
-use crate::Metric;
 use crate::field::Field;
 use crate::learning::activation::Near;
 use crate::settings::{Settings, padded};
+use crate::{Kernel, Metric};
 
 /// Centres and metrics of all fields, in blocks of eight: for each dimension eight centres, then, eight by eight, what
 /// decides about distances ([`distance`]).
@@ -34,25 +34,12 @@ impl ActivationTable {
         for (row, &c) in block.iter_mut().zip(field.centre(settings)) {
             row[k % LANES] = c;
         }
-        self.set_metric(settings, k, field);
+        self.set_metric((settings.params.metric, n), k, field.m(settings));
     }
 
-    /// Takes over the metric of field `k` after it has learnt.
+    /// Takes over M of field `k` after it has learnt. The shape is passed so that it can be a constant.
     #[inline(always)]
-    pub(crate) fn set_metric(&mut self, settings: &Settings, k: usize, field: &Field) {
-        if !settings.narrow() {
-            return;
-        }
-        let m = field.m(settings);
-        match (settings.params.metric, settings.n_in) {
-            (Metric::Diagonal, 2) => self.set_metric_of((Metric::Diagonal, 2), k, m),
-            (Metric::Full, 2) => self.set_metric_of((Metric::Full, 2), k, m),
-            shape => self.set_metric_of(shape, k, m),
-        }
-    }
-
-    #[inline(always)]
-    fn set_metric_of(&mut self, (metric, n): (Metric, usize), k: usize, m: &[f64]) {
+    pub(crate) fn set_metric(&mut self, (metric, n): (Metric, usize), k: usize, m: &[f64]) {
         let (lane, size) = (k % LANES, n + metric.len(n));
         let rows = &mut self.blocks[k / LANES * size..][n..size];
         if metric == Metric::Diagonal {
@@ -87,10 +74,11 @@ impl ActivationTable {
     /// dimensions, which the compiler then knows, arithmetic is shorter than loops around it.
     #[inline(always)]
     pub(super) fn look<S: Simd>(&self, simd: S, settings: &Settings, x: &[f64], squared_radius: f64, near: &mut Near) {
+        let (kernel, sample) = (settings.params.kernel, (x, squared_radius));
         match (settings.params.metric, settings.n_in) {
-            (Metric::Diagonal, 2) => self.look_with(simd, (Metric::Diagonal, 2), x, squared_radius, near),
-            (Metric::Full, 2) => self.look_with(simd, (Metric::Full, 2), x, squared_radius, near),
-            shape => self.look_with(simd, shape, x, squared_radius, near),
+            (Metric::Diagonal, 2) => self.look_with(simd, (Metric::Diagonal, 2), kernel, sample, near),
+            (Metric::Full, 2) => self.look_with(simd, (Metric::Full, 2), kernel, sample, near),
+            shape => self.look_with(simd, shape, kernel, sample, near),
         }
     }
 
@@ -100,30 +88,24 @@ impl ActivationTable {
         &self,
         simd: S,
         (metric, n): (Metric, usize),
-        x: &[f64],
-        squared_radius: f64,
+        kernel: Kernel,
+        (x, squared_radius): (&[f64], f64),
         near: &mut Near,
     ) {
-        let limit = Register::splat(simd, squared_radius);
+        let mut largest = Register::splat(simd, 0.0);
         let mut dx = [[0.0; LANES]; LANES];
         for (b, block) in self.blocks.chunks_exact(n + metric.len(n)).enumerate() {
             let (centres, elements) = block.split_at(n);
             let mut q = [0.0; LANES];
-            let mut close = false;
             for part in 0..Register::<S>::parts() {
-                for ((dx, centre), &x) in dx.iter_mut().zip(centres).zip(x) {
+                for ((dx, centre), &x) in dx.iter_mut().zip(centres).zip(&x[..n]) {
                     (Register::splat(simd, x) - Register::load(simd, centre, part)).store(dx, part);
                 }
-                let distance = distance(simd, metric, (&dx[..n], elements), part);
-                close |= Register::<S>::any(simd, limit.above(distance));
-                distance.store(&mut q, part);
+                distance(simd, metric, (&dx[..n], elements), part).store(&mut q, part);
             }
-            if close {
-                for (lane, &q) in q.iter().enumerate() {
-                    near.see(b * LANES + lane, q, squared_radius);
-                }
-            }
+            largest = near.see_group(kernel, (b, &q), squared_radius, largest);
         }
+        near.all_seen(largest);
     }
 }
 

@@ -7,6 +7,7 @@
 
 use std::cmp::Reverse;
 
+use lanes::LANES;
 use pulp::Simd;
 
 use crate::field::Field;
@@ -120,10 +121,12 @@ impl BatchTraining<'_> {
             *task = self.next_field(&mut block, lane, &mut queue);
         }
         while 3 * tasks.iter().flatten().count() > S::F64_LANES {
-            let (w, wanted) = block.train(self.settings);
+            let (activation, wanted) = block.train(self.settings);
+            let mut w = [0.0; LANES];
+            activation.store(&mut w, 0);
             for lane in 0..S::F64_LANES {
                 let Some(Task { field: k, sample }) = tasks[lane] else { continue };
-                self.see(sample, k, w.get(lane));
+                self.see(sample, k, w[lane]);
                 let grows = wanted.is_some_and(|wanted| wanted.get(lane) > 0.0);
                 let next = if grows { None } else { self.next_sample(&mut block, lane, k, sample + 1) };
                 tasks[lane] = next;
@@ -234,10 +237,10 @@ impl BatchTraining<'_> {
     /// The strongest field at `sample`, as it was after learning from that sample, if it is fit for a template.
     fn template<S: Simd>(&mut self, simd: S, sample: usize) -> Option<Field> {
         let strongest = self.scratch.strongest[sample];
-        if strongest.first <= 0.1 * self.settings.params.w_gen {
+        if strongest.w <= 0.1 * self.settings.params.w_gen {
             return None;
         }
-        let k = strongest.first_field;
+        let k = strongest.field;
         let mut field = self.scratch.before[k].clone();
         self.train_alone(simd, &mut field, k, self.scratch.start[k], sample + 1);
         is_template(self.settings, strongest, &field).then_some(field)
@@ -270,7 +273,8 @@ impl pulp::WithSimd for Alone<'_, '_> {
             let (x, y) = (training.chunk.row(sample), training.y[sample]);
             let BatchScratch { near, workspace, .. } = &mut *training.scratch;
             near.only(0, q, activation);
-            LearnFromOne { settings, fields: std::slice::from_mut(field), near, x, y, workspace }.run(simd);
+            let fields = std::slice::from_mut(&mut *field);
+            LearnFromOne { settings, fields, table: None, near, x, y, workspace }.run(simd);
             next = sample + 1;
         }
     }

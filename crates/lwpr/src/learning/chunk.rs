@@ -18,40 +18,51 @@ pub(crate) struct Chunk {
     blocks: Vec<Lanes>,
 }
 
+/// Most dimensions in which batches go field by field ([`Settings::side_by_side`]), and most numbers of a metric.
+const MOST: usize = 6;
+const MOST_ELEMENTS: usize = MOST * (MOST + 1) / 2;
+
 /// Where a field is and how wide it is.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Shape {
     kind: Metric,
     n_in: usize,
-    /// Padded.
-    pub(crate) centre: Vec<f64>,
+    centre: [f64; MOST],
     /// The diagonal of D, or the upper triangle of M, row after row.
-    elements: Vec<f64>,
+    elements: [f64; MOST_ELEMENTS],
 }
 
 impl Shape {
-    /// A row of `width`; the metric is yet to come.
+    /// The metric is yet to come.
     pub(crate) fn new(settings: &Settings, centre: &[f64]) -> Self {
-        Shape {
-            kind: settings.params.metric,
-            n_in: settings.n_in,
-            centre: centre.to_vec(),
-            elements: vec![0.0; settings.shape_len()],
-        }
+        let n_in = settings.n_in;
+        let mut shape =
+            Shape { kind: settings.params.metric, n_in, centre: [0.0; MOST], elements: [0.0; MOST_ELEMENTS] };
+        shape.centre[..n_in].copy_from_slice(&centre[..n_in]);
+        shape
     }
 
     /// Takes over M, given in rows of `width` dimensions; every `lanes`-th number belongs to this field.
     #[inline(always)]
     pub(crate) fn set_metric(&mut self, m: &[f64], width: usize, lanes: usize) {
-        if self.kind == Metric::Diagonal {
-            for (d, &m) in self.elements.iter_mut().zip(m.iter().step_by(lanes)) {
-                *d = m * m;
+        match (self.kind, self.n_in) {
+            (Metric::Diagonal, 2) => self.set_metric_of((Metric::Diagonal, 2), m, 2, lanes),
+            (Metric::Full, 2) => self.set_metric_of((Metric::Full, 2), m, 2, lanes),
+            kind => self.set_metric_of(kind, m, width, lanes),
+        }
+    }
+
+    #[inline(always)]
+    fn set_metric_of(&mut self, (kind, n): (Metric, usize), m: &[f64], width: usize, lanes: usize) {
+        if kind == Metric::Diagonal {
+            for (i, d) in self.elements[..n].iter_mut().enumerate() {
+                *d = m[i * lanes] * m[i * lanes];
             }
             return;
         }
         let mut elements = self.elements.iter_mut();
-        for i in 0..self.n_in {
-            for (column, element) in (i..self.n_in).zip(&mut elements) {
+        for i in 0..n {
+            for (column, element) in (i..n).zip(&mut elements) {
                 *element = m[(column * width + i) * lanes];
             }
         }
@@ -59,9 +70,9 @@ impl Shape {
 
     /// Squared distances of the samples of part `part` of a block, summed as in the activation table.
     #[inline(always)]
-    fn distance<S: Simd>(&self, simd: S, block: &[Lanes], part: usize) -> Register<S> {
+    fn distance<S: Simd>(&self, simd: S, kind: Metric, block: &[Lanes], part: usize) -> Register<S> {
         let mut q = Register::splat(simd, 0.0);
-        if self.kind == Metric::Diagonal {
+        if kind == Metric::Diagonal {
             for ((x, &c), &d) in block.iter().zip(&self.centre).zip(&self.elements) {
                 let dx = Register::load(simd, x, part) - c;
                 q += dx * dx * d;
@@ -110,7 +121,7 @@ impl Chunk {
     }
 
     /// The first sample from `start` on, before `end`, closer than the radius, and its squared distance. The order of
-    /// the sum is the activation table's.
+    /// the sum is the activation table's. Two dimensions are known to the compiler, as there.
     #[inline(always)]
     pub(crate) fn find<S: Simd>(
         &self,
@@ -119,12 +130,30 @@ impl Chunk {
         (start, end): (usize, usize),
         squared_radius: f64,
     ) -> Option<(usize, f64)> {
+        let (span, radius) = ((start, end), squared_radius);
+        match (shape.kind, self.n_in) {
+            (Metric::Diagonal, 2) => self.find_with(simd, (Metric::Diagonal, 2), shape, span, radius),
+            (Metric::Full, 2) => self.find_with(simd, (Metric::Full, 2), shape, span, radius),
+            kind => self.find_with(simd, kind, shape, span, radius),
+        }
+    }
+
+    /// [`find`](Self::find) for one kind of metric and one number of dimensions, which may be constants.
+    #[inline(always)]
+    fn find_with<S: Simd>(
+        &self,
+        simd: S,
+        (kind, n_in): (Metric, usize),
+        shape: &Shape,
+        (start, end): (usize, usize),
+        squared_radius: f64,
+    ) -> Option<(usize, f64)> {
         let n = S::F64_LANES;
         let mut first = start / n * n;
         let near = Register::splat(simd, squared_radius);
         while first < end {
-            let block = &self.blocks[first / LANES * self.n_in..][..self.n_in];
-            let q = shape.distance(simd, block, first % LANES / n);
+            let block = &self.blocks[first / LANES * n_in..][..n_in];
+            let q = shape.distance(simd, kind, block, first % LANES / n);
             let lane = q.first_below(near, start.saturating_sub(first));
             if lane < n {
                 let sample = first + lane;

@@ -24,8 +24,8 @@ pub(crate) fn full_step<T: Element<T>, E: Element<T>>(
     dx: &[f64],
     scratch: &mut FullScratch<'_>,
 ) {
-    let FullScratch { t, penalty_column, gram } = scratch;
     let width = dx.len();
+    let FullScratch { t, gram, .. } = &mut *scratch;
     t.fill(0.0);
     gram.fill(0.0);
     for (m, column) in rows.m.chunks_exact(width).enumerate() {
@@ -34,35 +34,72 @@ pub(crate) fn full_step<T: Element<T>, E: Element<T>>(
             add_scaled::<T, E>(token, row, T::of(scalar, T::elements(column)[k]), column);
         }
     }
-    for m in 0..rows.m.len() / width {
-        let column = &rows.m[m * width..][..width];
-        penalty_column.fill(0.0);
-        for (k, row) in gram.chunks_exact(width).enumerate().take(m + 1) {
-            add_scaled::<T, E>(token, penalty_column, T::of(scalar, T::elements(column)[k]), row);
+    // Asked once, and not for every element.
+    match step.rate {
+        None => step_plainly::<T, E>((scalar, token), rows, step, dx, scratch),
+        Some(rate) => step_meta::<T, E>((scalar, token), rows, (step, rate), dx, scratch),
+    }
+}
+
+/// Column `m` of MD.
+#[inline(always)]
+fn penalty_column<T: Element<T>, E: Element<T>>(
+    (scalar, token): (T::Token, E::Token),
+    column: &[f64],
+    m: usize,
+    scratch: &mut FullScratch<'_>,
+) {
+    scratch.penalty_column.fill(0.0);
+    for (k, row) in scratch.gram.chunks_exact(column.len()).enumerate().take(m + 1) {
+        add_scaled::<T, E>(token, scratch.penalty_column, T::of(scalar, T::elements(column)[k]), row);
+    }
+}
+
+/// Plain steps. Below the diagonal the learning rate is zero, so that M stays zero there.
+#[inline(always)]
+fn step_plainly<T: Element<T>, E: Element<T>>(
+    (scalar, token): (T::Token, E::Token),
+    rows: &mut MetricRows<'_>,
+    step: &Step<T>,
+    dx: &[f64],
+    scratch: &mut FullScratch<'_>,
+) {
+    for m in 0..rows.m.len() / dx.len() {
+        let column = &rows.m[m * dx.len()..][..dx.len()];
+        penalty_column::<T, E>((scalar, token), column, m, scratch);
+        let dx = E::spread(token, T::of(scalar, T::elements(dx)[m]));
+        let (t, penalty) = (E::elements(scratch.t), E::elements(scratch.penalty_column));
+        let mut rows = ElementRows::<E>::new(rows);
+        for (i, (&t_i, &penalty)) in t.iter().zip(penalty).enumerate() {
+            let (t_i, penalty) = (E::of(token, t_i), E::of(token, penalty));
+            step.descend(&mut rows, m * t.len() + i, derivatives(step, dx, t_i, penalty, t_i));
         }
+    }
+}
+
+/// Steps whose learning rates are learnt too.
+#[inline(always)]
+fn step_meta<T: Element<T>, E: Element<T>>(
+    (scalar, token): (T::Token, E::Token),
+    rows: &mut MetricRows<'_>,
+    (step, rate): (&Step<T>, f64),
+    dx: &[f64],
+    scratch: &mut FullScratch<'_>,
+) {
+    for m in 0..rows.m.len() / dx.len() {
+        let column = &rows.m[m * dx.len()..][..dx.len()];
+        penalty_column::<T, E>((scalar, token), column, m, scratch);
         let (dx, diagonal) = (T::of(scalar, T::elements(dx)[m]), E::dot(token, column, column));
-        match step.rate {
-            // Below the diagonal the learning rate is zero, so that M stays zero there.
-            None => {
-                let mut rows = ElementRows::<E>::new(rows);
-                let from = m * E::elements(t).len();
-                for (i, (&t, &penalty_column)) in E::elements(t).iter().zip(E::elements(penalty_column)).enumerate() {
-                    let (t, penalty_column) = (E::of(token, t), E::of(token, penalty_column));
-                    step.descend(&mut rows, from + i, derivatives(step, E::spread(token, dx), t, penalty_column, t));
-                }
-            }
-            Some(rate) => {
-                let mut rows = ElementRows::<T>::new(rows);
-                let (t, penalty_column, gram) = (T::elements(t), T::elements(penalty_column), T::elements(gram));
-                for i in 0..=m {
-                    let element = T::of(scalar, rows.m[m * t.len() + i]);
-                    // Row i of M squared, from the diagonal on, and the element itself once more.
-                    let row = T::of(scalar, gram[i * t.len() + i]);
-                    let curvature = diagonal + row + element * element;
-                    let by = derivatives(step, dx, T::of(scalar, t[i]), T::of(scalar, penalty_column[i]), curvature);
-                    step.descend_meta(&mut rows, m * t.len() + i, rate, by);
-                }
-            }
+        let FullScratch { t, penalty_column, gram } = &*scratch;
+        let (t, penalty_column, gram) = (T::elements(t), T::elements(penalty_column), T::elements(gram));
+        let mut rows = ElementRows::<T>::new(rows);
+        for i in 0..=m {
+            let element = T::of(scalar, rows.m[m * t.len() + i]);
+            // Row i of M squared, from the diagonal on, and the element itself once more.
+            let row = T::of(scalar, gram[i * t.len() + i]);
+            let curvature = diagonal + row + element * element;
+            let by = derivatives(step, dx, T::of(scalar, t[i]), T::of(scalar, penalty_column[i]), curvature);
+            step.descend_meta(&mut rows, m * t.len() + i, rate, by);
         }
     }
 }

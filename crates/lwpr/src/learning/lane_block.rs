@@ -83,7 +83,7 @@ impl<S: Simd> LaneBlock<S> {
         for (ours, theirs) in self.field.numbers().zip(field.numbers()) {
             ours.set(lane, *theirs);
         }
-        self.shapes[lane].centre.copy_from_slice(&field.rows[..settings.width]);
+        self.shapes[lane] = Shape::new(settings, &field.rows[..settings.width]);
         let rows = self.field.rows.chunks_exact_mut(self.x.len());
         for (ours, theirs) in rows.zip(field.rows.chunks_exact(settings.width)) {
             for (ours, theirs) in ours[lane..].iter_mut().step_by(S::F64_LANES).zip(theirs) {
@@ -117,8 +117,8 @@ impl<S: Simd> LaneBlock<S> {
     /// Gives a lane the sample it learns from next.
     #[inline(always)]
     pub(crate) fn set_sample(&mut self, lane: usize, chunk: &Chunk, sample: usize, y: f64, q: f64) {
-        for (ours, x) in self.x[lane..].iter_mut().step_by(S::F64_LANES).zip(chunk.row(sample)) {
-            *ours = *x;
+        for (ours, x) in self.x.chunks_exact_mut(S::F64_LANES).zip(chunk.row(sample)) {
+            ours[lane] = *x;
         }
         self.y.set(lane, y);
         self.q.set(lane, q);
@@ -173,7 +173,7 @@ impl<S: Simd, M: metric::Shape, const N: usize> pulp::WithSimd for TrainLanes<'_
         let wanted = train::<Register<S>, Register<S>, M>(
             (simd, simd),
             field,
-            settings,
+            (settings, Layout::of(settings, width, (M::METRIC, N))),
             (&x[..width], *y),
             activation,
             &mut rows[..SCRATCH_ROWS * width],

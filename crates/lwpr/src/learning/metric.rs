@@ -2,18 +2,18 @@
 
 use lanes::Number;
 
-use crate::MetricAdaptation;
 use crate::field::element::Element;
-use crate::field::{Direction, Field, Layout, MetricRows};
+use crate::field::{Direction, Field, Layout, MetricRows, known_directions};
 use crate::learning::full_metric::{FullScratch, full_step};
 use crate::learning::regression::{Absorbed, settled};
 use crate::settings::Settings;
 use crate::settings::kernel::Activation;
+use crate::{Metric, MetricAdaptation};
 
 /// The metric's shape, where the code for it is chosen when it is compiled.
 pub(crate) trait Shape: Default {
-    /// Whether fields may turn.
-    const FULL: bool;
+    /// The shape, as parameters name it.
+    const METRIC: Metric;
 }
 
 /// M is diagonal.
@@ -25,11 +25,11 @@ pub(crate) struct Diagonal;
 pub(crate) struct Full;
 
 impl Shape for Diagonal {
-    const FULL: bool = false;
+    const METRIC: Metric = Metric::Diagonal;
 }
 
 impl Shape for Full {
-    const FULL: bool = true;
+    const METRIC: Metric = Metric::Full;
 }
 
 /// What the steps of all elements of M share.
@@ -96,13 +96,14 @@ pub(crate) fn update_metric<T: Element<T>, E: Element<T>, M: Shape>(
     let mut step = Step::new(field, settings, activation, sample, rate);
     let mut rows = field.metric_rows(layout);
     step.limit = E::largest(tokens.1, rows.m) * 0.1;
-    if const { M::FULL } {
+    if const { matches!(M::METRIC, Metric::Full) } {
         full_step::<T, E>(tokens, &mut rows, &step, dx, scratch);
     } else {
         diagonal_step::<T, E>(tokens.1, &mut rows, &step, dx);
     }
     let rest = activation.w.like(1.0) - activation.w * sample.leverage;
-    remember(&mut field.directions, sample, activation.w, activation.w * rest.recip() * step.transient);
+    let share = activation.w * rest.recip() * step.transient;
+    remember(known_directions(&mut field.directions, layout), sample, activation.w, share);
 }
 
 /// Padding has M = learning rate = 0 and keeps M = 0.
@@ -154,8 +155,7 @@ impl<T: Number> Step<T> {
         sample: &Absorbed<T>,
         rate: Option<f64>,
     ) -> Self {
-        let &Absorbed { e, loo_error, error_sum, leverage, sum_p_h, sum_p2_r, .. } = sample;
-        let inverse = field.directions[0].sum_w.recip();
+        let &Absorbed { e, loo_error, error_sum, inverse_sum_w: inverse, leverage, sum_p_h, sum_p2_r, .. } = sample;
         let ratio = field.sum_e2 * (error_sum + 1e-10).recip();
         let square = ratio * ratio;
         let cross = e * sum_p_h + sum_p2_r;
@@ -171,7 +171,7 @@ impl<T: Number> Step<T> {
             j1: (loo_error * loo_error - error_sum * inverse - cross * 2.0) * inverse,
             j1_second,
             omega: activation.w * inverse,
-            gamma: 2.0 * settings.params.penalty / settings.n_in as f64,
+            gamma: settings.gamma,
             transient: (square * square).smaller(e.like(1.0)),
             limit: e.like(0.0),
             settled: sample.settled,

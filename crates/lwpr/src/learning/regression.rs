@@ -3,7 +3,7 @@
 use lanes::Number;
 
 use crate::field::element::Element;
-use crate::field::{Direction, DirectionRows, Field, Layout};
+use crate::field::{Direction, DirectionRows, Field, Layout, known_directions};
 use crate::settings::Settings;
 
 /// A normalised sample, and how strongly it activates the field.
@@ -24,6 +24,8 @@ pub(crate) struct Absorbed<T: Number> {
     pub(crate) loo_error: T,
     /// Σ w e² of the leave-one-out errors.
     pub(crate) error_sum: T,
+    /// 1/Σ w.
+    pub(crate) inverse_sum_w: T,
     /// Σⱼ sⱼ pⱼ, Σⱼ pⱼ Hⱼ and Σⱼ pⱼ² rⱼ over settled directions, with pⱼ = sⱼ/Σ w sⱼ².
     pub(crate) leverage: T,
     pub(crate) sum_p_h: T,
@@ -40,14 +42,14 @@ pub(crate) fn settled<T: Number>(direction: &Direction<T>, lambda0: T) -> T::Mas
     (direction.n_data * (lambda0.like(1.0) - lambda0)).above(lambda0.like(0.1))
 }
 
-/// Shifts the weighted means by the sample; `z` receives x − mean. Returns y − mean.
+/// Shifts the weighted means by the sample; `z` receives x − mean. Returns y − mean and 1/Σ w.
 #[inline(always)]
 pub(crate) fn update_means<T: Number, E: Element<T>>(
     token: E::Token,
     field: &mut Field<T>,
     sample: Sample<'_, T>,
     z: &mut [f64],
-) -> T {
+) -> (T, T) {
     let width = z.len();
     let old = field.directions[0].sum_w * field.directions[0].lambda;
     let share = (old + sample.w).recip();
@@ -60,7 +62,7 @@ pub(crate) fn update_means<T: Number, E: Element<T>>(
         *mean = new_mean.raw();
         *z = (x - new_mean).raw();
     }
-    sample.y - field.beta0
+    (sample.y - field.beta0, share)
 }
 
 /// Absorbs the centred sample (z, t) with weight `w`. `residual` enters as z; `fresh` is scratch.
@@ -71,16 +73,16 @@ pub(crate) fn update_means<T: Number, E: Element<T>>(
 pub(crate) fn update_regression<T: Number, E: Element<T>>(
     token: E::Token,
     field: &mut Field<T>,
-    settings: &Settings,
     layout: Layout,
-    (t, w): (T, T),
+    (t, w, inverse_sum_w): (T, T, T),
     residual: &mut [f64],
     fresh: &mut [f64],
 ) -> Absorbed<T> {
     let zero = t.like(0.0);
-    let r = field.directions.len();
-    let enough = t.like(2.0 * settings.n_in as f64);
-    let (first, last) = (&field.directions[0], &field.directions[r - 1]);
+    let directions = known_directions(&mut field.directions, layout);
+    let r = directions.len();
+    let enough = t.like(2.0 * layout.n_in as f64);
+    let (first, last) = (&directions[0], &directions[r - 1]);
     let (lambda0, last_lambda) = (first.lambda, last.lambda);
     let (trusted, last_counts, first_settled) =
         (first.n_data.above(enough), last.n_data.above(enough), settled(first, lambda0));
@@ -92,6 +94,7 @@ pub(crate) fn update_regression<T: Number, E: Element<T>>(
         e: t,
         loo_error: zero,
         error_sum: zero,
+        inverse_sum_w,
         leverage: zero,
         sum_p_h: zero,
         sum_p2_r: zero,
@@ -195,10 +198,10 @@ fn turn<T: Number, E: Element<T>>(token: E::Token, rows: &mut DirectionRows<'_>,
 #[inline(always)]
 pub(crate) fn age<T: Number>(
     directions: &mut [Direction<T>],
-    settings: &Settings,
+    (settings, layout): (&Settings, Layout),
     sample: &Absorbed<T>,
 ) -> Option<T::Mask> {
-    let wanted = wants_direction(directions, settings, sample);
+    let wanted = wants_direction(directions, (settings, layout), sample);
     let (tau, goal) = (settings.params.tau_lambda, settings.params.final_lambda);
     for direction in directions {
         direction.n_data = direction.n_data * direction.lambda + 1.0;
@@ -210,11 +213,11 @@ pub(crate) fn age<T: Number>(
 #[inline(always)]
 fn wants_direction<T: Number>(
     directions: &[Direction<T>],
-    settings: &Settings,
+    (settings, layout): (&Settings, Layout),
     sample: &Absorbed<T>,
 ) -> Option<T::Mask> {
     let r = directions.len();
-    if r < 2 || r == settings.n_in {
+    if r < 2 || r == layout.n_in {
         return None;
     }
     let (first, last) = (&directions[0], &directions[r - 1]);

@@ -4,13 +4,14 @@ use lanes::Register;
 use pulp::Simd;
 
 use super::activation::{ActivatedField, Near};
+use super::activation_table::ActivationTable;
 use super::full_metric::FullScratch;
 use super::metric::{Diagonal, Full, Shape, update_metric};
 use super::regression::{Sample, age, update_means, update_regression};
 use crate::Metric;
 use crate::field::element::Element;
 use crate::field::rows::Rows;
-use crate::field::{Field, Layout};
+use crate::field::{Field, Layout, known_directions};
 use crate::settings::Settings;
 use crate::settings::kernel::Activation;
 
@@ -43,6 +44,8 @@ struct Scratch<const WIDTH: usize> {
 pub(crate) struct LearnFromOne<'a> {
     pub(crate) settings: &'a Settings,
     pub(crate) fields: &'a mut [Field],
+    /// The fields' metrics, where others look at them.
+    pub(crate) table: Option<&'a mut ActivationTable>,
     pub(crate) near: &'a Near,
     pub(crate) x: &'a [f64],
     pub(crate) y: f64,
@@ -88,15 +91,21 @@ impl LearnFromOne<'_> {
     /// Works in `rows` and `gram`; the length of `x` is that of rows.
     #[inline(always)]
     fn all<M: Shape, E: Element<f64>>(
-        (settings, fields, near): (&Settings, &mut [Field], &Near),
+        (settings, fields, mut table, near): (&Settings, &mut [Field], Option<&mut ActivationTable>, &Near),
         token: E::Token,
         (x, y): (&[f64], f64),
         (rows, gram): (&mut [f64], &mut [f64]),
     ) {
-        for ActivatedField { field, q, activation } in near.iter() {
+        // Rows of two are not padded: then all is a constant.
+        let n_in = if x.len() == 2 { 2 } else { settings.n_in };
+        let layout = Layout::of(settings, x.len(), (M::METRIC, n_in));
+        for ActivatedField { field: k, q, activation } in near.iter() {
             if q < settings.training_squared_radius {
-                let field = &mut fields[field];
-                let wanted = train::<f64, E, M>(((), token), field, settings, (x, y), activation, rows, gram);
+                let field = &mut fields[k];
+                let wanted = train::<f64, E, M>(((), token), field, (settings, layout), (x, y), activation, rows, gram);
+                if let Some(table) = &mut table {
+                    table.set_metric((M::METRIC, layout.n_in), k, field.metric_rows(layout).m);
+                }
                 if wanted.is_some() {
                     field.grow(settings);
                 }
@@ -117,11 +126,11 @@ impl<M: Shape, const WIDTH: usize> pulp::WithSimd for OfWidth<'_, M, WIDTH> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let LearnFromOne { settings, fields, near, x, y, .. } = self.learn;
+        let LearnFromOne { settings, fields, table, near, x, y, .. } = self.learn;
         let scratch = &mut Scratch { rows: [[0.0; WIDTH]; SCRATCH_ROWS], gram: [[0.0; WIDTH]; WIDTH] };
         let Scratch { rows, gram } = scratch;
         let scratch = (rows.as_flattened_mut(), gram.as_flattened_mut());
-        let (all, sample) = ((settings, fields, near), (&x[..WIDTH], y));
+        let (all, sample) = ((settings, fields, table, near), (&x[..WIDTH], y));
         if const { WIDTH.is_multiple_of(S::F64_LANES) } {
             LearnFromOne::all::<M, Register<S>>(all, simd, sample, scratch);
         } else {
@@ -142,9 +151,9 @@ impl<M: Shape, const REGISTERS: bool> pulp::WithSimd for OfAnyWidth<'_, M, REGIS
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let LearnFromOne { settings, fields, near, x, y, workspace } = self.learn;
+        let LearnFromOne { settings, fields, table, near, x, y, workspace } = self.learn;
         let scratch = (&mut workspace.rows[..], &mut workspace.gram[..]);
-        let (all, sample) = ((settings, fields, near), (&x[..settings.width], y));
+        let (all, sample) = ((settings, fields, table, near), (&x[..settings.width], y));
         if const { REGISTERS } {
             LearnFromOne::all::<M, Register<S>>(all, simd, sample, scratch);
         } else {
@@ -159,7 +168,7 @@ impl<M: Shape, const REGISTERS: bool> pulp::WithSimd for OfAnyWidth<'_, M, REGIS
 pub(crate) fn train<T: Element<T>, E: Element<T>, M: Shape>(
     tokens: (T::Token, E::Token),
     field: &mut Field<T>,
-    settings: &Settings,
+    (settings, layout): (&Settings, Layout),
     (x, y): (&[f64], T),
     activation: Activation<T>,
     scratch: &mut [f64],
@@ -174,10 +183,10 @@ pub(crate) fn train<T: Element<T>, E: Element<T>, M: Shape>(
     for ((dx, &x), &c) in E::elements_mut(dx).iter_mut().zip(E::elements(x)).zip(centre) {
         *dx = (E::of(token, x) - E::of(token, c)).raw();
     }
-    let layout = Layout::of(settings, width, M::FULL);
-    let target = update_means::<T, E>(token, field, Sample { x, y, w: activation.w }, residual);
-    let absorbed = update_regression::<T, E>(token, field, settings, layout, (target, activation.w), residual, fresh);
+    let (target, inverse_sum_w) = update_means::<T, E>(token, field, Sample { x, y, w: activation.w }, residual);
+    let target = (target, activation.w, inverse_sum_w);
+    let absorbed = update_regression::<T, E>(token, field, layout, target, residual, fresh);
     let mut scratch = FullScratch { t, penalty_column: &mut penalty_column[..width], gram };
     update_metric::<T, E, M>(tokens, field, (settings, layout), activation, &absorbed, dx, &mut scratch);
-    age(&mut field.directions, settings, &absorbed)
+    age(known_directions(&mut field.directions, layout), (settings, layout), &absorbed)
 }

@@ -16,50 +16,37 @@ pub(crate) struct SubModel {
     pub(crate) n_pruned: usize,
 }
 
-/// The fields that a sample activates, and the strongest of them.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Activated {
-    near: Near,
-    pub(crate) strongest: Strongest,
-}
-
-/// The strongest and second strongest activation of a sample, and whose they are.
+/// The strongest activation of a sample, and whose it is.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Strongest {
-    pub(crate) first: f64,
-    pub(crate) second: f64,
-    pub(crate) first_field: usize,
-    pub(crate) second_field: usize,
+    pub(crate) w: f64,
+    pub(crate) field: usize,
 }
 
 impl Strongest {
-    /// With another field; of equal ones the earlier counts as stronger. Values are chosen, not branches, since which field
-    /// is the strongest cannot be predicted.
-    #[inline(always)]
-    fn with(self, field: usize, w: f64) -> Self {
-        let stronger = w > self.first;
-        let ((first, first_field), (next, next_field)) = if stronger {
-            ((w, field), (self.first, self.first_field))
-        } else {
-            ((self.first, self.first_field), (w, field))
-        };
-        let follows = stronger || next > self.second;
-        let (second, second_field) = if follows { (next, next_field) } else { (self.second, self.second_field) };
-        Strongest { first, second, first_field, second_field }
+    /// Among the fields near a sample but one; of equal ones the earlier counts. Only few samples ask.
+    fn among(near: &Near, but: Option<usize>) -> Self {
+        let mut strongest = Strongest::default();
+        for ActivatedField { field, activation, .. } in near.iter() {
+            if activation.w > strongest.w && Some(field) != but {
+                strongest = Strongest { w: activation.w, field };
+            }
+        }
+        strongest
     }
 
-    /// Takes note of another field where they come in any order, and of equal ones the first in the list counts; only the strongest is kept.
+    /// Takes note of another field where they come in any order, and of equal ones the first in the list counts. Values are
+    /// chosen, not branches, since which field is the strongest cannot be predicted.
     #[inline(always)]
     pub(crate) fn see_unordered(&mut self, field: usize, w: f64) {
-        if w > self.first || (w >= self.first && field < self.first_field) {
-            (self.first, self.first_field) = (w, field);
-        }
+        let earlier = if w == self.w && field < self.field { field } else { self.field };
+        (self.w, self.field) = if w > self.w { (w, field) } else { (self.w, earlier) };
     }
 
     /// Whether the sample needs a field of its own.
     #[inline(always)]
     pub(crate) fn asks_for_field(&self, settings: &Settings) -> bool {
-        self.first <= settings.params.w_gen
+        self.w <= settings.params.w_gen
     }
 }
 
@@ -72,15 +59,10 @@ impl SubModel {
         settings: &Settings,
         x: &[f64],
         workspace: &mut Workspace,
-        (squared_radius, seen): (&mut Activated, Option<&mut Seen>),
+        (near, seen): (&mut Near, Option<&mut Seen>),
     ) {
         let (fields, sample) = ((&self.fields[..], &self.table), (x, settings.squared_radius));
-        squared_radius.near.find(simd, settings, fields, sample, &mut workspace.rows, seen);
-        let fields = squared_radius.near.iter();
-        squared_radius.strongest = fields
-            .fold(Strongest::default(), |strongest, ActivatedField { field, activation, .. }| {
-                strongest.with(field, activation.w)
-            });
+        near.find(simd, settings, fields, sample, &mut workspace.rows, seen);
     }
 
     /// One step of learning from the normalised sample (x, y): 1.4 of the algorithm for one output.
@@ -89,40 +71,39 @@ impl SubModel {
         &mut self,
         simd: S,
         settings: &Settings,
-        x: &[f64],
-        y: f64,
+        (x, y): (&[f64], f64),
         workspace: &mut Workspace,
-        squared_radius: &Activated,
+        near: &Near,
     ) {
-        let near = &squared_radius.near;
-        LearnFromOne { settings, fields: &mut self.fields, near, x, y, workspace }.run(simd);
-        for ActivatedField { field, .. } in near.iter() {
-            self.table.set_metric(settings, field, &self.fields[field]);
-        }
-        let strongest = squared_radius.strongest;
-        if strongest.asks_for_field(settings) {
-            self.create(settings, x, y, strongest);
-        } else if strongest.second > settings.params.w_prune {
-            self.prune(settings, strongest);
+        let table = settings.narrow().then_some(&mut self.table);
+        LearnFromOne { settings, fields: &mut self.fields, table, near, x, y, workspace }.run(simd);
+        if near.asks_for_field(settings) {
+            self.create(settings, x, y, Strongest::among(near, None));
+        } else if settings.params.w_prune < 1.0 {
+            let first = Strongest::among(near, None).field;
+            let second = Strongest::among(near, Some(first));
+            if second.w > settings.params.w_prune {
+                self.prune(settings, (first, second.field));
+            }
         }
     }
 
     fn create(&mut self, settings: &Settings, x: &[f64], y: f64, strongest: Strongest) {
-        let template = self.fields.get(strongest.first_field).filter(|field| is_template(settings, strongest, field));
+        let template = self.fields.get(strongest.field).filter(|field| is_template(settings, strongest, field));
         let field = Field::new(settings, x, y, template);
         self.table.set(settings, self.fields.len(), &field);
         self.fields.push(field);
     }
 
-    fn prune(&mut self, settings: &Settings, strongest: Strongest) {
-        let Strongest { first_field, second_field, .. } = strongest;
+    /// Removes one of the two strongest fields.
+    fn prune(&mut self, settings: &Settings, (first, second): (usize, usize)) {
         let trace = |k: usize| self.fields[k].trace(settings);
-        let first_is_wider = trace(first_field) < trace(second_field);
+        let first_is_wider = trace(first) < trace(second);
         let gone = match settings.params.pruning {
-            Pruning::Wider if first_is_wider => first_field,
-            Pruning::Wider => second_field,
-            Pruning::Narrower if first_is_wider => second_field,
-            Pruning::Narrower => first_field,
+            Pruning::Wider if first_is_wider => first,
+            Pruning::Wider => second,
+            Pruning::Narrower if first_is_wider => second,
+            Pruning::Narrower => first,
         };
         self.fields.swap_remove(gone);
         let last = self.fields.len();
@@ -136,5 +117,5 @@ impl SubModel {
 
 /// Whether a new field takes its shape from the strongest one.
 pub(crate) fn is_template(settings: &Settings, strongest: Strongest, field: &Field) -> bool {
-    strongest.first > 0.1 * settings.params.w_gen && field.is_trustworthy()
+    strongest.w > 0.1 * settings.params.w_gen && field.is_trustworthy()
 }

@@ -9,10 +9,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Side;
 use crate::field::rows::Rows;
+use crate::learning::activation::Near;
 use crate::learning::memory::Memory;
 use crate::learning::passes::{BatchFit, SHORTEST};
 use crate::learning::rules::Workspace;
-use crate::learning::sub_model::{Activated, SubModel};
+use crate::learning::sub_model::SubModel;
 use crate::model::record::ModelRecord;
 use crate::settings::Settings;
 use crate::{LwprError, LwprParams, ReceptiveField};
@@ -35,7 +36,8 @@ pub struct Lwpr {
 struct Online {
     x: Rows,
     workspace: Workspace,
-    squared_radius: Vec<Activated>,
+    /// For each output.
+    near: Vec<Near>,
 }
 
 /// [`Lwpr::update_checked`] for the samples of `order`, one after the other, compiled for the processor at hand.
@@ -82,7 +84,7 @@ impl Lwpr {
         let online = Online {
             x: Rows::zeros(settings.width),
             workspace: Workspace::new(&settings, settings.width),
-            squared_radius: vec![Activated::default(); settings.n_out],
+            near: vec![Near::default(); settings.n_out],
         };
         Lwpr { settings, outputs, n_data, online }
     }
@@ -112,16 +114,16 @@ impl Lwpr {
             *normalised = x / norm;
         }
         let limit = settings.params.max_receptive_fields.unwrap_or(usize::MAX);
-        for (k, (sub_model, squared_radius)) in outputs.iter().zip(&mut online.squared_radius).enumerate() {
+        for (k, (sub_model, near)) in outputs.iter().zip(&mut online.near).enumerate() {
             let seen = memory.as_mut().map(|memory| memory.of(k, sample));
-            sub_model.activate(simd, settings, &online.x, &mut online.workspace, (squared_radius, seen));
-            if squared_radius.strongest.asks_for_field(settings) && sub_model.fields.len() >= limit {
+            sub_model.activate(simd, settings, &online.x, &mut online.workspace, (near, seen));
+            if near.asks_for_field(settings) && sub_model.fields.len() >= limit {
                 return Err(LwprError::TooManyReceptiveFields { sample, output: k, limit });
             }
         }
         for (k, sub_model) in outputs.iter_mut().enumerate() {
             let y = y[k] / settings.norm_out[k];
-            sub_model.learn(simd, settings, &online.x, y, &mut online.workspace, &online.squared_radius[k]);
+            sub_model.learn(simd, settings, (&online.x, y), &mut online.workspace, &online.near[k]);
         }
         *n_data += 1;
         Ok(())

@@ -30,6 +30,8 @@ pub(crate) struct Settings {
     pub(crate) norm_out: Vec<f64>,
     /// M with D = MᵀM: its diagonal (one row), or its columns (`n_in` rows).
     pub(crate) init_m: Vec<f64>,
+    /// Factor 2γ/n of the penalty on large metrics.
+    pub(crate) gamma: f64,
     /// Squared distance within which a field learns from a sample.
     pub(crate) training_squared_radius: f64,
     /// Squared distance beyond which a field matters neither for learning nor for making fields.
@@ -51,6 +53,7 @@ impl Settings {
         Ok(Settings {
             norm_in: norm(params.norm_in.as_ref(), n_in, Side::Input)?,
             norm_out: norm(params.norm_out.as_ref(), n_out, Side::Output)?,
+            gamma: 2.0 * params.penalty / n_in as f64,
             training_squared_radius: params.kernel.squared_radius(TRAINING_FLOOR),
             squared_radius: params.kernel.squared_radius(TRAINING_FLOOR.min(0.1 * params.w_gen)),
             params,
