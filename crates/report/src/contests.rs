@@ -1,6 +1,7 @@
 //! Learners held against each other: a line for each error, a column for each learner.
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 use experiments::measure::Measure;
 use experiments::results::{Cell, ExperimentResult};
@@ -90,11 +91,10 @@ impl<'a> Contests<'a> {
         {
             let ahead: Vec<String> =
                 self.lines.iter().filter(|line| line.is_ahead_of_policy_align(who)).map(ContestLine::name).collect();
-            text += &match ahead.len() {
-                0 => String::new(),
-                few @ 1..=FEW => format!(" {name} errs less than PolicyAlign in {few}: {}.", ahead.join(", ")),
-                many => format!(" {name} errs less than PolicyAlign in {many}."),
-            };
+            let named = if ahead.len() <= FEW { format!(": {}", ahead.join(", ")) } else { String::new() };
+            if !ahead.is_empty() {
+                let _ = write!(text, " {name} errs less than PolicyAlign in {}{named}.", ahead.len());
+            }
         }
         text
     }

@@ -150,21 +150,16 @@ impl BatchTraining<'_> {
         queue.for_each(|k| self.train_rest(simd, k, 0));
     }
 
-    /// Fills a lane with the next field that has anything to learn here.
+    /// Fills a lane with the next field that has anything to learn here. It seldom happens: a function of its own keeps stack
+    /// frames small where nothing is optimised.
     #[inline(always)]
     fn next_field<S: Simd>(
         &mut self,
         block: &mut LaneBlock<S>,
         lane: usize,
-        queue: &mut impl Iterator<Item = usize>,
+        queue: &mut dyn Iterator<Item = usize>,
     ) -> Option<Task> {
-        loop {
-            let k = queue.next()?;
-            block.load(self.settings, lane, &mut self.sub_model.fields[k]);
-            if let Some(task) = self.next_sample(block, lane, k, 0) {
-                return Some(task);
-            }
-        }
+        block.simd().vectorize(NextField { training: self, block, lane, queue })
     }
 
     /// Gives a lane the next sample that its field learns from.
@@ -244,6 +239,30 @@ impl BatchTraining<'_> {
         let mut field = self.scratch.before[k].clone();
         self.train_alone(simd, &mut field, k, self.scratch.start[k], sample + 1);
         is_template(self.settings, strongest, &field).then_some(field)
+    }
+}
+
+/// [`BatchTraining::next_field`].
+struct NextField<'a, 'b, S: Simd> {
+    training: &'a mut BatchTraining<'b>,
+    block: &'a mut LaneBlock<S>,
+    lane: usize,
+    queue: &'a mut dyn Iterator<Item = usize>,
+}
+
+impl<S: Simd> pulp::WithSimd for NextField<'_, '_, S> {
+    type Output = Option<Task>;
+
+    #[inline(always)]
+    fn with_simd<Same: Simd>(self, _: Same) -> Self::Output {
+        let NextField { training, block, lane, queue } = self;
+        loop {
+            let k = queue.next()?;
+            block.load(training.settings, lane, &mut training.sub_model.fields[k]);
+            if let Some(task) = training.next_sample(block, lane, k, 0) {
+                return Some(task);
+            }
+        }
     }
 }
 
