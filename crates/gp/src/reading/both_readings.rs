@@ -7,7 +7,7 @@ use crate::direct::direct_gp::{DirectFit, DirectGp};
 use crate::reading::Reading;
 use crate::reading::numbers::{Compared, ReadingNumbers, TrajectoryErrors};
 use crate::slope::fit::SlopeFit;
-use crate::slope::judgement::{Across, Chosen, report};
+use crate::slope::judgement::{Across, Chosen, NOTHING_KNOWN, report};
 use crate::slope::search::outcome;
 use crate::slope::slope_gp::SlopeGp;
 use crate::{FrontEnd, GpError, Rows};
@@ -67,7 +67,7 @@ impl ReadingLearner {
         let across = if tested { Across::Tested } else { Across::Untested };
         let mut report = report(&Chosen { outcome: &slope, kept: &kept, rows, across });
         if across == Across::Untested {
-            report.expected_nupe = numbers.expected_beside(reading, report.expected_nupe);
+            report.expected_nupe = expected_beside((reading, numbers.gap, numbers.p_d), report.expected_nupe);
         }
         let slope = SlopeFit { model: slope.taken.model, report };
         Ok(BothReadings {
@@ -178,5 +178,43 @@ impl LearntPolicy for BothReadings {
         let doubtful = matches!(self.reading(), Reading::Ambiguous | Reading::Unexplained | Reading::TooFew);
         let text = doubtful.then(|| self.text());
         text.into_iter().chain(self.handed_out().warnings()).collect()
+    }
+}
+
+/// The error to expect of the slope policy, which itself expects `own`, beside the direct one (R6): `gap` is how far that is
+/// away, `p_d` what it errs on movements left out.
+fn expected_beside((reading, gap, p_d): (Reading, f64, f64), own: f64) -> f64 {
+    let own = match reading {
+        // The direct policy is the right one: no larger error than the distance to it, and its own, make possible.
+        Reading::Free => own.min((gap.sqrt() + p_d.max(0.0).sqrt()).powi(2)),
+        _ => own,
+    };
+    own.max(gap).min(NOTHING_KNOWN)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// The other policy's distance is always doubted, knowledge of the mean alone is the worst, and only where nothing is
+        /// hidden do both policies bound the error.
+        #[test]
+        fn what_is_expected_lies_between_the_gap_and_knowing_nothing(
+            gap in 0.0f64..2.0,
+            p_d in -0.5f64..1.5,
+            own in 0.0f64..=1.0,
+        ) {
+            let expected = |reading| expected_beside((reading, gap, p_d), own);
+            for reading in [Reading::Free, Reading::Ambiguous, Reading::Unexplained, Reading::Constrained] {
+                prop_assert!(expected(reading) >= gap.min(1.0) && expected(reading) <= 1.0);
+            }
+            prop_assert_eq!(expected(Reading::Ambiguous), own.max(gap).min(1.0));
+            let bound = gap + p_d.max(0.0) + 2.0 * (gap * p_d.max(0.0)).sqrt();
+            prop_assert!(expected(Reading::Free) <= bound + 1e-12);
+            prop_assert!(own > bound || expected(Reading::Free) == expected(Reading::Ambiguous));
+        }
     }
 }

@@ -11,7 +11,6 @@ use serde::{Deserialize, Serialize};
 use crate::reading::numbers::ReadingNumbers;
 use crate::report::identifiability::direction;
 use crate::rows::kept::Grouping;
-use crate::slope::judgement::NOTHING_KNOWN;
 
 /// What the demonstrations say about hidden constraints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -94,14 +93,6 @@ impl ReadingNumbers {
     /// Nothing was hidden, and the slope GP is far better nevertheless.
     pub(crate) fn shows_a_potential(&self) -> bool {
         self.gap > SAME && self.trajectories >= DEMONSTRATIONS && self.direction_tells() && !self.hides()
-    }
-
-    /// The error to expect of the slope policy, of which it expects `own` itself, beside the direct one (R6).
-    pub(crate) fn expected_beside(&self, reading: Reading, own: f64) -> f64 {
-        // Where the direct policy is the right one, the slope policy errs by how far it is away and what the direct one errs.
-        let at_most =
-            if reading == Reading::Free { (self.gap.sqrt() + self.p_d.max(0.0).sqrt()).powi(2) } else { NOTHING_KNOWN };
-        own.min(at_most).max(self.gap).min(NOTHING_KNOWN)
     }
 
     /// The reading in words, for the user. `expected_nupe` is the slope policy's.
