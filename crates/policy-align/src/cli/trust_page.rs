@@ -86,16 +86,16 @@ fn numbers(model: &Model) -> Markup {
         table .numbers {
             thead { tr { th { "What" } th .value { "Value" } th { "Good is" } } }
             tbody {
-                (row("Error along movements left out", &short(numbers.held_out_error), "below 0.035"))
+                (row("Error along movements left out", &short(numbers.held_out_error), &below(TrustNumbers::GOOD_HELD_OUT_ERROR)))
                 (row("The same of averaging (the direct learner)", &short(numbers.held_out_error_direct), "for comparison"))
                 (row("Error of the direct learner in all directions", &short(numbers.direct_error), "for comparison"))
-                (row("Error that the policy expects of itself", &short(numbers.expected_error), "below 0.06"))
+                (row("Error that the policy expects of itself", &short(numbers.expected_error), &below(TrustNumbers::GOOD_EXPECTED_ERROR)))
                 (row("Difference of slope and direct policy", &short(numbers.gap), "large where constraints acted"))
                 @if let Some((_, error)) = numbers.episode_errors.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
                     (row("The worst movement left out", &short(*error), "not far from the others"))
                 }
                 @if let Some(halves) = numbers.halves {
-                    (row("Difference of policies of both halves of the movements", &short(halves), "below 0.12"))
+                    (row("Difference of policies of both halves of the movements", &short(halves), &below(TrustNumbers::GOOD_HALVES)))
                 }
                 (row("Squared errors over those expected", &short(numbers.z_squared), "below 4"))
                 (row("Directions seen, the least of them", &short(numbers.direction_coverage), "above 0.1; 1 if all alike"))
@@ -118,6 +118,11 @@ fn aligned(numbers: &TrustNumbers) -> Markup {
         (row("Samples left out that nothing is known of", &short(aligned.unsupported), "below 0.05"))
         (row("Difference from the Gaussian process", &short(aligned.difference), "below 0.1"))
     }
+}
+
+/// What verdicts ask for.
+fn below(threshold: f64) -> String {
+    format!("below {threshold}")
 }
 
 /// A direction, by the channels that it mostly has.

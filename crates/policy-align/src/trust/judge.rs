@@ -8,15 +8,9 @@ use crate::{Finding, StateChannel, Trust, Verdict};
 
 /// Left-out error along the path from which a policy is wrong.
 const WRONG: f64 = 0.5;
-/// The same from which it may be.
-const DOUBTFUL: f64 = 0.035;
-/// Expected errors from which it may be: they have been too low by a factor of 3.
-const EXPECTED: f64 = 0.06;
-/// The same of PolicyAlign's policy, most of which is a difference that was measured; and from which it is wrong.
+/// Expected error of PolicyAlign's policy from which it may be, most of which is a difference that was measured; and from which it is wrong.
 const MEASURED: f64 = 0.1;
 const FAR: f64 = 0.8;
-/// Difference of what halves of the movements tell from which it may be.
-const HALVES: f64 = 0.12;
 /// An episode whose error is so many times the usual one is named.
 const ODD: f64 = 10.0;
 /// What is free moves in all directions; less coverage than this may be a constraint.
@@ -107,7 +101,7 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
 fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &str)) {
     let expected = numbers.expected_error;
     let measured = numbers.aligned.is_some();
-    if measured && expected > FAR && numbers.halves.is_some_and(|halves| halves < HALVES) {
+    if measured && expected > FAR && numbers.halves.is_some_and(|halves| halves < TrustNumbers::GOOD_HALVES) {
         found(
             Verdict::DoNotUse,
             format!(
@@ -116,7 +110,7 @@ fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &s
             ),
             "use --learner auto",
         );
-    } else if expected > if measured { MEASURED } else { EXPECTED } {
+    } else if expected > if measured { MEASURED } else { TrustNumbers::GOOD_EXPECTED_ERROR } {
         found(
             Verdict::Doubtful,
             format!("the policy expects an error of {} of its variance", percent(expected)),
@@ -130,14 +124,14 @@ fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &s
             format!("left-out movements are predicted with an error of {}", percent(held)),
             "record more movements, above all where errors are largest",
         );
-    } else if held > DOUBTFUL {
+    } else if held > TrustNumbers::GOOD_HELD_OUT_ERROR {
         found(
             Verdict::Doubtful,
             format!("left-out movements are predicted with an error of {}", percent(held)),
             "record more movements, above all where errors are largest",
         );
     }
-    if let Some(halves) = numbers.halves.filter(|&halves| halves > HALVES) {
+    if let Some(halves) = numbers.halves.filter(|&halves| halves > TrustNumbers::GOOD_HALVES) {
         found(
             Verdict::Doubtful,
             format!(
@@ -185,7 +179,9 @@ fn about_episodes(numbers: &TrustNumbers, episodes: &[String], found: &mut dyn F
     }
     let usual = *errors.select_nth_unstable_by(middle, f64::total_cmp).1;
     let worst = numbers.episode_errors.iter().max_by(|(_, a), (_, b)| a.total_cmp(b));
-    if let Some(&(episode, error)) = worst.filter(|&&(_, error)| error > ODD * usual && error > DOUBTFUL) {
+    if let Some(&(episode, error)) =
+        worst.filter(|&&(_, error)| error > ODD * usual && error > TrustNumbers::GOOD_HELD_OUT_ERROR)
+    {
         found(
             Verdict::Good,
             format!(

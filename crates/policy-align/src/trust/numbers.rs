@@ -57,6 +57,15 @@ pub struct TrustNumbers {
     pub aligned: Option<AlignedNumbers>,
 }
 
+impl TrustNumbers {
+    /// Above this `held_out_error` a policy is doubtful.
+    pub const GOOD_HELD_OUT_ERROR: f64 = 0.035;
+    /// Above this `expected_error` a Gaussian process's policy is doubtful: it has been too low by a factor of 3.
+    pub const GOOD_EXPECTED_ERROR: f64 = 0.06;
+    /// Above this difference of `halves` a policy is doubtful.
+    pub const GOOD_HALVES: f64 = 0.12;
+}
+
 /// What is known of PolicyAlign's policy.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
