@@ -63,7 +63,7 @@ impl Comparison {
     fn of(run: &Results, other: &Results) -> Comparison {
         let mut comparison = Comparison::default();
         for result in &run.experiments {
-            let recorded = other.experiments.iter().find(|recorded| recorded.id == result.id);
+            let recorded = other.experiment(&result.id);
             for row in &result.rows {
                 let place = format!("{} {}", result.id, row.id);
                 let recorded = recorded.and_then(|recorded| recorded.rows.iter().find(|other| other.id == row.id));

@@ -149,7 +149,7 @@ fn with_generated(name: &str, generated: &str) -> anyhow::Result<(PathBuf, Strin
 /// learners beside the paper's are wanted of the first seed alone.
 fn complete(experiments: &[Experiment], results: &Results) -> anyhow::Result<()> {
     for experiment in experiments {
-        let result = results.experiments.iter().find(|result| result.id == experiment.id);
+        let result = results.experiment(experiment.id);
         let beside = |setup: &Setup| setup.data_sets.is_some() || experiment.section == "none";
         let setups = experiment.setups.iter().filter(|setup| results.seed == FIRST_SEED || !beside(setup));
         let rows = |setup: &'_ Setup| setup.data_sets_of(experiment) as usize;

@@ -61,6 +61,11 @@ impl Results {
         texts
     }
 
+    /// The results of one experiment, if it was run.
+    pub fn experiment(&self, id: &str) -> Option<&ExperimentResult> {
+        self.experiments.iter().find(|result| result.id == id)
+    }
+
     /// Fails where there are results of other experiments than these.
     ///
     /// # Errors

@@ -41,6 +41,7 @@ use serde_json::Value;
 use sound::Sound;
 use words::{Words, words};
 
+pub use figure8::{Ends, ends_of_reaching};
 use who::Who;
 pub use who::color_of;
 
@@ -244,7 +245,7 @@ impl Sources {
 
     /// The results of one experiment.
     pub fn experiment(&self, id: &str) -> Option<&ExperimentResult> {
-        self.results.experiments.iter().find(|result| result.id == id)
+        self.results.experiment(id)
     }
 
     /// A document, which has to be there.

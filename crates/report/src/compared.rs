@@ -52,7 +52,7 @@ pub(super) fn compared<'a>(
 ) -> Vec<Compared<'a>> {
     let beside = |result: &'a ExperimentResult| {
         let second = second.and_then(|second| {
-            let result = second.experiments.iter().find(|other| other.id == result.id)?;
+            let result = second.experiment(&result.id)?;
             Some(Second { seed: second.seed, result })
         });
         let experiment = experiments.iter().find(|experiment| experiment.id == result.id)?;

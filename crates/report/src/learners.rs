@@ -18,10 +18,9 @@ const ROTATIONAL: [&str; 2] = ["swirl", "limit-cycle"];
 
 /// All of it, as Markdown.
 pub fn learners(experiments: &[Experiment], results: &Results) -> String {
-    let result = |id: &str| results.experiments.iter().find(|result| result.id == id);
     let mut text = format!("{CAUTION}\n\n");
     for experiment in experiments {
-        let contests = result(experiment.id).and_then(|result| Contests::of(experiment, result));
+        let contests = results.experiment(experiment.id).and_then(|result| Contests::of(experiment, result));
         if let Some(contests) = contests {
             let table = contests.markdown();
             let remark = contests.remark.map_or(String::new(), |remark| format!("{remark}\n\n"));
@@ -29,7 +28,7 @@ pub fn learners(experiments: &[Experiment], results: &Results) -> String {
             let _ = write!(text, "### {title}: `{id}`\n\n{findings}\n\n{remark}{table}\n");
         }
     }
-    if let Some(readings) = result("readings") {
+    if let Some(readings) = results.experiment("readings") {
         let _ = write!(
             text,
             "### How movements are read\n\n{}\n{}\n",
