@@ -41,8 +41,8 @@ pub(crate) fn table2() -> anyhow::Result<Experiment> {
         section: "4.2",
         title: "Table 2: grasping a ball",
         data_sets: 50,
-        remark: "Fitted, because the paper does not give them: the robot's posture, starts (palms before x = 0.26), ball (x = 0.7), wall (x = 0.35, felt from 0.09 m before it), \
-                 half-width of the unseen obstacle (0.13), no gap narrower than 0.17 m, regressions. δt = 0.5 s, plain Euler, narrow \
+        remark: "Fitted, because the paper does not give them: the robot's posture, starts (palms before x = 0.26 m), ball (x = 0.7 m), wall (x = 0.35 m, felt from 0.09 m before it), \
+                 half-width of the unseen obstacle (0.13 m), no gap narrower than 0.17 m, regressions. δt = 0.5 s, plain Euler, narrow \
                  bandwidth. Fixed diagonal metrics, inputs divided by 0.3 m: PolicyAlign D = 22, 10 passes; naive D = 10, 4 passes. The printed errors of \
                  the naive learner are held against its errors on held-out samples of all movements. The clip at 0.17 m widens 21 % of the gaps, and decides \
                  which cells agree (docs/leverage.md); the unseen obstacle stops the expert, too, in half of the movements (from 0.06 m down it \

@@ -126,7 +126,7 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
         learnt("(b) Naive (green), truth", &fields.naive, Who::Naive),
         learnt("(c) PolicyAlign (orange), truth", &fields.policy_align, Who::PolicyAlign),
         learnt("(d) Direct GP (olive), truth", &fields.direct_gp, Who::DirectGp),
-        learnt("(e) Slope GP (purple), truth", &fields.slope_gp, Who::SlopeGp),
+        learnt("(e) Slope GP (pink), truth", &fields.slope_gp, Who::SlopeGp),
         sure("(f) Slope GP: how sure it is", &fields.expected),
         sure("(g) Slope GP: its error", &fields.error),
     ];

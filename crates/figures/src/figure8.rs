@@ -50,6 +50,24 @@ fn played(sources: &Sources) -> anyhow::Result<GraspPlayback> {
     Ok(playback)
 }
 
+/// How far hands are from where they should take the ball when movements end, metres, on average.
+pub struct Ends {
+    /// Of the naive learner.
+    pub naive: f64,
+    /// Of PolicyAlign.
+    pub policy_align: f64,
+}
+
+/// Where the movements of Figure 8 end; none if its data are not there.
+pub fn ends_of_reaching(sources: &Sources) -> Option<Ends> {
+    let playback = played(sources).ok()?;
+    let end = |id| {
+        let learner = shown(&playback).find(|(other, _)| *other == id)?;
+        Some(Distances::of(&playback, learner).ok()?.at_end())
+    };
+    Some(Ends { naive: end("naive")?, policy_align: end("policy_align")? })
+}
+
 /// Those of the learners whose movements there are: older figure data have fewer.
 fn shown(playback: &GraspPlayback) -> impl Iterator<Item = (&'static str, Who)> {
     LEARNERS.into_iter().chain([ALL_AROUND]).filter(|(id, _)| movements(playback, id).next().is_some())

@@ -105,7 +105,7 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let picture = if overview.slope_gp.is_empty() {
         Picture::rows(&[&[&shown, &naive, &aligned]])
     } else {
-        let slope = learnt("slope GP (purple)", &overview, Who::SlopeGp)?;
+        let slope = learnt("slope GP (pink)", &overview, Who::SlopeGp)?;
         Picture::rows(&[&[&shown, &naive], &[&aligned, &slope]])
     };
     Ok(Drawing { picture, tables: vec![] })

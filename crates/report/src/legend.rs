@@ -30,7 +30,7 @@ pub(super) const MEASURES: [(&[Measure], &str); 13] = [
     (&[Measure::Disc], "trajectories left out, %"),
     (&[Measure::Unsupported], "test samples outside every receptive field, %"),
     (&[Measure::BeyondLimits], "movements that leave the robot's joint limits somewhere, %"),
-    (&[Measure::ExpectedNupe], "what a Gaussian process expects nupe to be"),
+    (&[Measure::ExpectedNupe], "what a Gaussian process expects nUPE to be"),
     (&[Measure::Rotation], "data sets in which the slope GP finds that there is no potential, %"),
     (
         &[Measure::ReadFree, Measure::ReadConstrained, Measure::ReadAmbiguous, Measure::ReadUnexplained],
