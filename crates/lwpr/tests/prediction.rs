@@ -174,4 +174,21 @@ proptest! {
         prop_assert_eq!(unsupported, count);
         prop_assert!(count > 0);
     }
+
+    /// Small batches stay on one thread; as many queries as go to several are answered alike.
+    #[test]
+    fn a_batch_is_one_query_after_the_other(case in case(100), far in 0_usize..100) {
+        let model = case.trained(1);
+        let predictor = model.predictor(0.001);
+        let mut xs = case.xs.clone();
+        xs.column_mut(far).fill(1e6);
+        let one_by_one: Vec<_> = xs.column_iter().map(|x| predictor.predict(x)).collect();
+        prop_assert!(one_by_one[far].is_none());
+        prop_assert_eq!(predictor.predict_batch(xs.as_view()).unwrap(), one_by_one);
+        let work = (0..model.n_out()).map(|output| model.n_receptive_fields(output)).sum::<usize>() * case.n_in;
+        let many = DMatrix::from_fn(case.n_in, (1 << 18) / work + 1, |i, k| xs[(i, k % 100)]);
+        let values = predictor.values(many.as_view(), 0).unwrap();
+        let expected: Vec<_> = xs.column_iter().map(|x| predictor.value(x, 0)).collect();
+        prop_assert!(values.iter().zip(expected.iter().cycle()).all(|(ours, theirs)| ours == theirs));
+    }
 }

@@ -32,6 +32,9 @@ struct OutputFields {
     table: FieldTable,
 }
 
+/// Numbers to compare, of queries with centres of fields, from which threads are worth their cost: some 200 µs of work.
+const WORTH_THREADS: usize = 1 << 18;
+
 impl Lwpr {
     /// An immutable snapshot that predicts. Fields whose activation is at most `cutoff` do not take part: 0.001 is a
     /// good choice, 0 uses every field however far.
@@ -78,6 +81,16 @@ impl Predictor {
         }
     }
 
+    /// The answers to so many queries, in parallel where that pays: handing out work to threads, and answers that one thread
+    /// allocates and another frees, cost more than a small batch.
+    fn each<T: Send>(&self, queries: usize, answer: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
+        let fields: usize = self.outputs.iter().map(|output| output.models.len()).sum();
+        if queries * fields * self.n_in() < WORTH_THREADS {
+            return (0..queries).map(answer).collect();
+        }
+        (0..queries).into_par_iter().map(answer).collect()
+    }
+
     /// Everything about `x`; `None` if some output has no trustworthy field activated above the cutoff.
     pub fn predict(&self, x: DVectorView<'_, f64>) -> Option<Prediction> {
         let mut prediction = Prediction::zeros(self.n_in(), self.n_out());
@@ -99,7 +112,7 @@ impl Predictor {
     /// [`LwprError::Dimension`] or [`LwprError::BadValue`].
     pub fn predict_batch(&self, xs: DMatrixView<'_, f64>) -> Result<Vec<Option<Prediction>>, LwprError> {
         self.check_queries(xs)?;
-        Ok((0..xs.ncols()).into_par_iter().map(|sample| self.predict(xs.column(sample))).collect())
+        Ok(self.each(xs.ncols(), |sample| self.predict(xs.column(sample))))
     }
 
     /// [`value`](Self::value) for every column of `xs` (`n_in`, N), in parallel; the same at any thread count.
@@ -111,7 +124,7 @@ impl Predictor {
     /// If there is no such output.
     pub fn values(&self, xs: DMatrixView<'_, f64>, output: usize) -> Result<Vec<Option<f64>>, LwprError> {
         self.check_queries(xs)?;
-        Ok((0..xs.ncols()).into_par_iter().map(|sample| self.value(xs.column(sample), output)).collect())
+        Ok(self.each(xs.ncols(), |sample| self.value(xs.column(sample), output)))
     }
 
     /// Gradients of one output at every column of `xs` (`n_in`, N), written into the columns of `gradients` (`n_in`, N),
