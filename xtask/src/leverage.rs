@@ -10,12 +10,13 @@ use std::sync::Arc;
 
 use anyhow::Context as _;
 use clap::Args;
+use experiments::leverage::{Changed, Leverage as Measured, Turned};
 use experiments::measure::Measure;
 use experiments::results::ExperimentResult;
 use experiments::summary::summarise;
 use experiments::variants::{Cell, Quote, Variants, quotes};
 use experiments::verdict::Verdict;
-use experiments::{Experiment, Setting, Setup, quotable, registry, settings};
+use experiments::{Experiment, Setting, Setup, quotable, registry, settings, shown};
 use page::markdown_table;
 
 use crate::files::{repository, write};
@@ -23,8 +24,14 @@ use crate::progress::say;
 use crate::records::{Earlier, Records};
 use crate::runner::{Plan, Work};
 
+/// What is written: what was measured, its page of documentation, and what texts quote.
+const LEVERAGE: &str = "docs/records/leverage.json";
+const PAGE: &str = "docs/leverage.md";
+const VARIANTS: &str = "docs/records/variants.json";
+
 /// By how much settings are changed.
-const FACTORS: [f64; 2] = [0.8, 1.2];
+const SMALLER: f64 = 0.8;
+const LARGER: f64 = 1.2;
 
 #[derive(Debug, Args)]
 pub(crate) struct Leverage {
@@ -55,20 +62,19 @@ impl Leverage {
         let folder = self.out.clone().unwrap_or_else(|| repository().join("target/leverage"));
         std::fs::create_dir_all(&folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
         let records = Arc::new(Records::open(&folder.join("records.jsonl"), Earlier::Resume)?);
-        let mut text = self.preface();
-        let (mut experiment, mut rows, mut base) = ("", Vec::new(), Vec::new());
+        let mut leverage = Measured { seed: self.seed, data_sets: self.data_sets, settings: Vec::new() };
+        let (mut experiment, mut base) = ("", Vec::new());
         for setting in settings() {
             if setting.experiment != experiment {
-                add_table(&mut text, experiment, &rows);
-                (experiment, rows) = (setting.experiment, Vec::new());
+                experiment = setting.experiment;
                 base = self.verdicts(&setting, setting.used, &records)?;
             }
-            rows.push(self.row(&setting, &base, &records)?);
+            leverage.settings.push(self.changed(&setting, &base, &records)?);
         }
-        add_table(&mut text, experiment, &rows);
-        write(&repository().join("docs/leverage.md"), text)?;
-        write(&repository().join("docs/records/variants.json"), self.quoted(&records)?.json()?)?;
-        say("written: docs/leverage.md, docs/records/variants.json");
+        write(&repository().join(LEVERAGE), leverage.json()?)?;
+        write(&repository().join(PAGE), page_of(&leverage))?;
+        write(&repository().join(VARIANTS), self.quoted(&records)?.json()?)?;
+        say(&format!("written: {PAGE}, {LEVERAGE}, {VARIANTS}"));
         Ok(())
     }
 
@@ -92,25 +98,14 @@ impl Leverage {
         Ok(variants)
     }
 
-    fn preface(&self) -> String {
-        format!(
-            "# How much hangs on what is fitted\n\nWritten by `cargo xtask leverage --data-sets {} --seed {}`. The paper leaves these settings open; \
-             they were chosen so that\nthe printed figures come out. Here each is changed by a fifth (whole numbers to the nearest), one at a time, and the printed cells are \
-             named whose verdict is\nthen another than at the value used, on the same data sets. Verdicts are those of \
-             [reproduction.md](reproduction.md); with fewer data\nsets they may differ from those there.\n",
-            self.data_sets, self.seed
-        )
-    }
-
-    fn row(&self, setting: &Setting, base: &Verdicts, records: &Arc<Records>) -> anyhow::Result<Vec<String>> {
-        let mut row = vec![setting.name.to_owned(), setting.paper.to_owned(), number(setting.used)];
-        for factor in FACTORS {
+    fn changed(&self, setting: &Setting, base: &Verdicts, records: &Arc<Records>) -> anyhow::Result<Changed> {
+        let turned = |factor: f64| -> anyhow::Result<Vec<Turned>> {
             let value = setting.used * factor;
-            say(&format!("{}: {} = {}", setting.experiment, setting.name, number(value)));
-            let turned = turned(base, &self.verdicts(setting, value, records)?);
-            row.push(if turned.is_empty() { "none".to_owned() } else { turned.join("; ") });
-        }
-        Ok(row)
+            say(&format!("{}: {} = {}", setting.experiment, setting.name, shown(value)));
+            Ok(turned(base, &self.verdicts(setting, value, records)?))
+        };
+        let (experiment, name) = (setting.experiment.to_owned(), setting.name.to_owned());
+        Ok(Changed { experiment, setting: name, smaller: turned(SMALLER)?, larger: turned(LARGER)? })
     }
 
     fn verdicts(&self, setting: &Setting, value: f64, records: &Arc<Records>) -> anyhow::Result<Verdicts> {
@@ -148,27 +143,40 @@ fn verdicts(result: &ExperimentResult) -> impl Iterator<Item = (Cell, Verdict)> 
 }
 
 /// Cells whose verdict is another, from what to what.
-fn turned(base: &Verdicts, other: &Verdicts) -> Vec<String> {
+fn turned(base: &Verdicts, other: &Verdicts) -> Vec<Turned> {
     let both = base.iter().zip(other).filter(|((cell, was), (same, is))| cell == same && was != is);
-    both.map(|(((row, measure), was), (_, is))| format!("{row} {}: {} → {}", measure.label(), was.word(), is.word()))
+    both.map(|(((row, measure), was), (_, is))| Turned { row: row.clone(), measure: *measure, was: *was, is: *is })
         .collect()
 }
 
-/// As short as it was written.
-fn number(value: f64) -> String {
-    let rounded = format!("{value:.6}");
-    if value.abs() < 1e-3 {
-        format!("{value:.1e}")
-    } else {
-        rounded.trim_end_matches('0').trim_end_matches('.').to_owned()
+/// The page of documentation: a table for each experiment.
+fn page_of(leverage: &Measured) -> String {
+    let (data_sets, seed) = (leverage.data_sets, leverage.seed);
+    let mut text = format!(
+        "# How much hangs on what is fitted\n\nWritten by `cargo xtask leverage --data-sets {data_sets} --seed {seed}`. The paper leaves these \
+         settings open; they were chosen so that\nthe printed figures come out. Here each is changed by a fifth (whole numbers to the nearest), \
+         one at a time, and the printed cells are named whose verdict is\nthen another than at the value used, on the same data sets. \
+         Verdicts are those of [reproduction.md](reproduction.md); with fewer data\nsets they may differ from those there.\n"
+    );
+    for of_experiment in settings().chunk_by(|a, b| a.experiment == b.experiment) {
+        let rows: Vec<Vec<String>> = of_experiment.iter().map(|setting| row(setting, leverage.of(setting))).collect();
+        let header = ["setting", "the paper says", "used", "a fifth less turns", "a fifth more turns"];
+        let _ = write!(text, "\n## `{}`\n\n{}", of_experiment[0].experiment, markdown_table(&header, &rows));
     }
+    text
 }
 
-fn add_table(text: &mut String, experiment: &str, rows: &[Vec<String>]) {
-    if !rows.is_empty() {
-        let header = ["setting", "the paper says", "used", "a fifth less turns", "a fifth more turns"];
-        let _ = write!(text, "\n## `{experiment}`\n\n{}", markdown_table(&header, rows));
-    }
+fn row(setting: &Setting, changed: Option<&Changed>) -> Vec<String> {
+    let name = |turned: &Turned| {
+        let Turned { row, measure, was, is } = turned;
+        format!("{row} {}: {} → {}", measure.label(), was.word(), is.word())
+    };
+    let named = |turned: &[Turned]| match turned {
+        [] => "none".to_owned(),
+        _ => turned.iter().map(name).collect::<Vec<_>>().join("; "),
+    };
+    let [smaller, larger] = changed.map_or_else(Default::default, |c| [&c.smaller, &c.larger].map(|t| named(t)));
+    vec![setting.name.to_owned(), setting.paper.to_owned(), setting.shown(), smaller, larger]
 }
 
 #[cfg(test)]
@@ -205,8 +213,19 @@ mod tests {
     #[test]
     fn cells_that_turn_are_named() {
         let cell = |verdict| vec![(("narrow".to_owned(), Measure::Nupe), verdict)];
-        assert_eq!(turned(&cell(Verdict::Agrees), &cell(Verdict::Agrees)), Vec::<String>::new());
-        assert_eq!(turned(&cell(Verdict::Agrees), &cell(Verdict::Lower)), ["narrow nUPE: agrees → lower"]);
-        assert_eq!([0.17, 20.0, 1e-5, 24.0, -7.2].map(number), ["0.17", "20", "1.0e-5", "24", "-7.2"]);
+        assert_eq!(turned(&cell(Verdict::Agrees), &cell(Verdict::Agrees)), Vec::new());
+        let (narrow, measure) = ("narrow".to_owned(), Measure::Nupe);
+        let lower = Turned { row: narrow, measure, was: Verdict::Agrees, is: Verdict::Lower };
+        assert_eq!(turned(&cell(Verdict::Agrees), &cell(Verdict::Lower)), std::slice::from_ref(&lower));
+        let setting = &settings()[0];
+        let (experiment, name) = (setting.experiment.to_owned(), setting.name.to_owned());
+        let changed = Changed { experiment, setting: name, smaller: vec![lower], larger: vec![] };
+        assert_eq!(row(setting, Some(&changed))[3..], ["narrow nUPE: agrees → lower", "none"]);
+    }
+
+    #[test]
+    fn the_page_shows_what_was_measured() {
+        let written = std::fs::read_to_string(repository().join(PAGE)).unwrap();
+        assert_eq!(written, page_of(&Measured::committed().unwrap()));
     }
 }

@@ -184,7 +184,7 @@ fn reproduction(experiments: &[Experiment], records: &Committed) -> String {
     let contents: String = parts.iter().map(entry).collect();
     let body: String = parts.iter().map(part).collect();
     let total = total(experiments, &first.results);
-    let zeros = "Cells printed as 0 ± 0 count among the last where ours is below 0.005 %.";
+    let zeros = "Cells that vary neither here nor in the paper are those printed as 0 ± 0; they agree where ours is below 0.005 %.";
     let (tallies, key) = (verdicts(experiments, &first.results), key());
     let key = folded("How to read the tables", key.trim_end());
     format!("{TITLE}{hero}**{total}** {zeros}\n\n{tallies}\n{PREFACE}{contents}\n{key}{}\n", body.trim_end())

@@ -99,8 +99,9 @@ pub(crate) fn beyond() -> Experiment {
         remark: "Policies drawn anew for every data set, in 2 to 22 dimensions; movements of 40 samples, flows instead of Euler maps; \
                  random constraints that turn with the state, about one forbidden direction in four, drawn anew every 20 samples. \
                  All learners as they come, but LWPR in 22 dimensions, where wider fields and one pass serve it better; PolicyAlign has the narrow or the medium bandwidth, whichever the truth likes better in that \
-                 data set. Nothing is held out: the policy is hidden at the states that are seen. \"As read\" is the slope GP or the direct \
+                 data set. Nothing is held out: the policy is hidden at the states that are seen. \"Automatic\" is the slope GP or the direct \
                  GP, as the data are read.",
+        reservations: &[],
         decisions: "beyond.md",
         contests_remark: None,
         another_reading_of: None,

@@ -55,7 +55,7 @@ impl Contestant {
             Contestant::SlopeGp => "slope GP",
             Contestant::SlopeGpNoTrend => "slope GP, no trend",
             Contestant::DirectGp => "direct GP",
-            Contestant::Reading => "as read",
+            Contestant::Reading => "automatic",
         }
     }
 }
@@ -65,7 +65,7 @@ impl Contestant {
     pub fn description(self) -> &'static str {
         match self {
             Contestant::Naive => {
-                "direct policy learning, the paper's baseline: LWPR on the velocities as they were seen, which averages what constraints let through"
+                "direct policy learning, the paper's baseline: LWPR (locally weighted projection regression) on the velocities as they were seen, which averages what constraints let through"
             }
             Contestant::PolicyAlign => {
                 "the paper's method: potentials are integrated along each trajectory, aligned, and learnt by LWPR; the policy is their negative gradient"
@@ -74,13 +74,15 @@ impl Contestant {
                 "a later method of Howard and others: a policy of radial basis functions whose part along each observed movement is as long as that movement"
             }
             Contestant::SlopeGp => {
-                "a Gaussian process on the potential, which is told of every sample how long the policy is along the movement; nothing is aligned or discarded, and it has error bars"
+                "a Gaussian process on the potential: what it observes at every sample is the length of the policy along the movement; nothing is aligned or discarded, and it has error bars"
             }
             Contestant::SlopeGpNoTrend => {
-                "the same without quadratic potentials among its families: what is left where they do not contain the truth"
+                "the same without quadratic potentials among the forms it chooses from: what is left where they do not contain the truth"
             }
             Contestant::DirectGp => "a Gaussian process on the velocities as they were seen: a stronger direct learner",
-            Contestant::Reading => "the slope GP or the direct GP, whichever the data support",
+            Contestant::Reading => {
+                "the slope GP or the direct GP, whichever fits how the data are read (free or constrained)"
+            }
         }
     }
 }

@@ -43,6 +43,9 @@ pub(crate) fn figure6_left() -> Experiment {
         title: "Figure 6, left: error against the amount of data",
         remark: "Only the first of the 40 trajectories of Table 1's parabola (40 samples each) are used, 10 to 100 percent of them. \
                  Regression as in Table 1; test samples from the trajectories that are kept of those used.",
+        contests_remark: Some(
+            "Learnt from `map-20` means: from 20 % of the trajectories. PolicyAlign has the narrow bandwidth.",
+        ),
         contests: TRAJECTORIES_PERCENT.map(|percent| contest(BESIDE_LEFT, "narrow", percent)).into(),
         setups: BANDWIDTHS.map(setup).into_iter().chain([beside]).collect(),
         ..curves()
@@ -74,7 +77,7 @@ pub(crate) fn figure6_right() -> Experiment {
                  Regression as in Table 1; errors are against the truth at the true states.",
         contests: RULES.into_iter().zip(BESIDE_RIGHT).flat_map(contests).collect(),
         contests_remark: Some(
-            "Not all learn from the same here: naive learner and radial basis take the recorded velocities, which are clean, in all rows. \
+            "Learnt from `fused-5` or `smoothed-5` means: with 5 % noise on positions. Not all learn from the same here: naive learner and radial basis take the recorded velocities, which are clean, in all rows. \
              In the rows `fused-…` PolicyAlign takes them too, and the Gaussian processes positions and velocities together; in the rows \
              `smoothed-…` PolicyAlign and the Gaussian processes have noisy positions alone, of which the latter are smoothed.",
         ),
@@ -133,6 +136,7 @@ fn curves() -> Experiment {
         title: "",
         data_sets: 20,
         remark: "",
+        reservations: &[],
         decisions: "figure6.md",
         contests_remark: None,
         another_reading_of: None,

@@ -45,6 +45,7 @@ pub(crate) fn figure9() -> anyhow::Result<Experiment> {
         remark: "Data sets, learner and test samples of the three-link arm; of the samples only those nearer than c radians to the posture \
                  along the line (rows d-c), or nearer than c to the line (rows r-c). The variances in (A1)–(A3) are of \
                  these samples too. A data set with fewer than 10 of them has no value there.",
+        reservations: &[],
         decisions: "figure9.md",
         contests_remark: None,
         another_reading_of: None,

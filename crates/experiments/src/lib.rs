@@ -4,7 +4,7 @@
 //! - [`registry`]: all of them. An [`Experiment`] has [`Setup`]s, and each of these a [`Trial`], which makes a data set from a
 //!   generator of [`seed`], learns from it and scores what was learnt: an [`outcome::Outcome`].
 //! - [`summary`]: what outcomes come to, beside the printed figures; [`results`]: the form in which that is kept.
-//! - [`settings`]: what is fitted; [`variants`]: numbers that texts quote of other settings.
+//! - [`settings`]: what is fitted; [`leverage`]: how much hangs on it; [`variants`]: numbers that texts quote of other settings.
 //!
 //! Whoever runs them decides on threads, files and progress.
 
@@ -19,6 +19,7 @@ mod figure9;
 mod fresh;
 mod gaussians;
 mod judge;
+pub mod leverage;
 pub mod measure;
 pub mod outcome;
 pub mod paper;
@@ -47,7 +48,7 @@ pub use gaussians::Gaussians;
 pub use judge::Judge;
 pub use parameters::Parameters;
 pub use robots::upper_body;
-pub use settings::{Setting, quotable, settings};
+pub use settings::{Setting, quotable, settings, shown};
 pub use table1::{PARABOLA_SYSTEM, SINUSOIDAL_SYSTEM, toy_beside, toy_regressor};
 pub use table2::{GRASP_SYSTEM, grasp, grasp_beside, grasp_naive, grasp_regressor};
 pub use test_samples::TestSamples;
@@ -75,6 +76,8 @@ pub struct Experiment {
     pub data_sets: u32,
     /// What is fitted or left open by the paper, in a sentence or two.
     pub remark: &'static str,
+    /// What its numbers do not show: statements of the paper that do not hold here, and other reservations, a sentence each.
+    pub reservations: &'static [&'static str],
     /// The page of `docs/decisions` on why it is done so.
     pub decisions: &'static str,
     /// The experiment of which it is another reading: its cells are no further figures of the paper.

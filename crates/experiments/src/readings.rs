@@ -96,6 +96,7 @@ pub(crate) fn readings() -> Experiment {
         remark: "Movements as in the experiment beyond, with exact velocities: free, each under constraints of its own, every other one free, \
                  all under the same constraint. Handwriting is free movement in a corridor, learnt from five demonstrations and tested on \
                  two others. The Gaussian processes learn from at most 400 rows.",
+        reservations: &[],
         decisions: "beyond.md",
         contests_remark: None,
         another_reading_of: None,

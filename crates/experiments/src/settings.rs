@@ -16,6 +16,23 @@ pub struct Setting {
     pub with: fn(f64) -> anyhow::Result<Vec<Setup>>,
 }
 
+impl Setting {
+    /// Its value in use, as short as it was written.
+    pub fn shown(&self) -> String {
+        shown(self.used)
+    }
+}
+
+/// A setting's value, as short as it was written.
+pub fn shown(value: f64) -> String {
+    let rounded = format!("{value:.6}");
+    if value.abs() < 1e-3 {
+        format!("{value:e}")
+    } else {
+        rounded.trim_end_matches('0').trim_end_matches('.').to_owned()
+    }
+}
+
 /// Where the paper is silent.
 pub(super) const SILENT: &str = "nothing";
 
@@ -30,4 +47,14 @@ pub fn settings() -> Vec<Setting> {
 /// These, and what is not fitted but asked about in texts.
 pub fn quotable() -> impl Iterator<Item = Setting> {
     settings().into_iter().chain(table1::unfitted())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shown;
+
+    #[test]
+    fn values_are_shown_as_they_were_written() {
+        assert_eq!([0.17, 20.0, 1e-5, 24.0, -7.2].map(shown), ["0.17", "20", "1e-5", "24", "-7.2"]);
+    }
 }

@@ -88,7 +88,10 @@ fn figure_6_right_is_as_said() {
     }
     let [narrow, medium] =
         ["displacement-narrow-5", "displacement-medium-5"].map(|row| two_digits(cell(&sources, id, row, Nupe).mean));
-    assert_says(id, &format!("at 5 % the error of π is {narrow} and {medium}"));
+    assert_says(
+        id,
+        &format!("at 5 % the error of π is {narrow} with the narrow bandwidth and {medium} with the medium one"),
+    );
 }
 
 #[test]
@@ -121,7 +124,7 @@ fn other_readings_of_tables_are_quoted_as_they_are() {
     }
     let kept = two_digits(cell(&sources, "three_link", "naive", Ncpe).mean);
     let text = explained("three_link", "naive", Measure::NcpeAll);
-    assert!(text.contains(&format!("on kept movements alone it is {kept}")), "{kept}: {text}");
+    assert!(text.contains(&format!("on the kept movements, too, where it is {kept}")), "{kept}: {text}");
 }
 
 /// Numbers of the paper that stand in what is said of cells are printed there.

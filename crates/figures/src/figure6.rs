@@ -108,13 +108,15 @@ fn beside<'a>(sources: &'a Sources, id: &str, case: &str, percent: &[f64]) -> an
     Ok(BESIDE.map(|(_, learner)| Series { result, rows: of(learner), style: FIRST }).into())
 }
 
-/// The curves of the learners beside, on an axis that reaches down to them, or to [`LOWEST`]: what is below lies on its edge.
+/// The curves of the learners beside, on an axis that reaches down to them as far as they are above [`LOWEST`]: what is
+/// below lies on its edge.
 fn with(beside: &[Series<'_>], mut panel: Curves) -> Curves {
     for (series, (error, _)) in beside.iter().zip(BESIDE) {
         let mut curve = series.curve(error);
-        let least = curve.points.iter().map(|point| point.1).filter(|mean| *mean > 0.0).fold(f64::INFINITY, f64::min);
+        let least =
+            curve.points.iter().map(|point| point.1).filter(|mean| *mean >= LOWEST).fold(f64::INFINITY, f64::min);
         if least < panel.y[0] {
-            panel.y[0] = 10_f64.powf(least.log10().floor()).max(LOWEST);
+            panel.y[0] = 10_f64.powf(least.log10().floor());
         }
         for point in curve.points.iter_mut().filter(|point| point.1 < panel.y[0]) {
             (point.1, point.2) = (panel.y[0], 0.0);

@@ -18,6 +18,9 @@ use crate::Who;
 /// Starts of the movements are drawn from [−2, 2]²; shown is a little more, as movements leave that square.
 const SHOWN: f64 = 2.2;
 
+/// Of a panel, pixels: small, so that words are large where the picture is shown small.
+const SIZE: (f64, f64) = (270.0, 285.0);
+
 /// Rows that the slope GP learns from.
 const ROWS: usize = 500;
 
@@ -98,21 +101,21 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let mut shown = demonstrated::layers(&overview.contours, movements, 1.6);
     shown.extend([ends(&overview.movements), goal()]);
     let [shown, naive, aligned] = [
-        plane("Forty movements under unknown constraints", shown),
-        learnt("Naive learner (green)", &overview, Who::Naive)?,
+        plane("Forty constrained movements", shown),
+        learnt("Naive (green)", &overview, Who::Naive)?,
         learnt("PolicyAlign (orange)", &overview, Who::PolicyAlign)?,
     ];
     let picture = if overview.slope_gp.is_empty() {
         Picture::rows(&[&[&shown, &naive, &aligned]])
     } else {
-        let slope = learnt("slope GP (pink)", &overview, Who::SlopeGp)?;
+        let slope = learnt("Slope GP (pink)", &overview, Who::SlopeGp)?;
         Picture::rows(&[&[&shown, &naive], &[&aligned, &slope]])
     };
     Ok(Drawing { picture, tables: vec![] })
 }
 
 fn plane(title: &str, layers: Vec<Layer>) -> Plane {
-    state_plane(title, SHOWN, layers, Plane::SQUARE)
+    state_plane(title, SHOWN, layers, SIZE)
 }
 
 /// The unconstrained actions of the expert and of a learner.
@@ -125,7 +128,7 @@ fn learnt(title: &str, overview: &Overview, who: Who) -> anyhow::Result<Plane> {
     let mut layers = compared(&overview.expert, learner, who, ARROW_SECONDS);
     layers.push(goal());
     let error = error(&overview.expert, learner)?;
-    let error = if error < 0.001 { "below 0.001".to_owned() } else { format!("{error:.2}") };
+    let error = if error < 0.001 { "< 0.001".to_owned() } else { format!("{error:.2}") };
     Ok(plane(&format!("{title}: error {error}"), layers))
 }
 

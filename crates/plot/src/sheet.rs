@@ -16,6 +16,7 @@ pub(crate) struct Edge<'a> {
 /// The layout with both axes named and bounded.
 pub(crate) fn with_axes(layout: Layout, x: &Edge<'_>, y: &Edge<'_>) -> Layout {
     layout
+        .with_label_size(12)
         .with_x_label(x.label)
         .with_y_label(y.label)
         .with_x_axis_min(x.range[0])

@@ -8,9 +8,6 @@ use experiments::verdict::Verdict;
 
 use super::tally::z;
 
-/// Standard deviations by which an error must undercut the paper's before the report has to say why.
-const REMARKABLY_LOWER: f64 = 2.0;
-
 /// Data sets below which single cells are not worth an explanation.
 pub(super) const FEW: usize = 20;
 
@@ -97,7 +94,7 @@ impl<'a> Compared<'a> {
     /// The cells that need a word, each with it.
     pub(super) fn standing_out(&self) -> Vec<(Line<'a>, &'a str)> {
         let word = |line: &Line<'_>| self.experiment.explain(&line.row.id, line.measure);
-        let lines = self.lines().filter(|line| needs_a_word(line.cell));
+        let lines = self.lines().filter(|line| line.cell.verdict.is_some_and(|verdict| verdict != Verdict::Agrees));
         lines.map(|line| (line, word(&line).unwrap_or("no explanation has been found yet."))).collect()
     }
 
@@ -168,11 +165,4 @@ impl Line<'_> {
     pub(super) fn second_verdict(&self) -> &'static str {
         self.second.and_then(|cell| cell.verdict).map_or("", Verdict::word)
     }
-}
-
-/// Figures that are not reached, and errors that are lower by far, must be explained.
-fn needs_a_word(cell: &Cell) -> bool {
-    let (Some(paper), Some(verdict)) = (cell.paper, cell.verdict) else { return false };
-    let far_lower = verdict == Verdict::Lower && paper.mean - cell.mean > REMARKABLY_LOWER * paper.sd;
-    !verdict.reached() || far_lower
 }

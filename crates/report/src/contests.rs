@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 
 use experiments::measure::Measure;
 use experiments::results::{Cell, ExperimentResult};
+use experiments::variants::two_digits;
 use experiments::{Contest, Contestant, Experiment};
 use page::markdown_table;
 
@@ -63,14 +64,19 @@ impl<'a> Contests<'a> {
         ["learnt from", "error of", "n"].into_iter().chain(learners).chain(ratio).collect()
     }
 
-    /// One line a contest: its case, its error, its data sets, each learner's mean, and a ratio of means.
+    /// One line a contest: its case, its error, its data sets, each learner's mean, the least emphasised, and a ratio of means.
     pub(crate) fn rows(&self) -> Vec<Vec<String>> {
         self.lines.iter().map(|line| self.row(line)).collect()
     }
 
     fn row(&self, line: &ContestLine<'_>) -> Vec<String> {
         let measure = line.contest.measure;
-        let mean = |who: &Contestant| line.mean(*who).map_or(NOTHING.to_owned(), |mean| shown_mean(measure, mean));
+        let least = line.least();
+        let mean = |who: &Contestant| match line.mean(*who).map(shown_mean) {
+            None => NOTHING.to_owned(),
+            Some(mean) if *who == least => format!("**{mean}**"),
+            Some(mean) => mean,
+        };
         let ratio = self.has_ratio().then(|| line.ratio().map_or(NOTHING.to_owned(), shown_ratio));
         let first = [line.contest.case.clone(), measure.label().to_owned(), line.n.to_string()];
         first.into_iter().chain(self.contestants.iter().map(mean)).chain(ratio).collect()
@@ -112,7 +118,7 @@ impl ContestLine<'_> {
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     }
 
-    /// Whose mean is the smallest; "as read" and "no trend" are no learners of their own.
+    /// Whose mean is the smallest; "automatic" and "no trend" are no learners of their own.
     fn least(&self) -> Contestant {
         let means =
             self.cells.iter().filter(|(who, _)| !matches!(who, Contestant::Reading | Contestant::SlopeGpNoTrend));
@@ -136,9 +142,13 @@ impl ContestLine<'_> {
     }
 }
 
-/// Errors of these learners differ by orders of magnitude: small ones are all shown by their exponents.
-fn shown_mean(measure: Measure, mean: f64) -> String {
-    if mean != 0.0 && mean.abs() < 1e-3 { format!("{mean:.0e}") } else { measure.show(mean) }
+/// Errors of these learners differ by orders of magnitude: two digits that count, of small ones one and the exponent.
+fn shown_mean(mean: f64) -> String {
+    match mean {
+        0.0 => "0".to_owned(),
+        _ if mean.abs() < 1e-3 => format!("{mean:.0e}"),
+        _ => two_digits(mean),
+    }
 }
 
 fn shown_ratio(ratio: f64) -> String {
@@ -190,7 +200,7 @@ mod tests {
         assert_eq!(contests.contestants, [Contestant::Naive, Contestant::PolicyAlign, Contestant::SlopeGp]);
         let findings = "Least error in 1 comparisons: slope GP 1.";
         assert_eq!(contests.findings(), findings);
-        let expected = [case, "nUPE", "2", "0.5000", "0.2000", "0.0020", "0.01"];
+        let expected = [case, "nUPE", "2", "0.50", "0.20", "**0.0020**", "0.01"];
         assert_eq!(contests.rows(), [expected.map(str::to_owned).to_vec()]);
         assert_eq!(contests.header().len(), expected.len());
     }
@@ -206,8 +216,8 @@ mod tests {
 
     #[test]
     fn small_errors_are_shown_by_their_exponents() {
-        let shown = [0.2, 0.000_762, 3e-21, 0.0].map(|mean| shown_mean(Measure::Nupe, mean));
-        assert_eq!(shown, ["0.2000", "8e-4", "3e-21", "0.000000"]);
+        let shown = [0.2, 0.000_762, 3e-21, 0.0, 957.6].map(shown_mean);
+        assert_eq!(shown, ["0.20", "8e-4", "3e-21", "0", "958"]);
     }
 
     #[test]

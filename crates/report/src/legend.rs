@@ -13,11 +13,11 @@ the error of alignment, which follows from the time step) and the naive baseline
 differ by more than a factor of two; it is not judged.";
 
 /// Measures and what they are.
-pub(super) const MEASURES: [(&[Measure], &str); 13] = [
+pub(super) const MEASURES: [(&[Measure], &str); 14] = [
     (&[Measure::PotentialNmse], "error of the learnt potential (A3)"),
     (
         &[Measure::Nupe, Measure::Ncpe],
-        "error of the learnt policy, unconstrained (A1) and under the constraints of the demonstrations (A2)",
+        "normalised unconstrained policy error (A1), and normalised constrained policy error (A2): under the constraints of the demonstrations",
     ),
     (
         &[Measure::NupeAll, Measure::NcpeAll],
@@ -26,6 +26,10 @@ pub(super) const MEASURES: [(&[Measure], &str); 13] = [
     (&[Measure::NupeFresh], "the same on ten movements from new starts in the same box, which nobody learnt from"),
     (&[Measure::Naive, Measure::PolicyAlign], "error of that learner's policy under the constraint of the row"),
     (&[Measure::NaiveAll, Measure::PolicyAlignAll], "the same on held-out samples of all movements"),
+    (
+        &[Measure::NcpeUnseen, Measure::NcpeUnseenAll],
+        "error of the learnt policy under a constraint that no demonstration shows (A2), on samples of kept and of all movements",
+    ),
     (&[Measure::AlignmentNmse], "error of the aligned local potentials (A4)"),
     (&[Measure::Disc], "trajectories left out, %"),
     (&[Measure::Unsupported], "test samples outside every receptive field, %"),
@@ -38,7 +42,38 @@ pub(super) const MEASURES: [(&[Measure], &str); 13] = [
     ),
 ];
 
+/// What names of rows and settings mean.
+pub(super) const TERMS: [(&str, &str); 10] = [
+    ("40x40, 100x100", "so many movements of so many samples each"),
+    (
+        "narrow, medium, wide",
+        "PolicyAlign's bandwidth, the distance over which movements inform each other (σ in (11)): that between nearest neighbours, between \
+         any two, or, in the middle, the geometric mean of both",
+    ),
+    (
+        "D, init_D",
+        "the distance metric of LWPR's receptive fields, fixed or where it starts: a field's width is 1/√D, in units in which inputs are \
+         normalised; the larger, the narrower",
+    ),
+    ("w_gen", "LWPR places a new receptive field where none is activated by more; the larger, the closer they stand"),
+    ("penalty", "how strongly LWPR holds fields wide while their metrics adapt"),
+    ("passes, cutoff", "how often LWPR sees the samples, and the activation below which a field does not count"),
+    ("δt", "seconds from sample to sample"),
+    (
+        "sinus, wells, softplus, relu",
+        "policies with a potential: a sinusoid in a bowl; hollows in a bowl; planes that meet at rounded edges, or at sharp ones, where the policy jumps",
+    ),
+    (
+        "swirl, limit-cycle, handwriting",
+        "policies without one: rotation about an attractor, movement on to a closed curve, movement along a corridor",
+    ),
+    (
+        "noise-20-velocities, positions-noise-5",
+        "20 % noise on recorded states beside exact velocities; 5 % noise on positions, without velocities",
+    ),
+];
+
 /// Names of measures, one after the other.
 pub(super) fn names(measures: &[Measure], name: fn(Measure) -> &'static str) -> String {
-    measures.iter().map(|&measure| name(measure)).collect::<Vec<_>>().join(", ")
+    measures.iter().map(|&measure| name(measure)).collect::<Vec<_>>().join("; ")
 }

@@ -12,19 +12,21 @@ const STANDARD_ERRORS: f64 = 2.0;
 /// How many of the printed cells are reached, and how.
 pub struct Tally {
     counts: BTreeMap<Verdict, usize>,
+    varying: usize,
     alike: usize,
 }
 
 impl Tally {
     /// Counts the cells of experiments.
     pub fn of<'a>(results: impl IntoIterator<Item = (&'a Experiment, &'a ExperimentResult)>) -> Tally {
-        let mut tally = Tally { counts: BTreeMap::new(), alike: 0 };
+        let mut tally = Tally { counts: BTreeMap::new(), varying: 0, alike: 0 };
         for (experiment, result) in results {
             for cell in result.rows.iter().flat_map(|row| row.measures.values()) {
                 let Some(verdict) = cell.verdict else { continue };
                 *tally.counts.entry(verdict).or_default() += 1;
-                let alike = z(cell, experiment.data_sets).is_none_or(|z| z.abs() <= STANDARD_ERRORS);
-                tally.alike += usize::from(alike);
+                let Some(z) = z(cell, experiment.data_sets) else { continue };
+                tally.varying += 1;
+                tally.alike += usize::from(z.abs() <= STANDARD_ERRORS);
             }
         }
         tally
@@ -35,9 +37,14 @@ impl Tally {
         Tally::of(results.into_iter().filter(|(experiment, _)| experiment.another_reading_of.is_none()))
     }
 
-    /// Printed cells whose means differ by no more than two standard errors.
+    /// Of [`varying`](Self::varying) ones, those whose means differ by no more than two standard errors.
     pub(crate) fn alike(&self) -> usize {
         self.alike
+    }
+
+    /// Printed cells of which it can be said how sure a difference is: where something varies, here or in the paper.
+    pub(crate) fn varying(&self) -> usize {
+        self.varying
     }
 
     /// Printed cells.
@@ -57,12 +64,9 @@ impl Tally {
         if words.is_empty() {
             String::new()
         } else {
-            format!(
-                "Of {} printed cells {}; {} within two standard errors.",
-                self.total(),
-                words.join(", "),
-                self.alike
-            )
+            let that_vary = if self.varying < self.total() { " that vary" } else { "" };
+            let (total, words, alike, varying) = (self.total(), words.join(", "), self.alike, self.varying);
+            format!("Of {total} printed cells {words}; within two standard errors {alike} of {varying}{that_vary}.")
         }
     }
 

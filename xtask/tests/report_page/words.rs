@@ -28,7 +28,7 @@ fn another_reading_is_told_apart() {
             .map(a => a.closest('dl').previousElementSibling.textContent)",
     );
     assert!(!headings.is_empty());
-    assert!(headings.iter().all(|heading| heading.contains("literal reading")), "{headings:?}");
+    assert!(headings.iter().all(|heading| heading.contains("taken literally")), "{headings:?}");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use page::{emphasised, key};
 
 use super::table::{columns, grid, is_printed, list, scales};
 use super::verdict_bar::{bar, words};
-use super::{Contents, readings, view};
+use super::{Contents, fitted, readings, view};
 use crate::compared::{Compared, Line};
 use crate::contests::Contests;
 use crate::tally::Tally;
@@ -31,7 +31,7 @@ pub(super) fn section(compared: &Compared<'_>, contents: &Contents<'_>) -> Marku
             (printed(compared))
             @if experiment.id == view::EXPERIMENT { (view::view(contents.sources, &figures)) }
             @for (figure, svg) in &figures { (super::card(figure, svg, experiment.title)) }
-            (standing_out(compared)) (contests(compared)) (left_open(compared))
+            (standing_out(compared)) (fitted::table(compared)) (contests(compared)) (left_open(compared))
         } @else {
             @for (figure, svg) in &figures { (super::card(figure, svg, experiment.title)) }
             (readings::counts(compared)) (contests(compared)) (left_open(compared))
@@ -93,7 +93,7 @@ fn contests(compared: &Compared<'_>) -> Markup {
                         @for row in contests.rows() {
                             tr {
                                 th scope="row" { (row[0]) }
-                                @for (at, cell) in row[1..].iter().enumerate() { td .number[at > 0] { (cell) } }
+                                @for (at, cell) in row[1..].iter().enumerate() { td .number[at > 0] { (emphasised(cell)) } }
                             }
                         }
                     }

@@ -1,14 +1,17 @@
 //! The opening: what was asked and how it went.
 
+use std::collections::BTreeSet;
+
 use experiments::measure::Measure;
+use experiments::settings;
 use experiments::verdict::Verdict;
-use experiments::{Experiment, settings};
 use figures::ends_of_reaching;
 use maud::{Markup, html};
 use page::emphasised;
 
 use super::experiment::sentence;
 use super::facts::facts;
+use super::fitted;
 use super::verdict_bar::{bar, words};
 use super::{Contents, OVERVIEW, pictures, view};
 use crate::compared::{Compared, FEW, Line};
@@ -34,10 +37,10 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
                 (total(&tally))
             }
             (how_it_went(&tally, all))
-            @if tally.total() > 0 { (fitted()) }
+            @if tally.total() > 0 { (what_was_fitted()) }
             @if all.iter().any(Compared::is_glimpse) {
                 p .notice { "With fewer than " (FEW) " data sets a row single numbers mean little." }
-            } @else { (not_reached(all)) (pictures::otherwise(contents)) }
+            } @else { (not_reached(all)) (reservations(contents, all)) (pictures::otherwise(contents)) }
             (facts(contents, all))
         }
         (view::way(contents.sources))
@@ -80,15 +83,15 @@ fn centimetres(metres: f64) -> String {
 const WORKS: f64 = 0.5;
 
 /// What is not the paper's.
-fn fitted() -> Markup {
+fn what_was_fitted() -> Markup {
     html! {
         h2 .small { "What was fitted" }
         ul .points {
             li {
                 (settings().len()) " settings that the paper does not print were chosen so that its numbers come out: how often the toy’s constraint \
                  is drawn anew, where ball, wall and obstacle are, the 22 joints’ attractor, time steps, the regressions’ widths and passes; the \
-                 regression of the 22 joints alone was chosen for the lower error. " code { "docs/leverage.md" } " lists all of them, and which verdicts \
-                 change when one is a fifth larger or smaller."
+                 regression of the 22 joints alone was chosen for the lower error. Each experiment’s part lists its own, and which verdicts change when \
+                 one is a fifth smaller or larger."
             }
             li {
                 "Table 2 depends on them most: gaps narrower than 0.17 m are widened, which decides which of its numbers agree; the obstacle that no \
@@ -107,8 +110,9 @@ fn total(total: &Tally) -> Markup {
                 (words(total))
                 (bar(total))
                 p {
-                    "How sure that is: " b { (total.alike()) } " of the " (total.total()) " means are within two standard errors of the printed \
-                     ones. The others differ by more than chance, also where they agree: settings that the paper does not print were fitted."
+                    "How sure that is: of the " (total.varying()) " means that vary from data set to data set, " b { (total.alike()) } " are within \
+                     two standard errors of the printed ones. The others differ by more than chance, also where they agree: settings that the paper \
+                     does not print were fitted."
                 }
             }
         }
@@ -120,7 +124,7 @@ fn how_it_went(total: &Tally, all: &[Compared<'_>]) -> Markup {
     html! {
         @if total.total() > 0 {
             table .tallies {
-                thead { tr { th scope="col" { "Experiment" } th scope="col" { "Section" } th scope="col" .number { "Fitted" } th scope="col" colspan="2" { "Printed numbers" } } }
+                thead { tr { th scope="col" { "Experiment" } th scope="col" { "Section" } th scope="col" .number { "Fitted settings" } th scope="col" colspan="2" { "Printed numbers" } } }
                 tbody { @for compared in all { (tally_of(compared)) } }
             }
             p .rule {
@@ -140,15 +144,9 @@ fn meaning(verdict: Verdict) -> &'static str {
         }
         Verdict::Higher => "Higher: an error of the learner, larger than printed by more.",
         Verdict::Differs => {
-            "Differ: a number on which PolicyAlign’s regression has no influence (discard rate, alignment error, naive baseline), off by more."
+            "Differ: a number on which PolicyAlign’s regression has no influence (discard rate, alignment error, naive learner), larger or smaller by more."
         }
     }
-}
-
-/// How many settings of an experiment are fitted.
-fn fitted_of(experiment: &Experiment) -> usize {
-    let id = experiment.another_reading_of.unwrap_or(experiment.id);
-    settings().iter().filter(|setting| setting.experiment == id).count()
 }
 
 fn tally_of(compared: &Compared<'_>) -> Markup {
@@ -159,10 +157,10 @@ fn tally_of(compared: &Compared<'_>) -> Markup {
             tr {
                 th scope="row" {
                     a href={ "#" (experiment.id) } { (experiment.title) }
-                    @if experiment.another_reading_of.is_some() { " (a second reading of the paper's text, not in the total)" }
+                    @if experiment.another_reading_of.is_some() { " (as the paper’s words have it; not counted in the total)" }
                 }
                 td { (experiment.section) }
-                td .number data-label="fitted settings" { (fitted_of(experiment)) }
+                td .number data-label="fitted settings" { (fitted::of(compared).len()) }
                 td { (bar(&tally)) }
                 td { (words(&tally)) }
             }
@@ -175,20 +173,39 @@ fn not_reached(all: &[Compared<'_>]) -> Markup {
     let (others, first): (Vec<_>, Vec<_>) =
         all.iter().partition(|compared| compared.experiment.another_reading_of.is_some());
     html! {
-        (missed("Numbers that are higher or differ", &first))
-        (missed("The same in the literal reading of Table 1, which is not counted above", &others))
+        (missed(|which| format!("Numbers that {which}"), &first))
+        (missed(|which| format!("Numbers that {which} in Table 1, taken literally, and are not counted above"), &others))
     }
 }
 
-fn missed(heading: &str, among: &[&Compared<'_>]) -> Markup {
+/// What the numbers do not show, experiment by experiment. It is said of full runs.
+fn reservations(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
+    let all = all.iter().map(|compared| compared.experiment);
+    let said: Vec<_> =
+        all.flat_map(|experiment| experiment.reservations.iter().map(move |said| (experiment, said))).collect();
+    html! {
+        @if !contents.sources.results.quick && !said.is_empty() {
+            h2 .small { "What the numbers do not show" }
+            ul .differ {
+                @for (experiment, said) in said {
+                    li { a href={ "#" (experiment.id) } { (experiment.title) } ": " (emphasised(said)) }
+                }
+            }
+        }
+    }
+}
+
+fn missed(heading: fn(&str) -> String, among: &[&Compared<'_>]) -> Markup {
     let missed = |line: &Line<'_>| line.cell.verdict.is_some_and(|verdict| !verdict.reached());
     let mut cells = vec![];
     for compared in among {
         cells.extend(compared.lines().filter(missed).map(|line| (compared.experiment, line)));
     }
+    let verdicts: BTreeSet<Verdict> = cells.iter().filter_map(|(_, line)| line.cell.verdict).collect();
+    let which: Vec<&str> = verdicts.into_iter().map(Verdict::plural).collect();
     html! {
         @if !cells.is_empty() {
-            h2 .small { (heading) }
+            h2 .small { (heading(&which.join(" or "))) }
             dl .reasons {
                 @for (experiment, line) in cells {
                     div .{ "is-" (line.verdict()) } {
@@ -200,6 +217,61 @@ fn missed(heading: &str, among: &[&Compared<'_>]) -> Markup {
                     }
                 }
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use experiments::measure::Measure::{
+        self, AlignmentNmse, BeyondLimits, NaiveAll, Nupe, PolicyAlign, PotentialNmse,
+    };
+    use experiments::registry;
+    use experiments::results::{Cell, Results};
+
+    const RECORDS: [&str; 2] = [
+        include_str!("../../../../docs/records/seed-1/results.json"),
+        include_str!("../../../../docs/records/seed-2/results.json"),
+    ];
+
+    /// The records show what is said without numbers, or with a number in words.
+    #[test]
+    fn reservations_are_true() {
+        let said: Vec<&str> =
+            registry().unwrap().iter().flat_map(|experiment| experiment.reservations).copied().collect();
+        assert_eq!(said.len(), 5, "each has its lines below");
+        for records in RECORDS {
+            let results = Results::read("results.json", records).unwrap();
+            let cell = |experiment: &str, row: &str, measure: Measure| -> &Cell {
+                let rows = &results.experiment(experiment).unwrap().rows;
+                &rows.iter().find(|other| other.id == row).unwrap().measures[&measure]
+            };
+            let table1 = |row: &str, measure| cell("table1", row, measure);
+            let rows = registry().unwrap().into_iter().find(|experiment| experiment.id == "table1").unwrap().paper;
+            let apart = rows.keys().map(|row| {
+                let ratio = table1(row, AlignmentNmse).mean / table1(row, PotentialNmse).mean;
+                ratio.max(1.0 / ratio)
+            });
+            assert_eq!(apart.fold(1.0, f64::max).round(), 2.0);
+            let rise = |size: &str| {
+                let [narrow, medium] =
+                    ["narrow", "medium"].map(|width| table1(&format!("sinusoidal-{size}-{width}"), Nupe));
+                (medium.mean / narrow.mean, medium.paper.unwrap().mean / narrow.paper.unwrap().mean)
+            };
+            let (short, long) = (rise("40x40"), rise("100x100"));
+            assert!(
+                (short.0 - 1.0).abs() < 0.06 && short.1 > 1.06 && long.0 > 1.1 && long.1 < 1.0,
+                "{short:?} {long:?}"
+            );
+            for row in ["training", "unseen_barrier", "unconstrained"] {
+                let ours = cell("table2", row, PolicyAlign);
+                assert!(ours.mean < 0.5 * ours.paper.unwrap().mean);
+            }
+            let [ours, naive] = [PolicyAlign, NaiveAll].map(|measure| cell("table2", "training", measure));
+            assert!(ours.paper.unwrap().mean > naive.paper.unwrap().mean && ours.mean < naive.mean);
+            let beyond = cell("asimo22", "policy_align", BeyondLimits).mean;
+            assert!((75.0..85.0).contains(&beyond), "{beyond}");
+            assert!(cell("asimo22", "body/naive", Nupe).mean < cell("asimo22", "policy_align", Nupe).mean);
         }
     }
 }

@@ -7,7 +7,7 @@ use maud::{Markup, html};
 use page::{Part, emphasised};
 
 use crate::contests::CAUTION;
-use crate::legend::{MEASURES, names};
+use crate::legend::{MEASURES, TERMS, names};
 
 /// Its address within the page.
 pub(super) const ID: &str = "learners";
@@ -29,6 +29,8 @@ pub(super) fn part() -> Part {
         dl .measures {
             @for (measures, meaning) in MEASURES { div { dt { (names(measures, Measure::label)) } dd { (meaning) } } }
         }
+        h3 { "What rows and settings are called" }
+        dl .measures { @for (names, meaning) in TERMS { div { dt { (names) } dd { (meaning) } } } }
     };
     Part { id: ID.to_owned(), title, body }
 }

@@ -2,6 +2,7 @@
 
 mod experiment;
 mod facts;
+mod fitted;
 mod glance;
 mod learners;
 mod method;
