@@ -3,6 +3,8 @@
 
 /** Of the two hands the farther one is drawn; the picture is this high, and so many units wide. */
 const CURVES = { width: 1000, height: 130, room: 6 };
+/** Seconds from mark to mark. */
+const EVERY = 10;
 const LINE_DASHES = { naive: "1 5", policy_align: "9 5" };
 
 const svg = (tag, attributes) => {
@@ -16,8 +18,11 @@ class DistanceCurves {
     const { width, height } = CURVES;
     this.picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, preserveAspectRatio: "none", "aria-hidden": "true" });
     this.now = svg("line", { class: "view-now", y1: 0, y2: height });
-    this.top = make("span", { class: "view-scale" });
-    this.element = make("div", { class: "view-curves" }, this.picture, this.top, make("span", { class: "view-scale" }, "0"));
+    this.top = make("span", { class: "view-scale top" });
+    this.times = make("div", { class: "view-seconds", "aria-hidden": "true" });
+    this.element = make("div", { class: "view-curves" },
+      make("p", { class: "view-axis" }, "Distance of the farther hand from its place at the ball, over time"),
+      make("div", { class: "view-plot" }, this.picture, this.top, make("span", { class: "view-scale" }, "0 cm")), this.times);
     const to = ({ clientX, buttons }) => {
       const { left, width: wide } = this.picture.getBoundingClientRect();
       if (buttons === 1) seek(this.lastSample * Math.min(Math.max((clientX - left) / wide, 0), 1));
@@ -52,7 +57,14 @@ class DistanceCurves {
       return svg("polyline", { class: `view-curve ${learner}`, points: points.join(" "), ...dash });
     });
     const level = svg("line", { class: "view-level", x1: 0, x2: width, y1: up(0), y2: up(0) });
-    this.picture.replaceChildren(level, ...lines, this.now);
-    write(this.top, `${(100 * top).toFixed(0)} cm: the farther hand from its place at the ball`);
+    const end = playback.lastSample * playback.document.time_step;
+    const seconds = Array.from({ length: Math.floor(end / EVERY) + 1 }, (_, k) => EVERY * k);
+    const across = seconds.slice(1).map((second) => width * second / end);
+    const upright = across.map((x) => svg("line", { class: "view-level", x1: x, x2: x, y1: 0, y2: height }));
+    this.picture.replaceChildren(level, ...upright, ...lines, this.now);
+    this.times.replaceChildren(...seconds.map((second) => (
+      make("span", { style: `left: ${100 * second / end}%` }, second === 0 ? "0 s" : `${second}`)
+    )));
+    write(this.top, `${(100 * top).toFixed(0)} cm`);
   }
 }
