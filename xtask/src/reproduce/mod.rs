@@ -204,7 +204,8 @@ impl Reproduce {
             say(&format!("in all: {}", total.on_two_lines()));
         }
         let Run { threads, wall_seconds, cpu_seconds, .. } = &results.run;
-        say(&format!("{wall_seconds:.1} s on {threads} thread(s), {cpu_seconds:.1} s of processor time"));
+        let threads = if *threads == 1 { "one thread".to_owned() } else { format!("{threads} threads") };
+        say(&format!("{wall_seconds:.1} s on {threads}, {cpu_seconds:.1} s of processor time"));
         say(&if self.no_figures {
             format!("written: {} and results.json", relative(&folder.join("report.md")))
         } else {
