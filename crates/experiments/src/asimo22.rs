@@ -42,7 +42,7 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
         remark: "The robot, its posture \"ready\" (shoulder pitch 0.3 rad, roll ±0.3 rad, elbow -1.6 rad) and the attractor (upright, arms hanging) \
                  are fitted; starts from N(ready, 0.1 I), δt = 0.5 s, plain Euler, narrow bandwidth. Regression with a fixed diagonal \
                  metric, D = 50, 20 passes, chosen for the lower error, not for the printed one; receptive fields count down to an activation of 1e-9, \
-                 because a single start far from all others, where none reaches 0.001, would rule the error of the potential. Starts are within the joints' limits; \
+                 because a single start far from all others, where none reaches 0.001, would dominate the error of the potential. Starts are within the joints' limits; \
                  movements are not held there, and most leave them somewhere (beyond limits %).",
         reservations: &[
             "Four of five demonstrated movements leave the robot's joint limits somewhere; the paper does not say whether its own do.",

@@ -41,7 +41,7 @@ pub(crate) fn figure6_left() -> Experiment {
     Experiment {
         id: "figure6_left",
         title: "Figure 6, left: error against the amount of data",
-        remark: "Only the first of the 40 trajectories of Table 1's parabola (40 samples each) are used, 10 to 100 percent of them. \
+        remark: "Of the 40 trajectories of Table 1's parabola (40 samples each) the first 10 to 100 percent are used. \
                  Regression as in Table 1; test samples from the trajectories that are kept of those used.",
         contests_remark: Some(
             "Learnt from `map-20` means: from 20 % of the trajectories. PolicyAlign has the narrow bandwidth.",

@@ -162,12 +162,23 @@ impl Measure {
 
     /// A value as tables print it.
     pub fn show(self, value: f64) -> String {
+        self.show_beside(value, value)
+    }
+
+    /// A standard deviation with the decimals of its mean, as far as something is left of it.
+    pub fn show_sd(self, sd: f64, mean: f64) -> String {
+        let beside = self.show_beside(sd, mean);
+        if sd != 0.0 && beside.parse() == Ok(0.0) && !self.is_share() { self.show(sd) } else { beside }
+    }
+
+    /// A value with the decimals that suit another one.
+    fn show_beside(self, value: f64, other: f64) -> String {
         match self {
             _ if self.is_share() => format!("{value:.2}"),
             // What is exact but for rounding.
-            _ if value != 0.0 && value.abs() < 1e-5 => format!("{value:.0e}"),
+            _ if other != 0.0 && other.abs() < 1e-5 => format!("{value:.0e}"),
             // Table 2 has errors below a thousandth.
-            _ if value.abs() < 1e-3 => format!("{value:.6}"),
+            _ if other.abs() < 1e-3 => format!("{value:.6}"),
             _ => format!("{value:.4}"),
         }
     }

@@ -91,7 +91,7 @@ pub(crate) fn readings() -> Experiment {
     Experiment {
         id: "readings",
         section: "none",
-        title: "How movements are read: free, constrained, or who can tell",
+        title: "How movements are read: free, constrained, or ambiguous",
         data_sets: 5,
         remark: "Movements as in the experiment beyond, with exact velocities: free, each under constraints of its own, every other one free, \
                  all under the same constraint. Handwriting is free movement in a corridor, learnt from five demonstrations and tested on \

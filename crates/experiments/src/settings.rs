@@ -17,6 +17,11 @@ pub struct Setting {
 }
 
 impl Setting {
+    /// Whether the paper says nothing of it.
+    pub fn is_unprinted(&self) -> bool {
+        self.paper == SILENT
+    }
+
     /// Its value in use, as short as it was written.
     pub fn shown(&self) -> String {
         shown(self.used)

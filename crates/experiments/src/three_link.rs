@@ -40,7 +40,7 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
         data_sets: 50,
         remark: "Unit links, starts uniform in [-1, 1]^3, δt = 0.5 s, plain Euler, narrow bandwidth. Regression with fixed diagonal \
                  metrics, 10 passes: D = 20 for PolicyAlign, 50 for the naive baseline. The printed errors of the naive baseline are held against \
-                 its errors on held-out samples of all movements.",
+                 its errors on held-out samples of all movements, since it discards none.",
         reservations: &[],
         decisions: "three-link.md",
         contests_remark: None,

@@ -49,5 +49,5 @@ pub(super) fn compared(truth: &[Arrow], learnt: &[Arrow], who: Who, seconds: f64
         width,
         label: None,
     };
-    vec![layer(truth, Who::Expert, 2.6), layer(learnt, who, 1.4)]
+    vec![layer(truth, Who::Expert, 3.4), layer(learnt, who, 1.6)]
 }

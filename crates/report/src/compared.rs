@@ -118,7 +118,7 @@ impl Line<'_> {
 
     /// Our standard deviation.
     pub(super) fn spread(&self) -> String {
-        self.cell.sd.map_or(NOTHING.to_owned(), |sd| self.measure.show(sd))
+        self.cell.sd.map_or(NOTHING.to_owned(), |sd| self.measure.show_sd(sd, self.cell.mean))
     }
 
     /// Our mean ± standard deviation.
@@ -133,10 +133,9 @@ impl Line<'_> {
 
     /// The printed mean ± standard deviation.
     pub(super) fn paper(&self) -> String {
-        let show = |value| self.measure.show_printed(value);
-        self.cell
-            .paper
-            .map_or(NOTHING.to_owned(), |paper| format!("{}\u{a0}±\u{a0}{}", show(paper.mean), show(paper.sd)))
+        let Some(paper) = self.cell.paper else { return NOTHING.to_owned() };
+        let (mean, sd) = (self.measure.show_printed(paper.mean), self.measure.show_sd(paper.sd, paper.mean));
+        format!("{mean}\u{a0}±\u{a0}{sd}")
     }
 
     /// Difference of the two means over its standard error.

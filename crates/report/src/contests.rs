@@ -71,11 +71,11 @@ impl<'a> Contests<'a> {
 
     fn row(&self, line: &ContestLine<'_>) -> Vec<String> {
         let measure = line.contest.measure;
-        let least = line.least();
-        let mean = |who: &Contestant| match line.mean(*who).map(shown_mean) {
+        let least = self.contestants.iter().filter_map(|who| line.mean(*who)).fold(f64::INFINITY, f64::min);
+        let mean = |who: &Contestant| match line.mean(*who) {
             None => NOTHING.to_owned(),
-            Some(mean) if *who == least => format!("**{mean}**"),
-            Some(mean) => mean,
+            Some(mean) if mean == least => format!("**{}**", shown_mean(mean)),
+            Some(mean) => shown_mean(mean),
         };
         let ratio = self.has_ratio().then(|| line.ratio().map_or(NOTHING.to_owned(), shown_ratio));
         let first = [line.contest.case.clone(), measure.label().to_owned(), line.n.to_string()];
@@ -90,8 +90,15 @@ impl<'a> Contests<'a> {
         }
         let mut ranked: Vec<(Contestant, usize)> = least.into_iter().collect();
         ranked.sort_by_key(|&(_, times)| std::cmp::Reverse(times));
-        let won: Vec<String> = ranked.iter().map(|(who, times)| format!("{} {times}", who.label())).collect();
-        let mut text = format!("Least error in {} comparisons: {}.", self.lines.len(), won.join(", "));
+        let mut text = String::new();
+        for (at, (who, times)) in ranked.iter().enumerate() {
+            let who = who.label();
+            let _ = match at {
+                0 => write!(text, "Of {} comparisons, {who} has the least error in {times}", self.lines.len()),
+                _ => write!(text, ", {who} in {times}"),
+            };
+        }
+        text.push('.');
         for (who, name) in
             [(Contestant::Naive, "The naive learner"), (Contestant::ConstraintConsistent, "Radial basis")]
         {
@@ -127,7 +134,7 @@ impl ContestLine<'_> {
         least.map_or(Contestant::SlopeGp, |(who, _)| who)
     }
 
-    fn is_ahead_of_policy_align(&self, who: Contestant) -> bool {
+    pub(crate) fn is_ahead_of_policy_align(&self, who: Contestant) -> bool {
         self.mean(who).zip(self.mean(Contestant::PolicyAlign)).is_some_and(|(who, policy_align)| who < policy_align)
     }
 
@@ -164,7 +171,7 @@ pub(crate) const CAUTION: &str = "\
 Where learners stand side by side, numbers are means over the first n data sets, fewer than in the paper's tables (errors differ by factors of a \
 thousand), of the same recordings and test samples for all. Parabola, grasp, body and arm have quadratic potentials, which the slope GP's \
 families contain: where the class contains the truth and velocities are exact, exact recovery is no feat. The column \"no trend\" shows what is \
-left without them.";
+left without them. Bold is the least error; who has it is counted among the learners, of which \"no trend\" and \"automatic\" are variants.";
 
 #[cfg(test)]
 mod tests {
@@ -198,7 +205,7 @@ mod tests {
         let result = ExperimentResult { id: "table1".to_owned(), section: "4.1".to_owned(), rows };
         let contests = Contests::of(table1, &result).unwrap();
         assert_eq!(contests.contestants, [Contestant::Naive, Contestant::PolicyAlign, Contestant::SlopeGp]);
-        let findings = "Least error in 1 comparisons: slope GP 1.";
+        let findings = "Of 1 comparisons, slope GP has the least error in 1.";
         assert_eq!(contests.findings(), findings);
         let expected = [case, "nUPE", "2", "0.50", "0.20", "**0.0020**", "0.01"];
         assert_eq!(contests.rows(), [expected.map(str::to_owned).to_vec()]);

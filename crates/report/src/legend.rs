@@ -7,10 +7,10 @@ pub(super) const RULE: &str = "\
 Errors are mean squared errors as a share of the variance of the true policy or potential: 0 is perfect.
 \"ours\" is the mean ± the sample standard deviation over data sets, \"n\" how many there are, \"paper\" what is printed. \"z\" is the
 difference of the two means over its standard error (both spreads count): how sure it is that there is a difference, not how large it is.
-A mean **agrees** if it is within one printed standard deviation of the printed mean (printed 0 ± 0: below 0.005 %). An error that is left to
-the learner is else **lower** or **higher**; lower can mean an easier set-up or a smoother regression. What the set-up decides (discard rates,
-the error of alignment, which follows from the time step) and the naive baseline **differ**. \"s.d.\" is ours over the printed one, where they
-differ by more than a factor of two; it is not judged.";
+A mean **agrees** if it is within one printed standard deviation of the printed mean (printed 0 ± 0: below 0.005 %). PolicyAlign's errors
+are otherwise **lower** or **higher**; lower can mean an easier set-up or a smoother regression. Numbers on which its regression has no influence
+**differ**: discard rates, the error of alignment, which follows from the time step, and the naive learner's errors. \"s.d.\" is ours over the
+printed one, where they are apart by more than a factor of two; it plays no part in the verdict.";
 
 /// Measures and what they are.
 pub(super) const MEASURES: [(&[Measure], &str); 14] = [
@@ -23,7 +23,7 @@ pub(super) const MEASURES: [(&[Measure], &str); 14] = [
         &[Measure::NupeAll, Measure::NcpeAll],
         "the same on held-out samples of all movements, not of the kept ones alone",
     ),
-    (&[Measure::NupeFresh], "the same on ten movements from new starts in the same box, which nobody learnt from"),
+    (&[Measure::NupeFresh], "the same on ten movements from new starts in the same box, not used for learning"),
     (&[Measure::Naive, Measure::PolicyAlign], "error of that learner's policy under the constraint of the row"),
     (&[Measure::NaiveAll, Measure::PolicyAlignAll], "the same on held-out samples of all movements"),
     (
@@ -38,12 +38,12 @@ pub(super) const MEASURES: [(&[Measure], &str); 14] = [
     (&[Measure::Rotation], "data sets in which the slope GP finds that there is no potential, %"),
     (
         &[Measure::ReadFree, Measure::ReadConstrained, Measure::ReadAmbiguous, Measure::ReadUnexplained],
-        "data sets that are read so, %",
+        "data sets that are read so, %: as free movement, as under constraints that vary, as either, or as neither",
     ),
 ];
 
 /// What names of rows and settings mean.
-pub(super) const TERMS: [(&str, &str); 10] = [
+pub(super) const TERMS: [(&str, &str); 11] = [
     ("40x40, 100x100", "so many movements of so many samples each"),
     (
         "narrow, medium, wide",
@@ -59,6 +59,10 @@ pub(super) const TERMS: [(&str, &str); 10] = [
     ("penalty", "how strongly LWPR holds fields wide while their metrics adapt"),
     ("passes, cutoff", "how often LWPR sees the samples, and the activation below which a field does not count"),
     ("δt", "seconds from sample to sample"),
+    (
+        "free, varying, half-free, one-for-all",
+        "movements without constraints, each under its own, every other one free, all under the same",
+    ),
     (
         "sinus, wells, softplus, relu",
         "policies with a potential: a sinusoid in a bowl; hollows in a bowl; planes that meet at rounded edges, or at sharp ones, where the policy jumps",

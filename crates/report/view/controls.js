@@ -111,7 +111,7 @@ class Controls {
   static held([left, right]) {
     const who = left && right ? "hands are" : left ? "left hand is" : right ? "right hand is" : "";
     return who && ` Its ${who} held by the plate before ${left && right ? "their places" : "its place"}: `
-      + "the policy wants nothing but straight on.";
+      + "the policy keeps pushing straight on.";
   }
 
   static inWords(playback) {
@@ -125,7 +125,7 @@ class Controls {
       const wanted = playback.wantedDistances(learner, playback.lastSample);
       const short = wanted.some((distance, hand) => Math.abs(distance - end[hand]) > WORTH_TELLING);
       const remarks = [
-        short && ` Its policy wants ${inCentimetres(wanted)}.`,
+        short && ` Its arms do not reach where its policy wants the palms: ${inCentimetres(wanted)} away.`,
         Controls.held(playback.held(learner)),
         playback.withinBall(learner) > 0 && " A palm goes through the ball, which stops nobody here.",
       ];

@@ -72,12 +72,23 @@ fn cells(results: &Value) -> Vec<Cell> {
 
 /// A number as the tables print it: percents with two decimals, errors with four, small ones with six, what is nothing but rounding with one.
 fn printed(measure: &str, value: &Value) -> String {
-    let Some(value) = value.as_f64() else { return "–".to_owned() };
+    beside(measure, value, value)
+}
+
+/// A standard deviation, with the decimals of its mean.
+fn deviation(measure: &str, sd: &Value, mean: &Value) -> String {
+    let shown = beside(measure, sd, mean);
+    let is_lost = shown.parse() == Ok(0.0) && sd.as_f64() != Some(0.0) && !shown.ends_with(".00");
+    if is_lost { printed(measure, sd) } else { shown }
+}
+
+fn beside(measure: &str, value: &Value, other: &Value) -> String {
+    let (Some(value), Some(other)) = (value.as_f64(), other.as_f64()) else { return "–".to_owned() };
     if ["disc", "unsupported", "beyond_limits"].contains(&measure) {
         format!("{value:.2}")
-    } else if value != 0.0 && value.abs() < 1e-5 {
+    } else if other != 0.0 && other.abs() < 1e-5 {
         format!("{value:.0e}")
-    } else if value.abs() < 0.001 {
+    } else if other.abs() < 0.001 {
         format!("{value:.6}")
     } else {
         format!("{value:.4}")
@@ -119,13 +130,20 @@ fn every_cell_is_shown_as_it_is() {
 /// What every place shows: our mean, the paper's, the verdict, and each data set as a dot.
 fn holds(cell: &Cell, place: &Shown) {
     let (measure, value) = (cell.name[2].as_str(), &cell.value);
-    let mean_sd = |of: &Value| format!("{} ± {}", printed(measure, &of["mean"]), printed(measure, &of["sd"]));
+    let mean_sd =
+        |of: &Value| format!("{} ± {}", printed(measure, &of["mean"]), deviation(measure, &of["sd"], &of["mean"]));
     assert_eq!(place.ours, mean_sd(value), "{:?}", cell.name);
     if value["paper"].is_null() {
         assert!(place.verdict.is_none(), "{place:?}");
     } else {
-        let of = |key: &str| as_in_the_paper(measure, &value["paper"][key]);
-        assert_eq!(place.paper, Some(format!("{} ± {}", of("mean"), of("sd"))), "{:?}", cell.name);
+        let paper = &value["paper"];
+        let sd = deviation(measure, &paper["sd"], &paper["mean"]);
+        assert_eq!(
+            place.paper,
+            Some(format!("{} ± {sd}", as_in_the_paper(measure, &paper["mean"]))),
+            "{:?}",
+            cell.name
+        );
         assert_eq!(place.verdict.as_deref(), value["verdict"].as_str(), "{:?}", cell.name);
     }
     let values: Vec<f64> = value["values"].as_array().unwrap().iter().filter_map(Value::as_f64).collect();

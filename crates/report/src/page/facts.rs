@@ -27,7 +27,7 @@ pub(super) fn facts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
             div {
                 dt { "Time" }
                 dd {
-                    (time(run.cpu_seconds)) " of processor time; " (time(run.wall_seconds)) " went by, on " (threads)
+                    (time(run.cpu_seconds)) " of processor time, " (time(run.wall_seconds)) " elapsed, " (threads)
                     @if run.resumed > 0 { ", " (run.resumed) " data sets from earlier calls" }
                 }
             }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use experiments::leverage::{Leverage, Turned};
-use experiments::{Setting, settings};
+use experiments::{Experiment, Setting, settings};
 use maud::{Markup, html};
 
 use crate::compared::Compared;
@@ -11,10 +11,14 @@ use crate::compared::Compared;
 /// So many cells are named one by one.
 const FEW: usize = 2;
 
-/// Its settings, in order. Of another reading of a table they are the table's.
+/// Its settings, in order. Another reading of a table takes what the paper says as it stands, and the rest from the table.
 pub(super) fn of(compared: &Compared<'_>) -> Vec<Setting> {
-    let id = compared.experiment.another_reading_of.unwrap_or(compared.experiment.id);
-    settings().into_iter().filter(|setting| setting.experiment == id).collect()
+    let Experiment { id, another_reading_of: table, .. } = compared.experiment;
+    let is_its = |setting: &Setting| match table {
+        Some(table) => setting.experiment == *table && setting.is_unprinted(),
+        None => setting.experiment == *id,
+    };
+    settings().into_iter().filter(is_its).collect()
 }
 
 /// A table of them; of another reading of a table none, as it stands there.
@@ -28,7 +32,8 @@ pub(super) fn table(compared: &Compared<'_>) -> Markup {
             h3 { "What is fitted" }
             @if let Some(leverage) = &leverage {
                 p .minor {
-                    "Changed one at a time, on " (leverage.data_sets) " data sets of each row; all cells are named in " code { "docs/leverage.md" } "."
+                    "Changed one at a time; verdicts that are then others than with the value used, on the same " (leverage.data_sets) " data sets of each \
+                     row. (With so few a number on the edge may have another verdict than above.) All of them are named in " code { "docs/leverage.md" } "."
                 }
             }
             div .sideways tabindex="0" role="region" aria-label={ "What is fitted: " (compared.experiment.id) } {
@@ -72,7 +77,7 @@ fn in_short(turned: &[Turned]) -> String {
         }
         counts.iter().map(|(change, count)| format!("{count} × {change}")).collect()
     };
-    if all.is_empty() { "no verdict changes".to_owned() } else { all.join("; ") }
+    if all.is_empty() { "none".to_owned() } else { all.join("; ") }
 }
 
 #[cfg(test)]
@@ -85,7 +90,7 @@ mod tests {
     #[test]
     fn few_cells_are_named_and_many_counted() {
         let turned = |row: &str, is| Turned { row: row.to_owned(), measure: Measure::Nupe, was: Verdict::Agrees, is };
-        assert_eq!(in_short(&[]), "no verdict changes");
+        assert_eq!(in_short(&[]), "none");
         assert_eq!(in_short(&[turned("narrow", Verdict::Lower)]), "narrow nUPE: agrees → lower");
         let three = [turned("a", Verdict::Lower), turned("b", Verdict::Higher), turned("c", Verdict::Lower)];
         assert_eq!(in_short(&three), "1 × agrees → higher; 2 × agrees → lower");

@@ -12,7 +12,7 @@ pub(super) fn part(results: &Results) -> Part {
     let body = html! {
         h2 { (title) }
         p { (emphasised(RULE)) }
-        h3 { "Again, on your machine" }
+        h3 { "Run it yourself" }
         pre tabindex="0" { code {
             (results.run.command) "    # these numbers; on one machine, to the last bit\n"
             "cargo xtask reproduce --list      # experiments and rows, for --only\n"

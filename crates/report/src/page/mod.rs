@@ -51,14 +51,14 @@ fn card(figure: &Figure, svg: &str, heading: &str) -> Markup {
     Card { id: figure.id, title: figure.title, caption: figure.caption, remark, svg }.under(heading)
 }
 
-/// All parts after the opening.
+/// All parts after the opening: what it is about, who learns, what came of it, how it was measured.
 fn parts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Vec<Part> {
     let experiment = |compared: &Compared<'_>| Part {
         id: compared.experiment.id.to_owned(),
         title: compared.experiment.title.to_owned(),
         body: experiment::section(compared, contents),
     };
-    let mut parts: Vec<Part> = std::iter::once(learners::part()).chain(all.iter().map(experiment)).collect();
+    let mut parts = Vec::new();
     let shown = |id: Option<&str>| id.is_some_and(|id| all.iter().any(|compared| compared.experiment.id == id));
     let others: Vec<_> =
         contents.figures.iter().filter(|(figure, _)| !shown(figure.experiment) && figure.id != OVERVIEW).collect();
@@ -70,6 +70,8 @@ fn parts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Vec<Part> {
         };
         parts.push(Part { id: "ideas".to_owned(), title, body });
     }
+    parts.push(learners::part());
+    parts.extend(all.iter().map(experiment));
     parts.push(method::part(&contents.sources.results));
     parts
 }

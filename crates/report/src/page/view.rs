@@ -67,8 +67,8 @@ fn held(stopped: &[usize]) -> String {
     }
     let word = if numbers.len() == 1 { "start" } else { "starts" };
     format!(
-        "From {word} {} the obstacle stops the expert too: its hand comes to stand before the plate with its place right \
-         behind it, and the policy, which knows of no obstacle, wants nothing but straight on.",
+        "From {word} {} the obstacle stops the expert too: the plate stops its hand, whose place lies right \
+         behind it, and the policy, which knows of no obstacle, keeps pushing straight on.",
         numbers.join(" and ")
     )
 }

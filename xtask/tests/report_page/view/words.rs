@@ -85,7 +85,11 @@ fn what_the_policy_wants_is_named_where_the_robot_misses_it() {
             assert!(text.starts_with("From the robot’s left and right palm"), "{text}");
             let missed: bool = page.evaluate(MISSED);
             let line = text.lines().find(|line| line.starts_with("PolicyAlign")).unwrap().to_owned();
-            assert_eq!(line.contains("Its policy wants"), missed, "{constraint}, start {start}: {line}");
+            assert_eq!(
+                line.contains("where its policy wants the palms"),
+                missed,
+                "{constraint}, start {start}: {line}"
+            );
         }
     }
 }
