@@ -167,13 +167,9 @@ fn page_of(leverage: &Measured) -> String {
 }
 
 fn row(setting: &Setting, changed: Option<&Changed>) -> Vec<String> {
-    let name = |turned: &Turned| {
-        let Turned { row, measure, was, is } = turned;
-        format!("{row} {}: {} → {}", measure.label(), was.word(), is.word())
-    };
     let named = |turned: &[Turned]| match turned {
         [] => "none".to_owned(),
-        _ => turned.iter().map(name).collect::<Vec<_>>().join("; "),
+        _ => turned.iter().map(Turned::named).collect::<Vec<_>>().join("; "),
     };
     let [smaller, larger] = changed.map_or_else(Default::default, |c| [&c.smaller, &c.larger].map(|t| named(t)));
     vec![setting.name.to_owned(), setting.paper.to_owned(), setting.shown(), smaller, larger]

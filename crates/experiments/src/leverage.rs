@@ -48,6 +48,18 @@ pub struct Turned {
     pub is: Verdict,
 }
 
+impl Turned {
+    /// "agrees → lower".
+    pub fn change(&self) -> String {
+        format!("{} → {}", self.was.word(), self.is.word())
+    }
+
+    /// "narrow nUPE: agrees → lower".
+    pub fn named(&self) -> String {
+        format!("{} {}: {}", self.row, self.measure.label(), self.change())
+    }
+}
+
 impl Leverage {
     /// What texts and pages show.
     ///

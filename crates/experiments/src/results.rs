@@ -123,6 +123,13 @@ pub struct Run {
     pub target: String,
 }
 
+impl Run {
+    /// "one thread", "2 threads".
+    pub fn threads_in_words(&self) -> String {
+        if self.threads == 1 { "one thread".to_owned() } else { format!("{} threads", self.threads) }
+    }
+}
+
 /// One table or figure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ExperimentResult {

@@ -203,8 +203,8 @@ impl Reproduce {
         if total.total() > 0 {
             say(&format!("in all: {}", total.on_two_lines()));
         }
-        let Run { threads, wall_seconds, cpu_seconds, .. } = &results.run;
-        let threads = if *threads == 1 { "one thread".to_owned() } else { format!("{threads} threads") };
+        let Run { wall_seconds, cpu_seconds, .. } = &results.run;
+        let threads = results.run.threads_in_words();
         say(&format!("{wall_seconds:.1} s on {threads}, {cpu_seconds:.1} s of processor time"));
         say(&if self.no_figures {
             format!("written: {} and results.json", relative(&folder.join("report.md")))

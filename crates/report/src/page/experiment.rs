@@ -4,7 +4,7 @@ use experiments::verdict::Verdict;
 use maud::{Markup, html};
 use page::{emphasised, key};
 
-use super::table::{columns, grid, is_printed, list, scales};
+use super::table::{columns, grid, is_printed, list, scales, sideways};
 use super::verdict_bar::{bar, words};
 use super::{Contents, fitted, readings, view};
 use crate::compared::{Compared, Line};
@@ -86,7 +86,7 @@ fn contests(compared: &Compared<'_>) -> Markup {
             h3 { "Learners side by side" }
             p { (emphasised(&contests.findings())) " " a href={ "#" (super::learners::ID) } { "Who they are" } }
             @if let Some(remark) = contests.remark { p { (emphasised(remark)) } }
-            div .sideways tabindex="0" role="region" aria-label={ "Learners side by side: " (compared.experiment.id) } {
+            (sideways(&format!("Learners side by side: {}", compared.experiment.id), &html! {
                 table .contests {
                     thead { tr { @for (at, name) in contests.header().iter().enumerate() { th scope="col" .number[at > 1] { (name) } } } }
                     tbody {
@@ -98,7 +98,7 @@ fn contests(compared: &Compared<'_>) -> Markup {
                         }
                     }
                 }
-            }
+            }))
         }
     }
 }

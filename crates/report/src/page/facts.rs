@@ -19,7 +19,6 @@ const HOURS_FROM: f64 = 7200.0;
 pub(super) fn facts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
     let results = &contents.sources.results;
     let run = &results.run;
-    let threads = if run.threads == 1 { "one thread".to_owned() } else { format!("{} threads", run.threads) };
     html! {
         dl .facts {
             div { dt { "Seed" } dd { (results.seed) } }
@@ -27,7 +26,7 @@ pub(super) fn facts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
             div {
                 dt { "Time" }
                 dd {
-                    (time(run.cpu_seconds)) " of processor time, " (time(run.wall_seconds)) " elapsed, " (threads)
+                    (time(run.cpu_seconds)) " of processor time, " (time(run.wall_seconds)) " elapsed, " (run.threads_in_words())
                     @if run.resumed > 0 { ", " (run.resumed) " data sets from earlier calls" }
                 }
             }

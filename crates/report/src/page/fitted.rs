@@ -6,6 +6,7 @@ use experiments::leverage::{Leverage, Turned};
 use experiments::{Experiment, Setting, settings};
 use maud::{Markup, html};
 
+use super::table::sideways;
 use crate::compared::Compared;
 
 /// So many cells are named one by one.
@@ -23,12 +24,11 @@ pub(super) fn of(compared: &Compared<'_>) -> Vec<Setting> {
 
 /// A table of them; of another reading of a table none, as it stands there.
 pub(super) fn table(compared: &Compared<'_>) -> Markup {
-    let settings = if compared.experiment.another_reading_of.is_none() { of(compared) } else { Vec::new() };
+    let settings = of(compared);
     // Committed with the program, and tested.
     let leverage = Leverage::committed().ok();
-    let changed = |setting: &Setting| leverage.as_ref().and_then(|leverage| leverage.of(setting));
     html! {
-        @if !settings.is_empty() {
+        @if !settings.is_empty() && compared.experiment.another_reading_of.is_none() {
             h3 { "What is fitted" }
             @if let Some(leverage) = &leverage {
                 p .minor {
@@ -36,7 +36,7 @@ pub(super) fn table(compared: &Compared<'_>) -> Markup {
                      row. (With so few a number on the edge may have another verdict than above.) All of them are named in " code { "docs/leverage.md" } "."
                 }
             }
-            div .sideways tabindex="0" role="region" aria-label={ "What is fitted: " (compared.experiment.id) } {
+            (sideways(&format!("What is fitted: {}", compared.experiment.id), &html! {
                 table .fitted {
                     thead {
                         tr {
@@ -53,27 +53,27 @@ pub(super) fn table(compared: &Compared<'_>) -> Markup {
                                 th scope="row" { (setting.name) }
                                 td { (setting.paper) }
                                 td .number { (setting.shown()) }
-                                @for turned in changed(setting).map_or([None; 2], |changed| [Some(&changed.smaller), Some(&changed.larger)]) {
-                                    td { (turned.map_or(String::new(), |turned| in_short(turned))) }
+                                @if let Some(changed) = leverage.as_ref().and_then(|leverage| leverage.of(setting)) {
+                                    td { (in_short(&changed.smaller)) }
+                                    td { (in_short(&changed.larger)) }
                                 }
                             }
                         }
                     }
                 }
-            }
+            }))
         }
     }
 }
 
 /// Few cells by their names, many counted by what becomes of them.
 fn in_short(turned: &[Turned]) -> String {
-    let change = |turned: &Turned| format!("{} → {}", turned.was.word(), turned.is.word());
     let all: Vec<String> = if turned.len() <= FEW {
-        turned.iter().map(|one| format!("{} {}: {}", one.row, one.measure.label(), change(one))).collect()
+        turned.iter().map(Turned::named).collect()
     } else {
         let mut counts: BTreeMap<String, usize> = BTreeMap::new();
         for one in turned {
-            *counts.entry(change(one)).or_default() += 1;
+            *counts.entry(one.change()).or_default() += 1;
         }
         counts.iter().map(|(change, count)| format!("{count} × {change}")).collect()
     };

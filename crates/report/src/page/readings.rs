@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use super::table::sideways;
 use crate::compared::Compared;
 use crate::learners::{READ_AS, confusion};
 
@@ -12,7 +13,7 @@ const EXPERIMENT: &str = "readings";
 pub(super) fn counts(compared: &Compared<'_>) -> Markup {
     html! {
         @if compared.experiment.id == EXPERIMENT {
-            div .sideways tabindex="0" role="region" aria-label="How movements are read" { table .counted {
+            (sideways("How movements are read", &html! { table .counted {
                 thead { tr { @for (at, name) in READ_AS.iter().enumerate() { th scope="col" .number[at > 0] { (name) } } } }
                 tbody {
                     @for row in confusion(compared.result) {
@@ -22,7 +23,7 @@ pub(super) fn counts(compared: &Compared<'_>) -> Markup {
                         }
                     }
                 }
-            } }
+            } }))
         }
     }
 }

@@ -81,6 +81,11 @@ pub(super) fn grid(compared: &Compared<'_>, columns: &[Measure], scales: &Scales
     }
 }
 
+/// A table that is moved sideways where the page is narrower.
+pub(super) fn sideways(label: &str, table: &Markup) -> Markup {
+    html! { div .sideways tabindex="0" role="region" aria-label=(label) { (table) } }
+}
+
 /// A name that may be broken after each of its parts.
 fn parts(name: &str) -> Markup {
     html! { @for part in name.split_inclusive('-') { (part) wbr; } }
