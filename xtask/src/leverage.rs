@@ -154,9 +154,9 @@ fn page_of(leverage: &Measured) -> String {
     let (data_sets, seed) = (leverage.data_sets, leverage.seed);
     let mut text = format!(
         "# How much hangs on what is fitted\n\nWritten by `cargo xtask leverage --data-sets {data_sets} --seed {seed}`. The paper leaves these \
-         settings open; they were chosen so that\nthe printed figures come out. Here each is changed by a fifth (whole numbers to the nearest), \
-         one at a time, and the printed cells are named whose verdict is\nthen another than at the value used, on the same data sets. \
-         Verdicts are those of [reproduction.md](reproduction.md); with fewer data\nsets they may differ from those there.\n"
+         settings open, or what it says\nis read freely or departed from; they were chosen so that the printed figures come out. Here each is changed \
+         by a fifth (whole\nnumbers to the nearest), one at a time, and the printed cells are named whose verdict is then another than at the value \
+         used, on the\nsame data sets. Verdicts are those of [reproduction.md](reproduction.md); with fewer data sets they may differ from those there.\n"
     );
     for of_experiment in settings().chunk_by(|a, b| a.experiment == b.experiment) {
         let rows: Vec<Vec<String>> = of_experiment.iter().map(|setting| row(setting, leverage.of(setting))).collect();

@@ -58,16 +58,16 @@ fn in_short(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
     let error = |of: Measure| {
         let (table2, row) = row?;
         let cell = table2.lines_of(row).find(|line| line.measure == of)?.cell;
-        Some(format!("{:.2} (printed {:.2})", cell.mean, cell.paper?.mean))
+        Some(format!("{:.2} (in the paper {:.2})", cell.mean, cell.paper?.mean))
     };
     html! {
         @if let (Some(naive), Some(policy_align)) = (error(Measure::NaiveAll), error(Measure::PolicyAlign)) {
             p .lead {
                 b { "In short:" }
-                " with nothing in the robot’s way (Table 2), PolicyAlign, the paper’s method, errs by " (policy_align)
-                " of the policy’s variance at the demonstrated states, the naive learner, which takes movements as they were seen, by " (naive) "."
+                " with nothing in the robot’s way (Table 2), PolicyAlign, the paper’s method, has an error of " (policy_align)
+                ", the naive learner, which takes movements as they were seen, one of " (naive) ", both as shares of the policy’s variance at the demonstrated states."
                 @for experiment in where_naive_errs_less(all) {
-                    " The naive learner errs less in “" a href={ "#" (experiment.id) } { (experiment.title) } "”."
+                    " The naive learner errs less than PolicyAlign in “" a href={ "#" (experiment.id) } { (experiment.title) } "”."
                 }
                 @if let Some(ends) = ends_of_reaching(contents.sources) {
                     " And PolicyAlign’s movements do not end well: its hands end " (centimetres(ends.policy_align))
@@ -110,12 +110,13 @@ fn what_was_fitted() -> Markup {
                  and start postures, which are not published either, are not counted."
             }
             li {
-                "Where not all numbers come out, these were chosen: in Table 2 PolicyAlign’s regression meets the printed error of the potential, not those \
-                 of the policy; that of the 22 joints has the lower error, not the printed one."
+                "Not all numbers come out at once. In Table 2 PolicyAlign’s regression was chosen for the printed error of the potential; those of the policy \
+                 are then lower than printed. For the 22 joints a regression was chosen that errs less than the one closest to the printed errors."
             }
             li {
-                "Table 2 depends on them most: gaps between the plates narrower than 0.17 m are widened, which decides which of its numbers agree; the \
-                 obstacle that no demonstration shows also stops the expert in half of the movements; movements last 50 s, the printed ones 2 s."
+                "Table 2, where two hands reach for a ball through the gap between two plates, depends on them most: gaps narrower than 0.17 m are widened, \
+                 which decides which of its numbers agree; the obstacle of its tests, which no demonstration shows, also stops the expert in half of \
+                 the movements; movements last 50 s, the printed ones 2 s."
             }
         }
     }
@@ -132,7 +133,7 @@ fn total(total: &Tally) -> Markup {
                 p {
                     "How sure that is: of the " (total.varying()) " means that vary from data set to data set, " b { (total.alike()) } " are within \
                      two standard errors of the printed ones, so that chance can explain the difference. The other " (total.varying() - total.alike()) "
-                     can be told apart from the printed ones, many that are counted as agreeing among them. And agreement is in part by construction, since \
+                     can be told apart from the printed ones, though many of them count as agreeing. And agreement is in part by construction, since \
                      settings were fitted."
                 }
             }
@@ -161,11 +162,11 @@ fn meaning(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Agrees => "Agree: our mean is within one printed standard deviation of the printed mean.",
         Verdict::Lower => {
-            "Lower: an error of PolicyAlign that is farther below the printed one. This need not be better: an easier set-up or a smoother regression does the same."
+            "Lower: an error of PolicyAlign, more than that below the printed one. This need not be better: an easier set-up or a smoother regression does the same."
         }
-        Verdict::Higher => "Higher: an error of PolicyAlign that is farther above the printed one.",
+        Verdict::Higher => "Higher: an error of PolicyAlign, more than that above the printed one.",
         Verdict::Differs => {
-            "Differ: a number on which PolicyAlign’s regression has no influence (discard rate, alignment error, naive learner) and that is farther from the printed one, above or below."
+            "Differ: a number on which PolicyAlign’s regression has no influence (discard rate, alignment error, naive learner) and that is more than that above or below the printed one."
         }
     }
 }
