@@ -2,6 +2,8 @@
 
 mod drawn;
 
+use demo_gen::beyond::{BeyondSystem, Hindrance, Shown};
+use demo_gen::demonstrations;
 use drawn::{descent, matrix, rng, rows, vector};
 use gp::{
     BothReadings, CurlTest, DirectFit, DirectGp, Family, GpError, ModelKind, ReadingLearner, Rows, SlopeFit, SlopeGp,
@@ -202,4 +204,37 @@ fn an_exact_family_has_no_rival() {
     let (tried, _, left) = families(|x| x.map(f64::signum) * -1.0);
     assert_eq!(tried, 3);
     assert!(left > 1e-8, "{left}");
+}
+
+/// Movements that all go the same way along a corridor, freely, at 200 rows: the policy taken, and the movements' rows.
+fn corridor(seed: u64) -> (SlopeFit, Rows) {
+    let rng = &mut rng(seed);
+    let system = BeyondSystem {
+        shown: Shown::Handwriting,
+        n_trajectories: 10,
+        hindrance: Hindrance::Free,
+        ..BeyondSystem::default()
+    };
+    let shown = demonstrations(&system.record(rng).expect("movements")).expect("demonstrations");
+    let rows = gp::FrontEnd::Velocities.rows(&shown).expect("rows");
+    let learner = SlopeGp { max_rows: 200, ..SlopeGp::default() };
+    (learner.fit(&rows, rng).expect("a fit"), rows)
+}
+
+/// Along a corridor everything is predicted, across it nothing is tested; what was seen is nearly all that is learnt, and
+/// the report does not promise much more than is true.
+#[test]
+fn in_a_corridor_little_is_hidden() {
+    let (mut right, mut warned) = (0, 0);
+    for seed in 0..6 {
+        let (fit, rows) = corridor(seed);
+        let columns: Vec<_> = rows.states().column_iter().map(|state| fit.action(state)).collect();
+        let (learnt, seen) = (DMatrix::from_columns(&columns), rows.velocities());
+        let mean = seen.column_mean();
+        let spread: f64 = seen.column_iter().map(|velocity| (velocity - &mean).norm_squared()).sum();
+        let error = (learnt - seen).norm_squared() / spread;
+        right += usize::from(error <= 0.3);
+        warned += usize::from(fit.report().expected_nupe >= 0.5 * error);
+    }
+    assert!(right >= 5 && warned >= 5, "{right} and {warned} of 6");
 }

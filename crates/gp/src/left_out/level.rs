@@ -24,12 +24,19 @@ pub(crate) struct Conditions<'a> {
 pub(crate) struct Level {
     /// κ: by how much σ² was raised.
     pub(crate) kappa: f64,
+    /// σ² as evidence found it.
+    pub(crate) found: f64,
     /// σ² used, without the floor.
     pub(crate) noise: f64,
     pub(crate) factor: Factor,
     /// K⁻¹y, (M, c).
     pub(crate) weights: DMatrix<f64>,
     pub(crate) left_out: LeftOut,
+}
+
+/// Factors by which noise is raised.
+pub(crate) fn kappas() -> impl Iterator<Item = f64> {
+    (0..=10).map(|power| 4.0_f64.powi(power))
 }
 
 /// σ² at a factor κ; κ = 1 leaves it as it is.
@@ -39,8 +46,8 @@ pub(crate) fn raised(noise: f64, kappa: f64) -> f64 {
 
 impl Level {
     /// The model with noise κ(σ² + 1e-10), given Σ a_b K_b; none without Cholesky factor.
-    pub(crate) fn at(covariance: &DMatrix<f64>, noise: f64, kappa: f64, conditions: &Conditions<'_>) -> Option<Self> {
-        let noise = raised(noise, kappa);
+    pub(crate) fn at(covariance: &DMatrix<f64>, found: f64, kappa: f64, conditions: &Conditions<'_>) -> Option<Self> {
+        let noise = raised(found, kappa);
         let mut matrix = covariance.clone();
         add_noise(&mut matrix, noise, conditions.noise_weights.iter().copied());
         let factor = Factor::new(matrix)?;
@@ -48,7 +55,7 @@ impl Level {
         factor.solve(&mut weights);
         let &Conditions { groups, noise_weights, spread, .. } = conditions;
         let left_out = left_out(&factor, &weights, groups, noise_weights, spread)?;
-        Some(Level { kappa, noise, factor, weights, left_out })
+        Some(Level { kappa, found, noise, factor, weights, left_out })
     }
 
     /// The best of κ = 1, 4, 16 .. 4¹⁰ by R², given up after two in a row that are not better, or where there is nothing
@@ -59,8 +66,8 @@ impl Level {
             return Some(best);
         }
         let mut worse = 0;
-        for power in 1..=10 {
-            let Some(level) = Level::at(covariance, noise, 4.0_f64.powi(power), conditions) else { break };
+        for kappa in kappas().skip(1) {
+            let Some(level) = Level::at(covariance, noise, kappa, conditions) else { break };
             if level.left_out.r_squared > best.left_out.r_squared {
                 best = level;
                 worse = 0;

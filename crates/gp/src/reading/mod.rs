@@ -73,11 +73,11 @@ impl ReadingNumbers {
         self.a_s <= 0.8 && ((self.q <= 0.4 && self.t >= 2.0) || (self.lambda >= least_lambda && self.t_lambda >= 2.0))
     }
 
-    /// Whether the slope policy has a part that was not seen. In many dimensions a potential is learnt from far fewer
-    /// movements than a velocity field, whether or not anything was constrained: then the two policies differ by
-    /// little, and by less than the direct one errs.
+    /// Whether the slope policy has a part that was not seen. In many dimensions, and where it has kinks, a potential is
+    /// learnt from far fewer movements than a velocity field, whether or not anything was constrained: then the two
+    /// policies differ by little, and by less than the direct one errs.
     pub fn hides(&self) -> bool {
-        self.hidden >= HIDDEN || self.gap > self.p_d
+        self.gap > self.p_d || (self.hidden >= HIDDEN && self.gap > CLOSE)
     }
 
     /// The policy to hand out: whether it is the slope GP's.

@@ -3,9 +3,10 @@ use nalgebra::{DMatrix, DVector};
 use crate::evidence::family_fit::{FamilyFit, fit_family};
 use crate::evidence::{Evidence, Task};
 use crate::kernel::block::Block;
+use crate::kernel::covariance::Covariance;
 use crate::kernel::slope_covariance::SlopeCovariance;
 use crate::left_out::LeftOut;
-use crate::left_out::level::Conditions;
+use crate::left_out::level::{Conditions, Level, kappas};
 use crate::rows::kept::Kept;
 use crate::rows::scaling::Scaling;
 use crate::slope::expansion::Expansion;
@@ -115,6 +116,19 @@ impl SlopeData {
     /// Amplitudes by evidence on the hyper rows, noise by prediction: (S8), (S11).
     pub(crate) fn fit(&self, blocks: &[Block], hyper: &[usize]) -> Option<FamilyFit> {
         fit_family(&self.covariance(blocks), hyper, &self.conditions())
+    }
+
+    /// The same amplitudes with every level of noise κ ≥ `from`, as far as there is a Cholesky factor.
+    pub(crate) fn raised<'a>(
+        &'a self,
+        blocks: &'a [Block],
+        amplitudes: &'a [f64],
+        (found, from): (f64, f64),
+    ) -> impl Iterator<Item = FamilyFit> + 'a {
+        let covariance = self.covariance(blocks).sum(amplitudes);
+        let level = move |kappa| Level::at(&covariance, found, kappa, &self.conditions());
+        let fit = |level| FamilyFit { amplitudes: amplitudes.to_vec(), level };
+        kappas().filter(move |&kappa| kappa >= from).map_while(level).map(fit)
     }
 
     pub(crate) fn model(&self, blocks: Vec<Block>, fit: FamilyFit) -> SlopeModel {

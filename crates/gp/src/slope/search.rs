@@ -8,10 +8,13 @@ use crate::kernel::block::Block;
 use crate::kernel::family::Family;
 use crate::left_out::LeftOut;
 use crate::left_out::curl_test::{Contender, CurlTest, curl_t, takes_rotation};
+use crate::left_out::level::Level;
 use crate::report::trust_report::{FamilyNumbers, FamilyReport, ModelKind};
 use crate::rows::kept::Kept;
 use crate::rows::noise_weights::slope_weights;
 use crate::slope::data::SlopeData;
+use crate::slope::expansion::Expansion;
+use crate::slope::least_hidden::least_hidden;
 use crate::slope::model::SlopeModel;
 use crate::slope::slope_gp::SlopeGp;
 
@@ -31,6 +34,8 @@ pub(crate) struct Candidate {
     pub(crate) left_out: LeftOut,
     /// π̂ at the rows, (n, M).
     pub(crate) actions: DMatrix<f64>,
+    /// σ² by evidence, and what it was raised by.
+    found: f64,
     kappa: f64,
 }
 
@@ -52,17 +57,21 @@ pub(crate) fn outcome(gp: &SlopeGp, kept: &Kept) -> Result<Outcome, GpError> {
         |family| candidate(gp, &data, kept, family, ModelKind::Potential),
         |candidate| &candidate.left_out,
     );
-    let best = best_of(tried.into_iter(), ModelKind::Potential, &mut families).ok_or(GpError::NoFactor)?;
-    let rotation = rotation(gp, &data, kept, &best, &mut families);
-    let Some(rotation) = rotation else {
-        return Ok(Outcome { data, taken: best, other: None, curl_t: None, families });
+    let potential = best_of(tried.into_iter(), ModelKind::Potential, &mut families).ok_or(GpError::NoFactor)?;
+    let Some(rotation) = rotation(gp, &data, kept, &potential, &mut families) else {
+        return Ok(Outcome { data, taken: potential, other: None, curl_t: None, families });
     };
-    let t = curl_t(&best.left_out, &rotation.left_out, &data.noise_weights, &data.groups);
-    if !takes_rotation(t, &best.contender(), &rotation.contender()) {
-        return Ok(Outcome { data, taken: best, other: Some(rotation), curl_t: Some(t), families });
-    }
-    let (data, taken) = reweighted(gp, kept, data, rotation)?;
-    Ok(Outcome { data, taken, other: Some(best), curl_t: Some(t), families })
+    let t = curl_t(&potential.left_out, &rotation.left_out, &data.noise_weights, &data.groups);
+    let rotates = takes_rotation(t, &potential.contender(), &rotation.contender());
+    let (data, rotation) = if rotates { reweighted(gp, kept, data, rotation)? } else { (data, rotation) };
+    let least_hidden = least_hidden(&data, kept, &potential, &rotation);
+    families.extend(least_hidden.as_ref().map(Candidate::report));
+    let (taken, other) = match least_hidden {
+        Some(least_hidden) => (least_hidden, potential),
+        None if rotates => (rotation, potential),
+        None => (potential, rotation),
+    };
+    Ok(Outcome { data, taken, other: Some(other), curl_t: Some(t), families })
 }
 
 /// Steps 3 and 4: noise weights, first from a guess of the policy's length, then from a pilot policy.
@@ -152,10 +161,18 @@ impl Candidate {
         blocks: Vec<Block>,
         fit: FamilyFit,
     ) -> Self {
-        let (kappa, left_out) = (fit.level.kappa, fit.level.left_out.clone());
+        let Level { kappa, found, .. } = fit.level;
+        let left_out = fit.level.left_out.clone();
         let model = data.model(blocks, fit);
         let actions = model.actions(&kept.states);
-        Candidate { family, kind, model, left_out, actions, kappa }
+        Candidate { family, kind, model, left_out, actions, found, kappa }
+    }
+
+    /// The same model with as much noise and more, one after the other.
+    pub(crate) fn raised<'a>(&'a self, data: &'a SlopeData, kept: &'a Kept) -> impl Iterator<Item = Candidate> + 'a {
+        let Expansion { blocks, amplitudes, .. } = self.model.expansion();
+        let fits = data.raised(blocks, amplitudes, (self.found, self.kappa));
+        fits.map(|fit| Candidate::new(data, kept, (self.family, self.kind), blocks.clone(), fit))
     }
 
     pub(crate) fn contender(&self) -> Contender<'_> {
@@ -165,6 +182,10 @@ impl Candidate {
     /// |π̂| at the rows.
     fn lengths(&self) -> Vec<f64> {
         self.actions.column_iter().map(|action| action.norm()).collect()
+    }
+
+    fn report(&self) -> FamilyReport {
+        FamilyReport { family: self.family, model: self.kind, fit: Some(self.numbers()) }
     }
 
     fn numbers(&self) -> FamilyNumbers {

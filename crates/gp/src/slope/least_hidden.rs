@@ -1,0 +1,35 @@
+//! What is taken where left-out movements cannot tell policies apart.
+
+use crate::left_out::comparison::difference;
+use crate::left_out::curl_test::DIFFERS;
+use crate::rows::kept::Kept;
+use crate::slope::data::SlopeData;
+use crate::slope::search::Candidate;
+
+/// Share of left-out movement that may remain unpredicted where prediction has nothing more to say.
+const NEGLIGIBLE: f64 = 1e-3;
+
+/// Step 8: of all levels of noise of the model with rotation that predict left-out movements, the policy that hides least,
+/// Σ|π̂|² at the rows. None where prediction decides, since one of the two models leaves more than a thousandth unpredicted; where
+/// both give the same policy; or where the potential hides as little.
+///
+/// Movements in a corridor all go the same way. Every model then predicts them to 1e-5, whatever it says of the directions across,
+/// which nothing has tested: there the models differ by as much as the policy itself, and an error of 1e-6 instead of
+/// 1e-5 is no reason to believe one of them. What was never seen is what a constraint hid, or nothing at all: the policy that
+/// hides least makes up least.
+pub(crate) fn least_hidden(
+    data: &SlopeData,
+    kept: &Kept,
+    potential: &Candidate,
+    rotation: &Candidate,
+) -> Option<Candidate> {
+    let negligible = |candidate: &Candidate| 1.0 - candidate.left_out.r_squared <= NEGLIGIBLE;
+    let tested = !negligible(potential) || !negligible(rotation);
+    if tested || difference(&potential.actions, &rotation.actions) <= DIFFERS {
+        return None;
+    }
+    let length = |candidate: &Candidate| candidate.actions.norm_squared();
+    let shorter = |least: Candidate, next: Candidate| if length(&next) < length(&least) { next } else { least };
+    let least = rotation.raised(data, kept).filter(negligible).reduce(shorter)?;
+    (length(&least) < length(potential)).then_some(least)
+}
