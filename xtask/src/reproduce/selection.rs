@@ -13,8 +13,9 @@ pub(super) fn select(mut experiments: Vec<Experiment>, only: &[String]) -> anyho
         return Ok(experiments);
     }
     let matches = |wanted: &str, experiment: &str, setup: &Setup| {
-        let (within, name) = wanted.split_once('/').unwrap_or((experiment, wanted));
-        within == experiment && (name == experiment || name == setup.id || setup.rows.iter().any(|row| name == row.id))
+        let within = wanted.strip_prefix(experiment).and_then(|rest| rest.strip_prefix('/'));
+        let name = within.unwrap_or(wanted);
+        name == experiment || name == setup.id || setup.rows.iter().any(|row| name == row.id)
     };
     for wanted in only {
         let known = |e: &Experiment| e.setups.iter().any(|setup| matches(wanted, e.id, setup));
@@ -65,4 +66,25 @@ pub(super) fn list(experiments: &[Experiment]) -> String {
         )
     };
     experiments.iter().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use experiments::registry;
+
+    use super::*;
+
+    /// Names of rows have slashes of their own.
+    #[test]
+    fn every_row_is_found_by_its_name_and_within_its_experiment() {
+        for experiment in registry().unwrap() {
+            for row in experiment.rows() {
+                for wanted in [row.id.clone(), format!("{}/{}", experiment.id, row.id)] {
+                    let selected = select(registry().unwrap(), std::slice::from_ref(&wanted)).unwrap();
+                    let found = selected.iter().find(|selected| selected.id == experiment.id);
+                    assert!(found.is_some_and(|found| found.rows().any(|kept| kept.id == row.id)), "{wanted}");
+                }
+            }
+        }
+    }
 }

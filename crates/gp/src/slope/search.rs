@@ -1,4 +1,4 @@
-//! Families and rotation tried one after the other: steps 3 to 7 of a fit.
+//! Families and rotation tried one after the other: steps 3 to 8 of a fit.
 
 use nalgebra::DMatrix;
 
