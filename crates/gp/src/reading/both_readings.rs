@@ -4,6 +4,7 @@ use rand::Rng;
 use serde::{Deserialize, Serialize};
 
 use crate::direct::direct_gp::{DirectFit, DirectGp};
+use crate::left_out::comparison::difference;
 use crate::reading::Reading;
 use crate::reading::numbers::{Compared, ReadingNumbers, TrajectoryErrors};
 use crate::slope::fit::SlopeFit;
@@ -67,7 +68,8 @@ impl ReadingLearner {
         let across = if tested { Across::Tested } else { Across::Untested };
         let mut report = report(&Chosen { outcome: &slope, kept: &kept, rows, across });
         if across == Across::Untested {
-            report.expected_nupe = expected_beside((reading, numbers.gap, numbers.p_d), report.expected_nupe);
+            let away = difference(&direct.actions, &slope.taken.actions);
+            report.expected_nupe = expected_beside((reading, numbers.gap, numbers.p_d), away, report.expected_nupe);
         }
         let slope = SlopeFit { model: slope.taken.model, report };
         Ok(BothReadings {
@@ -182,14 +184,18 @@ impl LearntPolicy for BothReadings {
 }
 
 /// The error to expect of the slope policy, which itself expects `own`, beside the direct one (R6): `gap` is how far that is
-/// away, `p_d` what it errs on movements left out.
-fn expected_beside((reading, gap, p_d): (Reading, f64, f64), own: f64) -> f64 {
-    let own = match reading {
-        // The direct policy is the right one: no larger error than the distance to it, and its own, make possible.
-        Reading::Free => own.min((gap.sqrt() + p_d.max(0.0).sqrt()).powi(2)),
-        _ => own,
+/// away, `p_d` what it errs on movements left out, `away` the slope policy's error if it were the truth.
+fn expected_beside((reading, gap, p_d): (Reading, f64, f64), away: f64, own: f64) -> f64 {
+    let expected = match reading {
+        // The direct policy is the right one. Learnt from all movements it errs by nothing to p_d, and the slope policy by
+        // `away` to what both make possible: the middle of these, by their orders of magnitude.
+        Reading::Free => {
+            let most = (away.sqrt() + p_d.max(0.0).sqrt()).powi(2);
+            (away * own.max(away).min(most)).sqrt()
+        }
+        _ => own.max(gap),
     };
-    own.max(gap).min(NOTHING_KNOWN)
+    expected.min(NOTHING_KNOWN)
 }
 
 #[cfg(test)]
@@ -205,16 +211,32 @@ mod tests {
         fn what_is_expected_lies_between_the_gap_and_knowing_nothing(
             gap in 0.0f64..2.0,
             p_d in -0.5f64..1.5,
+            away in 0.0f64..2.0,
             own in 0.0f64..=1.0,
         ) {
-            let expected = |reading| expected_beside((reading, gap, p_d), own);
-            for reading in [Reading::Free, Reading::Ambiguous, Reading::Unexplained, Reading::Constrained] {
-                prop_assert!(expected(reading) >= gap.min(1.0) && expected(reading) <= 1.0);
+            let expected = |reading| expected_beside((reading, gap, p_d), away, own);
+            for reading in [Reading::Ambiguous, Reading::Unexplained, Reading::Constrained] {
+                prop_assert_eq!(expected(reading), own.max(gap).min(1.0));
             }
-            prop_assert_eq!(expected(Reading::Ambiguous), own.max(gap).min(1.0));
-            let bound = gap + p_d.max(0.0) + 2.0 * (gap * p_d.max(0.0)).sqrt();
-            prop_assert!(expected(Reading::Free) <= bound + 1e-12);
-            prop_assert!(own > bound || expected(Reading::Free) == expected(Reading::Ambiguous));
+            let free = expected(Reading::Free);
+            let bound = away + p_d.max(0.0) + 2.0 * (away * p_d.max(0.0)).sqrt();
+            prop_assert!(free >= away.min(1.0) - 1e-12 && free <= bound.min(1.0) + 1e-12);
+            prop_assert!(own < away || own > bound || free <= own + 1e-12);
+        }
+
+        /// Where the direct policy is exact, its distance is the error.
+        #[test]
+        fn an_exact_direct_policy_knows_the_error(away in 0.0f64..=1.0, own in 0.0f64..=1.0) {
+            let expected = expected_beside((Reading::Free, 0.5, 0.0), away, own);
+            prop_assert!((expected - away).abs() <= 1e-12);
+        }
+    }
+
+    /// A direct policy that is the same everywhere is no measure of anything.
+    #[test]
+    fn where_nothing_varies_nothing_is_known() {
+        for away in [f64::NAN, f64::INFINITY] {
+            assert_eq!(expected_beside((Reading::Free, 0.5, 0.1), away, 0.2), 1.0);
         }
     }
 }

@@ -18,7 +18,7 @@ use crate::slope::least_hidden::least_hidden;
 use crate::slope::model::SlopeModel;
 use crate::slope::slope_gp::SlopeGp;
 
-/// R² above which a potential predicts so well that one model with rotation is enough.
+/// R² from which a model predicts so well that its family is not in question.
 const NEARLY_EXACT: f64 = 0.999;
 /// First guess of the policy's length, in root mean squares of the speeds seen.
 const HIDDEN: f64 = 1.3;
@@ -115,7 +115,8 @@ fn best_of(
     best
 }
 
-/// Step 7: the best family with rotation, and `smooth` unless that predicts nearly exactly.
+/// Step 7: the best family with rotation, and `smooth` unless that predicts nearly exactly. The best family of
+/// potentials that do not predict says nothing: then `smooth` is tried, too.
 fn rotation(
     gp: &SlopeGp,
     data: &SlopeData,
@@ -128,7 +129,8 @@ fn rotation(
     }
     let with = |family| candidate(gp, data, kept, family, ModelKind::Helmholtz);
     let first = with(best.family);
-    let exact = first.as_ref().is_some_and(|candidate| candidate.left_out.r_squared >= NEARLY_EXACT);
+    let nearly_exact = |candidate: &Candidate| candidate.left_out.r_squared >= NEARLY_EXACT;
+    let exact = nearly_exact(best) && first.as_ref().is_some_and(nearly_exact);
     let mut tried = vec![(best.family, first)];
     if !exact && best.family != Family::Smooth {
         tried.push((Family::Smooth, with(Family::Smooth)));
