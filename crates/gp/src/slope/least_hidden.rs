@@ -10,26 +10,27 @@ use crate::slope::search::Candidate;
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// Step 8: of all levels of noise of the model with rotation that predict left-out movements, the policy that hides least,
-/// Σ|π̂|² at the rows. None where prediction decides, since one of the two models leaves more than a thousandth unpredicted; where
-/// both give the same policy; or where the potential hides as little.
+/// Σ|π̂|² at the rows. None where prediction decides: that model leaves more than a thousandth unpredicted; or it gives the
+/// same policy as a potential that predicts as well; or what hides least differs little from what is there.
 ///
-/// Movements in a corridor all go the same way. Every model then predicts them to 1e-5, whatever it says of the directions across,
-/// which nothing has tested: there the models differ by as much as the policy itself, and an error of 1e-6 instead of
-/// 1e-5 is no reason to believe one of them. What was never seen is what a constraint hid, or nothing at all: the policy that
-/// hides least makes up least.
+/// Movements in a corridor all go the same way. Every model then predicts them to 1e-5, whatever it says of the directions
+/// across, which nothing has tested: there the models differ by as much as the policy itself, and an error of 1e-6 instead of
+/// 1e-5 is no reason to believe one of them. What was never seen is what a constraint hid, or nothing at all: the policy
+/// that hides least makes up least.
 pub(crate) fn least_hidden(
     data: &SlopeData,
     kept: &Kept,
     potential: &Candidate,
     rotation: &Candidate,
 ) -> Option<Candidate> {
-    let negligible = |candidate: &Candidate| 1.0 - candidate.left_out.r_squared <= NEGLIGIBLE;
-    let tested = !negligible(potential) || !negligible(rotation);
-    if tested || difference(&potential.actions, &rotation.actions) <= DIFFERS {
+    let predicts = |candidate: &Candidate| 1.0 - candidate.left_out.r_squared <= NEGLIGIBLE;
+    let rival = if predicts(potential) { potential } else { rotation };
+    let differs = |candidate: &Candidate| difference(&rival.actions, &candidate.actions) > DIFFERS;
+    if !predicts(rotation) || (predicts(potential) && !differs(rotation)) {
         return None;
     }
     let length = |candidate: &Candidate| candidate.actions.norm_squared();
     let shorter = |least: Candidate, next: Candidate| if length(&next) < length(&least) { next } else { least };
-    let least = rotation.raised(data, kept).filter(negligible).reduce(shorter)?;
-    (length(&least) < length(potential)).then_some(least)
+    let least = rotation.raised(data, kept).take_while(predicts).reduce(shorter)?;
+    (differs(&least) && length(&least) < length(rival)).then_some(least)
 }
