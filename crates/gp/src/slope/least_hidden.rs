@@ -31,6 +31,6 @@ pub(crate) fn least_hidden(
     }
     let length = |candidate: &Candidate| candidate.actions.norm_squared();
     let shorter = |least: Candidate, next: Candidate| if length(&next) < length(&least) { next } else { least };
-    let least = rotation.raised(data, kept).take_while(predicts).reduce(shorter)?;
+    let least = rotation.raised(data, kept).filter(predicts).reduce(shorter)?;
     (differs(&least) && length(&least) < length(rival)).then_some(least)
 }
