@@ -136,7 +136,7 @@ fn expected(results: &Results) -> String {
         [|_: &str| true, |case: &str| !case.starts_with("handwriting")].map(|wanted| share(results, wanted));
     format!(
         "Of fits whose true error is at least {WORTH_A_FORECAST}:\n\n{}\nThe slope GP is within ten times in {all} fits, in {apart} of \
-         those that are not of handwriting; nine in ten were hoped for. More than ten times off, under constraints that vary: {named}.\n",
+         those that are not of handwriting; nine in ten is the goal. More than ten times off, under constraints that vary: {named}.\n",
         markdown_table(&header, &lines)
     )
 }
