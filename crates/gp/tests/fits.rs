@@ -214,10 +214,8 @@ fn freely(shown: Shown, seed: u64) -> (SlopeFit, f64) {
     let rows = gp::FrontEnd::Velocities.rows(&shown).expect("rows");
     let fit = SlopeGp { max_rows: 200, ..SlopeGp::default() }.fit(&rows, rng).expect("a fit");
     let columns: Vec<_> = rows.states().column_iter().map(|state| fit.action(state)).collect();
-    let (learnt, seen) = (DMatrix::from_columns(&columns), rows.velocities());
-    let mean = seen.column_mean();
-    let spread: f64 = seen.column_iter().map(|velocity| (velocity - &mean).norm_squared()).sum();
-    (fit, (learnt - seen).norm_squared() / spread)
+    let error = metrics::nupe(rows.velocities(), &DMatrix::from_columns(&columns)).expect("a score");
+    (fit, error)
 }
 
 /// Along a corridor everything is predicted, across it nothing is tested; what was seen is nearly all that is learnt, and

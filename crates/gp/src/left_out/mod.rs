@@ -26,11 +26,18 @@ pub struct LeftOut {
 
 /// Left-out error, as a share of the variance, below which nothing is left to choose by prediction.
 const EXACT: f64 = 1e-8;
+/// Left-out error up to which a model's family is not in question, and which of two models errs less says nothing.
+const NEARLY_EXACT: f64 = 1e-3;
 
 impl LeftOut {
     /// Whether prediction is so good that more noise and other families need not be tried.
     pub(crate) fn is_exact(&self) -> bool {
         1.0 - self.r_squared < EXACT
+    }
+
+    /// Whether prediction is so good that it does not decide between models.
+    pub(crate) fn is_nearly_exact(&self) -> bool {
+        1.0 - self.r_squared <= NEARLY_EXACT
     }
 }
 

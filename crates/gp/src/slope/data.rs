@@ -118,7 +118,7 @@ impl SlopeData {
         fit_family(&self.covariance(blocks), hyper, &self.conditions())
     }
 
-    /// The same amplitudes with every level of noise κ ≥ `from`, as far as there is a Cholesky factor.
+    /// The same amplitudes with every level of noise κ > `from`, as far as there is a Cholesky factor.
     pub(crate) fn raised<'a>(
         &'a self,
         blocks: &'a [Block],
@@ -128,7 +128,7 @@ impl SlopeData {
         let covariance = self.covariance(blocks).sum(amplitudes);
         let level = move |kappa| Level::at(&covariance, found, kappa, &self.conditions());
         let fit = |level| FamilyFit { amplitudes: amplitudes.to_vec(), level };
-        kappas().filter(move |&kappa| kappa >= from).map_while(level).map(fit)
+        kappas().filter(move |&kappa| kappa > from).map_while(level).map(fit)
     }
 
     pub(crate) fn model(&self, blocks: Vec<Block>, fit: FamilyFit) -> SlopeModel {

@@ -6,9 +6,6 @@ use crate::rows::kept::Kept;
 use crate::slope::data::SlopeData;
 use crate::slope::search::Candidate;
 
-/// Share of left-out movement that may remain unpredicted where prediction has nothing more to say.
-const NEGLIGIBLE: f64 = 1e-3;
-
 /// Step 8: of all levels of noise of the model with rotation that predict left-out movements, the policy that hides least,
 /// Σ|π̂|² at the rows. None where prediction decides: that model leaves more than a thousandth unpredicted; or it gives the
 /// same policy as a potential that predicts as well; or what hides least differs little from what is there.
@@ -23,7 +20,7 @@ pub(crate) fn least_hidden(
     potential: &Candidate,
     rotation: &Candidate,
 ) -> Option<Candidate> {
-    let predicts = |candidate: &Candidate| 1.0 - candidate.left_out.r_squared <= NEGLIGIBLE;
+    let predicts = |candidate: &Candidate| candidate.left_out.is_nearly_exact();
     let rival = if predicts(potential) { potential } else { rotation };
     let differs = |candidate: &Candidate| difference(&rival.actions, &candidate.actions) > DIFFERS;
     if !predicts(rotation) || (predicts(potential) && !differs(rotation)) {
@@ -31,6 +28,6 @@ pub(crate) fn least_hidden(
     }
     let length = |candidate: &Candidate| candidate.actions.norm_squared();
     let shorter = |least: Candidate, next: Candidate| if length(&next) < length(&least) { next } else { least };
-    let least = rotation.raised(data, kept).filter(predicts).reduce(shorter)?;
+    let least = rotation.raised(data, kept).fold(rotation.clone(), shorter);
     (differs(&least) && length(&least) < length(rival)).then_some(least)
 }

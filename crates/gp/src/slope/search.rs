@@ -18,8 +18,6 @@ use crate::slope::least_hidden::least_hidden;
 use crate::slope::model::SlopeModel;
 use crate::slope::slope_gp::SlopeGp;
 
-/// R² from which a model predicts so well that its family is not in question.
-const NEARLY_EXACT: f64 = 0.999;
 /// First guess of the policy's length, in root mean squares of the speeds seen.
 const HIDDEN: f64 = 1.3;
 /// How often noise weights are taken anew from a policy with rotation.
@@ -129,10 +127,10 @@ fn rotation(
     }
     let with = |family| candidate(gp, data, kept, family, ModelKind::Helmholtz);
     let first = with(best.family);
-    let nearly_exact = |candidate: &Candidate| candidate.left_out.r_squared >= NEARLY_EXACT;
-    let exact = nearly_exact(best) && first.as_ref().is_some_and(nearly_exact);
+    let nearly_exact = |candidate: &Candidate| candidate.left_out.is_nearly_exact();
+    let one_is_enough = nearly_exact(best) && first.as_ref().is_some_and(nearly_exact);
     let mut tried = vec![(best.family, first)];
-    if !exact && best.family != Family::Smooth {
+    if !one_is_enough && best.family != Family::Smooth {
         tried.push((Family::Smooth, with(Family::Smooth)));
     }
     best_of(tried.into_iter(), ModelKind::Helmholtz, families)
@@ -170,11 +168,12 @@ impl Candidate {
         Candidate { family, kind, model, left_out, actions, found, kappa }
     }
 
-    /// The same model with as much noise and more, one after the other.
+    /// The same model at those higher levels of noise that predict nearly exactly, one after the other.
     pub(crate) fn raised<'a>(&'a self, data: &'a SlopeData, kept: &'a Kept) -> impl Iterator<Item = Candidate> + 'a {
         let Expansion { blocks, amplitudes, .. } = self.model.expansion();
         let fits = data.raised(blocks, amplitudes, (self.found, self.kappa));
-        fits.map(|fit| Candidate::new(data, kept, (self.family, self.kind), blocks.clone(), fit))
+        let predicting = fits.filter(|fit| fit.level.left_out.is_nearly_exact());
+        predicting.map(|fit| Candidate::new(data, kept, (self.family, self.kind), blocks.clone(), fit))
     }
 
     pub(crate) fn contender(&self) -> Contender<'_> {
