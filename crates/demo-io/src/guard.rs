@@ -1,10 +1,6 @@
 //! Readers of other libraries on damaged files.
 
 use std::cell::Cell;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-
-use crate::draft::Drafts;
-use crate::{Fault, ReadError};
 
 thread_local! {
     static CATCHING: Cell<bool> = const { Cell::new(false) };
@@ -17,7 +13,14 @@ pub fn catches_panics() -> bool {
 
 /// What `read` says. Libraries for containers panic at some damaged files; that makes the file corrupt.
 #[cfg(any(feature = "parquet", feature = "hdf5", feature = "mcap", feature = "mat"))]
-pub(crate) fn guarded(file: &str, read: impl FnOnce() -> Result<Drafts, ReadError>) -> Result<Drafts, ReadError> {
+pub(crate) fn guarded<T>(
+    file: &str,
+    read: impl FnOnce() -> Result<T, crate::ReadError>,
+) -> Result<T, crate::ReadError> {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+
+    use crate::{Fault, ReadError};
+
     let before = CATCHING.replace(true);
     let outcome = catch_unwind(AssertUnwindSafe(read));
     CATCHING.set(before);
@@ -30,10 +33,11 @@ pub(crate) fn guarded(file: &str, read: impl FnOnce() -> Result<Drafts, ReadErro
 #[cfg(all(test, feature = "mcap"))]
 mod tests {
     use super::*;
+    use crate::ReadError;
 
     #[test]
     fn panics_become_errors() {
-        let outcome = guarded("a.mcap", || {
+        let outcome = guarded::<()>("a.mcap", || {
             assert!(catches_panics());
             panic!("of a library")
         });

@@ -80,6 +80,10 @@ pub(crate) fn velocity_names(state: &str) -> impl Iterator<Item = String> + use<
         names.push(format!("qdot{index}"));
         names.push(format!("qd_{index}"));
     }
+    let numbered = |index: &&str| index.contains(|c: char| c.is_ascii_digit()) && !index.contains(char::is_alphabetic);
+    if let Some(index) = s.strip_prefix(['x', 'q', 'p']).filter(numbered) {
+        names.push(format!("v{index}"));
+    }
     if s.contains("position") {
         names.push(s.replacen("position", "velocity", 1));
     } else if s.contains("pos") {

@@ -20,11 +20,15 @@ fn usual_names_are_understood() {
         (&["", "Time", "X", "Y"], Some(1), None, &[2, 3], &[]),
         (&["t_ms", "q1", "q2", "dq1", "dq2"], Some(0), None, &[1, 2], &[3, 4]),
         (&["t_ms", "q1", "q2", "qd1", "qd2"], Some(0), None, &[1, 2], &[3, 4]),
+        (&["x0", "x1", "v0", "v1"], None, None, &[0, 1], &[2, 3]),
+        (&["q_1", "v_1", "q_2", "v_2"], None, None, &[0, 2], &[1, 3]),
+        (&["p[0]", "p[1]", "v[0]", "v[1]"], None, None, &[0, 1], &[2, 3]),
         (&["position[0]", "position[1]", "velocity[0]", "velocity[1]"], None, None, &[0, 1], &[2, 3]),
         (&["a_pos", "b_pos", "a_vel", "b_vel"], None, None, &[0, 1], &[2, 3]),
         (&["x", "x_dot", "y", "y_dot", "time [s]"], Some(4), None, &[0, 2], &[1, 3]),
         (&["joint1", "joint1.vel", "effort1", "reward"], None, None, &[0], &[1]),
         (&["x [m]", "y [m]", "vx [m/s]", "vy [m/s]", "take"], None, Some(4), &[0, 1], &[2, 3]),
+        (&["x1", "y1", "v", "vel"], None, None, &[0, 1, 2, 3], &[]),
     ] {
         let roles = by_name(names);
         assert_eq!((roles.time, roles.episode), (time, episode), "{names:?}");
