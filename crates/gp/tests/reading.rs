@@ -47,6 +47,24 @@ proptest! {
     }
 }
 
+proptest! {
+    /// In one dimension nothing is across: whatever the numbers, they show no hidden part and leave no doubt of one.
+    #[test]
+    fn a_line_hides_nothing(
+        (a_s, a_d) in (0.0..2.0, 0.0..2.0),
+        (q, t) in (0.0..3.0, -5.0..9.0),
+        (lambda, t_lambda) in (-3.0..9.0, -5.0..9.0),
+        (p_d, gap, hidden) in (0.0..2.0, 0.0..2.0, 0.0..1.0),
+        trajectories in 3_usize..50,
+    ) {
+        let least_seen = LeastSeen { share: 1.0, direction: vec![1.0] };
+        let grouping = Grouping::Trajectories;
+        let n = ReadingNumbers { a_s, a_d, q, t, lambda, t_lambda, p_d, gap, least_seen, hidden, trajectories, grouping };
+        prop_assert_eq!(n.reading(), if p_d > 0.5 && gap > 0.03 { Reading::Unexplained } else { Reading::Free });
+        prop_assert!(!n.takes_slope(Reading::Free) && !n.text(0.1).contains("leans towards constraints"));
+    }
+}
+
 /// Numbers for which every step of the rule but the last is passed by.
 fn numbers() -> ReadingNumbers {
     ReadingNumbers {

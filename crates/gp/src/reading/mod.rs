@@ -56,7 +56,7 @@ impl ReadingNumbers {
             }
             () if self.trajectories >= DEMONSTRATIONS && self.direction_tells() => Reading::Constrained,
             () if self.p_d > UNEXPLAINED => Reading::Unexplained,
-            () if self.gap <= CLOSE && self.seen() => Reading::Free,
+            () if (self.gap <= CLOSE || self.is_a_line()) && self.seen() => Reading::Free,
             () => Reading::Ambiguous,
         }
     }
@@ -66,11 +66,18 @@ impl ReadingNumbers {
         self.least_seen.share * self.least_seen.direction.len() as f64 >= SEEN
     }
 
+    /// Whether the state has one dimension. Its one direction cannot hide another: a constraint stops the movement or does
+    /// nothing, and neither is a part of the policy that is lost from view.
+    fn is_a_line(&self) -> bool {
+        self.least_seen.direction.len() == 1
+    }
+
     /// Whether knowing the direction a movement was let go in predicts its speed far better than the place alone. Where the
     /// place alone predicts well, more is asked for: people's handwriting, which is free, gains up to λ = 0.7 there.
     pub fn direction_tells(&self) -> bool {
         let least_lambda = if self.p_d > UNEXPLAINED { 0.5 } else { 0.75 };
-        self.a_s <= 0.8 && ((self.q <= 0.4 && self.t >= 2.0) || (self.lambda >= least_lambda && self.t_lambda >= 2.0))
+        let predicts = !self.is_a_line() && self.a_s <= 0.8;
+        predicts && ((self.q <= 0.4 && self.t >= 2.0) || (self.lambda >= least_lambda && self.t_lambda >= 2.0))
     }
 
     /// Whether the slope policy has a part that was not seen. In many dimensions, and where it has kinks, a potential is
@@ -120,7 +127,7 @@ impl ReadingNumbers {
             ),
             Reading::Unexplained => format!(
                 "Neither reading predicts left-out movements (errors {p_d} and {a_s}). Too few demonstrations, too much noise, or the movement does not depend on the place alone (time, load, target).{} No policy should be trusted.",
-                if self.lambda >= 0.5 && !leans { " It leans towards constraints." } else { few }
+                if self.lambda >= 0.5 && !leans && !self.is_a_line() { " It leans towards constraints." } else { few }
             ),
             Reading::TooFew => "Too few demonstrations to tell whether constraints acted: the direct policy is used; record at least five.".to_owned(),
         }
