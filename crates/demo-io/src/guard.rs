@@ -6,7 +6,7 @@ thread_local! {
     static CATCHING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether a panic of this thread will be caught and become a [`ReadError`]: a panic hook need not report it.
+/// Whether a panic of this thread will be caught and become a [`ReadError`](crate::ReadError): a panic hook need not report it.
 pub fn catches_panics() -> bool {
     CATCHING.get()
 }
