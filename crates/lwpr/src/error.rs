@@ -93,9 +93,6 @@ pub enum LwprError {
         /// Elements needed.
         expected: usize,
     },
-    /// `norm_out` is chosen by a learner that standardises the outputs.
-    #[error("norm_out is given, but this learner divides each output by its own standard deviation: leave it None")]
-    NormOutGiven,
     /// A norm is not a positive finite number.
     #[error("the norm of {side} {dimension} is {value}: it must be positive and finite (a typical size or spread)")]
     Norm {

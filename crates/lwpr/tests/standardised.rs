@@ -4,7 +4,7 @@
 
 mod support;
 
-use lwpr::{LwprError, LwprParams, StandardisedModel, Training};
+use lwpr::{LwprError, LwprParams, Side, StandardisedModel, Training};
 use nalgebra::{DMatrix, DVector, dvector};
 use proptest::prelude::*;
 use rand::SeedableRng;
@@ -55,6 +55,28 @@ proptest! {
         }
     }
 
+    /// Given divisors are used as they are; those that would be chosen give the same bits.
+    #[test]
+    fn outputs_are_divided_by_norms_that_are_given(case in case(150), exponent in -8..8_i32) {
+        let given = |norm_out: &DVector<f64>, ys: &DMatrix<f64>| {
+            let params = LwprParams { norm_out: Some(norm_out.clone()), ..case.params.clone() };
+            let rng = &mut ChaCha8Rng::seed_from_u64(case.seed);
+            Training { params, ..training(&case) }.fit(case.xs.as_view(), ys.as_view(), rng).unwrap()
+        };
+        let chosen = fitted(&training(&case), &case);
+        let same = given(chosen.model().params().norm_out.as_ref().unwrap(), &case.ys);
+        let (ones, unit) = (DVector::repeat(case.n_out, 1.0), 2.0_f64.powi(exponent));
+        let undivided = given(&ones, &case.ys);
+        prop_assert_eq!(undivided.model().params().norm_out.as_ref(), Some(&ones));
+        let in_units = given(&(&ones * unit), &(&case.ys * unit));
+        for x in case.xs.column_iter() {
+            for output in 0..case.n_out {
+                prop_assert_eq!(chosen.value(x, output).to_bits(), same.value(x, output).to_bits());
+                prop_assert_eq!(unit * undivided.value(x, output), in_units.value(x, output));
+            }
+        }
+    }
+
     #[test]
     fn what_is_read_back_predicts_the_same_bits(case in case(150), cutoff in 0.0..0.1) {
         let model = fitted(&training(&case), &case).with_cutoff(cutoff).unwrap();
@@ -89,8 +111,9 @@ fn what_is_refused() {
         let error = parameter("cutoff", cutoff, "at least 0 and less than 1");
         assert_eq!(fit(Training { cutoff, ..Training::default() }), error);
     }
-    let params = LwprParams { norm_out: Some(dvector![1.0]), ..LwprParams::default() };
-    assert_eq!(fit(Training { params, ..Training::default() }), LwprError::NormOutGiven);
+    let params = LwprParams { norm_out: Some(dvector![1.0, 1.0]), ..LwprParams::default() };
+    let length = LwprError::NormLength { side: Side::Output, found: 2, expected: 1 };
+    assert_eq!(fit(Training { params, ..Training::default() }), length);
     let none = Training::default().fit(xs.columns(0, 0), ys.columns(0, 0), &mut ChaCha8Rng::seed_from_u64(1));
     assert_eq!(none.map(|_| ()).unwrap_err(), LwprError::EmptyBatch);
 

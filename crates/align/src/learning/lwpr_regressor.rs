@@ -6,14 +6,13 @@ use serde::{Deserialize, Serialize};
 use super::regression::{default_params, fit};
 use crate::{AlignError, GlobalPotential, Regressor};
 
-/// Learns a potential by locally weighted projection regression, from values that are centred and divided by their
-/// standard deviation.
+/// Learns a potential (23) by locally weighted projection regression, from values that are centred.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LwprRegressor {
     /// Parameters of LWPR, in units of `norm_in`: by default `init_d` 10, `w_gen` 0.5 and `penalty` 1e-5, the rest as in
     /// [`LwprParams::default`]. Where `norm_in` is `None`, all dimensions are divided by one number, the root mean square
-    /// of their standard deviations. `norm_out` must be `None`.
+    /// of their standard deviations; where `norm_out` is `None`, the values are divided by their standard deviation.
     pub params: LwprParams,
     /// How often all samples are learnt, each time in a fresh random order; 10 by default.
     pub passes: usize,

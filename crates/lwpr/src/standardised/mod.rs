@@ -15,7 +15,8 @@ use crate::{Lwpr, LwprError, LwprParams, Predictor};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Training {
-    /// Parameters of LWPR; `norm_out` must be `None`, since it will be the standard deviations of the outputs.
+    /// Parameters of LWPR. Where `norm_out` is `None`, each output is divided by its standard deviation; ones leave the
+    /// outputs as they are.
     pub params: LwprParams,
     /// How often all samples are learnt, each time in a fresh random order; 10 by default.
     pub passes: usize,
@@ -33,8 +34,8 @@ impl Training {
     /// Learns `ys` (`n_out`, N) from `xs` (`n_in`, N); samples are columns.
     ///
     /// # Errors
-    /// [`LwprError::Parameter`] for `passes`, `cutoff` or a parameter out of range, [`LwprError::NormOutGiven`],
-    /// [`LwprError::EmptyBatch`], and whatever [`LwprParams::build`] and [`Lwpr::fit_batch`] refuse.
+    /// [`LwprError::Parameter`] for `passes`, `cutoff` or a parameter out of range, [`LwprError::EmptyBatch`], and whatever
+    /// [`LwprParams::build`] and [`Lwpr::fit_batch`] refuse.
     pub fn fit<R: Rng + ?Sized>(
         &self,
         xs: DMatrixView<'_, f64>,
@@ -45,24 +46,22 @@ impl Training {
         if self.passes == 0 {
             return Err(LwprError::Parameter { name: "passes", value: 0.0, range: "at least 1" });
         }
-        if self.params.norm_out.is_some() {
-            return Err(LwprError::NormOutGiven);
-        }
         if ys.ncols() == 0 {
             return Err(LwprError::EmptyBatch);
         }
         let mean = DVector::from_iterator(ys.nrows(), ys.row_iter().map(|row| mean(row.iter().copied())));
         let mut centred = ys.into_owned();
         centred.column_iter_mut().for_each(|mut column| column -= &mean);
-        let spread = DVector::from_iterator(ys.nrows(), centred.row_iter().map(|row| spread(row.iter().copied())));
-        let params = LwprParams { norm_out: Some(spread), ..self.params.clone() };
+        let spreads = || DVector::from_iterator(centred.nrows(), centred.row_iter().map(|row| spread(row.iter().copied())));
+        let norm_out = self.params.norm_out.clone().unwrap_or_else(spreads);
+        let params = LwprParams { norm_out: Some(norm_out), ..self.params.clone() };
         let mut model = params.build(xs.nrows(), ys.nrows())?;
         model.fit_batch(xs, centred.as_view(), self.passes, rng)?;
         Ok(StandardisedModel::new(Arc::new(model), mean, self.cutoff))
     }
 }
 
-/// LWPR on outputs that are centred and divided by their standard deviations.
+/// LWPR on outputs that are centred and divided by `norm_out`, by default their standard deviations.
 ///
 /// It can be stored with serde: version, cutoff, means and the model; what is read back predicts the same bits.
 #[derive(Debug, Clone, Serialize, Deserialize)]
