@@ -144,7 +144,7 @@ fn replaced(text: &str, generated: &[String]) -> anyhow::Result<String> {
     ensure!(parts.len() == generated.len(), "{} lines begin a generated part, not {}", parts.len(), generated.len());
     for (part, new) in parts.iter().zip(generated) {
         let (_, after) = part.split_once(END).context("a generated part has lost the line that ends it")?;
-        page += &format!("{BEGIN}\n{}\n\n{END}{after}", new.trim_end());
+        page.extend([BEGIN, "\n", new.trim_end(), "\n\n", END, after]);
     }
     Ok(page)
 }
@@ -182,15 +182,16 @@ fn reproduction(experiments: &[Experiment], Committed { first, second }: &Commit
     let once = |section: &Section<'_>| section.experiment.another_reading_of.is_none();
     let sections: String = printed(experiments, &first.results).filter(once).map(section).collect();
     let figures = figures().into_iter().filter(|figure| figure.can_be_drawn(first));
-    let link = |Figure { id, title, .. }: Figure| format!("- [{title}](pictures/{id}.svg)\n");
-    format!("{TITLE}{tallies}{PREFACE}{sections}## Figures\n\n{}", figures.map(link).collect::<String>())
+    let link = |Figure { id, title, .. }: Figure| format!("- [{title}](pictures/{id}.svg)");
+    let links: Vec<String> = figures.map(link).collect();
+    format!("{TITLE}{tallies}{PREFACE}{sections}## Figures\n\n{}\n", links.join("\n"))
 }
 
 /// The results in short: how the printed cells compare, and how far the learners' policies carry.
 fn headline(experiments: &[Experiment], results: &Results) -> String {
     let paper = format!("The paper's tables. {}", Tally::of_first_readings(pairs(experiments, results)).sentence());
     let lines = [paper].into_iter().chain(on_new_movements(experiments, &results.experiments));
-    lines.map(|line| format!("- {line}\n")).collect()
+    lines.map(|line| format!("- {line}")).collect::<Vec<_>>().join("\n")
 }
 
 /// One line an experiment with printed cells, and one for all: how they compare.
