@@ -26,7 +26,7 @@ use crate::runner::{Plan, Work};
 
 /// What is written: what was measured, its page of documentation, and what texts quote.
 const LEVERAGE: &str = "docs/records/leverage.json";
-const PAGE: &str = "docs/leverage.md";
+pub(crate) const PAGE: &str = "docs/leverage.md";
 const VARIANTS: &str = "docs/records/variants.json";
 
 /// By how much settings are changed.
@@ -46,8 +46,8 @@ pub(crate) struct Leverage {
     out: Option<PathBuf>,
 }
 
-/// What the README quotes of Table 1's system with fewer movements.
-const README: &str = "\
+/// What `docs/which-learner.md` quotes of Table 1's system with fewer movements.
+const FEW_MOVEMENTS: &str = "\
     is {movements = 10: parabola-40x40-medium nupe_fresh} with 10 movements, \
     {movements = 15: parabola-40x40-medium nupe_fresh} with 15, {movements = 20: parabola-40x40-medium nupe_fresh} with 20 and \
     {movements = 30: parabola-40x40-medium nupe_fresh} with 30; on its sinusoid \
@@ -82,8 +82,8 @@ impl Leverage {
     fn quoted(&self, records: &Arc<Records>) -> anyhow::Result<Variants> {
         let mut variants = Variants::from_seed(self.seed);
         for experiment in registry()? {
-            let of_readme = if experiment.id == "table1" { readme_quotes()? } else { Vec::new() };
-            for (quote, cell) in experiment.explanations.quotes.iter().chain(&of_readme) {
+            let of_page = if experiment.id == "table1" { few_movements()? } else { Vec::new() };
+            for (quote, cell) in experiment.explanations.quotes.iter().chain(&of_page) {
                 let is_meant = |setting: &Setting| setting.experiment == experiment.id && setting.name == quote.setting;
                 let setting = quotable().find(is_meant);
                 let setting = setting.with_context(|| format!("{} has no setting {}", experiment.id, quote.setting))?;
@@ -132,9 +132,9 @@ impl Leverage {
     }
 }
 
-fn readme_quotes() -> anyhow::Result<Vec<(Quote, Cell)>> {
+fn few_movements() -> anyhow::Result<Vec<(Quote, Cell)>> {
     // Every one names its cell.
-    quotes(&(String::new(), Measure::NupeFresh), README)
+    quotes(&(String::new(), Measure::NupeFresh), FEW_MOVEMENTS)
 }
 
 fn verdicts(result: &ExperimentResult) -> impl Iterator<Item = (Cell, Verdict)> {
@@ -150,17 +150,16 @@ fn turned(base: &Verdicts, other: &Verdicts) -> Vec<Turned> {
 }
 
 /// The page of documentation: a table for each experiment.
-fn page_of(leverage: &Measured) -> String {
+pub(crate) fn page_of(leverage: &Measured) -> String {
     let (data_sets, seed) = (leverage.data_sets, leverage.seed);
     let mut text = format!(
-        "# How much hangs on what is fitted\n\nWritten by `cargo xtask leverage --data-sets {data_sets} --seed {seed}`. The paper leaves these \
-         settings open, or what it says\nis read freely or departed from; they were chosen so that the printed figures come out. Here each is changed \
-         by a fifth (whole\nnumbers to the nearest), one at a time, and the printed cells are named whose verdict is then another than at the value \
-         used, on the\nsame data sets. Verdicts are those of [reproduction.md](reproduction.md); with fewer data sets they may differ from those there.\n"
+        "# Settings that the paper leaves open, and their influence\n\nGenerated from `cargo xtask leverage --data-sets {data_sets} --seed \
+         {seed}`. Each setting is changed by a fifth, one at a time; the\ntable names the printed cells whose verdict changes with it. With so few data \
+         sets a cell near the edge of its band may\ndiffer from [reproduction.md](reproduction.md).\n"
     );
     for of_experiment in settings().chunk_by(|a, b| a.experiment == b.experiment) {
         let rows: Vec<Vec<String>> = of_experiment.iter().map(|setting| row(setting, leverage.of(setting))).collect();
-        let header = ["setting", "the paper says", "used", "a fifth less turns", "a fifth more turns"];
+        let header = ["setting", "the paper says", "used", "a fifth less changes", "a fifth more changes"];
         let _ = write!(text, "\n## `{}`\n\n{}", of_experiment[0].experiment, markdown_table(&header, &rows));
     }
     text
@@ -168,7 +167,7 @@ fn page_of(leverage: &Measured) -> String {
 
 fn row(setting: &Setting, changed: Option<&Changed>) -> Vec<String> {
     let named = |turned: &[Turned]| match turned {
-        [] => "none".to_owned(),
+        [] => "–".to_owned(),
         _ => turned.iter().map(Turned::named).collect::<Vec<_>>().join("; "),
     };
     let [smaller, larger] = changed.map_or_else(Default::default, |c| [&c.smaller, &c.larger].map(|t| named(t)));
@@ -199,11 +198,12 @@ mod tests {
     }
 
     #[test]
-    fn the_readme_quotes_what_was_measured() {
-        let readme = std::fs::read_to_string(repository().join("README.md")).unwrap();
-        let readme = readme.split_whitespace().collect::<Vec<_>>().join(" ");
-        let quoted = Variants::committed().unwrap().filled("table1", &(String::new(), Measure::Nupe), README).unwrap();
-        assert!(readme.contains(&quoted), "the README does not say: {quoted}");
+    fn errors_with_few_movements_are_quoted_as_measured() {
+        let page = std::fs::read_to_string(repository().join("docs/which-learner.md")).unwrap();
+        let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
+        let own = (String::new(), Measure::Nupe);
+        let quoted = Variants::committed().unwrap().filled("table1", &own, FEW_MOVEMENTS).unwrap();
+        assert!(page.contains(&quoted), "docs/which-learner.md does not say: {quoted}");
     }
 
     #[test]
@@ -216,7 +216,7 @@ mod tests {
         let setting = &settings()[0];
         let (experiment, name) = (setting.experiment.to_owned(), setting.name.to_owned());
         let changed = Changed { experiment, setting: name, smaller: vec![lower], larger: vec![] };
-        assert_eq!(row(setting, Some(&changed))[3..], ["narrow nUPE: agrees → lower", "none"]);
+        assert_eq!(row(setting, Some(&changed))[3..], ["narrow nUPE: agrees → lower", "–"]);
     }
 
     #[test]

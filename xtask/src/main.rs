@@ -41,7 +41,7 @@ enum Command {
     Reproduce(reproduce::Reproduce),
     /// Draw the figures and write the report of a finished run again
     Report(report::Report),
-    /// Write the README's tables, docs/reproduction.md and docs/pictures from the committed records
+    /// Write the generated pages of docs, the README's tables and docs/pictures from the committed records
     Publish(publish::Publish),
     /// Hold a run against the committed records: every mean within 1e-6 of itself, every verdict the same
     Compare(compare::Compare),

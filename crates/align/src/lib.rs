@@ -73,7 +73,7 @@ pub use local_potential::LocalPotential;
 pub use samples::{SampleIter, Samples};
 pub use warning::Warning;
 
-/// The README's program, compiled.
+/// The program of docs/rust.md, compiled.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-struct Readme;
+#[doc = include_str!("../../../docs/rust.md")]
+struct RustPage;

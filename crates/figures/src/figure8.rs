@@ -310,7 +310,7 @@ mod tests {
         }
         let mended = format!("from all around, they end {:.1} cm away", ends[4]);
         assert!(beside_paper::text("figure8").contains(&mended), "{mended}");
-        let readme = include_str!("../../../README.md");
+        let guide = include_str!("../../../docs/which-learner.md");
         let learnt = ends[2];
         let (id, _) = shown(&playback).nth(2).unwrap();
         let hands =
@@ -318,10 +318,10 @@ mod tests {
         let closest: Vec<f64> = hands.map(|distances| 100.0 * distances.fold(f64::INFINITY, f64::min)).collect();
         let closest = Summary::of(&closest).unwrap().mean;
         assert!(
-            readme.contains(&format!("miss the ball by {closest:.1} cm and end {learnt:.1} cm away")),
+            guide.contains(&format!("miss the ball by {closest:.1} cm and end {learnt:.1} cm away")),
             "{closest} {learnt}"
         );
-        assert!(readme.contains(&mended), "{mended}");
+        assert!(guide.contains(&mended), "{mended}");
         assert!(beside_paper::text("figure8").contains(&format!("within {closest:.1} cm and ends {learnt:.1} cm")));
     }
 

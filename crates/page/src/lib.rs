@@ -4,7 +4,7 @@
 //! - [`Card`]: a figure that can be enlarged. It is given as SVG, whoever drew it.
 //! - [`Strip`] on a [`Scale`]: every value of a cell as a dot, so that outliers are seen. [`axis`], [`key`] explain them.
 //! - [`emphasised`]: sentences with emphasis, code and powers.
-//! - [`markdown_table`]: a table that is aligned as plain text too.
+//! - [`markdown_table`]: a table in Markdown.
 //!
 //! What a report says is up to whoever makes it. Bodies are [`maud::Markup`], which escapes what is put into it.
 //!

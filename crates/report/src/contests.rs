@@ -126,7 +126,7 @@ impl ContestLine<'_> {
     }
 
     /// Whose mean is the smallest; "automatic" and "no trend" are no learners of their own.
-    fn least(&self) -> Contestant {
+    pub(crate) fn least(&self) -> Contestant {
         let means =
             self.cells.iter().filter(|(who, _)| !matches!(who, Contestant::Reading | Contestant::SlopeGpNoTrend));
         let means = means.filter_map(|(who, _)| Some((*who, self.mean(*who)?)));
@@ -150,7 +150,7 @@ impl ContestLine<'_> {
 }
 
 /// Errors of these learners differ by orders of magnitude: two digits that count, of small ones one and the exponent.
-fn shown_mean(mean: f64) -> String {
+pub(crate) fn shown_mean(mean: f64) -> String {
     match mean {
         0.0 => "0".to_owned(),
         _ if mean.abs() < 1e-3 => format!("{mean:.0e}"),

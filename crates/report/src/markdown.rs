@@ -1,10 +1,12 @@
 //! The tables of a run beside the paper's, as Markdown.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use experiments::Experiment;
 use experiments::measure::Measure;
-use experiments::results::Results;
+use experiments::results::{Results, RowResult};
+use experiments::verdict::Verdict;
 use page::markdown_table;
 
 use super::compared::{Compared, FEW, Line, compared};
@@ -14,33 +16,56 @@ use super::tally::Tally;
 
 /// All tables of `results`; `second`, a run from another seed, adds its means as a column.
 pub fn markdown(experiments: &[Experiment], results: &Results, second: Option<&Results>) -> String {
-    let sections = sections(experiments, results, second).map(|section| section.text);
-    format!("{}{}", key(), sections.collect::<String>())
+    let all = compared(experiments, results, second);
+    let sections: String = all.iter().map(|compared| section(compared, results.seed)).collect();
+    format!("{}{sections}", key())
 }
 
 /// How to read the tables.
-pub fn key() -> String {
+fn key() -> String {
     let measures =
         MEASURES.map(|(measures, meaning)| format!("| {} | {meaning} |\n", names(measures, Measure::name))).concat();
     format!("{RULE}\n\n{CAUTION}\n\n| measure | is |\n| --- | --- |\n{measures}\n")
 }
 
-/// An experiment with its tables.
+/// An experiment beside the paper.
 pub struct Section<'a> {
     /// Which.
     pub experiment: &'a Experiment,
-    /// As Markdown.
+    /// Its printed cells as Markdown: a line for each row of the paper's table, each cell ours and in brackets the paper's;
+    /// where the two do not agree, with the verdict.
     pub text: String,
 }
 
-/// What there is on each experiment.
-pub fn sections<'a>(
-    experiments: &'a [Experiment],
-    results: &'a Results,
-    second: Option<&'a Results>,
-) -> impl Iterator<Item = Section<'a>> {
-    let all = compared(experiments, results, second).into_iter();
-    all.map(|compared| Section { experiment: compared.experiment, text: section(&compared, results.seed) })
+/// Every experiment of which the paper prints numbers, in short.
+pub fn printed<'a>(experiments: &'a [Experiment], results: &'a Results) -> impl Iterator<Item = Section<'a>> {
+    let all = compared(experiments, results, None).into_iter().filter(Compared::is_printed);
+    all.map(|compared| Section { experiment: compared.experiment, text: matrix(&compared) })
+}
+
+/// The printed cells, rows down and measures across.
+fn matrix(compared: &Compared<'_>) -> String {
+    let is_printed = |line: &Line<'_>| line.cell.paper.is_some();
+    let measures: BTreeSet<Measure> = compared.lines().filter(is_printed).map(|line| line.measure).collect();
+    let row = |row: &RowResult| {
+        let cell = |measure: &Measure| {
+            let line = compared.lines_of(row).filter(is_printed).find(|line| line.measure == *measure);
+            line.map_or(String::new(), |line| in_brief(&line))
+        };
+        [row.id.clone()].into_iter().chain(measures.iter().map(cell)).collect()
+    };
+    let header: Vec<&str> = ["row"].into_iter().chain(measures.iter().map(|measure| measure.label())).collect();
+    markdown_table(&header, &compared.rows().map(row).collect::<Vec<_>>())
+}
+
+/// Ours, the paper's in brackets, and the verdict unless they agree.
+fn in_brief(line: &Line<'_>) -> String {
+    let (ours, paper) =
+        (line.mean(), line.cell.paper.map_or(String::new(), |paper| line.measure.show_printed(paper.mean)));
+    match line.cell.verdict {
+        Some(verdict) if verdict != Verdict::Agrees => format!("**{ours}** ({paper}) {}", verdict.word()),
+        _ => format!("{ours} ({paper})"),
+    }
 }
 
 fn title(experiment: &Experiment) -> String {
@@ -77,7 +102,7 @@ fn contests(compared: &Compared<'_>) -> String {
 }
 
 /// What is seen only by who opens it. Markdown within needs the empty lines.
-pub fn folded(summary: &str, text: &str) -> String {
+fn folded(summary: &str, text: &str) -> String {
     format!("<details><summary>{summary}</summary>\n\n{}\n\n</details>\n\n", text.trim_end())
 }
 
@@ -150,6 +175,37 @@ mod tests {
 
     use super::*;
 
+    fn results(id: &str, row: RowResult) -> Results {
+        let result = ExperimentResult { id: id.to_owned(), section: "9".to_owned(), rows: vec![row] };
+        let [command, version, rustc, target] = ["", "1", "", ""].map(str::to_owned);
+        let (wall_seconds, cpu_seconds, revision) = (1.0, 1.0, None);
+        let run = Run { command, threads: 1, resumed: 0, wall_seconds, cpu_seconds, version, revision, rustc, target };
+        Results { schema: SCHEMA, seed: 3, quick: false, run, experiments: vec![result] }
+    }
+
+    #[test]
+    fn in_short_a_cell_is_ours_the_papers_and_what_sets_them_apart() {
+        let experiments = registry().unwrap();
+        let paper = experiments.iter().find(|experiment| experiment.id == "table1").unwrap();
+        let id = "parabola-40x40-narrow";
+        let cell = |measure, mean, verdict| {
+            let paper = paper.paper(id, measure);
+            (measure, Cell { mean, sd: None, median: mean, values: vec![Some(mean)], paper, verdict })
+        };
+        let cells = [
+            cell(Measure::Nupe, 0.02, Some(Verdict::Lower)),
+            cell(Measure::Ncpe, 0.024, Some(Verdict::Agrees)),
+            cell(Measure::NupeFresh, 0.1, None),
+        ];
+        let row =
+            RowResult { id: id.to_owned(), tested_on: String::new(), data_sets: 1, failed: 0, measures: cells.into() };
+        let results = results("table1", row);
+        let texts: Vec<String> = printed(&experiments, &results).map(|section| section.text).collect();
+        let expected = "| row | nUPE | nCPE |\n| --- | --- | --- |\n\
+                        | parabola-40x40-narrow | **0.0200** (0.0486) lower | 0.0240 (0.0235) |\n";
+        assert_eq!(texts, [expected]);
+    }
+
     #[test]
     fn what_the_paper_shows_as_curves_has_no_columns_for_printed_figures() {
         let experiments = registry().unwrap();
@@ -164,11 +220,7 @@ mod tests {
         };
         let measures = BTreeMap::from([(Measure::Nupe, cell)]);
         let row = RowResult { id: "a-row".to_owned(), tested_on: String::new(), data_sets: 3, failed: 1, measures };
-        let result = ExperimentResult { id: curves.id.to_owned(), section: "9".to_owned(), rows: vec![row] };
-        let [command, version, rustc, target] = ["", "1", "", ""].map(str::to_owned);
-        let (wall_seconds, cpu_seconds, revision) = (1.0, 1.0, None);
-        let run = Run { command, threads: 1, resumed: 0, wall_seconds, cpu_seconds, version, revision, rustc, target };
-        let results = Results { schema: SCHEMA, seed: 3, quick: false, run, experiments: vec![result] };
+        let results = results(curves.id, row);
         let text = markdown(&experiments, &results, None);
         let (_, section) = text.split_once("## ").unwrap();
         let lines: Vec<&str> = section.lines().filter(|line| !line.is_empty()).skip(1).collect();
@@ -179,9 +231,9 @@ mod tests {
             "</details>",
             "**`a-row`: 1 of 3 data sets failed.**",
             "<details><summary>All 1 means</summary>",
-            "| row     | measure | ours            | median | n |",
-            "| ------- | ------- | --------------- | ------ | - |",
-            "| `a-row` | nupe    | 0.2500\u{a0}±\u{a0}0.1250 | 0.5000 | 2 |",
+            "| row | measure | ours | median | n |",
+            "| --- | --- | --- | --- | --- |",
+            "| `a-row` | nupe | 0.2500\u{a0}±\u{a0}0.1250 | 0.5000 | 2 |",
             "</details>",
             "With fewer than 20 data sets single cells mean little.",
         ];

@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let x = dvector![0.5, -0.2];
     println!("action {:.3?}, support {:.2}", learnt.action(x.as_view()).as_slice(), learnt.support(x.as_view()));
 
-    // A second learner, which knows how sure it is.
+    // The slope GP, which reports its uncertainty.
     let gp = SlopeGp { max_rows: 150, ..SlopeGp::default() };
     let fit = gp.fit(&FrontEnd::Map.rows(&demonstrations)?, &mut StdRng::seed_from_u64(1))?;
     let (action, mut deviation) = (fit.action(x.as_view()), dvector![0.0, 0.0]);
@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// One matrix per movement, one column per sample. Here: down φ = ‖x‖²/20, every time on another straight rail.
+/// One matrix per movement, one column per sample. Here: down φ = ‖x‖²/20, each on a straight rail of a different direction.
 fn recorded() -> impl Iterator<Item = DMatrix<f64>> {
     (1..=60).map(f64::from).map(|k| {
         let (start, rail) = (dvector![(1.5 * k).sin(), (0.9 * k).cos()], dvector![(0.7 * k).cos(), (0.7 * k).sin()]);
