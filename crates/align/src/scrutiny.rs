@@ -1,4 +1,4 @@
-//! A look at the demonstrations themselves: what no alignment mends.
+//! Checks of the demonstrations for faults that no alignment mends.
 
 use motion::{Demonstrations, Trajectory};
 

@@ -24,11 +24,11 @@ const SAME: f64 = 1e-6;
 /// What recorded velocities are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Agreement {
-    /// There are none, or they are of no use.
+    /// There are none, or they are unusable.
     None,
-    /// Differences of the positions: they know nothing that positions do not.
+    /// Differences of the positions, without further information.
     Differences,
-    /// Of their own, and in agreement with the steps.
+    /// Measured independently, and consistent with the steps.
     Own,
 }
 
@@ -89,7 +89,7 @@ pub(crate) fn decide(
     Agreement::Own
 }
 
-/// Of a part of a movement: its step D, and S = Σ u δt, which its velocities say; both (n).
+/// Of a part of a movement: its step D, and S = Σ u δt, the step by its velocities; both (n).
 type Part = (DVector<f64>, DVector<f64>);
 
 /// Steps as multiples of what velocities say, over parts of movements: Σ D S / Σ S² in each channel, S = Σ u δt.

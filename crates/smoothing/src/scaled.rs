@@ -1,4 +1,4 @@
-//! Movements as the smoother sees them: axes of equal noise, each movement about its own mean.
+//! Input of the smoother: axes of equal noise, each movement about its mean.
 
 use nalgebra::DVector;
 

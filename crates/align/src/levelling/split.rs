@@ -15,6 +15,6 @@ pub enum SplitCause {
     /// No link connects the parts: their entries of H are exactly zero.
     NoLink,
     /// So many eigenvalues of the group's part of H are below the threshold. The group is cut in two by their
-    /// eigenvectors; if all are, every trajectory is a part of its own.
+    /// eigenvectors; if all are, every trajectory becomes a separate part.
     WeakEigenvalues(usize),
 }

@@ -1,4 +1,4 @@
-//! The seam: what the direct GP and its policy share with all other learners.
+//! The direct GP behind the traits of all learners.
 
 use motion::{Demonstrations, LearnError, Learner, LearntPolicy, Policy, SampleIndex};
 use nalgebra::{DVectorView, DVectorViewMut};

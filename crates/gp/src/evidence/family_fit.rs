@@ -8,7 +8,7 @@ use crate::kernel::family::Family;
 use crate::left_out::LeftOut;
 use crate::left_out::level::{Conditions, Level};
 
-/// A family whose amplitudes evidence has chosen and whose noise prediction has raised.
+/// A family with amplitudes by marginal likelihood and noise raised by held-out prediction.
 #[derive(Debug)]
 pub(crate) struct FamilyFit {
     /// a_b, (B).

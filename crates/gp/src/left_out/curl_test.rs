@@ -10,10 +10,10 @@ use crate::left_out::comparison::{difference, t_of_mean};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CurlTest {
-    /// A Helmholtz decomposition is fitted too, and taken if left-out trajectories speak for it.
+    /// A Helmholtz decomposition is fitted too, and used if it predicts held-out trajectories better (R5).
     #[default]
     Fit,
-    /// The policy is taken to have a potential.
+    /// The policy is assumed to have a potential.
     AssumePotential,
 }
 

@@ -1,4 +1,4 @@
-//! How much noise evidence has missed, found by prediction of left-out trajectories.
+//! The noise factor κ, by held-out prediction: the marginal likelihood underestimates correlated noise.
 
 use nalgebra::DMatrix;
 

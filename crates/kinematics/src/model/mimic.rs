@@ -60,7 +60,7 @@ fn resolve(
     Ok(())
 }
 
-/// What a joint without a coupling of its own follows.
+/// The joint followed by a joint without a coupling.
 fn mimic(joint: &UrdfJoint) -> &Mimic {
     match &joint.motion {
         UrdfMotion::Moving { mimic: Some(mimic), .. } => mimic,

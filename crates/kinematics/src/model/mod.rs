@@ -29,7 +29,7 @@ pub struct LinkId(pub(crate) usize);
 /// A robot: a tree of links and joints, checked and immutable.
 ///
 /// Poses are in the root link's frame, in metres; angles in radians. Configurations q (n) and the columns of Jacobians
-/// follow the active joints in document order; mimic joints have no coordinate of their own, their part of a Jacobian
+/// follow the active joints in document order; mimic joints have no coordinate, and their part of a Jacobian
 /// is added to the column of the joint they follow.
 #[derive(Debug, Clone)]
 pub struct RobotModel {

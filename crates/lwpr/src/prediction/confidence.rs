@@ -1,4 +1,4 @@
-//! How far a prediction may be off.
+//! Predictive standard deviation.
 
 use lanes::{LANES, Number, Register, total};
 use pulp::Simd;

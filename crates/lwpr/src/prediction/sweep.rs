@@ -1,4 +1,4 @@
-//! One sweep over the fields of an output, for everything that is asked of a query.
+//! One sweep over the fields of an output, for all quantities of a query.
 
 use std::cell::RefCell;
 
@@ -31,7 +31,7 @@ pub(super) struct Query<'a> {
     pub(super) norm_out: f64,
 }
 
-/// What is asked for besides the value. All answers are in the units of inputs and outputs.
+/// Requested quantities besides the value. All answers are in the units of inputs and outputs.
 #[derive(Debug, Default)]
 pub(super) struct Wanted<'a> {
     /// The gradient, one element every `stride`.

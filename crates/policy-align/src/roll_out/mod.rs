@@ -33,7 +33,7 @@ const RESTING: usize = 10;
 /// Duration without another, in durations of the longest episode.
 const TIMES_AS_LONG: f64 = 3.0;
 
-/// How a policy is followed: u = N(x, t) π(x) (3), by steps that adapt.
+/// Integrates a policy under constraints, u = N(x, t) π(x) (3), with adaptive steps.
 #[derive(Debug, Clone, Default)]
 pub struct RollOut {
     /// What must not be moved along, and when.
@@ -46,7 +46,7 @@ pub struct RollOut {
     pub step: Option<f64>,
 }
 
-/// A policy that was followed.
+/// The path of a roll-out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Path {
     /// Seconds from the start, (N).
@@ -66,7 +66,7 @@ pub struct Path {
 pub enum Stop {
     /// Slower than 1 % of the demonstrated median speed for ten samples, with no constraint left that may change.
     AtRest,
-    /// The next state would have been one that nothing was learnt about.
+    /// The next state would have been outside the demonstrated region.
     LeftTheData,
     /// The next state would have been beyond the limit of this joint.
     Limit(String),
