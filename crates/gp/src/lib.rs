@@ -20,8 +20,8 @@
 //!     let (start, rail) = (dvector![angle.cos(), angle.sin()] * 1.5, dvector![along.cos(), along.sin()]);
 //!     let (fixed, sliding) = (&start - &rail * rail.dot(&start), &rail * rail.dot(&start));
 //!     let left = |sample: usize| (-0.1 * sample as f64).exp();
-//!     let states = DMatrix::from_fn(2, 30, |axis, sample| fixed[axis] + left(sample) * sliding[axis]);
-//!     let velocities = DMatrix::from_fn(2, 30, |axis, sample| -left(sample) * sliding[axis]);
+//!     let states = DMatrix::from_fn(2, 20, |axis, sample| fixed[axis] + left(sample) * sliding[axis]);
+//!     let velocities = DMatrix::from_fn(2, 20, |axis, sample| -left(sample) * sliding[axis]);
 //!     Trajectory::new(states, 0.1)?.with_velocities(velocities)
 //! });
 //! let demonstrations = Demonstrations::new(movements.collect::<Result<_, _>>()?)?;
@@ -40,14 +40,17 @@
 //!
 //! # Equations
 //!
-//! Comments cite (S1)–(S17) and (R1)–(R9). [`equations`] defines them and lists the steps of the search; it is `docs/slope-gp.md` of the
-//! repository. `docs/which-learner.md` compares the learners, `docs/decisions/gp.md` gives the reasons.
+//! Comments cite (S1)–(S17) and (R1)–(R9). [`equations`] defines them and lists the steps of the search; it is
+//! `docs/slope-gp.md` of the repository. `docs/which-learner.md` compares the learners, `docs/decisions/gp.md` gives
+//! the reasons.
 //!
 //! # When it fails
 //!
-//! - **The same constraint in every demonstration** makes the velocity a function of the state, like an unconstrained policy. The data cannot
-//!   tell the two apart: [`Reading::Ambiguous`], and [`TrustReport::least_seen`] names the direction that never moved.
-//! - **Constraints that push** (A u = b, b ≠ 0), move, or project obliquely: the slope GP assumes an orthogonal projection onto the null space.
+//! - **The same constraint in every demonstration** makes the velocity a function of the state, like an unconstrained
+//!   policy. The data cannot tell the two apart: [`Reading::Ambiguous`], and [`TrustReport::least_seen`] names the
+//!   direction that never moved.
+//! - **Constraints that push** (A u = b, b ≠ 0), move, or project obliquely: the slope GP assumes an orthogonal
+//!   projection onto the null space.
 //! - **Motion that depends on more than the state** (time, load, a moving target) is [`Reading::Unexplained`].
 //! - **Corridors**: where all movements follow one narrow path, nothing tests the policy across it.
 //! - **Kinks in many dimensions** are learnt slowly; the held-out R² is then low and [`TrustReport::warnings`] says so.

@@ -15,7 +15,7 @@ pub struct ConstraintLeftOut {
     pub constraint: String,
     /// Movements learnt from.
     pub learnt_from: usize,
-    /// What came of the others.
+    /// Evaluation of the policy learnt under the others.
     pub evaluation: Evaluation,
 }
 

@@ -1,4 +1,5 @@
-//! Learns a policy from recorded movements under unknown constraints, and reports how far it can be trusted. Library and program.
+//! Learns a policy from recorded movements under unknown constraints, and reports how far it can be trusted. Library
+//! and program.
 //!
 //! ```
 //! use std::sync::atomic::AtomicBool;
@@ -33,8 +34,8 @@
 //! | use | [`RollOut`] under constraints; [`CSource`] and [`to_onnx`] export a policy without dependencies |
 //! | evaluate | [`evaluate()`] on other recordings, [`leave_constraints_out`] across constraints |
 //!
-//! Guides in `docs`: `your-own-data.md` (the program step by step), `which-learner.md`, `model-file.md`, `slope-gp.md` (equations).
-//! `docs/your-own-data-cases.md` lists the verdict on some ninety kinds of recordings.
+//! Guides in `docs`: `your-own-data.md` (the program step by step), `which-learner.md`, `model-file.md`, `slope-gp.md`
+//! (equations). `docs/your-own-data-cases.md` lists the verdict on some ninety kinds of recordings.
 //!
 //! # Exit codes of the program
 //!
@@ -51,12 +52,15 @@
 //!
 //! # When it fails
 //!
-//! - **The same constraint in every recording** hides part of the policy; no learner can recover it. The verdict is then doubtful.
-//! - **Constraints that push** (A u = b with b ≠ 0), move or project obliquely violate the assumption of an orthogonal projection.
+//! - **The same constraint in every recording** hides part of the policy; no learner can recover it. The verdict is
+//!   then doubtful.
+//! - **Constraints that push** (A u = b with b ≠ 0), move or project obliquely violate the assumption of an orthogonal
+//!   projection.
 //! - **Motion that depends on more than the recorded state** (time, load, a moving target): "do not use".
 //! - **Mixed units**: constraints act at right angles in some unit. [`PrepareOptions::scale`] chooses it.
 //! - **Outside the demonstrated region** a policy extrapolates: [`ModelPolicy::is_supported`] is false there.
-//! - [`PrepareError`], [`FitError`], [`ModelError`], [`RollOutError`] and [`ExportError`] say what was refused and what to do.
+//! - [`PrepareError`], [`FitError`], [`ModelError`], [`RollOutError`] and [`ExportError`] say what was refused and what
+//!   to do.
 
 mod error;
 mod evaluate;

@@ -18,8 +18,8 @@ pub enum Verdict {
 pub struct Finding {
     /// Its severity.
     pub verdict: Verdict,
-    /// What was found, in one sentence with its number.
+    /// The finding, in one sentence with its number.
     pub what: String,
-    /// What to do next.
+    /// The next step.
     pub next: String,
 }

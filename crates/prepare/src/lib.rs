@@ -1,11 +1,12 @@
-//! Prepares recordings for learning: time steps, units, velocities, noise and faults. Each automatic decision is recorded with its reason.
+//! Prepares recordings for learning: time steps, units, velocities, noise and faults. Each automatic decision is
+//! recorded with its reason.
 //!
 //! ```
 //! use demo_io::{Channel, Episode, Recordings, Source};
 //! use nalgebra::DMatrix;
 //! use prepare::{PrepareOptions, Recorded, Verdict, prepare};
 //!
-//! // Twelve movements towards the origin at 20 Hz. Velocities are in millimetres per second by mistake, positions in metres.
+//! // Twelve movements towards the origin at 20 Hz, positions in metres, velocities by mistake in millimetres per second.
 //! let episodes = (0..12).map(|k| {
 //!     let position = |axis: usize, i: usize| (f64::from(k) + axis as f64).cos() * (-0.025 * i as f64).exp();
 //!     Episode {
@@ -29,16 +30,17 @@
 //! # Ok::<(), prepare::PrepareError>(())
 //! ```
 //!
-//! [`Prepared`] holds the demonstrations, every [`Decision`] with the flag that overrides it, and every [`Finding`] that casts doubt on the
-//! data. [`Recorded::front_end`] says how a Gaussian process should read them. The guide is `docs/your-own-data.md`; `docs/decisions/trust.md`
-//! gives the reasons.
+//! [`Prepared`] holds the demonstrations, every [`Decision`] with the flag that overrides it, and every [`Finding`]
+//! that casts doubt on the data. [`Recorded::front_end`] says how a Gaussian process should read them. The guide is
+//! `docs/your-own-data.md`; `docs/decisions/trust.md` gives the reasons.
 //!
 //! # When it fails
 //!
 //! - [`PrepareError`]: no episodes, no motion, rows and columns exchanged, or an option that does not fit the data.
 //! - **Episodes that are duplicates or stand still** are dropped and listed in [`Prepared::left_out`].
 //! - **Time stamps in the wrong unit without velocities** look like a slower policy; only the time step shows it.
-//! - **Noise of more than a few per cent in positions alone** cannot be removed without losing the velocity. Record velocities or commands.
+//! - **Noise of more than a few per cent in positions alone** cannot be removed without losing the velocity. Record
+//!   velocities or commands.
 //! - **Mixed units** (metres and radians): nothing chooses a metric for you. [`PrepareOptions::scale`] sets one.
 
 mod channel;

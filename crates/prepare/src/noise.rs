@@ -94,7 +94,7 @@ fn velocity_noise(demonstrations: &Demonstrations) -> Option<(f64, f64)> {
     Some((noise.deviations.norm_squared(), power / count as f64))
 }
 
-/// What learners are given where the user said how positions are smoothed.
+/// The kind of recording where the user requested a smoothing.
 pub(crate) fn as_requested(demonstrations: &Demonstrations, noise: &Noise, agreement: Agreement) -> Recorded {
     if agreement == Agreement::None {
         return Recorded::PositionsAsRequested;
@@ -106,7 +106,7 @@ pub(crate) fn as_requested(demonstrations: &Demonstrations, noise: &Noise, agree
     }
 }
 
-/// What learners are given.
+/// The kind of recording for the learners.
 pub(crate) fn decide(
     demonstrations: &Demonstrations,
     noise: &Noise,

@@ -14,14 +14,14 @@ const AGREE: f64 = 1.25;
 const UNRELATED: f64 = 0.5;
 /// A factor is one that mistakes have if it is as near as this.
 const NEAR: f64 = 0.1;
-/// What velocities do not explain may be so many times the noise.
+/// Largest residual of the velocities, in multiples of the noise.
 const NOISE: f64 = 1.5;
 /// Parts of a movement that are compared.
 const PARTS: usize = 4;
 /// Velocities that are differences of positions up to this share are made of them.
 const SAME: f64 = 1e-6;
 
-/// What recorded velocities are.
+/// The kind of recorded velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Agreement {
     /// There are none, or they are unusable.

@@ -28,9 +28,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Equations (S15)–(S17) stand in [section 8 of `docs/slope-gp.md`](../gp/equations/index.html#8-smoothing). Trajectories are
-//! smoothed in parallel, with the same bits at any number of threads. Times may be uneven: [`Stamped`] movements have a stamp
-//! for each sample.
+//! Equations (S15)–(S17) stand in [section 8 of `docs/slope-gp.md`](../gp/equations/index.html#8-smoothing).
+//! Trajectories are smoothed in parallel, with the same bits at any number of threads. Times may be uneven: [`Stamped`]
+//! movements have a stamp for each sample.
 //!
 //! # When it fails
 //!
@@ -40,8 +40,8 @@
 //! - [`SmoothingError`]: no motion, missing velocities, too few samples, or overflow.
 //!
 //! To read the source: `smoother` has one line for each step; `scaled` prepares the input, `polynomials`, `windows` and
-//! `evidence` are (S15), `segmentation` is (S16), `averages` and `smoothed` form the result; `noise_by_evidence` estimates
-//! the noise. `fusion` chooses among the steps of `increments` and runs `kalman`.
+//! `evidence` are (S15), `segmentation` is (S16), `averages` and `smoothed` form the result; `noise_by_evidence`
+//! estimates the noise. `fusion` chooses among the steps of `increments` and runs `kalman`.
 
 mod averages;
 mod error;

@@ -118,7 +118,7 @@ impl Smoother {
     }
 }
 
-/// What stays the same while one set of movements is smoothed.
+/// The constants of smoothing one set of movements.
 struct Run<'a> {
     smoother: &'a Smoother,
     scaled: &'a Scaled<'a>,

@@ -29,7 +29,7 @@ impl DirectPolicy {
         &self.regression
     }
 
-    /// What it was learnt from.
+    /// Summary of its training data.
     pub fn origin(&self) -> &Origin {
         &self.origin
     }

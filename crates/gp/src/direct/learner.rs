@@ -13,7 +13,7 @@ use crate::direct::direct_gp::{DirectFit, DirectGp};
 pub struct DirectLearner {
     /// How recordings become rows.
     pub front_end: FrontEnd,
-    /// What learns from them.
+    /// The Gaussian process fitted to them.
     pub gp: DirectGp,
 }
 

@@ -38,7 +38,7 @@ impl FamilyFit {
 /// Where the search begins: log a_b and log σ².
 const AMPLITUDE: f64 = 0.3;
 const NOISE: f64 = 1e-2;
-/// From so many hyper rows on, half of them are searched first: an eighth of the work leads most of the way.
+/// From this number of hyper rows on, half of them are searched first: an eighth of the work leads most of the way.
 const WORTH_TWO_SEARCHES: usize = 200;
 /// Iterations that are left for all of them then.
 const LAST_ITERATIONS: usize = 12;

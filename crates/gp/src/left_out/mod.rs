@@ -26,7 +26,7 @@ pub struct LeftOut {
 
 /// Held-out error, as a share of the variance, below which prediction can select nothing more.
 const EXACT: f64 = 1e-8;
-/// Left-out error up to which a model's family is not in question, and which of two models errs less says nothing.
+/// Held-out error below which differences between models are insignificant and a model's family is not in question.
 const NEARLY_EXACT: f64 = 1e-3;
 
 impl LeftOut {

@@ -34,7 +34,7 @@ pub struct BothReadings {
     pub(crate) slope: SlopeFit,
     pub(crate) direct: DirectFit,
     pub(crate) numbers: ReadingNumbers,
-    /// What the data said when this was learnt; models stored before it was kept are read by the rule of today.
+    /// The reading of the data when this was learnt; older stored models have none and are read by today's rule.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) reading: Option<Reading>,
     pub(crate) overridden: Option<Reading>,

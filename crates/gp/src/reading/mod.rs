@@ -12,7 +12,7 @@ use crate::reading::numbers::ReadingNumbers;
 use crate::report::identifiability::direction;
 use crate::rows::kept::Grouping;
 
-/// What the demonstrations say about hidden constraints.
+/// Whether hidden constraints acted on the demonstrations (R8).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reading {
@@ -71,8 +71,8 @@ impl ReadingNumbers {
         self.least_seen.direction.len() == 1
     }
 
-    /// Whether the direction of a movement helps much to predict its speed. Where the state alone predicts well, the threshold
-    /// is higher: people's handwriting, which is free, gains up to λ = 0.7 there.
+    /// Whether the direction of a movement helps much to predict its speed. Where the state alone predicts well, the
+    /// threshold is higher: people's handwriting, which is free, gains up to λ = 0.7 there.
     pub fn direction_tells(&self) -> bool {
         let least_lambda = if self.p_d > UNEXPLAINED { 0.5 } else { 0.75 };
         let predicts = !self.is_a_line() && self.a_s <= 0.8;

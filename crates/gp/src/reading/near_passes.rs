@@ -14,7 +14,7 @@ use crate::{GpError, Rows};
 const SLOW: f64 = 0.5;
 /// Samples compared, at most.
 const SAMPLES: usize = 5000;
-/// Fewer pairs of trajectories say nothing.
+/// Fewer pairs of trajectories are inconclusive.
 const FEW: usize = 3;
 
 /// How differently two trajectories move where they pass near each other (R9). A model-free check that supports a reading

@@ -66,7 +66,7 @@ pub(crate) struct Compared<'a> {
     /// The trajectory that each group of the data is of.
     pub(crate) trajectories: &'a [usize],
     pub(crate) data: &'a SlopeData,
-    /// What the slope GP predicts of left-out trajectories, and its policy at the rows, (n, M).
+    /// Held-out predictions of the slope GP, and its policy at the rows, (n, M).
     pub(crate) slope: (&'a LeftOut, &'a DMatrix<f64>),
     /// The same of the direct GP.
     pub(crate) direct: (&'a LeftOut, &'a DMatrix<f64>),

@@ -26,7 +26,7 @@ const SWITCHED: f64 = 0.5;
 /// By how much a posterior that left-out movements confirm was too narrow, at most.
 const OPTIMISTIC: f64 = 2.0;
 
-/// What a report is about.
+/// Input of a report.
 pub(crate) struct Chosen<'a> {
     pub(crate) outcome: &'a Outcome,
     pub(crate) kept: &'a Kept,

@@ -14,7 +14,7 @@ use crate::slope::slope_gp::SlopeGp;
 pub struct SlopeLearner {
     /// How recordings become rows.
     pub front_end: FrontEnd,
-    /// What learns from them.
+    /// The Gaussian process fitted to them.
     pub gp: SlopeGp,
 }
 

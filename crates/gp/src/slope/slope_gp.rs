@@ -9,9 +9,10 @@ use crate::rows::kept::Selection;
 ///
 /// Under a constraint u = Nπ with N the orthogonal projection onto the null space, uᵀπ = uᵀu whichever N it is: every
 /// sample is one linear equation in π. The same holds for orthogonal projections onto convex cones (Moreau), but not for
-/// constraints that push (A u = b) or move, nor for oblique projections. Nothing is aligned or discarded. From derivative observations in Gaussian processes (Solak,
-/// Murray-Smith, Leithead, Leith, Rasmussen 2003; Rasmussen & Williams 2006, 9.4) and the inconsistency loss of Howard,
-/// Klanke, Gienger, Goerick, Vijayakumar 2009.
+/// constraints that push (A u = b) or move, nor for oblique projections. Nothing is aligned or discarded.
+///
+/// The method combines derivative observations in Gaussian processes (Solak, Murray-Smith, Leithead, Leith, Rasmussen
+/// 2003; Rasmussen & Williams 2006, 9.4) with the inconsistency loss of Howard, Klanke, Gienger, Goerick, Vijayakumar 2009.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SlopeGp {

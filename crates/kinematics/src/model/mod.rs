@@ -1,4 +1,4 @@
-//! What a robot is: [`RobotModel`], built (`build`) from tags as a tree (`tree`) whose mimic joints are resolved
+//! The robot: [`RobotModel`], built (`build`) from tags as a tree (`tree`) whose mimic joints are resolved
 //! (`mimic`); its joints (`joint`) and their limits (`limits`); how a link hangs on its parent (`attachment`).
 
 mod attachment;
@@ -119,7 +119,7 @@ impl RobotModel {
         self.collision_shapes.as_deref().map_err(Clone::clone)
     }
 
-    /// What the file says that was passed over.
+    /// Parts of the file that were ignored.
     pub fn warnings(&self) -> &[UrdfWarning] {
         &self.warnings
     }

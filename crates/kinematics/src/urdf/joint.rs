@@ -26,7 +26,7 @@ impl UrdfJoint {
     }
 }
 
-/// What a joint can do.
+/// Type of a joint.
 #[derive(Debug, Clone)]
 pub(crate) enum UrdfMotion {
     Fixed,

@@ -31,7 +31,7 @@ pub struct Lwpr {
     online: Online,
 }
 
-/// What a single update works in, kept so that it allocates nothing.
+/// Memory of a single update, kept so that it allocates nothing.
 #[derive(Debug, Clone)]
 struct Online {
     x: Rows,

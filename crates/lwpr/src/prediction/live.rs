@@ -25,7 +25,7 @@ struct Term {
     noise: Option<f64>,
 }
 
-/// What a query works in; each thread has one, so that none allocates more than once.
+/// Memory of a query; each thread has one, so that none allocates more than once.
 #[derive(Debug, Default)]
 struct Scratch {
     /// x, x − mean less what the directions explain, M(x − c).

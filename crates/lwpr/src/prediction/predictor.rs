@@ -91,7 +91,8 @@ impl Predictor {
         (0..queries).into_par_iter().map(answer).collect()
     }
 
-    /// Value, gradient, confidence and activation at `x`; `None` if some output has no trustworthy field activated above the cutoff.
+    /// Value, gradient, confidence and activation at `x`; `None` if some output has no trustworthy field activated above
+    /// the cutoff.
     pub fn predict(&self, x: DVectorView<'_, f64>) -> Option<Prediction> {
         let mut prediction = Prediction::zeros(self.n_in(), self.n_out());
         self.predict_into(x, &mut prediction).then_some(prediction)

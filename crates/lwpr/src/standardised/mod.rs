@@ -115,7 +115,7 @@ impl StandardisedModel {
         &self.model
     }
 
-    /// What predicts y − mean.
+    /// The predictor of y − mean.
     pub fn predictor(&self) -> &Predictor {
         &self.predictor
     }

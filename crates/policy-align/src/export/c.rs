@@ -29,7 +29,7 @@ pub struct CSource {
     pub precision: Precision,
 }
 
-/// What numbers are in C.
+/// Number type in C.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Precision {
     /// `double`: the model's own results but for rounding.

@@ -251,7 +251,7 @@ fn numbers(
     }
 }
 
-/// What the policy does not know of itself between the movements shown.
+/// Uncertainty of the policy between the demonstrated movements.
 fn unknown(readings: &BothReadings, prepared: &Prepared, rows: &gp::Rows) -> f64 {
     let states = actions::states(rows);
     let variance = actions::spread(&actions::actions(readings, &states)) / states.ncols() as f64;

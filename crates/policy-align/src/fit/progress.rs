@@ -17,7 +17,7 @@ pub struct Step {
     pub done: usize,
     /// Of so many.
     pub of: usize,
-    /// What begins now.
+    /// The step that begins.
     pub what: &'static str,
 }
 

@@ -82,7 +82,7 @@ enum Rows {
 }
 
 impl ConstraintSet {
-    /// Of a text. `channels` are the names of the state; robots are looked for from `folder` on.
+    /// From a text. `channels` are the names of the state; paths of robots are relative to `folder`.
     ///
     /// # Errors
     /// [`ConstraintFileError`].

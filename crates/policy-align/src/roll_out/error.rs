@@ -72,7 +72,7 @@ pub enum RollOutError {
 pub(crate) const LONGEST: usize = 10_000_000;
 
 impl RollOutError {
-    /// What to do next.
+    /// The next step.
     pub fn remedy(&self) -> &'static str {
         match self {
             RollOutError::Start { .. } => "give one number for each channel, in this order",

@@ -36,7 +36,7 @@ const TIMES_AS_LONG: f64 = 3.0;
 /// Integrates a policy under constraints, u = N(x, t) π(x) (3), with adaptive steps.
 #[derive(Debug, Clone, Default)]
 pub struct RollOut {
-    /// What must not be moved along, and when.
+    /// The constraints and their times.
     pub constraints: ConstraintSet,
     /// Limits at which to stop.
     pub limits: Option<JointLimits>,
@@ -53,7 +53,7 @@ pub struct Path {
     pub times: Vec<f64>,
     /// In the units of the recording, one column a sample, (n, N).
     pub states: DMatrix<f64>,
-    /// What the constraints left of the action, in units of the state per second, (n, N).
+    /// The projected action, in units of the state per second, (n, N).
     pub velocities: DMatrix<f64>,
     /// Why it ended.
     pub stop: Stop,
@@ -176,7 +176,7 @@ impl RollOut {
     }
 }
 
-/// What stays the same on the way.
+/// The constants of a roll-out.
 struct Run<'a> {
     policy: &'a ModelPolicy<'a>,
     constraints: &'a ConstraintSet,
