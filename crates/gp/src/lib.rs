@@ -1,6 +1,6 @@
 //! Gaussian processes that learn a policy from demonstrations, with error bars and a report on how far to trust it.
 //!
-//! | | |
+//! | item | what it does |
 //! |---|---|
 //! | [`SlopeGp`] | learns a potential from slopes along the observed motion: for unknown constraints that vary |
 //! | [`DirectGp`] | learns the velocities: for unconstrained motion |
