@@ -2,6 +2,7 @@
 
 mod compare;
 mod conformance;
+mod equations;
 mod files;
 mod leverage;
 mod progress;

@@ -1,4 +1,4 @@
-//! `cargo xtask tidy`: holds the manifests and the source tree against the architecture.
+//! `cargo xtask tidy`: checks that manifests and sources follow the architecture and cite only equations that exist.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail};
 use serde::Deserialize;
 
+use crate::equations;
 use crate::progress::say;
 
 /// Names that say nothing about what is inside.
@@ -69,8 +70,10 @@ pub(crate) fn execute() -> anyhow::Result<()> {
     for name in allowed.keys().filter(|name| !manifests.iter().any(|manifest| manifest.package.name == **name)) {
         faults.push(format!("xtask/dependencies.toml: there is no crate {name}; delete its entry"));
     }
+    let page = read(&root.join(equations::PAGE))?;
+    let equations = equations::defined(&page);
     for folder in ["crates", "xtask", "benches"] {
-        source_faults(&root.join(folder), &mut faults)?;
+        source_faults(&root.join(folder), &equations, &mut faults)?;
     }
     if faults.is_empty() {
         say("tidy: manifests and sources follow the architecture");
@@ -111,16 +114,18 @@ fn dependency_faults(manifest: &Manifest, allowed: &BTreeMap<String, Allowed>) -
     named.iter().copied().filter_map(fault).chain(unused).chain(twice).collect()
 }
 
-fn source_faults(folder: &Path, faults: &mut Vec<String>) -> anyhow::Result<()> {
+fn source_faults(folder: &Path, equations: &BTreeSet<&str>, faults: &mut Vec<String>) -> anyhow::Result<()> {
     for path in entries(folder)? {
         let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
         if path.is_dir() {
-            source_faults(&path, faults)?;
+            source_faults(&path, equations, faults)?;
         } else if path.extension().is_some_and(|extension| extension == "rs") {
             if EMPTY_NAMES.contains(&stem) {
                 faults.push(format!("{}: name the file after what is in it", path.display()));
             }
             let text = read(&path)?;
+            let undefined = equations::faults(&text, equations).into_iter();
+            faults.extend(undefined.map(|fault| format!("{}: {fault}", path.display())));
             let lines = lines_before_tests(&text);
             if lines > LONGEST_FILE && !path.components().any(|part| part.as_os_str() == "tests") {
                 faults.push(format!("{}: {lines} lines; one idea a file, {LONGEST_FILE} at most", path.display()));

@@ -12,17 +12,17 @@ use crate::{AlignError, Aligned, AlignmentObjective, Bandwidth, Integration, War
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PolicyAlign {
-    /// How the potential along each trajectory is found.
+    /// The integration rule for the potential along each trajectory.
     pub integration: Integration,
-    /// How far each local model speaks beyond its trajectory.
+    /// The bandwidth of the responsibilities.
     pub bandwidth: Bandwidth,
-    /// Groups of trajectories are taken apart if an eigenvalue of H, beside the one of the constant vector, is below
+    /// Groups of trajectories are split if an eigenvalue of H, beside the one of the constant vector, is below
     /// this; in units of H, which grows with the number of samples. Positive; 1e-8 by default.
     pub eigenvalue_threshold: f64,
     /// Responsibilities below this share of the largest at a sample are dropped; in [0, 1), 1e-20 by default, at which
     /// offsets keep 14 digits.
     pub responsibility_floor: f64,
-    /// Bytes of memory that the alignment may take; 8 GiB by default. What would take more is refused before the search.
+    /// Bytes of memory that the alignment may take; 8 GiB by default. A larger alignment is refused before the search.
     pub memory_limit: u64,
 }
 

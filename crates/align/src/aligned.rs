@@ -8,7 +8,7 @@ use crate::{
     Warning,
 };
 
-/// Local potentials brought to one level: what [`PolicyAlign::align`](crate::PolicyAlign::align) found.
+/// Aligned local potentials, the result of [`PolicyAlign::align`](crate::PolicyAlign::align).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Aligned {
     demonstrations: Demonstrations,
@@ -81,13 +81,13 @@ impl Aligned {
         self.sigma_squared
     }
 
-    /// The second smallest eigenvalue of H among the kept trajectories: how firmly their weakest part hangs on.
-    /// None if one trajectory is all that was kept.
+    /// The second smallest eigenvalue of H among the kept trajectories: how firmly their weakest part is
+    /// connected. None if a single trajectory was kept.
     pub fn lambda_2(&self) -> Option<f64> {
         self.partition.lambda_2
     }
 
-    /// What gives reason to doubt the result.
+    /// Reasons to doubt the result.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }
@@ -97,7 +97,7 @@ impl Aligned {
         &self.objective
     }
 
-    /// The movements that were aligned.
+    /// The demonstrations that were aligned.
     pub fn demonstrations(&self) -> &Demonstrations {
         &self.demonstrations
     }
@@ -108,7 +108,7 @@ impl Aligned {
         trajectories.zip(&self.potentials).map(|(trajectory, values)| LocalPotential::new(trajectory, values))
     }
 
-    /// How far each local model speaks for a state: q(x) (12), (K).
+    /// Responsibility of each local model for a state: q(x) (12), (K).
     ///
     /// Trajectories that are equally near have equal shares. To a state so far that its squared distances overflow, all
     /// whose distances do are equally near. A state with a NaN has NaN shares.

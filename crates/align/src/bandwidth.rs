@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use crate::AlignError;
 use crate::search::SearchSpace;
 
-/// How far a local model speaks beyond its own trajectory: the rule for σ² in (11), from the squared distances
+/// The rule for the bandwidth σ² in (11), from the squared distances
 /// d_kj = min over samples ‖x_kn − x_jm‖² of trajectories (18).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[non_exhaustive]

@@ -65,7 +65,7 @@ pub enum AlignError {
     ZeroBandwidth {
         /// All pairs of trajectories at squared distance zero, lower index first.
         pairs: Vec<(usize, usize)>,
-        /// What the rule makes of the distances of all other pairs, in units of the state squared: a σ² to use with
+        /// The rule's σ² from the distances of all other pairs, in units of the state squared: to use with
         /// `Bandwidth::Fixed`. None if there are too few.
         usable: Option<f64>,
     },
@@ -102,7 +102,7 @@ pub enum AlignError {
         /// How many dimensions there are.
         expected: usize,
     },
-    /// A stored policy has a form that this program does not know.
+    /// A stored policy has an unknown format version.
     #[error("the stored policy has version {found}, this program reads up to {known}; use a newer one")]
     PolicyVersion {
         /// Its version.
@@ -110,7 +110,7 @@ pub enum AlignError {
         /// The newest that can be read.
         known: u32,
     },
-    /// A stored policy contradicts itself.
+    /// A stored policy is inconsistent.
     #[error("the stored policy is damaged: {reason}")]
     CorruptPolicy {
         /// What is wrong with it.

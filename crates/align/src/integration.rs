@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::AlignError;
 
-/// How the potential along one trajectory is found from what was recorded (5)–(9).
+/// The rule that integrates the potential along one trajectory (5)–(9).
 ///
-/// Wherever a constraint lets the system move, dφ = ∇φᵀdx = −uᵀdx, so that the potential falls by the work of the
+/// Under u = Nπ with N an orthogonal projection, dφ = ∇φᵀdx = −uᵀdx, so that the potential falls by the work of the
 /// policy along the path. Values start at φ̂₁ = 0 and have units of the state squared per second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[non_exhaustive]

@@ -1,20 +1,4 @@
-//! Learning potential-based policies from constrained motion by aligning local potentials.
-//!
-//! A system follows a policy u = π(x) that descends a potential, π(x) = −∇φ(x) (1), (4), but under constraints that are
-//! unknown and may differ from movement to movement, only the part N(x, t) π(x) that they leave can be seen (3).
-//! Regression of what was seen averages over the constraints; this crate recovers π itself.
-//! Wherever the system moves, it moves within the constraint, so that dφ = −uᵀdx: along every single trajectory the
-//! potential follows by [`Integration`] (5)–(9), up to a constant.
-//! Each trajectory thus gives a [`LocalPotential`], which says of any state what it knows of its nearest sample (10).
-//! Trajectories that come near each other should agree there: how far each speaks for a state is its responsibility
-//! (11), (12), with a [`Bandwidth`] taken from the distances between trajectories (18)–(22).
-//! The offsets that level all local potentials minimise their weighted disagreement, a quadratic form
-//! ([`AlignmentObjective`], (13)–(17)) whose matrix is the Laplacian of a graph of trajectories.
-//! Where that graph falls apart, relative offsets are unknown: the largest part is kept, the rest discarded (Sec. 3.3).
-//! [`PolicyAlign::align`] does all this, and [`Aligned`] tells what it found and what gives reason for doubt.
-//! A [`Regressor`], LWPR unless another is given, then learns the global potential from the levelled samples (23), and
-//! its negative gradient is the policy.
-//! [`DirectPolicyLearning`] is the naive regression to compare with.
+//! Learns potential-based policies from constrained motion by aligning local potentials.
 //!
 //! ```
 //! use align::{Bandwidth, LwprRegressor, PolicyAlign};
@@ -22,7 +6,7 @@
 //! use nalgebra::{DMatrix, DVector};
 //! use rand::SeedableRng;
 //!
-//! // Movements down φ = ‖x‖²/20 from eight places, seen once a second.
+//! // Movements down φ = ‖x‖²/20 from eight places, sampled once a second.
 //! let movements = (0..8).map(|k| {
 //!     let angle = f64::from(k);
 //!     DMatrix::from_fn(2, 60, |row, i| 0.9_f64.powi(i as i32) * if row == 0 { angle.cos() } else { angle.sin() })
@@ -40,11 +24,50 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The learner sees [`motion::Demonstrations`] and nothing else: this crate depends on none that knows the constraints
-//! or the true policy. Randomness is handed in, and the same seed gives the same bits at any number of threads.
+//! # The problem
 //!
-//! Reading on: `algorithm` is the algorithm, a line a step; `integration`, `bandwidth`, and the folders `search` (nearest
-//! samples) and `levelling` (responsibilities, objective, groups, offsets) are the steps; `learning` is the rest.
+//! A system follows a policy u = π(x) that descends a potential, π(x) = −∇φ(x) (1), (4). Constraints that are unknown
+//! and vary between movements let only the component N(x, t) π(x) through (3). Regression on the observed velocities
+//! averages over the constraints; this crate recovers π itself.
+//!
+//! # The algorithm
+//!
+//! 1. [`Integration`]: N projects orthogonally, so that dφ = −uᵀdx along every trajectory. This gives the potential
+//!    along it up to a constant (5)–(9).
+//! 2. [`LocalPotential`]: each trajectory predicts the potential of any state by that of its nearest sample (10).
+//! 3. [`Bandwidth`]: responsibilities weigh these predictions by distance (11), (12), with σ² from the distances
+//!    between trajectories (18)–(22).
+//! 4. [`AlignmentObjective`]: the offsets of all local potentials minimise their weighted disagreement (13)–(17), a
+//!    quadratic form whose matrix is the Laplacian of a graph of trajectories.
+//! 5. Where the graph falls apart, relative offsets are undetermined: the largest group is kept, the others are
+//!    discarded (Sec. 3.3, App. B).
+//! 6. A [`Regressor`], by default LWPR, learns the global potential from the aligned samples (23). Its negative
+//!    gradient is the policy.
+//!
+//! [`PolicyAlign::align`] does steps 1 to 5, and [`Aligned`] holds the result with its [`Warning`]s.
+//! [`DirectPolicyLearning`] is the naive regression to compare with.
+//!
+//! # When it fails
+//!
+//! - **Few movements**: trajectories must pass near each other under different constraints. The slope GP of the crate
+//!   `gp` needs fewer.
+//! - **No potential**: cycles and rotation are not represented.
+//! - **Constraints that push** (A u = b, b ≠ 0), move or project obliquely: dφ = −uᵀdx does not hold.
+//! - **Noisy positions** bias the integrated potential. Record velocities, or smooth the positions first (crate
+//!   `smoothing`).
+//! - **Many groups**: [`Aligned::discarded`] is long; use a wider [`Bandwidth`] or record more.
+//! - [`AlignError`]: parameters out of range, missing velocities, an undefined bandwidth, overflow, or too little
+//!   memory.
+//!
+//! # Conventions
+//!
+//! The learner sees only [`motion::Demonstrations`]: the crate depends on nothing that knows the constraints or the
+//! true policy. The caller passes the random generator; the same seed gives the same bits at any number of threads.
+//! `docs/notation.md` maps the symbols of the paper to names.
+//!
+//! To read the source: `algorithm` has one line for each step; `integration`, `bandwidth`, and the folders `search`
+//! (nearest samples) and `levelling` (responsibilities, objective, groups, offsets) implement them; `learning` has the
+//! regression and the policies.
 
 mod algorithm;
 mod aligned;

@@ -1,4 +1,4 @@
-//! A look at the demonstrations themselves: what no alignment mends.
+//! Checks of the demonstrations for faults that no alignment mends.
 
 use motion::{Demonstrations, Trajectory};
 
@@ -9,7 +9,7 @@ const LONG: f64 = 10.0;
 /// So many steps about a step tell what is usual there, itself included.
 const ABOUT: usize = 7;
 
-/// What is odd about the demonstrations, trajectory by trajectory.
+/// Anomalies of the demonstrations, trajectory by trajectory.
 pub(crate) fn scrutinise(demonstrations: &Demonstrations) -> Vec<Warning> {
     let trajectories = demonstrations.trajectories();
     let longest = trajectories.iter().map(Trajectory::n_samples).max().unwrap_or(0);

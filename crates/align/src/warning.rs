@@ -7,11 +7,11 @@ const MANY: f64 = 0.5;
 /// A λ₂ below so many thresholds is worth a word.
 const NEAR: f64 = 10.0;
 
-/// Why the result of an alignment may not be what was wanted.
+/// Reasons to doubt the result of an alignment.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// More than half of the trajectories hang together too weakly to be levelled.
+    /// More than half of the trajectories are connected too weakly to be aligned.
     ManyDiscarded {
         /// How many were discarded.
         discarded: usize,
@@ -41,7 +41,7 @@ pub enum Warning {
         /// How many times the usual step of the trajectory it is.
         times: f64,
     },
-    /// The trajectory never moves: it says nothing about the policy.
+    /// The trajectory never moves and carries no information about the policy.
     StandsStill {
         /// The trajectory.
         trajectory: usize,

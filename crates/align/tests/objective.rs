@@ -138,7 +138,7 @@ proptest! {
         start in vec(-2.0..2.0, 1..5), weight in 0.001..0.3, time_step in 0.1..1.5, n_samples in 2usize..30,
         rail in vec(0.1..1.0, 5), constrained in any::<bool>(),
     ) {
-        // x_{i+1} = x_i + δt N π(x_i), φ = w‖x‖²: each fall is 1/(1 − wδt) times the true one, under any constraint.
+        // x_{i+1} = x_i + δt N π(x_i), φ = w‖x‖²: each fall is 1/(1 − wδt) times the true one, for any projector N.
         let rail = DVector::from_column_slice(&rail[..start.len()]).normalize();
         let mut x = DVector::from_vec(start);
         let mut states = vec![];

@@ -37,7 +37,7 @@ impl Plate {
     }
 }
 
-/// Plates that stop points from passing: while a plate blocks a point, the point may not move along the plate's normal,
+/// Plates that points cannot pass: while a plate blocks a point, the point may not move along the plate's normal,
 /// `nᵀ ṗ = 0`. Where nothing is blocked, nothing is constrained, so that the rank switches with the state.
 ///
 /// The state is the positions of all points one below the other, (3·points), in metres; A has one row for each point

@@ -42,7 +42,7 @@ pub trait PfaffianConstraint: Send + Sync {
     /// other; the rows' units and lengths do not matter.
     ///
     /// # Errors
-    /// What keeps A from being computed, as [`ConstraintError::State`] or [`ConstraintError::Jacobian`].
+    /// Where A cannot be computed: [`ConstraintError::State`] or [`ConstraintError::Jacobian`].
     fn matrix(&self, state: DVectorView<'_, f64>, time: f64) -> Result<DMatrix<f64>, ConstraintError>;
 
     /// N(x,t) = I − A⁺A (3), with the [default tolerance](NullSpaceProjector::DEFAULT_TOLERANCE).

@@ -24,7 +24,7 @@ pub enum ConstraintError {
         /// Dimension n of the constraint.
         expected: usize,
     },
-    /// A coordinate of the state is NaN or infinite, so that nobody knows what holds there.
+    /// A coordinate of the state is NaN or infinite.
     #[error("coordinate {coordinate} of the state is {value}, not a finite number; mend what computes the state")]
     StateNotFinite {
         /// The first coordinate at fault.
@@ -35,7 +35,7 @@ pub enum ConstraintError {
     /// The Jacobian of a point cannot be computed.
     #[error("the point has no Jacobian at this state: {reason}")]
     Jacobian {
-        /// What the function that computes it says.
+        /// The message of the function that computes it.
         reason: String,
     },
     /// A does not have one column for each dimension of the state.
@@ -66,7 +66,7 @@ pub enum ConstraintError {
         /// Its coordinates.
         normal: Vec<f64>,
     },
-    /// A switching constraint was given nothing to switch between.
+    /// A switching constraint has no phases.
     #[error("there is no constraint to switch between; give at least one, or use `Unconstrained`")]
     NoPhase,
     /// The start times of a switching constraint are not finite or do not rise.
@@ -77,7 +77,7 @@ pub enum ConstraintError {
         /// Its start time, in seconds.
         start: f64,
     },
-    /// Two phases of a switching constraint live in spaces of different dimension.
+    /// Two phases of a switching constraint differ in dimension.
     #[error("phase {phase} constrains {found} dimensions, phase 0 {expected}; all must share one state space")]
     PhaseDimension {
         /// The first phase that differs.

@@ -1,12 +1,12 @@
-//! Constraints on motion, and what they leave free.
+//! Constraints on motion, and the projectors onto their null spaces.
 //!
-//! A Pfaffian constraint demands A(x,t) u = 0 (2) of the velocity u at every instant: a hand that wipes a table must
-//! not leave its plane. A system that wants to move with π(x) then moves with u = N(x,t) π(x), where
-//! N = I − A⁺A (3) removes what the constraint forbids and keeps the rest.
+//! A Pfaffian constraint requires A(x,t) u = 0 (2) of the velocity u at every instant: a hand that wipes a table must
+//! not leave its plane. A system with the policy π(x) then moves with u = N(x,t) π(x), where N = I − A⁺A (3) is the
+//! orthogonal projection onto the null space of A. Constraints that push (A u = b, b ≠ 0) are not represented.
 //!
-//! - [`PfaffianConstraint`]: what a constraint is; implement it for your own.
+//! - [`PfaffianConstraint`]: the trait of all constraints; implement it for your own.
 //! - [`LinearConstraint`], [`Unconstrained`], [`Switching`]: the same A everywhere, none, and one after another in time.
-//! - [`Barrier`]: plates that stop points in space, felt only where they are near.
+//! - [`Barrier`]: plates that stop points in space, active only near them.
 //! - [`PointConstraint`]: a hand in a plane or on a line, by the Jacobian of its position.
 //! - [`NullSpaceProjector`]: N, applied without being formed.
 //!

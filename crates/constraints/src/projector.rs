@@ -42,7 +42,7 @@ impl NullSpaceProjector {
         Ok(NullSpaceProjector { row_space: orthonormal(unit_rows(matrix, tolerance), tolerance) })
     }
 
-    /// N = I: nothing is constrained.
+    /// N = I, for no constraint.
     pub fn identity(dim: usize) -> Self {
         NullSpaceProjector { row_space: DMatrix::zeros(dim, 0) }
     }
@@ -116,7 +116,7 @@ fn orthonormal(mut vectors: DMatrix<f64>, tolerance: f64) -> DMatrix<f64> {
         vectors.swap_columns(rank, farthest);
         let (basis, mut rest) = vectors.columns_range_pair_mut(..rank, rank..);
         let (mut direction, mut rest) = rest.columns_range_pair_mut(0, 1..);
-        // What is left of a nearly dependent row is mostly rounding in the basis' directions: a second pass removes it.
+        // The remainder of a nearly dependent row is mostly rounding in the basis' directions: a second pass removes it.
         direction.normalize_mut();
         remove(basis.as_view(), direction.as_view_mut());
         direction.normalize_mut();

@@ -198,7 +198,7 @@ proptest! {
             let step = recording.observed.state(sample) - recording.observed.state(sample - 1);
             let by_displacement = -step.norm_squared() / case.roll_out.time_step;
             let change = phi[sample] - phi[sample - 1];
-            // by_displacement = change / (1 − w δt), under any constraint.
+            // by_displacement = change / (1 − w δt), for any projector N.
             prop_assert!((by_displacement * (1.0 - case.contraction()) - change).abs() <= rounding);
             prop_assert!(change <= rounding, "the potential rose");
         }

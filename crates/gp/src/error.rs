@@ -77,7 +77,7 @@ pub enum GpError {
         /// The smoother's own words.
         reason: String,
     },
-    /// What was stored is not a model.
+    /// The stored data are not a model.
     #[error("the stored model cannot be used: {reason}")]
     Stored {
         /// What is wrong with it.

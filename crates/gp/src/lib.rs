@@ -1,20 +1,66 @@
-//! Gaussian processes that learn policies and say how sure they are.
+//! Gaussian processes that learn a policy from demonstrations, with error bars and a report on how far to trust it.
 //!
-//! | | |
+//! | item | what it does |
 //! |---|---|
-//! | [`SlopeGp`] | a potential seen only through slopes along the observed motion: right under hidden constraints that vary |
-//! | [`DirectGp`] | velocities: right where nothing was constrained |
-//! | [`ReadingLearner`] | both, and which of them the data support |
-//! | [`FrontEnd`] | how recordings become [`Rows`] of states and velocities |
-//! | [`TrustReport`] | how far a [`SlopeFit`] can be trusted |
+//! | [`SlopeGp`] | learns a potential from slopes along the observed motion: for unknown constraints that vary |
+//! | [`DirectGp`] | learns the velocities: for unconstrained motion |
+//! | [`ReadingLearner`] | fits both and hands out the one that the data support |
+//! | [`FrontEnd`] | turns demonstrations into [`Rows`] of states and velocities |
+//! | [`TrustReport`] | warnings and numbers about a [`SlopeFit`] |
 //!
-//! A fit reads as: keep rows that move ([`Rows`]); weigh their noise; for every [`Family`] choose amplitudes by evidence
-//! and noise by prediction of trajectories left out, in closed form; keep the family that predicts best; see whether
-//! there is a potential at all; report. Equations are cited as "(Sn)", the slope GP's, and "(Rn)", those of the direct GP
-//! and of the choice between the two.
+//! ```
+//! use gp::{FrontEnd, Reading, ReadingLearner};
+//! use motion::{Demonstrations, Policy as _, Trajectory};
+//! use nalgebra::{DMatrix, dvector};
+//! use rand::SeedableRng as _;
+//!
+//! // The policy π(x) = −x, demonstrated along twelve rails: only its component along each rail is observed.
+//! let movements = (0..12).map(|k| {
+//!     let (angle, along) = (0.55 * f64::from(k), 0.9 * f64::from(k));
+//!     let (start, rail) = (dvector![angle.cos(), angle.sin()] * 1.5, dvector![along.cos(), along.sin()]);
+//!     let (fixed, sliding) = (&start - &rail * rail.dot(&start), &rail * rail.dot(&start));
+//!     let left = |sample: usize| (-0.1 * sample as f64).exp();
+//!     let states = DMatrix::from_fn(2, 20, |axis, sample| fixed[axis] + left(sample) * sliding[axis]);
+//!     let velocities = DMatrix::from_fn(2, 20, |axis, sample| -left(sample) * sliding[axis]);
+//!     Trajectory::new(states, 0.1)?.with_velocities(velocities)
+//! });
+//! let demonstrations = Demonstrations::new(movements.collect::<Result<_, _>>()?)?;
+//!
+//! let learner = ReadingLearner { front_end: FrontEnd::Velocities, ..ReadingLearner::default() };
+//! let rows = learner.front_end.rows(&demonstrations)?;
+//! let learnt = learner.fit(&rows, &mut rand::rngs::StdRng::seed_from_u64(1))?;
+//!
+//! assert_eq!(learnt.reading(), Reading::Constrained); // so that the slope GP's policy is handed out
+//! let x = dvector![0.3, -0.4];
+//! assert!((learnt.action(x.as_view()) + &x).norm() < 1e-4);
+//! assert!(learnt.slope().uncertainty(x.as_view()).trace() < 1e-4); // cov π(x)
+//! assert!(learnt.slope().report().warnings().is_empty());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Equations
+//!
+//! Comments cite (S1)–(S17) and (R1)–(R9). [`equations`] defines them and lists the steps of the search; it is
+//! `docs/slope-gp.md` of the repository. `docs/which-learner.md` compares the learners, `docs/decisions/gp.md` gives
+//! the reasons.
+//!
+//! # When it fails
+//!
+//! - **The same constraint in every demonstration** makes the velocity a function of the state, like an unconstrained
+//!   policy. The data cannot tell the two apart: [`Reading::Ambiguous`], and [`TrustReport::least_seen`] names the
+//!   direction that never moved.
+//! - **Constraints that push** (A u = b, b ≠ 0), move, or project obliquely: the slope GP assumes an orthogonal
+//!   projection onto the null space.
+//! - **Motion that depends on more than the state** (time, load, a moving target) is [`Reading::Unexplained`].
+//! - **Corridors**: where all movements follow one narrow path, nothing tests the policy across it.
+//! - **Kinks in many dimensions** are learnt slowly; the held-out R² is then low and [`TrustReport::warnings`] says so.
+//! - **More than 1,500 rows** are thinned, since time grows with their cube ([`SlopeGp::max_rows`]).
+//! - [`GpError`]: no motion, fewer than three usable trajectories, or too few rows.
 
 mod dimension;
 mod direct;
+#[cfg(doc)]
+pub mod equations;
 mod error;
 mod evidence;
 mod kernel;

@@ -8,7 +8,7 @@ use crate::{
 /// Largest coordinate of a configuration that can be placed: positions and their squares stay finite.
 pub(crate) const FARTHEST: f64 = 1e100;
 
-/// Why a robot cannot be built, or a question about it cannot be answered.
+/// Why a robot cannot be built or evaluated.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum KinematicsError {
@@ -30,10 +30,10 @@ pub enum KinematicsError {
         /// The rule.
         problem: UrdfProblem,
     },
-    /// No link has this name. Frames are links: give a tool or a palm a link of its own with a fixed joint.
+    /// No link has this name. Frames are links: add a link with a fixed joint for a tool or a palm.
     #[error("the robot has no link \"{name}\"{}", proposal(near))]
     UnknownLink {
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// Link names like it, nearest first.
         near: Vec<String>,
@@ -41,7 +41,7 @@ pub enum KinematicsError {
     /// No active joint has this name.
     #[error("the robot has no active joint \"{name}\"{}; fixed and mimic joints have no coordinate", proposal(near))]
     UnknownJoint {
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// Names of active joints like it, nearest first.
         near: Vec<String>,
@@ -82,7 +82,7 @@ pub enum KinematicsError {
         /// The number of active joints.
         expected: usize,
     },
-    /// Collision geometry was asked for, and the resolver does not have these meshes.
+    /// Collision geometry was requested, and the resolver does not have these meshes.
     #[error(
         "{} mesh(es) are missing: {}; resolve them, or leave them out on purpose",
         meshes.len(),

@@ -2,7 +2,7 @@
 const PROPOSALS: usize = 3;
 
 /// Length in bytes up to which names are compared. Comparing takes as many steps as the product of two lengths, and
-/// nobody mistypes one letter of a name this long.
+/// a single mistyped letter is unlikely in a name this long.
 const LONGEST_NAME: usize = 64;
 
 /// The names nearest to `wanted` by edit distance, nearest first, ties in the order given; case does not count.

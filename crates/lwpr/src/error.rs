@@ -1,6 +1,6 @@
 use thiserror::Error;
 
-/// Which numbers of a call an error speaks of.
+/// The argument of a call that an error is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
     /// The inputs x.
@@ -18,16 +18,16 @@ impl std::fmt::Display for Side {
     }
 }
 
-/// Why a model cannot be built, trained, asked or read back. All numbers count from 0.
+/// Why a model cannot be built, trained, evaluated or read back. All numbers count from 0.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum LwprError {
     /// A model needs at least one input and one output.
     #[error("a model of {n_in} input(s) and {n_out} output(s): at least one of each is needed")]
     NoDimension {
-        /// Number of inputs asked for.
+        /// Requested number of inputs.
         n_in: usize,
-        /// Number of outputs asked for.
+        /// Requested number of outputs.
         n_out: usize,
     },
     /// A model has more inputs or outputs than fit.
@@ -37,7 +37,7 @@ pub enum LwprError {
     TooManyDimensions {
         /// Inputs or outputs.
         side: Side,
-        /// How many were asked for.
+        /// Requested number.
         found: usize,
         /// The limit.
         most: usize,

@@ -1,11 +1,11 @@
-//! Locally weighted projection regression (LWPR): learns a smooth function from samples as they come.
+//! Locally weighted projection regression (LWPR): learns a smooth function online, one sample at a time.
 //!
-//! A model is a set of *receptive fields*, each a Gaussian bump somewhere in the input space with a small linear model of
-//! its own. A prediction is the mean of the local models, weighted by how strongly the input activates their fields. A
-//! sample that activates no field makes a new one; all others learn from it by incremental least squares along a few
-//! projections of the input, and shrink or stretch their bumps by gradient descent on a leave-one-out error. Nothing is
-//! stored but the fields, so that time and memory do not grow with the number of samples. The algorithm is Vijayakumar,
-//! D'Souza and Schaal, "Incremental online learning in high dimensions", Neural Computation 17 (2005).
+//! A model is a set of *receptive fields*: Gaussian kernels in the input space, each with a local linear model. A
+//! prediction is the mean of the local models, weighted by the activations of their fields. A sample that activates no
+//! field creates a new one; all others learn from it by incremental least squares along a few projections of the input,
+//! and adapt their distance metrics by gradient descent on a leave-one-out error. The model stores the fields and no
+//! samples. The algorithm is Vijayakumar, D'Souza and Schaal, "Incremental online learning in high dimensions", Neural
+//! Computation 17 (2005).
 //!
 //! ```
 //! use lwpr::LwprParams;
@@ -29,18 +29,30 @@
 //! # What to choose
 //!
 //! - `norm_in`, `norm_out`: the spread of each dimension. All other numbers speak of data divided by these.
-//! - `init_d`: the one that matters most. Fields are about 2/√`init_d` wide; start with a few tens in 2 dimensions, less in
-//!   more, double it while a validation error falls. Too small, and one field covers everything; too large, and fields
-//!   multiply until each knows only a few samples.
-//! - [`Metric::Diagonal`] is right nearly always. [`Metric::Full`] turns fields along valleys, at O(n³) a sample and field.
-//! - [`MetricAdaptation::Gradient`] adapts the fields' shapes; [`Meta`](MetricAdaptation::Meta) also their learning rates,
-//!   which then may start low (`init_alpha` of a few); [`Fixed`](MetricAdaptation::Fixed) suits data that are dense and even.
+//! - `init_d`: the one that matters most. Fields are about 2/√`init_d` wide; start with a few tens in 2 dimensions,
+//!   less in more, double it while a validation error falls. Too small, and one field covers everything; too large, and
+//!   fields multiply until each knows only a few samples.
+//! - [`Metric::Diagonal`] is right nearly always. [`Metric::Full`] turns fields along valleys, at O(n³) a sample and
+//!   field.
+//! - [`MetricAdaptation::Gradient`] adapts the fields' shapes; [`Meta`](MetricAdaptation::Meta) also their learning
+//!   rates, which then may start low (`init_alpha` of a few); [`Fixed`](MetricAdaptation::Fixed) suits data that are
+//!   dense and even.
 //! - Samples in random order learn better than along trajectories: [`Lwpr::fit_batch`] shuffles every pass.
 //!
-//! Between updates the model itself can be asked ([`Lwpr::predict_into`], [`Lwpr::value_and_gradient_into`]), which saves the
-//! snapshot. Outputs whose mean and size are not known beforehand are learnt by [`Training::fit`].
+//! Between updates the model itself can be asked ([`Lwpr::predict_into`], [`Lwpr::value_and_gradient_into`]), which
+//! saves the snapshot. Outputs whose mean and size are not known beforehand are learnt by [`Training::fit`].
 //!
 //! A batch gives the same model as its samples one by one, bit for bit, at any number of threads, faster.
+//!
+//! # When it fails
+//!
+//! - **Time and memory grow with the number of fields.** In few dimensions it settles, and a sample costs the same
+//!   among 10⁶ as among 10³. In many dimensions with noise fields multiply: with 22 inputs the total time grows as
+//!   n^2.1 beyond 10⁴ samples (`docs/performance.md`). A smaller `init_d` or `w_gen`, or `max_receptive_fields`, limits
+//!   them.
+//! - **Outside all fields** there is no prediction: [`Predictor::predict`] returns none below its cutoff.
+//! - **Gradients** are those of a weighted mean of local lines, less accurate than values where fields are few.
+//! - [`LwprError`]: parameters out of range, wrong dimensions, or numbers that are not finite.
 
 // Code under `pulp::Arch::dispatch` is compiled for the processor at hand only where it is inlined.
 #![allow(clippy::inline_always)]

@@ -1,6 +1,6 @@
 use thiserror::Error;
 
-/// Which of the series handed in a value belongs to.
+/// The input that a value belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Series {
     /// The true policy or potential.
@@ -28,7 +28,7 @@ impl std::fmt::Display for Series {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MetricsError {
-    /// There is nothing to judge.
+    /// There are no samples.
     #[error("there is no sample ({rows} rows, {columns} columns); give at least one")]
     Empty {
         /// Dimensions given.

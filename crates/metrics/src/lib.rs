@@ -1,11 +1,11 @@
-//! How far a learnt policy or potential is from the true one, (A1)–(A4), and how to sum up many such errors.
+//! Errors of learnt policies and potentials against the truth, (A1)–(A4), and their summary over data sets.
 //!
-//! All four are mean squared errors divided by the variance of the truth, so that 0 is perfect and 1 is as bad as the
-//! best constant. Samples are columns: a policy at N test states is an (n, N) matrix, a potential a vector (N).
+//! All four are mean squared errors divided by the variance of the truth: 0 is perfect, 1 is as good as the best
+//! constant. Samples are columns: a policy at N test states is an (n, N) matrix, a potential a vector (N).
 //!
-//! - [`nupe`]: how wrong the policy is where nothing constrains it (A1).
-//! - [`ncpe`]: how wrong it is as far as given constraints let it show (A2).
-//! - [`potential_nmse`], [`alignment_nmse`]: how wrong a potential is, up to a constant (A3), (A4).
+//! - [`nupe`]: error of the unconstrained policy (A1).
+//! - [`ncpe`]: error of the policy projected through given constraints (A2).
+//! - [`potential_nmse`], [`alignment_nmse`]: errors of a potential, up to a constant (A3), (A4).
 //! - [`Summary`]: mean, standard deviation and median over data sets.
 //!
 //! ```

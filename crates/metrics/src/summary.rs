@@ -1,7 +1,7 @@
 use crate::spread::representable;
 use crate::{MetricsError, Series};
 
-/// What many repetitions of one experiment came to.
+/// Summary of the errors of repeated experiments.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Summary {
     /// Number of values.

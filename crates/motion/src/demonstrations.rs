@@ -4,7 +4,7 @@ use crate::{MotionError, Trajectory};
 
 /// K observed movements of one system, all with the same state dimension; lengths may differ.
 ///
-/// Nothing here says which constraint held: a learner that is given `Demonstrations` cannot know it.
+/// They hold no constraint, so that a learner given `Demonstrations` cannot know it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Demonstrations {
     trajectories: Vec<Trajectory>,
@@ -25,7 +25,7 @@ impl Demonstrations {
         }
     }
 
-    /// Movements of which only the states are known: each matrix (n, N_k), one column a sample, all `time_step`
+    /// Movements without recorded velocities: each matrix (n, N_k), one column a sample, all `time_step`
     /// seconds apart.
     ///
     /// # Errors

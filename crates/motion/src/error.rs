@@ -36,7 +36,7 @@ pub enum MotionError {
         /// The value itself.
         value: f64,
     },
-    /// A trajectory has fewer than two samples, so nothing moved.
+    /// A trajectory has fewer than two samples.
     #[error("the trajectory has {samples} sample(s), at least 2 are needed to see a movement; leave it out")]
     TooShort {
         /// How many samples there are.
@@ -83,7 +83,7 @@ pub enum MotionError {
     /// No trajectory was given.
     #[error("there is no trajectory; give at least one")]
     Empty,
-    /// Two trajectories live in spaces of different dimension.
+    /// Two trajectories differ in dimension.
     #[error(
         "trajectory {trajectory} has {found} dimensions, trajectory 0 has {expected}; all must share one state space"
     )]

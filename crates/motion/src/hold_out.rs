@@ -1,4 +1,4 @@
-//! Samples that a learner does not see, so that it can be tested on them.
+//! Held-out samples for testing a learner.
 
 use rand::Rng;
 
@@ -40,7 +40,7 @@ impl Demonstrations {
 
     /// Every sample of a random share `fraction` of all trajectories, ascending: rounded down, at least one trajectory.
     ///
-    /// Samples of one movement resemble each other; only whole movements held out show how well others are predicted.
+    /// Samples of one movement resemble each other; only whole held-out movements show how well a learner generalises.
     ///
     /// # Errors
     /// [`MotionError::Fraction`] if the share is not more than 0 and less than 1.

@@ -25,31 +25,31 @@ pub trait Learner: Debug + Send + Sync {
     ) -> Result<Box<dyn LearntPolicy>, LearnError>;
 }
 
-/// A policy that was learnt, with what its learner knows about it.
+/// A learnt policy, with its potential, support, uncertainty and warnings.
 pub trait LearntPolicy: Policy + Debug {
     /// The potential that the policy descends; none if the learner assumes none.
     fn potential(&self) -> Option<&dyn Potential> {
         None
     }
 
-    /// How much the demonstrations say about a state, (n): 1 in their midst, 0 where the action is a mere default.
+    /// How well the demonstrations support a state, (n): 1 amid them, 0 where the action is a mere default.
     ///
     /// Each learner has its own measure: LWPR the largest activation of a receptive field that takes part, a Gaussian
     /// process 1 − posterior / prior variance.
     fn support(&self, state: DVectorView<'_, f64>) -> f64;
 
     /// Writes the standard deviation of every component of the action, (n), into `deviation`, in units of the state per
-    /// second, and returns true; returns false and writes nothing if the learner does not know it.
+    /// second, and returns true; returns false and writes nothing if the learner has no estimate.
     fn action_sd_into(&self, _state: DVectorView<'_, f64>, _deviation: DVectorViewMut<'_, f64>) -> bool {
         false
     }
 
-    /// The trajectories that were learnt from, ascending; none if all were.
+    /// The trajectories used for learning, ascending; none if all were.
     fn kept(&self) -> Option<&[usize]> {
         None
     }
 
-    /// What gives reason to doubt the policy, one sentence each.
+    /// Warnings about the policy, one sentence each.
     fn warnings(&self) -> Vec<String> {
         Vec::new()
     }

@@ -1,5 +1,5 @@
-//! The vocabulary that the other crates share: what was observed ([`Trajectory`], [`Demonstrations`]), what is
-//! sought ([`Policy`], [`Potential`]), and who seeks it ([`Learner`], which returns a [`LearntPolicy`]).
+//! The types that the other crates share: observations ([`Trajectory`], [`Demonstrations`]), the functions to learn
+//! ([`Policy`], [`Potential`]), and the interface of all learners ([`Learner`], which returns a [`LearntPolicy`]).
 //!
 //! Samples are **columns**: a movement of `N` samples of an `n`-dimensional state is an (n, N) matrix, so that a state
 //! is a contiguous view. Times are seconds; a state has whatever unit its dimensions have (radians, metres).
@@ -13,6 +13,55 @@
 //! let demonstrations = Demonstrations::from_states([falling, rising], 0.02)?;
 //! assert_eq!(demonstrations.dim(), 2);
 //! # Ok::<(), motion::MotionError>(())
+//! ```
+//!
+//! A learner of your own returns a policy with the support that the demonstrations give it:
+//!
+//! ```
+//! use motion::{Demonstrations, LearnError, Learner, LearntPolicy, Policy, SampleIndex};
+//! use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut};
+//! use rand::{Rng, SeedableRng as _};
+//!
+//! /// Learns the mean velocity.
+//! #[derive(Debug)]
+//! struct MeanVelocity;
+//!
+//! #[derive(Debug)]
+//! struct Constant(DVector<f64>);
+//!
+//! impl Learner for MeanVelocity {
+//!     fn learn(
+//!         &self,
+//!         demonstrations: &Demonstrations,
+//!         _held_out: &[SampleIndex],
+//!         _rng: &mut dyn Rng,
+//!     ) -> Result<Box<dyn LearntPolicy>, LearnError> {
+//!         let means = demonstrations.trajectories().iter().map(|movement| movement.step_velocities().column_mean());
+//!         Ok(Box::new(Constant(means.sum::<DVector<f64>>() / demonstrations.n_trajectories() as f64)))
+//!     }
+//! }
+//!
+//! impl Policy for Constant {
+//!     fn dim(&self) -> usize {
+//!         self.0.len()
+//!     }
+//!
+//!     fn action_into(&self, _state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
+//!         action.copy_from(&self.0);
+//!     }
+//! }
+//!
+//! impl LearntPolicy for Constant {
+//!     fn support(&self, _state: DVectorView<'_, f64>) -> f64 {
+//!         1.0
+//!     }
+//! }
+//!
+//! let steady = DMatrix::from_fn(2, 5, |axis, i| (axis as f64 + 1.0) * i as f64);
+//! let demonstrations = Demonstrations::from_states([steady], 0.5)?;
+//! let learnt = MeanVelocity.learn(&demonstrations, &[], &mut rand::rngs::StdRng::seed_from_u64(1))?;
+//! assert_eq!(learnt.action(DVector::zeros(2).as_view()), DVector::from_vec(vec![2.0, 4.0]));
+//! # Ok::<(), motion::LearnError>(())
 //! ```
 
 mod demonstrations;

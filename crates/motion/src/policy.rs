@@ -1,6 +1,6 @@
 use nalgebra::{DVector, DVectorView, DVectorViewMut};
 
-/// An autonomous movement policy u = π(x) (1): the velocity that is wanted at a state.
+/// An autonomous movement policy u = π(x) (1): the desired velocity at a state.
 ///
 /// Where a method takes a vector of another length than [`Policy::dim`], it panics.
 pub trait Policy: Send + Sync {

@@ -1,6 +1,6 @@
 use crate::SampleIndex;
 
-/// Some samples, to be asked for one after the other; O(log size) each.
+/// A set of samples; a look-up costs O(log size).
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct SampleSet {
     /// Ascending.

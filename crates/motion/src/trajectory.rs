@@ -16,7 +16,7 @@ pub struct Trajectory {
 }
 
 impl Trajectory {
-    /// A movement of which only the states are known: `states` (n, N), one column a sample, `time_step` seconds
+    /// A movement without recorded velocities: `states` (n, N), one column a sample, `time_step` seconds
     /// apart.
     ///
     /// # Errors

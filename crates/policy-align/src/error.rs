@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FitError {
-    /// Somebody asked to stop.
+    /// The caller cancelled the fit.
     #[error("stopped as asked; nothing was learnt")]
     Cancelled,
     /// An option lies outside its range.

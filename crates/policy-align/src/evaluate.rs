@@ -7,19 +7,19 @@ use serde::{Deserialize, Serialize};
 use crate::fit::{held_out, rows};
 use crate::{FitError, Prepared};
 
-/// A policy held against movements that it was not learnt from.
+/// Errors of a policy on movements that it was not learnt from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Evaluation {
     /// Σ (uᵀπ̂/r − r)² / Σ r², r = ‖u‖: 0 explains every movement, 1 is as good as standing still.
     pub slope_error: f64,
-    /// The same over Σ ‖π̂‖²: what matters where constraints hardly let the policy move.
+    /// The same over Σ ‖π̂‖², which is meaningful where constraints block most of the policy.
     pub policy_error: f64,
     /// [`Evaluation::slope_error`] of each movement, (K); none where it does not move.
     pub episodes: Vec<Option<f64>>,
     /// uᵀπ̂/r − r of every sample that moves, in units of the scaled state per second.
     pub residuals: Vec<f64>,
-    /// Share of samples that the policy knows something of.
+    /// Share of samples within the policy's support.
     pub supported: f64,
     /// Error of the unconstrained policy; none without truth.
     pub nupe: Option<f64>,
@@ -32,7 +32,7 @@ pub struct Evaluation {
 pub struct Truth {
     /// π at each sample, (n, M), times the channels' scales.
     pub actions: DMatrix<f64>,
-    /// Projectors N at each sample, each (n, n), (M); none if nobody knows.
+    /// Projectors N at each sample, each (n, n), (M); none if unknown.
     pub projectors: Option<Vec<DMatrix<f64>>>,
 }
 
@@ -107,11 +107,11 @@ fn against(
     Ok((Some(unconstrained), constrained))
 }
 
-/// Why a policy cannot be held against movements.
+/// Why a policy cannot be evaluated on movements.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EvaluateError {
-    /// They are of different spaces.
+    /// Policy and movements differ in dimension.
     #[error("the policy has {policy} dimensions, the movements {movements}; give it the channels it was learnt from")]
     Dimension {
         /// Of the policy.
@@ -133,7 +133,7 @@ pub enum EvaluateError {
         /// Labels.
         found: usize,
     },
-    /// What is left teaches nothing.
+    /// The remaining movements are too few to learn from.
     #[error(transparent)]
     Fit(#[from] FitError),
     /// The movements cannot be cleaned.

@@ -3,11 +3,11 @@ use gp::{BothReadings, DirectFit, SlopeFit};
 use motion::LearntPolicy;
 use serde::{Deserialize, Serialize};
 
-/// A learnt policy as it is stored, by its learner.
+/// A learnt policy in its stored form, by its learner.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Learnt {
-    /// Slope GP and direct GP, and which of them the data support.
+    /// Slope GP and direct GP, and the choice between them.
     Auto(Box<BothReadings>),
     /// Aligned potentials and LWPR.
     PolicyAlign(Box<PotentialPolicy>),

@@ -1,4 +1,4 @@
-//! Does a policy learnt under some constraints hold under another?
+//! Cross-validation over constraints: does a policy learnt under some hold under another?
 
 use std::collections::BTreeSet;
 
@@ -15,15 +15,15 @@ pub struct ConstraintLeftOut {
     pub constraint: String,
     /// Movements learnt from.
     pub learnt_from: usize,
-    /// What came of the others.
+    /// Evaluation of the policy learnt under the others.
     pub evaluation: Evaluation,
 }
 
-/// Learns without each constraint in turn, and judges on it; movements without a label are always learnt from. The same
+/// Learns without each constraint in turn and evaluates on it; movements without a label are always learnt from. The same
 /// seed gives the same bits.
 ///
 /// # Errors
-/// [`EvaluateError::Constraints`] if there are fewer than two labels, [`EvaluateError::Fit`] if what is left is too
+/// [`EvaluateError::Constraints`] if there are fewer than two labels, [`EvaluateError::Fit`] if the remainder is too
 /// little to learn from, and those of [`evaluate`].
 pub fn leave_constraints_out(
     prepared: &Prepared,

@@ -1,11 +1,66 @@
-//! From a laboratory's recordings to a policy that one can trust, or to the reason why not.
+//! Learns a policy from recorded movements under unknown constraints, and reports how far it can be trusted. Library
+//! and program.
 //!
-//! [`prepare()`] makes demonstrations of [`demo_io::Recordings`]; [`fit`] learns from them and says how far to trust what
-//! came of it; [`evaluate`] holds a policy against other recordings. Every decision that is taken for the user is a
-//! [`Decision`], every doubt a [`Finding`].
+//! ```
+//! use std::sync::atomic::AtomicBool;
 //!
-//! A [`Model`] is what is kept: [`Model::save`], [`Model::load`], and [`Model::policy`] in the units of the recording.
-//! [`RollOut`] follows it under constraints, [`CSource`] and [`to_onnx`] make a program of it that needs nothing else.
+//! use motion::Policy as _;
+//! use nalgebra::dvector;
+//! use policy_align::{FitOptions, MadeBy, PrepareOptions, Progress, Verdict, fit, prepare};
+//!
+//! // 40 movements of a point that slides down a bowl along rails, π(x) = −2x.
+//! let file = std::path::Path::new("../../docs/examples/toy.csv");
+//! let recordings = demo_io::read(file, &demo_io::ReadOptions::default(), &mut |_bytes| ())?;
+//! let prepared = prepare(&recordings, &PrepareOptions::default())?;
+//!
+//! let options = FitOptions { max_rows: 150, ..FitOptions::default() };
+//! let mut progress = Progress { cancelled: &AtomicBool::new(false), report: &mut |_step| () };
+//! let fit = fit(&prepared, &options, &mut progress)?;
+//! assert_eq!(fit.trust.verdict, Verdict::Good);
+//! assert!(fit.trust.numbers.held_out_error < 1e-3);
+//!
+//! let made_by = MadeBy { program: "example".to_owned(), time: "2026-01-01T00:00:00Z".to_owned() };
+//! let model = fit.into_model(made_by, vec![]);
+//! let action = model.policy().action(dvector![0.3, 1.2].as_view());
+//! assert!((action - dvector![-0.6, -2.4]).norm() < 0.01);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! | step | item |
+//! |---|---|
+//! | prepare recordings | [`prepare()`]: each automatic choice is a [`Decision`] |
+//! | learn | [`fit()`]: a [`Fit`] with its [`Trust`], every doubt a [`Finding`] |
+//! | store | [`Model`]: [`Model::save`], [`Model::load`], [`Model::policy`] in the units of the recording |
+//! | use | [`RollOut`] under constraints; [`CSource`] and [`to_onnx`] export a policy without dependencies |
+//! | evaluate | [`evaluate()`] on other recordings, [`leave_constraints_out`] across constraints |
+//!
+//! Guides in `docs`: `your-own-data.md` (the program step by step), `which-learner.md`, `model-file.md`, `slope-gp.md`
+//! (equations). `docs/your-own-data-cases.md` lists the verdict on some ninety kinds of recordings.
+//!
+//! # Exit codes of the program
+//!
+//! | code | meaning |
+//! |---|---|
+//! | 0 | success |
+//! | 1 | the data or the result is refused: verdict "do not use", `--require` not met, nothing to learn from |
+//! | 2 | usage: an unknown flag, a value out of range, a column that does not exist, an invalid constraint file |
+//! | 3 | a file cannot be read or written, or is damaged |
+//! | 4 | a bug in the program |
+//! | 130 | interrupted by Ctrl-C |
+//!
+//! Errors have three lines on standard error: what is wrong, where, and what to try.
+//!
+//! # When it fails
+//!
+//! - **The same constraint in every recording** hides part of the policy; no learner can recover it. The verdict is
+//!   then doubtful.
+//! - **Constraints that push** (A u = b with b ≠ 0), move or project obliquely violate the assumption of an orthogonal
+//!   projection.
+//! - **Motion that depends on more than the recorded state** (time, load, a moving target): "do not use".
+//! - **Mixed units**: constraints act at right angles in some unit. [`PrepareOptions::scale`] chooses it.
+//! - **Outside the demonstrated region** a policy extrapolates: [`ModelPolicy::is_supported`] is false there.
+//! - [`PrepareError`], [`FitError`], [`ModelError`], [`RollOutError`] and [`ExportError`] say what was refused and what
+//!   to do.
 
 mod error;
 mod evaluate;

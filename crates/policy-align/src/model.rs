@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Decision, Learnt, LeftOutEpisode, StateChannel, Trust, sha256_of_file};
 
-/// What was learnt, from what, how, and how far to trust it: all that a model file holds.
+/// The contents of a model file: the policy, its training data, all decisions and the verdict.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Model {
@@ -15,9 +15,9 @@ pub struct Model {
     pub state: Vec<StateChannel>,
     /// Seconds; the median over trajectories.
     pub time_step: f64,
-    /// What was learnt from.
+    /// The training data.
     pub data: DataSummary,
-    /// What was decided for the user, in the order of deciding.
+    /// All automatic decisions, in order.
     pub decisions: Vec<Decision>,
     /// Seed of every random choice.
     pub seed: u64,
@@ -37,7 +37,7 @@ pub struct MadeBy {
     pub time: String,
 }
 
-/// What a model was learnt from.
+/// Summary of a model's training data.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DataSummary {
@@ -68,7 +68,7 @@ impl Model {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FileSummary {
-    /// Without folders: a model tells nothing of the machine it was made on.
+    /// Without folders, so that a model reveals nothing of its machine.
     pub name: String,
     /// Of its bytes, hexadecimal.
     pub sha256: String,

@@ -7,8 +7,8 @@ use crate::{Learnt, Model, StateChannel};
 
 /// Share of the prior variance of a Gaussian process that the demonstrations must have taken away where it is used.
 const LEAST_KNOWN: f64 = 0.5;
-/// Share of its range by which a channel may lie beyond what was shown. A Gaussian process with a trend trusts the trend
-/// as far as anybody asks; what a robot does there, nobody has seen.
+/// Share of its range by which a channel may lie beyond what was shown. A Gaussian process with a trend
+/// extrapolates the trend without limit, although nothing was demonstrated there.
 const BEYOND: f64 = 0.25;
 
 /// A model's policy in the units of the recording: π(x) = S⁻¹ π'(S x), where S multiplies every channel by its
@@ -50,7 +50,7 @@ impl Model {
 }
 
 impl Model {
-    /// Range of every channel that counts as known: what was shown, a quarter wider on either side, (n).
+    /// Range of every channel that counts as known: the demonstrated range, a quarter wider on either side, (n).
     pub fn bounds(&self) -> Vec<[f64; 2]> {
         let bound = |channel: &StateChannel| {
             let beyond = BEYOND * (channel.high - channel.low);
@@ -61,14 +61,14 @@ impl Model {
 }
 
 impl ModelPolicy<'_> {
-    /// Whether the demonstrations say enough about a state (n) to act on it: an LWPR policy has a receptive field
+    /// Whether the demonstrations support acting at a state (n): an LWPR policy has a receptive field
     /// there, a Gaussian process has lost half of its prior variance; and no channel is beyond [`Model::bounds`].
     pub fn is_supported(&self, state: DVectorView<'_, f64>) -> bool {
         let within = self.bounds.iter().zip(&state).all(|([low, high], x)| (low..=high).contains(&x));
         within && self.support(state) >= self.least_support
     }
 
-    /// The support from which on a state counts as known.
+    /// The smallest support of a known state.
     pub fn least_support(&self) -> f64 {
         self.least_support
     }

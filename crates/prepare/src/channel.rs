@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 pub struct StateChannel {
     /// As in the recording.
     pub name: String,
-    /// If the recording or the user said.
+    /// If the recording or the user names it.
     pub unit: Option<String>,
-    /// The learner saw the state times this.
+    /// Factor on the channel before learning.
     pub scale: f64,
     /// Least value learnt from.
     pub low: f64,

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-/// Something that was decided for the user, who sees it as one line and can override it.
+/// An automatic decision, with its reason and the flag that overrides it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Decision {

@@ -4,8 +4,8 @@ use nalgebra::{DMatrix, DVector};
 /// Samples slower than this share of the median are left out: their direction is noise.
 const STILL: f64 = 0.01;
 
-/// How evenly directions are seen: n times the least eigenvalue of the mean of d dᵀ, d = u/‖u‖, 1 if all alike and 0 if
-/// one never is, and that direction, (n).
+/// Coverage of the directions of motion: n times the least eigenvalue of the mean of d dᵀ, d = u/‖u‖, 1 if all directions
+/// occur alike and 0 if one never does, and that direction, (n).
 pub fn directions(demonstrations: &Demonstrations) -> (f64, DVector<f64>) {
     let velocities: Vec<DVector<f64>> = demonstrations
         .trajectories()

@@ -8,7 +8,7 @@ pub enum PrepareError {
     /// There is nothing.
     #[error("there is no episode; give at least one")]
     Empty,
-    /// Nothing is left.
+    /// Every episode was left out.
     #[error("no episode is left: all {of} were left out ({why}); record movements")]
     NothingLeft {
         /// How many there were.
@@ -26,7 +26,7 @@ pub enum PrepareError {
         /// Samples of the longest episode.
         samples: usize,
     },
-    /// A scale for something that is not there.
+    /// A scale for an unknown channel.
     #[error("--scale names '{name}', but the state has {known}; use one of these names")]
     UnknownChannel {
         /// The name given.
@@ -34,7 +34,7 @@ pub enum PrepareError {
         /// The names there are.
         known: String,
     },
-    /// A scale that is none.
+    /// A scale that is not positive and finite.
     #[error("--scale {name}={factor}: a scale must be positive and finite")]
     Scale {
         /// The channel.
@@ -42,7 +42,7 @@ pub enum PrepareError {
         /// The factor given.
         factor: f64,
     },
-    /// A time step that is none.
+    /// A time step that is not positive and finite.
     #[error("--dt {time_step}: a time step must be a positive, finite number of seconds")]
     TimeStep {
         /// The time step given.

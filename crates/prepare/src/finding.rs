@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// Nothing was found against it.
+    /// All checks passed.
     Good,
-    /// Look before you use it.
+    /// Check the findings before using it.
     Doubtful,
-    /// It is wrong, or nothing tells whether it is right.
+    /// It is wrong, or no data test it.
     DoNotUse,
 }
 
@@ -16,10 +16,10 @@ pub enum Verdict {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Finding {
-    /// How much it weighs.
+    /// Its severity.
     pub verdict: Verdict,
-    /// What was found, in one sentence with its number.
+    /// The finding, in one sentence with its number.
     pub what: String,
-    /// What to do next.
+    /// The next step.
     pub next: String,
 }

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-/// An episode that was not learnt from.
+/// An episode that was not used.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LeftOutEpisode {

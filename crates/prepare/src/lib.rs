@@ -1,4 +1,47 @@
-//! From what a file says to what a learner can use, with a line for everything that was decided on the way.
+//! Prepares recordings for learning: time steps, units, velocities, noise and faults. Each automatic decision is
+//! recorded with its reason.
+//!
+//! ```
+//! use demo_io::{Channel, Episode, Recordings, Source};
+//! use nalgebra::DMatrix;
+//! use prepare::{PrepareOptions, Recorded, Verdict, prepare};
+//!
+//! // Twelve movements towards the origin at 20 Hz, positions in metres, velocities by mistake in millimetres per second.
+//! let episodes = (0..12).map(|k| {
+//!     let position = |axis: usize, i: usize| (f64::from(k) + axis as f64).cos() * (-0.025 * i as f64).exp();
+//!     Episode {
+//!         name: format!("take {k}"),
+//!         source: Source { file: "reach.csv".to_owned(), rows: None },
+//!         times: (0..40).map(|i| 0.05 * f64::from(i)).collect(),
+//!         positions: DMatrix::from_fn(2, 40, position),
+//!         velocities: Some(DMatrix::from_fn(2, 40, |axis, i| -500.0 * position(axis, i))),
+//!         constraint: None,
+//!     }
+//! });
+//! let state = ["x", "y"].map(|name| Channel { name: name.to_owned(), unit: Some("m".to_owned()) });
+//! let recordings = Recordings { state: state.to_vec(), episodes: episodes.collect(), notes: vec![] };
+//!
+//! let prepared = prepare(&recordings, &PrepareOptions::default())?;
+//! assert_eq!(prepared.recorded, Recorded::Velocities);
+//! let velocities = prepared.demonstrations.trajectories()[0].velocities().expect("recorded");
+//! assert!((velocities[(0, 0)] + 0.5).abs() < 0.05); // back in metres per second
+//! assert_eq!(prepared.findings[0].verdict, Verdict::Doubtful); // and reported
+//! assert!(prepared.decisions.iter().any(|decision| decision.flag == "--integration"));
+//! # Ok::<(), prepare::PrepareError>(())
+//! ```
+//!
+//! [`Prepared`] holds the demonstrations, every [`Decision`] with the flag that overrides it, and every [`Finding`]
+//! that casts doubt on the data. [`Recorded::front_end`] says how a Gaussian process should read them. The guide is
+//! `docs/your-own-data.md`; `docs/decisions/trust.md` gives the reasons.
+//!
+//! # When it fails
+//!
+//! - [`PrepareError`]: no episodes, no motion, rows and columns exchanged, or an option that does not fit the data.
+//! - **Episodes that are duplicates or stand still** are dropped and listed in [`Prepared::left_out`].
+//! - **Time stamps in the wrong unit without velocities** look like a slower policy; only the time step shows it.
+//! - **Noise of more than a few per cent in positions alone** cannot be removed without losing the velocity. Record
+//!   velocities or commands.
+//! - **Mixed units** (metres and radians): nothing chooses a metric for you. [`PrepareOptions::scale`] sets one.
 
 mod channel;
 mod decision;

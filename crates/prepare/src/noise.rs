@@ -21,15 +21,15 @@ const WHOLE: f64 = 0.01;
 /// Digits are few if a value occurs so often on average.
 const REPEATED: usize = 4;
 
-/// How noisy recordings are, by third differences.
+/// Noise of recordings, estimated from third differences.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Noise {
-    /// Standard deviation of the noise in each channel, (n), in scaled units; none with too few samples to tell.
+    /// Standard deviation of the noise in each channel, (n), in scaled units; none with too few samples for an estimate.
     pub positions: Option<Vec<f64>>,
-    /// Share of the squared steps that is noise; 0 where nobody can tell.
+    /// Share of the squared steps that is noise; 0 where it cannot be estimated.
     pub step_share: f64,
-    /// Share of the squared recorded velocities that is noise; none where there are none or nobody can tell.
+    /// Share of the squared recorded velocities that is noise; none without velocities or an estimate.
     pub velocity_share: Option<f64>,
 }
 
@@ -94,7 +94,7 @@ fn velocity_noise(demonstrations: &Demonstrations) -> Option<(f64, f64)> {
     Some((noise.deviations.norm_squared(), power / count as f64))
 }
 
-/// What learners are given where the user said how positions are smoothed.
+/// The kind of recording where the user requested a smoothing.
 pub(crate) fn as_requested(demonstrations: &Demonstrations, noise: &Noise, agreement: Agreement) -> Recorded {
     if agreement == Agreement::None {
         return Recorded::PositionsAsRequested;
@@ -106,7 +106,7 @@ pub(crate) fn as_requested(demonstrations: &Demonstrations, noise: &Noise, agree
     }
 }
 
-/// What learners are given.
+/// The kind of recording for the learners.
 pub(crate) fn decide(
     demonstrations: &Demonstrations,
     noise: &Noise,

@@ -1,51 +1,51 @@
 use std::str::FromStr;
 
-/// What a user may decide before learning; by default everything is decided from the data.
+/// Options of preparation; by default everything is decided from the data.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PrepareOptions {
-    /// Channels whose unit is multiplied: name and factor (`--scale z=10`). The learner sees the state times these.
+    /// Channels that are scaled before learning: name and factor (`--scale z=10`).
     pub scale: Vec<(String, f64)>,
-    /// Seconds between two samples, whatever the stamps say (`--dt`).
+    /// Seconds between two samples; overrides the time stamps (`--dt`).
     pub time_step: Option<f64>,
-    /// What recorded velocities are used for (`--integration`).
+    /// The use of recorded velocities (`--integration`).
     pub velocities: VelocityUse,
     /// How positions are smoothed (`--smooth`).
     pub smoothing: Smoothing,
     /// Whether episodes are cut where a single step is far too long (`--jumps`).
     pub jumps: Repair,
-    /// Whether angles that jump by a whole turn go on instead (`--wraps`).
+    /// Whether angles that jump by a whole turn are unwrapped (`--wraps`).
     pub wraps: Repair,
 }
 
-/// What recorded velocities are used for.
+/// The use of recorded velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum VelocityUse {
-    /// They are believed if they agree with the steps.
+    /// They are used if they agree with the steps.
     #[default]
     Auto,
-    /// They are believed.
+    /// They are used.
     Recorded,
     /// They are ignored.
     Ignored,
 }
 
-/// What is done with what looks like a fault.
+/// The treatment of apparent faults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Repair {
-    /// It is repaired, and said.
+    /// Repaired and reported.
     #[default]
     Auto,
-    /// It is no fault.
+    /// Kept: it is no fault.
     Keep,
 }
 
 /// How positions are smoothed before learning.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Smoothing {
-    /// As their noise asks for.
+    /// According to their noise.
     #[default]
     Auto,
-    /// Not at all: where no velocities are known, they are slopes between neighbours.
+    /// Not at all; missing velocities are slopes between neighbours.
     Off,
     /// Savitzky–Golay of degree 2 over so many samples, an odd number from 5 on.
     Samples(usize),
@@ -53,7 +53,7 @@ pub enum Smoothing {
     Seconds(f64),
 }
 
-/// "auto", "off", "9" (samples) or "0.2s"; what is none of them is said in words.
+/// "auto", "off", "9" (samples) or "0.2s"; the error of any other text is a sentence.
 impl FromStr for Smoothing {
     type Err = String;
 

@@ -7,7 +7,7 @@ use crate::noise::Noise;
 use crate::options::Smoothing;
 use crate::{Decision, Finding, LeftOutEpisode, StateChannel, Verdict};
 
-/// Demonstrations that can be learnt from, with what was decided and noticed on the way.
+/// Demonstrations ready for learning, with all decisions and findings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prepared {
     /// Movements, states and velocities times the channels' scales.
@@ -22,21 +22,21 @@ pub struct Prepared {
     pub time_step: f64,
     /// Noise of positions and velocities.
     pub noise: Noise,
-    /// What the learners are given.
+    /// How the learners should read the recordings.
     pub recorded: Recorded,
-    /// How the user wanted positions smoothed; those of the demonstrations are, unless it is automatic.
+    /// Requested smoothing, already applied to the demonstrations unless it is automatic.
     pub smoothing: Smoothing,
-    /// So many samples in a row become one before learning; 1: all stay.
+    /// Number of consecutive samples averaged to one before learning; 1: none.
     pub averaged: usize,
-    /// What was decided, in the order of deciding.
+    /// All automatic decisions, in order.
     pub decisions: Vec<Decision>,
-    /// What gives reason for doubt.
+    /// Reasons to doubt the data.
     pub findings: Vec<Finding>,
-    /// Episodes that are not learnt from.
+    /// Episodes that are not used.
     pub left_out: Vec<LeftOutEpisode>,
 }
 
-/// What was recorded, as learners use it.
+/// The kind of recording, for the learners.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Recorded {
     /// Exact positions and velocities.
@@ -52,7 +52,7 @@ pub enum Recorded {
 }
 
 impl Recorded {
-    /// How it becomes rows of a Gaussian process.
+    /// The front end that makes rows of a Gaussian process from it.
     pub fn front_end(self) -> FrontEnd {
         match self {
             Recorded::Velocities | Recorded::NoisyVelocities(_) | Recorded::PositionsAsRequested => {
@@ -64,7 +64,7 @@ impl Recorded {
     }
 }
 
-/// What is said while preparing.
+/// Decisions and findings collected while preparing.
 #[derive(Debug, Default)]
 pub(crate) struct Notes {
     pub(crate) decisions: Vec<Decision>,

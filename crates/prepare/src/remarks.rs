@@ -1,4 +1,4 @@
-//! What else can be said before learning.
+//! Further findings before learning.
 
 use motion::{Demonstrations, Trajectory};
 

@@ -1,4 +1,4 @@
-//! Positions smoothed as the user says, not as their noise asks for.
+//! Smoothing of positions as requested by the user.
 
 use motion::{Demonstrations, MotionError, Trajectory};
 use nalgebra::DMatrix;

@@ -1,4 +1,4 @@
-//! Many noisy samples become fewer exact ones.
+//! Averages many noisy samples to fewer, more exact ones.
 
 use motion::{Demonstrations, MotionError, Trajectory};
 use nalgebra::DMatrix;

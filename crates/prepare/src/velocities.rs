@@ -14,21 +14,21 @@ const AGREE: f64 = 1.25;
 const UNRELATED: f64 = 0.5;
 /// A factor is one that mistakes have if it is as near as this.
 const NEAR: f64 = 0.1;
-/// What velocities do not explain may be so many times the noise.
+/// Largest residual of the velocities, in multiples of the noise.
 const NOISE: f64 = 1.5;
 /// Parts of a movement that are compared.
 const PARTS: usize = 4;
 /// Velocities that are differences of positions up to this share are made of them.
 const SAME: f64 = 1e-6;
 
-/// What recorded velocities are.
+/// The kind of recorded velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Agreement {
-    /// There are none, or they are of no use.
+    /// There are none, or they are unusable.
     None,
-    /// Differences of the positions: they know nothing that positions do not.
+    /// Differences of the positions, without further information.
     Differences,
-    /// Of their own, and in agreement with the steps.
+    /// Measured independently, and consistent with the steps.
     Own,
 }
 
@@ -89,7 +89,7 @@ pub(crate) fn decide(
     Agreement::Own
 }
 
-/// Of a part of a movement: its step D, and S = Σ u δt, which its velocities say; both (n).
+/// Of a part of a movement: its step D, and S = Σ u δt, the step by its velocities; both (n).
 type Part = (DVector<f64>, DVector<f64>);
 
 /// Steps as multiples of what velocities say, over parts of movements: Σ D S / Σ S² in each channel, S = Σ u δt.

@@ -13,7 +13,7 @@ const LEAST_LOG_PROBABILITY: f64 = -9.0;
 /// Windows of one degree with less weight take no part.
 const LEAST_WEIGHT: f64 = 1e-5;
 
-/// What the windows say of a movement, in scaled axes about its mean.
+/// Estimates of a movement, averaged over windows, in scaled axes about its mean.
 #[derive(Debug)]
 pub(crate) struct Averages {
     /// x̂ and û, (d, N).
@@ -103,7 +103,7 @@ impl Sum {
         }
     }
 
-    /// Adds what a fit says at a sample, with `row` the polynomials' values there times `unit`.
+    /// Adds a fit's estimate at a sample, with `row` the polynomials' values there times `unit`.
     fn add(&mut self, sample: usize, fit: &Fit<'_>, row: &[f64], unit: f64) {
         self.value.fill(0.0);
         let mut inside = 0.0;

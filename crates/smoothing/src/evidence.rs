@@ -21,7 +21,7 @@ pub(crate) struct NoiseModel<'a> {
     shrinkage: Vec<Shrinkage>,
 }
 
-/// What windows of one length share.
+/// Quantities shared by windows of one length.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shrinkage {
     /// f_k = V_k/(V_k + s²), V_k = n·τ_k².

@@ -8,8 +8,7 @@ use crate::increments::StepRule;
 use crate::kalman::Gains;
 use crate::stamped::{Stamped, common_dim};
 
-/// Fusion of noisy positions with velocities that are all but exact: states that move as the velocities say and lie
-/// where the positions say, (S17).
+/// Fuses noisy positions with nearly exact velocities: states that integrate the velocities and fit the positions, (S17).
 ///
 /// x_{i+1} = x_i + Δ_i + process noise q, y_i = x_i + noise ρ, with one Kalman filter for all dimensions and
 /// Rauch–Tung–Striebel smoothing. The rule for Δ_i and q/ρ are those of the highest likelihood.
@@ -62,7 +61,7 @@ impl Fusion {
         self.fuse_stamped(&Stamped::all(demonstrations))
     }
 
-    /// The same for movements with time stamps of their own.
+    /// The same for movements with individual time stamps.
     ///
     /// # Errors
     /// As [`Fusion::fuse`], and [`SmoothingError::Motion`] if there is no movement or dimensions differ.

@@ -1,12 +1,12 @@
-//! What was recorded, cleaned: how noisy positions are, and states and velocities without that noise.
+//! Estimates the noise of recorded positions, and states and velocities without it.
 //!
-//! | recorded | take | because |
+//! | recorded | use | gives |
 //! |---|---|---|
 //! | positions | [`Smoother`] | velocities with their variance, and where constraints may have switched |
-//! | noisy positions, clean velocities or commands | [`Fusion`] | only the start of a movement is unknown then |
-//! | positions, for a rule that takes steps between them | [`SavitzkyGolay`] | plain and quick |
+//! | noisy positions, exact velocities or commands | [`Fusion`] | states that integrate the velocities |
+//! | positions, for a rule that takes steps between them | [`SavitzkyGolay`] | a simple, fast polynomial filter |
 //!
-//! [`PositionNoise`] says whether any of them is needed. Learners may use all of it: nothing here knows a policy.
+//! [`PositionNoise`] estimates whether any of them is needed. Nothing here knows a policy, so every learner may use it.
 //!
 //! ```
 //! use motion::Demonstrations;
@@ -28,12 +28,20 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Formulas are numbered (S15)–(S17) on from those of the crate `gp`. Trajectories are smoothed in parallel, with the
-//! same bits at any number of threads. Times may be uneven: [`Stamped`] movements have a stamp for each sample.
+//! Equations (S15)–(S17) stand in [section 8 of `docs/slope-gp.md`](../gp/equations/index.html#8-smoothing).
+//! Trajectories are smoothed in parallel, with the same bits at any number of threads. Times may be uneven: [`Stamped`]
+//! movements have a stamp for each sample.
 //!
-//! Reading on: `smoother` is the run of the smoother, a line a step; `scaled` is what goes in, `polynomials`, `windows`
-//! and `evidence` are (S15), `segmentation` is (S16), `averages` and `smoothed` what comes out; `noise_by_evidence` finds
-//! the noise. `fusion` chooses among the steps of `increments` and runs `kalman`.
+//! # When it fails
+//!
+//! - **Noise larger than the movement over a few samples** leaves velocities uncertain; their variance shows it.
+//! - **Drift and correlated noise** count as movement, because the noise is assumed to be white.
+//! - **Axes of very different noise**: give [`AxisScale::Given`], since one variance serves all scaled axes.
+//! - [`SmoothingError`]: no motion, missing velocities, too few samples, or overflow.
+//!
+//! To read the source: `smoother` has one line for each step; `scaled` prepares the input, `polynomials`, `windows` and
+//! `evidence` are (S15), `segmentation` is (S16), `averages` and `smoothed` form the result; `noise_by_evidence`
+//! estimates the noise. `fusion` chooses among the steps of `increments` and runs `kalman`.
 
 mod averages;
 mod error;

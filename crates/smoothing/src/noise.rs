@@ -1,4 +1,4 @@
-//! Noise of recorded positions, without smoothing anything.
+//! Noise of recorded positions, without smoothing.
 
 use motion::Demonstrations;
 use nalgebra::DVector;
@@ -16,7 +16,7 @@ const MEDIAN_TO_DEVIATION: f64 = 1.4826;
 pub struct PositionNoise {
     /// Standard deviation of the noise in each dimension, (n), in its unit.
     pub deviations: DVector<f64>,
-    /// How much of the squared steps is noise: 2 Σ_j σ̂_j² / mean ‖x_{i+1} − x_i‖². 0: positions are exact, 1: nothing
+    /// Share of the squared steps that is noise: 2 Σ_j σ̂_j² / mean ‖x_{i+1} − x_i‖². 0: positions are exact, 1: nothing
     /// but noise.
     pub step_share: f64,
 }

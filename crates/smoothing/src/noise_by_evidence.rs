@@ -1,4 +1,4 @@
-//! The noise variance that makes the movements most likely.
+//! The noise variance of the highest marginal likelihood.
 
 use rayon::prelude::*;
 

@@ -11,7 +11,7 @@ pub(crate) struct Polynomials {
 }
 
 impl Polynomials {
-    /// On times τ in [−1, 1], by modified Gram–Schmidt of 1, τ, τ², …, twice; with as many degrees as asked for and as
+    /// On times τ in [−1, 1], by modified Gram–Schmidt of 1, τ, τ², …, twice; with as many degrees as requested and as
     /// there are times.
     pub(crate) fn on(tau: &[f64], degrees: usize) -> Self {
         let degrees = degrees.min(tau.len());

@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 use crate::SmoothingError;
 use crate::polynomials::Polynomials;
 
-/// Savitzky–Golay: every sample becomes the value there of the polynomial that fits the samples around it best.
+/// Savitzky–Golay filter: replaces each sample by the value of the polynomial that fits its neighbours best.
 ///
 /// Smooths positions before steps are taken between them. Its slope is no good velocity: it is blunt at the ends and
 /// where constraints switch ([`Smoother`](crate::Smoother) is made for that).

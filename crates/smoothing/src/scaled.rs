@@ -1,15 +1,15 @@
-//! Movements as the smoother sees them: axes of equal noise, each movement about its own mean.
+//! Input of the smoother: axes of equal noise, each movement about its mean.
 
 use nalgebra::DVector;
 
 use crate::stamped::{Stamped, common_dim};
 use crate::{AxisScale, SmoothingError};
 
-/// All movements in scaled axes, and what leads back.
+/// All movements in scaled axes, and their scales.
 #[derive(Debug)]
 pub(crate) struct Scaled<'a> {
     pub(crate) movements: Vec<ScaledMovement<'a>>,
-    /// What each axis was divided by, (n); 0 where an axis never moves and is left out.
+    /// Divisor of each axis, (n); 0 where an axis never moves and is left out.
     pub(crate) scales: DVector<f64>,
     /// c of (S15): mean over the moving axes of the variance of all samples, in scaled axes.
     pub(crate) variance: f64,

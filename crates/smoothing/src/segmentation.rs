@@ -1,4 +1,4 @@
-//! Where one window ends and the next begins: exact sums over all ways to cut a movement, (S16).
+//! Exact sums over all ways to cut a movement into windows, (S16).
 
 use crate::evidence::{NoiseModel, log_sum_exp};
 use crate::windows::{Energy, Window, windows};

@@ -25,10 +25,9 @@ pub struct SmoothedMovement {
     pub state_variance: DVector<f64>,
     /// Variance s_i² of the velocities at each sample, (N), mean over the dimensions.
     pub velocity_variance: DVector<f64>,
-    /// How likely something switched between the sample before and this one, (N); 1 at sample 0, where the movement
-    /// begins.
+    /// Probability that a constraint switched between the previous sample and this one, (N); 1 at sample 0.
     pub window_begins: DVector<f64>,
-    /// Log evidence of the whole movement, f_N of (S16).
+    /// Log marginal likelihood of the whole movement, f_N of (S16).
     pub log_evidence: f64,
 }
 

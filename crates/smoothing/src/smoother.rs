@@ -13,8 +13,7 @@ use crate::smoothed::{Smoothed, SmoothedMovement};
 use crate::stamped::Stamped;
 use crate::windows::{Bases, Energy, MAX_COLUMNS, energies};
 
-/// Bayesian piecewise polynomials: states and velocities of movements of which only noisy positions were recorded, and
-/// how sure they are, (S15), (S16).
+/// Bayesian piecewise polynomials: states and velocities with their variances, from noisy positions alone, (S15), (S16).
 ///
 /// A movement falls into windows; within one every dimension is a polynomial of time, and between two of them anything
 /// may change, as it does when a constraint switches. Where windows begin and of which degree they are is not decided:
@@ -25,15 +24,15 @@ pub struct Smoother {
     pub degrees: Vec<usize>,
     /// Most samples in a window, at least 3: windows of two alone cannot make up an odd number of samples.
     pub longest_window: usize,
-    /// How likely a window ends at any sample, between 0 and 1.
+    /// Probability that a window ends at a sample, between 0 and 1.
     pub switch_probability: f64,
-    /// What each axis is divided by; noise should be equal in all axes then.
+    /// Divisor of each axis, after which the noise should be equal in all axes.
     pub axis_scale: AxisScale,
     /// The variance of that noise.
     pub noise: NoiseVariance,
 }
 
-/// What each axis is divided by before smoothing.
+/// Divisor of each axis before smoothing.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub enum AxisScale {
     /// Its standard deviation over all samples.
@@ -42,10 +41,10 @@ pub enum AxisScale {
     Given(DVector<f64>),
 }
 
-/// Where the variance of the noise comes from.
+/// The variance of the noise: estimated or given.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum NoiseVariance {
-    /// The one that makes the movements most likely.
+    /// The one of the highest marginal likelihood.
     ByEvidence,
     /// s², positive, in squared units of the scaled axes.
     Given(f64),
@@ -66,7 +65,7 @@ impl Default for Smoother {
 }
 
 impl Smoother {
-    /// Smooths the positions of every demonstration; recorded velocities are not looked at.
+    /// Smooths the positions of every demonstration and ignores recorded velocities.
     ///
     /// Takes time O(N · L · p · n) and memory O(N · L) a trajectory, L the longest window, p the highest degree.
     ///
@@ -77,7 +76,7 @@ impl Smoother {
         self.smooth_stamped(&Stamped::all(demonstrations))
     }
 
-    /// The same for movements with time stamps of their own.
+    /// The same for movements with individual time stamps.
     ///
     /// # Errors
     /// As [`Smoother::smooth`], and [`SmoothingError::Motion`] if there is no movement or dimensions differ.
@@ -119,7 +118,7 @@ impl Smoother {
     }
 }
 
-/// What stays the same while one set of movements is smoothed.
+/// The constants of smoothing one set of movements.
 struct Run<'a> {
     smoother: &'a Smoother,
     scaled: &'a Scaled<'a>,

@@ -3,7 +3,7 @@ use nalgebra::DMatrix;
 
 use crate::SmoothingError;
 
-/// A movement with a time stamp of its own for every sample, evenly spaced or not.
+/// A movement with a time stamp for every sample, evenly spaced or not.
 ///
 /// A checked value: everything a [`Trajectory`] promises, and stamps that ascend.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,4 +1,4 @@
-//! What every window of a movement says before the noise is known.
+//! Statistics of every window that do not depend on the noise.
 
 use std::borrow::Cow;
 

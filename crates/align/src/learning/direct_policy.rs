@@ -7,7 +7,7 @@ use super::policy_record::PolicyRecord;
 use super::regression::support;
 use crate::{AlignError, Label, Origin};
 
-/// The policy that direct policy learning found.
+/// The policy of direct policy learning.
 ///
 /// Far from the data no receptive field takes part: the action is then the mean of the training velocities. It can be
 /// stored with serde; what is read back acts the same to the last bit.
@@ -24,12 +24,12 @@ impl DirectPolicy {
         DirectPolicy { regression, origin }
     }
 
-    /// The regression beneath: its mean is that of the training velocities, in units of the state per second.
+    /// The underlying regression: its mean is that of the training velocities, in units of the state per second.
     pub fn regression(&self) -> &StandardisedModel {
         &self.regression
     }
 
-    /// What it was learnt from.
+    /// Summary of its training data.
     pub fn origin(&self) -> &Origin {
         &self.origin
     }

@@ -7,8 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::regression::{default_params, fit};
 use crate::{AlignError, DirectPolicy, Origin};
 
-/// Direct policy learning, the naive baseline: regression of the observed velocities on the states, as if nothing had
-/// been constrained.
+/// Direct policy learning, the naive baseline: regression of the observed velocities on the states, ignoring constraints.
 ///
 /// It learns from all trajectories: the recorded velocities, or else u_i = (x_{i+1} − x_i) / δt for all samples but the
 /// last.

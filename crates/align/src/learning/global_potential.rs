@@ -16,7 +16,7 @@ impl GlobalPotential {
         GlobalPotential { regression }
     }
 
-    /// The regression beneath: its mean is that of the training values, its spread (`norm_out`) theirs, too.
+    /// The underlying regression: its mean is that of the training values, its spread (`norm_out`) theirs, too.
     pub fn regression(&self) -> &StandardisedModel {
         &self.regression
     }

@@ -1,4 +1,4 @@
-//! The two learners, what they learn, and how that is stored.
+//! The two learners, their policies and potentials, and the stored forms of these.
 
 mod direct_policy;
 mod direct_policy_learning;

@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::AlignError;
 
-/// What one dimension of the state is, in its owner's words.
+/// Name and unit of one dimension of the state.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Label {
@@ -13,19 +13,19 @@ pub struct Label {
     pub unit: String,
 }
 
-/// What a policy was learnt from. It is stored with the policy, and decides nothing.
+/// Summary of a policy's training data, stored with the policy. It has no effect on predictions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Origin {
     /// Seconds between two samples: the median over the trajectories.
     pub time_step: f64,
-    /// How many trajectories were seen.
+    /// Number of trajectories.
     pub n_trajectories: usize,
     /// Those that were learnt from, ascending; none if all were.
     pub kept: Option<Vec<usize>>,
-    /// What gave reason for doubt, one sentence each.
+    /// Warnings, one sentence each.
     pub warnings: Vec<String>,
-    /// Name and unit of each dimension of the state, n of them; empty if nobody gave them.
+    /// Name and unit of each dimension of the state, n of them; empty if none were given.
     pub labels: Vec<Label>,
 }
 

@@ -1,4 +1,4 @@
-//! Policies as they are stored.
+//! The stored form of policies.
 
 use lwpr::StandardisedModel;
 use serde::{Deserialize, Serialize};

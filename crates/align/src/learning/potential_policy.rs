@@ -28,7 +28,7 @@ impl PotentialPolicy {
         &self.descent.0
     }
 
-    /// What it was learnt from.
+    /// Summary of its training data.
     pub fn origin(&self) -> &Origin {
         &self.origin
     }

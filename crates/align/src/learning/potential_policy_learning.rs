@@ -4,13 +4,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::{AlignError, LwprRegressor, PolicyAlign, PotentialPolicy};
 
-/// Algorithm 1 of the paper as a whole: align the demonstrations, learn one potential, descend it.
+/// Algorithm 1 of the paper as a whole: aligns the demonstrations, learns one potential and descends it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PotentialPolicyLearning {
-    /// How the potentials along trajectories are brought to one level.
+    /// The alignment of the potentials along trajectories.
     pub align: PolicyAlign,
-    /// How the potential is learnt from them.
+    /// The regression of the global potential.
     pub regressor: LwprRegressor,
 }
 

@@ -1,4 +1,4 @@
-//! How both learners use LWPR.
+//! LWPR as both learners use it.
 
 use lwpr::{LwprParams, StandardisedModel, Training};
 use nalgebra::{DMatrix, DVector, DVectorView};

@@ -4,7 +4,7 @@ use rand::Rng;
 
 /// A way to learn a potential from levelled samples. Regressors of the same result may stand in one list.
 pub trait Regressor {
-    /// What it learns.
+    /// The learnt potential.
     type Fitted: Potential;
     /// Why it may fail.
     type Error: std::error::Error;

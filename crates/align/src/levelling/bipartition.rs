@@ -51,7 +51,7 @@ pub(crate) fn bipartition(laplacian: &DMatrix<f64>, threshold: f64) -> Result<Pa
 
 /// The second eigenvalue of a group's matrix, and all eigenvectors below the threshold, or none if at most one is.
 ///
-/// Most groups hold together, and eigenvalues alone cost half as much. Vectors are asked for right away where a weak
+/// Most groups hold together, and eigenvalues alone cost half as much. Vectors are computed right away where a weak
 /// trajectory is in sight: its unit vector has the Rayleigh quotient H_kk.
 fn weak_part(
     matrix: &DMatrix<f64>,

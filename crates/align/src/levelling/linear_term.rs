@@ -29,7 +29,7 @@ pub(crate) fn linear_term(responsibilities: &Responsibilities, offsets: &[Option
     (linear.iter().map(CompensatedSum::value).collect(), constant.value())
 }
 
-/// What the samples of one trajectory add.
+/// The contribution of one trajectory's samples.
 struct BlockTerm {
     /// The trajectory itself, or the first member of the group if it is outside.
     reference: usize,

@@ -16,8 +16,8 @@ const PARTS: usize = 8;
 /// in the paper's scaling: its gradient is 2(a + Hb), its Hessian 2H.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AlignmentObjective {
-    /// H = diag_k(Σ_m q_km) − Σ_m q_m q_mᵀ (15), (K, K): the Laplacian of a graph whose weights tell how much two
-    /// trajectories speak for the same samples.
+    /// H = diag_k(Σ_m q_km) − Σ_m q_m q_mᵀ (15), (K, K): the Laplacian of a graph whose weights measure
+    /// how much two trajectories share responsibility for samples.
     pub laplacian: DMatrix<f64>,
     /// a_k = Σ_m q_km (f_km − Σ_j q_jm f_jm) (16), (K), in units of the potential; not finite where differences of
     /// potentials overflow.

@@ -107,7 +107,7 @@ impl WithSimd for Normalise<'_> {
                 }
             }
         }
-        // Where the samples are filled up nobody has weight, and 0 / 1 keeps it so.
+        // Padding samples have no weight, and 0 / 1 keeps it so.
         for total in total.as_flattened_mut() {
             *total = if *total > 0.0 { *total } else { 1.0 };
         }

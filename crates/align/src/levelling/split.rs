@@ -5,16 +5,16 @@ pub struct Split {
     pub group: Vec<usize>,
     /// The same trajectories after: two parts or more, each ascending.
     pub parts: Vec<Vec<usize>>,
-    /// What took them apart.
+    /// Why they were split.
     pub cause: SplitCause,
 }
 
-/// What takes a group of trajectories apart.
+/// Why a group of trajectories is split.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SplitCause {
     /// No link connects the parts: their entries of H are exactly zero.
     NoLink,
     /// So many eigenvalues of the group's part of H are below the threshold. The group is cut in two by their
-    /// eigenvectors; if all are, every trajectory is a part of its own.
+    /// eigenvectors; if all are, every trajectory becomes a separate part.
     WeakEigenvalues(usize),
 }

@@ -15,7 +15,7 @@ pub(crate) struct Tiles {
     pub(crate) dim: usize,
     pub(crate) n_samples: usize,
     /// As columns: tiles of as many samples as a vector has lanes; a tile holds one vector for each dimension. The last
-    /// is filled up with infinity, which is nobody's nearest.
+    /// is padded with infinity, which is never nearest.
     pub(crate) columns: Vec<f64>,
     /// As rows: groups of `ROWS`; for each group and each dimension one coordinate a row. The last group is filled up
     /// with its last state: a repeated row is never strictly nearer.

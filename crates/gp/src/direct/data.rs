@@ -11,9 +11,9 @@ use crate::rows::noise_weights::direct_weights;
 use crate::rows::scaling::Scaling;
 use crate::{GpError, Rows};
 
-/// What the direct GP is conditioned on: velocities, in scaled coordinates and with noise weights.
+/// The direct GP's training data: velocities, in scaled coordinates and with noise weights.
 ///
-/// For fits of one's own use [`DirectGp`](crate::DirectGp); this is for those who set the amplitudes themselves.
+/// To fit a policy use [`DirectGp`](crate::DirectGp); with these data the caller sets the amplitudes.
 #[derive(Debug, Clone)]
 pub struct DirectData {
     pub(crate) scaling: Scaling,
@@ -102,7 +102,7 @@ impl DirectData {
         task.evidence(&DVector::from_column_slice(theta))
     }
 
-    /// The model at θ with noise raised by κ, and what it predicts of each trajectory left out (R3); none if the
+    /// The model at θ with noise raised by κ, and its leave-one-trajectory-out predictions (R3); none if the
     /// covariance has no Cholesky factor.
     ///
     /// # Panics
@@ -113,7 +113,7 @@ impl DirectData {
         Some((self.model(blocks.to_vec(), fit), left_out))
     }
 
-    /// Amplitudes by evidence on the hyper rows, noise by prediction.
+    /// Amplitudes by marginal likelihood on the hyper rows, noise by held-out prediction.
     pub(crate) fn fit(&self, blocks: &[DirectBlock], hyper: &[usize]) -> Option<FamilyFit> {
         fit_family(&self.covariance(blocks), hyper, &self.conditions())
     }

@@ -10,22 +10,22 @@ use crate::left_out::LeftOut;
 use crate::rows::kept::{Kept, Selection};
 use crate::{GpError, Rows};
 
-/// A Gaussian process on velocities: what is learnt if nothing was constrained. One covariance for all components.
+/// A Gaussian process on velocities, for unconstrained motion. One covariance for all components.
 ///
 /// It takes the same rows as [`SlopeGp`](crate::SlopeGp) and chooses its family, amplitudes and noise in the same way.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DirectGp {
-    /// Families tried; the one that predicts left-out trajectories best is kept, ties to the first. If the first predicts
-    /// all but 1e-8 of the variance, no other is.
+    /// Families tried; the one that predicts held-out trajectories best is kept, ties to the first. If the first predicts
+    /// all but 1e-8 of the variance, the others are skipped.
     pub families: Vec<Family>,
-    /// Rows learnt from, at most; random ones are left out. Time grows with its cube, memory with its square.
+    /// Largest number of rows; more are thinned evenly in time. Time grows with its cube, memory with its square.
     pub max_rows: usize,
-    /// Rows that amplitudes are chosen on.
+    /// Number of random rows whose marginal likelihood sets the amplitudes.
     pub hyper_rows: usize,
-    /// Rows of uncertain velocity count if |u|² exceeds this squared times the variance of u.
+    /// Rows of uncertain velocity are used if |u|² exceeds this squared times the variance of u.
     pub least_snr: f64,
-    /// Rows count if |u| exceeds this share of the largest.
+    /// Rows are used if |u| exceeds this share of the largest.
     pub least_speed: f64,
 }
 
@@ -35,7 +35,7 @@ impl Default for DirectGp {
     }
 }
 
-/// What a direct GP learnt. Stored by serde and read back, it predicts the same to the last bit.
+/// A fitted direct GP. Stored by serde and read back, it predicts the same to the last bit.
 #[derive(Debug, Clone)]
 pub struct DirectFit {
     pub(crate) model: DirectModel,
@@ -44,7 +44,7 @@ pub struct DirectFit {
     pub(crate) z_squared: f64,
 }
 
-/// The model taken, and what it predicts of left-out trajectories.
+/// The model taken, and its held-out predictions.
 pub(crate) struct DirectOutcome {
     pub(crate) fit: DirectFit,
     pub(crate) left_out: LeftOut,
@@ -53,10 +53,10 @@ pub(crate) struct DirectOutcome {
 }
 
 impl DirectGp {
-    /// Learns from rows. The generator draws one permutation and nothing else.
+    /// Learns from rows. The generator draws one permutation and, where rows are thinned, an offset.
     ///
     /// # Errors
-    /// [`GpError::Parameter`], or what the rows are refused for: too few, no motion, one state, no Cholesky factor.
+    /// [`GpError::Parameter`], or why the rows are refused: too few, no motion, one state, no Cholesky factor.
     pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<DirectFit, GpError> {
         let kept = self.selection()?.keep(rows, rng)?;
         Ok(self.outcome(&kept)?.fit)
@@ -100,17 +100,17 @@ impl DirectFit {
         self.family
     }
 
-    /// Share of left-out movement that is predicted (R3); 1 minus it is the error to expect.
+    /// Held-out R² (R3); 1 − R² is the error to expect.
     pub fn r_squared(&self) -> f64 {
         self.r_squared
     }
 
-    /// Mean squared left-out error over its predicted variance (R3).
+    /// Mean squared held-out error over its predictive variance (R3).
     pub fn z_squared(&self) -> f64 {
         self.z_squared
     }
 
-    /// What gives reason to doubt the policy, one sentence each.
+    /// Warnings about the policy, one sentence each.
     pub fn doubts(&self) -> Vec<String> {
         match self.r_squared {
             r2 if r2 < 0.5 => {

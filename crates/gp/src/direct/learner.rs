@@ -1,4 +1,4 @@
-//! The seam: what the direct GP and its policy share with all other learners.
+//! The direct GP behind the traits of all learners.
 
 use motion::{Demonstrations, LearnError, Learner, LearntPolicy, Policy, SampleIndex};
 use nalgebra::{DVectorView, DVectorViewMut};
@@ -13,7 +13,7 @@ use crate::direct::direct_gp::{DirectFit, DirectGp};
 pub struct DirectLearner {
     /// How recordings become rows.
     pub front_end: FrontEnd,
-    /// What learns from them.
+    /// The Gaussian process fitted to them.
     pub gp: DirectGp,
 }
 

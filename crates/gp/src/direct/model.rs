@@ -80,7 +80,7 @@ impl DirectModel {
         self.prior_variance(state) - self.unit.powi(2) * known.norm_squared()
     }
 
-    /// The same before anything was observed.
+    /// Prior variance of every component at a state, in the same units.
     pub fn prior_variance(&self, state: DVectorView<'_, f64>) -> f64 {
         let z = self.scaling.of_state(state);
         let each = self.blocks.iter().zip(&self.amplitudes);

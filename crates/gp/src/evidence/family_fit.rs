@@ -8,7 +8,7 @@ use crate::kernel::family::Family;
 use crate::left_out::LeftOut;
 use crate::left_out::level::{Conditions, Level};
 
-/// A family whose amplitudes evidence has chosen and whose noise prediction has raised.
+/// A family with amplitudes by marginal likelihood and noise raised by held-out prediction.
 #[derive(Debug)]
 pub(crate) struct FamilyFit {
     /// a_b, (B).
@@ -38,7 +38,7 @@ impl FamilyFit {
 /// Where the search begins: log a_b and log σ².
 const AMPLITUDE: f64 = 0.3;
 const NOISE: f64 = 1e-2;
-/// From so many hyper rows on, half of them are searched first: an eighth of the work leads most of the way.
+/// From this number of hyper rows on, half of them are searched first: an eighth of the work leads most of the way.
 const WORTH_TWO_SEARCHES: usize = 200;
 /// Iterations that are left for all of them then.
 const LAST_ITERATIONS: usize = 12;

@@ -1,4 +1,4 @@
-//! Evidence, and the amplitudes that it chooses.
+//! Marginal likelihood (evidence), and the amplitudes that maximise it.
 
 #![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
 
@@ -18,7 +18,7 @@ use crate::left_out::level::Conditions;
 const CENTRE: f64 = -4.0;
 const STRENGTH: f64 = 0.01;
 
-/// The negative log evidence J of (S8) and (R2), and its gradient (S9).
+/// The negative log marginal likelihood J of (S8) and (R2), and its gradient (S9).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evidence {
     /// J, without the constant M/2 · log 2π.
@@ -27,7 +27,7 @@ pub struct Evidence {
     pub gradient: DVector<f64>,
 }
 
-/// What evidence is taken of: some rows, their targets (h, c), c columns with one covariance for all.
+/// The rows whose marginal likelihood is maximised, with their targets (h, c): c columns with one covariance for all.
 #[derive(Debug)]
 pub(crate) struct Task {
     pub(crate) blocks: Vec<DMatrix<f64>>,

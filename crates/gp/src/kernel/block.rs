@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::kernel::shape::{Radial, Shape, divergence_free_at};
 
-/// One term of the slope GP's prior, with an amplitude of its own: a covariance of slopes nᵀπ, and of the potential.
+/// One term of the slope GP's prior with its amplitude: a covariance of slopes nᵀπ, and of the potential.
 ///
 /// Distances are in scaled coordinates z; a scale s stands for the length ℓ = s √(2n), n the dimension of the state.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -22,7 +22,7 @@ pub enum Block {
 }
 
 impl Block {
-    /// Whether the policies it stands for have a potential.
+    /// Whether policies drawn from this block have a potential.
     pub fn has_potential(self) -> bool {
         !matches!(self, Block::Skew | Block::DivergenceFree(_))
     }

@@ -1,6 +1,6 @@
 use nalgebra::DMatrix;
 
-/// The prior of a model: a sum of blocks over rows, each with an amplitude of its own.
+/// The prior of a model: a sum of blocks over rows, each with its amplitude.
 pub(crate) trait Covariance: Sync {
     /// Number of blocks B.
     fn n_blocks(&self) -> usize;

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use crate::kernel::block::Block;
 use crate::kernel::shape::Shape;
 
-/// What kind of policy is looked for. Evidence chooses the amplitudes within a family, prediction of left-out
-/// trajectories chooses the family.
+/// The smoothness of the policies considered. The marginal likelihood sets the amplitudes within a family; held-out
+/// prediction selects the family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Family {
@@ -25,7 +25,7 @@ pub enum Trend {
     /// A linear and a quadratic potential are in every family.
     #[default]
     Quadratic,
-    /// Shapes alone: shows what is left when the family does not contain the truth.
+    /// Shapes alone, to measure the error where the family does not contain the truth.
     None,
 }
 

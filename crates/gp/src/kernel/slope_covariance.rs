@@ -50,7 +50,7 @@ impl Covariance for SlopeCovariance<'_> {
     }
 }
 
-/// What a Matérn 3/2 block loses on the diagonal by a squared distance |z|² − 2zᵀz + |z|² that rounding leaves a little
+/// Loss of a Matérn 3/2 block on the diagonal by a squared distance |z|² − 2zᵀz + |z|² that rounding leaves a little
 /// above 0, its product being fused: g falls with the distance itself, so that 1e-16 becomes 1e-8.
 ///
 /// The reference values have it; other shapes fall with the square and are not touched.

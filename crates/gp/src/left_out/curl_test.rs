@@ -10,18 +10,18 @@ use crate::left_out::comparison::{difference, t_of_mean};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CurlTest {
-    /// A Helmholtz decomposition is fitted too, and taken if left-out trajectories speak for it.
+    /// A Helmholtz decomposition is fitted too, and used if it predicts held-out trajectories better (R5).
     #[default]
     Fit,
-    /// The policy is taken to have a potential.
+    /// The policy is assumed to have a potential.
     AssumePotential,
 }
 
-/// t above which rotation is seen.
+/// t above which rotation is detected.
 const LEAST_T: f64 = 2.5;
 /// Two models differ if their policies do by more than this share.
 pub(crate) const DIFFERS: f64 = 0.05;
-/// A potential is kept if it predicts better by so much.
+/// Factor in held-out error by which a potential must be better to be kept.
 const BETTER: f64 = 1.1;
 
 /// Policies at the rows, (n, M), and what was predicted of left-out trajectories.
@@ -41,11 +41,11 @@ pub(crate) fn curl_t(potential: &LeftOut, rotation: &LeftOut, noise_weights: &[f
     t_of_mean(&gains)
 }
 
-/// What rotation must change of the policy, as a share of what a potential leaves unpredicted, before t can speak for it.
+/// Smallest change of the policy by rotation, as a share of the potential's held-out error, before t counts.
 const NOTICEABLE: f64 = 0.05;
-/// What a potential must leave unpredicted, as a share, before prediction alone can speak against it.
+/// Smallest held-out error of a potential, as a share, before prediction alone can reject it.
 const UNPREDICTED: f64 = 1e-3;
-/// Share of that, at most, which a model with rotation leaves then.
+/// Largest share of that error which the model with rotation may have then.
 const DECISIVE: f64 = 1e-3;
 
 /// Whether rotation is taken: seen by (S12), and not so small that what is unpredicted has other reasons; or because it

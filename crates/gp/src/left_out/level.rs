@@ -1,4 +1,4 @@
-//! How much noise evidence has missed, found by prediction of left-out trajectories.
+//! The noise factor κ, by held-out prediction: the marginal likelihood underestimates correlated noise.
 
 use nalgebra::DMatrix;
 
@@ -6,7 +6,7 @@ use crate::kernel::covariance::{NOISE_FLOOR, add_noise};
 use crate::kernel::factor::Factor;
 use crate::left_out::{LeftOut, left_out};
 
-/// What a model is conditioned on.
+/// Training data of a model.
 #[derive(Debug)]
 pub(crate) struct Conditions<'a> {
     /// y, (M, c), scaled.

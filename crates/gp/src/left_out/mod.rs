@@ -1,4 +1,4 @@
-//! Prediction of trajectories left out, and what it decides: noise, and whether there is a potential.
+//! Leave-one-trajectory-out prediction. It selects the noise and tests for a potential.
 
 pub(crate) mod comparison;
 pub(crate) mod curl_test;
@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::kernel::factor::{Factor, view, view_mut};
 
-/// What the other trajectories predict of each: leave-one-trajectory-out in closed form, (S10), (S11), (R3).
+/// Leave-one-trajectory-out predictions in closed form, (S10), (S11), (R3).
 #[derive(Debug, Clone, PartialEq)]
 pub struct LeftOut {
     /// y − its prediction without the row's trajectory, (M, c), scaled.
@@ -24,9 +24,9 @@ pub struct LeftOut {
     pub z_squared: f64,
 }
 
-/// Left-out error, as a share of the variance, below which nothing is left to choose by prediction.
+/// Held-out error, as a share of the variance, below which prediction can select nothing more.
 const EXACT: f64 = 1e-8;
-/// Left-out error up to which a model's family is not in question, and which of two models errs less says nothing.
+/// Held-out error below which differences between models are insignificant and a model's family is not in question.
 const NEARLY_EXACT: f64 = 1e-3;
 
 impl LeftOut {

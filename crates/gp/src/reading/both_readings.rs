@@ -13,8 +13,8 @@ use crate::slope::search::outcome;
 use crate::slope::slope_gp::SlopeGp;
 use crate::{FrontEnd, GpError, Rows};
 
-/// Fits the slope GP and the direct GP to the same rows, compares them on left-out demonstrations, and hands out the
-/// policy that the data support. No learner is right for both free and constrained movement.
+/// Fits the slope GP and the direct GP to the same rows, compares them on held-out demonstrations, and hands out the
+/// policy that the data support (R8). No learner is right for both free and constrained movement.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct ReadingLearner {
     /// How recordings become rows.
@@ -23,7 +23,7 @@ pub struct ReadingLearner {
     pub slope: SlopeGp,
     /// The learner for free movement.
     pub direct: DirectGp,
-    /// The user's own reading, which overrides that of the data.
+    /// A reading given by the user, which overrides that of the data.
     pub reading: Option<Reading>,
 }
 
@@ -34,7 +34,7 @@ pub struct BothReadings {
     pub(crate) slope: SlopeFit,
     pub(crate) direct: DirectFit,
     pub(crate) numbers: ReadingNumbers,
-    /// What the data said when this was learnt; models stored before it was kept are read by the rule of today.
+    /// The reading of the data when this was learnt; older stored models have none and are read by today's rule.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) reading: Option<Reading>,
     pub(crate) overridden: Option<Reading>,
@@ -44,7 +44,7 @@ pub struct BothReadings {
 }
 
 impl ReadingLearner {
-    /// Learns from rows. The generator draws one permutation and nothing else.
+    /// Learns from rows. The generator draws one permutation and, where rows are thinned, an offset.
     ///
     /// # Errors
     /// As [`SlopeGp::fit`] and [`DirectGp::fit`].
@@ -95,22 +95,22 @@ impl Learner for ReadingLearner {
 }
 
 impl BothReadings {
-    /// What the data say.
+    /// The reading of the data.
     pub fn reading(&self) -> Reading {
         self.reading.unwrap_or_else(|| self.numbers.reading())
     }
 
-    /// The user's own reading, if there is one.
+    /// The reading given by the user, if any.
     pub fn overridden(&self) -> Option<Reading> {
         self.overridden
     }
 
-    /// What the reading rests on.
+    /// The numbers that the reading follows from.
     pub fn numbers(&self) -> &ReadingNumbers {
         &self.numbers
     }
 
-    /// How each trajectory was predicted without it.
+    /// Held-out errors of each trajectory.
     pub fn left_out(&self) -> &[TrajectoryErrors] {
         &self.left_out
     }

@@ -12,14 +12,13 @@ use crate::reading::numbers::ReadingNumbers;
 use crate::report::identifiability::direction;
 use crate::rows::kept::Grouping;
 
-/// What the demonstrations say about hidden constraints.
+/// Whether hidden constraints acted on the demonstrations (R8).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reading {
-    /// Nothing points to one: the direct policy, or that of the slope GP where movements descend a potential that it learns
-    /// far better.
+    /// No sign of one: the direct policy, or the slope GP's where movements descend a potential that it learns far better.
     Free,
-    /// They hid part of the policy, and differed: the slope policy.
+    /// Constraints hid part of the policy and varied: the slope policy.
     Constrained,
     /// Two readings explain the same data: mostly the direct policy.
     Ambiguous,
@@ -61,7 +60,7 @@ impl ReadingNumbers {
         }
     }
 
-    /// Whether something moved in every direction.
+    /// Whether there was motion in every direction.
     pub fn seen(&self) -> bool {
         self.least_seen.share * self.least_seen.direction.len() as f64 >= SEEN
     }
@@ -72,15 +71,15 @@ impl ReadingNumbers {
         self.least_seen.direction.len() == 1
     }
 
-    /// Whether knowing the direction a movement was let go in predicts its speed far better than the place alone. Where the
-    /// place alone predicts well, more is asked for: people's handwriting, which is free, gains up to λ = 0.7 there.
+    /// Whether the direction of a movement helps much to predict its speed. Where the state alone predicts well, the
+    /// threshold is higher: people's handwriting, which is free, gains up to λ = 0.7 there.
     pub fn direction_tells(&self) -> bool {
         let least_lambda = if self.p_d > UNEXPLAINED { 0.5 } else { 0.75 };
         let predicts = !self.is_a_line() && self.a_s <= 0.8;
         predicts && ((self.q <= 0.4 && self.t >= 2.0) || (self.lambda >= least_lambda && self.t_lambda >= 2.0))
     }
 
-    /// Whether the slope policy has a part that was not seen. In many dimensions, and where it has kinks, a potential is
+    /// Whether the slope policy has a part that was not observed. In many dimensions, and where it has kinks, a potential is
     /// learnt from far fewer movements than a velocity field, whether or not anything was constrained: then the two
     /// policies differ by little, and by less than the direct one errs.
     pub fn hides(&self) -> bool {

@@ -14,11 +14,11 @@ use crate::{GpError, Rows};
 const SLOW: f64 = 0.5;
 /// Samples compared, at most.
 const SAMPLES: usize = 5000;
-/// Fewer pairs of trajectories say nothing.
+/// Fewer pairs of trajectories are inconclusive.
 const FEW: usize = 3;
 
-/// Places that two trajectories pass, and how differently they move there. Without any model: it supports a reading and
-/// never decides it.
+/// How differently two trajectories move where they pass near each other (R9). A model-free check that supports a reading
+/// and never decides it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NearPasses {
@@ -32,7 +32,7 @@ pub struct NearPasses {
 }
 
 impl NearPasses {
-    /// Distance of a near pass that is usual, in units of the root mean square distance of two samples.
+    /// The usual distance of a near pass, in units of the root mean square distance of two samples.
     pub const USUAL_DISTANCE: f64 = 0.05;
 
     /// Of samples within `distance` · √(2 Σ_k var x_k) of each other. More than 5000 samples are thinned at random.

@@ -13,14 +13,14 @@ use crate::slope::model::SlopeModel;
 /// ε of (R7): errors below this share count as none.
 const NEGLIGIBLE: f64 = 1e-4;
 
-/// What the choice of a reading rests on (R7). Both learners predict the speed along the direction in which a left-out
-/// movement went; the slope GP is told that direction, the direct GP is not.
+/// The numbers that select a reading (R7). Both learners predict the speed along the direction in which a held-out
+/// movement went; only the slope GP uses that direction as an input.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReadingNumbers {
-    /// Left-out squared error of the slope GP, as a share.
+    /// Held-out squared error of the slope GP, as a share of the squared speed.
     pub a_s: f64,
-    /// The same of the direct GP.
+    /// The same for the direct GP.
     pub a_d: f64,
     /// Their ratio.
     pub q: f64,
@@ -34,17 +34,17 @@ pub struct ReadingNumbers {
     pub p_d: f64,
     /// Difference of the two policies at the rows, as a share of the slope policy's variance.
     pub gap: f64,
-    /// The direction in which the least moved.
+    /// The direction with the least motion.
     pub least_seen: LeastSeen,
-    /// About what share of the slope policy's length was hidden.
+    /// Share of the slope policy's squared length that constraints hid, approximately.
     pub hidden: f64,
     /// Trajectories with rows.
     pub trajectories: usize,
-    /// What was left out at a time.
+    /// The unit of leave-one-out.
     pub grouping: Grouping,
 }
 
-/// How a trajectory was predicted without it: weighted sums of squares along the direction of motion (R7), in squared
+/// Held-out errors of a trajectory: weighted sums of squares along the direction of motion (R7), in squared
 /// units of the state per second.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -55,7 +55,7 @@ pub struct TrajectoryErrors {
     pub slope: f64,
     /// E^d of the direct GP.
     pub direct: f64,
-    /// R: what there was to predict.
+    /// R, the squared speed to predict.
     pub seen: f64,
 }
 
@@ -66,7 +66,7 @@ pub(crate) struct Compared<'a> {
     /// The trajectory that each group of the data is of.
     pub(crate) trajectories: &'a [usize],
     pub(crate) data: &'a SlopeData,
-    /// What the slope GP predicts of left-out trajectories, and its policy at the rows, (n, M).
+    /// Held-out predictions of the slope GP, and its policy at the rows, (n, M).
     pub(crate) slope: (&'a LeftOut, &'a DMatrix<f64>),
     /// The same of the direct GP.
     pub(crate) direct: (&'a LeftOut, &'a DMatrix<f64>),
@@ -94,7 +94,7 @@ impl Compared<'_> {
 }
 
 impl ReadingNumbers {
-    /// Of two models that were conditioned on all of these rows, each with what it predicts of left-out trajectories.
+    /// Compares two models conditioned on all of these rows, each with its held-out predictions.
     pub fn of(
         rows: &Rows,
         data: &SlopeData,

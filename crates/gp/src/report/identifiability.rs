@@ -1,9 +1,9 @@
-//! What of a policy the demonstrations let be seen.
+//! Which directions of a policy the demonstrations determine.
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-/// Mean posterior over mean prior variance of the policy: 0 where the demonstrations tell all, 1 where nothing.
+/// Mean posterior over mean prior variance of the policy: 0 where the demonstrations determine it, 1 where they do not.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Identifiability {
@@ -11,11 +11,11 @@ pub struct Identifiability {
     pub axes: Vec<f64>,
     /// Along `direction`.
     pub least: f64,
-    /// The direction that is known least, (n).
+    /// The least known direction, (n).
     pub direction: Vec<f64>,
 }
 
-/// The direction in which the least moved, whatever the model.
+/// The direction with the least motion, independent of any model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LeastSeen {

@@ -5,13 +5,13 @@ use crate::kernel::family::Family;
 use crate::report::identifiability::{Identifiability, LeastSeen, direction};
 use crate::rows::kept::{Grouping, RowsDropped};
 
-/// How far a slope GP can be trusted: plain numbers, from section to section as the fit found them.
+/// How far a slope GP can be trusted, in numbers (`docs/slope-gp.md`, section 6).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrustReport {
-    /// Share of left-out movement that is predicted (S11): below 0.9 poor, below 0.5 not to be used.
+    /// Held-out R² (S11): below 0.9 poor, below 0.5 unusable.
     pub r_squared: f64,
-    /// Mean squared left-out error over its predicted variance (S11); over 4 the noise model is wrong.
+    /// Mean squared held-out error over its predictive variance (S11); above 4 the noise model is wrong.
     pub z_squared: f64,
     /// Expected normalised error of the policy (nUPE), with what the alternative model says (R6), and with
     /// [`Rows::step_change`](crate::Rows::step_change).
@@ -19,17 +19,17 @@ pub struct TrustReport {
     /// Difference of the alternative model's policy, where it predicts nearly as well (R6): across the paths the policy
     /// is a guess where this is over 0.1.
     pub ambiguity: f64,
-    /// What of the policy the demonstrations let be seen.
+    /// Which directions of the policy the demonstrations determine.
     pub identifiability: Identifiability,
-    /// The direction in which the least moved.
+    /// The direction with the least motion.
     pub least_seen: LeastSeen,
     /// t of (S12); none where no model with rotation was fitted.
     pub curl_t: Option<f64>,
     /// Σ|π̂_rot|²/Σ|π̂|²; 0 for a potential.
     pub rotational_share: f64,
-    /// What was chosen.
+    /// The model selected.
     pub model: ModelKind,
-    /// The family chosen.
+    /// The family selected.
     pub family: Family,
     /// Every model fitted.
     pub families: Vec<FamilyReport>,
@@ -37,7 +37,7 @@ pub struct TrustReport {
     pub rows: usize,
     /// Rows not learnt from.
     pub rows_dropped: RowsDropped,
-    /// What was left out at a time.
+    /// The unit of leave-one-out.
     pub grouping: Grouping,
     /// Standard deviation of the noise on positions that the front end found, in units of the state.
     pub noise: Option<f64>,
@@ -63,17 +63,17 @@ pub struct FamilyReport {
     pub family: Family,
     /// With or without rotation.
     pub model: ModelKind,
-    /// What came of it; none if its covariance has no Cholesky factor.
+    /// Its result; none if its covariance has no Cholesky factor.
     pub fit: Option<FamilyNumbers>,
 }
 
-/// What came of a fit.
+/// The result of a fit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FamilyNumbers {
     /// (S11).
     pub r_squared: f64,
-    /// By how much noise was raised over what evidence found.
+    /// κ: the factor on the noise variance that maximised the marginal likelihood.
     pub kappa: f64,
     /// Standard deviation of the noise, in units of the state per second.
     pub noise: f64,
@@ -82,7 +82,7 @@ pub struct FamilyNumbers {
 }
 
 impl TrustReport {
-    /// What gives reason to doubt the policy, one sentence each.
+    /// Warnings about the policy, one sentence each.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         if self.r_squared < 0.5 {

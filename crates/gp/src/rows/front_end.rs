@@ -5,19 +5,19 @@ use smoothing::{Fusion, Smoother, SmoothingError};
 
 use crate::{GpError, Rows};
 
-/// How what was recorded becomes rows of states and velocities.
+/// How recordings become rows of states and velocities.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub enum FrontEnd {
-    /// Velocities or commands were recorded and are believed: (x_i, u_i) for all i.
+    /// Recorded velocities or commands, taken as exact: (x_i, u_i) for all i.
     Velocities,
     /// Positions of a simulator that takes Euler steps: u_i = (x_{i+1} − x_i)/δt for all samples but the last. Exact
     /// there, because the simulator is that map; elsewhere the policy found is too steep.
     #[default]
     Map,
-    /// Positions of anything real: states and velocities of the smoother, velocities with their variance.
+    /// Positions of a physical system: states and velocities by the smoother, velocities with their variance.
     Smoothed(Smoother),
-    /// Noisy positions with clean velocities or commands: fused states, velocities as recorded. The states' remaining
-    /// error is left out.
+    /// Noisy positions with clean velocities or commands: fused states, velocities as recorded. The remaining
+    /// error of the states is neglected.
     Fused(Fusion),
 }
 

@@ -17,7 +17,7 @@ pub(crate) struct Selection {
     pub(crate) least_speed: f64,
 }
 
-/// What was left out at a time to test prediction.
+/// The unit of leave-one-out prediction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Grouping {
@@ -27,10 +27,10 @@ pub enum Grouping {
     BlocksOfTime,
 }
 
-/// Rows that were not learnt from, and why.
+/// Rows that were not used, and why.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct RowsDropped {
-    /// As good as standing still.
+    /// Practically at rest.
     pub still: usize,
     /// Slower than their noise.
     pub noisy: usize,
@@ -51,8 +51,8 @@ pub(crate) struct Kept {
     pub(crate) groups: Vec<Vec<usize>>,
     /// The trajectory that each group is of.
     pub(crate) trajectories: Vec<usize>,
-    /// Rows that evidence is taken of: at random, for contiguous ones would make it believe in errors that are
-    /// correlated along a trajectory.
+    /// Rows whose marginal likelihood sets the amplitudes: random ones, since contiguous rows would make it take errors
+    /// that are correlated along a trajectory for signal.
     pub(crate) hyper: Vec<usize>,
     pub(crate) grouping: Grouping,
     pub(crate) dropped: RowsDropped,

@@ -1,4 +1,4 @@
-//! What is learnt from: states, velocities, how well they are known, and which of them are kept.
+//! Training data: states, velocities, their variances, and the selection of rows.
 
 pub(crate) mod front_end;
 pub(crate) mod kept;
@@ -11,7 +11,7 @@ use nalgebra::DMatrix;
 
 use crate::GpError;
 
-/// Observed motion, one row a sample: where it was, how fast it moved, and how well that is known.
+/// Observed motion, one row a sample: state, velocity, and the variance of the velocity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rows {
     states: DMatrix<f64>,
@@ -23,8 +23,8 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Rows with certain velocities: `states` and `velocities` (n, M), one column a row, velocities in units of the
-    /// state per second; `indices` (M) tells from which trajectory and sample each comes.
+    /// Rows with exact velocities: `states` and `velocities` (n, M), one column a row, velocities in units of the
+    /// state per second; `indices` (M) holds the trajectory and sample of each.
     ///
     /// # Errors
     /// [`GpError::Lengths`], [`GpError::Value`] for what is not finite, or [`GpError::Overflow`] for speeds whose squares
@@ -55,7 +55,7 @@ impl Rows {
         Ok(Rows { states, velocities, variances: None, indices, noise: None, switches: None })
     }
 
-    /// The same with uncertain velocities: `variances` (M), of each row's velocity along every axis.
+    /// Adds uncertainty of the velocities: `variances` (M), of each row's velocity along every axis.
     ///
     /// # Errors
     /// [`GpError::Lengths`], or [`GpError::Value`] for what is negative or not finite.
@@ -70,7 +70,7 @@ impl Rows {
         }
     }
 
-    /// The same with what the front end found: the standard deviation of its noise, in units of the state, and for
+    /// Adds the front end's estimates: the standard deviation of its noise, in units of the state, and for
     /// every sample of every trajectory the probability that a constraint switched before it.
     #[must_use]
     pub fn with_findings(self, noise: f64, switches: Option<Vec<Vec<f64>>>) -> Self {
@@ -123,8 +123,8 @@ impl Rows {
     }
 
     /// Share of squares by which a step between two samples differs from the velocity there, where velocities were found
-    /// from positions: the median of ‖û_{i+1} − û_i‖²/4‖û_i‖² over samples next to each other. Positions do not tell
-    /// whether what moved went on steadily or in steps of that size.
+    /// from positions: the median of ‖û_{i+1} − û_i‖²/4‖û_i‖² over samples next to each other. Positions alone do not
+    /// show whether the motion was steady or in steps of that size.
     pub fn step_change(&self) -> Option<f64> {
         self.switches.as_ref()?;
         let next_to_each_other = |at: &usize| {

@@ -1,4 +1,4 @@
-//! How uncertain each row is compared with the others: D of (S6).
+//! Relative noise variance of each row: D of (S6).
 
 /// Least weight: no row is believed more than a thousand times the median.
 const LEAST: f64 = 1e-3;

@@ -13,9 +13,9 @@ use crate::slope::expansion::Expansion;
 use crate::slope::model::SlopeModel;
 use crate::{GpError, Rows};
 
-/// What the slope GP is conditioned on: (S1), in scaled coordinates and with noise weights.
+/// The slope GP's training data: (S1), in scaled coordinates and with noise weights.
 ///
-/// For fits of one's own use [`SlopeGp`](crate::SlopeGp); this is for those who set the amplitudes themselves.
+/// To fit a policy use [`SlopeGp`](crate::SlopeGp); with these data the caller sets the amplitudes.
 #[derive(Debug, Clone)]
 pub struct SlopeData {
     pub(crate) scaling: Scaling,
@@ -102,8 +102,8 @@ impl SlopeData {
         task.evidence(&DVector::from_column_slice(theta))
     }
 
-    /// The model at θ with noise raised by κ, and what it predicts of each trajectory left out; none if the covariance
-    /// has no Cholesky factor.
+    /// The model at θ with noise raised by κ, and its leave-one-trajectory-out predictions; none if the covariance has no
+    /// Cholesky factor.
     ///
     /// # Panics
     /// If there is not one θ a block and one more.
@@ -113,7 +113,7 @@ impl SlopeData {
         Some((self.model(blocks.to_vec(), fit), left_out))
     }
 
-    /// Amplitudes by evidence on the hyper rows, noise by prediction: (S8), (S11).
+    /// Amplitudes by marginal likelihood on the hyper rows, noise by held-out prediction: (S8), (S11).
     pub(crate) fn fit(&self, blocks: &[Block], hyper: &[usize]) -> Option<FamilyFit> {
         fit_family(&self.covariance(blocks), hyper, &self.conditions())
     }

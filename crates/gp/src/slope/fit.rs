@@ -9,7 +9,7 @@ use crate::slope::search::outcome;
 use crate::slope::slope_gp::SlopeGp;
 use crate::{GpError, Rows};
 
-/// What a slope GP learnt: a policy, its uncertainty, and how far it can be trusted.
+/// A fitted slope GP: policy, uncertainty and trust report.
 ///
 /// Stored by serde and read back, it predicts the same to the last bit.
 #[derive(Debug, Clone)]
@@ -19,10 +19,10 @@ pub struct SlopeFit {
 }
 
 impl SlopeGp {
-    /// Learns from rows. The generator draws one permutation and nothing else.
+    /// Learns from rows. The generator draws one permutation and, where rows are thinned, an offset.
     ///
     /// # Errors
-    /// [`GpError::Parameter`], or what the rows are refused for: too few, no motion, one state, no Cholesky factor.
+    /// [`GpError::Parameter`], or why the rows are refused: too few, no motion, one state, no Cholesky factor.
     pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<SlopeFit, GpError> {
         let kept = self.selection()?.keep(rows, rng)?;
         let outcome = outcome(self, &kept)?;
@@ -52,7 +52,7 @@ impl SlopeFit {
         self.model.potential_difference(x, from)
     }
 
-    /// How far to trust it.
+    /// Numbers and warnings about the fit.
     pub fn report(&self) -> &TrustReport {
         &self.report
     }

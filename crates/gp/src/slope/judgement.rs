@@ -1,4 +1,4 @@
-//! The trust report of a slope GP: section 7, and (R6).
+//! The trust report of a slope GP, with the error to expect (R6).
 
 use nalgebra::{DMatrix, DVectorView};
 use rayon::prelude::*;
@@ -26,7 +26,7 @@ const SWITCHED: f64 = 0.5;
 /// By how much a posterior that left-out movements confirm was too narrow, at most.
 const OPTIMISTIC: f64 = 2.0;
 
-/// What a report is about.
+/// Input of a report.
 pub(crate) struct Chosen<'a> {
     pub(crate) outcome: &'a Outcome,
     pub(crate) kept: &'a Kept,
@@ -37,9 +37,9 @@ pub(crate) struct Chosen<'a> {
 /// Whether movements passed the same places in other directions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Across {
-    /// Constraints varied: left-out movements test the policy across the paths of the others.
+    /// Constraints varied: held-out movements test the policy across the paths of the others.
     Tested,
-    /// As far as is known, everything went alike, and what is across was never tested.
+    /// All movements may have gone alike, so that nothing tested the policy across them.
     Untested,
 }
 

@@ -1,4 +1,4 @@
-//! The seam: what the slope GP and its policy share with all other learners.
+//! The slope GP behind the traits of all learners.
 
 use motion::{Demonstrations, LearnError, Learner, LearntPolicy, Policy, Potential, SampleIndex};
 use nalgebra::{DVectorView, DVectorViewMut};
@@ -9,12 +9,12 @@ use crate::FrontEnd;
 use crate::slope::fit::SlopeFit;
 use crate::slope::slope_gp::SlopeGp;
 
-/// The slope GP as a learner: what was recorded, and what is made of it.
+/// The slope GP as a learner, with the front end that makes its rows.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct SlopeLearner {
     /// How recordings become rows.
     pub front_end: FrontEnd,
-    /// What learns from them.
+    /// The Gaussian process fitted to them.
     pub gp: SlopeGp,
 }
 

@@ -1,4 +1,4 @@
-//! What is taken where left-out movements cannot tell policies apart.
+//! Selects a policy where held-out movements cannot tell policies apart.
 
 use crate::left_out::comparison::difference;
 use crate::left_out::curl_test::DIFFERS;

@@ -62,7 +62,7 @@ impl SlopeModel {
         self.covariances(&[state]).remove(0)
     }
 
-    /// The same before anything was observed.
+    /// Prior covariance of π(x), (n, n), in the same units.
     pub fn prior_covariance(&self, state: DVectorView<'_, f64>) -> DMatrix<f64> {
         let (expansion, z) = (self.expansion(), self.expansion().scaling.of_state(state));
         let basis = DMatrix::<f64>::identity(z.len(), z.len());

@@ -5,29 +5,31 @@ use crate::kernel::family::{Family, Trend};
 use crate::left_out::curl_test::CurlTest;
 use crate::rows::kept::Selection;
 
-/// A Gaussian process on a potential that is seen only through slopes along the observed motion (S1).
+/// A Gaussian process on a potential, observed only through slopes along the motion (S1).
 ///
-/// Under a constraint u = Nπ with N an orthogonal projector, uᵀπ = uᵀu whatever N is: every sample is one linear equation
-/// in π. Nothing is aligned and nothing discarded. From derivative observations in Gaussian processes (Solak,
-/// Murray-Smith, Leithead, Leith, Rasmussen 2003; Rasmussen & Williams 2006, 9.4) and the inconsistency loss of Howard,
-/// Klanke, Gienger, Goerick, Vijayakumar 2009.
+/// Under a constraint u = Nπ with N the orthogonal projection onto the null space, uᵀπ = uᵀu whichever N it is: every
+/// sample is one linear equation in π. The same holds for orthogonal projections onto convex cones (Moreau), but not for
+/// constraints that push (A u = b) or move, nor for oblique projections. Nothing is aligned or discarded.
+///
+/// The method combines derivative observations in Gaussian processes (Solak, Murray-Smith, Leithead, Leith, Rasmussen
+/// 2003; Rasmussen & Williams 2006, 9.4) with the inconsistency loss of Howard, Klanke, Gienger, Goerick, Vijayakumar 2009.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SlopeGp {
-    /// Families tried; the one that predicts left-out trajectories best is kept, ties to the first. If the first predicts
-    /// all but 1e-8 of the variance, no other is.
+    /// Families tried; the one that predicts held-out trajectories best is kept, ties to the first. If the first predicts
+    /// all but 1e-8 of the variance, the others are skipped.
     pub families: Vec<Family>,
     /// Whether families have a trend.
     pub trend: Trend,
-    /// Rows learnt from, at most; random ones are left out. Time grows with its cube, memory with its square.
+    /// Largest number of rows; more are thinned evenly in time. Time grows with its cube, memory with its square.
     pub max_rows: usize,
-    /// Rows that amplitudes are chosen on.
+    /// Number of random rows whose marginal likelihood sets the amplitudes.
     pub hyper_rows: usize,
-    /// Rows of uncertain velocity count if |u|² exceeds this squared times the variance of u.
+    /// Rows of uncertain velocity are used if |u|² exceeds this squared times the variance of u.
     pub least_snr: f64,
-    /// Rows count if |u| exceeds this share of the largest.
+    /// Rows are used if |u| exceeds this share of the largest.
     pub least_speed: f64,
-    /// Whether rotation is allowed for.
+    /// Whether a rotational component is tested.
     pub curl_test: CurlTest,
 }
 

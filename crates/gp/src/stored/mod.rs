@@ -1,5 +1,5 @@
-//! Fits as they are stored: what their policies are made of, to the last bit. The Cholesky factor, which only the
-//! uncertainty needs, is made again.
+//! Stored fits: the parameters of their policies, to the last bit. The Cholesky factor, which only the uncertainty
+//! needs, is recomputed.
 
 mod direct;
 mod slope;

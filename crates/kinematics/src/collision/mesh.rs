@@ -1,6 +1,6 @@
 use nalgebra::Point3;
 
-/// What a caller's resolver makes of a mesh file. Vertices in the file's own unit; the URDF's scale is applied later.
+/// A mesh file as the caller's resolver returns it. Vertices in the file's own unit; the URDF's scale is applied later.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MeshShape {
     /// The triangles themselves: hollow, so that a shape wholly inside touches nothing.

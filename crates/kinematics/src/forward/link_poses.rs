@@ -12,7 +12,7 @@ use crate::{
     nodes::{Padded, Placement, padded},
 };
 
-/// Where every link is in one configuration: what [`RobotModel::forward_kinematics`] found.
+/// Poses of all links in one configuration, the result of [`RobotModel::forward_kinematics`].
 #[derive(Debug, Clone, Copy)]
 pub struct LinkPoses<'a> {
     robot: &'a RobotModel,

@@ -12,11 +12,11 @@ pub struct Attachment {
     pub parent: LinkId,
     /// The joint's frame in the parent's frame, metres.
     pub origin: IsometryMatrix3<f64>,
-    /// What the joint does; `None` for a fixed one.
+    /// The joint's motion; `None` for a fixed one.
     pub joint: Option<JointMotion>,
 }
 
-/// What a moving joint does: a rotation or a translation by `multiplier` · q\[`column`\] + `offset`.
+/// The motion of a joint: a rotation or a translation by `multiplier` · q\[`column`\] + `offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointMotion {
     /// About or along `axis`.

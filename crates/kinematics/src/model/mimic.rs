@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// For each joint of the file how it gets its value, `None` for fixed joints. Columns count the active joints (those
-/// that move and follow nobody) in document order.
+/// that move and follow no other) in document order.
 pub(crate) fn couplings(joints: &[UrdfJoint]) -> Result<Vec<Option<Coupling>>, KinematicsError> {
     let by_name: HashMap<&str, usize> = joints.iter().enumerate().map(|(i, joint)| (joint.name.as_str(), i)).collect();
     let mut couplings = vec![None; joints.len()];
@@ -60,7 +60,7 @@ fn resolve(
     Ok(())
 }
 
-/// What a joint without a coupling of its own follows.
+/// The joint followed by a joint without a coupling.
 fn mimic(joint: &UrdfJoint) -> &Mimic {
     match &joint.motion {
         UrdfMotion::Moving { mimic: Some(mimic), .. } => mimic,

@@ -1,4 +1,4 @@
-//! What a robot is: [`RobotModel`], built (`build`) from tags as a tree (`tree`) whose mimic joints are resolved
+//! The robot: [`RobotModel`], built (`build`) from tags as a tree (`tree`) whose mimic joints are resolved
 //! (`mimic`); its joints (`joint`) and their limits (`limits`); how a link hangs on its parent (`attachment`).
 
 mod attachment;
@@ -29,7 +29,7 @@ pub struct LinkId(pub(crate) usize);
 /// A robot: a tree of links and joints, checked and immutable.
 ///
 /// Poses are in the root link's frame, in metres; angles in radians. Configurations q (n) and the columns of Jacobians
-/// follow the active joints in document order; mimic joints have no coordinate of their own, their part of a Jacobian
+/// follow the active joints in document order; mimic joints have no coordinate, and their part of a Jacobian
 /// is added to the column of the joint they follow.
 #[derive(Debug, Clone)]
 pub struct RobotModel {
@@ -119,7 +119,7 @@ impl RobotModel {
         self.collision_shapes.as_deref().map_err(Clone::clone)
     }
 
-    /// What the file says that was passed over.
+    /// Parts of the file that were ignored.
     pub fn warnings(&self) -> &[UrdfWarning] {
         &self.warnings
     }

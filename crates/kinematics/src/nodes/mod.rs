@@ -1,4 +1,4 @@
-//! A robot as forward kinematics sees it: links in one array, parents first, each moved by its joint.
+//! A robot for forward kinematics: links in one array, parents first, each moved by its joint.
 
 mod coupling;
 mod node;

@@ -3,7 +3,7 @@ use roxmltree::Node;
 use super::{Element, UrdfCollision, UrdfJoint, UrdfProblem, UrdfWarning, geometry, joint, lenient, tag::children};
 use crate::KinematicsError;
 
-/// What a URDF says about kinematics, in document order. Every number is finite; names are not looked up yet.
+/// The kinematics of a URDF, in document order. Every number is finite; names are not looked up yet.
 #[derive(Debug, Clone)]
 pub(crate) struct UrdfRobot {
     pub(crate) name: String,

@@ -1,4 +1,4 @@
-//! What the crate urdf-rs has read, as [`UrdfRobot`]: its numbers and names are checked as those of a text are.
+//! Robots read by the crate urdf-rs, as [`UrdfRobot`]: its numbers and names are checked as those of a text are.
 
 use nalgebra::{IsometryMatrix3, Translation3, Vector3};
 use urdf_rs::{Joint, JointLimit, JointType, Link, Pose, Robot};

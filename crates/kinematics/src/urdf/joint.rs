@@ -9,7 +9,7 @@ use super::{
 };
 use crate::KinematicsError;
 
-/// A joint as the file describes it; links and mimic targets are names that nobody has looked up yet.
+/// A joint as the file describes it; links and mimic targets are names not yet resolved.
 #[derive(Debug, Clone)]
 pub(crate) struct UrdfJoint {
     pub(crate) name: String,
@@ -26,7 +26,7 @@ impl UrdfJoint {
     }
 }
 
-/// What a joint can do.
+/// Type of a joint.
 #[derive(Debug, Clone)]
 pub(crate) enum UrdfMotion {
     Fixed,

@@ -34,7 +34,7 @@ fn blanked(text: &str, start: &str, end: &str) -> String {
     kept + rest
 }
 
-/// The text with prefixes that nobody declared declared at the outermost tag: foreign tags they are.
+/// The text with undeclared prefixes declared at the outermost tag, as foreign tags.
 fn declared_prefixes(mut text: String) -> String {
     let mut declared: Vec<String> = Vec::new();
     while declared.len() < MOST_PREFIXES {

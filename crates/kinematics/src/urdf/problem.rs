@@ -175,10 +175,10 @@ pub enum UrdfProblem {
         /// The length, in metres.
         value: f64,
     },
-    /// Several links are nobody's child.
+    /// Several links have no parent.
     #[error("it has several roots: {}; exactly one link may be without a parent joint", roots.join(", "))]
     SeveralRoots {
-        /// The links that are nobody's child.
+        /// The links without a parent.
         roots: Vec<String>,
     },
 }

@@ -1,4 +1,4 @@
-//! What is refused before an XML reader sees it, because reading it would take very long.
+//! Refuses texts that an XML reader would take very long to read.
 
 use super::UrdfProblem;
 

@@ -1,4 +1,4 @@
-//! How receptive fields come into being, and grow.
+//! Creation and growth of receptive fields.
 
 use crate::Metric;
 use crate::field::rows::Rows;

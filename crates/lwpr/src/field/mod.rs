@@ -98,7 +98,7 @@ impl Layout {
     }
 }
 
-/// All directions. With two inputs there are two, from birth on, which the compiler is told.
+/// All directions. With two inputs there are two, from birth on, which the compiler knows.
 #[inline(always)]
 pub(crate) fn known_directions<T>(directions: &mut [Direction<T>], layout: Layout) -> &mut [Direction<T>] {
     if layout.n_in == 2 { &mut directions[..2] } else { directions }

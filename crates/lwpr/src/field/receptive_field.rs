@@ -4,7 +4,7 @@ use crate::Metric;
 use crate::field::Field;
 use crate::settings::Settings;
 
-/// A receptive field of a model, to look at.
+/// A read-only view of a receptive field of a model.
 #[derive(Debug, Clone, Copy)]
 pub struct ReceptiveField<'a> {
     field: &'a Field,

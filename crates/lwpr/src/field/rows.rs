@@ -1,4 +1,4 @@
-//! Memory as vector registers like it.
+//! Memory aligned for vector registers.
 
 use std::ops::{Deref, DerefMut};
 

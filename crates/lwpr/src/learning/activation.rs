@@ -1,4 +1,4 @@
-//! Which fields a sample activates, and how strongly.
+//! Activation of the fields by a sample.
 
 use lanes::{LANES, Lanes, Number, Register, groups_of};
 use pulp::Simd;
@@ -205,7 +205,7 @@ impl Near {
         (self.among_all, self.largest) = (true, largest.largest());
     }
 
-    /// Whether the sample needs a field of its own.
+    /// Whether the sample needs a new field.
     #[inline(always)]
     pub(crate) fn asks_for_field(&self, settings: &Settings) -> bool {
         self.largest <= settings.params.w_gen

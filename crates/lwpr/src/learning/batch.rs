@@ -28,7 +28,7 @@ pub(crate) struct BatchTraining<'a> {
     pub(crate) scratch: &'a mut BatchScratch,
 }
 
-/// What training one output works in.
+/// Memory of training one output.
 #[derive(Debug, Clone)]
 pub(crate) struct BatchScratch {
     strongest: Vec<Strongest>,
@@ -47,7 +47,7 @@ pub(crate) struct TooMany {
     pub(crate) sample: usize,
 }
 
-/// What a lane is at: a field, and the sample it learns from next.
+/// State of a lane: a field, and the sample it learns from next.
 #[derive(Debug, Clone, Copy)]
 struct Task {
     field: usize,
@@ -150,7 +150,7 @@ impl BatchTraining<'_> {
         queue.for_each(|k| self.train_rest(simd, k, 0));
     }
 
-    /// Fills a lane with the next field that has anything to learn here. It seldom happens: a function of its own keeps stack
+    /// Fills a lane with the next field that has anything to learn here. It seldom happens: a separate function keeps stack
     /// frames small where nothing is optimised.
     #[inline(always)]
     fn next_field<S: Simd>(

@@ -150,7 +150,7 @@ impl<S: Simd> LaneBlock<S> {
     }
 }
 
-/// [`LaneBlock::train`] for one number of dimensions, a function of its own.
+/// [`LaneBlock::train`] for one number of dimensions, as a separate function.
 struct TrainLanes<'a, S: Simd, M, const N: usize> {
     block: &'a mut LaneBlock<S>,
     settings: &'a Settings,

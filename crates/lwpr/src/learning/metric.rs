@@ -32,7 +32,7 @@ impl Shape for Full {
     const METRIC: Metric = Metric::Full;
 }
 
-/// What the steps of all elements of M share.
+/// Quantities shared by the steps of all elements of M.
 pub(crate) struct Step<T: Number> {
     activation: Activation<T>,
     /// ∂J₁/∂w and ∂²J₁/∂w² of the weighted leave-one-out cost J₁.

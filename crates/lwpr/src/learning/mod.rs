@@ -1,4 +1,4 @@
-//! How receptive fields learn: one sample at a time, or a batch field by field.
+//! Training of receptive fields: one sample at a time, or a batch field by field.
 
 pub(crate) mod activation;
 pub(crate) mod activation_table;

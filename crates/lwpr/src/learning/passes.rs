@@ -12,7 +12,7 @@ use crate::{Lwpr, LwprError};
 pub(crate) const SHORTEST: usize = 64;
 const LONGEST: usize = 1024;
 
-/// What passes over a data set work in.
+/// Memory of passes over a data set.
 pub(crate) struct BatchFit {
     length: usize,
     chunk: Chunk,

@@ -17,7 +17,7 @@ pub(crate) struct Sample<'a, T> {
 /// Σ w s² stays above this, so that it can divide: equal samples spread along no direction, and what was there is forgotten.
 const LEAST_SPREAD: f64 = 1e-150;
 
-/// What the metric needs to know of a sample that the regression has absorbed.
+/// Quantities of an absorbed sample that the metric needs.
 pub(crate) struct Absorbed<T: Number> {
     /// Error after the sample was absorbed, and before (leave-one-out).
     pub(crate) e: T,

@@ -54,7 +54,7 @@ pub(crate) struct LearnFromOne<'a> {
 
 impl LearnFromOne<'_> {
     /// Goes to the code for this row length. Those of common lengths are known to the compiler, so that loops unroll and
-    /// rows stay in registers. Each is a function of its own, which keeps stack frames small where nothing is optimised.
+    /// rows stay in registers. Each is a separate function, which keeps stack frames small where nothing is optimised.
     #[inline(always)]
     pub(crate) fn run<S: Simd>(self, simd: S) {
         if const { S::F64_LANES == 1 } {

@@ -43,7 +43,7 @@ impl Strongest {
         (self.w, self.field) = if w > self.w { (w, field) } else { (self.w, earlier) };
     }
 
-    /// Whether the sample needs a field of its own.
+    /// Whether the sample needs a new field.
     #[inline(always)]
     pub(crate) fn asks_for_field(&self, settings: &Settings) -> bool {
         self.w <= settings.params.w_gen

@@ -20,18 +20,18 @@ use crate::{LwprError, LwprParams, ReceptiveField};
 
 /// A model that learns; make one with [`LwprParams::build`].
 ///
-/// It can be stored with serde and goes on learning afterwards as if nothing had happened, bit for bit.
+/// It can be stored with serde and continues learning afterwards with the same bits.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(try_from = "ModelRecord", into = "ModelRecord")]
 pub struct Lwpr {
     pub(crate) settings: Settings,
     pub(crate) outputs: Vec<SubModel>,
-    /// How many samples have been learnt.
+    /// Number of samples learnt.
     pub(crate) n_data: usize,
     online: Online,
 }
 
-/// What a single update works in, kept so that it allocates nothing.
+/// Memory of a single update, kept so that it allocates nothing.
 #[derive(Debug, Clone)]
 struct Online {
     x: Rows,
@@ -230,12 +230,12 @@ impl Lwpr {
         self.settings.n_out
     }
 
-    /// How many samples have been learnt.
+    /// Number of samples learnt.
     pub fn n_data(&self) -> usize {
         self.n_data
     }
 
-    /// How many receptive fields `output` has.
+    /// Number of receptive fields of `output`.
     ///
     /// # Panics
     /// If there is no such output.
@@ -243,7 +243,7 @@ impl Lwpr {
         self.outputs[output].fields.len()
     }
 
-    /// How many receptive fields of `output` were removed by pruning.
+    /// Number of receptive fields of `output` removed by pruning.
     ///
     /// # Panics
     /// If there is no such output.

@@ -1,4 +1,4 @@
-//! A model as it is stored: complete, so that training goes on as if it had never stopped.
+//! The stored form of a model, complete, so that training can continue with the same bits.
 
 use serde::{Deserialize, Serialize};
 

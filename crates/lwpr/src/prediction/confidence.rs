@@ -1,4 +1,4 @@
-//! How far a prediction may be off.
+//! Predictive standard deviation.
 
 use lanes::{LANES, Number, Register, total};
 use pulp::Simd;
@@ -7,7 +7,7 @@ use super::field_table::{FieldTable, NOISE, NOISE_KNOWN};
 use super::sweep::Active;
 
 /// √(Σ w σ² + Σ w (y − `value`)²), with variances σ² = Γ(1 + w Σ s²/Σ w s²); fields without errors add their spread, but no
-/// noise of their own. Infinite if none has errors. A function of its own, compiled once for all numbers of dimensions.
+/// noise of their own. Infinite if none has errors. A separate function, compiled once for all numbers of dimensions.
 pub(super) struct Confidence<'a> {
     pub(super) table: &'a FieldTable,
     pub(super) x: &'a [f64],

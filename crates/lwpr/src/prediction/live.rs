@@ -25,7 +25,7 @@ struct Term {
     noise: Option<f64>,
 }
 
-/// What a query works in; each thread has one, so that none allocates more than once.
+/// Memory of a query; each thread has one, so that none allocates more than once.
 #[derive(Debug, Default)]
 struct Scratch {
     /// x, x − mean less what the directions explain, M(x − c).
@@ -40,8 +40,8 @@ thread_local! {
 }
 
 impl Lwpr {
-    /// What the model says about `x` as it stands, without a snapshot; whether every output has support, without which
-    /// only `max_activation` is answered. Fields whose activation is at most `cutoff` do not take part. Allocates nothing
+    /// Prediction at `x` by the current model, without a snapshot. Returns whether every output has support; otherwise only
+    /// `max_activation` is written. Fields whose activation is at most `cutoff` do not take part. Allocates nothing
     /// once a thread has asked a model of that size.
     ///
     /// # Panics

@@ -1,4 +1,4 @@
-//! What prediction needs of one receptive field.
+//! The part of a receptive field that prediction needs.
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! What a model says about an input.
+//! Prediction: value, gradient and confidence at an input.
 
 mod confidence;
 mod distance;
@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVector, DVectorView};
 pub use predictor::Predictor;
 use sweep::Wanted;
 
-/// What a model says about one input.
+/// Prediction at one input.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
     /// The prediction (`n_out`).

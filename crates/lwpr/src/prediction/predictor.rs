@@ -91,14 +91,15 @@ impl Predictor {
         (0..queries).into_par_iter().map(answer).collect()
     }
 
-    /// Everything about `x`; `None` if some output has no trustworthy field activated above the cutoff.
+    /// Value, gradient, confidence and activation at `x`; `None` if some output has no trustworthy field activated above
+    /// the cutoff.
     pub fn predict(&self, x: DVectorView<'_, f64>) -> Option<Prediction> {
         let mut prediction = Prediction::zeros(self.n_in(), self.n_out());
         self.predict_into(x, &mut prediction).then_some(prediction)
     }
 
-    /// Everything about `x`, written into `prediction`; whether every output has support, without which only
-    /// `max_activation` is answered.
+    /// The same, written into `prediction`. Returns whether every output has support; otherwise only `max_activation` is
+    /// written.
     ///
     /// # Panics
     /// If `prediction` was made for other numbers of inputs and outputs.

@@ -1,4 +1,4 @@
-//! One sweep over the fields of an output, for everything that is asked of a query.
+//! One sweep over the fields of an output, for all quantities of a query.
 
 use std::cell::RefCell;
 
@@ -12,7 +12,7 @@ use super::hessian::Hessian;
 use crate::Kernel;
 use crate::field::rows::Rows;
 
-/// What all queries of a snapshot share.
+/// Data shared by all queries of a snapshot.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Scale {
     pub(super) kernel: Kernel,
@@ -31,7 +31,7 @@ pub(super) struct Query<'a> {
     pub(super) norm_out: f64,
 }
 
-/// What is asked for besides the value. All answers are in the units of inputs and outputs.
+/// Requested quantities besides the value. All answers are in the units of inputs and outputs.
 #[derive(Debug, Default)]
 pub(super) struct Wanted<'a> {
     /// The gradient, one element every `stride`.
@@ -55,7 +55,7 @@ pub(super) struct Active {
     pub(super) block: usize,
 }
 
-/// What a query works in; each thread has one, so that none allocates more than once.
+/// Memory of a query; each thread has one, so that none allocates more than once.
 #[derive(Debug, Default)]
 struct Scratch {
     x: Vec<f64>,
@@ -74,7 +74,7 @@ thread_local! {
 
 /// The weighted mean of the local predictions, and what else is wanted; `None` without support.
 ///
-/// Two dimensions have code of their own, since their arithmetic is shorter than loops around it, and so has a full metric
+/// Two dimensions have separate code, since their arithmetic is shorter than loops around it, and so has a full metric
 /// of two or six.
 pub(super) fn sweep(query: &Query<'_>, wanted: &mut Wanted<'_>) -> Option<f64> {
     SCRATCH.with_borrow_mut(|scratch| {
@@ -134,7 +134,7 @@ impl<const FULL: bool, const N: usize> pulp::WithSimd for Known<'_, '_, FULL, N>
     }
 }
 
-/// For a processor without vector instructions, where nothing unrolls; not inlined, so that nobody else carries it along.
+/// For a processor without vector instructions, where nothing unrolls; not inlined, so that no other code carries it along.
 #[cold]
 #[inline(never)]
 fn without_vectors<const FULL: bool>(sweep: Sweep<'_, '_>) -> Option<f64> {

@@ -1,4 +1,4 @@
-//! What can be chosen about a model, checked, and what follows from it.
+//! Parameters of a model, checked, and the quantities derived from them.
 
 pub(crate) mod kernel;
 pub(crate) mod params;

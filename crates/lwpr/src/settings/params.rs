@@ -14,15 +14,15 @@ pub enum Metric {
     Full,
 }
 
-/// How receptive fields learn their shape.
+/// Adaptation of the fields' shapes.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum MetricAdaptation {
-    /// They keep the metric they were born with.
+    /// Fields keep their initial metric.
     Fixed,
     /// Stochastic gradient descent on the leave-one-out error with the fixed rate `init_alpha`.
     #[default]
     Gradient,
-    /// The same with a rate of its own for each element, adapted by incremental delta-bar-delta (IDBD).
+    /// The same with an individual rate for each element, adapted by incremental delta-bar-delta (IDBD).
     Meta {
         /// Learning rate of the logarithm of the learning rates (library: 250).
         rate: f64,
@@ -41,7 +41,7 @@ pub enum Pruning {
     Narrower,
 }
 
-/// Everything that can be chosen about a model; the default is the C library's.
+/// Parameters of a model; the defaults are those of the C library.
 ///
 /// Sizes speak of *normalised* data x/`norm_in`, y/`norm_out`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -56,7 +56,7 @@ pub struct LwprParams {
     pub init_alpha: f64,
     /// Diagonal or full.
     pub metric: Metric,
-    /// Whether and how the metric adapts.
+    /// Adaptation of the metric.
     pub adaptation: MetricAdaptation,
     /// Shape of a receptive field.
     pub kernel: Kernel,

@@ -1,4 +1,4 @@
-//! LWPR of outputs of any mean and size.
+//! LWPR on standardised outputs.
 
 mod record;
 
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::standardised::record::StandardisedRecord;
 use crate::{Lwpr, LwprError, LwprParams, Predictor};
 
-/// How LWPR learns outputs of any mean and size, and how it is asked afterwards.
+/// Training of LWPR on standardised outputs, and the cutoff of its predictions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Training {
@@ -99,7 +99,7 @@ impl StandardisedModel {
         self.model.n_out()
     }
 
-    /// Means of the training outputs (`n_out`): what to believe where there is no support.
+    /// Means of the training outputs (`n_out`): the predictions where there is no support.
     pub fn mean(&self) -> &DVector<f64> {
         &self.mean
     }
@@ -109,12 +109,12 @@ impl StandardisedModel {
         self.cutoff
     }
 
-    /// The model beneath, which learnt y − mean.
+    /// The underlying model, which learnt y − mean.
     pub fn model(&self) -> &Lwpr {
         &self.model
     }
 
-    /// What predicts y − mean.
+    /// The predictor of y − mean.
     pub fn predictor(&self) -> &Predictor {
         &self.predictor
     }

@@ -60,7 +60,9 @@ class PolicyAlign(Learner):
 
 
 class SlopeGp(Learner):
-    __doc__ = f"""A Gaussian process on uᵀπ = uᵀu, which holds under any constraint.
+    __doc__ = f"""A Gaussian process on uᵀπ = uᵀu, for constraints that project π orthogonally onto their null space.
+
+    It holds for orthogonal projections onto convex cones as well, but not for constraints that push (A u = b) or move.
 
     {Learner.__init__.__doc__}"""
     _learner = "slope"

@@ -16,7 +16,7 @@ const TAKEN: [&str; 56] = [
     "CENTRE", "METRIC", "SLOPE",
 ];
 
-/// How a model is written in C: one file of ISO C99 that needs `math.h` alone.
+/// A model in C: one file of ISO C99 that needs only `math.h`.
 ///
 /// It defines `int policy(const double *x, double *u, double *phi)`: from a state (n) in the units of the recording it
 /// writes the action (n), per second, and the potential (NaN where the policy has none), either of which may be `NULL`,
@@ -29,12 +29,12 @@ pub struct CSource {
     pub precision: Precision,
 }
 
-/// What numbers are in C.
+/// Number type in C.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Precision {
     /// `double`: the model's own results but for rounding.
     Double,
-    /// `float`: for controllers that have nothing else.
+    /// `float`, for controllers without double precision.
     Single,
 }
 

@@ -13,7 +13,7 @@ pub enum ExportError {
         /// What was given.
         name: String,
     },
-    /// The stored form of the policy is not the one that is known.
+    /// The stored form of the policy is unknown.
     #[error("the policy's stored form is not understood: {reason}")]
     Form {
         /// What is unexpected.

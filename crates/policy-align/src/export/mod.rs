@@ -1,4 +1,4 @@
-//! Models as programs that need nothing of this one.
+//! Export of models as stand-alone programs.
 
 mod c;
 mod c_gp;

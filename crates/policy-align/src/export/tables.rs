@@ -20,7 +20,7 @@ pub(super) struct Tables {
     pub(super) learner: LearnerTables,
 }
 
-/// What each learner's policy is made of.
+/// Parameters of each learner's policy.
 pub(super) enum LearnerTables {
     Lwpr(LwprTables),
     Slope(SlopeTables),
@@ -60,7 +60,7 @@ fn stored<T: Serialize, S: DeserializeOwned>(value: &T) -> Result<S, ExportError
     serde_json::from_value(serde_json::to_value(value).map_err(form)?).map_err(form)
 }
 
-/// What the two Gaussian processes store, as far as their means go.
+/// The stored parameters of the two Gaussian processes' means.
 #[derive(serde::Deserialize)]
 pub(super) struct StoredGp<B> {
     pub(super) dim: usize,

@@ -22,7 +22,7 @@ const NOISY: f64 = 0.1;
 const INIT_D: [f64; 5] = [1.0, 2.5, 6.0, 15.0, 40.0];
 const BANDWIDTHS: [Bandwidth; 3] = [Bandwidth::Narrow, Bandwidth::Medium, Bandwidth::Wide];
 
-/// What PolicyAlign learnt, and how it predicts movements held out.
+/// PolicyAlign's policy, and its predictions of held-out movements.
 #[derive(Debug, Clone)]
 pub(crate) struct AlignedFit {
     pub(crate) policy: PotentialPolicy,

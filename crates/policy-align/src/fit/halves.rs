@@ -1,4 +1,4 @@
-//! Do halves of the movements tell the same?
+//! Split-half agreement: do halves of the movements give the same policy?
 
 use gp::{BothReadings, CurlTest, DirectGp, GpError, ModelKind, Rows, SlopeGp};
 use motion::Policy;

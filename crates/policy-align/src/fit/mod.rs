@@ -1,4 +1,4 @@
-//! From prepared movements to a policy, with a line for everything that was decided, and how far to trust it.
+//! Learns a policy from prepared movements, with all decisions and the verdict on it.
 
 mod actions;
 mod aligning;
@@ -26,12 +26,12 @@ use aligning::AlignedFit;
 /// Rows that amplitudes are chosen on, as a share of those learnt from.
 const HYPER_SHARE: f64 = 0.5;
 
-/// A policy, how it came about, and how far to trust it.
+/// A policy with its decisions and its verdict.
 #[derive(Debug, Clone)]
 pub struct Fit {
     /// The policy, of states times the channels' scales.
     pub learnt: Learnt,
-    /// What was decided for the user, in the order of deciding.
+    /// All automatic decisions, in order.
     pub decisions: Vec<Decision>,
     /// How far to trust it.
     pub trust: Trust,
@@ -251,7 +251,7 @@ fn numbers(
     }
 }
 
-/// What the policy does not know of itself between the movements shown.
+/// Uncertainty of the policy between the demonstrated movements.
 fn unknown(readings: &BothReadings, prepared: &Prepared, rows: &gp::Rows) -> f64 {
     let states = actions::states(rows);
     let variance = actions::spread(&actions::actions(readings, &states)) / states.ncols() as f64;

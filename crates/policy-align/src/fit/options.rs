@@ -4,26 +4,26 @@ use serde::{Deserialize, Serialize};
 
 use crate::FitError;
 
-/// What a user may decide about learning; by default everything is decided from the data.
+/// Options of learning; by default everything is decided from the data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitOptions {
     /// `--learner`.
     pub learner: LearnerChoice,
-    /// The user's own reading, which overrides that of the data (`--reading`).
+    /// A reading given by the user, which overrides that of the data (`--reading`).
     pub reading: Option<Reading>,
     /// For PolicyAlign; none: chosen by held-out movements (`--bandwidth`).
     pub bandwidth: Option<Bandwidth>,
     /// For PolicyAlign; none: chosen by held-out movements (`--init-d`).
     pub init_d: Option<f64>,
-    /// Parts that episodes are divided into to test prediction (`--folds`).
+    /// Folds of the cross-validation over episodes (`--folds`).
     pub folds: usize,
-    /// Of every random choice (`--seed`).
+    /// Seed of every random choice (`--seed`).
     pub seed: u64,
-    /// Rows that Gaussian processes learn from, at most; random ones are left out (`--max-rows`).
+    /// Largest number of rows of the Gaussian processes; more are thinned evenly in time (`--max-rows`).
     pub max_rows: usize,
 }
 
-/// What learns.
+/// The learner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LearnerChoice {

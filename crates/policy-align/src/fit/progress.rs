@@ -2,11 +2,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::FitError;
 
-/// How somebody follows a fit, and stops it.
+/// Progress of a fit, and its cancellation.
 pub struct Progress<'a> {
-    /// Set by whoever wants the fit to stop; looked at between steps.
+    /// Set to cancel the fit; checked between steps.
     pub cancelled: &'a AtomicBool,
-    /// Told of every step that begins.
+    /// Called at the beginning of every step.
     pub report: &'a mut dyn FnMut(Step),
 }
 
@@ -17,7 +17,7 @@ pub struct Step {
     pub done: usize,
     /// Of so many.
     pub of: usize,
-    /// What begins now.
+    /// The step that begins.
     pub what: &'static str,
 }
 

@@ -4,7 +4,7 @@ use prepare::{thinned, with_slopes};
 
 use crate::{Prepared, Recorded};
 
-/// What the Gaussian processes learn from.
+/// The rows that the Gaussian processes learn from.
 pub(crate) fn rows(prepared: &Prepared) -> Result<Rows, GpError> {
     let demonstrations = averaged(prepared)?;
     let demonstrations = match prepared.recorded {

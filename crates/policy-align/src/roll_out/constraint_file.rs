@@ -30,13 +30,13 @@ use super::link_point::LinkPoint;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ConstraintFileError {
-    /// Not TOML, or with members that nobody knows.
+    /// Not TOML, or with unknown members.
     #[error("{reason}")]
     NotToml {
-        /// What the TOML reader says, in one line.
+        /// The TOML reader's message, in one line.
         reason: String,
     },
-    /// A constraint that says nothing, or two things.
+    /// A constraint with no kind, or with two.
     #[error("constraint {constraint}: {reason}")]
     Constraint {
         /// Counted from 1.
@@ -82,7 +82,7 @@ enum Rows {
 }
 
 impl ConstraintSet {
-    /// Of a text. `channels` are the names of the state; robots are looked for from `folder` on.
+    /// From a text. `channels` are the names of the state; paths of robots are relative to `folder`.
     ///
     /// # Errors
     /// [`ConstraintFileError`].

@@ -32,7 +32,7 @@ pub(crate) struct Part {
 /// A(x, t), (k, n), or why it has no value there.
 type Rows = dyn Fn(DVectorView<'_, f64>, f64) -> Result<DMatrix<f64>, String> + Send + Sync;
 
-/// What is constrained.
+/// The kind of constraint.
 #[derive(Clone)]
 pub(crate) enum Kind {
     /// The state keeps its value along each row of A, (k, n).
@@ -47,7 +47,7 @@ pub(crate) enum Kind {
     LinkBall { link: LinkPoint, centre: Point3<f64>, radius: f64 },
 }
 
-/// What a part says at a state.
+/// A part evaluated at a state.
 enum Said {
     /// Rows of A u = 0, in units of the state.
     Rows(DMatrix<f64>),
@@ -90,7 +90,7 @@ impl Kind {
         })
     }
 
-    /// What must not change while it holds, or for balls must not fall below 0.
+    /// The quantity that must not change while it holds, or for balls must not fall below 0.
     fn kept(&self, state: DVectorView<'_, f64>, time: f64) -> Result<(DVector<f64>, bool), String> {
         let unit_rows = |rows: &DMatrix<f64>| {
             let mut rows = rows.clone();
@@ -248,7 +248,7 @@ fn keep_off(balls: &[(f64, DVector<f64>)], free: &NullSpaceProjector, wanted: &m
 #[derive(Debug, Clone)]
 pub(crate) struct Watch<'a> {
     set: &'a ConstraintSet,
-    /// What each part had to keep when it began to hold.
+    /// The value of each part when it began to hold.
     begun: Vec<Option<DVector<f64>>>,
     /// The largest change so far, or depth within a ball, in units of the state or metres.
     pub(crate) broken_by: f64,

@@ -20,7 +20,7 @@ pub enum RollOutError {
         /// Which.
         channel: String,
     },
-    /// The demonstrations say nothing about the start.
+    /// The start is outside the demonstrated region.
     #[error("the start is outside of what was shown (support {support:.3}, at least {least:.3} is needed)")]
     Unsupported {
         /// The support there.
@@ -50,7 +50,7 @@ pub enum RollOutError {
         /// What was given.
         value: f64,
     },
-    /// So many samples that nobody wants them.
+    /// Too many samples.
     #[error("{samples} samples: that is more than {} million", LONGEST / 1_000_000)]
     TooLong {
         /// How many it would be.
@@ -72,7 +72,7 @@ pub enum RollOutError {
 pub(crate) const LONGEST: usize = 10_000_000;
 
 impl RollOutError {
-    /// What to do next.
+    /// The next step.
     pub fn remedy(&self) -> &'static str {
         match self {
             RollOutError::Start { .. } => "give one number for each channel, in this order",

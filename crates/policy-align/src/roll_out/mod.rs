@@ -33,10 +33,10 @@ const RESTING: usize = 10;
 /// Duration without another, in durations of the longest episode.
 const TIMES_AS_LONG: f64 = 3.0;
 
-/// How a policy is followed: u = N(x, t) π(x) (3), by steps that adapt.
+/// Integrates a policy under constraints, u = N(x, t) π(x) (3), with adaptive steps.
 #[derive(Debug, Clone, Default)]
 pub struct RollOut {
-    /// What must not be moved along, and when.
+    /// The constraints and their times.
     pub constraints: ConstraintSet,
     /// Limits at which to stop.
     pub limits: Option<JointLimits>,
@@ -46,14 +46,14 @@ pub struct RollOut {
     pub step: Option<f64>,
 }
 
-/// A policy that was followed.
+/// The path of a roll-out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Path {
     /// Seconds from the start, (N).
     pub times: Vec<f64>,
     /// In the units of the recording, one column a sample, (n, N).
     pub states: DMatrix<f64>,
-    /// What the constraints left of the action, in units of the state per second, (n, N).
+    /// The projected action, in units of the state per second, (n, N).
     pub velocities: DMatrix<f64>,
     /// Why it ended.
     pub stop: Stop,
@@ -66,7 +66,7 @@ pub struct Path {
 pub enum Stop {
     /// Slower than 1 % of the demonstrated median speed for ten samples, with no constraint left that may change.
     AtRest,
-    /// The next state would have been one that nothing was learnt about.
+    /// The next state would have been outside the demonstrated region.
     LeftTheData,
     /// The next state would have been beyond the limit of this joint.
     Limit(String),
@@ -176,7 +176,7 @@ impl RollOut {
     }
 }
 
-/// What stays the same on the way.
+/// The constants of a roll-out.
 struct Run<'a> {
     policy: &'a ModelPolicy<'a>,
     constraints: &'a ConstraintSet,

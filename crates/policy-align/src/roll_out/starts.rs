@@ -3,7 +3,7 @@ use nalgebra::DVector;
 use crate::Model;
 use crate::halton::between;
 
-/// Places asked for every start wanted; in many dimensions few lie where something was shown.
+/// Candidates for every start; in many dimensions few lie in the demonstrated region.
 const ASKED: usize = 200;
 
 /// Up to `count` starts for roll-outs: states of the model, (n) each in the units of the recording, spread evenly over

@@ -36,7 +36,7 @@ pub enum ModelError {
         /// Whether the checksum is wrong as well.
         changed: bool,
     },
-    /// What is there is not what was written.
+    /// The checksum does not match the contents.
     #[error("checksum: it is of another text, the file was changed or damaged after it was written; use another copy")]
     Checksum,
     /// A number of the model is NaN or infinite, so that it could not be read again.

@@ -15,7 +15,7 @@ const FORMAT: &str = "policy-align model";
 /// The version that is written; this and all before it are read.
 const VERSION: u64 = 1;
 
-/// What a file says before the model itself.
+/// Header of a model file.
 #[derive(Serialize)]
 struct Stored<'a> {
     format: &'static str,
@@ -90,7 +90,7 @@ impl Model {
         Model::from_json(&std::fs::read(path)?)
     }
 
-    /// What contradicts itself, and where.
+    /// Inconsistencies of the model, with their place.
     fn fault(&self) -> Option<(String, String)> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         let n = self.learnt.policy().dim();

@@ -1,4 +1,4 @@
-//! Does the policy know itself where other movements would go?
+//! Uncertainty of the policy between the demonstrated movements.
 
 use motion::{Demonstrations, LearntPolicy};
 use nalgebra::DVector;

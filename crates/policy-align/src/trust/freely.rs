@@ -1,4 +1,4 @@
-//! Where the policy leads if nothing hinders it.
+//! Roll-outs of the unconstrained policy.
 
 use motion::{Demonstrations, Policy};
 use nalgebra::DVector;

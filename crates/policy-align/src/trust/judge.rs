@@ -13,7 +13,7 @@ const MEASURED: f64 = 0.1;
 const FAR: f64 = 0.8;
 /// An episode whose error is so many times the usual one is named.
 const ODD: f64 = 10.0;
-/// What is free moves in all directions; less coverage than this may be a constraint.
+/// Unconstrained motion covers all directions; less coverage than this may be a constraint.
 const SPREAD: f64 = 0.25;
 /// Less coverage than this and one direction is a guess.
 const UNSEEN: f64 = 0.1;
@@ -22,7 +22,7 @@ const UNKNOWN: f64 = 0.1;
 /// From more starts than this share, and the goal lies outside what was shown.
 const LEAVING: f64 = 0.5;
 
-/// What is known when it comes to a verdict.
+/// Input of a verdict.
 pub(crate) struct Evidence<'a> {
     pub(crate) numbers: TrustNumbers,
     /// Found while preparing.

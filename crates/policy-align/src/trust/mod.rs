@@ -1,4 +1,4 @@
-//! How far a learnt policy can be trusted, without knowing the truth.
+//! Checks of a learnt policy without the truth.
 
 mod between;
 mod freely;

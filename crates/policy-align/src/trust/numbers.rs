@@ -1,13 +1,13 @@
 use gp::{Grouping, ModelKind, Reading};
 use serde::{Deserialize, Serialize};
 
-/// What a verdict rests on. Shares are of 1; errors are squared, as shares of the policy's variance unless said.
+/// The numbers behind a verdict. Shares are of 1; errors are squared, as shares of the policy's variance unless said.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrustNumbers {
     /// Movements learnt from.
     pub episodes: usize,
-    /// What the data say about hidden constraints.
+    /// The reading of the data: whether constraints acted.
     pub reading: Reading,
     /// E′ of the policy handed out: error along the path of movements left out, as a share of the policy's squares.
     pub held_out_error: f64,
@@ -19,11 +19,11 @@ pub struct TrustNumbers {
     pub direct_error: f64,
     /// Difference of slope and direct policy.
     pub gap: f64,
-    /// Error (nUPE) that the Gaussian process expects of its own policy.
+    /// Expected error (nUPE) of the Gaussian process's policy.
     pub expected_error: f64,
     /// Difference of the slope policies with and without rotation, where both predict about as well.
     pub ambiguity: f64,
-    /// Share of left-out movement that the slope GP predicts.
+    /// Held-out R² of the slope GP.
     pub slope_r_squared: f64,
     /// Mean squared left-out error over its predicted variance; 1 where error bars are right.
     pub z_squared: f64,
@@ -51,9 +51,9 @@ pub struct TrustNumbers {
     pub leaving: f64,
     /// Share of the squared steps that is noise.
     pub step_noise: f64,
-    /// What was left out at a time.
+    /// The unit of leave-one-out.
     pub grouping: Grouping,
-    /// What is known of PolicyAlign's policy; none if another learner's is handed out.
+    /// Numbers of PolicyAlign's policy; none if another learner's is handed out.
     pub aligned: Option<AlignedNumbers>,
 }
 
@@ -66,7 +66,7 @@ impl TrustNumbers {
     pub const GOOD_HALVES: f64 = 0.12;
 }
 
-/// What is known of PolicyAlign's policy.
+/// Numbers of PolicyAlign's policy.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AlignedNumbers {
@@ -75,11 +75,11 @@ pub struct AlignedNumbers {
     pub sigma_squared: Option<f64>,
     /// Movements kept.
     pub kept: usize,
-    /// Groups that hang together.
+    /// Number of connected groups.
     pub discarded: usize,
     /// Root mean square of levelled minus learnt potential, over its standard deviation.
     pub residual: f64,
-    /// Share of held-out samples that the policy knows nothing of.
+    /// Share of held-out samples outside the policy's support.
     pub unsupported: f64,
     /// Difference of what it says of movements left out from the Gaussian process's policy, as a share of that one's
     /// variance.

@@ -11,6 +11,6 @@ pub struct Trust {
     pub verdict: Verdict,
     /// Why, the worst first; those called good are mere remarks.
     pub findings: Vec<Finding>,
-    /// What it rests on.
+    /// The numbers behind it.
     pub numbers: TrustNumbers,
 }

@@ -1,0 +1,41 @@
+//! The policy of a model allocates nothing when asked for an action, after the first call on a thread.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+#[allow(dead_code, reason = "made for more than this")]
+mod cases;
+
+use std::sync::atomic::AtomicBool;
+
+use align::Bandwidth;
+use cases::{Case, Has, Plane, parabola};
+use motion::Policy as _;
+use nalgebra::{DVector, dvector};
+use policy_align::{FitOptions, LearnerChoice, MadeBy, Model, PrepareOptions, Progress, fit, prepare};
+
+fn model(learner: LearnerChoice) -> Model {
+    let case = Case::of(&Plane { count: 12, ..Plane::default() }.potential(&parabola(), 5), 12, Has::Velocities);
+    let prepared = prepare(&case.recordings, &PrepareOptions::default()).unwrap();
+    let (bandwidth, init_d) = (Some(Bandwidth::Medium), Some(10.0));
+    let options = FitOptions { learner, bandwidth, init_d, max_rows: 100, ..FitOptions::default() };
+    let mut progress = Progress { cancelled: &AtomicBool::new(false), report: &mut |_| () };
+    let made_by = MadeBy { program: "test".to_owned(), time: String::new() };
+    fit(&prepared, &options, &mut progress).unwrap().into_model(made_by, vec![])
+}
+
+#[test]
+fn actions_allocate_nothing() {
+    let allocations = |work: &mut dyn FnMut()| allocation_counter::measure(work).count_total;
+    for learner in [LearnerChoice::Auto, LearnerChoice::PolicyAlign, LearnerChoice::Slope, LearnerChoice::Direct] {
+        let model = model(learner);
+        let policy = model.policy();
+        let (x, outside, mut action) = (dvector![0.3, -0.2], dvector![30.0, -20.0], DVector::zeros(2));
+        policy.action_into(x.as_view(), action.as_view_mut());
+        let mut ask = || {
+            policy.action_into(x.as_view(), action.as_view_mut());
+            policy.action_into(outside.as_view(), action.as_view_mut());
+        };
+        assert_eq!(allocations(&mut ask), 0, "{learner:?}");
+        assert_ne!(allocations(&mut || drop(policy.action(x.as_view()))), 0, "what allocates is counted");
+    }
+}
