@@ -7,7 +7,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum FitError {
     /// Somebody asked to stop.
-    #[error("stopped as asked; nothing was learnt")]
+    #[error("stopped on request; nothing was learnt")]
     Cancelled,
     /// An option lies outside its range.
     #[error("{name} is {value}: it must {requirement}")]

@@ -7,6 +7,7 @@ mod duplicates;
 mod episodes;
 mod error;
 mod finding;
+pub mod in_words;
 mod jumps;
 mod left_out;
 mod noise;

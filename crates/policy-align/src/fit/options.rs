@@ -19,7 +19,7 @@ pub struct FitOptions {
     pub folds: usize,
     /// Of every random choice (`--seed`).
     pub seed: u64,
-    /// Rows that Gaussian processes learn from, at most; random ones are left out (`--max-rows`).
+    /// Rows that Gaussian processes learn from, at most, spread in time along the movements (`--max-rows`).
     pub max_rows: usize,
 }
 
