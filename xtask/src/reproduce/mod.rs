@@ -136,7 +136,7 @@ impl Reproduce {
         match records.unreadable() {
             0 => (),
             lines => {
-                say(&format!("{lines} line(s) of records.jsonl are torn, damaged or of an older form, and not used"))
+                say(&format!("{lines} line(s) of records.jsonl are torn, damaged or of an older form, and not used"));
             }
         }
         Ok(records)

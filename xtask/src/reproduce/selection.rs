@@ -56,7 +56,7 @@ const COST_A_SECOND: f64 = 2e7;
 pub(super) fn list(experiments: &[Experiment], with_rows: bool) -> String {
     let line = |e: &Experiment| {
         let rows: Vec<&str> = e.rows().map(|row| row.id.as_str()).collect();
-        let listed: String = rows.iter().filter(|_| with_rows).map(|row| format!("    {row}\n")).collect();
+        let listed = if with_rows { format!("    {}\n", rows.join("\n    ")) } else { String::new() };
         let (count, plural) = (rows.len(), if rows.len() == 1 { "" } else { "s" });
         format!(
             "{}: {}\n  {count} row{plural} of {} data sets, {} of processor time\n{listed}",

@@ -81,7 +81,7 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
             "record more movements or reduce noise, or add what else the motion depends on (time, load, target) to the state",
         ),
         Reading::TooFew => {
-            found(Verdict::Doubtful, "too few movements to detect constraints".to_owned(), "record at least five")
+            found(Verdict::Doubtful, "too few movements to detect constraints".to_owned(), "record at least five");
         }
     }
     if numbers.direction_coverage < UNSEEN {
