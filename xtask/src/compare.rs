@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use anyhow::bail;
 use clap::Args;
 use experiments::measure::Measure;
 use experiments::results::{Cell, Results, RowResult};
 
+use crate::failure::Failure;
 use crate::files::relative;
 use crate::progress::say;
 use crate::run_folder::RunFolder;
@@ -22,7 +22,7 @@ pub(crate) struct Compare {
     /// Folder of a finished run, in full or in part
     #[arg(value_name = "RUN")]
     run: PathBuf,
-    /// What to hold it against [default: the committed run of the same seed]
+    /// Run to compare with [default: the committed run of the same seed]
     #[arg(value_name = "OTHER")]
     other: Option<PathBuf>,
 }
@@ -33,17 +33,20 @@ impl Compare {
         let other = self.other.as_deref().map_or_else(|| RunFolder::committed(run.seed), RunFolder::at).results()?;
         let Comparison { cells, widest, new, faults } = Comparison::of(&run, &other);
         if cells == 0 {
-            bail!("{} has no cell in common with the other run", relative(&self.run));
+            let remedy = "another run, or one of the same experiments";
+            return Err(Failure::new("no cell in common with the other run", relative(&self.run), remedy).into());
         }
         let (difference, place) = widest;
         say(&format!(
-            "{cells} cells compared, {new} are new; means differ by {difference:.1e} of their size at most ({place})"
+            "{cells} cells compared, {new} new; the largest relative difference of means is {difference:.1e} ({place})"
         ));
         if faults.is_empty() {
-            say(&format!("every mean is within {TOLERANCE:e}, every verdict is the same"));
+            say(&format!("all means are within {TOLERANCE:e}, all verdicts the same"));
             return Ok(());
         }
-        bail!("{} cell(s) differ:\n{}", faults.len(), faults.join("\n"))
+        say(&faults.join("\n"));
+        let remedy = "`cargo xtask publish` if these changes are intended";
+        Err(Failure::new(format!("{} cell(s) differ", faults.len()), relative(&self.run), remedy).into())
     }
 }
 

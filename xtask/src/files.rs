@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
+use crate::failure::Failure;
 
 /// The root of the repository.
 pub(crate) fn repository() -> PathBuf {
@@ -30,9 +30,10 @@ pub(crate) fn typed(path: &Path) -> String {
 pub(crate) fn write(path: &Path, contents: impl AsRef<[u8]>) -> anyhow::Result<()> {
     let mut draft = path.as_os_str().to_owned();
     draft.push(format!(".{}.part", std::process::id()));
-    fs::write(&draft, contents)
-        .and_then(|()| fs::rename(&draft, path))
-        .with_context(|| format!("cannot write {}", relative(path)))
+    fs::write(&draft, contents).and_then(|()| fs::rename(&draft, path)).map_err(|error| {
+        let remedy = "check access to the folder and free space";
+        Failure::new(format!("cannot be written: {error}"), relative(path), remedy).into()
+    })
 }
 
 #[cfg(test)]

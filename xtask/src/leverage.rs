@@ -35,13 +35,13 @@ const LARGER: f64 = 1.2;
 
 #[derive(Debug, Args)]
 pub(crate) struct Leverage {
-    /// Data sets a row
+    /// Data sets per row
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(2..))]
     data_sets: u32,
     /// Seed of all random numbers
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
-    /// Folder for the records of finished data sets: what was stopped goes on from there [default: target/leverage]
+    /// Folder of finished data sets, from which a stopped run resumes [default: target/leverage]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }

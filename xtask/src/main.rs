@@ -3,6 +3,7 @@
 mod compare;
 mod conformance;
 mod equations;
+mod failure;
 mod files;
 mod leverage;
 mod progress;
@@ -18,6 +19,7 @@ mod tidy;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use failure::Failure;
 
 /// Reproduces the paper's tables and checks the workspace.
 #[derive(Debug, Parser)]
@@ -29,10 +31,10 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Run the paper's experiments and show the tables beside the printed ones
+    /// Run the paper's experiments and show their tables beside the printed ones
     ///
-    /// Every finished data set is kept at once: after Ctrl-C or a crash the same
-    /// command goes on where it stopped and ends with the identical result.
+    /// Every finished data set is saved at once: after Ctrl-C or a crash the same
+    /// command resumes, and ends with the identical result.
     ///
     /// Examples:
     ///   cargo xtask reproduce                        everything
@@ -44,18 +46,34 @@ enum Command {
     Report(report::Report),
     /// Write the generated pages of docs, the README's tables and docs/pictures from the committed records
     Publish(publish::Publish),
-    /// Hold a run against the committed records: every mean within 1e-6 of itself, every verdict the same
+    /// Compare a run with the committed records: means to 1e-6, verdicts exactly
     Compare(compare::Compare),
-    /// Change every fitted setting by a fifth, and write to docs/leverage.md which printed cells that turns
+    /// Vary every fitted setting by a fifth and write the verdicts that change to docs/leverage.md
     Leverage(leverage::Leverage),
-    /// Compare kinematics and LWPR with reference cases that other libraries computed
+    /// Compare with reference cases of other libraries
     Conformance(conformance::Conformance),
     /// Check manifests and sources against the architecture
     Tidy,
 }
 
+/// A command line that is not understood.
+const USAGE: u8 = 2;
+
 fn main() -> ExitCode {
-    let outcome = match Cli::parse().command {
+    let command = std::env::args().nth(1).filter(|word| !word.starts_with('-')).unwrap_or_default();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            let Some(failure) = Failure::of_usage(&error, &command) else {
+                // clap colours it as the terminal and NO_COLOR say.
+                let _ = error.print();
+                return ExitCode::SUCCESS;
+            };
+            progress::say(&failure.to_string());
+            return ExitCode::from(USAGE);
+        }
+    };
+    let outcome = match cli.command {
         Command::Reproduce(reproduce) => reproduce.execute(),
         Command::Report(report) => report.execute(),
         Command::Publish(publish) => publish.execute(),
@@ -67,7 +85,7 @@ fn main() -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            progress::say(&format!("error: {error:#}"));
+            progress::say(&Failure::of(&error, &command).to_string());
             ExitCode::FAILURE
         }
     }

@@ -10,6 +10,9 @@ use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 /// How often a plain line is written at most.
 const LINE_INTERVAL: Duration = Duration::from_secs(5);
 
+/// Columns of a terminal.
+const WIDTH: usize = 80;
+
 /// Counts finished data sets and the work they stand for.
 pub(crate) struct Progress {
     display: Display,
@@ -41,7 +44,7 @@ impl Progress {
             return Progress { display: Display::Lines(Mutex::new(lines)) };
         }
         let bar = ProgressBar::new(work);
-        let style = ProgressStyle::with_template("{bar:20} {percent:>3} %  {elapsed} gone{wide_msg}");
+        let style = ProgressStyle::with_template("{bar:20} {percent:>3} %  {elapsed} elapsed{wide_msg}");
         bar.set_style(style.unwrap_or_else(|_| unreachable!("the template is valid")));
         bar.enable_steady_tick(Duration::from_millis(200));
         Progress { display: Display::Bar(bar) }
@@ -87,7 +90,55 @@ impl Lines {
     }
 }
 
-/// Writes a line to standard error; a closed standard error stops nothing.
-pub(crate) fn say(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+/// Writes lines to standard error, on a terminal folded at its usual width; a closed standard error stops nothing.
+pub(crate) fn say(text: &str) {
+    let mut stderr = std::io::stderr();
+    let text = if stderr.is_terminal() { folded(text) } else { text.to_owned() };
+    let _ = writeln!(stderr, "{text}");
+}
+
+/// Lines of at most 80 columns, broken between words; what goes on is indented as its line.
+fn folded(text: &str) -> String {
+    text.lines().map(folded_line).collect::<Vec<_>>().join("\n")
+}
+
+fn folded_line(line: &str) -> String {
+    if line.chars().count() <= WIDTH {
+        return line.to_owned();
+    }
+    let indent = &line[..line.len() - line.trim_start().len()];
+    let mut folded = String::new();
+    let mut used = 0;
+    for word in line.split_whitespace() {
+        let length = word.chars().count();
+        if used > indent.len() && used + 1 + length <= WIDTH {
+            folded.push(' ');
+            used += 1 + length;
+        } else {
+            folded.push_str(if used == 0 { "" } else { "\n" });
+            folded.push_str(indent);
+            used = indent.len() + length;
+        }
+        folded.push_str(word);
+    }
+    folded
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_break_between_words() {
+        let short = "two  spaces stay where nothing is folded\n\n  in:  here";
+        assert_eq!(folded(short), short);
+        let words = "word ".repeat(40);
+        let text = folded(&format!("  {words}\nend"));
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines.len() == 4 && lines[3] == "end", "{text}");
+        assert!(lines[..3].iter().all(|line| line.chars().count() <= WIDTH && line.starts_with("  word")), "{text}");
+        assert_eq!(text.matches("word").count(), 40);
+        let long = "x".repeat(100);
+        assert_eq!(folded(&format!("see {long} there")), format!("see\n{long}\nthere"));
+    }
 }

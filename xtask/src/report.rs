@@ -15,8 +15,7 @@ use crate::run_folder::RunFolder;
 
 #[derive(Debug, Args)]
 pub(crate) struct Report {
-    /// Folder of a finished run [default: target/reproduce in the repository, or if nothing was run yet, the committed
-    /// records]
+    /// Folder of a finished run [default: target/reproduce in the repository, or the committed records if there is none]
     #[arg(long, value_name = "DIR")]
     from: Option<PathBuf>,
     /// Folder for report.html, report.md and figures/ [default: the run's own; for committed records target/report]
@@ -48,7 +47,7 @@ impl Report {
         if latest.is_finished() {
             return latest;
         }
-        say("nothing was run here yet: this report is of the committed records");
+        say("no run here yet: this report is of the committed records");
         RunFolder::committed(1)
     }
 
@@ -78,7 +77,7 @@ fn missing(sources: &Sources, from: &RunFolder) -> String {
         _ => format!("not drawn: {}", ids(&undrawn)),
     };
     format!(
-        "{what}, as the run has no figure data {}; `{}` computes them",
+        "{what}: the run has no figure data {}; `{}` computes them",
         sources.missing.join(", "),
         from.command(&sources.results)
     )

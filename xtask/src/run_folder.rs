@@ -5,11 +5,12 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, anyhow, bail};
+use anyhow::Context as _;
 use experiments::results::Results;
 use figures::{Figure, Sources, documents, figures};
 use serde_json::Value;
 
+use crate::failure::Failure;
 use crate::files::{relative, repository, typed, write};
 
 /// A folder that a run writes to.
@@ -101,11 +102,11 @@ impl RunFolder {
         let folder = relative(&self.0);
         let again = format!("`cargo xtask reproduce --out {}`", typed(&self.0));
         if !self.is_finished() {
-            bail!(
-                "no run has ended in {folder}: where one was stopped, the same command goes on, with the same --out; else {again} makes one"
-            );
+            let remedy = format!("{again}; a stopped run resumes with its own command");
+            return Err(Failure::new("no finished run", folder, remedy).into());
         }
-        read_results(&self.results_path()).map_err(|error| anyhow!("{error:#}; {again} makes another"))
+        let place = relative(&self.results_path());
+        read_results(&self.results_path()).map_err(|error| Failure::new(format!("{error:#}"), place, again).into())
     }
 
     /// Takes away the page and the pictures of an earlier run.
@@ -138,9 +139,10 @@ fn read_results(path: &Path) -> anyhow::Result<Results> {
 }
 
 fn read_document(path: &Path) -> anyhow::Result<Value> {
-    let text = fs::read_to_string(path).with_context(|| format!("cannot read {}", relative(path)))?;
-    serde_json::from_str(&text)
-        .map_err(|error| anyhow!("{} is damaged ({error}); the command of its run writes it again", relative(path)))
+    let refused =
+        |what: String| Failure::new(what, relative(path), "the command of its run, which writes this file again");
+    let text = fs::read_to_string(path).map_err(|error| refused(format!("cannot be read: {error}")))?;
+    Ok(serde_json::from_str(&text).map_err(|error| refused(format!("damaged: {error}")))?)
 }
 
 /// Removes a file that may not be there.

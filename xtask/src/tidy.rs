@@ -4,10 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, bail};
+use anyhow::Context as _;
 use serde::Deserialize;
 
 use crate::equations;
+use crate::failure::Failure;
 use crate::progress::say;
 
 /// Names that say nothing about what is inside.
@@ -79,7 +80,9 @@ pub(crate) fn execute() -> anyhow::Result<()> {
         say("tidy: manifests and sources follow the architecture");
         return Ok(());
     }
-    bail!("{} fault(s):\n{}", faults.len(), faults.join("\n"))
+    say(&faults.join("\n"));
+    let remedy = "correct them as listed above; docs/architecture.md has the rules";
+    Err(Failure::new(format!("{} fault(s)", faults.len()), "the workspace", remedy).into())
 }
 
 fn manifests(root: &Path) -> anyhow::Result<Vec<Manifest>> {

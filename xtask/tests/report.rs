@@ -57,7 +57,7 @@ fn what_is_missing_is_said_and_not_drawn() {
     let printed = said(folder.path(), &["report", "--from", "run"]);
     let command = "cargo xtask reproduce --data-sets 1 --only table1/parabola-40x40-narrow --seed 1";
     let expected = format!(
-        "not drawn: figure1, figureB1, as the run has no figure data figure1, figureB1; `{command} --out run` computes"
+        "not drawn: figure1, figureB1: the run has no figure data figure1, figureB1; `{command} --out run` computes"
     );
     assert!(printed.contains(&expected), "{printed}");
     assert!(printed.contains("written: run/report.html"), "{printed}");
@@ -68,7 +68,8 @@ fn what_is_missing_is_said_and_not_drawn() {
     fs::write(figures.join("figure2.json"), "{").unwrap();
     let printed = refused(folder.path());
     assert!(
-        printed.contains("run/figures/figure2.json is damaged") && printed.contains("the command of its run"),
+        printed.starts_with("error: damaged: EOF")
+            && printed.contains("  in:  run/figures/figure2.json\n  try: the command of its run"),
         "{printed}"
     );
     fs::write(figures.join("figure2.json"), "{}").unwrap();
@@ -120,7 +121,7 @@ fn results_that_cannot_be_used_are_refused_with_the_next_step() {
     let folder = tempfile::tempdir().unwrap();
     let next = "`cargo xtask reproduce --out run`";
     let printed = refused(folder.path());
-    assert!(printed.contains("no run has ended in run") && printed.contains(next), "{printed}");
+    assert!(printed.starts_with("error: no finished run\n  in:  run\n") && printed.contains(next), "{printed}");
 
     let row = "table1/parabola-40x40-narrow";
     said(folder.path(), &["reproduce", "--out", "run", "--only", row, "--data-sets", "1", "--no-figures"]);

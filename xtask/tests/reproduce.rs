@@ -187,18 +187,41 @@ fn an_unknown_name_says_where_the_known_ones_are() {
     let output = reproduce(folder.path(), &["--only", "table9"]).output().unwrap();
     assert!(!output.status.success());
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(
-        said.contains("table9") && said.contains("-literal\n    figure6_left\n") && said.contains("--list"),
-        "{said}"
+    assert_eq!(
+        said,
+        "error: no such experiment or row\n  in:  --only table9\n  try: --only table2, or one of `cargo xtask reproduce --list --rows`\n"
     );
-    assert!(said.lines().all(|line| line.chars().count() <= 80), "{said}");
+}
+
+#[test]
+fn usage_errors_have_three_lines_and_their_exit_code() {
+    for (arguments, said) in [
+        (&["frobnicate"][..], "unrecognized subcommand"),
+        (&[], "no command was given"),
+        (&["reproduce", "--seed", "one"], "invalid value 'one'"),
+        (&["reproduce", "--quik"], "--quick"),
+        (&["reproduce", "--rows"], "--list"),
+        (&["compare"], "required arguments"),
+    ] {
+        let output = Command::new(env!("CARGO_BIN_EXE_xtask")).args(arguments).output().unwrap();
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!((output.status.code(), lines.len()), (Some(2), 3), "{arguments:?}: {text}");
+        for (line, start) in lines.iter().zip(["error: ", "  in:  cargo xtask", "  try: "]) {
+            assert!(line.starts_with(start) && line.len() > start.len(), "{text}");
+        }
+        assert!(text.contains(said), "{text}");
+    }
 }
 
 #[test]
 fn the_list_names_every_row() {
     let folder = tempfile::tempdir().unwrap();
-    let output = run(folder.path(), &["--list"]);
-    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    let listed = |arguments: &[&str]| String::from_utf8_lossy(&run(folder.path(), arguments).stdout).into_owned();
+    let brief = listed(&["--list"]);
+    assert!(brief.contains("table1:") && !brief.contains("parabola-40x40-narrow"), "{brief}");
+    assert!(brief.lines().count() < 60 && brief.lines().last().unwrap().starts_with("in all: about "), "{brief}");
+    let said = listed(&["--list", "--rows"]);
     for name in ["table1:", "table1-literal:", "table2:", "parabola-40x40-narrow", "sinusoidal-100x100-wide"] {
         assert!(said.contains(name), "{said}");
     }

@@ -83,7 +83,7 @@ fn leave_out_constant(drafts: &mut Drafts) {
         .filter(|(_, changes)| !**changes)
         .map(|(channel, _)| channel.name.as_str())
         .collect();
-    let text = format!("columns that never change are no state: {}; --state keeps them", roles::shortened(&names));
+    let text = format!("constant columns are not taken as state: {}; --state keeps them", roles::shortened(&names));
     drafts.notes.push(Note { kind: NoteKind::Ignored, text });
     let mut column = changes.iter();
     drafts.channels.retain(|_| *column.next().unwrap_or(&true));

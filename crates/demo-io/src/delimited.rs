@@ -44,7 +44,7 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<D
     }
     let Some((first_line, first)) = head.first() else {
         let what = if header.is_some() { "there is a header but no row" } else { "there is no row" };
-        return Err(ReadError::Empty(Fault::new(what, &input.name, "another file: this one holds no sample")));
+        return Err(ReadError::Empty(Fault::new(what, &input.name, "a file with samples")));
     };
     let no_header = header.is_none();
     let names = header.unwrap_or_else(|| (0..first.len()).map(|column| format!("c{column}")).collect());

@@ -77,12 +77,12 @@ impl<'a> Documents<'a> {
         self.index = self.names.iter().enumerate().map(|(at, name)| (name.clone(), at)).collect();
         let place = format!("{}, {} {place}", self.input.name, self.word);
         if !matches!(document, Json::Map(_)) || row.is_empty() {
-            let what = "this is not an object with names and numbers";
+            let what = "not an object of names and numbers";
             return Err(ReadError::Json(Fault::new(what, place, "lines like {\"t\": 0.05, \"x\": 0.5, \"y\": 1.2}")));
         }
         if row.len() > MOST_LEAVES {
             let what = format!("more than {MOST_LEAVES} values in one {}", self.word);
-            return Err(ReadError::TooLarge(Fault::new(what, place, "a line an episode, or a sample")));
+            return Err(ReadError::TooLarge(Fault::new(what, place, "one line per episode, or per sample")));
         }
         Ok(row)
     }

@@ -167,7 +167,7 @@ impl Set<'_> {
         let part = |name: usize, rows: std::ops::Range<usize>| Samples { name: name.to_string(), rows: rows.collect() };
         if state.episodes > MOST_EPISODES {
             let what = format!("{} episodes, more than {MOST_EPISODES}", state.episodes);
-            return Err(ReadError::TooLarge(Fault::new(what, file, "files with fewer, or --samples-are")));
+            return Err(ReadError::TooLarge(Fault::new(what, file, "files with fewer episodes, or --samples-are")));
         }
         if self.described[self.fields.state[0]].shape.len() == 3 {
             return Ok((0..state.episodes).map(|k| part(k, k * state.samples..(k + 1) * state.samples)).collect());

@@ -36,7 +36,7 @@ impl Group<'_> {
         };
         if self.demos.len() > MOST_EPISODES {
             let what = format!("{} demonstrations, more than {MOST_EPISODES}", self.demos.len());
-            return Err(ReadError::TooLarge(Fault::new(what, file, "files with fewer")));
+            return Err(ReadError::TooLarge(Fault::new(what, file, "files with fewer demonstrations")));
         }
         let arrays: Vec<Described> = first
             .fields

@@ -68,11 +68,7 @@ impl<'a> Input<'a> {
             None if self.options.trust => {}
             None => {
                 let what = format!("{} bytes unpack to more than 64 times as much", self.len);
-                return Err(ReadError::TooLarge(Fault::new(
-                    what,
-                    &self.name,
-                    "--trust if the file comes from a friend",
-                )));
+                return Err(ReadError::TooLarge(Fault::new(what, &self.name, "--trust if you trust its source")));
             }
         }
         Ok(())
@@ -119,12 +115,8 @@ pub(crate) fn unreadable(error: &std::io::Error, name: &str) -> ReadError {
         std::io::ErrorKind::NotFound => ReadError::MissingFile(Fault::new(
             "there is no such file",
             name,
-            "another path: it counts from the current folder",
+            "check the path (relative to the current folder)",
         )),
-        _ => ReadError::Unreadable(Fault::new(
-            format!("cannot be read: {error}"),
-            name,
-            "another file, or other permissions",
-        )),
+        _ => ReadError::Unreadable(Fault::new(format!("cannot be read: {error}"), name, "check its permissions")),
     }
 }

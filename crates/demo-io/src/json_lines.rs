@@ -27,9 +27,7 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<D
     match reader {
         Some(Reader::Episodes(episodes)) => Ok(episodes.finish()),
         Some(Reader::Samples(rows)) => rows.finish(),
-        None => {
-            Err(ReadError::Empty(Fault::new("there is no line", &input.name, "another file: this one holds nothing")))
-        }
+        None => Err(ReadError::Empty(Fault::new("there is no line", &input.name, "a file that is not empty"))),
     }
 }
 
@@ -71,7 +69,7 @@ impl<R: BufRead> Lines<R> {
                 return Err(ReadError::TooLarge(Fault::new(
                     "a line of more than 1 GB",
                     place,
-                    "a line an episode, or a sample",
+                    "one line per episode, or per sample",
                 )));
             }
             let text = self.text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&self.text);

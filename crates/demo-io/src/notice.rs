@@ -43,7 +43,7 @@ fn leave_out_repeated(drafts: &mut Drafts) {
         if let Some(first) = first {
             let (twin, first) = (&drafts.episodes[index], &drafts.episodes[*first]);
             let text = format!(
-                "episode {} repeats episode {} number for number and was left out: {}",
+                "episode {} is an exact copy of episode {} and was left out: {}",
                 twin.name,
                 first.name,
                 twin.place(0, drafts.word)
@@ -80,7 +80,7 @@ fn time(drafts: &Drafts, notes: &mut Vec<Note>) {
     }
     if let Some((step, place)) = gap {
         let text = format!(
-            "a gap of {} s where {} s are usual: {place}{}; --split-gap SECONDS cuts there",
+            "a gap of {} s, where steps usually take {} s: {place}{}; --split-gap SECONDS splits there",
             rounded(step),
             rounded(overall),
             and_more(gaps)
@@ -93,7 +93,8 @@ fn time(drafts: &Drafts, notes: &mut Vec<Note>) {
         notes.push(Note { kind: NoteKind::Uneven, text });
     }
     if slowest > 1.01 * fastest {
-        let text = format!("episodes have steps of {} to {} s; each keeps its own", rounded(fastest), rounded(slowest));
+        let text =
+            format!("episodes have time steps of {} to {} s; each keeps its own", rounded(fastest), rounded(slowest));
         notes.push(Note { kind: NoteKind::Uneven, text });
     }
 }
@@ -117,7 +118,7 @@ fn still(drafts: &Drafts, statistics: &Statistics, options: &ReadOptions, notes:
         .collect();
     if let Some((samples, when, name)) = stretches.first() {
         let text = format!(
-            "episode {name} {when} with {samples} samples standing still{}; --trim-still leaves them out",
+            "episode {name} {when} with {samples} samples at rest{}; --trim-still removes them",
             and_more(stretches.len())
         );
         notes.push(Note { kind: NoteKind::StandsStill, text });
@@ -155,7 +156,7 @@ fn jumps(drafts: &Drafts, statistics: &Statistics, notes: &mut Vec<Note>) {
         if let Some((step, place)) = jump {
             let name = &drafts.channels[channel].name;
             let text = format!(
-                "'{name}' jumps by {} where steps of {} are usual: {place}{}",
+                "'{name}' jumps by {}, where steps are usually {}: {place}{}",
                 rounded(step),
                 rounded(statistics.step[channel]),
                 and_more(jumps)
@@ -194,7 +195,7 @@ fn angles(drafts: &Drafts, statistics: &Statistics, options: &ReadOptions, notes
     }
     if !degrees.is_empty() {
         let text = format!(
-            "angles that seem to be degrees: {}; --degrees with these names makes radians",
+            "angles that seem to be in degrees: {}; --degrees with these names converts them",
             shortened(&degrees)
         );
         notes.push(Note { kind: NoteKind::LooksLikeDegrees, text });
@@ -251,7 +252,7 @@ fn velocities(drafts: &Drafts, notes: &mut Vec<Note>) {
         _ => "",
     };
     let text = format!(
-        "each velocity is {} times the step it should belong to{guess} Make the units equal, or --ignore the velocity columns",
+        "velocities are {} times the steps{guess} Make the units equal, or --ignore the velocity columns",
         rounded(ratio)
     );
     let text = if guess.is_empty() { text.replacen(" Make", "; make", 1) } else { text };

@@ -95,7 +95,7 @@ fn opened<T>(
     }
     if unpacked > packed.saturating_mul(64).saturating_add(1 << 20) && !input.options.trust {
         let what = format!("'{}' grows from {packed} to {unpacked} bytes", entry.described.name);
-        return Err(ReadError::TooLarge(Fault::new(what, file, "--trust if the file comes from a friend")));
+        return Err(ReadError::TooLarge(Fault::new(what, file, "--trust if you trust its source")));
     }
     let opened = archive.get_entry(entry.wayfinder).map_err(|error| zip(&error, file))?;
     if entry.deflated {

@@ -73,11 +73,7 @@ pub(crate) fn read_described(
         progress(u64::try_from(reader.metadata().compressed_size()).unwrap_or(0));
     }
     if row == 0 {
-        return Err(ReadError::Empty(Fault::new(
-            "there is no row",
-            &input.name,
-            "another file: this one holds no sample",
-        )));
+        return Err(ReadError::Empty(Fault::new("there is no row", &input.name, "a file with samples")));
     }
     let mut drafts = table.finish();
     drafts.drop_constant &= !listed;

@@ -41,7 +41,7 @@ pub fn read_all(
         add(&mut joined, drafts, &name_of(path))?;
     }
     let place = || paths.first().map(|path| name_of(path)).unwrap_or_default();
-    let nothing = |what: &str| ReadError::Empty(Fault::new(what, place(), "another file: this one holds no movement"));
+    let nothing = |what: &str| ReadError::Empty(Fault::new(what, place(), "recordings with movements"));
     let mut drafts = joined.ok_or_else(|| nothing("no file was given"))?;
     clean(&mut drafts, options)?;
     if drafts.channels.is_empty() {

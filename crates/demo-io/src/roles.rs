@@ -143,8 +143,8 @@ impl Roles {
         self.state = free.iter().copied().filter(|index| !velocities.contains(index)).collect();
         free.retain(|index| velocities.contains(index));
         if self.state.is_empty() {
-            let what = "no column is left that could be the state";
-            let remedy = format!("--state with the names of its columns; there are: {}", names.join(", "));
+            let what = "no column can be the state";
+            let remedy = format!("--state with the names of its columns, of: {}", names.join(", "));
             return Err(ReadError::NoRoles(Fault::new(what, place, remedy)));
         }
         Ok(())

@@ -35,10 +35,18 @@ pub(crate) fn format(input: &Input<'_>) -> Result<Format, ReadError> {
         (Content::Known(_) | Content::Nothing, Some(asked)) if input.options.format.is_some() => Ok(asked),
         (Content::Known(found), _) => Ok(found),
         (Content::Nothing, _) => {
-            Err(ReadError::Empty(Fault::new("the file is empty", &input.name, "another file: this one holds nothing")))
+            Err(ReadError::Empty(Fault::new("the file is empty", &input.name, "a file that is not empty")))
         }
         (_, Some(asked)) if is_text(asked) => Ok(asked),
         (_, Some(asked)) => Err(not_this(input, asked, looks_like(content))),
+        (Content::Text, None) if !has_rows(&input.head) => {
+            let remedy = "a recording: CSV, NPZ, JSON lines, LeRobot, HDF5, MCAP or MAT";
+            Err(ReadError::NotThisFormat(Fault::new(
+                "not a recording: no line is a row of numbers",
+                &input.name,
+                remedy,
+            )))
+        }
         (Content::Text | Content::Other, None) => Ok(Format::Csv),
     }
 }
@@ -94,6 +102,18 @@ fn content(head: &[u8], extension: &str) -> Content {
         Some(_) if head.iter().take(4096).any(|&byte| byte == 0) => Content::Other,
         Some(_) => Content::Text,
     }
+}
+
+/// Whether a line of a text is mostly numbers, as rows of a table are; what only has numbers in it is something else.
+fn has_rows(head: &[u8]) -> bool {
+    let is_row = |line: &str| {
+        let fields = line.split([',', ';', '\t', '|', ' ']).filter(|field| !field.is_empty());
+        let (fields, numbers) = fields.fold((0, 0), |(fields, numbers), field| {
+            (fields + 1, numbers + usize::from(field.trim_matches('"').parse::<f64>().is_ok()))
+        });
+        2 * numbers > fields && !line.contains(['=', '[', '{', '<'])
+    };
+    String::from_utf8_lossy(head).lines().any(is_row)
 }
 
 /// The header of a MAT-file of version 5 with a text of its own: version and byte order stand at 124.

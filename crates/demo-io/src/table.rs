@@ -148,7 +148,7 @@ impl Table {
             Some(&known) => known,
             None if self.episodes.len() == MOST_EPISODES => {
                 let what = format!("more than {MOST_EPISODES} episodes in column '{}'", self.names[column]);
-                let remedy = "--episode with the column that tells episodes apart, or files with fewer";
+                let remedy = "--episode with the episode column, or files with fewer episodes";
                 return Err(ReadError::TooLarge(Fault::new(what, &self.file, remedy)));
             }
             None => {

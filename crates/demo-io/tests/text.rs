@@ -52,6 +52,18 @@ fn separators_line_ends_and_decimal_commas_give_the_same_numbers() {
 }
 
 #[test]
+fn other_texts_are_no_recordings() {
+    let wall = "# x stays\n[[constraint]]\nnormal = [1, 0, 0, 0, 0, 0, 0]\n";
+    for (name, text) in [("wall.toml", wall), ("arm.urdf", "<robot name=\"1 2 3\">\n</robot>\n"), ("notes", "to do\n")]
+    {
+        refused(name, text, &plain(), "NotThisFormat", &["not a recording"]);
+    }
+    // A table may have any name.
+    let table = two_movements(",", "\n", ".");
+    assert_eq!(lengths(&parsed("movements.log", table, &plain()).unwrap()), [6, 6]);
+}
+
+#[test]
 fn blanks_in_front_and_behind_are_no_fields() {
     let text = two_movements("   ", "   \n", ".").replace("\n0", "\n  0");
     assert_eq!(lengths(&parsed("a.dat", text, &plain()).unwrap()), [6, 6]);

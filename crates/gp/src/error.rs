@@ -72,7 +72,7 @@ pub enum GpError {
     #[error("no family's covariance matrix has a Cholesky factor: rows repeat each other exactly; thin the recordings")]
     NoFactor,
     /// Trajectories cannot be smoothed or fused.
-    #[error("cannot clean what was recorded: {reason}")]
+    #[error("the recordings cannot be smoothed: {reason}")]
     Cleaning {
         /// The smoother's own words.
         reason: String,

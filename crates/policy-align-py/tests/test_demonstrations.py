@@ -12,7 +12,7 @@ def test_what_is_noticed_is_warned_of(tmp_path) -> None:
     path = tmp_path / "gap.csv"
     stamps = [0.1 * k for k in range(10)] + [3.0 + 0.1 * k for k in range(10)]
     path.write_text("t,x\n" + "".join(f"{t},{np.sin(t)}\n" for t in stamps))
-    with pytest.warns(PolicyAlignWarning, match="split_gap=SECONDS cuts there") as warned:
+    with pytest.warns(PolicyAlignWarning, match="split_gap=SECONDS splits there") as warned:
         found = Demonstrations.read(path)
     assert found.notes == [str(warning.message) for warning in warned]
 

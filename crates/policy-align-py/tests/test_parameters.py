@@ -153,5 +153,5 @@ def test_a_policy_without_potential_or_deviation_says_so(rails, aligned: PolicyA
     with pytest.raises(PolicyAlignError, match="has no potential"):
         direct.potential([[0.0, 0.0]])
     for states in ([[0.0, 0.0]], np.empty((0, 2))):
-        with pytest.raises(PolicyAlignError, match="does not know how sure it is"):
+        with pytest.raises(PolicyAlignError, match="estimates no standard deviation"):
             aligned.predict(states, return_std=True)

@@ -67,9 +67,9 @@ def test_what_a_function_raises_arrives(slope: SlopeGp) -> None:
         (([1.0],), "the start has 1 numbers, the state 2: x, y"),
         (([[1.0, 2.0]],), "Expected 1D array, got 2D array instead"),
         (([np.nan, 0.0],), "the start is not finite in channel 'x'"),
-        (([90.0, 0.0],), "the start is outside of what was shown"),
+        (([90.0, 0.0],), "the start is outside the data"),
         ((START, -1.0), "seconds is -1: it must be positive and finite"),
-        ((START, 1e12), "samples: that is more than 10 million"),
+        ((START, 1e12), "samples exceed the limit of 10 million"),
     ],
 )
 def test_starts_and_times_are_looked_at(arguments: tuple, words: str, slope: SlopeGp) -> None:

@@ -6,8 +6,8 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FitError {
-    /// The caller cancelled the fit.
-    #[error("stopped as asked; nothing was learnt")]
+    /// Somebody asked to stop.
+    #[error("stopped on request; nothing was learnt")]
     Cancelled,
     /// An option lies outside its range.
     #[error("{name} is {value}: it must {requirement}")]

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::fit::{held_out, rows};
 use crate::{FitError, Prepared};
 
-/// Errors of a policy on movements that it was not learnt from.
+/// Errors of a policy on movements.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Evaluation {
@@ -107,12 +107,12 @@ fn against(
     Ok((Some(unconstrained), constrained))
 }
 
-/// Why a policy cannot be evaluated on movements.
+/// Why a policy cannot be evaluated.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EvaluateError {
-    /// Policy and movements differ in dimension.
-    #[error("the policy has {policy} dimensions, the movements {movements}; give it the channels it was learnt from")]
+    /// They are of different spaces.
+    #[error("the policy has {policy} dimensions, the movements {movements}; use the channels it was learnt from")]
     Dimension {
         /// Of the policy.
         policy: usize,
@@ -120,7 +120,7 @@ pub enum EvaluateError {
         movements: usize,
     },
     /// Not one projector a sample.
-    #[error("there are {found} projectors for {expected} samples; give one each")]
+    #[error("there are {found} projectors for {expected} samples; give one for each")]
     Projectors {
         /// How many there are.
         found: usize,
@@ -128,12 +128,12 @@ pub enum EvaluateError {
         expected: usize,
     },
     /// No constraint can be left out.
-    #[error("{found} constraints are named; --constraint-column with a column that names at least two")]
+    #[error("the recordings name {found} constraints; --constraint-column with a column that names at least two")]
     Constraints {
         /// Labels.
         found: usize,
     },
-    /// The remaining movements are too few to learn from.
+    /// The remaining movements cannot be learnt from.
     #[error(transparent)]
     Fit(#[from] FitError),
     /// The movements cannot be cleaned.

@@ -61,11 +61,11 @@ impl Model {
 }
 
 impl ModelPolicy<'_> {
-    /// Whether the demonstrations support acting at a state (n): an LWPR policy has a receptive field
-    /// there, a Gaussian process has lost half of its prior variance; and no channel is beyond [`Model::bounds`].
+    /// Whether a state (n) has the [support](LearntPolicy::support) that acting on it needs: an LWPR policy has a
+    /// receptive field there, a Gaussian process has lost half of its prior variance; and no channel is beyond
+    /// [`Model::bounds`].
     pub fn is_supported(&self, state: DVectorView<'_, f64>) -> bool {
-        let within = self.bounds.iter().zip(&state).all(|([low, high], x)| (low..=high).contains(&x));
-        within && self.support(state) >= self.least_support
+        self.support(state) >= self.least_support
     }
 
     /// The smallest support of a known state.
@@ -90,8 +90,10 @@ impl LearntPolicy for ModelPolicy<'_> {
         self.potential.as_ref().map(|potential| potential as &dyn Potential)
     }
 
+    /// As of the policy that was learnt; 0 beyond [`Model::bounds`].
     fn support(&self, state: DVectorView<'_, f64>) -> f64 {
-        scaled(state, &self.scale, |state| self.learnt.support(state))
+        let within = self.bounds.iter().zip(&state).all(|([low, high], x)| (low..=high).contains(&x));
+        if within { scaled(state, &self.scale, |state| self.learnt.support(state)) } else { 0.0 }
     }
 
     fn action_sd_into(&self, state: DVectorView<'_, f64>, mut deviation: DVectorViewMut<'_, f64>) -> bool {

@@ -1,8 +1,9 @@
-//! Good and bad recordings, learnt from without a flag: what is said of each, held against the truth.
+//! Good and bad recordings, learnt from without a flag: the verdict on each, compared with the truth.
 //!
-//! No verdict may be "good" unless the policy is right, and none "do not use" where it is. The table in
-//! docs/your-own-data-cases.md is what these cases say; `UPDATE_CASES=1 cargo test --release -p policy-align --test
-//! bad_cases` writes it anew. A debug build looks at some of the cases only.
+//! No verdict may be "good" unless the policy is right, and none "do not use" where it is. `cases/verdicts.tsv` holds
+//! each case with its first finding, its verdict and what the verdict cannot know: the error of the unconstrained policy
+//! (nUPE) on 20 new movements. `UPDATE_CASES=1 cargo test --release -p policy-align --test bad_cases` writes it anew. A
+//! debug build tests some of the cases only.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -90,12 +91,12 @@ impl Said {
     }
 
     fn line(&self) -> String {
-        format!("| {} | {} | {} | {} |", self.name, self.words, self.verdict(), self.error())
+        [&self.name, &self.words, self.verdict(), &self.error()].join("\t")
     }
 }
 
 fn document() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../docs/your-own-data-cases.md")
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/cases/verdicts.tsv")
 }
 
 /// Words without their numbers, which differ a little from processor to processor.
@@ -114,11 +115,7 @@ fn no_verdict_lies_and_the_table_is_as_it_was() {
         std::fs::write(document(), table(&all)).unwrap();
     }
     let stored = std::fs::read_to_string(document()).unwrap();
-    let lines: Vec<Vec<&str>> = stored
-        .lines()
-        .filter(|line| line.starts_with("| ") && !line.starts_with("| case") && !line.starts_with("| ---"))
-        .map(|line| line.trim_matches('|').split(" | ").map(str::trim).collect())
-        .collect();
+    let lines: Vec<Vec<&str>> = stored.lines().skip(1).map(|line| line.split('\t').collect()).collect();
     assert_eq!(lines.len(), cases::all().len(), "a line a case: write the table anew");
     for (said, line) in all.iter().zip(lines.iter().step_by(EVERY)) {
         assert_eq!((&*said.name, said.verdict()), (line[0], line[2]), "{}", said.line());
@@ -130,13 +127,7 @@ fn no_verdict_lies_and_the_table_is_as_it_was() {
 }
 
 fn table(all: &[Said]) -> String {
-    let mut text = "# What is said of good and bad recordings\n\n\
-        Written by `UPDATE_CASES=1 cargo test --release -p policy-align --test bad_cases`, which also compares it. Every case goes\n\
-        through `prepare` and `fit` without a flag; the last column is what they cannot know, the error of the unconstrained\n\
-        policy (nUPE) on 20 fresh movements: 0 is perfect, 1 as bad as the best constant, and below 0.15 a policy is called right.\n\
-        No line may be \"good\" and wrong, or \"do not use\" and right. Why these numbers: [decisions/trust.md](decisions/trust.md).\n\n\
-        | case | what it says first | verdict | true error |\n| --- | --- | --- | --- |\n"
-        .to_owned();
+    let mut text = "case\tfirst finding\tverdict\ttrue error\n".to_owned();
     for said in all {
         writeln!(text, "{}", said.line()).unwrap();
     }

@@ -81,10 +81,10 @@ fn every_decision_names_a_flag_that_fit_has() {
 fn smoothing_can_be_requested() {
     let check = |flags: &str| run(&format!("check toy.csv --integration displacement {flags}"));
     for (flags, said) in [
-        ("--smooth off", "smoothing    none: positions as they are (as requested)"),
-        ("--smooth 7", "smoothing    positions, over 7 samples at a time (as requested"),
-        ("--smooth 0.25s", "smoothing    positions, over 5 samples at a time (as requested"),
-        ("--smooth auto", "smoothing    positions smoothed, piece by piece"),
+        ("--smooth off", "smoothing    none: positions as recorded (as requested)"),
+        ("--smooth 7", "smoothing    positions, window of 7 samples (as requested"),
+        ("--smooth 0.25s", "smoothing    positions, window of 5 samples (as requested"),
+        ("--smooth auto", "smoothing    positions smoothed piecewise"),
     ] {
         let ran = check(flags);
         assert!(ran.code == Some(0) && ran.out.contains(said), "{flags}:\n{}{}", ran.out, ran.err);
@@ -95,5 +95,5 @@ fn smoothing_can_be_requested() {
     }
     std::fs::write(folder().join("smooth.toml"), "[prepare]\nsmooth = \"7\"\n").unwrap();
     let ran = run_in(folder(), "check toy.csv --integration displacement --config smooth.toml");
-    assert!(ran.out.contains("over 7 samples"), "{}{}", ran.out, ran.err);
+    assert!(ran.out.contains("window of 7 samples"), "{}{}", ran.out, ran.err);
 }

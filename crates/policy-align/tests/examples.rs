@@ -69,48 +69,63 @@ fn write_the_recordings() {
     std::fs::write(examples().join("rails.csv"), rails()).unwrap();
 }
 
-/// Commands of a page's console blocks, with what they say.
-fn sessions(page: &str) -> Vec<(String, String)> {
-    let mut sessions: Vec<(String, String)> = Vec::new();
-    for block in page.split("```console\n").skip(1) {
-        for line in block.split("```").next().unwrap_or_default().lines() {
-            match (line.strip_prefix("$ policy-align "), sessions.last_mut()) {
-                (Some(command), _) => sessions.push((command.to_owned(), String::new())),
-                (None, Some((_, said))) => said.extend([line, "\n"]),
-                (None, None) => panic!("a block begins with its command: {line}"),
-            }
-        }
+/// The page that shows a session with the program.
+const PAGE: &str = "../your-own-data.md";
+
+/// The page with the outputs of its console blocks written anew, and every command with what the page and the program
+/// say. A block is one command and its output.
+fn replayed(page: &str, run: &dyn Fn(&str) -> String) -> (String, Vec<[String; 3]>) {
+    let (mut fresh, mut sessions) = (String::new(), Vec::new());
+    let mut rest = page;
+    while let Some((before, block)) = rest.split_once("```console\n$ policy-align ") {
+        let (command, block) = block.split_once('\n').unwrap();
+        let (shown, after) = block.split_once("```").unwrap();
+        let said = run(command);
+        let _ = write!(fresh, "{before}```console\n$ policy-align {command}\n{said}```");
+        sessions.push([command.to_owned(), shown.to_owned(), said]);
+        rest = after;
     }
-    sessions
+    assert!(!rest.contains("```console"), "a block begins with its command");
+    (fresh + rest, sessions)
 }
 
-/// Words alike, numbers within a tenth, or both as good as 0, and any time of day: machines round differently, and sizes
-/// of files hang on it.
+/// Words alike, numbers within a hundredth, or both as good as 0, and any time of day: machines round differently, and
+/// sizes of files hang on it.
 fn alike(found: &str, expected: &str) -> bool {
     let words = |text: &str| text.split_whitespace().map(ToOwned::to_owned).collect::<Vec<_>>();
     let (found, expected) = (words(found), words(expected));
     let number = |word: &str| word.trim_matches(|c: char| !c.is_ascii_digit() && c != '-').parse::<f64>().ok();
     let time = |word: &str| word.ends_with('Z') && word.starts_with("20");
     let same = |a: &String, b: &String| match (number(a), number(b)) {
-        (Some(x), Some(y)) => (x - y).abs() <= (0.1 * x.abs().max(y.abs())).max(1e-4),
+        (Some(x), Some(y)) => (x - y).abs() <= (0.01 * x.abs().max(y.abs())).max(1e-4),
         _ => a == b || (time(a) && time(b)),
     };
     found.len() == expected.len() && found.iter().zip(&expected).all(|(a, b)| same(a, b))
 }
 
+/// `UPDATE_SESSION=1 cargo test -p policy-align --test examples` writes the outputs of the page anew.
 #[test]
 fn the_session_of_the_page_happens() {
-    let page = std::fs::read_to_string(examples().join("../your-own-data.md")).unwrap();
+    let page = std::fs::read_to_string(examples().join(PAGE)).unwrap();
     let folder = tempfile::tempdir().unwrap();
     for name in ["toy.csv", "rails.csv", "wall.toml"] {
         std::fs::copy(examples().join(name), folder.path().join(name)).unwrap();
     }
-    let sessions = sessions(&page);
+    let run = |command: &str| {
+        let ran = run_in(folder.path(), command);
+        ran.out + &ran.err
+    };
+    let (fresh, sessions) = replayed(&page, &run);
     assert!(sessions.len() >= 6);
-    for (command, expected) in sessions {
-        let ran = run_in(folder.path(), &command);
-        let said = ran.out + &ran.err;
-        assert!(alike(&said, &expected), "policy-align {command}\nsays\n{said}\nthe page says\n{expected}");
+    if std::env::var_os("UPDATE_SESSION").is_some() {
+        std::fs::write(examples().join(PAGE), fresh).unwrap();
+    } else {
+        for [command, shown, said] in sessions {
+            assert!(
+                alike(&said, &shown),
+                "policy-align {command}\nsays\n{said}\nthe page says\n{shown}\nUPDATE_SESSION=1 writes it anew"
+            );
+        }
     }
     for written in ["toy.json", "toy.trust.html", "toy.svg", "toy.c"] {
         assert!(Path::new(&folder.path().join(written)).exists(), "{written}");

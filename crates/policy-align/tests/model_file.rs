@@ -65,12 +65,12 @@ fn what_is_wrong_is_said_in_one_line_with_its_place() {
         said
     };
     let cases: [(String, &str); 12] = [
-        (said(Model::from_json(b"\xff\xfe")), "not JSON: "),
-        (said(Model::from_json(b"[1]")), "not a model of this program"),
-        (said(Model::from_json(br#"{"format":"urdf"}"#)), r#"`format` is "urdf""#),
+        (said(Model::from_json(b"\xff\xfe")), "not a policy-align model: the file is no JSON object"),
+        (said(Model::from_json(b"{")), "damaged or cut off: not JSON (EOF"),
+        (said(Model::from_json(br#"{"format":"urdf"}"#)), r#"not a policy-align model: `format` is "urdf""#),
         (
             said(with(&text, "", |v| v["version"] = json!(2))),
-            "made by a newer policy-align (model version 2, this one reads 1)",
+            "made by a newer policy-align: model version 2, this one reads up to 1",
         ),
         (said(with(&text, "", |v| v["version"] = json!("1"))), "version: missing"),
         (said(with(&text, "", |v| remove(v, "state"))), "missing field `state`"),
@@ -79,7 +79,7 @@ fn what_is_wrong_is_said_in_one_line_with_its_place() {
         (said(with(&text, "/state/1/scale", |v| *v = json!("a\nb"))), "state[1].scale: invalid type"),
         (said(with(&text, "/learnt/direct/direct_gp/states/3", |v| *v = Value::Null)), "learnt.direct"),
         (said(with(&text, "/state/1", |v| v["a\nb"] = json!(1))), "state[1].a b: unknown field"),
-        (said(with(&text, "/state/0/name", |v| *v = json!("y"))), "checksum: "),
+        (said(with(&text, "/state/0/name", |v| *v = json!("y"))), "the checksum does not match"),
     ];
     for (said, expected) in cases {
         assert!(said.contains(expected), "{said}");

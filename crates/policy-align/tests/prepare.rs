@@ -125,13 +125,13 @@ fn factors_have_names() {
             u
         }
     }));
-    assert_eq!(verdict(&one, "velocities of channel y are 57 times its steps"), Verdict::Doubtful);
+    assert_eq!(verdict(&one, "velocities of channel y are 57.3 times its steps"), Verdict::Doubtful);
 }
 
 #[test]
 fn velocities_that_are_none() {
     let shuffled = prepared(&changed(|episode| episode.velocities.as_mut().unwrap().swap_rows(0, 1)));
-    assert_eq!(verdict(&shuffled, "nothing to do with the steps"), Verdict::Doubtful);
+    assert_eq!(verdict(&shuffled, "recorded velocities do not match the steps"), Verdict::Doubtful);
     assert_eq!(shuffled.recorded, Recorded::Positions);
     let believed = PrepareOptions { velocities: VelocityUse::Recorded, ..PrepareOptions::default() };
     let swapped = changed(|episode| episode.velocities.as_mut().unwrap().swap_rows(0, 1));
@@ -146,7 +146,7 @@ fn velocities_that_are_none() {
 #[test]
 fn stamps() {
     let slow = prepared(&changed(|episode| episode.times.iter_mut().for_each(|t| *t *= 1000.0)));
-    assert_eq!(verdict(&slow, "taken as milliseconds"), Verdict::Doubtful);
+    assert_eq!(verdict(&slow, "read as milliseconds"), Verdict::Doubtful);
     assert!((slow.time_step - STEP).abs() < 1e-12);
     let positions = changed(|episode| {
         episode.times.iter_mut().for_each(|t| *t *= 1000.0);
@@ -180,7 +180,7 @@ fn what_is_left_out() {
     assert_eq!(twice.episodes.len(), 12);
     assert_eq!(twice.left_out.len(), 2);
     assert_eq!(twice.left_out[1].why, "the same samples as episode e1");
-    assert_eq!(verdict(&twice, "2 of 14 episodes repeat another"), Verdict::Good);
+    assert_eq!(verdict(&twice, "2 of 14 episodes are exact copies of another"), Verdict::Good);
     let still = prepared(&changed(|episode| {
         if episode.name == "e7" {
             episode.positions.fill(0.3);
@@ -241,7 +241,7 @@ fn remarks() {
         episode.positions.row_mut(1).apply(|y| *y *= 57.3);
         episode.velocities = None;
     }));
-    assert_eq!(verdict(&mixed, "channel y spreads"), Verdict::Doubtful);
+    assert_eq!(verdict(&mixed, "channel y varies"), Verdict::Doubtful);
     let mut three = recordings();
     three.episodes.truncate(3);
     assert_eq!(verdict(&prepared(&three), "3 movements are too few"), Verdict::Doubtful);
@@ -253,7 +253,7 @@ fn remarks() {
         });
         episode.velocities = None;
     }));
-    assert_eq!(verdict(&round, "12 of 12 episodes come back to where they began"), Verdict::Good);
+    assert_eq!(verdict(&round, "12 of 12 episodes return to their start"), Verdict::Good);
     let coarse = prepared(&changed(|episode| {
         episode.positions.apply(|x| *x = (*x * 10.0).round() / 10.0);
         episode.velocities = None;
@@ -277,10 +277,10 @@ fn smoothing_as_requested() {
     });
     let off = smoothed_by(&positions, Smoothing::Off).unwrap();
     assert_eq!((off.recorded, off.averaged), (Recorded::PositionsAsRequested, 1));
-    assert_eq!(decided(&off, "smoothing"), "none: positions as they are");
+    assert_eq!(decided(&off, "smoothing"), "none: positions as recorded");
     assert_eq!(off.demonstrations.trajectories()[0].states(), &positions.episodes[0].positions);
     let smoothed = smoothed_by(&positions, Smoothing::Samples(9)).unwrap();
-    assert_eq!(decided(&smoothed, "smoothing"), "positions, over 9 samples at a time");
+    assert_eq!(decided(&smoothed, "smoothing"), "positions, window of 9 samples");
     assert_eq!(
         smoothed,
         Prepared { smoothing: Smoothing::Samples(9), ..smoothed_by(&positions, Smoothing::Seconds(0.44)).unwrap() }

@@ -36,6 +36,73 @@ fn every_help_ends_with_an_example_that_runs() {
     }
 }
 
+/// The flags of reading files are many: `check` lists them all, and every command knows them.
+#[test]
+fn the_help_of_fit_is_brief_and_begins_with_learning() {
+    let (fit, check) = (run("fit --help").out, run("check --help").out);
+    assert!(fit.lines().count() <= 90, "{fit}");
+    assert_eq!(fit, run("fit -h").out);
+    let place = |heading: &str| fit.find(heading).unwrap_or_else(|| panic!("{heading}: {fit}"));
+    assert!(place("Learning:") < place("Preparing:") && place("Preparing:") < place("Reading files:"), "{fit}");
+    for flag in ["--split-gap", "--decimal", "--trust", "--as"] {
+        assert!(check.contains(flag) && !fit.contains(&format!("{flag} ")), "{flag}");
+    }
+    assert!(fit.contains("policy-align check --help"), "{fit}");
+    assert_eq!(run("convert toy.csv --decimal . -o again.tsv").code, Some(0));
+}
+
+#[test]
+fn the_help_lists_the_exit_codes() {
+    let help = run("--help").out;
+    for code in
+        ["  0  done", "  1  a check failed", "  2  wrong usage", "  3  a file", "  4  a bug", "130  interrupted"]
+    {
+        assert!(help.contains(code), "{help}");
+    }
+}
+
+/// One constraint for all movements: what matters is said, however long it is.
+#[test]
+fn a_doubtful_verdict_shows_its_first_finding() {
+    let sample = |episode: i32, i: i32| {
+        let (k, left) = (f64::from(episode), (-0.1 * f64::from(i)).exp());
+        format!("{episode},{:.2},{:.6},{:.6}\n", 0.1 * f64::from(i), (1.0 + 0.3 * k) * left, 0.2 * k)
+    };
+    let rows: String = (0..10).flat_map(|episode| (0..20).map(move |i| sample(episode, i))).collect();
+    std::fs::write(folder().join("same.csv"), format!("episode,t,x,y\n{rows}")).unwrap();
+    let ran = run("fit same.csv -o same.json");
+    let document: Value = serde_json::from_str(&run("info same.json --json").out).unwrap();
+    let first = document["trust"]["findings"][0]["what"].as_str().unwrap();
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert_ne!(document["trust"]["verdict"], "good", "{}", ran.out);
+    for said in [&ran.out, &run("info same.json").out] {
+        assert!(words(said).contains(&words(first)), "{first}\n{said}");
+    }
+}
+
+#[test]
+fn what_was_written_is_named_and_training_data_are_not_a_test() {
+    let ran = run("rollout toy.json --from 1.5,1 --plot named.svg");
+    assert!(ran.out.contains("written      named.svg\n"), "{}", ran.out);
+    std::fs::copy(folder().join("toy.csv"), folder().join("same-bytes.csv")).unwrap();
+    let ran = run("evaluate toy.json same-bytes.csv");
+    assert!(ran.out.contains("warning      same-bytes.csv is training data"), "{}", ran.out);
+    assert!(!run("evaluate toy.json rails.csv").out.contains("training data"));
+    let document: Value = serde_json::from_str(&run("evaluate toy.json same-bytes.csv --json").out).unwrap();
+    assert_eq!(document["training_files"], serde_json::json!(["same-bytes.csv"]));
+}
+
+/// One number, one meaning: 0 outside the data, where neither deviation nor potential is known.
+#[test]
+fn support_is_none_outside_the_data() {
+    let ran = run("predict toy.json --at 50,50");
+    assert_eq!(ran.out, "action       x 0, y 0 per second\nsupport      0 (outside the data)\n");
+    let document: Value = serde_json::from_str(&run("predict toy.json --at 50,50 --json").out).unwrap();
+    let prediction = &document["predictions"][0];
+    assert_eq!((prediction["support"].as_f64(), &prediction["known"]), (Some(0.0), &Value::Bool(false)));
+    assert!(prediction["potential"].is_null() && prediction["deviation"].is_null(), "{prediction}");
+}
+
 #[test]
 fn results_are_json_if_asked_for() {
     for line in [
@@ -57,12 +124,14 @@ fn errors_have_three_lines_and_a_code() {
     std::fs::write(folder().join("bad.csv"), "episode,t,x,y\n1,0,0,0\n1,1,NaN,1\n1,2,2,2\n").unwrap();
     std::fs::write(folder().join("bad.toml"), "[[constraint]]\nnormal = [1]\n").unwrap();
     std::fs::write(folder().join("no.json"), "{}").unwrap();
+    std::fs::write(folder().join("half.json"), "{").unwrap();
     for (line, code, said) in [
         ("check nothing.csv", 3, "nothing.csv"),
         ("check bad.csv", 3, "try: --nan drop"),
         ("info nothing.json", 3, "cannot be read"),
-        ("info no.json", 3, "not a model of this program"),
-        ("info toy.csv", 3, "not JSON"),
+        ("info no.json", 3, "not a policy-align model: `format` is missing"),
+        ("info toy.csv", 3, "not a policy-align model: the file is no JSON object"),
+        ("info half.json", 3, "damaged or cut off: not JSON"),
         ("frobnicate", 2, "unrecognized subcommand"),
         ("check", 2, "required arguments"),
         ("fit toy.csv --folds five", 2, "invalid value 'five'"),
@@ -73,9 +142,9 @@ fn errors_have_three_lines_and_a_code() {
         ("fit toy.csv -o none/model.json", 3, "cannot be written"),
         ("predict toy.json --at 1", 2, "one for each of x, y"),
         ("predict toy.json --at a,b", 2, "--at 0.3,1.2"),
-        ("predict toy.json --at 99,99 --outside error", 1, "nothing was learnt there"),
+        ("predict toy.json --at 99,99 --outside error", 1, "the state is outside the data (support 0)"),
         ("predict toy.json no.json", 3, "no.json, line 1"),
-        ("rollout toy.json --from 99,99", 1, "outside of what was shown"),
+        ("rollout toy.json --from 99,99", 1, "outside the data (support 0, at least 0.5 needed)"),
         ("rollout toy.json --from 1,1 --seconds 0", 2, "seconds is 0"),
         ("rollout toy.json --from 1,1 --constraint bad.toml", 2, "constraint 1: `normal` has 1 numbers: it needs 2"),
         ("rollout toy.json --from 1,1 --constraint none.toml", 3, "none.toml"),
@@ -83,10 +152,11 @@ fn errors_have_three_lines_and_a_code() {
         ("plot toy.json --dims x,q", 2, "two of x, y"),
         ("convert toy.csv -o toy.xyz", 2, "use one of"),
         ("export toy.json --to c --name 1st", 2, "--name policy"),
-        ("evaluate toy.json toy.csv --truth vx", 2, "a column for each channel"),
+        ("evaluate toy.json toy.csv --truth vx", 2, "one column for each channel"),
+        ("evaluate toy.json wall.toml", 3, "not a recording"),
         ("evaluate toy.json toy.csv --leave-constraint-out", 1, "--constraint-column"),
         ("export toy.json --to mcap -o toy.csv", 2, "end in .mcap"),
-        ("export toy.json --to mcap --from 99,99", 1, "outside of what was shown"),
+        ("export toy.json --to mcap --from 99,99", 1, "outside the data"),
         ("export toy.json --to c --from 1,1", 2, "--to mcap"),
         ("convert toy.csv -o slow.csv --resample 0", 2, "a rate of 0 Hz"),
         ("convert toy.csv -o slow.csv --resample 0.1", 2, "a higher rate"),
@@ -114,9 +184,9 @@ fn warnings_of_one_kind_are_counted() {
     std::fs::write(folder().join("again.csv"), format!("movement,t,x\n{rows}")).unwrap();
     let ran = run("convert again.csv -o once.csv");
     let warnings: Vec<&str> =
-        ran.err.lines().filter(|line| line.contains("repeats") || line.contains("more")).collect();
+        ran.err.lines().filter(|line| line.contains("exact copy") || line.contains("more")).collect();
     assert_eq!((ran.code, warnings.len()), (Some(0), 4), "{}", ran.err);
-    assert!(warnings[3].ends_with("and 5 more like this one: check --html lists all"), "{}", ran.err);
+    assert!(warnings[3].ends_with("and 5 more of this kind: check --html lists all"), "{}", ran.err);
 }
 
 #[test]

@@ -25,8 +25,8 @@ pub(crate) fn leave_out(takes: &mut Vec<Take>, notes: &mut Notes) {
     if repeated > 0 {
         notes.found(
             Verdict::Good,
-            format!("{repeated} of {before} episodes repeat another sample for sample and were left out"),
-            "look how the files were made; a copied movement tells nothing new",
+            format!("{repeated} of {before} episodes are exact copies of another and were left out"),
+            "check how the files were made: a copied movement adds no information",
         );
     }
 }

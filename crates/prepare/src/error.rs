@@ -8,8 +8,8 @@ pub enum PrepareError {
     /// There is nothing.
     #[error("there is no episode; give at least one")]
     Empty,
-    /// Every episode was left out.
-    #[error("no episode is left: all {of} were left out ({why}); record movements")]
+    /// Nothing is left.
+    #[error("all {of} episodes were left out ({why}); record movements")]
     NothingLeft {
         /// How many there were.
         of: usize,
@@ -18,7 +18,7 @@ pub enum PrepareError {
     },
     /// Rows and columns seem to be exchanged.
     #[error(
-        "the state has {dim} dimensions and the longest episode {samples} samples: rows and columns seem to be exchanged; read the samples the other way (--samples-are)"
+        "the state has {dim} dimensions and the longest episode {samples} samples: rows and columns seem to be exchanged; --samples-are with the other orientation"
     )]
     LooksTransposed {
         /// Dimensions of the state.
@@ -26,8 +26,8 @@ pub enum PrepareError {
         /// Samples of the longest episode.
         samples: usize,
     },
-    /// A scale for an unknown channel.
-    #[error("--scale names '{name}', but the state has {known}; use one of these names")]
+    /// A scale for something that is not there.
+    #[error("--scale names '{name}', but the state has {known}; one of these names")]
     UnknownChannel {
         /// The name given.
         name: String,
@@ -50,7 +50,7 @@ pub enum PrepareError {
     },
     /// A window that cannot smooth.
     #[error(
-        "--smooth: a window of {window} samples, {step} s apart; give an odd number from 5 on, as --smooth 9, or so many seconds, as --smooth {:.2e}s", 9.0 * step
+        "--smooth: a window of {window} samples, {step} s apart; an odd number of at least 5, as in --smooth 9, or seconds, as in --smooth {:.2e}s", 9.0 * step
     )]
     Smoothing {
         /// Samples in it.
@@ -59,7 +59,7 @@ pub enum PrepareError {
         step: f64,
     },
     /// Nothing moves.
-    #[error("no channel changes in any episode: there is no movement to learn from")]
+    #[error("no channel changes in any episode; recordings that move")]
     NoMotion,
     /// An episode is not a movement.
     #[error("episode '{episode}': {source}")]

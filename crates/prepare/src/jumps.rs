@@ -28,14 +28,14 @@ pub(crate) fn cut(takes: &mut Vec<Take>, notes: &mut Notes) {
         })
         .collect();
     let Some((name, sample, times)) = first else { return };
-    notes.decided("jumps", format!("{cut} episodes cut"), "one step is far longer than all about it", "--jumps");
+    notes.decided("jumps", format!("{cut} episodes split"), "one step is far longer than its neighbours", "--jumps");
     let verdict = if f64::from(cut) > MANY * episodes as f64 { Verdict::Doubtful } else { Verdict::Good };
     notes.found(
         verdict,
         format!(
-            "{cut} of {episodes} episodes have a jump (episode {name}: the step after sample {sample} is {times:.0} times the usual one) and were cut there"
+            "{cut} of {episodes} episodes have a jump (episode {name}: the step after sample {sample} is {times:.0} times the usual one) and were split there"
         ),
-        "look for missing samples, tracking that was lost, or angles that wrap",
+        "check for missing samples, lost tracking or wrapped angles",
     );
 }
 

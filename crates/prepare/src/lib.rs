@@ -50,6 +50,7 @@ mod duplicates;
 mod episodes;
 mod error;
 mod finding;
+pub mod in_words;
 mod jumps;
 mod left_out;
 mod noise;

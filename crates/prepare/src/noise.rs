@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use smoothing::PositionNoise;
 
 use crate::Verdict;
+use crate::in_words;
 use crate::prepared::{Notes, Recorded};
 use crate::velocities::Agreement;
 
@@ -115,8 +116,8 @@ pub(crate) fn decide(
 ) -> Recorded {
     let share = noise.step_share;
     let words = match &noise.positions {
-        None => "too few samples in a row to tell how noisy positions are".to_owned(),
-        Some(_) if share < 1e-4 => "positions are as good as exact".to_owned(),
+        None => "too few consecutive samples to estimate position noise".to_owned(),
+        Some(_) if share < 1e-4 => "position noise is negligible".to_owned(),
         Some(_) => format!("noise makes {} of the squared steps", percent(share)),
     };
     let noisy_velocities = noise.velocity_share.filter(|&share| share > EXACT_VELOCITIES);
@@ -135,11 +136,11 @@ pub(crate) fn decide(
         Recorded::FusedVelocities => ("velocities as recorded, positions fused with them", words),
         Recorded::NoisyVelocities(_) => (
             "velocities as recorded, with their noise",
-            format!("noise makes {} of their squares", percent(noisy_velocities.unwrap_or(0.0))),
+            format!("noise share of their squares: {}", percent(noisy_velocities.unwrap_or(0.0))),
         ),
-        Recorded::Positions if agreement == Agreement::None => ("positions smoothed, piece by piece", words),
+        Recorded::Positions if agreement == Agreement::None => ("positions smoothed piecewise", words),
         Recorded::Positions | Recorded::PositionsAsRequested => {
-            ("positions smoothed, piece by piece", format!("{words}; velocities are no better"))
+            ("positions smoothed piecewise", format!("{words}; velocities are no better"))
         }
     };
     notes.decided("smoothing", value, why, "--smooth");
@@ -147,14 +148,13 @@ pub(crate) fn decide(
         notes.found(
             Verdict::Good,
             format!("noise makes {} of the squared steps", percent(share)),
-            "better: record velocities or commands, or measure positions more exactly",
+            "record velocities or commands, or measure positions more exactly",
         );
     }
     recorded
 }
 
+/// Where steps are nothing but noise, its estimate may exceed them.
 fn percent(share: f64) -> String {
-    // Where steps are nothing but noise, its estimate may exceed them.
-    let percent = 100.0 * share.min(1.0);
-    if percent < 10.0 { format!("{percent:.2} %") } else { format!("{percent:.0} %") }
+    in_words::percent(share.min(1.0))
 }

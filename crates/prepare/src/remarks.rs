@@ -2,6 +2,7 @@
 
 use motion::{Demonstrations, Trajectory};
 
+use crate::in_words::{percent, short};
 use crate::noise::{Noise, resolution};
 use crate::prepared::Notes;
 use crate::{StateChannel, Verdict};
@@ -54,8 +55,8 @@ fn mixed_units(spreads: &[f64], state: &[StateChannel], notes: &mut Notes) {
     let name = spreads.iter().position(|&spread| spread == largest).map_or("", |at| state[at].name.as_str());
     notes.found(
         Verdict::Doubtful,
-        format!("channel {name} spreads {times:.0} times as much as the others: has it another unit (degrees, millimetres)?"),
-        format!("constraints act at right angles only if all channels share one unit: --degrees {name} or --scale {name}=FACTOR"),
+        format!("channel {name} varies {times:.0} times as much as the others: different unit (degrees, millimetres)?"),
+        format!("all channels need one unit, because constraints act at right angles: --degrees {name} or --scale {name}=FACTOR"),
     );
 }
 
@@ -65,7 +66,7 @@ fn few(demonstrations: &Demonstrations, notes: &mut Notes) {
         let (verb, plural) = if count == 1 { ("is", "") } else { ("are", "s") };
         notes.found(
             Verdict::Doubtful,
-            format!("{count} movement{plural} {verb} too few to tell what constraints hid"),
+            format!("{count} movement{plural} {verb} too few to infer what constraints hid"),
             "record at least 10, from different starts and under different constraints",
         );
     }
@@ -83,8 +84,8 @@ fn loops(demonstrations: &Demonstrations, notes: &mut Notes) {
     if loops > 0 {
         notes.found(
             Verdict::Good,
-            format!("{loops} of {} episodes come back to where they began", demonstrations.n_trajectories()),
-            "a potential cannot explain a round trip: use --learner auto, which allows for rotation, or cut them",
+            format!("{loops} of {} episodes return to their start", demonstrations.n_trajectories()),
+            "a potential cannot explain a round trip: use --learner auto, which allows rotation, or split them",
         );
     }
 }
@@ -106,7 +107,7 @@ fn standing(demonstrations: &Demonstrations, noise: &Noise, notes: &mut Notes) {
         notes.found(
             Verdict::Good,
             format!("{standing} episodes stand still at an end"),
-            "nothing is learnt there; --trim-still leaves it out",
+            "nothing can be learnt there: --trim-still removes it",
         );
     }
 }
@@ -118,11 +119,12 @@ fn coarse(demonstrations: &Demonstrations, spreads: &[f64], state: &[StateChanne
             notes.found(
                 Verdict::Good,
                 format!(
-                    "channel {} has steps of {least:.2e}, {:.1} % of its spread: positions have few digits",
+                    "channel {} has a resolution of {}, {} of its spread: positions have few digits",
                     channel.name,
-                    100.0 * least / spreads[axis]
+                    short(least),
+                    percent(least / spreads[axis])
                 ),
-                "write files with more digits, or record velocities",
+                "save more digits, or record velocities",
             );
         }
     }

@@ -21,7 +21,7 @@ pub(crate) fn as_requested(
     let window = match smoothing {
         Smoothing::Auto => return Ok(None),
         Smoothing::Off => {
-            notes.decided("smoothing", "none: positions as they are", "as requested", "--smooth");
+            notes.decided("smoothing", "none: positions as recorded", "as requested", "--smooth");
             return Ok(Some(demonstrations.clone()));
         }
         Smoothing::Samples(window) => window,
@@ -35,8 +35,8 @@ pub(crate) fn as_requested(
         SmoothingError::Motion(source) => PrepareError::Episode { episode: "smoothed".to_owned(), source },
         _ => PrepareError::Smoothing { window, step },
     })?;
-    let value = format!("positions, over {window} samples at a time");
-    notes.decided("smoothing", value, "as requested; parabolas through them", "--smooth");
+    let value = format!("positions, window of {window} samples");
+    notes.decided("smoothing", value, "as requested; local parabolas", "--smooth");
     Ok(Some(smoothed))
 }
 

@@ -1,6 +1,7 @@
 use motion::{Demonstrations, Trajectory};
 
 use crate::episodes::Take;
+use crate::in_words::{percent, short};
 use crate::options::PrepareOptions;
 use crate::prepared::Notes;
 use crate::{PrepareError, Verdict};
@@ -51,15 +52,15 @@ pub(crate) fn decide(takes: &mut [Take], options: &PrepareOptions, notes: &mut N
 fn say(takes: &[Take], (uneven, worst, gaps): (usize, f64, usize), notes: &mut Notes) {
     let steps = takes.iter().filter_map(|take| take.time_step.or_else(|| step_of(take)));
     let Some(usual) = median(steps.collect()) else { return };
-    let rate = if usual < 1.0 { format!(" ({:.4} Hz)", 1.0 / usual) } else { String::new() };
-    let value = format!("{} s{}", short(usual), rate.replace(".0000", ""));
+    let rate = if usual < 1.0 { format!(" ({} Hz)", short(1.0 / usual)) } else { String::new() };
+    let value = format!("{} s{rate}", short(usual));
     if uneven == 0 {
         notes.decided("time step", value, "stamps are even", "--dt");
     } else {
         let why = format!(
-            "stamps of {uneven} of {} episodes differ by up to {:.0} % of a step; each step is taken with its own time",
+            "stamps of {uneven} of {} episodes differ by up to {} of a step; each step keeps its own time",
             takes.len(),
-            100.0 * worst
+            percent(worst)
         );
         notes.decided("time step", value, why, "--dt");
     }
@@ -67,7 +68,7 @@ fn say(takes: &[Take], (uneven, worst, gaps): (usize, f64, usize), notes: &mut N
         notes.found(
             Verdict::Good,
             format!("{gaps} steps take over {GAP} times the usual time: samples are missing"),
-            "cut episodes there (--split-gap) if the movement went on meanwhile",
+            "split episodes there (--split-gap) if the movement went on meanwhile",
         );
     }
 }
@@ -85,7 +86,7 @@ pub(crate) fn doubt(demonstrations: &Demonstrations, notes: &mut Notes) {
             short(movement.seconds(0, movement.n_samples() - 1))
         ),
         format!(
-            "if so, name the column's unit or give --dt {}; velocities learnt are per second of the stamps",
+            "if so, name the column's unit or give --dt {}; learnt velocities are per second of the stamps",
             short(usual / 1000.0)
         ),
     );
@@ -106,13 +107,6 @@ fn whole(time_step: f64) -> f64 {
         (None, Some(ms)) => ms,
         (None, None) => time_step,
     }
-}
-
-/// Four digits.
-fn short(value: f64) -> String {
-    let digits = (3 - value.abs().log10().floor() as i32).clamp(0, 9) as usize;
-    let text = format!("{value:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 fn median(mut values: Vec<f64>) -> Option<f64> {

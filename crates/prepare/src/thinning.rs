@@ -3,6 +3,7 @@
 use motion::{Demonstrations, MotionError, Trajectory};
 use nalgebra::DMatrix;
 
+use crate::in_words::percent;
 use crate::noise::Noise;
 use crate::prepared::Notes;
 
@@ -29,11 +30,11 @@ pub(crate) fn decide(demonstrations: &Demonstrations, noise: &Noise, notes: &mut
     }
     if taken > 1 {
         let why = format!(
-            "noise makes {:.0} % of the squared steps as recorded, {:.0} % then",
-            100.0 * noise.step_share.min(1.0),
-            100.0 * share
+            "noise share of the squared steps: {} before, {} after",
+            percent(noise.step_share.min(1.0)),
+            percent(share)
         );
-        notes.decided("averaging", format!("{taken} samples become one"), why, "--smooth");
+        notes.decided("averaging", format!("over {taken} samples"), why, "--smooth");
     }
     taken
 }

@@ -3,6 +3,7 @@ use nalgebra::DVector;
 
 use crate::Verdict;
 use crate::episodes::Take;
+use crate::in_words::{percent, short};
 use crate::noise::Noise;
 use crate::options::{PrepareOptions, VelocityUse};
 use crate::prepared::Notes;
@@ -54,7 +55,7 @@ pub(crate) fn decide(
         return Agreement::None;
     }
     if options.velocities == VelocityUse::Recorded {
-        notes.decided("velocities", "recorded", "believed as requested", "--integration");
+        notes.decided("velocities", "recorded", "used as requested", "--integration");
         return Agreement::Own;
     }
     let fit = Steps::of(takes, noise);
@@ -65,13 +66,16 @@ pub(crate) fn decide(
         notes.decided(
             "velocities",
             "from positions",
-            format!("those recorded explain {:.0} % of the steps", 100.0 * fit.explained.max(0.0)),
+            format!("those recorded explain {} of the steps", percent(fit.explained.max(0.0))),
             "--integration",
         );
         notes.found(
             Verdict::Doubtful,
-            format!("the recorded velocities have nothing to do with the steps (they explain {:.0} % of them) and were ignored", 100.0 * fit.explained.max(0.0)),
-            "look whether these columns are velocities, of the same channels in the same order",
+            format!(
+                "recorded velocities do not match the steps (they explain {} of them) and were ignored",
+                percent(fit.explained.max(0.0))
+            ),
+            "check that these columns are velocities of the same channels in the same order",
         );
         return Agreement::None;
     }
@@ -169,8 +173,8 @@ fn mend(takes: &mut [Take], fit: &Steps, channels: &[Channel], notes: &mut Notes
         notes.decided("time step", format!("{} s", step / 1000.0), format!("{what}: stamps are milliseconds"), "--dt");
         notes.found(
             Verdict::Doubtful,
-            format!("{what}: stamps were taken as milliseconds"),
-            "say so in the file (name the column t_ms), or give --dt",
+            format!("{what}: stamps were read as milliseconds"),
+            "name the column t_ms, or give --dt",
         );
         return;
     }
@@ -186,27 +190,22 @@ fn mend(takes: &mut [Take], fit: &Steps, channels: &[Channel], notes: &mut Notes
     }
     let (what, next) = if common {
         let times = 1.0 / factors[0];
-        (format!("velocities are {} times the steps", rounded(times)), guess(times, step).to_owned())
+        (format!("velocities are {} times the steps", short(times)), guess(times, step).to_owned())
     } else {
         let odd = (0..channels.len()).max_by(|&a, &b| fit.factors[a].ln_abs().total_cmp(&fit.factors[b].ln_abs()));
         let odd = odd.unwrap_or(0);
         let times = 1.0 / fit.factors[odd];
         (
             format!(
-                "velocities of channel {} are {} times its steps, those of others are not",
+                "velocities of channel {} are {} times its steps, unlike the others",
                 channels[odd].name,
-                rounded(times)
+                short(times)
             ),
             guess(times, step).to_owned(),
         )
     };
-    notes.decided(
-        "velocities",
-        "recorded, times the factor that makes them agree with the steps",
-        what.clone(),
-        "--integration",
-    );
-    notes.found(Verdict::Doubtful, format!("{what}; they were brought to the units of positions and stamps"), next);
+    notes.decided("velocities", "recorded, rescaled to agree with the steps", what.clone(), "--integration");
+    notes.found(Verdict::Doubtful, format!("{what}; they were converted to the units of positions and stamps"), next);
 }
 
 trait LnAbs {
@@ -232,17 +231,13 @@ fn whole(times: f64, step: f64) -> f64 {
 
 fn guess(times: f64, step: f64) -> &'static str {
     const WORDS: [&str; 6] = [
-        "velocities in millimetres, or stamps in milliseconds? Say so in the file (units) or with --dt",
-        "positions in millimetres? Say so in the file (units)",
-        "degrees here and radians there? Use one of them (--degrees)",
-        "degrees here and radians there? Use one of them (--degrees)",
-        "look at the sign: velocities point against the movement",
+        "velocities in millimetres, or stamps in milliseconds? Name the units in the file, or give --dt",
+        "positions in millimetres? Name the units in the file",
+        "degrees and radians mixed? Use one of them (--degrees)",
+        "degrees and radians mixed? Use one of them (--degrees)",
+        "check the sign: velocities point against the movement",
         "these are steps, not velocities per second",
     ];
     let named = usual(step).into_iter().zip(WORDS).find(|(value, _)| (times / value - 1.0).abs() < NEAR);
-    named.map_or("look at units and time step; --dt sets the latter", |(_, words)| words)
-}
-
-fn rounded(value: f64) -> String {
-    if value.abs() >= 10.0 { format!("{value:.0}") } else { format!("{value:.3}") }
+    named.map_or("check units and time step (--dt)", |(_, words)| words)
 }

@@ -33,7 +33,7 @@ pub(crate) fn unwrap(takes: &mut [Take], channels: &[Channel], notes: &mut Notes
         notes.found(
             Verdict::Doubtful,
             format!("channel {name} wraps by a whole turn in {wrapped} of {} episodes; it was unwrapped", takes.len()),
-            "look whether all episodes now run towards the same place; record angles that do not wrap",
+            "check that all episodes now end at the same place, or record angles that do not wrap",
         );
     }
 }

@@ -43,7 +43,7 @@ private:
     }
     seen_ = now();
     if (!policy(x.data(), u.data(), nullptr)) {
-      RCLCPP_WARN_THROTTLE(get_logger(), *get_clock(), 1000, "outside of what was shown: standing still");
+      RCLCPP_WARN_THROTTLE(get_logger(), *get_clock(), 1000, "outside the data: stopped");
       u.fill(0.0);
     }
     // All joints slower by one factor, so that the direction stays.

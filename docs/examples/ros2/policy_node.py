@@ -42,7 +42,7 @@ class PolicyNode(Node):
         x = np.array([[position[joint] for joint in self.joints]])
         u, support = self.session.run(["u", "support"], {"x": x})
         if not support[0]:
-            self.get_logger().warning("outside of what was shown: standing still", throttle_duration_sec=1.0)
+            self.get_logger().warning("outside the data: stopped", throttle_duration_sec=1.0)
             u = np.zeros_like(u)
         # All joints slower by one factor, so that the direction stays.
         self.command(u[0] * (FASTEST / max(FASTEST, np.abs(u).max())))

@@ -12,6 +12,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use anyhow::Context as _;
 use experiments::outcome::Outcome;
 
+use crate::failure::Failure;
 use line::Record;
 
 /// Names one data set of one setup of an experiment.
@@ -52,8 +53,9 @@ impl Records {
     /// Opens the records at `path`, creating them where there are none. Lines that cannot be believed, such as the torn
     /// last line of a killed run, are passed over; their data sets are computed again.
     pub(crate) fn open(path: &Path, earlier: Earlier) -> anyhow::Result<Records> {
-        let (file, bytes) = open(path, earlier).with_context(|| {
-            format!("cannot open the records {}; wait for it, or choose another --out", path.display())
+        let (file, bytes) = open(path, earlier).map_err(|error| {
+            let remedy = "wait for the other run, or choose another --out";
+            Failure::new(format!("the records cannot be opened: {error:#}"), path.display().to_string(), remedy)
         })?;
         let (finished, unreadable) = read(&bytes);
         Ok(Records { path: path.to_owned(), code: code_identity()?, finished, unreadable, file: Mutex::new(file) })
@@ -61,8 +63,9 @@ impl Records {
 
     /// Adds what another file holds, which stays as it is.
     pub(crate) fn add(&mut self, path: &Path) -> anyhow::Result<()> {
-        let bytes = std::fs::read(path).with_context(|| {
-            format!("cannot read {}, the records of a shard: name the folder of each", path.display())
+        let bytes = std::fs::read(path).map_err(|error| {
+            let remedy = "--merge with the folder of each shard";
+            Failure::new(format!("the records of a shard cannot be read: {error}"), path.display().to_string(), remedy)
         })?;
         let (records, unreadable) = read(&bytes);
         self.finished.extend(records);

@@ -17,7 +17,7 @@ pub(super) fn stop_cleanly(records: &Arc<Records>) -> anyhow::Result<()> {
     let records = Arc::clone(records);
     let stop = move || {
         let _no_more_writes = records.writing();
-        say("\nStopped. Finished data sets are saved; run the same command without --fresh to go on.");
+        say("\nStopped. Finished data sets are saved; the same command without --fresh resumes.");
         std::process::exit(INTERRUPTED);
     };
     match ctrlc::try_set_handler(stop) {

@@ -11,7 +11,6 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use anyhow::{Context as _, bail};
 use clap::Args;
 use cpu_time::ProcessTime;
 use experiments::outcome::{Outcome, Outcomes};
@@ -21,6 +20,7 @@ use experiments::{Experiment, registry};
 use figures::{Sources, compute};
 use report::{Tally, terminal};
 
+use crate::failure::Failure;
 use crate::files::{relative, repository};
 use crate::progress::say;
 use crate::records::{Earlier, Records};
@@ -38,38 +38,41 @@ const QUICK_DATA_SETS: u32 = 3;
 #[derive(Debug, Args)]
 #[allow(clippy::struct_excessive_bools, reason = "switches of a command line")]
 pub(crate) struct Reproduce {
-    /// Show the experiments and their rows, and stop
+    /// List the experiments and their times, and stop
     #[arg(long)]
     list: bool,
-    /// Run these only: experiments (table1), rows (sinusoidal-40x40-wide), or rows of one experiment (table1/..)
+    /// With --list: also list the rows of each experiment
+    #[arg(long, requires = "list")]
+    rows: bool,
+    /// Run only these experiments (table1), rows (sinusoidal-40x40-wide), or rows of one experiment (table1/..)
     #[arg(long, value_name = "ID,..", value_delimiter = ',')]
     only: Vec<String>,
-    /// Data sets a row [default: as many as the paper]
+    /// Data sets per row [default: as in the paper]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     data_sets: Option<u32>,
-    /// Three data sets a row, one where learners are held against each other: a first look within a minute or two
+    /// Three data sets per row, one where learners are compared: a first look within a minute or two
     #[arg(long, conflicts_with = "data_sets")]
     quick: bool,
     /// Seed of all random numbers
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
-    /// Worker threads; they change the time, never the results [default: one a core]
+    /// Worker threads; results do not depend on them [default: one per core]
     #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
-    /// Measure the I-th of N shares of all data sets, here or on another machine; --merge makes one run of them
+    /// Measure share I of N of all data sets, on any machine; --merge joins the shares
     #[arg(long, value_name = "I/N", conflicts_with_all = ["merge", "list"])]
     shard: Option<Shard>,
-    /// Make one run of the shards in these folders, by the same program, with the same options but --shard and --out
+    /// Join the shards in these folders into one run; program and other options must be the same
     #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with_all = ["list", "fresh"])]
     merge: Vec<PathBuf>,
     /// Folder for report.html, report.md, results.json, figures/ and the records of finished data sets [default:
     /// target/reproduce in the repository; with --shard, target/shards/I-of-N]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Start over: forget the data sets that earlier runs into the same folder finished
+    /// Start over: discard the data sets that earlier runs in this folder finished
     #[arg(long)]
     fresh: bool,
-    /// Leave out report.html and the figures: results.json and report.md only
+    /// Write results.json and report.md only, without report.html and figures
     #[arg(long)]
     no_figures: bool,
 }
@@ -78,7 +81,7 @@ impl Reproduce {
     pub(crate) fn execute(&self) -> anyhow::Result<()> {
         let experiments = select(registry()?, &self.only)?;
         if self.list {
-            return print(&list(&experiments));
+            return print(&list(&experiments, self.rows));
         }
         let folder = self.folder();
         folder.make()?;
@@ -100,7 +103,7 @@ impl Reproduce {
             folder.forget_report()?;
             write_tables(&experiments, &sources.results, &folder)?;
         } else {
-            say("computing what the figures show, and drawing them ..");
+            say("computing and drawing the figures ..");
             sources.documents = pool.install(|| compute(&experiments, self.seed))?;
             folder.keep(&sources)?;
             pool.install(|| write_report(&experiments, &sources, &folder))?;
@@ -132,7 +135,9 @@ impl Reproduce {
         }
         match records.unreadable() {
             0 => (),
-            lines => say(&format!("{lines} line(s) of records.jsonl are torn, damaged or of an older form: not used")),
+            lines => {
+                say(&format!("{lines} line(s) of records.jsonl are torn, damaged or of an older form, and not used"));
+            }
         }
         Ok(records)
     }
@@ -214,7 +219,8 @@ impl Reproduce {
         let rows =
             results.experiments.iter().flat_map(|experiment| experiment.rows.iter().map(move |row| (experiment, row)));
         if let Some((experiment, row)) = rows.into_iter().find(|(_, row)| row.failed == row.data_sets) {
-            bail!("{} {}: every data set failed", experiment.id, row.id);
+            let place = format!("{} {}", experiment.id, row.id);
+            return Err(Failure::new("every data set failed", place, "the reasons are listed above").into());
         }
         Ok(())
     }
@@ -238,7 +244,11 @@ fn failures(experiments: &[Experiment], outcomes: &[Vec<Outcomes>]) -> Vec<Strin
 /// Writes to standard output; a reader that has seen enough (`| head`) is no error.
 fn print(text: &str) -> anyhow::Result<()> {
     match io::Write::write_all(&mut io::stdout(), text.as_bytes()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).context("cannot write to standard output"),
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            let what = format!("cannot write to standard output: {error}");
+            Err(Failure::new(what, "cargo xtask reproduce", "report.md in the run's folder: it holds the tables")
+                .into())
+        }
         _ => Ok(()),
     }
 }

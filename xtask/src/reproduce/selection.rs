@@ -1,7 +1,8 @@
 //! Which experiments are run: `--only`, and the list of what there is.
 
-use anyhow::bail;
 use experiments::{Experiment, Setup};
+
+use crate::failure::Failure;
 
 /// Names that are as alike as this may be meant for each other (Jaro and Winkler's measure: 1 for equal names).
 const LIKE: f64 = 0.8;
@@ -20,12 +21,13 @@ pub(super) fn select(mut experiments: Vec<Experiment>, only: &[String]) -> anyho
     for wanted in only {
         let known = |e: &Experiment| e.setups.iter().any(|setup| matches(wanted, e.id, setup));
         if !experiments.iter().any(known) {
-            let ids: Vec<&str> = experiments.iter().map(|experiment| experiment.id).collect();
-            let nearest = nearest(wanted, &experiments).map_or(String::new(), |name| format!("; do you mean {name}?"));
-            bail!(
-                "--only {wanted:?}: no such experiment or row{nearest}\nexperiments:\n    {}\n`cargo xtask reproduce --list` shows the rows",
-                ids.join("\n    ")
-            );
+            let nearest = nearest(wanted, &experiments).map_or(String::new(), |name| format!("--only {name}, or "));
+            return Err(Failure::new(
+                "no such experiment or row",
+                format!("--only {wanted}"),
+                format!("{nearest}one of `cargo xtask reproduce --list --rows`"),
+            )
+            .into());
         }
     }
     for experiment in &mut experiments {
@@ -50,22 +52,34 @@ fn nearest<'a>(wanted: &str, experiments: &'a [Experiment]) -> Option<&'a str> {
 /// to twice as long, or half.
 const COST_A_SECOND: f64 = 2e7;
 
-/// Every experiment with its rows, and how long it takes.
-pub(super) fn list(experiments: &[Experiment]) -> String {
+/// Every experiment and how long it takes, with its rows if they are asked for; last the time of all.
+pub(super) fn list(experiments: &[Experiment], with_rows: bool) -> String {
     let line = |e: &Experiment| {
-        let rows: Vec<String> = e.rows().map(|row| format!("    {}\n", row.id)).collect();
-        let cost = |setup: &Setup| u64::from(setup.data_sets_of(e)) * setup.cost;
-        let seconds = e.setups.iter().map(cost).sum::<u64>() as f64 / COST_A_SECOND;
-        let time = if seconds < 90.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) };
+        let rows: Vec<&str> = e.rows().map(|row| row.id.as_str()).collect();
+        let listed = if with_rows { format!("    {}\n", rows.join("\n    ")) } else { String::new() };
+        let (count, plural) = (rows.len(), if rows.len() == 1 { "" } else { "s" });
         format!(
-            "{}: {}\n  {} data sets a row, about {time} of processor time\n{}",
+            "{}: {}\n  {count} row{plural} of {} data sets, {} of processor time\n{listed}",
             e.id,
             e.title,
             e.data_sets,
-            rows.concat()
+            duration(seconds(e))
         )
     };
-    experiments.iter().map(line).collect()
+    let lines: String = experiments.iter().map(line).collect();
+    let total = duration(experiments.iter().map(seconds).sum());
+    let more = if with_rows { "" } else { "; --list --rows also lists the rows" };
+    format!("{lines}in all: {total} of processor time{more}\n")
+}
+
+/// Processor time of an experiment.
+fn seconds(experiment: &Experiment) -> f64 {
+    let cost = |setup: &Setup| u64::from(setup.data_sets_of(experiment)) * setup.cost;
+    experiment.setups.iter().map(cost).sum::<u64>() as f64 / COST_A_SECOND
+}
+
+fn duration(seconds: f64) -> String {
+    if seconds < 90.0 { format!("about {seconds:.0} s") } else { format!("about {:.0} min", seconds / 60.0) }
 }
 
 #[cfg(test)]

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
 
-use anyhow::{Context as _, ensure};
 use serde::{Deserialize, Serialize};
 
+use crate::failure::Failure;
 use crate::files::{relative, repository, typed, write};
 use crate::progress::say;
 use crate::records::Records;
@@ -38,7 +38,7 @@ impl FromStr for Shard {
         let numbers = text.split_once('/').and_then(|(index, of)| Some((index.parse().ok()?, of.parse().ok()?)));
         match numbers {
             Some((index, of)) if (1..=of).contains(&index) => Ok(Shard { index, of }),
-            _ => Err("give which of how many, from 1, such as 2/8".to_owned()),
+            _ => Err("a share and their number, such as 2/8".to_owned()),
         }
     }
 }
@@ -70,7 +70,7 @@ impl Shard {
             work.total(),
             relative(&folder.join("records.jsonl"))
         ));
-        say("once all shards are there: the same command with --merge and their folders instead of --shard");
+        say("when all shards are done: the same command with --merge and their folders instead of --shard");
         Ok(())
     }
 
@@ -78,9 +78,9 @@ impl Shard {
     fn read(folder: &Path) -> anyhow::Result<Shard> {
         let path = folder.join(FILE);
         let name = relative(&path);
-        let text =
-            std::fs::read_to_string(&path).with_context(|| format!("cannot read {name}: no shard was run there"))?;
-        serde_json::from_str(&text).with_context(|| format!("{name} is damaged"))
+        let refused = |what: String| Failure::new(what, name.clone(), "--merge with the folders of --shard runs");
+        let text = std::fs::read_to_string(&path).map_err(|error| refused(format!("not a shard: {error}")))?;
+        Ok(serde_json::from_str(&text).map_err(|error| refused(format!("damaged: {error}")))?)
     }
 }
 
@@ -89,11 +89,10 @@ pub(super) fn merged(work: &mut Work<'_>, folders: &[PathBuf]) -> anyhow::Result
     let shards: Vec<Shard> = folders.iter().map(|folder| Shard::read(folder)).collect::<anyhow::Result<_>>()?;
     let of = shards.first().map_or(1, |shard| shard.of);
     for (shard, folder) in shards.iter().zip(folders) {
-        ensure!(
-            shard.of == of,
-            "{} is shard {shard}, the first is one of {of}: shards of one run only",
-            relative(folder)
-        );
+        if shard.of != of {
+            let what = format!("shard {shard} is of another run: the first is one of {of}");
+            return Err(Failure::new(what, relative(folder), "--merge with the shards of one run").into());
+        }
     }
     let missing = work.missing();
     let Some((first, _)) = missing.first() else { return Ok(()) };
@@ -103,20 +102,16 @@ pub(super) fn merged(work: &mut Work<'_>, folders: &[PathBuf]) -> anyhow::Result
     lacking.dedup();
     let about = |shard: &Shard| match folders.iter().zip(&shards).find(|(_, other)| *other == shard) {
         Some((folder, _)) => {
-            format!("shard {shard} in {} is not finished, damaged, or of another program", typed(folder))
+            format!("shard {shard} in {} is unfinished, damaged, or of another program", typed(folder))
         }
         None => format!("shard {shard} is not among the folders"),
     };
     let names: Vec<&str> = missing.iter().take(NAMED).map(|(_, name)| name.as_str()).collect();
     let more = if missing.len() > NAMED { "; .." } else { "" };
-    anyhow::bail!(
-        "{} of {} data sets are missing ({}{more}):\n{}\n`cargo xtask reproduce --shard {}` with the same options measures what a shard lacks",
-        missing.len(),
-        work.total(),
-        names.join("; "),
-        lacking.iter().map(about).collect::<Vec<_>>().join("\n"),
-        shard_of(*first)
-    )
+    let what = format!("{} of {} data sets are missing ({}{more})", missing.len(), work.total(), names.join("; "));
+    let place = lacking.iter().map(about).collect::<Vec<_>>().join("; ");
+    let remedy = format!("`cargo xtask reproduce --shard {}` with the same options", shard_of(*first));
+    Err(Failure::new(what, place, remedy).into())
 }
 
 #[cfg(test)]

@@ -35,7 +35,7 @@ impl Dialect {
         let rows: Vec<&str> = lines().filter(|line| !line.starts_with('#')).take(LINES).collect();
         if rows.is_empty() {
             let what = if text.trim().is_empty() { "the file is empty" } else { "there is no row" };
-            return Err(ReadError::Empty(Fault::new(what, &input.name, "another file: this one holds no sample")));
+            return Err(ReadError::Empty(Fault::new(what, &input.name, "a file with samples")));
         }
         let separator = match input.options.separator {
             Some(separator) if separator.is_ascii() => separator as u8,

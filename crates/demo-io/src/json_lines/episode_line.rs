@@ -45,7 +45,7 @@ impl<'a> EpisodeLines<'a> {
             return Err(ReadError::TooLarge(Fault::new(
                 format!("more than {MOST_EPISODES} episodes"),
                 place,
-                "files with fewer",
+                "files with fewer episodes",
             )));
         }
         let positions = numbers(samples, n, "state", &place)?;

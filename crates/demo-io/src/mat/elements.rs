@@ -66,11 +66,7 @@ impl<'a> Elements<'a> {
         self.input.charge(read as u64)?;
         if read as u64 == most {
             let what = format!("a variable grows from {} to more than {most} bytes", packed.len());
-            return Err(ReadError::TooLarge(Fault::new(
-                what,
-                &self.input.name,
-                "--trust if the file comes from a friend",
-            )));
+            return Err(ReadError::TooLarge(Fault::new(what, &self.input.name, "--trust if you trust its source")));
         }
         Ok(unpacked)
     }

@@ -106,7 +106,7 @@ class Learner(Manners):
         deviation = fitted.deviation(states)
         if deviation is None:
             hint = "SlopeGp or AutoGp; supports(X) says where PolicyAlign was taught"
-            raise PolicyAlignError(f"{type(self).__name__} does not know how sure it is", "return_std=True", hint)
+            raise PolicyAlignError(f"{type(self).__name__} estimates no standard deviation", "return_std=True", hint)
         return fitted.predict(states), deviation
 
     def potential(self, X: Any) -> Floats:

@@ -7,8 +7,8 @@ from html import escape
 from typing import Any
 
 _WORDS = {
-    "good": "good: nothing was found against it",
-    "doubtful": "doubtful: look before you use it",
+    "good": "good: all checks passed",
+    "doubtful": "doubtful: read the findings before using it",
     "do_not_use": "do not use",
 }
 

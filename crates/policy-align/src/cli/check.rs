@@ -1,3 +1,4 @@
+use std::cmp::Reverse;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -13,21 +14,19 @@ use super::lines::{Lines, counted, short};
 use super::recorded::{named, read};
 use super::session::{Said, Session};
 
-/// Say everything that can be said before learning
-///
-/// Reads the files, finds out what is state, velocity and time, and looks for
-/// what would spoil a policy: noise, jumps, missing numbers, mixed units,
-/// directions that never move. Nothing is written but the page asked for.
+/// Examine recordings before learning
 #[derive(Debug, Args)]
-#[command(
-    verbatim_doc_comment,
-    after_help = "Examples:\n  policy-align check toy.csv\n  policy-align check toy.csv --html toy.check.html"
-)]
+#[command(after_help = "\
+Finds state, velocity and time columns, and looks for what spoils a policy:
+noise, jumps, missing numbers, mixed units, directions without movement.
+Exit code 1 if nothing can be learnt from the recordings.
+
+Examples:\n  policy-align check toy.csv\n  policy-align check toy.csv --html toy.check.html")]
 pub(crate) struct Check {
     /// Recordings: CSV, NPZ, JSON lines, LeRobot, HDF5, MCAP, MAT
     #[arg(required = true)]
     files: Vec<PathBuf>,
-    /// A page to write, with everything and a picture
+    /// Write a page with all findings and a plot
     #[arg(long, value_name = "FILE.html")]
     html: Option<PathBuf>,
     #[command(flatten)]
@@ -61,8 +60,8 @@ impl Check {
         }
         let mut lines = Lines::default();
         about(&prepared, &named(&self.files), &mut lines);
-        let seen = if coverage < 0.1 { "one is hardly ever seen" } else { "every direction is seen somewhere" };
-        lines.add("directions", &format!("{} of 1: {seen}", short(coverage)));
+        let seen = if coverage < 0.1 { "one direction hardly occurs" } else { "every direction occurs" };
+        lines.add("directions", &format!("coverage {} of 1: {seen}", short(coverage)));
         findings(&prepared.findings, 10_usize.saturating_sub(lines.count()), &mut lines);
         if let Some(path) = &self.html {
             lines.add("written", &path.display().to_string());
@@ -97,8 +96,6 @@ pub(crate) fn about(prepared: &Prepared, files: &str, lines: &mut Lines) {
             &format!("{} ({}: {})", counted(prepared.left_out.len(), "episode"), first.episode, first.why),
         );
     }
-    let rate = 1.0 / prepared.time_step;
-    lines.add("time", &format!("dt {} s ({} Hz)", short(prepared.time_step), short(rate)));
     let range = |channel: &policy_align::StateChannel| {
         let unit = channel.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
         format!("{} {} … {}{unit}", channel.name, short(channel.low), short(channel.high))
@@ -113,9 +110,11 @@ pub(crate) fn about(prepared: &Prepared, files: &str, lines: &mut Lines) {
     }
 }
 
-/// What gives reason for doubt, in so many lines.
+/// The worst finding, and others as far as there is room for them, in lines.
 pub(crate) fn findings(findings: &[Finding], room: usize, lines: &mut Lines) {
     let begun = lines.count();
+    let mut findings: Vec<&Finding> = findings.iter().collect();
+    findings.sort_by_key(|finding| Reverse(finding.verdict));
     for (shown, finding) in findings.iter().enumerate() {
         let label = match finding.verdict {
             Verdict::Good => "remark",
@@ -124,7 +123,7 @@ pub(crate) fn findings(findings: &[Finding], room: usize, lines: &mut Lines) {
         };
         let mut longer = lines.clone();
         longer.add(label, &format!("{}: {}", finding.what, finding.next));
-        if longer.count() - begun > room {
+        if shown > 0 && longer.count() - begun > room {
             lines.add("", &format!("and {} more: --json shows all", findings.len() - shown));
             return;
         }

@@ -106,7 +106,8 @@ pub(crate) fn printed(read: &ReadFlags, prepare: &PrepareFlags, fit: &FitFlags) 
         Table::try_from(fit).map_err(wrong)?,
         Table::new(),
     ];
-    let mut text = String::from("# Flags of policy-align: --config with this file. Those of the command line win.\n");
+    let mut text =
+        String::from("# Flags of policy-align, read by --config. Those of the command line take precedence.\n");
     for ((name, command), table) in groups().zip(set) {
         let _ = write!(text, "\n[{name}]\n");
         for argument in command.get_arguments() {

@@ -11,19 +11,22 @@ use super::rollout::unwritten;
 use super::session::{Said, Session};
 
 /// Write recordings in another format
-///
-/// MCAP opens in Rerun, Foxglove and PlotJuggler. Learning needs no even stamps:
-/// resample for other programs only.
 #[derive(Debug, Args)]
-#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align convert toy.csv -o toy.tsv --resample 50")]
+#[command(after_help = "\
+MCAP opens in Rerun, Foxglove and PlotJuggler. Learning needs no even stamps:
+resample for other programs only.
+All flags of reading files: policy-align check --help
+
+Example:
+  policy-align convert toy.csv -o toy.tsv --resample 50")]
 pub(crate) struct Convert {
     /// Recordings: CSV, NPZ, JSON lines, LeRobot, HDF5, MCAP, MAT
     #[arg(required = true)]
     files: Vec<PathBuf>,
-    /// The file to write; its ending is the format
+    /// File to write; its extension sets the format
     #[arg(long, short, value_name = "FILE")]
     output: PathBuf,
-    /// So many samples a second, along monotone cubics
+    /// Samples per second, along monotone cubics
     #[arg(long, value_name = "HZ")]
     resample: Option<f64>,
     #[command(flatten)]

@@ -5,8 +5,8 @@ use std::sync::atomic::AtomicBool;
 use clap::Args;
 use nalgebra::{DMatrix, DVector};
 use policy_align::{
-    ConstraintLeftOut, EvaluateError, Evaluation, FitOptions, LearnerChoice, Learnt, Model, PrepareOptions, Prepared,
-    Progress, Truth, evaluate, leave_constraints_out, prepare,
+    ConstraintLeftOut, EvaluateError, Evaluation, FileSummary, FitOptions, LearnerChoice, Learnt, Model,
+    PrepareOptions, Prepared, Progress, Truth, evaluate, leave_constraints_out, prepare,
 };
 use serde_json::json;
 
@@ -14,35 +14,36 @@ use super::config::Config;
 use super::failure::{Exit, Failure};
 use super::fit::load;
 use super::flags::{PrepareFlags, ReadFlags};
-use super::lines::{Lines, counted, short};
-use super::recorded::{named, read};
+use super::lines::{Lines, counted, short, squared_error};
+use super::recorded::{named, read, summaries};
 use super::session::{Said, Session};
 
 /// Constraints that are listed, at most.
 const SHOWN: usize = 5;
 
-/// Hold a model against other recordings
-///
-/// The error is of what is seen along the movements: 0 explains every one, 1 is
-/// as good as standing still.
+/// Evaluate a model on other recordings
 #[derive(Debug, Args)]
-#[command(
-    verbatim_doc_comment,
-    after_help = "Examples:\n  policy-align evaluate toy.json toy.csv\n  policy-align evaluate toy.json rails.csv --leave-constraint-out"
-)]
+#[command(after_help = "\
+Errors are squared: 0 is exact, 1 as good as standing still.
+Exit code 1 if --require is not met.
+All flags of reading files: policy-align check --help
+
+Examples:
+  policy-align evaluate toy.json rails.csv
+  policy-align evaluate toy.json rails.csv --leave-constraint-out")]
 pub(crate) struct Evaluate {
     /// A model that `fit` has written
     model: PathBuf,
-    /// Recordings that it was not learnt from
+    /// Recordings to evaluate on
     #[arg(required = true)]
     files: Vec<PathBuf>,
     /// Columns of the true policy, in the order of the state
     #[arg(long, value_name = "PATTERNS")]
     truth: Vec<String>,
-    /// Learn anew without each constraint in turn, and judge on that one
+    /// Cross-validate over constraints: learn without each, evaluate on it
     #[arg(long)]
     leave_constraint_out: bool,
-    /// Exit code 1 if the error of the policy is larger
+    /// Largest policy error allowed
     #[arg(long, value_name = "ERROR")]
     require: Option<f64>,
     #[command(flatten)]
@@ -74,7 +75,7 @@ impl Evaluate {
         }
         let truth = self.truth(session, &reading, &model)?;
         let judged = evaluate(model.learnt.policy(), &prepared, truth.as_ref()).map_err(|error| {
-            let remedy = "recordings of which no sample is left out, and a column of the truth for each channel";
+            let remedy = "recordings without left-out samples, and a column of the true policy for each channel";
             Failure::new(Exit::Refused, error.to_string(), named(&self.files), remedy)
         })?;
         let left_out = if self.leave_constraint_out { self.left_out(session, &model, &prepared)? } else { vec![] };
@@ -83,21 +84,30 @@ impl Evaluate {
             too_large(&judged, most) || left_out.iter().any(|left| too_large(&left.evaluation, most))
         });
         let exit = if failed { Exit::Refused } else { Exit::Done };
+        let training = training(&model, &self.files)?;
         if session.json {
             let constraints = by_constraint(&prepared, &judged);
             let document = json!({
                 "evaluation": judged, "episodes": prepared.episodes, "constraints": constraints,
-                "constraints_left_out": left_out,
+                "constraints_left_out": left_out, "training_files": training,
             });
             return Ok(Said { text: format!("{document}\n"), exit });
         }
         let mut lines = Lines::default();
         tell(&prepared, &judged, &mut lines);
+        if !training.is_empty() {
+            let those = if training.len() == 1 { "is" } else { "are" };
+            let what = format!(
+                "{} {those} training data: use other recordings to measure generalisation",
+                training.join(", ")
+            );
+            lines.add("warning", &what);
+        }
         if self.leave_constraint_out {
             tell_left_out(&left_out, &mut lines);
         } else {
             for (label, error) in by_constraint(&prepared, &judged) {
-                lines.add("constraint", &format!("{label}: {} (median of its episodes)", short(error)));
+                lines.add("constraint", &format!("{label}: {} (median error of its episodes)", squared_error(error)));
             }
         }
         if let Some(most) = self.require {
@@ -114,7 +124,7 @@ impl Evaluate {
     ) -> Result<Vec<ConstraintLeftOut>, Failure> {
         let labels: BTreeSet<_> = prepared.constraints.iter().flatten().collect();
         let bar =
-            session.bar(labels.len() as u64, "learning  {bar:30} without constraint {pos} of {len}, {elapsed} gone");
+            session.bar(labels.len() as u64, "learning  {bar:30} without constraint {pos} of {len}, {elapsed} elapsed");
         let never = AtomicBool::new(false);
         let mut report = |step: policy_align::Step| bar.inc(u64::from(step.done == 0));
         let options = options_like(model);
@@ -154,12 +164,18 @@ impl Evaluate {
             .collect();
         if recordings.state.len() != scale.len() {
             let what = format!("{} columns for {}", recordings.state.len(), counted(scale.len(), "channel"));
-            return Err(Failure::usage(what, "--truth", "a column for each channel, in their order"));
+            return Err(Failure::usage(what, "--truth", "one column for each channel, in their order"));
         }
         let actions =
             DMatrix::from_columns(&columns.iter().map(|column| column.component_mul(&scale)).collect::<Vec<_>>());
         Ok(Some(Truth { actions, projectors: None }))
     }
+}
+
+/// The files that a model was learnt from.
+fn training(model: &Model, files: &[PathBuf]) -> Result<Vec<String>, Failure> {
+    let learnt = |file: &FileSummary| model.data.files.iter().any(|known| known.sha256 == file.sha256);
+    Ok(summaries(files)?.into_iter().filter(learnt).map(|file| file.name).collect())
 }
 
 /// To learn as a model was learnt.
@@ -176,22 +192,22 @@ fn options_like(model: &Model) -> FitOptions {
 fn tell(prepared: &Prepared, judged: &Evaluation, lines: &mut Lines) {
     let count = prepared.demonstrations.n_trajectories();
     lines.add(
-        "held against",
+        "evaluated on",
         &format!("{}, {}", counted(count, "episode"), counted(prepared.demonstrations.n_samples(), "sample")),
     );
     lines.add(
         "error",
         &format!(
-            "{} of the policy, {} of what was seen (0 explains everything)",
-            short(judged.policy_error),
-            short(judged.slope_error)
+            "relative to the policy: {}, relative to the motion: {}",
+            squared_error(judged.policy_error),
+            squared_error(judged.slope_error)
         ),
     );
     let errors = prepared.episodes.iter().zip(&judged.episodes).filter_map(|(name, error)| Some((name, (*error)?)));
     if let Some((name, error)) = errors.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, error)| *error >= 0.01) {
-        lines.add("worst", &format!("episode {name}: {} of what was seen", short(error)));
+        lines.add("worst", &format!("episode {name}: {} relative to the motion", short(error)));
     }
-    lines.add("support", &format!("{} % of the samples are within what was learnt", short(100.0 * judged.supported)));
+    lines.add("support", &format!("{} % of the samples within the data", short(100.0 * judged.supported)));
     if let Some(nupe) = judged.nupe {
         lines.add("truth", &format!("nUPE {} (error of the unconstrained policy)", short(nupe)));
     }
@@ -200,8 +216,8 @@ fn tell(prepared: &Prepared, judged: &Evaluation, lines: &mut Lines) {
 fn tell_left_out(left_out: &[ConstraintLeftOut], lines: &mut Lines) {
     for left in left_out.iter().take(SHOWN) {
         let Evaluation { policy_error, episodes, .. } = &left.evaluation;
-        let (error, count) = (short(*policy_error), counted(episodes.len(), "episode"));
-        lines.add("left out", &format!("{}: error {error} of the policy learnt without ({count})", left.constraint));
+        let (error, count) = (squared_error(*policy_error), counted(episodes.len(), "episode"));
+        lines.add("left out", &format!("{}: {error} when learnt without it ({count})", left.constraint));
     }
     if left_out.len() > SHOWN {
         lines.add("", &format!("and {} more: --json shows all", left_out.len() - SHOWN));

@@ -16,22 +16,19 @@ use super::session::{Said, Session};
 /// Roll-outs that are exported unless starts are given.
 const STARTS: usize = 12;
 
-/// Write a policy for a robot (one C file, or ONNX) or for viewers (MCAP)
-///
-/// The C file is ISO C99 and needs nothing but math.h: int policy(const double
-/// *x, double *u, double *phi) returns 1 where something was learnt. ONNX has
-/// operators of version 17 on doubles: x (states, n) to u, phi and support.
-/// MCAP holds roll-outs as joint states of ROS 2, for Rerun, Foxglove and
-/// PlotJuggler: from the starts given, or from twelve spread over the data.
+/// Export a policy to C or ONNX, or roll-outs to MCAP
 #[derive(Debug, Args)]
-#[command(
-    verbatim_doc_comment,
-    after_help = "Examples:\n  policy-align export toy.json --to c -o toy.c\n  policy-align export toy.json --to mcap -o toy.mcap"
-)]
+#[command(after_help = "\
+C: one file of ISO C99 that needs math.h only. int policy(const double *x,
+double *u, double *phi) returns 1 within the data, 0 outside: then stop.
+ONNX: opset 17 in doubles, x (states, n) to u, phi and support.
+MCAP: roll-outs as joint states of ROS 2, for Rerun, Foxglove and PlotJuggler.
+
+Examples:\n  policy-align export toy.json --to c -o toy.c\n  policy-align export toy.json --to mcap -o toy.mcap")]
 pub(crate) struct Export {
     /// A model that `fit` has written
     model: PathBuf,
-    /// What to write
+    /// Format
     #[arg(long, value_enum)]
     to: Target,
     /// The file to write [default: the model's name with .c, .onnx or .mcap]
@@ -40,10 +37,10 @@ pub(crate) struct Export {
     /// Name of the C function
     #[arg(long, default_value = "policy")]
     name: String,
-    /// C with numbers of single precision
+    /// C in single precision
     #[arg(long)]
     float: bool,
-    /// A start of MCAP's roll-outs; any number of times
+    /// Start of a roll-out for MCAP; may be repeated [default: twelve]
     #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
     from: Vec<String>,
     #[command(flatten)]
@@ -55,7 +52,7 @@ pub(crate) struct Export {
 enum Target {
     /// One file of C99
     C,
-    /// ONNX, operators of version 17
+    /// ONNX, opset 17
     Onnx,
     /// Roll-outs for viewers
     Mcap,
@@ -79,7 +76,7 @@ impl Export {
             return self.roll_outs(session, &model, &output);
         }
         if !self.from.is_empty() || self.follow != RollOutFlags::default() {
-            return Err(Failure::usage("only MCAP holds roll-outs", "flags for following", "--to mcap"));
+            return Err(Failure::usage("only MCAP holds roll-outs", "roll-out flags", "--to mcap"));
         }
         let precision = if self.float { Precision::Single } else { Precision::Double };
         let bytes = match self.to {
@@ -118,8 +115,8 @@ impl Export {
             starts = spread_starts(model, STARTS);
         }
         if starts.is_empty() {
-            let what = "no start was found where something was learnt";
-            return Err(Failure::new(Exit::Refused, what, shown(&self.model), "--from with a state of the recording"));
+            let what = "no start was found within the data";
+            return Err(Failure::new(Exit::Refused, what, shown(&self.model), "--from with a recorded state"));
         }
         let paths = starts.iter().map(|start| {
             let from = list(start.iter().copied());

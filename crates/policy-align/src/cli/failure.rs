@@ -4,11 +4,11 @@ use std::path::Path;
 use demo_io::ReadError;
 use policy_align::{ConstraintFileError, FitError, ModelError, PrepareError};
 
-/// What the program says to the shell.
+/// Exit codes, as `policy-align --help` lists them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Exit {
     Done = 0,
-    /// The data or the result is refused.
+    /// The data or the result fails a check.
     Refused = 1,
     Usage = 2,
     /// A file cannot be read or written.
@@ -46,20 +46,27 @@ impl Failure {
             Exit::File,
             format!("cannot be written: {reason}"),
             shown(path),
-            "-o with a folder that you may write to",
+            "-o with a path in a writable folder",
         )
     }
 
     pub(crate) fn reading(path: &Path, reason: impl fmt::Display) -> Self {
-        Failure::new(Exit::File, format!("cannot be read: {reason}"), shown(path), "another file, or its right name")
+        Failure::new(
+            Exit::File,
+            format!("cannot be read: {reason}"),
+            shown(path),
+            "check the path (relative to the current folder) and its permissions",
+        )
     }
 
     pub(crate) fn model(path: &Path, error: &ModelError) -> Self {
         let remedy = match error {
             ModelError::File(reason) => return Failure::reading(path, reason),
-            ModelError::Newer { .. } => "a newer policy-align",
-            ModelError::NotAModel { .. } => "a file that `policy-align fit` has written",
-            _ => "another copy of the file, or fit again",
+            ModelError::Newer { .. } => "update policy-align".to_owned(),
+            ModelError::NotAModel { .. } => {
+                format!("a model written by `policy-align fit`; to learn one: policy-align fit {}", shown(path))
+            }
+            _ => "another copy of the file, or fit again".to_owned(),
         };
         Failure::new(Exit::File, error.to_string(), shown(path), remedy)
     }
@@ -80,9 +87,8 @@ impl Failure {
 
     pub(crate) fn fit(error: &FitError, place: String) -> Self {
         let text = error.to_string();
-        let (what, remedy) = text
-            .rsplit_once("; ")
-            .unwrap_or((&text, "more recordings, or `policy-align check` for what is wrong with these"));
+        let (what, remedy) =
+            text.rsplit_once("; ").unwrap_or((&text, "more recordings, or `policy-align check` to examine these"));
         let exit = if matches!(error, FitError::Option { .. }) { Exit::Usage } else { Exit::Refused };
         Failure::new(exit, what, place, remedy)
     }
@@ -90,11 +96,7 @@ impl Failure {
     pub(crate) fn constraints(path: &Path, error: &ConstraintFileError) -> Self {
         match error {
             ConstraintFileError::File { file, source } => Failure::reading(Path::new(file), source),
-            _ => Failure::usage(
-                error.to_string(),
-                shown(path),
-                "`policy-align rollout --help` shows what such a file holds",
-            ),
+            _ => Failure::usage(error.to_string(), shown(path), "see the format in `policy-align rollout --help`"),
         }
     }
 }

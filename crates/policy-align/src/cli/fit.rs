@@ -11,18 +11,20 @@ use super::clock::now;
 use super::config::{Config, printed};
 use super::failure::{Exit, Failure};
 use super::flags::{FitFlags, PrepareFlags, ReadFlags};
-use super::lines::{Lines, counted, short, size};
+use super::lines::{Lines, counted, size, squared_error};
 use super::recorded::{base_name, named, read, summaries};
 use super::session::{Said, Session};
 use super::trust_page::trust_page;
 
-/// Learn a policy, and how far to trust it
-///
-/// Beside the model a page is written that says how far to trust it:
-/// MODEL.trust.html, and the same as JSON. The exit code is 1 if it says "do not
-/// use".
+/// Learn a policy and report how far to trust it
 #[derive(Debug, Args)]
-#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align fit toy.csv -o toy.json")]
+#[command(after_help = "\
+Writes a trust report beside the model: MODEL.trust.html and MODEL.trust.json.
+Exit code 1 if its verdict is \"do not use\".
+All flags of reading files: policy-align check --help
+
+Example:
+  policy-align fit toy.csv -o toy.json")]
 pub(crate) struct Fit {
     /// Recordings: CSV, NPZ, JSON lines, LeRobot, HDF5, MCAP, MAT
     #[arg(required_unless_present = "print_config")]
@@ -30,18 +32,18 @@ pub(crate) struct Fit {
     /// The model to write
     #[arg(long, short, value_name = "MODEL.json", default_value = "model.json")]
     output: PathBuf,
-    /// Write no page beside the model
+    /// Write no trust report
     #[arg(long)]
     no_report: bool,
-    /// Show all flags as a file for --config, and stop
+    /// Print all flags as a file for --config, and stop
     #[arg(long)]
     print_config: bool,
     #[command(flatten)]
-    read: ReadFlags,
+    learning: FitFlags,
     #[command(flatten)]
     prepare: PrepareFlags,
     #[command(flatten)]
-    learning: FitFlags,
+    read: ReadFlags,
 }
 
 impl Fit {
@@ -57,7 +59,7 @@ impl Fit {
         let recordings = read(session, &self.files, &reading.options()?)?;
         let (recordings, held_out) = divided(recordings, &learning.hold_out, &place())?;
         let prepared = prepare(&recordings, &prepare_options).map_err(|error| Failure::prepare(&error, place()))?;
-        let bar = session.bar(4, "{msg}  {bar:30} step {pos} of {len}, {elapsed} gone");
+        let bar = session.bar(4, "{msg}  {bar:30} step {pos} of {len}, {elapsed} elapsed");
         let never = AtomicBool::new(false);
         let mut report = |step: policy_align::Step| {
             bar.set_length(step.of as u64);
@@ -76,7 +78,7 @@ impl Fit {
                 Exit::Refused,
                 error.to_string(),
                 place(),
-                "`policy-align check` for what is wrong with the recordings",
+                "`policy-align check` to examine the recordings",
             ),
         })?;
         let written = self.reported(&model, &prepared)?;
@@ -123,18 +125,18 @@ impl Fit {
         lines.add(
             "held out",
             &format!(
-                "error {} of the policy along movements left out (direct learner: {})",
-                short(numbers.held_out_error),
-                short(numbers.held_out_error_direct)
+                "error: {} (direct learner: {})",
+                squared_error(numbers.held_out_error),
+                squared_error(numbers.held_out_error_direct)
             ),
         );
         if let Some(judged) = held_out {
             lines.add(
                 "hold-out",
                 &format!(
-                    "error {} of the policy on {}",
-                    short(judged.policy_error),
-                    counted(judged.episodes.len(), "episode")
+                    "error on {}: {}",
+                    counted(judged.episodes.len(), "episode"),
+                    squared_error(judged.policy_error)
                 ),
             );
         }
@@ -160,8 +162,8 @@ impl Fit {
 /// The verdict in words.
 pub(crate) fn verdict(model: &Model) -> &'static str {
     match model.trust.verdict {
-        Verdict::Good => "good: nothing was found against it",
-        Verdict::Doubtful => "doubtful: look before you use it",
+        Verdict::Good => "good: all checks passed",
+        Verdict::Doubtful => "doubtful: read the findings before using it",
         Verdict::DoNotUse => "do not use",
     }
 }

@@ -9,64 +9,83 @@ use serde::{Deserialize, Serialize};
 
 use super::failure::Failure;
 
+/// Flags of reading that `check --help` lists, and the help of other commands does not.
+pub(crate) const RARE: [&str; 15] = [
+    "constraint-column",
+    "units",
+    "degrees",
+    "unwrap",
+    "nan",
+    "sort",
+    "split-gap",
+    "trim-still",
+    "filter",
+    "samples-are",
+    "separator",
+    "decimal",
+    "topic",
+    "as",
+    "trust",
+];
+
 /// How files are read: table `[read]`.
 #[derive(Debug, Clone, Default, PartialEq, Args, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[command(next_help_heading = "Reading files")]
 pub(crate) struct ReadFlags {
-    /// Channels of the state: names, globs, ranges, as 'q*' or 2-8
+    /// State channels: names, globs or ranges, as 'q*' or 2-8
     #[arg(long, value_name = "PATTERNS")]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) state: Vec<String>,
-    /// Recorded velocities, in the order of the state
+    /// Velocity columns, in the order of the state
     #[arg(long, value_name = "PATTERNS")]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     velocity: Vec<String>,
-    /// Column of time stamps
+    /// Time column
     #[arg(long, value_name = "COLUMN")]
     #[serde(skip_serializing_if = "Option::is_none")]
     time: Option<String>,
-    /// Column that tells episodes apart
+    /// Episode column
     #[arg(long, value_name = "COLUMN")]
     #[serde(skip_serializing_if = "Option::is_none")]
     episode: Option<String>,
-    /// Column with the label of the constraint
+    /// Column of constraint labels
     #[arg(long, value_name = "COLUMN")]
     #[serde(skip_serializing_if = "Option::is_none")]
     constraint_column: Option<String>,
-    /// What is not looked at
+    /// Columns to ignore
     #[arg(long, value_name = "PATTERNS")]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     ignore: Vec<String>,
-    /// Seconds between samples; overrides stamps
+    /// Seconds between samples, instead of stamps
     #[arg(long, value_name = "SECONDS")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) dt: Option<f64>,
-    /// Units, as m or x=m; changes no number
+    /// Unit names, as m or x=m; no number changes
     #[arg(long, value_name = "UNITS")]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     units: Vec<String>,
-    /// Channels in degrees, which become radians
+    /// Channels in degrees, converted to radians
     #[arg(long, value_name = "PATTERNS")]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     degrees: Vec<String>,
-    /// Angles that jump by whole turns
+    /// Angles to unwrap
     #[arg(long, value_name = "PATTERNS")]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     unwrap: Vec<String>,
-    /// Samples that are not finite
-    #[arg(long, value_parser = ["refuse", "drop", "fill"])]
+    /// Samples that are not finite: refuse, drop or fill [default: refuse]
+    #[arg(long, value_name = "ACTION", hide_possible_values = true, value_parser = ["refuse", "drop", "fill"])]
     #[serde(skip_serializing_if = "Option::is_none")]
     nan: Option<String>,
-    /// Put samples in the order of their stamps
+    /// Sort samples by their stamps
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     sort: bool,
-    /// Cut episodes where stamps are further apart
+    /// Split episodes at longer gaps between stamps
     #[arg(long, value_name = "SECONDS")]
     #[serde(skip_serializing_if = "Option::is_none")]
     split_gap: Option<f64>,
-    /// Leave out samples that stand still at the ends
+    /// Remove samples at rest at either end
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     trim_still: bool,
@@ -74,15 +93,15 @@ pub(crate) struct ReadFlags {
     #[arg(long, value_name = "NAME")]
     #[serde(skip_serializing_if = "Option::is_none")]
     filter: Option<String>,
-    /// How arrays lie
-    #[arg(long, value_parser = ["rows", "columns"])]
+    /// Orientation of arrays: samples are rows or columns
+    #[arg(long, value_name = "ORIENTATION", hide_possible_values = true, value_parser = ["rows", "columns"])]
     #[serde(skip_serializing_if = "Option::is_none")]
     samples_are: Option<String>,
-    /// Between fields of text
+    /// Field separator of text files
     #[arg(long, value_name = "CHARACTER")]
     #[serde(skip_serializing_if = "Option::is_none")]
     separator: Option<char>,
-    /// Decimal point of text
+    /// Decimal point of text files
     #[arg(long, value_name = "CHARACTER")]
     #[serde(skip_serializing_if = "Option::is_none")]
     decimal: Option<char>,
@@ -90,7 +109,7 @@ pub(crate) struct ReadFlags {
     #[arg(long, value_name = "NAME")]
     #[serde(skip_serializing_if = "Option::is_none")]
     topic: Option<String>,
-    /// csv, tsv, npy, npz, jsonl, lerobot, parquet, hdf5, mcap or mat
+    /// Format: csv, tsv, npy, npz, jsonl, lerobot, parquet, hdf5, mcap or mat
     #[arg(long = "as", value_name = "FORMAT", hide_possible_values = true, value_parser = [
         "csv", "tsv", "npy", "npz", "jsonl", "lerobot", "parquet", "hdf5", "mcap", "mat",
     ])]
@@ -102,29 +121,29 @@ pub(crate) struct ReadFlags {
     trust: bool,
 }
 
-/// What is made of recordings: table `[prepare]`.
+/// How recordings are prepared: table `[prepare]`.
 #[derive(Debug, Clone, Default, PartialEq, Args, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[command(next_help_heading = "Preparing")]
 pub(crate) struct PrepareFlags {
-    /// Multiply a channel's unit, as z=10
+    /// Scale a channel, as z=10
     #[arg(long, value_name = "NAME=FACTOR", value_delimiter = ',')]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     scale: Vec<String>,
-    /// Believe recorded velocities, or steps of positions
-    #[arg(long, value_parser = ["auto", "velocity", "displacement"])]
+    /// Velocities: auto, velocity (recorded) or displacement (from positions)
+    #[arg(long, value_name = "SOURCE", hide_possible_values = true, value_parser = ["auto", "velocity", "displacement"])]
     #[serde(skip_serializing_if = "Option::is_none")]
     integration: Option<String>,
-    /// Positions: auto, off, a window of samples (9) or of seconds (0.2s)
+    /// Smoothing: auto, off, or a window in samples (9) or seconds (0.2s)
     #[arg(long, value_name = "WINDOW")]
     #[serde(skip_serializing_if = "Option::is_none")]
     smooth: Option<String>,
-    /// Episodes are cut where one step is far too long
-    #[arg(long, value_parser = ["auto", "keep"])]
+    /// Jumps: auto (split episodes there) or keep
+    #[arg(long, value_name = "REPAIR", hide_possible_values = true, value_parser = ["auto", "keep"])]
     #[serde(skip_serializing_if = "Option::is_none")]
     jumps: Option<String>,
-    /// Angles that jump by a whole turn go on instead
-    #[arg(long, value_parser = ["auto", "keep"])]
+    /// Angles that jump by a whole turn: auto (unwrap) or keep
+    #[arg(long, value_name = "REPAIR", hide_possible_values = true, value_parser = ["auto", "keep"])]
     #[serde(skip_serializing_if = "Option::is_none")]
     wraps: Option<String>,
 }
@@ -134,35 +153,35 @@ pub(crate) struct PrepareFlags {
 #[serde(default, deny_unknown_fields)]
 #[command(next_help_heading = "Learning")]
 pub(crate) struct FitFlags {
-    /// What learns [default: auto]
-    #[arg(long, value_parser = ["auto", "policy-align", "slope", "direct"])]
+    /// Learner: auto, policy-align, slope or direct [default: auto]
+    #[arg(long, value_name = "LEARNER", hide_possible_values = true, value_parser = ["auto", "policy-align", "slope", "direct"])]
     #[serde(skip_serializing_if = "Option::is_none")]
     learner: Option<String>,
-    /// Whether constraints acted, if you know
-    #[arg(long, value_parser = ["free", "constrained"])]
+    /// Reading of the movements, if known: free or constrained
+    #[arg(long, value_name = "READING", hide_possible_values = true, value_parser = ["free", "constrained"])]
     #[serde(skip_serializing_if = "Option::is_none")]
     reading: Option<String>,
-    /// Of policy-align: auto, narrow, medium, wide or σ² [default: auto]
+    /// For policy-align: auto, narrow, medium, wide or σ² [default: auto]
     #[arg(long, value_name = "BANDWIDTH")]
     #[serde(skip_serializing_if = "Option::is_none")]
     bandwidth: Option<String>,
-    /// Of policy-align: auto or 1 / squared width of fields [default: auto]
+    /// For policy-align: auto or 1 / squared width of fields [default: auto]
     #[arg(long, value_name = "NUMBER")]
     #[serde(skip_serializing_if = "Option::is_none")]
     init_d: Option<String>,
-    /// Parts that are left out in turn [default: 5]
+    /// Folds of cross-validation [default: 5]
     #[arg(long, value_name = "NUMBER")]
     #[serde(skip_serializing_if = "Option::is_none")]
     folds: Option<usize>,
-    /// Of every random choice [default: 1]
+    /// Random seed [default: 1]
     #[arg(long, value_name = "NUMBER")]
     #[serde(skip_serializing_if = "Option::is_none")]
     seed: Option<u64>,
-    /// Samples a Gaussian process learns from, at most [default: 400]
+    /// Most samples that a Gaussian process learns from [default: 400]
     #[arg(long, value_name = "NUMBER")]
     #[serde(skip_serializing_if = "Option::is_none")]
     max_rows: Option<usize>,
-    /// Episodes that are not learnt from, but judged by
+    /// Episodes to evaluate on instead of learning from them
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) hold_out: Vec<String>,
@@ -181,7 +200,7 @@ impl PrepareFlags {
     pub(crate) fn options(&self, dt: Option<f64>) -> Result<PrepareOptions, Failure> {
         let scale = self.scale.iter().map(|text| {
             let pair = text.split_once('=').and_then(|(name, factor)| Some((name.to_owned(), factor.parse().ok()?)));
-            pair.ok_or_else(|| Failure::usage(format!("'{text}' is no scale"), "--scale", "--scale z=10"))
+            pair.ok_or_else(|| Failure::usage(format!("'{text}' is not NAME=FACTOR"), "--scale", "--scale z=10"))
         });
         let velocities = match self.integration.as_deref() {
             Some("velocity") => VelocityUse::Recorded,
@@ -245,7 +264,7 @@ fn smoothing(text: &str) -> Result<Smoothing, Failure> {
 
 fn number(text: &str, flag: &str) -> Result<f64, Failure> {
     let number = text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
-    number.ok_or_else(|| Failure::usage(format!("'{text}' is no positive number"), flag, format!("{flag} auto")))
+    number.ok_or_else(|| Failure::usage(format!("'{text}' is not a positive number"), flag, format!("{flag} auto")))
 }
 
 /// Numbers with commas between, as a state is given.
@@ -253,6 +272,10 @@ pub(crate) fn numbers(text: &str, flag: &str) -> Result<Vec<f64>, Failure> {
     let numbers = text.split(',').map(|number| number.trim().parse());
     let numbers: Result<Vec<f64>, _> = numbers.collect();
     numbers.map_err(|_| {
-        Failure::usage(format!("'{text}' is not numbers with commas between"), flag, format!("{flag} 0.3,1.2"))
+        Failure::usage(
+            format!("'{text}' is not a list of numbers, separated by commas"),
+            flag,
+            format!("{flag} 0.3,1.2"),
+        )
     })
 }

@@ -10,7 +10,7 @@ use super::Cli;
 use super::failure::{Exit, Failure};
 use super::session::Said;
 
-/// Write completions for a shell
+/// Print shell completions
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  policy-align completions bash")]
 pub(crate) struct Completions {
@@ -27,11 +27,11 @@ impl Completions {
     }
 }
 
-/// Write the manual page
+/// Print the manual page
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  policy-align man")]
 pub(crate) struct Man {
-    /// A folder for a page of every command
+    /// Folder for one page per command
     #[arg(long, value_name = "FOLDER")]
     to: Option<PathBuf>,
 }

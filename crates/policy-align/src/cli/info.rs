@@ -10,7 +10,7 @@ use super::fit::{load, verdict};
 use super::lines::{Lines, counted, short};
 use super::session::{Said, Session};
 
-/// Show what is inside a model
+/// Describe a model
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  policy-align info toy.json")]
 pub(crate) struct Info {
@@ -69,14 +69,12 @@ pub(crate) fn learner(model: &Model) -> String {
             let fields = policy.global_potential().regression().model().receptive_fields(0).count();
             format!("aligned potentials and LWPR, {}", counted(fields, "receptive field"))
         }
-        Learnt::Slope(_) => "slope GP: a potential seen through slopes along the movements".to_owned(),
-        Learnt::Direct(_) => "direct GP: velocities as they were seen".to_owned(),
+        Learnt::Slope(_) => "slope GP: a potential, from its slopes along the movements".to_owned(),
+        Learnt::Direct(_) => "direct GP: velocities as observed".to_owned(),
         Learnt::Auto(both) => {
             let reading = both.overridden().unwrap_or(both.reading());
             let taken = if both.takes_slope() { "slope GP" } else { "direct GP" };
-            format!("{taken}, chosen between slope and direct GP (reading: {reading:?})")
-                .to_lowercase()
-                .replace("gp", "GP")
+            format!("{taken}, chosen automatically (reading: {reading:?})").to_lowercase().replace("gp", "GP")
         }
     }
 }

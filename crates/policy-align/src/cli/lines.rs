@@ -1,3 +1,5 @@
+pub(crate) use prepare::in_words::{short, squared_error};
+
 /// Columns of the terminal that are used.
 const WIDTH: usize = 80;
 /// Columns of a line's label.
@@ -50,21 +52,6 @@ pub(crate) fn folded(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// Three significant digits.
-pub(crate) fn short(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let exponent = value.abs().log10().floor() as i32;
-    if !(-4..6).contains(&exponent) {
-        return format!("{value:.2e}");
-    }
-    let digits = (2 - exponent).max(0) as usize;
-    let text = format!("{value:.digits$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
-}
-
 /// Numbers with commas between.
 pub(crate) fn list(values: impl IntoIterator<Item = f64>) -> String {
     values.into_iter().map(short).collect::<Vec<_>>().join(", ")
@@ -87,25 +74,6 @@ pub(crate) fn counted(count: usize, what: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn three_digits_are_shown() {
-        for (value, expected) in [
-            (0.0, "0"),
-            (1.0, "1"),
-            (-2.0855, "-2.09"),
-            (0.05, "0.05"),
-            (1600.0, "1600"),
-            (123456.0, "123456"),
-            (0.000123456, "0.000123"),
-            (1.5e-7, "1.50e-7"),
-            (2.5e9, "2.50e9"),
-            (-0.0, "-0"),
-            (f64::NAN, "NaN"),
-        ] {
-            assert_eq!(short(value), expected);
-        }
-    }
 
     #[test]
     fn lines_fit_a_terminal() {

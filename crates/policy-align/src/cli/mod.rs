@@ -27,14 +27,14 @@ pub(crate) use failure::Exit;
 pub(crate) use session::complain;
 
 use clap::error::ErrorKind;
-use clap::{CommandFactory as _, Parser, Subcommand};
+use clap::{Command, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
 use failure::Failure;
 use session::{Said, Session, tell};
 
-/// From recordings of movements under unknown constraints to a policy one can trust.
+/// Learn a policy from movements recorded under unknown constraints.
 #[derive(Debug, Parser)]
-#[command(name = "policy-align", version, next_line_help = true, after_help = "Example:\n  policy-align check toy.csv")]
+#[command(name = "policy-align", version, next_line_help = true, after_help = AFTER_HELP)]
 struct Cli {
     #[command(flatten)]
     session: Session,
@@ -58,9 +58,33 @@ enum Verb {
     Man(generated::Man),
 }
 
+const AFTER_HELP: &str = "\
+Exit codes:
+    0  done
+    1  a check failed: unusable data, the verdict \"do not use\", --require not met
+    2  wrong usage
+    3  a file cannot be read or written
+    4  a bug
+  130  interrupted
+
+Example:
+  policy-align check toy.csv";
+
+/// All commands, each with the flags in its help that it needs most: `check --help` lists all those of reading.
+fn command() -> Command {
+    let brief = |command: Command| {
+        command.mut_args(|flag| {
+            let rare = flag.get_long().is_some_and(|long| flags::RARE.contains(&long));
+            flag.hide(rare)
+        })
+    };
+    ["fit", "evaluate", "plot", "convert"].into_iter().fold(Cli::command(), |cli, verb| cli.mut_subcommand(verb, brief))
+}
+
 /// Does what the command line says.
 pub(crate) fn run() -> Exit {
-    let said = match Cli::try_parse() {
+    let parsed = command().try_get_matches().and_then(|matches| Cli::from_arg_matches(&matches));
+    let said = match parsed {
         Ok(cli) => cli.verb.run(&cli.session),
         Err(error) => usage(&error),
     };
@@ -108,7 +132,7 @@ fn usage(error: &clap::Error) -> Result<Said, Failure> {
     let help = if known { format!("{place} --help") } else { "policy-align --help".to_owned() };
     let remedy = tip.map_or(help, ToOwned::to_owned);
     let what = if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
-        "a command is missing".to_owned()
+        "no command was given".to_owned()
     } else {
         what.trim_start_matches("error: ").to_owned()
     };

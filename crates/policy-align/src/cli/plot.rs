@@ -8,35 +8,34 @@ use super::config::Config;
 use super::failure::Failure;
 use super::fit::load;
 use super::flags::{ReadFlags, numbers};
-use super::lines::Lines;
+use super::lines::{Lines, short};
 use super::picture::{Picture, draw};
 use super::recorded::read;
 use super::rollout::followed;
 use super::rollout_flags::RollOutFlags;
 use super::session::{Said, Session};
 
-/// Draw a policy: its field, its potential, what was shown
-///
-/// Two channels are drawn; all others are at the median of what was learnt from.
-/// Where nothing was learnt it is grey.
+/// Plot a policy, its potential and recordings
 #[derive(Debug, Args)]
-#[command(
-    verbatim_doc_comment,
-    after_help = "Example:\n  policy-align plot toy.json -o toy.svg --files toy.csv --rollout 1.5,1"
-)]
+#[command(after_help = "\
+Plots two channels; all others are at their median. Outside the data it is grey.
+All flags of reading files: policy-align check --help
+
+Example:
+  policy-align plot toy.json -o toy.svg --files toy.csv --rollout 1.5,1")]
 pub(crate) struct Plot {
     /// A model that `fit` has written
     model: PathBuf,
-    /// The picture to write: SVG or PNG
+    /// Picture to write: SVG or PNG
     #[arg(long, short, value_name = "FILE.svg", default_value = "field.svg")]
     output: PathBuf,
     /// Channels across and up [default: the first two]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     dims: Vec<String>,
-    /// Recordings to draw
+    /// Recordings to plot
     #[arg(long, value_name = "FILES", num_args = 1..)]
     files: Vec<PathBuf>,
-    /// A start to follow the policy from; any number of times
+    /// Start of a roll-out; may be repeated
     #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
     rollout: Vec<String>,
     #[command(flatten)]
@@ -79,7 +78,7 @@ impl Plot {
             ),
         );
         let start: Vec<String> =
-            model.state.iter().map(|channel| super::lines::short(channel.high * 0.5 + channel.median * 0.5)).collect();
+            model.state.iter().map(|channel| short(channel.high * 0.5 + channel.median * 0.5)).collect();
         Ok(Said::done(lines.next(&format!("policy-align rollout {} --from {}", self.model.display(), start.join(",")))))
     }
 }
@@ -89,9 +88,9 @@ fn dims(names: &[String], model: &Model) -> Result<[usize; 2], Failure> {
     let known: Vec<&str> = model.state.iter().map(|channel| channel.name.as_str()).collect();
     if known.len() < 2 {
         return Err(Failure::usage(
-            "a state of one channel has no picture",
+            "a state of one channel cannot be plotted",
             "plot",
-            "`policy-align predict` with states of a file",
+            "`policy-align predict` with a file of states",
         ));
     }
     let place = |name: &String| known.iter().position(|known| known == name);
@@ -105,6 +104,6 @@ fn dims(names: &[String], model: &Model) -> Result<[usize; 2], Failure> {
                 format!("two of {}", known.join(", ")),
             )),
         },
-        _ => Err(Failure::usage("two channels are drawn", "--dims", format!("--dims {},{}", known[0], known[1]))),
+        _ => Err(Failure::usage("a plot has two channels", "--dims", format!("--dims {},{}", known[0], known[1]))),
     }
 }

@@ -15,43 +15,47 @@ use super::lines::{Lines, counted, list, short};
 use super::session::{Said, Session};
 use super::table::states;
 
-/// Ask a model for actions
-///
-/// For every state the action per second, the potential, standard deviations and
-/// the support: how much the demonstrations say about it, from 0 to 1.
+/// Predict actions of a model
 #[derive(Debug, Args)]
-#[command(verbatim_doc_comment, after_help = "Example:\n  policy-align predict toy.json --at 0.3,1.2")]
+#[command(after_help = "\
+For each state: the action per second, its standard deviation, the potential,
+and the support, from 1 where demonstrations are dense to 0 outside the data.
+Outside the data no deviation or potential is given.
+
+Example:
+  policy-align predict toy.json --at 0.3,1.2")]
 pub(crate) struct Predict {
     /// A model that `fit` has written
     model: PathBuf,
-    /// States: CSV with the channels' names, or - for standard input
+    /// States: CSV with the channel names as header, or - for standard input
     #[arg(required_unless_present = "at")]
     states: Option<PathBuf>,
     /// One state
     #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true, conflicts_with = "states")]
     at: Option<String>,
-    /// A CSV file to write
+    /// CSV file to write
     #[arg(long, short, value_name = "FILE.csv")]
     output: Option<PathBuf>,
-    /// Actions where nothing was learnt
+    /// Behaviour outside the data
     #[arg(long, value_enum, default_value_t = Outside::Zero)]
     outside: Outside,
 }
 
-/// What becomes of actions where nothing was learnt.
+/// Actions outside the data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Outside {
-    /// They are zero: stand still
+    /// Zero action: stop
     Zero,
-    /// They are not a number
+    /// NaN as action
     Nan,
-    /// They are an error
+    /// Exit with an error
     Error,
 }
 
 /// What a model says of a state.
 struct Prediction {
     action: DVector<f64>,
+    /// None outside the data, and of policies without one; so the deviation.
     potential: Option<f64>,
     deviation: Option<DVector<f64>>,
     support: f64,
@@ -60,14 +64,15 @@ struct Prediction {
 
 impl Prediction {
     fn of(policy: &ModelPolicy<'_>, state: DVectorView<'_, f64>) -> Self {
+        let supported = policy.is_supported(state);
         let mut deviation = DVector::zeros(state.len());
-        let known = policy.action_sd_into(state, deviation.as_view_mut());
+        let known = supported && policy.action_sd_into(state, deviation.as_view_mut());
         Prediction {
             action: policy.action(state),
-            potential: policy.potential().map(|potential| potential.value(state)),
+            potential: policy.potential().filter(|_| supported).map(|potential| potential.value(state)),
             deviation: known.then_some(deviation),
             support: policy.support(state),
-            supported: policy.is_supported(state),
+            supported,
         }
     }
 }
@@ -106,7 +111,7 @@ impl Predict {
         lines.add(
             "written",
             &format!(
-                "{}: {}, {unsupported} of them outside of what was shown",
+                "{}: {}, {unsupported} of them outside the data",
                 path.display(),
                 counted(predictions.len(), "state")
             ),
@@ -133,8 +138,8 @@ impl Predict {
                 Outside::Zero => prediction.action.fill(0.0),
                 Outside::Nan => prediction.action.fill(f64::NAN),
                 Outside::Error => {
-                    let what = format!("nothing was learnt there (support {})", short(prediction.support));
-                    let remedy = "--outside zero or nan, or states within the range that `policy-align info` shows";
+                    let what = format!("the state is outside the data (support {})", short(prediction.support));
+                    let remedy = "--outside zero or nan, or states within the range that `policy-align info` lists";
                     return Err(Failure::new(Exit::Refused, what, format!("state {}", row + 1), remedy));
                 }
             }
@@ -154,8 +159,8 @@ fn one_prediction(model: &Model, prediction: &Prediction) -> String {
     if let Some(potential) = prediction.potential {
         lines.add("potential", &short(potential));
     }
-    let known = if prediction.supported { "shown" } else { "outside of what was shown" };
-    lines.add("support", &format!("{} ({known})", short(prediction.support)));
+    let place = if prediction.supported { "within the data" } else { "outside the data" };
+    lines.add("support", &format!("{} ({place})", short(prediction.support)));
     lines.into_text()
 }
 

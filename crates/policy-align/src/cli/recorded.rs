@@ -35,7 +35,7 @@ fn warn(session: &Session, notes: &[Note]) {
             session.warn(&note.text);
         }
         if notes.len() > SHOWN {
-            session.warn(&format!("and {} more like this one: check --html lists all", notes.len() - SHOWN));
+            session.warn(&format!("and {} more of this kind: check --html lists all", notes.len() - SHOWN));
         }
     }
 }

@@ -15,38 +15,39 @@ use super::picture::{Picture, draw};
 use super::rollout_flags::RollOutFlags;
 use super::session::{Said, Session};
 
-/// Follow a policy from a start, under constraints
-///
-/// A constraint file holds, any number of times, one of
-///
-///   [[constraint]]
-///   normal = [1, 0]        # x stays as it is; several rows: [[1, 0], [0, 1]]
-///
-///   [[constraint]]
-///   point = [0.5, 0.5]     # stay out of a ball
-///   radius = 0.2
-///   from = 0.5             # seconds; every constraint may have these
-///   until = 2.0
-///
-///   [[constraint]]
-///   robot = "arm.urdf"     # a link stays in its plane (or out of a ball);
-///   link = "hand"          # channels have the names of the robot's joints
-///   plane = [0, 0, 1]
+/// Roll out a policy from a start, under constraints
 #[derive(Debug, Args)]
-#[command(
-    verbatim_doc_comment,
-    after_help = "Example:\n  policy-align rollout toy.json --from 1.5,1 --constraint wall.toml -o path.csv"
-)]
+#[command(after_help = "\
+A constraint file holds tables of these kinds, in any number:
+
+  [[constraint]]
+  normal = [1, 0]        # x stays fixed; several rows: [[1, 0], [0, 1]]
+
+  [[constraint]]
+  point = [0.5, 0.5]     # stay out of a ball
+  radius = 0.2
+  from = 0.5             # seconds; optional in every constraint
+  until = 2.0
+
+  [[constraint]]
+  robot = \"arm.urdf\"     # a link stays in its plane (or out of a ball);
+  link = \"hand\"          # channels are named like the robot's joints
+  plane = [0, 0, 1]
+
+The roll-out ends at rest, at a joint limit, or where the data end.
+
+Example:
+  policy-align rollout toy.json --from 1.5,1 --constraint wall.toml -o path.csv")]
 pub(crate) struct RollOut {
     /// A model that `fit` has written
     model: PathBuf,
-    /// Where to start
+    /// Start state
     #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
     from: String,
-    /// The path to write: CSV or any other format that `convert` writes
+    /// Path to write: CSV or any other format of `convert`
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// A picture to draw: SVG or PNG
+    /// Plot to write: SVG or PNG
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
     #[command(flatten)]
@@ -87,7 +88,7 @@ impl RollOut {
         lines.add(
             "moved",
             &format!(
-                "{}  →  {end} in {} s",
+                "{} → {end} in {} s",
                 list(followed.states.column(0).iter().copied()),
                 short(followed.times[last])
             ),
@@ -97,18 +98,16 @@ impl RollOut {
             let how = if by == 0.0 { "exactly".to_owned() } else { format!("to {} (constraint {which})", short(by)) };
             lines.add("constraints", &format!("kept {how}"));
         }
-        lines.add("states", &format!("{}, all within what was shown", counted(count, "sample")));
-        match &self.output {
-            Some(output) => lines.add("written", &output.display().to_string()),
-            None => {
-                return lines.next(&format!(
-                    "policy-align rollout {} --from {} -o path.csv",
-                    self.model.display(),
-                    self.from
-                ));
-            }
+        lines.add("states", &format!("{}, all within the data", counted(count, "sample")));
+        let written: Vec<String> =
+            [&self.output, &self.plot].into_iter().flatten().map(|path| path.display().to_string()).collect();
+        if !written.is_empty() {
+            lines.add("written", &written.join(", "));
         }
-        lines.into_text()
+        if self.output.is_some() {
+            return lines.into_text();
+        }
+        lines.next(&format!("policy-align rollout {} --from {} -o path.csv", self.model.display(), self.from))
     }
 }
 
@@ -127,10 +126,10 @@ pub(crate) fn followed(flags: &RollOutFlags, model: &Model, start: &DVector<f64>
 
 fn stop(stop: &Stop) -> String {
     match stop {
-        Stop::AtRest => "stopped: slower than 1 % of the demonstrated speed".to_owned(),
-        Stop::LeftTheData => "left the data: the next state is outside of what was shown".to_owned(),
-        Stop::Limit(joint) => format!("limit of joint '{joint}'"),
-        Stop::Time => "time is up: --seconds allows more".to_owned(),
+        Stop::AtRest => "at rest: slower than 1 % of the demonstrated speed".to_owned(),
+        Stop::LeftTheData => "end of the data: the next state lacks support".to_owned(),
+        Stop::Limit(joint) => format!("joint limit of '{joint}'"),
+        Stop::Time => "end of the time: --seconds allows more".to_owned(),
     }
 }
 

@@ -9,21 +9,21 @@ use super::failure::{Failure, shown};
 /// How a policy is followed: table `[rollout]`.
 #[derive(Debug, Clone, Default, PartialEq, Args, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-#[command(next_help_heading = "Following")]
+#[command(next_help_heading = "Roll-out")]
 pub(crate) struct RollOutFlags {
-    /// Constraints that hold on the way
+    /// Constraints of the roll-out
     #[arg(long, value_name = "FILE.toml")]
     #[serde(skip_serializing_if = "Option::is_none")]
     constraint: Option<PathBuf>,
-    /// At most so long [default: 3 times the longest episode]
+    /// Longest duration [default: 3 times the longest episode]
     #[arg(long, value_name = "SECONDS")]
     #[serde(skip_serializing_if = "Option::is_none")]
     seconds: Option<f64>,
-    /// Between two samples [default: the model's time step]
+    /// Time between samples [default: the model's time step]
     #[arg(long, value_name = "SECONDS")]
     #[serde(skip_serializing_if = "Option::is_none")]
     step: Option<f64>,
-    /// A robot (URDF) whose joint limits stop it
+    /// Robot whose joint limits stop the roll-out
     #[arg(long, value_name = "FILE.urdf")]
     #[serde(skip_serializing_if = "Option::is_none")]
     limits: Option<PathBuf>,
@@ -42,7 +42,7 @@ impl RollOutFlags {
                 let text = std::fs::read_to_string(path).map_err(|error| Failure::reading(path, error))?;
                 let limits = JointLimits::from_urdf(&text, &channels);
                 Some(limits.map_err(|reason| {
-                    Failure::usage(reason, shown(path), "a URDF whose joints have the names of the channels")
+                    Failure::usage(reason, shown(path), "a URDF with joints named like the channels")
                 })?)
             }
         };

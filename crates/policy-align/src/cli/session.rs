@@ -10,14 +10,14 @@ use super::failure::{Exit, Failure};
 /// Flags of every command.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct Session {
-    /// Results as one JSON document
-    #[arg(long, global = true, help_heading = "Every command")]
+    /// Print results as one JSON document
+    #[arg(long, global = true, help_heading = "All commands")]
     pub(crate) json: bool,
-    /// Nothing but results and errors
-    #[arg(long, short, global = true, help_heading = "Every command")]
+    /// Print results and errors only
+    #[arg(long, short, global = true, help_heading = "All commands")]
     pub(crate) quiet: bool,
-    /// Flags of a file; those of the command line win
-    #[arg(long, global = true, value_name = "FILE.toml", help_heading = "Every command")]
+    /// File of flags; those of the command line take precedence
+    #[arg(long, global = true, value_name = "FILE.toml", help_heading = "All commands")]
     pub(crate) config: Option<PathBuf>,
 }
 
@@ -70,7 +70,7 @@ pub(crate) fn tell(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::new(Exit::File, error.to_string(), "standard output", "-o with a file"))
+            Err(Failure::new(Exit::File, error.to_string(), "standard output", "-o FILE"))
         }
         _ => Ok(()),
     }

@@ -36,16 +36,16 @@ fn parsed(text: &str, model: &Model, place: &str) -> Result<DMatrix<f64>, Failur
     for record in reader.records() {
         let record = record.map_err(|error| {
             let line = error.position().map_or(1, csv::Position::line);
-            fault("a row has more or fewer fields than the first".to_owned(), line, "a file whose rows are alike")
+            fault("the row differs from the first in its number of fields".to_owned(), line, "rows of equal length")
         })?;
         let line = record.position().map_or(1, csv::Position::line);
         let Some(columns) = &columns else {
             let found = columns_of(&record, model).ok_or_else(|| {
                 let names: Vec<&str> = model.state.iter().map(|channel| channel.name.as_str()).collect();
                 fault(
-                    format!("the first row names not all of {}", names.join(", ")),
+                    format!("the first row does not name all of {}", names.join(", ")),
                     line,
-                    "a header with these names, or these columns alone",
+                    "a header with these names, or only these columns",
                 )
             })?;
             let is_header = record.iter().any(|field| field.parse::<f64>().is_err());
@@ -59,7 +59,7 @@ fn parsed(text: &str, model: &Model, place: &str) -> Result<DMatrix<f64>, Failur
     }
     let states = DMatrix::from_vec(n, numbers.len() / n, numbers);
     if states.ncols() == 0 {
-        return Err(fault("there is no state".to_owned(), 1, "a file with a row for each state, or --at 0.3,1.2"));
+        return Err(fault("the file has no state".to_owned(), 1, "one row per state, or --at 0.3,1.2"));
     }
     Ok(states)
 }

@@ -20,7 +20,7 @@ const TAKEN: [&str; 56] = [
 ///
 /// It defines `int policy(const double *x, double *u, double *phi)`: from a state (n) in the units of the recording it
 /// writes the action (n), per second, and the potential (NaN where the policy has none), either of which may be `NULL`,
-/// and returns 1 where something was learnt, 0 elsewhere.
+/// and returns 1 within the data, 0 outside.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CSource {
     /// Name of the function.
@@ -108,8 +108,8 @@ impl CSource {
         let _ = writeln!(
             text,
             " *\n * int {}(x, u, phi) writes the action u and the potential phi (NaN if the\n \
-             * policy has none); u and phi may be NULL. It returns 1 where something was\n \
-             * learnt, and 0 elsewhere: then stop. Limits of speed are up to the caller. */\n\
+             * policy has none); u and phi may be NULL. It returns 1 within the data and 0\n \
+             * outside: then stop. Limits of speed are up to the caller. */\n\
              #include <math.h>\n\ntypedef {} real;\n",
             self.name,
             self.real(),

@@ -5,10 +5,10 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum ExportError {
     /// Nothing of the policy can be written down.
-    #[error("the policy has no field that was learnt: it is zero everywhere")]
+    #[error("the policy is zero everywhere: no receptive field was learnt")]
     Nothing,
     /// Not a name in C.
-    #[error("'{name}' is not a name in C: letters, digits and _, not a digit first, no keyword")]
+    #[error("'{name}' is not a C name: letters, digits and _, not starting with a digit, no keyword")]
     Name {
         /// What was given.
         name: String,

@@ -5,6 +5,7 @@ use gp::Rows;
 use lwpr::LwprParams;
 use motion::{Demonstrations, LearntPolicy, Potential};
 use nalgebra::{DMatrix, DVector};
+use prepare::in_words::squared_error;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -102,16 +103,16 @@ fn integrable(prepared: &Prepared) -> Result<(Demonstrations, Integration, &'sta
     let averaged = averaged(prepared)?;
     let smooth = || SavitzkyGolay::default().smooth(&averaged);
     Ok(match prepared.recorded {
-        Recorded::PositionsAsRequested => (averaged, Integration::Displacement, "positions as smoothing left them"),
+        Recorded::PositionsAsRequested => (averaged, Integration::Displacement, "positions smoothed as requested"),
         Recorded::NoisyVelocities(_) if prepared.smoothing != Smoothing::Auto => {
-            (averaged, Integration::Velocity, "recorded; positions as smoothing left them")
+            (averaged, Integration::Velocity, "recorded; positions smoothed as requested")
         }
         Recorded::Velocities => (averaged, Integration::Velocity, "recorded; they agree with the steps"),
         Recorded::FusedVelocities | Recorded::NoisyVelocities(_) => {
             (smooth()?, Integration::Velocity, "recorded; positions smoothed (9 samples, degree 2)")
         }
         Recorded::Positions if prepared.noise.step_share > NOISY => {
-            (smooth()?, Integration::Displacement, "positions smoothed (9 samples, degree 2), then step by step")
+            (smooth()?, Integration::Displacement, "positions smoothed (9 samples, degree 2), then differences")
         }
         Recorded::Positions => (averaged, Integration::Displacement, "positions are exact enough"),
     })
@@ -131,10 +132,10 @@ pub(super) fn fit(
     let tried = grid(&demonstrations, integration, (rows, reference), options, progress)?;
     let best = choose(&tried).ok_or(FitError::Cancelled)?;
     let said = format!(
-        "best of {} by held-out slope error {:.3}, {} folds of episodes",
+        "best of {} by cross-validation over {} folds of episodes: held-out error {}",
         tried.len(),
-        best.total().to_choose(),
-        best.folds.len()
+        best.folds.len(),
+        squared_error(best.total().to_choose())
     );
     let given = |flag: bool| if flag { "given".to_owned() } else { said.clone() };
     decisions.push(decision(

@@ -14,6 +14,7 @@ pub(crate) use recorded_rows::rows;
 
 use gp::{BothReadings, DirectGp, FrontEnd, Reading, ReadingLearner, SlopeGp, TrajectoryErrors};
 use motion::{LearntPolicy, Policy};
+use prepare::in_words::squared_error;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -60,7 +61,7 @@ pub struct Fit {
 pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_>) -> Result<Fit, FitError> {
     options.check()?;
     let steps = if options.learner == LearnerChoice::PolicyAlign { 4 } else { 2 };
-    progress.begin(0, steps, "cleaning what was recorded")?;
+    progress.begin(0, steps, "cleaning the recordings")?;
     let rows = rows(prepared)?;
     progress.begin(1, steps, "learning with and without constraints")?;
     let readings = readings(&rows, options)?;
@@ -153,12 +154,12 @@ fn learner_decision(options: &FitOptions, readings: &BothReadings) -> Decision {
             let reading = options.reading.unwrap_or(readings.reading());
             let learner = if numbers.takes_slope(reading) { "slope GP" } else { "direct GP" };
             let why = match options.reading {
-                Some(reading) => format!("you read the movements as {}", named(reading)),
+                Some(reading) => format!("reading given: {}", named(reading)),
                 None => format!(
-                    "movements look {}: left-out squared error {:.3} knowing the direction, {:.3} from the place alone",
-                    named(reading),
-                    numbers.a_s,
-                    numbers.a_d
+                    "{}: held-out error {} with direction, {} without",
+                    found(reading),
+                    squared_error(numbers.a_s),
+                    squared_error(numbers.a_d)
                 ),
             };
             decision(learner, why, "--reading")
@@ -173,6 +174,17 @@ fn named(reading: Reading) -> &'static str {
         Reading::Ambiguous => "ambiguous",
         Reading::Unexplained => "unexplained",
         Reading::TooFew => "too few to tell",
+    }
+}
+
+/// What the data say about constraints.
+fn found(reading: Reading) -> &'static str {
+    match reading {
+        Reading::Free => "no constraints detected",
+        Reading::Constrained => "constraints detected",
+        Reading::Ambiguous => "free or constrained, both readings fit",
+        Reading::Unexplained => "neither reading fits",
+        Reading::TooFew => "too few movements to detect constraints",
     }
 }
 

@@ -19,7 +19,7 @@ pub struct FitOptions {
     pub folds: usize,
     /// Seed of every random choice (`--seed`).
     pub seed: u64,
-    /// Largest number of rows of the Gaussian processes; more are thinned evenly in time (`--max-rows`).
+    /// Rows that Gaussian processes learn from, at most, spread in time along the movements (`--max-rows`).
     pub max_rows: usize,
 }
 

@@ -1,3 +1,4 @@
+use prepare::in_words::short;
 use thiserror::Error;
 
 /// Why a policy cannot be followed. A message says what and where; [`RollOutError::remedy`] what next.
@@ -20,8 +21,8 @@ pub enum RollOutError {
         /// Which.
         channel: String,
     },
-    /// The start is outside the demonstrated region.
-    #[error("the start is outside of what was shown (support {support:.3}, at least {least:.3} is needed)")]
+    /// The start is outside the data.
+    #[error("the start is outside the data (support {}, at least {} needed)", short(*.support), short(*.least))]
     Unsupported {
         /// The support there.
         support: f64,
@@ -50,8 +51,8 @@ pub enum RollOutError {
         /// What was given.
         value: f64,
     },
-    /// Too many samples.
-    #[error("{samples} samples: that is more than {} million", LONGEST / 1_000_000)]
+    /// So many samples that nobody wants them.
+    #[error("{samples} samples exceed the limit of {} million", LONGEST / 1_000_000)]
     TooLong {
         /// How many it would be.
         samples: f64,
@@ -77,12 +78,12 @@ impl RollOutError {
         match self {
             RollOutError::Start { .. } => "give one number for each channel, in this order",
             RollOutError::StartNotFinite { .. } => "give finite numbers",
-            RollOutError::Unsupported { .. } => "start within the range that `policy-align info` shows",
+            RollOutError::Unsupported { .. } => "start within the range that `policy-align info` lists",
             RollOutError::StartBreaks { .. } => "start outside the ball, or make it smaller",
             RollOutError::StartBeyondLimit { .. } => "start within the limits, in radians or metres",
             RollOutError::NotPositive { .. } => "give a time in seconds",
             RollOutError::TooLong { .. } => "a longer step or fewer seconds",
-            RollOutError::Constraint { .. } => "mend the constraint file or the robot description",
+            RollOutError::Constraint { .. } => "correct the constraint file or the robot description",
         }
     }
 }

@@ -6,20 +6,20 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ModelError {
-    /// The text is not JSON, or stops in the middle.
-    #[error("not JSON: {reason}; the file is damaged or was not written to its end, use another copy")]
+    /// The text begins as JSON, but is none.
+    #[error("damaged or cut off: not JSON ({reason})")]
     NotJson {
         /// What the JSON reader says.
         reason: String,
     },
-    /// JSON of something else.
-    #[error("not a model of this program: `format` is {found}, not \"policy-align model\"")]
+    /// Something else.
+    #[error("not a policy-align model: {found}")]
     NotAModel {
-        /// What stands there.
+        /// What it is, or what says so.
         found: String,
     },
     /// Made by a newer program.
-    #[error("made by a newer policy-align (model version {found}, this one reads {known}): update")]
+    #[error("made by a newer policy-align: model version {found}, this one reads up to {known}")]
     Newer {
         /// The version of the file.
         found: u64,
@@ -27,7 +27,7 @@ pub enum ModelError {
         known: u64,
     },
     /// A member is missing, has another type, or cannot be.
-    #[error("{path}: {reason}{}", if *.changed { "; the checksum differs too, somebody changed the file" } else { "" })]
+    #[error("{path}: {reason}{}", if *.changed { "; the checksum differs too: the file was changed" } else { "" })]
     Member {
         /// Where.
         path: String,
@@ -36,8 +36,8 @@ pub enum ModelError {
         /// Whether the checksum is wrong as well.
         changed: bool,
     },
-    /// The checksum does not match the contents.
-    #[error("checksum: it is of another text, the file was changed or damaged after it was written; use another copy")]
+    /// What is there is not what was written.
+    #[error("the checksum does not match: the file was changed or damaged after it was written")]
     Checksum,
     /// A number of the model is NaN or infinite, so that it could not be read again.
     #[error("{path}: {reason}; nothing was written")]

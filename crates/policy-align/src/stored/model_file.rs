@@ -48,11 +48,11 @@ impl Model {
     /// # Errors
     /// [`ModelError`], with the place where the text is at fault.
     pub fn from_json(bytes: &[u8]) -> Result<Model, ModelError> {
-        let value: Value =
+        if bytes.iter().find(|byte| !byte.is_ascii_whitespace()) != Some(&b'{') {
+            return Err(ModelError::NotAModel { found: "the file is no JSON object".to_owned() });
+        }
+        let mut members: Map<String, Value> =
             serde_json::from_slice(bytes).map_err(|error| ModelError::NotJson { reason: error.to_string() })?;
-        let Value::Object(mut members) = value else {
-            return Err(ModelError::NotAModel { found: "nowhere".to_owned() });
-        };
         check_format(&members)?;
         let expected = without_checksum(members.clone());
         let changed = members.get("checksum").and_then(Value::as_str) != Some(checksum(&expected).as_str());
@@ -102,18 +102,21 @@ impl Model {
         }
         let not_negative = |number: f64| number >= 0.0 && number.is_finite();
         if !(positive(self.data.longest) && not_negative(self.data.speed)) {
-            return Some(("data".to_owned(), "a duration that is not positive or a negative speed".to_owned()));
+            return Some(("data".to_owned(), "the duration must be positive and the speed not negative".to_owned()));
         }
         let sound = |channel: &StateChannel| {
             positive(channel.scale) && channel.low <= channel.median && channel.median <= channel.high
         };
         let at = self.state.iter().position(|channel| !sound(channel))?;
-        Some((format!("state[{at}]"), "a scale that is not positive, or low, median and high out of order".to_owned()))
+        Some((format!("state[{at}]"), "the scale must be positive, and low, median and high in order".to_owned()))
     }
 }
 
 fn check_format(members: &Map<String, Value>) -> Result<(), ModelError> {
-    let found = members.get("format").map_or_else(|| "missing".to_owned(), |found| one_line(&found.to_string()));
+    let found = members.get("format").map_or_else(
+        || "`format` is missing".to_owned(),
+        |found| format!("`format` is {}", one_line(&found.to_string())),
+    );
     if members.get("format").and_then(Value::as_str) != Some(FORMAT) {
         return Err(ModelError::NotAModel { found });
     }

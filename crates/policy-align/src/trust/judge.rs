@@ -1,9 +1,10 @@
 use std::cmp::Reverse;
 
 use gp::{Grouping, Reading};
+use prepare::in_words::{percent, short};
 
 use super::numbers::TrustNumbers;
-use super::words::{direction, percent};
+use super::words::direction;
 use crate::{Finding, StateChannel, Trust, Verdict};
 
 /// Left-out error along the path from which a policy is wrong.
@@ -51,49 +52,47 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
         Reading::Free if numbers.direction_coverage < SPREAD => found(
             Verdict::Doubtful,
             format!(
-                "nothing points to a constraint, but movements hardly went along {} (coverage {:.2})",
+                "no constraint was detected, but movements hardly vary along {} (coverage {})",
                 direction(&numbers.unseen_direction, state),
-                numbers.direction_coverage
+                short(numbers.direction_coverage)
             ),
-            "either they want not to, or something always prevents them: record movements that go that way",
+            "either the policy does not move that way or a constraint always blocks it: record movements in that direction",
         ),
         Reading::Free => found(
             Verdict::Good,
-            "nothing points to a constraint; one that is the same in all movements cannot be seen in them".to_owned(),
+            "no constraint was detected; one common to all movements cannot be detected".to_owned(),
             "if there is one, record movements without it",
         ),
         Reading::Ambiguous => found(
             Verdict::Doubtful,
             format!(
-                "two readings explain these movements equally well: nothing was constrained, or the same constraint always (they differ by {})",
+                "two readings explain these movements equally well, no constraint or one common to all: their policies differ by {}",
                 percent(numbers.gap)
             ),
-            "only you know: --reading free or --reading constrained, or record movements that pass the same places in other directions",
+            "set --reading free or --reading constrained, or record movements that cross the same places in other directions",
         ),
         Reading::Unexplained => found(
             if numbers.held_out_error > WRONG { Verdict::DoNotUse } else { Verdict::Doubtful },
             format!(
-                "left-out movements are not predicted: errors {} and {}",
+                "held-out movements are not predicted: error {} without constraints, {} with",
                 percent(numbers.direct_error),
                 percent(numbers.held_out_error)
             ),
-            "too few movements, too much noise, or the movement does not depend on the place alone (time, load, target)",
+            "record more movements or reduce noise, or add what else the motion depends on (time, load, target) to the state",
         ),
-        Reading::TooFew => found(
-            Verdict::Doubtful,
-            "too few movements to tell whether constraints acted".to_owned(),
-            "record at least five",
-        ),
+        Reading::TooFew => {
+            found(Verdict::Doubtful, "too few movements to detect constraints".to_owned(), "record at least five");
+        }
     }
     if numbers.direction_coverage < UNSEEN {
         found(
             Verdict::Doubtful,
             format!(
-                "hardly anything ever moved along {} (coverage {:.3})",
+                "almost no movement along {} (coverage {})",
                 direction(&numbers.unseen_direction, state),
-                numbers.direction_coverage
+                short(numbers.direction_coverage)
             ),
-            "record movements that go that way",
+            "record movements in that direction",
         );
     }
 }
@@ -104,16 +103,13 @@ fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &s
     if measured && expected > FAR && numbers.halves.is_some_and(|halves| halves < TrustNumbers::GOOD_HALVES) {
         found(
             Verdict::DoNotUse,
-            format!(
-                "the Gaussian process learns another policy, and is sure of it: they differ by {}",
-                percent(expected)
-            ),
+            format!("the Gaussian process confidently learns another policy: they differ by {}", percent(expected)),
             "use --learner auto",
         );
     } else if expected > if measured { MEASURED } else { TrustNumbers::GOOD_EXPECTED_ERROR } {
         found(
             Verdict::Doubtful,
-            format!("the policy expects an error of {} of its variance", percent(expected)),
+            format!("the expected error is {} of the policy's variance", percent(expected)),
             "record more movements, from other starts",
         );
     }
@@ -121,44 +117,38 @@ fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &s
     if held > WRONG {
         found(
             Verdict::DoNotUse,
-            format!("left-out movements are predicted with an error of {}", percent(held)),
-            "record more movements, above all where errors are largest",
+            format!("held-out movements are predicted with an error of {}", percent(held)),
+            "record more movements, especially where errors are largest",
         );
     } else if held > TrustNumbers::GOOD_HELD_OUT_ERROR {
         found(
             Verdict::Doubtful,
-            format!("left-out movements are predicted with an error of {}", percent(held)),
-            "record more movements, above all where errors are largest",
+            format!("held-out movements are predicted with an error of {}", percent(held)),
+            "record more movements, especially where errors are largest",
         );
     }
     if let Some(halves) = numbers.halves.filter(|&halves| halves > TrustNumbers::GOOD_HALVES) {
         found(
             Verdict::Doubtful,
-            format!(
-                "half of the movements tell another policy than the other half: they differ by {}",
-                percent(halves)
-            ),
-            "record more movements, from other starts; less noise helps as well",
+            format!("policies learnt from two halves of the movements differ by {}", percent(halves)),
+            "record more movements, from other starts, or reduce noise",
         );
     }
     if numbers.unknown > UNKNOWN {
         found(
             Verdict::Doubtful,
-            format!(
-                "between the movements shown, the policy does not know itself on {} of the way",
-                percent(numbers.unknown)
-            ),
-            "record movements from starts in between; a roll-out says where support ends",
+            format!("between the demonstrations, the policy is uncertain on {} of the way", percent(numbers.unknown)),
+            "record movements from starts in between; a roll-out shows where support ends",
         );
     }
     if numbers.leaving > LEAVING {
         found(
             Verdict::Doubtful,
             format!(
-                "followed freely, the policy leaves what was shown from {} of the starts: its goal lies outside, or time runs backwards",
+                "unconstrained roll-outs leave the data from {} of the starts: the goal lies outside, or time runs backwards",
                 percent(numbers.leaving)
             ),
-            "look at a roll-out; record movements up to where they should end",
+            "plot a roll-out; record movements up to their goal",
         );
     }
     if numbers.grouping == Grouping::BlocksOfTime {
@@ -185,12 +175,12 @@ fn about_episodes(numbers: &TrustNumbers, episodes: &[String], found: &mut dyn F
         found(
             Verdict::Good,
             format!(
-                "episode {} is predicted worst: error {}, usual {}",
+                "episode {} is predicted worst: error {}, median {}",
                 episodes[episode],
                 percent(error),
                 percent(usual)
             ),
-            "look at it: another task, a fault of tracking, or a place where no other movement went?",
+            "check it: another task, a tracking fault, or a place that no other movement visits?",
         );
     }
 }

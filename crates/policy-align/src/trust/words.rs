@@ -25,9 +25,3 @@ pub(super) fn direction(vector: &[f64], state: &[StateChannel]) -> String {
     }
     words
 }
-
-/// A share in percent.
-pub(super) fn percent(share: f64) -> String {
-    let percent = 100.0 * share;
-    if percent.abs() < 1.0 { format!("{percent:.1} %") } else { format!("{percent:.0} %") }
-}

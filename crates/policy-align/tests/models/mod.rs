@@ -128,7 +128,7 @@ pub(crate) fn model(learnt: Learnt, demonstrations: &Demonstrations) -> Model {
             verdict: Verdict::Doubtful,
             findings: vec![Finding {
                 verdict: Verdict::Doubtful,
-                what: "left-out movements are predicted poorly (error 0.2)".to_owned(),
+                what: "held-out movements are predicted poorly (error 0.2)".to_owned(),
                 next: "record more movements".to_owned(),
             }],
             numbers: TrustNumbers {
