@@ -18,7 +18,7 @@ use crate::Who;
 const EXTENT: f64 = 2.0;
 
 /// Arrows are drawn as long as this many seconds of movement.
-const ARROW_SECONDS: f64 = 4.0;
+const ARROW_SECONDS: f64 = 7.0;
 
 /// Longer actions are not meant.
 const LONGEST: f64 = 0.2;
@@ -111,8 +111,10 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let plane = |title: &str, layers| state_plane(title, EXTENT, layers, SIZE);
     let learnt =
         |title: &str, learnt: &[Arrow], who: Who| plane(title, compared(&fields.truth, learnt, who, ARROW_SECONDS));
+    let range = range_of([&fields.expected, &fields.error]);
     let sure = |title: &str, values: &Field| {
-        let colors = Layer::Colors { field: values.clone(), name: "log₁₀ (1/s)".to_owned() };
+        let name = "log₁₀ (1/s)".to_owned();
+        let colors = Layer::Colors { field: values.clone(), name, range: Some(range) };
         let inside = |(x, y): &(f64, f64)| x.abs() <= EXTENT && y.abs() <= EXTENT;
         let ways = movements().map(|(points, _)| Layer::Path {
             points: points.iter().copied().filter(inside).collect(),
@@ -123,13 +125,30 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     };
     let panels: [Plane; 7] = [
         plane("(a) Ten constrained movements", demonstrated::layers(&fields.contours, movements(), 1.6)),
-        learnt("(b) Naive (green), truth", &fields.naive, Who::Naive),
-        learnt("(c) PolicyAlign (orange), truth", &fields.policy_align, Who::PolicyAlign),
-        learnt("(d) Direct GP (olive), truth", &fields.direct_gp, Who::DirectGp),
-        learnt("(e) Slope GP (pink), truth", &fields.slope_gp, Who::SlopeGp),
-        sure("(f) Slope GP: how sure it is", &fields.expected),
-        sure("(g) Slope GP: its error", &fields.error),
+        learnt("(b) Naive", &fields.naive, Who::Naive),
+        learnt("(c) PolicyAlign", &fields.policy_align, Who::PolicyAlign),
+        learnt("(d) Direct GP", &fields.direct_gp, Who::DirectGp),
+        learnt("(e) Slope GP", &fields.slope_gp, Who::SlopeGp),
+        sure("(f) Slope GP: error it expects", &fields.expected),
+        sure("(g) Slope GP: true error", &fields.error),
     ];
     let [a, b, c, d, e, f, g] = &panels;
     Ok(Drawing { picture: Picture::rows(&[&[a, b, c, d], &[e, f, g]]), tables: vec![] })
+}
+
+/// From the least value of all fields to the largest: one scale of colours for all.
+fn range_of<'f>(fields: impl IntoIterator<Item = &'f Field>) -> [f64; 2] {
+    let values = fields.into_iter().flat_map(|field| field.values.iter().flatten());
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| [low.min(value), high.max(value)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_scale_holds_both_fields() {
+        let field = |values: [f64; 2]| Field { x: vec![0.0, 1.0], y: vec![0.0], values: vec![values.to_vec()] };
+        assert_eq!(range_of([&field([-6.7, -2.5]), &field([-8.0, -2.9])]), [-8.0, -2.5]);
+    }
 }

@@ -2,7 +2,7 @@
 
 use experiments::measure::Measure;
 use experiments::results::{Cell, ExperimentResult};
-use plot::{Curve, Dash, Entry, Filling, Mark, Sign, Stroke};
+use plot::{Axis, Curve, Dash, Filling, Mark, Sign, Stroke};
 
 use super::Csv;
 
@@ -22,11 +22,6 @@ impl Error {
 
     fn sign(self, style: Style) -> Sign {
         Sign { mark: self.mark, filling: style.filling }
-    }
-
-    /// In a key; `of` says of which series where there are several.
-    pub(super) fn entry(self, of: &str, style: Style) -> Entry {
-        Entry { name: format!("{}{of}", self.name), stroke: self.stroke(style), sign: self.sign(style) }
     }
 }
 
@@ -61,6 +56,8 @@ pub(super) struct Series<'a> {
     pub(super) result: &'a ExperimentResult,
     /// What is varied, and the row.
     pub(super) rows: Vec<(f64, String)>,
+    /// After the names of its curves.
+    pub(super) of: &'static str,
     pub(super) style: Style,
 }
 
@@ -77,7 +74,8 @@ impl Series<'_> {
             Some((*x, *mean, sd.unwrap_or(0.0)))
         };
         let points = self.rows.iter().filter_map(point).collect();
-        Curve { points, stroke: error.stroke(self.style), sign: error.sign(self.style) }
+        let name = format!("{}{}", error.name, self.of);
+        Curve { points, stroke: error.stroke(self.style), sign: error.sign(self.style), name }
     }
 
     /// Nothing where no data set has a value.
@@ -104,6 +102,12 @@ impl Series<'_> {
     }
 }
 
+/// A logarithmic axis from a power of ten that goes on, broken, to the lowest point of these curves.
+pub(super) fn axis_down_to<'c>(curves: impl IntoIterator<Item = &'c Curve>, from: f64) -> Axis {
+    let means = curves.into_iter().flat_map(|curve| curve.points.iter().map(|point| point.1));
+    Axis::Logarithmic { lowest: means.filter(|mean| *mean > 0.0).fold(from, f64::min) }
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
@@ -111,6 +115,19 @@ mod tests {
     use experiments::results::RowResult;
 
     use super::*;
+
+    #[test]
+    fn an_axis_reaches_down_to_all_that_is_above_0() {
+        let curve = |means: &[f64]| Curve {
+            points: means.iter().map(|&mean| (0.0, mean, 0.0)).collect(),
+            stroke: ERRORS[0].stroke(FIRST),
+            sign: ERRORS[0].sign(FIRST),
+            name: String::new(),
+        };
+        let axis = axis_down_to(&[curve(&[0.5, 3.4e-20]), curve(&[0.0, 2.0])], 1e-3);
+        assert_eq!(axis, Axis::Logarithmic { lowest: 3.4e-20 });
+        assert_eq!(axis_down_to(&[curve(&[0.5, 0.02])], 1e-3), Axis::Logarithmic { lowest: 1e-3 });
+    }
 
     #[test]
     fn rows_that_were_not_run_or_have_no_value_leave_no_point() {
@@ -127,10 +144,11 @@ mod tests {
         let rows = vec![row("d-0.1", BTreeMap::new()), row("d-0.2", measures)];
         let result = ExperimentResult { id: "figure9".to_owned(), section: "4.4".to_owned(), rows };
         let rows = [(0.1, "d-0.1"), (0.2, "d-0.2"), (0.3, "d-0.3")].map(|(x, id)| (x, id.to_owned())).into();
-        let series = Series { result: &result, rows, style: FIRST };
+        let series = Series { result: &result, rows, of: ", narrow", style: FIRST };
         let curves: Vec<Curve> = series.curves().collect();
         assert_eq!(curves.len(), 1);
         assert_eq!(curves[0].points, [(0.2, 0.5, 0.2)]);
+        assert_eq!(curves[0].name, "π (nUPE), narrow");
 
         let text = series.table("d", "d").text();
         let lines: Vec<&str> = text.lines().collect();

@@ -172,7 +172,7 @@ fn layers(shown: &Shown) -> Vec<Layer> {
     let marks =
         |points: &[_], mark| Layer::Marks { points: points.to_vec(), mark, color: "#000000", size: 6.0, label: None };
     vec![
-        Layer::Colors { field: shown.potential.clone(), name: "φ".to_owned() },
+        Layer::Colors { field: shown.potential.clone(), name: "φ".to_owned(), range: None },
         Layer::Contours(shown.potential.clone()),
         marks(&shown.maxima, Mark::Up),
         marks(&shown.minima, Mark::Down),

@@ -2,19 +2,24 @@
 
 use anyhow::Context as _;
 use experiments::{BANDWIDTHS, BESIDE_LEFT, BESIDE_RIGHT, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
-use plot::{Axis, Curve, Curves, Entry, Key, Picture};
+use plot::{Axis, Curve, Curves, Note, Picture};
 
-use super::errors::{BESIDE, ERRORS, FIRST, SECOND, Series, Style};
+use super::errors::{BESIDE, FIRST, SECOND, Series, Style, axis_down_to};
 use super::{Csv, Drawing, Figure, Sources};
 
-/// In the order of [`BANDWIDTHS`].
-const STYLES: [Style; 2] = [FIRST, SECOND];
+/// In the order of [`BANDWIDTHS`]: how it is drawn, and what its curves are called.
+const STYLES: [(Style, &str); 2] = [(FIRST, ", narrow"), (SECOND, ", medium")];
 
-/// Pixels.
-const SIZE: (f64, f64) = (640.0, 430.0);
+/// Pixels, and of them for the names of curves.
+const SIZE: (f64, f64) = (640.0, 460.0);
+const ROOM: f64 = 190.0;
 
-/// No axis reaches farther down: below, errors are those of rounding, and what is to be compared would have no room.
-const LOWEST: f64 = 1e-6;
+/// What is compared is above; from there on the axis is broken.
+const LEFT: [f64; 2] = [1e-3, 4.0];
+
+/// Of both panels, so that they can be compared. An error of 1 is that of a policy that knows nothing but the mean: how far
+/// beyond that curves go is said, not drawn.
+const RIGHT: [f64; 2] = [1e-6, 10.0];
 
 pub(super) fn left() -> Figure {
     Figure::new("figure6_left", Some("figure6_left"), &["figure6_left"], draw_left)
@@ -26,118 +31,142 @@ pub(super) fn right() -> Figure {
 
 fn draw_left(sources: &Sources) -> anyhow::Result<Drawing> {
     let series = series(sources, "figure6_left", "", &TRAJECTORIES_PERCENT)?;
-    let beside = beside(sources, "figure6_left", BESIDE_LEFT, &TRAJECTORIES_PERCENT)?;
-    let panel = with(
-        &beside,
-        Curves {
-            x_label: "Trajectories learnt from (% of 40)".to_owned(),
-            x: [0.0, 105.0],
-            x_step: 20.0,
-            y: [1e-3, 10.0],
-            ..panel("Learning from fewer trajectories", &series)
-        },
-    );
+    let lines = lines(&series, &beside(sources, "figure6_left", BESIDE_LEFT, &TRAJECTORIES_PERCENT)?);
+    let panel = Curves {
+        title: "Learning from fewer trajectories".to_owned(),
+        x_label: "Trajectories learnt from (% of 40)".to_owned(),
+        y_axis: axis_down_to(&lines, LEFT[0]),
+        x: [0.0, 102.0],
+        x_step: 20.0,
+        y: LEFT,
+        size: (SIZE.0 + 120.0, SIZE.1),
+        ..panel(lines)
+    };
     let tables = tables(&series, ["narrow", "medium"], "trajectories_percent");
-    Ok(Drawing { picture: Picture::rows(&[&[&panel], &[&key(SIZE.0, &beside)]]), tables })
+    Ok(Drawing { picture: Picture::rows(&[&[&panel]]), tables })
 }
 
 fn draw_right(sources: &Sources) -> anyhow::Result<Drawing> {
     let [velocity, displacement] = RULES.map(|(rule, _)| series(sources, "figure6_right", rule, &NOISE_PERCENT));
     let (velocity, displacement) = (velocity?, displacement?);
-    let panel = |title, series, y| Curves {
+    let [fused, smoothed] = BESIDE_RIGHT.map(|case| beside(sources, "figure6_right", case, &NOISE_PERCENT));
+    let lines = [lines(&velocity, &fused?), lines(&displacement, &smoothed?)];
+    let y_axis = axis_down_to(lines.iter().flatten(), RIGHT[0]);
+    let beyond = beyond(&displacement);
+    let [velocities, displacements] = lines.map(|lines| Curves {
         x_label: "Noise on positions (% of their standard deviation)".to_owned(),
+        y_axis,
         x: [-0.8, 20.8],
         x_step: 5.0,
-        y,
-        ..panel(title, series)
-    };
-    let [fused, smoothed] = BESIDE_RIGHT.map(|case| beside(sources, "figure6_right", case, &NOISE_PERCENT));
-    let (fused, smoothed) = (fused?, smoothed?);
+        y: RIGHT,
+        ..panel(lines)
+    });
     let panels = [
-        with(&fused, panel("Potentials from recorded velocities", &velocity, [1e-3, 1.0])),
+        Curves { title: "Potentials from recorded velocities".to_owned(), ..velocities },
         Curves {
-            size: (0.75 * SIZE.0, SIZE.1),
-            ..with(&smoothed, panel("For comparison: displacements, eq. (9)", &displacement, [1e-3, 1e4]))
+            title: "For comparison: from displacements, eq. (9)".to_owned(),
+            notes: beyond.into_iter().collect(),
+            ..displacements
         },
     ];
     let mut all = tables(&velocity, ["velocity-narrow", "velocity-medium"], "noise_percent");
     all.extend(tables(&displacement, ["displacement-narrow", "displacement-medium"], "noise_percent"));
-    let key = key(1.75 * SIZE.0, &fused);
-    Ok(Drawing { picture: Picture::rows(&[&[&panels[0], &panels[1]], &[&key]]), tables: all })
+    Ok(Drawing { picture: Picture::rows(&[&[&panels[0], &panels[1]]]), tables: all })
 }
 
 /// One series for each bandwidth.
 fn series<'a>(sources: &'a Sources, id: &str, rule: &str, percent: &[f64]) -> anyhow::Result<Vec<Series<'a>>> {
     let result = sources.experiment(id).with_context(|| format!("{id} was not run"))?;
     let prefix = if rule.is_empty() { String::new() } else { format!("{rule}-") };
-    let series = BANDWIDTHS.iter().zip(STYLES).map(|((bandwidth, _), style)| Series {
+    let series = BANDWIDTHS.iter().zip(STYLES).map(|((bandwidth, _), (style, of))| Series {
         result,
         rows: percent.iter().map(|&x| (x, format!("{prefix}{bandwidth}-{x}"))).collect(),
+        of,
         style,
     });
     Ok(series.collect())
 }
 
-fn panel(title: &str, series: &[Series<'_>]) -> Curves {
+/// A curve for each learner beside PolicyAlign that was run.
+fn beside(sources: &Sources, id: &str, case: &str, percent: &[f64]) -> anyhow::Result<Vec<Curve>> {
+    let result = sources.experiment(id).with_context(|| format!("{id} was not run"))?;
+    let of = |learner: &str| percent.iter().map(|&x| (x, format!("{case}-{x}/{learner}"))).collect();
+    let curves = BESIDE
+        .map(|(error, learner)| Series { result, rows: of(learner), of: "", style: FIRST }.curve(error))
+        .into_iter();
+    Ok(curves.filter(|curve| !curve.points.is_empty()).collect())
+}
+
+/// The three errors of both bandwidths, those of the second without bands, as they would lie on those of the first; and others.
+fn lines(series: &[Series<'_>], beside: &[Curve]) -> Vec<Curve> {
+    let mut lines = vec![];
+    for (series, banded) in series.iter().zip([true, false]) {
+        for mut curve in series.curves() {
+            curve.points.iter_mut().filter(|_| !banded).for_each(|point| point.2 = 0.0);
+            lines.push(curve);
+        }
+    }
+    lines.extend_from_slice(beside);
+    lines
+}
+
+fn panel(lines: Vec<Curve>) -> Curves {
     Curves {
-        title: title.to_owned(),
+        title: String::new(),
         x_label: String::new(),
         y_label: "Normalised error".to_owned(),
-        y_axis: Axis::Logarithmic,
+        y_axis: Axis::Linear,
         x: [0.0; 2],
         y: [0.0; 2],
         x_step: 0.0,
-        lines: series.iter().zip([true, false]).flat_map(|(series, banded)| curves(series, banded)).collect(),
+        lines,
+        notes: vec![],
+        room: ROOM,
         size: SIZE,
     }
 }
 
-/// The three errors, with or without bands: those of both bandwidths lie on each other.
-fn curves(series: &Series<'_>, banded: bool) -> Vec<Curve> {
-    let bare = |mut curve: Curve| {
-        curve.points.iter_mut().filter(|_| !banded).for_each(|point| point.2 = 0.0);
-        curve
-    };
-    series.curves().map(bare).collect()
-}
-
-/// A series for each learner beside PolicyAlign; empty ones where they were not run.
-fn beside<'a>(sources: &'a Sources, id: &str, case: &str, percent: &[f64]) -> anyhow::Result<Vec<Series<'a>>> {
-    let result = sources.experiment(id).with_context(|| format!("{id} was not run"))?;
-    let of = |learner: &str| percent.iter().map(|&x| (x, format!("{case}-{x}/{learner}"))).collect();
-    Ok(BESIDE.map(|(_, learner)| Series { result, rows: of(learner), style: FIRST }).into())
-}
-
-/// The curves of the learners beside, on an axis that reaches down to them as far as they are above [`LOWEST`]: what is
-/// below lies on its edge.
-fn with(beside: &[Series<'_>], mut panel: Curves) -> Curves {
-    for (series, (error, _)) in beside.iter().zip(BESIDE) {
-        let mut curve = series.curve(error);
-        let least =
-            curve.points.iter().map(|point| point.1).filter(|mean| *mean >= LOWEST).fold(f64::INFINITY, f64::min);
-        if least < panel.y[0] {
-            panel.y[0] = 10_f64.powf(least.log10().floor());
-        }
-        for point in curve.points.iter_mut().filter(|point| point.1 < panel.y[0]) {
-            (point.1, point.2) = (panel.y[0], 0.0);
-        }
-        if !curve.points.is_empty() {
-            panel.lines.push(curve);
-        }
-    }
-    panel
-}
-
-fn key(width: f64, beside: &[Series<'_>]) -> Key {
-    let row =
-        |((name, _), style): (&(&str, _), Style)| ERRORS.map(|error| error.entry(&format!(", {name}"), style)).into();
-    let mut rows: Vec<Vec<Entry>> = BANDWIDTHS.iter().zip(STYLES).map(row).collect();
-    if beside.iter().zip(BESIDE).any(|(series, (error, _))| !series.curve(error).points.is_empty()) {
-        rows.push(BESIDE.map(|(error, _)| error.entry("", FIRST)).into());
-    }
-    Key { rows, width }
+/// Between what PolicyAlign's errors are with the most noise, where all are beyond the axis.
+fn beyond(displacement: &[Series<'_>]) -> Option<Note> {
+    let noise = NOISE_PERCENT[NOISE_PERCENT.len() - 1];
+    let curves: Vec<Curve> = displacement.iter().flat_map(Series::curves).collect();
+    let last = curves.iter().flat_map(|curve| &curve.points).filter(|point| point.0 == noise).map(|point| point.1);
+    let [least, largest] = [last.clone().reduce(f64::min)?, last.reduce(f64::max)?];
+    let text = format!("↑ PolicyAlign: {least:.0} to {largest:.0} at {noise} %");
+    (least > RIGHT[1]).then(|| Note { at: (14.2, RIGHT[1] / 5.0), text })
 }
 
 fn tables(series: &[Series<'_>], names: [&'static str; 2], varied: &str) -> Vec<Csv> {
     series.iter().zip(names).map(|(series, name)| series.table(name, varied)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use experiments::measure::Measure;
+
+    use super::*;
+    use crate::beside_paper::records;
+
+    #[test]
+    fn no_curve_of_the_committed_run_is_lost_below_its_axis() {
+        let sources = records();
+        let beside = beside(&sources, "figure6_left", BESIDE_LEFT, &TRAJECTORIES_PERCENT).unwrap();
+        let lines = lines(&series(&sources, "figure6_left", "", &TRAJECTORIES_PERCENT).unwrap(), &beside);
+        assert_eq!(lines.len(), 8);
+        let Axis::Logarithmic { lowest } = axis_down_to(&lines, LEFT[0]) else { panic!("a linear axis") };
+        let within = |point: &(f64, f64, f64)| (lowest..=LEFT[1]).contains(&point.1);
+        assert!(lines.iter().all(|curve| curve.points.iter().all(within)), "{lowest}");
+    }
+
+    #[test]
+    fn how_far_curves_go_beyond_the_axis_is_said() {
+        let sources = records();
+        let of = |rule| beyond(&series(&sources, "figure6_right", rule, &NOISE_PERCENT).unwrap());
+        assert!(of(RULES[0].0).is_none());
+        let result = sources.experiment("figure6_right").unwrap();
+        let largest =
+            &result.rows.iter().find(|row| row.id == "displacement-narrow-20").unwrap().measures[&Measure::Nupe];
+        let note = of(RULES[1].0).unwrap();
+        assert!(note.text.ends_with(&format!(" to {:.0} at 20 %", largest.mean)), "{}", note.text);
+    }
 }

@@ -2,14 +2,13 @@
 
 use metrics::Summary;
 use nalgebra::{Point3, Translation3, Vector3};
-use plot::{
-    Axis, Camera, Curve, Curves, Dash, Entry, Filling, Frame, Item, Key, Mark, Paint, Picture, Sign, Space, Stroke,
-};
+use plot::{Axis, Camera, Curve, Curves, Dash, Filling, Frame, Item, Mark, Paint, Panel, Picture, Sign, Space, Stroke};
 
 use super::grasp_playback::all_around::AllAround;
 use super::grasp_playback::{GraspPlayback, LEARNERS, Movement};
 use super::{Csv, Drawing, Figure, Sources, rounded, stage};
 use crate::Who;
+use crate::who::TRUTH;
 
 pub(crate) fn figure() -> Figure {
     Figure::new("figure8", Some("table2"), &["grasp_playback"], draw).with(&[ALL_AROUND_DOCUMENT])
@@ -27,16 +26,21 @@ const ALL_AROUND: (&str, Who) = ("all_around", Who::PolicyAlignAllAround);
 fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let playback = played(sources)?;
     let frame = frame(&playback);
-    let above = view("From above", Camera::ABOVE, &playback, &frame, playback.starts);
-    let behind = view("From behind, two of the starts", Camera::BEHIND, &playback, &frame, 2);
+    let mut learners: Vec<(&str, Who)> = shown(&playback).filter(|(_, who)| *who != Who::Expert).collect();
+    learners.sort_by_key(|(_, who)| *who == Who::SlopeGp);
+    let views: Vec<Space> = learners.iter().map(|learner| view(*learner, &playback, &frame)).collect();
     let distances =
         shown(&playback).map(|learner| Distances::of(&playback, learner)).collect::<anyhow::Result<Vec<_>>>()?;
     let curves = curves(&distances, playback.time_step);
-    let entries: Vec<Entry> = distances.iter().map(Distances::entry).chain([plates()]).collect();
-    let key = Key { rows: entries.chunks(3).map(<[Entry]>::to_vec).collect(), width: 1250.0 };
-    let picture = Picture::rows(&[&[&above, &behind, &curves], &[&key]]);
-    Ok(Drawing { picture, tables: vec![ends(&playback), over_time(&distances)] })
+    let mut panels: Vec<&dyn Panel> = views.iter().map(|view| view as &dyn Panel).collect();
+    panels.push(&curves);
+    let rows: Vec<&[&dyn Panel]> = panels.chunks(COLUMNS).collect();
+    Ok(Drawing { picture: Picture::rows(&rows), tables: vec![ends(&playback), over_time(&distances)] })
 }
+
+/// Panels in a row; and the size of one, pixels: the curves are as wide as two.
+const COLUMNS: usize = 3;
+const SIZE: (f64, f64) = (400.0, 440.0);
 
 /// The movements of those who saw the goal from all sides.
 const ALL_AROUND_DOCUMENT: &str = "grasp_all_around";
@@ -105,29 +109,23 @@ fn frame(playback: &GraspPlayback) -> Frame {
     }
 }
 
-/// The ways from the first so many starts.
-fn view(title: &str, camera: Camera, playback: &GraspPlayback, frame: &Frame, starts: usize) -> Space {
+/// A learner's ways over the expert's, from above.
+fn view((id, who): (&str, Who), playback: &GraspPlayback, frame: &Frame) -> Space {
     let ball = &playback.scene.ball;
     let (centre, radius) = (Point3::from(ball.centre), ball.diameter / 2.0);
     let mut items = walls(playback, frame);
     items.push(Item::Ball { centre, radius, paint: Paint { color: stage::BALL, opacity: 0.45 } });
     let mut over = vec![];
-    for (id, who) in shown(playback) {
-        for movement in movements(playback, id).filter(|movement| movement.start < starts) {
-            over.extend(stage::ways(&movement.palms, stroke(who)));
+    for (id, who) in [("expert", Who::Expert), (id, who)] {
+        for movement in movements(playback, id) {
+            over.extend(stage::ways(&movement.palms, Stroke { dash: Dash::Solid, ..stroke(who) }));
             let points = [0, 1].iter().filter_map(|&hand| palm(movement, hand).last()).collect();
-            over.push(Item::Dots { points, color: who.color(), radius: 3.2 });
+            over.push(Item::Dots { points, color: stroke(who).color, radius: 3.6 });
         }
     }
-    let (title, frame) = (title.to_owned(), Some(frame.clone()));
-    Space { title, camera, items, over, frame, extent: None, size: (400.0, 440.0) }
-}
-
-/// In the key: what is grey.
-fn plates() -> Entry {
-    let stroke = Stroke { color: PLATES.color, width: 0.0, dash: Dash::Solid };
-    let sign = Sign { mark: Mark::Square, filling: Filling::Full };
-    Entry { name: "plates stopped hands here".to_owned(), stroke, sign }
+    let name = who.name();
+    let title = name[..1].to_uppercase() + &name[1..];
+    Space { title, camera: Camera::ABOVE, items, over, frame: Some(frame.clone()), extent: None, size: SIZE }
 }
 
 /// Of the places where plates stood.
@@ -180,20 +178,19 @@ impl Distances {
         let last = self.over_time.len().saturating_sub(1);
         let marked = self.over_time.iter().enumerate().filter(|(at, _)| at.is_multiple_of(every) || *at == last);
         let points = marked.map(|(_, &(time, mean, sd))| (time, CENTIMETRES * mean, CENTIMETRES * sd)).collect();
-        Curve { points, stroke: stroke(self.who), sign: sign(self.who) }
+        Curve { points, stroke: stroke(self.who), sign: sign(self.who), name: self.name() }
     }
 
-    /// In the key: who, and how far the hands are away at the end.
-    fn entry(&self) -> Entry {
-        let name = format!("{}: ends {:.1} cm away", self.who.name(), CENTIMETRES * self.at_end());
-        Entry { name, stroke: stroke(self.who), sign: sign(self.who) }
+    /// Who, and how far the hands are away at the end.
+    fn name(&self) -> String {
+        format!("{}: {:.1} cm", self.who.name(), CENTIMETRES * self.at_end())
     }
 }
 
 fn curves(distances: &[Distances], time_step: f64) -> Curves {
     let end = distances[0].over_time.last().map_or(0.0, |last| last.0);
     Curves {
-        title: "Distance from the ball's sides".to_owned(),
+        title: "Distance from the ball's sides (right: at the end)".to_owned(),
         x_label: "Time (s)".to_owned(),
         y_label: "Distance (cm)".to_owned(),
         y_axis: Axis::Linear,
@@ -201,13 +198,18 @@ fn curves(distances: &[Distances], time_step: f64) -> Curves {
         y: [0.0, 80.0],
         x_step: 10.0,
         lines: distances.iter().map(|distances| distances.curve(time_step)).collect(),
-        size: (400.0, 440.0),
+        notes: vec![],
+        room: 300.0,
+        size: (2.0 * SIZE.0 + 10.0, SIZE.1),
     }
 }
 
-/// The expert's line is broad, so that it is seen under one that covers it.
+/// The expert's line is broad and grey, so that it is seen under one that covers it.
 fn stroke(who: Who) -> Stroke {
-    who.stroke(if who == Who::Expert { 5.0 } else { 1.8 })
+    match who {
+        Who::Expert => Stroke { color: TRUTH, width: 5.0, dash: Dash::Solid },
+        _ => who.stroke(1.8),
+    }
 }
 
 fn sign(who: Who) -> Sign {
@@ -293,7 +295,7 @@ mod tests {
         let distances = LEARNERS.map(|learner| Distances::of(&playback, learner).unwrap());
         let (time, mean, sd) = distances[2].over_time[2];
         assert!((time - 1.0).abs() + (mean - 0.1).abs() + (sd - 0.02_f64.sqrt()).abs() < 1e-12);
-        assert_eq!(distances[2].entry().name, "PolicyAlign: ends 10.0 cm away");
+        assert_eq!(distances[2].name(), "PolicyAlign: 10.0 cm");
         assert_eq!(over_time(&distances).rows[2].len(), 9);
     }
 

@@ -18,6 +18,7 @@ mod figure9;
 mod figure_b1;
 mod grasp_playback;
 mod legs;
+mod miniature;
 mod overview;
 mod shapes;
 mod sound;

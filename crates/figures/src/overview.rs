@@ -1,31 +1,39 @@
-//! What it is about, in one picture: what was shown, what averaging makes of it, what alignment finds.
+//! What it is about, in one picture: what was shown, and how wrong is what is learnt from it.
 
 use align::{Bandwidth, DirectPolicyLearning, PolicyAlign};
 use demo_gen::{ToySystem, demonstrations};
 use experiments::seed::{beside, generator};
 use experiments::{PARABOLA_SYSTEM, TestSamples, toy_beside, toy_regressor};
 use gp::FrontEnd;
-use motion::{NegativeGradient, Potential as _};
+use motion::NegativeGradient;
 use nalgebra::DMatrix;
-use plot::{Field, Layer, Mark, Picture, Plane};
+use plot::{Canvas, Mark, Picture, Thing};
 use serde::{Deserialize, Serialize};
 
-use super::sound::{Sound, field, some};
-use super::state_plane::{Arrow, actions, compared, on_grid, state_plane};
-use super::{Document, Drawing, Figure, Sources, demonstrated, rounded};
+use super::miniature::{Miniature, extent_of};
+use super::sound::{Sound, as_many, some};
+use super::state_plane::{Arrow, WIDTHS, actions, every_second};
+use super::{Document, Drawing, Figure, Sources, rounded};
 use crate::Who;
+use crate::who::TRUTH;
 
 /// Starts of the movements are drawn from [−2, 2]²; shown is a little more, as movements leave that square.
 const SHOWN: f64 = 2.2;
 
-/// Of a panel, pixels: small, so that words are large where the picture is shown small.
-const SIZE: (f64, f64) = (270.0, 285.0);
+/// Of a panel, between panels, and above them, pixels: small, so that words are large where the picture is shown small.
+const SIDE: f64 = 205.0;
+const GAP: f64 = 12.0;
+const TOP: f64 = 34.0;
+
+/// Sizes of words, pixels.
+const SMALL: u32 = 14;
+const LARGE: u32 = 20;
 
 /// Rows that the slope GP learns from.
 const ROWS: usize = 500;
 
 /// Arrows are drawn as long as this many seconds of movement.
-const ARROW_SECONDS: f64 = 2.0;
+const ARROW_SECONDS: f64 = 3.0;
 
 pub(crate) fn document() -> Document {
     Document::new("overview", None, overview)
@@ -39,7 +47,6 @@ pub(crate) fn figure() -> Figure {
 #[derive(Serialize, Deserialize)]
 struct Overview {
     movements: Vec<Movement>,
-    contours: Field,
     /// (x₁, x₂, u₁, u₂).
     expert: Vec<Arrow>,
     naive: Vec<Arrow>,
@@ -51,7 +58,6 @@ struct Overview {
 
 #[derive(Serialize, Deserialize)]
 struct Movement {
-    kept: bool,
     points: Vec<(f64, f64)>,
 }
 
@@ -61,8 +67,10 @@ impl Sound for Overview {
     fn check(&self) -> anyhow::Result<()> {
         some("movements", &self.movements)?;
         self.movements.iter().try_for_each(|movement| some("points of a movement", &movement.points))?;
-        [&self.expert, &self.naive, &self.policy_align].into_iter().try_for_each(|arrows| some("arrows", arrows))?;
-        field("contours", &self.contours)
+        some("arrows", &self.expert)?;
+        let learnt = [&self.naive, &self.policy_align].into_iter();
+        let learnt = learnt.chain((!self.slope_gp.is_empty()).then_some(&self.slope_gp));
+        learnt.into_iter().try_for_each(|arrows| as_many("arrows", arrows, self.expert.len()))
     }
 }
 
@@ -78,16 +86,12 @@ fn overview(seed: u64) -> anyhow::Result<Overview> {
     let naive = naive.learn_policy(aligned.demonstrations(), &test.of_all, &mut rng)?;
     let learnt = aligned.learn_without(&test.of_all, &regressor, &mut rng)?;
     let slope = toy_beside(FrontEnd::Map, ROWS).slope(aligned.demonstrations(), &test.of_all, &mut beside(&rng))?;
-    let movement = |(trajectory, recording): (usize, &demo_gen::Recording)| {
+    let movement = |recording: &demo_gen::Recording| {
         let states = recording.observed.states().column_iter();
-        Movement {
-            kept: aligned.offset(trajectory).is_some(),
-            points: states.map(|x| (rounded(x[0], 4), rounded(x[1], 4))).collect(),
-        }
+        Movement { points: states.map(|x| (rounded(x[0], 4), rounded(x[1], 4))).collect() }
     };
     Ok(Overview {
-        movements: recordings.iter().enumerate().map(movement).collect(),
-        contours: on_grid(SHOWN, 44, |x| rounded(system.potential.value(x.as_view()), 5)),
+        movements: recordings.iter().map(movement).collect(),
         expert: actions(&NegativeGradient(&system.potential), f64::INFINITY),
         naive: actions(&naive, f64::INFINITY),
         policy_align: actions(&learnt, f64::INFINITY),
@@ -95,41 +99,77 @@ fn overview(seed: u64) -> anyhow::Result<Overview> {
     })
 }
 
+/// What a panel says of its learner.
+fn title(who: Who) -> &'static str {
+    match who {
+        Who::Naive => "Naive: averaging",
+        Who::SlopeGp => "Slope GP",
+        _ => "PolicyAlign",
+    }
+}
+
 fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let overview: Overview = sources.document("overview")?;
-    let movements = overview.movements.iter().map(|movement| (&movement.points[..], movement.kept));
-    let mut shown = demonstrated::layers(&overview.contours, movements, 1.6);
-    shown.extend([ends(&overview.movements), goal()]);
-    let [shown, naive, aligned] = [
-        plane("Forty constrained movements", shown),
-        learnt("Naive (green)", &overview, Who::Naive)?,
-        learnt("PolicyAlign (orange)", &overview, Who::PolicyAlign)?,
-    ];
-    let picture = if overview.slope_gp.is_empty() {
-        Picture::rows(&[&[&shown, &naive, &aligned]])
-    } else {
-        let slope = learnt("Slope GP (pink)", &overview, Who::SlopeGp)?;
-        Picture::rows(&[&[&shown, &naive], &[&aligned, &slope]])
+    let extent = extent_of(overview.movements.iter().flat_map(|movement| &movement.points), SHOWN);
+    let mut number = 0;
+    let mut next = || {
+        number += 1;
+        Miniature { corner: (GAP + f64::from(number - 1) * (SIDE + GAP), TOP), side: SIDE, extent }
     };
-    Ok(Drawing { picture, tables: vec![] })
+    let mut things = overview.shown(next());
+    for (who, learnt) in
+        [(Who::Naive, &overview.naive), (Who::PolicyAlign, &overview.policy_align), (Who::SlopeGp, &overview.slope_gp)]
+    {
+        if !learnt.is_empty() {
+            things.extend(overview.learnt(next(), who, learnt)?);
+        }
+    }
+    let width = f64::from(number) * (SIDE + GAP) + GAP;
+    let key = "grey: the true policy  ·  colour: the learnt policy  ·  star: the goal  ·  error 0: exact";
+    things.push(words((width / 2.0, TOP + SIDE + 58.0), key, 13, None));
+    let canvas = Canvas { things, size: (width, TOP + SIDE + 66.0) };
+    Ok(Drawing { picture: Picture::rows(&[&[&canvas]]), tables: vec![] })
 }
 
-fn plane(title: &str, layers: Vec<Layer>) -> Plane {
-    state_plane(title, SHOWN, layers, SIZE)
+fn words(at: (f64, f64), text: &str, size: u32, color: Option<&'static str>) -> Thing {
+    Thing::Words { at, text: text.to_owned(), size, centred: true, bold: size > SMALL, color }
 }
 
-/// The unconstrained actions of the expert and of a learner.
-fn learnt(title: &str, overview: &Overview, who: Who) -> anyhow::Result<Plane> {
-    let learner = match who {
-        Who::Naive => &overview.naive,
-        Who::SlopeGp => &overview.slope_gp,
-        _ => &overview.policy_align,
-    };
-    let mut layers = compared(&overview.expert, learner, who, ARROW_SECONDS);
-    layers.push(goal());
-    let error = error(&overview.expert, learner)?;
-    let error = if error < 0.001 { "< 0.001".to_owned() } else { format!("{error:.2}") };
-    Ok(plane(&format!("{title}: error {error}"), layers))
+/// A small picture with words above and below it, and the goal.
+fn panel(small: Miniature, [above, below]: [&str; 2], size: u32, who: Who, inside: Vec<Thing>) -> Vec<Thing> {
+    let middle = small.corner.0 + SIDE / 2.0;
+    let goal = small.mark((0.0, 0.0), Mark::Star, Who::Expert.color(), 8.0);
+    let title = words((middle, TOP - 12.0), above, 16, Some(who.color()));
+    let foot = words((middle, TOP + SIDE + 28.0), below, size, Some(who.color()));
+    inside.into_iter().chain([small.frame(), goal, title, foot]).collect()
+}
+
+impl Overview {
+    /// The movements, with heads where they go to.
+    fn shown(&self, small: Miniature) -> Vec<Thing> {
+        let who = Who::Demonstration;
+        let movement = |Movement { points, .. }: &Movement| {
+            [small.path(points, who.stroke(1.4)), small.mark(points[0], Mark::Circle, who.color(), 2.4)]
+        };
+        let heads = ends(&self.movements).into_iter();
+        let heads = heads.map(|(x, y, u, v)| small.arrow((x, y), (u, v), who.color(), 1.4));
+        let inside = self.movements.iter().flat_map(movement).chain(heads).collect();
+        let above = format!("{} demonstrations", self.movements.len());
+        panel(small, [&above, "unknown constraints"], SMALL, who, inside)
+    }
+
+    /// What somebody learnt over the truth, and how wrong it is.
+    fn learnt(&self, small: Miniature, who: Who, learnt: &[Arrow]) -> anyhow::Result<Vec<Thing>> {
+        let error = error(&self.expert, learnt)?;
+        let error = if error < 0.001 { "error < 0.001".to_owned() } else { format!("error {error:.2}") };
+        let arrows = |arrows: &[Arrow], color, width| {
+            let drawn = |(x, y, u, v)| small.arrow((x, y), (ARROW_SECONDS * u, ARROW_SECONDS * v), color, width);
+            every_second(arrows).into_iter().map(drawn).collect::<Vec<_>>()
+        };
+        let mut inside = arrows(&self.expert, TRUTH, WIDTHS[0]);
+        inside.extend(arrows(learnt, who.color(), WIDTHS[1]));
+        Ok(panel(small, [title(who), &error], LARGE, who, inside))
+    }
 }
 
 /// nUPE at these arrows.
@@ -138,13 +178,8 @@ fn error(truth: &[Arrow], learnt: &[Arrow]) -> anyhow::Result<f64> {
     Ok(metrics::nupe(&actions(truth), &actions(learnt))?)
 }
 
-/// Where the policy goes.
-fn goal() -> Layer {
-    Layer::Marks { points: vec![(0.0, 0.0)], mark: Mark::Star, color: "#1a1a1a", size: 7.0, label: None }
-}
-
 /// Heads at the ends of movements: where they go to.
-fn ends(movements: &[Movement]) -> Layer {
+fn ends(movements: &[Movement]) -> Vec<Arrow> {
     const HEAD: f64 = 0.13;
     let head = |movement: &Movement| {
         let (&(x, y), before) = movement.points.split_last()?;
@@ -153,8 +188,7 @@ fn ends(movements: &[Movement]) -> Layer {
         let (u, v) = (scale * (x - from_x), scale * (y - from_y));
         Some((x - u, y - v, u, v))
     };
-    let arrows = movements.iter().filter_map(head).collect();
-    Layer::Arrows { arrows, color: Who::Demonstration.color(), scale: 1.0, width: 1.6, label: None }
+    movements.iter().filter_map(head).collect()
 }
 
 #[cfg(test)]
@@ -171,11 +205,7 @@ mod tests {
 
     #[test]
     fn heads_point_where_a_movement_goes_and_end_where_it_ends() {
-        let Layer::Arrows { arrows, .. } =
-            ends(&[Movement { kept: true, points: vec![(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 1.0)] }])
-        else {
-            panic!("no arrows")
-        };
+        let arrows = ends(&[Movement { points: vec![(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 1.0)] }]);
         let [(x, y, u, v)] = arrows[..] else { panic!("{arrows:?}") };
         assert!((x + u - 1.0).abs() + (y + v - 1.0).abs() + v.abs() < 1e-12 && u > 0.1);
     }

@@ -157,7 +157,8 @@ mod tests {
             ("figure4", "/potential/x"),
             ("figure5", "/movements/1/before"),
             ("figure5", "/learnt/2"),
-            ("overview", "/contours/values/7"),
+            ("overview", "/naive"),
+            ("overview", "/slope_gp"),
             ("grasp_playback", "/movements/5/palms/9"),
             ("grasp_playback", "/movements/5/joints/9"),
         ];

@@ -5,6 +5,7 @@ use nalgebra::{DVector, dvector};
 use plot::{Field, Layer, Plane};
 
 use super::{Who, rounded};
+use crate::who::TRUTH;
 
 /// (x₁, x₂, u₁, u₂).
 pub(super) type Arrow = (f64, f64, f64, f64);
@@ -30,9 +31,14 @@ pub(super) fn on_grid(extent: f64, steps: i32, value: impl Fn(&DVector<f64>) -> 
     Field { x: grid.clone(), y: grid, values }
 }
 
-/// The unconstrained actions of a policy on a grid; longer ones than can be meant are cut.
+/// Arrows in a row of their grid, and from one to the next.
+const ACROSS: usize = 9;
+const APART: f64 = 0.45;
+
+/// The unconstrained actions of a policy on a grid, row by row; longer ones than can be meant are cut.
 pub(super) fn actions(policy: &dyn Policy, longest: f64) -> Vec<Arrow> {
-    let grid = (0..81).map(|i| (f64::from(i % 9 - 4) * 0.45, f64::from(i / 9 - 4) * 0.45));
+    let place = |at: usize| APART * (at as f64 - (ACROSS / 2) as f64);
+    let grid = (0..ACROSS * ACROSS).map(|at| (place(at % ACROSS), place(at / ACROSS)));
     let arrow = |(x, y): (f64, f64)| {
         let action = policy.action(dvector![x, y].as_view()).cap_magnitude(longest);
         (rounded(x, 4), rounded(y, 4), rounded(action[0], 5), rounded(action[1], 5))
@@ -40,14 +46,41 @@ pub(super) fn actions(policy: &dyn Policy, longest: f64) -> Vec<Arrow> {
     grid.map(arrow).collect()
 }
 
+/// Every second of these rows, and of each every second arrow: the corners of the grid and its middle are among them.
+pub(super) fn every_second(arrows: &[Arrow]) -> Vec<Arrow> {
+    arrows.chunks(ACROSS).step_by(2).flat_map(|row| row.iter().step_by(2).copied()).collect()
+}
+
+/// Widths of arrows, pixels: broad and grey what is true, over it what is learnt.
+pub(super) const WIDTHS: [f64; 2] = [5.5, 2.0];
+
 /// The true actions, and over them those that somebody learnt, as long as so many seconds of movement.
 pub(super) fn compared(truth: &[Arrow], learnt: &[Arrow], who: Who, seconds: f64) -> Vec<Layer> {
-    let layer = |arrows: &[Arrow], who: Who, width| Layer::Arrows {
-        arrows: arrows.to_vec(),
-        color: who.color(),
+    let layer = |arrows: &[Arrow], color, width| Layer::Arrows {
+        arrows: every_second(arrows),
+        color,
         scale: seconds,
         width,
         label: None,
     };
-    vec![layer(truth, Who::Expert, 3.4), layer(learnt, who, 1.6)]
+    vec![layer(truth, TRUTH, WIDTHS[0]), layer(learnt, who.color(), WIDTHS[1])]
+}
+
+#[cfg(test)]
+mod tests {
+    use demo_gen::ToySystem;
+    use motion::NegativeGradient;
+
+    use super::*;
+
+    #[test]
+    fn every_second_arrow_keeps_the_corners_and_the_middle() {
+        let all = actions(&NegativeGradient(&ToySystem::default().potential), 0.05);
+        assert!(all.iter().all(|arrow| arrow.2.hypot(arrow.3) < 0.0501), "cut to the longest");
+        let shown: Vec<(f64, f64)> = every_second(&all).iter().map(|arrow| (arrow.0, arrow.1)).collect();
+        assert_eq!(shown.len(), 25);
+        for place in [(-1.8, -1.8), (1.8, -1.8), (0.0, 0.0), (-1.8, 1.8), (1.8, 1.8)] {
+            assert!(shown.contains(&place), "{place:?} is not among {shown:?}");
+        }
+    }
 }

@@ -34,6 +34,9 @@ pub fn color_of(learner: Contestant) -> Option<&'static str> {
     Some(who.color())
 }
 
+/// The true policy where something learnt lies over it: a grey.
+pub(crate) const TRUTH: &str = "#b4b4b4";
+
 impl Who {
     /// The colour, as in HTML.
     pub(crate) const fn color(self) -> &'static str {

@@ -1,34 +1,18 @@
 use std::sync::Arc;
 
 use kuva::plot::{BandPlot, LinePlot};
-use kuva::render::layout::TickFormat;
+use kuva::render::annotations::TextAnnotation;
+use kuva::render::color::Color;
+use kuva::render::layout::{ComputedLayout, TickFormat};
 use kuva::render::plots::Plot;
-use kuva::render::render::render_multiple;
+use kuva::render::render::{Primitive, Scene, render_multiple};
 
+use crate::axis::tick;
+use crate::names::{self, Name};
 use crate::sheet::{Edge, titled, with_axes};
-use crate::{Panel, Sign, Sketch, Stroke};
+use crate::{Axis, Panel, Sign, Sketch, Stroke};
 
-/// How values are spaced on an axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Axis {
-    /// Equal differences are equally long.
-    Linear,
-    /// Equal ratios are equally long.
-    Logarithmic,
-}
-
-impl Axis {
-    /// Lower and upper end of a band.
-    fn band(self, mean: f64, sd: f64) -> [f64; 2] {
-        let low = match self {
-            Axis::Linear => mean - sd,
-            Axis::Logarithmic => mean * mean / (mean + sd),
-        };
-        [low, mean + sd]
-    }
-}
-
-/// Means and standard deviations of a quantity. [`crate::Key`] names it.
+/// Means and standard deviations of a quantity.
 #[derive(Debug, Clone)]
 pub struct Curve {
     /// (x, mean, standard deviation).
@@ -37,10 +21,13 @@ pub struct Curve {
     pub stroke: Stroke,
     /// At each point.
     pub sign: Sign,
+    /// Beside its last point, where that is on the axis.
+    pub name: String,
 }
 
 /// Quantities against a quantity: lines through the means, in bands. On a linear axis a band reaches one standard
 /// deviation up and down; on a logarithmic one it reaches that far up and, for the eye, as far down, and so never to 0.
+/// Curves that leave the range end at its edge.
 #[derive(Debug, Clone)]
 pub struct Curves {
     /// Above it.
@@ -53,117 +40,247 @@ pub struct Curves {
     pub y_axis: Axis,
     /// From and to.
     pub x: [f64; 2],
-    /// From and to; on a logarithmic axis positive.
+    /// From and to.
     pub y: [f64; 2],
     /// From tick to tick.
     pub x_step: f64,
     /// Later ones lie on top.
     pub lines: Vec<Curve>,
-    /// Pixels.
+    /// Words among the curves.
+    pub notes: Vec<Note>,
+    /// Right of the axes, for the names of curves, pixels.
+    pub room: f64,
+    /// Pixels, with that room.
     pub size: (f64, f64),
+}
+
+/// Words centred above a point.
+#[derive(Debug, Clone)]
+pub struct Note {
+    /// The point.
+    pub at: (f64, f64),
+    /// The words.
+    pub text: String,
 }
 
 /// How much a band hides of what is behind it.
 const BAND: f64 = 0.13;
 
+/// A band is drawn with so many steps from point to point, so that an edge of the range cuts it where it should.
+const STEPS: usize = 24;
+
 impl Panel for Curves {
     fn sketch(&self) -> Sketch {
         let bands = self.lines.iter().map(|curve| self.band(curve));
-        let lines = self.lines.iter().flat_map(|curve| std::iter::once(line(curve)).chain(marks(curve)));
+        let lines = self.lines.iter().flat_map(|curve| self.line(curve).into_iter().chain(self.marks(curve)));
         let plots: Vec<Plot> = bands.chain(lines).collect();
-        let (x, y) = (Edge { label: &self.x_label, range: self.x }, Edge { label: &self.y_label, range: self.y });
-        let layout = with_axes(titled(&plots, &self.title, self.size), &x, &y);
+        let range = self.y_axis.places(self.y);
+        let (x, y) = (Edge { label: &self.x_label, range: self.x }, Edge { label: &self.y_label, range });
+        let layout = with_axes(titled(&plots, &self.title, (self.size.0 - self.room, self.size.1)), &x, &y);
         let mut layout = layout.with_x_tick_step(self.x_step).with_grid_line_width(0.6);
-        if self.y_axis == Axis::Logarithmic {
-            let plainly = TickFormat::Custom(Arc::new(power));
-            layout = layout.with_log_y().with_y_tick_format(plainly);
+        if let Axis::Logarithmic { .. } = self.y_axis {
+            let from = self.y[0];
+            let plainly = TickFormat::Custom(Arc::new(move |place| tick(place, from)));
+            layout = layout.with_y_tick_step(1.0).with_y_tick_format(plainly);
         }
-        Sketch::new(render_multiple(plots, layout))
+        layout.annotations = self.notes.iter().map(|note| self.words(note)).collect();
+        let drawn = ComputedLayout::from_layout(&layout);
+        let mut scene = render_multiple(plots, layout);
+        if self.y_axis != Axis::Linear && range[0] < 0.0 {
+            broken((drawn.margin_left, drawn.map_y(0.0)), &mut scene);
+        }
+        let end = |curve: &Curve| {
+            let &(x, mean, _) = curve.points.last()?;
+            let place = self.place(mean);
+            self.is_on_axis(place).then(|| (drawn.map_x(x), drawn.map_y(place)))
+        };
+        let named = self.lines.iter().filter(|curve| !curve.name.is_empty());
+        let named =
+            named.filter_map(|curve| Some(Name { text: &curve.name, color: curve.stroke.color, end: end(curve)? }));
+        names::draw(named.collect(), self.size.0 - self.room + BESIDE, &mut scene);
+        scene.width = self.size.0;
+        Sketch::new(scene)
     }
 }
 
-/// A value of a logarithmic axis: plainly, or where that is long as a power of ten.
-fn power(tick: f64) -> String {
-    let exponent = tick.log10().round();
-    if exponent.abs() <= 3.0 || (tick / 10_f64.powf(exponent) - 1.0).abs() > 1e-9 {
-        return tick.to_string();
-    }
-    let raised = |letter: char| match letter {
-        '-' => '⁻',
-        digit => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit.to_digit(10).unwrap_or(0) as usize],
-    };
-    format!("10{}", exponent.to_string().chars().map(raised).collect::<String>())
-}
+/// Pixels from the axes to names.
+const BESIDE: f64 = 14.0;
 
 impl Curves {
+    fn place(&self, value: f64) -> f64 {
+        self.y_axis.place(value, self.y[0])
+    }
+
+    fn is_on_axis(&self, place: f64) -> bool {
+        let [low, high] = self.y_axis.places(self.y);
+        (low..=high).contains(&place)
+    }
+
     /// The band around a curve, as far as the axis goes.
     fn band(&self, curve: &Curve) -> Plot {
+        let [low, high] = self.y_axis.places(self.y);
         let edge = |end: usize| {
-            let at = move |&(_, mean, sd): &(f64, f64, f64)| self.y_axis.band(mean, sd)[end];
-            curve.points.iter().map(at).map(|value| value.clamp(self.y[0], self.y[1]))
+            let at = |&(x, mean, sd): &(f64, f64, f64)| (x, self.place(self.y_axis.band(mean, sd)[end]));
+            fine(&curve.points.iter().map(at).collect::<Vec<_>>())
         };
-        let band = BandPlot::new(curve.points.iter().map(|point| point.0), edge(0), edge(1));
+        let (lower, upper) = (edge(0), edge(1));
+        let within = |edge: &[(f64, f64)]| edge.iter().map(|point| point.1.clamp(low, high)).collect::<Vec<_>>();
+        let band = BandPlot::new(lower.iter().map(|point| point.0), within(&lower), within(&upper));
         Plot::Band(band.with_color(curve.stroke.color).with_opacity(BAND))
+    }
+
+    /// The line through the means, in pieces where it leaves the axis and comes back.
+    fn line(&self, curve: &Curve) -> Vec<Plot> {
+        let points: Vec<_> = curve.points.iter().map(|&(x, mean, _)| (x, self.place(mean))).collect();
+        let line = |piece: Vec<(f64, f64)>| {
+            let line = LinePlot::new().with_data(piece).with_color(curve.stroke.color);
+            Plot::Line(line.with_stroke_width(curve.stroke.width).with_line_style(curve.stroke.dash.into()))
+        };
+        inside(&points, self.y_axis.places(self.y)).into_iter().map(line).collect()
+    }
+
+    fn marks(&self, curve: &Curve) -> Vec<Plot> {
+        let places = curve.points.iter().map(|&(x, mean, _)| (x, self.place(mean)));
+        let points: Vec<_> = places.filter(|point| self.is_on_axis(point.1)).collect();
+        curve.sign.plots(&points, curve.stroke.color)
+    }
+
+    fn words(&self, Note { at, text }: &Note) -> TextAnnotation {
+        TextAnnotation::new(text, at.0, self.place(at.1)).with_font_size(13)
     }
 }
 
-fn line(curve: &Curve) -> Plot {
-    let line = LinePlot::new().with_data(curve.points.iter().map(|&(x, y, ..)| (x, y)));
-    let line = line.with_color(curve.stroke.color).with_stroke_width(curve.stroke.width);
-    Plot::Line(line.with_line_style(curve.stroke.dash.into()))
+/// The points, and others evenly between them.
+fn fine(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let between = |pair: &[(f64, f64)]| {
+        let [a, b] = [pair[0], pair[1]];
+        (0..STEPS).map(move |step| along(a, b, step as f64 / STEPS as f64))
+    };
+    points.windows(2).flat_map(between).chain(points.last().copied()).collect()
 }
 
-fn marks(curve: &Curve) -> Vec<Plot> {
-    let points: Vec<_> = curve.points.iter().map(|&(x, mean, _)| (x, mean)).collect();
-    curve.sign.plots(&points, curve.stroke.color)
+fn along(a: (f64, f64), b: (f64, f64), share: f64) -> (f64, f64) {
+    (a.0 + share * (b.0 - a.0), a.1 + share * (b.1 - a.1))
+}
+
+/// The pieces of a line that are between two heights.
+fn inside(points: &[(f64, f64)], [low, high]: [f64; 2]) -> Vec<Vec<(f64, f64)>> {
+    let is_inside = |point: &(f64, f64)| (low..=high).contains(&point.1);
+    let mut pieces: Vec<Vec<(f64, f64)>> = vec![];
+    for pair in points.windows(2) {
+        let [a, b] = [pair[0], pair[1]];
+        let (start, end) = if is_inside(&a) && is_inside(&b) {
+            (a, b)
+        } else {
+            let mut crossings = [low, high].map(|height| (height - a.1) / (b.1 - a.1));
+            crossings.sort_by(f64::total_cmp);
+            let [enters, leaves] = [crossings[0].max(0.0), crossings[1].min(1.0)];
+            if enters >= leaves {
+                continue;
+            }
+            (along(a, b, enters), along(a, b, leaves))
+        };
+        match pieces.last_mut() {
+            Some(piece) if piece.last() == Some(&start) => piece.push(end),
+            _ => pieces.push(vec![start, end]),
+        }
+    }
+    pieces
+}
+
+/// Two strokes across an axis: its scale changes below.
+fn broken((x, y): (f64, f64), scene: &mut Scene) {
+    const HALF: (f64, f64) = (7.0, 3.0);
+    for below in [6.0, 11.0] {
+        scene.add(Primitive::Line {
+            x1: x - HALF.0,
+            y1: y + below + HALF.1,
+            x2: x + HALF.0,
+            y2: y + below - HALF.1,
+            stroke: Color::from("black"),
+            stroke_width: 1.2,
+            stroke_dasharray: None,
+        });
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use kuva::render::render::Primitive;
-    use proptest::prelude::*;
-
     use super::*;
     use crate::{Dash, Filling, Mark};
 
-    proptest! {
-        #[test]
-        fn a_band_is_as_wide_on_either_side_and_never_reaches_0_on_a_logarithmic_axis(mean in 1e-6..1e6, share in 0.0..1e3) {
-            let sd = mean * share;
-            let [low, high] = Axis::Linear.band(mean, sd);
-            prop_assert!(((mean - low) - (high - mean)).abs() <= 1e-12 * high);
-            let [low, high] = Axis::Logarithmic.band(mean, sd);
-            prop_assert!(low > 0.0 && high == mean + sd);
-            prop_assert!((mean / low - high / mean).abs() <= 1e-9 * (high / mean));
-        }
-    }
-
-    #[test]
-    fn ticks_are_short() {
-        let texts = [1e-10, 1e-4, 1e-3, 0.1, 1.0, 1000.0, 1e4, 0.00002].map(power);
-        assert_eq!(texts, ["10⁻¹⁰", "10⁻⁴", "0.001", "0.1", "1", "1000", "10⁴", "0.00002"]);
-    }
-
-    #[test]
-    fn every_point_has_its_mark_where_the_axis_has_its_value() {
-        let points = vec![(0.0, 0.01, 0.05), (50.0, 0.1, 0.0), (100.0, 1.0, 20.0)];
+    fn panel(points: Vec<(f64, f64, f64)>, y_axis: Axis, y: [f64; 2]) -> Curves {
         let stroke = Stroke { color: "#d55e00", width: 1.8, dash: Dash::Solid };
         let sign = Sign { mark: Mark::Circle, filling: Filling::Hollow };
-        let (x, y, size) = ([0.0, 100.0], [1e-3, 10.0], (500.0, 400.0));
-        let lines = vec![Curve { points, stroke, sign }];
+        let lines = vec![Curve { points, stroke, sign, name: "here".to_owned() }];
         let (title, x_label, y_label) = (String::new(), "x".to_owned(), "y".to_owned());
-        let y_axis = Axis::Logarithmic;
-        let scene = Curves { title, x_label, y_label, y_axis, x, y, x_step: 20.0, lines, size }.sketch().scene;
+        let (x, x_step, room, size) = ([0.0, 100.0], 20.0, 80.0, (580.0, 400.0));
+        Curves { title, x_label, y_label, y_axis, x, y, x_step, lines, notes: vec![], room, size }
+    }
+
+    /// Middles of all round marks.
+    fn circles(scene: &Scene) -> Vec<(f64, f64)> {
         let circles = |element: &Primitive| match element {
             Primitive::CircleBatch { cx, cy, .. } => cx.iter().copied().zip(cy.iter().copied()).collect(),
             _ => vec![],
         };
-        let circles: Vec<(f64, f64)> = scene.elements.iter().flat_map(circles).collect();
+        scene.elements.iter().flat_map(circles).collect()
+    }
+
+    /// Left end and foot of the curve's name.
+    fn name(scene: &Scene) -> Option<(f64, f64)> {
+        scene.elements.iter().find_map(|element| match element {
+            Primitive::Text { x, y, content, .. } if content == "here" => Some((*x, *y)),
+            _ => None,
+        })
+    }
+
+    #[test]
+    fn every_point_has_its_mark_where_the_axis_has_its_value_and_the_last_has_the_name() {
+        let points = vec![(0.0, 0.01, 0.05), (50.0, 0.1, 0.0), (100.0, 1.0, 20.0)];
+        let scene = panel(points, Axis::Logarithmic { lowest: 1e-3 }, [1e-3, 10.0]).sketch().scene;
+        let circles = circles(&scene);
         assert_eq!(circles.len(), 6);
         assert_eq!(circles[..3], circles[3..]);
         // A decade each: equal steps to the right and up.
         let [a, b, c] = circles[..3] else { unreachable!() };
         assert!((b.0 - a.0 - (c.0 - b.0)).abs() < 0.05 && b.0 > a.0 + 100.0, "{circles:?}");
         assert!((b.1 - a.1 - (c.1 - b.1)).abs() < 0.05 && b.1 < a.1 - 50.0, "{circles:?}");
+        let (x, y) = name(&scene).unwrap();
+        assert!(x > c.0 && x < 580.0 && (y - c.1).abs() < 6.0, "{x} {y} beside {c:?}");
+    }
+
+    #[test]
+    fn what_is_beyond_the_axis_has_neither_mark_nor_name() {
+        let points = vec![(0.0, 0.01, 0.0), (50.0, 0.1, 0.0), (100.0, 1000.0, 0.0)];
+        let scene = panel(points, Axis::Logarithmic { lowest: 1e-3 }, [1e-3, 10.0]).sketch().scene;
+        assert_eq!(circles(&scene).len(), 4);
+        assert_eq!(name(&scene), None);
+    }
+
+    #[test]
+    fn far_below_a_broken_axis_points_are_still_apart() {
+        let points = vec![(0.0, 1e-22, 0.0), (50.0, 1e-20, 0.0), (100.0, 1e-2, 0.0)];
+        let scene = panel(points, Axis::Logarithmic { lowest: 1e-23 }, [1e-3, 10.0]).sketch().scene;
+        let [a, b, c] = circles(&scene)[..3] else { panic!("three points") };
+        assert!(a.1 - b.1 > 8.0 && b.1 - c.1 > 100.0, "{a:?} {b:?} {c:?}");
+        let ticks = ["10⁻²³", "10⁻¹³", "0.001", "10"];
+        for tick in ticks {
+            let is = |element: &&Primitive| matches!(element, Primitive::Text { content, .. } if content == tick);
+            assert_eq!(scene.elements.iter().filter(is).count(), 1, "{tick}");
+        }
+    }
+
+    #[test]
+    fn lines_are_cut_at_the_edges_of_the_range() {
+        let cut = |points: &[(f64, f64)]| inside(points, [0.0, 1.0]);
+        assert_eq!(
+            cut(&[(0.0, 0.5), (1.0, 1.5), (2.0, 1.5), (3.0, 0.5)]),
+            [vec![(0.0, 0.5), (0.5, 1.0)], vec![(2.5, 1.0), (3.0, 0.5)]]
+        );
+        assert_eq!(cut(&[(0.0, -1.0), (4.0, 3.0)]), [vec![(1.0, 0.0), (2.0, 1.0)]]);
+        assert_eq!(cut(&[(0.0, 0.0), (1.0, 1.0), (2.0, 1.0)]), [vec![(0.0, 0.0), (1.0, 1.0), (2.0, 1.0)]]);
+        assert_eq!(cut(&[(0.0, 2.0), (1.0, 1.0), (2.0, 0.5), (3.0, 0.5)]), [vec![(1.0, 1.0), (2.0, 0.5), (3.0, 0.5)]]);
+        assert!(cut(&[(0.0, 2.0), (1.0, 3.0), (2.0, 3.0)]).is_empty() && cut(&[]).is_empty());
     }
 }

@@ -1,7 +1,8 @@
 //! Pictures: rows of panels, written as SVG and PNG.
 //!
 //! - [`Plane`]: things in the plane, both axes alike.
-//! - [`Curves`]: quantities against a quantity, linear or logarithmic, with bands; [`Key`] names them.
+//! - [`Curves`]: quantities against a quantity, linear or logarithmic, with bands, and named at their ends.
+//! - [`Canvas`]: lines, arrows and words without axes.
 //! - [`Relief`]: a scalar field or dots in perspective.
 //! - [`Space`]: things in space, the nearer ones before the others.
 //!
@@ -30,12 +31,14 @@
 //!
 //! The only place that knows the plotting crate.
 
+mod axis;
+mod canvas;
 mod colour_scale;
 mod curves;
 mod dashes;
 mod decimals;
 mod error;
-mod key;
+mod names;
 mod panel;
 mod picture;
 mod plane;
@@ -49,9 +52,10 @@ mod space;
 mod style;
 mod turned;
 
-pub use curves::{Axis, Curve, Curves};
+pub use axis::Axis;
+pub use canvas::{Canvas, Thing};
+pub use curves::{Curve, Curves, Note};
 pub use error::PlotError;
-pub use key::{Entry, Key};
 pub use panel::{Field, Panel, Sketch};
 pub use picture::Picture;
 pub use plane::{Layer, Plane};

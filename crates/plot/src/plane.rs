@@ -19,6 +19,8 @@ pub enum Layer {
         field: Field,
         /// What the values are.
         name: String,
+        /// From the darkest colour to the lightest, the same where panels are compared; without one, those of the field.
+        range: Option<[f64; 2]>,
     },
     /// A filled polygon that is in one piece on every vertical line.
     Region {
@@ -138,9 +140,10 @@ impl Panel for Plane {
         let mut scene = render_multiple(plots, layout);
         let mut rasters = vec![];
         for layer in &self.layers {
-            if let Layer::Colors { name, field } = layer {
+            if let Layer::Colors { name, field, range } = layer {
                 colour_scale::name(name, &mut scene);
-                rasters.extend(smooth::instead_of_squares(field, rasters.len(), &mut scene));
+                let range = range.unwrap_or_else(|| smooth::range(field.values.iter().flatten()));
+                rasters.extend(smooth::instead_of_squares(field, range, rasters.len(), &mut scene));
             }
         }
         samples::draw(&self.names(), &mut scene);
@@ -155,7 +158,7 @@ fn plot(layer: &Layer) -> Option<Plot> {
             let contours = ContourPlot::new().with_grid(values, x, y).with_n_levels(12);
             Plot::Contour(contours.with_line_color("#b8b8b8").with_line_width(0.8))
         }
-        Layer::Colors { field, .. } => Plot::Heatmap(colors(&field)),
+        Layer::Colors { field, range, .. } => Plot::Heatmap(colors(&field, range)),
         Layer::Region { corners, color, opacity } => Plot::Band(band(&corners).with_color(color).with_opacity(opacity)),
         Layer::Path { points, stroke, label } => {
             let line = LinePlot::new().with_data(points).with_color(stroke.color).with_stroke_width(stroke.width);
@@ -182,8 +185,8 @@ fn plot(layer: &Layer) -> Option<Plot> {
 
 /// A stand-in for a field, as wide and with colours for the same numbers: its scale is drawn from it, its four squares give
 /// way to [`smooth::instead_of_squares`].
-fn colors(Field { x, y, values }: &Field) -> Heatmap {
-    let [low, high] = smooth::range(values.iter().flatten());
+fn colors(Field { x, y, values }: &Field, range: Option<[f64; 2]>) -> Heatmap {
+    let [low, high] = range.unwrap_or_else(|| smooth::range(values.iter().flatten()));
     Heatmap::new()
         .with_data(vec![vec![low, high]; 2])
         .with_x_range(x[0], x[x.len() - 1])
@@ -240,7 +243,7 @@ mod tests {
             Layer::Arrows { arrows: vec![(0.2, 0.2, 0.5, 0.5)], color, scale, width, label: Some("flow".to_owned()) };
         let stroke = Stroke { color: "#000000", width, dash: Dash::Solid };
         let path = Layer::Path { points: vec![(0.0, 0.0), (1.0, 1.0)], stroke, label: Some("way".to_owned()) };
-        let layers = vec![Layer::Colors { field, name: "φ".to_owned() }, path, arrows];
+        let layers = vec![Layer::Colors { field, name: "φ".to_owned(), range: None }, path, arrows];
         let (title, size) = (String::new(), Plane::SQUARE);
         let scene = Plane {
             title,

@@ -3,7 +3,7 @@ use std::fmt::Write as _;
 use kuva::plot::ScatterPlot;
 use kuva::render::color::Color;
 use kuva::render::plots::Plot;
-use kuva::render::render::{PathData, Primitive, Scene};
+use kuva::render::render::{PathData, Primitive};
 
 use crate::Mark;
 
@@ -47,16 +47,10 @@ impl Sign {
         };
         self.layers(color).into_iter().map(layer).collect()
     }
-
-    /// At a place of a scene, pixels; as the plotting crate draws it at points of a plot.
-    pub(crate) fn draw(self, at: (f64, f64), color: &str, scene: &mut Scene) {
-        for (color, size) in self.layers(color) {
-            scene.add(shape(self.mark, at, color, size));
-        }
-    }
 }
 
-fn shape(mark: Mark, (cx, cy): (f64, f64), color: &str, size: f64) -> Primitive {
+/// A mark at a place of a scene, pixels; as the plotting crate draws it at points of a plot.
+pub(crate) fn shape(mark: Mark, (cx, cy): (f64, f64), color: &str, size: f64) -> Primitive {
     let corners: &[(f64, f64)] = match mark {
         Mark::Circle => {
             let fill = Color::from(color);

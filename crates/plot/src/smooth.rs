@@ -10,7 +10,7 @@ use crate::{Field, Sketch};
 const DOTS: usize = 3;
 
 /// Takes a field's stand-in of two by two squares out of a scene and puts the place of pixels there; the pixels.
-pub(crate) fn instead_of_squares(field: &Field, number: usize, scene: &mut Scene) -> Option<Raster> {
+pub(crate) fn instead_of_squares(field: &Field, colors: [f64; 2], number: usize, scene: &mut Scene) -> Option<Raster> {
     let at = scene.elements.iter().position(|element| matches!(element, Primitive::RectBatch { .. }))?;
     let Primitive::RectBatch { x, y, .. } = &scene.elements[at] else { return None };
     let ([left, right], [top, _]) = (range(x), range(y));
@@ -18,7 +18,7 @@ pub(crate) fn instead_of_squares(field: &Field, number: usize, scene: &mut Scene
     let width = DOTS * (field.x.len() - 1);
     let side = 2.0 * (right - left) / width as f64;
     scene.elements.splice(at..=at, [Sketch::group(number), Primitive::GroupEnd]);
-    Some(Raster { corner: (left, top), side, width, dots: dots(field) })
+    Some(Raster { corner: (left, top), side, width, dots: dots(field, colors) })
 }
 
 /// The least and the largest.
@@ -27,9 +27,8 @@ pub(crate) fn range<'a>(values: impl IntoIterator<Item = &'a f64>) -> [f64; 2] {
     values.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], wider)
 }
 
-/// Colours of the dots, row by row from above.
-fn dots(Field { x, y, values }: &Field) -> Vec<[u8; 4]> {
-    let [low, high] = range(values.iter().flatten());
+/// Colours of the dots, row by row from above; of values from the darkest to the lightest.
+fn dots(Field { x, y, values }: &Field, [low, high]: [f64; 2]) -> Vec<[u8; 4]> {
     let [width, rows] = [x, y].map(|grid| DOTS * (grid.len() - 1));
     let place = |dot: usize| {
         let along = (dot as f64 + 0.5) / DOTS as f64;
@@ -57,11 +56,15 @@ mod tests {
     fn colours_go_evenly_from_the_lowest_place_to_the_highest() {
         let grid: Vec<f64> = (0..5).map(f64::from).collect();
         let values = grid.iter().map(|y| grid.iter().map(|_| *y).collect()).collect();
-        let dots = dots(&Field { x: grid.clone(), y: grid, values });
+        let field = Field { x: grid.clone(), y: grid, values };
+        let dots = dots(&field, [0.0, 4.0]);
         assert_eq!(dots.len(), 12 * 12);
         let column: Vec<_> = dots.iter().step_by(12).collect();
         let light = |dot: &[u8; 4]| dot[..3].iter().map(|&part| i32::from(part)).sum::<i32>();
         assert!(column.windows(2).all(|pair| light(pair[0]) > light(pair[1])), "{column:?}");
         assert!(dots[..12].iter().all(|dot| dot == &dots[0]));
+        // On a scale that goes twice as far up the highest place has the colour of the middle.
+        let darker = super::dots(&field, [0.0, 8.0]);
+        assert!(light(&darker[0]) < light(&dots[0]) && darker[0][..3] == height(0.5 - 1.0 / 48.0));
     }
 }

@@ -43,7 +43,7 @@ fn movements(seed: u64) -> anyhow::Result<Movements> {
 fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let Movements(movements) = sources.document("figure9_movements")?;
     let [joint_space, planes, cylinder] = scenes::scenes(&movements);
-    let Panels { along, around, key, tables } = curves::panels(sources)?;
-    let picture = Picture::rows(&[&[&joint_space, &planes, &cylinder], &[&along, &around], &[&key]]);
+    let Panels { along, around, tables } = curves::panels(sources)?;
+    let picture = Picture::rows(&[&[&joint_space, &planes, &cylinder], &[&along, &around]]);
     Ok(Drawing { picture, tables })
 }

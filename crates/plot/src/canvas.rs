@@ -1,0 +1,166 @@
+use kuva::render::color::Color;
+use kuva::render::render::{PathData, Primitive, Scene, TextAnchor};
+
+use crate::sign::shape;
+use crate::{Mark, Panel, Sketch, Stroke};
+
+/// A drawing without axes. All places are pixels from its upper left corner.
+#[derive(Debug, Clone)]
+pub struct Canvas {
+    /// Later ones lie on top.
+    pub things: Vec<Thing>,
+    /// Pixels.
+    pub size: (f64, f64),
+}
+
+/// One thing on a [`Canvas`].
+#[derive(Debug, Clone)]
+pub enum Thing {
+    /// A line through points.
+    Line {
+        /// From its start to its end.
+        points: Vec<(f64, f64)>,
+        /// How it looks.
+        stroke: Stroke,
+    },
+    /// An arrow; none where it would be shorter than a pixel.
+    Arrow {
+        /// Its foot.
+        from: (f64, f64),
+        /// Its tip.
+        to: (f64, f64),
+        /// As in HTML.
+        color: &'static str,
+        /// Of the shaft.
+        width: f64,
+    },
+    /// A mark.
+    Mark {
+        /// Its middle.
+        at: (f64, f64),
+        /// Its shape.
+        mark: Mark,
+        /// As in HTML.
+        color: &'static str,
+        /// Half its width.
+        size: f64,
+    },
+    /// A line of words.
+    Words {
+        /// The middle of its foot, or the left end.
+        at: (f64, f64),
+        /// As they are written.
+        text: String,
+        /// Height of the letters.
+        size: u32,
+        /// Whether `at` is the middle.
+        centred: bool,
+        /// Whether letters are thick.
+        bold: bool,
+        /// As in HTML; the colour of all words without one.
+        color: Option<&'static str>,
+    },
+}
+
+impl Panel for Canvas {
+    fn sketch(&self) -> Sketch {
+        let mut scene = Scene::new(self.size.0, self.size.1);
+        self.things.iter().flat_map(drawn).for_each(|element| scene.add(element));
+        Sketch::new(scene)
+    }
+}
+
+fn drawn(thing: &Thing) -> Vec<Primitive> {
+    match thing.clone() {
+        Thing::Line { points, stroke } => vec![Primitive::PolyLine {
+            points,
+            stroke: Color::from(stroke.color),
+            stroke_width: stroke.width,
+            stroke_dasharray: kuva::plot::LineStyle::from(stroke.dash).dasharray(),
+        }],
+        Thing::Arrow { from, to, color, width } => arrow(from, to, color, width),
+        Thing::Mark { at, mark, color, size } => vec![shape(mark, at, color, size)],
+        Thing::Words { at: (x, y), text, size, centred, bold, color } => vec![Primitive::Text {
+            x,
+            y,
+            content: text,
+            size,
+            anchor: if centred { TextAnchor::Middle } else { TextAnchor::Start },
+            rotate: None,
+            bold,
+            color: color.map(Color::from),
+        }],
+    }
+}
+
+/// Shaft and head; a head is no longer than most of its arrow.
+fn arrow(from: (f64, f64), to: (f64, f64), color: &str, width: f64) -> Vec<Primitive> {
+    let (u, v) = (to.0 - from.0, to.1 - from.1);
+    let length = u.hypot(v);
+    if length < 1.0 {
+        return vec![];
+    }
+    let head = (2.0 * width + 4.5).min(0.65 * length);
+    let (along, across) = (head / length, 0.45 * head / length);
+    let foot = (to.0 - along * u, to.1 - along * v);
+    let (left, right) = ((foot.0 - across * v, foot.1 + across * u), (foot.0 + across * v, foot.1 - across * u));
+    let d = format!("M{:.2} {:.2}L{:.2} {:.2}L{:.2} {:.2}Z", to.0, to.1, left.0, left.1, right.0, right.1);
+    let shaft = Primitive::Line {
+        x1: from.0,
+        y1: from.1,
+        x2: foot.0,
+        y2: foot.1,
+        stroke: Color::from(color),
+        stroke_width: width,
+        stroke_dasharray: None,
+    };
+    let head = PathData {
+        d,
+        fill: Some(Color::from(color)),
+        stroke: Color::None,
+        stroke_width: 0.0,
+        opacity: None,
+        stroke_dasharray: None,
+    };
+    vec![shaft, Primitive::Path(Box::new(head))]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_arrow_ends_at_its_tip_and_none_is_drawn_where_there_is_no_way() {
+        let arrow = arrow((10.0, 20.0), (40.0, 20.0), "#000000", 2.0);
+        let [Primitive::Line { x1, x2, .. }, Primitive::Path(head)] = &arrow[..] else { panic!("{arrow:?}") };
+        assert!((x1 - 10.0).abs() < 1e-12 && (x2 - 31.5).abs() < 1e-12, "{arrow:?}");
+        assert!(head.d.starts_with("M40.00 20.00L31.50"), "{}", head.d);
+        assert!(super::arrow((1.0, 1.0), (1.0, 1.5), "#000000", 2.0).is_empty());
+    }
+
+    #[test]
+    fn things_are_drawn_in_their_order() {
+        let stroke = Stroke { color: "#0072b2", width: 1.0, dash: crate::Dash::Solid };
+        let words = |text: &str, centred| {
+            let (at, text, size, bold, color) = ((5.0, 9.0), text.to_owned(), 13, centred, None);
+            Thing::Words { at, text, size, centred, bold, color }
+        };
+        let things = vec![
+            Thing::Line { points: vec![(0.0, 0.0), (1.0, 2.0)], stroke },
+            Thing::Mark { at: (3.0, 4.0), mark: Mark::Circle, color: "#d55e00", size: 2.0 },
+            words("left", false),
+            words("middle", true),
+        ];
+        let Sketch { scene, .. } = Canvas { things, size: (60.0, 40.0) }.sketch();
+        assert!((scene.width, scene.height) == (60.0, 40.0));
+        assert!(matches!(
+            &scene.elements[..],
+            [
+                Primitive::PolyLine { .. },
+                Primitive::Circle { .. },
+                Primitive::Text { anchor: TextAnchor::Start, color: None, .. },
+                Primitive::Text { anchor: TextAnchor::Middle, bold: true, .. }
+            ]
+        ));
+    }
+}

@@ -1,0 +1,92 @@
+//! Names at the ends of curves, none on another.
+
+use kuva::render::color::Color;
+use kuva::render::render::{Primitive, Scene, TextAnchor};
+
+/// A name and the end of its curve, pixels.
+pub(crate) struct Name<'a> {
+    pub(crate) text: &'a str,
+    /// As in HTML.
+    pub(crate) color: &'static str,
+    pub(crate) end: (f64, f64),
+}
+
+/// Size of names, pixels, and from one to the next.
+const SIZE: u32 = 13;
+const APART: f64 = 16.0;
+
+/// Pixels from the end of a curve to its leader, and from the leader to the name.
+const FROM: f64 = 6.0;
+const TO: f64 = 4.0;
+
+/// Writes names to the right of `left`, each as near to its curve as others let it, with a line from the curve in its
+/// colour. The words are in the colour of all words: not every colour of a line is dark enough for letters.
+pub(crate) fn draw(mut names: Vec<Name<'_>>, left: f64, scene: &mut Scene) {
+    names.sort_by(|a, b| a.end.1.total_cmp(&b.end.1));
+    let wanted: Vec<f64> = names.iter().map(|name| name.end.1).collect();
+    for (Name { text, color, end }, y) in names.iter().zip(spread(&wanted, APART)) {
+        scene.add(Primitive::Line {
+            x1: end.0 + FROM,
+            y1: end.1,
+            x2: left - TO,
+            y2: y,
+            stroke: Color::from(*color),
+            stroke_width: 1.2,
+            stroke_dasharray: None,
+        });
+        scene.add(Primitive::Text {
+            x: left,
+            y: y + 0.36 * f64::from(SIZE),
+            content: (*text).to_owned(),
+            size: SIZE,
+            anchor: TextAnchor::Start,
+            rotate: None,
+            bold: false,
+            color: None,
+        });
+    }
+}
+
+/// The places nearest to those wanted, which rise, that are so far `apart`: least squares, by pooling neighbours.
+fn spread(wanted: &[f64], apart: f64) -> Vec<f64> {
+    // Runs of places exactly `apart`: the mean of where their first would be, and how many.
+    let mut runs: Vec<(f64, usize)> = vec![];
+    for &place in wanted {
+        let mut run = (place, 1);
+        while let Some(&(first, many)) = runs.last()
+            && first + many as f64 * apart > run.0
+        {
+            let all = many + run.1;
+            let shifted = run.0 - many as f64 * apart;
+            run = ((first * many as f64 + shifted * run.1 as f64) / all as f64, all);
+            runs.pop();
+        }
+        runs.push(run);
+    }
+    runs.into_iter().flat_map(|(first, many)| (0..many).map(move |at| first + at as f64 * apart)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn names_move_no_farther_than_they_must() {
+        assert_eq!(spread(&[], 10.0), [] as [f64; 0]);
+        assert_eq!(spread(&[1.0, 50.0], 10.0), [1.0, 50.0]);
+        assert_eq!(spread(&[20.0, 20.0, 90.0], 10.0), [15.0, 25.0, 90.0]);
+        assert_eq!(spread(&[20.0, 22.0, 27.0], 10.0), [13.0, 23.0, 33.0]);
+    }
+
+    proptest! {
+        #[test]
+        fn no_name_is_on_another_and_their_mean_stays(mut wanted in prop::collection::vec(0.0..300.0, 1..9)) {
+            wanted.sort_by(f64::total_cmp);
+            let places = spread(&wanted, 16.0);
+            prop_assert!(places.windows(2).all(|pair| pair[1] - pair[0] > 16.0 - 1e-9));
+            prop_assert!((places.iter().sum::<f64>() - wanted.iter().sum::<f64>()).abs() < 1e-9 * 300.0);
+        }
+    }
+}
