@@ -10,15 +10,16 @@ use super::fit::load;
 use super::flags::{ReadFlags, numbers};
 use super::lines::Lines;
 use super::picture::{Picture, draw};
-use super::recorded::read;
+use super::recorded::{base_name, read};
 use super::rollout::followed;
 use super::rollout_flags::RollOutFlags;
 use super::session::{Said, Session};
 
-/// Draw a policy: its field, its potential, what was shown
+/// Draw a policy: arrows, lines of equal potential, demonstrations
 ///
-/// Two channels are drawn; all others are at the median of what was learnt from.
-/// Where nothing was learnt it is grey.
+/// Two channels are drawn; all others are at the median of the demonstrations.
+/// Grey is outside the range of the demonstrations, or too far from all of them
+/// to predict an action.
 #[derive(Debug, Args)]
 #[command(
     verbatim_doc_comment,
@@ -65,7 +66,8 @@ impl Plot {
             let start = DVector::from_vec(numbers(from, "--rollout")?);
             Ok(followed(&flags, &model, &start, from)?.states)
         });
-        let picture = Picture::of(&model, dims, shown, paths.collect::<Result<_, Failure>>()?);
+        let title = format!("Policy of {} (grey: outside the demonstrations)", base_name(&self.model));
+        let picture = Picture::of(title, &model, dims, shown, paths.collect::<Result<_, Failure>>()?);
         write_whole(&self.output, &draw(&self.output, &picture)?)
             .map_err(|error| Failure::writing(&self.output, error))?;
         let mut lines = Lines::default();
