@@ -5,11 +5,10 @@ use std::fmt::Write as _;
 use maud::{Markup, html};
 
 use crate::emphasised;
-use crate::shared_style::with_shared_styles;
 
 /// A picture with title and caption, under a heading that may have said the title already; the title is then shown only
 /// where the figure is enlarged. It is an image, not a part of the page, so that names in it are its own. What it shows
-/// is in the caption; it is not read out twice.
+/// is in the caption; it is not read out twice. Light or dark it must be by itself, as the reader prefers.
 #[derive(Debug, Clone, Copy)]
 pub struct Card<'a> {
     /// The card's address within the page is `figure-<id>`.
@@ -31,7 +30,7 @@ impl Card<'_> {
         html! {
             figure id={ "figure-" (self.id) } aria-label=(name(self.title)) {
                 button .enlarge type="button" aria-label={ "Enlarge " (name(self.title)) } {
-                    img src=(data_uri(&with_shared_styles(self.svg))) alt="" width=[width] height=[height];
+                    img src=(data_uri(self.svg)) alt="" width=[width] height=[height];
                 }
                 figcaption {
                     p { strong hidden[self.title == heading] { (self.title) "." } " " (emphasised(self.caption)) }

@@ -26,7 +26,6 @@ mod emphasis;
 mod figure;
 mod markdown;
 mod scale;
-mod shared_style;
 mod strip;
 
 pub use document::{Document, Part};

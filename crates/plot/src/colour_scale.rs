@@ -1,29 +1,34 @@
-//! The name of what a scale of colours shows, above it: the plotting crate leaves it without one.
+//! The scale of what is shown in colours: its name above it, without which the plotting crate leaves it, and its colours as
+//! light or dark as those that it is of.
 
 use kuva::render::color::Color;
 use kuva::render::render::{Primitive, Scene, TextAnchor};
+
+use crate::Sketch;
 
 /// Pixels from the scale to its name's foot, and the name's size.
 const GAP: f64 = 8.0;
 const SIZE: u32 = 14;
 
-/// Writes a name above the scale of a scene that has one: the last outline without filling.
-pub(crate) fn name(name: &str, scene: &mut Scene) {
-    let middle_of_top = |element: &Primitive| match element {
-        Primitive::Rect { x, y, width, fill: Color::None, stroke: Some(_), .. } => Some((x + width / 2.0, *y)),
-        _ => None,
-    };
-    if let Some((x, y)) = scene.elements.iter().rev().find_map(middle_of_top) {
-        let (content, anchor) = (name.to_owned(), TextAnchor::Middle);
-        scene.add(Primitive::Text {
-            x,
-            y: y - GAP,
-            content,
-            size: SIZE,
-            anchor,
-            rotate: None,
-            bold: false,
-            color: None,
-        });
-    }
+/// Completes the scale of a scene that has one: bars without outline, then the last outline without filling.
+pub(crate) fn complete(name: &str, scene: &mut Scene) {
+    let elements = &mut scene.elements;
+    let is_outline =
+        |element: &Primitive| matches!(element, Primitive::Rect { fill: Color::None, stroke: Some(_), .. });
+    let is_bar = |element: &Primitive| matches!(element, Primitive::Rect { stroke: None, .. });
+    let Some(outline) = elements.iter().rposition(is_outline) else { return };
+    let Primitive::Rect { x, y, width, .. } = elements[outline] else { return };
+    let bars = elements[..outline].iter().rev().take_while(|element| is_bar(element)).count();
+    elements.insert(outline, Primitive::GroupEnd);
+    elements.insert(outline - bars, Sketch::backdrop());
+    elements.push(Primitive::Text {
+        x: x + width / 2.0,
+        y: y - GAP,
+        content: name.to_owned(),
+        size: SIZE,
+        anchor: TextAnchor::Middle,
+        rotate: None,
+        bold: false,
+        color: None,
+    });
 }

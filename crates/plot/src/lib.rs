@@ -7,7 +7,8 @@
 //! - [`Space`]: things in space, the nearer ones before the others.
 //!
 //! Sizes of panels, widths of lines and radii of dots are in pixels; everything else is in the units of what is shown.
-//! Colours are written as in HTML, `#rrggbb`. The same panels give the same bytes.
+//! Colours are written as in HTML, `#rrggbb`, as they are on white paper; in an SVG greys change for a reader who prefers dark
+//! pages. The same panels give the same bytes.
 //!
 //! ```
 //! use plot::{Dash, Layer, Picture, Plane, Stroke};
@@ -38,6 +39,7 @@ mod curves;
 mod dashes;
 mod decimals;
 mod error;
+mod levels;
 mod names;
 mod panel;
 mod picture;
@@ -50,6 +52,9 @@ mod sign;
 mod smooth;
 mod space;
 mod style;
+mod style_sheet;
+mod theme;
+mod ticks;
 mod turned;
 
 pub use axis::Axis;

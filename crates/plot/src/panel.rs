@@ -1,6 +1,7 @@
 use kuva::render::render::{Primitive, Scene};
 
 use crate::raster::Raster;
+use crate::style_sheet::BACKDROP;
 
 /// One part of a picture.
 pub trait Panel {
@@ -51,6 +52,11 @@ impl Sketch {
     /// The beginning of that group.
     pub(crate) fn group(number: usize) -> Primitive {
         Primitive::GroupStart { transform: None, title: None, extra_attrs: Some(Sketch::mark(number)) }
+    }
+
+    /// The beginning of a group of what is behind lines and words.
+    pub(crate) fn backdrop() -> Primitive {
+        Primitive::GroupStart { transform: None, title: None, extra_attrs: Some(BACKDROP.to_owned()) }
     }
 
     /// The number of the pixels whose group begins here.

@@ -3,6 +3,7 @@ use kuva::backend::svg::SvgBackend;
 use kuva::render::render::{Primitive, Scene};
 
 use crate::raster::{DOTS, Raster, with_density};
+use crate::style_sheet::with_style_sheet;
 use crate::{Panel, PlotError, Sketch, dashes, decimals, turned};
 
 /// Pixels between panels.
@@ -34,9 +35,10 @@ impl Picture {
         Picture(sheet)
     }
 
-    /// As scalable vector graphics; bodies in space are pixels within.
+    /// As scalable vector graphics; bodies in space are pixels within. On white paper, or, where the reader prefers it, on
+    /// dark.
     pub fn svg(&self) -> String {
-        let mut svg = decimals::shortened(&SvgBackend::new().render_scene(&self.0.scene));
+        let mut svg = with_style_sheet(&decimals::shortened(&SvgBackend::new().render_scene(&self.0.scene)));
         for (number, raster) in self.0.rasters.iter().enumerate() {
             let group = format!("<g {}>", Sketch::mark(number));
             svg = svg.replacen(&group, &format!("<g>{}", raster.svg()), 1);

@@ -3,16 +3,26 @@ use kuva::render::annotations::TextAnnotation;
 use kuva::render::plots::Plot;
 use kuva::render::render::render_multiple;
 
+use crate::levels::Label;
 use crate::samples::{self, Sample};
 use crate::sheet::{Edge, titled, with_axes};
 use crate::style::heights;
-use crate::{Field, Mark, Panel, Sketch, Stroke, colour_scale, smooth};
+use crate::{Field, Mark, Panel, Sketch, Stroke, colour_scale, levels, smooth};
 
 /// One thing drawn in the plane; later layers lie on top.
 #[derive(Debug, Clone)]
 pub enum Layer {
     /// Lines of equal value.
     Contours(Field),
+    /// Lines of round values, each with its value on it.
+    Levels {
+        /// Values on a grid.
+        field: Field,
+        /// Which of them are meant: values are round between the least and the largest of these, and written among them.
+        known: Vec<Vec<bool>>,
+        /// Of the lines in the legend.
+        label: String,
+    },
     /// A field in colours that go smoothly, light where it is high, with a scale of this name.
     Colors {
         /// Values on an even grid.
@@ -120,6 +130,7 @@ impl Plane {
             match layer {
                 Layer::Path { label, .. } => Some((label.as_deref()?, Sample::Line)),
                 Layer::Arrows { label, .. } => Some((label.as_deref()?, Sample::Arrow)),
+                Layer::Levels { label, .. } => Some((label, Sample::Line)),
                 _ => None,
             }
         }
@@ -136,12 +147,15 @@ impl Panel for Plane {
             .with_legend_position(LegendPosition::OutsideBottomColumns)
             .with_legend_box(false)
             .with_equal_aspect();
-        layout.annotations = self.layers.iter().filter_map(words).collect();
+        layout.annotations = self.layers.iter().flat_map(words).collect();
         let mut scene = render_multiple(plots, layout);
         let mut rasters = vec![];
         for layer in &self.layers {
+            if let Layer::Levels { field, known, .. } = layer {
+                levels::uncross(&levels::labels(field, known), &mut scene);
+            }
             if let Layer::Colors { name, field, range } = layer {
-                colour_scale::name(name, &mut scene);
+                colour_scale::complete(name, &mut scene);
                 let range = range.unwrap_or_else(|| smooth::range(field.values.iter().flatten()));
                 rasters.extend(smooth::instead_of_squares(field, range, rasters.len(), &mut scene));
             }
@@ -154,6 +168,7 @@ impl Panel for Plane {
 fn plot(layer: &Layer) -> Option<Plot> {
     Some(match layer.clone() {
         Layer::Words { .. } => return None,
+        Layer::Levels { field, known, label } => return levels::lines(&field, &known, label),
         Layer::Contours(Field { x, y, values }) => {
             let contours = ContourPlot::new().with_grid(values, x, y).with_n_levels(12);
             Plot::Contour(contours.with_line_color("#b8b8b8").with_line_width(0.8))
@@ -195,9 +210,12 @@ fn colors(Field { x, y, values }: &Field, range: Option<[f64; 2]>) -> Heatmap {
         .with_color_map(heights())
 }
 
-fn words(layer: &Layer) -> Option<TextAnnotation> {
-    let Layer::Words { at, text } = layer else { return None };
-    Some(TextAnnotation::new(text, at.0, at.1).with_font_size(13))
+fn words(layer: &Layer) -> Vec<TextAnnotation> {
+    match layer {
+        Layer::Words { at, text } => vec![TextAnnotation::new(text, at.0, at.1).with_font_size(13)],
+        Layer::Levels { field, known, .. } => levels::labels(field, known).iter().map(Label::annotation).collect(),
+        _ => vec![],
+    }
 }
 
 /// The strip between the lower and the upper edges of a polygon.

@@ -17,7 +17,8 @@ pub(crate) fn instead_of_squares(field: &Field, colors: [f64; 2], number: usize,
     // Two squares are as wide as the field; one unit is as long on either axis.
     let width = DOTS * (field.x.len() - 1);
     let side = 2.0 * (right - left) / width as f64;
-    scene.elements.splice(at..=at, [Sketch::group(number), Primitive::GroupEnd]);
+    let ends = [Primitive::GroupEnd, Primitive::GroupEnd];
+    scene.elements.splice(at..=at, [Sketch::backdrop(), Sketch::group(number)].into_iter().chain(ends));
     Some(Raster { corner: (left, top), side, width, dots: dots(field, colors) })
 }
 

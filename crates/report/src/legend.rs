@@ -77,7 +77,30 @@ pub(super) const TERMS: [(&str, &str); 11] = [
     ),
 ];
 
+/// What a measure is.
+pub(super) fn meaning(measure: Measure) -> Option<&'static str> {
+    MEASURES.into_iter().find(|(measures, _)| measures.contains(&measure)).map(|(_, meaning)| meaning)
+}
+
+/// What a name means, as it stands in names of rows and settings.
+pub(super) fn term(name: &str) -> Option<&'static str> {
+    TERMS.into_iter().find(|(names, _)| names.split(", ").any(|other| other == name)).map(|(_, meaning)| meaning)
+}
+
 /// Names of measures, one after the other.
 pub(super) fn names(measures: &[Measure], name: fn(Measure) -> &'static str) -> String {
     measures.iter().map(|&measure| name(measure)).collect::<Vec<_>>().join("; ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_have_their_meaning() {
+        assert!(term("narrow").is_some_and(|meaning| meaning.contains("bandwidth")));
+        assert_eq!(term("40x40"), term("100x100"));
+        assert_eq!([term("parabola"), term("40x40, 100x100"), term("")], [None; 3]);
+        assert_eq!(meaning(Measure::Disc), Some("trajectories left out, %"));
+    }
 }

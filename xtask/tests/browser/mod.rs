@@ -1,13 +1,12 @@
 //! A page in a real browser: Chromium without a window, spoken to by its debugging protocol.
 //!
 //! [`Page::open`] gives a page, or none where no browser is installed: the test is then skipped, loudly. With
-//! `POLICY_ALIGN_BROWSER=required` it fails instead.
+//! `POLICY_ALIGN_BROWSER=required` it fails instead. The tests of `policy-align`'s pages use it too.
 
 #![allow(dead_code, reason = "each test uses a part")]
 
 mod connection;
 mod program;
-mod report;
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -16,7 +15,6 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use connection::Connection;
-pub(crate) use report::report;
 
 /// How long a page may take for what is awaited.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -170,9 +168,37 @@ impl Page {
         ))
     }
 
+    /// CSS pixels that the page needs across, with all that is folded open.
+    pub(crate) fn width_needed(&mut self) -> u32 {
+        self.evaluate(
+            "(document.querySelectorAll('details').forEach(details => { details.open = true; }),
+                document.documentElement.scrollWidth)",
+        )
+    }
+
     /// What is seen, as PNG in base 64.
     pub(crate) fn screenshot(&mut self) -> String {
         self.call("Page.captureScreenshot", &json!({}))["data"].as_str().unwrap().to_owned()
+    }
+
+    /// How light each pixel of the first element is that a selector names, 0 to 255, in ascending order.
+    pub(crate) fn shades(&mut self, selector: &str) -> Vec<u8> {
+        self.middle_of(selector);
+        let area: Value = self.evaluate(&format!(
+            "(() => {{ const box = document.querySelector({selector:?}).getBoundingClientRect();
+                return {{ x: box.x + scrollX, y: box.y + scrollY, width: box.width, height: box.height, scale: 1 }}; }})()"
+        ));
+        let arguments = json!({ "clip": area, "captureBeyondViewport": true });
+        let file = self.call("Page.captureScreenshot", &arguments)["data"].as_str().unwrap().to_owned();
+        let file = data_encoding::BASE64.decode(file.as_bytes()).unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
+        let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+        let frame = reader.next_frame(&mut bytes).unwrap();
+        let pixels = bytes[..frame.buffer_size()].chunks(frame.color_type.samples());
+        let mut shades: Vec<u8> =
+            pixels.map(|pixel| (pixel[..3].iter().map(|&part| u16::from(part)).sum::<u16>() / 3) as u8).collect();
+        shades.sort_unstable();
+        shades
     }
 
     /// Errors and warnings on the console, exceptions that nobody caught, and what else the browser had to say, but for

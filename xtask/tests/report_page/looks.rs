@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use crate::browser::report;
 use crate::page;
+use crate::report::report;
 
 /// Widths of windows, CSS pixels: a small phone, a phone, a tablet, a laptop.
 const WIDTHS: [u32; 4] = [320, 390, 768, 1280];
@@ -23,6 +23,12 @@ const WORDS: [&str; 9] = [
 
 /// Contrast that small text needs at least (WCAG, level AA).
 const CONTRAST: f64 = 4.5;
+
+/// Where the heading of the first table is at the latest, pixels from the top of the page in a window of 1280.
+const FIRST_TABLE: f64 = 1600.0;
+
+/// Difference of a colour's parts up to which it is a grey.
+const GREY: u8 = 32;
 
 #[test]
 fn every_figure_is_shown_and_can_be_decoded() {
@@ -44,10 +50,9 @@ fn every_figure_is_shown_and_can_be_decoded() {
 #[test]
 fn no_window_is_so_narrow_that_the_page_scrolls_sideways() {
     let Some(mut page) = page() else { return };
-    page.evaluate::<()>("document.querySelectorAll('details').forEach(details => { details.open = true; })");
     for width in WIDTHS {
         page.resize(width, 800);
-        let needed: u32 = page.evaluate("document.documentElement.scrollWidth");
+        let needed = page.width_needed();
         assert!(needed <= width, "the page needs {needed} of {width} pixels");
     }
 }
@@ -70,6 +75,84 @@ fn light_and_dark_are_readable() {
         }
     }
     assert_ne!(backgrounds[0], backgrounds[1]);
+}
+
+/// Results first: nobody scrolls through reservations and glossaries to the first table.
+#[test]
+fn the_first_table_comes_first_then_the_robot_then_what_was_fitted() {
+    let Some(mut page) = page() else { return };
+    let parts: Vec<String> = page.evaluate("[...document.querySelectorAll('nav a')].map(a => a.hash)");
+    assert_eq!(parts[..4], ["#glance", "#table1", "#walk", "#fitted"]);
+    let heading: f64 = page.evaluate("document.querySelector('#table1 h2').getBoundingClientRect().top + scrollY");
+    assert!(heading < FIRST_TABLE, "it begins at {heading}");
+}
+
+#[test]
+fn reservations_are_folded_under_their_table() {
+    let Some(mut page) = page() else { return };
+    let folded: Vec<bool> = page.evaluate(
+        "[...document.querySelectorAll('main section .reasons')].map(reasons =>
+            reasons.closest('details:not([open])')?.parentElement.querySelector('table.grid, table.list') != null)",
+    );
+    assert!(folded.len() >= 2 && !folded.contains(&false), "{folded:?}");
+}
+
+#[test]
+fn names_in_tables_say_what_they_mean() {
+    let Some(mut page) = page() else { return };
+    let explained: Vec<(String, String)> = page
+        .evaluate("[...document.querySelectorAll('#table1 .grid abbr')].map(name => [name.textContent, name.title])");
+    for (name, meaning) in [("nUPE", "(A1)"), ("narrow", "bandwidth"), ("40x40", "movements")] {
+        assert!(
+            explained.iter().any(|(other, title)| other == name && title.contains(meaning)),
+            "{name}: {explained:?}"
+        );
+    }
+}
+
+#[test]
+fn the_printed_mean_is_seen_on_its_band_and_lower_is_no_praise() {
+    let Some(mut page) = page() else { return };
+    for scheme in ["light", "dark"] {
+        page.prefer("prefers-color-scheme", scheme);
+        let contrast: f64 = page.evaluate(
+            "(() => {
+                const light = (color) => color.match(/[\\d.]+/g).slice(0, 3).map((c) => c / 255)
+                    .map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4))
+                    .reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0);
+                const strip = document.querySelector('.strip:has(.band):has(.printed)');
+                const [tick, band] = [getComputedStyle(strip.querySelector('.printed')).stroke,
+                    getComputedStyle(strip.querySelector('.band')).fill].map(light);
+                return (Math.max(tick, band) + 0.05) / (Math.min(tick, band) + 0.05);
+            })()",
+        );
+        assert!(contrast >= CONTRAST, "in {scheme}: contrast {contrast:.2}");
+        let colourful: Vec<u8> = page.evaluate(
+            "[...document.querySelectorAll('.verdict.is-lower, .bar .is-lower')].slice(0, 9).map((badge) => {
+                const parts = getComputedStyle(badge).backgroundColor.match(/\\d+/g).slice(0, 3).map(Number);
+                return Math.max(...parts) - Math.min(...parts);
+            })",
+        );
+        assert!(colourful.iter().all(|&difference| difference < GREY), "in {scheme}: {colourful:?}");
+    }
+}
+
+#[test]
+fn figures_are_light_or_dark_as_the_page_is() {
+    let Some(mut page) = page() else { return };
+    let figures: Vec<String> = page.evaluate("[...document.querySelectorAll('figure[id]')].map(figure => figure.id)");
+    assert!(figures.len() > 8, "{figures:?}");
+    for (scheme, paper) in [("light", 240..=255), ("dark", 0..=60)] {
+        page.prefer("prefers-color-scheme", scheme);
+        for id in &figures {
+            let shades = page.shades(&format!("#{id} img"));
+            let middle = shades[shades.len() / 2];
+            assert!(paper.contains(&middle), "{id} in {scheme}: half of it is lighter than {middle}");
+            // What is not paper can be seen.
+            let (least, most) = (shades[shades.len() / 1000], shades[shades.len() - 1 - shades.len() / 1000]);
+            assert!(most - least > 100, "{id} in {scheme}: from {least} to {most}");
+        }
+    }
 }
 
 /// Contrast of an element's letters with what is behind them, by the formula of WCAG 2.

@@ -8,11 +8,13 @@ mod browser;
 mod keyboard;
 mod looks;
 mod paper;
+mod report;
 mod tables;
 mod view;
 mod words;
 
-use browser::{Page, report};
+use browser::Page;
+use report::report;
 
 /// Bytes that the page may have.
 const LARGEST: u64 = 4_500_000;

@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use crate::browser::report;
 use crate::page;
+use crate::report::report;
 
 #[test]
 fn the_rule_is_given_for_verdicts_that_occur() {
@@ -24,8 +24,8 @@ fn the_rule_is_given_for_verdicts_that_occur() {
 fn another_reading_is_told_apart() {
     let Some(mut page) = page() else { return };
     let headings: Vec<String> = page.evaluate(
-        "[...document.querySelectorAll('#glance .reasons a')].filter(a => a.hash == '#table1-literal')
-            .map(a => a.closest('dl').previousElementSibling.textContent)",
+        "[...document.querySelectorAll('#glance ul.missed a')].filter(a => a.hash == '#table1-literal')
+            .map(a => a.closest('ul').previousElementSibling.textContent)",
     );
     assert!(!headings.is_empty());
     assert!(headings.iter().all(|heading| heading.contains("taken literally")), "{headings:?}");

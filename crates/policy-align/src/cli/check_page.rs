@@ -8,8 +8,8 @@ use plot::{Layer, Plane};
 use policy_align::{Finding, Prepared, Verdict};
 
 use super::lines::{counted, short};
-use super::picture::SHOWN;
-use super::trust_page::{STYLE, channels, decisions, direction, found, left_out, part, row};
+use super::page_parts::{NUMBERS, STYLE, channels, decisions, direction, found, left_out, part, row, table};
+use super::picture::{SHOWN, with_unit};
 
 /// Empty space around what is drawn, as a share of its range.
 const MARGIN: f64 = 0.06;
@@ -26,7 +26,7 @@ pub(crate) fn check_page(prepared: &Prepared, notes: &[Note], name: &str, seen: 
         parts.push(part("movements", "Movements", &movements(prepared)));
     }
     parts.push(part("numbers", "Numbers", &numbers(prepared, seen)));
-    parts.push(part("decisions", "What was decided", &decisions(&prepared.decisions)));
+    parts.push(part("decisions", "Decisions", &decisions(&prepared.decisions)));
     let data = html! { (channels(&prepared.state)) (left_out(&prepared.left_out)) };
     parts.push(part("data", "Data", &data));
     Document { title: &title, name, opening, parts, style: STYLE }.html()
@@ -35,9 +35,11 @@ pub(crate) fn check_page(prepared: &Prepared, notes: &[Note], name: &str, seen: 
 fn opening(prepared: &Prepared, notes: &[Note], title: &str) -> Markup {
     let worst = prepared.findings.iter().map(|finding| finding.verdict).max().unwrap_or(Verdict::Good);
     let (class, words) = match worst {
-        Verdict::Good => ("verdict", "Nothing speaks against learning from it."),
-        Verdict::Doubtful => ("verdict doubtful", "Look at what follows before you learn from it."),
-        Verdict::DoNotUse => ("verdict wrong", "Nothing should be learnt from it as it is."),
+        Verdict::Good => ("conclusion", "All checks passed: these recordings can be learnt from."),
+        Verdict::Doubtful => {
+            ("conclusion doubtful", "Doubtful: read the findings before you learn from these recordings.")
+        }
+        Verdict::DoNotUse => ("conclusion wrong", "Do not learn from these recordings as they are."),
     };
     let mut findings: Vec<&Finding> = prepared.findings.iter().collect();
     findings.sort_by_key(|finding| std::cmp::Reverse(finding.verdict));
@@ -77,44 +79,40 @@ fn movements(prepared: &Prepared) -> Markup {
         let width = (channels[axis].high - channels[axis].low).max(f64::MIN_POSITIVE);
         [channels[axis].low - MARGIN * width, channels[axis].high + MARGIN * width]
     };
-    let label = |axis: usize| match &channels[axis].unit {
-        Some(unit) => format!("{} ({unit})", channels[axis].name),
-        None => channels[axis].name.clone(),
-    };
     let plane = Plane {
-        title: String::new(),
-        x_label: label(0),
-        y_label: label(1),
+        title: "The recorded movements".to_owned(),
+        x_label: with_unit(channels[0]),
+        y_label: with_unit(channels[1]),
         x: range(0),
         y: range(1),
         layers,
         size: Plane::SQUARE,
     };
     let svg = plot::Picture::rows(&[&[&plane]]).svg();
-    let caption =
-        format!("Every movement in {} and {}; dots are where they start.", channels[0].name, channels[1].name);
+    let caption = format!("Movements in {} and {}; dots mark where they start.", channels[0].name, channels[1].name);
     Card { id: "movements", title: "Movements", caption: &caption, remark: None, svg: &svg }.under("Movements")
 }
 
 fn numbers(prepared: &Prepared, (coverage, least): (f64, &DVector<f64>)) -> Markup {
     let noise = &prepared.noise;
+    let mut rows = vec![
+        row("Seconds between samples", &short(prepared.time_step), "even, and short against the movement"),
+        row("Share of noise in the squared steps", &short(noise.step_share), "below 0.1"),
+    ];
+    if let Some(share) = noise.velocity_share {
+        rows.push(row("Share of noise in the squared velocities", &short(share), "below 0.01"));
+    }
+    for (channel, deviation) in prepared.state.iter().zip(noise.positions.iter().flatten()) {
+        let what = format!("Noise of {}, standard deviation", channel.name);
+        rows.push(row(&what, &short(deviation / channel.scale), "far below its range"));
+    }
+    rows.push(row(
+        "Coverage of the least observed direction",
+        &short(coverage),
+        "above 0.1; 1 if all directions are alike",
+    ));
     html! {
-        table .numbers {
-            thead { tr { th { "What" } th .value { "Value" } th { "Good is" } } }
-            tbody {
-                (row("Seconds between samples", &short(prepared.time_step), "even, and short against the movement"))
-                (row("Share of noise in the squared steps", &short(noise.step_share), "below 0.1"))
-                @if let Some(share) = noise.velocity_share {
-                    (row("Share of noise in the squared velocities", &short(share), "below 0.01"))
-                }
-                @if let Some(deviations) = &noise.positions {
-                    @for (channel, deviation) in prepared.state.iter().zip(deviations) {
-                        (row(&format!("Noise of {}, standard deviation", channel.name), &short(deviation / channel.scale), "far below its range"))
-                    }
-                }
-                (row("Directions seen, the least of them", &short(coverage), "above 0.1; 1 if all alike"))
-            }
-        }
-        p { "Seen least: " (direction(&prepared.state, least.as_slice())) "." }
+        (table(&NUMBERS, &rows))
+        p { "Least observed direction: motion along " (direction(&prepared.state, least.as_slice())) "." }
     }
 }

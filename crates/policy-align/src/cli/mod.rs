@@ -13,6 +13,7 @@ mod flags;
 mod generated;
 mod info;
 mod lines;
+mod page_parts;
 mod picture;
 mod plot;
 mod predict;

@@ -10,7 +10,7 @@ use super::fit::load;
 use super::flags::{ReadFlags, numbers};
 use super::lines::{Lines, short};
 use super::picture::{Picture, draw};
-use super::recorded::read;
+use super::recorded::{base_name, read};
 use super::rollout::followed;
 use super::rollout_flags::RollOutFlags;
 use super::session::{Said, Session};
@@ -64,7 +64,8 @@ impl Plot {
             let start = DVector::from_vec(numbers(from, "--rollout")?);
             Ok(followed(&flags, &model, &start, from)?.states)
         });
-        let picture = Picture::of(&model, dims, shown, paths.collect::<Result<_, Failure>>()?);
+        let title = format!("Policy of {} (grey: outside the demonstrations)", base_name(&self.model));
+        let picture = Picture::of(title, &model, dims, shown, paths.collect::<Result<_, Failure>>()?);
         write_whole(&self.output, &draw(&self.output, &picture)?)
             .map_err(|error| Failure::writing(&self.output, error))?;
         let mut lines = Lines::default();

@@ -12,6 +12,7 @@ use super::fit::load;
 use super::flags::numbers;
 use super::lines::{Lines, counted, list, short};
 use super::picture::{Picture, draw};
+use super::recorded::base_name;
 use super::rollout_flags::RollOutFlags;
 use super::session::{Said, Session};
 
@@ -64,7 +65,9 @@ impl RollOut {
             write_paths(output, &model, std::slice::from_ref(&followed))?;
         }
         if let Some(plot) = &self.plot {
-            let picture = Picture::of(&model, [0, 1.min(model.state.len() - 1)], vec![], vec![followed.states.clone()]);
+            let title = format!("Rollout of {} (grey: outside the demonstrations)", base_name(&self.model));
+            let picture =
+                Picture::of(title, &model, [0, 1.min(model.state.len() - 1)], vec![], vec![followed.states.clone()]);
             write_whole(plot, &draw(plot, &picture)?).map_err(|error| Failure::writing(plot, error))?;
         }
         if session.json {

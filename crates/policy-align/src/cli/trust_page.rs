@@ -1,40 +1,37 @@
 //! The page that says how far to trust a policy.
 
 use maud::{Markup, html};
-use motion::Demonstrations;
+use motion::{Demonstrations, LearntPolicy as _};
 use nalgebra::DMatrix;
 use page::{Card, Document, Part};
-use policy_align::{Decision, Finding, LeftOutEpisode, Model, StateChannel, TrustNumbers, Verdict};
+use policy_align::{Model, TrustNumbers, Verdict};
 
 use super::info::learner;
-use super::lines::{counted, list, short};
+use super::lines::{counted, short};
+use super::page_parts::{NUMBERS, STYLE, channels, decisions, direction, found, left_out, part, row, table};
 use super::picture::Picture;
 
-pub(crate) const STYLE: &str = include_str!("trust_page.css");
-
-/// The page of a model, with a picture of what was shown if it is given, in the units of the learner.
+/// The page of a model, with a picture of the demonstrations if they are given, in the units of the learner.
 pub(crate) fn trust_page(model: &Model, name: &str, shown: Option<&Demonstrations>) -> String {
     let title = format!("How far to trust {name}");
     let opening = Part { id: "verdict".to_owned(), title: "Verdict".to_owned(), body: opening(model, &title) };
     let mut parts = Vec::new();
     if model.state.len() >= 2 {
-        parts.push(part("field", "What was learnt", &field(model, shown)));
+        parts.push(part("field", FIELD, &field(model, shown)));
     }
     parts.push(part("numbers", "Numbers", &numbers(model)));
-    parts.push(part("decisions", "What was decided", &decisions(&model.decisions)));
+    parts.push(part("decisions", "Decisions", &decisions(&model.decisions)));
     parts.push(part("data", "Data", &data(model)));
     Document { title: &title, name, opening, parts, style: STYLE }.html()
 }
 
-pub(crate) fn part(id: &str, title: &str, body: &Markup) -> Part {
-    Part { id: id.to_owned(), title: title.to_owned(), body: html! { h2 { (title) } (body) } }
-}
+const FIELD: &str = "The learnt policy";
 
 fn opening(model: &Model, title: &str) -> Markup {
     let (class, words) = match model.trust.verdict {
-        Verdict::Good => ("verdict", "Good: nothing was found against it."),
-        Verdict::Doubtful => ("verdict doubtful", "Doubtful: look at what follows before you use it."),
-        Verdict::DoNotUse => ("verdict wrong", "Do not use: it is wrong, or nothing tells whether it is right."),
+        Verdict::Good => ("conclusion", "Good: all checks passed."),
+        Verdict::Doubtful => ("conclusion doubtful", "Doubtful: read the findings before you use it."),
+        Verdict::DoNotUse => ("conclusion wrong", "Do not use: the policy is wrong, or cannot be checked."),
     };
     html! {
         h1 #verdict { (title) }
@@ -43,18 +40,9 @@ fn opening(model: &Model, title: &str) -> Markup {
             ul .findings { @for finding in &model.trust.findings { (found(finding)) } }
         }
         p { "Learnt by " (learner(model)) ", from " (counted(model.data.episodes, "episode")) " with "
-            (counted(model.data.samples, "sample")) ". All this is found without knowing the true policy: a "
-            "constraint that is the same in every demonstration cannot be seen in data." }
+            (counted(model.data.samples, "sample")) ". All checks work without the true policy. They cannot detect a \
+             constraint that is the same in every demonstration." }
     }
-}
-
-pub(crate) fn found(finding: &Finding) -> Markup {
-    let label = match finding.verdict {
-        Verdict::Good => "Remark",
-        Verdict::Doubtful => "Doubtful",
-        Verdict::DoNotUse => "Do not use",
-    };
-    html! { li { b { (label) ": " } (finding.what) ". " span .next { "Next: " (finding.next) "." } } }
 }
 
 fn field(model: &Model, shown: Option<&Demonstrations>) -> Markup {
@@ -64,91 +52,94 @@ fn field(model: &Model, shown: Option<&Demonstrations>) -> Markup {
         };
         shown.trajectories().iter().map(|movement| unscaled(movement.states())).collect()
     });
-    let plane = Picture::of(model, [0, 1], movements, vec![]).plane();
+    let plane = Picture::of(FIELD.to_owned(), model, [0, 1], movements, vec![]).plane();
     let svg = plot::Picture::rows(&[&[&plane]]).svg();
+    let potential = if model.policy().potential().is_some() {
+        " Thin lines join states of equal potential, with its value; the policy leads downhill."
+    } else {
+        ""
+    };
     let rest = if model.state.len() > 2 { " All other channels are at their median." } else { "" };
     let caption = format!(
-        "Arrows are the learnt action, grey lines its potential where it has one, blue lines what was shown. Grey areas \
-         are outside of what was shown: nothing is known there.{rest}"
+        "Arrows: the learnt policy. Blue: the demonstrations.{potential} Grey: outside the range of the demonstrations, or too \
+         far from all of them to predict an action.{rest}"
     );
-    Card { id: "field", title: "What was learnt", caption: &caption, remark: None, svg: &svg }.under("What was learnt")
-}
-
-/// A row: what it is, its value, what it should be.
-pub(crate) fn row(what: &str, value: &str, good: &str) -> Markup {
-    html! { tr { td { (what) } td .value { (value) } td { (good) } } }
+    Card { id: "field", title: FIELD, caption: &caption, remark: None, svg: &svg }.under(FIELD)
 }
 
 fn numbers(model: &Model) -> Markup {
     let numbers = &model.trust.numbers;
-    html! {
-        p { "Errors are squared and shares of the policy's own squares: 0 is exact, 1 is as good as standing still." }
-        table .numbers {
-            thead { tr { th { "What" } th .value { "Value" } th { "Good is" } } }
-            tbody {
-                (row("Error along movements left out", &short(numbers.held_out_error), &below(TrustNumbers::GOOD_HELD_OUT_ERROR)))
-                (row("The same of averaging (the direct learner)", &short(numbers.held_out_error_direct), "for comparison"))
-                (row("Error of the direct learner in all directions", &short(numbers.direct_error), "for comparison"))
-                (row("Error that the policy expects of itself", &short(numbers.expected_error), &below(TrustNumbers::GOOD_EXPECTED_ERROR)))
-                (row("Difference of slope and direct policy", &short(numbers.gap), "large where constraints acted"))
-                @if let Some((_, error)) = numbers.episode_errors.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
-                    (row("The worst movement left out", &short(*error), "not far from the others"))
-                }
-                @if let Some(halves) = numbers.halves {
-                    (row("Difference of policies of both halves of the movements", &short(halves), &below(TrustNumbers::GOOD_HALVES)))
-                }
-                (row("Squared errors over those expected", &short(numbers.z_squared), "below 4"))
-                (row("Directions seen, the least of them", &short(numbers.direction_coverage), "above 0.1; 1 if all alike"))
-                (row("Share of rotation in the policy", &short(numbers.rotation_share), "0 for a potential"))
-                (row("Free movements that leave what was shown", &short(numbers.leaving), "0"))
-                (row("Share of noise in the squared steps", &short(numbers.step_noise), "below 0.1"))
-                (aligned(numbers))
-            }
-        }
-        p { "Seen least: " (direction(&model.state, &numbers.unseen_direction)) ". Known least: "
-            (direction(&model.state, &numbers.least_known_direction)) "." }
+    let mut rows = vec![
+        row(
+            "Cross-validated error along the observed motion",
+            &short(numbers.held_out_error),
+            &below(TrustNumbers::GOOD_HELD_OUT_ERROR),
+        ),
+        row(
+            "The same for the direct learner (plain averaging)",
+            &short(numbers.held_out_error_direct),
+            "for comparison",
+        ),
+        row(
+            "Cross-validated error of the direct learner in all directions",
+            &short(numbers.direct_error),
+            "for comparison",
+        ),
+        row(
+            "Error expected from the posterior variance",
+            &short(numbers.expected_error),
+            &below(TrustNumbers::GOOD_EXPECTED_ERROR),
+        ),
+        row("Difference between slope and direct policy", &short(numbers.gap), "large where constraints acted"),
+    ];
+    if let Some((_, error)) = numbers.episode_errors.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
+        rows.push(row("Cross-validated error of the worst episode", &short(*error), "near that of all episodes"));
     }
-}
-
-fn aligned(numbers: &TrustNumbers) -> Markup {
-    let Some(aligned) = &numbers.aligned else { return html! {} };
+    if let Some(halves) = numbers.halves {
+        rows.push(row(
+            "Difference between the policies learnt from either half of the episodes",
+            &short(halves),
+            &below(TrustNumbers::GOOD_HALVES),
+        ));
+    }
+    rows.extend([
+        row(
+            "Squared errors divided by the variance that the policy predicts",
+            &short(numbers.z_squared),
+            "about 1, below 4",
+        ),
+        row(
+            "Coverage of the least observed direction",
+            &short(numbers.direction_coverage),
+            "above 0.1; 1 if all directions are alike",
+        ),
+        row(
+            "Rotation: share of the policy that no potential explains",
+            &short(numbers.rotation_share),
+            "0 for a potential",
+        ),
+        row("Share of rollouts that leave the demonstrated region", &short(numbers.leaving), "0"),
+        row("Share of noise in the squared steps", &short(numbers.step_noise), "below 0.1"),
+    ]);
+    if let Some(aligned) = &numbers.aligned {
+        rows.extend([
+            row("Episodes aligned", &format!("{} of {}", aligned.kept, aligned.kept + aligned.discarded), "nearly all"),
+            row("Disagreement of the aligned potentials", &short(aligned.residual), "below 0.1"),
+            row("Share of held-out samples outside every receptive field", &short(aligned.unsupported), "below 0.05"),
+            row("Difference from the Gaussian process", &short(aligned.difference), "below 0.1"),
+        ]);
+    }
     html! {
-        (row("Movements aligned", &format!("{} of {}", aligned.kept, aligned.kept + aligned.discarded), "nearly all"))
-        (row("Disagreement of aligned potentials", &short(aligned.residual), "below 0.1"))
-        (row("Samples left out that nothing is known of", &short(aligned.unsupported), "below 0.05"))
-        (row("Difference from the Gaussian process", &short(aligned.difference), "below 0.1"))
+        p { "Errors are mean squared errors as a share of the mean squared action: 0 is exact, 1 is no better than standing still." }
+        (table(&NUMBERS, &rows))
+        p { "Least observed direction: motion along " (direction(&model.state, &numbers.unseen_direction))
+            ". The policy is least certain along " (direction(&model.state, &numbers.least_known_direction)) "." }
     }
 }
 
 /// What verdicts ask for.
 fn below(threshold: f64) -> String {
     format!("below {threshold}")
-}
-
-/// A direction, by the channels that it mostly has.
-pub(crate) fn direction(state: &[StateChannel], direction: &[f64]) -> String {
-    let mut parts: Vec<(f64, &str)> =
-        direction.iter().copied().zip(state.iter().map(|channel| channel.name.as_str())).collect();
-    parts.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
-    let listed: Vec<String> = parts.iter().take(3).map(|(part, name)| format!("{} {name}", short(*part))).collect();
-    listed.join(", ")
-}
-
-pub(crate) fn decisions(decisions: &[Decision]) -> Markup {
-    html! {
-        p { "Everything that was decided for you, and the flag that decides otherwise." }
-        table .numbers {
-            thead { tr { th { "What" } th { "Decided" } th { "Why" } th { "Flag" } } }
-            tbody {
-                @for decision in decisions {
-                    tr {
-                        td { (decision.what) } td { (decision.value) } td { (decision.why) }
-                        td { code { (decision.flag) } }
-                    }
-                }
-            }
-        }
-    }
 }
 
 fn data(model: &Model) -> Markup {
@@ -160,29 +151,4 @@ fn data(model: &Model) -> Markup {
         p .where { "Files: "
         (files.join("; ")) ". " (model.made_by.program) ", " (model.made_by.time) ", seed " (model.seed) "." }
     }
-}
-
-/// Names, units and ranges.
-pub(crate) fn channels(state: &[StateChannel]) -> Markup {
-    html! {
-        table .numbers {
-            thead { tr { th { "Channel" } th { "Unit" } th .value { "Least, median, largest" } th .value { "Scale" } } }
-            tbody {
-                @for channel in state {
-                    tr {
-                        td { (channel.name) }
-                        td { (channel.unit.as_deref().unwrap_or("not given")) }
-                        td .value { (list([channel.low, channel.median, channel.high])) }
-                        td .value { (short(channel.scale)) }
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// Episodes that are not learnt from.
-pub(crate) fn left_out(episodes: &[LeftOutEpisode]) -> Markup {
-    let listed: Vec<String> = episodes.iter().map(|left| format!("{} ({})", left.episode, left.why)).collect();
-    html! { @if !listed.is_empty() { p { "Left out: " (listed.join(", ")) "." } } }
 }

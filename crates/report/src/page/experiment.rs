@@ -1,13 +1,12 @@
-//! An experiment: its tables, its figures, what stands out, what the paper leaves open.
+//! An experiment: its tables, reservations about them, its figures, what the paper leaves open.
 
-use experiments::verdict::Verdict;
 use maud::{Markup, html};
 use page::{emphasised, key};
 
 use super::table::{columns, grid, is_printed, list, scales, sideways};
 use super::verdict_bar::{bar, words};
-use super::{Contents, fitted, readings, view};
-use crate::compared::{Compared, Line};
+use super::{Contents, fitted, readings, reservations, view};
+use crate::compared::Compared;
 use crate::contests::Contests;
 use crate::tally::Tally;
 
@@ -28,10 +27,10 @@ pub(super) fn section(compared: &Compared<'_>, contents: &Contents<'_>) -> Marku
         }
         @for (row, what) in compared.failures() { p .notice { code { (row) } ": " (what) "." } }
         @if compared.is_printed() {
-            (printed(compared))
-            @if experiment.id == view::EXPERIMENT { (view::view(contents.sources, &figures)) }
+            (printed(compared)) (reservations::folded(compared, contents))
+            @if experiment.id == view::EXPERIMENT { (view::way(contents.sources)) }
             @for (figure, svg) in &figures { (super::card(figure, svg, experiment.title)) }
-            (standing_out(compared)) (fitted::table(compared)) (contests(compared)) (left_open(compared))
+            (fitted::table(compared)) (contests(compared)) (left_open(compared))
         } @else {
             @for (figure, svg) in &figures { (super::card(figure, svg, experiment.title)) }
             (readings::counts(compared)) (contests(compared)) (left_open(compared))
@@ -84,7 +83,7 @@ fn contests(compared: &Compared<'_>) -> Markup {
     html! {
         @if let Some(contests) = Contests::of(compared.experiment, compared.result) {
             h3 { "Learners side by side" }
-            p { (emphasised(&contests.findings())) " " a href={ "#" (super::learners::ID) } { "Who they are" } }
+            p { (emphasised(&contests.findings())) " " a href={ "#" (super::learners::ID) } { "The learners" } }
             @if let Some(remark) = contests.remark { p { (emphasised(remark)) } }
             (sideways(&format!("Learners side by side: {}", compared.experiment.id), &html! {
                 table .contests {
@@ -103,36 +102,6 @@ fn contests(compared: &Compared<'_>) -> Markup {
     }
 }
 
-fn standing_out(compared: &Compared<'_>) -> Markup {
-    let cells = compared.standing_out();
-    html! {
-        @if !compared.is_glimpse() && !cells.is_empty() {
-            h3 { "What stands out" }
-            p .minor { "Numbers quoted here are of the full run of seed 1." }
-            dl .reasons {
-                // Neighbours of which the same is to be said stand together.
-                @for alike in cells.chunk_by(|(_, a), (_, b)| a == b) {
-                    div .{ "is-" (worst(alike)) } {
-                        @for (line, _) in alike { dt { code { (line.row.id) } " " (line.measure.label()) } }
-                        dd { (emphasised(&sentence(alike[0].1))) }
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// The word of the worst verdict among cells.
-fn worst(cells: &[(Line<'_>, &str)]) -> &'static str {
-    cells.iter().filter_map(|(line, _)| line.cell.verdict).max().map_or("", Verdict::word)
-}
-
-/// With a capital.
-pub(super) fn sentence(word: &str) -> String {
-    let mut letters = word.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
-}
-
 fn left_open(compared: &Compared<'_>) -> Markup {
     let experiment = compared.experiment;
     html! {
@@ -143,15 +112,5 @@ fn left_open(compared: &Compared<'_>) -> Markup {
             (emphasised(experiment.remark))
             " More in " code { "docs/decisions/" (experiment.decisions) } "."
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_sentence_begins_with_a_capital() {
-        assert_eq!(["as in", "Über", ""].map(sentence), ["As in", "Über", ""]);
     }
 }

@@ -34,12 +34,11 @@ pub(super) fn facts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
                 div { dt { "Another run" } dd { "seed " (second.seed) ": "  (beside(second, all)) } }
             }
         }
-        (missing(contents))
     }
 }
 
 /// Figures, or parts of them, that would be here if their data were.
-fn missing(contents: &Contents<'_>) -> Markup {
+pub(super) fn missing(contents: &Contents<'_>) -> Markup {
     let notice = |what: &str, find: fn(&Sources) -> Vec<Figure>| {
         let names: Vec<&str> = find(contents.sources).iter().map(|figure| page::name(figure.title)).collect();
         html! {

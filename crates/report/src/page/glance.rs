@@ -4,16 +4,14 @@ use std::collections::BTreeSet;
 
 use experiments::measure::Measure;
 use experiments::verdict::Verdict;
-use experiments::{Contestant, Experiment, settings};
+use experiments::{Contestant, Experiment};
 use figures::ends_of_reaching;
 use maud::{Markup, html};
-use page::emphasised;
 
-use super::experiment::sentence;
-use super::facts::facts;
+use super::facts::missing;
 use super::fitted;
 use super::verdict_bar::{bar, words};
-use super::{Contents, OVERVIEW, pictures, view};
+use super::{Contents, OVERVIEW, view};
 use crate::compared::{Compared, FEW, Line};
 use crate::contests::Contests;
 use crate::tally::Tally;
@@ -30,7 +28,7 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
                     p .lead {
                         "Demonstrations are made under unknown, changing constraints, which hide the policy. Howard, Klanke, Gienger, Goerick and Vijayakumar showed how to recover it ("
                         cite { "Behaviour Generation in Humanoids by Learning Potential-based Policies from Constrained Motion" }
-                        "). policy-align repeats their experiments; this page holds its results against the paper's numbers."
+                        "). policy-align repeats their experiments; this page compares its results with the paper’s numbers."
                     }
                     (in_short(contents, all))
                 }
@@ -38,13 +36,12 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
                 (total(&tally))
             }
             (how_it_went(&tally, all))
-            @if tally.total() > 0 { (what_was_fitted()) }
             @if all.iter().any(Compared::is_glimpse) {
                 p .notice { "With fewer than " (FEW) " data sets a row single numbers mean little." }
-            } @else { (not_reached(all)) (reservations(contents, all)) (pictures::otherwise(contents)) }
-            (facts(contents, all))
+            } @else { (not_reached(all)) }
+            (missing(contents))
+            (view::way(contents.sources))
         }
-        (view::way(contents.sources))
     }
 }
 
@@ -93,33 +90,6 @@ fn where_naive_errs_less<'a>(all: &[Compared<'a>]) -> impl Iterator<Item = &'a E
         !ahead.is_empty() && ahead.into_iter().all(|ahead| ahead)
     };
     all.iter().filter(|compared| compared.is_printed()).filter(is_ahead).map(|compared| compared.experiment)
-}
-
-/// What is not the paper's.
-fn what_was_fitted() -> Markup {
-    let settings = settings();
-    let unprinted = settings.iter().filter(|setting| setting.is_unprinted()).count();
-    html! {
-        h2 .small { "What was fitted" }
-        ul .points {
-            li {
-                (settings.len()) " settings were chosen so that the printed numbers come out: " (unprinted) " that the paper does not give (where ball, wall and \
-                 obstacle are, the 22 joints’ attractor, time steps, the widths of the regressions and how often they see the samples) and "
-                 (settings.len() - unprinted) " where what it says is read freely or departed from (when the toy’s constraint is drawn anew, the gaps and the \
-                 time step of Table 2). Each experiment’s part lists its own, and which verdicts change when one is a fifth smaller or larger. Robots, scenes \
-                 and start postures, which are not published either, are not counted."
-            }
-            li {
-                "Not all numbers come out at once. In Table 2 PolicyAlign’s regression was chosen for the printed error of the potential; those of the policy \
-                 are then lower than printed. For the 22 joints a regression was chosen that errs less than the one closest to the printed errors."
-            }
-            li {
-                "Table 2, where two hands reach for a ball through the gap between two plates, depends on them most: gaps narrower than 0.17 m are widened, \
-                 which decides which of its numbers agree; the obstacle of its tests, which no demonstration shows, also stops the expert in half of \
-                 the movements; movements last 50 s, the printed ones 2 s."
-            }
-        }
-    }
 }
 
 /// How many cells are reached in total, and how sure that is.
@@ -190,30 +160,13 @@ fn tally_of(compared: &Compared<'_>) -> Markup {
     }
 }
 
-/// The cells that are higher than printed or otherwise off, each with what is known of it.
+/// The cells that are higher than printed or otherwise off; what is known of each stands under its table.
 fn not_reached(all: &[Compared<'_>]) -> Markup {
     let (others, first): (Vec<_>, Vec<_>) =
         all.iter().partition(|compared| compared.experiment.another_reading_of.is_some());
     html! {
         (missed(|which| format!("Numbers that {which}"), &first))
-        (missed(|which| format!("Numbers that {which} in Table 1, taken literally, and are not counted above"), &others))
-    }
-}
-
-/// What single numbers do not show, experiment by experiment. It is said of full runs.
-fn reservations(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
-    let all = all.iter().map(|compared| compared.experiment);
-    let said: Vec<_> =
-        all.flat_map(|experiment| experiment.reservations.iter().map(move |said| (experiment, said))).collect();
-    html! {
-        @if !contents.sources.results.quick && !said.is_empty() {
-            h2 .small { "Other reservations" }
-            ul .differ {
-                @for (experiment, said) in said {
-                    li { a href={ "#" (experiment.id) } { (experiment.title) } ": " (emphasised(said)) }
-                }
-            }
-        }
+        (missed(|which| format!("Numbers that {which} in Table 1, taken literally, not counted above"), &others))
     }
 }
 
@@ -227,73 +180,15 @@ fn missed(heading: fn(&str) -> String, among: &[&Compared<'_>]) -> Markup {
     let which: Vec<&str> = verdicts.into_iter().map(Verdict::plural).collect();
     html! {
         @if !cells.is_empty() {
-            h2 .small { (heading(&which.join(" or "))) }
-            dl .reasons {
+            p .missed { b { (heading(&which.join(" or "))) ":" } }
+            ul .missed {
                 @for (experiment, line) in cells {
-                    div .{ "is-" (line.verdict()) } {
-                        dt { a href={ "#" (experiment.id) } { (experiment.title) } ", " code { (line.row.id) } " " (line.measure.label()) }
-                        dd {
-                            b { (line.ours()) } ", printed " (line.paper()) ". "
-                            @if let Some(word) = experiment.explain(&line.row.id, line.measure) { (emphasised(&sentence(word))) }
-                        }
+                    li data-verdict=(line.verdict()) {
+                        a href={ "#" (experiment.id) } { (experiment.title) } ", " code { (line.row.id) } " " (line.measure.label()) ": "
+                        (line.ours()) ", printed " (line.paper())
                     }
                 }
             }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use experiments::measure::Measure::{
-        self, AlignmentNmse, BeyondLimits, NaiveAll, Nupe, PolicyAlign, PotentialNmse,
-    };
-    use experiments::registry;
-    use experiments::results::{Cell, Results};
-
-    const RECORDS: [&str; 2] = [
-        include_str!("../../../../docs/records/seed-1/results.json"),
-        include_str!("../../../../docs/records/seed-2/results.json"),
-    ];
-
-    /// The records show what is said without numbers, or with a number in words.
-    #[test]
-    fn reservations_are_true() {
-        let said: Vec<&str> =
-            registry().unwrap().iter().flat_map(|experiment| experiment.reservations).copied().collect();
-        assert_eq!(said.len(), 5, "each has its lines below");
-        for records in RECORDS {
-            let results = Results::read("results.json", records).unwrap();
-            let cell = |experiment: &str, row: &str, measure: Measure| -> &Cell {
-                let rows = &results.experiment(experiment).unwrap().rows;
-                &rows.iter().find(|other| other.id == row).unwrap().measures[&measure]
-            };
-            let table1 = |row: &str, measure| cell("table1", row, measure);
-            let rows = registry().unwrap().into_iter().find(|experiment| experiment.id == "table1").unwrap().paper;
-            let apart = rows.keys().map(|row| {
-                let ratio = table1(row, AlignmentNmse).mean / table1(row, PotentialNmse).mean;
-                ratio.max(1.0 / ratio)
-            });
-            assert_eq!(apart.fold(1.0, f64::max).round(), 2.0);
-            let rise = |size: &str| {
-                let [narrow, medium] =
-                    ["narrow", "medium"].map(|width| table1(&format!("sinusoidal-{size}-{width}"), Nupe));
-                (medium.mean / narrow.mean, medium.paper.unwrap().mean / narrow.paper.unwrap().mean)
-            };
-            let (short, long) = (rise("40x40"), rise("100x100"));
-            assert!(
-                (short.0 - 1.0).abs() < 0.06 && short.1 > 1.06 && long.0 > 1.1 && long.1 < 1.0,
-                "{short:?} {long:?}"
-            );
-            for row in ["training", "unseen_barrier", "unconstrained"] {
-                let ours = cell("table2", row, PolicyAlign);
-                assert!(ours.mean < 0.5 * ours.paper.unwrap().mean);
-            }
-            let [ours, naive] = [PolicyAlign, NaiveAll].map(|measure| cell("table2", "training", measure));
-            assert!(ours.paper.unwrap().mean > naive.paper.unwrap().mean && ours.mean < naive.mean);
-            let beyond = cell("asimo22", "policy_align", BeyondLimits).mean;
-            assert!((75.0..85.0).contains(&beyond), "{beyond}");
-            assert!(cell("asimo22", "body/naive", Nupe).mean < cell("asimo22", "policy_align", Nupe).mean);
         }
     }
 }

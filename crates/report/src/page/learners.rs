@@ -1,4 +1,4 @@
-//! Who learns, and what the errors are: what the tables take for known.
+//! The glossary: learners, errors, and names of rows and settings.
 
 use experiments::Contestant;
 use experiments::measure::Measure;
@@ -12,7 +12,7 @@ use crate::legend::{MEASURES, TERMS, names};
 /// Its address within the page.
 pub(super) const ID: &str = "learners";
 
-/// The part after the opening.
+/// The part on them. In the tables the words say the same where they occur.
 pub(super) fn part() -> Part {
     let title = "Learners and errors".to_owned();
     let body = html! {
@@ -21,15 +21,15 @@ pub(super) fn part() -> Part {
             @for who in Contestant::ALL { div { dt { (swatch(who)) (who.label()) } dd { (who.description()) } } }
         }
         p { (emphasised(CAUTION)) }
-        h3 { "What the errors are" }
+        h3 { "Errors" }
         p {
-            "π is a policy, φ its potential, N the projector on what a constraint lets through. Errors are mean squared errors as a share of the \
-             variance of the true policy or potential: 0 is perfect, 1 as bad as the best constant. (A1) to (A4) and (9) are the paper’s equations."
+            "π is a policy, φ its potential, N the projector onto the null space of a constraint. Errors are mean squared errors as a share of the \
+             variance of the true policy or potential: 0 is perfect, 1 is no better than the best constant. (A1) to (A4) and (9) are the paper’s equations."
         }
         dl .measures {
             @for (measures, meaning) in MEASURES { div { dt { (names(measures, Measure::label)) } dd { (meaning) } } }
         }
-        h3 { "What rows and settings are called" }
+        h3 { "Names of rows and settings" }
         dl .measures { @for (names, meaning) in TERMS { div { dt { (names) } dd { (meaning) } } } }
     };
     Part { id: ID.to_owned(), title, body }

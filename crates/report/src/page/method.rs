@@ -1,16 +1,20 @@
 //! How it was measured, and how to measure it again.
 
-use experiments::results::Results;
 use maud::html;
 use page::{Part, emphasised};
 
+use super::Contents;
+use super::facts::facts;
+use crate::compared::Compared;
 use crate::legend::RULE;
 
 /// The last part of the page.
-pub(super) fn part(results: &Results) -> Part {
+pub(super) fn part(contents: &Contents<'_>, all: &[Compared<'_>]) -> Part {
+    let results = &contents.sources.results;
     let title = "How it was measured".to_owned();
     let body = html! {
         h2 { (title) }
+        (facts(contents, all))
         p { (emphasised(RULE)) }
         h3 { "Run it yourself" }
         pre tabindex="0" { code {

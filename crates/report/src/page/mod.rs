@@ -1,5 +1,6 @@
 //! The report as one page that needs nothing else: style, script and pictures are in it.
 
+mod departures;
 mod experiment;
 mod facts;
 mod fitted;
@@ -8,6 +9,7 @@ mod learners;
 mod method;
 mod pictures;
 mod readings;
+mod reservations;
 mod table;
 mod verdict_bar;
 mod view;
@@ -19,9 +21,13 @@ use maud::{Markup, html};
 use page::{Card, Document, Part};
 
 use super::compared::{Compared, compared};
+use crate::tally::Tally;
 
 /// The figure that says what it is about.
 const OVERVIEW: &str = "overview";
+
+/// The experiment that comes first.
+const FIRST: &str = "table1";
 
 /// What the page shows.
 pub struct Contents<'a> {
@@ -51,27 +57,35 @@ fn card(figure: &Figure, svg: &str, heading: &str) -> Markup {
     Card { id: figure.id, title: figure.title, caption: figure.caption, remark, svg }.under(heading)
 }
 
-/// All parts after the opening: what it is about, who learns, what came of it, how it was measured.
+/// All parts after the opening: the paper's first table, the robot, what was fitted, all other experiments, the idea, names,
+/// how it was measured.
 fn parts(contents: &Contents<'_>, all: &[Compared<'_>]) -> Vec<Part> {
     let experiment = |compared: &Compared<'_>| Part {
         id: compared.experiment.id.to_owned(),
         title: compared.experiment.title.to_owned(),
         body: experiment::section(compared, contents),
     };
-    let mut parts = Vec::new();
+    let printed = Tally::of(all.iter().map(|compared| (compared.experiment, compared.result))).total();
+    let (first, others): (Vec<_>, Vec<_>) = all.iter().partition(|compared| compared.experiment.id == FIRST);
+    let mut parts: Vec<Part> = first.into_iter().map(experiment).collect();
+    parts.extend(view::part(contents));
+    parts.extend(departures::part(contents, printed));
+    parts.extend(others.into_iter().map(experiment));
+    parts.extend(ideas(contents, all));
+    parts.push(learners::part());
+    parts.push(method::part(contents, all));
+    parts
+}
+
+/// Figures that belong to no experiment of the run.
+fn ideas(contents: &Contents<'_>, all: &[Compared<'_>]) -> Option<Part> {
     let shown = |id: Option<&str>| id.is_some_and(|id| all.iter().any(|compared| compared.experiment.id == id));
     let others: Vec<_> =
         contents.figures.iter().filter(|(figure, _)| !shown(figure.experiment) && figure.id != OVERVIEW).collect();
-    if !others.is_empty() {
-        let title = "The idea in pictures".to_owned();
-        let body = html! {
-            h2 { (title) }
-            @for (figure, svg) in others { (card(figure, svg, &title)) }
-        };
-        parts.push(Part { id: "ideas".to_owned(), title, body });
-    }
-    parts.push(learners::part());
-    parts.extend(all.iter().map(experiment));
-    parts.push(method::part(&contents.sources.results));
-    parts
+    let title = "The idea in pictures".to_owned();
+    let body = html! {
+        h2 { (title) }
+        @for (figure, svg) in &others { (card(figure, svg, &title)) }
+    };
+    (!others.is_empty()).then(|| Part { id: "ideas".to_owned(), title, body })
 }

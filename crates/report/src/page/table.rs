@@ -7,6 +7,7 @@ use maud::{Markup, html};
 use page::{Reference, Scale, Strip, axis};
 
 use crate::compared::{Compared, Line, NOTHING, Second};
+use crate::legend::{meaning, term};
 
 /// Rows from which the paper's layout is easier to read than a list.
 const MANY_ROWS: usize = 4;
@@ -59,7 +60,7 @@ pub(super) fn grid(compared: &Compared<'_>, columns: &[Measure], scales: &Scales
             thead {
                 tr {
                     th scope="col" { "Row" }
-                    @for measure in columns { th scope="col" { (measure.label()) (axis(scales[measure])) } }
+                    @for &measure in columns { th scope="col" { (named(measure)) (axis(scales[&measure])) } }
                 }
             }
             tbody {
@@ -86,9 +87,19 @@ pub(super) fn sideways(label: &str, table: &Markup) -> Markup {
     html! { div .sideways tabindex="0" role="region" aria-label=(label) { (table) } }
 }
 
-/// A name that may be broken after each of its parts.
+/// A name that may be broken after each of its parts, which say what they mean.
 fn parts(name: &str) -> Markup {
-    html! { @for part in name.split_inclusive('-') { (part) wbr; } }
+    html! { @for (at, part) in name.split('-').enumerate() { @if at > 0 { "-" wbr; } (explained(part, term(part))) } }
+}
+
+/// A measure, which says what it is.
+fn named(measure: Measure) -> Markup {
+    explained(measure.label(), meaning(measure))
+}
+
+/// A word that shows its meaning when it is pointed at.
+fn explained(word: &str, meaning: Option<&str>) -> Markup {
+    html! { @if let Some(meaning) = meaning { abbr title=(meaning) { (word) } } @else { (word) } }
 }
 
 /// Whether a list has columns for what is printed.
@@ -124,7 +135,7 @@ pub(super) fn list(compared: &Compared<'_>, scales: &Scales, wanted: fn(&Line<'_
                         @for (i, line) in lines.iter().enumerate() {
                             tr data-row=(row.id) data-measure=(line.measure.name()) {
                                 @if i == 0 { th scope="rowgroup" rowspan=(lines.len()) { (parts(&row.id)) } }
-                                th scope="row" { (line.measure.label()) }
+                                th scope="row" { (named(line.measure)) }
                                 (cells(line, columns))
                                 @if let Some(second) = compared.second { (beside(second, line)) }
                                 td .dots data-label="Each data set" { (strip(line, scales[&line.measure])) (axis(scales[&line.measure])) }

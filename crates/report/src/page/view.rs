@@ -1,10 +1,13 @@
 //! The grasp to walk around in: the robot, the wall and everybody's hand paths, drawn by a script of the page.
 
+use figures::Sources;
 use figures::view::{Staged, colors, staged};
-use figures::{Figure, Sources};
 use maud::{Markup, PreEscaped, html};
+use page::Part;
 
-/// The experiment beside which it stands.
+use super::Contents;
+
+/// The experiment that it shows.
 pub(super) const EXPERIMENT: &str = "table2";
 
 /// The figure data that it plays.
@@ -35,19 +38,21 @@ const SCRIPT: [&str; 13] = [
 const START: &str = "startView(document.getElementById(\"view\"), \
                      JSON.parse(document.getElementById(\"grasp-playback\").textContent));";
 
-/// The view; nothing where a run has not computed what it plays. `figures` are those beside it: the first is what is
-/// pointed to where it cannot be drawn.
-pub(super) fn view(sources: &Sources, figures: &[&(Figure, String)]) -> Markup {
-    let still = figures.first().map(|(figure, _)| format!("#figure-{}", figure.id));
-    html! {
-        @if let Some(Staged { stopped, playback }) = sources.documents.get(DOCUMENT).and_then(staged) {
-            h3 #(PLACE) { "Walk around the robot" }
+/// The view; none where a run has not computed what it plays. The first figure of its experiment is pointed to where it
+/// cannot be drawn.
+pub(super) fn part(contents: &Contents<'_>) -> Option<Part> {
+    let Staged { stopped, playback } = contents.sources.documents.get(DOCUMENT).and_then(staged)?;
+    let still = contents.figures.iter().find(|(figure, _)| figure.experiment == Some(EXPERIMENT));
+    let still = still.map(|(figure, _)| format!("#figure-{}", figure.id));
+    let title = "Walk around the robot".to_owned();
+    let body = html! {
+            h2 { (title) }
             p {
-                "Both hands reach for the ball, led by the expert’s policy or by one that was learnt from demonstrations: past \
-                 the wall that was in their way, past an obstacle that no demonstration shows, and with nothing in the way. " (held(&stopped)) " \
-                 PolicyAlign knows where to go from the first step on, but all demonstrations reach the ball from one side, so the potential fitted \
-                 there keeps sloping beyond it: its hands drift past the ball in the end, sometimes farther than the robot’s arms can follow. The slope GP goes where the \
-                 expert goes: the expert’s potential is quadratic, and its families contain those. Table 2 compares \
+                "Both hands reach for the ball, guided by the expert’s policy or by a learnt one: through the gap in the wall of the demonstrations, past \
+                 an obstacle that no demonstration contains, and unconstrained. " (held(&stopped)) " \
+                 PolicyAlign heads for the ball from the first step. All demonstrations reach the ball from one side, so its potential \
+                 keeps sloping beyond the ball: the hands drift past it, sometimes farther than the robot’s arms can follow. The slope GP follows \
+                 the expert, whose potential is quadratic and so among the functions that it assumes. Table 2 compares \
                  actions at the samples of the demonstrations, not where movements end."
             }
             div #view data-still=[still] style=(colors()) {
@@ -55,8 +60,8 @@ pub(super) fn view(sources: &Sources, figures: &[&(Figure, String)]) -> Markup {
             }
             script type="application/json" id="grasp-playback" { (PreEscaped(within_script(&playback.to_string()))) }
             script type="module" { (PreEscaped(SCRIPT.concat())) (PreEscaped(START)) }
-        }
-    }
+    };
+    Some(Part { id: PLACE.to_owned(), title, body })
 }
 
 /// Why the expert stops, where it does.
@@ -67,13 +72,13 @@ fn held(stopped: &[usize]) -> String {
     }
     let word = if numbers.len() == 1 { "start" } else { "starts" };
     format!(
-        "From {word} {} the obstacle stops the expert too: the plate stops its hand, whose place lies right \
-         behind it, and the policy, which knows of no obstacle, keeps pushing straight on.",
+        "From {word} {} the obstacle stops the expert too: the place of its hand lies right behind the plate, and the \
+         policy, which ignores obstacles, keeps pushing straight on.",
         numbers.join(" and ")
     )
 }
 
-/// A way to the view, for the opening.
+/// A way to the view.
 pub(super) fn way(sources: &Sources) -> Markup {
     html! {
         @if sources.documents.contains_key(DOCUMENT) {

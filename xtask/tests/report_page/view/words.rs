@@ -51,7 +51,7 @@ fn what_holds_the_expert_is_said() {
     assert!(said("naive", 0).contains("Its left hand is held by the plate before its place"));
     let held = said("expert", 1);
     assert!(held.contains("Its left hand is held") && !held.contains("right hand is held"), "{held}");
-    let above: String = page.evaluate("document.getElementById('walk').nextElementSibling.textContent");
+    let above: String = page.evaluate("document.querySelector('#walk > p').textContent");
     assert!(above.contains("From start 2 the obstacle stops the expert too"), "{above}");
 }
 

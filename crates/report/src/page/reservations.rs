@@ -1,0 +1,122 @@
+//! What single numbers of an experiment do not show, and why some stand out: folded, under its table.
+
+use experiments::verdict::Verdict;
+use maud::{Markup, html};
+use page::emphasised;
+
+use super::Contents;
+use crate::compared::{Compared, Line};
+
+/// They; nothing where there is nothing to say, or too little was run to say it.
+pub(super) fn folded(compared: &Compared<'_>, contents: &Contents<'_>) -> Markup {
+    let full = !contents.sources.results.quick && !compared.is_glimpse();
+    let cells = if full { compared.standing_out() } else { vec![] };
+    let said = if full { compared.experiment.reservations } else { &[] };
+    html! {
+        @if !cells.is_empty() || !said.is_empty() {
+            details .reservations {
+                summary { (title(cells.len())) }
+                @if !said.is_empty() { ul .points { @for said in said { li { (emphasised(&sentence(said))) } } } }
+                @if !cells.is_empty() {
+                    p .minor { "Numbers quoted here are of the full run of seed 1." }
+                    (reasons(&cells))
+                }
+            }
+        }
+    }
+}
+
+fn title(standing_out: usize) -> String {
+    match standing_out {
+        0 => "Reservations".to_owned(),
+        1 => "Reservations, and the number that stands out".to_owned(),
+        count => format!("Reservations, and the {count} numbers that stand out"),
+    }
+}
+
+/// The cells that need a word, each with it. Neighbours of which the same is to be said stand together.
+fn reasons(cells: &[(Line<'_>, &str)]) -> Markup {
+    html! {
+        dl .reasons {
+            @for alike in cells.chunk_by(|(_, a), (_, b)| a == b) {
+                div .{ "is-" (worst(alike)) } {
+                    @for (line, _) in alike { dt { code { (line.row.id) } " " (line.measure.label()) } }
+                    dd { (emphasised(&sentence(alike[0].1))) }
+                }
+            }
+        }
+    }
+}
+
+/// The word of the worst verdict among cells.
+fn worst(cells: &[(Line<'_>, &str)]) -> &'static str {
+    cells.iter().filter_map(|(line, _)| line.cell.verdict).max().map_or("", Verdict::word)
+}
+
+/// With a capital.
+fn sentence(word: &str) -> String {
+    let mut letters = word.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use experiments::measure::Measure::{
+        self, AlignmentNmse, BeyondLimits, NaiveAll, Nupe, PolicyAlign, PotentialNmse,
+    };
+    use experiments::registry;
+    use experiments::results::{Cell, Results};
+
+    use super::sentence;
+
+    const RECORDS: [&str; 2] = [
+        include_str!("../../../../docs/records/seed-1/results.json"),
+        include_str!("../../../../docs/records/seed-2/results.json"),
+    ];
+
+    #[test]
+    fn a_sentence_begins_with_a_capital() {
+        assert_eq!(["as in", "Über", ""].map(sentence), ["As in", "Über", ""]);
+    }
+
+    /// The records show what is said without numbers, or with a number in words.
+    #[test]
+    fn reservations_are_true() {
+        let said: Vec<&str> =
+            registry().unwrap().iter().flat_map(|experiment| experiment.reservations).copied().collect();
+        assert_eq!(said.len(), 5, "each has its lines below");
+        for records in RECORDS {
+            let results = Results::read("results.json", records).unwrap();
+            let cell = |experiment: &str, row: &str, measure: Measure| -> &Cell {
+                let rows = &results.experiment(experiment).unwrap().rows;
+                &rows.iter().find(|other| other.id == row).unwrap().measures[&measure]
+            };
+            let table1 = |row: &str, measure| cell("table1", row, measure);
+            let rows = registry().unwrap().into_iter().find(|experiment| experiment.id == "table1").unwrap().paper;
+            let apart = rows.keys().map(|row| {
+                let ratio = table1(row, AlignmentNmse).mean / table1(row, PotentialNmse).mean;
+                ratio.max(1.0 / ratio)
+            });
+            assert_eq!(apart.fold(1.0, f64::max).round(), 2.0);
+            let rise = |size: &str| {
+                let [narrow, medium] =
+                    ["narrow", "medium"].map(|width| table1(&format!("sinusoidal-{size}-{width}"), Nupe));
+                (medium.mean / narrow.mean, medium.paper.unwrap().mean / narrow.paper.unwrap().mean)
+            };
+            let (short, long) = (rise("40x40"), rise("100x100"));
+            assert!(
+                (short.0 - 1.0).abs() < 0.06 && short.1 > 1.06 && long.0 > 1.1 && long.1 < 1.0,
+                "{short:?} {long:?}"
+            );
+            for row in ["training", "unseen_barrier", "unconstrained"] {
+                let ours = cell("table2", row, PolicyAlign);
+                assert!(ours.mean < 0.5 * ours.paper.unwrap().mean);
+            }
+            let [ours, naive] = [PolicyAlign, NaiveAll].map(|measure| cell("table2", "training", measure));
+            assert!(ours.paper.unwrap().mean > naive.paper.unwrap().mean && ours.mean < naive.mean);
+            let beyond = cell("asimo22", "policy_align", BeyondLimits).mean;
+            assert!((75.0..85.0).contains(&beyond), "{beyond}");
+            assert!(cell("asimo22", "body/naive", Nupe).mean < cell("asimo22", "policy_align", Nupe).mean);
+        }
+    }
+}
