@@ -159,7 +159,7 @@ pub(crate) fn page_of(leverage: &Measured) -> String {
     );
     for of_experiment in settings().chunk_by(|a, b| a.experiment == b.experiment) {
         let rows: Vec<Vec<String>> = of_experiment.iter().map(|setting| row(setting, leverage.of(setting))).collect();
-        let header = ["setting", "the paper says", "used", "a fifth less changes", "a fifth more changes"];
+        let header = ["setting", "class", "the paper says", "used", "a fifth less changes", "a fifth more changes"];
         let _ = write!(text, "\n## `{}`\n\n{}", of_experiment[0].experiment, markdown_table(&header, &rows));
     }
     text
@@ -171,7 +171,7 @@ fn row(setting: &Setting, changed: Option<&Changed>) -> Vec<String> {
         _ => turned.iter().map(Turned::named).collect::<Vec<_>>().join("; "),
     };
     let [smaller, larger] = changed.map_or_else(Default::default, |c| [&c.smaller, &c.larger].map(|t| named(t)));
-    vec![setting.name.to_owned(), setting.paper.to_owned(), setting.shown(), smaller, larger]
+    vec![setting.name.to_owned(), setting.class.name().to_owned(), setting.paper.to_owned(), setting.shown(), smaller, larger]
 }
 
 #[cfg(test)]
@@ -216,7 +216,7 @@ mod tests {
         let setting = &settings()[0];
         let (experiment, name) = (setting.experiment.to_owned(), setting.name.to_owned());
         let changed = Changed { experiment, setting: name, smaller: vec![lower], larger: vec![] };
-        assert_eq!(row(setting, Some(&changed))[3..], ["narrow nUPE: agrees → lower", "–"]);
+        assert_eq!(row(setting, Some(&changed))[4..], ["narrow nUPE: agrees → lower", "–"]);
     }
 
     #[test]

@@ -30,6 +30,7 @@ fn sound_movements_give_no_reason() {
         n_trajectories: 100,
         n_samples: 100,
         redraw: Redraw::Every(20),
+        ..ToySystem::default()
     };
     let urdf = include_str!("../../../robots/planar_three_link.urdf");
     let recorded = [

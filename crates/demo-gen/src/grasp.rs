@@ -43,7 +43,7 @@ pub struct Grasp {
     pub gap_least: f64,
     /// Variance of start postures around "ready", in rad² or m². Default 0.1.
     pub start_variance: f64,
-    /// Start palms are before this x, metres. Default 0.26, out of the wall's influence.
+    /// Start palms are before this x, metres. Default: where the wall is not felt.
     pub start_depth: f64,
     /// Start palms are farther than this to their side, |y| in metres. Default 0.02.
     pub start_side: f64,
@@ -63,16 +63,18 @@ pub struct GraspStart {
 impl Grasp {
     /// The set-up of Section 4.2.
     pub fn new(body: UpperBody) -> Self {
+        let scene = GraspScene::default();
+        let start_depth = scene.wall - scene.wall_influence;
         Grasp {
             body,
-            scene: GraspScene::default(),
+            scene,
             roll_out: RollOut { time_step: 0.5, n_samples: 100, ..RollOut::default() },
             n_trajectories: 100,
             gap_mean: 0.25,
             gap_deviation: 0.1,
             gap_least: 0.17,
             start_variance: 0.1,
-            start_depth: 0.26,
+            start_depth,
             start_side: 0.02,
         }
     }

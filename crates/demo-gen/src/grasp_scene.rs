@@ -23,11 +23,11 @@ pub struct GraspScene {
     pub table_depth: [f64; 2],
     /// The table's |y| is at most this. Default 0.6.
     pub table_half_width: f64,
-    /// The wall, or what else stands between robot and ball, is in the plane of this x. Default 0.35.
+    /// The wall, or what else stands between robot and ball, is in the plane of this x. Default 0.35, half way to the ball.
     pub wall: f64,
     /// From which distance to its plane the wall is felt. Default 0.09.
     pub wall_influence: f64,
-    /// The obstacle that no demonstration shows is as wide as this to either side of the middle. Default 0.13.
+    /// The obstacle that no demonstration shows is as wide as this to either side of the middle. Default 0.125, as wide as the mean gap.
     pub obstacle_half_width: f64,
 }
 
@@ -41,7 +41,7 @@ impl Default for GraspScene {
             table_half_width: 0.6,
             wall: 0.35,
             wall_influence: 0.09,
-            obstacle_half_width: 0.13,
+            obstacle_half_width: 0.125,
         }
     }
 }

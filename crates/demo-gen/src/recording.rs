@@ -45,3 +45,8 @@ pub(crate) fn record_each(
     let in_trajectory = |trajectory| move |source| DemoGenError::InTrajectory { trajectory, source: Box::new(source) };
     (0..n_trajectories).map(|trajectory| record().map_err(in_trajectory(trajectory))).collect()
 }
+
+/// Whether starts can be drawn from [−`range`, `range`).
+pub(crate) fn check_start_range(range: f64) -> Result<(), DemoGenError> {
+    if range.is_finite() && range >= 0.0 { Ok(()) } else { Err(DemoGenError::StartRange { range }) }
+}

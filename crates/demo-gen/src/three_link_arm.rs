@@ -5,7 +5,7 @@ use rand_distr::UnitCircle;
 use serde::Serialize;
 
 use crate::hand::hand_in_plane;
-use crate::recording::record_each;
+use crate::recording::{check_start_range, record_each};
 use crate::{DemoGenError, Parabola, Recording, RollOut};
 
 /// The planar arm of Section 4.4, whose constraints all leave the same direction unseen: each trajectory keeps the link
@@ -62,9 +62,7 @@ impl ThreeLinkArm {
     /// [`DemoGenError::InTrajectory`] with what [`RollOut::record`] says.
     pub fn record<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<Recording>, DemoGenError> {
         let range = self.start_range;
-        if !(range.is_finite() && range >= 0.0) {
-            return Err(DemoGenError::StartRange { range });
-        }
+        check_start_range(range)?;
         let hand = self.robot.chain(self.robot.link("hand")?);
         record_each(self.n_trajectories, || {
             let start = DVector::from_fn(self.robot.n_joints(), |_, _| range * rng.random_range(-1.0..1.0));

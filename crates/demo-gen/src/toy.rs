@@ -4,7 +4,7 @@ use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 use serde::Serialize;
 
-use crate::recording::record_each;
+use crate::recording::{check_start_range, record_each};
 use crate::{DemoGenError, Recording, RollOut, ToyPotential};
 
 /// When a trajectory of the toy system gets a new constraint.
@@ -48,30 +48,42 @@ pub struct ToySystem {
     pub potential: ToyPotential,
     /// Number of trajectories K. Default 40.
     pub n_trajectories: usize,
-    /// Samples of each trajectory, N, one second apart. Default 40.
+    /// Samples of each trajectory, N. Default 40.
     pub n_samples: usize,
     /// When the constraint changes. Default every 20 samples.
     pub redraw: Redraw,
+    /// Starts are uniform in [−`start_range`, `start_range`)². Default 2, the axes of the paper's Figure 5.
+    pub start_range: f64,
+    /// Time between two samples, δt in seconds. Default 1, with which the paper's (9) needs no δt.
+    pub time_step: f64,
 }
 
 impl Default for ToySystem {
     fn default() -> Self {
-        ToySystem { potential: ToyPotential::parabola(), n_trajectories: 40, n_samples: 40, redraw: Redraw::Every(20) }
+        ToySystem {
+            potential: ToyPotential::parabola(),
+            n_trajectories: 40,
+            n_samples: 40,
+            redraw: Redraw::Every(20),
+            start_range: 2.0,
+            time_step: 1.0,
+        }
     }
 }
 
 impl ToySystem {
-    /// One data set: K movements from starts uniform in [−2, 2)².
+    /// One data set: K movements.
     ///
     /// Trajectory after trajectory, the generator is asked for the start x₁, x₂ and then for the α of each constraint
     /// in order of time, so that the same seed gives the same bits, and a longer data set begins like a shorter one.
     ///
     /// # Errors
-    /// [`DemoGenError::NoTrajectory`], [`DemoGenError::TooFewSamples`], [`DemoGenError::Redraw`], or
-    /// [`DemoGenError::InTrajectory`] with what [`RollOut::record`] says.
+    /// [`DemoGenError::NoTrajectory`], [`DemoGenError::TooFewSamples`], [`DemoGenError::Redraw`],
+    /// [`DemoGenError::StartRange`], or [`DemoGenError::InTrajectory`] with what [`RollOut::record`] says.
     pub fn record<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<Recording>, DemoGenError> {
-        let roll_out = RollOut { n_samples: self.n_samples, ..RollOut::default() };
+        let roll_out = RollOut { n_samples: self.n_samples, time_step: self.time_step, ..RollOut::default() };
         roll_out.check()?;
+        check_start_range(self.start_range)?;
         let first_samples = self.redraw.first_samples(self.n_samples)?;
         record_each(self.n_trajectories, || self.record_one(&roll_out, &first_samples, rng))
     }
@@ -82,7 +94,7 @@ impl ToySystem {
         first_samples: &[usize],
         rng: &mut R,
     ) -> Result<Recording, DemoGenError> {
-        let start = DVector::from_fn(2, |_, _| rng.random_range(-2.0..2.0));
+        let start = DVector::from_fn(2, |_, _| self.start_range * rng.random_range(-1.0..1.0));
         let in_constraint = |sample| move |source| DemoGenError::Constraint { sample, source };
         let phases = first_samples.iter().map(|&sample| {
             let alpha = DMatrix::from_fn(1, 2, |_, _| rng.sample(StandardNormal));

@@ -194,6 +194,8 @@ fn toy_systems() {
     let cases = [
         (ToySystem { n_trajectories: 0, ..good() }, DemoGenError::NoTrajectory),
         (ToySystem { n_samples: 1, ..good() }, DemoGenError::TooFewSamples { n_samples: 1 }),
+        (ToySystem { start_range: -1.0, ..good() }, DemoGenError::StartRange { range: -1.0 }),
+        (ToySystem { start_range: f64::INFINITY, ..good() }, DemoGenError::StartRange { range: f64::INFINITY }),
         (ToySystem { redraw: Redraw::Every(0), ..good() }, redraw(Redraw::Every(0))),
         (ToySystem { redraw: Redraw::Segments(0), ..good() }, redraw(Redraw::Segments(0))),
         (ToySystem { redraw: Redraw::Segments(41), ..good() }, redraw(Redraw::Segments(41))),

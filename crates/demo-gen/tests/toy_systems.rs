@@ -14,9 +14,17 @@ fn record(system: &ToySystem, seed: u64) -> Vec<Recording> {
 
 fn toy() -> impl Strategy<Value = ToySystem> {
     let potential = prop_oneof![Just(ToyPotential::parabola()), Just(ToyPotential::sinusoidal())];
-    (potential, 1..6usize, 2..50usize).prop_flat_map(|(potential, n_trajectories, n_samples)| {
+    let drawn = (potential, 1..6usize, 2..50usize, 0.1..3.0, 0.1..2.0);
+    drawn.prop_flat_map(|(potential, n_trajectories, n_samples, start_range, time_step)| {
         let redraw = prop_oneof![(1..60usize).prop_map(Redraw::Every), (1..=n_samples).prop_map(Redraw::Segments)];
-        redraw.prop_map(move |redraw| ToySystem { potential: potential.clone(), n_trajectories, n_samples, redraw })
+        redraw.prop_map(move |redraw| ToySystem {
+            potential: potential.clone(),
+            n_trajectories,
+            n_samples,
+            redraw,
+            start_range,
+            time_step,
+        })
     })
 }
 
@@ -35,7 +43,7 @@ proptest! {
         prop_assert_eq!(recordings.len(), system.n_trajectories);
         for recording in &recordings {
             prop_assert_eq!(recording.observed.states().shape(), (2, system.n_samples));
-            prop_assert!(recording.observed.state(0).amax() <= 2.0);
+            prop_assert!(recording.observed.state(0).amax() <= system.start_range);
         }
     }
 
@@ -44,7 +52,7 @@ proptest! {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let n = system.n_samples;
         for recording in record(&system, seed) {
-            let start = dvector![rng.random_range(-2.0..2.0), rng.random_range(-2.0..2.0)];
+            let start = system.start_range * dvector![rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)];
             prop_assert_eq!(recording.observed.state(0).into_owned(), start);
             let mut projector = NullSpaceProjector::identity(2);
             for sample in 0..n {

@@ -31,6 +31,8 @@ pub struct Beside {
     /// Least squares on radial basis functions, where states are planar.
     pub(super) constraint_consistent: Option<ConstraintConsistent>,
     pub(super) gaussians: Gaussians,
+    /// Share of the samples that is held out.
+    pub held_out: f64,
 }
 
 /// What they learnt, and those who judge it.
@@ -93,7 +95,7 @@ impl Beside {
         let demonstrations = demonstrations(recordings)?;
         let sit = |algorithm: &PolicyAlign| {
             let aligned = algorithm.align(&demonstrations)?;
-            let test = TestSamples::draw(&aligned, &mut rng.clone())?;
+            let test = TestSamples::draw(&aligned, self.held_out, &mut rng.clone())?;
             Ok((aligned, test))
         };
         let sat: Vec<(Aligned, TestSamples)> = algorithms.iter().map(sit).collect::<anyhow::Result<_>>()?;
@@ -218,7 +220,7 @@ impl<S: Scene> Trial for BesideTrial<S> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::exam::examine;
+    use super::super::exam::Protocol;
     use super::super::table1::{toy_beside, toy_regressor};
     use super::*;
     use crate::pupil::Pupil;
@@ -233,7 +235,9 @@ mod tests {
         let recordings = system.record(&mut rng).unwrap();
         let (beside, algorithm) = (toy_beside(FrontEnd::Map, 150), PolicyAlign::default());
         let sat = beside.sit(&recordings, std::slice::from_ref(&algorithm), &rng).unwrap();
-        let exam = examine(&recordings, &algorithm, &[Pupil::PolicyAlign(toy_regressor())], &mut rng).unwrap();
+        let pupils = vec![Pupil::PolicyAlign(toy_regressor())];
+        let protocol = Protocol { algorithm: algorithm.clone(), pupils, held_out: beside.held_out };
+        let exam = protocol.examine(&recordings, &mut rng).unwrap();
         assert_eq!(sat.judges(0)[0].samples(), exam.judge().samples());
         assert_eq!(sat.both.slope().report().rows, 150);
 

@@ -7,6 +7,7 @@ use constraints::PfaffianConstraint;
 use demo_gen::{Recording, demonstrations};
 use motion::{LearntPolicy, Policy};
 use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
 
 use super::Measures;
 use super::judge::Judge;
@@ -16,7 +17,7 @@ use crate::measure::Measure;
 
 /// What an exam tests on.
 pub(crate) const TESTED_ON: &str =
-    "a tenth of the samples of the movements that alignment keeps; measures named _all: of all movements";
+    "held-out samples of the movements that alignment keeps; measures named _all: of all movements";
 
 /// What was learnt, and those who judge it.
 pub(crate) struct Exam<'a> {
@@ -36,19 +37,26 @@ pub(super) fn errors(judge: &Judge<'_>, learnt: &dyn LearntPolicy) -> anyhow::Re
     Ok(errors)
 }
 
-/// Aligns the recordings, draws what is held out, and lets each learner learn.
-pub(crate) fn examine<'a>(
-    recordings: &'a [Recording],
-    algorithm: &PolicyAlign,
-    pupils: &[Pupil],
-    rng: &mut ChaCha8Rng,
-) -> anyhow::Result<Exam<'a>> {
-    let aligned = algorithm.align(&demonstrations(recordings)?)?;
-    let test = TestSamples::draw(&aligned, rng)?;
-    let judge = Judge::new(recordings, &test.of_kept);
-    let judge_of_all = Judge::new(recordings, &test.of_all);
-    let learnt = pupils.iter().map(|pupil| pupil.learn(&aligned, &test.of_all, rng)).collect::<Result<_, _>>()?;
-    Ok(Exam { aligned, judge, judge_of_all, learnt })
+/// Who sits an exam, and of how many samples.
+#[derive(Serialize)]
+pub(crate) struct Protocol {
+    pub(crate) algorithm: PolicyAlign,
+    pub(crate) pupils: Vec<Pupil>,
+    /// Share of the samples that is held out.
+    pub(crate) held_out: f64,
+}
+
+impl Protocol {
+    /// Aligns the recordings, draws what is held out, and lets each learner learn.
+    pub(crate) fn examine<'a>(&self, recordings: &'a [Recording], rng: &mut ChaCha8Rng) -> anyhow::Result<Exam<'a>> {
+        let aligned = self.algorithm.align(&demonstrations(recordings)?)?;
+        let test = TestSamples::draw(&aligned, self.held_out, rng)?;
+        let judge = Judge::new(recordings, &test.of_kept);
+        let judge_of_all = Judge::new(recordings, &test.of_all);
+        let learnt =
+            self.pupils.iter().map(|pupil| pupil.learn(&aligned, &test.of_all, rng)).collect::<Result<_, _>>()?;
+        Ok(Exam { aligned, judge, judge_of_all, learnt })
+    }
 }
 
 impl<'a> Exam<'a> {
@@ -134,7 +142,7 @@ mod tests {
 
         /// The truth of other movements changes every mark and no bit of what is learnt.
         #[test]
-        fn the_truth_is_for_the_judge_alone(seed in 1_u64..1000, forger in 1000_u64..2000, samples in 20_usize..40) {
+        fn the_truth_is_for_the_judge_alone(seed in 1_u64..1000, forger in 1000_u64..2000, samples in 20_usize..40, held_out in 0.05..0.5) {
             let record = |potential, seed| {
                 let system = ToySystem { potential, n_trajectories: 12, n_samples: samples, ..ToySystem::default() };
                 system.record(&mut generator(seed, 0, 0)).unwrap()
@@ -144,8 +152,9 @@ mod tests {
             let swap = |(recording, other): (&Recording, Recording)| Recording { truth: other.truth, ..recording.clone() };
             let forged: Vec<Recording> = recordings.iter().zip(others).map(swap).collect();
             let algorithm = PolicyAlign { bandwidth: Bandwidth::Medium, ..PolicyAlign::default() };
+            let protocol = Protocol { algorithm, pupils: pupils(), held_out };
             let [exam, of_forged] = [&recordings, &forged]
-                .map(|recordings| examine(recordings, &algorithm, &pupils(), &mut generator(seed, 0, 1)).unwrap());
+                .map(|recordings| protocol.examine(recordings, &mut generator(seed, 0, 1)).unwrap());
             prop_assert_eq!(&exam.aligned, &of_forged.aligned);
             prop_assert_eq!(exam.judge.samples(), of_forged.judge.samples());
             for (ours, theirs) in exam.learnt().zip(of_forged.learnt()) {

@@ -11,9 +11,8 @@ use smoothing::{Fusion, Smoother};
 
 use super::beside::{Beside, DATA_SETS};
 use super::contest::{Contest, Contestant};
-use super::exam::examine;
-use super::pupil::Pupil;
-use super::table1::{PARABOLA_SYSTEM, learning_cost, toy_beside, toy_pupils};
+use super::exam::Protocol;
+use super::table1::{PARABOLA_SYSTEM, learning_cost, toy_beside, toy_protocol};
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::Measure;
 
@@ -111,8 +110,11 @@ fn setup_beside(case: &str, percent: &[f64], integration: Integration, against: 
     let cost = beside.cost() * percent.len() as u64;
     let trial = CurveTrial {
         system: ToySystem::default(),
-        algorithm: PolicyAlign { integration, ..PolicyAlign::default() },
-        pupils: vec![],
+        protocol: Protocol {
+            algorithm: PolicyAlign { integration, ..PolicyAlign::default() },
+            pupils: vec![],
+            held_out: beside.held_out,
+        },
         beside: Some(beside),
         against,
         percent: percent.to_vec(),
@@ -151,8 +153,7 @@ fn setup(id: &str, percent: &[f64], algorithm: PolicyAlign, against: Against) ->
     let row = |percent: &f64| Row::of_learner(&format!("{id}-{percent}"));
     let trial = CurveTrial {
         system: ToySystem::default(),
-        algorithm,
-        pupils: toy_pupils(),
+        protocol: toy_protocol(algorithm),
         beside: None,
         against,
         percent: percent.to_vec(),
@@ -173,8 +174,7 @@ enum Against {
 #[derive(Serialize)]
 struct CurveTrial {
     system: ToySystem,
-    algorithm: PolicyAlign,
-    pupils: Vec<Pupil>,
+    protocol: Protocol,
     /// Who learns instead of the pupils, if anybody does.
     beside: Option<Beside>,
     against: Against,
@@ -193,8 +193,8 @@ impl CurveTrial {
     /// What is measured at one point.
     fn point(&self, seen: &[Recording], rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         match &self.beside {
-            Some(beside) => beside.sit(seen, std::slice::from_ref(&self.algorithm), rng)?.rows(),
-            None => examine(seen, &self.algorithm, &self.pupils, rng)?.rows(),
+            Some(beside) => beside.sit(seen, std::slice::from_ref(&self.protocol.algorithm), rng)?.rows(),
+            None => self.protocol.examine(seen, rng)?.rows(),
         }
     }
 

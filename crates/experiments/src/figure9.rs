@@ -11,9 +11,9 @@ use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
 use super::beside::{Beside, DATA_SETS};
-use super::exam::{Exam, errors as errors_of, examine};
-use super::pupil::Pupil;
-use super::three_link::{ARM_SYSTEM, arm, beside, regressor};
+use super::exam::{Exam, Protocol, errors as errors_of};
+use super::recipe::Recipe;
+use super::three_link::{ARM_SYSTEM, arm, beside, protocol};
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::{Measure, RowOf};
 
@@ -25,13 +25,12 @@ const FEWEST_SAMPLES: usize = 10;
 
 /// What its rows test on.
 const TESTED_ON: &str =
-    "a tenth of the samples of the movements that alignment keeps, of these the ones in the distance";
+    "held-out samples of the movements that alignment keeps, of these the ones in the distance";
 
 /// The experiment.
 pub(crate) fn figure9() -> anyhow::Result<Experiment> {
     let rows = cases().into_iter().map(|id| Row { id, of: RowOf::Learner, tested_on: TESTED_ON }).collect();
-    let pupils = vec![Pupil::PolicyAlign(regressor())];
-    let trial = DistanceTrial { arm: arm()?, algorithm: PolicyAlign::default(), pupils };
+    let trial = DistanceTrial { arm: arm()?, protocol: protocol(&Recipe::default()) };
     let (beside, cases) = (beside(ROWS), cases());
     let rows_beside = cases.iter().flat_map(|case| beside.rows(case)).map(|row| Row { tested_on: TESTED_ON, ..row });
     let rows_beside = rows_beside.collect();
@@ -126,14 +125,13 @@ pub fn line() -> Vector3<f64> {
 #[derive(Serialize)]
 struct DistanceTrial {
     arm: ThreeLinkArm,
-    algorithm: PolicyAlign,
-    pupils: Vec<Pupil>,
+    protocol: Protocol,
 }
 
 impl Trial for DistanceTrial {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.arm.record(rng)?;
-        let exam = examine(&recordings, &self.algorithm, &self.pupils, rng)?;
+        let exam = self.protocol.examine(&recordings, rng)?;
         let mut rows = Vec::new();
         for learnt in exam.learnt() {
             for distance in Distance::BOTH {

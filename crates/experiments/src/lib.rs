@@ -26,6 +26,7 @@ pub mod paper;
 mod parameters;
 mod pupil;
 mod readings;
+mod recipe;
 pub mod results;
 mod robots;
 pub mod seed;
@@ -47,9 +48,10 @@ pub use figure9::{Distance, TENTHS, line};
 pub use gaussians::Gaussians;
 pub use judge::Judge;
 pub use parameters::Parameters;
+pub use recipe::HELD_OUT;
 pub use robots::upper_body;
-pub use settings::{Setting, quotable, settings, shown};
-pub use table1::{PARABOLA_SYSTEM, SINUSOIDAL_SYSTEM, toy_beside, toy_regressor};
+pub use settings::{Class, Setting, n_fitted, quotable, settings, shown};
+pub use table1::{PARABOLA_SYSTEM, SINUSOIDAL_SYSTEM, toy_beside, toy_naive, toy_regressor};
 pub use table2::{GRASP_SYSTEM, grasp, grasp_beside, grasp_naive, grasp_regressor};
 pub use test_samples::TestSamples;
 pub use three_link::{ARM_SYSTEM, arm};
@@ -62,7 +64,7 @@ use rand_chacha::ChaCha8Rng;
 use exam::TESTED_ON;
 
 use crate::measure::{Measure, RowOf};
-use crate::paper::{Explanations, PaperTable, Printed};
+use crate::paper::{EVERY_ROW, Explanations, PaperTable, Printed};
 
 /// A table or figure.
 pub struct Experiment {
@@ -113,7 +115,7 @@ impl Experiment {
         }
         for id in self.paper.keys().chain(self.explanations.texts.keys()) {
             ensure!(
-                self.rows().any(|row| row.id == *id),
+                id == EVERY_ROW || self.rows().any(|row| row.id == *id),
                 "{}: crates/experiments/paper has a row {id} that is not run",
                 self.id
             );
@@ -125,9 +127,10 @@ impl Experiment {
         Ok(self)
     }
 
-    /// Why a cell stands out, if that is known.
+    /// Why a cell stands out and what was tried, if that is known: of its row, or else of every row.
     pub fn explain(&self, row: &str, measure: Measure) -> Option<&str> {
-        self.explanations.texts.get(row)?.get(&measure).map(String::as_str)
+        let of = |row: &str| self.explanations.texts.get(row)?.get(&measure);
+        of(row).or_else(|| of(EVERY_ROW)).map(String::as_str)
     }
 }
 

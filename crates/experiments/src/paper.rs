@@ -25,6 +25,9 @@ pub(crate) fn paper_table(text: &str) -> anyhow::Result<PaperTable> {
     toml::from_str(text).context("the paper's figures (crates/experiments/paper/*.toml) cannot be read")
 }
 
+/// The row of [`Explanations`] whose texts are about every row that has none.
+pub(crate) const EVERY_ROW: &str = "every-row";
+
 /// Why single cells stand out.
 #[derive(Debug, Default)]
 pub struct Explanations {

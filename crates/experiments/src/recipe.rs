@@ -14,33 +14,36 @@ pub(crate) struct Recipe {
     pub(crate) params: LwprParams,
     /// What potentials are divided by before LWPR learns them: 1, as (23) has them.
     pub(crate) divisor: f64,
-    /// How often all samples are learnt.
-    pub(crate) passes: usize,
+    /// How often all samples are learnt, for each input: a receptive field of n inputs predicts only after 2n samples.
+    pub(crate) passes_per_input: f64,
+    /// Receptive fields that a state activates less take no part in its prediction.
+    pub(crate) cutoff: f64,
     /// Share of the samples that is held out for tests.
     pub(crate) held_out: f64,
 }
 
 impl Default for Recipe {
     fn default() -> Self {
-        Recipe { params: LwprParams::default(), divisor: 1.0, passes: 3, held_out: HELD_OUT }
+        Recipe { params: LwprParams::default(), divisor: 1.0, passes_per_input: 1.0, cutoff: 1e-3, held_out: HELD_OUT }
     }
 }
 
 /// Share of the samples that is held out.
 pub const HELD_OUT: f64 = 0.2;
 
-/// Every receptive field takes part in a prediction, as in LWPR's article.
-const CUTOFF: f64 = 0.0;
-
 impl Recipe {
     /// The regression on aligned potentials of `dim` inputs, all divided by `spread`.
     pub(crate) fn regressor(&self, dim: usize, spread: f64) -> LwprRegressor {
-        LwprRegressor { params: self.params_of(dim, spread, 1), passes: self.passes, cutoff: CUTOFF }
+        LwprRegressor { params: self.params_of(dim, spread, 1), passes: self.passes(dim), cutoff: self.cutoff }
     }
 
     /// The naive learner's regression on observed velocities.
     pub(crate) fn naive(&self, dim: usize, spread: f64) -> DirectPolicyLearning {
-        DirectPolicyLearning { params: self.params_of(dim, spread, dim), passes: self.passes, cutoff: CUTOFF }
+        DirectPolicyLearning { params: self.params_of(dim, spread, dim), passes: self.passes(dim), cutoff: self.cutoff }
+    }
+
+    fn passes(&self, dim: usize) -> usize {
+        (self.passes_per_input * dim as f64).ceil() as usize
     }
 
     fn params_of(&self, dim: usize, spread: f64, n_out: usize) -> LwprParams {
@@ -65,8 +68,8 @@ impl Recipe {
         let fitted = |name, paper, used, change| Setting::new(experiment, name, Class::Fitted, paper, used, changed(change));
         vec![
             fitted("held-out share", "\"a subsample\"", self.held_out, |recipe, share| recipe.held_out = share),
-            fitted("passes of the regression", SILENT, self.passes as f64, |recipe, passes| {
-                recipe.passes = passes.round() as usize;
+            fitted("passes for each input, rounded up", SILENT, self.passes_per_input, |recipe, passes| {
+                recipe.passes_per_input = passes;
             }),
         ]
     }

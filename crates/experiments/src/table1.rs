@@ -3,7 +3,7 @@
 use align::{Bandwidth, DirectPolicyLearning, LwprRegressor, PolicyAlign};
 use demo_gen::{Redraw, ToyPotential, ToySystem};
 use gp::FrontEnd;
-use lwpr::{LwprParams, MetricAdaptation};
+use lwpr::LwprParams;
 use nalgebra::DVector;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
@@ -11,11 +11,12 @@ use serde::Serialize;
 use super::beside::{Beside, BesideTrial, DATA_SETS};
 use super::constraint_consistent::ConstraintConsistent;
 use super::contest::Contest;
-use super::exam::examine;
+use super::exam::Protocol;
 use super::fresh::{add_errors, fresh};
 use super::gaussians::Gaussians;
 use super::pupil::Pupil;
-use super::settings::{SILENT, Setting};
+use super::recipe::{HELD_OUT, Recipe};
+use super::settings::{Class, SILENT, Setting};
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::Measure;
 use crate::paper::{explanations, paper_table};
@@ -35,7 +36,8 @@ pub(crate) fn table1() -> anyhow::Result<Experiment> {
         title: "Table 1: the toy system",
         data_sets: 100,
         remark: "The constraint is drawn anew every 20 samples, two draws at 40 samples and five at 100, which makes the printed discard \
-                 rates come out. Regression, the same in all rows: init_D 10, w_gen 0.5, penalty 1e-5, adaptive diagonal metric, 10 passes.",
+                 rates come out. LWPR has the defaults of its library in all rows and learns the potentials as they are (23); it sees the samples as often as there are inputs, twice, \
+                 and a fifth of them is held out.",
         reservations: &RESERVATIONS,
         decisions: "table1.md",
         contests_remark: Some(BANDWIDTH_IS_OF_POLICY_ALIGN),
@@ -101,79 +103,108 @@ fn systems() -> [(u32, &'static str, usize, ToyPotential); 3] {
     ]
 }
 
-/// The printed rows.
-fn printed(redraw: Redraw, first_system: u32, regressor: &LwprRegressor) -> Vec<Setup> {
-    printed_of(|size| size, redraw, first_system, regressor)
-}
-
-/// The printed rows, with as many movements as `movements` makes of theirs.
-fn printed_of(
-    movements: impl Fn(usize) -> usize,
+/// What a table is made of, all rows alike.
+struct Toy {
     redraw: Redraw,
+    /// Its random streams follow from this one.
     first_system: u32,
-    regressor: &LwprRegressor,
-) -> Vec<Setup> {
-    let mut setups = Vec::new();
-    for (number, name, size, potential) in systems() {
-        let system = ToySystem { potential, n_trajectories: movements(size), n_samples: size, redraw };
-        for (bandwidth_name, bandwidth) in BANDWIDTHS {
-            let id = format!("{name}-{size}x{size}-{bandwidth_name}");
-            let row = Row::of_learner(&id);
-            let algorithm = PolicyAlign { bandwidth, ..PolicyAlign::default() };
-            let (cost, system_number) = (learning_cost(size, size), first_system + number);
-            let pupils = vec![Pupil::PolicyAlign(regressor.clone())];
-            let trial = Box::new(ToyTrial { system: system.clone(), algorithm, pupils });
-            setups.push(Setup { id, rows: vec![row], system: system_number, data_sets: None, cost, trial });
-        }
+    start_range: f64,
+    time_step: f64,
+    /// Movements of a row, where not as many as its samples.
+    movements: Option<usize>,
+    recipe: Recipe,
+}
+
+impl Toy {
+    fn new(redraw: Redraw, first_system: u32) -> Toy {
+        let ToySystem { start_range, time_step, .. } = ToySystem::default();
+        Toy { redraw, first_system, start_range, time_step, movements: None, recipe: Recipe::default() }
     }
-    setups
+
+    /// A system of so many samples and, if nothing else is asked for, as many movements.
+    fn system(&self, size: usize, potential: ToyPotential) -> ToySystem {
+        let Toy { redraw, start_range, time_step, .. } = *self;
+        let n_trajectories = self.movements.unwrap_or(size);
+        ToySystem { potential, n_trajectories, n_samples: size, redraw, start_range, time_step }
+    }
+
+    /// The printed rows.
+    fn printed(&self) -> Vec<Setup> {
+        self.learnt_by(&self.recipe.regressor(2, 1.0))
+    }
+
+    /// The printed rows, by another regression.
+    fn learnt_by(&self, regressor: &LwprRegressor) -> Vec<Setup> {
+        let mut setups = Vec::new();
+        for (number, name, size, potential) in systems() {
+            let system = self.system(size, potential);
+            for (bandwidth_name, bandwidth) in BANDWIDTHS {
+                let id = format!("{name}-{size}x{size}-{bandwidth_name}");
+                let row = Row::of_learner(&id);
+                let protocol = Protocol {
+                    algorithm: PolicyAlign { bandwidth, ..PolicyAlign::default() },
+                    pupils: vec![Pupil::PolicyAlign(regressor.clone())],
+                    held_out: self.recipe.held_out,
+                };
+                let (cost, system_number) = (learning_cost(size, size), self.first_system + number);
+                let trial = Box::new(ToyTrial { system: system.clone(), protocol });
+                setups.push(Setup { id, rows: vec![row], system: system_number, data_sets: None, cost, trial });
+            }
+        }
+        setups
+    }
 }
 
-/// What is fitted.
+/// The table as it is printed, changed.
+fn changed(change: impl Fn(&mut Toy)) -> anyhow::Result<Vec<Setup>> {
+    let mut toy = Toy::new(Redraw::Every(REDRAW), 0);
+    change(&mut toy);
+    Ok(toy.printed())
+}
+
+/// Where the numbers of the table come from.
 pub(super) fn settings() -> Vec<Setting> {
-    let setting = |name, paper, used, with| Setting { experiment: "table1", name, paper, used, with };
-    vec![
-        setting("samples to the next constraint", "\"re-sampled twice\"", REDRAW as f64, |value| {
-            Ok(printed(Redraw::Every(value.round() as usize), 0, &toy_regressor()))
+    let setting = |name, class, paper, used, change: fn(&mut Toy, f64)| {
+        Setting::new("table1", name, class, paper, used, move |value| changed(|toy| change(toy, value)))
+    };
+    let library = |name, used, change| setting(name, Class::LibraryDefault, SILENT, used, change);
+    let mut settings = vec![
+        setting("samples to the next constraint", Class::Fitted, "\"re-sampled twice\"", REDRAW as f64, |toy, samples| {
+            toy.redraw = Redraw::Every(samples.round() as usize);
         }),
-        setting("init_D of the regression", SILENT, 10.0, |init_d| {
-            Ok(tuned(|regressor| regressor.params.init_d = init_d))
-        }),
-        setting("w_gen of the regression", SILENT, 0.5, |w_gen| Ok(tuned(|regressor| regressor.params.w_gen = w_gen))),
-        setting("penalty of the regression", SILENT, 1e-5, |penalty| {
-            Ok(tuned(|regressor| regressor.params.penalty = penalty))
-        }),
-        setting("passes of the regression", SILENT, 10.0, |passes| {
-            Ok(tuned(|regressor| regressor.passes = passes.round() as usize))
-        }),
-    ]
+        setting("starts within ±", Class::Paper, "axes of Figure 5", 2.0, |toy, range| toy.start_range = range),
+        setting("δt of the toy system", Class::Paper, "(9) has no δt", 1.0, |toy, time_step| toy.time_step = time_step),
+        setting("divisor of the potentials", Class::Paper, "(23) has none", 1.0, |toy, by| toy.recipe.divisor = by),
+        library("init_D", 25.0, |toy, init_d| toy.recipe.params.init_d = init_d),
+        library("w_gen", 0.1, |toy, w_gen| toy.recipe.params.w_gen = w_gen),
+        library("penalty", 1e-6, |toy, penalty| toy.recipe.params.penalty = penalty),
+        library("init_alpha", 50.0, |toy, alpha| toy.recipe.params.init_alpha = alpha),
+    ];
+    settings.extend(Recipe::default().settings("table1", |recipe| changed(|toy| toy.recipe = recipe.clone())));
+    settings
 }
 
-/// What texts ask about, though nothing is fitted there.
-pub(super) fn unfitted() -> Vec<Setting> {
-    let setting = |name, used, with| Setting { experiment: "table1", name, paper: SILENT, used, with };
+/// What texts ask about besides.
+pub(super) fn asked_about() -> Vec<Setting> {
+    let setting = |name, used, change: fn(&mut Toy, f64)| {
+        Setting::new("table1", name, Class::Fitted, SILENT, used, move |value| changed(|toy| change(toy, value)))
+    };
     vec![
-        setting("whether the metric adapts", 1.0, |adapts| {
-            let adaptation = if adapts == 0.0 { MetricAdaptation::Fixed } else { toy_regressor().params.adaptation };
-            Ok(tuned(|regressor| regressor.params.adaptation = adaptation))
-        }),
-        setting("movements", 40.0, |movements| {
-            Ok(printed_of(|_| movements.round() as usize, Redraw::Every(REDRAW), 0, &toy_regressor()))
+        setting("movements", 40.0, |toy, movements| toy.movements = Some(movements.round() as usize)),
+        Setting::new("table1", "regression fitted to divided potentials", Class::Fitted, SILENT, 0.0, |fitted| {
+            let toy = Toy::new(Redraw::Every(REDRAW), 0);
+            let norm_in = Some(DVector::repeat(2, 1.0));
+            let params = LwprParams { norm_in, ..LwprRegressor::default().params };
+            let better = LwprRegressor { params, ..LwprRegressor::default() };
+            Ok(if fitted == 0.0 { toy.printed() } else { toy.learnt_by(&better) })
         }),
     ]
-}
-
-/// The printed rows with another regression.
-fn tuned(change: impl Fn(&mut LwprRegressor)) -> Vec<Setup> {
-    let mut regressor = toy_regressor();
-    change(&mut regressor);
-    printed(Redraw::Every(REDRAW), 0, &regressor)
 }
 
 fn setups(redraw: Redraw, first_system: u32, max_rows: fn(usize) -> usize) -> Vec<Setup> {
-    let mut setups = printed(redraw, first_system, &toy_regressor());
+    let toy = Toy::new(redraw, first_system);
+    let mut setups = toy.printed();
     for (number, name, size, potential) in systems() {
-        let scene = ToySystem { potential, n_trajectories: size, n_samples: size, redraw };
         let algorithms = BANDWIDTHS.map(|(_, bandwidth)| PolicyAlign { bandwidth, ..PolicyAlign::default() }).into();
         let beside = toy_beside(FrontEnd::Map, max_rows(size));
         setups.push(Setup {
@@ -182,7 +213,7 @@ fn setups(redraw: Redraw, first_system: u32, max_rows: fn(usize) -> usize) -> Ve
             system: first_system + number,
             data_sets: Some(DATA_SETS),
             cost: beside.cost(),
-            trial: Box::new(BesideTrial { scene, algorithms, beside }),
+            trial: Box::new(BesideTrial { scene: toy.system(size, potential), algorithms, beside }),
         });
     }
     setups
@@ -203,12 +234,11 @@ fn contests() -> Vec<Contest> {
 
 /// Who learns the toy system beside PolicyAlign.
 pub fn toy_beside(front_end: FrontEnd, max_rows: usize) -> Beside {
-    let LwprRegressor { params, passes, cutoff } = toy_regressor();
-    let naive = Some(DirectPolicyLearning { params, passes, cutoff });
     Beside {
-        naive,
+        naive: Some(toy_naive()),
         constraint_consistent: Some(ConstraintConsistent::default()),
         gaussians: Gaussians::new(front_end, max_rows),
+        held_out: HELD_OUT,
     }
 }
 
@@ -216,20 +246,22 @@ pub fn toy_beside(front_end: FrontEnd, max_rows: usize) -> Beside {
 #[derive(Serialize)]
 struct ToyTrial {
     system: ToySystem,
-    algorithm: PolicyAlign,
-    pupils: Vec<Pupil>,
+    protocol: Protocol,
 }
 
-/// Who learns the toy system.
-pub(super) fn toy_pupils() -> Vec<Pupil> {
-    vec![Pupil::PolicyAlign(toy_regressor())]
+/// How PolicyAlign learns the toy system.
+pub(super) fn toy_protocol(algorithm: PolicyAlign) -> Protocol {
+    Protocol { algorithm, pupils: vec![Pupil::PolicyAlign(toy_regressor())], held_out: HELD_OUT }
 }
 
 /// The regression of all rows.
 pub fn toy_regressor() -> LwprRegressor {
-    let norm_in = Some(DVector::repeat(2, 1.0));
-    let params = LwprParams { init_d: 10.0, w_gen: 0.5, penalty: 1e-5, norm_in, ..LwprParams::default() };
-    LwprRegressor { params, passes: 10, ..LwprRegressor::default() }
+    Recipe::default().regressor(2, 1.0)
+}
+
+/// The naive learner of the toy system.
+pub fn toy_naive() -> DirectPolicyLearning {
+    Recipe::default().naive(2, 1.0)
 }
 
 /// Work of aligning and regression, in the unit of [`Setup::cost`].
@@ -241,7 +273,7 @@ pub(super) fn learning_cost(n_trajectories: usize, n_samples: usize) -> u64 {
 impl Trial for ToyTrial {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.system.record(rng)?;
-        let exam = examine(&recordings, &self.algorithm, &self.pupils, rng)?;
+        let exam = self.protocol.examine(&recordings, rng)?;
         let mut rows = exam.rows()?;
         add_errors(&mut rows, exam.learnt(), &fresh(&self.system, rng)?)?;
         Ok(rows)

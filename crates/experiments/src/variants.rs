@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn committed_variants_are_what_the_program_computes() {
         let variants = Variants::committed().unwrap();
-        for name in ["passes of the regression", "movements"] {
+        for name in ["held-out share", "movements"] {
             let setting = quotable().find(|setting| setting.name == name).unwrap();
             let found = variants.cells["table1"].iter().find(|(variant, _)| variant.starts_with(name));
             let (variant, cells) = found.unwrap();

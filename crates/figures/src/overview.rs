@@ -1,9 +1,9 @@
 //! What it is about, in one picture: what was shown, and how wrong is what is learnt from it.
 
-use align::{Bandwidth, DirectPolicyLearning, PolicyAlign};
+use align::{Bandwidth, PolicyAlign};
 use demo_gen::{ToySystem, demonstrations};
 use experiments::seed::{beside, generator};
-use experiments::{PARABOLA_SYSTEM, TestSamples, toy_beside, toy_regressor};
+use experiments::{HELD_OUT, PARABOLA_SYSTEM, TestSamples, toy_beside, toy_naive, toy_regressor};
 use gp::FrontEnd;
 use motion::NegativeGradient;
 use nalgebra::DMatrix;
@@ -80,11 +80,9 @@ fn overview(seed: u64) -> anyhow::Result<Overview> {
     let recordings = system.record(&mut rng)?;
     let align = PolicyAlign { bandwidth: Bandwidth::Medium, ..PolicyAlign::default() };
     let aligned = align.align(&demonstrations(&recordings)?)?;
-    let test = TestSamples::draw(&aligned, &mut rng)?;
-    let regressor = toy_regressor();
-    let naive = DirectPolicyLearning { params: regressor.params.clone(), ..DirectPolicyLearning::default() };
-    let naive = naive.learn_policy(aligned.demonstrations(), &test.of_all, &mut rng)?;
-    let learnt = aligned.learn_without(&test.of_all, &regressor, &mut rng)?;
+    let test = TestSamples::draw(&aligned, HELD_OUT, &mut rng)?;
+    let naive = toy_naive().learn_policy(aligned.demonstrations(), &test.of_all, &mut rng)?;
+    let learnt = aligned.learn_without(&test.of_all, &toy_regressor(), &mut rng)?;
     let slope = toy_beside(FrontEnd::Map, ROWS).slope(aligned.demonstrations(), &test.of_all, &mut beside(&rng))?;
     let movement = |recording: &demo_gen::Recording| {
         let states = recording.observed.states().column_iter();

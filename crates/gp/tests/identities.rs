@@ -46,7 +46,7 @@ proptest! {
         (seed, forger) in (any::<u64>(), any::<u64>()),
     ) {
         let record = |potential, seed| {
-            let system = ToySystem { potential, n_trajectories, n_samples, redraw: Redraw::Every(every) };
+            let system = ToySystem { potential, n_trajectories, n_samples, redraw: Redraw::Every(every), ..ToySystem::default() };
             system.record(&mut rng(seed)).expect("recordings")
         };
         let recordings = record(potential, seed);

@@ -6,7 +6,7 @@ use experiments::measure::{Measure, RowOf};
 use experiments::results::{Cell, ExperimentResult, Results, RowResult};
 use experiments::verdict::Verdict;
 
-use super::tally::z;
+use super::tally::{STANDARD_ERRORS, z};
 
 /// Data sets below which single cells are not worth an explanation.
 pub(super) const FEW: usize = 20;
@@ -94,7 +94,7 @@ impl<'a> Compared<'a> {
     /// The cells that need a word, each with it.
     pub(super) fn standing_out(&self) -> Vec<(Line<'a>, &'a str)> {
         let word = |line: &Line<'_>| self.experiment.explain(&line.row.id, line.measure);
-        let lines = self.lines().filter(|line| line.cell.verdict.is_some_and(|verdict| verdict != Verdict::Agrees));
+        let lines = self.lines().filter(Line::stands_out);
         lines.map(|line| (line, word(&line).unwrap_or("no explanation has been found yet."))).collect()
     }
 
@@ -106,6 +106,12 @@ impl<'a> Compared<'a> {
 }
 
 impl Line<'_> {
+    /// Whether a printed number is missed, or the difference is more than chance.
+    fn stands_out(&self) -> bool {
+        let is_sure = z(self.cell, self.paper_n).is_some_and(|z| z.abs() > STANDARD_ERRORS);
+        self.cell.verdict.is_some_and(|verdict| verdict != Verdict::Agrees || is_sure)
+    }
+
     /// Data sets that have a value.
     pub(super) fn n(&self) -> usize {
         self.cell.n()
@@ -163,5 +169,30 @@ impl Line<'_> {
     /// The other seed's verdict, where there is one.
     pub(super) fn second_verdict(&self) -> &'static str {
         self.second.and_then(|cell| cell.verdict).map_or("", Verdict::word)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use experiments::registry;
+
+    use super::*;
+
+    /// Of every printed number of the records that is missed, or further away than chance, the report says what was tried.
+    #[test]
+    fn what_stands_out_is_explained() {
+        let experiments = registry().unwrap();
+        for text in [
+            include_str!("../../../docs/records/seed-1/results.json"),
+            include_str!("../../../docs/records/seed-2/results.json"),
+        ] {
+            let results = Results::read("results.json", text).unwrap();
+            for compared in compared(&experiments, &results, None) {
+                for line in compared.lines().filter(Line::stands_out) {
+                    let said = compared.experiment.explain(&line.row.id, line.measure);
+                    assert!(said.is_some(), "{} {} {}", compared.experiment.id, line.row.id, line.measure.name());
+                }
+            }
+        }
     }
 }

@@ -41,7 +41,7 @@ fn section(compared: &Compared<'_>) -> String {
             let _ = writeln!(text, "{}", judged(name, &cell, &paper));
         }
     }
-    let _ = writeln!(text, "{}\n", tally.on_two_lines());
+    let _ = writeln!(text, "{}\n", tally.sentences().join("\n"));
     text
 }
 

@@ -201,12 +201,12 @@ impl Reproduce {
         for &(experiment, result) in &measured {
             let tally = Tally::of([(experiment, result)]);
             if tally.total() > 0 {
-                say(&format!("{}: {}", experiment.id, tally.on_two_lines()));
+                say(&format!("{}: {}", experiment.id, tally.sentences().join("\n")));
             }
         }
         let total = Tally::of_first_readings(measured);
         if total.total() > 0 {
-            say(&format!("in all: {}", total.on_two_lines()));
+            say(&format!("in all: {}", total.sentences().join("\n")));
         }
         let Run { wall_seconds, cpu_seconds, .. } = &results.run;
         let threads = results.run.threads_in_words();

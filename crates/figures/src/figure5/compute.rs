@@ -2,7 +2,7 @@ use align::{Aligned, PolicyAlign};
 use anyhow::Context as _;
 use demo_gen::{Recording, ToySystem, demonstrations};
 use experiments::seed::generator;
-use experiments::{Judge, PARABOLA_SYSTEM, TestSamples, toy_regressor};
+use experiments::{HELD_OUT, Judge, PARABOLA_SYSTEM, TestSamples, toy_regressor};
 use motion::{LearntPolicy, Potential};
 use nalgebra::DVector;
 use plot::Field;
@@ -32,7 +32,7 @@ struct Found {
 pub(super) fn levels(seed: u64) -> anyhow::Result<Levels> {
     let system = ToySystem::default();
     let Found { data_set, recordings, aligned, mut rng } = like_the_paper(&system, seed)?;
-    let test = TestSamples::draw(&aligned, &mut rng)?;
+    let test = TestSamples::draw(&aligned, HELD_OUT, &mut rng)?;
     let learnt = aligned.learn_without(&test.of_kept, &toy_regressor(), &mut rng)?;
     let potential = learnt.global_potential();
     let judge = Judge::new(&recordings, &test.of_kept);

@@ -3,7 +3,7 @@
 use align::{Aligned, DirectPolicyLearning, LwprRegressor, PolicyAlign, PotentialPolicy};
 use demo_gen::{Grasp, Recording, demonstrations};
 use experiments::seed::beside;
-use experiments::{TestSamples, grasp_beside, grasp_naive, grasp_regressor};
+use experiments::{HELD_OUT, TestSamples, grasp_beside, grasp_naive, grasp_regressor};
 use motion::{NegativeGradient, Policy};
 use rand_chacha::ChaCha8Rng;
 
@@ -26,7 +26,7 @@ pub(super) struct Learnt {
 impl Learnt {
     pub(super) fn from(recordings: &[Recording], rng: &mut ChaCha8Rng) -> anyhow::Result<Learnt> {
         let aligned = PolicyAlign::default().align(&demonstrations(recordings)?)?;
-        let test = TestSamples::draw(&aligned, rng)?;
+        let test = TestSamples::draw(&aligned, HELD_OUT, rng)?;
         let regressor = LwprRegressor { cutoff: CUTOFF, ..grasp_regressor() };
         let policy = aligned.learn_without(&test.of_all, &regressor, rng)?;
         Ok(Learnt { aligned, test, policy })

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use experiments::leverage::{Leverage, Turned};
-use experiments::{Experiment, Setting, settings};
+use experiments::{Class, Experiment, Setting, settings};
 use maud::{Markup, html};
 
 use super::table::sideways;
@@ -12,35 +12,38 @@ use crate::compared::Compared;
 /// So many cells are named one by one.
 const FEW: usize = 2;
 
-/// Its settings, in order. Another reading of a table takes what the paper says as it stands, and the rest from the table.
-pub(super) fn of(compared: &Compared<'_>) -> Vec<Setting> {
+/// How many numbers of an experiment are fitted. Another reading of a table takes the paper at its word in one of them.
+pub(super) fn count(compared: &Compared<'_>) -> usize {
     let Experiment { id, another_reading_of: table, .. } = compared.experiment;
-    let is_its = |setting: &Setting| match table {
-        Some(table) => setting.experiment == *table && setting.is_unprinted(),
-        None => setting.experiment == *id,
-    };
-    settings().into_iter().filter(is_its).collect()
+    let fitted = of(table.unwrap_or(id)).iter().filter(|setting| setting.class == Class::Fitted).count();
+    fitted - usize::from(table.is_some())
 }
 
-/// A table of them; of another reading of a table none, as it stands there.
+/// The settings of an experiment, in order.
+fn of(id: &str) -> Vec<Setting> {
+    settings().into_iter().filter(|setting| setting.experiment == id).collect()
+}
+
+/// A table of them; another reading of a table has none of its own.
 pub(super) fn table(compared: &Compared<'_>) -> Markup {
-    let settings = of(compared);
+    let settings = of(compared.experiment.id);
     // Committed with the program, and tested.
     let leverage = Leverage::committed().ok();
     html! {
-        @if !settings.is_empty() && compared.experiment.another_reading_of.is_none() {
-            h3 { "What is fitted" }
+        @if !settings.is_empty() {
+            h3 { "Settings, and what was fitted" }
             @if let Some(leverage) = &leverage {
                 p .minor {
-                    "Changed one at a time; verdicts that are then others than with the value used, on the same " (leverage.data_sets) " data sets of each \
+                    "Each setting is of the paper, a default of the LWPR library, or fitted. Changed one at a time; verdicts that are then others than with the value used, on the same " (leverage.data_sets) " data sets of each \
                      row. (With so few a number on the edge may have another verdict than above.) All of them are named in " code { "docs/leverage.md" } "."
                 }
             }
-            (sideways(&format!("What is fitted: {}", compared.experiment.id), &html! {
+            (sideways(&format!("Settings: {}", compared.experiment.id), &html! {
                 table .fitted {
                     thead {
                         tr {
                             th scope="col" { "Setting" }
+                            th scope="col" { "Class" }
                             th scope="col" { "The paper says" }
                             th scope="col" .number { "Used" }
                             th scope="col" { "A fifth smaller" }
@@ -51,6 +54,7 @@ pub(super) fn table(compared: &Compared<'_>) -> Markup {
                         @for setting in &settings {
                             tr {
                                 th scope="row" { (setting.name) }
+                                td { (setting.class.name()) }
                                 td { (setting.paper) }
                                 td .number { (setting.shown()) }
                                 @if let Some(changed) = leverage.as_ref().and_then(|leverage| leverage.of(setting)) {

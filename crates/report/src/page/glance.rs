@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use experiments::measure::Measure;
 use experiments::verdict::Verdict;
-use experiments::{Contestant, Experiment};
+use experiments::{Contestant, Experiment, n_fitted};
 use figures::ends_of_reaching;
 use maud::{Markup, html};
 
@@ -18,6 +18,7 @@ use crate::tally::Tally;
 
 pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
     let tally = Tally::of_first_readings(all.iter().map(|compared| (compared.experiment, compared.result)));
+    let literal = Tally::of_literal_readings(all.iter().map(|compared| (compared.experiment, compared.result)));
     let overview = contents.figures.iter().find(|(figure, _)| figure.id == OVERVIEW);
     html! {
         header #glance {
@@ -33,7 +34,7 @@ pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
                     (in_short(contents, all))
                 }
                 @if let Some((figure, svg)) = overview { (super::card(figure, svg, "")) }
-                (total(&tally))
+                (total(&tally, &literal))
             }
             (how_it_went(&tally, all))
             @if all.iter().any(Compared::is_glimpse) {
@@ -92,23 +93,35 @@ fn where_naive_errs_less<'a>(all: &[Compared<'a>]) -> impl Iterator<Item = &'a E
     all.iter().filter(|compared| compared.is_printed()).filter(is_ahead).map(|compared| compared.experiment)
 }
 
-/// How many cells are reached in total, and how sure that is.
-fn total(total: &Tally) -> Markup {
+/// How close all numbers come, with either reading of Table 1, and how sure that is.
+fn total(total: &Tally, literal: &Tally) -> Markup {
     html! {
-        @if total.total() > 0 {
+        @if let Some(median) = total.median_factor() {
             div .total {
+                p .asked { "The median factor between our numbers and the printed ones is " b { (format!("{median:.2}")) } "; " (close(total)) "." }
                 p .asked { "Of " b { (total.total()) } " numbers that the paper prints" }
                 (words(total))
                 (bar(total))
+                @if literal.sentence() != total.sentence() {
+                    p {
+                        "With Table 1 as the paper says it (“re-sampled twice”: three segments a movement) instead of as it fits best: " (literal.verdicts())
+                        "; median factor " (format!("{:.2}", literal.median_factor().unwrap_or(1.0))) ", " (close(literal)) "."
+                    }
+                }
                 p {
-                    "How sure that is: of the " (total.varying()) " means that vary from data set to data set, " b { (total.alike()) } " are within \
-                     two standard errors of the printed ones, so that chance can explain the difference. The other " (total.varying() - total.alike()) "
-                     can be told apart from the printed ones, though many of them count as agreeing. And agreement is in part by construction, since \
-                     settings were fitted."
+                    "Statistically: of the " (total.varying()) " means that vary from data set to data set, " b { (total.alike()) } " differ from the printed ones by less than \
+                     two standard errors. The other " (total.varying() - total.alike()) "
+                     can be told apart from them, though many count as agreeing, and " (n_fitted()) " numbers were fitted."
                 }
             }
         }
     }
+}
+
+/// "48 of 52 are within 1.5".
+fn close(tally: &Tally) -> String {
+    let (close, all) = tally.close();
+    format!("{close} of {all} are within a factor of 1.5")
 }
 
 /// How many cells of each experiment are reached.
@@ -152,7 +165,7 @@ fn tally_of(compared: &Compared<'_>) -> Markup {
                     @if experiment.another_reading_of.is_some() { " (as the paper’s words have it; not counted in the total)" }
                 }
                 td { (experiment.section) }
-                td .number data-label="fitted settings" { (fitted::of(compared).len()) }
+                td .number data-label="fitted settings" { (fitted::count(compared)) }
                 td { (bar(&tally)) }
                 td { (words(&tally)) }
             }
