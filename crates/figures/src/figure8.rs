@@ -116,11 +116,11 @@ fn view((id, who): (&str, Who), playback: &GraspPlayback, frame: &Frame) -> Spac
     let mut items = walls(playback, frame);
     items.push(Item::Ball { centre, radius, paint: Paint { color: stage::BALL, opacity: 0.45 } });
     let mut over = vec![];
-    for (id, who) in [("expert", Who::Expert), (id, who)] {
+    for (id, color, width) in [("expert", TRUTH, 5.0), (id, who.color(), 1.8)] {
         for movement in movements(playback, id) {
-            over.extend(stage::ways(&movement.palms, Stroke { dash: Dash::Solid, ..stroke(who) }));
+            over.extend(stage::ways(&movement.palms, Stroke { color, width, dash: Dash::Solid }));
             let points = [0, 1].iter().filter_map(|&hand| palm(movement, hand).last()).collect();
-            over.push(Item::Dots { points, color: stroke(who).color, radius: 3.6 });
+            over.push(Item::Dots { points, color, radius: 3.6 });
         }
     }
     let name = who.name();
@@ -204,12 +204,9 @@ fn curves(distances: &[Distances], time_step: f64) -> Curves {
     }
 }
 
-/// The expert's line is broad and grey, so that it is seen under one that covers it.
+/// The expert's line is broad, so that it is seen under one that covers it.
 fn stroke(who: Who) -> Stroke {
-    match who {
-        Who::Expert => Stroke { color: TRUTH, width: 5.0, dash: Dash::Solid },
-        _ => who.stroke(1.8),
-    }
+    who.stroke(if who == Who::Expert { 4.0 } else { 1.8 })
 }
 
 fn sign(who: Who) -> Sign {

@@ -156,6 +156,8 @@ mod tests {
             ("figure4", "/potential/values/3"),
             ("figure4", "/potential/x"),
             ("figure5", "/movements/1/before"),
+            ("figureB1", "/steps/0/group"),
+            ("figureB1", "/steps/1/parts/0"),
             ("figure5", "/learnt/2"),
             ("overview", "/naive"),
             ("overview", "/slope_gp"),

@@ -11,7 +11,7 @@ use plot::{Canvas, Dash, Mark, Picture, Stroke, Thing};
 use serde::{Deserialize, Serialize};
 
 use super::miniature::{Miniature, extent_of};
-use super::sound::{Sound, among, some};
+use super::sound::{Sound, among, as_many, some};
 use super::{Csv, Document, Drawing, Figure, Sources, rounded};
 use crate::Who;
 use tree::Node;
@@ -105,6 +105,10 @@ impl Sound for ComingApart {
         for Step { group, parts, .. } in &self.steps {
             some("parts of a step", parts)?;
             parts.iter().chain([group]).try_for_each(|part| among("a part", part, self.movements.len()))?;
+            // Parts are smaller than their group, or the tree would have no end.
+            parts.iter().try_for_each(|part| some("movements of a part", part))?;
+            anyhow::ensure!(parts.len() > 1, "a group comes apart into {} part", parts.len());
+            as_many("movements of all parts of a step", &parts.concat(), group.len())?;
         }
         among("kept", &self.kept, self.movements.len())
     }
