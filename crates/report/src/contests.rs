@@ -168,10 +168,10 @@ fn shown_ratio(ratio: f64) -> String {
 
 /// What has to be said of such tables.
 pub(crate) const CAUTION: &str = "\
-Where learners stand side by side, numbers are means over the first n data sets, fewer than in the paper's tables (errors differ by factors of a \
-thousand), of the same recordings and test samples for all. Parabola, grasp, body and arm have quadratic potentials, which the slope GP's \
-families contain: where the class contains the truth and velocities are exact, exact recovery is no feat. The column \"no trend\" shows what is \
-left without them. Bold is the least error; who has it is counted among the learners, of which \"no trend\" and \"automatic\" are variants.";
+In comparisons of learners, numbers are means over the first n data sets, fewer than in the paper's tables (errors of data sets differ by factors of \
+up to a thousand). All learners get the same recordings and test samples. Parabola, grasp, body and arm have quadratic potentials, which the slope GP's \
+families contain: with exact velocities, exact recovery is expected. The column \"no trend\" leaves those families out. Bold marks the least error. \
+Wins are counted per learner; the variants \"no trend\" and \"automatic\" do not count separately.";
 
 #[cfg(test)]
 mod tests {
