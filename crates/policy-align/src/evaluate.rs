@@ -32,7 +32,7 @@ pub struct Evaluation {
 pub struct Truth {
     /// π at each sample, (n, M), times the channels' scales.
     pub actions: DMatrix<f64>,
-    /// Projectors N at each sample, each (n, n), (M); none if nobody knows.
+    /// Projectors N at each sample, each (n, n), (M); none if unknown.
     pub projectors: Option<Vec<DMatrix<f64>>>,
 }
 

@@ -28,9 +28,9 @@ const REPEATED: usize = 4;
 pub struct Noise {
     /// Standard deviation of the noise in each channel, (n), in scaled units; none with too few samples to tell.
     pub positions: Option<Vec<f64>>,
-    /// Share of the squared steps that is noise; 0 where nobody can tell.
+    /// Share of the squared steps that is noise; 0 where it cannot be estimated.
     pub step_share: f64,
-    /// Share of the squared recorded velocities that is noise; none where there are none or nobody can tell.
+    /// Share of the squared recorded velocities that is noise; none where there are none or it cannot be estimated.
     pub velocity_share: Option<f64>,
 }
 

@@ -30,7 +30,7 @@ use super::link_point::LinkPoint;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ConstraintFileError {
-    /// Not TOML, or with members that nobody knows.
+    /// Not TOML, or with unknown members.
     #[error("{reason}")]
     NotToml {
         /// What the TOML reader says, in one line.
