@@ -179,7 +179,7 @@ fn a_figure_that_is_drawn_in_part_is_named() {
         }
     }
     let printed = said(folder.path(), &["report", "--from", "run"]);
-    assert!(printed.contains("drawn in part: figure8, as the run has no figure data grasp_all_around"), "{printed}");
+    assert!(printed.contains("drawn in part: figure8: the run has no figure data grasp_all_around"), "{printed}");
     let page = fs::read_to_string(run.join("report.html")).unwrap();
     assert!(page.contains("Drawn in part, as their figure data are missing: Figure 8."));
 }

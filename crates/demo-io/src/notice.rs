@@ -93,8 +93,7 @@ fn time(drafts: &Drafts, notes: &mut Vec<Note>) {
         notes.push(Note { kind: NoteKind::Uneven, text });
     }
     if slowest > 1.01 * fastest {
-        let text =
-            format!("episodes have time steps of {} to {} s; each keeps its own", rounded(fastest), rounded(slowest));
+        let text = format!("episodes step by {} to {} s; each keeps its own step", rounded(fastest), rounded(slowest));
         notes.push(Note { kind: NoteKind::Uneven, text });
     }
 }

@@ -7,8 +7,8 @@ use crate::{Learnt, Model, StateChannel};
 
 /// Share of the prior variance of a Gaussian process that the demonstrations must have taken away where it is used.
 const LEAST_KNOWN: f64 = 0.5;
-/// Share of its range by which a channel may lie beyond what was shown. A Gaussian process with a trend
-/// extrapolates the trend without limit, although nothing was demonstrated there.
+/// Share of its range by which a channel may lie beyond what was shown. A Gaussian process with a trend follows it
+/// at any distance, where no demonstration supports it.
 const BEYOND: f64 = 0.25;
 
 /// A model's policy in the units of the recording: π(x) = S⁻¹ π'(S x), where S multiplies every channel by its

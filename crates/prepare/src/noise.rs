@@ -30,7 +30,7 @@ pub struct Noise {
     pub positions: Option<Vec<f64>>,
     /// Share of the squared steps that is noise; 0 where it cannot be estimated.
     pub step_share: f64,
-    /// Share of the squared recorded velocities that is noise; none without velocities or an estimate.
+    /// Share of the squared recorded velocities that is noise; none where there are none or it cannot be estimated.
     pub velocity_share: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! What happens when a run is told to stop.
+//! What happens when a run is stopped.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use anyhow::Context as _;
 use crate::progress::say;
 use crate::records::Records;
 
-/// Exit status of a run that was told to stop.
+/// Exit status of a run that was stopped.
 const INTERRUPTED: i32 = 130;
 
 /// Ctrl-C, a closed terminal or a `kill` waits for a line that is being written, says what is kept, and leaves.

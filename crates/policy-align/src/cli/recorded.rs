@@ -47,7 +47,7 @@ pub(crate) fn summaries(files: &[PathBuf]) -> Result<Vec<FileSummary>, Failure> 
     files.iter().filter(|path| path.is_file()).map(summary).collect()
 }
 
-/// Without folders: nobody learns from a model where it was made.
+/// Without folders: a model does not tell where it was made.
 pub(crate) fn base_name(path: &Path) -> String {
     path.file_name().map_or_else(|| shown(path), |name| name.to_string_lossy().into_owned())
 }

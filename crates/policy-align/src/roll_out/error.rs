@@ -51,7 +51,7 @@ pub enum RollOutError {
         /// What was given.
         value: f64,
     },
-    /// So many samples that nobody wants them.
+    /// More samples than the limit.
     #[error("{samples} samples exceed the limit of {} million", LONGEST / 1_000_000)]
     TooLong {
         /// How many it would be.
