@@ -171,7 +171,14 @@ fn row(setting: &Setting, changed: Option<&Changed>) -> Vec<String> {
         _ => turned.iter().map(Turned::named).collect::<Vec<_>>().join("; "),
     };
     let [smaller, larger] = changed.map_or_else(Default::default, |c| [&c.smaller, &c.larger].map(|t| named(t)));
-    vec![setting.name.to_owned(), setting.class.name().to_owned(), setting.paper.to_owned(), setting.shown(), smaller, larger]
+    vec![
+        setting.name.to_owned(),
+        setting.class.name().to_owned(),
+        setting.paper.to_owned(),
+        setting.shown(),
+        smaller,
+        larger,
+    ]
 }
 
 #[cfg(test)]

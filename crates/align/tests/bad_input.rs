@@ -199,11 +199,7 @@ fn what_the_regression_refuses() {
     let cases = [
         ("cutoff −1", LwprRegressor { cutoff: -1.0, ..Default::default() }, Some(cutoff(-1.0))),
         ("cutoff 1", LwprRegressor { cutoff: 1.0, ..Default::default() }, Some(cutoff(1.0))),
-        (
-            "norm_out",
-            LwprRegressor { params: norm_out, ..Default::default() },
-            None,
-        ),
+        ("norm_out", LwprRegressor { params: norm_out, ..Default::default() }, None),
         ("no pass", LwprRegressor { passes: 0, ..Default::default() }, Some(passes)),
         ("metric", LwprRegressor { params: bad_metric, ..Default::default() }, None),
     ];

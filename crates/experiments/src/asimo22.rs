@@ -70,12 +70,7 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
 /// passes.
 fn beside() -> Beside {
     let naive = Some(DirectPolicyLearning { passes: 3, ..Recipe::default().naive(22, 2.2) });
-    Beside {
-        naive,
-        constraint_consistent: None,
-        gaussians: Gaussians::new(FrontEnd::Map, 1000),
-        held_out: HELD_OUT,
-    }
+    Beside { naive, constraint_consistent: None, gaussians: Gaussians::new(FrontEnd::Map, 1000), held_out: HELD_OUT }
 }
 
 /// What PolicyAlign's inputs are divided by.

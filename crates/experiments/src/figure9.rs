@@ -24,8 +24,7 @@ pub const TENTHS: std::ops::RangeInclusive<u32> = 1..=10;
 const FEWEST_SAMPLES: usize = 10;
 
 /// What its rows test on.
-const TESTED_ON: &str =
-    "held-out samples of the movements that alignment keeps, of these the ones in the distance";
+const TESTED_ON: &str = "held-out samples of the movements that alignment keeps, of these the ones in the distance";
 
 /// The experiment.
 pub(crate) fn figure9() -> anyhow::Result<Experiment> {

@@ -47,7 +47,8 @@ impl Recipe {
     }
 
     fn params_of(&self, dim: usize, spread: f64, n_out: usize) -> LwprParams {
-        let [norm_in, norm_out] = [(dim, spread), (n_out, self.divisor)].map(|(n, norm)| Some(DVector::repeat(n, norm)));
+        let [norm_in, norm_out] =
+            [(dim, spread), (n_out, self.divisor)].map(|(n, norm)| Some(DVector::repeat(n, norm)));
         LwprParams { norm_in, norm_out, ..self.params.clone() }
     }
 
@@ -65,7 +66,8 @@ impl Recipe {
                 printed(&recipe)
             }
         };
-        let fitted = |name, paper, used, change| Setting::new(experiment, name, Class::Fitted, paper, used, changed(change));
+        let fitted =
+            |name, paper, used, change| Setting::new(experiment, name, Class::Fitted, paper, used, changed(change));
         vec![
             fitted("held-out share", "\"a subsample\"", self.held_out, |recipe, share| recipe.held_out = share),
             fitted("passes for each input, rounded up", SILENT, self.passes_per_input, |recipe, passes| {

@@ -71,10 +71,8 @@ pub(crate) fn table1_literal() -> anyhow::Result<Experiment> {
 /// Samples after which the constraint is drawn anew.
 const REDRAW: usize = 20;
 
-const RESERVATIONS: [&str; 2] = [
+const RESERVATIONS: [&str; 1] = [
     "Section 4.1 calls the error of alignment \"only marginally different\" from the potential's. Here they differ by up to a factor of two.",
-    "From the narrow to the medium bandwidth the printed nUPE of the sinusoid rises with 40 x 40 samples and falls with 100 x 100. Here it stays about \
-     the same with 40 x 40 and rises with 100 x 100.",
 ];
 
 /// What is the same in three rows, and why.
@@ -169,11 +167,19 @@ pub(super) fn settings() -> Vec<Setting> {
     };
     let library = |name, used, change| setting(name, Class::LibraryDefault, SILENT, used, change);
     let mut settings = vec![
-        setting("samples to the next constraint", Class::Fitted, "\"re-sampled twice\"", REDRAW as f64, |toy, samples| {
-            toy.redraw = Redraw::Every(samples.round() as usize);
-        }),
+        setting(
+            "samples to the next constraint",
+            Class::Fitted,
+            "\"re-sampled twice\"",
+            REDRAW as f64,
+            |toy, samples| {
+                toy.redraw = Redraw::Every(samples.round() as usize);
+            },
+        ),
         setting("starts within ±", Class::Paper, "axes of Figure 5", 2.0, |toy, range| toy.start_range = range),
-        setting("δt of the toy system", Class::Paper, "(9) has no δt", 1.0, |toy, time_step| toy.time_step = time_step),
+        setting("δt of the toy system", Class::Paper, "(9) has no δt", 1.0, |toy, time_step| {
+            toy.time_step = time_step
+        }),
         setting("divisor of the potentials", Class::Paper, "(23) has none", 1.0, |toy, by| toy.recipe.divisor = by),
         library("init_D", 25.0, |toy, init_d| toy.recipe.params.init_d = init_d),
         library("w_gen", 0.1, |toy, w_gen| toy.recipe.params.w_gen = w_gen),

@@ -63,7 +63,12 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
 
 /// Who learns beside PolicyAlign and the naive learner.
 pub(super) fn beside(max_rows: usize) -> Beside {
-    Beside { naive: None, constraint_consistent: None, gaussians: Gaussians::new(FrontEnd::Map, max_rows), held_out: HELD_OUT }
+    Beside {
+        naive: None,
+        constraint_consistent: None,
+        gaussians: Gaussians::new(FrontEnd::Map, max_rows),
+        held_out: HELD_OUT,
+    }
 }
 
 /// The arm of Section 4.4.

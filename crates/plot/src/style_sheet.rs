@@ -135,10 +135,10 @@ mod tests {
 
     #[test]
     fn paper_and_ink_have_colours_of_the_dark() {
-        let svg = "<svg><rect fill=\"white\"/><path fill=\"none\" stroke=\"#000000\"/><path stroke=\"#d55e00\"/></svg>";
+        let svg = "<svg><rect fill=\"white\"/><path fill=\"none\" stroke=\"#000000\"/><path stroke=\"#009e73\"/></svg>";
         let sheet = "<style>.s0{fill:white;}.s1{fill:none;stroke:#000000;}@media screen and (prefers-color-scheme:dark){\
                      svg{fill:#e4e7ea}.s0{fill:#1b1f23;}.s1{stroke:#e4e7ea;}}</style>";
-        let drawn = "<rect class=\"s0\"/><path class=\"s1\"/><path stroke=\"#d55e00\"/></svg>";
+        let drawn = "<rect class=\"s0\"/><path class=\"s1\"/><path stroke=\"#009e73\"/></svg>";
         assert_eq!(with_style_sheet(svg), format!("<svg>{sheet}{drawn}"));
     }
 }

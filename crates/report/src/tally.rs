@@ -40,9 +40,7 @@ impl Tally {
     }
 
     /// In all, as the paper's words have it: of a table that is read in two ways, the reading to the letter counts.
-    pub fn of_literal_readings<'a>(
-        results: impl IntoIterator<Item = (&'a Experiment, &'a ExperimentResult)>,
-    ) -> Tally {
+    pub fn of_literal_readings<'a>(results: impl IntoIterator<Item = (&'a Experiment, &'a ExperimentResult)>) -> Tally {
         let results: Vec<_> = results.into_iter().collect();
         let is_read_otherwise = |id: &str| results.iter().any(|(other, _)| other.another_reading_of == Some(id));
         Tally::of(results.iter().copied().filter(|(experiment, _)| !is_read_otherwise(experiment.id)))
@@ -95,7 +93,8 @@ impl Tally {
         let mut sentences = Vec::new();
         if let Some(median) = self.median_factor() {
             let (close, all) = self.close();
-            sentences.push(format!("Median factor to the printed numbers {median:.2}, {close} of {all} within {CLOSE}."));
+            sentences
+                .push(format!("Median factor to the printed numbers {median:.2}, {close} of {all} within {CLOSE}."));
         }
         if self.total() > 0 {
             let that_vary = if self.varying < self.total() { " that vary" } else { "" };
@@ -148,12 +147,12 @@ mod tests {
     fn a_factor_does_not_depend_on_which_is_larger() {
         assert_eq!([cell(2.0, 1.0), cell(1.0, 2.0)].map(|cell| factor(&cell)), [Some(2.0); 2]);
         assert_eq!([cell(0.0, 1.0), cell(1.0, 0.0), cell(0.0, 0.0)].map(|cell| factor(&cell)), [None; 3]);
-        let tally = |factors: &[f64]| Tally { counts: BTreeMap::new(), varying: 0, alike: 0, factors: factors.to_vec() };
-        assert_eq!([tally(&[]), tally(&[1.5, 3.0]), tally(&[1.0, 2.0, 7.0])].map(|t| t.median_factor()), [
-            None,
-            Some(2.25),
-            Some(2.0)
-        ]);
+        let tally =
+            |factors: &[f64]| Tally { counts: BTreeMap::new(), varying: 0, alike: 0, factors: factors.to_vec() };
+        assert_eq!(
+            [tally(&[]), tally(&[1.5, 3.0]), tally(&[1.0, 2.0, 7.0])].map(|t| t.median_factor()),
+            [None, Some(2.25), Some(2.0)]
+        );
         assert_eq!(tally(&[1.0, 1.5, 2.0]).close(), (2, 3));
     }
 

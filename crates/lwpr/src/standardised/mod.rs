@@ -52,7 +52,8 @@ impl Training {
         let mean = DVector::from_iterator(ys.nrows(), ys.row_iter().map(|row| mean(row.iter().copied())));
         let mut centred = ys.into_owned();
         centred.column_iter_mut().for_each(|mut column| column -= &mean);
-        let spreads = || DVector::from_iterator(centred.nrows(), centred.row_iter().map(|row| spread(row.iter().copied())));
+        let spreads =
+            || DVector::from_iterator(centred.nrows(), centred.row_iter().map(|row| spread(row.iter().copied())));
         let norm_out = self.params.norm_out.clone().unwrap_or_else(spreads);
         let params = LwprParams { norm_out: Some(norm_out), ..self.params.clone() };
         let mut model = params.build(xs.nrows(), ys.nrows())?;

@@ -84,7 +84,7 @@ mod tests {
     fn reservations_are_true() {
         let said: Vec<&str> =
             registry().unwrap().iter().flat_map(|experiment| experiment.reservations).copied().collect();
-        assert_eq!(said.len(), 5, "each has its lines below");
+        assert_eq!(said.len(), 4, "each has its lines below");
         for records in RECORDS {
             let results = Results::read("results.json", records).unwrap();
             let cell = |experiment: &str, row: &str, measure: Measure| -> &Cell {
@@ -101,19 +101,17 @@ mod tests {
             let rise = |size: &str| {
                 let [narrow, medium] =
                     ["narrow", "medium"].map(|width| table1(&format!("sinusoidal-{size}-{width}"), Nupe));
-                (medium.mean / narrow.mean, medium.paper.unwrap().mean / narrow.paper.unwrap().mean)
+                (medium.mean > narrow.mean, medium.paper.unwrap().mean > narrow.paper.unwrap().mean)
             };
-            let (short, long) = (rise("40x40"), rise("100x100"));
-            assert!(
-                (short.0 - 1.0).abs() < 0.06 && short.1 > 1.06 && long.0 > 1.1 && long.1 < 1.0,
-                "{short:?} {long:?}"
-            );
-            for row in ["training", "unseen_barrier", "unconstrained"] {
-                let ours = cell("table2", row, PolicyAlign);
-                assert!(ours.mean < 0.5 * ours.paper.unwrap().mean);
+            assert_eq!([rise("40x40"), rise("100x100")], [(true, true), (false, false)]);
+            let potential = cell("table2", "alignment", PotentialNmse);
+            assert!(potential.mean > 4.0 * potential.paper.unwrap().mean);
+            // As in the paper, the naive learner errs less under the training constraint, and nowhere else.
+            for (row, less) in [("training", true), ("unseen_barrier", false), ("unconstrained", false)] {
+                let [ours, naive] = [PolicyAlign, NaiveAll].map(|measure| cell("table2", row, measure));
+                assert_eq!(naive.mean < ours.mean, less, "{row}");
+                assert_eq!(naive.paper.unwrap().mean < ours.paper.unwrap().mean, less, "{row}");
             }
-            let [ours, naive] = [PolicyAlign, NaiveAll].map(|measure| cell("table2", "training", measure));
-            assert!(ours.paper.unwrap().mean > naive.paper.unwrap().mean && ours.mean < naive.mean);
             let beyond = cell("asimo22", "policy_align", BeyondLimits).mean;
             assert!((75.0..85.0).contains(&beyond), "{beyond}");
             assert!(cell("asimo22", "body/naive", Nupe).mean < cell("asimo22", "policy_align", Nupe).mean);
