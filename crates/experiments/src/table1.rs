@@ -154,16 +154,16 @@ impl Toy {
 }
 
 /// The table as it is printed, changed.
-fn changed(change: impl Fn(&mut Toy)) -> anyhow::Result<Vec<Setup>> {
+fn changed(change: impl Fn(&mut Toy)) -> Vec<Setup> {
     let mut toy = Toy::new(Redraw::Every(REDRAW), 0);
     change(&mut toy);
-    Ok(toy.printed())
+    toy.printed()
 }
 
 /// Where the numbers of the table come from.
 pub(super) fn settings() -> Vec<Setting> {
     let setting = |name, class, paper, used, change: fn(&mut Toy, f64)| {
-        Setting::new("table1", name, class, paper, used, move |value| changed(|toy| change(toy, value)))
+        Setting::new("table1", name, class, paper, used, move |value| Ok(changed(|toy| change(toy, value))))
     };
     let library = |name, used, change| setting(name, Class::LibraryDefault, SILENT, used, change);
     let mut settings = vec![
@@ -178,7 +178,7 @@ pub(super) fn settings() -> Vec<Setting> {
         ),
         setting("starts within ±", Class::Paper, "axes of Figure 5", 2.0, |toy, range| toy.start_range = range),
         setting("δt of the toy system", Class::Paper, "(9) has no δt", 1.0, |toy, time_step| {
-            toy.time_step = time_step
+            toy.time_step = time_step;
         }),
         setting("divisor of the potentials", Class::Paper, "(23) has none", 1.0, |toy, by| toy.recipe.divisor = by),
         library("init_D", 25.0, |toy, init_d| toy.recipe.params.init_d = init_d),
@@ -186,14 +186,14 @@ pub(super) fn settings() -> Vec<Setting> {
         library("penalty", 1e-6, |toy, penalty| toy.recipe.params.penalty = penalty),
         library("init_alpha", 50.0, |toy, alpha| toy.recipe.params.init_alpha = alpha),
     ];
-    settings.extend(Recipe::default().settings("table1", |recipe| changed(|toy| toy.recipe = recipe.clone())));
+    settings.extend(Recipe::default().settings("table1", |recipe| Ok(changed(|toy| toy.recipe = recipe.clone()))));
     settings
 }
 
 /// What texts ask about besides.
 pub(super) fn asked_about() -> Vec<Setting> {
     let setting = |name, used, change: fn(&mut Toy, f64)| {
-        Setting::new("table1", name, Class::Fitted, SILENT, used, move |value| changed(|toy| change(toy, value)))
+        Setting::new("table1", name, Class::Fitted, SILENT, used, move |value| Ok(changed(|toy| change(toy, value))))
     };
     vec![
         setting("movements", 40.0, |toy, movements| toy.movements = Some(movements.round() as usize)),

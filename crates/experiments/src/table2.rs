@@ -121,10 +121,10 @@ pub(super) fn settings() -> Vec<Setting> {
     let mut settings = vec![
         setting("narrowest gap, m", "gaps from N(0.25, 0.1²)", 0.17, |bench, least| bench.grasp.gap_least = least),
         setting("ball, m in front of the robot", SILENT, 0.7, |bench, x| {
-            bench.place(x, bench.grasp.scene.wall_influence)
+            bench.place(x, bench.grasp.scene.wall_influence);
         }),
         setting("influence of the wall, m", SILENT, 0.09, |bench, metres| {
-            bench.place(bench.grasp.scene.ball.x, metres)
+            bench.place(bench.grasp.scene.ball.x, metres);
         }),
         setting(TIME_STEP, "2 s at 50 Hz", 0.5, |bench, time_step| bench.grasp.roll_out.time_step = time_step),
         setting("divisor of PolicyAlign's inputs, m", SILENT, SPREAD, |bench, spread| bench.spread = spread),

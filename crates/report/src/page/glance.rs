@@ -173,27 +173,19 @@ fn tally_of(compared: &Compared<'_>) -> Markup {
     }
 }
 
-/// The cells that are higher than printed or otherwise off; what is known of each stands under its table.
+/// The cells that are higher than printed or otherwise off; what is known of each stands under its table, and there alone
+/// where the table is another reading.
 fn not_reached(all: &[Compared<'_>]) -> Markup {
-    let (others, first): (Vec<_>, Vec<_>) =
-        all.iter().partition(|compared| compared.experiment.another_reading_of.is_some());
-    html! {
-        (missed(|which| format!("Numbers that {which}"), &first))
-        (missed(|which| format!("Numbers that {which} in Table 1, taken literally, not counted above"), &others))
-    }
-}
-
-fn missed(heading: fn(&str) -> String, among: &[&Compared<'_>]) -> Markup {
     let missed = |line: &Line<'_>| line.cell.verdict.is_some_and(|verdict| !verdict.reached());
     let mut cells = vec![];
-    for compared in among {
+    for compared in all.iter().filter(|compared| compared.experiment.another_reading_of.is_none()) {
         cells.extend(compared.lines().filter(missed).map(|line| (compared.experiment, line)));
     }
     let verdicts: BTreeSet<Verdict> = cells.iter().filter_map(|(_, line)| line.cell.verdict).collect();
     let which: Vec<&str> = verdicts.into_iter().map(Verdict::plural).collect();
     html! {
         @if !cells.is_empty() {
-            p .missed { b { (heading(&which.join(" or "))) ":" } }
+            p .missed { b { "Numbers that " (which.join(" or ")) ":" } }
             ul .missed {
                 @for (experiment, line) in cells {
                     li data-verdict=(line.verdict()) {
