@@ -9,8 +9,8 @@ use crate::AlignError;
 /// Dimensions that vary by less than this share of the one that varies most are idle.
 const IDLE: f64 = 1e-3;
 
-/// The parameters of the paper's toy tables, and good ones to start from: LWPR's own have narrower fields (`init_d` 25),
-/// fewer of them (`w_gen` 0.1) and hardly a penalty (1e-6).
+/// Good parameters to start from, for values that are divided by their standard deviation. The paper's tables come out with
+/// LWPR's own on undivided values: narrower fields (`init_d` 25), fewer of them (`w_gen` 0.1), hardly a penalty (1e-6).
 pub(crate) fn default_params() -> LwprParams {
     LwprParams { init_d: 10.0, w_gen: 0.5, penalty: 1e-5, ..LwprParams::default() }
 }
