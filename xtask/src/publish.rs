@@ -8,7 +8,7 @@ use clap::Args;
 use experiments::leverage::Leverage;
 use experiments::results::{ExperimentResult, Results};
 use experiments::summary::check;
-use experiments::{Experiment, Setup, registry};
+use experiments::{Experiment, Setup, n_fitted, registry};
 use figures::{Figure, Sources, compute, draw, figures};
 use page::markdown_table;
 use report::{Section, Tally, learners, on_new_movements, printed};
@@ -119,7 +119,10 @@ impl Committed {
         let results = &self.first.results;
         let page = (repository().join("docs/reproduction.md"), reproduction(experiments, self));
         let settings = (repository().join(leverage::PAGE), leverage::page_of(&Leverage::committed()?));
-        let readme = with_generated("README.md", &[headline(experiments, results), tallies(experiments, results)])?;
+        let readme = with_generated(
+            "README.md",
+            &[headline(experiments, results, &self.second), tallies(experiments, results)],
+        )?;
         Ok([page, settings, readme, with_generated("docs/learners.md", &[learners(experiments, results)])?])
     }
 
@@ -188,9 +191,21 @@ fn reproduction(experiments: &[Experiment], Committed { first, second }: &Commit
 }
 
 /// The results in short: how the printed cells compare, and how far the learners' policies carry.
-fn headline(experiments: &[Experiment], results: &Results) -> String {
-    let paper = format!("The paper's tables. {}", Tally::of_first_readings(pairs(experiments, results)).sentence());
-    let lines = [paper].into_iter().chain(on_new_movements(experiments, &results.experiments));
+fn headline(experiments: &[Experiment], first: &Results, second: &Results) -> String {
+    let tally = Tally::of_first_readings(pairs(experiments, first));
+    let of_second = Tally::of_first_readings(pairs(experiments, second));
+    let (close, all) = tally.close();
+    let paper = format!(
+        "Of the paper's {} numbers {} (agree: within one printed standard deviation); the median factor between ours and the printed is {:.2}, {close} of \
+         {all} are within 1.5. With seed {}: {}. {} numbers were fitted.",
+        tally.total(),
+        tally.verdicts(),
+        tally.median_factor().unwrap_or(1.0),
+        second.seed,
+        of_second.verdicts(),
+        n_fitted(),
+    );
+    let lines = [paper].into_iter().chain(on_new_movements(experiments, &first.experiments));
     lines.map(|line| format!("- {line}")).collect::<Vec<_>>().join("\n")
 }
 

@@ -21,7 +21,7 @@ use crate::measure::{Measure, RowOf};
 use crate::seed::beside;
 
 /// Data sets that they learn from: errors that are smaller by orders of magnitude need no hundred.
-pub(super) const DATA_SETS: u32 = 5;
+pub const DATA_SETS: u32 = 5;
 
 /// Who learns beside.
 #[derive(Serialize)]

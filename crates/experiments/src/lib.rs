@@ -40,7 +40,7 @@ mod three_link;
 pub mod variants;
 pub mod verdict;
 
-pub use beside::Beside;
+pub use beside::{Beside, DATA_SETS};
 pub use beyond::case_on_the_plane;
 pub use contest::{Contest, Contestant, Entry};
 pub use figure6::{BANDWIDTHS, BESIDE_LEFT, BESIDE_RIGHT, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};

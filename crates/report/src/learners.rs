@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use experiments::measure::Measure;
 use experiments::results::{ExperimentResult, Results, RowResult};
-use experiments::{Contestant, Experiment};
+use experiments::{Contestant, DATA_SETS, Experiment};
 use page::markdown_table;
 
 use super::contests::{ContestLine, Contests, shown_mean};
@@ -68,8 +68,8 @@ pub fn on_new_movements(experiments: &[Experiment], results: &[ExperimentResult]
     };
     let fresh = errors("table1", "sinusoidal-100x100-medium", Measure::NupeFresh).map(|[naive, align, slope]| {
         format!(
-            "On movements from new starts (Table 1, sinusoid) the policy's error is {naive} for the naive learner, {align} for \
-             PolicyAlign and {slope} for the slope GP."
+            "On movements from new starts (Table 1's sinusoid, 100 demonstrations, medium bandwidth, {DATA_SETS} data sets) the policy's error \
+             is {naive} for the naive learner, {align} for PolicyAlign and {slope} for the slope GP."
         )
     });
     let few = errors("beyond", "sinus-2d-10-demonstrations", Measure::Nupe).map(|[naive, align, slope]| {
@@ -338,8 +338,8 @@ mod tests {
         let sentences = |rows: &[RowResult]| on_new_movements(&experiments, &[result("table1", rows.to_vec())]);
         assert_eq!(sentences(&rows), Vec::<String>::new());
         rows.push(row(case, &[(fresh, [0.1, 0.3])]));
-        let expected = "On movements from new starts (Table 1, sinusoid) the policy's error is 0.60 for the naive learner, 0.20 for \
-                        PolicyAlign and 2e-8 for the slope GP.";
+        let expected = "On movements from new starts (Table 1's sinusoid, 100 demonstrations, medium bandwidth, 5 data sets) the policy's error \
+                        is 0.60 for the naive learner, 0.20 for PolicyAlign and 2e-8 for the slope GP.";
         assert_eq!(sentences(&rows), [expected]);
     }
 

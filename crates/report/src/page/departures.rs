@@ -20,8 +20,8 @@ fn what_was_fitted() -> Markup {
         ul .points {
             li {
                 (n_fitted()) " numbers were chosen so that the printed ones come out: when the toy’s constraint changes, the held-out share, the passes over the \
-                 samples, the robots’ time step; for Table 2 the ball, the influence of the wall, the narrowest gap and two divisors of the inputs; for the 22 joints \
-                 the attractor, a divisor and the passes. Everything else of the regression is a default of the LWPR library, and the potential is learnt as it is (23). \
+                 samples (one for each input), the robots’ time step; for Table 2 the ball, the influence of the wall, the narrowest gap and two divisors of the inputs; for the 22 joints \
+                 the attractor, a divisor and the cutoff of predictions. Everything else of the regression is a default of the LWPR library, and the potential is learnt as it is (23). \
                  Each experiment lists its settings, their class, and which verdicts change when one is a fifth smaller or larger. Robots, scenes and \
                  start postures are not published either and not counted."
             }

@@ -65,7 +65,7 @@ fn in_short(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
                 " with nothing in the robot’s way (Table 2), PolicyAlign, the paper’s method, has an error of " (policy_align)
                 ", the naive learner, which takes movements as they were seen, one of " (naive) ", both as shares of the policy’s variance at the demonstrated states."
                 @for experiment in where_naive_errs_less(all) {
-                    " The naive learner errs less than PolicyAlign in “" a href={ "#" (experiment.id) } { (experiment.title) } "”."
+                    " The naive learner errs less than PolicyAlign throughout in “" a href={ "#" (experiment.id) } { (experiment.title) } "”."
                 }
                 @if let Some(ends) = ends_of_reaching(contents.sources) {
                     " And PolicyAlign’s movements do not end well: its hands end " (centimetres(ends.policy_align))
@@ -129,7 +129,7 @@ fn how_it_went(total: &Tally, all: &[Compared<'_>]) -> Markup {
     html! {
         @if total.total() > 0 {
             table .tallies {
-                thead { tr { th scope="col" { "Experiment" } th scope="col" { "Section" } th scope="col" .number { "Fitted settings" } th scope="col" colspan="2" { "Printed numbers" } } }
+                thead { tr { th scope="col" { "Experiment" } th scope="col" { "Section" } th scope="col" .number { "Fitted settings (some shared)" } th scope="col" colspan="2" { "Printed numbers" } } }
                 tbody { @for compared in all { (tally_of(compared)) } }
             }
             p .rule {

@@ -29,8 +29,8 @@ pub(super) fn folded(compared: &Compared<'_>, contents: &Contents<'_>) -> Markup
 fn title(standing_out: usize) -> String {
     match standing_out {
         0 => "Reservations".to_owned(),
-        1 => "Reservations, and the number that stands out".to_owned(),
-        count => format!("Reservations, and the {count} numbers that stand out"),
+        1 => "Reservations, and a number further off than two standard errors or its band".to_owned(),
+        count => format!("Reservations, and {count} numbers further off than two standard errors or their band"),
     }
 }
 
