@@ -24,7 +24,7 @@ pub(crate) struct Radial {
     pub(crate) length: f64,
 }
 
-/// g and h of (S3) for every pair: the slope–slope covariance is g ν − h αβ.
+/// g and h of (S3) for every pair: the slope–slope covariance is g ν − h β_i β_j.
 pub(crate) trait Slopes: Copy {
     /// g and h at one squared distance.
     fn at(self, squared_distance: f64) -> (f64, f64);
@@ -63,7 +63,7 @@ impl Slopes for Matern32 {
         let distance = squared_distance.sqrt();
         let rate = 3.0_f64.sqrt() / self.0;
         let g = exp(-rate * distance);
-        // At distance 0 the product hαβ is 0 whatever h is.
+        // At distance 0 the product h β_i β_j is 0 whatever h is.
         (g, rate * g / if distance > 1e-12 { distance } else { 1e-12 })
     }
 }

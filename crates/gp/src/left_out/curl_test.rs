@@ -31,7 +31,7 @@ pub(crate) struct Contender<'a> {
     pub(crate) left_out: &'a LeftOut,
 }
 
-/// (S12): t of the gain per trajectory, Δ_T = Σ w (e² with a potential − e² without), w = 1/D.
+/// (S12): t of the gain per trajectory, gain_T = Σ w (e² with a potential − e² without), w = 1/D.
 pub(crate) fn curl_t(potential: &LeftOut, rotation: &LeftOut, noise_weights: &[f64], groups: &[Vec<usize>]) -> f64 {
     let gain = |row: usize| {
         let square = |left_out: &LeftOut| left_out.residuals.row(row).norm_squared();

@@ -98,7 +98,7 @@ fn total(total: &Tally, literal: &Tally) -> Markup {
     html! {
         @if let Some(median) = total.median_factor() {
             div .total {
-                p .asked { "The median factor between our numbers and the printed ones is " b { (format!("{median:.2}")) } "; " (close(total)) "." }
+                p .factor { "The median factor between our numbers and the printed ones is " b { (format!("{median:.2}")) } "; " (close(total)) "." }
                 p .asked { "Of " b { (total.total()) } " numbers that the paper prints" }
                 (words(total))
                 (bar(total))
@@ -162,7 +162,7 @@ fn tally_of(compared: &Compared<'_>) -> Markup {
             tr {
                 th scope="row" {
                     a href={ "#" (experiment.id) } { (experiment.title) }
-                    @if experiment.another_reading_of.is_some() { " (as the paper’s words have it; not counted in the total)" }
+                    @if experiment.another_reading_of.is_some() { " (as the paper says it; not counted)" }
                 }
                 td { (experiment.section) }
                 td .number data-label="fitted settings" { (fitted::count(compared)) }
@@ -173,12 +173,14 @@ fn tally_of(compared: &Compared<'_>) -> Markup {
     }
 }
 
-/// The cells that are higher than printed or otherwise off; what is known of each stands under its table, and there alone
-/// where the table is another reading.
+/// The cells that are higher than printed or otherwise off; what is known of each stands under its table.
 fn not_reached(all: &[Compared<'_>]) -> Markup {
     let missed = |line: &Line<'_>| line.cell.verdict.is_some_and(|verdict| !verdict.reached());
     let mut cells = vec![];
-    for compared in all.iter().filter(|compared| compared.experiment.another_reading_of.is_none()) {
+    // Those of other readings last.
+    let (others, first): (Vec<_>, Vec<_>) =
+        all.iter().partition(|compared| compared.experiment.another_reading_of.is_some());
+    for compared in first.into_iter().chain(others) {
         cells.extend(compared.lines().filter(missed).map(|line| (compared.experiment, line)));
     }
     let verdicts: BTreeSet<Verdict> = cells.iter().filter_map(|(_, line)| line.cell.verdict).collect();
