@@ -109,8 +109,8 @@ fn total(total: &Tally, literal: &Tally) -> Markup {
                     }
                 }
                 p {
-                    "Statistically: of the " (total.varying()) " means that vary from data set to data set, " b { (total.alike()) } " differ from the printed ones by less than \
-                     two standard errors. The other " (total.varying() - total.alike()) "
+                    "Statistically: of the " (total.varying()) " means that vary from data set to data set, " b { (total.alike()) } " are within two standard errors \
+                     of the printed ones. The other " (total.varying() - total.alike()) "
                      can be told apart from them, though many count as agreeing, and " (n_fitted()) " numbers were fitted."
                 }
             }
@@ -175,19 +175,25 @@ fn tally_of(compared: &Compared<'_>) -> Markup {
 
 /// The cells that are higher than printed or otherwise off; what is known of each stands under its table.
 fn not_reached(all: &[Compared<'_>]) -> Markup {
-    let missed = |line: &Line<'_>| line.cell.verdict.is_some_and(|verdict| !verdict.reached());
-    let mut cells = vec![];
-    // Those of other readings last.
     let (others, first): (Vec<_>, Vec<_>) =
         all.iter().partition(|compared| compared.experiment.another_reading_of.is_some());
-    for compared in first.into_iter().chain(others) {
+    html! {
+        (missed("", &first))
+        (missed(" in Table 1, taken literally, not counted above", &others))
+    }
+}
+
+fn missed(of: &str, among: &[&Compared<'_>]) -> Markup {
+    let missed = |line: &Line<'_>| line.cell.verdict.is_some_and(|verdict| !verdict.reached());
+    let mut cells = vec![];
+    for compared in among {
         cells.extend(compared.lines().filter(missed).map(|line| (compared.experiment, line)));
     }
     let verdicts: BTreeSet<Verdict> = cells.iter().filter_map(|(_, line)| line.cell.verdict).collect();
     let which: Vec<&str> = verdicts.into_iter().map(Verdict::plural).collect();
     html! {
         @if !cells.is_empty() {
-            p .missed { b { "Numbers that " (which.join(" or ")) ":" } }
+            p .missed { b { "Numbers that " (which.join(" or ")) (of) ":" } }
             ul .missed {
                 @for (experiment, line) in cells {
                     li data-verdict=(line.verdict()) {
