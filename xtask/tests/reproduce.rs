@@ -207,9 +207,10 @@ fn usage_errors_have_three_lines_and_their_exit_code() {
         let text = String::from_utf8_lossy(&output.stderr).into_owned();
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!((output.status.code(), lines.len()), (Some(2), 3), "{arguments:?}: {text}");
-        for (line, start) in lines.iter().zip(["error: ", "  in:  cargo xtask", "  try: "]) {
+        for (line, start) in lines.iter().zip(["error: ", "  in:  ", "  try: "]) {
             assert!(line.starts_with(start) && line.len() > start.len(), "{text}");
         }
+        assert!(lines[1].starts_with("  in:  cargo xtask"), "{text}");
         assert!(text.contains(said), "{text}");
     }
 }
