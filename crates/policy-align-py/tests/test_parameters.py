@@ -61,7 +61,7 @@ def test_a_window_is_given_in_samples_or_seconds() -> None:
         model = SlopeGp(smooth=smooth, max_rows=60).fit(positions, dt=DT, velocities=velocities)
         return [one.value for one in model.decisions_ if one.what == "smoothing"]
 
-    assert smoothing(9) == smoothing("9") == smoothing("0.45s") == ["positions, over 9 samples at a time"]
+    assert smoothing(9) == smoothing("9") == smoothing("0.45s") == ["positions, window of 9 samples"]
     assert smoothing("off") == ["none: positions as they are"]
     with pytest.raises(PolicyAlignError) as error:
         smoothing(6)

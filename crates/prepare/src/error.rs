@@ -27,7 +27,7 @@ pub enum PrepareError {
         samples: usize,
     },
     /// A scale for something that is not there.
-    #[error("--scale names '{name}', but the state has {known}; one of these names")]
+    #[error("--scale names '{name}', but the state has {known}; use one of these names")]
     UnknownChannel {
         /// The name given.
         name: String,
