@@ -62,10 +62,10 @@ def test_a_window_is_given_in_samples_or_seconds() -> None:
         return [one.value for one in model.decisions_ if one.what == "smoothing"]
 
     assert smoothing(9) == smoothing("9") == smoothing("0.45s") == ["positions, window of 9 samples"]
-    assert smoothing("off") == ["none: positions as they are"]
+    assert smoothing("off") == ["none: positions as recorded"]
     with pytest.raises(PolicyAlignError) as error:
         smoothing(6)
-    assert error.value.hint == 'give an odd number from 5 on, as smooth=9, or so many seconds, as smooth="4.50e-1s"'
+    assert error.value.hint == 'an odd number of at least 5, as in smooth=9, or seconds, as in smooth="4.50e-1s"'
 
 
 @pytest.mark.parametrize("learner", [PolicyAlign(folds=2.5), SlopeGp(random_state="one"), SlopeGp(max_rows=-1)])
