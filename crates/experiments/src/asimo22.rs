@@ -10,7 +10,6 @@ use super::beside::{Beside, BesideTrial, DATA_SETS};
 use super::contest::{Contest, Contestant};
 use super::exam::Protocol;
 use super::gaussians::Gaussians;
-use super::pupil::Pupil;
 use super::recipe::{HELD_OUT, Recipe};
 use super::settings::{Class, SILENT, Setting, TIME_STEP};
 use super::{Experiment, Measures, Row, Setup, Trial};
@@ -86,8 +85,7 @@ fn recipe() -> Recipe {
 
 /// The printed row.
 fn printed(scenario: HandInPlane, spread: f64, recipe: &Recipe) -> Setup {
-    let pupils = vec![Pupil::PolicyAlign(recipe.regressor(22, spread))];
-    let protocol = Protocol { algorithm: PolicyAlign::default(), pupils, held_out: recipe.held_out };
+    let protocol = recipe.protocol(PolicyAlign::default(), 22, spread);
     Setup {
         id: ROW.to_owned(),
         rows: vec![Row::of_learner(ROW)],

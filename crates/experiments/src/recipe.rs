@@ -1,10 +1,12 @@
 //! How every experiment learns and tests: one regression, LWPR with its library's defaults, and one share of samples held out.
 
-use align::{DirectPolicyLearning, LwprRegressor};
+use align::{DirectPolicyLearning, LwprRegressor, PolicyAlign};
 use lwpr::LwprParams;
 use nalgebra::DVector;
 
 use super::Setup;
+use super::exam::Protocol;
+use super::pupil::Pupil;
 use super::settings::{Class, SILENT, Setting};
 
 /// What the learners of an experiment have in common.
@@ -40,6 +42,12 @@ impl Recipe {
     /// The naive learner's regression on observed velocities.
     pub(crate) fn naive(&self, dim: usize, spread: f64) -> DirectPolicyLearning {
         DirectPolicyLearning { params: self.params_of(dim, spread, dim), passes: self.passes(dim), cutoff: self.cutoff }
+    }
+
+    /// PolicyAlign alone, with this regression; other learners are added to it.
+    pub(crate) fn protocol(&self, algorithm: PolicyAlign, dim: usize, spread: f64) -> Protocol {
+        let pupils = vec![Pupil::PolicyAlign(self.regressor(dim, spread))];
+        Protocol { algorithm, pupils, held_out: self.held_out }
     }
 
     fn passes(&self, dim: usize) -> usize {

@@ -12,7 +12,6 @@ use super::contest::Contest;
 use super::exam::Protocol;
 use super::fresh::{add_errors, fresh};
 use super::gaussians::Gaussians;
-use super::pupil::Pupil;
 use super::recipe::{HELD_OUT, Recipe};
 use super::settings::{Class, SILENT, Setting};
 use super::{Experiment, Measures, Row, Setup, Trial};
@@ -132,11 +131,8 @@ impl Toy {
             for (bandwidth_name, bandwidth) in BANDWIDTHS {
                 let id = format!("{name}-{size}x{size}-{bandwidth_name}");
                 let row = Row::of_learner(&id);
-                let protocol = Protocol {
-                    algorithm: PolicyAlign { bandwidth, ..PolicyAlign::default() },
-                    pupils: vec![Pupil::PolicyAlign(self.recipe.regressor(2, 1.0))],
-                    held_out: self.recipe.held_out,
-                };
+                let algorithm = PolicyAlign { bandwidth, ..PolicyAlign::default() };
+                let protocol = self.recipe.protocol(algorithm, 2, 1.0);
                 let (cost, system_number) = (learning_cost(size, size), self.first_system + number);
                 let trial = Box::new(ToyTrial { system: system.clone(), protocol });
                 setups.push(Setup { id, rows: vec![row], system: system_number, data_sets: None, cost, trial });
@@ -239,7 +235,7 @@ struct ToyTrial {
 
 /// How PolicyAlign learns the toy system.
 pub(super) fn toy_protocol(algorithm: PolicyAlign) -> Protocol {
-    Protocol { algorithm, pupils: vec![Pupil::PolicyAlign(toy_regressor())], held_out: HELD_OUT }
+    Recipe::default().protocol(algorithm, 2, 1.0)
 }
 
 /// The regression of all rows.

@@ -94,10 +94,9 @@ impl Bench {
     /// The printed rows.
     fn printed(self) -> anyhow::Result<Setup> {
         let Bench { grasp, spread, naive_spread, recipe } = self;
+        let mut protocol = recipe.protocol(PolicyAlign::default(), 6, spread);
         // In the order of [`MEASURES`].
-        let pupils =
-            vec![Pupil::PolicyAlign(recipe.regressor(6, spread)), Pupil::other(recipe.naive(6, naive_spread))?];
-        let protocol = Protocol { algorithm: PolicyAlign::default(), pupils, held_out: recipe.held_out };
+        protocol.pupils.push(Pupil::other(recipe.naive(6, naive_spread))?);
         Ok(Setup {
             id: "grasp".to_owned(),
             rows: CASES.into_iter().chain(["alignment"]).map(Row::of_learner).collect(),

@@ -81,8 +81,7 @@ pub fn arm() -> anyhow::Result<ThreeLinkArm> {
 
 /// How PolicyAlign learns the arm.
 pub(super) fn protocol(recipe: &Recipe) -> Protocol {
-    let pupils = vec![Pupil::PolicyAlign(recipe.regressor(3, 1.0))];
-    Protocol { algorithm: PolicyAlign::default(), pupils, held_out: recipe.held_out }
+    recipe.protocol(PolicyAlign::default(), 3, 1.0)
 }
 
 /// The printed rows.
