@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use anyhow::{Context as _, bail, ensure};
-use demo_io::{Episode, ReadError, ReadOptions, Recordings, read};
+use demo_io::{ReadError, ReadOptions, read};
+use motion::{Episode, Recordings};
 use nalgebra::DMatrix;
+use prepare::{PrepareOptions, Prepared, prepare};
 use serde::Deserialize;
 use sha2::{Digest as _, Sha256};
 
@@ -92,10 +94,7 @@ impl Attempt {
             (Kind::Refuse, Ok(_)) => bail!("read, but should be refused"),
             (Kind::Refuse, Err(error)) => self.refused(&error),
             (Kind::Ok, Ok(recordings)) => self.expect.check(&recordings),
-            (Kind::Warn, Ok(recordings)) => {
-                self.expect.check(&recordings)?;
-                self.warned(&recordings)
-            }
+            (Kind::Warn, Ok(recordings)) => self.warned(recordings),
             (Kind::Ok | Kind::Warn, Err(error)) => bail!("{}: {error}", error.code()),
         }
     }
@@ -107,12 +106,18 @@ impl Attempt {
         says(&self.says, &text)
     }
 
-    fn warned(&self, recordings: &Recordings) -> anyhow::Result<()> {
-        let code = self.code.as_deref().context("a case without a code")?;
-        let notes: Vec<String> =
-            recordings.notes.iter().filter(|note| note.kind.code() == code).map(ToString::to_string).collect();
-        ensure!(!notes.is_empty(), "no note {code} among {:?}", recordings.notes);
-        says(&self.says, &notes.join("\n"))
+    /// What is found while reading and preparing; what is expected is what was not left out.
+    fn warned(&self, mut recordings: Recordings) -> anyhow::Result<()> {
+        if self.args.contains("--trim-still") {
+            prepare::trim_still(&mut recordings);
+        }
+        let Prepared { findings, left_out, .. } = prepare(&recordings, &PrepareOptions::default())?;
+        let is_left_out = |episode: &Episode| left_out.iter().any(|left| left.episode == episode.name);
+        recordings.episodes.retain(|episode| !is_left_out(episode));
+        self.expect.check(&recordings)?;
+        let left_out: Vec<_> = left_out.iter().map(|left| format!("episode {} {}", left.episode, left.why)).collect();
+        let found = findings.iter().map(|finding| format!("{}: {}", finding.what, finding.next));
+        says(&self.says, &found.chain(left_out).collect::<Vec<_>>().join("\n"))
     }
 }
 
@@ -190,7 +195,7 @@ fn options(args: &str) -> anyhow::Result<ReadOptions> {
             "--samples-are" => options.samples_are = Some(named(value()?)?),
             "--unwrap" => options.unwrap.push("*".to_owned()),
             "--sort" => options.sort = true,
-            "--trim-still" => options.trim_still = true,
+            "--trim-still" => {}
             "--trust" => options.trust = true,
             _ => bail!("the flag {flag} is not known"),
         }

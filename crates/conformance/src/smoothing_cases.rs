@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use anyhow::ensure;
+use motion::{Demonstrations, Trajectory};
 use nalgebra::DVector;
 use serde::Deserialize;
-use smoothing::{AxisScale, Fusion, NoiseVariance, Smoothed, Smoother, Stamped};
+use smoothing::{AxisScale, Fusion, NoiseVariance, Smoothed, Smoother};
 
 use super::{Agreement, columns, read_json};
 
@@ -47,13 +48,13 @@ pub(super) fn check_smoother(file: &Path) -> anyhow::Result<Vec<Agreement>> {
         Agreement::new("noise by evidence", 0.2),
     ];
     for case in &cases {
-        let movements = stamped(&case.times, &case.positions)?;
-        let axes = AxisScale::Given(DVector::from_element(movements[0].states().nrows(), 1.0));
+        let movements = Demonstrations::new(stamped(&case.times, &case.positions)?)?;
+        let axes = AxisScale::Given(DVector::from_element(movements.dim(), 1.0));
         let given = Smoother { axis_scale: axes, noise: NoiseVariance::Given(case.s_squared), ..Smoother::default() };
-        let smoothed = given.smooth_stamped(&movements)?;
+        let smoothed = given.smooth(&movements)?;
         agreements[0].see(smoothed.movements.iter().map(|movement| movement.log_evidence), &case.log_evidence);
         case.compare_averages(&smoothed, &mut agreements[1]);
-        let found = Smoother { noise: NoiseVariance::ByEvidence, ..given }.smooth_stamped(&movements)?;
+        let found = Smoother { noise: NoiseVariance::ByEvidence, ..given }.smooth(&movements)?;
         agreements[2].see([found.noise_variance], &[case.s_squared_auto]);
     }
     Ok(agreements)
@@ -76,9 +77,9 @@ pub(super) fn check_fusion(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let mut agreement = Agreement::new("states and variances", 1e-9);
     for case in &cases {
         let movements = stamped(&case.times, &case.positions)?.into_iter().zip(&case.velocities);
-        let movements: Vec<Stamped> =
+        let movements: Vec<Trajectory> =
             movements.map(|(movement, v)| movement.with_velocities(columns(v))).collect::<Result<_, _>>()?;
-        let ours = Fusion::default().fuse_stamped(&movements)?;
+        let ours = Fusion::default().fuse(&Demonstrations::new(movements)?)?;
         let rule = ours.rule.to_string().to_lowercase();
         ensure!(rule == case.rule, "the rule is {rule}, in the reference {}", case.rule);
         let (ratio, theirs) = (ours.log10_ratio, case.log10_q_over_rho);
@@ -90,8 +91,8 @@ pub(super) fn check_fusion(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     Ok(vec![agreement])
 }
 
-fn stamped(times: &[Vec<f64>], positions: &Rows) -> anyhow::Result<Vec<Stamped>> {
-    let movements = times.iter().zip(positions).map(|(times, x)| Stamped::new(times.clone(), columns(x)));
+fn stamped(times: &[Vec<f64>], positions: &Rows) -> anyhow::Result<Vec<Trajectory>> {
+    let movements = times.iter().zip(positions).map(|(times, x)| Trajectory::stamped(times.clone(), columns(x)));
     Ok(movements.collect::<Result<_, _>>()?)
 }
 

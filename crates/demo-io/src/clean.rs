@@ -3,16 +3,15 @@
 mod finite;
 
 use self::finite::make_finite;
-use crate::draft::{Draft, Drafts};
+use crate::raw::remark;
+use crate::raw::{RawEpisode, RawRecordings};
+use crate::rows::roles;
 use crate::selection::{flags, select};
-use crate::statistics::Statistics;
-use crate::{Fault, Note, NoteKind, ReadError, ReadOptions, roles};
-
-/// An episode standing still for so many samples is noted.
-pub(crate) const STILL: usize = 10;
+use crate::{Fault, ReadError, ReadOptions};
+use motion::Finding;
 
 /// Checks and repairs every episode, as the options say.
-pub(crate) fn clean(drafts: &mut Drafts, options: &ReadOptions) -> Result<(), ReadError> {
+pub(crate) fn clean(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<(), ReadError> {
     positive(options.split_gap, "--split-gap")?;
     if drafts.drop_constant {
         leave_out_constant(drafts);
@@ -27,22 +26,17 @@ pub(crate) fn clean(drafts: &mut Drafts, options: &ReadOptions) -> Result<(), Re
             sort(&mut draft);
         }
         refuse_backwards(&draft, drafts.word)?;
-        drafts.notes.extend(leave_out_twins(&mut draft, drafts.word));
         match options.split_gap {
             Some(longest) => episodes.extend(split(draft, longest)),
             None => episodes.push(draft),
         }
     }
+    for draft in &mut episodes {
+        from_zero(draft);
+        drafts.findings.extend(leave_out_twins(draft, drafts.word));
+    }
     drafts.episodes = episodes;
     unwrap_angles(drafts, options)?;
-    if options.trim_still {
-        trim_still(drafts);
-    }
-    leave_out_short(drafts);
-    for draft in &mut drafts.episodes {
-        let first = draft.times[0];
-        draft.times.iter_mut().for_each(|time| *time -= first);
-    }
     Ok(())
 }
 
@@ -58,7 +52,7 @@ fn positive(seconds: Option<f64>, flag: &str) -> Result<(), ReadError> {
 }
 
 /// Columns nobody named that never change are no state: a counter that stands, a sensor that is off.
-fn leave_out_constant(drafts: &mut Drafts) {
+fn leave_out_constant(drafts: &mut RawRecordings) {
     let n = drafts.channels.len();
     let mut first: Vec<f64> = vec![f64::NAN; n];
     let mut changes = vec![false; n];
@@ -83,8 +77,8 @@ fn leave_out_constant(drafts: &mut Drafts) {
         .filter(|(_, changes)| !**changes)
         .map(|(channel, _)| channel.name.as_str())
         .collect();
-    let text = format!("constant columns are not taken as state: {}; --state keeps them", roles::shortened(&names));
-    drafts.notes.push(Note { kind: NoteKind::Ignored, text });
+    let what = format!("constant columns are not taken as state: {}", roles::shortened(&names));
+    drafts.findings.push(remark(what, "--state with their names takes them"));
     let mut column = changes.iter();
     drafts.channels.retain(|_| *column.next().unwrap_or(&true));
     for draft in &mut drafts.episodes {
@@ -94,7 +88,7 @@ fn leave_out_constant(drafts: &mut Drafts) {
 }
 
 /// `--units m`, `--units x=mm`.
-fn name_units(drafts: &mut Drafts, options: &ReadOptions) -> Result<(), ReadError> {
+fn name_units(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<(), ReadError> {
     let names: Vec<String> = drafts.channels.iter().map(|channel| channel.name.clone()).collect();
     for assignment in options.units.iter().flat_map(|text| text.split(',')) {
         let (pattern, unit) = assignment.split_once('=').unwrap_or(("*", assignment));
@@ -112,7 +106,7 @@ fn named(patterns: &[String], names: &[String], flag: &str) -> Result<Vec<usize>
     })
 }
 
-fn degrees_to_radians(drafts: &mut Drafts, options: &ReadOptions) -> Result<(), ReadError> {
+fn degrees_to_radians(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<(), ReadError> {
     let names: Vec<String> = drafts.channels.iter().map(|channel| channel.name.clone()).collect();
     for channel in named(&options.degrees, &names, "--degrees")? {
         drafts.channels[channel].unit = Some("rad".to_owned());
@@ -128,22 +122,28 @@ fn degrees_to_radians(drafts: &mut Drafts, options: &ReadOptions) -> Result<(), 
 }
 
 /// Into the order of stamps; equal ones keep theirs.
-fn sort(draft: &mut Draft) {
+fn sort(draft: &mut RawEpisode) {
     let mut order: Vec<usize> = (0..draft.len()).collect();
     order.sort_by(|&a, &b| draft.times[a].total_cmp(&draft.times[b]));
     let n = draft.dim();
     draft.keep(&order, n);
 }
 
-fn refuse_backwards(draft: &Draft, word: &str) -> Result<(), ReadError> {
+fn refuse_backwards(draft: &RawEpisode, word: &str) -> Result<(), ReadError> {
     let Some(at) = draft.times.windows(2).position(|pair| pair[1] < pair[0]) else { return Ok(()) };
     let what = format!("stamps go back by {} s", rounded(draft.times[at] - draft.times[at + 1]));
     let remedy = "--sort (puts samples in the order of their stamps), or --episode if a new movement begins here";
     Err(ReadError::TimeBackwards(Fault::new(what, draft.place(at + 1, word), remedy)))
 }
 
+/// Seconds from the first sample. Stamps that this rounds to the same are one.
+fn from_zero(draft: &mut RawEpisode) {
+    let first = draft.times.first().copied().unwrap_or(0.0);
+    draft.times.iter_mut().for_each(|time| *time -= first);
+}
+
 /// Of samples with equal stamps the first is kept.
-fn leave_out_twins(draft: &mut Draft, word: &str) -> Option<Note> {
+fn leave_out_twins(draft: &mut RawEpisode, word: &str) -> Option<Finding> {
     let twin = |sample: &usize| *sample > 0 && draft.times[*sample] == draft.times[sample - 1];
     let first = (0..draft.len()).find(twin)?;
     let kept: Vec<usize> = (0..draft.len()).filter(|sample| !twin(sample)).collect();
@@ -151,14 +151,14 @@ fn leave_out_twins(draft: &mut Draft, word: &str) -> Option<Note> {
         1 => String::new(),
         twins => format!(" (and {} more)", twins - 1),
     };
-    let text = format!("a stamp occurs twice; kept the first of its samples: {}{more}", draft.place(first, word));
+    let what = format!("{}: a stamp occurs twice; kept the first of its samples{more}", draft.place(first, word));
     let n = draft.dim();
     draft.keep(&kept, n);
-    Some(Note { kind: NoteKind::DuplicateStamp, text })
+    Some(remark(what, "check the recorder's clock"))
 }
 
 /// Cuts where stamps are more than `longest` seconds apart.
-fn split(draft: Draft, longest: f64) -> Vec<Draft> {
+fn split(draft: RawEpisode, longest: f64) -> Vec<RawEpisode> {
     let n = draft.dim();
     let mut cuts: Vec<usize> = vec![0];
     cuts.extend((1..draft.len()).filter(|&sample| draft.times[sample] - draft.times[sample - 1] > longest));
@@ -169,7 +169,7 @@ fn split(draft: Draft, longest: f64) -> Vec<Draft> {
     let part = |(number, cut): (usize, &[usize])| {
         let samples = cut[0]..cut[1];
         let columns = samples.start * n..samples.end * n;
-        Draft {
+        RawEpisode {
             name: format!("{}_{number}", draft.name),
             file: draft.file.clone(),
             rows: draft.rows.chosen(samples.clone()),
@@ -183,7 +183,7 @@ fn split(draft: Draft, longest: f64) -> Vec<Draft> {
 }
 
 /// Steps of more than half a turn become short ones.
-fn unwrap_angles(drafts: &mut Drafts, options: &ReadOptions) -> Result<(), ReadError> {
+fn unwrap_angles(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<(), ReadError> {
     let names: Vec<String> = drafts.channels.iter().map(|channel| channel.name.clone()).collect();
     if options.unwrap.iter().any(|pattern| pattern != "*") {
         named(&options.unwrap, &names, "--unwrap")?;
@@ -204,32 +204,7 @@ fn unwrap_angles(drafts: &mut Drafts, options: &ReadOptions) -> Result<(), ReadE
     Ok(())
 }
 
-fn trim_still(drafts: &mut Drafts) {
-    let statistics = Statistics::of(drafts);
-    let n = drafts.channels.len();
-    for draft in &mut drafts.episodes {
-        let (start, end) = statistics.still(draft);
-        let moving: Vec<usize> = (start..draft.len().saturating_sub(end)).collect();
-        if moving.len() < draft.len() {
-            draft.keep(&moving, n);
-        }
-    }
-}
-
-fn leave_out_short(drafts: &mut Drafts) {
-    let word = drafts.word;
-    let notes = &mut drafts.notes;
-    drafts.episodes.retain(|draft| {
-        if draft.len() < 2 {
-            let samples = if draft.len() == 1 { "1 sample" } else { "no sample" };
-            let text = format!("episode {} has {samples} and was left out: {}", draft.name, draft.place(0, word));
-            notes.push(Note { kind: NoteKind::TooShort, text });
-        }
-        draft.len() >= 2
-    });
-}
-
-impl Draft {
+impl RawEpisode {
     /// n, or 0 without samples.
     fn dim(&self) -> usize {
         self.positions.len().checked_div(self.len()).unwrap_or(0)

@@ -120,3 +120,8 @@ pub(crate) fn unreadable(error: &std::io::Error, name: &str) -> ReadError {
         _ => ReadError::Unreadable(Fault::new(format!("cannot be read: {error}"), name, "check its permissions")),
     }
 }
+
+/// What went wrong while bytes were decompressed or checked.
+pub(crate) fn damaged(error: &std::io::Error, file: &str) -> ReadError {
+    ReadError::Corrupt(Fault::new(format!("the data are damaged: {error}"), file, "another copy of the file"))
+}

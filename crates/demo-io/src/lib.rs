@@ -1,7 +1,9 @@
 //! Recordings of movements: what a file says, with names, units and stamps, before anybody decides what to make of it.
 //!
 //! [`read`] finds out the format, which columns are time, movement, state and velocity, and the unit of stamps; what is wrong is an
-//! error of three lines ([`ReadError`]), what is odd is a [`Note`]. [`ReadOptions`] overrides whatever was found out.
+//! error of three lines ([`ReadError`]), what did not prevent reading is a
+//! [`motion::Finding`]. Nothing is left out without one, and nobody here judges what was recorded: `prepare` does. [`ReadOptions`]
+//! overrides whatever was found out.
 //!
 //! ```
 //! use demo_io::{ReadOptions, read, write};
@@ -37,56 +39,27 @@
 //! A file need not be trusted: nothing is allocated because a header says so, and a file takes at most 64 times its size and
 //! 64 MB of memory unless [`ReadOptions::trust`] is set.
 
-mod array;
-#[cfg(feature = "mcap")]
-mod cdr;
+mod arrays;
 mod clean;
-mod delimited;
-mod documents;
-mod draft;
 mod error;
-mod fields;
-mod flat;
-mod grouped;
 mod guard;
-#[cfg(feature = "hdf5")]
-mod hdf5;
 mod input;
-mod json;
-mod json_lines;
-mod layout;
-#[cfg(feature = "parquet")]
-mod lerobot;
-#[cfg(feature = "mat")]
-mod mat;
-#[cfg(feature = "mcap")]
-mod mcap;
+mod joined;
 mod natural;
-mod note;
-mod notice;
-mod npy;
-mod npz;
 mod options;
-#[cfg(feature = "parquet")]
-mod parquet;
+mod raw;
 mod read;
-mod recordings;
 mod resample;
-mod roles;
+mod rows;
 mod selection;
 mod sniff;
-mod stamps;
-mod statistics;
-mod table;
 mod whole_file;
 mod write;
 
 pub use error::{Fault, ReadError};
 pub use guard::catches_panics;
-pub use note::{Note, NoteKind};
 pub use options::{Format, Nan, ReadOptions, SamplesAre};
 pub use read::{read, read_all};
-pub use recordings::{Channel, Episode, Recordings, Source};
-pub use resample::ResampleError;
+pub use resample::{ResampleError, resampled};
 pub use whole_file::{Sink, abandon_drafts, write_whole};
 pub use write::{WriteError, write};

@@ -36,8 +36,6 @@ pub struct ReadOptions {
     pub sort: bool,
     /// `--split-gap`: seconds; an episode is cut where stamps are further apart.
     pub split_gap: Option<f64>,
-    /// `--trim-still`: samples that stand still at the ends are left out.
-    pub trim_still: bool,
     /// `--filter`: a named subset of the episodes (robomimic's masks).
     pub filter: Option<String>,
     /// `--samples-are`: how arrays lie; otherwise rows, and columns in MATLAB's files.

@@ -1,14 +1,17 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::arrays::{npy, npz};
 use crate::clean::clean;
-use crate::draft::Drafts;
 #[cfg(any(feature = "parquet", feature = "hdf5", feature = "mcap", feature = "mat"))]
 use crate::guard::guarded;
 use crate::input::{Input, name_of, unreadable};
-use crate::notice::notice;
+use crate::joined::add;
+use crate::raw::RawRecordings;
+use crate::rows::{delimited, json_lines};
 use crate::sniff::{self, Folder};
-use crate::{Fault, Format, ReadError, ReadOptions, Recordings, delimited, json_lines, natural, npy, npz};
+use crate::{Fault, Format, ReadError, ReadOptions, natural};
+use motion::Recordings;
 
 /// Reads a file, or a folder of files with a movement each, whatever its format.
 ///
@@ -32,7 +35,7 @@ pub fn read_all(
     options: &ReadOptions,
     progress: &mut dyn FnMut(u64),
 ) -> Result<Recordings, ReadError> {
-    let mut joined: Option<Drafts> = None;
+    let mut joined: Option<RawRecordings> = None;
     for path in paths {
         let mut drafts = drafts(path, options, progress)?;
         if paths.len() > 1 {
@@ -47,19 +50,18 @@ pub fn read_all(
     if drafts.channels.is_empty() {
         return Err(nothing("there is no state of one number or more"));
     }
-    notice(&mut drafts, options);
-    if drafts.episodes.is_empty() {
+    if drafts.episodes.iter().all(|raw| raw.len() < 2) {
         return Err(nothing("there is no episode of two samples or more"));
     }
-    Ok(Recordings::from_drafts(drafts))
+    Ok(drafts.checked())
 }
 
-fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> Result<Drafts, ReadError> {
+fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> Result<RawRecordings, ReadError> {
     let name = name_of(path);
     if path.is_dir() {
         return match sniff::folder(path, &name)? {
             #[cfg(feature = "parquet")]
-            Folder::LeRobot => guarded(&name, || crate::lerobot::read(path, options, progress)),
+            Folder::LeRobot => guarded(&name, || crate::rows::lerobot::read(path, options, progress)),
             #[cfg(not(feature = "parquet"))]
             Folder::LeRobot => Err(not_built(&name, "parquet")),
             Folder::Files => folder(path, &name, options, progress),
@@ -74,19 +76,19 @@ fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> 
         Format::Npy => npy::read(&input, progress),
         Format::Npz => npz::read(&input, progress),
         #[cfg(feature = "parquet")]
-        Format::LeRobot | Format::Parquet => guarded(&name, || crate::parquet::read(&input, progress)),
+        Format::LeRobot | Format::Parquet => guarded(&name, || crate::rows::parquet::read(&input, progress)),
         #[cfg(not(feature = "parquet"))]
         Format::LeRobot | Format::Parquet => Err(not_built(&name, "parquet")),
         #[cfg(feature = "hdf5")]
-        Format::Hdf5 => guarded(&name, || crate::hdf5::read(&input, progress)),
+        Format::Hdf5 => guarded(&name, || crate::arrays::hdf5::read(&input, progress)),
         #[cfg(not(feature = "hdf5"))]
         Format::Hdf5 => Err(not_built(&name, "hdf5")),
         #[cfg(feature = "mcap")]
-        Format::Mcap => guarded(&name, || crate::mcap::read(&input, progress)),
+        Format::Mcap => guarded(&name, || crate::rows::mcap::read(&input, progress)),
         #[cfg(not(feature = "mcap"))]
         Format::Mcap => Err(not_built(&name, "mcap")),
         #[cfg(feature = "mat")]
-        Format::Mat => guarded(&name, || crate::mat::read(&input, progress)),
+        Format::Mat => guarded(&name, || crate::arrays::mat::read(&input, progress)),
         #[cfg(not(feature = "mat"))]
         Format::Mat => Err(not_built(&name, "mat")),
     }
@@ -103,13 +105,18 @@ fn not_built(name: &str, feature: &str) -> ReadError {
 }
 
 /// The files of a folder in natural order, as one set.
-fn folder(path: &Path, name: &str, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> Result<Drafts, ReadError> {
+fn folder(
+    path: &Path,
+    name: &str,
+    options: &ReadOptions,
+    progress: &mut dyn FnMut(u64),
+) -> Result<RawRecordings, ReadError> {
     let entries = fs::read_dir(path).and_then(Iterator::collect::<Result<Vec<_>, _>>);
     let entries = entries.map_err(|error| unreadable(&error, name))?;
     let mut files: Vec<PathBuf> = entries.iter().map(fs::DirEntry::path).filter(|path| path.is_file()).collect();
     files.retain(|file| sniff::is_recording(file));
     files.sort_by(|a, b| natural::compare(&name_of(a), &name_of(b)));
-    let mut joined: Option<Drafts> = None;
+    let mut joined: Option<RawRecordings> = None;
     for file in &files {
         let mut drafts = drafts(file, options, progress)?;
         name_by_file(&mut drafts, file);
@@ -122,43 +129,9 @@ fn folder(path: &Path, name: &str, options: &ReadOptions, progress: &mut dyn FnM
 }
 
 /// Episodes of one file among several carry its name, since they are numbered in each.
-fn name_by_file(drafts: &mut Drafts, file: &Path) {
+fn name_by_file(drafts: &mut RawRecordings, file: &Path) {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     for draft in drafts.episodes.iter_mut().filter(|draft| draft.name != stem) {
         draft.name = format!("{stem}/{}", draft.name);
     }
-}
-
-pub(crate) fn add(joined: &mut Option<Drafts>, drafts: Drafts, file: &str) -> Result<(), ReadError> {
-    if let Some(joined) = joined {
-        join(joined, drafts, file)
-    } else {
-        *joined = Some(drafts);
-        Ok(())
-    }
-}
-
-/// Appends the episodes of another file.
-fn join(joined: &mut Drafts, more: Drafts, file: &str) -> Result<(), ReadError> {
-    let names = |drafts: &Drafts| drafts.channels.iter().map(|channel| channel.name.clone()).collect::<Vec<_>>();
-    if joined.channels != more.channels {
-        let what = format!("channels differ: {} here, {} before", names(&more).join(", "), names(joined).join(", "));
-        return Err(ReadError::Lengths(Fault::new(
-            what,
-            file,
-            "--state with channels that all files have, or files of one kind",
-        )));
-    }
-    let recorded = |drafts: &Drafts| drafts.episodes.iter().any(|draft| !draft.velocities.is_empty());
-    if recorded(joined) != recorded(&more) {
-        let what = "velocities are recorded in some of the files only";
-        return Err(ReadError::Lengths(Fault::new(
-            what,
-            file,
-            "--ignore with the names of the velocities, or files of one kind",
-        )));
-    }
-    joined.episodes.extend(more.episodes);
-    joined.notes.extend(more.notes);
-    Ok(())
 }

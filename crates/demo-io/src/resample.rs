@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DMatrixView};
 use thiserror::Error;
 
-use crate::{Episode, Recordings};
+use motion::{Episode, Recordings, Times};
 
 /// More numbers than this are refused: a rate in the wrong unit should not fill the memory.
 const MOST_NUMBERS: f64 = 1e9;
@@ -38,50 +38,44 @@ pub enum ResampleError {
     },
 }
 
-impl Recordings {
-    /// The same movements `rate` times a second, from each one's first sample to the last that fits.
-    ///
-    /// Positions, and velocities where there are some, follow monotone cubics through the samples (Fritsch and Butland):
-    /// between two samples no value is beyond both. For learning nothing need be resampled; steps are taken with their
-    /// own times.
-    ///
-    /// # Errors
-    ///
-    /// [`ResampleError`]: no rate, one so low that an episode is a single sample, or so high that memory would not do.
-    pub fn resampled(&self, rate: f64) -> Result<Recordings, ResampleError> {
-        if !(rate > 0.0 && rate.is_finite()) {
-            return Err(ResampleError::Rate { rate });
-        }
-        let samples: f64 = self.episodes.iter().map(|episode| 1.0 + duration(episode) * rate).sum();
-        if samples * self.state.len() as f64 > MOST_NUMBERS {
-            return Err(ResampleError::Many { rate, samples });
-        }
-        let episodes = self.episodes.iter().map(|episode| resampled(episode, rate));
-        let episodes = episodes.collect::<Result<_, _>>()?;
-        Ok(Recordings { state: self.state.clone(), episodes, notes: self.notes.clone() })
+/// The same movements `rate` times a second, from each one's first sample to the last that fits.
+///
+/// Positions, and velocities where there are some, follow monotone cubics through the samples (Fritsch and Butland):
+/// between two samples no value is beyond both. For learning nothing need be resampled; steps are taken with their
+/// own times.
+///
+/// # Errors
+///
+/// [`ResampleError`]: no rate, one so low that an episode is a single sample, or so high that memory would not do.
+pub fn resampled(recordings: &Recordings, rate: f64) -> Result<Recordings, ResampleError> {
+    if !(rate > 0.0 && rate.is_finite()) {
+        return Err(ResampleError::Rate { rate });
     }
+    let samples: f64 = recordings.episodes.iter().map(|episode| 1.0 + episode.times.duration() * rate).sum();
+    if samples * recordings.state.len() as f64 > MOST_NUMBERS {
+        return Err(ResampleError::Many { rate, samples });
+    }
+    let episodes = recordings.episodes.iter().map(|episode| along(episode, rate));
+    let episodes = episodes.collect::<Result<_, _>>()?;
+    Ok(Recordings { state: recordings.state.clone(), episodes, findings: recordings.findings.clone() })
 }
 
-fn duration(episode: &Episode) -> f64 {
-    episode.times.last().zip(episode.times.first()).map_or(0.0, |(last, first)| last - first)
-}
-
-fn resampled(episode: &Episode, rate: f64) -> Result<Episode, ResampleError> {
-    let (seconds, first) = (duration(episode), episode.times.first().copied().unwrap_or(0.0));
+fn along(episode: &Episode, rate: f64) -> Result<Episode, ResampleError> {
+    let seconds = episode.times.duration();
     // Stamps that were rounded do not cost the last sample.
     let steps = (seconds * rate * (1.0 + 1e-9)).floor() as usize;
     if steps == 0 {
         return Err(ResampleError::Short { episode: episode.name.clone(), seconds, rate });
     }
     let times: Vec<f64> = (0..=steps).map(|step| step as f64 / rate).collect();
-    let own: Vec<f64> = episode.times.iter().map(|time| time - first).collect();
-    let along = |values: &DMatrix<f64>| interpolated(&own, values.as_view(), &times);
+    let own: Vec<f64> = (0..episode.n_samples()).map(|sample| episode.times.seconds(0, sample)).collect();
+    let at_times = |values: &DMatrix<f64>| interpolated(&own, values.as_view(), &times);
     Ok(Episode {
         name: episode.name.clone(),
         source: episode.source.clone(),
-        positions: along(&episode.positions),
-        velocities: episode.velocities.as_ref().map(along),
-        times,
+        positions: at_times(&episode.positions),
+        velocities: episode.velocities.as_ref().map(at_times),
+        times: Times::Stamped(times),
         constraint: episode.constraint.clone(),
     })
 }

@@ -77,7 +77,7 @@ fn by_extension(extension: &str) -> Option<Format> {
 fn content(head: &[u8], extension: &str) -> Content {
     let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
     let first = text.iter().find(|byte| !byte.is_ascii_whitespace());
-    if head.starts_with(crate::npy::MAGIC) {
+    if head.starts_with(crate::arrays::npy::MAGIC) {
         return Content::Known(Format::Npy);
     }
     if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {

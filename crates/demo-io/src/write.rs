@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::Recordings;
 use crate::whole_file::{Sink, write_whole};
+use motion::Recordings;
 
 /// Why nothing was written.
 #[derive(Debug, Error)]

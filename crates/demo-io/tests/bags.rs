@@ -9,10 +9,11 @@ use std::collections::BTreeMap;
 use std::io::Cursor;
 
 use common::{Files, read_with};
-use demo_io::{Channel, Episode, ReadOptions, Recordings, Source, write};
+use demo_io::{ReadOptions, write};
 use mcap::records::MessageHeader;
 use mcap::sans_io::indexed_reader::{IndexedReadEvent, IndexedReader, IndexedReaderOptions};
 use mcap::{Compression, MessageStream, Summary, WriteOptions};
+use motion::{Channel, Episode, Recordings, Source};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 
@@ -28,7 +29,7 @@ fn recordings(samples: usize) -> Recordings {
     };
     let channel = |name: &str| Channel { name: name.to_owned(), unit: Some("rad".to_owned()) };
     let state = ["shoulder", "elbow", "wrist"].map(channel).to_vec();
-    Recordings { state, episodes: (1..4).map(episode).collect(), notes: vec![] }
+    Recordings { state, episodes: (1..4).map(episode).collect(), findings: vec![] }
 }
 
 fn written(recordings: &Recordings) -> Vec<u8> {
@@ -161,7 +162,7 @@ proptest! {
         if let Ok(found) = read_bytes(&theirs[..cut]) {
             let all: Vec<f64> = found.episodes.iter().flat_map(|episode| episode.positions.iter().copied()).collect();
             prop_assert!(made.episodes.iter().flat_map(|episode| episode.positions.iter()).zip(&all).all(|(a, b)| a == b));
-            prop_assert!(found.notes.iter().any(|note| note.text.contains("in the middle of a record")));
+            prop_assert!(found.findings.iter().any(|finding| finding.what.contains("in the middle of a record")));
         }
     }
 

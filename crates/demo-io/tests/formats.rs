@@ -8,7 +8,8 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use common::{Files, names, read_with};
-use demo_io::{ReadOptions, Recordings, write};
+use demo_io::{ReadOptions, write};
+use motion::Recordings;
 
 fn kept(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/samples").join(name)
@@ -79,7 +80,7 @@ fn a_folder_of_lerobot_is_read_by_its_rate_and_names() {
     let set = files.path().join("set");
     let found = read_with(&set, &ReadOptions::default()).unwrap();
     assert_eq!(names(&found), ["left", "right"]);
-    assert_eq!(found.episodes[2].times[3], 3.0 * 0.05);
+    assert_eq!(found.episodes[2].times.seconds(0, 3), 3.0 * 0.05);
     assert!(found.episodes[0].velocities.is_none(), "an action is no velocity");
     let asked = ReadOptions {
         velocity: vec!["action".to_owned()],
@@ -116,6 +117,6 @@ fn same(found: &Recordings, back: &Recordings, what: &str) {
     for (found, back) in found.episodes.iter().zip(&back.episodes) {
         assert_eq!(found.name, back.name, "{what}");
         assert_eq!((&found.positions, &found.velocities), (&back.positions, &back.velocities), "{what}");
-        assert!(found.times.iter().zip(&back.times).all(|(a, b)| (a - b).abs() < 1e-9), "{what}");
+        assert!(found.times.stamps().iter().zip(&*back.times.stamps()).all(|(a, b)| (a - b).abs() < 1e-9), "{what}");
     }
 }

@@ -1,4 +1,5 @@
-//! The types that the other crates share: observations ([`Trajectory`], [`Demonstrations`]), the functions to learn
+//! The types that the other crates share: what was recorded ([`Recordings`], [`Episode`]) and what is odd about it
+//! ([`Finding`], [`LeftOut`]), observations to learn from ([`Trajectory`], [`Demonstrations`]), the functions to learn
 //! ([`Policy`], [`Potential`]), and the interface of all learners ([`Learner`], which returns a [`LearntPolicy`]).
 //!
 //! Samples are **columns**: a movement of `N` samples of an `n`-dimensional state is an (n, N) matrix, so that a state
@@ -66,17 +67,26 @@
 
 mod demonstrations;
 mod error;
+mod finding;
 mod hold_out;
 mod learner;
+mod median;
+pub mod oddities;
 mod policy;
+mod recordings;
 mod sample_index;
 mod sample_set;
+mod times;
 mod trajectory;
 
 pub use demonstrations::Demonstrations;
 pub use error::{MotionError, Series};
+pub use finding::{Decision, Finding, LeftOut, Verdict};
 pub use learner::{LearnError, Learner, LearntPolicy};
+pub use median::upper_median;
 pub use policy::{NegativeGradient, Policy, Potential};
+pub use recordings::{Channel, Episode, Recordings, Rows, Source};
 pub use sample_index::SampleIndex;
 pub use sample_set::SampleSet;
+pub use times::Times;
 pub use trajectory::Trajectory;

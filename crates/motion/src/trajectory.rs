@@ -1,6 +1,6 @@
 use nalgebra::{DMatrix, DVectorView};
 
-use crate::{MotionError, Series};
+use crate::{MotionError, Series, Times};
 
 /// One observed movement: states x₁..x_N, evenly spaced in time or each with its stamp, and the velocities u₁..u_N where
 /// they were recorded.
@@ -10,9 +10,7 @@ use crate::{MotionError, Series};
 pub struct Trajectory {
     states: DMatrix<f64>,
     velocities: Option<DMatrix<f64>>,
-    time_step: f64,
-    /// Seconds; none if the samples are evenly spaced.
-    times: Option<Vec<f64>>,
+    times: Times,
 }
 
 impl Trajectory {
@@ -33,7 +31,19 @@ impl Trajectory {
             return Err(MotionError::TooShort { samples: states.ncols() });
         }
         require_finite(&states, Series::States)?;
-        Ok(Trajectory { states, velocities: None, time_step, times: None })
+        let times = Times::Even { step: time_step, len: states.ncols() };
+        Ok(Trajectory { states, velocities: None, times })
+    }
+
+    /// A movement through `states` (n, N), one column a sample, at `times` (N) in seconds, strictly ascending.
+    ///
+    /// # Errors
+    /// As [`Trajectory::new`] and [`Trajectory::with_times`].
+    pub fn stamped(times: Vec<f64>, states: DMatrix<f64>) -> Result<Self, MotionError> {
+        let first = times.get(1).map_or(1.0, |second| second - times[0]);
+        // A step that is none belongs to stamps that do not ascend.
+        let step = if first.is_finite() && first > 0.0 { first } else { 1.0 };
+        Trajectory::new(states, step)?.with_times(times)
     }
 
     /// The same movement with its recorded velocities or commands (n, N), in units of the state per second.
@@ -48,8 +58,8 @@ impl Trajectory {
         Ok(Trajectory { velocities: Some(velocities), ..self })
     }
 
-    /// The same movement with a time stamp for every sample, (N), in seconds, strictly ascending. The time step becomes
-    /// the median one; stamps that are even to their rounding leave the movement as it is.
+    /// The same movement with a time stamp for every sample, (N), in seconds, strictly ascending. Stamps that are even to
+    /// their rounding leave the movement as it is.
     ///
     /// # Errors
     /// [`MotionError::StampCount`] or [`MotionError::StampOrder`].
@@ -62,14 +72,14 @@ impl Trajectory {
             return Err(MotionError::StampOrder { sample, time: times[sample] });
         }
         let rounding = 4.0 * f64::EPSILON * times[0].abs().max(times[times.len() - 1].abs());
-        let even = |(sample, time): (usize, &f64)| (time - times[0] - self.time_step * sample as f64).abs() <= rounding;
-        if times.iter().enumerate().all(even) {
-            return Ok(Trajectory { times: None, ..self });
-        }
-        let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let middle = steps.len() / 2;
-        let time_step = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
-        Ok(Trajectory { time_step, times: Some(times), ..self })
+        let step = self.time_step();
+        let even = |(sample, time): (usize, &f64)| (time - times[0] - step * sample as f64).abs() <= rounding;
+        let times = if times.iter().enumerate().all(even) {
+            Times::Even { step, len: times.len() }
+        } else {
+            Times::Stamped(times)
+        };
+        Ok(Trajectory { times, ..self })
     }
 
     /// The states, (n, N).
@@ -92,22 +102,22 @@ impl Trajectory {
         velocities
     }
 
-    /// Seconds between two samples; the median where they are unevenly spaced.
+    /// Seconds between two samples; the median where they are unevenly spaced, in O(N).
     pub fn time_step(&self) -> f64 {
-        self.time_step
+        self.times.median_step().expect("a movement has two samples")
     }
 
     /// Time stamps of the samples, (N), in seconds; none if they are evenly spaced.
     pub fn times(&self) -> Option<&[f64]> {
-        self.times.as_deref()
+        match &self.times {
+            Times::Even { .. } => None,
+            Times::Stamped(stamps) => Some(stamps),
+        }
     }
 
     /// Seconds from sample `from` to sample `to`, which is not before it.
     pub fn seconds(&self, from: usize, to: usize) -> f64 {
-        match &self.times {
-            None => self.time_step * (to - from) as f64,
-            Some(times) => times[to] - times[from],
-        }
+        self.times.seconds(from, to)
     }
 
     /// State x_i, (n).

@@ -4,9 +4,7 @@ use std::sync::Arc;
 use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::{DMatrix, DVectorView};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
-use policy_align::{
-    Evaluation, MadeBy, Model, ModelError, ModelPolicy, PrepareOptions, Progress, evaluate, fit, prepare,
-};
+use policy_align::{Evaluation, Model, ModelError, ModelPolicy, PrepareOptions, Progress, evaluate, fit, prepare};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -38,15 +36,17 @@ impl Fitted {
         made_at: String,
     ) -> PyResult<Self> {
         let (inner, preparing, learning) = (Arc::clone(&recordings.inner), preparing.options()?, learning.options()?);
-        let program = concat!("policy-align ", env!("CARGO_PKG_VERSION")).to_owned();
         let model = interruptible(py, move |cancelled| {
             pool::on(threads, || {
-                let Recorded { recordings, files, place, .. } = &*inner;
+                let Recorded { recordings, files, place } = &*inner;
                 let prepared = prepare(recordings, &preparing)
                     .map_err(|error| Refusal::prepare(&error, place, &names_of(recordings)))?;
                 let mut progress = Progress { cancelled, report: &mut |_| () };
-                let learnt = fit(&prepared, &learning, &mut progress).map_err(|error| Refusal::fit(&error, place))?;
-                Ok(learnt.into_model(MadeBy { program, time: made_at }, files.clone()))
+                let mut model =
+                    fit(&prepared, &learning, &mut progress).map_err(|error| Refusal::fit(&error, place))?;
+                model.made_by.time = made_at;
+                model.data.files.clone_from(files);
+                Ok(model)
             })
         })?;
         let model: Result<Model, Refusal> = model?;

@@ -1,8 +1,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use demo_io::{Channel, Episode, ReadOptions, Source, read_all};
-use motion::{MotionError, Trajectory};
+use demo_io::{ReadOptions, read_all};
+use motion::{Channel, Episode, Finding, MotionError, Source, Times, Trajectory};
 use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use policy_align::{FileSummary, PrepareError, prepare};
@@ -24,10 +24,8 @@ pub(crate) struct Recordings {
 
 /// What an estimator needs of them.
 pub(crate) struct Recorded {
-    pub(crate) recordings: demo_io::Recordings,
+    pub(crate) recordings: motion::Recordings,
     pub(crate) files: Vec<FileSummary>,
-    /// What was noticed while reading.
-    notes: Vec<String>,
     /// For messages: the file, or the argument.
     pub(crate) place: String,
 }
@@ -39,7 +37,7 @@ type Samples<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>, Optio
 impl Recordings {
     /// Reads files as one set; `options` are the program's, as JSON.
     #[staticmethod]
-    fn read(py: Python<'_>, paths: Vec<PathBuf>, options: &str) -> PyResult<Self> {
+    fn read(py: Python<'_>, paths: Vec<PathBuf>, options: &str, trim_still: bool) -> PyResult<Self> {
         let place = match &paths[..] {
             [path] => path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
             paths => format!("{} files", paths.len()),
@@ -49,13 +47,15 @@ impl Recordings {
             Refusal::new(text.split(" at line").next().unwrap_or(&text), "read()", "help(Demonstrations.read)")
         })?;
         let read = move |_: &_| {
-            let recordings = read_all(&paths, &options, &mut |_bytes| ()).map_err(|error| Refusal::read(&error))?;
+            let mut recordings = read_all(&paths, &options, &mut |_bytes| ()).map_err(|error| Refusal::read(&error))?;
+            if trim_still {
+                policy_align::trim_still(&mut recordings);
+            }
             let plain = paths.iter().filter(|path| path.is_file());
             let files: Result<Vec<_>, _> = plain.map(|path| FileSummary::of(path)).collect();
             let unread =
                 |error: std::io::Error| Refusal::new(format!("cannot be read: {error}"), &place, "another file");
-            let notes = recordings.notes.iter().map(|note| in_python(&note.text)).collect();
-            Ok(Recorded { recordings, notes, files: files.map_err(unread)?, place })
+            Ok(Recorded { recordings, files: files.map_err(unread)?, place })
         };
         let inner: Result<Recorded, Refusal> = interruptible(py, read)?;
         Ok(Recordings { inner: Arc::new(inner?) })
@@ -80,16 +80,17 @@ impl Recordings {
                 (_, Some(times)) => times[k].as_array().to_vec(),
                 (dt, None) => (0..positions.ncols()).map(|sample| sample as f64 * dt.unwrap_or(f64::NAN)).collect(),
             };
+            let times = Times::Stamped(times);
             let velocities = velocities.as_ref().and_then(|velocities| velocities[k].as_ref().map(matrix));
-            let source = Source { file: String::new(), rows: None };
+            let source = Source::default();
             let constraint = constraints.get(k).cloned().flatten();
             episodes.push(Episode { name, source, times, positions, velocities, constraint });
         }
         let state = channels.into_iter().zip(units).map(|(name, unit)| Channel { name, unit }).collect();
-        let recordings = demo_io::Recordings { state, episodes, notes: vec![] };
+        let recordings = motion::Recordings { state, episodes, findings: vec![] };
         let place = "trajectories".to_owned();
         check(&recordings, dt).map_err(|error| Refusal::prepare(&error, &place, &names_of(&recordings)))?;
-        Ok(Recordings { inner: Arc::new(Recorded { recordings, notes: vec![], files: vec![], place }) })
+        Ok(Recordings { inner: Arc::new(Recorded { recordings, files: vec![], place }) })
     }
 
     fn __len__(&self) -> usize {
@@ -100,7 +101,7 @@ impl Recordings {
     fn samples<'py>(&self, py: Python<'py>, k: usize) -> PyResult<Samples<'py>> {
         let episode = self.inner.recordings.episodes.get(k).ok_or_else(|| PyIndexError::new_err("no such movement"))?;
         let velocities = episode.velocities.clone().map(|velocities| array(py, velocities));
-        Ok((PyArray1::from_slice(py, &episode.times), array(py, episode.positions.clone()), velocities))
+        Ok((PyArray1::from_slice(py, &episode.times.stamps()), array(py, episode.positions.clone()), velocities))
     }
 
     /// Names of the movements.
@@ -121,25 +122,28 @@ impl Recordings {
         self.inner.recordings.state.iter().map(|channel| (channel.name.clone(), channel.unit.clone())).collect()
     }
 
-    /// What was noticed while reading.
+    /// What was found while reading.
     #[getter]
     fn notes(&self) -> Vec<String> {
-        self.inner.notes.clone()
+        let text = |finding: &Finding| in_python(&format!("{}: {}", finding.what, finding.next));
+        self.inner.recordings.findings.iter().map(text).collect()
     }
 
-    /// Where they come from: files as JSON, notes, and the name of all that in messages.
+    /// Where they come from: files and findings as JSON, and the name of all that in messages.
     #[getter]
-    fn origin(&self) -> (String, Vec<String>, String) {
-        let Recorded { files, notes, place, .. } = &*self.inner;
-        (json!(files).to_string(), notes.clone(), place.clone())
+    fn origin(&self) -> (String, String, String) {
+        let Recorded { files, recordings, place } = &*self.inner;
+        (json!(files).to_string(), json!(recordings.findings).to_string(), place.clone())
     }
 
     /// The same movements as if they came from elsewhere.
-    fn with_origin(&self, origin: (String, Vec<String>, String)) -> PyResult<Self> {
-        let (files, notes, place) = origin;
-        let files = serde_json::from_str(&files).map_err(|error| PyValueError::new_err(error.to_string()))?;
-        let recordings = self.inner.recordings.clone();
-        Ok(Recordings { inner: Arc::new(Recorded { recordings, files, notes, place }) })
+    fn with_origin(&self, origin: (String, String, String)) -> PyResult<Self> {
+        let (files, findings, place) = origin;
+        let wrong = |error: serde_json::Error| PyValueError::new_err(error.to_string());
+        let files = serde_json::from_str(&files).map_err(wrong)?;
+        let findings = serde_json::from_str(&findings).map_err(wrong)?;
+        let recordings = motion::Recordings { findings, ..self.inner.recordings.clone() };
+        Ok(Recordings { inner: Arc::new(Recorded { recordings, files, place }) })
     }
 
     /// The usual time between samples, in seconds.
@@ -164,12 +168,12 @@ impl Recordings {
     }
 }
 
-pub(crate) fn names_of(recordings: &demo_io::Recordings) -> Vec<String> {
+pub(crate) fn names_of(recordings: &motion::Recordings) -> Vec<String> {
     recordings.episodes.iter().map(|episode| episode.name.clone()).collect()
 }
 
 /// What readers of files check before they hand out recordings.
-fn check(recordings: &demo_io::Recordings, dt: Option<f64>) -> Result<(), PrepareError> {
+fn check(recordings: &motion::Recordings, dt: Option<f64>) -> Result<(), PrepareError> {
     let dim = recordings.state.len();
     for (k, episode) in recordings.episodes.iter().enumerate() {
         let of = |source| PrepareError::Episode { episode: episode.name.clone(), source };
@@ -190,6 +194,6 @@ fn movement(episode: &Episode, dt: Option<f64>) -> Result<Trajectory, MotionErro
     match dt {
         Some(dt) => Trajectory::new(positions, dt),
         // The stamps' own check says more than that of their first difference.
-        None => Trajectory::new(positions, 1.0)?.with_times(episode.times.clone()),
+        None => Trajectory::stamped(episode.times.stamps().into_owned(), positions),
     }
 }

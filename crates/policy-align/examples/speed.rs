@@ -8,10 +8,11 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use align::Bandwidth;
-use demo_io::{ReadOptions, Recordings};
+use demo_io::ReadOptions;
 use motion::Policy as _;
+use motion::Recordings;
 use nalgebra::{DMatrix, DVector};
-use policy_align::{FitOptions, LearnerChoice, MadeBy, Model, PrepareOptions, Progress, fit, prepare};
+use policy_align::{FitOptions, LearnerChoice, Model, PrepareOptions, Progress, fit, prepare};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("which file?")?;
@@ -36,8 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn learnt(recordings: &Recordings, options: &FitOptions) -> Result<Model, Box<dyn Error>> {
     let prepared = prepare(recordings, &PrepareOptions::default())?;
     let mut progress = Progress { cancelled: &AtomicBool::new(false), report: &mut |_| () };
-    let made_by = MadeBy { program: String::new(), time: String::new() };
-    Ok(fit(&prepared, options, &mut progress)?.into_model(made_by, vec![]))
+    Ok(fit(&prepared, options, &mut progress)?)
 }
 
 /// 10⁵ actions in one loop.

@@ -6,7 +6,7 @@
 //!
 //! use motion::Policy as _;
 //! use nalgebra::dvector;
-//! use policy_align::{FitOptions, MadeBy, PrepareOptions, Progress, Verdict, fit, prepare};
+//! use policy_align::{FitOptions, PrepareOptions, Progress, Verdict, fit, prepare};
 //!
 //! // 40 movements of a point that slides down a bowl along rails, π(x) = −2x.
 //! let file = std::path::Path::new("../../docs/examples/toy.csv");
@@ -15,12 +15,10 @@
 //!
 //! let options = FitOptions { max_rows: 150, ..FitOptions::default() };
 //! let mut progress = Progress { cancelled: &AtomicBool::new(false), report: &mut |_step| () };
-//! let fit = fit(&prepared, &options, &mut progress)?;
-//! assert_eq!(fit.trust.verdict, Verdict::Good);
-//! assert!(fit.trust.numbers.held_out_error < 1e-3);
+//! let model = fit(&prepared, &options, &mut progress)?;
+//! assert_eq!(model.trust.verdict, Verdict::Good);
+//! assert!(model.trust.numbers.held_out_error < 1e-3);
 //!
-//! let made_by = MadeBy { program: "example".to_owned(), time: "2026-01-01T00:00:00Z".to_owned() };
-//! let model = fit.into_model(made_by, vec![]);
 //! let action = model.policy().action(dvector![0.3, 1.2].as_view());
 //! assert!((action - dvector![-0.6, -2.4]).norm() < 0.01);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -29,7 +27,7 @@
 //! | step | item |
 //! |---|---|
 //! | prepare recordings | [`prepare()`]: each automatic choice is a [`Decision`] |
-//! | learn | [`fit()`]: a [`Fit`] with its [`Trust`], every doubt a [`Finding`] |
+//! | learn | [`fit()`]: a [`Model`] with its [`Trust`], every doubt a [`Finding`] |
 //! | store | [`Model`]: [`Model::save`], [`Model::load`], [`Model::policy`] in the units of the recording |
 //! | use | [`RollOut`] under constraints; [`CSource`] and [`to_onnx`] export a policy without dependencies |
 //! | evaluate | [`evaluate()`] on other recordings, [`leave_constraints_out`] across constraints |
@@ -78,14 +76,15 @@ mod trust;
 pub use error::FitError;
 pub use evaluate::{EvaluateError, Evaluation, Truth, evaluate};
 pub use export::{CSource, ExportError, Precision, to_onnx};
-pub use fit::{Fit, FitOptions, LearnerChoice, Progress, Step, fit};
+pub use fit::{FitOptions, LearnerChoice, Progress, Step, fit};
 pub use learnt::Learnt;
 pub use leave_out::{ConstraintLeftOut, leave_constraints_out};
 pub use model::{DataSummary, FileSummary, MadeBy, Model};
 pub use model_policy::{ModelPolicy, ModelPotential};
+pub use motion::{Decision, Finding, LeftOut, Verdict};
 pub use prepare::{
-    Decision, Finding, LeftOutEpisode, Noise, PrepareError, PrepareOptions, Prepared, Recorded, Repair, Smoothing,
-    StateChannel, VelocityUse, Verdict, prepare,
+    Noise, PrepareError, PrepareOptions, Prepared, Repair, Smoothing, StateChannel, VelocitySource, VelocityUse,
+    prepare, trim_still,
 };
 pub use roll_out::{ConstraintFileError, ConstraintSet, JointLimits, Path, RollOut, RollOutError, Stop, spread_starts};
 pub use stored::{ModelError, sha256, sha256_of_file, write_whole};

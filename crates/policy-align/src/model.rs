@@ -3,7 +3,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Decision, Learnt, LeftOutEpisode, StateChannel, Trust, sha256_of_file};
+use crate::{Decision, Learnt, LeftOut, StateChannel, Trust, sha256_of_file};
 
 /// The contents of a model file: the policy, its training data, all decisions and the verdict.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -33,7 +33,7 @@ pub struct Model {
 pub struct MadeBy {
     /// "policy-align 0.1.0".
     pub program: String,
-    /// Coordinated universal time, ISO 8601.
+    /// Coordinated universal time, ISO 8601; empty until it is known.
     pub time: String,
 }
 
@@ -52,7 +52,14 @@ pub struct DataSummary {
     /// Median speed over all samples, in scaled units of the state per second: what is fast and what is slow.
     pub speed: f64,
     /// Episodes not learnt from.
-    pub left_out: Vec<LeftOutEpisode>,
+    pub left_out: Vec<LeftOut>,
+}
+
+impl MadeBy {
+    /// This program, at a time that nobody has said yet.
+    pub fn this() -> MadeBy {
+        MadeBy { program: concat!("policy-align ", env!("CARGO_PKG_VERSION")).to_owned(), time: String::new() }
+    }
 }
 
 impl Model {

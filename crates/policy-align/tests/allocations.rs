@@ -11,7 +11,7 @@ use align::Bandwidth;
 use cases::{Case, Has, Plane, parabola};
 use motion::Policy as _;
 use nalgebra::{DVector, dvector};
-use policy_align::{FitOptions, LearnerChoice, MadeBy, Model, PrepareOptions, Progress, fit, prepare};
+use policy_align::{FitOptions, LearnerChoice, Model, PrepareOptions, Progress, fit, prepare};
 
 fn model(learner: LearnerChoice) -> Model {
     let case = Case::of(&Plane { count: 12, ..Plane::default() }.potential(&parabola(), 5), 12, Has::Velocities);
@@ -19,8 +19,7 @@ fn model(learner: LearnerChoice) -> Model {
     let (bandwidth, init_d) = (Some(Bandwidth::Medium), Some(10.0));
     let options = FitOptions { learner, bandwidth, init_d, max_rows: 100, ..FitOptions::default() };
     let mut progress = Progress { cancelled: &AtomicBool::new(false), report: &mut |_| () };
-    let made_by = MadeBy { program: "test".to_owned(), time: String::new() };
-    fit(&prepared, &options, &mut progress).unwrap().into_model(made_by, vec![])
+    fit(&prepared, &options, &mut progress).unwrap()
 }
 
 #[test]

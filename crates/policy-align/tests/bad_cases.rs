@@ -57,7 +57,7 @@ fn said(named: &Named, seed: u64, learner: LearnerChoice) -> Said {
     Said { name, verdict: Some(fit.trust.verdict), words, error, numbers: Some(fit.trust.numbers) }
 }
 
-fn error(case: &Case, fit: &policy_align::Fit) -> f64 {
+fn error(case: &Case, fit: &policy_align::Model) -> f64 {
     let scales = DVector::from_iterator(fit.state.len(), fit.state.iter().map(|channel| channel.scale));
     case.error(fit.learnt.policy(), &scales)
 }

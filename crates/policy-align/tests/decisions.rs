@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::sync::atomic::AtomicBool;
 
 use cases::{Case, Has, Plane, at_rate, noisy, parabola};
-use demo_io::Recordings;
+use motion::Recordings;
 use policy_align::{Decision, FitOptions, LearnerChoice, PrepareOptions, Progress, Smoothing, fit, prepare};
 use running::{folder, run, run_in};
 
@@ -34,7 +34,7 @@ fn recordings() -> Vec<Recordings> {
         Case::of(&wide, 30, Has::Positions).each(|e| e.positions.apply(|x| *x = wrap(*x))).recordings,
         jumps.recordings,
         case(Has::Velocities).each(|e| e.velocities.iter_mut().for_each(|u| *u *= 1000.0)).recordings,
-        case(Has::Velocities).each(|e| e.times.iter_mut().for_each(|t| *t *= 1000.0)).recordings,
+        case(Has::Velocities).each(|e| e.times.stamps_mut().iter_mut().for_each(|t| *t *= 1000.0)).recordings,
     ]
 }
 

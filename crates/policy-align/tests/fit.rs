@@ -11,7 +11,7 @@ use cases::{Case, Has, Plane, parabola};
 use gp::Reading;
 use nalgebra::DMatrix;
 use policy_align::{
-    EvaluateError, Fit, FitError, FitOptions, LearnerChoice, Learnt, PrepareOptions, Prepared, Progress, Step, Truth,
+    EvaluateError, FitError, FitOptions, LearnerChoice, Learnt, Model, PrepareOptions, Prepared, Progress, Step, Truth,
     Verdict, evaluate, prepare,
 };
 
@@ -23,7 +23,7 @@ fn prepared(case: &Case) -> Prepared {
     prepare(&case.recordings, &PrepareOptions::default()).unwrap()
 }
 
-fn fit(prepared: &Prepared, options: &FitOptions) -> Result<Fit, FitError> {
+fn fit(prepared: &Prepared, options: &FitOptions) -> Result<Model, FitError> {
     let cancelled = AtomicBool::new(false);
     policy_align::fit(prepared, options, &mut Progress { cancelled: &cancelled, report: &mut |_| () })
 }
@@ -36,7 +36,7 @@ const LEARNERS: [LearnerChoice; 4] =
     [LearnerChoice::Auto, LearnerChoice::PolicyAlign, LearnerChoice::Slope, LearnerChoice::Direct];
 
 /// Stored as text: policy, numbers, words and all.
-fn text(fit: &Fit) -> String {
+fn text(fit: &Model) -> String {
     serde_json::to_string(&(&fit.learnt, &fit.decisions, &fit.trust)).unwrap()
 }
 

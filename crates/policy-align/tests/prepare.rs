@@ -2,10 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use demo_io::{Channel, Episode, Recordings, Source};
+use motion::{Channel, Episode, Recordings, Source};
 use nalgebra::DMatrix;
 use policy_align::{
-    PrepareError, PrepareOptions, Prepared, Recorded, Repair, Smoothing, VelocityUse, Verdict, prepare,
+    Finding, PrepareError, PrepareOptions, Prepared, Repair, Smoothing, VelocitySource, VelocityUse, Verdict, prepare,
+    trim_still,
 };
 use proptest::prelude::*;
 
@@ -28,7 +29,7 @@ fn recordings() -> Recordings {
             constraint: Some("table".to_owned()),
         }
     });
-    Recordings { state: state.to_vec(), episodes: episodes.collect(), notes: Vec::new() }
+    Recordings { state: state.to_vec(), episodes: episodes.collect(), findings: Vec::new() }
 }
 
 fn changed(change: impl FnMut(&mut Episode)) -> Recordings {
@@ -57,7 +58,7 @@ fn nothing_is_said_of_good_recordings() {
     let prepared = prepared(&recordings());
     assert_eq!(prepared.findings, []);
     assert_eq!(prepared.left_out, []);
-    assert_eq!(prepared.recorded, Recorded::Velocities);
+    assert_eq!(prepared.velocities, VelocitySource::Recorded);
     assert_eq!(prepared.time_step, STEP);
     assert_eq!(prepared.averaged, 1);
     assert_eq!(prepared.episodes[3], "e3");
@@ -132,24 +133,24 @@ fn factors_have_names() {
 fn velocities_that_are_none() {
     let shuffled = prepared(&changed(|episode| episode.velocities.as_mut().unwrap().swap_rows(0, 1)));
     assert_eq!(verdict(&shuffled, "recorded velocities do not match the steps"), Verdict::Doubtful);
-    assert_eq!(shuffled.recorded, Recorded::Positions);
+    assert_eq!(shuffled.velocities, VelocitySource::Positions);
     let believed = PrepareOptions { velocities: VelocityUse::Recorded, ..PrepareOptions::default() };
     let swapped = changed(|episode| episode.velocities.as_mut().unwrap().swap_rows(0, 1));
-    assert_eq!(prepare(&swapped, &believed).unwrap().recorded, Recorded::Velocities);
+    assert_eq!(prepare(&swapped, &believed).unwrap().velocities, VelocitySource::Recorded);
     let ignored = PrepareOptions { velocities: VelocityUse::Ignored, ..PrepareOptions::default() };
-    assert_eq!(prepare(&recordings(), &ignored).unwrap().recorded, Recorded::Positions);
+    assert_eq!(prepare(&recordings(), &ignored).unwrap().velocities, VelocitySource::Positions);
     let mut some = recordings();
     some.episodes[5].velocities = None;
-    assert_eq!(prepared(&some).recorded, Recorded::Positions);
+    assert_eq!(prepared(&some).velocities, VelocitySource::Positions);
 }
 
 #[test]
 fn stamps() {
-    let slow = prepared(&changed(|episode| episode.times.iter_mut().for_each(|t| *t *= 1000.0)));
+    let slow = prepared(&changed(|episode| episode.times.stamps_mut().iter_mut().for_each(|t| *t *= 1000.0)));
     assert_eq!(verdict(&slow, "read as milliseconds"), Verdict::Doubtful);
     assert!((slow.time_step - STEP).abs() < 1e-12);
     let positions = changed(|episode| {
-        episode.times.iter_mut().for_each(|t| *t *= 1000.0);
+        episode.times.stamps_mut().iter_mut().for_each(|t| *t *= 1000.0);
         episode.velocities = None;
     });
     let slow = prepared(&positions);
@@ -161,13 +162,15 @@ fn stamps() {
     // Half a percent of jitter is even; half a step is not.
     let jitter = |share: f64| {
         prepared(&changed(|episode| {
-            let times = episode.times.iter().enumerate();
+            let stamps = episode.times.stamps();
+            let times = stamps.iter().enumerate();
             episode.times = times.map(|(i, t)| t + share * STEP * if i % 2 == 0 { 0.5 } else { -0.5 }).collect();
         }))
     };
     assert_eq!(jitter(0.004).demonstrations.trajectories()[0].times(), None);
     assert!(jitter(0.5).demonstrations.trajectories()[0].times().is_some());
-    let hole = prepared(&changed(|episode| episode.times.iter_mut().skip(20).for_each(|t| *t += 10.0 * STEP)));
+    let hole =
+        prepared(&changed(|episode| episode.times.stamps_mut().iter_mut().skip(20).for_each(|t| *t += 10.0 * STEP)));
     assert_eq!(verdict(&hole, "samples are missing"), Verdict::Good);
     assert!((hole.demonstrations.trajectories()[0].seconds(19, 20) - 11.0 * STEP).abs() < 1e-12);
 }
@@ -188,6 +191,89 @@ fn what_is_left_out() {
     }));
     assert_eq!(still.left_out[0].episode, "e7");
     assert_eq!(still.left_out[0].why, "never moves");
+    let short = prepared(&changed(|episode| {
+        if episode.name == "e5" {
+            *episode = episode.part(0, 1);
+        }
+    }));
+    assert_eq!((short.left_out[0].episode.as_str(), short.left_out[0].why.as_str()), ("e5", "only 1 sample"));
+    // Of a spike near the start, nothing before it is worth learning from, and the spike itself is not.
+    let spike = prepared(&changed(|episode| {
+        if episode.name == "e2" {
+            episode.positions.column_mut(2).add_scalar_mut(3.0);
+        }
+    }));
+    let left_out: Vec<_> = spike.left_out.iter().map(|left_out| (&*left_out.episode, &*left_out.why)).collect();
+    assert_eq!(left_out, [("e2", "only 2 samples beside a jump"), ("e2 from sample 2", "only 1 sample beside a jump")]);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(16))]
+
+    /// A copied episode, wherever it stands and whatever it is called, changes nothing that is learnt from.
+    #[test]
+    fn a_copy_teaches_nothing(of in 0..12usize, to in 0..13usize, name in "[a-z]{1,8}") {
+        let mut copied = recordings();
+        let copy = Episode { name, ..copied.episodes[of].clone() };
+        copied.episodes.insert(to.max(of + 1), copy);
+        let (with, without) = (prepared(&copied), prepared(&recordings()));
+        prop_assert_eq!(with.demonstrations, without.demonstrations);
+        prop_assert_eq!(with.left_out.len(), 1);
+    }
+}
+
+#[test]
+fn what_the_reader_found_stays_first() {
+    let found = Finding { verdict: Verdict::Good, what: "the bag ends".to_owned(), next: "repair it".to_owned() };
+    let mut cut = recordings();
+    cut.findings.push(found.clone());
+    cut.episodes.truncate(5);
+    let prepared = prepared(&cut);
+    assert_eq!(prepared.findings[0], found);
+    assert!(prepared.findings.len() > 1);
+}
+
+#[test]
+fn rest_at_the_ends_is_said_and_trimmed() {
+    let resting = changed(|episode| {
+        for i in 0..15 {
+            episode.positions.set_column(i, &episode.positions.column(15).into_owned());
+        }
+        episode.velocities = None;
+    });
+    let found = prepared(&resting);
+    assert_eq!(verdict(&found, "episode e0 begins with 15 samples at rest (and 11 more)"), Verdict::Good);
+    let mut trimmed = resting.clone();
+    trim_still(&mut trimmed);
+    assert!(trimmed.episodes.iter().all(|episode| episode.n_samples() == SAMPLES - 15));
+    assert!(trimmed.episodes.iter().all(|episode| episode.times.stamps()[0] == 0.0));
+    assert!(!prepared(&trimmed).findings.iter().any(|finding| finding.what.contains("at rest")));
+}
+
+#[test]
+fn noise_as_large_as_the_movement_is_no_stand_still() {
+    // Numbers that look random, of which 4σ is more than their whole range.
+    let number = |i: usize| (i.wrapping_mul(2_654_435_761) >> 7) % 1000;
+    let mut loud = recordings();
+    loud.episodes.truncate(1);
+    loud.episodes[0].times = (0..200).map(|i| i as f64 * STEP).collect();
+    loud.episodes[0].positions = DMatrix::from_fn(2, 200, |axis, i| number(i + 500 * axis) as f64);
+    loud.episodes[0].velocities = None;
+    assert!(!prepared(&loud).findings.iter().any(|finding| finding.what.contains("at rest")));
+}
+
+#[test]
+fn degrees_are_recognised_by_unit_name_and_range() {
+    let named = |name: &str, unit: Option<&str>, factor: f64| {
+        let mut recordings = changed(|episode| {
+            episode.positions *= factor;
+            episode.velocities = None;
+        });
+        recordings.state[0] = Channel { name: name.to_owned(), unit: unit.map(str::to_owned) };
+        prepared(&recordings).findings.iter().any(|finding| finding.what.contains("seem to be in degrees"))
+    };
+    assert!(named("x", Some("deg"), 1.0) && named("elbow_deg", None, 1.0) && named("q1", None, 57.3));
+    assert!(!named("q1", None, 1.0) && !named("q1", Some("rad"), 57.3) && !named("x", None, 57.3));
 }
 
 #[test]
@@ -197,7 +283,10 @@ fn a_jump_is_cut() {
             episode.positions.columns_mut(15, 25).add_scalar_mut(2.0);
         }
     }));
-    assert_eq!(verdict(&jump, "1 of 12 episodes have a jump (episode e2: the step after sample 14"), Verdict::Good);
+    assert_eq!(
+        verdict(&jump, "1 of 12 episodes jumps and was split there (made, episode e2, sample 15: 'x' changes by 2.0"),
+        Verdict::Good
+    );
     assert_eq!(jump.episodes.len(), 13);
     assert_eq!((&*jump.episodes[2], &*jump.episodes[3]), ("e2", "e2 from sample 15"));
     let lengths: Vec<_> = jump.demonstrations.trajectories()[2..4].iter().map(motion::Trajectory::n_samples).collect();
@@ -205,7 +294,7 @@ fn a_jump_is_cut() {
     // One sample far off goes; what is before and after it stays.
     let spike = prepared(&changed(|episode| episode.positions.column_mut(20).add_scalar_mut(3.0)));
     assert_eq!(spike.episodes.len(), 24);
-    assert_eq!(verdict(&spike, "12 of 12 episodes have a jump"), Verdict::Doubtful);
+    assert_eq!(verdict(&spike, "12 of 12 episodes jump"), Verdict::Doubtful);
 }
 
 #[test]
@@ -224,7 +313,7 @@ fn angles_that_wrap_go_on() {
         })
     };
     let (wrapped, plain) = (prepared(&winding(true)), winding(false));
-    assert_eq!(verdict(&wrapped, "channel x wraps by a whole turn"), Verdict::Doubtful);
+    assert_eq!(verdict(&wrapped, "channel 'x' jumps by 6."), Verdict::Doubtful);
     for (trajectory, episode) in wrapped.demonstrations.trajectories().iter().zip(&plain.episodes) {
         let off = trajectory.states()[(0, 20)] - episode.positions[(0, 20)];
         assert!((off / turn - (off / turn).round()).abs() < 1e-9);
@@ -276,7 +365,7 @@ fn smoothing_as_requested() {
         episode.velocities = None;
     });
     let off = smoothed_by(&positions, Smoothing::Off).unwrap();
-    assert_eq!((off.recorded, off.averaged), (Recorded::PositionsAsRequested, 1));
+    assert_eq!((off.velocities, off.averaged), (VelocitySource::PositionsAsRequested, 1));
     assert_eq!(decided(&off, "smoothing"), "none: positions as recorded");
     assert_eq!(off.demonstrations.trajectories()[0].states(), &positions.episodes[0].positions);
     let smoothed = smoothed_by(&positions, Smoothing::Samples(9)).unwrap();
@@ -292,7 +381,7 @@ fn smoothing_as_requested() {
     assert!(off_by(&smoothed) < 0.3 * off_by(&off), "{} {}", off_by(&smoothed), off_by(&off));
     // Recorded velocities stay, whatever becomes of the positions.
     let with = smoothed_by(&recordings(), Smoothing::Samples(5)).unwrap();
-    assert_eq!(with.recorded, Recorded::Velocities);
+    assert_eq!(with.velocities, VelocitySource::Recorded);
     assert_eq!(with.demonstrations.trajectories()[3].velocities(), recordings().episodes[3].velocities.as_ref());
     for window in [0, 3, 8] {
         let refused = smoothed_by(&recordings(), Smoothing::Samples(window)).unwrap_err();
@@ -322,7 +411,7 @@ fn what_cannot_be_learnt_from() {
         ..changed(|episode| {
             episode.positions = episode.positions.transpose();
             episode.velocities = None;
-            episode.times.truncate(2);
+            episode.times.stamps_mut().truncate(2);
         })
     };
     assert_eq!(refused(&turned), PrepareError::LooksTransposed { dim: SAMPLES, samples: 2 });

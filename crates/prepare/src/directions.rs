@@ -1,4 +1,4 @@
-use motion::Demonstrations;
+use motion::{Demonstrations, upper_median};
 use nalgebra::{DMatrix, DVector};
 
 /// Samples slower than this share of the median are left out: their direction is noise.
@@ -15,9 +15,8 @@ pub fn directions(demonstrations: &Demonstrations) -> (f64, DVector<f64>) {
             velocities.column_iter().map(nalgebra::Matrix::into_owned).collect::<Vec<_>>()
         })
         .collect();
-    let mut speeds: Vec<f64> = velocities.iter().map(nalgebra::Matrix::norm).collect();
-    speeds.sort_by(f64::total_cmp);
-    let least = STILL * speeds[speeds.len() / 2];
+    let usual = upper_median(velocities.iter().map(nalgebra::Matrix::norm).collect());
+    let least = STILL * usual.expect("demonstrations have samples");
     let n = demonstrations.dim();
     let (mut sum, mut count) = (DMatrix::zeros(n, n), 0.0);
     for velocity in velocities.iter().filter(|u| u.norm() > least) {

@@ -1,78 +1,64 @@
-use crate::Verdict;
-use crate::episodes::Take;
-use crate::prepared::Notes;
+use motion::oddities::{LongStep, long_steps};
+use motion::{Channel, Episode, Verdict};
 
-/// A step so many times the usual one, and so many times most of those about it, is a jump.
-const LONG: f64 = 10.0;
-/// So many steps about a step tell what is usual there, itself included.
-const ABOUT: usize = 7;
+use crate::in_words::short;
+use crate::notes::Notes;
+
 /// Shorter pieces than this are not worth learning from.
 const LEAST: usize = 4;
 /// More episodes than this share with jumps are no accidents.
 const MANY: f64 = 0.2;
 
 /// Cuts episodes where a single step stands out from all about it: samples are missing there, or one is wrong.
-pub(crate) fn cut(takes: &mut Vec<Take>, notes: &mut Notes) {
-    let (episodes, mut cut, mut first) = (takes.len(), 0, None);
-    *takes = takes
+pub(crate) fn cut(episodes: &mut Vec<Episode>, channels: &[Channel], notes: &mut Notes) {
+    let (count, mut cut, mut first) = (episodes.len(), 0, None);
+    *episodes = episodes
         .drain(..)
-        .flat_map(|take| {
-            let jumps = jumps(&take);
-            if jumps.is_empty() {
-                return vec![take];
-            }
+        .flat_map(|episode| {
+            let jumps = long_steps(&episode.positions);
+            let Some(jump) = jumps.first() else { return vec![episode] };
             cut += 1;
-            let usual = usual(&lengths(&take)).unwrap_or(1.0);
-            first.get_or_insert_with(|| (take.name.clone(), jumps[0], take.step(jumps[0]).norm() / usual));
-            pieces(&take, &jumps)
+            first.get_or_insert_with(|| in_words(&episode, jump, channels));
+            pieces(&episode, &jumps, notes)
         })
         .collect();
-    let Some((name, sample, times)) = first else { return };
-    notes.decided("jumps", format!("{cut} episodes split"), "one step is far longer than its neighbours", "--jumps");
-    let verdict = if f64::from(cut) > MANY * episodes as f64 { Verdict::Doubtful } else { Verdict::Good };
+    let Some(first) = first else { return };
+    let some = if cut == 1 { "1 episode" } else { &format!("{cut} episodes") };
+    notes.decided("jumps", format!("{some} split"), "one step is far longer than its neighbours", "--jumps");
+    let verdict = if f64::from(cut) > MANY * count as f64 { Verdict::Doubtful } else { Verdict::Good };
+    let verb = if cut == 1 { "jumps and was split there" } else { "jump and were split there" };
     notes.found(
         verdict,
-        format!(
-            "{cut} of {episodes} episodes have a jump (episode {name}: the step after sample {sample} is {times:.0} times the usual one) and were split there"
-        ),
-        "check for missing samples, lost tracking or wrapped angles",
+        format!("{cut} of {count} episodes {verb} ({first})"),
+        "check for missing samples, lost tracking or wrapped angles (--jumps keep)",
     );
 }
 
-fn lengths(take: &Take) -> Vec<f64> {
-    (0..take.n_samples() - 1).map(|i| take.step(i).norm()).collect()
+fn in_words(episode: &Episode, jump: &LongStep, channels: &[Channel]) -> String {
+    let step = episode.step(jump.sample);
+    let most = step.icamax();
+    format!(
+        "{}: '{}' changes by {}, the step is {:.0} times the usual one",
+        episode.place(jump.sample + 1),
+        channels[most].name,
+        short(step[most]),
+        jump.times
+    )
 }
 
-/// The sample before each jump.
-fn jumps(take: &Take) -> Vec<usize> {
-    let steps = lengths(take);
-    let Some(usual) = usual(&steps) else { return Vec::new() };
-    let stands_out = |&i: &usize| {
-        let first = i.saturating_sub(ABOUT / 2).min(steps.len().saturating_sub(ABOUT));
-        let about = &steps[first..(first + ABOUT).min(steps.len())];
-        let shorter = about.iter().filter(|&&other| LONG * other < steps[i]).count();
-        steps[i] > LONG * usual && 2 * shorter > about.len()
-    };
-    (0..steps.len()).filter(stands_out).collect()
-}
-
-/// The middle of the steps that move.
-fn usual(steps: &[f64]) -> Option<f64> {
-    let mut moving: Vec<f64> = steps.iter().copied().filter(|&step| step > 0.0).collect();
-    let middle = moving.len() / 2;
-    (!moving.is_empty()).then(|| *moving.select_nth_unstable_by(middle, f64::total_cmp).1)
-}
-
-fn pieces(take: &Take, jumps: &[usize]) -> Vec<Take> {
+fn pieces(episode: &Episode, jumps: &[LongStep], notes: &mut Notes) -> Vec<Episode> {
     let mut from = 0;
     let mut pieces = Vec::new();
-    for to in jumps.iter().map(|jump| jump + 1).chain([take.n_samples()]) {
+    for to in jumps.iter().map(|jump| jump.sample + 1).chain([episode.n_samples()]) {
+        let mut piece = episode.part(from, to);
+        if from > 0 {
+            piece.name = format!("{} from sample {from}", episode.name);
+        }
         if to - from >= LEAST {
-            let mut piece = take.part(from, to);
-            if from > 0 {
-                piece.name = format!("{} from sample {from}", take.name);
-            }
             pieces.push(piece);
+        } else {
+            let samples = if to - from == 1 { "1 sample" } else { &format!("{} samples", to - from) };
+            notes.left_out(&piece.name, format!("only {samples} beside a jump"));
         }
         from = to;
     }

@@ -2,27 +2,27 @@
 //! recorded with its reason.
 //!
 //! ```
-//! use demo_io::{Channel, Episode, Recordings, Source};
+//! use motion::{Channel, Episode, Recordings, Source, Times, Verdict};
 //! use nalgebra::DMatrix;
-//! use prepare::{PrepareOptions, Recorded, Verdict, prepare};
+//! use prepare::{PrepareOptions, VelocitySource, prepare};
 //!
 //! // Twelve movements towards the origin at 20 Hz, positions in metres, velocities by mistake in millimetres per second.
 //! let episodes = (0..12).map(|k| {
 //!     let position = |axis: usize, i: usize| (f64::from(k) + axis as f64).cos() * (-0.025 * i as f64).exp();
 //!     Episode {
 //!         name: format!("take {k}"),
-//!         source: Source { file: "reach.csv".to_owned(), rows: None },
-//!         times: (0..40).map(|i| 0.05 * f64::from(i)).collect(),
+//!         source: Source::default(),
+//!         times: Times::Even { step: 0.05, len: 40 },
 //!         positions: DMatrix::from_fn(2, 40, position),
 //!         velocities: Some(DMatrix::from_fn(2, 40, |axis, i| -500.0 * position(axis, i))),
 //!         constraint: None,
 //!     }
 //! });
 //! let state = ["x", "y"].map(|name| Channel { name: name.to_owned(), unit: Some("m".to_owned()) });
-//! let recordings = Recordings { state: state.to_vec(), episodes: episodes.collect(), notes: vec![] };
+//! let recordings = Recordings { state: state.to_vec(), episodes: episodes.collect(), findings: vec![] };
 //!
 //! let prepared = prepare(&recordings, &PrepareOptions::default())?;
-//! assert_eq!(prepared.recorded, Recorded::Velocities);
+//! assert_eq!(prepared.velocities, VelocitySource::Recorded);
 //! let velocities = prepared.demonstrations.trajectories()[0].velocities().expect("recorded");
 //! assert!((velocities[(0, 0)] + 0.5).abs() < 0.05); // back in metres per second
 //! assert_eq!(prepared.findings[0].verdict, Verdict::Doubtful); // and reported
@@ -30,9 +30,10 @@
 //! # Ok::<(), prepare::PrepareError>(())
 //! ```
 //!
-//! [`Prepared`] holds the demonstrations, every [`Decision`] with the flag that overrides it, and every [`Finding`]
-//! that casts doubt on the data. [`Recorded::front_end`] says how a Gaussian process should read them. The guide is
-//! `docs/your-own-data.md`; `docs/decisions/trust.md` gives the reasons.
+//! Nobody else looks for what is odd about recordings: readers hand on what they find, learners take what is prepared.
+//! [`Prepared`] holds the demonstrations, every [`Decision`](motion::Decision) with the flag that overrides it, every
+//! [`Finding`](motion::Finding), those of the reader first, and every episode that was [left out](motion::LeftOut). The guide
+//! is `docs/your-own-data.md`; `docs/decisions/trust.md` gives the reasons.
 //!
 //! # When it fails
 //!
@@ -43,43 +44,43 @@
 //!   velocities or commands.
 //! - **Mixed units** (metres and radians): nothing chooses a metric for you. [`PrepareOptions::scale`] sets one.
 
+mod agreement;
 mod channel;
-mod decision;
+mod degrees;
 mod directions;
 mod duplicates;
 mod episodes;
 mod error;
-mod finding;
 pub mod in_words;
 mod jumps;
-mod left_out;
 mod noise;
+mod notes;
 mod options;
 mod prepared;
 mod remarks;
 mod scale;
 mod smooth;
 mod stamps;
+mod still;
 mod thinning;
 mod velocities;
+mod velocity_source;
 mod wraps;
 
 pub use channel::StateChannel;
-pub use decision::Decision;
 pub use directions::directions;
 pub use error::PrepareError;
-pub use finding::{Finding, Verdict};
-pub use left_out::LeftOutEpisode;
 pub use noise::Noise;
 pub use options::{PrepareOptions, Repair, Smoothing, VelocityUse};
-pub use prepared::{Prepared, Recorded};
+pub use prepared::Prepared;
 pub use smooth::with_slopes;
+pub use still::trim_still;
 pub use thinning::thinned;
+pub use velocity_source::VelocitySource;
 
-use demo_io::Recordings;
+use motion::{Recordings, Trajectory, upper_median};
 
-use episodes::Take;
-use prepared::Notes;
+use notes::Notes;
 
 /// Makes demonstrations of recordings: time, units, velocities, noise, and what is wrong with them.
 ///
@@ -87,38 +88,54 @@ use prepared::Notes;
 /// [`PrepareError`] where nothing can be learnt: no episode, no motion, rows and columns exchanged, or an option that
 /// does not fit.
 pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prepared, PrepareError> {
-    let mut notes = Notes::default();
+    let mut notes = Notes { findings: recordings.findings.clone(), ..Notes::default() };
     let scales = scale::scales(recordings, options, &mut notes)?;
-    let mut takes = Take::all(recordings, &scales)?;
-    duplicates::leave_out(&mut takes, &mut notes);
-    stamps::decide(&mut takes, options, &mut notes)?;
+    let mut episodes = episodes::movements(recordings, &scales, &mut notes)?;
+    duplicates::leave_out(&mut episodes, &mut notes);
+    stamps::decide(&mut episodes, options, &mut notes)?;
     if options.wraps == Repair::Auto {
-        wraps::unwrap(&mut takes, &recordings.state, &mut notes);
+        wraps::unwrap(&mut episodes, &recordings.state, &mut notes);
     }
     if options.jumps == Repair::Auto {
-        jumps::cut(&mut takes, &mut notes);
+        jumps::cut(&mut episodes, &recordings.state, &mut notes);
     }
-    episodes::leave_out_still(&mut takes, &mut notes);
-    if takes.is_empty() {
+    episodes::leave_out_still(&mut episodes, &mut notes);
+    if episodes.is_empty() {
         let why = notes.left_out.first().map_or_else(String::new, |left_out| left_out.why.clone());
         return Err(PrepareError::NothingLeft { of: recordings.episodes.len(), why });
     }
-    let noise = noise::of(&episodes::demonstrations(&takes)?);
-    let agreement = velocities::decide(&mut takes, options, &recordings.state, &noise, &mut notes);
-    let demonstrations = episodes::demonstrations(&takes)?;
+    let noise = noise::of(&episodes::demonstrations(&episodes)?);
+    let agreement = velocities::decide(&mut episodes, options, &recordings.state, &noise, &mut notes);
+    let demonstrations = episodes::demonstrations(&episodes)?;
     let smoothed = smooth::as_requested(&demonstrations, options.smoothing, &mut notes)?;
-    let (demonstrations, recorded) = if let Some(smoothed) = smoothed {
+    let (demonstrations, velocities) = if let Some(smoothed) = smoothed {
         (smoothed, noise::as_requested(&demonstrations, &noise, agreement))
     } else {
-        let recorded = noise::decide(&demonstrations, &noise, agreement, &mut notes);
-        (demonstrations, recorded)
+        let velocities = noise::decide(&demonstrations, &noise, agreement, &mut notes);
+        (demonstrations, velocities)
     };
-    let averaged = match recorded {
-        Recorded::Positions => thinning::decide(&demonstrations, &noise, &mut notes),
+    let averaged = match velocities {
+        VelocitySource::Positions => thinning::decide(&demonstrations, &noise, &mut notes),
         _ => 1,
     };
     let state = scale::channels(recordings, &scales, &demonstrations);
     stamps::doubt(&demonstrations, &mut notes);
-    remarks::about(&demonstrations, &state, &noise, &mut notes);
-    Ok(Prepared::new(demonstrations, &takes, state, noise, (recorded, options.smoothing, averaged), notes))
+    remarks::about(&demonstrations, &state, &mut notes);
+    degrees::remark(&state, &mut notes);
+    still::remark(&demonstrations, noise.positions.as_deref(), &episodes, &mut notes);
+    let time_steps = demonstrations.trajectories().iter().map(Trajectory::time_step);
+    Ok(Prepared {
+        time_step: upper_median(time_steps.collect()).expect("there is an episode"),
+        episodes: episodes.iter().map(|episode| episode.name.clone()).collect(),
+        constraints: episodes.into_iter().map(|episode| episode.constraint).collect(),
+        demonstrations,
+        state,
+        noise,
+        velocities,
+        smoothing: options.smoothing,
+        averaged,
+        decisions: notes.decisions,
+        findings: notes.findings,
+        left_out: notes.left_out,
+    })
 }

@@ -1,12 +1,11 @@
-use motion::{Demonstrations, Trajectory};
+use motion::{Demonstrations, Trajectory, Verdict};
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 use smoothing::PositionNoise;
 
-use crate::Verdict;
-use crate::in_words;
-use crate::prepared::{Notes, Recorded};
-use crate::velocities::Agreement;
+use crate::agreement::Agreement;
+use crate::notes::Notes;
+use crate::{VelocitySource, in_words};
 
 /// Positions count as exact if noise makes less than this share of the squared steps.
 const EXACT: f64 = 0.01;
@@ -96,14 +95,14 @@ fn velocity_noise(demonstrations: &Demonstrations) -> Option<(f64, f64)> {
 }
 
 /// The kind of recording where the user requested a smoothing.
-pub(crate) fn as_requested(demonstrations: &Demonstrations, noise: &Noise, agreement: Agreement) -> Recorded {
+pub(crate) fn as_requested(demonstrations: &Demonstrations, noise: &Noise, agreement: Agreement) -> VelocitySource {
     if agreement == Agreement::None {
-        return Recorded::PositionsAsRequested;
+        return VelocitySource::PositionsAsRequested;
     }
     let noisy = noise.velocity_share.is_some_and(|share| share > EXACT_VELOCITIES);
     match velocity_noise(demonstrations).filter(|_| noisy && agreement == Agreement::Own) {
-        Some((variance, _)) => Recorded::NoisyVelocities(variance / demonstrations.dim() as f64),
-        None => Recorded::Velocities,
+        Some((variance, _)) => VelocitySource::Noisy(variance / demonstrations.dim() as f64),
+        None => VelocitySource::Recorded,
     }
 }
 
@@ -113,7 +112,7 @@ pub(crate) fn decide(
     noise: &Noise,
     agreement: Agreement,
     notes: &mut Notes,
-) -> Recorded {
+) -> VelocitySource {
     let share = noise.step_share;
     let words = match &noise.positions {
         None => "too few consecutive samples to estimate position noise".to_owned(),
@@ -122,29 +121,29 @@ pub(crate) fn decide(
     };
     let noisy_velocities = noise.velocity_share.filter(|&share| share > EXACT_VELOCITIES);
     let recorded = match agreement {
-        Agreement::None => Recorded::Positions,
-        Agreement::Differences if share > EXACT => Recorded::Positions,
-        _ if noisy_velocities.is_some_and(|share| share > USELESS_VELOCITIES) => Recorded::Positions,
-        _ if share > EXACT && noisy_velocities.is_none() => Recorded::FusedVelocities,
+        Agreement::None => VelocitySource::Positions,
+        Agreement::Differences if share > EXACT => VelocitySource::Positions,
+        _ if noisy_velocities.is_some_and(|share| share > USELESS_VELOCITIES) => VelocitySource::Positions,
+        _ if share > EXACT && noisy_velocities.is_none() => VelocitySource::Fused,
         _ => match noisy_velocities.and(velocity_noise(demonstrations)) {
-            Some((variance, _)) => Recorded::NoisyVelocities(variance / demonstrations.dim() as f64),
-            None => Recorded::Velocities,
+            Some((variance, _)) => VelocitySource::Noisy(variance / demonstrations.dim() as f64),
+            None => VelocitySource::Recorded,
         },
     };
     let (value, why) = match recorded {
-        Recorded::Velocities => ("velocities as recorded", words),
-        Recorded::FusedVelocities => ("velocities as recorded, positions fused with them", words),
-        Recorded::NoisyVelocities(_) => (
+        VelocitySource::Recorded => ("velocities as recorded", words),
+        VelocitySource::Fused => ("velocities as recorded, positions fused with them", words),
+        VelocitySource::Noisy(_) => (
             "velocities as recorded, with their noise",
             format!("noise share of their squares: {}", percent(noisy_velocities.unwrap_or(0.0))),
         ),
-        Recorded::Positions if agreement == Agreement::None => ("positions smoothed piecewise", words),
-        Recorded::Positions | Recorded::PositionsAsRequested => {
+        VelocitySource::Positions if agreement == Agreement::None => ("positions smoothed piecewise", words),
+        VelocitySource::Positions | VelocitySource::PositionsAsRequested => {
             ("positions smoothed piecewise", format!("{words}; velocities are no better"))
         }
     };
     notes.decided("smoothing", value, why, "--smooth");
-    if recorded == Recorded::Positions && share > NOISY {
+    if recorded == VelocitySource::Positions && share > NOISY {
         notes.found(
             Verdict::Good,
             format!("noise makes {} of the squared steps", percent(share)),

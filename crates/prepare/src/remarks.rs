@@ -1,11 +1,11 @@
 //! Further findings before learning.
 
-use motion::{Demonstrations, Trajectory};
+use motion::{Demonstrations, Trajectory, Verdict};
 
+use crate::StateChannel;
 use crate::in_words::{percent, short};
-use crate::noise::{Noise, resolution};
-use crate::prepared::Notes;
-use crate::{StateChannel, Verdict};
+use crate::noise::resolution;
+use crate::notes::Notes;
 
 /// A channel that spreads so many times as much as most others has another unit, it seems.
 const MIXED: f64 = 20.0;
@@ -13,17 +13,14 @@ const MIXED: f64 = 20.0;
 const FEW: usize = 8;
 /// An episode whose ends are this near, as a share of its length, is a loop.
 const LOOP: f64 = 0.05;
-/// Samples at an end that may stand still.
-const STANDING: usize = 10;
 /// Positions have few digits if a step of the last digit is this share of a channel's spread.
 const COARSE: f64 = 0.01;
 
-pub(crate) fn about(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise, notes: &mut Notes) {
+pub(crate) fn about(demonstrations: &Demonstrations, state: &[StateChannel], notes: &mut Notes) {
     let spreads = spreads(demonstrations);
     mixed_units(&spreads, state, notes);
     few(demonstrations, notes);
     loops(demonstrations, notes);
-    standing(demonstrations, noise, notes);
     coarse(demonstrations, &spreads, state, notes);
 }
 
@@ -86,28 +83,6 @@ fn loops(demonstrations: &Demonstrations, notes: &mut Notes) {
             Verdict::Good,
             format!("{loops} of {} episodes return to their start", demonstrations.n_trajectories()),
             "a potential cannot explain a round trip: use --learner auto, which allows rotation, or split them",
-        );
-    }
-}
-
-fn standing(demonstrations: &Demonstrations, noise: &Noise, notes: &mut Notes) {
-    let noise = noise.positions.as_ref().map_or(0.0, |each| each.iter().map(|s| s * s).sum::<f64>().sqrt());
-    let stands = |movement: &Trajectory, samples: &mut dyn Iterator<Item = usize>| {
-        let Some(end) = samples.next() else { return false };
-        let still = 4.0 * noise;
-        let count = samples.take_while(|&i| (movement.state(i) - movement.state(end)).norm() <= still).count();
-        count + 1 >= STANDING && 2 * count < movement.n_samples()
-    };
-    let either = |movement: &&Trajectory| {
-        let n = movement.n_samples();
-        stands(movement, &mut (0..n)) || stands(movement, &mut (0..n).rev())
-    };
-    let standing = demonstrations.trajectories().iter().filter(either).count();
-    if standing > 0 && noise == 0.0 {
-        notes.found(
-            Verdict::Good,
-            format!("{standing} episodes stand still at an end"),
-            "nothing can be learnt there: --trim-still removes it",
         );
     }
 }

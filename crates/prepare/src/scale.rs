@@ -1,9 +1,8 @@
-use demo_io::Recordings;
-use motion::Demonstrations;
+use motion::{Demonstrations, Recordings, upper_median};
 use nalgebra::DVector;
 
+use crate::notes::Notes;
 use crate::options::PrepareOptions;
-use crate::prepared::Notes;
 use crate::{PrepareError, StateChannel};
 
 /// Factor of every channel, (n).
@@ -34,17 +33,16 @@ pub(crate) fn channels(
     scales: &DVector<f64>,
     demonstrations: &Demonstrations,
 ) -> Vec<StateChannel> {
-    let of = |(at, channel): (usize, &demo_io::Channel)| {
-        let mut values: Vec<f64> = demonstrations
+    let of = |(at, channel): (usize, &motion::Channel)| {
+        let values: Vec<f64> = demonstrations
             .trajectories()
             .iter()
             .flat_map(|trajectory| trajectory.states().row(at).iter().copied().collect::<Vec<_>>())
             .map(|x| x / scales[at])
             .collect();
-        let middle = values.len() / 2;
-        let median = *values.select_nth_unstable_by(middle, f64::total_cmp).1;
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let median = upper_median(values).expect("demonstrations have samples");
         StateChannel { name: channel.name.clone(), unit: channel.unit.clone(), scale: scales[at], low, high, median }
     };
     recordings.state.iter().enumerate().map(of).collect()

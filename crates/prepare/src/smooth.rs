@@ -5,8 +5,8 @@ use nalgebra::DMatrix;
 use smoothing::{SavitzkyGolay, SmoothingError};
 
 use crate::PrepareError;
+use crate::notes::Notes;
 use crate::options::Smoothing;
-use crate::prepared::Notes;
 
 /// Fewer samples in a window than this smooth nothing: a parabola goes through three.
 const LEAST: usize = 5;

@@ -1,10 +1,9 @@
-use motion::{Demonstrations, Trajectory};
+use motion::{Demonstrations, Episode, Times, Trajectory, Verdict, upper_median};
 
-use crate::episodes::Take;
+use crate::PrepareError;
 use crate::in_words::{percent, short};
+use crate::notes::{Notes, and_more};
 use crate::options::PrepareOptions;
-use crate::prepared::Notes;
-use crate::{PrepareError, Verdict};
 
 /// Stamps that differ by less than this share of a step are even.
 const EVEN: f64 = 0.01;
@@ -16,67 +15,76 @@ pub(crate) const SLOW: f64 = 5.0;
 const GAP: f64 = 3.0;
 
 /// The time step of every movement, or its stamps where they are uneven.
-pub(crate) fn decide(takes: &mut [Take], options: &PrepareOptions, notes: &mut Notes) -> Result<(), PrepareError> {
+pub(crate) fn decide(
+    episodes: &mut [Episode],
+    options: &PrepareOptions,
+    notes: &mut Notes,
+) -> Result<(), PrepareError> {
     if let Some(time_step) = options.time_step {
         if !(time_step > 0.0 && time_step.is_finite()) {
             return Err(PrepareError::TimeStep { time_step });
         }
-        for take in takes.iter_mut() {
-            take.times = (0..take.n_samples()).map(|i| time_step * i as f64).collect();
-            take.time_step = Some(time_step);
+        for episode in episodes.iter_mut() {
+            episode.times = Times::Even { step: time_step, len: episode.n_samples() };
         }
         notes.decided("time step", format!("{time_step} s"), "given", "--dt");
         return Ok(());
     }
-    let (mut uneven, mut worst, mut gaps) = (0, 0.0_f64, 0);
-    for take in takes.iter_mut() {
-        let steps: Vec<f64> = take.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let usual = median(steps.clone()).unwrap_or(1.0);
+    let (mut uneven, mut worst, mut gaps) = (0, 0.0_f64, Vec::new());
+    for episode in episodes.iter_mut() {
+        let steps: Vec<f64> = episode.times.steps().collect();
+        let usual = episode.times.median_step().unwrap_or(1.0);
         let jitter = steps.iter().map(|step| (step - usual).abs() / usual).filter(|&off| off < GAP - 1.0);
         let jitter = jitter.fold(0.0, f64::max);
-        let holes = steps.iter().filter(|&&step| step >= GAP * usual).count();
-        gaps += holes;
-        if jitter > EVEN || holes > 0 {
+        let long = (0..steps.len()).filter(|&step| steps[step] >= GAP * usual);
+        let found: Vec<String> = long
+            .map(|i| format!("{}: {} s instead of {} s", episode.place(i + 1), short(steps[i]), short(usual)))
+            .collect();
+        if jitter > EVEN || !found.is_empty() {
             uneven += 1;
             worst = worst.max(jitter);
         } else {
             // The mean forgets how stamps were rounded.
             let mean = steps.iter().sum::<f64>() / steps.len().max(1) as f64;
-            take.time_step = Some(whole(if steps.is_empty() { 1.0 } else { mean }));
+            episode.times = Times::Even { step: whole(mean), len: episode.n_samples() };
         }
+        gaps.extend(found);
     }
-    say(takes, (uneven, worst, gaps), notes);
+    decided(episodes, (uneven, worst), notes);
+    if let Some(first) = gaps.first() {
+        notes.found(
+            Verdict::Good,
+            format!(
+                "a step takes over {GAP} times the usual time ({first}){}: samples are missing",
+                and_more(gaps.len())
+            ),
+            "--split-gap SECONDS splits episodes there, if the movement went on meanwhile",
+        );
+    }
     Ok(())
 }
 
-fn say(takes: &[Take], (uneven, worst, gaps): (usize, f64, usize), notes: &mut Notes) {
-    let steps = takes.iter().filter_map(|take| take.time_step.or_else(|| step_of(take)));
-    let Some(usual) = median(steps.collect()) else { return };
+fn decided(episodes: &[Episode], (uneven, worst): (usize, f64), notes: &mut Notes) {
+    let Some(usual) = upper_median(episodes.iter().filter_map(|episode| episode.times.median_step()).collect()) else {
+        return;
+    };
     let rate = if usual < 1.0 { format!(" ({} Hz)", short(1.0 / usual)) } else { String::new() };
     let value = format!("{} s{rate}", short(usual));
-    if uneven == 0 {
-        notes.decided("time step", value, "stamps are even", "--dt");
-    } else {
-        let why = format!(
+    let why = match uneven {
+        0 => "stamps are even".to_owned(),
+        _ => format!(
             "stamps of {uneven} of {} episodes differ by up to {} of a step; each step keeps its own time",
-            takes.len(),
+            episodes.len(),
             percent(worst)
-        );
-        notes.decided("time step", value, why, "--dt");
-    }
-    if gaps > 0 {
-        notes.found(
-            Verdict::Good,
-            format!("{gaps} steps take over {GAP} times the usual time: samples are missing"),
-            "split episodes there (--split-gap) if the movement went on meanwhile",
-        );
-    }
+        ),
+    };
+    notes.decided("time step", value, why, "--dt");
 }
 
 /// A time step that is hardly one in seconds.
 pub(crate) fn doubt(demonstrations: &Demonstrations, notes: &mut Notes) {
     let steps = demonstrations.trajectories().iter().map(Trajectory::time_step).collect();
-    let Some(usual) = median(steps).filter(|&usual| usual > SLOW) else { return };
+    let Some(usual) = upper_median(steps).filter(|&usual| usual > SLOW) else { return };
     let movement = &demonstrations.trajectories()[0];
     notes.found(
         Verdict::Doubtful,
@@ -92,10 +100,6 @@ pub(crate) fn doubt(demonstrations: &Demonstrations, notes: &mut Notes) {
     );
 }
 
-fn step_of(take: &Take) -> Option<f64> {
-    median(take.times.windows(2).map(|pair| pair[1] - pair[0]).collect())
-}
-
 /// 1/k s or k ms where that is as near as stamps are usually rounded.
 fn whole(time_step: f64) -> f64 {
     let near = |candidate: f64| (candidate > 0.0 && (candidate / time_step - 1.0).abs() < WHOLE).then_some(candidate);
@@ -107,9 +111,4 @@ fn whole(time_step: f64) -> f64 {
         (None, Some(ms)) => ms,
         (None, None) => time_step,
     }
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 
 use crate::in_words::percent;
 use crate::noise::Noise;
-use crate::prepared::Notes;
+use crate::notes::Notes;
 
 /// Samples are averaged until noise makes at most this share of the squared steps.
 const CALM: f64 = 0.3;

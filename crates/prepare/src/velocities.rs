@@ -1,12 +1,12 @@
-use demo_io::Channel;
+use motion::{Channel, Episode, Verdict};
 use nalgebra::DVector;
 
-use crate::Verdict;
-use crate::episodes::Take;
+use crate::agreement::Agreement;
 use crate::in_words::{percent, short};
 use crate::noise::Noise;
+use crate::notes::Notes;
 use crate::options::{PrepareOptions, VelocityUse};
-use crate::prepared::Notes;
+
 use crate::stamps::SLOW;
 
 /// Velocities agree with the steps up to this factor.
@@ -22,33 +22,22 @@ const PARTS: usize = 4;
 /// Velocities that are differences of positions up to this share are made of them.
 const SAME: f64 = 1e-6;
 
-/// The kind of recorded velocities.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Agreement {
-    /// There are none, or they are unusable.
-    None,
-    /// Differences of the positions, without further information.
-    Differences,
-    /// Measured independently, and consistent with the steps.
-    Own,
-}
-
 /// Compares velocities with the steps; brings them to the steps' units, or drops them.
 pub(crate) fn decide(
-    takes: &mut [Take],
+    episodes: &mut [Episode],
     options: &PrepareOptions,
     channels: &[Channel],
     noise: &Noise,
     notes: &mut Notes,
 ) -> Agreement {
-    let recorded = takes.iter().filter(|take| take.velocities.is_some()).count();
-    if recorded < takes.len() || options.velocities == VelocityUse::Ignored {
-        for take in takes.iter_mut() {
-            take.velocities = None;
+    let recorded = episodes.iter().filter(|episode| episode.velocities.is_some()).count();
+    if recorded < episodes.len() || options.velocities == VelocityUse::Ignored {
+        for episode in episodes.iter_mut() {
+            episode.velocities = None;
         }
         let why = match recorded {
             0 => "none recorded".to_owned(),
-            _ if recorded < takes.len() => format!("only {recorded} of {} episodes have them", takes.len()),
+            _ if recorded < episodes.len() => format!("only {recorded} of {} episodes have them", episodes.len()),
             _ => "ignored as requested".to_owned(),
         };
         notes.decided("velocities", "from positions", why, "--integration");
@@ -58,10 +47,10 @@ pub(crate) fn decide(
         notes.decided("velocities", "recorded", "used as requested", "--integration");
         return Agreement::Own;
     }
-    let fit = Steps::of(takes, noise);
+    let fit = Steps::of(episodes, noise);
     if fit.explained < UNRELATED {
-        for take in takes.iter_mut() {
-            take.velocities = None;
+        for episode in episodes.iter_mut() {
+            episode.velocities = None;
         }
         notes.decided(
             "velocities",
@@ -80,7 +69,7 @@ pub(crate) fn decide(
         return Agreement::None;
     }
     if fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(factor)) {
-        let differences = made_of_positions(takes);
+        let differences = made_of_positions(episodes);
         let why = if differences {
             "recorded; they are differences of the positions"
         } else {
@@ -89,7 +78,7 @@ pub(crate) fn decide(
         notes.decided("velocities", "recorded", why, "--integration");
         return if differences { Agreement::Differences } else { Agreement::Own };
     }
-    mend(takes, &fit, channels, notes);
+    mend(episodes, &fit, channels, notes);
     Agreement::Own
 }
 
@@ -105,9 +94,9 @@ struct Steps {
 }
 
 impl Steps {
-    fn of(takes: &[Take], noise: &Noise) -> Self {
-        let pairs: Vec<Part> = takes.iter().flat_map(parts).collect();
-        let dim = takes[0].positions.nrows();
+    fn of(episodes: &[Episode], noise: &Noise) -> Self {
+        let pairs: Vec<Part> = episodes.iter().flat_map(parts).collect();
+        let dim = episodes[0].positions.nrows();
         let sum = |of: &dyn Fn(&Part) -> f64| pairs.iter().map(of).sum::<f64>();
         let power = sum(&|(_, s)| s.norm_squared());
         let common = sum(&|(d, s)| d.dot(s)) / power;
@@ -127,17 +116,17 @@ impl Steps {
 }
 
 /// Displacement and what velocities make of it, over parts of a movement.
-fn parts(take: &Take) -> Vec<(DVector<f64>, DVector<f64>)> {
-    let steps = take.n_samples() - 1;
+fn parts(episode: &Episode) -> Vec<(DVector<f64>, DVector<f64>)> {
+    let steps = episode.n_samples() - 1;
     let parts = PARTS.min((steps / 2).max(1));
-    let Some(velocities) = &take.velocities else { return Vec::new() };
+    let Some(velocities) = &episode.velocities else { return Vec::new() };
     (0..parts)
         .map(|part| {
             let (from, to) = (part * steps / parts, (part + 1) * steps / parts);
-            let moved = take.positions.column(to) - take.positions.column(from);
+            let moved = episode.positions.column(to) - episode.positions.column(from);
             let mut said = DVector::zeros(moved.len());
             for i in from..to {
-                said += (velocities.column(i) + velocities.column(i + 1)) * (0.5 * take.seconds(i));
+                said += (velocities.column(i) + velocities.column(i + 1)) * (0.5 * episode.times.seconds(i, i + 1));
             }
             (moved, said)
         })
@@ -145,30 +134,32 @@ fn parts(take: &Take) -> Vec<(DVector<f64>, DVector<f64>)> {
 }
 
 /// Whether each velocity is the step after it, the step before it, or the mean of both.
-fn made_of_positions(takes: &[Take]) -> bool {
-    let off = |of: &dyn Fn(&Take, usize) -> DVector<f64>| {
+fn made_of_positions(episodes: &[Episode]) -> bool {
+    let off = |of: &dyn Fn(&Episode, usize) -> DVector<f64>| {
         let (mut left, mut power) = (0.0, 0.0);
-        for take in takes {
-            let Some(velocities) = &take.velocities else { continue };
-            for i in 1..take.n_samples() - 1 {
-                left += (velocities.column(i) - of(take, i)).norm_squared();
+        for episode in episodes {
+            let Some(velocities) = &episode.velocities else { continue };
+            for i in 1..episode.n_samples() - 1 {
+                left += (velocities.column(i) - of(episode, i)).norm_squared();
                 power += velocities.column(i).norm_squared();
             }
         }
         left <= SAME * SAME * power
     };
-    let after = |take: &Take, i: usize| take.step(i) / take.seconds(i);
-    let before = |take: &Take, i: usize| take.step(i - 1) / take.seconds(i - 1);
-    let both = |take: &Take, i: usize| (take.step(i) + take.step(i - 1)) / (take.seconds(i) + take.seconds(i - 1));
+    let after = |episode: &Episode, i: usize| episode.step(i) / episode.times.seconds(i, i + 1);
+    let before = |episode: &Episode, i: usize| episode.step(i - 1) / episode.times.seconds(i - 1, i);
+    let both = |episode: &Episode, i: usize| {
+        (episode.step(i) + episode.step(i - 1)) / (episode.times.seconds(i, i + 1) + episode.times.seconds(i - 1, i))
+    };
     off(&after) || off(&before) || off(&both)
 }
 
 /// Velocities in other units than the steps: brought to those of positions and stamps, and said.
-fn mend(takes: &mut [Take], fit: &Steps, channels: &[Channel], notes: &mut Notes) {
+fn mend(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &mut Notes) {
     let (low, high) = (fit.factors.min(), fit.factors.max());
-    let step = takes[0].seconds(0);
+    let step = episodes[0].times.seconds(0, 1);
     if step > SLOW && fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(&(factor * 1000.0))) {
-        takes.iter_mut().for_each(Take::in_milliseconds);
+        episodes.iter_mut().for_each(|episode| episode.times = episode.times.divided_by(1000.0));
         let what = format!("stamps are {step:.0} apart and velocities 1000 times the steps");
         notes.decided("time step", format!("{} s", step / 1000.0), format!("{what}: stamps are milliseconds"), "--dt");
         notes.found(
@@ -185,7 +176,7 @@ fn mend(takes: &mut [Take], fit: &Steps, channels: &[Channel], notes: &mut Notes
     } else {
         fit.factors.clone()
     };
-    for velocities in takes.iter_mut().filter_map(|take| take.velocities.as_mut()) {
+    for velocities in episodes.iter_mut().filter_map(|episode| episode.velocities.as_mut()) {
         velocities.column_iter_mut().for_each(|mut column| column.component_mul_assign(&factors));
     }
     let (what, next) = if common {
@@ -231,7 +222,7 @@ fn whole(times: f64, step: f64) -> f64 {
 
 fn guess(times: f64, step: f64) -> &'static str {
     const WORDS: [&str; 6] = [
-        "velocities in millimetres, or stamps in milliseconds? Name the units in the file, or give --dt",
+        "velocity columns in millimetres, or stamps in milliseconds? Name the units in the file, or give --dt",
         "positions in millimetres? Name the units in the file",
         "degrees and radians mixed? Use one of them (--degrees)",
         "degrees and radians mixed? Use one of them (--degrees)",

@@ -1,10 +1,9 @@
 use std::f64::consts::TAU;
 
-use demo_io::Channel;
+use motion::{Channel, Episode, Verdict};
 
-use crate::Verdict;
-use crate::episodes::Take;
-use crate::prepared::Notes;
+use crate::in_words::short;
+use crate::notes::{Notes, and_more};
 
 /// A step over this share of a turn is a wrap.
 const WRAP: f64 = 0.75;
@@ -12,35 +11,38 @@ const WRAP: f64 = 0.75;
 const RANGE: std::ops::RangeInclusive<f64> = 0.9..=1.02;
 
 /// Angles that jump by a whole turn go on instead; every movement ends within half a turn of where all end.
-pub(crate) fn unwrap(takes: &mut [Take], channels: &[Channel], notes: &mut Notes) {
+pub(crate) fn unwrap(episodes: &mut [Episode], channels: &[Channel], notes: &mut Notes) {
     for (channel, described) in channels.iter().enumerate() {
-        let Some(turn) = turn(takes, channel) else { continue };
-        let wrapped = takes.iter().filter(|take| has_wraps(take, channel, turn)).count();
-        if wrapped == 0 {
-            continue;
+        let Some(turn) = turn(episodes, channel) else { continue };
+        let wraps: Vec<(String, f64)> = episodes.iter().filter_map(|episode| wrap(episode, channel, turn)).collect();
+        let Some((place, step)) = wraps.first() else { continue };
+        for episode in episodes.iter_mut() {
+            go_on(episode, channel, turn);
         }
-        for take in takes.iter_mut() {
-            go_on(take, channel, turn);
-        }
-        to_common_end(takes, channel, turn);
+        to_common_end(episodes, channel, turn);
         let name = &described.name;
         notes.decided(
             "angles",
             format!("{name} unwrapped"),
-            format!("it jumps by a whole turn in {wrapped} episodes"),
+            format!("it jumps by a whole turn in {} of {} episodes", wraps.len(), episodes.len()),
             "--wraps",
         );
         notes.found(
             Verdict::Doubtful,
-            format!("channel {name} wraps by a whole turn in {wrapped} of {} episodes; it was unwrapped", takes.len()),
-            "check that all episodes now end at the same place, or record angles that do not wrap",
+            format!(
+                "channel '{name}' jumps by {}, nearly a whole turn ({place}){}; it was unwrapped",
+                short(*step),
+                and_more(wraps.len())
+            ),
+            "check that all episodes now end at the same place, or choose the angles yourself (--wraps keep --unwrap NAMES)",
         );
     }
 }
 
 /// A whole turn in the units of a channel whose values fill one, in radians or degrees.
-fn turn(takes: &[Take], channel: usize) -> Option<f64> {
-    let values = || takes.iter().flat_map(|take| take.positions.row(channel).iter().copied().collect::<Vec<_>>());
+fn turn(episodes: &[Episode], channel: usize) -> Option<f64> {
+    let values =
+        || episodes.iter().flat_map(|episode| episode.positions.row(channel).iter().copied().collect::<Vec<_>>());
     let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     let fills = |turn: f64| {
         let symmetric = RANGE.contains(&(high / (turn / 2.0))) && RANGE.contains(&(-low / (turn / 2.0)));
@@ -50,20 +52,23 @@ fn turn(takes: &[Take], channel: usize) -> Option<f64> {
     [TAU, 360.0].into_iter().find(|&turn| fills(turn))
 }
 
-fn has_wraps(take: &Take, channel: usize, turn: f64) -> bool {
-    (1..take.n_samples()).any(|i| (take.positions[(channel, i)] - take.positions[(channel, i - 1)]).abs() > WRAP * turn)
+/// Where a movement jumps by a whole turn, and the size of the step.
+fn wrap(episode: &Episode, channel: usize, turn: f64) -> Option<(String, f64)> {
+    let step = |i: usize| (episode.positions[(channel, i)] - episode.positions[(channel, i - 1)]).abs();
+    let at = (1..episode.n_samples()).find(|&i| step(i) > WRAP * turn)?;
+    Some((episode.place(at), step(at)))
 }
 
-fn go_on(take: &mut Take, channel: usize, turn: f64) {
+fn go_on(episode: &mut Episode, channel: usize, turn: f64) {
     let mut turns = 0.0;
-    let mut before = take.positions[(channel, 0)];
-    for i in 1..take.n_samples() {
-        let now = take.positions[(channel, i)];
+    let mut before = episode.positions[(channel, 0)];
+    for i in 1..episode.n_samples() {
+        let now = episode.positions[(channel, i)];
         if (now - before).abs() > WRAP * turn {
             turns -= ((now - before) / turn).round();
-            if let Some(velocities) = &mut take.velocities {
+            if let Some(velocities) = &mut episode.velocities {
                 // Velocities that were made of the positions jump with them.
-                let seconds = take.times[i] - take.times[i - 1];
+                let seconds = episode.times.seconds(i - 1, i);
                 for sample in [i - 1, i] {
                     let velocity = &mut velocities[(channel, sample)];
                     if (*velocity * seconds).abs() > WRAP * turn {
@@ -73,19 +78,19 @@ fn go_on(take: &mut Take, channel: usize, turn: f64) {
             }
         }
         before = now;
-        take.positions[(channel, i)] += turns * turn;
+        episode.positions[(channel, i)] += turns * turn;
     }
 }
 
-fn to_common_end(takes: &mut [Take], channel: usize, turn: f64) {
-    let end = |take: &Take| take.positions[(channel, take.n_samples() - 1)];
-    let (sine, cosine) = takes.iter().fold((0.0, 0.0), |(sine, cosine), take| {
-        let angle = end(take) / turn * TAU;
+fn to_common_end(episodes: &mut [Episode], channel: usize, turn: f64) {
+    let end = |episode: &Episode| episode.positions[(channel, episode.n_samples() - 1)];
+    let (sine, cosine) = episodes.iter().fold((0.0, 0.0), |(sine, cosine), episode| {
+        let angle = end(episode) / turn * TAU;
         (sine + angle.sin(), cosine + angle.cos())
     });
     let common = f64::atan2(sine, cosine) / TAU * turn;
-    for take in takes {
-        let turns = ((end(take) - common) / turn).round();
-        take.positions.row_mut(channel).add_scalar_mut(-turns * turn);
+    for episode in episodes {
+        let turns = ((end(episode) - common) / turn).round();
+        episode.positions.row_mut(channel).add_scalar_mut(-turns * turn);
     }
 }

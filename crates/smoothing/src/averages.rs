@@ -51,7 +51,7 @@ impl Averages {
                 continue;
             }
             let polynomials = bases.of(movement, window);
-            let half = movement.stamped.seconds(window.first, window.first + window.samples - 1) / 2.0;
+            let half = movement.recorded.seconds(window.first, window.first + window.samples - 1) / 2.0;
             polynomials.project(movement.window(window.first, window.samples), dim, &mut coefficients);
             let factors = &model.shrinkage(window.samples).factors;
             shrunk.clear();

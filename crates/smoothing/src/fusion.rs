@@ -1,4 +1,4 @@
-use motion::Demonstrations;
+use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -6,7 +6,6 @@ use serde::Serialize;
 use crate::SmoothingError;
 use crate::increments::StepRule;
 use crate::kalman::Gains;
-use crate::stamped::{Stamped, common_dim};
 
 /// Fuses noisy positions with nearly exact velocities: states that integrate the velocities and fit the positions, (S17).
 ///
@@ -58,16 +57,8 @@ impl Fusion {
     /// # Errors
     /// [`SmoothingError::NoVelocities`], [`SmoothingError::Parameter`] or [`SmoothingError::Overflow`].
     pub fn fuse(&self, demonstrations: &Demonstrations) -> Result<Fused, SmoothingError> {
-        self.fuse_stamped(&Stamped::all(demonstrations))
-    }
-
-    /// The same for movements with individual time stamps.
-    ///
-    /// # Errors
-    /// As [`Fusion::fuse`], and [`SmoothingError::Motion`] if there is no movement or dimensions differ.
-    pub fn fuse_stamped(&self, movements: &[Stamped]) -> Result<Fused, SmoothingError> {
+        let movements = demonstrations.trajectories();
         self.check()?;
-        common_dim(movements)?;
         let without = movements.iter().position(|movement| movement.velocities().is_none());
         if let Some(trajectory) = without {
             return Err(SmoothingError::NoVelocities { trajectory });
@@ -107,14 +98,14 @@ impl Fusion {
 }
 
 /// The steps Δ of every movement.
-fn steps_of(movements: &[Stamped], rule: StepRule) -> Vec<DMatrix<f64>> {
+fn steps_of(movements: &[Trajectory], rule: StepRule) -> Vec<DMatrix<f64>> {
     movements.par_iter().filter_map(|movement| Some(rule.steps(movement, movement.velocities()?))).collect()
 }
 
 /// Filters every movement and goes back over it.
-fn smooth(movements: &[Stamped], rule: StepRule, log10_ratio: f64, noise_variance: f64) -> Vec<FusedMovement> {
+fn smooth(movements: &[Trajectory], rule: StepRule, log10_ratio: f64, noise_variance: f64) -> Vec<FusedMovement> {
     let gains = Gains::new(longest(movements), 10f64.powf(log10_ratio));
-    let smooth = |(movement, steps): (&Stamped, DMatrix<f64>)| {
+    let smooth = |(movement, steps): (&Trajectory, DMatrix<f64>)| {
         let mut states = movement.states().clone();
         gains.filter(movement.states(), &steps, &mut states, |_, _| {});
         let variance = DVector::from_vec(gains.smooth(&steps, &mut states)) * noise_variance;
@@ -131,7 +122,7 @@ struct Likelihood {
 }
 
 impl Likelihood {
-    fn new(movements: &[Stamped], steps: &[DMatrix<f64>], log10_ratio: f64) -> Self {
+    fn new(movements: &[Trajectory], steps: &[DMatrix<f64>], log10_ratio: f64) -> Self {
         let gains = Gains::new(longest(movements), 10f64.powf(log10_ratio));
         let (mut log_variances, mut squares, mut count) = (0.0, 0.0, 0.0);
         for (movement, steps) in movements.iter().zip(steps) {
@@ -150,6 +141,6 @@ impl Likelihood {
     }
 }
 
-fn longest(movements: &[Stamped]) -> usize {
-    movements.iter().map(Stamped::n_samples).max().unwrap_or(0)
+fn longest(movements: &[Trajectory]) -> usize {
+    movements.iter().map(Trajectory::n_samples).max().unwrap_or(0)
 }

@@ -1,7 +1,6 @@
+use motion::Trajectory;
 use nalgebra::{DMatrix, DMatrixView};
 use serde::Serialize;
-
-use crate::stamped::Stamped;
 
 /// How a step Δ_i from one sample to the next follows from the velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -27,7 +26,7 @@ impl std::fmt::Display for StepRule {
 
 impl StepRule {
     /// Steps Δ_1 … Δ_{N−1}, (n, N − 1), of a movement with these velocities (n, N).
-    pub(crate) fn steps(self, movement: &Stamped, velocities: &DMatrix<f64>) -> DMatrix<f64> {
+    pub(crate) fn steps(self, movement: &Trajectory, velocities: &DMatrix<f64>) -> DMatrix<f64> {
         let n = velocities.ncols();
         let mut steps = DMatrix::zeros(velocities.nrows(), n - 1);
         for (i, mut step) in steps.column_iter_mut().enumerate() {

@@ -29,8 +29,8 @@
 //! ```
 //!
 //! Equations (S15)–(S17) stand in [section 8 of `docs/slope-gp.md`](../gp/equations/index.html#8-smoothing).
-//! Trajectories are smoothed in parallel, with the same bits at any number of threads. Times may be uneven: [`Stamped`]
-//! movements have a stamp for each sample.
+//! Trajectories are smoothed in parallel, with the same bits at any number of threads. Times may be uneven:
+//! [`motion::Trajectory::stamped`].
 //!
 //! # When it fails
 //!
@@ -57,7 +57,6 @@ mod scaled;
 mod segmentation;
 mod smoothed;
 mod smoother;
-mod stamped;
 mod windows;
 
 pub use error::SmoothingError;
@@ -67,4 +66,3 @@ pub use noise::PositionNoise;
 pub use savitzky_golay::SavitzkyGolay;
 pub use smoothed::{Smoothed, SmoothedMovement};
 pub use smoother::{AxisScale, NoiseVariance, Smoother};
-pub use stamped::Stamped;

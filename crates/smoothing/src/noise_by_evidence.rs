@@ -58,7 +58,8 @@ fn first_guess(scaled: &Scaled<'_>) -> f64 {
         .movements
         .iter()
         .flat_map(|movement| {
-            (0..movement.dim).flat_map(|j| third_differences(&movement.rows, movement.dim, j, movement.stamped.times()))
+            (0..movement.dim)
+                .flat_map(|j| third_differences(&movement.rows, movement.dim, j, movement.recorded.times()))
         })
         .collect();
     let deviation = median(&mut differences).unwrap_or(0.0) / 0.6745;

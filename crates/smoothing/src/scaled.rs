@@ -1,8 +1,8 @@
 //! Input of the smoother: axes of equal noise, each movement about its mean.
 
+use motion::{Demonstrations, Trajectory};
 use nalgebra::DVector;
 
-use crate::stamped::{Stamped, common_dim};
 use crate::{AxisScale, SmoothingError};
 
 /// All movements in scaled axes, and their scales.
@@ -18,7 +18,7 @@ pub(crate) struct Scaled<'a> {
 /// One movement in the axes that move at all.
 #[derive(Debug)]
 pub(crate) struct ScaledMovement<'a> {
-    pub(crate) stamped: &'a Stamped,
+    pub(crate) recorded: &'a Trajectory,
     /// Number of moving axes d.
     pub(crate) dim: usize,
     /// y_ij at `i * dim + j`: scaled, about the movement's mean.
@@ -26,8 +26,8 @@ pub(crate) struct ScaledMovement<'a> {
 }
 
 impl<'a> Scaled<'a> {
-    pub(crate) fn new(movements: &'a [Stamped], scale: &AxisScale) -> Result<Self, SmoothingError> {
-        let dim = common_dim(movements)?;
+    pub(crate) fn new(demonstrations: &'a Demonstrations, scale: &AxisScale) -> Result<Self, SmoothingError> {
+        let (movements, dim) = (demonstrations.trajectories(), demonstrations.dim());
         let variances = DVector::from_fn(dim, |axis, _| variance_of_axis(movements, axis));
         if variances.iter().any(|variance| !variance.is_finite()) {
             return Err(SmoothingError::Overflow);
@@ -48,25 +48,25 @@ impl<'a> Scaled<'a> {
         if !variance.is_finite() {
             return Err(SmoothingError::Overflow);
         }
-        let movements = movements.iter().map(|stamped| ScaledMovement::new(stamped, &scales, &moving)).collect();
+        let movements = movements.iter().map(|recorded| ScaledMovement::new(recorded, &scales, &moving)).collect();
         Ok(Scaled { movements, scales, variance })
     }
 }
 
 impl<'a> ScaledMovement<'a> {
-    fn new(stamped: &'a Stamped, scales: &DVector<f64>, moving: &[usize]) -> Self {
-        let means = stamped.states().column_mean();
-        let rows = stamped
+    fn new(recorded: &'a Trajectory, scales: &DVector<f64>, moving: &[usize]) -> Self {
+        let means = recorded.states().column_mean();
+        let rows = recorded
             .states()
             .column_iter()
             .flat_map(|state| moving.iter().map(move |&j| (state[j], j)))
             .map(|(x, j)| (x - means[j]) / scales[j])
             .collect();
-        ScaledMovement { stamped, dim: moving.len(), rows }
+        ScaledMovement { recorded, dim: moving.len(), rows }
     }
 
     pub(crate) fn n_samples(&self) -> usize {
-        self.stamped.n_samples()
+        self.recorded.n_samples()
     }
 
     /// Rows of `samples` samples from sample `first` on.
@@ -88,7 +88,7 @@ fn checked(scales: &DVector<f64>, dim: usize) -> Result<&DVector<f64>, Smoothing
 }
 
 /// Variance of one coordinate over all samples of all movements.
-fn variance_of_axis(movements: &[Stamped], axis: usize) -> f64 {
+fn variance_of_axis(movements: &[Trajectory], axis: usize) -> f64 {
     let values = || movements.iter().flat_map(|movement| movement.states().column_iter().map(|state| state[axis]));
     let first = movements[0].states()[(axis, 0)];
     if values().all(|value| value == first) {

@@ -1,7 +1,7 @@
+use motion::Trajectory;
 use nalgebra::{DMatrix, DVector};
 
 use crate::averages::Averages;
-use crate::stamped::Stamped;
 
 /// Movements without their noise.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,7 +33,12 @@ pub struct SmoothedMovement {
 
 impl SmoothedMovement {
     /// From scaled axes back into the recorded ones; `scales` (n) has zeros at axes that never move.
-    pub(crate) fn unscaled(averages: Averages, log_evidence: f64, scales: &DVector<f64>, recorded: &Stamped) -> Self {
+    pub(crate) fn unscaled(
+        averages: Averages,
+        log_evidence: f64,
+        scales: &DVector<f64>,
+        recorded: &Trajectory,
+    ) -> Self {
         let mut states = recorded.states().clone();
         let mut velocities = DMatrix::zeros(states.nrows(), states.ncols());
         let means = states.column_mean();

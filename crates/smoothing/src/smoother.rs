@@ -1,4 +1,4 @@
-use motion::Demonstrations;
+use motion::{Demonstrations, Trajectory};
 use nalgebra::DVector;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -10,7 +10,6 @@ use crate::noise_by_evidence::{most_likely, some_energies};
 use crate::scaled::{Scaled, ScaledMovement};
 use crate::segmentation::Segmentation;
 use crate::smoothed::{Smoothed, SmoothedMovement};
-use crate::stamped::Stamped;
 use crate::windows::{Bases, Energy, MAX_COLUMNS, energies};
 
 /// Bayesian piecewise polynomials: states and velocities with their variances, from noisy positions alone, (S15), (S16).
@@ -73,17 +72,10 @@ impl Smoother {
     /// [`SmoothingError::Parameter`], [`SmoothingError::AxisScales`], [`SmoothingError::NoMotion`] or
     /// [`SmoothingError::Overflow`].
     pub fn smooth(&self, demonstrations: &Demonstrations) -> Result<Smoothed, SmoothingError> {
-        self.smooth_stamped(&Stamped::all(demonstrations))
-    }
-
-    /// The same for movements with individual time stamps.
-    ///
-    /// # Errors
-    /// As [`Smoother::smooth`], and [`SmoothingError::Motion`] if there is no movement or dimensions differ.
-    pub fn smooth_stamped(&self, movements: &[Stamped]) -> Result<Smoothed, SmoothingError> {
         self.check()?;
-        let scaled = Scaled::new(movements, &self.axis_scale)?;
-        let longest = movements.iter().map(Stamped::n_samples).max().unwrap_or(0).min(self.longest_window);
+        let scaled = Scaled::new(demonstrations, &self.axis_scale)?;
+        let movements = demonstrations.trajectories();
+        let longest = movements.iter().map(Trajectory::n_samples).max().unwrap_or(0).min(self.longest_window);
         let run = Run { smoother: self, scaled: &scaled, longest, bases: Bases::new(longest, self.columns()) };
         let noise_variance = match self.noise {
             NoiseVariance::Given(noise_variance) => noise_variance,
@@ -148,7 +140,7 @@ impl Run<'_> {
         })
     }
 
-    fn smooth(&self, movement: &ScaledMovement<'_>, recorded: &Stamped, model: &NoiseModel<'_>) -> SmoothedMovement {
+    fn smooth(&self, movement: &ScaledMovement<'_>, recorded: &Trajectory, model: &NoiseModel<'_>) -> SmoothedMovement {
         let energies = energies(movement, &self.bases, self.longest);
         let segmentation = self.segmentation(movement, &energies, model);
         let averages = Averages::new(movement, &self.bases, &energies, &segmentation, model);

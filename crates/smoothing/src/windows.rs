@@ -39,7 +39,7 @@ impl Bases {
 
     /// The polynomials on a window's times.
     pub(crate) fn of(&self, movement: &ScaledMovement<'_>, window: Window) -> Cow<'_, Polynomials> {
-        match movement.stamped.times() {
+        match movement.recorded.times() {
             None => Cow::Borrowed(&self.even[window.samples - 2]),
             Some(times) => Cow::Owned(Polynomials::at(&times[window.first..][..window.samples], self.columns)),
         }

@@ -2,11 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use motion::{Demonstrations, MotionError, Series, Trajectory};
+use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
-use smoothing::{
-    AxisScale, Fusion, NoiseVariance, PositionNoise, SavitzkyGolay, Smoother, SmoothingError, Stamped, StepRule,
-};
+use smoothing::{AxisScale, Fusion, NoiseVariance, PositionNoise, SavitzkyGolay, Smoother, SmoothingError, StepRule};
 
 fn wave(scale: f64) -> DMatrix<f64> {
     DMatrix::from_fn(2, 30, |j, i| scale * (0.2 * i as f64 + j as f64).sin())
@@ -68,43 +66,11 @@ fn movements_that_do_not_move_or_overflow() {
 }
 
 #[test]
-fn stamps() {
-    let error = Stamped::new(vec![0.0, 1.0], wave(1.0)).unwrap_err();
-    assert_eq!(error, SmoothingError::Motion(MotionError::StampCount { times: 2, samples: 30 }));
-    for (bad, sample) in [(2.0, 3), (f64::NAN, 3), (1.0, 3), (f64::INFINITY, 3)] {
-        let mut times: Vec<f64> = (0..30).map(f64::from).collect();
-        times[3] = bad;
-        match Stamped::new(times, wave(1.0)).unwrap_err() {
-            SmoothingError::Motion(MotionError::StampOrder { sample: found, time }) => {
-                assert_eq!(found, sample);
-                assert!(time == bad || time.is_nan() && bad.is_nan());
-            }
-            other => panic!("{other:?}"),
-        }
-    }
-    let mut states = wave(1.0);
-    states[(1, 7)] = f64::NAN;
-    match Stamped::new((0..30).map(f64::from).collect(), states).unwrap_err() {
-        SmoothingError::Motion(MotionError::NotFinite { series, sample, dimension, .. }) => {
-            assert_eq!((series, sample, dimension), (Series::States, 7, 1));
-        }
-        other => panic!("{other:?}"),
-    }
-}
-
-#[test]
-fn sets_of_movements() {
-    let times = |n: usize| (0..n).map(|i| i as f64).collect::<Vec<_>>();
-    let two = Stamped::new(times(30), wave(1.0)).unwrap();
-    let three = Stamped::new(times(4), DMatrix::from_fn(3, 4, |j, i| (i * i + j) as f64)).unwrap();
-    let (smoother, fusion) = (Smoother::default(), Fusion::default());
-    assert_eq!(smoother.smooth_stamped(&[]).unwrap_err(), MotionError::Empty.into());
-    assert_eq!(fusion.fuse_stamped(&[]).unwrap_err(), MotionError::Empty.into());
-    let differ = SmoothingError::Motion(MotionError::Dimensions { trajectory: 1, found: 3, expected: 2 });
-    assert_eq!(smoother.smooth_stamped(&[two.clone(), three.clone()]).unwrap_err(), differ);
-    assert_eq!(fusion.fuse_stamped(&[two.clone(), three]).unwrap_err(), differ);
-    let with = two.clone().with_velocities(wave(1.0)).unwrap();
-    assert_eq!(fusion.fuse_stamped(&[with, two]).unwrap_err(), SmoothingError::NoVelocities { trajectory: 1 });
+fn fusion_needs_velocities() {
+    let without = Trajectory::new(wave(1.0), 1.0).unwrap();
+    let with = without.clone().with_velocities(wave(1.0)).unwrap();
+    let error = Fusion::default().fuse(&Demonstrations::new(vec![with, without]).unwrap()).unwrap_err();
+    assert_eq!(error, SmoothingError::NoVelocities { trajectory: 1 });
 }
 
 #[test]

@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
-use smoothing::{Fused, Fusion, Stamped, StepRule};
+use smoothing::{Fused, Fusion, StepRule};
 
 /// Steps by the formulas as they are printed.
 fn steps(rule: StepRule, times: &[f64], v: &DMatrix<f64>) -> DMatrix<f64> {
@@ -84,8 +84,8 @@ fn rules() -> impl Strategy<Value = StepRule> {
 }
 
 impl Case {
-    fn stamped(&self) -> Stamped {
-        Stamped::new(self.times.clone(), self.positions.clone())
+    fn stamped(&self) -> Trajectory {
+        Trajectory::stamped(self.times.clone(), self.positions.clone())
             .unwrap()
             .with_velocities(self.velocities.clone())
             .unwrap()
@@ -97,7 +97,7 @@ proptest! {
     #[test]
     fn the_filter_is_least_squares(case in case(), rule in rules(), log10_ratio in -3.0..2.0f64) {
         let fusion = Fusion { rules: vec![rule], log10_ratios: vec![log10_ratio] };
-        let fused = fusion.fuse_stamped(&[case.stamped()]).unwrap();
+        let fused = fusion.fuse(&Demonstrations::new(vec![case.stamped()]).unwrap()).unwrap();
         let steps = steps(rule, &case.times, &case.velocities);
         let (states, variances, squares, _) = literal(&case.positions, &steps, 10f64.powf(log10_ratio));
         let rho = squares / steps.len() as f64;
@@ -112,7 +112,7 @@ proptest! {
         let dim = cases[0].positions.nrows();
         prop_assume!(cases.iter().all(|case| case.positions.nrows() == dim));
         let fusion = Fusion { log10_ratios: vec![-3.0, -1.5, 0.0, 1.0], ..Fusion::default() };
-        let fused = fusion.fuse_stamped(&cases.iter().map(Case::stamped).collect::<Vec<_>>()).unwrap();
+        let fused = fusion.fuse(&Demonstrations::new(cases.iter().map(Case::stamped).collect()).unwrap()).unwrap();
         let likelihood = |rule: StepRule, log10: f64| {
             let (mut squares, mut logs, mut count) = (0.0, 0.0, 0.0);
             for case in &cases {

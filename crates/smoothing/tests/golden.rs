@@ -2,9 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use serde_json::Value;
-use smoothing::{AxisScale, Fusion, NoiseVariance, Smoother, Stamped};
+use smoothing::{AxisScale, Fusion, NoiseVariance, Smoother};
 
 fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
@@ -15,9 +16,10 @@ fn columns(rows: &Value) -> DMatrix<f64> {
     DMatrix::from_columns(&columns)
 }
 
-fn movements(case: &Value) -> Vec<Stamped> {
+fn movements(case: &Value) -> Demonstrations {
     let times = case["times"].as_array().unwrap().iter().map(numbers);
-    times.zip(case["positions"].as_array().unwrap()).map(|(t, x)| Stamped::new(t, columns(x)).unwrap()).collect()
+    let movements = times.zip(case["positions"].as_array().unwrap());
+    Demonstrations::new(movements.map(|(t, x)| Trajectory::stamped(t, columns(x)).unwrap()).collect()).unwrap()
 }
 
 #[track_caller]
@@ -33,11 +35,11 @@ fn check_smoother(text: &str) {
     let case: Value = serde_json::from_str(text).unwrap();
     let movements = movements(&case);
     let given = Smoother {
-        axis_scale: AxisScale::Given(DVector::from_element(movements[0].states().nrows(), 1.0)),
+        axis_scale: AxisScale::Given(DVector::from_element(movements.dim(), 1.0)),
         noise: NoiseVariance::Given(case["s_squared"].as_f64().unwrap()),
         ..Smoother::default()
     };
-    let smoothed = given.smooth_stamped(&movements).unwrap();
+    let smoothed = given.smooth(&movements).unwrap();
     let evidence: Vec<f64> = smoothed.movements.iter().map(|movement| movement.log_evidence).collect();
     agree(&evidence, &numbers(&case["log_evidence"]), 1e-9);
     for (k, states) in case["states"].as_array().unwrap().iter().enumerate() {
@@ -48,7 +50,7 @@ fn check_smoother(text: &str) {
         agree(ours.velocity_variance.as_slice(), &numbers(&case["velocity_variance"][k]), 1e-6);
         agree(ours.window_begins.as_slice(), &numbers(&case["window_begins"][k]), 1e-6);
     }
-    let found = Smoother { noise: NoiseVariance::ByEvidence, ..given }.smooth_stamped(&movements).unwrap();
+    let found = Smoother { noise: NoiseVariance::ByEvidence, ..given }.smooth(&movements).unwrap();
     agree(&[found.noise_variance], &[case["s_squared_auto"].as_f64().unwrap()], 0.2);
 }
 
@@ -65,9 +67,10 @@ fn a_movement_whose_constraint_switches() {
 fn check_fusion(text: &str) {
     let case: Value = serde_json::from_str(text).unwrap();
     let velocities = case["velocities"].as_array().unwrap().iter().map(columns);
-    let movements: Vec<_> =
-        movements(&case).into_iter().zip(velocities).map(|(x, v)| x.with_velocities(v).unwrap()).collect();
-    let fused = Fusion::default().fuse_stamped(&movements).unwrap();
+    let movements = movements(&case);
+    let movements = movements.trajectories().iter().zip(velocities);
+    let movements = movements.map(|(x, v)| x.clone().with_velocities(v).unwrap()).collect();
+    let fused = Fusion::default().fuse(&Demonstrations::new(movements).unwrap()).unwrap();
     assert_eq!(fused.rule.to_string().to_lowercase(), case["rule"].as_str().unwrap());
     assert_eq!(fused.log10_ratio, case["log10_q_over_rho"].as_f64().unwrap());
     agree(&[fused.noise_variance], &[case["rho"].as_f64().unwrap()], 1e-9);

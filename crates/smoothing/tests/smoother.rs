@@ -4,11 +4,11 @@
 
 mod literal;
 
-use motion::Demonstrations;
+use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use proptest::collection::vec;
 use proptest::prelude::*;
-use smoothing::{AxisScale, NoiseVariance, Smoothed, Smoother, Stamped};
+use smoothing::{AxisScale, NoiseVariance, Smoothed, Smoother};
 
 /// Two movements of `samples` samples in `dim` dimensions: a wave that jumps in the middle, with noise.
 #[derive(Debug, Clone)]
@@ -20,12 +20,13 @@ struct Case {
 }
 
 impl Case {
-    fn movements(&self) -> Vec<Stamped> {
-        (0..2).map(|k| Stamped::new(self.times[k].clone(), self.states[k].clone()).unwrap()).collect()
+    fn movements(&self) -> Demonstrations {
+        let movement = |k: usize| Trajectory::stamped(self.times[k].clone(), self.states[k].clone()).unwrap();
+        Demonstrations::new((0..2).map(movement).collect()).unwrap()
     }
 
     fn smooth(&self) -> Smoothed {
-        self.smoother.smooth_stamped(&self.movements()).unwrap()
+        self.smoother.smooth(&self.movements()).unwrap()
     }
 
     /// The same with other states and times.
@@ -194,8 +195,9 @@ proptest! {
         let demonstrations = Demonstrations::from_states(case.states.clone(), step).unwrap();
         let samples = case.states[0].ncols();
         let times: Vec<f64> = (0..samples).map(|i| 7.0 + i as f64 * step).collect();
-        let stamped: Vec<_> = case.states.iter().map(|x| Stamped::new(times.clone(), x.clone()).unwrap()).collect();
-        let (even, stamped) = (smoother.smooth(&demonstrations).unwrap(), smoother.smooth_stamped(&stamped).unwrap());
+        let stamped = case.states.iter().map(|x| Trajectory::stamped(times.clone(), x.clone()).unwrap()).collect();
+        let stamped = Demonstrations::new(stamped).unwrap();
+        let (even, stamped) = (smoother.smooth(&demonstrations).unwrap(), smoother.smooth(&stamped).unwrap());
         same(&even, &stamped, [1.0; 5], 1e-6)?;
     }
 

@@ -1,12 +1,12 @@
 //! Numbers that are missing: refused, left out with their sample, or interpolated.
 
-use crate::draft::Draft;
+use crate::raw::RawEpisode;
 use crate::{Fault, Nan, ReadError};
 
 /// At most this many samples in a row are interpolated.
 const LONGEST_FILL: usize = 3;
 
-pub(super) fn make_finite(draft: &mut Draft, names: &[String], word: &str, nan: Nan) -> Result<(), ReadError> {
+pub(super) fn make_finite(draft: &mut RawEpisode, names: &[String], word: &str, nan: Nan) -> Result<(), ReadError> {
     let n = names.len();
     let bad: Vec<usize> = (0..draft.len()).filter(|&sample| !is_finite(draft, sample, n)).collect();
     let Some(&first) = bad.first() else { return Ok(()) };
@@ -30,7 +30,7 @@ pub(super) fn make_finite(draft: &mut Draft, names: &[String], word: &str, nan: 
     }
 }
 
-fn is_finite(draft: &Draft, sample: usize, n: usize) -> bool {
+fn is_finite(draft: &RawEpisode, sample: usize, n: usize) -> bool {
     let columns = sample * n..(sample + 1) * n;
     draft.times[sample].is_finite()
         && draft.positions[columns.clone()].iter().all(|value| value.is_finite())
@@ -38,7 +38,7 @@ fn is_finite(draft: &Draft, sample: usize, n: usize) -> bool {
 }
 
 /// What of a sample is missing.
-fn not_finite(draft: &Draft, sample: usize, names: &[String], word: &str) -> ReadError {
+fn not_finite(draft: &RawEpisode, sample: usize, names: &[String], word: &str) -> ReadError {
     let n = names.len();
     let here = |numbers: &[f64]| {
         let values = numbers.get(sample * n..(sample + 1) * n)?;
@@ -58,7 +58,7 @@ fn not_finite(draft: &Draft, sample: usize, names: &[String], word: &str) -> Rea
 }
 
 /// Straight between the samples around a run, in time; only what is missing.
-fn interpolate(draft: &mut Draft, run: &[usize], before: usize, after: usize, n: usize) {
+fn interpolate(draft: &mut RawEpisode, run: &[usize], before: usize, after: usize, n: usize) {
     let times = &draft.times;
     for numbers in [&mut draft.positions, &mut draft.velocities] {
         if numbers.is_empty() {

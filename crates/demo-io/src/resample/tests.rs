@@ -2,15 +2,17 @@ use nalgebra::DMatrix;
 use proptest::prelude::*;
 
 use super::*;
-use crate::{Channel, Source};
+use motion::Channel;
+use motion::Source;
 
 fn recordings(times: Vec<f64>, value: impl Fn(f64) -> f64) -> Recordings {
     let positions = DMatrix::from_iterator(1, times.len(), times.iter().map(|&t| value(t)));
     let source = Source { file: "made".to_owned(), rows: None };
     let velocities = Some(positions.clone());
-    let episode = Episode { name: "a".to_owned(), source, times, positions, velocities, constraint: None };
+    let episode =
+        Episode { name: "a".to_owned(), source, times: Times::Stamped(times), positions, velocities, constraint: None };
     let state = vec![Channel { name: "x".to_owned(), unit: None }];
-    Recordings { state, episodes: vec![episode], notes: vec![] }
+    Recordings { state, episodes: vec![episode], findings: vec![] }
 }
 
 #[test]
@@ -39,14 +41,14 @@ proptest! {
         }
         let at = |t: f64| values[times.iter().rposition(|&stamp| stamp <= t).unwrap()];
         let made = recordings(times.clone(), at);
-        let found = made.resampled(rate);
+        let found = resampled(&made, rate);
         prop_assume!(found.is_ok());
         let found = found.unwrap();
         let found = &found.episodes[0];
         prop_assert_eq!(found.velocities.as_ref(), Some(&found.positions));
-        let last = found.times[found.times.len() - 1];
+        let last = found.times.duration();
         prop_assert!(times[times.len() - 1] - last < 1.0 / rate && last <= times[times.len() - 1] + 1e-6);
-        for (&time, x) in found.times.iter().zip(found.positions.iter()) {
+        for (&time, x) in found.times.stamps().iter().zip(found.positions.iter()) {
             let before = times[..times.len() - 1].iter().rposition(|&stamp| stamp <= time + 1e-9).unwrap();
             let ends = [values[before], values[before + 1]];
             prop_assert!(*x >= ends[0].min(ends[1]) - 1e-9 && *x <= ends[0].max(ends[1]) + 1e-9);
@@ -58,8 +60,8 @@ proptest! {
     #[test]
     fn straight_lines_stay(rate in 2.0..100.0f64, slope in -3.0..3.0f64, start in 0.0..9.0f64) {
         let times = [0.0, 0.1, 0.35, 0.4, 1.0].map(|t| start + t).to_vec();
-        let found = recordings(times, |t| slope * (t - start)).resampled(rate).unwrap();
-        for (time, x) in found.episodes[0].times.iter().zip(found.episodes[0].positions.iter()) {
+        let found = resampled(&recordings(times, |t| slope * (t - start)), rate).unwrap();
+        for (time, x) in found.episodes[0].times.stamps().iter().zip(found.episodes[0].positions.iter()) {
             prop_assert!((x - slope * time).abs() < 1e-12);
         }
     }
@@ -69,12 +71,12 @@ proptest! {
 fn rates_that_make_no_movement_are_refused() {
     let made = recordings(vec![0.0, 0.5, 1.0], |t| t);
     for rate in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(made.resampled(rate), Err(ResampleError::Rate { .. })), "{rate}");
+        assert!(matches!(resampled(&made, rate), Err(ResampleError::Rate { .. })), "{rate}");
     }
-    assert!(matches!(made.resampled(0.9), Err(ResampleError::Short { .. })));
-    assert!(matches!(made.resampled(1e12), Err(ResampleError::Many { .. })));
-    assert_eq!(made.resampled(1.0).unwrap().episodes[0].times, [0.0, 1.0]);
+    assert!(matches!(resampled(&made, 0.9), Err(ResampleError::Short { .. })));
+    assert!(matches!(resampled(&made, 1e12), Err(ResampleError::Many { .. })));
+    assert_eq!(resampled(&made, 1.0).unwrap().episodes[0].times.stamps()[..], [0.0, 1.0]);
     // 30 steps of a tenth of a second, their stamps rounded.
     let tenths = recordings((0..=30).map(|i| f64::from(i) * 0.1).collect(), |t| t);
-    assert_eq!(tenths.resampled(10.0).unwrap().episodes[0].times.len(), 31);
+    assert_eq!(resampled(&tenths, 10.0).unwrap().episodes[0].times.len(), 31);
 }

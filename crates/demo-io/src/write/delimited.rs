@@ -1,8 +1,9 @@
 use std::io::Write;
 
 use super::{Failure, WriteError, has_velocities};
-use crate::roles::{Column, Content, assign};
-use crate::{ReadOptions, Recordings};
+use crate::ReadOptions;
+use crate::rows::roles::{Column, Content, assign};
+use motion::Recordings;
 
 /// `episode, t, x, y, x_vel, y_vel`, a row a sample, numbers in the shortest form that reads back to the same bits.
 pub(super) fn write(file: impl Write, recordings: &Recordings, separator: u8) -> Result<(), Failure> {
@@ -20,7 +21,7 @@ pub(super) fn write(file: impl Write, recordings: &Recordings, separator: u8) ->
     writer.write_record(&header).map_err(std::io::Error::from)?;
     let mut number = String::new();
     for episode in &recordings.episodes {
-        for (sample, time) in episode.times.iter().enumerate() {
+        for (sample, time) in episode.times.stamps().iter().enumerate() {
             let mut field = |text: &str| writer.write_field(text).map_err(std::io::Error::from);
             field(&episode.name)?;
             let label = episode.constraint.as_deref().unwrap_or_default();
@@ -54,7 +55,7 @@ fn check(header: &[String], state: std::ops::Range<usize>) -> Result<(), WriteEr
     match roles {
         Ok(found) if found.iter().copied().eq(state) => Ok(()),
         Ok(found) => Err(WriteError::Names {
-            found: crate::roles::shortened(&found.iter().map(|&at| &header[at]).collect::<Vec<_>>()),
+            found: crate::rows::roles::shortened(&found.iter().map(|&at| &header[at]).collect::<Vec<_>>()),
         }),
         Err(error) => Err(WriteError::Names { found: error.fault().what.clone() }),
     }

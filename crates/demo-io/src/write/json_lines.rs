@@ -1,10 +1,11 @@
+use std::borrow::Cow;
 use std::io::Write;
 
 use nalgebra::DMatrix;
 use serde::Serialize;
 
 use super::Failure;
-use crate::{Episode, Recordings};
+use motion::{Episode, Recordings, Times};
 
 /// A line an episode, with names, units and labels in each.
 pub(super) fn write(mut file: impl Write, recordings: &Recordings) -> Result<(), Failure> {
@@ -15,7 +16,7 @@ pub(super) fn write(mut file: impl Write, recordings: &Recordings) -> Result<(),
         let line = Line {
             episode: &episode.name,
             dt: step,
-            times: step.is_none().then_some(&episode.times),
+            times: step.is_none().then(|| episode.times.stamps()),
             names: &names,
             unit: units.iter().any(Option::is_some).then_some(&units),
             constraint: episode.constraint.as_deref(),
@@ -34,7 +35,7 @@ struct Line<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     dt: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    times: Option<&'a Vec<f64>>,
+    times: Option<Cow<'a, [f64]>>,
     names: &'a [&'a str],
     #[serde(skip_serializing_if = "Option::is_none")]
     unit: Option<&'a Vec<Option<&'a str>>>,
@@ -50,7 +51,8 @@ fn samples(numbers: &DMatrix<f64>) -> Vec<&[f64]> {
 }
 
 /// The time step of which all stamps are multiples, to the last bit.
-fn even_step(times: &[f64]) -> Option<f64> {
+fn even_step(times: &Times) -> Option<f64> {
+    let times = times.stamps();
     let step = times.get(1).copied().filter(|&step| step > 0.0)?;
     times.iter().enumerate().all(|(sample, &time)| time == sample as f64 * step).then_some(step)
 }

@@ -6,9 +6,9 @@ use std::io::{self, Write};
 
 use self::bag::{Bag, Topic};
 use super::{Failure, has_velocities};
-use crate::Recordings;
-use crate::cdr::Writer;
-use crate::mcap::{METADATA, Noted};
+use crate::rows::cdr::Writer;
+use crate::rows::mcap::{METADATA, Noted};
+use motion::Recordings;
 
 const TOPIC: &str = "/joint_states";
 const TYPE: &str = "sensor_msgs/msg/JointState";
@@ -43,7 +43,7 @@ pub(super) fn write(file: impl Write, recordings: &Recordings) -> Result<(), Fai
     let mut start = START;
     for episode in &recordings.episodes {
         let mut stamp = start;
-        for (sample, time) in episode.times.iter().enumerate() {
+        for (sample, time) in episode.times.stamps().iter().enumerate() {
             stamp = start + (time * 1e9).round() as u64;
             bag.message(stamp, &message(recordings, episode, sample, stamp))?;
         }
@@ -53,7 +53,7 @@ pub(super) fn write(file: impl Write, recordings: &Recordings) -> Result<(), Fai
     Ok(())
 }
 
-fn message(recordings: &Recordings, episode: &crate::Episode, sample: usize, stamp: u64) -> Vec<u8> {
+fn message(recordings: &Recordings, episode: &motion::Episode, sample: usize, stamp: u64) -> Vec<u8> {
     let mut writer = Writer::default();
     writer.i32((stamp / 1_000_000_000) as i32);
     writer.u32((stamp % 1_000_000_000) as u32);

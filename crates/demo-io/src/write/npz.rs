@@ -6,7 +6,7 @@ use rawzip::{CompressionMethod, ZipArchiveWriter, ZipDataWriter};
 
 use super::json_lines::common_step;
 use super::{Failure, has_velocities};
-use crate::{Episode, Recordings};
+use motion::{Episode, Recordings};
 
 /// `state` and `velocity` (M, n), episodes one after another up to `episode_ends`, `time` (M,) or `dt`, and texts
 /// `names`, `units`, `episode_names`, `constraint`.
@@ -29,7 +29,7 @@ pub(super) fn write(file: impl Write, recordings: &Recordings) -> Result<(), Fai
     match common_step(episodes) {
         Some(step) => array("dt", "<f8", &[], &mut |file| floats(file, &[step]))?,
         None => array("time", "<f8", &[total], &mut |file| {
-            episodes.iter().try_for_each(|episode| floats(file, &episode.times))
+            episodes.iter().try_for_each(|episode| floats(file, &episode.times.stamps()))
         })?,
     }
     array("episode_ends", "<i8", &[episodes.len()], &mut |file| {

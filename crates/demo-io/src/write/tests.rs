@@ -5,16 +5,16 @@ fn recordings(names: &[&str]) -> Recordings {
     let n = names.len();
     let numbers =
         |shift: f64| nalgebra::DMatrix::from_fn(n, 5, |row, column| (row as f64 + shift + column as f64 * 0.3).sin());
-    let episode = |number: usize| crate::Episode {
+    let episode = |number: usize| motion::Episode {
         name: format!("take {number}"),
-        source: crate::Source { file: "made".to_owned(), rows: None },
+        source: motion::Source { file: "made".to_owned(), rows: None },
         times: (0..5).map(|sample| f64::from(sample) * 0.1).collect(),
         positions: numbers(number as f64),
         velocities: Some(numbers(number as f64 + 0.5)),
         constraint: (number == 1).then(|| "rail, \"left\"".to_owned()),
     };
-    let channel = |name: &&str| crate::Channel { name: (*name).to_owned(), unit: None };
-    Recordings { state: names.iter().map(channel).collect(), episodes: vec![episode(0), episode(1)], notes: vec![] }
+    let channel = |name: &&str| motion::Channel { name: (*name).to_owned(), unit: None };
+    Recordings { state: names.iter().map(channel).collect(), episodes: vec![episode(0), episode(1)], findings: vec![] }
 }
 
 #[test]

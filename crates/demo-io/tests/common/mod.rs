@@ -9,7 +9,8 @@
 
 use std::path::{Path, PathBuf};
 
-use demo_io::{NoteKind, ReadError, ReadOptions, Recordings, read};
+use demo_io::{ReadError, ReadOptions, read};
+use motion::Recordings;
 use tempfile::TempDir;
 
 /// A folder for files of one test.
@@ -54,9 +55,9 @@ pub fn refused(name: &str, content: impl AsRef<[u8]>, options: &ReadOptions, cod
     }
 }
 
-/// The kinds of what was noticed, in order.
-pub fn kinds(recordings: &Recordings) -> Vec<NoteKind> {
-    recordings.notes.iter().map(|note| note.kind).collect()
+/// What was found while reading, a line each.
+pub fn said(recordings: &Recordings) -> String {
+    recordings.findings.iter().map(|finding| format!("{}: {}\n", finding.what, finding.next)).collect()
 }
 
 /// Names of the state.

@@ -103,7 +103,9 @@ class Demonstrations:
             plain["as"] = plain.pop("format")
         for name in _LISTS & plain.keys():
             plain[name] = [plain[name]] if isinstance(plain[name], str) else [str(entry) for entry in plain[name]]
-        found = cls._of(_native.Recordings.read([os.fspath(path) for path in paths], json.dumps(plain)))
+        trim_still = bool(plain.pop("trim_still", False))
+        native = _native.Recordings.read([os.fspath(path) for path in paths], json.dumps(plain), trim_still)
+        found = cls._of(native)
         for note in found.notes:
             warnings.warn(note, PolicyAlignWarning, stacklevel=2)
         return found
@@ -120,7 +122,7 @@ class Demonstrations:
             else:
                 raise TypeError(f"a DataFrame is needed, not {type(frame).__name__}")
             read = cls.read(path, **options)
-        return cls._of(read._native.with_origin(("[]", read.notes, "the DataFrame")))
+        return cls._of(read._native.with_origin(("[]", read._native.origin[1], "the DataFrame")))
 
     def check(
         self,
@@ -181,7 +183,7 @@ class Demonstrations:
 
     @property
     def notes(self) -> list[str]:
-        """What was noticed while reading."""
+        """What was found while reading."""
         return self._native.notes
 
     def __len__(self) -> int:
@@ -216,7 +218,7 @@ def preparing(
     return {"integration": integration, "scale": factors, "smooth": str(smooth), "jumps": jumps, "wraps": wraps}
 
 
-def _restored(movements: tuple[Any, ...], origin: tuple[str, list[str], str]) -> Demonstrations:
+def _restored(movements: tuple[Any, ...], origin: tuple[str, str, str]) -> Demonstrations:
     positions, velocities, (step, times), *rest = movements
     native = _native.Recordings.of(_aligned(positions), _aligned(velocities), (step, _aligned(times)), *rest)
     return Demonstrations._of(native.with_origin(origin))

@@ -11,7 +11,7 @@ use super::config::Config;
 use super::failure::{Exit, Failure};
 use super::flags::{PrepareFlags, ReadFlags};
 use super::lines::{Lines, counted, short};
-use super::recorded::{named, read};
+use super::recorded::{named, read, unsaid};
 use super::session::{Said, Session};
 
 /// Examine recordings before learning
@@ -40,13 +40,13 @@ impl Check {
         let config = Config::of(session)?;
         let flags = config.under("read", &self.read)?;
         let options = config.under("prepare", &self.prepare)?.options(flags.dt)?;
-        let recordings = read(session, &self.files, &flags.options()?)?;
+        let recordings = read(session, &self.files, &flags)?;
         let prepared = prepare(&recordings, &options).map_err(|error| Failure::prepare(&error, named(&self.files)))?;
         let refused = prepared.findings.iter().any(|finding| finding.verdict == Verdict::DoNotUse);
         let exit = if refused { Exit::Refused } else { Exit::Done };
         let (coverage, direction) = directions(&prepared.demonstrations);
         if let Some(path) = &self.html {
-            let page = check_page(&prepared, &recordings.notes, &named(&self.files), (coverage, &direction));
+            let page = check_page(&prepared, &named(&self.files), (coverage, &direction));
             write_whole(path, page.as_bytes()).map_err(|error| Failure::writing(path, error))?;
         }
         if session.json {
@@ -62,7 +62,7 @@ impl Check {
         about(&prepared, &named(&self.files), &mut lines);
         let seen = if coverage < 0.1 { "one direction hardly occurs" } else { "every direction occurs" };
         lines.add("directions", &format!("coverage {} of 1: {seen}", short(coverage)));
-        findings(&prepared.findings, 10_usize.saturating_sub(lines.count()), &mut lines);
+        findings(&unsaid(&prepared.findings, &recordings), 10_usize.saturating_sub(lines.count()), &mut lines);
         if let Some(path) = &self.html {
             lines.add("written", &path.display().to_string());
         }

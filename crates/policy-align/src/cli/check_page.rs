@@ -1,6 +1,5 @@
 //! The page that says what can be said before learning.
 
-use demo_io::Note;
 use maud::{Markup, html};
 use nalgebra::DVector;
 use page::{Card, Document, Part};
@@ -17,10 +16,9 @@ const MARGIN: f64 = 0.06;
 const DRAWN: usize = 200;
 
 /// The page of recordings. `seen`: how evenly directions are seen, and the one seen least.
-pub(crate) fn check_page(prepared: &Prepared, notes: &[Note], name: &str, seen: (f64, &DVector<f64>)) -> String {
+pub(crate) fn check_page(prepared: &Prepared, name: &str, seen: (f64, &DVector<f64>)) -> String {
     let title = format!("What was recorded in {name}");
-    let opening =
-        Part { id: "recorded".to_owned(), title: "Recorded".to_owned(), body: opening(prepared, notes, &title) };
+    let opening = Part { id: "recorded".to_owned(), title: "Recorded".to_owned(), body: opening(prepared, &title) };
     let mut parts = Vec::new();
     if prepared.state.len() >= 2 {
         parts.push(part("movements", "Movements", &movements(prepared)));
@@ -32,7 +30,7 @@ pub(crate) fn check_page(prepared: &Prepared, notes: &[Note], name: &str, seen: 
     Document { title: &title, name, opening, parts, style: STYLE }.html()
 }
 
-fn opening(prepared: &Prepared, notes: &[Note], title: &str) -> Markup {
+fn opening(prepared: &Prepared, title: &str) -> Markup {
     let worst = prepared.findings.iter().map(|finding| finding.verdict).max().unwrap_or(Verdict::Good);
     let (class, words) = match worst {
         Verdict::Good => ("conclusion", "All checks passed: these recordings can be learnt from."),
@@ -46,11 +44,8 @@ fn opening(prepared: &Prepared, notes: &[Note], title: &str) -> Markup {
     html! {
         h1 #recorded { (title) }
         p class=(class) { (words) }
-        @if !findings.is_empty() || !notes.is_empty() {
-            ul .findings {
-                @for finding in findings { (found(finding)) }
-                @for note in notes { li { b { "While reading: " } (note.text) "." } }
-            }
+        @if !findings.is_empty() {
+            ul .findings { @for finding in findings { (found(finding)) } }
         }
         p { (counted(prepared.demonstrations.n_trajectories(), "episode")) " with "
             (counted(prepared.demonstrations.n_samples(), "sample")) " of "

@@ -36,9 +36,9 @@ pub(crate) struct Convert {
 impl Convert {
     pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
         let reading = Config::of(session)?.under("read", &self.read)?;
-        let mut recordings = read(session, &self.files, &reading.options()?)?;
+        let mut recordings = read(session, &self.files, &reading)?;
         if let Some(rate) = self.resample {
-            recordings = recordings.resampled(rate).map_err(|error| {
+            recordings = demo_io::resampled(&recordings, rate).map_err(|error| {
                 let text = error.to_string();
                 let (what, remedy) = text.split_once("; ").unwrap_or((&text, "another rate"));
                 Failure::usage(what, format!("--resample {rate}"), remedy)

@@ -73,7 +73,7 @@ impl Evaluate {
             );
             return Err(Failure::usage(what, named(&self.files), format!("--state {}", names(&model.state).join(","))));
         }
-        let truth = self.truth(session, &reading, &model)?;
+        let truth = self.truth(session, &reading, &prepared, &model)?;
         let judged = evaluate(model.learnt.policy(), &prepared, truth.as_ref()).map_err(|error| {
             let remedy = "recordings without left-out samples, and a column of the true policy for each channel";
             Failure::new(Exit::Refused, error.to_string(), named(&self.files), remedy)
@@ -142,24 +142,31 @@ impl Evaluate {
     }
 
     fn prepared(&self, session: &Session, reading: &ReadFlags, options: &PrepareOptions) -> Result<Prepared, Failure> {
-        let recordings = read(session, &self.files, &reading.options()?)?;
+        let recordings = read(session, &self.files, reading)?;
         prepare(&recordings, options).map_err(|error| Failure::prepare(&error, named(&self.files)))
     }
 
     /// The columns of the true policy, read as if they were the state.
-    fn truth(&self, session: &Session, reading: &ReadFlags, model: &Model) -> Result<Option<Truth>, Failure> {
+    fn truth(
+        &self,
+        session: &Session,
+        reading: &ReadFlags,
+        prepared: &Prepared,
+        model: &Model,
+    ) -> Result<Option<Truth>, Failure> {
         if self.truth.is_empty() {
             return Ok(None);
         }
-        let mut options = reading.options()?;
-        options.state.clone_from(&self.truth);
-        options.velocity = vec![];
+        let mut columns = reading.clone();
+        columns.state.clone_from(&self.truth);
+        columns.velocity.clear();
         let quiet = Session { quiet: true, ..session.clone() };
-        let recordings = read(&quiet, &self.files, &options)?;
+        let recordings = read(&quiet, &self.files, &columns)?;
         let scale = DVector::from_iterator(model.state.len(), model.state.iter().map(|channel| channel.scale));
         let columns: Vec<DVector<f64>> = recordings
             .episodes
             .iter()
+            .filter(|episode| prepared.left_out.iter().all(|left_out| left_out.episode != episode.name))
             .flat_map(|episode| episode.positions.column_iter().map(nalgebra::Matrix::into_owned).collect::<Vec<_>>())
             .collect();
         if recordings.state.len() != scale.len() {

@@ -2,8 +2,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use clap::Args;
-use demo_io::Recordings;
-use policy_align::{Evaluation, MadeBy, Model, Prepared, Progress, Verdict, evaluate, fit, prepare, write_whole};
+use motion::Recordings;
+use policy_align::{Evaluation, Finding, Model, Prepared, Progress, Verdict, evaluate, fit, prepare, write_whole};
 use serde_json::json;
 
 use super::check::findings;
@@ -12,7 +12,7 @@ use super::config::{Config, printed};
 use super::failure::{Exit, Failure};
 use super::flags::{FitFlags, PrepareFlags, ReadFlags};
 use super::lines::{Lines, counted, size, squared_error};
-use super::recorded::{base_name, named, read, summaries};
+use super::recorded::{base_name, named, read, summaries, unsaid};
 use super::session::{Said, Session};
 use super::trust_page::trust_page;
 
@@ -56,7 +56,7 @@ impl Fit {
         }
         let (prepare_options, fit_options) = (preparing.options(reading.dt)?, learning.options()?);
         let place = || named(&self.files);
-        let recordings = read(session, &self.files, &reading.options()?)?;
+        let recordings = read(session, &self.files, &reading)?;
         let (recordings, held_out) = divided(recordings, &learning.hold_out, &place())?;
         let prepared = prepare(&recordings, &prepare_options).map_err(|error| Failure::prepare(&error, place()))?;
         let bar = session.bar(4, "{msg}  {bar:30} step {pos} of {len}, {elapsed} elapsed");
@@ -66,11 +66,11 @@ impl Fit {
             bar.set_position(step.done as u64);
             bar.set_message(step.what);
         };
-        let learnt = fit(&prepared, &fit_options, &mut Progress { cancelled: &never, report: &mut report });
+        let model = fit(&prepared, &fit_options, &mut Progress { cancelled: &never, report: &mut report });
         bar.finish_and_clear();
-        let learnt = learnt.map_err(|error| Failure::fit(&error, place()))?;
-        let program = concat!("policy-align ", env!("CARGO_PKG_VERSION")).to_owned();
-        let model = learnt.into_model(MadeBy { program, time: now() }, summaries(&self.files)?);
+        let mut model = model.map_err(|error| Failure::fit(&error, place()))?;
+        model.made_by.time = now();
+        model.data.files = summaries(&self.files)?;
         let judged = held_out.map(|held_out| judged(&held_out, &prepare_options, &model)).transpose()?;
         model.save(&self.output).map_err(|error| match error {
             policy_align::ModelError::File(reason) => Failure::writing(&self.output, reason),
@@ -82,7 +82,8 @@ impl Fit {
             ),
         })?;
         let written = self.reported(&model, &prepared)?;
-        Ok(self.said(session, &model, &written, judged.as_ref()))
+        let unsaid = unsaid(&model.trust.findings, &recordings);
+        Ok(self.said(session, (&model, &unsaid), &written, judged.as_ref()))
     }
 
     /// Writes the page and its numbers.
@@ -99,7 +100,13 @@ impl Fit {
         Ok(vec![page, numbers])
     }
 
-    fn said(&self, session: &Session, model: &Model, written: &[PathBuf], held_out: Option<&Evaluation>) -> Said {
+    fn said(
+        &self,
+        session: &Session,
+        (model, unsaid): (&Model, &[Finding]),
+        written: &[PathBuf],
+        held_out: Option<&Evaluation>,
+    ) -> Said {
         let exit = if model.trust.verdict == Verdict::DoNotUse { Exit::Refused } else { Exit::Done };
         if session.json {
             let files: Vec<String> =
@@ -141,7 +148,7 @@ impl Fit {
             );
         }
         lines.add("trust", verdict(model));
-        findings(&model.trust.findings, 3, &mut lines);
+        findings(unsaid, 3, &mut lines);
         let bytes = std::fs::metadata(&self.output).map_or(0, |found| found.len() as usize);
         let beside = written.iter().map(|path| format!(", {}", path.display())).collect::<Vec<_>>().concat();
         lines.add("written", &format!("{} ({}){beside}", self.output.display(), size(bytes)));
@@ -185,8 +192,8 @@ fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Rec
         }
     }
     let (held, kept) = recordings.episodes.into_iter().partition(|episode| names.contains(&episode.name));
-    let of = |episodes| Recordings { state: recordings.state.clone(), episodes, notes: vec![] };
-    Ok((of(kept), Some(of(held))))
+    let of = |episodes, findings| Recordings { state: recordings.state.clone(), episodes, findings };
+    Ok((of(kept, recordings.findings), Some(of(held, vec![]))))
 }
 
 fn judged(held_out: &Recordings, options: &policy_align::PrepareOptions, model: &Model) -> Result<Evaluation, Failure> {

@@ -40,7 +40,7 @@ pub(crate) struct ReadFlags {
     /// Velocity columns, in the order of the state
     #[arg(long, value_name = "PATTERNS")]
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    velocity: Vec<String>,
+    pub(crate) velocity: Vec<String>,
     /// Time column
     #[arg(long, value_name = "COLUMN")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -88,7 +88,7 @@ pub(crate) struct ReadFlags {
     /// Remove samples at rest at either end
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
-    trim_still: bool,
+    pub(crate) trim_still: bool,
     /// A named subset of episodes (robomimic)
     #[arg(long, value_name = "NAME")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -191,7 +191,9 @@ impl ReadFlags {
     /// Flags have the names of the options, and of a configuration file.
     pub(crate) fn options(&self) -> Result<ReadOptions, Failure> {
         let wrong = |error: &dyn std::fmt::Display| Failure::usage(error.to_string(), "flags for reading", "--help");
-        let table = toml::Table::try_from(self).map_err(|error| wrong(&error))?;
+        let mut table = toml::Table::try_from(self).map_err(|error| wrong(&error))?;
+        // What was read is trimmed afterwards.
+        table.remove("trim_still");
         table.try_into().map_err(|error: toml::de::Error| wrong(&error.message()))
     }
 }

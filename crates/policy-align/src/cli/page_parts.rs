@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 use page::Part;
-use policy_align::{Decision, Finding, LeftOutEpisode, StateChannel, Verdict};
+use policy_align::{Decision, Finding, LeftOut, StateChannel, Verdict};
 
 use super::lines::{list, short};
 
@@ -93,7 +93,7 @@ pub(crate) fn channels(state: &[StateChannel]) -> Markup {
 }
 
 /// Episodes that are not learnt from.
-pub(crate) fn left_out(episodes: &[LeftOutEpisode]) -> Markup {
+pub(crate) fn left_out(episodes: &[LeftOut]) -> Markup {
     let listed: Vec<String> = episodes.iter().map(|left| format!("{} ({})", left.episode, left.why)).collect();
     html! { @if !listed.is_empty() { p { "Left out: " (listed.join(", ")) "." } } }
 }

@@ -56,7 +56,7 @@ impl Plot {
         let shown = if self.files.is_empty() {
             vec![]
         } else {
-            let recordings = read(session, &self.files, &reading.options()?)?;
+            let recordings = read(session, &self.files, &reading)?;
             recordings.episodes.into_iter().map(|episode| episode.positions).collect()
         };
         let flags = config.under("rollout", &self.follow)?;

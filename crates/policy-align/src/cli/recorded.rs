@@ -1,43 +1,44 @@
 //! Recordings of the files that a command names.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use demo_io::{Note, NoteKind, ReadOptions, Recordings};
+use motion::{Finding, Recordings};
 use policy_align::FileSummary;
 
 use super::failure::{Failure, shown};
+use super::flags::ReadFlags;
 use super::lines::counted;
 use super::session::Session;
 
-/// Warnings of a kind that are shown: a recorder that repeats itself would fill the screen.
-const SHOWN: usize = 3;
+/// Warnings that are printed: a recorder that repeats itself would fill the screen.
+const SHOWN: usize = 6;
 
-/// Reads them, with a bar if it takes long; says what was noticed.
-pub(crate) fn read(session: &Session, files: &[PathBuf], options: &ReadOptions) -> Result<Recordings, Failure> {
+/// Reads them, with a bar if it takes long; says what was found meanwhile.
+pub(crate) fn read(session: &Session, files: &[PathBuf], flags: &ReadFlags) -> Result<Recordings, Failure> {
     let bytes = files.iter().filter_map(|file| std::fs::metadata(file).ok()).map(|found| found.len()).sum();
     let bar = session.bar(bytes, "reading  {bar:30} {bytes} of {total_bytes}, {eta} left");
-    let recordings = demo_io::read_all(files, options, &mut |read| bar.inc(read));
+    let recordings = demo_io::read_all(files, &flags.options()?, &mut |read| bar.inc(read));
     bar.finish_and_clear();
-    let recordings = recordings?;
-    warn(session, &recordings.notes);
+    let mut recordings = recordings?;
+    warn(session, &recordings.findings);
+    if flags.trim_still {
+        prepare::trim_still(&mut recordings);
+    }
     Ok(recordings)
 }
 
-/// Says what was noticed, kind by kind.
-fn warn(session: &Session, notes: &[Note]) {
-    let mut by_kind: BTreeMap<NoteKind, Vec<&Note>> = BTreeMap::new();
-    for note in notes {
-        by_kind.entry(note.kind).or_default().push(note);
+fn warn(session: &Session, findings: &[Finding]) {
+    for finding in findings.iter().take(SHOWN) {
+        session.warn(&format!("{}: {}", finding.what, finding.next));
     }
-    for notes in by_kind.values() {
-        for note in notes.iter().take(SHOWN) {
-            session.warn(&note.text);
-        }
-        if notes.len() > SHOWN {
-            session.warn(&format!("and {} more of this kind: check --html lists all", notes.len() - SHOWN));
-        }
+    if findings.len() > SHOWN {
+        session.warn(&format!("and {} more: check --json lists all", findings.len() - SHOWN));
     }
+}
+
+/// Findings other than those that reading has said already.
+pub(crate) fn unsaid(findings: &[Finding], recordings: &Recordings) -> Vec<Finding> {
+    findings.iter().filter(|finding| !recordings.findings.contains(finding)).cloned().collect()
 }
 
 /// Names and checksums, for the model.

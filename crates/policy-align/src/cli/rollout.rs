@@ -1,7 +1,8 @@
 use std::path::{self, PathBuf};
 
 use clap::Args;
-use demo_io::{Channel, Episode, Recordings, Source, WriteError};
+use demo_io::WriteError;
+use motion::{Channel, Episode, Recordings, Source, Times};
 use nalgebra::DVector;
 use policy_align::{Model, Path, RollOutError, Stop, write_whole};
 use serde_json::json;
@@ -144,7 +145,7 @@ pub(crate) fn write_paths(output: &path::Path, model: &Model, paths: &[Path]) ->
     let episode = |(at, followed): (usize, &Path)| Episode {
         name: at.to_string(),
         source: Source { file: file.clone(), rows: None },
-        times: followed.times.clone(),
+        times: Times::Stamped(followed.times.clone()),
         positions: followed.states.clone(),
         velocities: Some(followed.velocities.clone()),
         constraint: None,
@@ -152,7 +153,7 @@ pub(crate) fn write_paths(output: &path::Path, model: &Model, paths: &[Path]) ->
     let recordings = Recordings {
         state: model.state.iter().map(channel).collect(),
         episodes: paths.iter().enumerate().map(episode).collect(),
-        notes: vec![],
+        findings: vec![],
     };
     demo_io::write(output, &recordings).map_err(|error| unwritten(output, error))
 }

@@ -15,7 +15,7 @@ use smoothing::SavitzkyGolay;
 use super::options::FitOptions;
 use super::progress::Progress;
 use super::recorded_rows::averaged;
-use crate::{Decision, FitError, Prepared, Recorded, Smoothing};
+use crate::{Decision, FitError, Prepared, Smoothing, VelocitySource};
 
 /// Positions alone are smoothed if noise makes more than this share of the squared steps.
 const NOISY: f64 = 0.1;
@@ -102,19 +102,21 @@ impl Tried {
 fn integrable(prepared: &Prepared) -> Result<(Demonstrations, Integration, &'static str), FitError> {
     let averaged = averaged(prepared)?;
     let smooth = || SavitzkyGolay::default().smooth(&averaged);
-    Ok(match prepared.recorded {
-        Recorded::PositionsAsRequested => (averaged, Integration::Displacement, "positions smoothed as requested"),
-        Recorded::NoisyVelocities(_) if prepared.smoothing != Smoothing::Auto => {
+    Ok(match prepared.velocities {
+        VelocitySource::PositionsAsRequested => {
+            (averaged, Integration::Displacement, "positions smoothed as requested")
+        }
+        VelocitySource::Noisy(_) if prepared.smoothing != Smoothing::Auto => {
             (averaged, Integration::Velocity, "recorded; positions smoothed as requested")
         }
-        Recorded::Velocities => (averaged, Integration::Velocity, "recorded; they agree with the steps"),
-        Recorded::FusedVelocities | Recorded::NoisyVelocities(_) => {
+        VelocitySource::Recorded => (averaged, Integration::Velocity, "recorded; they agree with the steps"),
+        VelocitySource::Fused | VelocitySource::Noisy(_) => {
             (smooth()?, Integration::Velocity, "recorded; positions smoothed (9 samples, degree 2)")
         }
-        Recorded::Positions if prepared.noise.step_share > NOISY => {
+        VelocitySource::Positions if prepared.noise.step_share > NOISY => {
             (smooth()?, Integration::Displacement, "positions smoothed (9 samples, degree 2), then differences")
         }
-        Recorded::Positions => (averaged, Integration::Displacement, "positions are exact enough"),
+        VelocitySource::Positions => (averaged, Integration::Displacement, "positions are exact enough"),
     })
 }
 

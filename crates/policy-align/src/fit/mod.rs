@@ -13,52 +13,24 @@ pub use progress::{Progress, Step};
 pub(crate) use recorded_rows::rows;
 
 use gp::{BothReadings, DirectGp, FrontEnd, Reading, ReadingLearner, SlopeGp, TrajectoryErrors};
-use motion::{LearntPolicy, Policy};
+use motion::{LearntPolicy, Policy, upper_median};
 use prepare::in_words::squared_error;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::trust::{AlignedNumbers, Evidence, TrustNumbers, judge, share_leaving, share_unknown};
-use crate::{
-    DataSummary, Decision, FileSummary, FitError, Learnt, LeftOutEpisode, MadeBy, Model, Prepared, StateChannel, Trust,
-};
+use crate::{DataSummary, Decision, FitError, Learnt, MadeBy, Model, Prepared};
 use aligning::AlignedFit;
 
 /// Rows that amplitudes are chosen on, as a share of those learnt from.
 const HYPER_SHARE: f64 = 0.5;
 
-/// A policy with its decisions and its verdict.
-#[derive(Debug, Clone)]
-pub struct Fit {
-    /// The policy, of states times the channels' scales.
-    pub learnt: Learnt,
-    /// All automatic decisions, in order.
-    pub decisions: Vec<Decision>,
-    /// How far to trust it.
-    pub trust: Trust,
-    /// Dimensions of the state, n of them.
-    pub state: Vec<StateChannel>,
-    /// Seconds.
-    pub time_step: f64,
-    /// Episodes learnt from.
-    pub episodes: usize,
-    /// Samples learnt from.
-    pub samples: usize,
-    /// Duration of the longest episode, in seconds.
-    pub longest: f64,
-    /// Median speed of the movements, in scaled units of the state per second.
-    pub speed: f64,
-    /// Episodes not learnt from.
-    pub left_out: Vec<LeftOutEpisode>,
-    /// Of every random choice.
-    pub seed: u64,
-}
-
-/// Learns a policy. The same seed gives the same bits at any number of threads.
+/// Learns a policy. The same seed gives the same bits at any number of threads. The model names neither files nor the time,
+/// which only the caller knows.
 ///
 /// # Errors
 /// [`FitError`]: options out of range, too few movements for the learner, or [`FitError::Cancelled`].
-pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_>) -> Result<Fit, FitError> {
+pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_>) -> Result<Model, FitError> {
     options.check()?;
     let steps = if options.learner == LearnerChoice::PolicyAlign { 4 } else { 2 };
     progress.begin(0, steps, "cleaning the recordings")?;
@@ -77,7 +49,6 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
     let numbers = numbers(prepared, options, &readings, aligned.as_ref(), &rows);
     let trust =
         judge(Evidence { numbers, findings: &prepared.findings, state: &prepared.state, episodes: &prepared.episodes });
-    let left_out = prepared.left_out.clone();
     let learnt = match (options.learner, aligned) {
         (_, Some(aligned)) => {
             decisions.extend(aligned.decisions);
@@ -87,44 +58,17 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
         (LearnerChoice::Direct, _) => Learnt::Direct(Box::new(readings.direct().clone())),
         _ => Learnt::Auto(Box::new(readings)),
     };
-    Ok(Fit {
-        learnt,
-        decisions,
-        trust,
-        state: prepared.state.clone(),
-        time_step: prepared.time_step,
-        episodes: prepared.demonstrations.n_trajectories(),
+    let movements = prepared.demonstrations.trajectories();
+    let data = DataSummary {
+        files: vec![],
+        episodes: movements.len(),
         samples: prepared.demonstrations.n_samples(),
-        longest: longest(prepared),
-        speed: median_speed(&rows),
-        left_out,
-        seed: options.seed,
-    })
-}
-
-impl Fit {
-    /// As it is stored.
-    pub fn into_model(self, made_by: MadeBy, files: Vec<FileSummary>) -> Model {
-        let Fit { learnt, decisions, trust, state, time_step, episodes, samples, longest, speed, left_out, seed } =
-            self;
-        let data = DataSummary { files, episodes, samples, longest, speed, left_out };
-        Model { made_by, state, time_step, data, decisions, seed, trust, learnt }
-    }
-}
-
-/// Duration of the longest episode, in seconds.
-fn longest(prepared: &Prepared) -> f64 {
-    let duration = |movement: &motion::Trajectory| match movement.times() {
-        Some(times) => times[times.len() - 1] - times[0],
-        None => movement.time_step() * (movement.n_samples() - 1) as f64,
+        longest: movements.iter().map(|movement| movement.seconds(0, movement.n_samples() - 1)).fold(0.0, f64::max),
+        speed: upper_median(rows.velocities().column_iter().map(|velocity| velocity.norm()).collect()).unwrap_or(0.0),
+        left_out: prepared.left_out.clone(),
     };
-    prepared.demonstrations.trajectories().iter().map(duration).fold(0.0, f64::max)
-}
-
-fn median_speed(rows: &gp::Rows) -> f64 {
-    let mut speeds: Vec<f64> = rows.velocities().column_iter().map(|velocity| velocity.norm()).collect();
-    speeds.sort_by(f64::total_cmp);
-    speeds.get(speeds.len() / 2).copied().unwrap_or(0.0)
+    let (state, time_step) = (prepared.state.clone(), prepared.time_step);
+    Ok(Model { made_by: MadeBy::this(), state, time_step, data, decisions, seed: options.seed, trust, learnt })
 }
 
 fn readings(rows: &gp::Rows, options: &FitOptions) -> Result<BothReadings, FitError> {

@@ -1,23 +1,34 @@
-use gp::{GpError, Rows};
+use gp::{FrontEnd, GpError, Rows};
 use motion::{Demonstrations, MotionError};
 use prepare::{thinned, with_slopes};
 
-use crate::{Prepared, Recorded};
+use crate::{Prepared, VelocitySource};
 
 /// The rows that the Gaussian processes learn from.
 pub(crate) fn rows(prepared: &Prepared) -> Result<Rows, GpError> {
     let demonstrations = averaged(prepared)?;
-    let demonstrations = match prepared.recorded {
-        Recorded::PositionsAsRequested => with_slopes(&demonstrations).map_err(|error| cleaning(&error))?,
+    let demonstrations = match prepared.velocities {
+        VelocitySource::PositionsAsRequested => with_slopes(&demonstrations).map_err(|error| cleaning(&error))?,
         _ => demonstrations,
     };
-    let rows = prepared.recorded.front_end().rows(&demonstrations)?;
-    match prepared.recorded {
-        Recorded::NoisyVelocities(variance) => {
+    let rows = front_end(prepared.velocities).rows(&demonstrations)?;
+    match prepared.velocities {
+        VelocitySource::Noisy(variance) => {
             let count = rows.len();
             rows.with_variances(vec![variance; count])
         }
         _ => Ok(rows),
+    }
+}
+
+/// The front end that makes rows of a Gaussian process from what was recorded.
+fn front_end(velocities: VelocitySource) -> FrontEnd {
+    match velocities {
+        VelocitySource::Recorded | VelocitySource::Noisy(_) | VelocitySource::PositionsAsRequested => {
+            FrontEnd::Velocities
+        }
+        VelocitySource::Fused => FrontEnd::Fused(smoothing::Fusion::default()),
+        VelocitySource::Positions => FrontEnd::Smoothed(smoothing::Smoother::default()),
     }
 }
 

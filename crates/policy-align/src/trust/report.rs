@@ -1,4 +1,4 @@
-use prepare::{Finding, Verdict};
+use motion::{Finding, Verdict};
 use serde::{Deserialize, Serialize};
 
 use super::numbers::TrustNumbers;

@@ -3,7 +3,7 @@
 use constraints::{LinearConstraint, PfaffianConstraint, Switching, Unconstrained};
 use demo_gen::beyond::{BeyondSystem, Hindrance, Shown};
 use demo_gen::{Parabola, Recording, RollOut, Sinusoidal, ThreeLinkArm, with_position_noise};
-use demo_io::{Channel, Episode, Recordings, Source};
+use motion::{Channel, Episode, Recordings, Source};
 use motion::{LearntPolicy, Policy, Potential};
 use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut, dvector};
 use rand::{RngExt, SeedableRng};
@@ -57,7 +57,7 @@ impl Case {
             recordings: Recordings {
                 state: (0..dim).map(|axis| Channel { name: name(axis), unit: None }).collect(),
                 episodes: recordings[..count].iter().enumerate().map(episode).collect(),
-                notes: Vec::new(),
+                findings: Vec::new(),
             },
             states: columns(&|recording| recording.truth.states.clone()),
             actions: columns(&|recording| recording.truth.actions.clone()),
@@ -267,7 +267,7 @@ pub(crate) fn all() -> Vec<Named> {
         }),
         case("1 % noise at 50 Hz, velocities by differences", move |s| {
             Case::of(&noisy(&fast(50.0, s), 0.01, s), 30, Velocities).each(|episode| {
-                let (dt, n) = (episode.times[1], episode.times.len());
+                let (dt, n) = (episode.times.seconds(0, 1), episode.times.len());
                 let x = episode.positions.clone();
                 episode.velocities = Some(DMatrix::from_fn(2, n, |axis, i| {
                     let i = i.min(n - 2);
@@ -300,12 +300,13 @@ pub(crate) fn all() -> Vec<Named> {
         case("one dimension times 5", move |s| Case::of(&of_sinusoid(40, s), 40, Velocities).in_units(&[1.0, 5.0])),
         case("stamps in milliseconds, positions only", move |s| {
             let mut case = Case::of(&fast(20.0, s), 30, Positions)
-                .each(|episode| episode.times.iter_mut().for_each(|t| *t *= 1000.0));
+                .each(|episode| episode.times.stamps_mut().iter_mut().for_each(|t| *t *= 1000.0));
             case.seconds = 1000.0;
             case
         }),
         case("stamps in milliseconds", move |s| {
-            Case::of(&fast(20.0, s), 30, Velocities).each(|episode| episode.times.iter_mut().for_each(|t| *t *= 1000.0))
+            Case::of(&fast(20.0, s), 30, Velocities)
+                .each(|episode| episode.times.stamps_mut().iter_mut().for_each(|t| *t *= 1000.0))
         }),
         case("velocities in mm/s", move |s| {
             Case::of(&of_sinusoid(40, s), 40, Velocities).each(|e| e.velocities.iter_mut().for_each(|u| *u *= 1000.0))
@@ -330,7 +331,7 @@ pub(crate) fn all() -> Vec<Named> {
             let case = Case::of(&of_parabola(40, s), 40, Velocities).each(|e| {
                 e.positions = e.positions.transpose();
                 e.velocities = None;
-                e.times.truncate(2);
+                e.times.stamps_mut().truncate(2);
             });
             let mut recordings = case.recordings.clone();
             recordings.state = (0..40).map(|i| Channel { name: format!("c{i}"), unit: None }).collect();
@@ -372,7 +373,7 @@ pub(crate) fn all() -> Vec<Named> {
         case("five samples missing, stamps closed up", move |s| {
             Case::of(&of_sinusoid(40, s), 40, Positions).each(|e| {
                 e.positions = e.positions.clone().remove_columns(10, 5);
-                e.times.truncate(35);
+                e.times.stamps_mut().truncate(35);
             })
         }),
         case("uneven stamps", move |s| {
@@ -382,7 +383,7 @@ pub(crate) fn all() -> Vec<Named> {
             Case::of(&fine, 40, Positions).each(move |e| {
                 let at: Vec<usize> = (0..40).map(|i| 50 * i + rng.random_range(0..25)).collect();
                 e.positions = e.positions.select_columns(&at);
-                e.times = at.iter().map(|&i| e.times[i] - e.times[at[0]]).collect();
+                e.times = at.iter().map(|&i| e.times.seconds(at[0], i)).collect();
             })
         }),
         case("standing ends", move |s| {

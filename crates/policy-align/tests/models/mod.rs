@@ -9,8 +9,8 @@ use gp::{DirectGp, FrontEnd, ReadingLearner, Rows, SlopeGp};
 use motion::Demonstrations;
 use nalgebra::{DMatrix, DVector};
 use policy_align::{
-    DataSummary, Decision, FileSummary, Finding, Learnt, LeftOutEpisode, MadeBy, Model, StateChannel, Trust,
-    TrustNumbers, Verdict,
+    DataSummary, Decision, FileSummary, Finding, Learnt, LeftOut, MadeBy, Model, StateChannel, Trust, TrustNumbers,
+    Verdict,
 };
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -115,7 +115,7 @@ pub(crate) fn model(learnt: Learnt, demonstrations: &Demonstrations) -> Model {
             samples: demonstrations.n_samples(),
             longest: 39.0,
             speed: speeds[speeds.len() / 2],
-            left_out: vec![LeftOutEpisode { episode: "17".to_owned(), why: "not connected".to_owned() }],
+            left_out: vec![LeftOut { episode: "17".to_owned(), why: "not connected".to_owned() }],
         },
         decisions: vec![Decision {
             what: "integration".to_owned(),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use super::record::{Out, Record};
-use crate::mcap::format::{MAGIC, opcode};
+use crate::rows::mcap::format::{MAGIC, opcode};
 
 /// A chunk is closed when its messages have so many bytes.
 const CHUNK: usize = 768 << 10;

@@ -1,0 +1,264 @@
+//! Which array is what, from names alone: for files whose arrays have names rather than columns.
+
+use crate::arrays::array::Described;
+use crate::raw::MOST_CHANNELS;
+use crate::rows::roles::{is_time, no_column, shortened, velocity_names};
+use crate::selection::{flags, glob, select};
+use crate::{Fault, ReadError, ReadOptions};
+
+/// Indices of arrays by role.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct Fields {
+    /// Several are joined, channel after channel.
+    pub(crate) state: Vec<usize>,
+    pub(crate) velocity: Vec<usize>,
+    pub(crate) time: Option<usize>,
+    /// A time step.
+    pub(crate) step: Option<usize>,
+    /// Samples per second.
+    pub(crate) rate: Option<usize>,
+    /// A label per sample.
+    pub(crate) episode: Option<usize>,
+    /// Where episodes end.
+    pub(crate) ends: Option<usize>,
+    pub(crate) constraint: Option<usize>,
+    pub(crate) names: Option<usize>,
+    pub(crate) units: Option<usize>,
+    pub(crate) episode_names: Option<usize>,
+}
+
+/// Best first.
+const STATES: [&str; 22] = [
+    "state",
+    "states",
+    "x",
+    "xs",
+    "q",
+    "qs",
+    "pos",
+    "position",
+    "positions",
+    "joint_pos",
+    "joint_positions",
+    "obs",
+    "observation",
+    "observations",
+    "observation.state",
+    "demo",
+    "demos",
+    "trajectories",
+    "trajectory",
+    "traj",
+    "data",
+    "y",
+];
+const VELOCITIES: [&str; 16] = [
+    "velocity",
+    "velocities",
+    "v",
+    "vs",
+    "vel",
+    "vels",
+    "xdot",
+    "xd",
+    "dx",
+    "x_dot",
+    "qdot",
+    "dq",
+    "qd",
+    "joint_vel",
+    "joint_velocities",
+    "qvel",
+];
+const NEVER: [&str; 12] = [
+    "action*",
+    "act",
+    "acts",
+    "*reward*",
+    "*done*",
+    "*terminal*",
+    "*effort*",
+    "*torque*",
+    "*current*",
+    "*temperature*",
+    "*image*",
+    "*rgb*",
+];
+
+/// Assigns arrays, of which all belong to one movement or to one set of movements.
+pub(crate) fn assign(described: &[Described], options: &ReadOptions, place: &str) -> Result<Fields, ReadError> {
+    let names: Vec<&str> = described.iter().map(|array| &array.name[..]).collect();
+    let ignored = flags(&options.ignore, &names);
+    let called = |known: &[&str]| {
+        let fits = |&index: &usize| !ignored[index] && known.contains(&&names[index].to_lowercase()[..]);
+        (0..names.len()).find(fits)
+    };
+    let asked = |pattern: Option<&String>| match pattern {
+        Some(pattern) => select(std::slice::from_ref(pattern), &names)
+            .map(|found| found.first().copied())
+            .map_err(|pattern| no_column(&pattern, &names, place)),
+        None => Ok(None),
+    };
+    let select = |patterns: &[String]| select(patterns, &names).map_err(|pattern| no_column(&pattern, &names, place));
+    let mut fields = Fields {
+        state: select(&options.state)?,
+        velocity: select(&options.velocity)?,
+        time: asked(options.time.as_ref())?,
+        step: called(&["dt", "time_step", "timestep", "sample_time", "sampling_time", "period"]),
+        rate: called(&["fps", "hz", "rate", "frequency", "freq", "control_freq"]),
+        episode: asked(options.episode.as_ref())?,
+        ends: called(&["episode_ends"]),
+        constraint: match asked(options.constraint_column.as_ref())? {
+            None => called(&["constraint", "constraints", "condition", "conditions"]),
+            asked => asked,
+        },
+        names: called(&["names", "columns", "channels", "state_names", "joint_names"]),
+        units: called(&["units", "unit"]),
+        episode_names: called(&["episode_names"]),
+    };
+    fields.time = fields.time.or_else(|| {
+        let fits = |&index: &usize| !ignored[index] && is_time(names[index]);
+        (0..names.len()).find(fits)
+    });
+    fields.episode = fields.episode.or_else(|| {
+        let known = [
+            "episode",
+            "episodes",
+            "episode_index",
+            "episode_id",
+            "episode_ids",
+            "ep",
+            "demo_id",
+            "traj_id",
+            "trial",
+            "run",
+            "take",
+        ];
+        called(&known).filter(|index| !fields.state.contains(index))
+    });
+    if fields.state.is_empty() {
+        fields.state = guess_state(described, &fields, &ignored, place)?;
+    }
+    for &index in &fields.state {
+        refuse_other_kinds(&described[index], place)?;
+    }
+    if fields.velocity.is_empty() {
+        fields.velocity = fields.guess_velocities(&names, &ignored);
+    }
+    for &index in &fields.velocity {
+        refuse_other_kinds(&described[index], place)?;
+    }
+    Ok(fields)
+}
+
+impl Fields {
+    fn has_role(&self, index: usize) -> bool {
+        let single = [
+            self.time,
+            self.step,
+            self.rate,
+            self.episode,
+            self.ends,
+            self.constraint,
+            self.names,
+            self.units,
+            self.episode_names,
+        ];
+        single.contains(&Some(index)) || self.velocity.contains(&index)
+    }
+
+    pub(crate) fn uses(&self, index: usize) -> bool {
+        self.has_role(index) || self.state.contains(&index)
+    }
+
+    /// The velocity of every array of the state, or none.
+    fn guess_velocities(&self, names: &[&str], ignored: &[bool]) -> Vec<usize> {
+        let free = |name: &str| {
+            (0..names.len())
+                .find(|&index| !ignored[index] && !self.uses(index) && names[index].eq_ignore_ascii_case(name))
+        };
+        let of = |&state: &usize| {
+            let state = names[state].to_lowercase();
+            let alone = self.state.len() == 1;
+            velocity_names(&state).find_map(|name| free(&name)).or_else(|| {
+                VELOCITIES.iter().filter(|_| alone && STATES.contains(&&state[..])).find_map(|name| free(name))
+            })
+        };
+        self.state.iter().map(of).collect::<Option<Vec<_>>>().unwrap_or_default()
+    }
+}
+
+/// The array with the best name, or the only one that can be.
+fn guess_state(
+    described: &[Described],
+    fields: &Fields,
+    ignored: &[bool],
+    place: &str,
+) -> Result<Vec<usize>, ReadError> {
+    let known = |index: usize| {
+        let name = described[index].name.to_lowercase();
+        fields.has_role(index)
+            || ignored[index]
+            || VELOCITIES.contains(&&name[..])
+            || NEVER.iter().any(|pattern| glob(pattern, &name))
+    };
+    let candidates: Vec<usize> = (0..described.len()).filter(|&index| !known(index)).collect();
+    for name in STATES {
+        if let Some(&index) = candidates.iter().find(|&&index| described[index].name.eq_ignore_ascii_case(name)) {
+            return Ok(vec![index]);
+        }
+    }
+    let velocities: Vec<String> =
+        candidates.iter().flat_map(|&index| velocity_names(&described[index].name.to_lowercase())).collect();
+    let could = |&&index: &&usize| {
+        let array = &described[index];
+        array.shape.iter().filter(|&&length| length > 1).count() >= 2
+            && !velocities.contains(&array.name.to_lowercase())
+    };
+    let could: Vec<usize> = candidates.iter().filter(could).copied().collect();
+    if let [index] = could[..] {
+        Ok(vec![index])
+    } else {
+        let what = if could.is_empty() { "no array could be the state" } else { "several arrays could be the state" };
+        let listed: Vec<String> = described.iter().map(Described::with_shape).collect();
+        let remedy = format!("--state with one of (or several, which are joined): {}", shortened(&listed));
+        Err(ReadError::NoRoles(Fault::new(what, place, remedy)))
+    }
+}
+
+fn refuse_other_kinds(array: &Described, place: &str) -> Result<(), ReadError> {
+    use crate::arrays::array::Kind;
+    let name = &array.name;
+    match &array.kind {
+        Kind::Number("datetime64") => {
+            let remedy = "--state with an array of numbers";
+            Err(ReadError::Type(Fault::new(format!("'{name}' holds dates"), place, remedy)))
+        }
+        Kind::Number(_) => Ok(()),
+        Kind::Text => {
+            Err(ReadError::Type(Fault::new(format!("'{name}' holds text"), place, "--state with an array of numbers")))
+        }
+        Kind::Pickled => {
+            let what = format!("'{name}' holds Python objects, a pickle; reading it would run what is inside");
+            let remedy = "in Python: np.savez(path, **{f'demo_{i}': d for i, d in enumerate(demos)}, dt=0.01), one array a demonstration";
+            Err(ReadError::Pickled(Fault::new(what, place, remedy)))
+        }
+        Kind::Other(kind) => {
+            let remedy = "save real numbers (float64), for records one array a field";
+            Err(ReadError::Type(Fault::new(format!("'{name}' holds {kind}, which are no coordinates"), place, remedy)))
+        }
+    }
+}
+
+/// Names of channels: given, or made from the array's name: `x0`, `robot0_joint_pos_0`.
+pub(crate) fn channel_names(stem: &str, n: usize) -> Vec<String> {
+    (0..n).map(|channel| format!("{stem}{channel}")).collect()
+}
+
+pub(crate) fn too_many_channels(n: usize, place: &str) -> Result<(), ReadError> {
+    if n <= MOST_CHANNELS {
+        return Ok(());
+    }
+    let what = format!("{n} channels of state, more than {MOST_CHANNELS}");
+    Err(ReadError::TooLarge(Fault::new(what, place, "--state with another array, or --samples-are columns")))
+}

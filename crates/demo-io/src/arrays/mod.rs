@@ -1,0 +1,13 @@
+//! Files of arrays: what is described before it is read, and which array is what.
+
+pub(crate) mod array;
+pub(crate) mod fields;
+pub(crate) mod flat;
+mod grouped;
+#[cfg(feature = "hdf5")]
+pub(crate) mod hdf5;
+pub(crate) mod layout;
+#[cfg(feature = "mat")]
+pub(crate) mod mat;
+pub(crate) mod npy;
+pub(crate) mod npz;

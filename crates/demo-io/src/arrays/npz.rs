@@ -1,0 +1,122 @@
+//! NumPy arrays with names: a zip archive of .npy files.
+
+use std::io::Read;
+
+use flate2::read::DeflateDecoder;
+use rawzip::{CompressionMethod, ErrorKind, FileReader, RECOMMENDED_BUFFER_SIZE, ZipArchive, ZipArchiveEntryWayfinder};
+
+use crate::arrays::array::Described;
+use crate::arrays::flat;
+use crate::arrays::npy::Header;
+use crate::input::Input;
+use crate::input::damaged;
+use crate::raw::RawRecordings;
+use crate::{Fault, ReadError};
+
+/// Entries of an archive; more arrays than that nobody writes.
+const MOST_ENTRIES: usize = 100_000;
+
+struct Entry {
+    described: Described,
+    wayfinder: ZipArchiveEntryWayfinder,
+    deflated: bool,
+}
+
+pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<RawRecordings, ReadError> {
+    let file = &input.name;
+    let mut buffer = vec![0; RECOMMENDED_BUFFER_SIZE];
+    let archive = ZipArchive::from_file(input.open()?, &mut buffer).map_err(|error| zip(&error, file))?;
+    let mut entries: Vec<Entry> = Vec::new();
+    let mut directory = archive.entries(&mut buffer);
+    while let Some(record) = directory.next_entry().map_err(|error| zip(&error, file))? {
+        let path = String::from_utf8_lossy(record.file_path().as_ref()).into_owned();
+        let Some(name) = path.strip_suffix(".npy") else { continue };
+        let deflated = match record.compression_method() {
+            method if method == CompressionMethod::STORE => false,
+            method if method == CompressionMethod::DEFLATE => true,
+            method => {
+                let what = format!("'{name}' is compressed by {method:?}");
+                return Err(ReadError::Unsupported(Fault::new(
+                    what,
+                    file,
+                    "numpy.savez or numpy.savez_compressed to write it",
+                )));
+            }
+        };
+        if entries.len() == MOST_ENTRIES {
+            return Err(ReadError::TooLarge(Fault::new(
+                format!("more than {MOST_ENTRIES} arrays"),
+                file,
+                "fewer a file",
+            )));
+        }
+        let described = Described { name: name.to_owned(), shape: Vec::new(), kind: crate::arrays::array::Kind::Text };
+        entries.push(Entry { described, wayfinder: record.wayfinder(), deflated });
+    }
+    if entries.is_empty() {
+        let what = "an archive without NumPy arrays";
+        return Err(ReadError::NotThisFormat(Fault::new(what, file, "numpy.savez to write it")));
+    }
+    for entry in &mut entries {
+        let header = opened(&archive, entry, input, |reader| Header::read(reader, &place(file, entry)))?;
+        entry.described = header.described(std::mem::take(&mut entry.described.name));
+    }
+    let described: Vec<Described> = entries.iter().map(|entry| entry.described.clone()).collect();
+    flat::drafts(input, &described, &mut |index| {
+        let entry = &entries[index];
+        progress(entry.wayfinder.compressed_size_hint());
+        opened(&archive, entry, input, |mut reader| {
+            let place = place(file, entry);
+            let header = Header::read(&mut reader, &place)?;
+            let left = entry.wayfinder.uncompressed_size_hint().saturating_sub(header.len);
+            let data = header.data(&mut reader, left, &place, input)?;
+            // The check sum is compared at the end.
+            match std::io::copy(&mut reader.take(1 << 20), &mut std::io::sink()) {
+                Ok(_) => Ok(data),
+                Err(error) => Err(damaged(&error, &place)),
+            }
+        })
+    })
+}
+
+fn place(file: &str, entry: &Entry) -> String {
+    format!("{file}, array '{}'", entry.described.name)
+}
+
+/// Hands the entry's decompressed and checked bytes to `use_it`.
+fn opened<T>(
+    archive: &ZipArchive<FileReader>,
+    entry: &Entry,
+    input: &Input<'_>,
+    use_it: impl FnOnce(&mut dyn Read) -> Result<T, ReadError>,
+) -> Result<T, ReadError> {
+    let file = &input.name;
+    let (packed, unpacked) = (entry.wayfinder.compressed_size_hint(), entry.wayfinder.uncompressed_size_hint());
+    if packed > input.len {
+        return Err(cut(file));
+    }
+    if unpacked > packed.saturating_mul(64).saturating_add(1 << 20) && !input.options.trust {
+        let what = format!("'{}' grows from {packed} to {unpacked} bytes", entry.described.name);
+        return Err(ReadError::TooLarge(Fault::new(what, file, "--trust if you trust its source")));
+    }
+    let opened = archive.get_entry(entry.wayfinder).map_err(|error| zip(&error, file))?;
+    if entry.deflated {
+        use_it(&mut opened.verifying_reader(DeflateDecoder::new(opened.reader())))
+    } else {
+        use_it(&mut opened.verifying_reader(opened.reader()))
+    }
+}
+
+fn cut(file: &str) -> ReadError {
+    let what = "the archive is cut off: its directory, which stands at the end, is missing or points behind it";
+    ReadError::Truncated(Fault::new(what, file, "another copy of the file: this one is not whole"))
+}
+
+fn zip(error: &rawzip::Error, file: &str) -> ReadError {
+    match error.kind() {
+        ErrorKind::MissingEndOfCentralDirectory | ErrorKind::Eof | ErrorKind::InvalidEndOfCentralDirectory => cut(file),
+        _ => {
+            ReadError::Corrupt(Fault::new(format!("the archive is damaged: {error}"), file, "another copy of the file"))
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! Episodes as a reader finds them, before anything is checked.
+
+use crate::rows::stamps::{Stamp, TicksPerSecond};
+use motion::{Channel, Episode, Finding, Recordings, Source, Times, Verdict};
+use nalgebra::DMatrix;
+
+use crate::error::in_one_line;
+use crate::{Fault, ReadError, ReadOptions};
+
+/// Everything a reader found.
+#[derive(Debug)]
+pub(crate) struct RawRecordings {
+    pub(crate) channels: Vec<Channel>,
+    pub(crate) episodes: Vec<RawEpisode>,
+    pub(crate) findings: Vec<Finding>,
+    /// What [`Rows`] count: "line", "row", "message", "sample".
+    pub(crate) word: &'static str,
+    /// Whether the state was named, or found among columns, of which those that never change are left out.
+    pub(crate) drop_constant: bool,
+}
+
+/// An episode of n channels and N samples.
+#[derive(Debug)]
+pub(crate) struct RawEpisode {
+    pub(crate) name: String,
+    /// The file, without folders.
+    pub(crate) file: String,
+    pub(crate) rows: Rows,
+    /// (N), in seconds, from anywhere.
+    pub(crate) times: Vec<f64>,
+    /// Sample after sample, n N numbers; what is missing is NaN.
+    pub(crate) positions: Vec<f64>,
+    /// As many, or none.
+    pub(crate) velocities: Vec<f64>,
+    pub(crate) constraint: Option<String>,
+}
+
+/// At most this many episodes and channels.
+pub(crate) const MOST_EPISODES: usize = 1_000_000;
+pub(crate) const MOST_CHANNELS: usize = 4096;
+
+impl RawRecordings {
+    /// As everybody else takes them.
+    pub(crate) fn checked(self) -> Recordings {
+        let RawRecordings { channels, episodes, findings, word, .. } = self;
+        let n = channels.len();
+        let matrix = |numbers: Vec<f64>| DMatrix::from_vec(n, numbers.len().checked_div(n).unwrap_or(0), numbers);
+        let episodes = episodes.into_iter().map(|raw| Episode {
+            source: Source { file: raw.file, rows: raw.rows.ends(word) },
+            name: raw.name,
+            times: Times::Stamped(raw.times),
+            velocities: (!raw.velocities.is_empty()).then(|| matrix(raw.velocities)),
+            positions: matrix(raw.positions),
+            constraint: raw.constraint,
+        });
+        Recordings { state: channels, episodes: episodes.collect(), findings }
+    }
+}
+
+impl RawEpisode {
+    pub(crate) fn len(&self) -> usize {
+        self.times.len()
+    }
+
+    /// Where sample `sample` stands: "demos.csv, line 17 (episode 1)".
+    pub(crate) fn place(&self, sample: usize, word: &str) -> String {
+        let Self { name, file, rows, .. } = self;
+        match word {
+            "sample" => format!("{file}, episode {name}, sample {}", rows.at(sample)),
+            _ => format!("{file}, {word} {} (episode {name})", rows.at(sample)),
+        }
+    }
+}
+
+/// Where each sample stands in the file, as runs of consecutive places: a few bytes for most episodes.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct Rows {
+    /// First sample and its place, of each run.
+    runs: Vec<(usize, u64)>,
+    len: usize,
+}
+
+impl Rows {
+    /// `len` places from `first`.
+    pub(crate) fn consecutive(first: u64, len: usize) -> Self {
+        Self { runs: vec![(0, first)], len }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.len
+    }
+
+    pub(crate) fn push(&mut self, place: u64) {
+        let follows = self.runs.last().is_some_and(|&(sample, first)| first + (self.len - sample) as u64 == place);
+        if !follows {
+            self.runs.push((self.len, place));
+        }
+        self.len += 1;
+    }
+
+    pub(crate) fn at(&self, sample: usize) -> u64 {
+        let run = self.runs.partition_point(|&(first, _)| first <= sample);
+        self.runs.get(run.wrapping_sub(1)).map_or(0, |&(first, place)| place + (sample - first) as u64)
+    }
+
+    pub(crate) fn ends(&self, word: &'static str) -> Option<motion::Rows> {
+        (self.len > 0).then(|| motion::Rows { word, first: self.at(0), last: self.at(self.len - 1) })
+    }
+
+    /// The places of some samples.
+    pub(crate) fn chosen(&self, samples: impl IntoIterator<Item = usize>) -> Self {
+        let mut rows = Rows::default();
+        for sample in samples {
+            rows.push(self.at(sample));
+        }
+        rows
+    }
+}
+
+/// How an episode's times come about.
+#[derive(Debug)]
+pub(crate) enum Clock {
+    /// Every so many seconds.
+    Even(f64),
+    /// From stamps: units since the first.
+    Stamps { first: Option<Stamp>, since: Vec<f64> },
+}
+
+impl Clock {
+    pub(crate) fn new(period: Option<f64>) -> Self {
+        period.map_or(Clock::Stamps { first: None, since: Vec::new() }, Clock::Even)
+    }
+
+    pub(crate) fn push(&mut self, stamp: Stamp) {
+        if let Clock::Stamps { first, since } = self {
+            if first.is_none() && stamp.is_finite() {
+                *first = Some(stamp);
+            }
+            since.push(first.map_or(f64::NAN, |first| stamp.since(first)));
+        }
+    }
+
+    /// Seconds of `len` samples.
+    pub(crate) fn seconds(self, len: usize, ticks: TicksPerSecond) -> Vec<f64> {
+        match self {
+            Clock::Even(period) => (0..len).map(|sample| sample as f64 * period).collect(),
+            Clock::Stamps { mut since, .. } => {
+                if ticks.0 != 1.0 {
+                    for time in &mut since {
+                        *time /= ticks.0;
+                    }
+                }
+                since
+            }
+        }
+    }
+}
+
+/// `--dt` if it is a time.
+pub(crate) fn period(options: &ReadOptions) -> Result<Option<f64>, ReadError> {
+    match options.dt {
+        Some(dt) if !(dt.is_finite() && dt > 0.0) => {
+            Err(ReadError::Option(Fault::new(format!("--dt is {dt}"), "the flags", "--dt with seconds above 0")))
+        }
+        dt => Ok(dt),
+    }
+}
+
+pub(crate) fn no_time(place: impl Into<String>, what_is_time: &str) -> ReadError {
+    let what = "neither stamps nor a time step are known";
+    let remedy = format!("--dt SECONDS (the time between samples), or --time with {what_is_time}");
+    ReadError::NoTime(Fault::new(what, place, remedy))
+}
+
+/// Something that did not prevent reading.
+pub(crate) fn remark(what: impl Into<String>, next: impl Into<String>) -> Finding {
+    Finding { verdict: Verdict::Good, what: in_one_line(what.into()), next: in_one_line(next.into()) }
+}
+
+/// A remark on what was not used; none if that is nothing.
+pub(crate) fn unused(what: &str, names: &[&str]) -> Option<Finding> {
+    let what = || format!("{what} not used: {}", crate::rows::roles::shortened(names));
+    (!names.is_empty()).then(|| remark(what(), "--state with those that belong to the state, or --ignore"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_runs() {
+        let mut rows = Rows::default();
+        for place in [2, 3, 4, 9, 10, 7] {
+            rows.push(place);
+        }
+        assert_eq!(rows.runs.len(), 3);
+        assert_eq!((0..6).map(|sample| rows.at(sample)).collect::<Vec<_>>(), [2, 3, 4, 9, 10, 7]);
+        let ends = |first, last| Some(motion::Rows { word: "line", first, last });
+        assert_eq!(rows.ends("line"), ends(2, 7));
+        assert_eq!(rows.chosen([1, 3]).ends("line"), ends(3, 9));
+        assert_eq!(Rows::default().ends("line"), None);
+    }
+
+    #[test]
+    fn a_clock_without_a_first_stamp_waits_for_one() {
+        let mut clock = Clock::new(None);
+        for stamp in [Stamp::MISSING, Stamp::whole(5), Stamp::whole(7)] {
+            clock.push(stamp);
+        }
+        let seconds = clock.seconds(3, TicksPerSecond(2.0));
+        assert!(seconds[0].is_nan());
+        assert_eq!(seconds[1..], [0.0, 1.0]);
+    }
+}

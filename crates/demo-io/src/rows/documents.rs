@@ -1,0 +1,114 @@
+//! Rows that are documents, a document a sample.
+
+use std::collections::HashMap;
+
+use crate::input::Input;
+use crate::raw::RawRecordings;
+use crate::rows::json::{Json, MOST_LEAVES};
+use crate::rows::roles::Column;
+use crate::rows::table::{HEAD_ROWS, Table, content};
+use crate::{Fault, ReadError};
+
+/// Rows of documents whose columns are the paths of the first.
+pub(crate) struct Documents<'a> {
+    input: &'a Input<'a>,
+    word: &'static str,
+    names: Vec<String>,
+    index: HashMap<String, usize>,
+    head: Vec<(u64, Vec<Json>)>,
+    table: Option<Table>,
+}
+
+impl<'a> Documents<'a> {
+    pub(crate) fn new(input: &'a Input<'a>, word: &'static str) -> Self {
+        Self { input, word, names: Vec::new(), index: HashMap::new(), head: Vec::new(), table: None }
+    }
+
+    pub(crate) fn push(&mut self, place: u64, document: &Json) -> Result<(), ReadError> {
+        let row = self.row(place, document)?;
+        if let Some(table) = &mut self.table {
+            table.push(place, &row)
+        } else {
+            self.head.push((place, row));
+            if self.head.len() < HEAD_ROWS { Ok(()) } else { self.begin() }
+        }
+    }
+
+    /// The values of a document by column.
+    fn row(&mut self, place: u64, document: &Json) -> Result<Vec<Json>, ReadError> {
+        if self.names.is_empty() {
+            return self.first_row(place, document);
+        }
+        let mut row = vec![Json::Null; self.names.len()];
+        let mut unknown = None;
+        let mut next = 0;
+        document.leaves(&mut String::new(), &mut |path, leaf| {
+            let column = if self.names.get(next).is_some_and(|name| name == path) {
+                Some(next)
+            } else {
+                self.index.get(path).copied()
+            };
+            match column {
+                Some(column) => {
+                    row[column] = leaf.clone();
+                    next = column + 1;
+                }
+                None => unknown = unknown.take().or_else(|| Some(path.to_owned())),
+            }
+        });
+        match unknown {
+            Some(path) => {
+                let place = format!("{}, {} {place}", self.input.name, self.word);
+                let what = format!("'{path}' is not in the first {}", self.word);
+                Err(ReadError::Ragged(Fault::new(what, place, "the same keys, and lists of the same length, in each")))
+            }
+            None => Ok(row),
+        }
+    }
+
+    fn first_row(&mut self, place: u64, document: &Json) -> Result<Vec<Json>, ReadError> {
+        let mut row = Vec::new();
+        document.leaves(&mut String::new(), &mut |path, leaf| {
+            if row.len() <= MOST_LEAVES {
+                row.push(leaf.clone());
+                self.names.push(path.to_owned());
+            }
+        });
+        self.index = self.names.iter().enumerate().map(|(at, name)| (name.clone(), at)).collect();
+        let place = format!("{}, {} {place}", self.input.name, self.word);
+        if !matches!(document, Json::Map(_)) || row.is_empty() {
+            let what = "not an object of names and numbers";
+            return Err(ReadError::Json(Fault::new(what, place, "lines like {\"t\": 0.05, \"x\": 0.5, \"y\": 1.2}")));
+        }
+        if row.len() > MOST_LEAVES {
+            let what = format!("more than {MOST_LEAVES} values in one {}", self.word);
+            return Err(ReadError::TooLarge(Fault::new(what, place, "one line per episode, or per sample")));
+        }
+        Ok(row)
+    }
+
+    fn begin(&mut self) -> Result<(), ReadError> {
+        let column = |(at, name): (usize, &String)| Column {
+            name: name.clone(),
+            content: content(self.head.iter().map(|(_, row)| row), at),
+        };
+        let columns: Vec<Column> = self.names.iter().enumerate().map(column).collect();
+        let input = self.input;
+        let mut table = Table::new(&columns, (&input.name, &input.stem), self.word, input.options)?;
+        for (place, row) in self.head.drain(..) {
+            table.push(place, &row)?;
+        }
+        self.table = Some(table);
+        Ok(())
+    }
+
+    pub(crate) fn finish(mut self) -> Result<RawRecordings, ReadError> {
+        if self.table.is_none() {
+            self.begin()?;
+        }
+        match self.table {
+            Some(table) => Ok(table.finish()),
+            None => Err(ReadError::Empty(Fault::new("there is no row", &self.input.name, "another file"))),
+        }
+    }
+}

@@ -1,0 +1,161 @@
+use crate::arrays::layout::lengths;
+use crate::input::Input;
+use crate::raw::{Clock, MOST_EPISODES, RawEpisode, RawRecordings, Rows, no_time, period};
+use crate::rows::json::Json;
+use crate::rows::stamps::{Stamp, TicksPerSecond};
+use crate::{Fault, ReadError};
+use motion::Channel;
+
+/// Episodes, a line each: `{"episode": "take 1", "dt": 0.05, "names": ["x"], "unit": ["m"], "state": [[0.1], [0.2]],
+/// "velocity": [[2.0], [2.0]], "constraint": "rail"}`, or `times` instead of `dt`.
+pub(super) struct EpisodeLines<'a> {
+    input: &'a Input<'a>,
+    channels: Option<Vec<Channel>>,
+    episodes: Vec<RawEpisode>,
+}
+
+/// The value of the first key that is there.
+fn one_of<'a>(line: &'a Json, keys: &[&str]) -> Option<&'a Json> {
+    keys.iter().find_map(|key| line.get(key)).filter(|value| **value != Json::Null)
+}
+
+/// The samples of a line that holds an episode.
+pub(super) fn state(line: &Json) -> Option<&[Json]> {
+    let samples = one_of(line, &["state", "states", "positions", "position"])?.list()?;
+    samples.first().is_some_and(|sample| sample.list().is_some()).then_some(samples)
+}
+
+impl<'a> EpisodeLines<'a> {
+    pub(super) fn new(input: &'a Input<'a>) -> Self {
+        Self { input, channels: None, episodes: Vec::new() }
+    }
+
+    pub(super) fn push(&mut self, number: u64, line: &Json) -> Result<(), ReadError> {
+        let place = format!("{}, line {number}", self.input.name);
+        let other_form = |what: &str| {
+            let remedy = "lines like {\"episode\": \"1\", \"dt\": 0.05, \"names\": [\"x\"], \"state\": [[0.1], [0.2]]}";
+            ReadError::Json(Fault::new(what, &place, remedy))
+        };
+        let samples = state(line).ok_or_else(|| other_form("there is no 'state' with a list of samples"))?;
+        let n = samples[0].list().map_or(0, <[Json]>::len);
+        if n == 0 {
+            return Err(other_form("a sample has no number"));
+        }
+        crate::arrays::fields::too_many_channels(n, &place)?;
+        if self.episodes.len() == MOST_EPISODES {
+            return Err(ReadError::TooLarge(Fault::new(
+                format!("more than {MOST_EPISODES} episodes"),
+                place,
+                "files with fewer episodes",
+            )));
+        }
+        let positions = numbers(samples, n, "state", &place)?;
+        let velocities = match one_of(line, &["velocity", "velocities"]) {
+            None => Vec::new(),
+            Some(velocity) => {
+                let velocity = velocity.list().ok_or_else(|| other_form("'velocity' is not a list of samples"))?;
+                if velocity.len() != samples.len() {
+                    return Err(lengths("'velocity'", samples.len(), velocity.len(), &place));
+                }
+                numbers(velocity, n, "velocity", &place)?
+            }
+        };
+        let channels = channels(line, n);
+        match &self.channels {
+            Some(known) if *known != channels => {
+                return Err(other_form("names, units or number of channels differ from the first line's"));
+            }
+            _ => self.channels = Some(channels),
+        }
+        let label = |keys: &[&str]| one_of(line, keys).map(Json::to_string);
+        self.episodes.push(RawEpisode {
+            name: label(&["episode", "name"]).unwrap_or_else(|| self.episodes.len().to_string()),
+            file: self.input.name.clone(),
+            rows: Rows::consecutive(0, samples.len()),
+            times: self.times(line, samples.len(), &place)?,
+            positions,
+            velocities,
+            constraint: label(&["constraint", "condition"]),
+        });
+        Ok(())
+    }
+
+    fn times(&self, line: &Json, len: usize, place: &str) -> Result<Vec<f64>, ReadError> {
+        let asked = period(self.input.options)?;
+        let step = asked.or_else(|| one_of(line, &["dt", "time_step"])?.number());
+        if let (None, Some((name, stamps))) = (asked, stamps(line)) {
+            if stamps.len() != len {
+                return Err(lengths(&format!("'{name}'"), len, stamps.len(), place));
+            }
+            let mut clock = Clock::new(None);
+            let mut ticks = None;
+            for stamp in stamps {
+                let (stamp, unit) = match stamp {
+                    Json::Whole(value) => (Stamp::whole(*value), None),
+                    Json::Text(text) => Stamp::text(text).unwrap_or((Stamp::MISSING, None)),
+                    other => (Stamp::number(other.number().unwrap_or(f64::NAN)), None),
+                };
+                ticks = ticks.or_else(|| stamp.is_finite().then(|| crate::arrays::array::unit_of(name, stamp, unit)));
+                clock.push(stamp);
+            }
+            return Ok(clock.seconds(len, ticks.unwrap_or(TicksPerSecond(1.0))));
+        }
+        match step {
+            Some(step) if step.is_finite() && step > 0.0 => Ok(Clock::Even(step).seconds(len, TicksPerSecond(1.0))),
+            _ => Err(no_time(place, "'dt' or 'times' in each line")),
+        }
+    }
+
+    pub(super) fn finish(self) -> RawRecordings {
+        RawRecordings {
+            channels: self.channels.unwrap_or_default(),
+            episodes: self.episodes,
+            findings: Vec::new(),
+            word: "sample",
+            drop_constant: false,
+        }
+    }
+}
+
+fn stamps(line: &Json) -> Option<(&str, &[Json])> {
+    ["times", "t", "time", "timestamps", "timestamp"].into_iter().find_map(|key| Some((key, line.get(key)?.list()?)))
+}
+
+/// All samples one after another.
+fn numbers(samples: &[Json], n: usize, key: &str, place: &str) -> Result<Vec<f64>, ReadError> {
+    let mut numbers = Vec::with_capacity(samples.len() * n);
+    for (at, sample) in samples.iter().enumerate() {
+        let values = sample.list().unwrap_or_default();
+        let place = || format!("{place}, '{key}', sample {at}");
+        if values.len() != n {
+            let what = format!("{} numbers where {n} are expected", values.len());
+            return Err(ReadError::Ragged(Fault::new(what, place(), "samples of equal length")));
+        }
+        for value in values {
+            numbers.push(value.number().ok_or_else(|| {
+                ReadError::NotANumber(Fault::new(
+                    format!("'{value}' is not a number"),
+                    place(),
+                    "numbers, or null where one is missing",
+                ))
+            })?);
+        }
+    }
+    Ok(numbers)
+}
+
+fn channels(line: &Json, n: usize) -> Vec<Channel> {
+    let texts = |keys: &[&str]| -> Option<Vec<String>> {
+        let texts = one_of(line, keys)?.list()?.iter().map(|text| text.text().map(str::to_owned));
+        texts.collect::<Option<Vec<_>>>().filter(|texts| texts.len() == n)
+    };
+    let units: Vec<Option<String>> = match one_of(line, &["unit", "units"]) {
+        Some(Json::Text(unit)) => vec![Some(unit.clone()); n],
+        Some(Json::List(units)) if units.len() == n => {
+            units.iter().map(|unit| unit.text().map(str::to_owned)).collect()
+        }
+        _ => vec![None; n],
+    };
+    let names = texts(&["names", "columns"]).unwrap_or_else(|| crate::arrays::fields::channel_names("x", n));
+    names.into_iter().zip(units).map(|(name, unit)| Channel { name, unit }).collect()
+}

@@ -1,0 +1,40 @@
+//! Episodes that are noted beside the messages.
+
+use std::collections::BTreeMap;
+
+use crate::raw::RawEpisode;
+
+/// The episodes that [`crate::write`] noted beside the messages; otherwise all is one.
+pub(super) fn episodes(draft: RawEpisode, n: usize, metadata: &BTreeMap<String, String>) -> Vec<RawEpisode> {
+    let noted =
+        metadata.get("episodes").and_then(|text| serde_json::from_str::<Vec<Noted>>(text).ok()).unwrap_or_default();
+    let total: usize = noted.iter().fold(0, |total, episode| total.saturating_add(episode.messages));
+    if total != draft.len() {
+        return vec![draft];
+    }
+    let mut start = 0;
+    let cut = noted.into_iter().map(|episode| {
+        let samples = start..start + episode.messages;
+        start = samples.end;
+        let columns = samples.start * n..samples.end * n;
+        RawEpisode {
+            name: episode.name,
+            file: draft.file.clone(),
+            rows: draft.rows.chosen(samples.clone()),
+            times: draft.times[samples].to_vec(),
+            positions: draft.positions[columns.clone()].to_vec(),
+            velocities: draft.velocities.get(columns).map_or_else(Vec::new, <[f64]>::to_vec),
+            constraint: episode.constraint,
+        }
+    });
+    cut.collect()
+}
+
+/// An episode beside the messages.
+#[derive(Debug, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Noted {
+    pub(crate) name: String,
+    pub(crate) messages: usize,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) constraint: Option<String>,
+}

@@ -1,0 +1,278 @@
+use std::collections::{BTreeMap, HashMap};
+use std::fmt;
+
+use super::messages::{Message, Type};
+use super::noted::episodes;
+use crate::input::Input;
+use crate::raw::{Clock, RawEpisode, RawRecordings, Rows, period, remark, unused};
+use crate::rows::documents::Documents;
+use crate::rows::json::Json;
+use crate::rows::roles::no_column;
+use crate::rows::stamps::{Stamp, TicksPerSecond};
+use crate::selection::{flags, select};
+use crate::{Fault, ReadError, natural};
+use motion::{Channel, Finding};
+
+/// The messages of a topic. What is wrong with them matters only if the topic is chosen.
+pub(super) struct Topic<'a> {
+    input: &'a Input<'a>,
+    name: String,
+    schema: String,
+    kind: Option<Type>,
+    /// Messages by the set of their names, since several programs publish on one topic.
+    sets: Vec<Set>,
+    by_names: HashMap<Vec<String>, usize>,
+    documents: Option<Documents<'a>>,
+    messages: u64,
+    fault: Option<ReadError>,
+}
+
+/// Messages with the same names.
+#[derive(Debug, Default)]
+struct Set {
+    /// In the order of the first message.
+    names: Vec<String>,
+    /// Whether other messages have another order.
+    reordered: bool,
+    /// Which message of the topic.
+    numbers: Vec<u64>,
+    stamps: Vec<i64>,
+    log_times: Vec<i64>,
+    positions: Vec<f64>,
+    /// Shorter than positions if some message has none.
+    velocities: Vec<f64>,
+}
+
+/// A topic has hardly more publishers than that.
+const MOST_SETS: usize = 64;
+
+impl<'a> Topic<'a> {
+    pub(super) fn new(input: &'a Input<'a>, name: String, schema: String, encoding: &str) -> Self {
+        let kind = Type::of(&schema, encoding);
+        let documents = (kind == Some(Type::Json)).then(|| Documents::new(input, "message"));
+        Self {
+            input,
+            name,
+            schema,
+            kind,
+            sets: Vec::new(),
+            by_names: HashMap::new(),
+            documents,
+            messages: 0,
+            fault: None,
+        }
+    }
+
+    pub(super) fn is(&self, name: &str, schema: &str) -> bool {
+        self.name == name && self.schema == schema
+    }
+
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
+    pub(super) fn is_known(&self) -> bool {
+        self.kind.is_some()
+    }
+
+    pub(super) fn len(&self) -> u64 {
+        self.messages
+    }
+
+    /// Adds a message that was logged at `log_time` nanoseconds since 1970.
+    pub(super) fn add(&mut self, log_time: u64, data: &[u8]) {
+        let number = self.messages;
+        self.messages += 1;
+        if self.fault.is_some() {
+            return;
+        }
+        let log_time = i64::try_from(log_time).unwrap_or(i64::MAX);
+        let added = match self.kind {
+            None => Ok(()),
+            Some(Type::Json) => self.add_document(number, log_time, data),
+            Some(kind) => {
+                let message = kind.decode(data).map_err(|_| {
+                    let what = format!("a message ends before what it announces ({})", self.schema);
+                    let remedy = "another copy of the file, or --topic";
+                    ReadError::Corrupt(Fault::new(what, self.place(number), remedy))
+                });
+                message.map(|message| self.add_message(number, log_time, &message))
+            }
+        };
+        self.fault = added.err();
+    }
+
+    fn place(&self, message: u64) -> String {
+        format!("{}, topic {}, message {message}", self.input.name, self.name)
+    }
+
+    fn add_document(&mut self, number: u64, log_time: i64, data: &[u8]) -> Result<(), ReadError> {
+        let mut document: Json = serde_json::from_slice(data).map_err(|error| {
+            let what = format!("this is not JSON: {error}");
+            ReadError::Json(Fault::new(what, self.place(number), "another topic: --topic"))
+        })?;
+        if let Json::Map(values) = &mut document {
+            // Behind all others, so that a stamp inside the message is found first.
+            values.push(("log_time".to_owned(), Json::Whole(log_time)));
+        }
+        match &mut self.documents {
+            Some(documents) => documents.push(number, &document),
+            None => Ok(()),
+        }
+    }
+
+    fn add_message(&mut self, number: u64, log_time: i64, message: &Message<'_>) {
+        let n = message.positions.len();
+        let counted: Vec<String>;
+        let names: Vec<&str> = if message.names.is_empty() {
+            counted = (0..n).map(|at| format!("x{at}")).collect();
+            counted.iter().map(String::as_str).collect()
+        } else {
+            message.names.clone()
+        };
+        if names.len() != n {
+            // Some drivers publish velocities or efforts alone.
+            return;
+        }
+        let mut order: Vec<usize> = (0..n).collect();
+        order.sort_by_key(|&at| names[at]);
+        let key: Vec<String> = order.iter().map(|&at| names[at].to_owned()).collect();
+        let at = match self.by_names.get(&key) {
+            Some(&at) => at,
+            None if self.sets.len() == MOST_SETS => return,
+            None => {
+                let names = names.iter().map(|&name| name.to_owned()).collect();
+                self.sets.push(Set { names, ..Set::default() });
+                self.by_names.insert(key, self.sets.len() - 1);
+                self.sets.len() - 1
+            }
+        };
+        let set = &mut self.sets[at];
+        let same_order = set.names.iter().map(String::as_str).eq(names.iter().copied());
+        let column = |name: &String| names.iter().position(|other| other == name).unwrap_or(0);
+        let columns: Vec<usize> = if same_order { (0..n).collect() } else { set.names.iter().map(column).collect() };
+        set.reordered |= !same_order;
+        set.numbers.push(number);
+        set.stamps.push(message.stamp.unwrap_or(0));
+        set.log_times.push(log_time);
+        set.positions.extend(columns.iter().map(|&column| message.positions[column]));
+        if message.velocities.len() == n {
+            set.velocities.extend(columns.iter().map(|&column| message.velocities[column]));
+        }
+    }
+
+    pub(super) fn finish(mut self, metadata: &BTreeMap<String, String>) -> Result<RawRecordings, ReadError> {
+        if let Some(fault) = self.fault {
+            return Err(fault);
+        }
+        if self.messages == 0 {
+            let remedy = "another bag, or --topic with one that has messages";
+            return Err(ReadError::Empty(Fault::new(
+                format!("there is no message on {self}"),
+                &self.input.name,
+                remedy,
+            )));
+        }
+        if let Some(documents) = self.documents.take() {
+            return documents.finish();
+        }
+        let (set, columns) = self.chosen()?;
+        let mut findings = self.left_out(set, &columns);
+        let set = std::mem::take(&mut self.sets[set]);
+        let recorded = !set.velocities.is_empty() && set.velocities.len() == set.positions.len();
+        if !set.velocities.is_empty() && !recorded {
+            let what = format!("some messages of {self} in {} have no velocities: all were left out", self.input.name);
+            findings.push(remark(what, "record velocities in every message"));
+        }
+        let unwanted =
+            self.input.options.ignore.iter().any(|pattern| matches!(&pattern[..], "velocity" | "velocities" | "*vel*"));
+        let len = set.numbers.len();
+        let pick = |numbers: &[f64]| -> Vec<f64> {
+            let samples = numbers.chunks_exact(set.names.len().max(1));
+            samples.flat_map(|sample| columns.iter().map(|&column| sample[column])).collect()
+        };
+        let stamped = set.stamps.iter().all(|&stamp| stamp != 0);
+        let mut clock = Clock::new(period(self.input.options)?);
+        let stamps = if stamped { &set.stamps } else { &set.log_times };
+        for &stamp in stamps {
+            clock.push(Stamp::whole(stamp));
+        }
+        let mut rows = Rows::default();
+        for &number in &set.numbers {
+            rows.push(number);
+        }
+        let draft = RawEpisode {
+            name: self.input.stem.clone(),
+            file: self.input.name.clone(),
+            rows,
+            times: clock.seconds(len, TicksPerSecond(1e9)),
+            positions: pick(&set.positions),
+            velocities: if recorded && !unwanted { pick(&set.velocities) } else { Vec::new() },
+            constraint: None,
+        };
+        let channel = |&column: &usize| {
+            let name = set.names[column].clone();
+            Channel { unit: metadata.get(&format!("unit/{name}")).cloned(), name }
+        };
+        let channels = columns.iter().map(channel).collect();
+        let episodes = episodes(draft, columns.len(), metadata);
+        Ok(RawRecordings { channels, episodes, findings, word: "message", drop_constant: false })
+    }
+
+    /// The set of messages to take, and which of its names are the state.
+    fn chosen(&self) -> Result<(usize, Vec<usize>), ReadError> {
+        let options = self.input.options;
+        let largest = (0..self.sets.len()).max_by_key(|&at| (self.sets[at].numbers.len(), std::cmp::Reverse(at)));
+        let Some(largest) = largest else {
+            let what = format!("no message on {self} has as many positions as names");
+            return Err(ReadError::NoRoles(Fault::new(what, &self.input.name, "another topic: --topic")));
+        };
+        if options.state.is_empty() {
+            let names = &self.sets[largest].names;
+            let ignored = flags(&options.ignore, names);
+            let turned = |at: usize| self.kind == Some(Type::Pose) && names[at].starts_with("orientation");
+            let place = |at: &usize| !(ignored[*at] || turned(*at));
+            return Ok((largest, self.sets[largest].in_order((0..names.len()).filter(place).collect())));
+        }
+        let fits = |at: &usize| select(&options.state, &self.sets[*at].names).is_ok();
+        let fitting =
+            (0..self.sets.len()).filter(fits).max_by_key(|&at| (self.sets[at].numbers.len(), std::cmp::Reverse(at)));
+        let at = fitting.unwrap_or(largest);
+        let names: Vec<&str> = self.sets[at].names.iter().map(String::as_str).collect();
+        let chosen = select(&options.state, &names);
+        let place = format!("{}, topic {}", self.input.name, self.name);
+        // A glob names no order.
+        let any = options.state.iter().any(|pattern| pattern.contains('*'));
+        let ordered = |columns| if any { self.sets[at].in_order(columns) } else { columns };
+        chosen.map(|columns| (at, ordered(columns))).map_err(|pattern| no_column(&pattern, &names, &place))
+    }
+
+    fn left_out(&self, set: usize, columns: &[usize]) -> Vec<Finding> {
+        let mut findings = Vec::new();
+        let others = self.messages - self.sets[set].numbers.len() as u64;
+        if others > 0 {
+            let what = format!("{others} messages of {self} in {} with other joints were skipped", self.input.name);
+            findings.push(remark(what, "--state with the joints that matter"));
+        }
+        let names = self.sets[set].names.iter().enumerate();
+        let not_used: Vec<&str> = names.filter(|(at, _)| !columns.contains(at)).map(|(_, name)| &name[..]).collect();
+        findings.extend(unused("parts of messages", &not_used));
+        findings
+    }
+}
+
+impl Set {
+    /// In the natural order of names where messages have no order of their own.
+    fn in_order(&self, mut columns: Vec<usize>) -> Vec<usize> {
+        if self.reordered {
+            columns.sort_by(|&a, &b| natural::compare(&self.names[a], &self.names[b]));
+        }
+        columns
+    }
+}
+
+impl fmt::Display for Topic<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({})", self.name, if self.schema.is_empty() { "no type" } else { &self.schema })
+    }
+}

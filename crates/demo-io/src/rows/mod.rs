@@ -1,0 +1,17 @@
+//! Files of rows: a row or a message a sample, with named columns.
+
+#[cfg(feature = "mcap")]
+pub(crate) mod cdr;
+pub(crate) mod delimited;
+mod documents;
+pub(crate) mod json;
+pub(crate) mod json_lines;
+#[cfg(feature = "parquet")]
+pub(crate) mod lerobot;
+#[cfg(feature = "mcap")]
+pub(crate) mod mcap;
+#[cfg(feature = "parquet")]
+pub(crate) mod parquet;
+pub(crate) mod roles;
+pub(crate) mod stamps;
+mod table;

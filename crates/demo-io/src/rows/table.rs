@@ -1,0 +1,241 @@
+//! Rows with named columns become episodes, whatever the format.
+
+use std::collections::{HashMap, HashSet};
+
+use crate::raw::{Clock, MOST_CHANNELS, MOST_EPISODES, RawEpisode, RawRecordings, Rows, no_time, period, unused};
+use crate::rows::roles::{Column, Content, Roles, assign, unit};
+use crate::rows::stamps::{Stamp, TicksPerSecond};
+use crate::{Fault, ReadError, ReadOptions};
+use motion::Channel;
+
+/// One row of a table. A column that holds something else answers with its text.
+pub(crate) trait Row {
+    /// NaN if nothing is there.
+    fn number(&self, column: usize) -> Result<f64, String>;
+    /// With the unit, if the text decides it.
+    fn stamp(&self, column: usize) -> Result<(Stamp, Option<TicksPerSecond>), String>;
+    /// Written to `label`.
+    fn label(&self, column: usize, label: &mut String);
+}
+
+impl<R: Row> Row for &R {
+    fn number(&self, column: usize) -> Result<f64, String> {
+        (*self).number(column)
+    }
+
+    fn stamp(&self, column: usize) -> Result<(Stamp, Option<TicksPerSecond>), String> {
+        (*self).stamp(column)
+    }
+
+    fn label(&self, column: usize, label: &mut String) {
+        (*self).label(column, label);
+    }
+}
+
+/// Collects rows into episodes, in the order in which their labels appear.
+pub(crate) struct Table {
+    file: String,
+    word: &'static str,
+    names: Vec<String>,
+    roles: Roles,
+    period: Option<f64>,
+    ticks: Option<TicksPerSecond>,
+    /// The name of the only episode, where no column tells episodes apart.
+    only: String,
+    episodes: Vec<RawEpisode>,
+    /// When the samples of each were taken.
+    clocks: Vec<Clock>,
+    /// Episodes in which the label of the constraint changes.
+    relabelled: HashSet<usize>,
+    by_label: HashMap<String, usize>,
+    current: Option<usize>,
+    label: String,
+    /// What a number that is none may be helped by.
+    hint: fn(&str) -> Option<String>,
+}
+
+impl Table {
+    pub(crate) fn new(
+        columns: &[Column],
+        (file, only): (&str, &str),
+        word: &'static str,
+        options: &ReadOptions,
+    ) -> Result<Self, ReadError> {
+        let roles = assign(columns, options, file)?;
+        let period = period(options)?;
+        if roles.time.is_none() && period.is_none() {
+            return Err(no_time(file, "the column of stamps"));
+        }
+        if roles.state.len() > MOST_CHANNELS {
+            let what = format!("{} columns of state, more than {MOST_CHANNELS}", roles.state.len());
+            return Err(ReadError::TooLarge(Fault::new(what, file, "--state with the columns that matter")));
+        }
+        Ok(Self {
+            file: file.to_owned(),
+            word,
+            names: columns.iter().map(|column| column.name.clone()).collect(),
+            roles,
+            period,
+            ticks: None,
+            only: only.to_owned(),
+            episodes: Vec::new(),
+            clocks: Vec::new(),
+            relabelled: HashSet::new(),
+            by_label: HashMap::new(),
+            current: None,
+            label: String::new(),
+            hint: |_| None,
+        })
+    }
+
+    /// With advice on fields that are no numbers.
+    pub(crate) fn with_hint(mut self, hint: fn(&str) -> Option<String>) -> Self {
+        self.hint = hint;
+        self
+    }
+
+    /// The columns that have a role.
+    #[cfg(feature = "parquet")]
+    pub(crate) fn used(&self) -> std::collections::HashSet<usize> {
+        let Roles { time, episode, constraint, state, velocity, .. } = &self.roles;
+        [*time, *episode, *constraint].into_iter().flatten().chain(state.iter().chain(velocity).copied()).collect()
+    }
+
+    /// Adds a row, which stands at `place`.
+    pub(crate) fn push(&mut self, place: u64, row: &impl Row) -> Result<(), ReadError> {
+        let episode = self.episode_of(row)?;
+        if let (Some(column), None) = (self.roles.time, self.period) {
+            let (stamp, ticks) = row.stamp(column).map_err(|text| self.not_a_number(&text, column, place))?;
+            if self.ticks.is_none() && stamp.is_finite() {
+                self.ticks = Some(ticks.unwrap_or_else(|| TicksPerSecond::guess(&self.names[column], stamp)));
+            }
+            self.clocks[episode].push(stamp);
+        }
+        if let Some(column) = self.roles.constraint {
+            row.label(column, &mut self.label);
+            self.label_constraint(episode);
+        }
+        let raw = &mut self.episodes[episode];
+        raw.rows.push(place);
+        let state = fill(row, &self.roles.state, &mut raw.positions);
+        state
+            .and_then(|()| fill(row, &self.roles.velocity, &mut raw.velocities))
+            .map_err(|(column, text)| self.not_a_number(&text, column, place))
+    }
+
+    fn episode_of(&mut self, row: &impl Row) -> Result<usize, ReadError> {
+        let Some(column) = self.roles.episode else {
+            if self.episodes.is_empty() {
+                self.begin(self.only.clone());
+            }
+            return Ok(0);
+        };
+        row.label(column, &mut self.label);
+        if let Some(current) = self.current.filter(|&current| self.episodes[current].name == self.label) {
+            return Ok(current);
+        }
+        let episode = match self.by_label.get(&self.label) {
+            Some(&known) => known,
+            None if self.episodes.len() == MOST_EPISODES => {
+                let what = format!("more than {MOST_EPISODES} episodes in column '{}'", self.names[column]);
+                let remedy = "--episode with the episode column, or files with fewer episodes";
+                return Err(ReadError::TooLarge(Fault::new(what, &self.file, remedy)));
+            }
+            None => {
+                self.by_label.insert(self.label.clone(), self.episodes.len());
+                self.begin(self.label.clone());
+                self.episodes.len() - 1
+            }
+        };
+        self.current = Some(episode);
+        Ok(episode)
+    }
+
+    fn begin(&mut self, name: String) {
+        self.clocks.push(Clock::new(self.period));
+        self.episodes.push(RawEpisode {
+            name,
+            file: self.file.clone(),
+            rows: Rows::default(),
+            times: Vec::new(),
+            positions: Vec::new(),
+            velocities: Vec::new(),
+            constraint: None,
+        });
+    }
+
+    /// An episode has a label if all its rows have the same.
+    fn label_constraint(&mut self, episode: usize) {
+        let constraint = &mut self.episodes[episode].constraint;
+        match constraint {
+            Some(known) if *known != self.label => {
+                *constraint = None;
+                self.relabelled.insert(episode);
+            }
+            None if !self.label.is_empty() && !self.relabelled.contains(&episode) => {
+                *constraint = Some(self.label.clone());
+            }
+            _ => {}
+        }
+    }
+
+    fn not_a_number(&self, text: &str, column: usize, place: u64) -> ReadError {
+        let shown: String = text.chars().take(40).collect();
+        let name = &self.names[column];
+        let role = if self.roles.time == Some(column) { "stamp" } else { "number" };
+        let what = format!("'{shown}' is not a {role}");
+        let place = format!("{}, {} {place}, column '{name}'", self.file, self.word);
+        let remedy = (self.hint)(text).unwrap_or_else(|| {
+            format!("correct the file, or --ignore '{name}' if the column does not belong to the state")
+        });
+        ReadError::NotANumber(Fault::new(what, place, remedy))
+    }
+
+    /// What was collected.
+    pub(crate) fn finish(mut self) -> RawRecordings {
+        let ticks = self.ticks.unwrap_or(TicksPerSecond(1.0));
+        let name = |&index: &usize| self.names[index].as_str();
+        let channels = self.roles.state.iter().map(name);
+        let channels =
+            channels.map(|name| Channel { name: name.to_owned(), unit: unit(name).map(str::to_owned) }).collect();
+        let ignored: Vec<&str> = self.roles.ignored.iter().map(name).collect();
+        let mut findings: Vec<_> = unused("columns", &ignored).into_iter().collect();
+        if !self.relabelled.is_empty() {
+            let column = self.roles.constraint.map(|column| self.names[column].as_str()).unwrap_or_default();
+            findings.extend(unused("labels of constraints that change within an episode are", &[column]));
+        }
+        // LeRobot numbers tasks even if there is one only, which says nothing.
+        let says = |column: usize| !self.names[column].to_lowercase().starts_with("task");
+        let differ = |episode: &RawEpisode| episode.constraint != self.episodes[0].constraint;
+        let labels_vary = self.roles.constraint.is_some_and(says) || self.episodes.iter().any(differ);
+        for (raw, clock) in self.episodes.iter_mut().zip(self.clocks) {
+            raw.times = clock.seconds(raw.rows.len(), ticks);
+            raw.constraint.take_if(|_| !labels_vary);
+        }
+        let (episodes, word, drop_constant) = (self.episodes, self.word, self.roles.state_guessed);
+        RawRecordings { channels, episodes, findings, word, drop_constant }
+    }
+}
+
+/// Appends some columns of a row; else the first that is no number, with its text.
+fn fill(row: &impl Row, columns: &[usize], numbers: &mut Vec<f64>) -> Result<(), (usize, String)> {
+    for &column in columns {
+        numbers.push(row.number(column).map_err(|text| (column, text))?);
+    }
+    Ok(())
+}
+
+/// Columns are judged by so many rows.
+pub(crate) const HEAD_ROWS: usize = 64;
+
+/// What the first rows of a column hold.
+pub(crate) fn content<R: Row>(rows: impl Iterator<Item = R>, column: usize) -> Content {
+    let mut last: Option<f64> = None;
+    let mut counting = true;
+    for row in rows {
+        let Ok(value) = row.number(column) else { return Content::Text };
+        counting &= value.fract() == 0.0 && last.is_none_or(|last| value == last + 1.0 || value < last);
+        last = Some(value);
+    }
+    if counting { Content::Counting } else { Content::Numbers }
+}

@@ -1,0 +1,206 @@
+use nalgebra::{DMatrix, DVector};
+
+use crate::median::upper_median;
+use crate::{Finding, MotionError, Times, Trajectory};
+
+/// What was recorded: n channels of state, and episodes of any length.
+///
+/// Of every episode, positions have n rows and a column a sample, stamps ascend, and numbers are finite. It may be too
+/// short to be a movement: whoever learns leaves it out and says so.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recordings {
+    /// Dimensions of the state, n of them.
+    pub state: Vec<Channel>,
+    /// One entry a movement, in the order of the file.
+    pub episodes: Vec<Episode>,
+    /// What was found while reading; nothing of it prevented reading.
+    pub findings: Vec<Finding>,
+}
+
+/// A dimension of the state.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Channel {
+    /// As in the file.
+    pub name: String,
+    /// If the file or the user says.
+    pub unit: Option<String>,
+}
+
+/// One recorded movement of N samples.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Episode {
+    /// As in the file: "3", "take 3", "demo_3".
+    pub name: String,
+    /// Where it stands, for messages.
+    pub source: Source,
+    /// When each sample was taken, N of them; stamps ascend.
+    pub times: Times,
+    /// One column a sample, (n, N).
+    pub positions: DMatrix<f64>,
+    /// Units of the state per second, (n, N).
+    pub velocities: Option<DMatrix<f64>>,
+    /// Label of the constraint or task it was recorded under.
+    pub constraint: Option<String>,
+}
+
+/// Where an episode stands.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Source {
+    /// Name of the file, without folders; empty if there is none.
+    pub file: String,
+    /// Where its samples stand in the file; none where that says nothing.
+    pub rows: Option<Rows>,
+}
+
+/// Where samples stand in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rows {
+    /// What is counted: "line", "row", "message", "sample".
+    pub word: &'static str,
+    /// Of the first sample, counted from 1 as the format does.
+    pub first: u64,
+    /// Of the last.
+    pub last: u64,
+}
+
+impl Recordings {
+    /// The usual time between samples in seconds: the median over all episodes, put on the nearest whole rate (in Hz) or
+    /// whole number of milliseconds if that is within 0.1 %. A step that was given rather than measured (all stamps are
+    /// multiples of it) is taken as it is. 0 without a step.
+    pub fn time_step(&self) -> f64 {
+        let times = || self.episodes.iter().map(|episode| &episode.times);
+        let mut given = times().filter(|times| times.len() > 1).map(given_step);
+        if let Some(Some(first)) = given.next()
+            && given.all(|step| step == Some(first))
+        {
+            return first;
+        }
+        let total: usize = times().map(|times| times.len().saturating_sub(1)).sum();
+        let stride = total.div_ceil(MOST_STEPS).max(1);
+        on_grid(upper_median(times().flat_map(Times::steps).step_by(stride).collect()).unwrap_or(0.0))
+    }
+}
+
+/// The step of which all stamps are multiples.
+fn given_step(times: &Times) -> Option<f64> {
+    let step = times.seconds(0, 1);
+    (0..times.len()).all(|sample| times.seconds(0, sample) == sample as f64 * step).then_some(step)
+}
+
+/// The median is taken over at most so many steps.
+const MOST_STEPS: usize = 1_000_000;
+
+fn on_grid(step: f64) -> f64 {
+    let rate = 1.0 / (1.0 / step).round();
+    let milliseconds = (step * 1e3).round() * 1e-3;
+    let near = |candidate: f64| (candidate - step).abs() <= 1e-3 * step;
+    [rate, milliseconds].into_iter().find(|&candidate| near(candidate)).unwrap_or(step)
+}
+
+impl Episode {
+    /// Number of samples N.
+    pub fn n_samples(&self) -> usize {
+        self.times.len()
+    }
+
+    /// x_{i+1} − x_i, (n).
+    pub fn step(&self, sample: usize) -> DVector<f64> {
+        self.positions.column(sample + 1) - self.positions.column(sample)
+    }
+
+    /// Samples `from` to `to`, the last not included.
+    #[must_use]
+    pub fn part(&self, from: usize, to: usize) -> Episode {
+        let columns = |values: &DMatrix<f64>| values.columns(from, to - from).into_owned();
+        let at = |sample: usize| self.row(sample).map(|(_, row)| row);
+        let rows = self.source.rows.and_then(|rows| Some(Rows { first: at(from)?, last: at(to.max(1) - 1)?, ..rows }));
+        Episode {
+            name: self.name.clone(),
+            source: Source { file: self.source.file.clone(), rows },
+            times: self.times.part(from..to),
+            positions: columns(&self.positions),
+            velocities: self.velocities.as_ref().map(columns),
+            constraint: self.constraint.clone(),
+        }
+    }
+
+    /// With every channel multiplied by its factor, (n).
+    #[must_use]
+    pub fn scaled(&self, factors: &DVector<f64>) -> Episode {
+        let scaled = |values: &DMatrix<f64>| {
+            let mut values = values.clone();
+            values.column_iter_mut().for_each(|mut column| column.component_mul_assign(factors));
+            values
+        };
+        Episode {
+            name: self.name.clone(),
+            source: self.source.clone(),
+            times: self.times.clone(),
+            positions: scaled(&self.positions),
+            velocities: self.velocities.as_ref().map(scaled),
+            constraint: self.constraint.clone(),
+        }
+    }
+
+    /// As a learner takes it.
+    ///
+    /// # Errors
+    /// Whatever [`Trajectory`] refuses.
+    pub fn trajectory(&self) -> Result<Trajectory, MotionError> {
+        let states = self.positions.clone();
+        let trajectory = match &self.times {
+            Times::Even { step, .. } => Trajectory::new(states, *step)?,
+            Times::Stamped(stamps) => Trajectory::stamped(stamps.clone(), states)?,
+        };
+        match &self.velocities {
+            None => Ok(trajectory),
+            Some(velocities) => trajectory.with_velocities(velocities.clone()),
+        }
+    }
+
+    /// Where a sample stands: "demos.csv, line 17 (episode 1)".
+    pub fn place(&self, sample: usize) -> String {
+        let (name, file) = (&self.name, &self.source.file);
+        match self.row(sample) {
+            Some((word, row)) if word != "sample" => format!("{file}, {word} {row} (episode {name})"),
+            _ if file.is_empty() => format!("episode {name}, sample {sample}"),
+            _ => format!("{file}, episode {name}, sample {sample}"),
+        }
+    }
+
+    /// The row of a sample and what it is called, where rows are consecutive.
+    fn row(&self, sample: usize) -> Option<(&'static str, u64)> {
+        let rows = self.source.rows?;
+        (rows.last - rows.first + 1 == self.n_samples() as u64).then(|| (rows.word, rows.first + sample as u64))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn step_of(stamps: &[f64]) -> f64 {
+        let episode = Episode {
+            name: String::new(),
+            source: Source::default(),
+            times: Times::Stamped(stamps.to_vec()),
+            positions: DMatrix::zeros(1, stamps.len()),
+            velocities: None,
+            constraint: None,
+        };
+        Recordings { state: vec![], episodes: vec![episode], findings: vec![] }.time_step()
+    }
+
+    #[test]
+    fn measured_steps_are_put_on_a_grid_and_given_ones_are_not() {
+        let given = f64::from(0.05f32);
+        let multiples: Vec<f64> = (0..20).map(|sample| f64::from(sample) * given).collect();
+        assert_eq!(step_of(&multiples), given);
+        let single_precision: Vec<f64> = (0..20u8).map(|sample| f64::from(f32::from(sample) / 50.0)).collect();
+        assert_eq!(step_of(&single_precision), 0.02);
+        assert_eq!(step_of(&[0.0, 0.017, 0.034, 0.05]), 0.017);
+        assert_eq!(step_of(&[0.0, 0.0166, 0.03333, 0.05]), 1.0 / 60.0);
+        assert_eq!(step_of(&[0.0, 0.3, 0.59, 0.89]), 0.3);
+        assert_eq!(step_of(&[0.0]), 0.0);
+    }
+}

@@ -1,0 +1,116 @@
+//! What a reader or the preparation found reaches the model, the trust page, its JSON, `check` and the terminal.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+mod running;
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use running::{examples, run_in};
+use serde_json::Value;
+use tempfile::TempDir;
+
+fn folder(name: &str, content: impl AsRef<[u8]>) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join(name), content).unwrap();
+    folder
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// toy.csv with an episode of a single sample, and episode 3 once more under another name.
+fn odd() -> String {
+    let mut text = fs::read_to_string(examples().join("toy.csv")).unwrap();
+    let copy: Vec<String> =
+        text.lines().filter_map(|line| Some(format!("copy,{}", line.strip_prefix("3,")?))).collect();
+    assert!(copy.len() > 10);
+    let fields = copy[0].split(',').count() - 1;
+    writeln!(text, "single{}", ",0".repeat(fields)).unwrap();
+    copy.iter().for_each(|line| writeln!(text, "{line}").unwrap());
+    text
+}
+
+#[test]
+fn episodes_that_are_left_out_are_named_everywhere() {
+    let folder = folder("odd.csv", odd());
+    fs::copy(examples().join("toy.csv"), folder.path().join("toy.csv")).unwrap();
+    for name in ["toy", "odd"] {
+        let ran = run_in(folder.path(), &format!("fit {name}.csv -o {name}.json"));
+        assert_eq!(ran.code, Some(0), "{}", ran.err);
+    }
+    let read = |name: &str| json(&folder.path().join(name));
+    let (toy, odd) = (read("toy.json"), read("odd.json"));
+    assert_eq!(odd["learnt"], toy["learnt"]);
+    for left_out in [&odd["data"]["left_out"], &read("odd.trust.json")["left_out"]] {
+        let names: Vec<&str> =
+            left_out.as_array().unwrap().iter().map(|left| left["episode"].as_str().unwrap()).collect();
+        assert_eq!(names, ["single", "copy"]);
+    }
+    let page = fs::read_to_string(folder.path().join("odd.trust.html")).unwrap();
+    assert!(page.contains("single (only 1 sample)") && page.contains("copy (the same samples as episode 3)"), "{page}");
+    let checked: Value = serde_json::from_str(&run_in(folder.path(), "check odd.csv --json").out).unwrap();
+    assert_eq!(checked["left_out"], odd["data"]["left_out"]);
+    assert!(checked["findings"].to_string().contains("exact copies"));
+    // A converter keeps what it is given.
+    run_in(folder.path(), "convert odd.csv -o again.csv");
+    assert!(fs::read_to_string(folder.path().join("again.csv")).unwrap().contains("copy,"));
+    assert!(fs::read_to_string(folder.path().join("again.csv")).unwrap().contains("single,"));
+}
+
+/// A NumPy array (K, N, 2) of half precision: movements towards (1, 1).
+fn half_precision() -> Vec<u8> {
+    let (episodes, samples) = (10, 30);
+    let mut header =
+        format!("{{'descr': '<f2', 'fortran_order': False, 'shape': ({episodes}, {samples}, 2), }}").into_bytes();
+    header.resize(117, b' ');
+    header.push(b'\n');
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header);
+    for k in 0..episodes {
+        for i in 0..samples {
+            for axis in 0..2 {
+                let value = 1.0 + 0.9 * (-0.1 * i as f32).exp() * ((k * 2 + axis) as f32).sin();
+                // All values lie in [0.0625, 2): the exponent fits, and the mantissa is cut to ten bits.
+                let bits = value.to_bits();
+                let half = ((((bits >> 23) & 0xff) as i32 - 127 + 15) as u16) << 10 | ((bits >> 13) & 0x3ff) as u16;
+                bytes.extend(half.to_le_bytes());
+            }
+        }
+    }
+    bytes
+}
+
+#[test]
+fn what_a_reader_finds_is_told_once_and_stays_with_the_model() {
+    let toy = fs::read_to_string(examples().join("toy.csv")).unwrap();
+    let commas = toy.replace(',', ";").replace('.', ",");
+    let bag = folder("toy.csv", &toy);
+    assert_eq!(run_in(bag.path(), "convert toy.csv -o toy.mcap").code, Some(0));
+    let mut cut = fs::read(bag.path().join("toy.mcap")).unwrap();
+    cut.truncate(cut.len() * 2 / 3);
+    for (file, content, flags, words) in [
+        ("comma.csv", commas.into_bytes(), "", "decimal commas of comma.csv were read as points"),
+        ("half.npy", half_precision(), "--dt 0.05", "holds float16, 3 digits"),
+        ("cut.mcap", cut, "", "cut.mcap ends in the middle of a record"),
+    ] {
+        let folder = folder(file, content);
+        let ran = run_in(folder.path(), &format!("fit {file} {flags} -o model.json"));
+        assert!(matches!(ran.code, Some(0 | 1)), "{file}: {}", ran.err);
+        // Folded lines are one sentence.
+        let flat = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let count = |text: &str| flat(text).matches(words).count();
+        assert_eq!(count(&ran.err) + count(&ran.out), 1, "{file}:\n{}\n{}", ran.err, ran.out);
+        for written in ["model.json", "model.trust.json", "model.trust.html"] {
+            let text = fs::read_to_string(folder.path().join(written)).unwrap();
+            assert_eq!(count(&text), 1, "{file}, {written}");
+        }
+        let ran = run_in(folder.path(), &format!("check {file} {flags} --html check.html"));
+        assert_eq!(count(&ran.err) + count(&ran.out), 1, "{file}:\n{}\n{}", ran.err, ran.out);
+        assert_eq!(count(&fs::read_to_string(folder.path().join("check.html")).unwrap()), 1, "{file}");
+    }
+}

@@ -1,0 +1,38 @@
+use std::f64::consts::TAU;
+
+use motion::Verdict;
+
+use crate::StateChannel;
+use crate::notes::Notes;
+
+/// Says which channels seem to be angles in degrees.
+pub(crate) fn remark(state: &[StateChannel], notes: &mut Notes) {
+    let degrees: Vec<&str> =
+        state.iter().filter(|channel| in_degrees(channel)).map(|channel| channel.name.as_str()).collect();
+    if !degrees.is_empty() {
+        notes.found(
+            Verdict::Good,
+            format!("angles that seem to be in degrees: {}", degrees.join(", ")),
+            "--degrees with these names converts them, if others are in radians",
+        );
+    }
+}
+
+/// By its unit, else by its name, else a joint beyond what joints in radians reach.
+fn in_degrees(channel: &StateChannel) -> bool {
+    let name = channel.name.to_lowercase();
+    match channel.unit.as_deref().map(str::to_lowercase).as_deref() {
+        Some("deg" | "degree" | "degrees" | "°") => return true,
+        Some("") | None => {}
+        Some(_) => return false,
+    }
+    let numbered = |stem: &str| {
+        name.strip_prefix(stem)
+            .is_some_and(|rest| rest.bytes().all(|letter| letter.is_ascii_digit() || b"_[]".contains(&letter)))
+    };
+    let joint =
+        ["joint", "angle", "theta", "yaw", "pitch", "roll"].iter().any(|word| name.contains(word)) || numbered("q");
+    let named =
+        name.split(['_', '.', ' ', '[', '(', ']', ')']).any(|word| matches!(word, "deg" | "degree" | "degrees"));
+    named || (joint && channel.low.abs().max(channel.high.abs()) > 1.1 * TAU)
+}

@@ -1,0 +1,29 @@
+use motion::{Decision, Finding, LeftOut, Verdict};
+
+/// Decisions and findings collected while preparing.
+#[derive(Debug, Default)]
+pub(crate) struct Notes {
+    pub(crate) decisions: Vec<Decision>,
+    pub(crate) findings: Vec<Finding>,
+    pub(crate) left_out: Vec<LeftOut>,
+}
+
+impl Notes {
+    pub(crate) fn decided(&mut self, what: &str, value: impl Into<String>, why: impl Into<String>, flag: &str) {
+        let (what, flag) = (what.to_owned(), flag.to_owned());
+        self.decisions.push(Decision { what, value: value.into(), why: why.into(), flag });
+    }
+
+    pub(crate) fn found(&mut self, verdict: Verdict, what: impl Into<String>, next: impl Into<String>) {
+        self.findings.push(Finding { verdict, what: what.into(), next: next.into() });
+    }
+
+    pub(crate) fn left_out(&mut self, episode: &str, why: impl Into<String>) {
+        self.left_out.push(LeftOut { episode: episode.to_owned(), why: why.into() });
+    }
+}
+
+/// "", or " (and 3 more)" of four.
+pub(crate) fn and_more(count: usize) -> String {
+    if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() }
+}
