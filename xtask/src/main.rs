@@ -14,6 +14,7 @@ mod reproduce;
 mod revision;
 mod run_folder;
 mod runner;
+mod sources;
 mod tidy;
 
 use std::process::ExitCode;
