@@ -11,7 +11,7 @@ use super::contest::{Contest, Contestant};
 use super::exam::Protocol;
 use super::gaussians::Gaussians;
 use super::recipe::{HELD_OUT, Recipe};
-use super::settings::{Class, SILENT, Setting, TIME_STEP};
+use super::setting::{Class, SILENT, Setting, TIME_STEP};
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::Measure;
 use crate::paper::{explanations, paper_table};

@@ -7,7 +7,7 @@ use nalgebra::DVector;
 use super::Setup;
 use super::exam::Protocol;
 use super::pupil::Pupil;
-use super::settings::{Class, SILENT, Setting};
+use super::setting::{Class, SILENT, Setting};
 
 /// What the learners of an experiment have in common.
 #[derive(Debug, Clone)]

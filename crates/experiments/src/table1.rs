@@ -13,7 +13,7 @@ use super::exam::Protocol;
 use super::fresh::{add_errors, fresh};
 use super::gaussians::Gaussians;
 use super::recipe::{HELD_OUT, Recipe};
-use super::settings::{Class, SILENT, Setting};
+use super::setting::{Class, SILENT, Setting};
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::Measure;
 use crate::paper::{explanations, paper_table};

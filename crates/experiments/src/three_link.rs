@@ -12,7 +12,7 @@ use super::exam::{Protocol, TESTED_ON};
 use super::gaussians::Gaussians;
 use super::pupil::Pupil;
 use super::recipe::{HELD_OUT, Recipe};
-use super::settings::{Class, SILENT, Setting, TIME_STEP};
+use super::setting::{Class, SILENT, Setting, TIME_STEP};
 use super::{Experiment, Measures, Row, Setup, Trial};
 use crate::measure::{Measure, RowOf};
 use crate::paper::{explanations, paper_table};
