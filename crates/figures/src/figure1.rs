@@ -6,6 +6,7 @@ use nalgebra::{IsometryMatrix3, Point3, Vector3};
 use plot::{Camera, Dash, Item, Paint, Picture, Space, Stroke};
 use serde::{Deserialize, Serialize};
 
+use super::items::items;
 use super::shapes::{self, Kind, Shape};
 use super::sound::{self, Sound, some};
 use super::{Document, Drawing, Figure, Sources, rounded};
@@ -70,7 +71,7 @@ fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let view = |title: &str, width, over: Vec<Item>| Space {
         title: title.to_owned(),
         camera: Camera { azimuth: 38.0, elevation: 14.0 },
-        items: shapes::items(&robot.shapes, &IsometryMatrix3::identity(), |link| Part::of(link).paint()),
+        items: items(&robot.shapes, &IsometryMatrix3::identity(), |link| Part::of(link).paint()),
         over,
         frame: None,
         extent: None,

@@ -17,6 +17,7 @@ mod figure8;
 mod figure9;
 mod figure_b1;
 mod grasp_playback;
+mod items;
 mod legs;
 mod miniature;
 mod overview;

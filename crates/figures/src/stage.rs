@@ -8,6 +8,7 @@ use nalgebra::{DVector, DVectorView, IsometryMatrix3, Point3, Translation3, Vect
 use plot::{Item, Paint, Stroke};
 
 use super::grasp_playback::Scene;
+use super::items::items;
 use super::shapes;
 
 /// Plates reach from the ground to this height, metres.
@@ -45,7 +46,7 @@ impl Actor {
         let robot = self.body.robot();
         let poses = robot.forward_kinematics(DVectorView::from_slice(joints, joints.len()), &mut workspace)?;
         let moved = poses.pose(self.trunk) * self.at_rest.inverse();
-        Ok(shapes::items(&shapes::posed(robot, &poses)?, &moved, paint))
+        Ok(items(&shapes::posed(robot, &poses)?, &moved, paint))
     }
 }
 
