@@ -8,8 +8,9 @@ use crate::left_out::comparison::{difference, spread};
 use crate::report::identifiability::{Identifiability, LeastSeen};
 use crate::report::trust_report::{ModelKind, TrustReport};
 use crate::rows::kept::Kept;
+use crate::slope::candidate::Candidate;
 use crate::slope::model::SlopeModel;
-use crate::slope::search::{Candidate, Outcome};
+use crate::slope::search::Outcome;
 
 /// As large an error as that of the mean alone: a posterior that is wider says no more.
 pub(crate) const NOTHING_KNOWN: f64 = 1.0;

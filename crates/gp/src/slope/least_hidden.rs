@@ -3,8 +3,8 @@
 use crate::left_out::comparison::difference;
 use crate::left_out::curl_test::DIFFERS;
 use crate::rows::kept::Kept;
+use crate::slope::candidate::Candidate;
 use crate::slope::data::SlopeData;
-use crate::slope::search::Candidate;
 
 /// Step 8: of all levels of noise of the model with rotation that predict left-out movements, the policy that hides least,
 /// Σ|π̂|² at the rows. None where prediction decides: that model leaves more than a thousandth unpredicted; or it gives the

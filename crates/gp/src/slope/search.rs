@@ -1,41 +1,21 @@
 //! Families and rotation tried one after the other: steps 3 to 8 of a fit.
 
-use nalgebra::DMatrix;
-
 use crate::GpError;
-use crate::evidence::family_fit::{FamilyFit, each_until_exact};
-use crate::kernel::block::Block;
+use crate::evidence::family_fit::each_until_exact;
 use crate::kernel::family::Family;
-use crate::left_out::LeftOut;
-use crate::left_out::curl_test::{Contender, CurlTest, curl_t, takes_rotation};
-use crate::left_out::level::Level;
-use crate::report::trust_report::{FamilyNumbers, FamilyReport, ModelKind};
+use crate::left_out::curl_test::{CurlTest, curl_t, takes_rotation};
+use crate::report::trust_report::{FamilyReport, ModelKind};
 use crate::rows::kept::Kept;
 use crate::rows::noise_weights::slope_weights;
+use crate::slope::candidate::Candidate;
 use crate::slope::data::SlopeData;
-use crate::slope::expansion::Expansion;
 use crate::slope::least_hidden::least_hidden;
-use crate::slope::model::SlopeModel;
 use crate::slope::slope_gp::SlopeGp;
 
 /// First guess of the policy's length, in root mean squares of the speeds seen.
 const HIDDEN: f64 = 1.3;
 /// How often noise weights are taken anew from a policy with rotation.
 const ROUNDS: usize = 3;
-
-/// A model and how it came about.
-#[derive(Debug, Clone)]
-pub(crate) struct Candidate {
-    pub(crate) family: Family,
-    pub(crate) kind: ModelKind,
-    pub(crate) model: SlopeModel,
-    pub(crate) left_out: LeftOut,
-    /// π̂ at the rows, (n, M).
-    pub(crate) actions: DMatrix<f64>,
-    /// σ² by evidence, and what it was raised by.
-    found: f64,
-    kappa: f64,
-}
 
 /// The model taken, the one not taken, and everything tried.
 pub(crate) struct Outcome {
@@ -151,51 +131,4 @@ fn reweighted(
         (data, taken) = (anew, candidate);
     }
     Ok((data, taken))
-}
-
-impl Candidate {
-    fn new(
-        data: &SlopeData,
-        kept: &Kept,
-        (family, kind): (Family, ModelKind),
-        blocks: Vec<Block>,
-        fit: FamilyFit,
-    ) -> Self {
-        let Level { kappa, found, .. } = fit.level;
-        let left_out = fit.level.left_out.clone();
-        let model = data.model(blocks, fit);
-        let actions = model.actions(&kept.states);
-        Candidate { family, kind, model, left_out, actions, found, kappa }
-    }
-
-    /// The same model at those higher levels of noise that predict nearly exactly, one after the other.
-    pub(crate) fn raised<'a>(&'a self, data: &'a SlopeData, kept: &'a Kept) -> impl Iterator<Item = Candidate> + 'a {
-        let Expansion { blocks, amplitudes, .. } = self.model.expansion();
-        let fits = data.raised(blocks, amplitudes, (self.found, self.kappa));
-        let predicting = fits.filter(|fit| fit.level.left_out.is_nearly_exact());
-        predicting.map(|fit| Candidate::new(data, kept, (self.family, self.kind), blocks.clone(), fit))
-    }
-
-    pub(crate) fn contender(&self) -> Contender<'_> {
-        Contender { actions: &self.actions, left_out: &self.left_out }
-    }
-
-    /// |π̂| at the rows.
-    fn lengths(&self) -> Vec<f64> {
-        self.actions.column_iter().map(|action| action.norm()).collect()
-    }
-
-    fn report(&self) -> FamilyReport {
-        FamilyReport { family: self.family, model: self.kind, fit: Some(self.numbers()) }
-    }
-
-    fn numbers(&self) -> FamilyNumbers {
-        let expansion = self.model.expansion();
-        FamilyNumbers {
-            r_squared: self.left_out.r_squared,
-            kappa: self.kappa,
-            noise: expansion.speed * self.model.noise.sqrt(),
-            amplitudes: expansion.blocks.iter().copied().zip(expansion.amplitudes.iter().copied()).collect(),
-        }
-    }
 }
