@@ -1,6 +1,10 @@
 use roxmltree::Node;
 
-use super::{Element, UrdfCollision, UrdfJoint, UrdfProblem, UrdfWarning, geometry, joint, lenient, tag::children};
+use super::{
+    Element, UrdfCollision, UrdfJoint, UrdfProblem, UrdfWarning, geometry, joint, lenient,
+    tag::{children, name_of},
+    version::Version,
+};
 use crate::KinematicsError;
 
 /// The kinematics of a URDF, in document order. Every number is finite; names are not looked up yet.
@@ -12,34 +16,6 @@ pub(crate) struct UrdfRobot {
     /// Faults here are for those who ask for collision shapes; kinematics does not need them.
     pub(crate) collisions: Result<Vec<UrdfCollision>, KinematicsError>,
     pub(crate) warnings: Vec<UrdfWarning>,
-}
-
-/// The URDF version, which decides what two tags mean.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Version {
-    V1_0,
-    V1_1,
-    V1_2,
-}
-
-impl Version {
-    /// The version that `<robot>` gives, 1.0 where it gives none.
-    pub(super) fn of(given: Option<&str>) -> Result<Self, KinematicsError> {
-        match given.map(str::trim) {
-            None | Some("1" | "1.0") => Ok(Version::V1_0),
-            Some("1.1") => Ok(Version::V1_1),
-            Some("1.2") => Ok(Version::V1_2),
-            Some(found) => Err(KinematicsError::urdf(Element::Robot, UrdfProblem::Version { found: found.to_owned() })),
-        }
-    }
-
-    pub(super) fn has_quaternions(self) -> bool {
-        self >= Version::V1_1
-    }
-
-    pub(super) fn has_optional_bounds(self) -> bool {
-        self < Version::V1_2
-    }
 }
 
 /// Reads the tags of kinematics and collision and passes over all others.
@@ -87,15 +63,4 @@ fn read_robot(robot: Node<'_, '_>) -> Result<UrdfRobot, KinematicsError> {
         .map(|links| links.concat());
     let name = robot.attribute("name").unwrap_or_default().to_owned();
     Ok(UrdfRobot { name, links, joints, collisions, warnings })
-}
-
-pub(super) fn name_of(
-    node: Node<'_, '_>,
-    unnamed: impl FnOnce() -> Element,
-    attribute: &'static str,
-) -> Result<String, KinematicsError> {
-    match node.attribute("name") {
-        Some(name) if !name.is_empty() => Ok(name.to_owned()),
-        _ => Err(KinematicsError::urdf(unnamed(), UrdfProblem::MissingAttribute { attribute })),
-    }
 }

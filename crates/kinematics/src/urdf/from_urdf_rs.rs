@@ -5,10 +5,10 @@ use urdf_rs::{Joint, JointLimit, JointType, Link, Pose, Robot};
 
 use super::{
     Element, Geometry, JointKind, Mimic, UrdfCollision, UrdfJoint, UrdfMotion, UrdfProblem, UrdfRobot,
-    document::Version,
     joint::{direction, in_order},
     number::{bounded, each, finite, size},
     origin::fixed_axes,
+    version::Version,
 };
 use crate::KinematicsError;
 

@@ -2,10 +2,9 @@ use nalgebra::{IsometryMatrix3, Vector3};
 use roxmltree::Node;
 
 use super::{
-    Element, UrdfProblem, UrdfWarning,
-    document::Version,
-    number, origin,
+    Element, UrdfProblem, UrdfWarning, number, origin,
     tag::{Tag, children},
+    version::Version,
 };
 use crate::KinematicsError;
 

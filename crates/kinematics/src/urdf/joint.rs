@@ -2,10 +2,9 @@ use nalgebra::{IsometryMatrix3, Unit, Vector3};
 use roxmltree::Node;
 
 use super::{
-    Element, UrdfProblem, UrdfWarning,
-    document::{Version, name_of},
-    origin,
-    tag::Tag,
+    Element, UrdfProblem, UrdfWarning, origin,
+    tag::{Tag, name_of},
+    version::Version,
 };
 use crate::KinematicsError;
 

@@ -13,6 +13,7 @@ mod origin;
 mod problem;
 mod scan;
 pub(crate) mod tag;
+mod version;
 
 #[cfg(feature = "collision")]
 pub(crate) use document::parsed;
@@ -24,7 +25,7 @@ pub use geometry::Geometry;
 pub(crate) use geometry::UrdfCollision;
 pub use joint::JointKind;
 pub(crate) use joint::{Mimic, UrdfJoint, UrdfMotion};
-#[cfg(feature = "collision")]
-pub(crate) use number::LARGEST;
 pub(crate) use number::bounded;
+#[cfg(feature = "collision")]
+pub(crate) use problem::LARGEST;
 pub use problem::UrdfProblem;

@@ -1,10 +1,6 @@
 //! Which numbers a robot is made of.
 
-use super::UrdfProblem;
-
-/// Largest length (metres), angle (radians), scale or multiplier of a robot. No robot comes near it, and products of
-/// such numbers along a tree stay far from where floating point ends.
-pub(crate) const LARGEST: f64 = 1e6;
+use super::problem::{LARGEST, UrdfProblem};
 
 /// The number, which must be finite. `attribute` is `tag.attribute`.
 pub(super) fn finite(attribute: &'static str, value: f64) -> Result<f64, UrdfProblem> {

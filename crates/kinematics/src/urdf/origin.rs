@@ -1,6 +1,6 @@
 use nalgebra::{IsometryMatrix3, Quaternion, Rotation3, Translation3, UnitQuaternion};
 
-use super::{Element, UrdfProblem, UrdfWarning, document::Version, tag::Tag};
+use super::{Element, UrdfProblem, UrdfWarning, tag::Tag, version::Version};
 use crate::KinematicsError;
 
 /// Reads `<origin>`: metres, and either roll, pitch, yaw about the fixed axes x, y, z or, from version 1.1 on, a

@@ -1,7 +1,13 @@
 use thiserror::Error;
 
-use super::{number::LARGEST, scan::MOST_ATTRIBUTES};
 use crate::names::proposal;
+
+/// Largest length (metres), angle (radians), scale or multiplier of a robot. No robot comes near it, and products of
+/// such numbers along a tree stay far from where floating point ends.
+pub(crate) const LARGEST: f64 = 1e6;
+
+/// Attributes a tag may have. An XML reader compares each with all before it.
+pub(super) const MOST_ATTRIBUTES: usize = 256;
 
 /// The rule of URDF that a file breaks. Attributes are written `tag.attribute`.
 #[derive(Debug, Clone, PartialEq, Error)]

@@ -1,9 +1,6 @@
 //! Refuses texts that an XML reader would take very long to read.
 
-use super::UrdfProblem;
-
-/// Attributes a tag may have. An XML reader compares each with all before it.
-pub(super) const MOST_ATTRIBUTES: usize = 256;
+use super::problem::{MOST_ATTRIBUTES, UrdfProblem};
 
 /// Looks for declarations of entities and for tags of very many attributes. The text is without comments.
 pub(super) fn check(text: &str) -> Result<(), UrdfProblem> {

@@ -69,3 +69,15 @@ fn finite(attribute: &'static str, word: &str) -> Result<f64, UrdfProblem> {
     let number: f64 = word.parse().map_err(|_| UrdfProblem::Number { attribute, text: word.to_owned() })?;
     if number.is_finite() { Ok(number) } else { Err(UrdfProblem::NotFinite { attribute, text: word.to_owned() }) }
 }
+
+/// The name of a link or joint.
+pub(super) fn name_of(
+    node: Node<'_, '_>,
+    unnamed: impl FnOnce() -> Element,
+    attribute: &'static str,
+) -> Result<String, KinematicsError> {
+    match node.attribute("name") {
+        Some(name) if !name.is_empty() => Ok(name.to_owned()),
+        _ => Err(KinematicsError::urdf(unnamed(), UrdfProblem::MissingAttribute { attribute })),
+    }
+}
