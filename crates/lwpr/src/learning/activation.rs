@@ -5,7 +5,7 @@ use pulp::Simd;
 
 use crate::field::element::{Element, add_scaled};
 use crate::field::{Field, Layout};
-use crate::learning::activation_table::ActivationTable;
+use crate::learning::activation_table::{ActivationTable, distance};
 use crate::learning::memory::Seen;
 use crate::settings::Settings;
 use crate::settings::kernel::Activation;
@@ -68,7 +68,7 @@ impl Near {
     ) {
         self.clear(fields.len());
         if settings.narrow() {
-            table.look(simd, settings, x, squared_radius, self);
+            self.look_up(simd, settings, table, (x, squared_radius));
             return;
         }
         let from = match &seen {
@@ -94,6 +94,44 @@ impl Near {
             seen.n_compared = fields.len();
         }
         self.activate(simd, settings.params.kernel);
+    }
+
+    /// [`find`](Self::find) in the table of a narrow model. With two
+    /// dimensions, which the compiler then knows, arithmetic is shorter than loops around it.
+    #[inline(always)]
+    fn look_up<S: Simd>(&mut self, simd: S, settings: &Settings, table: &ActivationTable, sample: (&[f64], f64)) {
+        let kernel = settings.params.kernel;
+        match (settings.params.metric, settings.n_in) {
+            (Metric::Diagonal, 2) => self.look_up_with(simd, (Metric::Diagonal, 2), kernel, table, sample),
+            (Metric::Full, 2) => self.look_up_with(simd, (Metric::Full, 2), kernel, table, sample),
+            shape => self.look_up_with(simd, shape, kernel, table, sample),
+        }
+    }
+
+    /// [`look_up`](Self::look_up) for one kind of metric and one number of dimensions.
+    #[inline(always)]
+    fn look_up_with<S: Simd>(
+        &mut self,
+        simd: S,
+        (metric, n): (Metric, usize),
+        kernel: Kernel,
+        table: &ActivationTable,
+        (x, squared_radius): (&[f64], f64),
+    ) {
+        let mut largest = Register::splat(simd, 0.0);
+        let mut dx = [[0.0; LANES]; LANES];
+        for (b, block) in table.blocks.chunks_exact(n + metric.len(n)).enumerate() {
+            let (centres, elements) = block.split_at(n);
+            let mut q = [0.0; LANES];
+            for part in 0..Register::<S>::parts() {
+                for ((dx, centre), &x) in dx.iter_mut().zip(centres).zip(&x[..n]) {
+                    (Register::splat(simd, x) - Register::load(simd, centre, part)).store(dx, part);
+                }
+                distance(simd, metric, (&dx[..n], elements), part).store(&mut q, part);
+            }
+            largest = self.see_group(kernel, (b, &q), squared_radius, largest);
+        }
+        self.all_seen(largest);
     }
 
     /// Takes over what is known of a sample. Returns with how many fields it has been compared.
@@ -170,7 +208,7 @@ impl Near {
     /// [`see`](Self::see) and [`activate`](Self::activate) for the eight fields of group `g` of a narrow model. Returns the
     /// larger of their activations and `largest`.
     #[inline(always)]
-    pub(super) fn see_group<S: Simd>(
+    fn see_group<S: Simd>(
         &mut self,
         kernel: Kernel,
         (g, q): (usize, &Lanes),
@@ -201,7 +239,7 @@ impl Near {
 
     /// All fields of a narrow model have been seen.
     #[inline(always)]
-    pub(super) fn all_seen<S: Simd>(&mut self, largest: Register<S>) {
+    fn all_seen<S: Simd>(&mut self, largest: Register<S>) {
         (self.among_all, self.largest) = (true, largest.largest());
     }
 

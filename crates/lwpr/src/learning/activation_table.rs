@@ -3,10 +3,9 @@
 use lanes::{LANES, Lanes, Number, Register};
 use pulp::Simd;
 
+use crate::Metric;
 use crate::field::Field;
-use crate::learning::activation::Near;
 use crate::settings::{Settings, padded};
-use crate::{Kernel, Metric};
 
 /// Centres and metrics of all fields, in blocks of eight: for each dimension eight centres, then, eight by eight, what
 /// decides about distances ([`distance`]).
@@ -14,7 +13,7 @@ use crate::{Kernel, Metric};
 /// With many dimensions the table is empty: M is read from the fields themselves.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct ActivationTable {
-    blocks: Vec<Lanes>,
+    pub(super) blocks: Vec<Lanes>,
 }
 
 impl ActivationTable {
@@ -69,50 +68,17 @@ impl ActivationTable {
             self.blocks[start..start + n].iter_mut().for_each(|centres| centres[k % LANES] = f64::INFINITY);
         }
     }
-
-    /// Takes note of every field whose squared distance from `x` is below `squared_radius`, in list order. With two
-    /// dimensions, which the compiler then knows, arithmetic is shorter than loops around it.
-    #[inline(always)]
-    pub(super) fn look<S: Simd>(&self, simd: S, settings: &Settings, x: &[f64], squared_radius: f64, near: &mut Near) {
-        let (kernel, sample) = (settings.params.kernel, (x, squared_radius));
-        match (settings.params.metric, settings.n_in) {
-            (Metric::Diagonal, 2) => self.look_with(simd, (Metric::Diagonal, 2), kernel, sample, near),
-            (Metric::Full, 2) => self.look_with(simd, (Metric::Full, 2), kernel, sample, near),
-            shape => self.look_with(simd, shape, kernel, sample, near),
-        }
-    }
-
-    /// [`look`](Self::look) for one kind of metric and one number of dimensions.
-    #[inline(always)]
-    fn look_with<S: Simd>(
-        &self,
-        simd: S,
-        (metric, n): (Metric, usize),
-        kernel: Kernel,
-        (x, squared_radius): (&[f64], f64),
-        near: &mut Near,
-    ) {
-        let mut largest = Register::splat(simd, 0.0);
-        let mut dx = [[0.0; LANES]; LANES];
-        for (b, block) in self.blocks.chunks_exact(n + metric.len(n)).enumerate() {
-            let (centres, elements) = block.split_at(n);
-            let mut q = [0.0; LANES];
-            for part in 0..Register::<S>::parts() {
-                for ((dx, centre), &x) in dx.iter_mut().zip(centres).zip(&x[..n]) {
-                    (Register::splat(simd, x) - Register::load(simd, centre, part)).store(dx, part);
-                }
-                distance(simd, metric, (&dx[..n], elements), part).store(&mut q, part);
-            }
-            largest = near.see_group(kernel, (b, &q), squared_radius, largest);
-        }
-        near.all_seen(largest);
-    }
 }
 
 /// q = |M(x − c)|² of eight pairs of a sample and a field side by side, from the eight D of each dimension, or with a full
 /// metric from the eight numbers of each element in the upper triangle of M, row after row.
 #[inline(always)]
-fn distance<S: Simd>(simd: S, shape: Metric, (dx, metric): (&[Lanes], &[Lanes]), part: usize) -> Register<S> {
+pub(super) fn distance<S: Simd>(
+    simd: S,
+    shape: Metric,
+    (dx, metric): (&[Lanes], &[Lanes]),
+    part: usize,
+) -> Register<S> {
     let mut q = Register::splat(simd, 0.0);
     if shape == Metric::Diagonal {
         for (dx, d) in dx.iter().zip(metric) {

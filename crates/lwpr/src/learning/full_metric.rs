@@ -4,7 +4,7 @@ use lanes::Number;
 
 use crate::field::MetricRows;
 use crate::field::element::{Element, add_scaled};
-use crate::learning::metric::{Derivatives, ElementRows, Step};
+use crate::learning::step::{Derivatives, ElementRows, Step};
 
 /// Scratch rows: M(x − c); a column of MD, the gradient of the penalty; the Gram matrix M Mᵀ (`n_in` rows; empty for a
 /// diagonal metric).

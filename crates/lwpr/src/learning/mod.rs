@@ -11,4 +11,5 @@ mod metric;
 pub(crate) mod passes;
 mod regression;
 pub(crate) mod rules;
+mod step;
 pub(crate) mod sub_model;

@@ -4,7 +4,7 @@ use lanes::{LANES, Number, Register, total};
 use pulp::Simd;
 
 use super::field_table::{FieldTable, NOISE, NOISE_KNOWN};
-use super::sweep::Active;
+use super::query::Active;
 
 /// √(Σ w σ² + Σ w (y − `value`)²), with variances σ² = Γ(1 + w Σ s²/Σ w s²); fields without errors add their spread, but no
 /// noise of their own. Infinite if none has errors. A separate function, compiled once for all numbers of dimensions.

@@ -5,7 +5,7 @@ use pulp::Simd;
 
 use super::distance::{differences, turned};
 use super::field_table::FieldTable;
-use super::sweep::{Active, Query, Scale};
+use super::query::{Active, Query, Scale};
 use crate::Kernel;
 
 /// Writes the second derivative: Σ (y − `value`)(4 w″ vvᵀ + 2 w′ D) + Σ 2 w′ (v sᵀ + s vᵀ), less g aᵀ + a gᵀ with the

@@ -7,6 +7,7 @@ mod hessian;
 mod live;
 mod local_model;
 mod predictor;
+mod query;
 mod record;
 mod sweep;
 

@@ -4,8 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::field_table::FieldTable;
 use super::local_model::LocalModel;
+use super::query::{Query, Scale};
 use super::record::PredictorRecord;
-use super::sweep::{Query, Scale, Wanted, sweep};
+use super::sweep::{Wanted, sweep};
 use super::{Prediction, is_query};
 use crate::error::Side;
 use crate::{Lwpr, LwprError};
@@ -51,9 +52,26 @@ impl Lwpr {
     }
 }
 
+impl TryFrom<PredictorRecord> for Predictor {
+    type Error = LwprError;
+
+    fn try_from(record: PredictorRecord) -> Result<Self, LwprError> {
+        match record.check() {
+            Ok(()) => Ok(Predictor::from_record(record)),
+            Err(reason) => Err(LwprError::Corrupt { reason: reason.to_owned() }),
+        }
+    }
+}
+
+impl From<Predictor> for PredictorRecord {
+    fn from(predictor: Predictor) -> Self {
+        predictor.record()
+    }
+}
+
 impl Predictor {
     /// From a record that has been checked.
-    pub(super) fn from_record(record: PredictorRecord) -> Self {
+    fn from_record(record: PredictorRecord) -> Self {
         let PredictorRecord { kernel, cutoff, norm_in, norm_out, outputs } = record;
         let fields =
             |models: Vec<LocalModel>| OutputFields { table: FieldTable::new(norm_in.len(), &models, cutoff), models };
@@ -71,7 +89,7 @@ impl Predictor {
         }
     }
 
-    pub(super) fn record(&self) -> PredictorRecord {
+    fn record(&self) -> PredictorRecord {
         PredictorRecord {
             kernel: self.scale.kernel,
             cutoff: self.cutoff,

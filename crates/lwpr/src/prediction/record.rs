@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::local_model::LocalModel;
-use crate::{Kernel, LwprError, Predictor};
+use crate::Kernel;
 
-/// Everything a [`Predictor`] is made from.
+/// Everything a [`Predictor`](crate::Predictor) is made from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PredictorRecord {
@@ -17,7 +17,7 @@ pub(super) struct PredictorRecord {
 }
 
 impl PredictorRecord {
-    fn check(&self) -> Result<(), &'static str> {
+    pub(super) fn check(&self) -> Result<(), &'static str> {
         let n = self.norm_in.len();
         let positive = |norm: &[f64]| !norm.is_empty() && norm.iter().all(|&norm| norm > 0.0 && norm.is_finite());
         let models = || self.outputs.iter().flatten();
@@ -39,21 +39,4 @@ impl PredictorRecord {
 /// Whether the metrics are all diagonal or all full.
 fn have_one_shape(models: &[LocalModel]) -> bool {
     models.windows(2).all(|pair| pair[0].metric.len() == pair[1].metric.len())
-}
-
-impl TryFrom<PredictorRecord> for Predictor {
-    type Error = LwprError;
-
-    fn try_from(record: PredictorRecord) -> Result<Self, LwprError> {
-        match record.check() {
-            Ok(()) => Ok(Predictor::from_record(record)),
-            Err(reason) => Err(LwprError::Corrupt { reason: reason.to_owned() }),
-        }
-    }
-}
-
-impl From<Predictor> for PredictorRecord {
-    fn from(predictor: Predictor) -> Self {
-        predictor.record()
-    }
 }

@@ -9,27 +9,9 @@ use super::confidence::Confidence;
 use super::distance::{diagonal_distance, differences, full_distance, turned};
 use super::field_table::{BlockShape, CUTOFF, FieldTable};
 use super::hessian::Hessian;
+use super::query::{Active, Query, Scale};
 use crate::Kernel;
 use crate::field::rows::Rows;
-
-/// Data shared by all queries of a snapshot.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Scale {
-    pub(super) kernel: Kernel,
-    /// Squared distance beyond which activations are below the cutoff.
-    pub(super) squared_radius: f64,
-    /// 1 / `norm_in`: a division costs as much as ten products.
-    pub(super) per_norm_in: Vec<f64>,
-}
-
-/// A question to one output.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Query<'a> {
-    pub(super) table: &'a FieldTable,
-    pub(super) scale: &'a Scale,
-    pub(super) x: &'a [f64],
-    pub(super) norm_out: f64,
-}
 
 /// Requested quantities besides the value. All answers are in the units of inputs and outputs.
 #[derive(Debug, Default)]
@@ -42,17 +24,6 @@ pub(super) struct Wanted<'a> {
     pub(super) confidence: Option<&'a mut f64>,
     /// Activation of the nearest field, whether it takes part or not; answered without support too.
     pub(super) max_activation: Option<&'a mut f64>,
-}
-
-/// A block with activated fields: squared distances, activations, 2 dw/dq, local predictions.
-#[derive(Debug, Clone, Copy, Default)]
-#[repr(align(64))]
-pub(super) struct Active {
-    pub(super) q: Lanes,
-    pub(super) w: Lanes,
-    pub(super) dw: Lanes,
-    pub(super) y: Lanes,
-    pub(super) block: usize,
 }
 
 /// Memory of a query; each thread has one, so that none allocates more than once.
