@@ -1,12 +1,8 @@
 use motion::{Demonstrations, SampleIndex};
 use nalgebra::{DVector, DVectorView};
-use rand::Rng;
 
 use crate::levelling::bipartition::Partition;
-use crate::{
-    AlignError, AlignmentObjective, LocalPotential, LwprRegressor, Origin, PotentialPolicy, Regressor, Samples, Split,
-    Warning,
-};
+use crate::{AlignmentObjective, LocalPotential, Split, Warning};
 
 /// Aligned local potentials, the result of [`PolicyAlign::align`](crate::PolicyAlign::align).
 #[derive(Debug, Clone, PartialEq)]
@@ -125,52 +121,10 @@ impl Aligned {
         &weights / weights.sum()
     }
 
-    /// The samples (x_kn, φ̂_kn + b_k) of the kept trajectories (23).
-    pub fn samples(&self) -> Samples<'_> {
-        Samples::new(self, self.demonstrations.samples_of(self.kept()))
-    }
-
     /// State and levelled potential of one sample of a kept trajectory.
     pub(crate) fn sample(&self, index: SampleIndex) -> (DVectorView<'_, f64>, f64) {
         let offset = self.offset(index.trajectory).expect("samples are of kept trajectories");
         let state = self.demonstrations.trajectories()[index.trajectory].state(index.sample);
         (state, self.potentials[index.trajectory][index.sample] + offset)
-    }
-
-    /// Learns the policy from all samples of the kept trajectories.
-    ///
-    /// # Errors
-    /// [`AlignError::Lwpr`] for parameters out of range.
-    pub fn learn(&self, regressor: &LwprRegressor, rng: &mut dyn Rng) -> Result<PotentialPolicy, AlignError> {
-        self.learn_without(&[], regressor, rng)
-    }
-
-    /// Learns the policy from all samples of the kept trajectories but those held out.
-    ///
-    /// # Errors
-    /// As [`Aligned::learn`], and [`AlignError::NoSamples`] if none is left.
-    pub fn learn_without(
-        &self,
-        held_out: &[SampleIndex],
-        regressor: &LwprRegressor,
-        rng: &mut dyn Rng,
-    ) -> Result<PotentialPolicy, AlignError> {
-        let potential = self.regress(regressor, &self.samples().without(held_out), rng)?;
-        let warnings = self.warnings.iter().map(ToString::to_string).collect();
-        let origin = Origin { kept: Some(self.kept().to_vec()), warnings, ..Origin::new(&self.demonstrations) };
-        Ok(PotentialPolicy::new(potential, origin))
-    }
-
-    /// Learns the global potential (23) from all or some of the samples, by any regressor.
-    ///
-    /// # Errors
-    /// Those of the regressor.
-    pub fn regress<G: Regressor + ?Sized>(
-        &self,
-        regressor: &G,
-        samples: &Samples<'_>,
-        rng: &mut dyn Rng,
-    ) -> Result<G::Fitted, G::Error> {
-        regressor.fit(&samples.states(), &samples.values(), rng)
     }
 }

@@ -10,6 +10,13 @@ pub struct Samples<'a> {
     indices: Vec<SampleIndex>,
 }
 
+impl Aligned {
+    /// The samples (x_kn, φ̂_kn + b_k) of the kept trajectories (23).
+    pub fn samples(&self) -> Samples<'_> {
+        Samples::new(self, self.demonstrations().samples_of(self.kept()))
+    }
+}
+
 impl<'a> Samples<'a> {
     pub(crate) fn new(aligned: &'a Aligned, indices: Vec<SampleIndex>) -> Self {
         Samples { aligned, indices }

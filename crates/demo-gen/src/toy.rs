@@ -5,16 +5,7 @@ use rand_distr::StandardNormal;
 use serde::Serialize;
 
 use crate::recording::{check_start_range, record_each};
-use crate::{DemoGenError, Recording, RollOut, ToyPotential};
-
-/// When a trajectory of the toy system gets a new constraint.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub enum Redraw {
-    /// At every so many samples, the first draw at sample 0.
-    Every(usize),
-    /// At the start of each of so many segments, which are as equal in length as whole samples allow.
-    Segments(usize),
-}
+use crate::{DemoGenError, Recording, Redraw, RollOut, ToyPotential};
 
 impl Redraw {
     /// The samples from which a new constraint holds.

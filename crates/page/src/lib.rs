@@ -32,5 +32,5 @@ pub use document::{Document, Part};
 pub use emphasis::emphasised;
 pub use figure::{Card, name};
 pub use markdown::markdown_table;
-pub use scale::Scale;
-pub use strip::{Reference, Strip, axis, key};
+pub use scale::{Reference, Scale};
+pub use strip::{Strip, axis, key};

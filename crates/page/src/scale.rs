@@ -1,7 +1,5 @@
 //! The scale that the strips of one measure share.
 
-use crate::Reference;
-
 /// Largest over smallest value from which a scale is logarithmic.
 const WIDE: f64 = 30.0;
 
@@ -16,6 +14,15 @@ const LETTERS: usize = 22;
 
 /// Decades from which only whole ones are ticked.
 const MANY_DECADES: f64 = 1.7;
+
+/// What somebody else reports: a band of one standard deviation around a mean.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reference {
+    /// The reported mean.
+    pub mean: f64,
+    /// The reported standard deviation.
+    pub sd: f64,
+}
 
 /// Places values on a strip.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::Scale;
+use crate::{Reference, Scale};
 
 /// Pixels of the drawing.
 const WIDTH: f64 = 190.0;
@@ -30,15 +30,6 @@ pub struct Strip<'a> {
     pub reference: Option<Reference>,
     /// How a value is written.
     pub show: &'a dyn Fn(f64) -> String,
-}
-
-/// What somebody else reports: a band of one standard deviation around a mean.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reference {
-    /// The reported mean.
-    pub mean: f64,
-    /// The reported standard deviation.
-    pub sd: f64,
 }
 
 impl Strip<'_> {

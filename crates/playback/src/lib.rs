@@ -18,14 +18,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Where to look: `palm_tracking` the movement, `palm_control` one correction of a configuration, `link_gaps` what keeps
+//! Where to look: `joint_path` the movement, `palm_control` one correction of a configuration, `link_gaps` what keeps
 //! links apart, `task` rows of Jacobians with the rates asked of them.
 
 mod error;
+mod joint_path;
 mod link_gaps;
 mod palm_control;
 mod palm_tracking;
 mod task;
 
 pub use error::PlaybackError;
-pub use palm_tracking::{JointPath, PalmTracking};
+pub use joint_path::JointPath;
+pub use palm_tracking::PalmTracking;

@@ -64,5 +64,6 @@ pub use fusion::{Fused, FusedMovement, Fusion};
 pub use increments::StepRule;
 pub use noise::PositionNoise;
 pub use savitzky_golay::SavitzkyGolay;
+pub use scaled::AxisScale;
 pub use smoothed::{Smoothed, SmoothedMovement};
-pub use smoother::{AxisScale, NoiseVariance, Smoother};
+pub use smoother::{NoiseVariance, Smoother};

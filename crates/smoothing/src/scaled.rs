@@ -2,8 +2,18 @@
 
 use motion::{Demonstrations, Trajectory};
 use nalgebra::DVector;
+use serde::Serialize;
 
-use crate::{AxisScale, SmoothingError};
+use crate::SmoothingError;
+
+/// Divisor of each axis before smoothing.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub enum AxisScale {
+    /// Its standard deviation over all samples.
+    StandardDeviation,
+    /// As given, (n), all positive: where the sensors' noise is known per axis.
+    Given(DVector<f64>),
+}
 
 /// All movements in scaled axes, and their scales.
 #[derive(Debug)]

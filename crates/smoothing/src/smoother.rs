@@ -1,5 +1,4 @@
 use motion::{Demonstrations, Trajectory};
-use nalgebra::DVector;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -7,7 +6,7 @@ use crate::SmoothingError;
 use crate::averages::Averages;
 use crate::evidence::NoiseModel;
 use crate::noise_by_evidence::{most_likely, some_energies};
-use crate::scaled::{Scaled, ScaledMovement};
+use crate::scaled::{AxisScale, Scaled, ScaledMovement};
 use crate::segmentation::Segmentation;
 use crate::smoothed::{Smoothed, SmoothedMovement};
 use crate::windows::{Bases, Energy, MAX_COLUMNS, energies};
@@ -29,15 +28,6 @@ pub struct Smoother {
     pub axis_scale: AxisScale,
     /// The variance of that noise.
     pub noise: NoiseVariance,
-}
-
-/// Divisor of each axis before smoothing.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub enum AxisScale {
-    /// Its standard deviation over all samples.
-    StandardDeviation,
-    /// As given, (n), all positive: where the sensors' noise is known per axis.
-    Given(DVector<f64>),
 }
 
 /// The variance of the noise: estimated or given.

@@ -3,7 +3,7 @@ use motion::{LearntPolicy, Policy};
 use nalgebra::{DVectorView, DVectorViewMut};
 use serde::{Deserialize, Serialize};
 
-use super::policy_record::PolicyRecord;
+use super::policy_record::{Format, PolicyRecord};
 use super::regression::support;
 use crate::{AlignError, Label, Origin};
 
@@ -71,5 +71,20 @@ impl LearntPolicy for DirectPolicy {
     /// the cutoff in some dimension.
     fn support(&self, state: DVectorView<'_, f64>) -> f64 {
         support(&self.regression, state)
+    }
+}
+
+impl From<DirectPolicy> for PolicyRecord {
+    fn from(policy: DirectPolicy) -> Self {
+        PolicyRecord::new(Format::Direct, policy.origin(), policy.regression())
+    }
+}
+
+impl TryFrom<PolicyRecord> for DirectPolicy {
+    type Error = AlignError;
+
+    fn try_from(record: PolicyRecord) -> Result<Self, AlignError> {
+        let (origin, regression) = record.check(Format::Direct, |dim| dim)?;
+        Ok(DirectPolicy::new(regression, origin))
     }
 }

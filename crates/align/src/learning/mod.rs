@@ -4,6 +4,7 @@ mod direct_policy;
 mod direct_policy_learning;
 mod global_potential;
 mod lwpr_regressor;
+mod of_aligned;
 mod origin;
 mod policy_record;
 mod potential_policy;

@@ -3,7 +3,7 @@
 use lwpr::StandardisedModel;
 use serde::{Deserialize, Serialize};
 
-use crate::{AlignError, DirectPolicy, GlobalPotential, Origin, PotentialPolicy};
+use crate::{AlignError, Origin};
 
 /// The form that is written; a program reads this and all before it.
 const VERSION: u32 = 1;
@@ -21,7 +21,7 @@ pub(crate) struct PolicyRecord {
 
 /// Which kind of policy it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-enum Format {
+pub(super) enum Format {
     #[serde(rename = "potential policy")]
     Potential,
     #[serde(rename = "direct policy")]
@@ -47,13 +47,17 @@ impl From<Version> for u32 {
 }
 
 impl PolicyRecord {
-    fn new(format: Format, origin: &Origin, regression: &StandardisedModel) -> Self {
+    pub(super) fn new(format: Format, origin: &Origin, regression: &StandardisedModel) -> Self {
         let (origin, regression) = (origin.clone(), regression.clone());
         PolicyRecord { format, version: Version, dim: regression.n_in(), origin, regression }
     }
 
     /// Origin and regression of a policy of this format, with so many outputs for n inputs.
-    fn check(self, format: Format, n_out: impl Fn(usize) -> usize) -> Result<(Origin, StandardisedModel), AlignError> {
+    pub(super) fn check(
+        self,
+        format: Format,
+        n_out: impl Fn(usize) -> usize,
+    ) -> Result<(Origin, StandardisedModel), AlignError> {
         let PolicyRecord { format: found, dim, origin, regression, .. } = self;
         let checks = [
             (found == format, "it is a policy of the other kind: potential or direct"),
@@ -65,35 +69,5 @@ impl PolicyRecord {
             Ok(()) => Ok((origin, regression)),
             Err(reason) => Err(AlignError::CorruptPolicy { reason }),
         }
-    }
-}
-
-impl From<PotentialPolicy> for PolicyRecord {
-    fn from(policy: PotentialPolicy) -> Self {
-        PolicyRecord::new(Format::Potential, policy.origin(), policy.global_potential().regression())
-    }
-}
-
-impl TryFrom<PolicyRecord> for PotentialPolicy {
-    type Error = AlignError;
-
-    fn try_from(record: PolicyRecord) -> Result<Self, AlignError> {
-        let (origin, regression) = record.check(Format::Potential, |_| 1)?;
-        Ok(PotentialPolicy::new(GlobalPotential::new(regression), origin))
-    }
-}
-
-impl From<DirectPolicy> for PolicyRecord {
-    fn from(policy: DirectPolicy) -> Self {
-        PolicyRecord::new(Format::Direct, policy.origin(), policy.regression())
-    }
-}
-
-impl TryFrom<PolicyRecord> for DirectPolicy {
-    type Error = AlignError;
-
-    fn try_from(record: PolicyRecord) -> Result<Self, AlignError> {
-        let (origin, regression) = record.check(Format::Direct, |dim| dim)?;
-        Ok(DirectPolicy::new(regression, origin))
     }
 }

@@ -2,7 +2,7 @@ use motion::{LearntPolicy, NegativeGradient, Policy, Potential};
 use nalgebra::{DVectorView, DVectorViewMut};
 use serde::{Deserialize, Serialize};
 
-use super::policy_record::PolicyRecord;
+use super::policy_record::{Format, PolicyRecord};
 use super::regression::support;
 use crate::{AlignError, GlobalPotential, Label, Origin};
 
@@ -79,5 +79,20 @@ impl LearntPolicy for PotentialPolicy {
 
     fn warnings(&self) -> Vec<String> {
         self.origin.warnings.clone()
+    }
+}
+
+impl From<PotentialPolicy> for PolicyRecord {
+    fn from(policy: PotentialPolicy) -> Self {
+        PolicyRecord::new(Format::Potential, policy.origin(), policy.global_potential().regression())
+    }
+}
+
+impl TryFrom<PolicyRecord> for PotentialPolicy {
+    type Error = AlignError;
+
+    fn try_from(record: PolicyRecord) -> Result<Self, AlignError> {
+        let (origin, regression) = record.check(Format::Potential, |_| 1)?;
+        Ok(PotentialPolicy::new(GlobalPotential::new(regression), origin))
     }
 }
