@@ -6,8 +6,8 @@ use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 use super::item::WORDS;
 use super::legend;
+use super::lines::{area, polyline};
 use super::view::{Extent, Room, View, corners};
-use super::words::{area, polyline};
 use crate::ticks::{decimals, ticks};
 
 /// A box with axes.

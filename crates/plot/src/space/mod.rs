@@ -6,9 +6,11 @@
 
 mod camera;
 mod cast;
+mod extents;
 mod frame;
 mod item;
 mod legend;
+mod lines;
 mod shade;
 mod solid;
 mod stroke;

@@ -6,9 +6,9 @@ use nalgebra::{Point2, Point3, Vector2};
 
 use super::cast::{Body, seen};
 use super::item::Item;
+use super::lines::{area, disc, polyline};
 use super::shade::{Rgb, color, rgb};
 use super::view::View;
-use super::words::{area, disc, polyline};
 use crate::dashes::dashed;
 use crate::{Dash, Stroke};
 
