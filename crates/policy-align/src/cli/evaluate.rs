@@ -12,10 +12,9 @@ use serde_json::json;
 
 use super::config::Config;
 use super::failure::{Exit, Failure};
-use super::fit::load;
 use super::flags::{PrepareFlags, ReadFlags};
 use super::lines::{Lines, counted, short, squared_error};
-use super::recorded::{named, read, summaries};
+use super::recorded::{load, named, read, summaries};
 use super::session::{Said, Session};
 
 /// Constraints that are listed, at most.

@@ -6,9 +6,9 @@ use policy_align::{CSource, ExportError, Model, Precision, spread_starts, to_onn
 
 use super::config::Config;
 use super::failure::{Exit, Failure, shown};
-use super::fit::load;
 use super::flags::numbers;
 use super::lines::{Lines, counted, list, size};
+use super::recorded::load;
 use super::rollout::{followed, write_paths};
 use super::rollout_flags::RollOutFlags;
 use super::session::{Said, Session};

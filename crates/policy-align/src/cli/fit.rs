@@ -1,4 +1,4 @@
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use clap::Args;
@@ -11,6 +11,7 @@ use super::clock::now;
 use super::config::{Config, printed};
 use super::failure::{Exit, Failure};
 use super::flags::{FitFlags, PrepareFlags, ReadFlags};
+use super::in_words::verdict;
 use super::lines::{Lines, counted, size, squared_error};
 use super::recorded::{base_name, named, read, summaries, unsaid};
 use super::session::{Said, Session};
@@ -166,15 +167,6 @@ impl Fit {
     }
 }
 
-/// The verdict in words.
-pub(crate) fn verdict(model: &Model) -> &'static str {
-    match model.trust.verdict {
-        Verdict::Good => "good: all checks passed",
-        Verdict::Doubtful => "doubtful: read the findings before using it",
-        Verdict::DoNotUse => "do not use",
-    }
-}
-
 /// Episodes to learn from, and those held out.
 fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Recordings, Option<Recordings>), Failure> {
     if names.is_empty() {
@@ -200,9 +192,4 @@ fn judged(held_out: &Recordings, options: &policy_align::PrepareOptions, model: 
     let prepared = prepare(held_out, options).map_err(|error| Failure::prepare(&error, "--hold-out".to_owned()))?;
     evaluate(model.learnt.policy(), &prepared, None)
         .map_err(|error| Failure::new(Exit::Refused, error.to_string(), "--hold-out", "other episodes"))
-}
-
-/// Reads a model that a command names.
-pub(crate) fn load(path: &Path) -> Result<Model, Failure> {
-    Model::load(path).map_err(|error| Failure::model(path, &error))
 }

@@ -1,13 +1,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use policy_align::{Learnt, Model};
 use serde_json::json;
 
 use super::check::findings;
 use super::failure::Failure;
-use super::fit::{load, verdict};
+use super::in_words::{learner, verdict};
 use super::lines::{Lines, counted, short};
+use super::recorded::load;
 use super::session::{Said, Session};
 
 /// Describe a model
@@ -59,22 +59,5 @@ impl Info {
         findings(&model.trust.findings, 4, &mut lines);
         let middle: Vec<String> = model.state.iter().map(|channel| short(channel.median)).collect();
         Ok(Said::done(lines.next(&format!("policy-align predict {} --at {}", self.model.display(), middle.join(",")))))
-    }
-}
-
-/// What learnt it, in words.
-pub(crate) fn learner(model: &Model) -> String {
-    match &model.learnt {
-        Learnt::PolicyAlign(policy) => {
-            let fields = policy.global_potential().regression().model().receptive_fields(0).count();
-            format!("aligned potentials and LWPR, {}", counted(fields, "receptive field"))
-        }
-        Learnt::Slope(_) => "slope GP: a potential, from its slopes along the movements".to_owned(),
-        Learnt::Direct(_) => "direct GP: velocities as observed".to_owned(),
-        Learnt::Auto(both) => {
-            let reading = both.overridden().unwrap_or(both.reading());
-            let taken = if both.takes_slope() { "slope GP" } else { "direct GP" };
-            format!("{taken}, chosen automatically (reading: {reading:?})").to_lowercase().replace("gp", "GP")
-        }
     }
 }

@@ -11,6 +11,7 @@ mod failure;
 mod fit;
 mod flags;
 mod generated;
+mod in_words;
 mod info;
 mod lines;
 mod page_parts;

@@ -6,11 +6,10 @@ use policy_align::{Model, write_whole};
 
 use super::config::Config;
 use super::failure::Failure;
-use super::fit::load;
 use super::flags::{ReadFlags, numbers};
 use super::lines::{Lines, short};
 use super::picture::{Picture, draw};
-use super::recorded::{base_name, read};
+use super::recorded::{base_name, load, read};
 use super::rollout::followed;
 use super::rollout_flags::RollOutFlags;
 use super::session::{Said, Session};

@@ -9,9 +9,9 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::failure::{Exit, Failure};
-use super::fit::load;
 use super::flags::numbers;
 use super::lines::{Lines, counted, list, short};
+use super::recorded::load;
 use super::session::{Said, Session};
 use super::table::states;
 

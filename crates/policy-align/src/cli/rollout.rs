@@ -9,11 +9,10 @@ use serde_json::json;
 
 use super::config::Config;
 use super::failure::{Exit, Failure, shown};
-use super::fit::load;
 use super::flags::numbers;
 use super::lines::{Lines, counted, list, short};
 use super::picture::{Picture, draw};
-use super::recorded::base_name;
+use super::recorded::{base_name, load};
 use super::rollout_flags::RollOutFlags;
 use super::session::{Said, Session};
 

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use page::{Card, Document, Part};
 use policy_align::{Model, TrustNumbers, Verdict};
 
-use super::info::learner;
+use super::in_words::learner;
 use super::lines::{counted, short};
 use super::page_parts::{NUMBERS, STYLE, channels, decisions, direction, found, left_out, part, row, table};
 use super::picture::Picture;

@@ -3,8 +3,6 @@ use std::fmt::Write as _;
 use nalgebra::DMatrix;
 
 use super::error::ExportError;
-use super::tables::{LearnerTables, Tables};
-use super::{c_gp, c_lwpr};
 use crate::{Model, Verdict};
 
 /// Names that a function cannot have.
@@ -45,28 +43,7 @@ impl Default for CSource {
 }
 
 impl CSource {
-    /// The text of the file.
-    ///
-    /// # Errors
-    /// [`ExportError`].
-    pub fn of(&self, model: &Model) -> Result<String, ExportError> {
-        self.check_name()?;
-        let tables = Tables::of(model)?;
-        let mut text = self.head(model);
-        let n = tables.dim();
-        let _ = writeln!(text, "enum {{ N = {n} }};\n");
-        self.vector("SCALE", tables.scale.as_slice(), &mut text);
-        let bounds = DMatrix::from_fn(2, n, |end, k| tables.bounds[k][end]);
-        self.columns("BOUNDS", &bounds, &mut text);
-        match &tables.learner {
-            LearnerTables::Lwpr(lwpr) => c_lwpr::write(self, lwpr, tables.per_unit, &mut text),
-            LearnerTables::Slope(slope) => c_gp::write_slope(self, slope, tables.per_unit, &mut text),
-            LearnerTables::Direct(direct) => c_gp::write_direct(self, direct, &mut text),
-        }
-        Ok(text)
-    }
-
-    fn check_name(&self) -> Result<(), ExportError> {
+    pub(super) fn check_name(&self) -> Result<(), ExportError> {
         let mut letters = self.name.chars();
         let first = letters.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_');
         if first && letters.all(|c| c.is_ascii_alphanumeric() || c == '_') && !TAKEN.contains(&self.name.as_str()) {
@@ -76,7 +53,7 @@ impl CSource {
     }
 
     /// What it is, in a comment, and the numbers it is made of.
-    fn head(&self, model: &Model) -> String {
+    pub(super) fn head(&self, model: &Model) -> String {
         let verdict = match model.trust.verdict {
             Verdict::Good => "good",
             Verdict::Doubtful => "doubtful",

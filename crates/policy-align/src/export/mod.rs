@@ -3,6 +3,7 @@
 mod c;
 mod c_gp;
 mod c_lwpr;
+mod c_policy;
 mod error;
 mod gp_tables;
 mod lwpr_tables;

@@ -41,16 +41,6 @@ pub fn to_onnx(model: &Model) -> Result<Vec<u8>, ExportError> {
     Ok(described(model, &graph.finished(n, &outputs)))
 }
 
-/// What a learner's graph says of scaled states.
-pub(super) struct Asked {
-    /// Per second, (B, n).
-    pub(super) action: String,
-    /// In the learner's units, (B).
-    pub(super) potential: Option<String>,
-    /// (B).
-    pub(super) support: String,
-}
-
 /// Support, within bounds.
 fn within(graph: &mut Graph, bounds: &[[f64; 2]], support: &str) -> String {
     let low = graph.constant(&[bounds.len()], bounds.iter().map(|[low, _]| *low));

@@ -2,8 +2,7 @@ use gp::Shape;
 use nalgebra::DMatrix;
 
 use super::gp_tables::{DirectTables, Fall, Scaled, SlopeTables, Term};
-use super::onnx::Asked;
-use super::onnx_graph::Graph;
+use super::onnx_graph::{Asked, Graph};
 
 /// Scaled coordinates z, (B, n), their differences from the learnt states, (B, M, n), and squares of these, (B, M).
 fn differences(graph: &mut Graph, scaled: &Scaled, state: &str) -> [String; 3] {

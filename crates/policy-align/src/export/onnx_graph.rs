@@ -27,6 +27,16 @@ pub(super) enum Output {
     Truths,
 }
 
+/// What a learner's graph says of scaled states.
+pub(super) struct Asked {
+    /// Per second, (B, n).
+    pub(super) action: String,
+    /// In the learner's units, (B).
+    pub(super) potential: Option<String>,
+    /// (B).
+    pub(super) support: String,
+}
+
 impl Graph {
     fn name(&mut self, what: &str) -> Tensor {
         self.made += 1;

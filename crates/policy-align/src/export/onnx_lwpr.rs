@@ -1,8 +1,7 @@
 use lwpr::Kernel;
 
 use super::lwpr_tables::{Field, LwprTables};
-use super::onnx::Asked;
-use super::onnx_graph::Graph;
+use super::onnx_graph::{Asked, Graph};
 
 /// f = mean + norm_out Σ w y / Σ w and its gradient at scaled states (B, n).
 pub(super) fn write(graph: &mut Graph, lwpr: &LwprTables, scaled: &str) -> Asked {

@@ -1,0 +1,31 @@
+//! What a model is, in words.
+
+use policy_align::{Learnt, Model, Verdict};
+
+use super::lines::counted;
+
+/// The verdict in words.
+pub(crate) fn verdict(model: &Model) -> &'static str {
+    match model.trust.verdict {
+        Verdict::Good => "good: all checks passed",
+        Verdict::Doubtful => "doubtful: read the findings before using it",
+        Verdict::DoNotUse => "do not use",
+    }
+}
+
+/// What learnt it, in words.
+pub(crate) fn learner(model: &Model) -> String {
+    match &model.learnt {
+        Learnt::PolicyAlign(policy) => {
+            let fields = policy.global_potential().regression().model().receptive_fields(0).count();
+            format!("aligned potentials and LWPR, {}", counted(fields, "receptive field"))
+        }
+        Learnt::Slope(_) => "slope GP: a potential, from its slopes along the movements".to_owned(),
+        Learnt::Direct(_) => "direct GP: velocities as observed".to_owned(),
+        Learnt::Auto(both) => {
+            let reading = both.overridden().unwrap_or(both.reading());
+            let taken = if both.takes_slope() { "slope GP" } else { "direct GP" };
+            format!("{taken}, chosen automatically (reading: {reading:?})").to_lowercase().replace("gp", "GP")
+        }
+    }
+}

@@ -1,0 +1,32 @@
+use std::fmt::Write as _;
+
+use nalgebra::DMatrix;
+
+use super::c::CSource;
+use super::error::ExportError;
+use super::tables::{LearnerTables, Tables};
+use super::{c_gp, c_lwpr};
+use crate::Model;
+
+impl CSource {
+    /// The text of the file.
+    ///
+    /// # Errors
+    /// [`ExportError`].
+    pub fn of(&self, model: &Model) -> Result<String, ExportError> {
+        self.check_name()?;
+        let tables = Tables::of(model)?;
+        let mut text = self.head(model);
+        let n = tables.dim();
+        let _ = writeln!(text, "enum {{ N = {n} }};\n");
+        self.vector("SCALE", tables.scale.as_slice(), &mut text);
+        let bounds = DMatrix::from_fn(2, n, |end, k| tables.bounds[k][end]);
+        self.columns("BOUNDS", &bounds, &mut text);
+        match &tables.learner {
+            LearnerTables::Lwpr(lwpr) => c_lwpr::write(self, lwpr, tables.per_unit, &mut text),
+            LearnerTables::Slope(slope) => c_gp::write_slope(self, slope, tables.per_unit, &mut text),
+            LearnerTables::Direct(direct) => c_gp::write_direct(self, direct, &mut text),
+        }
+        Ok(text)
+    }
+}
