@@ -70,6 +70,7 @@ mod report;
 mod rows;
 mod slope;
 mod stored;
+mod support;
 
 pub use direct::data::DirectData;
 pub use direct::direct_gp::{DirectFit, DirectGp};
@@ -89,9 +90,9 @@ pub use reading::near_passes::NearPasses;
 pub use reading::numbers::{ReadingNumbers, TrajectoryErrors};
 pub use report::identifiability::{Identifiability, LeastSeen};
 pub use report::trust_report::{FamilyNumbers, FamilyReport, ModelKind, TrustReport};
-pub use rows::Rows;
 pub use rows::front_end::FrontEnd;
 pub use rows::kept::{Grouping, RowsDropped};
+pub use rows::{MOST_ROWS, Rows};
 pub use slope::data::SlopeData;
 pub use slope::fit::SlopeFit;
 pub use slope::learner::SlopeLearner;

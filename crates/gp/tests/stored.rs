@@ -2,8 +2,8 @@
 
 mod drawn;
 
-use gp::BothReadings;
-use motion::Policy as _;
+use gp::{BothReadings, MOST_ROWS};
+use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::DVector;
 use serde_json::{Value, json};
 
@@ -51,6 +51,58 @@ fn damaged_files_are_refused() {
         *fit.pointer_mut(place).expect("a place in the file") = value;
         assert!(serde_json::from_value::<BothReadings>(fit).is_err(), "{place}");
     }
+}
+
+/// Both readings with so many rows, all alike.
+fn of_rows(rows: usize) -> Value {
+    let mut fit = golden()["fit"].clone();
+    let mut fill = |place: &str, value: f64, count: usize| {
+        *fit.pointer_mut(place).expect("a place in the file") = json!(vec![value; count]);
+    };
+    for (model, weights_a_row) in [("/slope/slope_gp", 1), ("/direct/direct_gp", 2)] {
+        fill(&format!("{model}/states"), 0.0, 2 * rows);
+        fill(&format!("{model}/noise_weights"), 1.0, rows);
+        fill(&format!("{model}/weights"), 0.0, weights_a_row * rows);
+    }
+    fill("/slope/directions", 0.5, 2 * rows);
+    fit
+}
+
+#[test]
+fn reading_factors_nothing() {
+    let rows = 1500;
+    let stored = of_rows(rows);
+    let mut fit = None;
+    let read = allocation_counter::measure(|| fit = serde_json::from_value::<BothReadings>(stored).ok());
+    let one_factor = (8 * rows * rows) as u64;
+    assert!(read.bytes_max < one_factor / 4, "{} bytes", read.bytes_max);
+    let fit = fit.expect("a fit");
+    let asked = allocation_counter::measure(|| {
+        assert!(fit.slope().support(DVector::zeros(2).as_view()) > 0.0);
+    });
+    assert!(asked.bytes_max >= one_factor, "{} bytes", asked.bytes_max);
+}
+
+#[test]
+fn more_rows_than_error_bars_have_memory_for_are_refused() {
+    let refused = |fit: Value| serde_json::from_value::<BothReadings>(fit).expect_err("too many rows").to_string();
+    let said = refused(of_rows(MOST_ROWS + 1));
+    assert!(said.contains("more than 10000 rows"), "{said}");
+    let mut wide = of_rows(1);
+    wide["slope"]["slope_gp"]["dim"] = json!(2001);
+    let said = refused(wide);
+    assert!(said.contains("more than 2000 dimensions"), "{said}");
+}
+
+#[test]
+fn rows_without_a_factor_leave_the_prior() {
+    let mut stored = of_rows(3);
+    // So much that sums overflow: there is no factor.
+    stored["direct"]["direct_gp"]["blocks"][0][1] = json!(1e308);
+    stored["direct"]["direct_gp"]["blocks"][3][1] = json!(1e308);
+    let fit: BothReadings = serde_json::from_value(stored).expect("a fit");
+    let at = DVector::zeros(2);
+    assert_eq!(fit.direct().support(at.as_view()), 0.0);
 }
 
 /// Writes the golden file anew: `cargo test --package gp --test stored -- --ignored`. Only for a new version.

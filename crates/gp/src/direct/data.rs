@@ -123,7 +123,7 @@ impl DirectData {
         let scaled = (self.scaling.clone(), self.unit);
         let weights = level.weights.transpose();
         let noise = (level.noise, self.noise_weights.clone());
-        DirectModel::new(scaled, (blocks, amplitudes), self.z.clone(), weights, noise, level.factor)
+        DirectModel::new(scaled, (blocks, amplitudes), self.z.clone(), weights, noise, level.factor.into())
     }
 
     fn covariance<'a>(&'a self, blocks: &'a [DirectBlock]) -> DirectCovariance<'a> {

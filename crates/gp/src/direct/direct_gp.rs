@@ -19,7 +19,8 @@ pub struct DirectGp {
     /// Families tried; the one that predicts held-out trajectories best is kept, ties to the first. If the first predicts
     /// all but 1e-8 of the variance, the others are skipped.
     pub families: Vec<Family>,
-    /// Largest number of rows; more are thinned evenly in time. Time grows with its cube, memory with its square.
+    /// Largest number of rows; more are thinned evenly in time. Time grows with its cube, memory with its square; at
+    /// most [`MOST_ROWS`](crate::MOST_ROWS).
     pub max_rows: usize,
     /// Number of random rows whose marginal likelihood sets the amplitudes.
     pub hyper_rows: usize,

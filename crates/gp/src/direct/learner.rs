@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::FrontEnd;
 use crate::direct::direct_gp::{DirectFit, DirectGp};
+use crate::support::support;
 
 /// The direct GP as a learner.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -40,7 +41,7 @@ impl Policy for DirectFit {
 
 impl LearntPolicy for DirectFit {
     fn support(&self, state: DVectorView<'_, f64>) -> f64 {
-        1.0 - (self.model.variance(state) / self.model.prior_variance(state)).clamp(0.0, 1.0)
+        support(self.model.variance(state), self.model.prior_variance(state))
     }
 
     fn action_sd_into(&self, state: DVectorView<'_, f64>, mut deviation: DVectorViewMut<'_, f64>) -> bool {

@@ -9,7 +9,7 @@ use crate::dimension::require;
 use crate::kernel::chunks::{CHUNK, Chunks, sum};
 use crate::kernel::covariance::{Covariance, add_noise};
 use crate::kernel::direct_block::{DirectBlock, DirectCovariance, combined, covariances_with};
-use crate::kernel::factor::Factor;
+use crate::kernel::factor::LazyFactor;
 use crate::rows::scaling::Scaling;
 
 /// The direct GP conditioned on rows: û and its variance (R4).
@@ -24,7 +24,7 @@ pub struct DirectModel {
     pub(crate) weights: DMatrix<f64>,
     pub(crate) noise: f64,
     pub(crate) noise_weights: Vec<f64>,
-    factor: Factor,
+    factor: LazyFactor,
     states: Chunks,
     weight_chunks: Chunks,
 }
@@ -36,7 +36,7 @@ impl DirectModel {
         z: DMatrix<f64>,
         weights: DMatrix<f64>,
         (noise, noise_weights): (f64, Vec<f64>),
-        factor: Factor,
+        factor: LazyFactor,
     ) -> Self {
         let (states, weight_chunks) = (Chunks::new(&z), Chunks::new(&weights));
         DirectModel {
@@ -54,19 +54,6 @@ impl DirectModel {
         }
     }
 
-    /// The model of which the mean is known already; none if its covariance has no Cholesky factor.
-    pub(crate) fn restored(
-        scaled: (Scaling, f64),
-        prior: (Vec<DirectBlock>, Vec<f64>),
-        z: DMatrix<f64>,
-        weights: DMatrix<f64>,
-        noise: (f64, Vec<f64>),
-    ) -> Option<Self> {
-        let mut matrix = DirectCovariance { blocks: &prior.0, z: &z }.sum(&prior.1);
-        add_noise(&mut matrix, noise.0, noise.1.iter().copied());
-        Some(Self::new(scaled, prior, z, weights, noise, Factor::new(matrix)?))
-    }
-
     /// (R4): variance of every component at a state, in squared units of the state per second. Costs M².
     pub fn variance(&self, state: DVectorView<'_, f64>) -> f64 {
         require(self.dim(), &[state.len()]);
@@ -76,8 +63,15 @@ impl DirectModel {
             let values = covariances_with(z.as_slice(), self.states.get(chunk), &self.blocks, &self.amplitudes);
             place.copy_from_slice(&values[..place.len()]);
         }
-        self.factor.whiten(&mut known);
+        self.factor.whiten(&mut known, || self.covariance());
         self.prior_variance(state) - self.unit.powi(2) * known.norm_squared()
+    }
+
+    /// Of the rows with their noise.
+    fn covariance(&self) -> DMatrix<f64> {
+        let mut matrix = DirectCovariance { blocks: &self.blocks, z: &self.z }.sum(&self.amplitudes);
+        add_noise(&mut matrix, self.noise, self.noise_weights.iter().copied());
+        matrix
     }
 
     /// Prior variance of every component at a state, in the same units.

@@ -1,5 +1,7 @@
 //! Cholesky factors, by faer on one thread: the same bits at any number of threads.
 
+use std::sync::OnceLock;
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltRegularization, cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
@@ -78,6 +80,28 @@ impl Factor {
             Par::Seq,
         );
         inverse
+    }
+}
+
+/// The factor of a model's covariance: at hand after a fit; of a stored model computed when an error bar first needs it,
+/// which costs M² numbers of memory and M³ of time.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct LazyFactor(OnceLock<Option<Factor>>);
+
+impl From<Factor> for LazyFactor {
+    fn from(factor: Factor) -> Self {
+        LazyFactor(OnceLock::from(Some(factor)))
+    }
+}
+
+impl LazyFactor {
+    /// Replaces B by L⁻¹B. If the covariance has no factor, B becomes 0: rows that cannot be told apart say nothing, and
+    /// the prior remains.
+    pub(crate) fn whiten(&self, b: &mut DMatrix<f64>, covariance: impl FnOnce() -> DMatrix<f64>) {
+        match self.0.get_or_init(|| Factor::new(covariance())) {
+            Some(factor) => factor.whiten(b),
+            None => b.fill(0.0),
+        }
     }
 }
 

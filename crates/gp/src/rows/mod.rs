@@ -11,6 +11,9 @@ use nalgebra::DMatrix;
 
 use crate::GpError;
 
+/// Most rows of a model, fitted or read: the Cholesky factor of so many, which its error bars need, takes 0.8 GB.
+pub const MOST_ROWS: usize = 10_000;
+
 /// Observed motion, one row a sample: state, velocity, and the variance of the velocity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rows {

@@ -136,7 +136,7 @@ impl SlopeData {
         let scaled = (self.scaling.clone(), self.speed);
         let weights = level.weights.as_slice().to_vec();
         let expansion = Expansion::new(scaled, (blocks, amplitudes), (self.z.clone(), self.n.clone()), weights);
-        SlopeModel::new(expansion, self.noise_weights.clone(), level.noise, level.factor)
+        SlopeModel::new(expansion, self.noise_weights.clone(), level.noise, level.factor.into())
     }
 
     fn covariance<'a>(&'a self, blocks: &'a [Block]) -> SlopeCovariance<'a> {

@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::FrontEnd;
 use crate::slope::fit::SlopeFit;
 use crate::slope::slope_gp::SlopeGp;
+use crate::support::support;
 
 /// The slope GP as a learner, with the front end that makes its rows.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -45,7 +46,7 @@ impl LearntPolicy for SlopeFit {
     }
 
     fn support(&self, state: DVectorView<'_, f64>) -> f64 {
-        1.0 - (self.model.covariance(state).trace() / self.model.prior_covariance(state).trace()).clamp(0.0, 1.0)
+        support(self.model.covariance(state).trace(), self.model.prior_covariance(state).trace())
     }
 
     fn action_sd_into(&self, state: DVectorView<'_, f64>, mut deviation: DVectorViewMut<'_, f64>) -> bool {

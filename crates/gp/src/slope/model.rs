@@ -3,7 +3,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector, DVectorView};
 
 use crate::kernel::covariance::{Covariance, add_noise};
-use crate::kernel::factor::Factor;
+use crate::kernel::factor::LazyFactor;
 use crate::kernel::slope_covariance::SlopeCovariance;
 use crate::slope::expansion::Expansion;
 use crate::slope::policy::{SlopePolicy, SlopePotential};
@@ -17,20 +17,11 @@ pub struct SlopeModel {
     pub(crate) noise_weights: Vec<f64>,
     /// σ² without the floor.
     pub(crate) noise: f64,
-    pub(crate) factor: Factor,
+    factor: LazyFactor,
 }
 
 impl SlopeModel {
-    /// The model of which the mean is known already; none if its covariance has no Cholesky factor.
-    pub(crate) fn restored(expansion: Expansion, noise_weights: Vec<f64>, noise: f64) -> Option<Self> {
-        let covariance = SlopeCovariance { blocks: &expansion.blocks, z: &expansion.z, n: &expansion.n };
-        let mut matrix = covariance.sum(&expansion.amplitudes);
-        add_noise(&mut matrix, noise, noise_weights.iter().copied());
-        let factor = Factor::new(matrix)?;
-        Some(Self::new(expansion, noise_weights, noise, factor))
-    }
-
-    pub(crate) fn new(expansion: Expansion, noise_weights: Vec<f64>, noise: f64, factor: Factor) -> Self {
+    pub(crate) fn new(expansion: Expansion, noise_weights: Vec<f64>, noise: f64, factor: LazyFactor) -> Self {
         let has_potential = expansion.blocks.iter().all(|block| block.has_potential());
         let expansion = Arc::new(expansion);
         let potential = has_potential.then(|| SlopePotential { expansion: Arc::clone(&expansion) });
@@ -77,11 +68,11 @@ impl SlopeModel {
     /// (S13) at several states: one solution of triangular systems for all.
     pub(crate) fn covariances(&self, states: &[DVectorView<'_, f64>]) -> Vec<DMatrix<f64>> {
         let (expansion, dim) = (self.expansion(), self.expansion().dim());
-        let mut whitened = DMatrix::zeros(self.factor.len(), dim * states.len());
+        let mut whitened = DMatrix::zeros(expansion.z.ncols(), dim * states.len());
         for (at, state) in states.iter().enumerate() {
             whitened.columns_mut(at * dim, dim).copy_from(&expansion.policy_with_rows(*state));
         }
-        self.factor.whiten(&mut whitened);
+        self.whiten(&mut whitened);
         let posterior = |(at, state): (usize, &DVectorView<'_, f64>)| {
             let known = whitened.columns(at * dim, dim);
             self.prior_covariance(*state) - known.tr_mul(&known) * expansion.speed.powi(2)
@@ -96,7 +87,7 @@ impl SlopeModel {
         let value = expansion.potential(x.as_slice()) - expansion.potential(from.as_slice());
         let (z, z0) = (expansion.scaling.of_state(x), expansion.scaling.of_state(from));
         let mut known = expansion.potential_with_rows(&z) - expansion.potential_with_rows(&z0);
-        self.factor.whiten(&mut known);
+        self.whiten(&mut known);
         let prior = |a: &DVector<f64>, b: &DVector<f64>| {
             let each = expansion.blocks.iter().zip(&expansion.amplitudes);
             each.map(|(block, amplitude)| {
@@ -111,6 +102,15 @@ impl SlopeModel {
     /// π̂ at each of the states (n, M), (n, M).
     pub(crate) fn actions(&self, states: &DMatrix<f64>) -> DMatrix<f64> {
         self.expansion().actions(states)
+    }
+
+    fn whiten(&self, b: &mut DMatrix<f64>) {
+        self.factor.whiten(b, || {
+            let Expansion { blocks, z, n, amplitudes, .. } = self.expansion();
+            let mut matrix = SlopeCovariance { blocks, z, n }.sum(amplitudes);
+            add_noise(&mut matrix, self.noise, self.noise_weights.iter().copied());
+            matrix
+        });
     }
 
     pub(crate) fn expansion(&self) -> &Expansion {

@@ -21,7 +21,8 @@ pub struct SlopeGp {
     pub families: Vec<Family>,
     /// Whether families have a trend.
     pub trend: Trend,
-    /// Largest number of rows; more are thinned evenly in time. Time grows with its cube, memory with its square.
+    /// Largest number of rows; more are thinned evenly in time. Time grows with its cube, memory with its square; at
+    /// most [`MOST_ROWS`](crate::MOST_ROWS).
     pub max_rows: usize,
     /// Number of random rows whose marginal likelihood sets the amplitudes.
     pub hyper_rows: usize,

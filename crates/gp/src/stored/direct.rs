@@ -2,11 +2,12 @@ use nalgebra::DMatrix;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::{Stored, VERSION, check_scales, stored};
+use super::{Stored, VERSION, check_scales};
 use crate::GpError;
 use crate::direct::direct_gp::DirectFit;
 use crate::direct::model::DirectModel;
 use crate::kernel::direct_block::DirectBlock;
+use crate::kernel::factor::LazyFactor;
 use crate::kernel::family::Family;
 
 /// A [`DirectFit`].
@@ -53,14 +54,14 @@ impl TryFrom<DirectRecord> for DirectFit {
             DirectBlock::Constant | DirectBlock::Linear | DirectBlock::Quadratic => 1.0,
         }))?;
         let matrix = |numbers| DMatrix::from_vec(dim, rows, numbers);
-        let model = DirectModel::restored(
+        let model = DirectModel::new(
             (direct_gp.scaling, direct_gp.unit),
             direct_gp.blocks.into_iter().unzip(),
             matrix(direct_gp.states),
             matrix(direct_gp.weights),
             (direct_gp.noise, direct_gp.noise_weights),
+            LazyFactor::default(),
         );
-        let model = model.ok_or_else(|| stored("its covariance has no Cholesky factor"))?;
         Ok(DirectFit { model, family, r_squared, z_squared })
     }
 }

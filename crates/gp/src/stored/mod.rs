@@ -1,5 +1,5 @@
 //! Stored fits: the parameters of their policies, to the last bit. The Cholesky factor, which only the uncertainty
-//! needs, is recomputed.
+//! needs, is computed when that is first asked for.
 
 mod direct;
 mod slope;
@@ -7,10 +7,14 @@ mod slope;
 use serde::{Deserialize, Serialize};
 
 use crate::GpError;
+use crate::rows::MOST_ROWS;
 use crate::rows::scaling::Scaling;
 
 /// The form below. A later one reads this too.
 const VERSION: u32 = 1;
+
+/// Largest dimension of a state: a policy has matrices of its square.
+const MOST_DIMENSIONS: usize = 2_000;
 
 /// Numbers that both kinds of model have; matrices column after column.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -40,6 +44,8 @@ impl<B> Stored<B> {
         let checks = [
             (self.version == VERSION, "it has another version than 1; use a newer program"),
             (self.dim > 0 && rows > 0 && !self.blocks.is_empty(), "it is empty"),
+            (rows <= MOST_ROWS, "it has more than 10000 rows, whose error bars would need over 0.8 GB; fit with fewer"),
+            (self.dim <= MOST_DIMENSIONS, "its states have more than 2000 dimensions"),
             (self.scaling.mean.len() == self.dim, "the mean has not one number a dimension"),
             (self.states.len() == rows.saturating_mul(self.dim), "there is not one state a row"),
             (self.weights.len() == rows.saturating_mul(weights_a_row), "there is not one weight a row"),

@@ -5,6 +5,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::{Stored, VERSION, check_scales, stored};
 use crate::GpError;
 use crate::kernel::block::Block;
+use crate::kernel::factor::LazyFactor;
 use crate::report::trust_report::TrustReport;
 use crate::slope::expansion::Expansion;
 use crate::slope::fit::SlopeFit;
@@ -63,8 +64,8 @@ impl TryFrom<SlopeRecord> for SlopeFit {
             (matrix(slope_gp.states), matrix(directions)),
             slope_gp.weights,
         );
-        let model = SlopeModel::restored(expansion, slope_gp.noise_weights, slope_gp.noise);
-        Ok(SlopeFit { model: model.ok_or_else(|| stored("its covariance has no Cholesky factor"))?, report })
+        let model = SlopeModel::new(expansion, slope_gp.noise_weights, slope_gp.noise, LazyFactor::default());
+        Ok(SlopeFit { model, report })
     }
 }
 
