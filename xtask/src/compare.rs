@@ -30,7 +30,11 @@ pub(crate) struct Compare {
 impl Compare {
     pub(crate) fn execute(&self) -> anyhow::Result<()> {
         let run = RunFolder::at(&self.run).results()?;
-        let other = self.other.as_deref().map_or_else(|| RunFolder::committed(run.seed), RunFolder::at).results()?;
+        let other = match &self.other {
+            Some(other) => RunFolder::at(other),
+            None => RunFolder::committed(run.seed)?,
+        };
+        let other = other.results()?;
         let Comparison { cells, widest, new, faults } = Comparison::of(&run, &other);
         if cells == 0 {
             let remedy = "another run, or one of the same experiments";
@@ -125,7 +129,7 @@ mod tests {
     use super::*;
 
     fn committed() -> Results {
-        let mut results = RunFolder::committed(2).results().unwrap();
+        let mut results = RunFolder::committed(2).unwrap().results().unwrap();
         results.experiments.retain(|result| result.id == "table1");
         results
     }

@@ -5,10 +5,27 @@ use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
 
-/// The root of the repository.
-pub(crate) fn repository() -> PathBuf {
-    let xtask = Path::new(env!("CARGO_MANIFEST_DIR"));
-    xtask.parent().unwrap_or(xtask).to_owned()
+/// The root of the repository that the current folder is in. Not where the program was built: a copy of it, or one that
+/// several checkouts share, works on the checkout that it is called from.
+pub(crate) fn repository() -> Result<PathBuf, Failure> {
+    root_above(&std::env::current_dir().unwrap_or_default())
+}
+
+/// The nearest folder from here upwards whose `Cargo.toml` has a `[workspace]` that this program is a member of.
+fn root_above(folder: &Path) -> Result<PathBuf, Failure> {
+    let is_root = |folder: &&Path| {
+        let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap_or_default();
+        let is_workspace = manifest.parse::<toml::Table>().is_ok_and(|manifest| manifest.contains_key("workspace"));
+        is_workspace && folder.join("xtask/Cargo.toml").is_file()
+    };
+    folder.ancestors().find(is_root).map(Path::to_owned).ok_or_else(|| {
+        let what = "no Cargo.toml with [workspace] and xtask, here or in a folder above";
+        Failure::new(
+            what,
+            folder.display().to_string(),
+            "call it from the repository of policy-align, or a folder in it",
+        )
+    })
 }
 
 /// A path as one would write it in the current folder.
@@ -48,6 +65,26 @@ mod tests {
             let quoted = typed(Path::new(name));
             let heard = std::process::Command::new("sh").args(["-c", &format!("printf %s {quoted}")]).output().unwrap();
             assert_eq!(String::from_utf8(heard.stdout).unwrap(), name, "{quoted}");
+        }
+    }
+
+    #[test]
+    fn the_repository_is_the_one_that_a_folder_is_in() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        let (own, foreign) = (root.join("crates/a"), root.join("docs/example/src"));
+        for folder in [&own, &foreign, &root.join("xtask")] {
+            fs::create_dir_all(folder).unwrap();
+        }
+        let said = root_above(&own).unwrap_err().to_string();
+        assert!(said.contains("[workspace]") && said.contains("crates/a") && said.contains("try: "), "{said}");
+        fs::write(root.join("Cargo.toml"), "[workspace]\nmembers = []\n").unwrap();
+        fs::write(root.join("xtask/Cargo.toml"), "[package]\n").unwrap();
+        fs::write(own.join("Cargo.toml"), "[package]\nname = \"a\"\n").unwrap();
+        // An example with a workspace of its own is in the repository nevertheless.
+        fs::write(root.join("docs/example/Cargo.toml"), "[workspace]\n").unwrap();
+        for folder in [root, &own, &foreign] {
+            assert_eq!(root_above(folder).unwrap(), root);
         }
     }
 

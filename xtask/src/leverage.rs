@@ -59,7 +59,8 @@ type Verdicts = Vec<(Cell, Verdict)>;
 
 impl Leverage {
     pub(crate) fn execute(&self) -> anyhow::Result<()> {
-        let folder = self.out.clone().unwrap_or_else(|| repository().join("target/leverage"));
+        let root = repository()?;
+        let folder = self.out.clone().unwrap_or_else(|| root.join("target/leverage"));
         std::fs::create_dir_all(&folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
         let records = Arc::new(Records::open(&folder.join("records.jsonl"), Earlier::Resume)?);
         let mut leverage = Measured { seed: self.seed, data_sets: self.data_sets, settings: Vec::new() };
@@ -71,9 +72,9 @@ impl Leverage {
             }
             leverage.settings.push(self.changed(&setting, &base, &records)?);
         }
-        write(&repository().join(LEVERAGE), leverage.json()?)?;
-        write(&repository().join(PAGE), page_of(&leverage))?;
-        write(&repository().join(VARIANTS), self.quoted(&records)?.json()?)?;
+        write(&root.join(LEVERAGE), leverage.json()?)?;
+        write(&root.join(PAGE), page_of(&leverage))?;
+        write(&root.join(VARIANTS), self.quoted(&records)?.json()?)?;
         say(&format!("written: {PAGE}, {LEVERAGE}, {VARIANTS}"));
         Ok(())
     }
@@ -206,7 +207,7 @@ mod tests {
 
     #[test]
     fn errors_with_few_movements_are_quoted_as_measured() {
-        let page = std::fs::read_to_string(repository().join("docs/which-learner.md")).unwrap();
+        let page = std::fs::read_to_string(repository().unwrap().join("docs/which-learner.md")).unwrap();
         let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
         let own = (String::new(), Measure::Nupe);
         let quoted = Variants::committed().unwrap().filled("table1", &own, FEW_MOVEMENTS).unwrap();
@@ -228,7 +229,7 @@ mod tests {
 
     #[test]
     fn the_page_shows_what_was_measured() {
-        let written = std::fs::read_to_string(repository().join(PAGE)).unwrap();
+        let written = std::fs::read_to_string(repository().unwrap().join(PAGE)).unwrap();
         assert_eq!(written, page_of(&Measured::committed().unwrap()));
     }
 }

@@ -59,11 +59,11 @@ impl Publish {
             self.runs.iter().map(|run| publishable(&experiments, run)).collect::<anyhow::Result<_>>()?;
         for (run, path) in runs.iter().zip(&self.runs) {
             let seed = run.results.seed;
-            RunFolder::committed(seed).keep(run)?;
+            RunFolder::committed(seed)?.keep(run)?;
             say(&format!("docs/records/seed-{seed} is now the run in {}", relative(path)));
         }
         if self.figures {
-            let folder = RunFolder::committed(FIRST_SEED);
+            let folder = RunFolder::committed(FIRST_SEED)?;
             let results = folder.results()?;
             let documents = compute(&experiments, results.seed)?;
             folder.keep(&Sources { results, documents, missing: vec![] })?;
@@ -105,8 +105,8 @@ struct Committed {
 
 impl Committed {
     fn read(experiments: &[Experiment]) -> anyhow::Result<Committed> {
-        let first = RunFolder::committed(FIRST_SEED).sources()?;
-        let second = RunFolder::committed(SECOND_SEED).results()?;
+        let first = RunFolder::committed(FIRST_SEED)?.sources()?;
+        let second = RunFolder::committed(SECOND_SEED)?.results()?;
         for results in [&first.results, &second] {
             let place = || format!("docs/records/seed-{}", results.seed);
             complete(experiments, results).and_then(|()| check(experiments, results)).with_context(place)?;
@@ -117,8 +117,9 @@ impl Committed {
     /// Every generated page with its text.
     fn pages(&self, experiments: &[Experiment]) -> anyhow::Result<[(PathBuf, String); 4]> {
         let results = &self.first.results;
-        let page = (repository().join("docs/reproduction.md"), reproduction(experiments, self));
-        let settings = (repository().join(leverage::PAGE), leverage::page_of(&Leverage::committed()?));
+        let root = repository()?;
+        let page = (root.join("docs/reproduction.md"), reproduction(experiments, self));
+        let settings = (root.join(leverage::PAGE), leverage::page_of(&Leverage::committed()?));
         let readme = with_generated(
             "README.md",
             &[headline(experiments, results, &self.second), tallies(experiments, results)],
@@ -128,14 +129,15 @@ impl Committed {
 
     /// Every generated picture.
     fn pictures(&self) -> anyhow::Result<Vec<(PathBuf, String)>> {
-        let path = |id| repository().join(format!("docs/pictures/{id}.svg"));
+        let pictures = repository()?.join("docs/pictures");
+        let path = |id| pictures.join(format!("{id}.svg"));
         Ok(draw(&self.first)?.iter().map(|(figure, drawing)| (path(figure.id), drawing.picture.svg())).collect())
     }
 }
 
 /// A page with its generated parts anew, which come in the same order.
 fn with_generated(name: &str, generated: &[String]) -> anyhow::Result<(PathBuf, String)> {
-    let path = repository().join(name);
+    let path = repository()?.join(name);
     let text = fs::read_to_string(&path).with_context(|| format!("cannot read {name}"))?;
     Ok((path, replaced(&text, generated).with_context(|| format!("{name} is not as it should be"))?))
 }
@@ -260,7 +262,7 @@ mod tests {
     #[test]
     fn a_run_with_failures_is_not_full() {
         let experiments = registry().unwrap();
-        let mut results = RunFolder::committed(SECOND_SEED).results().unwrap();
+        let mut results = RunFolder::committed(SECOND_SEED).unwrap().results().unwrap();
         complete(&experiments, &results).unwrap();
         results.experiments[0].rows[2].failed = 1;
         let error = format!("{:#}", complete(&experiments, &results).unwrap_err());
@@ -269,7 +271,7 @@ mod tests {
 
     /// A copy of the second committed run, but for what `change` does to one of its cells, offered for publication.
     fn offered(change: impl FnOnce(&mut serde_json::Value)) -> anyhow::Result<()> {
-        let committed = fs::read_to_string(RunFolder::committed(SECOND_SEED).join("results.json"))?;
+        let committed = fs::read_to_string(RunFolder::committed(SECOND_SEED)?.join("results.json"))?;
         let mut results: serde_json::Value = serde_json::from_str(&committed)?;
         change(results.pointer_mut("/experiments/0/rows/1/measures/nupe").unwrap());
         let folder = tempfile::tempdir()?;

@@ -9,6 +9,7 @@ use figures::{Drawing, Figure, Sources, draw, drawn_in_part, figures, undrawn};
 use rayon::prelude::*;
 use report::{Contents, markdown, page};
 
+use crate::failure::Failure;
 use crate::files::{relative, repository, write};
 use crate::progress::say;
 use crate::run_folder::RunFolder;
@@ -26,8 +27,8 @@ pub(crate) struct Report {
 impl Report {
     pub(crate) fn execute(&self) -> anyhow::Result<()> {
         let experiments = registry()?;
-        let from = self.from();
-        let out = self.out(&from);
+        let from = self.from()?;
+        let out = self.out(&from)?;
         let sources = from.sources()?;
         sources.results.check_known(&experiments)?;
         if !sources.missing.is_empty() {
@@ -39,25 +40,25 @@ impl Report {
     }
 
     /// What to read.
-    fn from(&self) -> RunFolder {
+    fn from(&self) -> Result<RunFolder, Failure> {
         if let Some(from) = &self.from {
-            return RunFolder::at(from);
+            return Ok(RunFolder::at(from));
         }
-        let latest = RunFolder::of_latest_run();
+        let latest = RunFolder::of_latest_run()?;
         if latest.is_finished() {
-            return latest;
+            return Ok(latest);
         }
         say("no run here yet: this report is of the committed records");
         RunFolder::committed(1)
     }
 
     /// Where to write.
-    fn out(&self, from: &RunFolder) -> RunFolder {
-        match &self.out {
+    fn out(&self, from: &RunFolder) -> Result<RunFolder, Failure> {
+        Ok(match &self.out {
             Some(out) => RunFolder::at(out),
-            None if from.is_committed() => RunFolder::at(&repository().join("target/report")),
+            None if from.is_committed() => RunFolder::at(&repository()?.join("target/report")),
             None => from.clone(),
-        }
+        })
     }
 }
 
@@ -85,7 +86,7 @@ fn missing(sources: &Sources, from: &RunFolder) -> String {
 
 /// The committed results of a seed other than this run's, to hold beside it; none for a quick run.
 fn results_of_another_seed(results: &Results) -> Option<Results> {
-    let other = RunFolder::committed(if results.seed == 2 { 1 } else { 2 });
+    let other = RunFolder::committed(if results.seed == 2 { 1 } else { 2 }).ok()?;
     if results.quick || !other.is_finished() {
         return None;
     }
@@ -129,11 +130,12 @@ mod tests {
     fn committed_records_are_never_written_to_unasked() {
         let report = |from: PathBuf, out: Option<PathBuf>| {
             let report = Report { from: Some(from), out };
-            report.out(&report.from())
+            report.out(&report.from().unwrap()).unwrap()
         };
-        let committed = repository().join("docs/records/seed-1");
-        assert_eq!(report(committed.clone(), None), RunFolder::at(&repository().join("target/report")));
-        assert_eq!(report(committed.join("../seed-2"), None), RunFolder::at(&repository().join("target/report")));
+        let target = repository().unwrap().join("target/report");
+        let committed = repository().unwrap().join("docs/records/seed-1");
+        assert_eq!(report(committed.clone(), None), RunFolder::at(&target));
+        assert_eq!(report(committed.join("../seed-2"), None), RunFolder::at(&target));
         assert_eq!(report(committed.clone(), Some(committed.clone())), RunFolder::at(&committed));
         assert_eq!(report("elsewhere".into(), None), RunFolder::at("elsewhere".as_ref()));
     }

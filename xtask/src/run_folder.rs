@@ -24,19 +24,19 @@ impl RunFolder {
     }
 
     /// Where runs go unless told otherwise.
-    pub(crate) fn of_latest_run() -> RunFolder {
-        RunFolder(repository().join("target/reproduce"))
+    pub(crate) fn of_latest_run() -> Result<RunFolder, Failure> {
+        Ok(RunFolder(repository()?.join("target/reproduce")))
     }
 
     /// The committed run from a seed.
-    pub(crate) fn committed(seed: u64) -> RunFolder {
-        RunFolder(repository().join(format!("docs/records/seed-{seed}")))
+    pub(crate) fn committed(seed: u64) -> Result<RunFolder, Failure> {
+        Ok(RunFolder(repository()?.join(format!("docs/records/seed-{seed}"))))
     }
 
     /// Whether it is one of the committed ones.
     pub(crate) fn is_committed(&self) -> bool {
-        let all = repository().join("docs/records").canonicalize();
-        matches!((self.0.canonicalize(), all), (Ok(folder), Ok(all)) if folder.starts_with(&all))
+        let all = repository().ok().and_then(|root| root.join("docs/records").canonicalize().ok());
+        matches!((self.0.canonicalize(), all), (Ok(folder), Some(all)) if folder.starts_with(&all))
     }
 
     /// Whether a run ended there.
@@ -81,7 +81,7 @@ impl RunFolder {
     /// What to type for the same run again, into the same folder.
     pub(crate) fn command(&self, results: &Results) -> String {
         let command = &results.run.command;
-        if *self == RunFolder::of_latest_run() {
+        if RunFolder::of_latest_run().is_ok_and(|latest| *self == latest) {
             command.clone()
         } else {
             format!("{command} --out {}", typed(&self.0))

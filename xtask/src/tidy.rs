@@ -9,6 +9,7 @@ use serde::Deserialize;
 
 use crate::equations;
 use crate::failure::Failure;
+use crate::files::repository;
 use crate::progress::say;
 use crate::sources::{Source, circles, product_lines};
 
@@ -67,7 +68,7 @@ struct Package {
 
 /// Fails with a list of everything that breaks the rules.
 pub(crate) fn execute() -> anyhow::Result<()> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = repository()?;
     let mut faults = Vec::new();
     let allowed: BTreeMap<String, Allowed> = toml::from_str(&read(&root.join("xtask/dependencies.toml"))?)
         .context("xtask/dependencies.toml cannot be read")?;

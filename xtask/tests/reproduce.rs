@@ -215,6 +215,26 @@ fn usage_errors_have_three_lines_and_their_exit_code() {
     }
 }
 
+/// A program that is built once and called in several checkouts reads and writes where it is called.
+#[test]
+fn the_repository_is_where_the_command_is_called() {
+    let folder = tempfile::tempdir().unwrap();
+    let call = |place: &Path, arguments: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_xtask")).args(arguments).current_dir(place).output().unwrap();
+        (output.status.success(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let part = ["reproduce", "--only", ROW, "--data-sets", "1", "--no-figures"];
+    for arguments in [&part[..], &["tidy"], &["report"]] {
+        let (success, said) = call(folder.path(), arguments);
+        assert!(!success && said.contains("no Cargo.toml with [workspace]") && said.lines().count() == 3, "{said}");
+    }
+    fs::create_dir_all(folder.path().join("xtask/src")).unwrap();
+    fs::write(folder.path().join("xtask/Cargo.toml"), "[package]\n").unwrap();
+    fs::write(folder.path().join("Cargo.toml"), "[workspace]\n").unwrap();
+    let (success, said) = call(&folder.path().join("xtask/src"), &part);
+    assert!(success && folder.path().join("target/reproduce/results.json").exists(), "{said}");
+}
+
 #[test]
 fn the_list_names_every_row() {
     let folder = tempfile::tempdir().unwrap();

@@ -83,7 +83,7 @@ impl Reproduce {
         if self.list {
             return print(&list(&experiments, self.rows));
         }
-        let folder = self.folder();
+        let folder = self.folder()?;
         folder.make()?;
         let records = Arc::new(self.records(&folder)?);
         stop_cleanly(&records)?;
@@ -113,10 +113,10 @@ impl Reproduce {
         printed
     }
 
-    fn folder(&self) -> RunFolder {
+    fn folder(&self) -> Result<RunFolder, Failure> {
         match (&self.out, self.shard) {
-            (Some(out), _) => RunFolder::at(out),
-            (None, Some(shard)) => RunFolder::at(&shard.folder()),
+            (Some(out), _) => Ok(RunFolder::at(out)),
+            (None, Some(shard)) => Ok(RunFolder::at(&shard.folder()?)),
             (None, None) => RunFolder::of_latest_run(),
         }
     }
@@ -150,7 +150,7 @@ impl Reproduce {
         pool: &rayon::ThreadPool,
     ) -> anyhow::Result<(Results, Vec<String>)> {
         let started = Instant::now();
-        let revision = revision(&repository());
+        let revision = repository().ok().and_then(|root| revision(&root));
         let mut work = Work::find(experiments, self.plan(), records)?;
         if !self.merge.is_empty() {
             merged(&mut work, &self.merge)?;

@@ -3,6 +3,7 @@
 //! Data sets are dealt out in turn, so that every share has as much of each row. What a data set gives does not depend on
 //! who measures it: the merged run is the single one, to the last bit.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
@@ -24,11 +25,26 @@ const NAMED: usize = 3;
 
 /// One of several shares of the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(try_from = "BTreeMap<String, u32>")]
 pub(super) struct Shard {
     /// Which, from 1.
     index: u32,
     /// Of how many.
     of: u32,
+}
+
+/// What a shard's file says.
+impl TryFrom<BTreeMap<String, u32>> for Shard {
+    type Error = String;
+
+    fn try_from(members: BTreeMap<String, u32>) -> Result<Shard, String> {
+        let [index, of] = ["index", "of"].map(|name| members.get(name).copied());
+        match (index, of) {
+            (Some(index), Some(of)) if (1..=of).contains(&index) && members.len() == 2 => Ok(Shard { index, of }),
+            (Some(index), Some(of)) if members.len() == 2 => Err(format!("there is no share {index} of {of}")),
+            _ => Err("it needs `index` and `of`, and nothing else".to_owned()),
+        }
+    }
 }
 
 impl FromStr for Shard {
@@ -51,8 +67,8 @@ impl std::fmt::Display for Shard {
 
 impl Shard {
     /// Where its records go unless told otherwise.
-    pub(super) fn folder(self) -> PathBuf {
-        repository().join(format!("target/shards/{}-of-{}", self.index, self.of))
+    pub(super) fn folder(self) -> Result<PathBuf, Failure> {
+        Ok(repository()?.join(format!("target/shards/{}-of-{}", self.index, self.of)))
     }
 
     /// Whether the data set at this place is of its share.
@@ -126,6 +142,29 @@ mod tests {
                 assert_eq!(shards.iter().filter(|shard| shard.has(place)).count(), 1, "{place} of {of}");
             }
         }
+    }
+
+    #[test]
+    fn a_file_that_names_no_share_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let read = |text: &str| {
+            std::fs::write(folder.path().join(FILE), text).unwrap();
+            Shard::read(folder.path())
+        };
+        for (text, expected) in [
+            (r#"{"index":1,"of":0}"#, "there is no share 1 of 0"),
+            (r#"{"index":9,"of":2}"#, "there is no share 9 of 2"),
+            (r#"{"index":0,"of":2}"#, "there is no share 0 of 2"),
+            ("[1,2]", "invalid type"),
+            (r#"{"index":1}"#, "it needs `index` and `of`"),
+            (r#"{"index":1,"of":2,"at":3}"#, "it needs `index` and `of`, and nothing else"),
+            (r#"{"index":-1,"of":2}"#, "damaged"),
+        ] {
+            let said = read(text).unwrap_err().to_string();
+            assert!(said.contains(expected) && said.contains(FILE) && said.contains("--shard"), "{said}");
+        }
+        let shard = Shard { index: 2, of: 3 };
+        assert_eq!(read(&serde_json::to_string(&shard).unwrap()).unwrap(), shard);
     }
 
     #[test]
