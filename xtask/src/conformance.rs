@@ -8,7 +8,7 @@ use crate::progress::say;
 
 #[derive(Debug, Args)]
 pub(crate) struct Conformance {
-    /// Folder with lwpr/*.json, kinematics/*.json and their robots, slope_gp/*.json, reading/*.json, urdf_traps/expected.json and files/expected.json with their files
+    /// Folder with lwpr/*.json, kinematics/*.json and their robots, slope_gp/*.json, reading/*.json, urdf_traps/expected.json and files/expected.json with their files. What a file of slope_gp or reading is, its member `kind` says, or how its name begins
     #[arg(long, value_name = "DIR")]
     vectors: PathBuf,
 }

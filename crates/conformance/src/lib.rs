@@ -17,6 +17,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail, ensure};
 use nalgebra::DMatrix;
 use serde::de::DeserializeOwned;
+use serde_json::Value;
 
 use self::agreement::Agreement;
 
@@ -27,6 +28,9 @@ struct Checked {
     worst: f64,
 }
 
+/// Folders with something to compare.
+const FOLDERS: [&str; 6] = ["lwpr", "kinematics", "slope_gp", "reading", "urdf_traps", "files"];
+
 /// Largest difference that counts as agreement: absolute for robots (metres, radians), for LWPR relative to the largest
 /// reference value of the same kind.
 const TOLERANCE: f64 = 1e-10;
@@ -34,7 +38,7 @@ const TOLERANCE: f64 = 1e-10;
 /// Compares the numbers of a file, each kind with a tolerance of its own.
 type Check = fn(&Path) -> anyhow::Result<Vec<Agreement>>;
 
-/// What is compared in slope_gp/*.json: a file is known by how its name begins.
+/// What is compared in slope_gp/*.json, by kind of file.
 const SLOPE_GP: [(&str, Check); 7] = [
     ("smoother", smoothing_cases::check_smoother),
     ("fusion", smoothing_cases::check_fusion),
@@ -58,8 +62,7 @@ const READING: [(&str, Check); 3] = [
 /// # Errors
 /// If a file disagrees, or if there is none.
 pub fn compare(vectors: &Path, say: fn(&str)) -> anyhow::Result<()> {
-    let mut disagreeing = 0;
-    let mut files = 0;
+    let (mut disagreeing, mut files, mut skipped) = (0, 0, unknown_folders(vectors)?);
     for (folder, check) in
         [("lwpr", lwpr_cases::check as fn(&Path) -> anyhow::Result<f64>), ("kinematics", kinematics_cases::check)]
     {
@@ -71,16 +74,20 @@ pub fn compare(vectors: &Path, say: fn(&str)) -> anyhow::Result<()> {
     }
     for (folder, checks) in [("slope_gp", &SLOPE_GP[..]), ("reading", &READING[..])] {
         for file in json_files(&vectors.join(folder))? {
-            if let Some(agrees) = check_by_name(&file, checks, say)? {
-                disagreeing += usize::from(!agrees);
-                files += 1;
+            match check_of(&file, checks)? {
+                Ok(check) => {
+                    disagreeing += usize::from(!agrees(&file, check, say)?);
+                    files += 1;
+                }
+                Err(why) => skipped.push(format!("skipped  {}: {why}", file.display())),
             }
         }
     }
     let odd = urdf_cases::check(&vectors.join("urdf_traps/expected.json"))?;
     let recordings = file_cases::check(&vectors.join("files/expected.json"))?;
     let compared = files + odd.files + recordings.compared;
-    ensure!(compared > 0, "there is no reference file in {}", vectors.display());
+    skipped.iter().for_each(|line| say(line));
+    ensure!(compared > 0, "there is no reference file in {} ({} skipped)", vectors.display(), skipped.len());
     for fault in odd.faults.iter().chain(&recordings.faults) {
         say(fault);
     }
@@ -88,7 +95,8 @@ pub fn compare(vectors: &Path, say: fn(&str)) -> anyhow::Result<()> {
     if wrong > 0 {
         bail!("{wrong} of {compared} reference cases disagree (tolerance {TOLERANCE:.0e} unless said)");
     }
-    say(&format!("conformance: {compared} reference cases agree (tolerance {TOLERANCE:.0e} unless said)"));
+    let skipped = if skipped.is_empty() { String::new() } else { format!(", {} skipped", skipped.len()) };
+    say(&format!("conformance: {compared} reference cases agree (tolerance {TOLERANCE:.0e} unless said){skipped}"));
     Ok(())
 }
 
@@ -101,16 +109,41 @@ impl Checked {
     }
 }
 
-/// Whether all kinds of numbers of a file agree, and says how far each is off; none if the file's name is not known.
-fn check_by_name(file: &Path, checks: &[(&str, Check)], say: fn(&str)) -> anyhow::Result<Option<bool>> {
+/// How a file is compared, or why it is not: by its member `kind`, which in a list its first entry has, or without that
+/// by how its name begins.
+fn check_of(file: &Path, checks: &[(&str, Check)]) -> anyhow::Result<Result<Check, String>> {
+    let value: Value = read_json(file)?;
+    let head = value.get(0).unwrap_or(&value);
     let name = file.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
-    let Some((_, check)) = checks.iter().find(|(begins, _)| name.starts_with(begins)) else { return Ok(None) };
+    let found = match head.get("kind").and_then(Value::as_str) {
+        Some(kind) => checks.iter().find(|(known, _)| *known == kind).ok_or_else(|| format!("its kind is `{kind}`")),
+        None => checks
+            .iter()
+            .find(|(known, _)| name.starts_with(known))
+            .ok_or_else(|| "it has no `kind`, and its name begins with none".to_owned()),
+    };
+    let known = || checks.iter().map(|(known, _)| *known).collect::<Vec<_>>().join(", ");
+    Ok(found.map(|(_, check)| *check).map_err(|why| format!("{why}; known: {}", known())))
+}
+
+/// Folders of which nothing is compared.
+fn unknown_folders(vectors: &Path) -> anyhow::Result<Vec<String>> {
+    let entries = fs::read_dir(vectors).with_context(|| format!("cannot list {}", vectors.display()))?;
+    let mut paths = entries.map(|entry| Ok(entry?.path())).collect::<anyhow::Result<Vec<_>>>()?;
+    paths.retain(|path| path.is_dir() && !FOLDERS.iter().any(|folder| path.ends_with(folder)));
+    paths.sort();
+    let line = |path: &PathBuf| format!("skipped  {}: the folders are {}", path.display(), FOLDERS.join(", "));
+    Ok(paths.iter().map(line).collect())
+}
+
+/// Whether all kinds of numbers of a file agree; says how far each is off.
+fn agrees(file: &Path, check: Check, say: fn(&str)) -> anyhow::Result<bool> {
     let agreements = check(file).with_context(|| format!("{} cannot be compared", file.display()))?;
     for agreement in &agreements {
         let Agreement { what, tolerance, worst } = agreement;
         say(&format!("{worst:9.1e}  {}: {what} (tolerance {tolerance:.0e})", file.display()));
     }
-    Ok(Some(agreements.iter().all(Agreement::holds)))
+    Ok(agreements.iter().all(Agreement::holds))
 }
 
 /// The JSON files of a folder, in order; none if there is no such folder.
