@@ -6,6 +6,7 @@ mod models;
 
 use std::f64::consts::TAU;
 
+use cpu_time::ThreadTime;
 use demo_gen::RollOut as Teacher;
 use models::{model, rows, slope, toy};
 use motion::Policy as _;
@@ -240,6 +241,80 @@ fn what_cannot_be_followed_is_refused() {
     for error in [error, RollOutError::Start { found: 1, expected: 2, names: vec![] }] {
         assert!(!error.remedy().is_empty());
     }
+}
+
+/// The toy model with every weight times a factor.
+fn stronger(factor: f64) -> Model {
+    let mut model = toy_model();
+    let mut learnt = serde_json::to_value(&model.learnt).unwrap();
+    for weight in learnt.pointer_mut("/slope/slope_gp/weights").unwrap().as_array_mut().unwrap() {
+        *weight = (weight.as_f64().unwrap() * factor).into();
+    }
+    model.learnt = serde_json::from_value(learnt).unwrap();
+    model
+}
+
+/// Seconds of this thread.
+fn cost(work: impl FnOnce()) -> f64 {
+    let started = ThreadTime::now();
+    work();
+    started.elapsed().as_secs_f64()
+}
+
+#[test]
+fn actions_that_are_not_finite_or_huge_are_errors() {
+    let follow = |factor: f64| RollOut::default().follow(&stronger(factor), &dvector![1.0, 1.0]).unwrap_err();
+    let error = follow(1e300);
+    assert!(matches!(error, RollOutError::NotFinite { .. }), "{error}");
+    assert_eq!(error.to_string(), "the action is not finite at 0.000 s, in state 1, 1");
+    for factor in [1e12, 1e30, 1e100] {
+        let error = follow(factor);
+        assert!(matches!(error, RollOutError::TooManySteps { .. } | RollOutError::NotFinite { .. }), "{error}");
+        let remedy = error.remedy();
+        assert!(remedy.contains("fit again"), "{error} {remedy}");
+    }
+}
+
+#[test]
+fn a_long_time_in_few_samples_is_given_up() {
+    let roll_out = RollOut { seconds: Some(1e300), step: Some(1e299), ..RollOut::default() };
+    let mut error = None;
+    let seconds = cost(|| error = roll_out.follow(&toy_model(), &dvector![1.5, 1.0]).err());
+    let error = error.unwrap();
+    assert!(matches!(error, RollOutError::TooManySteps { limit: 200_000, .. }), "{error}");
+    let said = "more than 200000 steps of integration are needed: 0 s of 1.00e300 s were reached";
+    assert_eq!(error.to_string(), said);
+    assert!(error.remedy().starts_with("fewer seconds"));
+    assert!(seconds < 10.0, "{seconds} s");
+}
+
+#[test]
+fn a_small_ball_far_away_costs_little() {
+    let of = |text: &str| {
+        let roll_out = RollOut { constraints: constraints(text), seconds: Some(40.0), ..RollOut::default() };
+        let seconds = || cost(|| drop(roll_out.follow(&toy_model(), &dvector![1.5, 1.0]).unwrap()));
+        (0..3).map(|_| seconds()).fold(f64::INFINITY, f64::min)
+    };
+    let [usual, tiny] = ["0.2", "1e-12"].map(|r| of(&format!("[[constraint]]\npoint = [-2, -2]\nradius = {r}\n")));
+    assert!(tiny < 25.0 * usual, "{} times", tiny / usual);
+}
+
+#[test]
+fn the_cost_of_many_constraints_in_turn_is_that_of_each() {
+    let of = |count: usize| {
+        let one = |at: usize| {
+            let from = 40.0 * at as f64 / count as f64;
+            format!("[[constraint]]\nnormal = [1, 0.5]\nfrom = {from}\nuntil = {}\n", from + 20.0 / count as f64)
+        };
+        let set = constraints(&(0..count).map(one).collect::<String>());
+        let roll_out = RollOut { constraints: set, seconds: Some(40.0), ..RollOut::default() };
+        cost(|| {
+            let path = roll_out.follow(&toy_model(), &dvector![1.5, 1.0]).unwrap();
+            assert_eq!((path.stop, path.broken_by.unwrap().0 < 1.0), (Stop::Time, true));
+        })
+    };
+    let ratio = of(20_000) / of(2_000);
+    assert!(ratio < 25.0, "ten times the constraints, {ratio} times the time");
 }
 
 #[test]

@@ -35,7 +35,9 @@ A constraint file holds tables of these kinds, in any number:
   link = \"hand\"          # channels are named like the robot's joints
   plane = [0, 0, 1]
 
-The roll-out ends at rest, at a joint limit, or where the data end.
+The roll-out ends at rest, at a joint limit, or where the data end. It fails
+where actions are not finite, and after 200,000 steps of integration (or ten for
+each sample and each change of constraints, if those are more).
 
 Example:
   policy-align rollout toy.json --from 1.5,1 --constraint wall.toml -o path.csv")]
@@ -120,7 +122,9 @@ pub(crate) fn followed(flags: &RollOutFlags, model: &Model, start: &DVector<f64>
         let exit = match error {
             RollOutError::Unsupported { .. }
             | RollOutError::StartBreaks { .. }
-            | RollOutError::StartBeyondLimit { .. } => Exit::Refused,
+            | RollOutError::StartBeyondLimit { .. }
+            | RollOutError::NotFinite { .. }
+            | RollOutError::TooManySteps { .. } => Exit::Refused,
             _ => Exit::Usage,
         };
         Failure::new(exit, error.to_string(), format!("--from {from}"), error.remedy())

@@ -1,9 +1,11 @@
+use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
 
 use constraints::NullSpaceProjector;
 use nalgebra::{DMatrix, DVector, DVectorView, Point3};
 
+use super::holding::Holding;
 use super::link_point::LinkPoint;
 
 /// From which distance on a ball slows what approaches it, and at which it stops it, in radii: what steps err by stays
@@ -178,12 +180,12 @@ impl ConstraintSet {
         self.parts.iter().flat_map(|part| [part.from, part.until])
     }
 
-    /// What the constraints leave of `wanted`, (n), at a state and a time. `scale` takes states to where constraints act
+    /// What the constraints that hold leave of `wanted`, (n), at a state and a time. `scale` takes states to where constraints act
     /// at right angles: N = I − A⁺A (3) of A S⁻¹. Near a ball the speed towards it fades to 0 with the distance.
     pub(crate) fn leave(
         &self,
-        state: DVectorView<'_, f64>,
-        time: f64,
+        holding: &BTreeSet<usize>,
+        (state, time): (DVectorView<'_, f64>, f64),
         scale: &DVector<f64>,
         wanted: &mut DVector<f64>,
     ) -> Result<(), Fault> {
@@ -191,11 +193,8 @@ impl ConstraintSet {
             return Ok(());
         }
         let (mut rows, mut balls) = (Vec::new(), Vec::new());
-        for (at, part) in self.parts.iter().enumerate() {
-            if !(part.from..part.until).contains(&time) {
-                continue;
-            }
-            match part.kind.at(state, time).map_err(|reason| (at + 1, reason))? {
+        for &at in holding {
+            match self.parts[at].kind.at(state, time).map_err(|reason| (at + 1, reason))? {
                 Said::Rows(matrix) => rows.extend(matrix.row_iter().map(nalgebra::Matrix::into_owned)),
                 Said::Distance { clearance, radius, gradient } => {
                     let bands = (clearance / radius - MARGIN) / (BAND - MARGIN);
@@ -248,6 +247,7 @@ fn keep_off(balls: &[(f64, DVector<f64>)], free: &NullSpaceProjector, wanted: &m
 #[derive(Debug, Clone)]
 pub(crate) struct Watch<'a> {
     set: &'a ConstraintSet,
+    holding: Holding<'a>,
     /// The value of each part when it began to hold.
     begun: Vec<Option<DVector<f64>>>,
     /// The largest change so far, or depth within a ball, in units of the state or metres.
@@ -258,17 +258,16 @@ pub(crate) struct Watch<'a> {
 
 impl<'a> Watch<'a> {
     pub(crate) fn new(set: &'a ConstraintSet) -> Self {
-        Watch { set, begun: vec![None; set.parts.len()], broken_by: 0.0, worst: 0 }
+        // At its end a constraint has held until then.
+        let holding = Holding::new(set, |part, time| time > part.until);
+        Watch { set, holding, begun: vec![None; set.parts.len()], broken_by: 0.0, worst: 0 }
     }
 
+    /// At a state, at times that do not go back.
     pub(crate) fn see(&mut self, state: DVectorView<'_, f64>, time: f64) -> Result<(), Fault> {
-        for (at, (part, begun)) in self.set.parts.iter().zip(&mut self.begun).enumerate() {
-            // At its end it has held until then.
-            if time < part.from || time > part.until {
-                *begun = None;
-                continue;
-            }
-            let (kept, is_distance) = part.kind.kept(state, time).map_err(|reason| (at + 1, reason))?;
+        for &at in self.holding.at(time) {
+            let begun = &mut self.begun[at];
+            let (kept, is_distance) = self.set.parts[at].kind.kept(state, time).map_err(|reason| (at + 1, reason))?;
             let broken =
                 if is_distance { -kept[0] } else { (&kept - &*begun.get_or_insert_with(|| kept.clone())).amax() };
             if broken > self.broken_by {

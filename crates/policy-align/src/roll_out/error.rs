@@ -57,6 +57,24 @@ pub enum RollOutError {
         /// How many it would be.
         samples: f64,
     },
+    /// The policy's action is not finite at a state that was reached.
+    #[error("the action is not finite at {time:.3} s, in state {}", .state.iter().map(|x| short(*x)).collect::<Vec<_>>().join(", "))]
+    NotFinite {
+        /// Seconds from the start.
+        time: f64,
+        /// The state, in the units of the recording.
+        state: Vec<f64>,
+    },
+    /// The integration was given up.
+    #[error("more than {limit} steps of integration are needed: {} s of {} s were reached", short(*.time), short(*.seconds))]
+    TooManySteps {
+        /// How many are taken at most.
+        limit: usize,
+        /// Seconds reached.
+        time: f64,
+        /// Seconds asked for.
+        seconds: f64,
+    },
     /// A constraint cannot be computed at a state.
     #[error("constraint {constraint} has no value at {time:.3} s: {reason}")]
     Constraint {
@@ -83,6 +101,10 @@ impl RollOutError {
             RollOutError::StartBeyondLimit { .. } => "start within the limits, in radians or metres",
             RollOutError::NotPositive { .. } => "give a time in seconds",
             RollOutError::TooLong { .. } => "a longer step or fewer seconds",
+            RollOutError::NotFinite { .. } => "another start, or fit again: this model is damaged or was altered",
+            RollOutError::TooManySteps { .. } => {
+                "fewer seconds; if that is not enough, larger balls, or fit again: actions change too fast to be followed"
+            }
             RollOutError::Constraint { .. } => "correct the constraint file or the robot description",
         }
     }

@@ -3,6 +3,7 @@
 mod constraint_file;
 mod constraint_set;
 mod error;
+mod holding;
 mod joint_limits;
 mod link_point;
 mod runge_kutta;
@@ -14,18 +15,27 @@ pub use error::RollOutError;
 pub use joint_limits::JointLimits;
 pub use starts::spread_starts;
 
+use std::collections::BTreeSet;
+
 use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::{DMatrix, DVector};
 
 use crate::{Model, ModelPolicy};
 use constraint_set::{Fault, Watch};
 use error::LONGEST;
-use runge_kutta::RungeKutta;
+use holding::Holding;
+use runge_kutta::{Halt, RungeKutta};
 
 /// Error of a step, in spreads of the channels.
 const TOLERANCE: f64 = 1e-4;
-/// And at most this share of the least ball's radius.
+/// And at most this share of the least ball's radius …
 const OF_RADIUS: f64 = 5e-4;
+/// … but at least this share of the spreads: a ball of next to no radius does not make every step tiny.
+const FINEST: f64 = 1e-7;
+/// Steps of integration, with those tried in vain: so many, or so many for each sample and each change of constraints if
+/// that is more.
+const STEPS: usize = 200_000;
+const STEPS_EACH: usize = 10;
 /// At rest is what is slower than this share of the demonstrated median …
 const AT_REST: f64 = 0.01;
 /// … for so many samples.
@@ -90,8 +100,11 @@ impl RollOut {
             return Err(RollOutError::TooLong { samples });
         }
         let scale = DVector::from_iterator(start.len(), model.state.iter().map(|channel| channel.scale));
-        let run = Run { policy: &policy, constraints: &self.constraints, scale, switches: self.switches(seconds) };
-        self.followed(&run, model, start, (step, seconds))
+        let run =
+            Run { policy: &policy, constraints: &self.constraints, scale, switches: self.switches(seconds), seconds };
+        let steps = STEPS.max(STEPS_EACH * (samples as usize + run.switches.len()));
+        let tolerance = tolerance(model, self.constraints.least_radius());
+        self.followed(&run, model, start, (step, RungeKutta::new(tolerance, model.data.longest, steps)))
     }
 
     fn followed(
@@ -99,30 +112,30 @@ impl RollOut {
         run: &Run<'_>,
         model: &Model,
         start: &DVector<f64>,
-        (step, seconds): (f64, f64),
+        (step, mut method): (f64, RungeKutta),
     ) -> Result<Path, RollOutError> {
-        let mut method =
-            RungeKutta::new(tolerance(model).map(|error| error.min(OF_RADIUS * self.constraints.least_radius())));
+        let mut holding = Holding::new(&self.constraints, |part, time| part.until <= time);
+        let changes = self.constraints.changes();
         let mut watch = Watch::new(&self.constraints);
         let (mut times, mut states) = (vec![0.0], vec![start.clone()]);
-        let mut velocities = vec![run.velocity(start, 0.0)?];
+        let mut velocities = vec![run.velocity(holding.at(0.0), start, 0.0)?];
         watch.see(start.as_view(), 0.0).map_err(fault(0.0))?;
         let mut resting = 0;
         let stop = loop {
             let (time, state) = (times[times.len() - 1], &states[states.len() - 1]);
-            if time >= seconds {
+            if time >= run.seconds {
                 break Stop::Time;
             }
             // Multiples of the step, not sums of it: no rounding adds up.
-            let next_time = (times.len() as f64 * step).min(seconds);
-            let next = run.advance(&mut method, state.clone(), (time, next_time))?;
+            let next_time = (times.len() as f64 * step).min(run.seconds);
+            let next = run.advance(&mut method, &mut holding, state.clone(), (time, next_time))?;
             if !run.policy.is_supported(next.as_view()) {
                 break Stop::LeftTheData;
             }
             if let Some(joint) = self.limits.as_ref().and_then(|limits| limits.beyond(next.as_view())) {
                 break Stop::Limit(joint.to_owned());
             }
-            let velocity = run.velocity(&next, next_time)?;
+            let velocity = run.velocity(holding.at(next_time), &next, next_time)?;
             watch.see(next.as_view(), next_time).map_err(fault(next_time))?;
             let slow = velocity.component_mul(&run.scale).norm() < AT_REST * model.data.speed;
             resting = if slow { resting + 1 } else { 0 };
@@ -130,7 +143,7 @@ impl RollOut {
             states.push(next);
             velocities.push(velocity);
             // A constraint that ends later may let it go on, and so may one that changes.
-            let stays = !self.constraints.changes() && run.switches.iter().all(|&switch| switch <= next_time);
+            let stays = !changes && run.switches.last().is_none_or(|&last| last <= next_time);
             if resting >= RESTING && stays {
                 break Stop::AtRest;
             }
@@ -168,10 +181,11 @@ impl RollOut {
         Ok(())
     }
 
-    /// Times within the roll-out at which constraints begin or end, ascending.
+    /// Times within the roll-out at which constraints begin or end, ascending, each once.
     fn switches(&self, seconds: f64) -> Vec<f64> {
         let mut switches: Vec<f64> = self.constraints.switches().filter(|&t| t > 0.0 && t < seconds).collect();
         switches.sort_by(f64::total_cmp);
+        switches.dedup();
         switches
     }
 }
@@ -182,13 +196,19 @@ struct Run<'a> {
     constraints: &'a ConstraintSet,
     scale: DVector<f64>,
     switches: Vec<f64>,
+    seconds: f64,
 }
 
 impl Run<'_> {
-    /// N(x, t) π(x).
-    fn velocity(&self, state: &DVector<f64>, time: f64) -> Result<DVector<f64>, RollOutError> {
+    /// N(x, t) π(x), under the constraints that hold.
+    fn velocity(
+        &self,
+        holding: &BTreeSet<usize>,
+        state: &DVector<f64>,
+        time: f64,
+    ) -> Result<DVector<f64>, RollOutError> {
         let mut velocity = self.policy.action(state.as_view());
-        self.constraints.leave(state.as_view(), time, &self.scale, &mut velocity).map_err(fault(time))?;
+        self.constraints.leave(holding, (state.as_view(), time), &self.scale, &mut velocity).map_err(fault(time))?;
         Ok(velocity)
     }
 
@@ -197,28 +217,40 @@ impl Run<'_> {
     fn advance(
         &self,
         method: &mut RungeKutta,
+        holding: &mut Holding<'_>,
         mut state: DVector<f64>,
         (from, to): (f64, f64),
     ) -> Result<DVector<f64>, RollOutError> {
-        let inside = self.switches.iter().copied().filter(|&switch| switch > from && switch < to);
+        let [first, last] = [from.next_up(), to].map(|time| self.switches.partition_point(|&switch| switch < time));
         let mut begin = from;
-        for end in inside.chain([to]) {
-            let field =
-                |state: &DVector<f64>, elapsed: f64| self.velocity(state, (begin + elapsed).min(end.next_down()));
-            state = method.follow(field, state, end - begin)?;
+        for &end in self.switches[first..last.max(first)].iter().chain([&to]) {
+            let now = holding.at(begin);
+            let at = |elapsed: f64| (begin + elapsed).min(end.next_down());
+            let field = |state: &DVector<f64>, elapsed: f64| self.velocity(now, state, at(elapsed));
+            state = method.follow(field, state, end - begin).map_err(|halt| match halt {
+                Halt::Field(error) => error,
+                Halt::NotFinite { state, elapsed } => {
+                    RollOutError::NotFinite { state: state.as_slice().to_vec(), time: begin + elapsed }
+                }
+                Halt::Steps { limit, elapsed } => {
+                    RollOutError::TooManySteps { limit, time: begin + elapsed, seconds: self.seconds }
+                }
+            })?;
             begin = end;
         }
         Ok(state)
     }
 }
 
-/// A share of every channel's spread; an idle channel has that of the widest.
-fn tolerance(model: &Model) -> DVector<f64> {
+/// A share of every channel's spread, an idle channel having that of the widest, and of the least ball's radius.
+fn tolerance(model: &Model, least_radius: f64) -> DVector<f64> {
     let spread = |at: usize| model.state[at].high - model.state[at].low;
     let widest = (0..model.state.len()).map(|at| spread(at) * model.state[at].scale).fold(0.0, f64::max);
     DVector::from_fn(model.state.len(), |at, _| {
         let floor = 1e-3 * widest / model.state[at].scale;
-        TOLERANCE * spread(at).max(floor).max(f64::MIN_POSITIVE)
+        let spread = spread(at).max(floor).max(f64::MIN_POSITIVE);
+        let rounding = 4.0 * f64::EPSILON * model.state[at].high.abs().max(model.state[at].low.abs());
+        (TOLERANCE * spread).min((OF_RADIUS * least_radius).max(FINEST * spread)).max(rounding)
     })
 }
 

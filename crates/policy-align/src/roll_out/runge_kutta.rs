@@ -3,6 +3,23 @@ use nalgebra::DVector;
 /// Shortest step, as a share of the way: where a constraint takes hold a solution has an edge, which no step resolves.
 const SHORTEST: f64 = 1e-6;
 
+/// Why a way was not followed to its end.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Halt<E> {
+    /// The field has no value somewhere.
+    Field(E),
+    /// It is not finite at a state that was reached after so many seconds.
+    NotFinite { state: DVector<f64>, elapsed: f64 },
+    /// So many steps are not enough; so many seconds had passed.
+    Steps { limit: usize, elapsed: f64 },
+}
+
+impl<E> From<E> for Halt<E> {
+    fn from(error: E) -> Self {
+        Halt::Field(error)
+    }
+}
+
 /// The method of Bogacki and Shampine: order 3, with an error of order 2 that chooses the step.
 #[derive(Debug)]
 pub(crate) struct RungeKutta {
@@ -10,11 +27,16 @@ pub(crate) struct RungeKutta {
     tolerance: DVector<f64>,
     /// The step to try next, in seconds.
     step: f64,
+    /// Ways of more seconds than this have the shortest step of one that is so long.
+    longest: f64,
+    /// Steps at most, those tried in vain among them, and what is left of them.
+    limit: usize,
+    left: usize,
 }
 
 impl RungeKutta {
-    pub(crate) fn new(tolerance: DVector<f64>) -> Self {
-        RungeKutta { tolerance, step: f64::INFINITY }
+    pub(crate) fn new(tolerance: DVector<f64>, longest: f64, limit: usize) -> Self {
+        RungeKutta { tolerance, step: f64::INFINITY, longest, limit, left: limit }
     }
 
     /// Follows ẋ = `field`(x, t) from t = 0 for `duration` seconds.
@@ -23,19 +45,34 @@ impl RungeKutta {
         field: impl Fn(&DVector<f64>, f64) -> Result<DVector<f64>, E>,
         mut x: DVector<f64>,
         duration: f64,
-    ) -> Result<DVector<f64>, E> {
+    ) -> Result<DVector<f64>, Halt<E>> {
+        let shortest = SHORTEST * duration.min(self.longest);
         let mut left = duration;
         let mut k1 = field(&x, 0.0)?;
+        if !finite(&k1) {
+            return Err(Halt::NotFinite { state: x, elapsed: 0.0 });
+        }
         while left > 0.0 {
-            let h = self.step.min(left).max((SHORTEST * duration).min(left));
+            let h = self.step.min(left).max(shortest.min(left));
             let time = duration - left;
+            // Where a step no longer shortens what is left, no number of them is enough.
+            let Some(less) = self.left.checked_sub(1).filter(|_| left - h < left) else {
+                return Err(Halt::Steps { limit: self.limit, elapsed: time });
+            };
+            self.left = less;
             let k2 = field(&(&x + &k1 * (0.5 * h)), time + 0.5 * h)?;
             let k3 = field(&(&x + &k2 * (0.75 * h)), time + 0.75 * h)?;
             let next = &x + (&k1 * (2.0 / 9.0) + &k2 * (1.0 / 3.0) + &k3 * (4.0 / 9.0)) * h;
             let k4 = field(&next, time + h)?;
             let error = (&k1 * (-5.0 / 72.0) + &k2 * (1.0 / 12.0) + &k3 * (1.0 / 9.0) + &k4 * (-0.125)) * h;
             let error = error.component_div(&self.tolerance).amax();
-            if error <= 1.0 || h <= SHORTEST * duration {
+            // What is not finite may only be a step too long, which is tried again, shorter.
+            let lost = !(finite(&next) && finite(&k4));
+            if lost && h <= shortest {
+                return Err(Halt::NotFinite { state: x, elapsed: time });
+            }
+            let error = if lost || error.is_nan() { f64::INFINITY } else { error };
+            if !lost && (error <= 1.0 || h <= shortest) {
                 left = if h >= left { 0.0 } else { left - h };
                 (x, k1) = (next, k4);
             }
@@ -43,6 +80,10 @@ impl RungeKutta {
         }
         Ok(x)
     }
+}
+
+fn finite(vector: &DVector<f64>) -> bool {
+    vector.iter().all(|entry| entry.is_finite())
 }
 
 #[cfg(test)]
@@ -57,7 +98,7 @@ mod tests {
     fn a_circle_is_followed_within_the_tolerance() {
         for tolerance in [1e-3, 1e-6, 1e-9] {
             let turn = |x: &DVector<f64>, _: f64| Ok::<_, Infallible>(dvector![-x[1], x[0]]);
-            let mut method = RungeKutta::new(DVector::repeat(2, tolerance));
+            let mut method = RungeKutta::new(DVector::repeat(2, tolerance), 2.0, 10_000);
             let end = method.follow(turn, dvector![1.0, 0.0], 2.0).unwrap();
             let error = (end - dvector![2.0_f64.cos(), 2.0_f64.sin()]).norm();
             assert!(error < 100.0 * tolerance && error > 0.0, "{error} {tolerance}");
@@ -68,7 +109,7 @@ mod tests {
     fn time_is_that_of_each_stage() {
         for tolerance in [1e-3, 1e-6, 1e-9] {
             let growing = |x: &DVector<f64>, t: f64| Ok::<_, Infallible>(x * t.cos());
-            let end = RungeKutta::new(dvector![tolerance]).follow(growing, dvector![1.0], 3.0).unwrap();
+            let end = RungeKutta::new(dvector![tolerance], 3.0, 10_000).follow(growing, dvector![1.0], 3.0).unwrap();
             let error = (end[0] - 3.0_f64.sin().exp()).abs();
             assert!(error < 100.0 * tolerance, "{error} {tolerance}");
         }
@@ -78,8 +119,32 @@ mod tests {
     fn an_edge_is_passed() {
         let field = |x: &DVector<f64>, _: f64| Ok::<_, Infallible>(dvector![if x[0] < 0.5 { 1.0 } else { 0.0 }]);
         let tolerance = 1e-4;
-        let end = RungeKutta::new(dvector![tolerance]).follow(field, dvector![0.0], 2.0).unwrap();
+        let end = RungeKutta::new(dvector![tolerance], 3.0, 10_000).follow(field, dvector![0.0], 2.0).unwrap();
         // A step over an edge is as wrong as it is long: some steps' tolerances, not one.
         assert!((end[0] - 0.5).abs() < 20.0 * tolerance, "{end}");
+    }
+
+    #[test]
+    fn what_is_not_finite_ends_it_where_it_is() {
+        let field = |x: &DVector<f64>, _: f64| Ok::<_, Infallible>(dvector![if x[0] < 0.5 { 1.0 } else { f64::NAN }]);
+        let follow = |start: f64| RungeKutta::new(dvector![1e-4], 2.0, 10_000).follow(field, dvector![start], 2.0);
+        let Err(Halt::NotFinite { state, elapsed }) = follow(0.0) else { panic!("it stops at the edge") };
+        assert!((state[0] - 0.5).abs() < 1e-3 && (elapsed - 0.5).abs() < 1e-3, "{state} {elapsed}");
+        assert!(matches!(follow(1.0), Err(Halt::NotFinite { elapsed: 0.0, .. })));
+        // Trial steps that overflow are only too long.
+        let steep = |x: &DVector<f64>, _: f64| Ok::<_, Infallible>(x.map(|x| -x.sinh()));
+        let end = RungeKutta::new(dvector![1e-4], 1.0, 10_000).follow(steep, dvector![10.0], 1.0).unwrap();
+        let exact = 2.0 * (5.0_f64.tanh() * (-1.0_f64).exp()).atanh();
+        assert!((end[0] - exact).abs() < 1e-3, "{end} {exact}");
+    }
+
+    #[test]
+    fn steps_are_counted_over_all_ways() {
+        let shaking = |_: &DVector<f64>, t: f64| Ok::<_, Infallible>(dvector![1e9 * (1e9 * t).cos()]);
+        let mut method = RungeKutta::new(dvector![1e-4], 1e3, 1000);
+        let halt = method.follow(shaking, dvector![0.0], 1e3).unwrap_err();
+        let Halt::Steps { limit: 1000, elapsed } = halt else { panic!("{halt:?}") };
+        assert!(elapsed < 1e3);
+        assert_eq!(method.follow(shaking, dvector![0.0], 1.0), Err(Halt::Steps { limit: 1000, elapsed: 0.0 }));
     }
 }
