@@ -10,7 +10,7 @@ use cpu_time::ThreadTime;
 use models::{direct, one_of_each, policy_align, slope, states, toy};
 use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::{DMatrix, DVector};
-use policy_align::{Learnt, Model, ModelError};
+use policy_align::{Learnt, Model, ModelError, Verdict};
 use proptest::prelude::*;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
@@ -117,6 +117,18 @@ fn contradictions_are_refused_though_the_checksum_fits() {
     refused(|model| model.state[0].low = 9.0, "state[0]: ");
     refused(|model| model.time_step = -1.0, "time_step: ");
     refused(|model| model.data.speed = -1.0, "data: ");
+    refused(
+        |model| model.trust.verdict = Verdict::Good,
+        "trust.verdict: it is good, but the worst of the findings is doubtful",
+    );
+    refused(
+        |model| model.trust.findings[0].verdict = Verdict::DoNotUse,
+        "trust.verdict: it is doubtful, but the worst of the findings is do_not_use",
+    );
+    refused(
+        |model| model.trust.findings.clear(),
+        "trust.verdict: it is doubtful, but the worst of the findings is good",
+    );
 }
 
 #[test]

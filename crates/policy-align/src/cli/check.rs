@@ -110,7 +110,7 @@ pub(crate) fn about(prepared: &Prepared, files: &str, lines: &mut Lines) {
     }
 }
 
-/// The worst finding, and others as far as there is room for them, in lines.
+/// Every finding that casts doubt, the worst first, and remarks as far as there is room for them, in lines.
 pub(crate) fn findings(findings: &[Finding], room: usize, lines: &mut Lines) {
     let begun = lines.count();
     let mut findings: Vec<&Finding> = findings.iter().collect();
@@ -123,8 +123,8 @@ pub(crate) fn findings(findings: &[Finding], room: usize, lines: &mut Lines) {
         };
         let mut longer = lines.clone();
         longer.add(label, &format!("{}: {}", finding.what, finding.next));
-        if shown > 0 && longer.count() - begun > room {
-            lines.add("", &format!("and {} more: --json shows all", findings.len() - shown));
+        if shown > 0 && finding.verdict == Verdict::Good && longer.count() - begun > room {
+            lines.add("", &format!("and {}: --json shows all", counted(findings.len() - shown, "remark")));
             return;
         }
         *lines = longer;

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use super::canonical::checksum;
 use super::error::ModelError;
 use super::whole_file::write_whole;
-use crate::{Model, StateChannel};
+use crate::{Model, StateChannel, Trust, Verdict};
 
 const FORMAT: &str = "policy-align model";
 
@@ -104,6 +104,11 @@ impl Model {
         if !(positive(self.data.longest) && not_negative(self.data.speed)) {
             return Some(("data".to_owned(), "the duration must be positive and the speed not negative".to_owned()));
         }
+        let (said, worst) = (self.trust.verdict, Trust::verdict_of(&self.trust.findings));
+        if said != worst {
+            let reason = format!("it is {}, but the worst of the findings is {}", word(said), word(worst));
+            return Some(("trust.verdict".to_owned(), reason));
+        }
         let sound = |channel: &StateChannel| {
             positive(channel.scale) && channel.low <= channel.median && channel.median <= channel.high
         };
@@ -130,6 +135,11 @@ fn check_format(members: &Map<String, Value>) -> Result<(), ModelError> {
             changed: true,
         }),
     }
+}
+
+/// A verdict as the file has it.
+fn word(verdict: Verdict) -> String {
+    serde_json::to_value(verdict).ok().and_then(|word| word.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
 fn without_checksum(mut members: Map<String, Value>) -> Value {

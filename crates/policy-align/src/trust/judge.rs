@@ -42,8 +42,7 @@ pub(crate) fn judge(evidence: Evidence<'_>) -> Trust {
     about_error(&numbers, &mut found);
     about_episodes(&numbers, episodes, &mut found);
     findings.sort_by_key(|finding| Reverse(finding.verdict));
-    let verdict = findings.first().map_or(Verdict::Good, |finding| finding.verdict);
-    Trust { verdict, findings, numbers }
+    Trust { verdict: Trust::verdict_of(&findings), findings, numbers }
 }
 
 fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn FnMut(Verdict, String, &str)) {

@@ -14,3 +14,10 @@ pub struct Trust {
     /// The numbers behind it.
     pub numbers: TrustNumbers,
 }
+
+impl Trust {
+    /// The verdict that follows from findings.
+    pub(crate) fn verdict_of(findings: &[Finding]) -> Verdict {
+        findings.iter().map(|finding| finding.verdict).max().unwrap_or(Verdict::Good)
+    }
+}
