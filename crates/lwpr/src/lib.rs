@@ -70,7 +70,7 @@ mod standardised;
 pub use error::{LwprError, Side};
 pub use field::receptive_field::ReceptiveField;
 pub use model::Lwpr;
-pub use prediction::{Prediction, Predictor};
+pub use prediction::{LocalPrediction, Prediction, Predictor};
 pub use settings::kernel::Kernel;
 pub use settings::params::{LwprParams, Metric, MetricAdaptation, Pruning};
 pub use standardised::{StandardisedModel, Training};

@@ -126,20 +126,30 @@ pub(crate) fn combined(
             product[lane] += z * states[lane];
         }
     }
-    let [mut constant, mut linear, mut quadratic] = [0.0; 3];
     let mut values = [0.0; CHUNK];
     for (&block, &amplitude) in blocks.iter().zip(amplitudes) {
-        match block {
-            DirectBlock::Constant => constant += amplitude,
-            DirectBlock::Linear => linear += amplitude / dim as f64,
-            DirectBlock::Quadratic => quadratic += amplitude / (dim * dim) as f64,
-            DirectBlock::Shape(shape, scale) => {
-                Radial { shape, length: length(scale, dim) }.add_values(amplitude, &squared, &mut values);
-            }
+        if let DirectBlock::Shape(shape, scale) = block {
+            Radial { shape, length: length(scale, dim) }.add_values(amplitude, &squared, &mut values);
         }
     }
+    let [constant, linear, quadratic] = trend(blocks, amplitudes, dim);
     for lane in 0..CHUNK {
         values[lane] += constant + product[lane] * (linear + quadratic * product[lane]);
     }
     values
+}
+
+/// Factors of 1, of zᵀz' and of its square.
+#[inline(always)]
+pub(crate) fn trend(blocks: &[DirectBlock], amplitudes: &[f64], dim: usize) -> [f64; 3] {
+    let mut factors = [0.0; 3];
+    for (&block, &amplitude) in blocks.iter().zip(amplitudes) {
+        match block {
+            DirectBlock::Constant => factors[0] += amplitude,
+            DirectBlock::Linear => factors[1] += amplitude / dim as f64,
+            DirectBlock::Quadratic => factors[2] += amplitude / (dim * dim) as f64,
+            DirectBlock::Shape(..) => {}
+        }
+    }
+    factors
 }

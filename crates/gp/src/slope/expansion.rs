@@ -24,8 +24,9 @@ pub(crate) struct Expansion {
     states: Chunks,
     directions: Chunks,
     weight_chunks: Vec<Chunk>,
-    constant: DVector<f64>,
-    matrix: DMatrix<f64>,
+    /// c, (n), and Q, (n, n).
+    pub(crate) constant: DVector<f64>,
+    pub(crate) matrix: DMatrix<f64>,
 }
 
 impl Expansion {
@@ -37,7 +38,7 @@ impl Expansion {
     ) -> Self {
         let dim = z.nrows();
         let [linear, quadratic, skew] = trend(&blocks, &amplitudes, dim);
-        let weighted = DMatrix::from_fn(dim, z.ncols(), |k, row| weights[row] * n[(k, row)]);
+        let weighted = weighted(&n, &weights);
         // Σ α n zᵀ: its symmetric part is the quadratic block's, its skew part the skew block's.
         let outer = &weighted * z.transpose();
         let constant = weighted.column_sum() * linear;
@@ -66,6 +67,11 @@ impl Expansion {
         let (blocks, amplitudes) = both.map(|(block, amplitude)| (*block, *amplitude)).unzip();
         let scaled = (self.scaling.clone(), self.speed);
         Expansion::new(scaled, (blocks, amplitudes), (self.z.clone(), self.n.clone()), self.weights.clone())
+    }
+
+    /// α n, (n, M).
+    pub(crate) fn weighted(&self) -> DMatrix<f64> {
+        weighted(&self.n, &self.weights)
     }
 
     pub(crate) fn dim(&self) -> usize {
@@ -144,6 +150,10 @@ impl Expansion {
         let (g, h) = falling(&self.blocks, &self.amplitudes, state.len(), &squared);
         (beta, g, h)
     }
+}
+
+fn weighted(n: &DMatrix<f64>, weights: &[f64]) -> DMatrix<f64> {
+    DMatrix::from_fn(n.nrows(), n.ncols(), |k, row| weights[row] * n[(k, row)])
 }
 
 /// Σ α (g n' − h β (z − z')) over all rows.

@@ -33,7 +33,26 @@ pub(super) struct Affine {
     pub(super) loadings: Vec<f64>,
 }
 
+/// The prediction of one receptive field at a divided input z: offset + slopeᵀ(z − c), activated by q = (z − c)ᵀD(z − c).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LocalPrediction<'a> {
+    /// c, (n).
+    pub centre: &'a [f64],
+    /// D: its diagonal (n), or its columns (n²).
+    pub metric: &'a [f64],
+    /// Of the prediction.
+    pub offset: f64,
+    /// (n).
+    pub slope: &'a [f64],
+}
+
 impl LocalModel {
+    /// None while the field is not trustworthy.
+    pub(super) fn prediction(&self) -> Option<LocalPrediction<'_>> {
+        let Affine { offset, slope, .. } = self.affine.as_ref()?;
+        Some(LocalPrediction { centre: &self.centre, metric: &self.metric, offset: *offset, slope })
+    }
+
     /// `None` where learning has run into numbers that are not finite or absurdly large, so that the field is of no use.
     pub(super) fn new(field: &Field, settings: &Settings) -> Option<Self> {
         let n = settings.n_in;

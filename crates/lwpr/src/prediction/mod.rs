@@ -13,6 +13,7 @@ mod sweep;
 
 use nalgebra::{DMatrix, DVector, DVectorView};
 
+pub use local_model::LocalPrediction;
 pub use predictor::Predictor;
 use sweep::Wanted;
 

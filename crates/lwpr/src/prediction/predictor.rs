@@ -3,13 +3,13 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::field_table::FieldTable;
-use super::local_model::LocalModel;
+use super::local_model::{LocalModel, LocalPrediction};
 use super::query::{Query, Scale};
 use super::record::PredictorRecord;
 use super::sweep::{Wanted, sweep};
 use super::{Prediction, is_query};
 use crate::error::Side;
-use crate::{Lwpr, LwprError};
+use crate::{Kernel, Lwpr, LwprError};
 
 /// An immutable snapshot of a model that predicts; made by [`Lwpr::predictor`]. Threads may share it.
 ///
@@ -226,6 +226,34 @@ impl Predictor {
         let mut max_activation = 0.0;
         self.ask(x, output, Wanted { max_activation: Some(&mut max_activation), ..Wanted::default() });
         max_activation
+    }
+
+    /// How activations fall with distance.
+    pub fn kernel(&self) -> Kernel {
+        self.scale.kernel
+    }
+
+    /// The activation above which receptive fields take part.
+    pub fn cutoff(&self) -> f64 {
+        self.cutoff
+    }
+
+    /// What inputs are divided by (`n_in`).
+    pub fn norm_in(&self) -> &[f64] {
+        &self.norm_in
+    }
+
+    /// What predictions are multiplied by (`n_out`).
+    pub fn norm_out(&self) -> &[f64] {
+        &self.norm_out
+    }
+
+    /// The trustworthy receptive fields of one output, whose predictions are weighed by their activations.
+    ///
+    /// # Panics
+    /// If there is no such output.
+    pub fn fields(&self, output: usize) -> impl Iterator<Item = LocalPrediction<'_>> {
+        self.outputs[output].models.iter().filter_map(LocalModel::prediction)
     }
 
     /// Number of inputs.

@@ -1,12 +1,16 @@
 use std::fmt::Write as _;
 
-use gp::Shape;
+use gp::{DirectFormula, Fall, ScaledStates, Shape, SlopeFormula, Term};
 
 use super::c::CSource;
-use super::gp_tables::{DirectTables, Fall, Scaled, SlopeTables, Term};
 
 /// π = speed (Σ g v − h (vᵀa) a + c + Q z), a = z − z', and φ, whose negative gradient it is.
-pub(super) fn write_slope(c: &CSource, slope: &SlopeTables, per_unit: f64, text: &mut String) {
+pub(super) fn write_slope(
+    c: &CSource,
+    slope: &SlopeFormula<'_>,
+    (squared_radius, per_unit): (f64, f64),
+    text: &mut String,
+) {
     write_scaled(c, &slope.scaled, text);
     c.columns("V", &slope.directions, text);
     c.vector("C", slope.constant.as_slice(), text);
@@ -51,15 +55,15 @@ int {name}(const real *x, real *u, real *phi) {{
         half = c.number(0.5),
         far = c.number(f64::from(f32::MAX)),
         speed = c.number(slope.scaled.speed),
-        squared_radius = c.number(slope.scaled.squared_radius),
+        squared_radius = c.number(squared_radius),
         entry = entry(c, &slope.scaled),
     );
 }
 
 /// û = unit Σ k(z, z') A.
-pub(super) fn write_direct(c: &CSource, direct: &DirectTables, text: &mut String) {
+pub(super) fn write_direct(c: &CSource, direct: &DirectFormula<'_>, squared_radius: f64, text: &mut String) {
     write_scaled(c, &direct.scaled, text);
-    c.columns("A", &direct.weights, text);
+    c.columns("A", direct.weights, text);
     let terms: String = direct.terms.iter().map(|&term| direct_term(c, term)).collect();
     let [constant, linear, quadratic] = direct.trend.map(|factor| c.number(factor));
     let _ = write!(
@@ -89,19 +93,19 @@ int {name}(const real *x, real *u, real *phi) {{
         zero = c.number(0.0),
         far = c.number(f64::from(f32::MAX)),
         unit = c.number(direct.scaled.speed),
-        squared_radius = c.number(direct.scaled.squared_radius),
+        squared_radius = c.number(squared_radius),
         entry = entry(c, &direct.scaled),
     );
 }
 
-fn write_scaled(c: &CSource, scaled: &Scaled, text: &mut String) {
+fn write_scaled(c: &CSource, scaled: &ScaledStates<'_>, text: &mut String) {
     let _ = writeln!(text, "enum {{ M = {} }}; /* learnt states */\n", scaled.z.ncols());
-    c.vector("MEAN", &scaled.mean, text);
-    c.columns("Z", &scaled.z, text);
+    c.vector("MEAN", scaled.mean, text);
+    c.columns("Z", scaled.z, text);
 }
 
 /// Scaled coordinates; what is not finite is not asked further.
-fn entry(c: &CSource, scaled: &Scaled) -> String {
+fn entry(c: &CSource, scaled: &ScaledStates<'_>) -> String {
     let (spread, zero) = (c.number(scaled.spread), c.number(0.0));
     format!(
         "    for (k = 0; k < N; k++) {{

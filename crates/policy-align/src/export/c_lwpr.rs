@@ -7,13 +7,13 @@ use super::c::CSource;
 use super::lwpr_tables::LwprTables;
 
 /// f = mean + norm_out Σ w y / Σ w and its gradient, fields that take part above the cutoff.
-pub(super) fn write(c: &CSource, lwpr: &LwprTables, per_unit: f64, text: &mut String) {
+pub(super) fn write(c: &CSource, lwpr: &LwprTables<'_>, per_unit: f64, text: &mut String) {
     let (n, m) = (lwpr.norm_in.len(), lwpr.fields.len());
     let table =
         |entries: usize, of: &dyn Fn(usize, usize) -> f64| DMatrix::from_fn(entries, m, |k, field| of(field, k));
     let metric = if lwpr.is_full() { n * n } else { n };
     let _ = writeln!(text, "enum {{ M = {m} }}; /* receptive fields */\n");
-    c.vector("NORM", &lwpr.norm_in, text);
+    c.vector("NORM", lwpr.norm_in, text);
     c.columns("CENTRE", &table(n, &|field, k| lwpr.fields[field].centre[k]), text);
     c.columns("METRIC", &table(metric, &|field, k| lwpr.fields[field].metric[k]), text);
     c.columns("SLOPE", &table(n, &|field, k| lwpr.fields[field].slope[k]), text);

@@ -24,8 +24,10 @@ impl CSource {
         self.columns("BOUNDS", &bounds, &mut text);
         match &tables.learner {
             LearnerTables::Lwpr(lwpr) => c_lwpr::write(self, lwpr, tables.per_unit, &mut text),
-            LearnerTables::Slope(slope) => c_gp::write_slope(self, slope, tables.per_unit, &mut text),
-            LearnerTables::Direct(direct) => c_gp::write_direct(self, direct, &mut text),
+            LearnerTables::Slope(slope, radius) => {
+                c_gp::write_slope(self, slope, (*radius, tables.per_unit), &mut text)
+            }
+            LearnerTables::Direct(direct, radius) => c_gp::write_direct(self, direct, *radius, &mut text),
         }
         Ok(text)
     }

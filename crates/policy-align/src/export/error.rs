@@ -13,10 +13,4 @@ pub enum ExportError {
         /// What was given.
         name: String,
     },
-    /// The stored form of the policy is unknown.
-    #[error("the policy's stored form is not understood: {reason}")]
-    Form {
-        /// What is unexpected.
-        reason: String,
-    },
 }

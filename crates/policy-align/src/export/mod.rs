@@ -5,7 +5,6 @@ mod c_gp;
 mod c_lwpr;
 mod c_policy;
 mod error;
-mod gp_tables;
 mod lwpr_tables;
 mod onnx;
 mod onnx_gp;

@@ -24,8 +24,8 @@ pub fn to_onnx(model: &Model) -> Result<Vec<u8>, ExportError> {
     let scaled = graph.node("Mul", &["x", &scale]);
     let asked = match &tables.learner {
         LearnerTables::Lwpr(lwpr) => onnx_lwpr::write(&mut graph, lwpr, &scaled),
-        LearnerTables::Slope(slope) => onnx_gp::write_slope(&mut graph, slope, &scaled),
-        LearnerTables::Direct(direct) => onnx_gp::write_direct(&mut graph, direct, &scaled),
+        LearnerTables::Slope(slope, radius) => onnx_gp::write_slope(&mut graph, slope, *radius, &scaled),
+        LearnerTables::Direct(direct, radius) => onnx_gp::write_direct(&mut graph, direct, *radius, &scaled),
     };
     let action = graph.node("Div", &[&asked.action, &scale]);
     graph.output(&action, "u");

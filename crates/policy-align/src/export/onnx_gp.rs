@@ -1,11 +1,10 @@
-use gp::Shape;
+use gp::{DirectFormula, Fall, ScaledStates, Shape, SlopeFormula, Term};
 use nalgebra::DMatrix;
 
-use super::gp_tables::{DirectTables, Fall, Scaled, SlopeTables, Term};
 use super::onnx_graph::{Asked, Graph};
 
 /// Scaled coordinates z, (B, n), their differences from the learnt states, (B, M, n), and squares of these, (B, M).
-fn differences(graph: &mut Graph, scaled: &Scaled, state: &str) -> [String; 3] {
+fn differences(graph: &mut Graph, scaled: &ScaledStates<'_>, state: &str) -> [String; 3] {
     let (n, m) = scaled.z.shape();
     let mean = graph.constant(&[n], scaled.mean.iter().copied());
     let spread = graph.number(scaled.spread);
@@ -19,9 +18,9 @@ fn differences(graph: &mut Graph, scaled: &Scaled, state: &str) -> [String; 3] {
     [z, apart, squared]
 }
 
-fn support(graph: &mut Graph, scaled: &Scaled, squared: &str) -> String {
+fn support(graph: &mut Graph, squared_radius: f64, squared: &str) -> String {
     let nearest = graph.least(squared, 1);
-    let squared_radius = graph.number(scaled.squared_radius);
+    let squared_radius = graph.number(squared_radius);
     graph.node("LessOrEqual", &[&nearest, &squared_radius])
 }
 
@@ -31,7 +30,7 @@ fn rows(graph: &mut Graph, matrix: &DMatrix<f64>) -> String {
 }
 
 /// π = speed (Σ g v − h (vᵀa) a + c + Q z), and φ.
-pub(super) fn write_slope(graph: &mut Graph, slope: &SlopeTables, state: &str) -> Asked {
+pub(super) fn write_slope(graph: &mut Graph, slope: &SlopeFormula<'_>, squared_radius: f64, state: &str) -> Asked {
     let [z, apart, squared] = differences(graph, &slope.scaled, state);
     let n = slope.scaled.mean.len();
     let directions = rows(graph, &slope.directions);
@@ -60,12 +59,12 @@ pub(super) fn write_slope(graph: &mut Graph, slope: &SlopeTables, state: &str) -
         let value = graph.node("Add", &[&falling, &trend]);
         graph.times(&value, -slope.scaled.speed * slope.scaled.spread)
     });
-    let support = support(graph, &slope.scaled, &squared);
+    let support = support(graph, squared_radius, &squared);
     Asked { action: graph.times(&action, slope.scaled.speed), potential, support }
 }
 
 /// û = unit Σ k(z, z') A.
-pub(super) fn write_direct(graph: &mut Graph, direct: &DirectTables, state: &str) -> Asked {
+pub(super) fn write_direct(graph: &mut Graph, direct: &DirectFormula<'_>, squared_radius: f64, state: &str) -> Asked {
     let [z, _, squared] = differences(graph, &direct.scaled, state);
     let (n, m) = direct.scaled.z.shape();
     let learnt = graph.constant(&[n, m], direct.scaled.z.transpose().iter().copied());
@@ -79,14 +78,14 @@ pub(super) fn write_direct(graph: &mut Graph, direct: &DirectTables, state: &str
         let covariance = covariance(graph, term, &squared);
         sum = graph.node("Add", &[&sum, &covariance]);
     }
-    let weights = rows(graph, &direct.weights);
+    let weights = rows(graph, direct.weights);
     let action = graph.product(&sum, &weights);
-    let support = support(graph, &direct.scaled, &squared);
+    let support = support(graph, squared_radius, &squared);
     Asked { action: graph.times(&action, direct.scaled.speed), potential: None, support }
 }
 
 /// g and h of (S3), summed over the terms, (B, M) each.
-fn slopes(graph: &mut Graph, slope: &SlopeTables, squared: &str) -> [String; 2] {
+fn slopes(graph: &mut Graph, slope: &SlopeFormula<'_>, squared: &str) -> [String; 2] {
     // Without any term: zeros of the right shape.
     let mut sums = [graph.times(squared, 0.0), graph.times(squared, 0.0)];
     for &term in &slope.terms {

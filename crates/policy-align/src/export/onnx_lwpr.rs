@@ -1,26 +1,26 @@
-use lwpr::Kernel;
+use lwpr::{Kernel, LocalPrediction};
 
-use super::lwpr_tables::{Field, LwprTables};
+use super::lwpr_tables::LwprTables;
 use super::onnx_graph::{Asked, Graph};
 
 /// f = mean + norm_out Σ w y / Σ w and its gradient at scaled states (B, n).
-pub(super) fn write(graph: &mut Graph, lwpr: &LwprTables, scaled: &str) -> Asked {
+pub(super) fn write<'a>(graph: &mut Graph, lwpr: &LwprTables<'a>, scaled: &str) -> Asked {
     let (n, m) = (lwpr.norm_in.len(), lwpr.fields.len());
-    let each = |of: fn(&Field) -> &[f64]| lwpr.fields.iter().flat_map(of).copied().collect::<Vec<_>>();
+    let each = |of: fn(&LocalPrediction<'a>) -> &'a [f64]| lwpr.fields.iter().flat_map(of).copied().collect::<Vec<_>>();
     let norm = graph.constant(&[n], lwpr.norm_in.iter().copied());
-    let centres = graph.constant(&[1, m, n], each(|field| &field.centre));
-    let slopes = graph.constant(&[m, n], each(|field| &field.slope));
+    let centres = graph.constant(&[1, m, n], each(|field| field.centre));
+    let slopes = graph.constant(&[m, n], each(|field| field.slope));
     let offsets = graph.constant(&[m], lwpr.fields.iter().map(|field| field.offset));
     let z = graph.node("Div", &[scaled, &norm]);
     let z = graph.unsqueezed(&z, 1);
     let apart = graph.node("Sub", &[&z, &centres]);
     let turned = if lwpr.is_full() {
-        let metric = graph.constant(&[m, n, n], each(|field| &field.metric));
+        let metric = graph.constant(&[m, n, n], each(|field| field.metric));
         let rows = graph.unsqueezed(&apart, 2);
         let products = graph.node("Mul", &[&metric, &rows]);
         graph.sum(&products, 3)
     } else {
-        let metric = graph.constant(&[m, n], each(|field| &field.metric));
+        let metric = graph.constant(&[m, n], each(|field| field.metric));
         graph.node("Mul", &[&apart, &metric])
     };
     let squares = graph.node("Mul", &[&apart, &turned]);

@@ -1,7 +1,7 @@
+use gp::ScaledStates;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-use super::gp_tables::Scaled;
 use crate::Model;
 use crate::halton::between;
 
@@ -16,7 +16,7 @@ const UNKNOWN: f64 = 0.05;
 /// The variance that decides in the model itself needs a matrix of the size of all samples squared. What is exported asks
 /// for the nearest learnt state instead: the radius goes as far as 95 % of the states within it, evenly spread over the
 /// model's bounds, are known to the model.
-pub(super) fn squared_radius(model: &Model, scaled: &Scaled) -> f64 {
+pub(super) fn squared_radius(model: &Model, scaled: &ScaledStates<'_>) -> f64 {
     let (policy, bounds) = (model.policy(), model.bounds());
     let asked = (1..=ASKED).into_par_iter().map(|index| {
         let state = between(&bounds, index);

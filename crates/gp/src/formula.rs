@@ -1,0 +1,123 @@
+//! Posterior means written out, for programs that evaluate them without this crate.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::kernel::block::{Block, length};
+use crate::kernel::direct_block::{self, DirectBlock};
+use crate::kernel::shape::Shape;
+use crate::rows::scaling::Scaling;
+use crate::{DirectFit, SlopeFit};
+
+/// Scaled coordinates z = (x − mean) / spread, and the learnt states in them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScaledStates<'a> {
+    /// (n).
+    pub mean: &'a [f64],
+    /// One for all axes.
+    pub spread: f64,
+    /// Unit of speed, in units of the state per second.
+    pub speed: f64,
+    /// z', (n, M).
+    pub z: &'a DMatrix<f64>,
+}
+
+/// A term that falls with distance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Term {
+    /// How it falls.
+    pub fall: Fall,
+    /// ℓ, in scaled coordinates.
+    pub length: f64,
+    /// Of the block.
+    pub amplitude: f64,
+}
+
+/// How a term falls with distance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fall {
+    /// As a potential or velocity of this shape.
+    Shape(Shape),
+    /// As [`Block::DivergenceFree`].
+    DivergenceFree,
+}
+
+/// (S7): π̂ = speed (Σ g v − h (vᵀa) a + c + Qz) with a = z − z', and g and h of (S3) summed over terms.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SlopeFormula<'a> {
+    /// Coordinates and learnt states.
+    pub scaled: ScaledStates<'a>,
+    /// v = α n, (n, M).
+    pub directions: DMatrix<f64>,
+    /// Terms with an amplitude above 0.
+    pub terms: Vec<Term>,
+    /// c, (n).
+    pub constant: DVector<f64>,
+    /// Q, (n, n).
+    pub matrix: DMatrix<f64>,
+    /// Whether π̂ is the negative gradient of φ̂ = −speed · spread (Σ g vᵀa + zᵀ(c + Qz/2)).
+    pub has_potential: bool,
+}
+
+/// (R4): û = speed Σ k(z, z') A, where k is the sum of terms and of the trend's.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DirectFormula<'a> {
+    /// Coordinates and learnt states.
+    pub scaled: ScaledStates<'a>,
+    /// A, (n, M).
+    pub weights: &'a DMatrix<f64>,
+    /// Terms with an amplitude above 0.
+    pub terms: Vec<Term>,
+    /// Factors of 1, of zᵀz' and of its square.
+    pub trend: [f64; 3],
+}
+
+impl SlopeFit {
+    /// The policy, written out.
+    pub fn formula(&self) -> SlopeFormula<'_> {
+        let expansion = self.model.expansion();
+        let fall = |block| match block {
+            Block::Potential(shape, scale) => Some((Fall::Shape(shape), scale)),
+            Block::DivergenceFree(scale) => Some((Fall::DivergenceFree, scale)),
+            Block::Linear | Block::Quadratic | Block::Skew => None,
+        };
+        SlopeFormula {
+            scaled: ScaledStates::of(&expansion.scaling, expansion.speed, &expansion.z),
+            directions: expansion.weighted(),
+            terms: terms(&expansion.blocks, &expansion.amplitudes, expansion.dim(), fall),
+            // −0 becomes 0: without a trend nothing is added.
+            constant: expansion.constant.add_scalar(0.0),
+            matrix: expansion.matrix.add_scalar(0.0),
+            has_potential: self.potential().is_some(),
+        }
+    }
+}
+
+impl DirectFit {
+    /// The policy, written out.
+    pub fn formula(&self) -> DirectFormula<'_> {
+        let (model, dim) = (&self.model, self.model.z.nrows());
+        let fall = |block| match block {
+            DirectBlock::Shape(shape, scale) => Some((Fall::Shape(shape), scale)),
+            DirectBlock::Constant | DirectBlock::Linear | DirectBlock::Quadratic => None,
+        };
+        DirectFormula {
+            scaled: ScaledStates::of(&model.scaling, model.unit, &model.z),
+            weights: &model.weights,
+            terms: terms(&model.blocks, &model.amplitudes, dim, fall),
+            trend: direct_block::trend(&model.blocks, &model.amplitudes, dim),
+        }
+    }
+}
+
+impl<'a> ScaledStates<'a> {
+    fn of(scaling: &'a Scaling, speed: f64, z: &'a DMatrix<f64>) -> Self {
+        ScaledStates { mean: &scaling.mean, spread: scaling.scale, speed, z }
+    }
+}
+
+fn terms<B: Copy>(blocks: &[B], amplitudes: &[f64], dim: usize, fall: impl Fn(B) -> Option<(Fall, f64)>) -> Vec<Term> {
+    let each = blocks.iter().zip(amplitudes).filter(|(_, amplitude)| **amplitude > 0.0);
+    let term =
+        |(&block, &amplitude)| fall(block).map(|(fall, scale)| Term { fall, length: length(scale, dim), amplitude });
+    each.filter_map(term).collect()
+}
