@@ -30,17 +30,18 @@ fn root_above(folder: &Path) -> Result<PathBuf, Failure> {
 
 /// A path as one would write it in the current folder.
 pub(crate) fn relative(path: &Path) -> String {
-    let here = std::env::current_dir().unwrap_or_default();
-    let path = path.strip_prefix(here).unwrap_or(path);
-    if path.as_os_str().is_empty() { ".".to_owned() } else { path.display().to_string() }
+    from_here(path).display().to_string()
 }
 
 /// A path as one would type it in a shell, in the current folder.
 pub(crate) fn typed(path: &Path) -> String {
-    let path = relative(path);
-    let plain = |c: char| c.is_alphanumeric() || "/._-+:,@%".contains(c);
-    let path = if path.starts_with('-') { format!("./{path}") } else { path };
-    if path.chars().all(plain) { path } else { format!("'{}'", path.replace('\'', r"'\''")) }
+    text::quoted(from_here(path))
+}
+
+fn from_here(path: &Path) -> &Path {
+    let here = std::env::current_dir().unwrap_or_default();
+    let path = path.strip_prefix(here).unwrap_or(path);
+    if path.as_os_str().is_empty() { Path::new(".") } else { path }
 }
 
 /// Writes a whole file or nothing.
@@ -56,17 +57,6 @@ pub(crate) fn write(path: &Path, contents: impl AsRef<[u8]>) -> anyhow::Result<(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_shell_reads_a_typed_path_as_it_is() {
-        assert_eq!(typed(Path::new("runs/seed-1")), "runs/seed-1");
-        assert_eq!(typed(Path::new("-o")), "./-o");
-        for name in ["m/a b 'ö`", "$HOME", "a;b", "a\nb", "~", "*", "a\\b", "\"", "''", "a&b", "#", "(", "!!"] {
-            let quoted = typed(Path::new(name));
-            let heard = std::process::Command::new("sh").args(["-c", &format!("printf %s {quoted}")]).output().unwrap();
-            assert_eq!(String::from_utf8(heard.stdout).unwrap(), name, "{quoted}");
-        }
-    }
 
     #[test]
     fn the_repository_is_the_one_that_a_folder_is_in() {

@@ -93,7 +93,8 @@ impl Lines {
 /// Writes lines to standard error, on a terminal folded at its usual width; a closed standard error stops nothing.
 pub(crate) fn say(text: &str) {
     let mut stderr = std::io::stderr();
-    let text = if stderr.is_terminal() { folded(text) } else { text.to_owned() };
+    let text = text::plain(text);
+    let text = if stderr.is_terminal() { folded(&text) } else { text.into_owned() };
     let _ = writeln!(stderr, "{text}");
 }
 

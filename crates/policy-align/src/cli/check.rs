@@ -5,6 +5,7 @@ use clap::Args;
 use policy_align::{Finding, Prepared, Verdict, write_whole};
 use prepare::{directions, prepare};
 use serde_json::json;
+use text::quoted;
 
 use super::check_page::check_page;
 use super::config::Config;
@@ -56,7 +57,7 @@ impl Check {
                 "noise": prepared.noise, "direction_coverage": coverage,
                 "least_seen": direction.as_slice(), "decisions": prepared.decisions, "findings": prepared.findings,
             });
-            return Ok(Said { text: format!("{document}\n"), exit });
+            return Ok(Said::json(&document, exit));
         }
         let mut lines = Lines::default();
         about(&prepared, &named(&self.files), &mut lines);
@@ -69,7 +70,7 @@ impl Check {
         if refused {
             return Ok(Said { text: lines.into_text(), exit });
         }
-        let given = self.files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>().join(" ");
+        let given = self.files.iter().map(|file| quoted(file)).collect::<Vec<_>>().join(" ");
         Ok(Said { text: lines.next(&format!("policy-align fit {given} -o model.json")), exit })
     }
 }

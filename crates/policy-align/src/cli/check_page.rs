@@ -5,6 +5,7 @@ use nalgebra::DVector;
 use page::{Card, Document, Part};
 use plot::{Layer, Plane};
 use policy_align::{Finding, Prepared, Verdict};
+use text::plain;
 
 use super::lines::{counted, short};
 use super::page_parts::{NUMBERS, STYLE, channels, decisions, direction, found, left_out, part, row, table};
@@ -27,7 +28,7 @@ pub(crate) fn check_page(prepared: &Prepared, name: &str, seen: (f64, &DVector<f
     parts.push(part("decisions", "Decisions", &decisions(&prepared.decisions)));
     let data = html! { (channels(&prepared.state)) (left_out(&prepared.left_out)) };
     parts.push(part("data", "Data", &data));
-    Document { title: &title, name, opening, parts, style: STYLE }.html()
+    plain(&Document { title: &title, name, opening, parts, style: STYLE }.html()).into_owned()
 }
 
 fn opening(prepared: &Prepared, title: &str) -> Markup {

@@ -1,6 +1,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use text::quoted;
 
 use super::config::Config;
 use super::failure::Failure;
@@ -56,6 +57,6 @@ impl Convert {
                 counted(samples, "sample")
             ),
         );
-        Ok(Said::done(lines.next(&format!("policy-align check {}", self.output.display()))))
+        Ok(Said::done(lines.next(&format!("policy-align check {}", quoted(&self.output)))))
     }
 }

@@ -1,5 +1,5 @@
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use clap::Args;
@@ -9,6 +9,7 @@ use policy_align::{
     PrepareOptions, Prepared, Progress, Truth, evaluate, leave_constraints_out, prepare,
 };
 use serde_json::json;
+use text::quoted;
 
 use super::config::Config;
 use super::failure::{Exit, Failure};
@@ -70,7 +71,11 @@ impl Evaluate {
                 names(&prepared.state).join(", "),
                 names(&model.state).join(", ")
             );
-            return Err(Failure::usage(what, named(&self.files), format!("--state {}", names(&model.state).join(","))));
+            return Err(Failure::usage(
+                what,
+                named(&self.files),
+                format!("--state {}", quoted(Path::new(&names(&model.state).join(",")))),
+            ));
         }
         let truth = self.truth(session, &reading, &prepared, &model)?;
         let judged = evaluate(model.learnt.policy(), &prepared, truth.as_ref()).map_err(|error| {
@@ -90,7 +95,7 @@ impl Evaluate {
                 "evaluation": judged, "episodes": prepared.episodes, "constraints": constraints,
                 "constraints_left_out": left_out, "training_files": training,
             });
-            return Ok(Said { text: format!("{document}\n"), exit });
+            return Ok(Said::json(&document, exit));
         }
         let mut lines = Lines::default();
         tell(&prepared, &judged, &mut lines);

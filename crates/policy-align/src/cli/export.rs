@@ -3,6 +3,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use nalgebra::DVector;
 use policy_align::{CSource, ExportError, Model, Precision, spread_starts, to_onnx, write_whole};
+use text::quoted;
 
 use super::config::Config;
 use super::failure::{Exit, Failure, shown};
@@ -15,6 +16,8 @@ use super::session::{Said, Session};
 
 /// Roll-outs that are exported unless starts are given.
 const STARTS: usize = 12;
+/// What loads the file that is named after it.
+const LOAD_ONNX: &str = "python -c \"import onnxruntime as o, sys; o.InferenceSession(sys.argv[1])\"";
 
 /// Export a policy to C or ONNX, or roll-outs to MCAP
 #[derive(Debug, Args)]
@@ -96,10 +99,8 @@ impl Export {
         let mut lines = Lines::default();
         lines.add("written", &format!("{} ({})", output.display(), size(bytes.len())));
         let next = match self.to {
-            Target::Onnx => {
-                format!("python -c \"import onnxruntime as o; o.InferenceSession('{}')\"", output.display())
-            }
-            _ => format!("cc -std=c99 -O2 -c {}", output.display()),
+            Target::Onnx => format!("{LOAD_ONNX} {}", quoted(&output)),
+            _ => format!("cc -std=c99 -O2 -c {}", quoted(&output)),
         };
         Ok(Said::done(lines.next(&next)))
     }
@@ -129,6 +130,6 @@ impl Export {
         let written =
             format!("{}: {}, {}", output.display(), counted(paths.len(), "roll-out"), counted(samples, "sample"));
         lines.add("written", &written);
-        Ok(Said::done(lines.next(&format!("rerun {}", output.display()))))
+        Ok(Said::done(lines.next(&format!("rerun {}", quoted(output)))))
     }
 }

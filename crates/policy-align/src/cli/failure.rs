@@ -3,6 +3,7 @@ use std::path::Path;
 
 use demo_io::ReadError;
 use policy_align::{ConstraintFileError, FitError, ModelError, PrepareError};
+use text::quoted;
 
 /// Exit codes, as `policy-align --help` lists them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,7 +65,7 @@ impl Failure {
             ModelError::File(reason) => return Failure::reading(path, reason),
             ModelError::Newer { .. } => "update policy-align".to_owned(),
             ModelError::NotAModel { .. } => {
-                format!("a model written by `policy-align fit`; to learn one: policy-align fit {}", shown(path))
+                format!("a model written by `policy-align fit`; to learn one: policy-align fit {}", quoted(path))
             }
             _ => "another copy of the file, or fit again".to_owned(),
         };

@@ -5,6 +5,7 @@ use clap::Args;
 use motion::Recordings;
 use policy_align::{Evaluation, Finding, Model, Prepared, Progress, Verdict, evaluate, fit, prepare, write_whole};
 use serde_json::json;
+use text::quoted;
 
 use super::check::findings;
 use super::clock::now;
@@ -116,7 +117,7 @@ impl Fit {
                 "written": files, "trust": model.trust, "decisions": model.decisions, "data": model.data,
                 "hold_out": held_out,
             });
-            return Said { text: format!("{document}\n"), exit };
+            return Said::json(&document, exit);
         }
         let mut lines = Lines::default();
         let data = &model.data;
@@ -155,13 +156,13 @@ impl Fit {
         lines.add("written", &format!("{} ({}){beside}", self.output.display(), size(bytes)));
         let next = if exit == Exit::Refused {
             let page = written.first().map_or_else(
-                || "policy-align info ".to_owned() + &self.output.display().to_string(),
-                |page| format!("open {}", page.display()),
+                || format!("policy-align info {}", quoted(&self.output)),
+                |page| format!("open {}", quoted(page)),
             );
             lines.next(&page)
         } else {
-            let (model, picture) = (self.output.display(), self.output.with_extension("svg"));
-            lines.next(&format!("policy-align plot {model} -o {}", picture.display()))
+            let (model, picture) = (quoted(&self.output), quoted(&self.output.with_extension("svg")));
+            lines.next(&format!("policy-align plot {model} -o {picture}"))
         };
         Said { text: next, exit }
     }

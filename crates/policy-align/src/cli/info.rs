@@ -2,9 +2,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::json;
+use text::quoted;
 
 use super::check::findings;
-use super::failure::Failure;
+use super::failure::{Exit, Failure};
 use super::in_words::{learner, verdict};
 use super::lines::{Lines, counted, short};
 use super::recorded::load;
@@ -26,7 +27,7 @@ impl Info {
                 "made_by": model.made_by, "state": model.state, "time_step": model.time_step, "data": model.data,
                 "learner": learner(&model), "decisions": model.decisions, "seed": model.seed, "trust": model.trust,
             });
-            return Ok(Said::done(format!("{document}\n")));
+            return Ok(Said::json(&document, Exit::Done));
         }
         let mut lines = Lines::default();
         lines.add("made by", &format!("{}, {}", model.made_by.program, model.made_by.time));
@@ -58,6 +59,6 @@ impl Info {
         lines.add("trust", verdict(&model));
         findings(&model.trust.findings, 4, &mut lines);
         let middle: Vec<String> = model.state.iter().map(|channel| short(channel.median)).collect();
-        Ok(Said::done(lines.next(&format!("policy-align predict {} --at {}", self.model.display(), middle.join(",")))))
+        Ok(Said::done(lines.next(&format!("policy-align predict {} --at {}", quoted(&self.model), middle.join(",")))))
     }
 }

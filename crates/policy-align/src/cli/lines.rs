@@ -1,18 +1,20 @@
 pub(crate) use prepare::in_words::{short, squared_error};
+use text::plain;
 
 /// Columns of the terminal that are used.
 const WIDTH: usize = 80;
 /// Columns of a line's label.
 const LABEL: usize = 13;
 
-/// What a command says: lines with a label each, folded to the width of a terminal.
+/// What a command says: lines with a label each, folded to the width of a terminal, without characters that cannot be seen.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Lines(String);
 
 impl Lines {
     pub(crate) fn add(&mut self, label: &str, text: &str) {
+        let (label, text) = (plain(label), plain(text));
         let mut start = format!("{label:<LABEL$}");
-        for line in folded(text, WIDTH - LABEL) {
+        for line in folded(&text, WIDTH - LABEL) {
             self.0.push_str(start.trim_end_matches(|c| line.is_empty() && c == ' '));
             self.0.push_str(&line);
             self.0.push('\n');
@@ -22,7 +24,7 @@ impl Lines {
 
     /// The last line, set apart: what to do next.
     pub(crate) fn next(self, command: &str) -> String {
-        self.0 + &format!("\nNext:  {command}\n")
+        self.0 + &format!("\nNext:  {}\n", plain(command))
     }
 
     pub(crate) fn count(&self) -> usize {

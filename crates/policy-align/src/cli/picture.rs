@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use plot::{Dash, Field, Layer, Plane, Stroke};
 use policy_align::{Model, ModelPolicy, StateChannel};
 use rayon::prelude::*;
+use text::plain;
 
 use super::failure::{Exit, Failure, shown};
 
@@ -103,7 +104,8 @@ impl<'a> Picture<'a> {
             layers.push(Layer::Path { points, stroke: FOLLOWED, label: named(at, "rolled out") });
         }
         let [x_label, y_label] = self.dims.map(|dim| with_unit(&self.model.state[dim]));
-        Plane { title: self.title.clone(), x_label, y_label, x: self.range(0), y: self.range(1), layers, size: SIZE }
+        let title = plain(&self.title).into_owned();
+        Plane { title, x_label, y_label, x: self.range(0), y: self.range(1), layers, size: SIZE }
     }
 
     fn points(&self, movement: &DMatrix<f64>) -> Vec<(f64, f64)> {
@@ -137,9 +139,10 @@ impl<'a> Picture<'a> {
     }
 }
 
-/// A channel as an axis is labelled.
+/// A channel as an axis is labelled: XML does not allow every character.
 pub(crate) fn with_unit(channel: &StateChannel) -> String {
-    format!("{} ({})", channel.name, channel.unit.as_deref().unwrap_or("no unit given"))
+    let label = format!("{} ({})", channel.name, channel.unit.as_deref().unwrap_or("no unit given"));
+    plain(&label).into_owned()
 }
 
 /// Grey rectangles over what nothing is known of, as few as rows of equal ends allow.

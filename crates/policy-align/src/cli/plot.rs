@@ -1,8 +1,9 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use nalgebra::DVector;
 use policy_align::{Model, write_whole};
+use text::quoted;
 
 use super::config::Config;
 use super::failure::Failure;
@@ -79,7 +80,7 @@ impl Plot {
         );
         let start: Vec<String> =
             model.state.iter().map(|channel| short(channel.high * 0.5 + channel.median * 0.5)).collect();
-        Ok(Said::done(lines.next(&format!("policy-align rollout {} --from {}", self.model.display(), start.join(",")))))
+        Ok(Said::done(lines.next(&format!("policy-align rollout {} --from {}", quoted(&self.model), start.join(",")))))
     }
 }
 
@@ -104,6 +105,10 @@ fn dims(names: &[String], model: &Model) -> Result<[usize; 2], Failure> {
                 format!("two of {}", known.join(", ")),
             )),
         },
-        _ => Err(Failure::usage("a plot has two channels", "--dims", format!("--dims {},{}", known[0], known[1]))),
+        _ => Err(Failure::usage(
+            "a plot has two channels",
+            "--dims",
+            format!("--dims {}", quoted(Path::new(&known[..2].join(",")))),
+        )),
     }
 }

@@ -98,7 +98,7 @@ impl Predict {
         bar.finish_and_clear();
         let predictions = self.with_outside(predictions)?;
         if session.json {
-            return Ok(Said::done(format!("{}\n", document(&model, &states, &predictions))));
+            return Ok(Said::json(&document(&model, &states, &predictions), Exit::Done));
         }
         if let (Some(_), None) = (&self.at, &self.output) {
             return Ok(Said::done(one_prediction(&model, &predictions[0])));

@@ -6,6 +6,7 @@ use motion::{Channel, Episode, Recordings, Source, Times};
 use nalgebra::DVector;
 use policy_align::{Model, Path, RollOutError, Stop, write_whole};
 use serde_json::json;
+use text::quoted;
 
 use super::config::Config;
 use super::failure::{Exit, Failure, shown};
@@ -81,7 +82,7 @@ impl RollOut {
                 "velocities": columns(&followed.velocities), "stop": stop(&followed.stop),
                 "broken_by": followed.broken_by.map(|(by, _)| by),
             });
-            return Ok(Said::done(format!("{document}\n")));
+            return Ok(Said::json(&document, Exit::Done));
         }
         Ok(Said::done(self.summary(&followed)))
     }
@@ -112,7 +113,8 @@ impl RollOut {
         if self.output.is_some() {
             return lines.into_text();
         }
-        lines.next(&format!("policy-align rollout {} --from {} -o path.csv", self.model.display(), self.from))
+        let (model, from) = (quoted(&self.model), self.from.replace(char::is_whitespace, ""));
+        lines.next(&format!("policy-align rollout {model} --from {from} -o path.csv"))
     }
 }
 

@@ -4,6 +4,8 @@ use std::time::Duration;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde_json::Value;
+use text::{is_hidden, plain};
 
 use super::failure::{Exit, Failure};
 
@@ -31,6 +33,19 @@ pub(crate) struct Said {
 impl Said {
     pub(crate) fn done(text: String) -> Said {
         Said { text, exit: Exit::Done }
+    }
+
+    /// One document in one line. What a terminal would not show is escaped, as JSON allows in its texts.
+    pub(crate) fn json(document: &Value, exit: Exit) -> Said {
+        let mut text = String::new();
+        for c in document.to_string().chars() {
+            if is_hidden(c) {
+                text.extend(c.encode_utf16(&mut [0; 2]).iter().map(|unit| format!("\\u{unit:04x}")));
+            } else {
+                text.push(c);
+            }
+        }
+        Said { text: text + "\n", exit }
     }
 }
 
@@ -65,9 +80,10 @@ impl Session {
     }
 }
 
-/// Writes a result; who closes the pipe has read enough.
+/// Writes a result; who closes the pipe has read enough. Other programs read data as they are.
 pub(crate) fn tell(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
+    let text = if stdout.is_terminal() { plain(text) } else { text.into() };
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::new(Exit::File, error.to_string(), "standard output", "-o FILE"))
@@ -78,5 +94,5 @@ pub(crate) fn tell(text: &str) -> Result<(), Failure> {
 
 /// Writes a line to standard error; a closed one stops nothing.
 pub(crate) fn complain(text: &str) {
-    let _ = writeln!(io::stderr(), "{text}");
+    let _ = writeln!(io::stderr(), "{}", plain(text));
 }

@@ -5,6 +5,7 @@ use motion::{Demonstrations, LearntPolicy as _};
 use nalgebra::DMatrix;
 use page::{Card, Document, Part};
 use policy_align::{Model, TrustNumbers, Verdict};
+use text::plain;
 
 use super::in_words::learner;
 use super::lines::{counted, short};
@@ -22,7 +23,7 @@ pub(crate) fn trust_page(model: &Model, name: &str, shown: Option<&Demonstration
     parts.push(part("numbers", "Numbers", &numbers(model)));
     parts.push(part("decisions", "Decisions", &decisions(&model.decisions)));
     parts.push(part("data", "Data", &data(model)));
-    Document { title: &title, name, opening, parts, style: STYLE }.html()
+    plain(&Document { title: &title, name, opening, parts, style: STYLE }.html()).into_owned()
 }
 
 const FIELD: &str = "The learnt policy";

@@ -1,6 +1,7 @@
 use std::fmt::Write as _;
 
 use nalgebra::DMatrix;
+use text::plain;
 
 use super::error::ExportError;
 use crate::{Model, Verdict};
@@ -59,25 +60,25 @@ impl CSource {
             Verdict::Doubtful => "doubtful",
             Verdict::DoNotUse => "DO NOT USE",
         };
-        let mut text = format!("/* A learnt policy, written by {}.\n", plain(&model.made_by.program));
+        let mut text = format!("/* A learnt policy, written by {}.\n", comment(&model.made_by.program));
         let _ = writeln!(
             text,
             " * Learnt {} from {} episodes, {} samples,",
-            plain(&model.made_by.time),
+            comment(&model.made_by.time),
             model.data.episodes,
             model.data.samples
         );
         let _ = writeln!(text, " * one every {} s. Trust: {verdict}.", model.time_step);
         for finding in &model.trust.findings {
-            let _ = writeln!(text, " *   {}", plain(&finding.what));
+            let _ = writeln!(text, " *   {}", comment(&finding.what));
         }
         let _ = writeln!(text, " *\n * State x, in this order, and action u, the same per second:");
         for (at, channel) in model.state.iter().enumerate() {
-            let unit = channel.unit.as_deref().map_or(String::new(), |unit| format!(" ({})", plain(unit)));
+            let unit = channel.unit.as_deref().map_or(String::new(), |unit| format!(" ({})", comment(unit)));
             let _ = writeln!(
                 text,
                 " *   [{at}] {}{unit}, learnt from {} to {}",
-                plain(&channel.name),
+                comment(&channel.name),
                 channel.low,
                 channel.high
             );
@@ -147,11 +148,7 @@ impl CSource {
 }
 
 /// What can stand in a comment, in one line.
-fn plain(text: &str) -> String {
-    text.replace("*/", "* /")
-        .replace("/*", "/ *")
-        .replace("??/", "? ?/")
-        .chars()
-        .map(|c| if c.is_control() || c == '\\' { ' ' } else { c })
-        .collect()
+fn comment(text: &str) -> String {
+    let text = text.replace("*/", "* /").replace("/*", "/ *").replace("??/", "? ?/");
+    plain(&text.replace(['\\', '\n', '\t'], " ")).into_owned()
 }

@@ -1,0 +1,18 @@
+//! What others wrote, made fit for where it is shown: names of channels, units and files come with recordings, which need
+//! not be trusted.
+//!
+//! - [`plain`]: for a terminal, a drawing or a comment.
+//! - [`quoted`]: a path in a command that is proposed.
+//!
+//! ```
+//! use std::path::Path;
+//!
+//! assert_eq!(text::plain("\u{1b}[2Jx"), "\\u{1b}[2Jx");
+//! assert_eq!(text::quoted(Path::new("a;b.csv")), "'a;b.csv'");
+//! ```
+
+mod plain;
+mod quoted;
+
+pub use plain::{is_hidden, plain};
+pub use quoted::quoted;
