@@ -50,7 +50,10 @@ impl Config {
     }
 
     /// Flags, and the file's where there are none.
-    pub(crate) fn under<F: Serialize + DeserializeOwned>(&self, name: &str, flags: &F) -> Result<F, Failure> {
+    pub(crate) fn under<F: Serialize + DeserializeOwned + Clone>(&self, name: &str, flags: &F) -> Result<F, Failure> {
+        if self.tables.is_empty() {
+            return Ok(flags.clone());
+        }
         let wrong = |reason: &str| {
             Failure::usage(
                 reason.to_owned(),
@@ -58,12 +61,16 @@ impl Config {
                 "`policy-align fit --print-config` writes one",
             )
         };
+        let given = Table::try_from(flags).map_err(|error| {
+            let remedy = "flags that a configuration file could hold: numbers up to 2^63, paths in UTF-8";
+            Failure::usage(error.to_string(), "command line", remedy)
+        })?;
         let mut table = match self.tables.get(name) {
             None => Table::new(),
             Some(toml::Value::Table(table)) => table.clone(),
             Some(_) => return Err(wrong("not a table")),
         };
-        table.extend(Table::try_from(flags).map_err(|error| wrong(&error.to_string()))?);
+        table.extend(given);
         table.try_into().map_err(|error: toml::de::Error| wrong(error.message()))
     }
 }
@@ -160,6 +167,16 @@ mod tests {
         assert_eq!(config.under("read", &ReadFlags::default()).unwrap().options().unwrap().state, ["x", "y"]);
         let given: FitFlags = toml::from_str("seed = 9").unwrap();
         assert_eq!(config.under("fit", &given).unwrap().options().unwrap().seed, 9);
+    }
+
+    #[test]
+    fn what_no_file_can_hold_is_a_fault_of_the_command_line() {
+        let given =
+            FitFlags::augment_args(Command::new("fit")).try_get_matches_from(["fit", "--seed", &u64::MAX.to_string()]);
+        let given = <FitFlags as clap::FromArgMatches>::from_arg_matches(&given.unwrap()).unwrap();
+        assert_eq!(Config::default().under("fit", &given).unwrap(), given);
+        let failure = parsed("[fit]\nfolds = 3\n").unwrap().under("fit", &given).unwrap_err();
+        assert_eq!(failure.place, "command line");
     }
 
     #[test]
