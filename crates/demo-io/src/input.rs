@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-use crate::{Fault, ReadError, ReadOptions, SamplesAre};
+use crate::{Fault, ReadError, ReadOptions, SamplesAre, regular_file};
 
 /// A file to be read, with its first bytes.
 pub(crate) struct Input<'a> {
@@ -35,10 +35,9 @@ impl<'a> Input<'a> {
     pub(crate) fn new(path: &Path, options: &'a ReadOptions) -> Result<Self, ReadError> {
         let name = name_of(path);
         let unreadable = |error: std::io::Error| unreadable(&error, &name);
-        let file = File::open(path).map_err(unreadable)?;
-        let len = file.metadata().map_err(unreadable)?.len();
+        let (file, len) = regular_file::open(path).map_err(unreadable)?;
         let mut head = Vec::new();
-        file.take(HEAD).read_to_end(&mut head).map_err(unreadable)?;
+        file.take(len.min(HEAD)).read_to_end(&mut head).map_err(unreadable)?;
         let stem = path.file_stem().map_or_else(|| name.clone(), |stem| stem.to_string_lossy().into_owned());
         Ok(Self {
             path: path.to_owned(),

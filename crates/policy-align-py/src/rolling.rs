@@ -89,7 +89,7 @@ pub(crate) fn follow(
         Constraint::Function(Some(function)) => of_function(function, Arc::clone(&raised)),
     };
     let limits = limits.map(|path| -> PyResult<JointLimits> {
-        let text = std::fs::read_to_string(path)?;
+        let text = demo_io::read_text(path)?;
         let wrong = |reason: String| Refusal::new(reason, path.display().to_string(), "a robot with these joints");
         Ok(JointLimits::from_urdf(&text, &channels).map_err(wrong)?)
     });

@@ -7,9 +7,13 @@ use std::path::{Path, PathBuf};
 
 use crate::input::{Input, name_of, unreadable};
 use crate::raw::RawRecordings;
+use crate::regular_file::read_bytes;
 use crate::rows::json::Json;
 use crate::rows::parquet::{self, Described, STATE};
 use crate::{Fault, ReadError, ReadOptions, natural};
+
+/// Bytes of a file of `meta/`, at most.
+const META: u64 = 256 << 20;
 
 pub(crate) fn read(
     path: &Path,
@@ -49,7 +53,7 @@ struct Info {
 impl Info {
     fn read(path: &Path, name: &str) -> Result<Self, ReadError> {
         let place = format!("{name}, meta/info.json");
-        let text = fs::read(path.join("meta/info.json")).map_err(|error| unreadable(&error, &place))?;
+        let text = read_bytes(&path.join("meta/info.json"), META).map_err(|error| unreadable(&error, &place))?;
         let json: Json = serde_json::from_slice(&text).map_err(|error| {
             ReadError::Json(Fault::new(format!("this is not JSON: {error}"), &place, "another copy of the folder"))
         })?;
@@ -79,7 +83,8 @@ impl Info {
     /// Episodes that `meta/` lists must be there.
     fn refuse_missing(&self, path: &Path, name: &str, drafts: &RawRecordings) -> Result<(), ReadError> {
         let found: BTreeSet<&str> = drafts.episodes.iter().map(|draft| &draft.name[..]).collect();
-        let listed = fs::read_to_string(path.join("meta/episodes.jsonl")).unwrap_or_default();
+        let listed = read_bytes(&path.join("meta/episodes.jsonl"), META).unwrap_or_default();
+        let listed = String::from_utf8(listed).unwrap_or_default();
         let mut expected: Vec<u64> = listed
             .lines()
             .filter_map(|line| serde_json::from_str::<Json>(line).ok()?.get("episode_index")?.number())

@@ -24,7 +24,7 @@ impl Config {
     /// The file that the user named, or an empty one.
     pub(crate) fn of(session: &Session) -> Result<Config, Failure> {
         let Some(path) = &session.config else { return Ok(Config::default()) };
-        let text = std::fs::read_to_string(path).map_err(|error| Failure::reading(path, error))?;
+        let text = demo_io::read_text(path).map_err(|error| Failure::reading(path, error))?;
         Config::parsed(&text, path)
     }
 

@@ -39,7 +39,7 @@ impl RollOutFlags {
         let limits = match &self.limits {
             None => None,
             Some(path) => {
-                let text = std::fs::read_to_string(path).map_err(|error| Failure::reading(path, error))?;
+                let text = demo_io::read_text(path).map_err(|error| Failure::reading(path, error))?;
                 let limits = JointLimits::from_urdf(&text, &channels);
                 Some(limits.map_err(|reason| {
                     Failure::usage(reason, shown(path), "a URDF with joints named like the channels")

@@ -1,6 +1,5 @@
 //! States of a file, as prediction wants them: a column for each channel, found by name, or the channels alone.
 
-use std::io::Read as _;
 use std::path::Path;
 
 use nalgebra::DMatrix;
@@ -8,16 +7,19 @@ use policy_align::Model;
 
 use super::failure::{Exit, Failure, shown};
 
+/// Bytes of states, at most.
+const LARGEST: u64 = 1 << 30;
+
 /// States (n, N) of a text with separators; `-` is standard input.
 pub(crate) fn states(path: &Path, model: &Model) -> Result<DMatrix<f64>, Failure> {
-    let text = if path == Path::new("-") {
-        let mut text = String::new();
-        std::io::stdin().read_to_string(&mut text).map(|_| text)
+    let bytes = if path == Path::new("-") {
+        demo_io::read_bounded(std::io::stdin(), LARGEST)
     } else {
-        std::fs::read_to_string(path)
+        demo_io::read_bytes(path, LARGEST)
     };
-    let text = text.map_err(|error| Failure::reading(path, error))?;
-    parsed(&text, model, &shown(path))
+    let bytes = bytes.map_err(|error| Failure::reading(path, error))?;
+    let text = str::from_utf8(&bytes).map_err(|_| Failure::reading(path, "it is not UTF-8"))?;
+    parsed(text, model, &shown(path))
 }
 
 fn parsed(text: &str, model: &Model, place: &str) -> Result<DMatrix<f64>, Failure> {

@@ -114,8 +114,7 @@ impl ConstraintSet {
 }
 
 fn read(path: &Path) -> Result<String, ConstraintFileError> {
-    std::fs::read_to_string(path)
-        .map_err(|source| ConstraintFileError::File { file: path.display().to_string(), source })
+    demo_io::read_text(path).map_err(|source| ConstraintFileError::File { file: path.display().to_string(), source })
 }
 
 fn read_robot(path: &Path) -> Result<Result<RobotModel, String>, ConstraintFileError> {

@@ -15,6 +15,9 @@ const FORMAT: &str = "policy-align model";
 /// The version that is written; this and all before it are read.
 const VERSION: u64 = 1;
 
+/// Bytes that are read, at most.
+const LARGEST: u64 = 256 << 20;
+
 /// Header of a model file.
 #[derive(Serialize)]
 struct Stored<'a> {
@@ -87,7 +90,7 @@ impl Model {
     /// # Errors
     /// As [`Model::from_json`], and [`ModelError::File`].
     pub fn load(path: &Path) -> Result<Model, ModelError> {
-        Model::from_json(&std::fs::read(path)?)
+        Model::from_json(&demo_io::read_bytes(path, LARGEST)?)
     }
 
     /// Inconsistencies of the model, with their place.

@@ -1,0 +1,76 @@
+//! Files with an end. Devices have none, and a pipe is waited for.
+
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Read};
+use std::path::Path;
+
+/// Bytes of a text that somebody wrote, as a configuration or the description of a robot, at most.
+const TEXT: u64 = 16 << 20;
+
+/// A text that somebody wrote.
+///
+/// # Errors
+/// As [`read_bytes`], and what is not UTF-8.
+pub fn read_text(path: &Path) -> io::Result<String> {
+    String::from_utf8(read_bytes(path, TEXT)?).map_err(|_| io::Error::new(ErrorKind::InvalidData, "it is not UTF-8"))
+}
+
+/// What a file holds as it is opened; what is written to it later is not read.
+///
+/// # Errors
+/// What the system says, what is not a plain file, and one of more than `most` bytes.
+pub fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let (file, len) = open(path)?;
+    if len > most {
+        return Err(too_large(most));
+    }
+    read_bounded(file.take(len), most)
+}
+
+/// All that a source gives, such as standard input.
+///
+/// # Errors
+/// What the system says, and more than `most` bytes.
+pub fn read_bounded(source: impl Read, most: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    source.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most { Err(too_large(most)) } else { Ok(bytes) }
+}
+
+fn too_large(most: u64) -> io::Error {
+    io::Error::new(ErrorKind::FileTooLarge, format!("it has more than {} MB", most >> 20))
+}
+
+/// Opens a file, and says how many bytes it has now.
+pub(crate) fn open(path: &Path) -> io::Result<(File, u64)> {
+    // Before it is opened: that would wait for the other end of a pipe.
+    let found = fs::metadata(path)?;
+    if !found.is_file() {
+        let what = if found.is_dir() { "it is a folder" } else { "it is a pipe or a device; name a file" };
+        return Err(io::Error::new(ErrorKind::InvalidInput, what));
+    }
+    let file = File::open(path)?;
+    let len = file.metadata()?.len();
+    Ok((file, len))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_more_is_read_than_is_allowed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.toml");
+        fs::write(&path, "a = 1").unwrap();
+        assert_eq!(read_text(&path).unwrap(), "a = 1");
+        assert_eq!(read_bytes(&path, 5).unwrap(), b"a = 1");
+        assert_eq!(read_bytes(&path, 4).unwrap_err().kind(), ErrorKind::FileTooLarge);
+        assert_eq!(read_bounded(io::repeat(0), 1 << 20).unwrap_err().to_string(), "it has more than 1 MB");
+        assert_eq!(read_bytes(folder.path(), 5).unwrap_err().kind(), ErrorKind::InvalidInput);
+        fs::write(&path, [0xff]).unwrap();
+        assert_eq!(read_text(&path).unwrap_err().to_string(), "it is not UTF-8");
+        File::create(&path).unwrap().set_len(1 << 40).unwrap();
+        assert_eq!(read_text(&path).unwrap_err().to_string(), "it has more than 16 MB");
+    }
+}
