@@ -4,8 +4,16 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use tempfile::NamedTempFile;
+
+/// Names of drafts begin and end so.
+const PREFIX: &str = ".policy-align-";
+const SUFFIX: &str = ".part";
+
+/// Longer than a new draft is without its lock.
+const UNLOCKED: Duration = Duration::from_secs(60);
 
 /// Drafts that are being written by this process.
 static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -26,22 +34,7 @@ pub fn write_whole<E: From<io::Error>>(
     path: &Path,
     fill: impl FnOnce(&mut dyn Sink) -> Result<(), E>,
 ) -> Result<(), E> {
-    // A link stays a link: the file behind it is replaced.
-    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    if fs::metadata(&path).is_ok_and(|found| !found.is_file()) {
-        let mut file = BufWriter::new(File::options().write(true).open(&path)?);
-        fill(&mut file)?;
-        return Ok(file.flush()?);
-    }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let draft = Draft::in_folder(folder, &path)?;
-    let mut file = BufWriter::with_capacity(1 << 16, draft.file.as_file());
-    fill(&mut file)?;
-    file.flush()?;
-    drop(file);
-    draft.file.as_file().sync_all()?;
-    draft.becomes(&path)?;
-    Ok(())
+    Ok(Draft::of(path, fill)?.becomes_whole()?)
 }
 
 /// Removes drafts that are being written, and keeps others from being begun: for who ends the process at once, as an
@@ -59,44 +52,95 @@ fn drafts() -> MutexGuard<'static, Vec<PathBuf>> {
     DRAFTS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A file on its way.
-struct Draft {
-    file: NamedTempFile,
-    known: Known,
+/// A file that is on the disk, and not in its place. Of files that belong together all are written before the first is
+/// replaced.
+pub struct Draft {
+    place: PathBuf,
+    /// None of what is no plain file.
+    held: Option<(NamedTempFile, Known)>,
 }
 
 /// What [`abandon_drafts`] would remove, as long as this lives.
 struct Known(PathBuf);
 
 impl Draft {
-    /// A new file that only its owner's rights of the old one, or those of any new file, are given to.
-    fn in_folder(folder: &Path, path: &Path) -> io::Result<Draft> {
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".policy-align-").suffix(".part");
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt as _;
-            let kept = fs::metadata(path).map(|found| found.permissions());
-            builder.permissions(kept.unwrap_or_else(|_| fs::Permissions::from_mode(0o666)));
+    /// As [`write_whole`], but that what stood there stays.
+    ///
+    /// # Errors
+    /// What the system says, or `fill`.
+    pub fn of<E: From<io::Error>>(path: &Path, fill: impl FnOnce(&mut dyn Sink) -> Result<(), E>) -> Result<Draft, E> {
+        // A link stays a link: the file behind it is replaced.
+        let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        if fs::metadata(&place).is_ok_and(|found| !found.is_file()) {
+            let mut file = BufWriter::new(File::options().write(true).open(&place)?);
+            fill(&mut file)?;
+            file.flush()?;
+            return Ok(Draft { place, held: None });
         }
-        #[cfg(not(unix))]
-        let _ = path;
-        let mut drafts = drafts();
-        let file = builder.tempfile_in(folder)?;
-        drafts.push(file.path().to_owned());
-        let known = Known(file.path().to_owned());
-        Ok(Draft { file, known })
+        let (held, known) = begun(&place)?;
+        let mut file = BufWriter::with_capacity(1 << 16, held.as_file());
+        fill(&mut file)?;
+        file.flush()?;
+        drop(file);
+        held.as_file().sync_all()?;
+        Ok(Draft { place, held: Some((held, known)) })
     }
 
-    fn becomes(self, path: &Path) -> io::Result<()> {
-        let Draft { file, known } = self;
+    /// Replaces what stood in its place.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn becomes_whole(self) -> io::Result<()> {
+        let Some((file, known)) = self.held else { return Ok(()) };
         // An interrupt comes before or after.
         let drafts = drafts();
-        let persisted = file.persist(path);
+        let persisted = file.persist(&self.place);
         drop(drafts);
         drop(known);
         persisted.map(|_| ()).map_err(|error| error.error)
     }
+}
+
+/// A new file that only its owner's rights of the old one, or those of any new file, are given to. It is locked as long as
+/// it is written.
+fn begun(place: &Path) -> io::Result<(NamedTempFile, Known)> {
+    let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    remove_abandoned(folder);
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(PREFIX).suffix(SUFFIX);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        let kept = fs::metadata(place).map(|found| found.permissions());
+        builder.permissions(kept.unwrap_or_else(|_| fs::Permissions::from_mode(0o666)));
+    }
+    let mut drafts = drafts();
+    let file = builder.tempfile_in(folder)?;
+    // Where there are no locks, nobody takes it for abandoned.
+    let _ = file.as_file().try_lock();
+    drafts.push(file.path().to_owned());
+    let known = Known(file.path().to_owned());
+    Ok((file, known))
+}
+
+/// Removes what killed programs left in a folder.
+fn remove_abandoned(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let is_draft = name.starts_with(PREFIX) && name.ends_with(SUFFIX);
+        if is_draft && entry.file_type().is_ok_and(|kind| kind.is_file()) && is_abandoned(&entry.path()) {
+            // Another program may have been faster.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Whether nobody has it locked, and not just because it is new.
+fn is_abandoned(draft: &Path) -> bool {
+    let Ok(file) = File::open(draft) else { return false };
+    let age = file.metadata().and_then(|found| found.modified()).ok().and_then(|time| time.elapsed().ok());
+    age.is_some_and(|age| age > UNLOCKED) && file.try_lock().is_ok()
 }
 
 impl Drop for Known {
@@ -130,6 +174,44 @@ mod tests {
         assert!(put(&folder.path().join("none/model.json"), "x").is_err());
         assert!(put(folder.path(), "x").is_err());
         assert_eq!(fs::read_to_string(&path).unwrap(), "second");
+    }
+
+    #[test]
+    fn files_that_belong_together_are_all_written_before_one_is_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let [model, page] = ["model.json", "model.html"].map(|name| folder.path().join(name));
+        for path in [&model, &page] {
+            put(path, "old").unwrap();
+        }
+        let draft = |path: &Path, text: &str| Draft::of(path, |file| file.write_all(text.as_bytes()));
+        let begun = draft(&model, "new").unwrap();
+        assert!(draft(&folder.path().join("none/model.html"), "new").is_err());
+        drop(begun);
+        assert_eq!(fs::read_to_string(&model).unwrap(), "old");
+        let begun = [draft(&model, "new").unwrap(), draft(&page, "new").unwrap()];
+        assert_eq!(fs::read_to_string(&model).unwrap(), "old");
+        for draft in begun {
+            draft.becomes_whole().unwrap();
+        }
+        assert_eq!([&model, &page].map(|path| fs::read_to_string(path).unwrap()), ["new", "new"]);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn drafts_of_killed_programs_are_removed_and_no_others() {
+        let folder = tempfile::tempdir().unwrap();
+        let made = |name: &str, minutes: u64| {
+            let path = folder.path().join(name);
+            let file = File::create(&path).unwrap();
+            file.set_modified(std::time::SystemTime::now() - Duration::from_secs(60 * minutes)).unwrap();
+            (path, file)
+        };
+        let killed = made(".policy-align-a.part", 10).0;
+        let (written, file) = made(".policy-align-b.part", 10);
+        file.lock().unwrap();
+        let kept = [written, made(".policy-align-c.part", 0).0, made(".other-d.part", 10).0];
+        put(&folder.path().join("model.json"), "x").unwrap();
+        assert!(!killed.exists() && kept.iter().all(|path| path.exists()));
     }
 
     #[cfg(unix)]

@@ -87,5 +87,5 @@ pub use prepare::{
     prepare, trim_still,
 };
 pub use roll_out::{ConstraintFileError, ConstraintSet, JointLimits, Path, RollOut, RollOutError, Stop, spread_starts};
-pub use stored::{ModelError, sha256, sha256_of_file, write_whole};
+pub use stored::{ModelError, checksum_of, sha256, sha256_of_file, write_whole};
 pub use trust::{AlignedNumbers, Trust, TrustNumbers};

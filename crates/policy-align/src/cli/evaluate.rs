@@ -17,6 +17,7 @@ use super::flags::{PrepareFlags, ReadFlags};
 use super::lines::{Lines, counted, short, squared_error};
 use super::recorded::{load, named, read, summaries};
 use super::session::{Said, Session};
+use super::trust_files::load;
 
 /// Constraints that are listed, at most.
 const SHOWN: usize = 5;
@@ -54,7 +55,7 @@ pub(crate) struct Evaluate {
 
 impl Evaluate {
     pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
-        let model = load(&self.model)?;
+        let model = load(session, &self.model)?;
         let config = Config::of(session)?;
         let mut reading = config.under("read", &self.read)?;
         if reading.state.is_empty() {

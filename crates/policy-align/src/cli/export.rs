@@ -13,6 +13,7 @@ use super::recorded::load;
 use super::rollout::{followed, write_paths};
 use super::rollout_flags::RollOutFlags;
 use super::session::{Said, Session};
+use super::trust_files::load;
 
 /// Roll-outs that are exported unless starts are given.
 const STARTS: usize = 12;
@@ -73,7 +74,7 @@ impl Target {
 
 impl Export {
     pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
-        let model = load(&self.model)?;
+        let model = load(session, &self.model)?;
         let output = self.output.clone().unwrap_or_else(|| self.model.with_extension(self.to.extension()));
         if self.to == Target::Mcap {
             return self.roll_outs(session, &model, &output);

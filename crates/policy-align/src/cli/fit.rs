@@ -1,9 +1,11 @@
-use std::path::PathBuf;
+use std::io;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use clap::Args;
+use demo_io::Draft;
 use motion::Recordings;
-use policy_align::{Evaluation, Finding, Model, Prepared, Progress, Verdict, evaluate, fit, prepare, write_whole};
+use policy_align::{Evaluation, Finding, Model, Prepared, Progress, Verdict, checksum_of, evaluate, fit, prepare};
 use serde_json::json;
 use text::quoted;
 
@@ -16,6 +18,7 @@ use super::in_words::verdict;
 use super::lines::{Lines, counted, size, squared_error};
 use super::recorded::{base_name, named, read, summaries, unsaid};
 use super::session::{Said, Session};
+use super::trust_files::{MEMBER, trust_files, warn_of_others};
 use super::trust_page::trust_page;
 
 /// Learn a policy and report how far to trust it
@@ -74,32 +77,29 @@ impl Fit {
         model.made_by.time = now();
         model.data.files = summaries(&self.files)?;
         let judged = held_out.map(|held_out| judged(&held_out, &prepare_options, &model)).transpose()?;
-        model.save(&self.output).map_err(|error| match error {
-            policy_align::ModelError::File(reason) => Failure::writing(&self.output, reason),
-            error => Failure::new(
-                Exit::Refused,
-                error.to_string(),
-                place(),
-                "`policy-align check` to examine the recordings",
-            ),
+        let text = model.to_json().map_err(|error| {
+            Failure::new(Exit::Refused, error.to_string(), place(), "`policy-align check` to examine the recordings")
         })?;
-        let written = self.reported(&model, &prepared)?;
+        let checksum = checksum_of(text.as_bytes()).unwrap_or_default();
+        let mut files = vec![(self.output.clone(), text)];
+        if !self.no_report {
+            files.extend(self.report(&model, &prepared, &checksum));
+        }
+        replace(&files)?;
+        warn_of_others(session, &self.output, &checksum);
+        let report: Vec<PathBuf> = files.into_iter().skip(1).map(|(path, _)| path).collect();
         let unsaid = unsaid(&model.trust.findings, &recordings);
-        Ok(self.said(session, (&model, &unsaid), &written, judged.as_ref()))
+        Ok(self.said(session, (&model, &unsaid), &report, judged.as_ref()))
     }
 
-    /// Writes the page and its numbers.
-    fn reported(&self, model: &Model, prepared: &Prepared) -> Result<Vec<PathBuf>, Failure> {
-        if self.no_report {
-            return Ok(vec![]);
-        }
-        let (page, numbers) = (self.output.with_extension("trust.html"), self.output.with_extension("trust.json"));
-        let html = trust_page(model, &base_name(&self.output), Some(&prepared.demonstrations));
-        write_whole(&page, html.as_bytes()).map_err(|error| Failure::writing(&page, error))?;
-        let document = json!({ "trust": model.trust, "decisions": model.decisions, "left_out": model.data.left_out });
-        write_whole(&numbers, format!("{document:#}\n").as_bytes())
-            .map_err(|error| Failure::writing(&numbers, error))?;
-        Ok(vec![page, numbers])
+    /// The page and its numbers.
+    fn report(&self, model: &Model, prepared: &Prepared, checksum: &str) -> [(PathBuf, String); 2] {
+        let [page, numbers] = trust_files(&self.output);
+        let html = trust_page(model, &base_name(&self.output), checksum, Some(&prepared.demonstrations));
+        let document = json!({
+            MEMBER: checksum, "trust": model.trust, "decisions": model.decisions, "left_out": model.data.left_out,
+        });
+        [(page, html), (numbers, format!("{document:#}\n"))]
     }
 
     fn said(
@@ -193,4 +193,15 @@ fn judged(held_out: &Recordings, options: &policy_align::PrepareOptions, model: 
     let prepared = prepare(held_out, options).map_err(|error| Failure::prepare(&error, "--hold-out".to_owned()))?;
     evaluate(model.learnt.policy(), &prepared, None)
         .map_err(|error| Failure::new(Exit::Refused, error.to_string(), "--hold-out", "other episodes"))
+}
+
+/// Writes files that belong together: none is replaced before all are on the disk.
+fn replace(files: &[(PathBuf, String)]) -> Result<(), Failure> {
+    let failed = |path: &Path, error: io::Error| Failure::writing(path, error);
+    let draft = |(path, text): &(PathBuf, String)| {
+        Draft::of(path, |file| file.write_all(text.as_bytes())).map_err(|error| failed(path, error))
+    };
+    let drafts = files.iter().map(draft).collect::<Result<Vec<_>, _>>()?;
+    let mut replaced = drafts.into_iter().zip(files);
+    replaced.try_for_each(|(draft, (path, _))| draft.becomes_whole().map_err(|error| failed(path, error)))
 }

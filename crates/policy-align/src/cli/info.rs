@@ -8,8 +8,8 @@ use super::check::findings;
 use super::failure::{Exit, Failure};
 use super::in_words::{learner, verdict};
 use super::lines::{Lines, counted, short};
-use super::recorded::load;
 use super::session::{Said, Session};
+use super::trust_files::load;
 
 /// Describe a model
 #[derive(Debug, Args)]
@@ -21,7 +21,7 @@ pub(crate) struct Info {
 
 impl Info {
     pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
-        let model = load(&self.model)?;
+        let model = load(session, &self.model)?;
         if session.json {
             let document = json!({
                 "made_by": model.made_by, "state": model.state, "time_step": model.time_step, "data": model.data,

@@ -23,6 +23,7 @@ mod rollout;
 mod rollout_flags;
 mod session;
 mod table;
+mod trust_files;
 mod trust_page;
 
 pub(crate) use failure::Exit;

@@ -14,6 +14,7 @@ use super::recorded::{base_name, load, read};
 use super::rollout::followed;
 use super::rollout_flags::RollOutFlags;
 use super::session::{Said, Session};
+use super::trust_files::load;
 
 /// Plot a policy, its potential and recordings
 #[derive(Debug, Args)]
@@ -46,7 +47,7 @@ pub(crate) struct Plot {
 
 impl Plot {
     pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
-        let model = load(&self.model)?;
+        let model = load(session, &self.model)?;
         let config = Config::of(session)?;
         let dims = dims(&self.dims, &model)?;
         let mut reading = config.under("read", &self.read)?;

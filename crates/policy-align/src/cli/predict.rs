@@ -14,6 +14,7 @@ use super::lines::{Lines, counted, list, short};
 use super::recorded::load;
 use super::session::{Said, Session};
 use super::table::states;
+use super::trust_files::load;
 
 /// Predict actions of a model
 #[derive(Debug, Args)]
@@ -79,7 +80,7 @@ impl Prediction {
 
 impl Predict {
     pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
-        let model = load(&self.model)?;
+        let model = load(session, &self.model)?;
         let states = match (&self.at, &self.states) {
             (Some(at), _) => Self::one(at, &model)?,
             (None, Some(path)) => states(path, &model)?,

@@ -16,6 +16,7 @@ use super::picture::{Picture, draw};
 use super::recorded::{base_name, load};
 use super::rollout_flags::RollOutFlags;
 use super::session::{Said, Session};
+use super::trust_files::load;
 
 /// Roll out a policy from a start, under constraints
 #[derive(Debug, Args)]
@@ -60,7 +61,7 @@ pub(crate) struct RollOut {
 
 impl RollOut {
     pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
-        let model = load(&self.model)?;
+        let model = load(session, &self.model)?;
         let flags = Config::of(session)?.under("rollout", &self.follow)?;
         let start = DVector::from_vec(numbers(&self.from, "--from")?);
         let followed = followed(&flags, &model, &start, &self.from)?;

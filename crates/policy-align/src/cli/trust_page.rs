@@ -11,9 +11,10 @@ use super::in_words::learner;
 use super::lines::{counted, short};
 use super::page_parts::{NUMBERS, STYLE, channels, decisions, direction, found, left_out, part, row, table};
 use super::picture::Picture;
+use super::trust_files::{DIGITS, NAMED};
 
 /// The page of a model, with a picture of the demonstrations if they are given, in the units of the learner.
-pub(crate) fn trust_page(model: &Model, name: &str, shown: Option<&Demonstrations>) -> String {
+pub(crate) fn trust_page(model: &Model, name: &str, checksum: &str, shown: Option<&Demonstrations>) -> String {
     let title = format!("How far to trust {name}");
     let opening = Part { id: "verdict".to_owned(), title: "Verdict".to_owned(), body: opening(model, &title) };
     let mut parts = Vec::new();
@@ -22,7 +23,7 @@ pub(crate) fn trust_page(model: &Model, name: &str, shown: Option<&Demonstration
     }
     parts.push(part("numbers", "Numbers", &numbers(model)));
     parts.push(part("decisions", "Decisions", &decisions(&model.decisions)));
-    parts.push(part("data", "Data", &data(model)));
+    parts.push(part("data", "Data", &data(model, checksum)));
     plain(&Document { title: &title, name, opening, parts, style: STYLE }.html()).into_owned()
 }
 
@@ -143,13 +144,14 @@ fn below(threshold: f64) -> String {
     format!("below {threshold}")
 }
 
-fn data(model: &Model) -> Markup {
+fn data(model: &Model, checksum: &str) -> Markup {
     let files: Vec<String> =
         model.data.files.iter().map(|file| format!("{}, SHA-256 {:.16}", file.name, file.sha256)).collect();
     html! {
         (channels(&model.state))
         (left_out(&model.data.left_out))
         p .where { "Files: "
-        (files.join("; ")) ". " (model.made_by.program) ", " (model.made_by.time) ", seed " (model.seed) "." }
+        (files.join("; ")) ". " (model.made_by.program) ", " (model.made_by.time) ", seed " (model.seed) ". "
+        (NAMED) (format!("{checksum:.DIGITS$}")) "." }
     }
 }

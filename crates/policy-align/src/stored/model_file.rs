@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::canonical::checksum;
@@ -15,9 +15,6 @@ const FORMAT: &str = "policy-align model";
 /// The version that is written; this and all before it are read.
 const VERSION: u64 = 1;
 
-/// Bytes that are read, at most.
-const LARGEST: u64 = 256 << 20;
-
 /// Header of a model file.
 #[derive(Serialize)]
 struct Stored<'a> {
@@ -28,7 +25,19 @@ struct Stored<'a> {
     model: &'a Model,
 }
 
+/// The checksum that a model file of these bytes has: a trust report names its model by it.
+pub fn checksum_of(model_file: &[u8]) -> Option<String> {
+    #[derive(Deserialize)]
+    struct Named {
+        checksum: String,
+    }
+    serde_json::from_slice(model_file).ok().map(|named: Named| named.checksum)
+}
+
 impl Model {
+    /// Bytes of a file, at most.
+    pub const LARGEST: u64 = 256 << 20;
+
     /// The text of a model file: one JSON document, numbers to their last bit.
     ///
     /// # Errors
@@ -90,7 +99,7 @@ impl Model {
     /// # Errors
     /// As [`Model::from_json`], and [`ModelError::File`].
     pub fn load(path: &Path) -> Result<Model, ModelError> {
-        Model::from_json(&demo_io::read_bytes(path, LARGEST)?)
+        Model::from_json(&demo_io::read_bytes(path, Self::LARGEST)?)
     }
 
     /// Inconsistencies of the model, with their place.
