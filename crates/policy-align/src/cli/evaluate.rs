@@ -15,7 +15,7 @@ use super::config::Config;
 use super::failure::{Exit, Failure};
 use super::flags::{PrepareFlags, ReadFlags};
 use super::lines::{Lines, counted, short, squared_error};
-use super::recorded::{load, named, read, summaries};
+use super::recorded::{named, read, summaries};
 use super::session::{Said, Session};
 use super::trust_files::load;
 

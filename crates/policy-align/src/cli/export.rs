@@ -9,7 +9,6 @@ use super::config::Config;
 use super::failure::{Exit, Failure, shown};
 use super::flags::numbers;
 use super::lines::{Lines, counted, list, size};
-use super::recorded::load;
 use super::rollout::{followed, write_paths};
 use super::rollout_flags::RollOutFlags;
 use super::session::{Said, Session};

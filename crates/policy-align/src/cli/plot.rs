@@ -10,7 +10,7 @@ use super::failure::Failure;
 use super::flags::{ReadFlags, numbers};
 use super::lines::{Lines, short};
 use super::picture::{Picture, draw};
-use super::recorded::{base_name, load, read};
+use super::recorded::{base_name, read};
 use super::rollout::followed;
 use super::rollout_flags::RollOutFlags;
 use super::session::{Said, Session};

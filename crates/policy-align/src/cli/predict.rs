@@ -11,7 +11,6 @@ use serde_json::{Value, json};
 use super::failure::{Exit, Failure};
 use super::flags::numbers;
 use super::lines::{Lines, counted, list, short};
-use super::recorded::load;
 use super::session::{Said, Session};
 use super::table::states;
 use super::trust_files::load;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use motion::{Finding, Recordings};
-use policy_align::{FileSummary, Model};
+use policy_align::FileSummary;
 
 use super::failure::{Failure, shown};
 use super::flags::ReadFlags;
@@ -59,9 +59,4 @@ pub(crate) fn named(files: &[PathBuf]) -> String {
         [file] => base_name(file),
         files => counted(files.len(), "file"),
     }
-}
-
-/// Reads a model that a command names.
-pub(crate) fn load(path: &Path) -> Result<Model, Failure> {
-    Model::load(path).map_err(|error| Failure::model(path, &error))
 }

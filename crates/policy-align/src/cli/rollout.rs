@@ -13,7 +13,7 @@ use super::failure::{Exit, Failure, shown};
 use super::flags::numbers;
 use super::lines::{Lines, counted, list, short};
 use super::picture::{Picture, draw};
-use super::recorded::{base_name, load};
+use super::recorded::base_name;
 use super::rollout_flags::RollOutFlags;
 use super::session::{Said, Session};
 use super::trust_files::load;
