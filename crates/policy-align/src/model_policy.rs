@@ -9,7 +9,7 @@ use crate::{Learnt, Model, StateChannel};
 const LEAST_KNOWN: f64 = 0.5;
 /// Share of its range by which a channel may lie beyond what was shown. A Gaussian process with a trend follows it
 /// at any distance, where no demonstration supports it.
-const BEYOND: f64 = 0.25;
+pub(crate) const BEYOND: f64 = 0.25;
 
 /// A model's policy in the units of the recording: π(x) = S⁻¹ π'(S x), where S multiplies every channel by its
 /// [`scale`](crate::StateChannel::scale) and π' is the policy that was learnt.

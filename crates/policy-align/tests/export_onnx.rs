@@ -8,7 +8,7 @@ mod models;
 use std::collections::HashSet;
 use std::process::Command;
 
-use models::{one_of_each, states, toy};
+use models::{direct, free, one_of_each, states, toy};
 use motion::{LearntPolicy as _, Policy as _};
 use policy_align::{Model, to_onnx};
 
@@ -128,6 +128,7 @@ fn onnxruntime_acts_as_the_model() {
     for (name, model) in one_of_each(&toy(12, 30)) {
         compare(&python, name, &model);
     }
+    compare(&python, "direct, free", &direct(&free(12, 30)));
 }
 
 fn compare(python: &str, name: &str, model: &Model) {
@@ -147,9 +148,13 @@ fn compare(python: &str, name: &str, model: &Model) {
     let (mut known, mut wrongly) = (0, 0);
     for (at, (state, found)) in states.column_iter().zip(found.chunks(4)).enumerate() {
         let action = policy.action(state);
-        error = (0..2).map(|k| (action[k] - found[k]).abs()).fold(error, f64::max);
-        largest = largest.max(action.amax());
-        if let Some(potential) = policy.potential() {
+        if found[3] != 1.0 {
+            assert!(found[..2] == [0.0, 0.0] && found[2].is_nan(), "{name}: {state}");
+        } else {
+            error = (0..2).map(|k| (action[k] - found[k]).abs()).fold(error, f64::max);
+            largest = largest.max(action.amax());
+        }
+        if let Some(potential) = policy.potential().filter(|_| found[3] == 1.0) {
             potential_error = potential_error.max((potential.value(state) - found[2]).abs());
             highest = highest.max(potential.value(state).abs());
         }

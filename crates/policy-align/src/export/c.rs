@@ -19,7 +19,8 @@ const TAKEN: [&str; 56] = [
 ///
 /// It defines `int policy(const double *x, double *u, double *phi)`: from a state (n) in the units of the recording it
 /// writes the action (n), per second, and the potential (NaN where the policy has none), either of which may be `NULL`,
-/// and returns 1 within the data, 0 outside.
+/// and returns 1 within the data. Outside, where a [`ModelPolicy`](crate::ModelPolicy) has no support, it returns 0, with
+/// an action of 0 and a potential of NaN: the caller stops.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CSource {
     /// Name of the function.
@@ -86,8 +87,9 @@ impl CSource {
         let _ = writeln!(
             text,
             " *\n * int {}(x, u, phi) writes the action u and the potential phi (NaN if the\n \
-             * policy has none); u and phi may be NULL. It returns 1 within the data and 0\n \
-             * outside: then stop. Limits of speed are up to the caller. */\n\
+             * policy has none); u and phi may be NULL. It returns 1 within the data.\n \
+             * Outside it returns 0, with u = 0 and phi = NaN: then stop. Limits of speed\n \
+             * are up to the caller. */\n\
              #include <math.h>\n\ntypedef {} real;\n",
             self.name,
             self.real(),
@@ -108,6 +110,21 @@ impl CSource {
             Precision::Double => name.to_owned(),
             Precision::Single => format!("{name}f"),
         }
+    }
+
+    /// The end of the function: 1 within bounds, where `known` holds; else no action, no potential, and 0. What is not finite
+    /// is in no bounds.
+    pub(super) fn ending(&self, known: &str) -> String {
+        let zero = self.number(0.0);
+        format!(
+            "    for (k = 0; k < N && x[k] >= BOUNDS[k][0] && x[k] <= BOUNDS[k][1];) k++;
+    if (k == N && {known}) return 1;
+    if (phi) *phi = NAN;
+    if (u) for (k = 0; k < N; k++) u[k] = {zero};
+    return 0;
+}}
+"
+        )
     }
 
     /// A number, to its last bit.

@@ -46,16 +46,13 @@ int {name}(const real *x, real *u, real *phi) {{
         if (u) u[k] = {speed} * (sum[k] + (C[k] + t)) / SCALE[k];
     }}
     {potential}
-    for (k = 0; k < N; k++) if (x[k] < BOUNDS[k][0] || x[k] > BOUNDS[k][1]) return 0;
-    return nearest <= {squared_radius};
-}}
-",
+{ending}",
         name = c.name,
         zero = c.number(0.0),
         half = c.number(0.5),
         far = c.number(f64::from(f32::MAX)),
         speed = c.number(slope.scaled.speed),
-        squared_radius = c.number(squared_radius),
+        ending = ending(c, squared_radius),
         entry = entry(c, &slope.scaled),
     );
 }
@@ -85,15 +82,12 @@ int {name}(const real *x, real *u, real *phi) {{
 {terms}        for (k = 0; k < N; k++) sum[k] += c * A[m][k];
     }}
     if (u) for (k = 0; k < N; k++) u[k] = {unit} * sum[k] / SCALE[k];
-    for (k = 0; k < N; k++) if (x[k] < BOUNDS[k][0] || x[k] > BOUNDS[k][1]) return 0;
-    return nearest <= {squared_radius};
-}}
-",
+{ending}",
         name = c.name,
         zero = c.number(0.0),
         far = c.number(f64::from(f32::MAX)),
         unit = c.number(direct.scaled.speed),
-        squared_radius = c.number(squared_radius),
+        ending = ending(c, squared_radius),
         entry = entry(c, &direct.scaled),
     );
 }
@@ -104,7 +98,7 @@ fn write_scaled(c: &CSource, scaled: &ScaledStates<'_>, text: &mut String) {
     c.columns("Z", scaled.z, text);
 }
 
-/// Scaled coordinates; what is not finite is not asked further.
+/// Scaled coordinates.
 fn entry(c: &CSource, scaled: &ScaledStates<'_>) -> String {
     let (spread, zero) = (c.number(scaled.spread), c.number(0.0));
     format!(
@@ -112,14 +106,12 @@ fn entry(c: &CSource, scaled: &ScaledStates<'_>) -> String {
         z[k] = (x[k] * SCALE[k] - MEAN[k]) / {spread};
         sum[k] = {zero};
     }}
-    for (k = 0; k < N; k++) {{
-        if (isfinite(x[k])) continue;
-        if (phi) *phi = NAN;
-        if (u) for (m = 0; m < N; m++) u[m] = {zero};
-        return 0;
-    }}
 "
     )
+}
+
+fn ending(c: &CSource, squared_radius: f64) -> String {
+    c.ending(&format!("nearest <= {}", c.number(squared_radius)))
 }
 
 /// Adds a term's g and h (S3).

@@ -47,13 +47,6 @@ int {name}(const real *x, real *u, real *phi) {{
     for (k = 0; k < N; k++) {{
         z[k] = x[k] * SCALE[k] / NORM[k];
         wv[k] = ws[k] = wyv[k] = {zero};
-        if (u) u[k] = {zero};
-        if (!isfinite(x[k])) sum = -{one};
-    }}
-    if (phi) *phi = {mean_value};
-    if (sum < {zero}) {{
-        if (u) for (k = 0; k < N; k++) u[k] = {zero};
-        return 0;
     }}
     for (m = 0; m < M; m++) {{
         real q = {zero}, y = OFFSET[m], w, dw; {edge}{unused}
@@ -74,22 +67,19 @@ int {name}(const real *x, real *u, real *phi) {{
             wyv[k] += dw * y * v[k];
         }}
     }}
-    if (!(sum > {zero})) return 0;
-    f /= sum;
-    if (phi) *phi = {per_unit} * ({mean} + {norm_out} * f);
-    if (u) for (k = 0; k < N; k++)
-        u[k] = -{norm_out} * (ws[k] + wyv[k] - f * wv[k]) / (sum * NORM[k] * SCALE[k]);
-    for (k = 0; k < N; k++) if (x[k] < BOUNDS[k][0] || x[k] > BOUNDS[k][1]) return 0;
-    return 1;
-}}
-",
+    if (sum > {zero}) {{
+        f /= sum;
+        if (phi) *phi = {per_unit} * ({mean} + {norm_out} * f);
+        if (u) for (k = 0; k < N; k++)
+            u[k] = -{norm_out} * (ws[k] + wyv[k] - f * wv[k]) / (sum * NORM[k] * SCALE[k]);
+    }}
+{ending}",
         name = c.name,
         zero = number(0.0),
-        one = number(1.0),
         cutoff = number(lwpr.cutoff),
         mean = number(lwpr.mean),
-        mean_value = number(per_unit * lwpr.mean),
         per_unit = number(per_unit),
         norm_out = number(lwpr.norm_out),
+        ending = c.ending(&format!("sum > {}", number(0.0))),
     );
 }

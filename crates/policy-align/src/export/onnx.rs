@@ -12,7 +12,8 @@ const FORMAT: u64 = 8;
 /// A model as ONNX: operators of version 17 on doubles.
 ///
 /// Its input is `x`, (B, n), states in the units of the recording; its outputs are `u`, (B, n), actions per second, `phi`,
-/// (B), potentials, unless the policy has none, and `support`, (B), whether something was learnt there.
+/// (B), potentials, unless the policy has none, and `support`, (B), whether a state is within the data. Where it is not, `u`
+/// is 0 and `phi` is NaN, as in [`CSource`](crate::CSource).
 ///
 /// # Errors
 /// [`ExportError`].
@@ -27,15 +28,18 @@ pub fn to_onnx(model: &Model) -> Result<Vec<u8>, ExportError> {
         LearnerTables::Slope(slope, radius) => onnx_gp::write_slope(&mut graph, slope, *radius, &scaled),
         LearnerTables::Direct(direct, radius) => onnx_gp::write_direct(&mut graph, direct, *radius, &scaled),
     };
+    let support = within(&mut graph, &tables.bounds, &asked.support);
     let action = graph.node("Div", &[&asked.action, &scale]);
+    let (column, zero) = (graph.unsqueezed(&support, 1), graph.number(0.0));
+    let action = graph.node("Where", &[&column, &action, &zero]);
     graph.output(&action, "u");
     let mut outputs = vec![("u", Output::Vectors(n))];
     if let Some(potential) = &asked.potential {
-        let potential = graph.times(potential, tables.per_unit);
+        let (potential, none) = (graph.times(potential, tables.per_unit), graph.number(f64::NAN));
+        let potential = graph.node("Where", &[&support, &potential, &none]);
         graph.output(&potential, "phi");
         outputs.push(("phi", Output::Numbers));
     }
-    let support = within(&mut graph, &tables.bounds, &asked.support);
     graph.output(&support, "support");
     outputs.push(("support", Output::Truths));
     Ok(described(model, &graph.finished(n, &outputs)))

@@ -22,7 +22,7 @@ pub enum RollOutError {
         channel: String,
     },
     /// The start is outside the data.
-    #[error("the start is outside the data (support {}, at least {} needed)", short(*.support), short(*.least))]
+    #[error("the start is outside the data (support {}, at least {} needed)", short(down(*.support)), short(*.least))]
     Unsupported {
         /// The support there.
         support: f64,
@@ -85,6 +85,11 @@ pub enum RollOutError {
         /// What is wrong.
         reason: String,
     },
+}
+
+/// To three digits, so that what is too little does not round to enough.
+fn down(support: f64) -> f64 {
+    (1e3 * support).floor() / 1e3
 }
 
 /// Samples of a roll-out, at most.

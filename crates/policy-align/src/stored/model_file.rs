@@ -8,6 +8,7 @@ use serde_json::{Map, Value};
 use super::canonical::checksum;
 use super::error::ModelError;
 use super::whole_file::write_whole;
+use crate::model_policy::BEYOND;
 use crate::{Model, StateChannel, Trust, Verdict};
 
 const FORMAT: &str = "policy-align model";
@@ -122,10 +123,17 @@ impl Model {
             return Some(("trust.verdict".to_owned(), reason));
         }
         let sound = |channel: &StateChannel| {
-            positive(channel.scale) && channel.low <= channel.median && channel.median <= channel.high
+            let width = (1.0 + 2.0 * BEYOND) * (channel.high - channel.low);
+            positive(channel.scale)
+                && width.is_finite()
+                && channel.low <= channel.median
+                && channel.median <= channel.high
         };
         let at = self.state.iter().position(|channel| !sound(channel))?;
-        Some((format!("state[{at}]"), "the scale must be positive, and low, median and high in order".to_owned()))
+        Some((
+            format!("state[{at}]"),
+            "the scale must be positive, and low, median and high finite and in order".to_owned(),
+        ))
     }
 }
 
