@@ -1,6 +1,9 @@
 //! The program `policy-align`: from recordings to a policy, in a few commands.
 
 mod cli;
+#[cfg(test)]
+#[path = "../fuzz/fuzzed/config_file.rs"]
+mod config_file;
 
 use std::panic::{PanicHookInfo, catch_unwind};
 use std::process::{ExitCode, exit};

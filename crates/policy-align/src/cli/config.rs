@@ -28,7 +28,7 @@ impl Config {
         Config::parsed(&text, path)
     }
 
-    fn parsed(text: &str, path: &Path) -> Result<Config, Failure> {
+    pub(crate) fn parsed(text: &str, path: &Path) -> Result<Config, Failure> {
         let tables: Table = text.parse().map_err(|error: toml::de::Error| {
             let line = error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
             Failure::usage(
@@ -190,6 +190,16 @@ mod tests {
         assert!(said("[fit\n").contains("line 1"));
         let config = parsed("[fit]\nseed = 'a'\n").unwrap();
         assert!(config.under("fit", &FitFlags::default()).unwrap_err().to_string().contains("[fit]"));
+    }
+
+    #[test]
+    fn every_configuration_of_the_corpus_is_refused_in_three_lines_or_read() {
+        let inputs = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus/config_file")).unwrap();
+        let inputs: Vec<_> = inputs.map(|entry| entry.unwrap().path()).collect();
+        assert!(!inputs.is_empty());
+        for input in inputs {
+            crate::config_file::config_file(&std::fs::read_to_string(input).unwrap());
+        }
     }
 
     #[test]

@@ -1,0 +1,22 @@
+use std::path::Path;
+
+use crate::cli::config::Config;
+use crate::cli::failure::Failure;
+use crate::cli::flags::{FitFlags, PrepareFlags, ReadFlags};
+use crate::cli::rollout_flags::RollOutFlags;
+
+/// Flags of any text are refused in three lines, or are options.
+pub(crate) fn config_file(text: &str) {
+    if let Err(failure) = every_table(text) {
+        assert_eq!(failure.to_string().lines().count(), 3, "{failure}");
+    }
+}
+
+fn every_table(text: &str) -> Result<(), Failure> {
+    let config = Config::parsed(text, Path::new("c.toml"))?;
+    config.under("read", &ReadFlags::default())?.options()?;
+    config.under("prepare", &PrepareFlags::default())?.options(None)?;
+    config.under("fit", &FitFlags::default())?.options()?;
+    config.under("rollout", &RollOutFlags::default())?;
+    Ok(())
+}

@@ -1,0 +1,11 @@
+use std::path::Path;
+
+use policy_align::ConstraintSet;
+
+/// Constraints of any text are refused in one line, or read. There is no robot in the folder.
+pub(crate) fn constraint_file(text: &str) {
+    let channels = ["x", "y"].map(ToOwned::to_owned);
+    if let Err(error) = ConstraintSet::from_toml(text, &channels, Path::new("no folder")) {
+        assert_eq!(error.to_string().lines().count(), 1, "{error}");
+    }
+}
