@@ -1,0 +1,33 @@
+use std::io::Write as _;
+
+use demo_io::{ReadOptions, read};
+
+/// A file of any bytes is recordings, or an error in three lines. Its first line may hold options as JSON, which it is read
+/// with: `{"sort":true}`.
+pub(crate) fn readers(bytes: &[u8]) {
+    let end = bytes.iter().position(|&byte| byte == b'\n').unwrap_or(0);
+    let (mut options, content) = match serde_json::from_slice::<ReadOptions>(&bytes[..end]) {
+        Ok(options) => (options, &bytes[end + 1..]),
+        Err(_) => (ReadOptions::default(), bytes),
+    };
+    // Whoever trusts a file lets it take any memory.
+    options.trust = false;
+    let mut file = tempfile::NamedTempFile::new().expect("a folder for files");
+    file.write_all(content).expect("room for a file");
+    let found = match read(file.path(), &options, &mut |_| ()) {
+        Ok(found) => found,
+        Err(error) => return assert_eq!(error.to_string().lines().count(), 3, "{error}"),
+    };
+    assert!(!found.state.is_empty() && !found.episodes.is_empty());
+    for episode in &found.episodes {
+        let times = &episode.times;
+        assert!(
+            times.iter().all(|time| time.is_finite()) && times.windows(2).all(|pair| pair[0] < pair[1]),
+            "{times:?}"
+        );
+        for numbers in [Some(&episode.positions), episode.velocities.as_ref()].into_iter().flatten() {
+            assert_eq!(numbers.shape(), (found.state.len(), times.len()));
+            assert!(numbers.iter().all(|number| number.is_finite()));
+        }
+    }
+}

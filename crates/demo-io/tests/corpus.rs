@@ -1,0 +1,18 @@
+//! What fuzzing found, and what people made of files: every input of `fuzz/corpus` again.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+#[path = "../fuzz/fuzzed/readers.rs"]
+mod readers;
+
+use std::fs;
+use std::path::Path;
+
+#[test]
+fn files_are_read_or_refused() {
+    for folder in ["fuzz/corpus/readers", "tests/samples"] {
+        for input in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)).unwrap() {
+            readers::readers(&fs::read(input.unwrap().path()).unwrap());
+        }
+    }
+}
