@@ -3,10 +3,10 @@
 mod finite;
 
 use self::finite::make_finite;
+use crate::names::selection::{flags, select};
 use crate::raw::remark;
 use crate::raw::{RawEpisode, RawRecordings};
 use crate::rows::roles;
-use crate::selection::{flags, select};
 use crate::{Fault, ReadError, ReadOptions};
 use motion::Finding;
 

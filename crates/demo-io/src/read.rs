@@ -7,10 +7,11 @@ use crate::clean::clean;
 use crate::guard::guarded;
 use crate::input::{Input, name_of, unreadable};
 use crate::joined::add;
+use crate::names::natural;
 use crate::raw::RawRecordings;
 use crate::rows::{delimited, json_lines};
 use crate::sniff::{self, Folder};
-use crate::{Fault, Format, ReadError, ReadOptions, natural};
+use crate::{Fault, Format, ReadError, ReadOptions};
 use motion::Recordings;
 
 /// Reads a file, or a folder of files with a movement each, whatever its format.

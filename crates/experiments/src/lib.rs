@@ -8,62 +8,45 @@
 //!
 //! Whoever runs them decides on threads, files and progress.
 
-mod asimo22;
-mod beside;
-mod beyond;
-mod constraint_consistent;
-mod contest;
-mod exam;
-mod figure6;
-mod figure9;
-mod fresh;
-mod gaussians;
-mod judge;
+mod evaluation;
 pub mod leverage;
 pub mod measure;
 pub mod outcome;
 pub mod paper;
 mod parameters;
-mod pupil;
-mod readings;
-mod recipe;
 pub mod results;
 mod robots;
 pub mod seed;
-mod seen;
 mod setting;
 mod settings;
 pub mod summary;
-mod table1;
-mod table2;
-mod test_samples;
-mod three_link;
+mod tables;
 pub mod variants;
 pub mod verdict;
 
-pub use beside::{Beside, DATA_SETS};
-pub use beyond::case_on_the_plane;
-pub use contest::{Contest, Contestant, Entry};
-pub use figure6::{BANDWIDTHS, BESIDE_LEFT, BESIDE_RIGHT, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
-pub use figure9::{Distance, TENTHS, line};
-pub use gaussians::Gaussians;
-pub use judge::Judge;
+pub use evaluation::beside::{Beside, DATA_SETS};
+pub use evaluation::contest::{Contest, Contestant, Entry};
+pub use evaluation::gaussians::Gaussians;
+pub use evaluation::judge::Judge;
+pub use evaluation::recipe::HELD_OUT;
+pub use evaluation::test_samples::TestSamples;
 pub use parameters::Parameters;
-pub use recipe::HELD_OUT;
 pub use robots::upper_body;
 pub use setting::{Class, Setting, shown};
 pub use settings::{n_fitted, quotable, settings};
-pub use table1::{PARABOLA_SYSTEM, SINUSOIDAL_SYSTEM, toy_beside, toy_naive, toy_regressor};
-pub use table2::{GRASP_SYSTEM, grasp, grasp_beside, grasp_naive, grasp_regressor};
-pub use test_samples::TestSamples;
-pub use three_link::{ARM_SYSTEM, arm};
+pub use tables::beyond::case_on_the_plane;
+pub use tables::figure6::{BANDWIDTHS, BESIDE_LEFT, BESIDE_RIGHT, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
+pub use tables::figure9::{Distance, TENTHS, line};
+pub use tables::table1::{PARABOLA_SYSTEM, SINUSOIDAL_SYSTEM, toy_beside, toy_naive, toy_regressor};
+pub use tables::table2::{GRASP_SYSTEM, grasp, grasp_beside, grasp_naive, grasp_regressor};
+pub use tables::three_link::{ARM_SYSTEM, arm};
 
 use std::collections::BTreeMap;
 
 use anyhow::ensure;
 use rand_chacha::ChaCha8Rng;
 
-use exam::TESTED_ON;
+use evaluation::exam::TESTED_ON;
 
 use crate::measure::{Measure, RowOf};
 use crate::paper::{EVERY_ROW, Explanations, PaperTable, Printed};
@@ -199,16 +182,16 @@ pub trait Trial: Parameters + Send + Sync {
 /// If what the paper prints, or a file of a robot, does not fit them.
 pub fn registry() -> anyhow::Result<Vec<Experiment>> {
     let experiments = [
-        table1::table1()?,
-        table1::table1_literal()?,
-        figure6::figure6_left(),
-        figure6::figure6_right(),
-        table2::table2()?,
-        asimo22::asimo22()?,
-        three_link::three_link()?,
-        figure9::figure9()?,
-        beyond::beyond(),
-        readings::readings(),
+        tables::table1::table1()?,
+        tables::table1::table1_literal()?,
+        tables::figure6::figure6_left(),
+        tables::figure6::figure6_right(),
+        tables::table2::table2()?,
+        tables::asimo22::asimo22()?,
+        tables::three_link::three_link()?,
+        tables::figure9::figure9()?,
+        tables::beyond::beyond(),
+        tables::readings::readings(),
     ];
     experiments.into_iter().map(Experiment::checked).collect()
 }

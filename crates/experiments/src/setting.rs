@@ -1,6 +1,6 @@
 //! What can be set otherwise: a setting with where it comes from and the experiment that it makes at another value.
 
-use super::Setup;
+use crate::Setup;
 
 /// Where a setting's value comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

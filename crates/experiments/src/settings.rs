@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::setting::{Class, Setting};
-use super::{asimo22, table1, table2, three_link};
+use crate::setting::{Class, Setting};
+use crate::tables::{asimo22, table1, table2, three_link};
 
 /// How many numbers are fitted: one that several experiments share counts once.
 pub fn n_fitted() -> usize {
@@ -30,7 +30,7 @@ mod tests {
     use lwpr::LwprParams;
 
     use super::*;
-    use crate::recipe::Recipe;
+    use crate::evaluation::recipe::Recipe;
 
     /// One regression for all: what is called a library default is one, and the potential is not divided.
     #[test]

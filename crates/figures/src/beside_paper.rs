@@ -7,7 +7,7 @@ use experiments::measure::Measure::{self, Ncpe, Nupe, PotentialNmse};
 use experiments::results::{Cell, Results};
 use experiments::variants::two_digits;
 
-use super::{Figure, Sources, figures};
+use crate::{Figure, Sources, figures};
 
 /// The full run that the texts speak of.
 pub(super) fn records() -> Sources {

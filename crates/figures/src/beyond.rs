@@ -9,10 +9,10 @@ use nalgebra::DVector;
 use plot::{Field, Layer, Picture, Plane};
 use serde::{Deserialize, Serialize};
 
-use super::sound::{Sound, field, some};
-use super::state_plane::{Arrow, actions, compared, on_grid, state_plane};
-use super::{Document, Drawing, Figure, Sources, demonstrated, rounded};
 use crate::Who;
+use crate::sound::{Sound, field, some};
+use crate::state_plane::{Arrow, actions, compared, on_grid, state_plane};
+use crate::{Document, Drawing, Figure, Sources, demonstrated, rounded};
 
 /// Starts of the movements are drawn from [−2, 2]².
 const EXTENT: f64 = 2.0;

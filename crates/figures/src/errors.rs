@@ -4,7 +4,7 @@ use experiments::measure::Measure;
 use experiments::results::{Cell, ExperimentResult};
 use plot::{Axis, Curve, Dash, Filling, Mark, Sign, Stroke};
 
-use super::Csv;
+use crate::Csv;
 
 /// The error of one thing that is learnt.
 #[derive(Debug, Clone, Copy)]

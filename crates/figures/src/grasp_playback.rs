@@ -15,8 +15,8 @@ use anyhow::ensure;
 use experiments::grasp;
 use serde::{Deserialize, Serialize};
 
-use super::Document;
-use super::sound::{Sound, as_many, some};
+use crate::Document;
+use crate::sound::{Sound, as_many, some};
 use constraint::Constraint;
 use movements::movements;
 use scene::scene;

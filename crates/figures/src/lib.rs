@@ -1,29 +1,17 @@
 //! The paper's figures. A run computes documents, plain numbers kept as `figures/*.json`; figures are drawn from these
 //! and from the results, and from nothing else, so that they can be drawn again without a run.
 
-#[cfg(test)]
 mod beside_paper;
 mod beyond;
 mod demonstrated;
 mod errors;
-mod figure1;
-mod figure2;
-mod figure3;
-mod figure4;
-mod figure5;
-mod figure6;
-mod figure7;
-mod figure8;
-mod figure9;
-mod figure_b1;
 mod grasp_playback;
-mod items;
-mod legs;
 mod miniature;
+mod numbered;
 mod overview;
-mod shapes;
+#[cfg(test)]
+mod scene;
 mod sound;
-mod stage;
 mod state_plane;
 pub mod view;
 mod who;
@@ -43,7 +31,7 @@ use serde_json::Value;
 use sound::Sound;
 use words::{Words, words};
 
-pub use figure8::{Ends, ends_of_reaching};
+pub use numbered::figure8::{Ends, ends_of_reaching};
 use who::Who;
 pub use who::color_of;
 
@@ -108,13 +96,13 @@ pub struct Sources {
 pub fn documents() -> Vec<Document> {
     vec![
         overview::document(),
-        figure1::document(),
-        figure2::document(),
-        figure3::document(),
-        figure4::document(),
-        figure5::document(),
-        figure9::document(),
-        figure_b1::document(),
+        numbered::figure1::document(),
+        numbered::figure2::document(),
+        numbered::figure3::document(),
+        numbered::figure4::document(),
+        numbered::figure5::document(),
+        numbered::figure9::document(),
+        numbered::figure_b1::document(),
         grasp_playback::document(),
         grasp_playback::all_around::document(),
         beyond::document(),
@@ -125,17 +113,17 @@ pub fn documents() -> Vec<Document> {
 pub fn figures() -> Vec<Figure> {
     vec![
         overview::figure(),
-        figure1::figure(),
-        figure2::figure(),
-        figure3::figure(),
-        figure4::figure(),
-        figure5::figure(),
-        figure6::left(),
-        figure6::right(),
-        figure7::figure(),
-        figure8::figure(),
-        figure9::figure(),
-        figure_b1::figure(),
+        numbered::figure1::figure(),
+        numbered::figure2::figure(),
+        numbered::figure3::figure(),
+        numbered::figure4::figure(),
+        numbered::figure5::figure(),
+        numbered::figure6::left(),
+        numbered::figure6::right(),
+        numbered::figure7::figure(),
+        numbered::figure8::figure(),
+        numbered::figure9::figure(),
+        numbered::figure_b1::figure(),
         beyond::figure(),
     ]
 }

@@ -10,12 +10,12 @@ use nalgebra::DMatrix;
 use plot::{Canvas, Mark, Picture, Thing};
 use serde::{Deserialize, Serialize};
 
-use super::miniature::{Miniature, extent_of};
-use super::sound::{Sound, as_many, some};
-use super::state_plane::{Arrow, WIDTHS, actions, every_second};
-use super::{Document, Drawing, Figure, Sources, rounded};
 use crate::Who;
+use crate::miniature::{Miniature, extent_of};
+use crate::sound::{Sound, as_many, some};
+use crate::state_plane::{Arrow, WIDTHS, actions, every_second};
 use crate::who::TRUTH;
+use crate::{Document, Drawing, Figure, Sources, rounded};
 
 /// Starts of the movements are drawn from [−2, 2]²; shown is a little more, as movements leave that square.
 const SHOWN: f64 = 2.2;

@@ -4,7 +4,7 @@ use anyhow::ensure;
 use plot::Field;
 use serde_json::Value;
 
-use super::shapes::Kind;
+use crate::scene::shapes::Kind;
 
 /// What is promised of a document.
 pub(super) trait Sound {

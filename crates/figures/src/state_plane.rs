@@ -4,8 +4,8 @@ use motion::Policy;
 use nalgebra::{DVector, dvector};
 use plot::{Field, Layer, Plane};
 
-use super::{Who, rounded};
 use crate::who::TRUTH;
+use crate::{Who, rounded};
 
 /// (x₁, x₂, u₁, u₂).
 pub(super) type Arrow = (f64, f64, f64, f64);

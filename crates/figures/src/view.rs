@@ -3,9 +3,9 @@
 use serde::Deserialize as _;
 use serde_json::{Value, json};
 
-use super::grasp_playback::{GraspPlayback, LEARNERS, Movement, starts_shown};
-use super::legs::{BONE, EYE, Leg, standing};
-use super::stage;
+use crate::grasp_playback::{GraspPlayback, LEARNERS, Movement, starts_shown};
+use crate::scene::legs::{BONE, EYE, Leg, standing};
+use crate::scene::stage;
 
 /// Parts of a unit to which positions are rounded: as many as the figure data have digits.
 const PARTS: f64 = 1e4;

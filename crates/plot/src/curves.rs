@@ -8,8 +8,8 @@ use kuva::render::plots::Plot;
 use kuva::render::render::{Primitive, Scene, render_multiple};
 
 use crate::axis::tick;
+use crate::drawing::sheet::{Edge, titled, with_axes};
 use crate::names::{self, Name};
-use crate::sheet::{Edge, titled, with_axes};
 use crate::{Axis, Panel, Sign, Sketch, Stroke};
 
 /// Means and standard deviations of a quantity.

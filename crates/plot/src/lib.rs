@@ -33,33 +33,25 @@
 //! The only place that knows the plotting crate.
 
 mod axis;
-mod canvas;
 mod colour_scale;
 mod curves;
-mod dashes;
 mod decimals;
+mod drawing;
 mod error;
 mod levels;
 mod names;
 mod panel;
 mod picture;
 mod plane;
-mod raster;
 mod relief;
-mod samples;
-mod sheet;
 mod sign;
-mod smooth;
 mod space;
-mod style;
-mod style_sheet;
-mod theme;
 mod ticks;
-mod turned;
 
 pub use axis::Axis;
-pub use canvas::{Canvas, Thing};
 pub use curves::{Curve, Curves, Note};
+pub use drawing::canvas::{Canvas, Thing};
+pub use drawing::style::{Dash, Mark, Stroke};
 pub use error::PlotError;
 pub use panel::{Field, Panel, Sketch};
 pub use picture::Picture;
@@ -67,4 +59,3 @@ pub use plane::{Layer, Plane};
 pub use relief::Relief;
 pub use sign::{Filling, Sign};
 pub use space::{Camera, Frame, Item, Paint, Space};
-pub use style::{Dash, Mark, Stroke};

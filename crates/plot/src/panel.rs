@@ -1,7 +1,7 @@
 use kuva::render::render::{Primitive, Scene};
 
-use crate::raster::Raster;
-use crate::style_sheet::BACKDROP;
+use crate::drawing::raster::Raster;
+use crate::drawing::style_sheet::BACKDROP;
 
 /// One part of a picture.
 pub trait Panel {

@@ -2,9 +2,10 @@ use kuva::backend::raster::RasterBackend;
 use kuva::backend::svg::SvgBackend;
 use kuva::render::render::{Primitive, Scene};
 
-use crate::raster::{DOTS, Raster, with_density};
-use crate::style_sheet::with_style_sheet;
-use crate::{Panel, PlotError, Sketch, dashes, decimals, turned};
+use crate::drawing::raster::{DOTS, Raster, with_density};
+use crate::drawing::style_sheet::with_style_sheet;
+use crate::drawing::{dashes, turned};
+use crate::{Panel, PlotError, Sketch, decimals};
 
 /// Pixels between panels.
 const GAP: f64 = 10.0;

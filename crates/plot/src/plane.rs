@@ -3,11 +3,12 @@ use kuva::render::annotations::TextAnnotation;
 use kuva::render::plots::Plot;
 use kuva::render::render::render_multiple;
 
+use crate::drawing::samples::{self, Sample};
+use crate::drawing::sheet::{Edge, titled, with_axes};
+use crate::drawing::smooth;
+use crate::drawing::style::heights;
 use crate::levels::Label;
-use crate::samples::{self, Sample};
-use crate::sheet::{Edge, titled, with_axes};
-use crate::style::heights;
-use crate::{Field, Mark, Panel, Sketch, Stroke, colour_scale, levels, smooth};
+use crate::{Field, Mark, Panel, Sketch, Stroke, colour_scale, levels};
 
 /// One thing drawn in the plane; later layers lie on top.
 #[derive(Debug, Clone)]

@@ -2,8 +2,8 @@ use kuva::plot::{Scatter3DPlot, Surface3DPlot};
 use kuva::render::plots::Plot;
 use kuva::render::render::{Primitive, render_multiple};
 
-use crate::sheet::titled;
-use crate::style::{heights, heights_of_dots};
+use crate::drawing::sheet::titled;
+use crate::drawing::style::{heights, heights_of_dots};
 use crate::{Field, Panel, Sketch};
 
 /// Heights above the plane in perspective, x to the right and y away from the reader; light is high.

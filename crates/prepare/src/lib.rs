@@ -44,38 +44,29 @@
 //!   velocities or commands.
 //! - **Mixed units** (metres and radians): nothing chooses a metric for you. [`PrepareOptions::scale`] sets one.
 
-mod agreement;
 mod channel;
 mod degrees;
 mod directions;
-mod duplicates;
-mod episodes;
 mod error;
 pub mod in_words;
-mod jumps;
-mod noise;
 mod notes;
 mod options;
 mod prepared;
 mod remarks;
+mod repairs;
+mod samples;
 mod scale;
-mod smooth;
-mod stamps;
-mod still;
-mod thinning;
-mod velocities;
 mod velocity_source;
-mod wraps;
 
 pub use channel::StateChannel;
 pub use directions::directions;
 pub use error::PrepareError;
-pub use noise::Noise;
 pub use options::{PrepareOptions, Repair, Smoothing, VelocityUse};
 pub use prepared::Prepared;
-pub use smooth::with_slopes;
-pub use still::trim_still;
-pub use thinning::thinned;
+pub use samples::noise::Noise;
+pub use samples::smooth::with_slopes;
+pub use samples::still::trim_still;
+pub use samples::thinning::thinned;
 pub use velocity_source::VelocitySource;
 
 use motion::{Recordings, Trajectory, upper_median};
@@ -90,39 +81,39 @@ use notes::Notes;
 pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prepared, PrepareError> {
     let mut notes = Notes { findings: recordings.findings.clone(), ..Notes::default() };
     let scales = scale::scales(recordings, options, &mut notes)?;
-    let mut episodes = episodes::movements(recordings, &scales, &mut notes)?;
-    duplicates::leave_out(&mut episodes, &mut notes);
-    stamps::decide(&mut episodes, options, &mut notes)?;
+    let mut episodes = repairs::episodes::movements(recordings, &scales, &mut notes)?;
+    repairs::duplicates::leave_out(&mut episodes, &mut notes);
+    repairs::stamps::decide(&mut episodes, options, &mut notes)?;
     if options.wraps == Repair::Auto {
-        wraps::unwrap(&mut episodes, &recordings.state, &mut notes);
+        repairs::wraps::unwrap(&mut episodes, &recordings.state, &mut notes);
     }
     if options.jumps == Repair::Auto {
-        jumps::cut(&mut episodes, &recordings.state, &mut notes);
+        repairs::jumps::cut(&mut episodes, &recordings.state, &mut notes);
     }
-    episodes::leave_out_still(&mut episodes, &mut notes);
+    repairs::episodes::leave_out_still(&mut episodes, &mut notes);
     if episodes.is_empty() {
         let why = notes.left_out.first().map_or_else(String::new, |left_out| left_out.why.clone());
         return Err(PrepareError::NothingLeft { of: recordings.episodes.len(), why });
     }
-    let noise = noise::of(&episodes::demonstrations(&episodes)?);
-    let agreement = velocities::decide(&mut episodes, options, &recordings.state, &noise, &mut notes);
-    let demonstrations = episodes::demonstrations(&episodes)?;
-    let smoothed = smooth::as_requested(&demonstrations, options.smoothing, &mut notes)?;
+    let noise = samples::noise::of(&repairs::episodes::demonstrations(&episodes)?);
+    let agreement = repairs::velocities::decide(&mut episodes, options, &recordings.state, &noise, &mut notes);
+    let demonstrations = repairs::episodes::demonstrations(&episodes)?;
+    let smoothed = samples::smooth::as_requested(&demonstrations, options.smoothing, &mut notes)?;
     let (demonstrations, velocities) = if let Some(smoothed) = smoothed {
-        (smoothed, noise::as_requested(&demonstrations, &noise, agreement))
+        (smoothed, samples::noise::as_requested(&demonstrations, &noise, agreement))
     } else {
-        let velocities = noise::decide(&demonstrations, &noise, agreement, &mut notes);
+        let velocities = samples::noise::decide(&demonstrations, &noise, agreement, &mut notes);
         (demonstrations, velocities)
     };
     let averaged = match velocities {
-        VelocitySource::Positions => thinning::decide(&demonstrations, &noise, &mut notes),
+        VelocitySource::Positions => samples::thinning::decide(&demonstrations, &noise, &mut notes),
         _ => 1,
     };
     let state = scale::channels(recordings, &scales, &demonstrations);
-    stamps::doubt(&demonstrations, &mut notes);
+    repairs::stamps::doubt(&demonstrations, &mut notes);
     remarks::about(&demonstrations, &state, &mut notes);
     degrees::remark(&state, &mut notes);
-    still::remark(&demonstrations, noise.positions.as_deref(), &episodes, &mut notes);
+    samples::still::remark(&demonstrations, noise.positions.as_deref(), &episodes, &mut notes);
     let time_steps = demonstrations.trajectories().iter().map(Trajectory::time_step);
     Ok(Prepared {
         time_step: upper_median(time_steps.collect()).expect("there is an episode"),

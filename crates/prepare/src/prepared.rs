@@ -1,7 +1,7 @@
 use motion::{Decision, Demonstrations, Finding, LeftOut};
 
-use crate::noise::Noise;
 use crate::options::Smoothing;
+use crate::samples::noise::Noise;
 use crate::{StateChannel, VelocitySource};
 
 /// Demonstrations ready for learning, with all decisions and findings.

@@ -4,8 +4,8 @@ use motion::{Demonstrations, Trajectory, Verdict};
 
 use crate::StateChannel;
 use crate::in_words::{percent, short};
-use crate::noise::resolution;
 use crate::notes::Notes;
+use crate::samples::noise::resolution;
 
 /// A channel that spreads so many times as much as most others has another unit, it seems.
 const MIXED: f64 = 20.0;

@@ -43,27 +43,19 @@
 //! `evidence` are (S15), `segmentation` is (S16), `averages` and `smoothed` form the result; `noise_by_evidence`
 //! estimates the noise. `fusion` chooses among the steps of `increments` and runs `kalman`.
 
-mod averages;
 mod error;
-mod evidence;
 mod fusion;
 mod increments;
 mod kalman;
 mod noise;
-mod noise_by_evidence;
-mod polynomials;
+mod piecewise;
 mod savitzky_golay;
-mod scaled;
-mod segmentation;
-mod smoothed;
-mod smoother;
-mod windows;
 
 pub use error::SmoothingError;
 pub use fusion::{Fused, FusedMovement, Fusion};
 pub use increments::StepRule;
 pub use noise::PositionNoise;
+pub use piecewise::scaled::AxisScale;
+pub use piecewise::smoothed::{Smoothed, SmoothedMovement};
+pub use piecewise::smoother::{NoiseVariance, Smoother};
 pub use savitzky_golay::SavitzkyGolay;
-pub use scaled::AxisScale;
-pub use smoothed::{Smoothed, SmoothedMovement};
-pub use smoother::{NoiseVariance, Smoother};

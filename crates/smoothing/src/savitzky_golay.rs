@@ -2,7 +2,7 @@ use motion::{Demonstrations, Trajectory};
 use nalgebra::DMatrix;
 
 use crate::SmoothingError;
-use crate::polynomials::Polynomials;
+use crate::piecewise::polynomials::Polynomials;
 
 /// Savitzky–Golay filter: replaces each sample by the value of the polynomial that fits its neighbours best.
 ///

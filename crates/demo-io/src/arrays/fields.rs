@@ -1,9 +1,9 @@
 //! Which array is what, from names alone: for files whose arrays have names rather than columns.
 
 use crate::arrays::array::Described;
+use crate::names::selection::{flags, glob, select};
 use crate::raw::MOST_CHANNELS;
 use crate::rows::roles::{is_time, no_column, shortened, velocity_names};
-use crate::selection::{flags, glob, select};
 use crate::{Fault, ReadError, ReadOptions};
 
 /// Indices of arrays by role.

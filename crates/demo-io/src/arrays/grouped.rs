@@ -4,7 +4,7 @@ use crate::arrays::array::{Data, Described, Kind, Load, unit_of};
 use crate::arrays::fields::{Fields, assign};
 use crate::arrays::layout::{Stack, dimensions, lengths, stack};
 use crate::input::Input;
-use crate::natural;
+use crate::names::natural;
 use crate::raw::{Clock, MOST_EPISODES, RawEpisode, RawRecordings, Rows, no_time, period, unused};
 use crate::rows::stamps::TicksPerSecond;
 use crate::{Fault, ReadError, ReadOptions};
@@ -255,7 +255,7 @@ pub(crate) fn families(described: &[Described], options: &ReadOptions) -> Option
         return None;
     }
     // A pattern of the user that names every demonstration names the family.
-    let asked = crate::selection::flags(&options.state, &names);
+    let asked = crate::names::selection::flags(&options.state, &names);
     if asked.iter().any(|&asked| asked) && demos.iter().any(|demo| !demo.fields.iter().any(|(_, index)| asked[*index]))
     {
         return None;

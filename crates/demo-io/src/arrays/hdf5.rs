@@ -9,10 +9,11 @@ use crate::arrays::array::Described;
 use crate::arrays::flat;
 use crate::arrays::grouped::{Demo, Group};
 use crate::input::Input;
+use crate::names::natural;
 use crate::raw::RawRecordings;
 use crate::rows::json::Json;
 use crate::rows::roles::shortened;
-use crate::{Fault, ReadError, natural};
+use crate::{Fault, ReadError};
 
 pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<RawRecordings, ReadError> {
     let file = File::open_streaming(&input.path).map_err(|error| tree::failed(&error, input))?;

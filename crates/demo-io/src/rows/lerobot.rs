@@ -6,11 +6,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::input::{Input, name_of, unreadable};
+use crate::names::natural;
 use crate::raw::RawRecordings;
 use crate::regular_file::read_bytes;
 use crate::rows::json::Json;
 use crate::rows::parquet::{self, Described, STATE};
-use crate::{Fault, ReadError, ReadOptions, natural};
+use crate::{Fault, ReadError, ReadOptions};
 
 /// Bytes of a file of `meta/`, at most.
 const META: u64 = 256 << 20;

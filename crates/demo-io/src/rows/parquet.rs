@@ -12,12 +12,12 @@ use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 use self::failure::failed;
 use self::leaf::Leaf;
 use crate::input::Input;
+use crate::names::selection::select;
 use crate::raw::RawRecordings;
 use crate::raw::remark;
 use crate::rows::roles::{Column, Content};
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use crate::rows::table::{Row, Table};
-use crate::selection::select;
 use crate::{Fault, ReadError, ReadOptions};
 use motion::Finding;
 

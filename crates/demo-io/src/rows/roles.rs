@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use self::names::{base, is_one_of};
 pub(crate) use self::names::{is_time, unit, velocity_names};
-use crate::selection::{flags, glob, select};
+use crate::names::selection::{flags, glob, select};
 use crate::{Fault, ReadError, ReadOptions};
 
 /// A column before its role is known.

@@ -6,7 +6,7 @@ use kinematics::{CollisionShape, JointMotion, LinkId, MotionKind, RobotModel};
 use nalgebra::IsometryMatrix3;
 use serde::{Deserialize, Serialize};
 
-use crate::shapes::{Shape, form, numbers};
+use crate::scene::shapes::{Shape, form, numbers};
 use crate::sound::{self, among, within};
 
 /// No link is farther away, metres.

@@ -6,7 +6,7 @@ use playback::PalmTracking;
 
 use super::robot::Motion;
 use super::*;
-use crate::shapes;
+use crate::scene::shapes;
 
 /// Poses of all links in a configuration, by the tree of the document alone: as the script of the page has them.
 fn poses(robot: &Robot, joints: &[f64]) -> Vec<IsometryMatrix3<f64>> {

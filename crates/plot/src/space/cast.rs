@@ -6,7 +6,7 @@ use super::item::Item;
 use super::shade::{self, Rgb, Tint};
 use super::solid::{Hit, Solid};
 use super::view::View;
-use crate::raster::{DOTS, Raster};
+use crate::drawing::raster::{DOTS, Raster};
 
 /// A body and how it looks.
 #[derive(Debug, Clone)]

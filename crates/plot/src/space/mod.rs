@@ -24,7 +24,7 @@ pub use camera::Camera;
 pub use frame::Frame;
 pub use item::{Item, Paint};
 
-use crate::raster::Raster;
+use crate::drawing::raster::Raster;
 use crate::{Panel, Sketch};
 use view::{Area, Extent, View};
 

@@ -9,7 +9,7 @@ use super::item::Item;
 use super::lines::{area, disc, polyline};
 use super::shade::{Rgb, color, rgb};
 use super::view::View;
-use crate::dashes::dashed;
+use crate::drawing::dashes::dashed;
 use crate::{Dash, Stroke};
 
 /// Whether it is hidden is asked at steps of so many pixels.

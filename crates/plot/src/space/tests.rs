@@ -127,7 +127,7 @@ proptest! {
             }
         }
         for raster in &sketch.rasters {
-            let ((x, y), scale) = (raster.corner, crate::raster::DOTS as f64);
+            let ((x, y), scale) = (raster.corner, crate::drawing::raster::DOTS as f64);
             let (right, below) = (x + raster.width as f64 / scale, y + (raster.dots.len() / raster.width) as f64 / scale);
             prop_assert!(x >= 0.0 && y >= 0.0 && right <= SIZE.0 && below <= SIZE.1);
         }
@@ -178,7 +178,7 @@ proptest! {
             (space.frame, space.size, space.title) = (None, (60.0, 50.0), String::new());
             let at = space.view().place(&Point3::origin());
             let raster = cast::raster(&cast::bodies(&space.items, &space.view()), space.size).unwrap();
-            let dot = |place: f64, corner: f64| ((place - corner) * crate::raster::DOTS as f64) as usize;
+            let dot = |place: f64, corner: f64| ((place - corner) * crate::drawing::raster::DOTS as f64) as usize;
             raster.dots[dot(at.y, raster.corner.1) * raster.width + dot(at.x, raster.corner.0)]
         };
         for items in [vec![far.clone(), near.clone()], vec![near, far]] {

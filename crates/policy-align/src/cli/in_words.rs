@@ -2,7 +2,7 @@
 
 use policy_align::{Learnt, Model, Verdict};
 
-use super::lines::counted;
+use crate::cli::lines::counted;
 
 /// The verdict in words.
 pub(crate) fn verdict(model: &Model) -> &'static str {

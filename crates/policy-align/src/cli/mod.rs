@@ -1,30 +1,16 @@
 //! The program: a verb a file.
 
-mod check;
-mod check_page;
 mod clock;
-pub(crate) mod config;
-mod convert;
-mod evaluate;
-mod export;
 pub(crate) mod failure;
-mod fit;
-pub(crate) mod flags;
-mod generated;
 mod in_words;
-mod info;
 mod lines;
-mod page_parts;
-mod picture;
-mod plot;
-mod predict;
+mod options;
+mod pages;
 mod recorded;
-mod rollout;
-pub(crate) mod rollout_flags;
 mod session;
 mod table;
 mod trust_files;
-mod trust_page;
+mod verbs;
 
 pub(crate) use failure::Exit;
 pub(crate) use session::complain;
@@ -47,18 +33,18 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    Check(check::Check),
-    Fit(Box<fit::Fit>),
-    Info(info::Info),
-    Predict(predict::Predict),
+    Check(verbs::check::Check),
+    Fit(Box<verbs::fit::Fit>),
+    Info(verbs::info::Info),
+    Predict(verbs::predict::Predict),
     #[command(name = "rollout")]
-    RollOut(rollout::RollOut),
-    Evaluate(evaluate::Evaluate),
-    Plot(plot::Plot),
-    Convert(convert::Convert),
-    Export(export::Export),
-    Completions(generated::Completions),
-    Man(generated::Man),
+    RollOut(verbs::rollout::RollOut),
+    Evaluate(verbs::evaluate::Evaluate),
+    Plot(verbs::plot::Plot),
+    Convert(verbs::convert::Convert),
+    Export(verbs::export::Export),
+    Completions(verbs::generated::Completions),
+    Man(verbs::generated::Man),
 }
 
 const AFTER_HELP: &str = "\
@@ -77,7 +63,7 @@ Example:
 fn command() -> Command {
     let brief = |command: Command| {
         command.mut_args(|flag| {
-            let rare = flag.get_long().is_some_and(|long| flags::RARE.contains(&long));
+            let rare = flag.get_long().is_some_and(|long| options::flags::RARE.contains(&long));
             flag.hide(rare)
         })
     };

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use motion::{Finding, Recordings};
 use policy_align::FileSummary;
 
-use super::failure::{Failure, shown};
-use super::flags::ReadFlags;
-use super::lines::counted;
-use super::session::Session;
+use crate::cli::failure::{Failure, shown};
+use crate::cli::lines::counted;
+use crate::cli::options::flags::ReadFlags;
+use crate::cli::session::Session;
 
 /// Warnings that are printed: a recorder that repeats itself would fill the screen.
 const SHOWN: usize = 6;

@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::Value;
 use text::{is_hidden, plain};
 
-use super::failure::{Exit, Failure};
+use crate::cli::failure::{Exit, Failure};
 
 /// Flags of every command.
 #[derive(Debug, Clone, Default, Args)]

@@ -5,7 +5,7 @@ use std::path::Path;
 use nalgebra::DMatrix;
 use policy_align::Model;
 
-use super::failure::{Exit, Failure, shown};
+use crate::cli::failure::{Exit, Failure, shown};
 
 /// Bytes of states, at most.
 const LARGEST: u64 = 1 << 30;

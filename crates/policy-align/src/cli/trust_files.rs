@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use policy_align::{Model, ModelError, checksum_of};
 use serde_json::Value;
 
-use super::failure::{Failure, shown};
-use super::session::Session;
+use crate::cli::failure::{Failure, shown};
+use crate::cli::session::Session;
 
 /// What a page says before the checksum of its model.
 pub(crate) const NAMED: &str = "Checksum of the model: ";

@@ -4,13 +4,14 @@ use std::fmt;
 use super::messages::{Message, Type};
 use super::noted::episodes;
 use crate::input::Input;
+use crate::names::natural;
+use crate::names::selection::{flags, select};
 use crate::raw::{Clock, RawEpisode, RawRecordings, Rows, period, remark, unused};
 use crate::rows::documents::Documents;
 use crate::rows::json::Json;
 use crate::rows::roles::no_column;
 use crate::rows::stamps::{Stamp, TicksPerSecond};
-use crate::selection::{flags, select};
-use crate::{Fault, ReadError, natural};
+use crate::{Fault, ReadError};
 use motion::{Channel, Finding};
 
 /// The messages of a topic. What is wrong with them matters only if the topic is chosen.

@@ -1,0 +1,4 @@
+//! Names: their order, and patterns of them.
+
+pub(crate) mod natural;
+pub(crate) mod selection;

@@ -1,0 +1,173 @@
+//! An exam: every learner gets the same recordings and the same samples held out of them, and is judged by the same truth.
+
+use std::collections::BTreeMap;
+
+use align::{Aligned, PolicyAlign};
+use constraints::PfaffianConstraint;
+use demo_gen::{Recording, demonstrations};
+use motion::{LearntPolicy, Policy};
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+
+use crate::Measures;
+use crate::evaluation::judge::Judge;
+use crate::evaluation::pupil::Pupil;
+use crate::evaluation::test_samples::TestSamples;
+use crate::measure::Measure;
+
+/// What an exam tests on.
+pub(crate) const TESTED_ON: &str =
+    "held-out samples of the movements that alignment keeps; measures named _all: of all movements";
+
+/// What was learnt, and those who judge it.
+pub(crate) struct Exam<'a> {
+    aligned: Aligned,
+    judge: Judge<'a>,
+    judge_of_all: Judge<'a>,
+    learnt: Vec<Box<dyn LearntPolicy>>,
+}
+
+/// Errors of what was learnt: of its policy, and of its potential where there are two to compare.
+pub(crate) fn errors(judge: &Judge<'_>, learnt: &dyn LearntPolicy) -> anyhow::Result<BTreeMap<Measure, f64>> {
+    let [nupe, ncpe] = judge.policy(&learnt)?;
+    let mut errors = BTreeMap::from([(Measure::Nupe, nupe), (Measure::Ncpe, ncpe)]);
+    if let Some(potential) = learnt.potential().filter(|_| judge.has_potential()) {
+        errors.insert(Measure::PotentialNmse, judge.potential(potential)?);
+    }
+    Ok(errors)
+}
+
+/// Who sits an exam, and of how many samples.
+#[derive(Serialize)]
+pub(crate) struct Protocol {
+    pub(crate) algorithm: PolicyAlign,
+    pub(crate) pupils: Vec<Pupil>,
+    /// Share of the samples that is held out.
+    pub(crate) held_out: f64,
+}
+
+impl Protocol {
+    /// Aligns the recordings, draws what is held out, and lets each learner learn.
+    pub(crate) fn examine<'a>(&self, recordings: &'a [Recording], rng: &mut ChaCha8Rng) -> anyhow::Result<Exam<'a>> {
+        let aligned = self.algorithm.align(&demonstrations(recordings)?)?;
+        let test = TestSamples::draw(&aligned, self.held_out, rng)?;
+        let judge = Judge::new(recordings, &test.of_kept);
+        let judge_of_all = Judge::new(recordings, &test.of_all);
+        let learnt =
+            self.pupils.iter().map(|pupil| pupil.learn(&aligned, &test.of_all, rng)).collect::<Result<_, _>>()?;
+        Ok(Exam { aligned, judge, judge_of_all, learnt })
+    }
+}
+
+impl<'a> Exam<'a> {
+    /// What each learner found, in their order.
+    pub(crate) fn learnt(&self) -> impl Iterator<Item = &dyn LearntPolicy> {
+        self.learnt.iter().map(|learnt| &**learnt)
+    }
+
+    /// Who judges on the samples of kept movements.
+    pub(crate) fn judge(&self) -> &Judge<'a> {
+        &self.judge
+    }
+
+    /// A row for each learner, in their order: its errors on samples of kept movements, and those of its policy on
+    /// samples of all.
+    pub(crate) fn rows(&self) -> anyhow::Result<Measures> {
+        let row = |learnt: &dyn LearntPolicy| {
+            let mut row = self.errors(&self.judge, learnt)?;
+            let [nupe, ncpe] = self.judge_of_all.policy(&learnt)?;
+            row.extend([(Measure::NupeAll, nupe), (Measure::NcpeAll, ncpe)]);
+            row.insert(Measure::Unsupported, self.unsupported_percent(learnt));
+            if let Some(kept) = learnt.kept() {
+                let all = self.aligned.demonstrations().n_trajectories();
+                row.insert(Measure::Disc, 100.0 * (all - kept.len()) as f64 / all as f64);
+            }
+            Ok(row)
+        };
+        self.learnt().map(row).collect()
+    }
+
+    /// Error of a policy under a constraint that holds at time 0 and in no recording: on samples of kept movements, and
+    /// of all.
+    pub(crate) fn unseen(&self, policy: &dyn Policy, constraint: &dyn PfaffianConstraint) -> anyhow::Result<[f64; 2]> {
+        Ok([self.judge.policy_under(policy, constraint)?, self.judge_of_all.policy_under(policy, constraint)?])
+    }
+
+    /// Errors of what was learnt before a judge on samples of kept movements: of its potential too, if it has one, and
+    /// of the alignment, if it rests on that.
+    pub(crate) fn errors(
+        &self,
+        judge: &Judge<'_>,
+        learnt: &dyn LearntPolicy,
+    ) -> anyhow::Result<BTreeMap<Measure, f64>> {
+        let mut errors = errors(judge, learnt)?;
+        if learnt.kept().is_some() {
+            errors.insert(Measure::AlignmentNmse, judge.alignment(&self.aligned)?);
+        }
+        Ok(errors)
+    }
+
+    /// Share of the test samples, as they were observed, of which the demonstrations say nothing.
+    fn unsupported_percent(&self, learnt: &dyn LearntPolicy) -> f64 {
+        let trajectories = self.aligned.demonstrations().trajectories();
+        let samples = self.judge.samples();
+        let unsupported =
+            samples.iter().filter(|at| learnt.support(trajectories[at.trajectory].state(at.sample)) == 0.0);
+        100.0 * (unsupported.count() as f64 / samples.len() as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use align::{Bandwidth, DirectPolicyLearning, LwprRegressor};
+    use demo_gen::{ToyPotential, ToySystem};
+    use gp::{ReadingLearner, SlopeGp, SlopeLearner};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::seed::generator;
+
+    fn pupils() -> Vec<Pupil> {
+        let slope = || SlopeGp { max_rows: 60, hyper_rows: 40, ..SlopeGp::default() };
+        vec![
+            Pupil::PolicyAlign(LwprRegressor { passes: 2, ..LwprRegressor::default() }),
+            Pupil::other(DirectPolicyLearning::default()).unwrap(),
+            Pupil::other(SlopeLearner { gp: slope(), ..SlopeLearner::default() }).unwrap(),
+            Pupil::other(ReadingLearner { slope: slope(), ..ReadingLearner::default() }).unwrap(),
+        ]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4))]
+
+        /// The truth of other movements changes every mark and no bit of what is learnt.
+        #[test]
+        fn the_truth_is_for_the_judge_alone(seed in 1_u64..1000, forger in 1000_u64..2000, samples in 20_usize..40, held_out in 0.05..0.5) {
+            let record = |potential, seed| {
+                let system = ToySystem { potential, n_trajectories: 12, n_samples: samples, ..ToySystem::default() };
+                system.record(&mut generator(seed, 0, 0)).unwrap()
+            };
+            let recordings = record(ToyPotential::parabola(), seed);
+            let others = record(ToyPotential::sinusoidal(), forger);
+            let swap = |(recording, other): (&Recording, Recording)| Recording { truth: other.truth, ..recording.clone() };
+            let forged: Vec<Recording> = recordings.iter().zip(others).map(swap).collect();
+            let algorithm = PolicyAlign { bandwidth: Bandwidth::Medium, ..PolicyAlign::default() };
+            let protocol = Protocol { algorithm, pupils: pupils(), held_out };
+            let [exam, of_forged] = [&recordings, &forged]
+                .map(|recordings| protocol.examine(recordings, &mut generator(seed, 0, 1)).unwrap());
+            prop_assert_eq!(&exam.aligned, &of_forged.aligned);
+            prop_assert_eq!(exam.judge.samples(), of_forged.judge.samples());
+            for (ours, theirs) in exam.learnt().zip(of_forged.learnt()) {
+                prop_assert_eq!((ours.kept(), ours.warnings()), (theirs.kept(), theirs.warnings()));
+                for state in recordings.iter().flat_map(|recording| recording.observed.states().column_iter()) {
+                    let bits = |learnt: &dyn LearntPolicy| learnt.action(state).map(f64::to_bits);
+                    prop_assert_eq!(bits(ours), bits(theirs));
+                    prop_assert_eq!(ours.support(state).to_bits(), theirs.support(state).to_bits());
+                }
+            }
+            for (ours, theirs) in exam.rows().unwrap().iter().zip(of_forged.rows().unwrap()) {
+                prop_assert!(ours[&Measure::Nupe] != theirs[&Measure::Nupe], "a mark that does not know the truth");
+            }
+        }
+    }
+}

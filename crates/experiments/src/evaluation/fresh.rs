@@ -1,0 +1,35 @@
+//! Movements that nobody learns from, from new starts and under constraints of their own: how a policy does where the
+//! movements that alignment kept may never have been.
+
+use demo_gen::{Recording, ToySystem};
+use motion::LearntPolicy;
+use rand_chacha::ChaCha8Rng;
+
+use crate::Measures;
+use crate::evaluation::judge::Judge;
+use crate::evaluation::seen::samples_of;
+use crate::measure::Measure;
+use crate::seed;
+
+/// Movements a data set.
+const MOVEMENTS: usize = 10;
+
+/// Movements of a system, which take nothing from the generator of its data set.
+pub(crate) fn fresh(system: &ToySystem, rng: &ChaCha8Rng) -> anyhow::Result<Vec<Recording>> {
+    let system = ToySystem { n_trajectories: MOVEMENTS, ..system.clone() };
+    Ok(system.record(&mut seed::fresh(rng))?)
+}
+
+/// Adds each learner's error on them to its row.
+pub(crate) fn add_errors<'a>(
+    rows: &mut Measures,
+    learnt: impl Iterator<Item = &'a dyn LearntPolicy>,
+    recordings: &[Recording],
+) -> anyhow::Result<()> {
+    let judge = Judge::new(recordings, &samples_of(recordings, 0..recordings.len()));
+    for (row, learnt) in rows.iter_mut().zip(learnt) {
+        let [nupe, _] = judge.policy(&learnt)?;
+        row.insert(Measure::NupeFresh, nupe);
+    }
+    Ok(())
+}

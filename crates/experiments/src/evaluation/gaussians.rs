@@ -1,0 +1,95 @@
+//! The Gaussian processes of an experiment: what they learn, and what they say of themselves.
+
+use std::collections::BTreeMap;
+
+use gp::{BothReadings, DirectGp, FrontEnd, ModelKind, Reading, ReadingLearner, SlopeFit, SlopeGp, Trend};
+use motion::{Demonstrations, SampleIndex, SampleSet};
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+
+use crate::measure::Measure;
+
+/// The slope GP and the direct GP, both as they come, from at most so many rows.
+#[derive(Serialize)]
+pub struct Gaussians {
+    /// What was recorded.
+    pub(crate) front_end: FrontEnd,
+    /// Rows learnt from.
+    pub(crate) max_rows: usize,
+    /// Rows that amplitudes are chosen on.
+    pub(crate) hyper_rows: usize,
+}
+
+/// Rows that amplitudes are chosen on, in experiments: evidence of more costs most of a fit and changes little.
+const HYPER_ROWS: usize = 250;
+
+impl Gaussians {
+    pub(crate) fn new(front_end: FrontEnd, max_rows: usize) -> Self {
+        Gaussians { front_end, max_rows, hyper_rows: HYPER_ROWS.min(max_rows) }
+    }
+
+    /// Both, and which of them the data support: the slope GP's and the direct GP's fits are what each alone would be.
+    ///
+    /// # Errors
+    /// If nothing can be learnt from them.
+    pub fn both(
+        &self,
+        demonstrations: &Demonstrations,
+        held_out: &[SampleIndex],
+        rng: &mut ChaCha8Rng,
+    ) -> anyhow::Result<BothReadings> {
+        let learner = ReadingLearner {
+            slope: self.slope_gp(Trend::Quadratic),
+            direct: DirectGp { max_rows: self.max_rows, hyper_rows: self.hyper_rows, ..DirectGp::default() },
+            ..ReadingLearner::default()
+        };
+        Ok(learner.fit(&self.rows(demonstrations, held_out)?, rng)?)
+    }
+
+    /// The slope GP alone; without a trend its families hold no quadratic potential, which shows what is left where the
+    /// class does not contain the truth.
+    pub(crate) fn slope(
+        &self,
+        trend: Trend,
+        demonstrations: &Demonstrations,
+        held_out: &[SampleIndex],
+        rng: &mut ChaCha8Rng,
+    ) -> anyhow::Result<SlopeFit> {
+        Ok(self.slope_gp(trend).fit(&self.rows(demonstrations, held_out)?, rng)?)
+    }
+
+    fn slope_gp(&self, trend: Trend) -> SlopeGp {
+        SlopeGp { trend, max_rows: self.max_rows, hyper_rows: self.hyper_rows, ..SlopeGp::default() }
+    }
+
+    fn rows(&self, demonstrations: &Demonstrations, held_out: &[SampleIndex]) -> anyhow::Result<gp::Rows> {
+        let held_out = SampleSet::of(held_out);
+        let rows = self.front_end.rows(demonstrations)?;
+        Ok(rows.without(|trajectory, sample| held_out.contains(SampleIndex { trajectory, sample })))
+    }
+}
+
+/// What a slope GP expects of itself.
+pub(crate) fn own_expectations(fit: &SlopeFit) -> BTreeMap<Measure, f64> {
+    let report = fit.report();
+    BTreeMap::from([
+        (Measure::ExpectedNupe, report.expected_nupe),
+        (Measure::Rotation, percent(report.model == ModelKind::Helmholtz)),
+    ])
+}
+
+/// What the data are taken for.
+pub(crate) fn reading_of(both: &BothReadings) -> BTreeMap<Measure, f64> {
+    let readings = [
+        (Measure::ReadFree, Reading::Free),
+        (Measure::ReadConstrained, Reading::Constrained),
+        (Measure::ReadAmbiguous, Reading::Ambiguous),
+        (Measure::ReadUnexplained, Reading::Unexplained),
+    ];
+    readings.into_iter().map(|(measure, reading)| (measure, percent(both.reading() == reading))).collect()
+}
+
+/// 100 of one data set, or 0: means are shares of the data sets.
+fn percent(is_so: bool) -> f64 {
+    if is_so { 100.0 } else { 0.0 }
+}

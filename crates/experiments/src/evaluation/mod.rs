@@ -1,0 +1,13 @@
+//! How learners are compared: the same recordings, the same held-out samples, the same errors.
+
+pub(crate) mod beside;
+pub(crate) mod constraint_consistent;
+pub(crate) mod contest;
+pub(crate) mod exam;
+pub(crate) mod fresh;
+pub(crate) mod gaussians;
+pub(crate) mod judge;
+pub(crate) mod pupil;
+pub(crate) mod recipe;
+pub(crate) mod seen;
+pub(crate) mod test_samples;

@@ -1,0 +1,74 @@
+//! Those who sit an exam.
+
+use align::{Aligned, LwprRegressor};
+use motion::{Learner, LearntPolicy, SampleIndex};
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+use serde_json::Value;
+
+/// One entry in the list of learners that an experiment scores.
+#[derive(Serialize)]
+pub(crate) enum Pupil {
+    /// The paper's method: regression on the potentials as the exam has aligned them. It is what
+    /// [`align::PotentialPolicyLearning`] learns, to the last bit, without aligning once more.
+    PolicyAlign(LwprRegressor),
+    /// A learner that begins with the demonstrations.
+    Other {
+        /// It.
+        #[serde(skip)]
+        learner: Box<dyn Learner>,
+        /// All its parameters, by name.
+        parameters: Value,
+    },
+}
+
+impl Pupil {
+    /// A learner that begins with the demonstrations.
+    pub(crate) fn other<L: Learner + Serialize + 'static>(learner: L) -> anyhow::Result<Pupil> {
+        Ok(Pupil::Other { parameters: serde_json::to_value(&learner)?, learner: Box::new(learner) })
+    }
+
+    /// Learns from all samples but those held out.
+    pub(crate) fn learn(
+        &self,
+        aligned: &Aligned,
+        held_out: &[SampleIndex],
+        rng: &mut ChaCha8Rng,
+    ) -> anyhow::Result<Box<dyn LearntPolicy>> {
+        match self {
+            Pupil::PolicyAlign(regressor) => Ok(Box::new(aligned.learn_without(held_out, regressor, rng)?)),
+            Pupil::Other { learner, .. } => {
+                learner.learn(aligned.demonstrations(), held_out, rng).map_err(anyhow::Error::from_boxed)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use align::{PolicyAlign, PotentialPolicyLearning};
+    use demo_gen::{ToySystem, demonstrations};
+
+    use super::*;
+    use crate::seed::generator;
+
+    /// The short way of the first entry leads to the same place as the long one.
+    #[test]
+    fn potentials_that_are_aligned_need_no_second_alignment() {
+        let system = ToySystem { n_trajectories: 12, ..ToySystem::default() };
+        let demonstrations = demonstrations(&system.record(&mut generator(1, 0, 0)).unwrap()).unwrap();
+        let regressor = LwprRegressor { passes: 2, ..LwprRegressor::default() };
+        let align = PolicyAlign::default();
+        let aligned = align.align(&demonstrations).unwrap();
+        let held_out = demonstrations.hold_out_samples(aligned.kept(), 0.1, &mut generator(1, 0, 1)).unwrap();
+        let whole = PotentialPolicyLearning { align, regressor: regressor.clone() };
+        let [short, long] = [Pupil::PolicyAlign(regressor), Pupil::other(whole).unwrap()]
+            .map(|pupil| pupil.learn(&aligned, &held_out, &mut generator(1, 0, 2)).unwrap());
+        for trajectory in demonstrations.trajectories() {
+            for state in trajectory.states().column_iter() {
+                assert_eq!(short.action(state), long.action(state));
+            }
+        }
+        assert_eq!(short.kept(), long.kept());
+    }
+}

@@ -1,0 +1,86 @@
+//! How every experiment learns and tests: one regression, LWPR with its library's defaults, and one share of samples held out.
+
+use align::{DirectPolicyLearning, LwprRegressor, PolicyAlign};
+use lwpr::LwprParams;
+use nalgebra::DVector;
+
+use crate::Setup;
+use crate::evaluation::exam::Protocol;
+use crate::evaluation::pupil::Pupil;
+use crate::setting::{Class, SILENT, Setting};
+
+/// What the learners of an experiment have in common.
+#[derive(Debug, Clone)]
+pub(crate) struct Recipe {
+    /// LWPR's parameters without divisors; the library's defaults.
+    pub(crate) params: LwprParams,
+    /// What potentials are divided by before LWPR learns them: 1, as (23) has them.
+    pub(crate) divisor: f64,
+    /// How often all samples are learnt, for each input: a receptive field of n inputs predicts only after 2n samples.
+    pub(crate) passes_per_input: f64,
+    /// Receptive fields that a state activates less take no part in its prediction.
+    pub(crate) cutoff: f64,
+    /// Share of the samples that is held out for tests.
+    pub(crate) held_out: f64,
+}
+
+impl Default for Recipe {
+    fn default() -> Self {
+        Recipe { params: LwprParams::default(), divisor: 1.0, passes_per_input: 1.0, cutoff: 1e-3, held_out: HELD_OUT }
+    }
+}
+
+/// Share of the samples that is held out.
+pub const HELD_OUT: f64 = 0.2;
+
+impl Recipe {
+    /// The regression on aligned potentials of `dim` inputs, all divided by `spread`.
+    pub(crate) fn regressor(&self, dim: usize, spread: f64) -> LwprRegressor {
+        LwprRegressor { params: self.params_of(dim, spread, 1), passes: self.passes(dim), cutoff: self.cutoff }
+    }
+
+    /// The naive learner's regression on observed velocities.
+    pub(crate) fn naive(&self, dim: usize, spread: f64) -> DirectPolicyLearning {
+        DirectPolicyLearning { params: self.params_of(dim, spread, dim), passes: self.passes(dim), cutoff: self.cutoff }
+    }
+
+    /// PolicyAlign alone, with this regression; other learners are added to it.
+    pub(crate) fn protocol(&self, algorithm: PolicyAlign, dim: usize, spread: f64) -> Protocol {
+        let pupils = vec![Pupil::PolicyAlign(self.regressor(dim, spread))];
+        Protocol { algorithm, pupils, held_out: self.held_out }
+    }
+
+    fn passes(&self, dim: usize) -> usize {
+        (self.passes_per_input * dim as f64).ceil() as usize
+    }
+
+    fn params_of(&self, dim: usize, spread: f64, n_out: usize) -> LwprParams {
+        let [norm_in, norm_out] =
+            [(dim, spread), (n_out, self.divisor)].map(|(n, norm)| Some(DVector::repeat(n, norm)));
+        LwprParams { norm_in, norm_out, ..self.params.clone() }
+    }
+
+    /// What is fitted of it, as settings of an experiment whose printed rows are `printed`.
+    pub(crate) fn settings(
+        &self,
+        experiment: &'static str,
+        printed: fn(&Recipe) -> anyhow::Result<Vec<Setup>>,
+    ) -> Vec<Setting> {
+        let changed = |change: fn(&mut Recipe, f64)| {
+            let base = self.clone();
+            move |value| {
+                let mut recipe = base.clone();
+                change(&mut recipe, value);
+                printed(&recipe)
+            }
+        };
+        let fitted =
+            |name, paper, used, change| Setting::new(experiment, name, Class::Fitted, paper, used, changed(change));
+        vec![
+            fitted("held-out share", "\"a subsample\"", self.held_out, |recipe, share| recipe.held_out = share),
+            fitted("passes for each input, rounded up", SILENT, self.passes_per_input, |recipe, passes| {
+                recipe.passes_per_input = passes;
+            }),
+        ]
+    }
+}

@@ -1,0 +1,64 @@
+//! What an observer records of a movement, and how each learner is to take it.
+
+use align::Integration;
+use demo_gen::{Recording, with_position_noise};
+use gp::FrontEnd;
+use motion::{SampleIndex, Trajectory};
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+use smoothing::{Fusion, Smoother};
+
+/// What is recorded. Noise is a share of each dimension's standard deviation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(crate) enum Seen {
+    /// Positions and velocities, both exact.
+    Velocities,
+    /// Positions with noise, and exact velocities.
+    NoisyStates(f64),
+    /// Positions with noise, and nothing else.
+    Positions(f64),
+}
+
+impl Seen {
+    /// The same movements as they are recorded.
+    pub(crate) fn of(self, recordings: Vec<Recording>, rng: &mut ChaCha8Rng) -> anyhow::Result<Vec<Recording>> {
+        match self {
+            Seen::Velocities => Ok(recordings),
+            Seen::NoisyStates(noise) => Ok(with_position_noise(&recordings, noise, rng)?),
+            Seen::Positions(noise) => {
+                let noisy = with_position_noise(&recordings, noise, rng)?;
+                noisy.into_iter().map(without_velocities).collect()
+            }
+        }
+    }
+
+    /// How the Gaussian processes take it.
+    pub(crate) fn front_end(self) -> FrontEnd {
+        match self {
+            Seen::Velocities => FrontEnd::Velocities,
+            Seen::NoisyStates(_) => FrontEnd::Fused(Fusion::default()),
+            Seen::Positions(_) => FrontEnd::Smoothed(Smoother::default()),
+        }
+    }
+
+    /// How PolicyAlign takes it.
+    pub(crate) fn integration(self) -> Integration {
+        match self {
+            Seen::Velocities | Seen::NoisyStates(_) => Integration::Velocity,
+            Seen::Positions(_) => Integration::Displacement,
+        }
+    }
+}
+
+fn without_velocities(recording: Recording) -> anyhow::Result<Recording> {
+    let observed = Trajectory::new(recording.observed.states().clone(), recording.observed.time_step())?;
+    Ok(Recording { observed, ..recording })
+}
+
+/// Every sample of some trajectories.
+pub(crate) fn samples_of(recordings: &[Recording], trajectories: std::ops::Range<usize>) -> Vec<SampleIndex> {
+    let of = |trajectory: usize| {
+        (0..recordings[trajectory].truth.states.ncols()).map(move |sample| SampleIndex { trajectory, sample })
+    };
+    trajectories.flat_map(of).collect()
+}

@@ -1,0 +1,249 @@
+//! Fig. 6 (Section 4.1): errors on the parabola against the amount of data and against noise on the recorded positions.
+
+use align::{Bandwidth, Integration, PolicyAlign};
+use anyhow::Context as _;
+use demo_gen::{Recording, ToySystem, with_position_noise};
+use gp::FrontEnd;
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+use smoothing::{Fusion, Smoother};
+
+use crate::evaluation::beside::{Beside, DATA_SETS};
+use crate::evaluation::contest::{Contest, Contestant};
+use crate::evaluation::exam::Protocol;
+use crate::measure::Measure;
+use crate::tables::table1::{PARABOLA_SYSTEM, learning_cost, toy_beside, toy_protocol};
+use crate::{Experiment, Measures, Row, Setup, Trial};
+
+/// What is learnt from, percent of the trajectories.
+pub const TRAJECTORIES_PERCENT: [f64; 6] = [10.0, 20.0, 40.0, 60.0, 80.0, 100.0];
+
+/// Noise, percent of each dimension's standard deviation.
+pub const NOISE_PERCENT: [f64; 6] = [0.0, 2.5, 5.0, 10.0, 15.0, 20.0];
+
+/// Names in rows.
+pub const BANDWIDTHS: [(&str, Bandwidth); 2] = [("narrow", Bandwidth::Narrow), ("medium", Bandwidth::Medium)];
+
+/// Names in rows.
+pub const RULES: [(&str, Integration); 2] =
+    [("velocity", Integration::Velocity), ("displacement", Integration::Displacement)];
+
+/// The left panel: errors against the amount of data.
+pub(crate) fn figure6_left() -> Experiment {
+    let setup = |(name, bandwidth)| {
+        let algorithm = PolicyAlign { bandwidth, ..PolicyAlign::default() };
+        setup(name, &TRAJECTORIES_PERCENT, algorithm, Against::Trajectories)
+    };
+    let beside =
+        setup_beside(BESIDE_LEFT, &TRAJECTORIES_PERCENT, Integration::default(), Against::Trajectories, FrontEnd::Map);
+    Experiment {
+        id: "figure6_left",
+        title: "Figure 6, left: error against the amount of data",
+        remark: "Of the 40 trajectories of Table 1's parabola (40 samples each) the first 10 to 100 percent are used. \
+                 Regression as in Table 1; test samples from the trajectories that are kept of those used.",
+        contests_remark: Some(
+            "Learnt from `map-20` means: from 20 % of the trajectories. PolicyAlign has the narrow bandwidth.",
+        ),
+        contests: TRAJECTORIES_PERCENT.map(|percent| contest(BESIDE_LEFT, "narrow", percent)).into(),
+        setups: BANDWIDTHS.map(setup).into_iter().chain([beside]).collect(),
+        ..curves()
+    }
+}
+
+/// The right panel: errors against noise, by two rules of integration.
+pub(crate) fn figure6_right() -> Experiment {
+    let setup = |(rule, integration): (&str, Integration), (name, bandwidth): (&str, Bandwidth)| {
+        let algorithm = PolicyAlign { integration, bandwidth, ..PolicyAlign::default() };
+        setup(&format!("{rule}-{name}"), &NOISE_PERCENT, algorithm, Against::Noise)
+    };
+    let setups = RULES.into_iter().flat_map(|rule| BANDWIDTHS.map(|bandwidth| setup(rule, bandwidth)));
+    let contests = |((rule, _), name): ((&str, Integration), &'static str)| {
+        NOISE_PERCENT.map(|percent| contest(name, &format!("{rule}-narrow"), percent))
+    };
+    let beside = |((_, integration), name): ((&str, Integration), &'static str)| {
+        let front_end = match integration {
+            Integration::Displacement => FrontEnd::Smoothed(Smoother::default()),
+            _ => FrontEnd::Fused(Fusion::default()),
+        };
+        setup_beside(name, &NOISE_PERCENT, integration, Against::Noise, front_end)
+    };
+    Experiment {
+        id: "figure6_right",
+        title: "Figure 6, right: error against noise",
+        remark: "Gaussian noise, in percent of each dimension's standard deviation, on the recorded positions of Table 1's parabola; \
+                 recorded velocities are clean. Potentials are integrated from velocities, or from displacements (9). \
+                 Regression as in Table 1; errors are against the truth at the true states.",
+        contests: RULES.into_iter().zip(BESIDE_RIGHT).flat_map(contests).collect(),
+        contests_remark: Some(
+            "Learnt from `fused-5` or `smoothed-5` means: with 5 % noise on positions. Not all learn from the same here: naive learner and radial basis take the recorded velocities, which are clean, in all rows. \
+             In the rows `fused-…` PolicyAlign takes them too, and the Gaussian processes positions and velocities together; in the rows \
+             `smoothed-…` PolicyAlign and the Gaussian processes have noisy positions alone, of which the latter are smoothed.",
+        ),
+        setups: setups.chain(RULES.into_iter().zip(BESIDE_RIGHT).map(beside)).collect(),
+        ..curves()
+    }
+}
+
+/// Cases of the learners beside PolicyAlign.
+pub const BESIDE_LEFT: &str = "map";
+/// In the order of [`RULES`].
+pub const BESIDE_RIGHT: [&str; 2] = ["fused", "smoothed"];
+
+/// Rows that the Gaussian processes learn from.
+const ROWS: usize = 500;
+
+/// A line of the table: of the learners beside, and of PolicyAlign by another name.
+fn contest(case: &str, policy_align: &str, percent: f64) -> Contest {
+    let contestants = toy_beside(FrontEnd::Map, ROWS).contestants();
+    let row = format!("{policy_align}-{percent}");
+    Contest::of(&format!("{case}-{percent}"), Measure::Nupe, &contestants).with(
+        Contestant::PolicyAlign,
+        &row,
+        Measure::Nupe,
+    )
+}
+
+fn setup_beside(case: &str, percent: &[f64], integration: Integration, against: Against, front_end: FrontEnd) -> Setup {
+    let beside = toy_beside(front_end, ROWS);
+    let rows = percent.iter().flat_map(|percent| beside.rows(&format!("{case}-{percent}"))).collect();
+    let cost = beside.cost() * percent.len() as u64;
+    let trial = CurveTrial {
+        system: ToySystem::default(),
+        protocol: Protocol {
+            algorithm: PolicyAlign { integration, ..PolicyAlign::default() },
+            pupils: vec![],
+            held_out: beside.held_out,
+        },
+        beside: Some(beside),
+        against,
+        percent: percent.to_vec(),
+    };
+    Setup {
+        id: case.to_owned(),
+        rows,
+        system: PARABOLA_SYSTEM,
+        data_sets: Some(DATA_SETS),
+        cost,
+        trial: Box::new(trial),
+    }
+}
+
+/// What both panels share.
+fn curves() -> Experiment {
+    let (paper, explanations) = Default::default();
+    Experiment {
+        id: "",
+        section: "4.1",
+        title: "",
+        data_sets: 20,
+        remark: "",
+        reservations: &[],
+        decisions: "figure6.md",
+        contests_remark: None,
+        another_reading_of: None,
+        contests: vec![],
+        setups: vec![],
+        paper,
+        explanations,
+    }
+}
+
+fn setup(id: &str, percent: &[f64], algorithm: PolicyAlign, against: Against) -> Setup {
+    let row = |percent: &f64| Row::of_learner(&format!("{id}-{percent}"));
+    let trial = CurveTrial {
+        system: ToySystem::default(),
+        protocol: toy_protocol(algorithm),
+        beside: None,
+        against,
+        percent: percent.to_vec(),
+    };
+    let cost = percent.iter().map(|&percent| learning_cost(trial.trajectories(percent), trial.system.n_samples)).sum();
+    let rows = percent.iter().map(row).collect();
+    Setup { id: id.to_owned(), rows, system: PARABOLA_SYSTEM, data_sets: None, cost, trial: Box::new(trial) }
+}
+
+/// What changes along a curve.
+#[derive(Debug, Clone, Copy, Serialize)]
+enum Against {
+    Trajectories,
+    Noise,
+}
+
+/// One curve: all its points come from the same data set.
+#[derive(Serialize)]
+struct CurveTrial {
+    system: ToySystem,
+    protocol: Protocol,
+    /// Who learns instead of the pupils, if anybody does.
+    beside: Option<Beside>,
+    against: Against,
+    percent: Vec<f64>,
+}
+
+impl CurveTrial {
+    /// The data of one point of the curve.
+    fn at(&self, percent: f64, recordings: &[Recording], noise: &ChaCha8Rng) -> anyhow::Result<Vec<Recording>> {
+        match self.against {
+            Against::Trajectories => Ok(recordings[..self.trajectories(percent)].to_vec()),
+            Against::Noise => Ok(with_position_noise(recordings, percent / 100.0, &mut noise.clone())?),
+        }
+    }
+
+    /// What is measured at one point.
+    fn point(&self, seen: &[Recording], rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
+        match &self.beside {
+            Some(beside) => beside.sit(seen, std::slice::from_ref(&self.protocol.algorithm), rng)?.rows(),
+            None => self.protocol.examine(seen, rng)?.rows(),
+        }
+    }
+
+    fn trajectories(&self, percent: f64) -> usize {
+        match self.against {
+            Against::Trajectories => (self.system.n_trajectories as f64 * percent / 100.0).round() as usize,
+            Against::Noise => self.system.n_trajectories,
+        }
+    }
+}
+
+impl Trial for CurveTrial {
+    /// Every point starts from the same random numbers, so that a curve shows what it is against and nothing else, and
+    /// where nothing is changed it shows Table 1's own figures.
+    fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
+        let recordings = self.system.record(rng)?;
+        let learning = rng.clone();
+        let noise = ChaCha8Rng::from_rng(rng);
+        let mut rows = Vec::new();
+        for &percent in &self.percent {
+            let seen = self.at(percent, &recordings, &noise)?;
+            let of_point = self.point(&seen, &mut learning.clone());
+            rows.extend(of_point.with_context(|| format!("{:?}, {percent} %", self.against))?);
+        }
+        Ok(rows)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::seed::generator;
+    use crate::tables::table1::table1;
+
+    fn run(experiment: &Experiment, id: &str) -> Measures {
+        let setup = experiment.setups.iter().find(|setup| setup.id == id).unwrap();
+        let measures = setup.trial.run(&mut generator(1, setup.system, 3)).unwrap();
+        assert_eq!(measures.len(), setup.rows.len());
+        measures
+    }
+
+    #[test]
+    fn where_nothing_is_changed_the_curves_show_table_1() {
+        let mut table = run(&table1().unwrap(), "parabola-40x40-medium").remove(0);
+        // Only the table has movements that nobody learns from.
+        assert!(table.remove(&Measure::NupeFresh).is_some());
+        let [left, right] = [run(&figure6_left(), "medium"), run(&figure6_right(), "displacement-medium")];
+        assert_eq!(left.last(), Some(&table));
+        assert_eq!(right.first(), Some(&table));
+        assert!(left[..5].iter().chain(&right[1..]).all(|row| *row != table));
+    }
+}

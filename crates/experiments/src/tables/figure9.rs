@@ -1,0 +1,210 @@
+//! Fig. 9 (d), (e) (Section 4.4): how the errors on the three-link arm grow along and away from the line where its
+//! movements end.
+
+use std::collections::BTreeMap;
+
+use align::PolicyAlign;
+use demo_gen::ThreeLinkArm;
+use motion::LearntPolicy;
+use nalgebra::{DVectorView, Vector3};
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+
+use crate::evaluation::beside::{Beside, DATA_SETS};
+use crate::evaluation::exam::{Exam, Protocol, errors as errors_of};
+use crate::evaluation::recipe::Recipe;
+use crate::measure::{Measure, RowOf};
+use crate::tables::three_link::{ARM_SYSTEM, arm, beside, protocol};
+use crate::{Experiment, Measures, Row, Setup, Trial};
+
+/// Bounds on the distance, in tenths of a radian.
+pub const TENTHS: std::ops::RangeInclusive<u32> = 1..=10;
+
+/// Fewer test samples than this give no value: the variance that errors are divided by would be chance.
+const FEWEST_SAMPLES: usize = 10;
+
+/// What its rows test on.
+const TESTED_ON: &str = "held-out samples of the movements that alignment keeps, of these the ones in the distance";
+
+/// The experiment.
+pub(crate) fn figure9() -> anyhow::Result<Experiment> {
+    let rows = cases().into_iter().map(|id| Row { id, of: RowOf::Learner, tested_on: TESTED_ON }).collect();
+    let trial = DistanceTrial { arm: arm()?, protocol: protocol(&Recipe::default()) };
+    let (beside, cases) = (beside(ROWS), cases());
+    let rows_beside = cases.iter().flat_map(|case| beside.rows(case)).map(|row| Row { tested_on: TESTED_ON, ..row });
+    let rows_beside = rows_beside.collect();
+    let contests = cases.iter().map(|case| beside.contest(case, Measure::Nupe)).collect();
+    let (paper, explanations) = Default::default();
+    Ok(Experiment {
+        id: "figure9",
+        section: "4.4",
+        title: "Figure 9: error along and around the line where movements end",
+        data_sets: 50,
+        remark: "Data sets, learner and test samples of the three-link arm; of the samples only those nearer than c radians to the posture \
+                 along the line (rows d-c), or nearer than c to the line (rows r-c). The variances in (A1)–(A3) are of \
+                 these samples too. A data set with fewer than 10 of them has no value there.",
+        reservations: &[],
+        decisions: "figure9.md",
+        contests_remark: None,
+        another_reading_of: None,
+        contests,
+        setups: vec![
+            Setup {
+                id: "distances".to_owned(),
+                rows,
+                system: ARM_SYSTEM,
+                data_sets: None,
+                cost: 1_500_000,
+                trial: Box::new(trial),
+            },
+            Setup {
+                id: "beside".to_owned(),
+                rows: rows_beside,
+                system: ARM_SYSTEM,
+                data_sets: Some(DATA_SETS),
+                cost: beside.cost(),
+                trial: Box::new(DistancesBeside { arm: arm()?, algorithm: PolicyAlign::default(), beside }),
+            },
+        ],
+        paper,
+        explanations,
+    })
+}
+
+/// Rows that the Gaussian processes learn from: the arm's table, with all of them, shows the same errors.
+const ROWS: usize = 500;
+
+/// What is tested on, in the order of the rows.
+fn cases() -> Vec<String> {
+    Distance::BOTH.into_iter().flat_map(|distance| TENTHS.map(move |tenths| distance.row(tenths))).collect()
+}
+
+/// How far a posture is from the one that the policy aims at, in two parts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Distance {
+    /// d = |q·l|.
+    Along,
+    /// r = ‖q − (q·l) l‖.
+    Around,
+}
+
+impl Distance {
+    /// In the order of the rows.
+    pub const BOTH: [Distance; 2] = [Distance::Along, Distance::Around];
+
+    /// Its letter in the paper.
+    pub(crate) fn letter(self) -> &'static str {
+        match self {
+            Distance::Along => "d",
+            Distance::Around => "r",
+        }
+    }
+
+    /// The row of the samples nearer than so many tenths.
+    pub fn row(self, tenths: u32) -> String {
+        format!("{}-{}.{}", self.letter(), tenths / 10, tenths % 10)
+    }
+
+    /// Of a posture, in radians.
+    pub(crate) fn of(self, posture: DVectorView<'_, f64>) -> f64 {
+        let along = posture.fixed_rows::<3>(0).dot(&line());
+        match self {
+            Distance::Along => along.abs(),
+            Distance::Around => (posture.fixed_rows::<3>(0) - along * line()).norm(),
+        }
+    }
+}
+
+/// The direction l of the line through 0 where movements end: at the stretched posture the hand is 3, 2 and 1 links away
+/// from the joints, so that every constraint that holds there at all holds q₁, q₂, q₃ back along (3, 2, 1).
+pub fn line() -> Vector3<f64> {
+    Vector3::new(3.0, 2.0, 1.0).normalize()
+}
+
+#[derive(Serialize)]
+struct DistanceTrial {
+    arm: ThreeLinkArm,
+    protocol: Protocol,
+}
+
+impl Trial for DistanceTrial {
+    fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
+        let recordings = self.arm.record(rng)?;
+        let exam = self.protocol.examine(&recordings, rng)?;
+        let mut rows = Vec::new();
+        for learnt in exam.learnt() {
+            for distance in Distance::BOTH {
+                for tenths in TENTHS {
+                    rows.push(errors(&exam, learnt, distance, f64::from(tenths) / 10.0)?);
+                }
+            }
+        }
+        Ok(rows)
+    }
+}
+
+/// The same of the learners beside PolicyAlign.
+#[derive(Serialize)]
+struct DistancesBeside {
+    arm: ThreeLinkArm,
+    algorithm: PolicyAlign,
+    beside: Beside,
+}
+
+impl Trial for DistancesBeside {
+    fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
+        let recordings = self.arm.record(rng)?;
+        let sat = self.beside.sit(&recordings, std::slice::from_ref(&self.algorithm), rng)?;
+        let mut rows = Vec::new();
+        for distance in Distance::BOTH {
+            for tenths in TENTHS {
+                let judge = sat.judges(0)[0].among(|state| distance.of(state) < f64::from(tenths) / 10.0);
+                let row = |learnt| {
+                    if judge.n_samples() < FEWEST_SAMPLES { Ok(BTreeMap::new()) } else { errors_of(&judge, learnt) }
+                };
+                rows.extend(sat.learnt().into_iter().map(row).collect::<anyhow::Result<Vec<_>>>()?);
+            }
+        }
+        Ok(rows)
+    }
+}
+
+/// Errors of what was learnt at the test samples within a distance; none where there are too few.
+fn errors(
+    exam: &Exam<'_>,
+    learnt: &dyn LearntPolicy,
+    distance: Distance,
+    bound: f64,
+) -> anyhow::Result<BTreeMap<Measure, f64>> {
+    let judge = exam.judge().among(|state| distance.of(state) < bound);
+    if judge.n_samples() < FEWEST_SAMPLES { Ok(BTreeMap::new()) } else { exam.errors(&judge, learnt) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::dvector;
+
+    #[test]
+    fn distances_are_the_two_parts_of_a_posture() {
+        let posture = dvector![0.7, -0.2, 0.4];
+        let [along, around] = Distance::BOTH.map(|distance| distance.of(posture.as_view()));
+        assert!((along.hypot(around) - posture.norm()).abs() < 1e-15);
+        assert!((along - 2.1 / 14.0_f64.sqrt()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn movements_end_on_the_line_and_not_at_its_middle() {
+        let arm = ThreeLinkArm { n_trajectories: 40, ..arm().unwrap() };
+        let recordings = arm.record(&mut crate::seed::generator(1, ARM_SYSTEM, 0)).unwrap();
+        let median = |distance: Distance, sample: usize| {
+            let of = |recording: &demo_gen::Recording| distance.of(recording.truth.states.column(sample));
+            let mut distances: Vec<f64> = recordings.iter().map(of).collect();
+            distances.sort_by(f64::total_cmp);
+            distances[20]
+        };
+        let [start, end] = [0, 99].map(|sample| Distance::BOTH.map(|distance| median(distance, sample)));
+        assert!(start.iter().all(|&distance| distance > 0.4), "{start:?}");
+        assert!(end[0] > 0.3 && end[1] < 0.05, "{end:?}");
+    }
+}

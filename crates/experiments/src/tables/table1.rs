@@ -1,0 +1,265 @@
+//! Table 1 (Section 4.1): the toy system, three set-ups by three bandwidths.
+
+use align::{Bandwidth, DirectPolicyLearning, LwprRegressor, PolicyAlign};
+use demo_gen::{Redraw, ToyPotential, ToySystem};
+use gp::FrontEnd;
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+
+use crate::evaluation::beside::{Beside, BesideTrial, DATA_SETS};
+use crate::evaluation::constraint_consistent::ConstraintConsistent;
+use crate::evaluation::contest::Contest;
+use crate::evaluation::exam::Protocol;
+use crate::evaluation::fresh::{add_errors, fresh};
+use crate::evaluation::gaussians::Gaussians;
+use crate::evaluation::recipe::{HELD_OUT, Recipe};
+use crate::measure::Measure;
+use crate::paper::{explanations, paper_table};
+use crate::setting::{Class, SILENT, Setting};
+use crate::{Experiment, Measures, Row, Setup, Trial};
+
+/// The systems of the table, by their random streams; those of the literal reading follow from 100. The parabola.
+pub const PARABOLA_SYSTEM: u32 = 0;
+/// The sinusoid.
+pub const SINUSOIDAL_SYSTEM: u32 = 1;
+const LONG_SINUSOIDAL_SYSTEM: u32 = 2;
+const LITERAL: u32 = 100;
+
+/// The table with constraints that are drawn anew every 20 samples.
+pub(crate) fn table1() -> anyhow::Result<Experiment> {
+    Ok(Experiment {
+        id: "table1",
+        section: "4.1",
+        title: "Table 1: the toy system",
+        data_sets: 100,
+        remark: "The constraint is drawn anew every 20 samples, two draws at 40 samples and five at 100, which makes the printed errors \
+                 of the wide bandwidth come out. LWPR has the defaults of its library in all rows and learns the potentials as they are (23); it sees the samples as often as there are inputs, twice, fields count from an activation of 0.001, \
+                 and a fifth of them is held out.",
+        reservations: &RESERVATIONS,
+        decisions: "table1.md",
+        contests_remark: Some(BANDWIDTH_IS_OF_POLICY_ALIGN),
+        another_reading_of: None,
+        contests: contests(),
+        setups: setups(Redraw::Every(REDRAW), 0, max_rows),
+        paper: paper_table(include_str!("../../paper/table1.toml"))?,
+        explanations: explanations("table1", include_str!("../../paper/table1-explained.toml"))?,
+    })
+}
+
+/// The table with the constraint "re-sampled twice" taken literally: three equal segments.
+pub(crate) fn table1_literal() -> anyhow::Result<Experiment> {
+    Ok(Experiment {
+        id: "table1-literal",
+        section: "4.1",
+        title: "Table 1, taken literally",
+        data_sets: 100,
+        remark: "As Table 1, but the constraint is \"re-sampled twice\" during each movement to the letter: three segments of equal length.",
+        reservations: &[],
+        decisions: "table1.md",
+        contests_remark: Some(BANDWIDTH_IS_OF_POLICY_ALIGN),
+        another_reading_of: Some("table1"),
+        contests: contests(),
+        setups: setups(Redraw::Segments(3), LITERAL, |_| LITERAL_ROWS),
+        paper: paper_table(include_str!("../../paper/table1.toml"))?,
+        explanations: explanations("table1-literal", include_str!("../../paper/table1-literal-explained.toml"))?,
+    })
+}
+
+/// Samples after which the constraint is drawn anew.
+const REDRAW: usize = 20;
+
+const RESERVATIONS: [&str; 1] = [
+    "Section 4.1 calls the error of alignment \"only marginally different\" from the potential's. Here they differ by up to a factor of two.",
+];
+
+/// What is the same in three rows, and why.
+const BANDWIDTH_IS_OF_POLICY_ALIGN: &str = "The bandwidth (narrow, medium, wide) is PolicyAlign's: it discards movements by it. The others \
+                                            learn from all movements, the same in all three rows; nUPE is on the movements that PolicyAlign keeps.";
+
+/// Rows that the Gaussian processes learn from: all that they take by themselves of the longer movements, where fewer cost
+/// two digits.
+fn max_rows(size: usize) -> usize {
+    if size < 100 { 1000 } else { 1500 }
+}
+
+/// Rows that the Gaussian processes learn from in the literal reading, which shows them nothing new.
+const LITERAL_ROWS: usize = 500;
+
+/// Names in rows.
+const BANDWIDTHS: [(&str, Bandwidth); 3] =
+    [("narrow", Bandwidth::Narrow), ("medium", Bandwidth::Medium), ("wide", Bandwidth::Wide)];
+
+/// The three systems: number, name, trajectories and samples, potential.
+fn systems() -> [(u32, &'static str, usize, ToyPotential); 3] {
+    [
+        (PARABOLA_SYSTEM, "parabola", 40, ToyPotential::parabola()),
+        (SINUSOIDAL_SYSTEM, "sinusoidal", 40, ToyPotential::sinusoidal()),
+        (LONG_SINUSOIDAL_SYSTEM, "sinusoidal", 100, ToyPotential::sinusoidal()),
+    ]
+}
+
+/// What a table is made of, all rows alike.
+struct Toy {
+    redraw: Redraw,
+    /// Its random streams follow from this one.
+    first_system: u32,
+    start_range: f64,
+    time_step: f64,
+    /// Movements of a row, where not as many as its samples.
+    movements: Option<usize>,
+    recipe: Recipe,
+}
+
+impl Toy {
+    fn new(redraw: Redraw, first_system: u32) -> Toy {
+        let ToySystem { start_range, time_step, .. } = ToySystem::default();
+        Toy { redraw, first_system, start_range, time_step, movements: None, recipe: Recipe::default() }
+    }
+
+    /// A system of so many samples and, if nothing else is asked for, as many movements.
+    fn system(&self, size: usize, potential: ToyPotential) -> ToySystem {
+        let Toy { redraw, start_range, time_step, .. } = *self;
+        let n_trajectories = self.movements.unwrap_or(size);
+        ToySystem { potential, n_trajectories, n_samples: size, redraw, start_range, time_step }
+    }
+
+    /// The printed rows.
+    fn printed(&self) -> Vec<Setup> {
+        let mut setups = Vec::new();
+        for (number, name, size, potential) in systems() {
+            let system = self.system(size, potential);
+            for (bandwidth_name, bandwidth) in BANDWIDTHS {
+                let id = format!("{name}-{size}x{size}-{bandwidth_name}");
+                let row = Row::of_learner(&id);
+                let algorithm = PolicyAlign { bandwidth, ..PolicyAlign::default() };
+                let protocol = self.recipe.protocol(algorithm, 2, 1.0);
+                let (cost, system_number) = (learning_cost(size, size), self.first_system + number);
+                let trial = Box::new(ToyTrial { system: system.clone(), protocol });
+                setups.push(Setup { id, rows: vec![row], system: system_number, data_sets: None, cost, trial });
+            }
+        }
+        setups
+    }
+}
+
+/// The table as it is printed, changed.
+fn changed(change: impl Fn(&mut Toy)) -> Vec<Setup> {
+    let mut toy = Toy::new(Redraw::Every(REDRAW), 0);
+    change(&mut toy);
+    toy.printed()
+}
+
+/// Where the numbers of the table come from.
+pub(crate) fn settings() -> Vec<Setting> {
+    let setting = |name, class, paper, used, change: fn(&mut Toy, f64)| {
+        Setting::new("table1", name, class, paper, used, move |value| Ok(changed(|toy| change(toy, value))))
+    };
+    let library = |name, used, change| setting(name, Class::LibraryDefault, SILENT, used, change);
+    let mut settings = vec![
+        setting(
+            "samples to the next constraint",
+            Class::Fitted,
+            "\"re-sampled twice\"",
+            REDRAW as f64,
+            |toy, samples| {
+                toy.redraw = Redraw::Every(samples.round() as usize);
+            },
+        ),
+        setting("starts within ±", Class::Paper, "axes of Figure 5", 2.0, |toy, range| toy.start_range = range),
+        setting("δt of the toy system", Class::Paper, "(9) has no δt", 1.0, |toy, time_step| {
+            toy.time_step = time_step;
+        }),
+        setting("divisor of the potentials", Class::Paper, "(23) has none", 1.0, |toy, by| toy.recipe.divisor = by),
+        library("init_D", 25.0, |toy, init_d| toy.recipe.params.init_d = init_d),
+        library("w_gen", 0.1, |toy, w_gen| toy.recipe.params.w_gen = w_gen),
+        library("penalty", 1e-6, |toy, penalty| toy.recipe.params.penalty = penalty),
+        library("init_alpha", 50.0, |toy, alpha| toy.recipe.params.init_alpha = alpha),
+    ];
+    settings.extend(Recipe::default().settings("table1", |recipe| Ok(changed(|toy| toy.recipe = recipe.clone()))));
+    settings
+}
+
+/// What texts ask about besides.
+pub(crate) fn asked_about() -> Vec<Setting> {
+    let with = |movements: f64| Ok(changed(|toy| toy.movements = Some(movements.round() as usize)));
+    vec![Setting::new("table1", "movements", Class::Paper, "40 or 100", 40.0, with)]
+}
+
+fn setups(redraw: Redraw, first_system: u32, max_rows: fn(usize) -> usize) -> Vec<Setup> {
+    let toy = Toy::new(redraw, first_system);
+    let mut setups = toy.printed();
+    for (number, name, size, potential) in systems() {
+        let algorithms = BANDWIDTHS.map(|(_, bandwidth)| PolicyAlign { bandwidth, ..PolicyAlign::default() }).into();
+        let beside = toy_beside(FrontEnd::Map, max_rows(size));
+        setups.push(Setup {
+            id: format!("{name}-{size}x{size}-beside"),
+            rows: cases(name, size).iter().flat_map(|case| beside.rows(case)).collect(),
+            system: first_system + number,
+            data_sets: Some(DATA_SETS),
+            cost: beside.cost(),
+            trial: Box::new(BesideTrial { scene: toy.system(size, potential), algorithms, beside }),
+        });
+    }
+    setups
+}
+
+/// A system in each bandwidth.
+fn cases(name: &str, size: usize) -> [String; 3] {
+    BANDWIDTHS.map(|(bandwidth, _)| format!("{name}-{size}x{size}-{bandwidth}"))
+}
+
+/// The learners on each system, in each bandwidth.
+fn contests() -> Vec<Contest> {
+    let beside = toy_beside(FrontEnd::Map, 1);
+    let cases = systems().into_iter().flat_map(|(_, name, size, _)| cases(name, size));
+    let lines = |case: String| [Measure::Nupe, Measure::NupeFresh].map(|measure| beside.contest(&case, measure));
+    cases.flat_map(lines).collect()
+}
+
+/// Who learns the toy system beside PolicyAlign.
+pub fn toy_beside(front_end: FrontEnd, max_rows: usize) -> Beside {
+    Beside {
+        naive: Some(toy_naive()),
+        constraint_consistent: Some(ConstraintConsistent::default()),
+        gaussians: Gaussians::new(front_end, max_rows),
+        held_out: HELD_OUT,
+    }
+}
+
+/// One row of the table.
+#[derive(Serialize)]
+struct ToyTrial {
+    system: ToySystem,
+    protocol: Protocol,
+}
+
+/// How PolicyAlign learns the toy system.
+pub(crate) fn toy_protocol(algorithm: PolicyAlign) -> Protocol {
+    Recipe::default().protocol(algorithm, 2, 1.0)
+}
+
+/// The regression of all rows.
+pub fn toy_regressor() -> LwprRegressor {
+    Recipe::default().regressor(2, 1.0)
+}
+
+/// The naive learner of the toy system.
+pub fn toy_naive() -> DirectPolicyLearning {
+    Recipe::default().naive(2, 1.0)
+}
+
+/// Work of aligning and regression, in the unit of [`Setup::cost`].
+pub(crate) fn learning_cost(n_trajectories: usize, n_samples: usize) -> u64 {
+    // Measured: regression takes about as long as 100 distance evaluations a sample.
+    (n_trajectories * n_samples * (n_trajectories + 100)) as u64
+}
+
+impl Trial for ToyTrial {
+    fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
+        let recordings = self.system.record(rng)?;
+        let exam = self.protocol.examine(&recordings, rng)?;
+        let mut rows = exam.rows()?;
+        add_errors(&mut rows, exam.learnt(), &fresh(&self.system, rng)?)?;
+        Ok(rows)
+    }
+}

@@ -1,0 +1,134 @@
+//! Section 4.4: a planar arm under constraints that always hide the same direction.
+
+use align::PolicyAlign;
+use demo_gen::{ThreeLinkArm, n_leaving_limits};
+use gp::FrontEnd;
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+
+use crate::evaluation::beside::{Beside, BesideTrial, DATA_SETS};
+use crate::evaluation::contest::{Contest, Contestant};
+use crate::evaluation::exam::{Protocol, TESTED_ON};
+use crate::evaluation::gaussians::Gaussians;
+use crate::evaluation::pupil::Pupil;
+use crate::evaluation::recipe::{HELD_OUT, Recipe};
+use crate::measure::{Measure, RowOf};
+use crate::paper::{explanations, paper_table};
+use crate::setting::{Class, SILENT, Setting, TIME_STEP};
+use crate::{Experiment, Measures, Row, Setup, Trial};
+
+/// The system whose random stream is used.
+pub const ARM_SYSTEM: u32 = 440;
+
+/// What its rows of other learners are named after.
+const CASE: &str = "arm";
+
+/// The experiment.
+pub(crate) fn three_link() -> anyhow::Result<Experiment> {
+    let beside = beside(1500);
+    let contest =
+        |measure| {
+            Contest::of(CASE, measure, &beside.contestants())
+                .with(Contestant::PolicyAlign, "policy_align", measure)
+                .with(Contestant::Naive, "naive", measure)
+        };
+    Ok(Experiment {
+        id: "three_link",
+        section: "4.4",
+        title: "The three-link arm, pathological constraints",
+        data_sets: 50,
+        remark: "Unit links, starts uniform in [-1, 1]^3 (the axes of Figure 9), δt = 0.5 s, plain Euler, narrow bandwidth. Both learners have Table 1's \
+                 regression (3 passes). The printed errors of the naive baseline are compared with \
+                 its errors on held-out samples of all movements, since it discards none.",
+        reservations: &[],
+        decisions: "three-link.md",
+        contests_remark: None,
+        another_reading_of: None,
+        contests: [Measure::Nupe, Measure::Ncpe].map(contest).into(),
+        setups: vec![
+            printed(arm()?, &Recipe::default())?,
+            Setup {
+                id: "beside".to_owned(),
+                rows: beside.rows(CASE),
+                system: ARM_SYSTEM,
+                data_sets: Some(DATA_SETS),
+                cost: beside.cost(),
+                trial: Box::new(BesideTrial { scene: arm()?, algorithms: vec![PolicyAlign::default()], beside }),
+            },
+        ],
+        paper: paper_table(include_str!("../../paper/three_link.toml"))?,
+        explanations: explanations("three_link", include_str!("../../paper/three_link-explained.toml"))?,
+    })
+}
+
+/// Who learns beside PolicyAlign and the naive learner.
+pub(crate) fn beside(max_rows: usize) -> Beside {
+    Beside {
+        naive: None,
+        constraint_consistent: None,
+        gaussians: Gaussians::new(FrontEnd::Map, max_rows),
+        held_out: HELD_OUT,
+    }
+}
+
+/// The arm of Section 4.4.
+///
+/// # Errors
+/// If the robot's file is damaged.
+pub fn arm() -> anyhow::Result<ThreeLinkArm> {
+    Ok(ThreeLinkArm::new(include_str!("../../../../robots/planar_three_link.urdf"))?)
+}
+
+/// How PolicyAlign learns the arm.
+pub(crate) fn protocol(recipe: &Recipe) -> Protocol {
+    recipe.protocol(PolicyAlign::default(), 3, 1.0)
+}
+
+/// The printed rows.
+fn printed(arm: ThreeLinkArm, recipe: &Recipe) -> anyhow::Result<Setup> {
+    let rows = [("policy_align", RowOf::Learner), ("naive", RowOf::Baseline)];
+    let mut protocol = protocol(recipe);
+    // In the order of the rows.
+    protocol.pupils.push(Pupil::other(recipe.naive(3, 1.0))?);
+    Ok(Setup {
+        id: "three_link".to_owned(),
+        rows: rows.map(|(id, of)| Row { id: id.to_owned(), of, tested_on: TESTED_ON }).into(),
+        system: ARM_SYSTEM,
+        data_sets: None,
+        cost: 2_000_000,
+        trial: Box::new(ArmTrial { arm, protocol }),
+    })
+}
+
+/// Where its numbers come from.
+pub(crate) fn settings() -> Vec<Setting> {
+    let setting = |name, class, paper, used, change: fn(&mut ThreeLinkArm, f64)| {
+        Setting::new("three_link", name, class, paper, used, move |value| {
+            let mut arm = arm()?;
+            change(&mut arm, value);
+            Ok(vec![printed(arm, &Recipe::default())?])
+        })
+    };
+    let mut settings = vec![
+        setting("starts within ±, rad", Class::Paper, "axes of Figure 9", 1.0, |arm, range| arm.start_range = range),
+        setting(TIME_STEP, Class::Fitted, SILENT, 0.5, |arm, time_step| arm.roll_out.time_step = time_step),
+    ];
+    settings.extend(Recipe::default().settings("three_link", |recipe| Ok(vec![printed(arm()?, recipe)?])));
+    settings
+}
+
+#[derive(Serialize)]
+struct ArmTrial {
+    arm: ThreeLinkArm,
+    protocol: Protocol,
+}
+
+impl Trial for ArmTrial {
+    fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
+        let recordings = self.arm.record(rng)?;
+        let mut rows = self.protocol.examine(&recordings, rng)?.rows()?;
+        let leaving = n_leaving_limits(&self.arm.robot, &recordings)?;
+        rows[0].insert(Measure::BeyondLimits, 100.0 * leaving as f64 / recordings.len() as f64);
+        Ok(rows)
+    }
+}

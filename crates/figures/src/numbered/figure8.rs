@@ -1,0 +1,354 @@
+//! Reaching with nothing in the way: the expert, the learners, and PolicyAlign where the goal was shown from all sides.
+
+use metrics::Summary;
+use nalgebra::{Point3, Translation3, Vector3};
+use plot::{Axis, Camera, Curve, Curves, Dash, Filling, Frame, Item, Mark, Paint, Panel, Picture, Sign, Space, Stroke};
+
+use crate::Who;
+use crate::grasp_playback::all_around::AllAround;
+use crate::grasp_playback::{GraspPlayback, LEARNERS, Movement};
+use crate::scene::stage;
+use crate::who::TRUTH;
+use crate::{Csv, Drawing, Figure, Sources, rounded};
+
+pub(crate) fn figure() -> Figure {
+    Figure::new("figure8", Some("table2"), &["grasp_playback"], draw).with(&[ALL_AROUND_DOCUMENT])
+}
+
+/// From mark to mark on a curve, seconds.
+const EVERY: f64 = 5.0;
+
+/// Of a metre.
+const CENTIMETRES: f64 = 100.0;
+
+/// Who is drawn here alone.
+const ALL_AROUND: (&str, Who) = ("all_around", Who::PolicyAlignAllAround);
+
+fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+    let playback = played(sources)?;
+    let frame = frame(&playback);
+    let mut learners: Vec<(&str, Who)> = shown(&playback).filter(|(_, who)| *who != Who::Expert).collect();
+    learners.sort_by_key(|(_, who)| *who == Who::SlopeGp);
+    let views: Vec<Space> = learners.iter().map(|learner| view(*learner, &playback, &frame)).collect();
+    let distances =
+        shown(&playback).map(|learner| Distances::of(&playback, learner)).collect::<anyhow::Result<Vec<_>>>()?;
+    let curves = curves(&distances, playback.time_step);
+    let mut panels: Vec<&dyn Panel> = views.iter().map(|view| view as &dyn Panel).collect();
+    panels.push(&curves);
+    let rows: Vec<&[&dyn Panel]> = panels.chunks(COLUMNS).collect();
+    Ok(Drawing { picture: Picture::rows(&rows), tables: vec![ends(&playback), over_time(&distances)] })
+}
+
+/// Panels in a row; and the size of one, pixels: the curves are as wide as two.
+const COLUMNS: usize = 3;
+const SIZE: (f64, f64) = (400.0, 440.0);
+
+/// The movements of those who saw the goal from all sides.
+const ALL_AROUND_DOCUMENT: &str = "grasp_all_around";
+
+/// The movements of everybody; older figure data have none of those who saw the goal from all sides.
+fn played(sources: &Sources) -> anyhow::Result<GraspPlayback> {
+    let mut playback: GraspPlayback = sources.document("grasp_playback")?;
+    if sources.documents.contains_key(ALL_AROUND_DOCUMENT) {
+        playback.movements.extend(sources.document::<AllAround>(ALL_AROUND_DOCUMENT)?.movements(ALL_AROUND.0));
+    }
+    Ok(playback)
+}
+
+/// How far hands are from where they should take the ball when movements end, metres, on average.
+pub struct Ends {
+    /// Of the naive learner.
+    pub naive: f64,
+    /// Of PolicyAlign.
+    pub policy_align: f64,
+}
+
+/// Where the movements of Figure 8 end; none if its data are not there.
+pub fn ends_of_reaching(sources: &Sources) -> Option<Ends> {
+    let playback = played(sources).ok()?;
+    let end = |id| {
+        let learner = shown(&playback).find(|(other, _)| *other == id)?;
+        Some(Distances::of(&playback, learner).ok()?.at_end())
+    };
+    Some(Ends { naive: end("naive")?, policy_align: end("policy_align")? })
+}
+
+/// Those of the learners whose movements there are: older figure data have fewer.
+fn shown(playback: &GraspPlayback) -> impl Iterator<Item = (&'static str, Who)> {
+    LEARNERS.into_iter().chain([ALL_AROUND]).filter(|(id, _)| movements(playback, id).next().is_some())
+}
+
+fn movements<'p>(playback: &'p GraspPlayback, learner: &'p str) -> impl Iterator<Item = &'p Movement> {
+    playback.movements.iter().filter(move |movement| movement.constraint == "none" && movement.learner == learner)
+}
+
+/// Where the left palm is over time, or the right one.
+fn palm(movement: &Movement, hand: usize) -> impl Iterator<Item = Point3<f64>> {
+    movement.palms.iter().map(move |palms| Point3::from_slice(&palms[3 * hand..3 * hand + 3]))
+}
+
+/// How far a palm is from where it should take the ball, over time.
+fn distance(playback: &GraspPlayback, movement: &Movement, hand: usize) -> impl Iterator<Item = f64> {
+    let target = Point3::from_slice(&playback.scene.target[3 * hand..3 * hand + 3]);
+    palm(movement, hand).map(move |palm| (palm - target).norm())
+}
+
+/// All ways and the ball, to the next tenth of a metre.
+fn frame(playback: &GraspPlayback) -> Frame {
+    let ball = &playback.scene.ball;
+    let radius = Vector3::repeat(ball.diameter / 2.0);
+    let (mut lowest, mut highest) = (Point3::from(ball.centre) - radius, Point3::from(ball.centre) + radius);
+    for movement in shown(playback).flat_map(|(id, _)| movements(playback, id)) {
+        for palm in [0, 1].into_iter().flat_map(|hand| palm(movement, hand)) {
+            (lowest, highest) = (lowest.inf(&palm), highest.sup(&palm));
+        }
+    }
+    Frame {
+        lowest: lowest.map(|value| (value * 10.0).floor() / 10.0),
+        highest: highest.map(|value| (value * 10.0).ceil() / 10.0),
+        labels: ["x (m)", "y (m)", "z (m)"].map(str::to_owned),
+    }
+}
+
+/// A learner's ways over the expert's, from above.
+fn view((id, who): (&str, Who), playback: &GraspPlayback, frame: &Frame) -> Space {
+    let ball = &playback.scene.ball;
+    let (centre, radius) = (Point3::from(ball.centre), ball.diameter / 2.0);
+    let mut items = walls(playback, frame);
+    items.push(Item::Ball { centre, radius, paint: Paint { color: stage::BALL, opacity: 0.45 } });
+    let mut over = vec![];
+    for (id, color, width) in [("expert", TRUTH, 5.0), (id, who.color(), 1.8)] {
+        for movement in movements(playback, id) {
+            over.extend(stage::ways(&movement.palms, Stroke { color, width, dash: Dash::Solid }));
+            let points = [0, 1].iter().filter_map(|&hand| palm(movement, hand).last()).collect();
+            over.push(Item::Dots { points, color, radius: 3.6 });
+        }
+    }
+    let name = who.name();
+    let title = name[..1].to_uppercase() + &name[1..];
+    Space { title, camera: Camera::ABOVE, items, over, frame: Some(frame.clone()), extent: None, size: SIZE }
+}
+
+/// Of the places where plates stood.
+const PLATES: Paint = Paint { color: "#a8a8a8", opacity: 0.25 };
+
+/// Where hands were stopped in the demonstrations: beside a gap as wide as those of the shown ones on average.
+fn walls(playback: &GraspPlayback, frame: &Frame) -> Vec<Item> {
+    let edges = playback.movements.iter().filter(|m| m.constraint == "gap").flat_map(|m| m.plates.iter().flatten());
+    let edges: Vec<f64> = edges.flatten().map(|edge| edge.abs()).collect();
+    let edge = edges.iter().sum::<f64>() / edges.len() as f64;
+    let wall = &playback.scene.wall;
+    let block = |from: f64, to: f64| {
+        let low = Vector3::new(wall.x - wall.reach, from, frame.lowest.z);
+        let high = Vector3::new(wall.x + wall.reach, to, frame.highest.z);
+        Item::Block { pose: Translation3::from((low + high) / 2.0).into(), size: high - low, paint: PLATES }
+    };
+    let sides = [(frame.lowest.y, -edge), (edge, frame.highest.y)];
+    sides.into_iter().filter(|(from, to)| from < to).map(|(from, to)| block(from, to)).collect()
+}
+
+/// How far the hands of a learner are from where they should take the ball.
+struct Distances {
+    id: &'static str,
+    who: Who,
+    /// (time in seconds, mean, standard deviation) over all hands, metres.
+    over_time: Vec<(f64, f64, f64)>,
+}
+
+impl Distances {
+    fn of(playback: &GraspPlayback, (id, who): (&'static str, Who)) -> anyhow::Result<Self> {
+        let hands = movements(playback, id).flat_map(|movement| [(movement, 0), (movement, 1)]);
+        let hands: Vec<Vec<f64>> = hands.map(|(movement, hand)| distance(playback, movement, hand).collect()).collect();
+        let at = |sample: usize| {
+            let all: Vec<f64> = hands.iter().map(|hand| hand[sample]).collect();
+            let Summary { mean, sd, .. } = Summary::of(&all)?;
+            Ok((sample as f64 * playback.time_step, mean, sd.unwrap_or(0.0)))
+        };
+        let n_samples = hands.iter().map(Vec::len).min().unwrap_or(0);
+        Ok(Distances { id, who, over_time: (0..n_samples).map(at).collect::<anyhow::Result<_>>()? })
+    }
+
+    /// The mean at the end, metres.
+    fn at_end(&self) -> f64 {
+        self.over_time.last().map_or(f64::NAN, |last| last.1)
+    }
+
+    /// With a mark every few seconds and at the end.
+    fn curve(&self, time_step: f64) -> Curve {
+        let every = (EVERY / time_step).round().max(1.0) as usize;
+        let last = self.over_time.len().saturating_sub(1);
+        let marked = self.over_time.iter().enumerate().filter(|(at, _)| at.is_multiple_of(every) || *at == last);
+        let points = marked.map(|(_, &(time, mean, sd))| (time, CENTIMETRES * mean, CENTIMETRES * sd)).collect();
+        Curve { points, stroke: stroke(self.who), sign: sign(self.who), name: self.name() }
+    }
+
+    /// Who, and how far the hands are away at the end.
+    fn name(&self) -> String {
+        format!("{}: {:.1} cm", self.who.name(), CENTIMETRES * self.at_end())
+    }
+}
+
+fn curves(distances: &[Distances], time_step: f64) -> Curves {
+    let end = distances[0].over_time.last().map_or(0.0, |last| last.0);
+    Curves {
+        title: "Distance from the ball's sides (right: at the end)".to_owned(),
+        x_label: "Time (s)".to_owned(),
+        y_label: "Distance (cm)".to_owned(),
+        y_axis: Axis::Linear,
+        x: [0.0, 1.02 * end],
+        y: [0.0, 80.0],
+        x_step: 10.0,
+        lines: distances.iter().map(|distances| distances.curve(time_step)).collect(),
+        notes: vec![],
+        room: 300.0,
+        size: (2.0 * SIZE.0 + 10.0, SIZE.1),
+    }
+}
+
+/// The expert's line is broad, so that it is seen under one that covers it.
+fn stroke(who: Who) -> Stroke {
+    who.stroke(if who == Who::Expert { 4.0 } else { 1.8 })
+}
+
+fn sign(who: Who) -> Sign {
+    let mark = match who {
+        Who::Naive => Mark::Square,
+        Who::PolicyAlign => Mark::Up,
+        Who::PolicyAlignAllAround => Mark::Star,
+        Who::SlopeGp => Mark::Down,
+        _ => Mark::Circle,
+    };
+    Sign { mark, filling: Filling::Full }
+}
+
+/// Metres, rounded.
+fn micrometres(value: f64) -> f64 {
+    rounded(value, 6)
+}
+
+/// How far each hand is at the end, metres; hand 0 is the left one.
+fn ends(playback: &GraspPlayback) -> Csv {
+    let far = |learner: &str, start: usize, hand: usize| {
+        let movement = movements(playback, learner).find(|movement| movement.start == start);
+        movement.and_then(|movement| distance(playback, movement, hand).last()).map_or(f64::NAN, micrometres)
+    };
+    let row = |(start, hand): (usize, usize)| {
+        let learners = shown(playback).map(|(id, _)| far(id, start, hand));
+        [start as f64, hand as f64].into_iter().chain(learners).collect()
+    };
+    let header = ["start", "hand"].into_iter().chain(shown(playback).map(|(id, _)| id)).map(str::to_owned).collect();
+    let rows = (0..playback.starts).flat_map(|start| [(start, 0), (start, 1)]).map(row).collect();
+    Csv { name: "ends", header, rows }
+}
+
+/// The curves: time in seconds, then mean and standard deviation of each in metres.
+fn over_time(distances: &[Distances]) -> Csv {
+    let header = distances.iter().flat_map(|Distances { id, .. }| [format!("{id}_mean"), format!("{id}_sd")]);
+    let row = |sample: usize| {
+        let at = |distances: &Distances| distances.over_time[sample];
+        let values = distances.iter().flat_map(|distances| [at(distances).1, at(distances).2]).map(micrometres);
+        std::iter::once(at(&distances[0]).0).chain(values).collect()
+    };
+    let n_samples = distances.iter().map(|distances| distances.over_time.len()).min().unwrap_or(0);
+    let header = std::iter::once("time".to_owned()).chain(header).collect();
+    Csv { name: "distance", header, rows: (0..n_samples).map(row).collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Value, json};
+
+    use super::super::beside_paper;
+    use super::*;
+
+    /// One start; the right hand never moves, the left one goes along x, and ends this far behind its target.
+    fn playback(behind: [f64; 4]) -> GraspPlayback {
+        let palms = |x: f64| vec![x, 0.1, 0.6, 0.7, -0.1, 0.6];
+        let movement = |constraint: &str, learner: &str, end: f64, plates: Value| {
+            json!({ "constraint": constraint, "learner": learner, "start": 0, "plates": plates, "joints": [],
+                    "palms": [palms(0.0), palms(end / 2.0), palms(end)], "error_mm": 0.0 })
+        };
+        let mut movements: Vec<Value> = std::iter::zip(LEARNERS, behind)
+            .map(|((id, _), behind)| movement("none", id, 0.7 - behind, json!([])))
+            .collect();
+        movements.push(movement("gap", "expert", 0.7, json!([[0.1, null], [null, -0.2]])));
+        let value = json!({
+            "robot": { "links": [], "shapes": [], "hands": [0, 0], "joints": [] },
+            "scene": { "ball": { "centre": [0.7, 0.0, 0.6], "diameter": 0.2 }, "wall": { "x": 0.35, "reach": 0.09 },
+                       "table": { "top": 0.5, "near": 0.4, "far": 1.0, "half_width": 0.5 }, "target": palms(0.7) },
+            "time_step": 0.5, "constraints": [], "learners": [], "starts": 1, "movements": movements
+        });
+        serde_json::from_value(value).unwrap()
+    }
+
+    #[test]
+    fn distances_are_those_of_both_hands() {
+        let playback = playback([0.0, 0.1, -0.2, 0.3]);
+        let ends = ends(&playback);
+        assert_eq!(ends.header, ["start", "hand", "expert", "naive", "policy_align", "slope_gp"]);
+        let expected = [[0.0, 0.0, 0.0, 0.1, 0.2, 0.3], [0.0, 1.0, 0.0, 0.0, 0.0, 0.0]];
+        for (row, expected) in ends.rows.iter().zip(expected) {
+            assert!(row.iter().zip(expected).all(|(value, expected)| (value - expected).abs() < 1e-12), "{row:?}");
+        }
+        let distances = LEARNERS.map(|learner| Distances::of(&playback, learner).unwrap());
+        let (time, mean, sd) = distances[2].over_time[2];
+        assert!((time - 1.0).abs() + (mean - 0.1).abs() + (sd - 0.02_f64.sqrt()).abs() < 1e-12);
+        assert_eq!(distances[2].name(), "PolicyAlign: 10.0 cm");
+        assert_eq!(over_time(&distances).rows[2].len(), 9);
+    }
+
+    #[test]
+    fn ends_are_as_said_beside_the_paper_s_figure() {
+        let playback = played(&beside_paper::records()).unwrap();
+        let end = |learner| 100.0 * Distances::of(&playback, learner).unwrap().at_end();
+        let ends: Vec<f64> = shown(&playback).map(end).collect();
+        for (words, end) in
+            std::iter::zip(["ends {} cm from", "ends {} cm away. The learnt", "ends {} cm away, where"], &ends)
+        {
+            let words = words.replace("{}", &format!("{end:.1}"));
+            assert!(beside_paper::text("figure8").contains(&words), "{words}");
+        }
+        let mended = format!("from all around, they end {:.1} cm away", ends[4]);
+        assert!(beside_paper::text("figure8").contains(&mended), "{mended}");
+        let guide = include_str!("../../../../docs/which-learner.md");
+        let learnt = ends[2];
+        let (id, _) = shown(&playback).nth(2).unwrap();
+        let hands =
+            movements(&playback, id).flat_map(|movement| [0, 1].map(|hand| distance(&playback, movement, hand)));
+        let closest: Vec<f64> = hands.map(|distances| 100.0 * distances.fold(f64::INFINITY, f64::min)).collect();
+        let closest = Summary::of(&closest).unwrap().mean;
+        assert!(
+            guide.contains(&format!("miss the ball by {closest:.1} cm and end {learnt:.1} cm away")),
+            "{closest} {learnt}"
+        );
+        assert!(guide.contains(&mended), "{mended}");
+        assert!(beside_paper::text("figure8").contains(&format!("within {closest:.1} cm and ends {learnt:.1} cm")));
+    }
+
+    #[test]
+    fn the_frame_holds_all_ways_and_the_ball() {
+        let playback = playback([0.0, 0.1, -0.25, 0.0]);
+        let Frame { lowest, highest, .. } = frame(&playback);
+        assert!((lowest - Point3::new(0.0, -0.1, 0.5)).norm() < 1e-12, "{lowest}");
+        assert!((highest - Point3::new(1.0, 0.1, 0.7)).norm() < 1e-12, "{highest}");
+    }
+
+    #[test]
+    fn walls_stand_beside_the_mean_gap() {
+        let playback = playback([0.0; 4]);
+        let mut frame = frame(&playback);
+        (frame.lowest.y, frame.highest.y) = (-0.4, 0.5);
+        let across: Vec<_> = walls(&playback, &frame)
+            .into_iter()
+            .map(
+                |item| {
+                    if let Item::Block { pose, size, .. } = item { (pose.translation.y, size.y) } else { (0.0, 0.0) }
+                },
+            )
+            .collect();
+        let expected = [(-0.275, 0.25), (0.325, 0.35)];
+        assert!(across.iter().zip(expected).all(|(a, b)| (a.0 - b.0).abs() + (a.1 - b.1).abs() < 1e-12), "{across:?}");
+        frame.lowest.y = -0.1;
+        assert_eq!(walls(&playback, &frame).len(), 1);
+    }
+}

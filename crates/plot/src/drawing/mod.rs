@@ -1,0 +1,12 @@
+//! What all pictures are drawn with.
+
+pub(crate) mod canvas;
+pub(crate) mod dashes;
+pub(crate) mod raster;
+pub(crate) mod samples;
+pub(crate) mod sheet;
+pub(crate) mod smooth;
+pub(crate) mod style;
+pub(crate) mod style_sheet;
+pub(crate) mod theme;
+pub(crate) mod turned;

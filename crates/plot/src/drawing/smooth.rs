@@ -1,0 +1,71 @@
+//! Fields in colours without visible squares: dots between the places of their grid.
+
+use kuva::render::render::{Primitive, Scene};
+
+use crate::drawing::raster::Raster;
+use crate::drawing::style::height;
+use crate::{Field, Sketch};
+
+/// Dots from one place of the grid to the next.
+const DOTS: usize = 3;
+
+/// Takes a field's stand-in of two by two squares out of a scene and puts the place of pixels there; the pixels.
+pub(crate) fn instead_of_squares(field: &Field, colors: [f64; 2], number: usize, scene: &mut Scene) -> Option<Raster> {
+    let at = scene.elements.iter().position(|element| matches!(element, Primitive::RectBatch { .. }))?;
+    let Primitive::RectBatch { x, y, .. } = &scene.elements[at] else { return None };
+    let ([left, right], [top, _]) = (range(x), range(y));
+    // Two squares are as wide as the field; one unit is as long on either axis.
+    let width = DOTS * (field.x.len() - 1);
+    let side = 2.0 * (right - left) / width as f64;
+    let ends = [Primitive::GroupEnd, Primitive::GroupEnd];
+    scene.elements.splice(at..=at, [Sketch::backdrop(), Sketch::group(number)].into_iter().chain(ends));
+    Some(Raster { corner: (left, top), side, width, dots: dots(field, colors) })
+}
+
+/// The least and the largest.
+pub(crate) fn range<'a>(values: impl IntoIterator<Item = &'a f64>) -> [f64; 2] {
+    let wider = |[low, high]: [f64; 2], &value: &f64| [low.min(value), high.max(value)];
+    values.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], wider)
+}
+
+/// Colours of the dots, row by row from above; of values from the darkest to the lightest.
+fn dots(Field { x, y, values }: &Field, [low, high]: [f64; 2]) -> Vec<[u8; 4]> {
+    let [width, rows] = [x, y].map(|grid| DOTS * (grid.len() - 1));
+    let place = |dot: usize| {
+        let along = (dot as f64 + 0.5) / DOTS as f64;
+        (along as usize, along.fract())
+    };
+    let dot = |row: usize, column: usize| {
+        let ((i, up), (j, right)) = (place(row), place(column));
+        let level = |i: usize| values[i][j] * (1.0 - right) + values[i][j + 1] * right;
+        let value = level(i) * (1.0 - up) + level(i + 1) * up;
+        let [r, g, b] = height((value - low) / (high - low));
+        [r, g, b, 255]
+    };
+    (0..rows)
+        .rev()
+        .flat_map(|row| (0..width).map(move |column| (row, column)))
+        .map(|(row, column)| dot(row, column))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_go_evenly_from_the_lowest_place_to_the_highest() {
+        let grid: Vec<f64> = (0..5).map(f64::from).collect();
+        let values = grid.iter().map(|y| grid.iter().map(|_| *y).collect()).collect();
+        let field = Field { x: grid.clone(), y: grid, values };
+        let dots = dots(&field, [0.0, 4.0]);
+        assert_eq!(dots.len(), 12 * 12);
+        let column: Vec<_> = dots.iter().step_by(12).collect();
+        let light = |dot: &[u8; 4]| dot[..3].iter().map(|&part| i32::from(part)).sum::<i32>();
+        assert!(column.windows(2).all(|pair| light(pair[0]) > light(pair[1])), "{column:?}");
+        assert!(dots[..12].iter().all(|dot| dot == &dots[0]));
+        // On a scale that goes twice as far up the highest place has the colour of the middle.
+        let darker = super::dots(&field, [0.0, 8.0]);
+        assert!(light(&darker[0]) < light(&dots[0]) && darker[0][..3] == height(0.5 - 1.0 / 48.0));
+    }
+}

@@ -1,0 +1,144 @@
+//! Colours and widths of a drawing in a style sheet: what many elements share is written once, and what changes in the
+//! dark has its colours of the dark beside those of the light.
+
+use std::collections::HashMap;
+use std::fmt::Write as _;
+
+use crate::drawing::theme::{INK, dark, hex};
+
+/// Attributes that a style sheet may hold as they stand.
+const STYLES: [&str; 6] = ["fill", "stroke", "stroke-width", "opacity", "fill-opacity", "stroke-opacity"];
+
+/// From so many elements with the same style on, a class is shorter.
+const WORTH: usize = 8;
+
+/// Of pictures behind lines and words: light, so that black can be seen on them.
+pub(crate) const BACKDROP: &str = "class=\"backdrop\"";
+
+/// What of it is left in the dark, where those lines and words are light.
+const DIMMED: f64 = 0.5;
+
+/// The drawing with a class for every style that recurs or changes in the dark, and a style sheet at its beginning. In the
+/// light and on paper it looks the same; whoever cannot read style sheets of the dark shows it as in the light.
+pub(crate) fn with_style_sheet(svg: &str) -> String {
+    let mut count: HashMap<Style, usize> = HashMap::new();
+    for (_, element) in elements(svg) {
+        if let Some((_, style)) = without_style(element) {
+            *count.entry(style).or_default() += 1;
+        }
+    }
+    count.retain(|style, count| *count >= WORTH || in_the_dark(style).is_some());
+    let mut classes: HashMap<Style, usize> = HashMap::new();
+    let (mut light, mut in_dark) = (String::new(), format!("svg{{fill:{}}}", hex(INK)));
+    let (mut drawing, mut root_ends) = (String::with_capacity(svg.len()), 0);
+    for (words, element) in elements(svg) {
+        drawing.push_str(words);
+        match without_style(element).filter(|(_, style)| count.contains_key(style)) {
+            Some((plain, style)) => {
+                let next = classes.len();
+                let class = *classes.entry(style).or_insert_with_key(|style| {
+                    let _ = write!(light, ".s{next}{{{}}}", rules(style));
+                    if let Some(other) = in_the_dark(style) {
+                        let _ = write!(in_dark, ".s{next}{{{}}}", rules(&other));
+                    }
+                    next
+                });
+                let name_ends = plain.find([' ', '/', '>']).unwrap_or(plain.len());
+                let _ = write!(drawing, "{} class=\"s{class}\"{}", &plain[..name_ends], &plain[name_ends..]);
+            }
+            None => drawing.push_str(element),
+        }
+        if element.starts_with("<svg") && root_ends == 0 {
+            root_ends = drawing.len();
+        }
+    }
+    if svg.contains(BACKDROP) {
+        let _ = write!(in_dark, ".backdrop{{filter:brightness({DIMMED})}}");
+    }
+    if !light.is_empty() {
+        let sheet = format!("<style>{light}@media screen and (prefers-color-scheme:dark){{{in_dark}}}</style>");
+        drawing.insert_str(root_ends, &sheet);
+    }
+    drawing
+}
+
+/// Names of attributes and their values.
+type Style = Vec<(&'static str, String)>;
+
+fn rules(style: &Style) -> String {
+    let rule = |(name, value): &(&str, String)| [name, ":", value, ";"].concat();
+    style.iter().map(rule).collect()
+}
+
+/// What of a style is another in the dark, if anything.
+fn in_the_dark(style: &Style) -> Option<Style> {
+    let changed: Style = style.iter().filter_map(|(name, value)| Some((*name, dark(value)?))).collect();
+    (!changed.is_empty()).then_some(changed)
+}
+
+/// Every tag, after the words before it.
+fn elements(svg: &str) -> impl Iterator<Item = (&str, &str)> {
+    svg.split_inclusive('>').map(|part| part.split_at(part.find('<').unwrap_or(part.len())))
+}
+
+/// A tag without what a style sheet may say, and that; nothing for a tag that has a style or a class of its own, or
+/// nothing to say.
+fn without_style(tag: &str) -> Option<(String, Style)> {
+    let (mut plain, mut style) = (String::new(), Style::new());
+    let mut pieces = tag.split('"');
+    while let Some(before) = pieces.next() {
+        let Some(value) = pieces.next() else {
+            plain.push_str(before);
+            break;
+        };
+        let (rest, name) = before.strip_suffix('=')?.rsplit_once(' ')?;
+        if ["class", "style"].contains(&name) {
+            return None;
+        }
+        match STYLES.into_iter().find(|style| *style == name) {
+            Some(name) => {
+                plain.push_str(rest);
+                style.push((name, value.to_owned()));
+            }
+            None => {
+                let _ = write!(plain, "{before}\"{value}\"");
+            }
+        }
+    }
+    (!style.is_empty()).then_some((plain, style))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_recurs_is_said_once_and_the_rest_stays() {
+        let dots = "<circle cx=\"8\" r=\"2\" fill=\"#0072b2\" stroke=\"none\" />".repeat(9);
+        let rest = "<text fill=\"red\" x=\"1\">a > b</text><g class=\"k\" fill=\"#0072b2\" stroke=\"none\"></g>";
+        let svg = format!("<svg width=\"9\">{dots}{rest}</svg>");
+        let shared = with_style_sheet(&svg);
+        assert!(shared.starts_with("<svg width=\"9\"><style>.s0{fill:#0072b2;stroke:none;}@media"), "{shared}");
+        assert!(
+            shared.contains("<circle class=\"s0\" cx=\"8\" r=\"2\" />") && shared.ends_with(&format!("{rest}</svg>"))
+        );
+        assert!(shared.len() < svg.len());
+    }
+
+    #[test]
+    fn what_is_rare_or_no_drawing_is_left_alone() {
+        for text in ["", "words", "<svg><path d=\"M0 0\" fill=\"red\"/></svg>", "<svg a='b' fill=\"x\"", "<!-- \" -->"]
+        {
+            assert_eq!(with_style_sheet(text), text);
+        }
+    }
+
+    #[test]
+    fn paper_and_ink_have_colours_of_the_dark() {
+        let svg = "<svg><rect fill=\"white\"/><path fill=\"none\" stroke=\"#000000\"/><path stroke=\"#009e73\"/></svg>";
+        let sheet = "<style>.s0{fill:white;}.s1{fill:none;stroke:#000000;}@media screen and (prefers-color-scheme:dark){\
+                     svg{fill:#e4e7ea}.s0{fill:#1b1f23;}.s1{stroke:#e4e7ea;}}</style>";
+        let drawn = "<rect class=\"s0\"/><path class=\"s1\"/><path stroke=\"#009e73\"/></svg>";
+        assert_eq!(with_style_sheet(svg), format!("<svg>{sheet}{drawn}"));
+    }
+}

@@ -1,0 +1,5 @@
+//! Flags, and files of them.
+
+pub(crate) mod config;
+pub(crate) mod flags;
+pub(crate) mod rollout_flags;

@@ -1,0 +1,205 @@
+//! A policy in two of its dimensions: field, potential, demonstrations, and where it leads.
+
+use std::path::Path;
+
+use motion::{LearntPolicy as _, Policy as _};
+use nalgebra::{DMatrix, DVector};
+use plot::{Dash, Field, Layer, Plane, Stroke};
+use policy_align::{Model, ModelPolicy, StateChannel};
+use rayon::prelude::*;
+use text::plain;
+
+use crate::cli::failure::{Exit, Failure, shown};
+
+/// Places asked along each axis: for arrows, and for potential and support.
+const ARROWS: usize = 16;
+const FINE: usize = 49;
+/// Empty space around the data, as a share of its range.
+const MARGIN: f64 = 0.12;
+const SIZE: (f64, f64) = (640.0, 660.0);
+const UNKNOWN: &str = "#dcdcdc";
+pub(crate) const SHOWN: Stroke = Stroke { color: "#56a0d3", width: 1.3, dash: Dash::Solid };
+const FOLLOWED: Stroke = Stroke { color: "#d55e00", width: 2.4, dash: Dash::Solid };
+const ARROW: &str = "#6a6a6a";
+
+/// What is drawn.
+pub(crate) struct Picture<'a> {
+    /// Above it.
+    title: String,
+    model: &'a Model,
+    /// Channels across and up.
+    dims: [usize; 2],
+    /// Demonstrations, (n, N) each.
+    shown: Vec<DMatrix<f64>>,
+    /// Movements that the policy makes.
+    followed: Vec<DMatrix<f64>>,
+}
+
+impl<'a> Picture<'a> {
+    pub(crate) fn of(
+        title: String,
+        model: &'a Model,
+        dims: [usize; 2],
+        shown: Vec<DMatrix<f64>>,
+        followed: Vec<DMatrix<f64>>,
+    ) -> Self {
+        Picture { title, model, dims, shown, followed }
+    }
+
+    /// From and to, of a channel.
+    fn range(&self, axis: usize) -> [f64; 2] {
+        let channel = &self.model.state[self.dims[axis]];
+        let width = (channel.high - channel.low).max(f64::MIN_POSITIVE);
+        [channel.low - MARGIN * width, channel.high + MARGIN * width]
+    }
+
+    fn places(&self, axis: usize, count: usize) -> Vec<f64> {
+        let [from, to] = self.range(axis);
+        (0..count).map(|i| from + (to - from) * i as f64 / (count - 1) as f64).collect()
+    }
+
+    /// Whether demonstrations tell anything of a place: it is in their range, and the policy is supported there.
+    fn is_known(&self, policy: &ModelPolicy<'_>, place: [f64; 2]) -> bool {
+        let within = |(&dim, value): (&usize, f64)| {
+            let channel = &self.model.state[dim];
+            (channel.low..=channel.high).contains(&value)
+        };
+        self.dims.iter().zip(place).all(within) && policy.is_supported(self.state(place).as_view())
+    }
+
+    /// The state at a place; all other channels are at their median.
+    fn state(&self, place: [f64; 2]) -> DVector<f64> {
+        let mut state = DVector::from_iterator(self.model.state.len(), self.model.state.iter().map(|c| c.median));
+        for (dim, value) in self.dims.into_iter().zip(place) {
+            state[dim] = value;
+        }
+        state
+    }
+
+    pub(crate) fn plane(&self) -> Plane {
+        let (x, y) = (self.places(0, FINE), self.places(1, FINE));
+        let policy = self.model.policy();
+        // Row after row.
+        let known: Vec<Vec<bool>> =
+            y.par_iter().map(|&y| x.iter().map(|&x| self.is_known(&policy, [x, y])).collect()).collect();
+        let mut layers = Vec::new();
+        if let Some(potential) = policy.potential() {
+            let value = |x: f64, y: f64| potential.value(self.state([x, y]).as_view());
+            let values = y.par_iter().map(|&y| x.iter().map(|&x| value(x, y)).collect()).collect();
+            layers.push(Layer::Levels {
+                field: Field { x: x.clone(), y: y.clone(), values },
+                known: known.clone(),
+                label: "equal potential".to_owned(),
+            });
+        }
+        layers.extend(unknown(&x, &y, &known));
+        let named = |at: usize, name: &str| (at == 0).then(|| name.to_owned());
+        for (at, movement) in self.shown.iter().enumerate() {
+            layers.push(Layer::Path { points: self.points(movement), stroke: SHOWN, label: named(at, "demonstrated") });
+        }
+        layers.extend(self.arrows());
+        for (at, movement) in self.followed.iter().enumerate() {
+            let points = self.points(movement);
+            layers.push(Layer::Dots { points: points[..1].to_vec(), color: FOLLOWED.color, radius: 4.0 });
+            layers.push(Layer::Path { points, stroke: FOLLOWED, label: named(at, "rolled out") });
+        }
+        let [x_label, y_label] = self.dims.map(|dim| with_unit(&self.model.state[dim]));
+        let title = plain(&self.title).into_owned();
+        Plane { title, x_label, y_label, x: self.range(0), y: self.range(1), layers, size: SIZE }
+    }
+
+    fn points(&self, movement: &DMatrix<f64>) -> Vec<(f64, f64)> {
+        movement.column_iter().map(|state| (state[self.dims[0]], state[self.dims[1]])).collect()
+    }
+
+    /// The policy, where it is known.
+    fn arrows(&self) -> Option<Layer> {
+        let policy = self.model.policy();
+        let (xs, ys) = (self.places(0, ARROWS), self.places(1, ARROWS));
+        let places: Vec<[f64; 2]> = ys.iter().flat_map(|&y| xs.iter().map(move |&x| [x, y])).collect();
+        let arrow = |&place: &[f64; 2]| {
+            self.is_known(&policy, place).then(|| {
+                let action = policy.action(self.state(place).as_view());
+                (place[0], place[1], action[self.dims[0]], action[self.dims[1]])
+            })
+        };
+        let arrows: Vec<_> = places.par_iter().filter_map(arrow).collect();
+        let longest = arrows.iter().map(|(_, _, u, v)| u.hypot(*v)).fold(0.0, f64::max);
+        if longest == 0.0 {
+            return None;
+        }
+        let spacing = (xs[1] - xs[0]).min(ys[1] - ys[0]);
+        Some(Layer::Arrows {
+            arrows,
+            color: ARROW,
+            scale: 1.2 * spacing / longest,
+            width: 1.0,
+            label: Some("learnt policy".to_owned()),
+        })
+    }
+}
+
+/// A channel as an axis is labelled: XML does not allow every character.
+pub(crate) fn with_unit(channel: &StateChannel) -> String {
+    let label = format!("{} ({})", channel.name, channel.unit.as_deref().unwrap_or("no unit given"));
+    plain(&label).into_owned()
+}
+
+/// Grey rectangles over what nothing is known of, as few as rows of equal ends allow.
+fn unknown(x: &[f64], y: &[f64], known: &[Vec<bool>]) -> Vec<Layer> {
+    let half = [(x[1] - x[0]) / 2.0, (y[1] - y[0]) / 2.0];
+    let (left, right, low, high) = (x[0], x[x.len() - 1], y[0], y[y.len() - 1]);
+    // First and last column, and first and last row.
+    let mut areas: Vec<[usize; 4]> = Vec::new();
+    for (row, known) in known.iter().enumerate() {
+        let mut at = 0;
+        while at < known.len() {
+            let length = known[at..].iter().take_while(|known| !**known).count();
+            if length > 0 {
+                let ends = [at, at + length - 1];
+                match areas.iter_mut().find(|area| area[..2] == ends && area[3] + 1 == row) {
+                    Some(area) => area[3] = row,
+                    None => areas.push([ends[0], ends[1], row, row]),
+                }
+            }
+            at += length.max(1);
+        }
+    }
+    let region = |[first, last, lowest, highest]: [usize; 4]| {
+        let (from, to) = ((x[first] - half[0]).max(left), (x[last] + half[0]).min(right));
+        let (below, above) = ((y[lowest] - half[1]).max(low), (y[highest] + half[1]).min(high));
+        let corners = vec![(from, below), (to, below), (to, above), (from, above)];
+        Layer::Region { corners, color: UNKNOWN, opacity: 1.0 }
+    };
+    areas.into_iter().map(region).collect()
+}
+
+/// As SVG or PNG, by the extension.
+pub(crate) fn draw(path: &Path, picture: &Picture<'_>) -> Result<Vec<u8>, Failure> {
+    let plane = picture.plane();
+    let drawn = plot::Picture::rows(&[&[&plane]]);
+    match path.extension().and_then(|extension| extension.to_str()) {
+        Some("svg") => Ok(drawn.svg().into_bytes()),
+        Some("png") => drawn.png().map_err(|error| Failure::writing(path, error)),
+        _ => Err(Failure::new(Exit::Usage, "pictures end in .svg or .png", shown(path), "-o field.svg")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_unknown_is_covered_once() {
+        let grid: Vec<f64> = (0..4).map(f64::from).collect();
+        let known = [[false; 4], [false, true, true, false], [false, true, true, false], [false; 4]].map(Vec::from);
+        let area = |layer: &Layer| match layer {
+            Layer::Region { corners, .. } => (corners[1].0 - corners[0].0) * (corners[2].1 - corners[1].1),
+            other => panic!("{other:?}"),
+        };
+        let areas: Vec<f64> = unknown(&grid, &grid, &known).iter().map(area).collect();
+        // Below, at either side, and above a square of 2 by 2 in one of 3 by 3.
+        assert_eq!(areas, [1.5, 1.0, 1.0, 1.5]);
+        assert!(unknown(&grid, &grid, &vec![vec![true; 4]; 4]).is_empty());
+    }
+}

@@ -1,0 +1,133 @@
+use std::cmp::Reverse;
+use std::path::PathBuf;
+
+use clap::Args;
+use policy_align::{Finding, Prepared, Verdict, write_whole};
+use prepare::{directions, prepare};
+use serde_json::json;
+use text::quoted;
+
+use crate::cli::failure::{Exit, Failure};
+use crate::cli::lines::{Lines, counted, short};
+use crate::cli::options::config::Config;
+use crate::cli::options::flags::{PrepareFlags, ReadFlags};
+use crate::cli::pages::check_page::check_page;
+use crate::cli::recorded::{named, read, unsaid};
+use crate::cli::session::{Said, Session};
+
+/// Examine recordings before learning
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Finds state, velocity and time columns, and looks for what spoils a policy:
+noise, jumps, missing numbers, mixed units, directions without movement.
+Exit code 1 if nothing can be learnt from the recordings.
+
+Examples:\n  policy-align check toy.csv\n  policy-align check toy.csv --html toy.check.html")]
+pub(crate) struct Check {
+    /// Recordings: CSV, NPZ, JSON lines, LeRobot, HDF5, MCAP, MAT
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// Write a page with all findings and a plot
+    #[arg(long, value_name = "FILE.html")]
+    html: Option<PathBuf>,
+    #[command(flatten)]
+    read: ReadFlags,
+    #[command(flatten)]
+    prepare: PrepareFlags,
+}
+
+impl Check {
+    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+        let config = Config::of(session)?;
+        let flags = config.under("read", &self.read)?;
+        let options = config.under("prepare", &self.prepare)?.options(flags.dt)?;
+        let recordings = read(session, &self.files, &flags)?;
+        let prepared = prepare(&recordings, &options).map_err(|error| Failure::prepare(&error, named(&self.files)))?;
+        let refused = prepared.findings.iter().any(|finding| finding.verdict == Verdict::DoNotUse);
+        let exit = if refused { Exit::Refused } else { Exit::Done };
+        let (coverage, direction) = directions(&prepared.demonstrations);
+        if let Some(path) = &self.html {
+            let page = check_page(&prepared, &named(&self.files), (coverage, &direction));
+            write_whole(path, page.as_bytes()).map_err(|error| Failure::writing(path, error))?;
+        }
+        if session.json {
+            let document = json!({
+                "episodes": prepared.episodes, "left_out": prepared.left_out, "state": prepared.state,
+                "samples": prepared.demonstrations.n_samples(), "time_step": prepared.time_step,
+                "noise": prepared.noise, "direction_coverage": coverage,
+                "least_seen": direction.as_slice(), "decisions": prepared.decisions, "findings": prepared.findings,
+            });
+            return Ok(Said::json(&document, exit));
+        }
+        let mut lines = Lines::default();
+        about(&prepared, &named(&self.files), &mut lines);
+        let seen = if coverage < 0.1 { "one direction hardly occurs" } else { "every direction occurs" };
+        lines.add("directions", &format!("coverage {} of 1: {seen}", short(coverage)));
+        findings(&unsaid(&prepared.findings, &recordings), 10_usize.saturating_sub(lines.count()), &mut lines);
+        if let Some(path) = &self.html {
+            lines.add("written", &path.display().to_string());
+        }
+        if refused {
+            return Ok(Said { text: lines.into_text(), exit });
+        }
+        let given = self.files.iter().map(|file| quoted(file)).collect::<Vec<_>>().join(" ");
+        Ok(Said { text: lines.next(&format!("policy-align fit {given} -o model.json")), exit })
+    }
+}
+
+/// What was recorded.
+pub(crate) fn about(prepared: &Prepared, files: &str, lines: &mut Lines) {
+    let demonstrations = &prepared.demonstrations;
+    let names: Vec<&str> = prepared.state.iter().map(|channel| channel.name.as_str()).collect();
+    let velocities = demonstrations.trajectories().iter().all(|movement| movement.velocities().is_some());
+    lines.add(
+        "recorded",
+        &format!(
+            "{files}: {}, {}, {} ({}){}",
+            counted(demonstrations.n_trajectories(), "episode"),
+            counted(demonstrations.n_samples(), "sample"),
+            counted(names.len(), "state"),
+            names.join(", "),
+            if velocities { " with velocities" } else { "" }
+        ),
+    );
+    if let Some(first) = prepared.left_out.first() {
+        lines.add(
+            "left out",
+            &format!("{} ({}: {})", counted(prepared.left_out.len(), "episode"), first.episode, first.why),
+        );
+    }
+    let range = |channel: &policy_align::StateChannel| {
+        let unit = channel.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
+        format!("{} {} … {}{unit}", channel.name, short(channel.low), short(channel.high))
+    };
+    let mut ranges: Vec<String> = prepared.state.iter().take(8).map(range).collect();
+    if prepared.state.len() > ranges.len() {
+        ranges.push("…".to_owned());
+    }
+    lines.add("values", &ranges.join(", "));
+    for decision in &prepared.decisions {
+        lines.add(&decision.what, &format!("{} ({})", decision.value, decision.why));
+    }
+}
+
+/// Every finding that casts doubt, the worst first, and remarks as far as there is room for them, in lines.
+pub(crate) fn findings(findings: &[Finding], room: usize, lines: &mut Lines) {
+    let begun = lines.count();
+    let mut findings: Vec<&Finding> = findings.iter().collect();
+    findings.sort_by_key(|finding| Reverse(finding.verdict));
+    for (shown, finding) in findings.iter().enumerate() {
+        let label = match finding.verdict {
+            Verdict::Good => "remark",
+            Verdict::Doubtful => "warning",
+            Verdict::DoNotUse => "wrong",
+        };
+        let mut longer = lines.clone();
+        longer.add(label, &format!("{}: {}", finding.what, finding.next));
+        if shown > 0 && finding.verdict == Verdict::Good && longer.count() - begun > room {
+            lines.add("", &format!("and {}: --json shows all", counted(findings.len() - shown, "remark")));
+            return;
+        }
+        *lines = longer;
+    }
+}

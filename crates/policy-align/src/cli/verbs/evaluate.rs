@@ -1,0 +1,252 @@
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use clap::Args;
+use nalgebra::{DMatrix, DVector};
+use policy_align::{
+    ConstraintLeftOut, EvaluateError, Evaluation, FileSummary, FitOptions, LearnerChoice, Learnt, Model,
+    PrepareOptions, Prepared, Progress, Truth, evaluate, leave_constraints_out, prepare,
+};
+use serde_json::json;
+use text::quoted;
+
+use crate::cli::failure::{Exit, Failure};
+use crate::cli::lines::{Lines, counted, short, squared_error};
+use crate::cli::options::config::Config;
+use crate::cli::options::flags::{PrepareFlags, ReadFlags};
+use crate::cli::recorded::{named, read, summaries};
+use crate::cli::session::{Said, Session};
+use crate::cli::trust_files::load;
+
+/// Constraints that are listed, at most.
+const SHOWN: usize = 5;
+
+/// Evaluate a model on other recordings
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Errors are squared: 0 is exact, 1 as good as standing still.
+Exit code 1 if --require is not met.
+All flags of reading files: policy-align check --help
+
+Examples:
+  policy-align evaluate toy.json rails.csv
+  policy-align evaluate toy.json rails.csv --leave-constraint-out")]
+pub(crate) struct Evaluate {
+    /// A model that `fit` has written
+    model: PathBuf,
+    /// Recordings to evaluate on
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// Columns of the true policy, in the order of the state
+    #[arg(long, value_name = "PATTERNS")]
+    truth: Vec<String>,
+    /// Cross-validate over constraints: learn without each, evaluate on it
+    #[arg(long)]
+    leave_constraint_out: bool,
+    /// Largest policy error allowed
+    #[arg(long, value_name = "ERROR")]
+    require: Option<f64>,
+    #[command(flatten)]
+    read: ReadFlags,
+    #[command(flatten)]
+    prepare: PrepareFlags,
+}
+
+impl Evaluate {
+    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+        let model = load(session, &self.model)?;
+        let config = Config::of(session)?;
+        let mut reading = config.under("read", &self.read)?;
+        if reading.state.is_empty() {
+            reading.state = model.state.iter().map(|channel| channel.name.clone()).collect();
+        }
+        let mut options = config.under("prepare", &self.prepare)?.options(reading.dt)?;
+        // The learner saw the state times these, whatever is said now.
+        options.scale = model.scale();
+        let prepared = self.prepared(session, &reading, &options)?;
+        let names = |state: &[policy_align::StateChannel]| state.iter().map(|c| c.name.clone()).collect::<Vec<_>>();
+        if names(&prepared.state) != names(&model.state) {
+            let what = format!(
+                "the channels are {}, the model's {}",
+                names(&prepared.state).join(", "),
+                names(&model.state).join(", ")
+            );
+            return Err(Failure::usage(
+                what,
+                named(&self.files),
+                format!("--state {}", quoted(Path::new(&names(&model.state).join(",")))),
+            ));
+        }
+        let truth = self.truth(session, &reading, &prepared, &model)?;
+        let judged = evaluate(model.learnt.policy(), &prepared, truth.as_ref()).map_err(|error| {
+            let remedy = "recordings without left-out samples, and a column of the true policy for each channel";
+            Failure::new(Exit::Refused, error.to_string(), named(&self.files), remedy)
+        })?;
+        let left_out = if self.leave_constraint_out { self.left_out(session, &model, &prepared)? } else { vec![] };
+        let too_large = |judged: &Evaluation, most: f64| judged.policy_error.is_nan() || judged.policy_error > most;
+        let failed = self.require.is_some_and(|most| {
+            too_large(&judged, most) || left_out.iter().any(|left| too_large(&left.evaluation, most))
+        });
+        let exit = if failed { Exit::Refused } else { Exit::Done };
+        let training = training(&model, &self.files)?;
+        if session.json {
+            let constraints = by_constraint(&prepared, &judged);
+            let document = json!({
+                "evaluation": judged, "episodes": prepared.episodes, "constraints": constraints,
+                "constraints_left_out": left_out, "training_files": training,
+            });
+            return Ok(Said::json(&document, exit));
+        }
+        let mut lines = Lines::default();
+        tell(&prepared, &judged, &mut lines);
+        if !training.is_empty() {
+            let those = if training.len() == 1 { "is" } else { "are" };
+            let what = format!(
+                "{} {those} training data: use other recordings to measure generalisation",
+                training.join(", ")
+            );
+            lines.add("warning", &what);
+        }
+        if self.leave_constraint_out {
+            tell_left_out(&left_out, &mut lines);
+        } else {
+            for (label, error) in by_constraint(&prepared, &judged) {
+                lines.add("constraint", &format!("{label}: {} (median error of its episodes)", squared_error(error)));
+            }
+        }
+        if let Some(most) = self.require {
+            lines.add("required", &format!("at most {}: {}", short(most), if failed { "not met" } else { "met" }));
+        }
+        Ok(Said { text: lines.into_text(), exit })
+    }
+
+    fn left_out(
+        &self,
+        session: &Session,
+        model: &Model,
+        prepared: &Prepared,
+    ) -> Result<Vec<ConstraintLeftOut>, Failure> {
+        let labels: BTreeSet<_> = prepared.constraints.iter().flatten().collect();
+        let bar =
+            session.bar(labels.len() as u64, "learning  {bar:30} without constraint {pos} of {len}, {elapsed} elapsed");
+        let never = AtomicBool::new(false);
+        let mut report = |step: policy_align::Step| bar.inc(u64::from(step.done == 0));
+        let options = options_like(model);
+        let left_out =
+            leave_constraints_out(prepared, &options, &mut Progress { cancelled: &never, report: &mut report });
+        bar.finish_and_clear();
+        left_out.map_err(|error| match error {
+            EvaluateError::Fit(error) => Failure::fit(&error, named(&self.files)),
+            error => {
+                let text = error.to_string();
+                let (what, remedy) = text.split_once("; ").unwrap_or((&text, "other recordings"));
+                Failure::new(Exit::Refused, what, named(&self.files), remedy)
+            }
+        })
+    }
+
+    fn prepared(&self, session: &Session, reading: &ReadFlags, options: &PrepareOptions) -> Result<Prepared, Failure> {
+        let recordings = read(session, &self.files, reading)?;
+        prepare(&recordings, options).map_err(|error| Failure::prepare(&error, named(&self.files)))
+    }
+
+    /// The columns of the true policy, read as if they were the state.
+    fn truth(
+        &self,
+        session: &Session,
+        reading: &ReadFlags,
+        prepared: &Prepared,
+        model: &Model,
+    ) -> Result<Option<Truth>, Failure> {
+        if self.truth.is_empty() {
+            return Ok(None);
+        }
+        let mut columns = reading.clone();
+        columns.state.clone_from(&self.truth);
+        columns.velocity.clear();
+        let quiet = Session { quiet: true, ..session.clone() };
+        let recordings = read(&quiet, &self.files, &columns)?;
+        let scale = DVector::from_iterator(model.state.len(), model.state.iter().map(|channel| channel.scale));
+        let columns: Vec<DVector<f64>> = recordings
+            .episodes
+            .iter()
+            .filter(|episode| prepared.left_out.iter().all(|left_out| left_out.episode != episode.name))
+            .flat_map(|episode| episode.positions.column_iter().map(nalgebra::Matrix::into_owned).collect::<Vec<_>>())
+            .collect();
+        if recordings.state.len() != scale.len() {
+            let what = format!("{} columns for {}", recordings.state.len(), counted(scale.len(), "channel"));
+            return Err(Failure::usage(what, "--truth", "one column for each channel, in their order"));
+        }
+        let actions =
+            DMatrix::from_columns(&columns.iter().map(|column| column.component_mul(&scale)).collect::<Vec<_>>());
+        Ok(Some(Truth { actions, projectors: None }))
+    }
+}
+
+/// The files that a model was learnt from.
+fn training(model: &Model, files: &[PathBuf]) -> Result<Vec<String>, Failure> {
+    let learnt = |file: &FileSummary| model.data.files.iter().any(|known| known.sha256 == file.sha256);
+    Ok(summaries(files)?.into_iter().filter(learnt).map(|file| file.name).collect())
+}
+
+/// To learn as a model was learnt.
+fn options_like(model: &Model) -> FitOptions {
+    let (learner, reading) = match &model.learnt {
+        Learnt::Auto(both) => (LearnerChoice::Auto, both.overridden()),
+        Learnt::PolicyAlign(_) => (LearnerChoice::PolicyAlign, None),
+        Learnt::Slope(_) => (LearnerChoice::Slope, None),
+        Learnt::Direct(_) => (LearnerChoice::Direct, None),
+    };
+    FitOptions { learner, reading, seed: model.seed, ..FitOptions::default() }
+}
+
+fn tell(prepared: &Prepared, judged: &Evaluation, lines: &mut Lines) {
+    let count = prepared.demonstrations.n_trajectories();
+    lines.add(
+        "evaluated on",
+        &format!("{}, {}", counted(count, "episode"), counted(prepared.demonstrations.n_samples(), "sample")),
+    );
+    lines.add(
+        "error",
+        &format!(
+            "relative to the policy: {}, relative to the motion: {}",
+            squared_error(judged.policy_error),
+            squared_error(judged.slope_error)
+        ),
+    );
+    let errors = prepared.episodes.iter().zip(&judged.episodes).filter_map(|(name, error)| Some((name, (*error)?)));
+    if let Some((name, error)) = errors.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, error)| *error >= 0.01) {
+        lines.add("worst", &format!("episode {name}: {} relative to the motion", short(error)));
+    }
+    lines.add("support", &format!("{} % of the samples within the data", short(100.0 * judged.supported)));
+    if let Some(nupe) = judged.nupe {
+        lines.add("truth", &format!("nUPE {} (error of the unconstrained policy)", short(nupe)));
+    }
+}
+
+fn tell_left_out(left_out: &[ConstraintLeftOut], lines: &mut Lines) {
+    for left in left_out.iter().take(SHOWN) {
+        let Evaluation { policy_error, episodes, .. } = &left.evaluation;
+        let (error, count) = (squared_error(*policy_error), counted(episodes.len(), "episode"));
+        lines.add("left out", &format!("{}: {error} when learnt without it ({count})", left.constraint));
+    }
+    if left_out.len() > SHOWN {
+        lines.add("", &format!("and {} more: --json shows all", left_out.len() - SHOWN));
+    }
+}
+
+/// Median error of the episodes of each constraint, where the file names them; the first ones.
+fn by_constraint(prepared: &Prepared, judged: &Evaluation) -> BTreeMap<String, f64> {
+    let mut errors: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    for (label, error) in prepared.constraints.iter().zip(&judged.episodes) {
+        if let (Some(label), Some(error)) = (label, error) {
+            errors.entry(label.clone()).or_default().push(*error);
+        }
+    }
+    let median = |mut errors: Vec<f64>| {
+        errors.sort_by(f64::total_cmp);
+        errors[errors.len() / 2]
+    };
+    errors.into_iter().take(SHOWN).map(|(label, errors)| (label, median(errors))).collect()
+}

@@ -1,0 +1,135 @@
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use nalgebra::DVector;
+use policy_align::{CSource, ExportError, Model, Precision, spread_starts, to_onnx, write_whole};
+use text::quoted;
+
+use crate::cli::failure::{Exit, Failure, shown};
+use crate::cli::lines::{Lines, counted, list, size};
+use crate::cli::options::config::Config;
+use crate::cli::options::flags::numbers;
+use crate::cli::options::rollout_flags::RollOutFlags;
+use crate::cli::session::{Said, Session};
+use crate::cli::trust_files::load;
+use crate::cli::verbs::rollout::{followed, write_paths};
+
+/// Roll-outs that are exported unless starts are given.
+const STARTS: usize = 12;
+/// What loads the file that is named after it.
+const LOAD_ONNX: &str = "python -c \"import onnxruntime as o, sys; o.InferenceSession(sys.argv[1])\"";
+
+/// Export a policy to C or ONNX, or roll-outs to MCAP
+#[derive(Debug, Args)]
+#[command(after_help = "\
+C: one file of ISO C99 that needs math.h only. int policy(const double *x,
+double *u, double *phi) returns 1 within the data, 0 outside: then stop.
+ONNX: opset 17 in doubles, x (states, n) to u, phi and support.
+MCAP: roll-outs as joint states of ROS 2, for Rerun, Foxglove and PlotJuggler.
+
+Examples:\n  policy-align export toy.json --to c -o toy.c\n  policy-align export toy.json --to mcap -o toy.mcap")]
+pub(crate) struct Export {
+    /// A model that `fit` has written
+    model: PathBuf,
+    /// Format
+    #[arg(long, value_enum)]
+    to: Target,
+    /// The file to write [default: the model's name with .c, .onnx or .mcap]
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Name of the C function
+    #[arg(long, default_value = "policy")]
+    name: String,
+    /// C in single precision
+    #[arg(long)]
+    float: bool,
+    /// Start of a roll-out for MCAP; may be repeated [default: twelve]
+    #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
+    from: Vec<String>,
+    #[command(flatten)]
+    follow: RollOutFlags,
+}
+
+/// What a policy can be written as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Target {
+    /// One file of C99
+    C,
+    /// ONNX, opset 17
+    Onnx,
+    /// Roll-outs for viewers
+    Mcap,
+}
+
+impl Target {
+    fn extension(self) -> &'static str {
+        match self {
+            Target::C => "c",
+            Target::Onnx => "onnx",
+            Target::Mcap => "mcap",
+        }
+    }
+}
+
+impl Export {
+    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+        let model = load(session, &self.model)?;
+        let output = self.output.clone().unwrap_or_else(|| self.model.with_extension(self.to.extension()));
+        if self.to == Target::Mcap {
+            return self.roll_outs(session, &model, &output);
+        }
+        if !self.from.is_empty() || self.follow != RollOutFlags::default() {
+            return Err(Failure::usage("only MCAP holds roll-outs", "roll-out flags", "--to mcap"));
+        }
+        let precision = if self.float { Precision::Single } else { Precision::Double };
+        let bytes = match self.to {
+            Target::Onnx => to_onnx(&model),
+            _ => CSource { name: self.name.clone(), precision }.of(&model).map(String::into_bytes),
+        };
+        let bytes = bytes.map_err(|error| match error {
+            ExportError::Name { .. } => Failure::usage(error.to_string(), "--name", "--name policy"),
+            error => Failure::new(
+                Exit::Refused,
+                error.to_string(),
+                shown(&self.model),
+                "another learner: `policy-align fit --learner`",
+            ),
+        })?;
+        write_whole(&output, &bytes).map_err(|error| Failure::writing(&output, error))?;
+        let mut lines = Lines::default();
+        lines.add("written", &format!("{} ({})", output.display(), size(bytes.len())));
+        let next = match self.to {
+            Target::Onnx => format!("{LOAD_ONNX} {}", quoted(&output)),
+            _ => format!("cc -std=c99 -O2 -c {}", quoted(&output)),
+        };
+        Ok(Said::done(lines.next(&next)))
+    }
+
+    fn roll_outs(&self, session: &Session, model: &Model, output: &Path) -> Result<Said, Failure> {
+        if output.extension().is_none_or(|extension| extension != "mcap") {
+            return Err(Failure::usage("MCAP files end in .mcap", shown(output), "`rollout -o` for other formats"));
+        }
+        let flags = Config::of(session)?.under("rollout", &self.follow)?;
+        let given = self.from.iter().map(|from| Ok(DVector::from_vec(numbers(from, "--from")?)));
+        let mut starts = given.collect::<Result<Vec<_>, Failure>>()?;
+        if starts.is_empty() {
+            starts = spread_starts(model, STARTS);
+        }
+        if starts.is_empty() {
+            let what = "no start was found within the data";
+            return Err(Failure::new(Exit::Refused, what, shown(&self.model), "--from with a recorded state"));
+        }
+        let paths = starts.iter().map(|start| {
+            let from = list(start.iter().copied());
+            followed(&flags, model, start, &from)
+        });
+        let paths = paths.collect::<Result<Vec<_>, _>>()?;
+        write_paths(output, model, &paths)?;
+        let samples = paths.iter().map(|path| path.times.len()).sum();
+        let mut lines = Lines::default();
+        let written =
+            format!("{}: {}, {}", output.display(), counted(paths.len(), "roll-out"), counted(samples, "sample"));
+        lines.add("written", &written);
+        Ok(Said::done(lines.next(&format!("rerun {}", quoted(output)))))
+    }
+}

@@ -1,0 +1,207 @@
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use clap::Args;
+use demo_io::Draft;
+use motion::Recordings;
+use policy_align::{Evaluation, Finding, Model, Prepared, Progress, Verdict, checksum_of, evaluate, fit, prepare};
+use serde_json::json;
+use text::quoted;
+
+use crate::cli::clock::now;
+use crate::cli::failure::{Exit, Failure};
+use crate::cli::in_words::verdict;
+use crate::cli::lines::{Lines, counted, size, squared_error};
+use crate::cli::options::config::{Config, printed};
+use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags};
+use crate::cli::pages::trust_page::trust_page;
+use crate::cli::recorded::{base_name, named, read, summaries, unsaid};
+use crate::cli::session::{Said, Session};
+use crate::cli::trust_files::{MEMBER, trust_files, warn_of_others};
+use crate::cli::verbs::check::findings;
+
+/// Learn a policy and report how far to trust it
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Writes a trust report beside the model: MODEL.trust.html and MODEL.trust.json.
+Exit code 1 if its verdict is \"do not use\".
+All flags of reading files: policy-align check --help
+
+Example:
+  policy-align fit toy.csv -o toy.json")]
+pub(crate) struct Fit {
+    /// Recordings: CSV, NPZ, JSON lines, LeRobot, HDF5, MCAP, MAT
+    #[arg(required_unless_present = "print_config")]
+    files: Vec<PathBuf>,
+    /// The model to write
+    #[arg(long, short, value_name = "MODEL.json", default_value = "model.json")]
+    output: PathBuf,
+    /// Write no trust report
+    #[arg(long)]
+    no_report: bool,
+    /// Print all flags as a file for --config, and stop
+    #[arg(long)]
+    print_config: bool,
+    #[command(flatten)]
+    learning: FitFlags,
+    #[command(flatten)]
+    prepare: PrepareFlags,
+    #[command(flatten)]
+    read: ReadFlags,
+}
+
+impl Fit {
+    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+        let config = Config::of(session)?;
+        let (reading, preparing) = (config.under("read", &self.read)?, config.under("prepare", &self.prepare)?);
+        let learning = config.under("fit", &self.learning)?;
+        if self.print_config {
+            return Ok(Said::done(printed(&reading, &preparing, &learning)?));
+        }
+        let (prepare_options, fit_options) = (preparing.options(reading.dt)?, learning.options()?);
+        let place = || named(&self.files);
+        let recordings = read(session, &self.files, &reading)?;
+        let (recordings, held_out) = divided(recordings, &learning.hold_out, &place())?;
+        let prepared = prepare(&recordings, &prepare_options).map_err(|error| Failure::prepare(&error, place()))?;
+        let bar = session.bar(4, "{msg}  {bar:30} step {pos} of {len}, {elapsed} elapsed");
+        let never = AtomicBool::new(false);
+        let mut report = |step: policy_align::Step| {
+            bar.set_length(step.of as u64);
+            bar.set_position(step.done as u64);
+            bar.set_message(step.what);
+        };
+        let model = fit(&prepared, &fit_options, &mut Progress { cancelled: &never, report: &mut report });
+        bar.finish_and_clear();
+        let mut model = model.map_err(|error| Failure::fit(&error, place()))?;
+        model.made_by.time = now();
+        model.data.files = summaries(&self.files)?;
+        let judged = held_out.map(|held_out| judged(&held_out, &prepare_options, &model)).transpose()?;
+        let text = model.to_json().map_err(|error| {
+            Failure::new(Exit::Refused, error.to_string(), place(), "`policy-align check` to examine the recordings")
+        })?;
+        let checksum = checksum_of(text.as_bytes()).unwrap_or_default();
+        let mut files = vec![(self.output.clone(), text)];
+        if !self.no_report {
+            files.extend(self.report(&model, &prepared, &checksum));
+        }
+        replace(&files)?;
+        warn_of_others(session, &self.output, &checksum);
+        let report: Vec<PathBuf> = files.into_iter().skip(1).map(|(path, _)| path).collect();
+        let unsaid = unsaid(&model.trust.findings, &recordings);
+        Ok(self.said(session, (&model, &unsaid), &report, judged.as_ref()))
+    }
+
+    /// The page and its numbers.
+    fn report(&self, model: &Model, prepared: &Prepared, checksum: &str) -> [(PathBuf, String); 2] {
+        let [page, numbers] = trust_files(&self.output);
+        let html = trust_page(model, &base_name(&self.output), checksum, Some(&prepared.demonstrations));
+        let document = json!({
+            MEMBER: checksum, "trust": model.trust, "decisions": model.decisions, "left_out": model.data.left_out,
+        });
+        [(page, html), (numbers, format!("{document:#}\n"))]
+    }
+
+    fn said(
+        &self,
+        session: &Session,
+        (model, unsaid): (&Model, &[Finding]),
+        written: &[PathBuf],
+        held_out: Option<&Evaluation>,
+    ) -> Said {
+        let exit = if model.trust.verdict == Verdict::DoNotUse { Exit::Refused } else { Exit::Done };
+        if session.json {
+            let files: Vec<String> =
+                std::iter::once(&self.output).chain(written).map(|path| path.display().to_string()).collect();
+            let document = json!({
+                "written": files, "trust": model.trust, "decisions": model.decisions, "data": model.data,
+                "hold_out": held_out,
+            });
+            return Said::json(&document, exit);
+        }
+        let mut lines = Lines::default();
+        let data = &model.data;
+        let left_out =
+            if data.left_out.is_empty() { String::new() } else { format!(", {} left out", data.left_out.len()) };
+        lines.add(
+            "learnt from",
+            &format!("{}, {}{left_out}", counted(data.episodes, "episode"), counted(data.samples, "sample")),
+        );
+        if let Some(decision) = model.decisions.iter().find(|decision| decision.what == "learner") {
+            lines.add("learner", &format!("{} ({})", decision.value, decision.why));
+        }
+        let numbers = &model.trust.numbers;
+        lines.add(
+            "held out",
+            &format!(
+                "error: {} (direct learner: {})",
+                squared_error(numbers.held_out_error),
+                squared_error(numbers.held_out_error_direct)
+            ),
+        );
+        if let Some(judged) = held_out {
+            lines.add(
+                "hold-out",
+                &format!(
+                    "error on {}: {}",
+                    counted(judged.episodes.len(), "episode"),
+                    squared_error(judged.policy_error)
+                ),
+            );
+        }
+        lines.add("trust", verdict(model));
+        findings(unsaid, 3, &mut lines);
+        let bytes = std::fs::metadata(&self.output).map_or(0, |found| found.len() as usize);
+        let beside = written.iter().map(|path| format!(", {}", path.display())).collect::<Vec<_>>().concat();
+        lines.add("written", &format!("{} ({}){beside}", self.output.display(), size(bytes)));
+        let next = if exit == Exit::Refused {
+            let page = written.first().map_or_else(
+                || format!("policy-align info {}", quoted(&self.output)),
+                |page| format!("open {}", quoted(page)),
+            );
+            lines.next(&page)
+        } else {
+            let (model, picture) = (quoted(&self.output), quoted(&self.output.with_extension("svg")));
+            lines.next(&format!("policy-align plot {model} -o {picture}"))
+        };
+        Said { text: next, exit }
+    }
+}
+
+/// Episodes to learn from, and those held out.
+fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Recordings, Option<Recordings>), Failure> {
+    if names.is_empty() {
+        return Ok((recordings, None));
+    }
+    for name in names {
+        if !recordings.episodes.iter().any(|episode| episode.name == *name) {
+            let known: Vec<&str> = recordings.episodes.iter().take(5).map(|episode| episode.name.as_str()).collect();
+            let remedy = format!("one of {}, …", known.join(", "));
+            return Err(Failure::usage(
+                format!("there is no episode '{name}'"),
+                format!("--hold-out, {place}"),
+                remedy,
+            ));
+        }
+    }
+    let (held, kept) = recordings.episodes.into_iter().partition(|episode| names.contains(&episode.name));
+    let of = |episodes, findings| Recordings { state: recordings.state.clone(), episodes, findings };
+    Ok((of(kept, recordings.findings), Some(of(held, vec![]))))
+}
+
+fn judged(held_out: &Recordings, options: &policy_align::PrepareOptions, model: &Model) -> Result<Evaluation, Failure> {
+    let prepared = prepare(held_out, options).map_err(|error| Failure::prepare(&error, "--hold-out".to_owned()))?;
+    evaluate(model.learnt.policy(), &prepared, None)
+        .map_err(|error| Failure::new(Exit::Refused, error.to_string(), "--hold-out", "other episodes"))
+}
+
+/// Writes files that belong together: none is replaced before all are on the disk.
+fn replace(files: &[(PathBuf, String)]) -> Result<(), Failure> {
+    let failed = |path: &Path, error: io::Error| Failure::writing(path, error);
+    let draft = |(path, text): &(PathBuf, String)| {
+        Draft::of(path, |file| file.write_all(text.as_bytes())).map_err(|error| failed(path, error))
+    };
+    let drafts = files.iter().map(draft).collect::<Result<Vec<_>, _>>()?;
+    let mut replaced = drafts.into_iter().zip(files);
+    replaced.try_for_each(|(draft, (path, _))| draft.becomes_whole().map_err(|error| failed(path, error)))
+}

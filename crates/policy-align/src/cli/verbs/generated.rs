@@ -1,0 +1,63 @@
+//! What is made of the flags themselves.
+
+use std::path::PathBuf;
+
+use clap::{Args, Command, CommandFactory as _};
+use clap_complete::Shell;
+use policy_align::write_whole;
+
+use crate::cli::Cli;
+use crate::cli::failure::{Exit, Failure};
+use crate::cli::session::Said;
+
+/// Print shell completions
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  policy-align completions bash")]
+pub(crate) struct Completions {
+    /// bash, zsh, fish, elvish or powershell
+    #[arg(hide_possible_values = true)]
+    shell: Shell,
+}
+
+impl Completions {
+    pub(crate) fn run(&self) -> Said {
+        let mut text = Vec::new();
+        clap_complete::generate(self.shell, &mut Cli::command(), "policy-align", &mut text);
+        Said::done(String::from_utf8_lossy(&text).into_owned())
+    }
+}
+
+/// Print the manual page
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  policy-align man")]
+pub(crate) struct Man {
+    /// Folder for one page per command
+    #[arg(long, value_name = "FOLDER")]
+    to: Option<PathBuf>,
+}
+
+impl Man {
+    pub(crate) fn run(&self) -> Result<Said, Failure> {
+        let mut command = Cli::command();
+        command.build();
+        let Some(folder) = &self.to else { return Ok(Said::done(page(command, "policy-align")?)) };
+        for sub in command.get_subcommands().cloned().collect::<Vec<_>>() {
+            let name = format!("policy-align-{}", sub.get_name());
+            let path = folder.join(format!("{name}.1"));
+            write_whole(&path, page(sub, &name)?.as_bytes()).map_err(|error| Failure::writing(&path, error))?;
+        }
+        let path = folder.join("policy-align.1");
+        write_whole(&path, page(command, "policy-align")?.as_bytes())
+            .map_err(|error| Failure::writing(&path, error))?;
+        Ok(Said::done(String::new()))
+    }
+}
+
+fn page(command: Command, title: &str) -> Result<String, Failure> {
+    let mut text = Vec::new();
+    clap_mangen::Man::new(command)
+        .title(title)
+        .render(&mut text)
+        .map_err(|error| Failure::new(Exit::Bug, error.to_string(), "man", "please report it"))?;
+    Ok(String::from_utf8_lossy(&text).into_owned())
+}

@@ -1,0 +1,64 @@
+use std::path::PathBuf;
+
+use clap::Args;
+use serde_json::json;
+use text::quoted;
+
+use crate::cli::failure::{Exit, Failure};
+use crate::cli::in_words::{learner, verdict};
+use crate::cli::lines::{Lines, counted, short};
+use crate::cli::session::{Said, Session};
+use crate::cli::trust_files::load;
+use crate::cli::verbs::check::findings;
+
+/// Describe a model
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  policy-align info toy.json")]
+pub(crate) struct Info {
+    /// A model that `fit` has written
+    model: PathBuf,
+}
+
+impl Info {
+    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+        let model = load(session, &self.model)?;
+        if session.json {
+            let document = json!({
+                "made_by": model.made_by, "state": model.state, "time_step": model.time_step, "data": model.data,
+                "learner": learner(&model), "decisions": model.decisions, "seed": model.seed, "trust": model.trust,
+            });
+            return Ok(Said::json(&document, Exit::Done));
+        }
+        let mut lines = Lines::default();
+        lines.add("made by", &format!("{}, {}", model.made_by.program, model.made_by.time));
+        let files: Vec<&str> = model.data.files.iter().take(3).map(|file| file.name.as_str()).collect();
+        lines.add(
+            "learnt from",
+            &format!(
+                "{}, {} ({})",
+                counted(model.data.episodes, "episode"),
+                counted(model.data.samples, "sample"),
+                files.join(", ")
+            ),
+        );
+        lines.add("learner", &learner(&model));
+        let channel = |channel: &policy_align::StateChannel| {
+            let unit = channel.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
+            let scale = if channel.scale == 1.0 { String::new() } else { format!(" (times {})", short(channel.scale)) };
+            format!("{} {} … {}{unit}{scale}", channel.name, short(channel.low), short(channel.high))
+        };
+        let mut channels: Vec<String> = model.state.iter().take(8).map(channel).collect();
+        if model.state.len() > channels.len() {
+            channels.push("…".to_owned());
+        }
+        lines.add("state", &channels.join(", "));
+        lines.add(
+            "time",
+            &format!("dt {} s, the longest episode {} s", short(model.time_step), short(model.data.longest)),
+        );
+        lines.add("trust", verdict(&model));
+        findings(&model.trust.findings, 4, &mut lines);
+        let middle: Vec<String> = model.state.iter().map(|channel| short(channel.median)).collect();
+        Ok(Said::done(lines.next(&format!("policy-align predict {} --at {}", quoted(&self.model), middle.join(",")))))
+    }
+}

@@ -1,0 +1,12 @@
+//! The commands, one a file.
+
+pub(crate) mod check;
+pub(crate) mod convert;
+pub(crate) mod evaluate;
+pub(crate) mod export;
+pub(crate) mod fit;
+pub(crate) mod generated;
+pub(crate) mod info;
+pub(crate) mod plot;
+pub(crate) mod predict;
+pub(crate) mod rollout;

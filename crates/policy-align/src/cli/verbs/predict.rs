@@ -1,0 +1,205 @@
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use motion::{LearntPolicy as _, Policy as _};
+use nalgebra::{DMatrix, DVector, DVectorView};
+use policy_align::{Model, ModelPolicy, write_whole};
+use rayon::prelude::*;
+use serde_json::{Value, json};
+
+use crate::cli::failure::{Exit, Failure};
+use crate::cli::lines::{Lines, counted, list, short};
+use crate::cli::options::flags::numbers;
+use crate::cli::session::{Said, Session};
+use crate::cli::table::states;
+use crate::cli::trust_files::load;
+
+/// Predict actions of a model
+#[derive(Debug, Args)]
+#[command(after_help = "\
+For each state: the action per second, its standard deviation, the potential,
+and the support, from 1 where demonstrations are dense to 0 outside the data.
+Outside the data no deviation or potential is given.
+
+Example:
+  policy-align predict toy.json --at 0.3,1.2")]
+pub(crate) struct Predict {
+    /// A model that `fit` has written
+    model: PathBuf,
+    /// States: CSV with the channel names as header, or - for standard input
+    #[arg(required_unless_present = "at")]
+    states: Option<PathBuf>,
+    /// One state
+    #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true, conflicts_with = "states")]
+    at: Option<String>,
+    /// CSV file to write
+    #[arg(long, short, value_name = "FILE.csv")]
+    output: Option<PathBuf>,
+    /// Behaviour outside the data
+    #[arg(long, value_enum, default_value_t = Outside::Zero)]
+    outside: Outside,
+}
+
+/// Actions outside the data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Outside {
+    /// Zero action: stop
+    Zero,
+    /// NaN as action
+    Nan,
+    /// Exit with an error
+    Error,
+}
+
+/// What a model says of a state.
+struct Prediction {
+    action: DVector<f64>,
+    /// None outside the data, and of policies without one; so the deviation.
+    potential: Option<f64>,
+    deviation: Option<DVector<f64>>,
+    support: f64,
+    supported: bool,
+}
+
+impl Prediction {
+    fn of(policy: &ModelPolicy<'_>, state: DVectorView<'_, f64>) -> Self {
+        let supported = policy.is_supported(state);
+        let mut deviation = DVector::zeros(state.len());
+        let known = supported && policy.action_sd_into(state, deviation.as_view_mut());
+        Prediction {
+            action: policy.action(state),
+            potential: policy.potential().filter(|_| supported).map(|potential| potential.value(state)),
+            deviation: known.then_some(deviation),
+            support: policy.support(state),
+            supported,
+        }
+    }
+}
+
+impl Predict {
+    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+        let model = load(session, &self.model)?;
+        let states = match (&self.at, &self.states) {
+            (Some(at), _) => Self::one(at, &model)?,
+            (None, Some(path)) => states(path, &model)?,
+            (None, None) => return Err(Failure::usage("no state was given", "predict", "--at 0.3,1.2")),
+        };
+        let policy = model.policy();
+        let columns: Vec<usize> = (0..states.ncols()).collect();
+        let bar = session.bar(columns.len() as u64, "predicting  {bar:30} {pos} of {len}, {eta} left");
+        let predictions: Vec<Prediction> = columns
+            .par_iter()
+            .map(|&column| {
+                bar.inc(1);
+                Prediction::of(&policy, states.column(column))
+            })
+            .collect();
+        bar.finish_and_clear();
+        let predictions = self.with_outside(predictions)?;
+        if session.json {
+            return Ok(Said::json(&document(&model, &states, &predictions), Exit::Done));
+        }
+        if let (Some(_), None) = (&self.at, &self.output) {
+            return Ok(Said::done(one_prediction(&model, &predictions[0])));
+        }
+        let text = csv(&model, &states, &predictions);
+        let Some(path) = &self.output else { return Ok(Said::done(text)) };
+        write_whole(path, text.as_bytes()).map_err(|error| Failure::writing(path, error))?;
+        let unsupported = predictions.iter().filter(|prediction| !prediction.supported).count();
+        let mut lines = Lines::default();
+        lines.add(
+            "written",
+            &format!(
+                "{}: {}, {unsupported} of them outside the data",
+                path.display(),
+                counted(predictions.len(), "state")
+            ),
+        );
+        Ok(Said::done(lines.into_text()))
+    }
+
+    fn one(at: &str, model: &Model) -> Result<DMatrix<f64>, Failure> {
+        let numbers = numbers(at, "--at")?;
+        if numbers.len() != model.state.len() || !numbers.iter().all(|number| number.is_finite()) {
+            let names: Vec<&str> = model.state.iter().map(|channel| channel.name.as_str()).collect();
+            return Err(Failure::usage(
+                format!("{} finite numbers are needed", model.state.len()),
+                format!("--at {at}"),
+                format!("one for each of {}", names.join(", ")),
+            ));
+        }
+        Ok(DMatrix::from_vec(numbers.len(), 1, numbers))
+    }
+
+    fn with_outside(&self, mut predictions: Vec<Prediction>) -> Result<Vec<Prediction>, Failure> {
+        for (row, prediction) in predictions.iter_mut().enumerate().filter(|(_, prediction)| !prediction.supported) {
+            match self.outside {
+                Outside::Zero => prediction.action.fill(0.0),
+                Outside::Nan => prediction.action.fill(f64::NAN),
+                Outside::Error => {
+                    let what = format!("the state is outside the data (support {})", short(prediction.support));
+                    let remedy = "--outside zero or nan, or states within the range that `policy-align info` lists";
+                    return Err(Failure::new(Exit::Refused, what, format!("state {}", row + 1), remedy));
+                }
+            }
+        }
+        Ok(predictions)
+    }
+}
+
+fn one_prediction(model: &Model, prediction: &Prediction) -> String {
+    let mut lines = Lines::default();
+    let actions = model.state.iter().zip(prediction.action.iter());
+    let action: Vec<String> = actions.map(|(channel, action)| format!("{} {}", channel.name, short(*action))).collect();
+    lines.add("action", &format!("{} per second", action.join(", ")));
+    if let Some(deviation) = &prediction.deviation {
+        lines.add("deviation", &list(deviation.iter().copied()));
+    }
+    if let Some(potential) = prediction.potential {
+        lines.add("potential", &short(potential));
+    }
+    let place = if prediction.supported { "within the data" } else { "outside the data" };
+    lines.add("support", &format!("{} ({place})", short(prediction.support)));
+    lines.into_text()
+}
+
+fn csv(model: &Model, states: &DMatrix<f64>, predictions: &[Prediction]) -> String {
+    let names = || model.state.iter().map(|channel| channel.name.as_str());
+    let quoted = |name: String| {
+        if name.contains([',', '"', '\n']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name }
+    };
+    let mut header: Vec<String> = names().map(|name| quoted(name.to_owned())).collect();
+    header.extend(names().map(|name| quoted(format!("u_{name}"))));
+    header.push("potential".to_owned());
+    header.extend(names().map(|name| quoted(format!("sd_{name}"))));
+    header.extend(["support".to_owned(), "known".to_owned()]);
+    let mut text = header.join(",") + "\n";
+    for (state, prediction) in states.column_iter().zip(predictions) {
+        for number in state.iter().chain(&prediction.action) {
+            let _ = write!(text, "{number},");
+        }
+        let _ = write!(text, "{},", prediction.potential.map_or_else(String::new, |value| value.to_string()));
+        for k in 0..state.len() {
+            let deviation = prediction.deviation.as_ref().map_or_else(String::new, |sd| sd[k].to_string());
+            let _ = write!(text, "{deviation},");
+        }
+        let _ = writeln!(text, "{},{}", prediction.support, u8::from(prediction.supported));
+    }
+    text
+}
+
+fn document(model: &Model, states: &DMatrix<f64>, predictions: &[Prediction]) -> Value {
+    let one = |(state, prediction): (DVectorView<'_, f64>, &Prediction)| {
+        json!({
+            "state": state.iter().collect::<Vec<_>>(),
+            "action": prediction.action.as_slice(),
+            "potential": prediction.potential,
+            "deviation": prediction.deviation.as_ref().map(|deviation| deviation.as_slice().to_vec()),
+            "support": prediction.support,
+            "known": prediction.supported,
+        })
+    };
+    let names: Vec<&str> = model.state.iter().map(|channel| channel.name.as_str()).collect();
+    json!({ "channels": names, "predictions": states.column_iter().zip(predictions).map(one).collect::<Vec<_>>() })
+}

@@ -1,0 +1,177 @@
+use std::path::{self, PathBuf};
+
+use clap::Args;
+use demo_io::WriteError;
+use motion::{Channel, Episode, Recordings, Source, Times};
+use nalgebra::DVector;
+use policy_align::{Model, Path, RollOutError, Stop, write_whole};
+use serde_json::json;
+use text::quoted;
+
+use crate::cli::failure::{Exit, Failure, shown};
+use crate::cli::lines::{Lines, counted, list, short};
+use crate::cli::options::config::Config;
+use crate::cli::options::flags::numbers;
+use crate::cli::options::rollout_flags::RollOutFlags;
+use crate::cli::pages::picture::{Picture, draw};
+use crate::cli::recorded::base_name;
+use crate::cli::session::{Said, Session};
+use crate::cli::trust_files::load;
+
+/// Roll out a policy from a start, under constraints
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A constraint file holds tables of these kinds, in any number:
+
+  [[constraint]]
+  normal = [1, 0]        # x stays fixed; several rows: [[1, 0], [0, 1]]
+
+  [[constraint]]
+  point = [0.5, 0.5]     # stay out of a ball
+  radius = 0.2
+  from = 0.5             # seconds; optional in every constraint
+  until = 2.0
+
+  [[constraint]]
+  robot = \"arm.urdf\"     # a link stays in its plane (or out of a ball);
+  link = \"hand\"          # channels are named like the robot's joints
+  plane = [0, 0, 1]
+
+The roll-out ends at rest, at a joint limit, or where the data end. It fails
+where actions are not finite, and after 200,000 steps of integration (or ten for
+each sample and each change of constraints, if those are more).
+
+Example:
+  policy-align rollout toy.json --from 1.5,1 --constraint wall.toml -o path.csv")]
+pub(crate) struct RollOut {
+    /// A model that `fit` has written
+    model: PathBuf,
+    /// Start state
+    #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
+    from: String,
+    /// Path to write: CSV or any other format of `convert`
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Plot to write: SVG or PNG
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+    #[command(flatten)]
+    follow: RollOutFlags,
+}
+
+impl RollOut {
+    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+        let model = load(session, &self.model)?;
+        let flags = Config::of(session)?.under("rollout", &self.follow)?;
+        let start = DVector::from_vec(numbers(&self.from, "--from")?);
+        let followed = followed(&flags, &model, &start, &self.from)?;
+        if let Some(output) = &self.output {
+            write_paths(output, &model, std::slice::from_ref(&followed))?;
+        }
+        if let Some(plot) = &self.plot {
+            let title = format!("Rollout of {} (grey: outside the demonstrations)", base_name(&self.model));
+            let picture =
+                Picture::of(title, &model, [0, 1.min(model.state.len() - 1)], vec![], vec![followed.states.clone()]);
+            write_whole(plot, &draw(plot, &picture)?).map_err(|error| Failure::writing(plot, error))?;
+        }
+        if session.json {
+            let columns = |matrix: &nalgebra::DMatrix<f64>| {
+                matrix.column_iter().map(|column| column.iter().copied().collect()).collect::<Vec<Vec<f64>>>()
+            };
+            let document = json!({
+                "times": followed.times, "states": columns(&followed.states),
+                "velocities": columns(&followed.velocities), "stop": stop(&followed.stop),
+                "broken_by": followed.broken_by.map(|(by, _)| by),
+            });
+            return Ok(Said::json(&document, Exit::Done));
+        }
+        Ok(Said::done(self.summary(&followed)))
+    }
+
+    fn summary(&self, followed: &Path) -> String {
+        let mut lines = Lines::default();
+        let (count, last) = (followed.times.len(), followed.times.len() - 1);
+        let end = list(followed.states.column(last).iter().copied());
+        lines.add(
+            "moved",
+            &format!(
+                "{} → {end} in {} s",
+                list(followed.states.column(0).iter().copied()),
+                short(followed.times[last])
+            ),
+        );
+        lines.add("ended", &stop(&followed.stop));
+        if let Some((by, which)) = followed.broken_by {
+            let how = if by == 0.0 { "exactly".to_owned() } else { format!("to {} (constraint {which})", short(by)) };
+            lines.add("constraints", &format!("kept {how}"));
+        }
+        lines.add("states", &format!("{}, all within the data", counted(count, "sample")));
+        let written: Vec<String> =
+            [&self.output, &self.plot].into_iter().flatten().map(|path| path.display().to_string()).collect();
+        if !written.is_empty() {
+            lines.add("written", &written.join(", "));
+        }
+        if self.output.is_some() {
+            return lines.into_text();
+        }
+        let (model, from) = (quoted(&self.model), self.from.replace(char::is_whitespace, ""));
+        lines.next(&format!("policy-align rollout {model} --from {from} -o path.csv"))
+    }
+}
+
+/// Follows a policy as flags say.
+pub(crate) fn followed(flags: &RollOutFlags, model: &Model, start: &DVector<f64>, from: &str) -> Result<Path, Failure> {
+    flags.roll_out(model)?.follow(model, start).map_err(|error| {
+        let exit = match error {
+            RollOutError::Unsupported { .. }
+            | RollOutError::StartBreaks { .. }
+            | RollOutError::StartBeyondLimit { .. }
+            | RollOutError::NotFinite { .. }
+            | RollOutError::TooManySteps { .. } => Exit::Refused,
+            _ => Exit::Usage,
+        };
+        Failure::new(exit, error.to_string(), format!("--from {from}"), error.remedy())
+    })
+}
+
+fn stop(stop: &Stop) -> String {
+    match stop {
+        Stop::AtRest => "at rest: slower than 1 % of the demonstrated speed".to_owned(),
+        Stop::LeftTheData => "end of the data: the next state lacks support".to_owned(),
+        Stop::Limit(joint) => format!("joint limit of '{joint}'"),
+        Stop::Time => "end of the time: --seconds allows more".to_owned(),
+    }
+}
+
+/// Writes paths as a recording, an episode each.
+pub(crate) fn write_paths(output: &path::Path, model: &Model, paths: &[Path]) -> Result<(), Failure> {
+    let channel =
+        |channel: &policy_align::StateChannel| Channel { name: channel.name.clone(), unit: channel.unit.clone() };
+    let file = output.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let episode = |(at, followed): (usize, &Path)| Episode {
+        name: at.to_string(),
+        source: Source { file: file.clone(), rows: None },
+        times: Times::Stamped(followed.times.clone()),
+        positions: followed.states.clone(),
+        velocities: Some(followed.velocities.clone()),
+        constraint: None,
+    };
+    let recordings = Recordings {
+        state: model.state.iter().map(channel).collect(),
+        episodes: paths.iter().enumerate().map(episode).collect(),
+        findings: vec![],
+    };
+    demo_io::write(output, &recordings).map_err(|error| unwritten(output, error))
+}
+
+/// Why recordings were not written.
+pub(crate) fn unwritten(output: &path::Path, error: WriteError) -> Failure {
+    match error {
+        WriteError::Io { source, .. } => Failure::writing(output, source),
+        error => {
+            let text = error.to_string();
+            let (what, remedy) = text.split_once("; ").unwrap_or((&text, "another format"));
+            Failure::usage(what, shown(output), remedy)
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! What is wrong with recordings and can be mended, or left out.
+
+pub(crate) mod agreement;
+pub(crate) mod duplicates;
+pub(crate) mod episodes;
+pub(crate) mod jumps;
+pub(crate) mod stamps;
+pub(crate) mod velocities;
+pub(crate) mod wraps;

@@ -1,0 +1,234 @@
+use motion::{Channel, Episode, Verdict};
+use nalgebra::DVector;
+
+use crate::in_words::{percent, short};
+use crate::notes::Notes;
+use crate::options::{PrepareOptions, VelocityUse};
+use crate::repairs::agreement::Agreement;
+use crate::samples::noise::Noise;
+
+use crate::repairs::stamps::SLOW;
+
+/// Velocities agree with the steps up to this factor.
+const AGREE: f64 = 1.25;
+/// Below this share of the steps' squares explained, velocities have nothing to do with them.
+const UNRELATED: f64 = 0.5;
+/// A factor is one that mistakes have if it is as near as this.
+const NEAR: f64 = 0.1;
+/// Largest residual of the velocities, in multiples of the noise.
+const NOISE: f64 = 1.5;
+/// Parts of a movement that are compared.
+const PARTS: usize = 4;
+/// Velocities that are differences of positions up to this share are made of them.
+const SAME: f64 = 1e-6;
+
+/// Compares velocities with the steps; brings them to the steps' units, or drops them.
+pub(crate) fn decide(
+    episodes: &mut [Episode],
+    options: &PrepareOptions,
+    channels: &[Channel],
+    noise: &Noise,
+    notes: &mut Notes,
+) -> Agreement {
+    let recorded = episodes.iter().filter(|episode| episode.velocities.is_some()).count();
+    if recorded < episodes.len() || options.velocities == VelocityUse::Ignored {
+        for episode in episodes.iter_mut() {
+            episode.velocities = None;
+        }
+        let why = match recorded {
+            0 => "none recorded".to_owned(),
+            _ if recorded < episodes.len() => format!("only {recorded} of {} episodes have them", episodes.len()),
+            _ => "ignored as requested".to_owned(),
+        };
+        notes.decided("velocities", "from positions", why, "--integration");
+        return Agreement::None;
+    }
+    if options.velocities == VelocityUse::Recorded {
+        notes.decided("velocities", "recorded", "used as requested", "--integration");
+        return Agreement::Own;
+    }
+    let fit = Steps::of(episodes, noise);
+    if fit.explained < UNRELATED {
+        for episode in episodes.iter_mut() {
+            episode.velocities = None;
+        }
+        notes.decided(
+            "velocities",
+            "from positions",
+            format!("those recorded explain {} of the steps", percent(fit.explained.max(0.0))),
+            "--integration",
+        );
+        notes.found(
+            Verdict::Doubtful,
+            format!(
+                "recorded velocities do not match the steps (they explain {} of them) and were ignored",
+                percent(fit.explained.max(0.0))
+            ),
+            "check that these columns are velocities of the same channels in the same order",
+        );
+        return Agreement::None;
+    }
+    if fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(factor)) {
+        let differences = made_of_positions(episodes);
+        let why = if differences {
+            "recorded; they are differences of the positions"
+        } else {
+            "recorded; they agree with the steps"
+        };
+        notes.decided("velocities", "recorded", why, "--integration");
+        return if differences { Agreement::Differences } else { Agreement::Own };
+    }
+    mend(episodes, &fit, channels, notes);
+    Agreement::Own
+}
+
+/// Of a part of a movement: its step D, and S = Σ u δt, the step by its velocities; both (n).
+type Part = (DVector<f64>, DVector<f64>);
+
+/// Steps as multiples of what velocities say, over parts of movements: Σ D S / Σ S² in each channel, S = Σ u δt.
+struct Steps {
+    /// (n).
+    factors: DVector<f64>,
+    /// 1 − Σ |D − factor S|² / Σ |D|².
+    explained: f64,
+}
+
+impl Steps {
+    fn of(episodes: &[Episode], noise: &Noise) -> Self {
+        let pairs: Vec<Part> = episodes.iter().flat_map(parts).collect();
+        let dim = episodes[0].positions.nrows();
+        let sum = |of: &dyn Fn(&Part) -> f64| pairs.iter().map(of).sum::<f64>();
+        let power = sum(&|(_, s)| s.norm_squared());
+        let common = sum(&|(d, s)| d.dot(s)) / power;
+        let factor = |axis: usize| {
+            let own = sum(&|(_, s)| s[axis].powi(2));
+            // A channel that hardly moves says nothing of its factor.
+            if own > 1e-6 * power { sum(&|(d, s)| d[axis] * s[axis]) / own } else { common }
+        };
+        let factors = DVector::from_fn(dim, |axis, _| factor(axis));
+        let left = sum(&|(d, s)| (d - s.component_mul(&factors)).norm_squared());
+        // Both ends of a part carry the positions' noise.
+        let noise = 2.0 * noise.positions.iter().flatten().map(|sd| sd * sd).sum::<f64>() * pairs.len() as f64;
+        let moved = sum(&|(d, _)| d.norm_squared());
+        let explained = if left <= NOISE * noise { 1.0 } else { 1.0 - (left - noise) / (moved - noise) };
+        Steps { factors, explained: if explained.is_finite() { explained } else { 0.0 } }
+    }
+}
+
+/// Displacement and what velocities make of it, over parts of a movement.
+fn parts(episode: &Episode) -> Vec<(DVector<f64>, DVector<f64>)> {
+    let steps = episode.n_samples() - 1;
+    let parts = PARTS.min((steps / 2).max(1));
+    let Some(velocities) = &episode.velocities else { return Vec::new() };
+    (0..parts)
+        .map(|part| {
+            let (from, to) = (part * steps / parts, (part + 1) * steps / parts);
+            let moved = episode.positions.column(to) - episode.positions.column(from);
+            let mut said = DVector::zeros(moved.len());
+            for i in from..to {
+                said += (velocities.column(i) + velocities.column(i + 1)) * (0.5 * episode.times.seconds(i, i + 1));
+            }
+            (moved, said)
+        })
+        .collect()
+}
+
+/// Whether each velocity is the step after it, the step before it, or the mean of both.
+fn made_of_positions(episodes: &[Episode]) -> bool {
+    let off = |of: &dyn Fn(&Episode, usize) -> DVector<f64>| {
+        let (mut left, mut power) = (0.0, 0.0);
+        for episode in episodes {
+            let Some(velocities) = &episode.velocities else { continue };
+            for i in 1..episode.n_samples() - 1 {
+                left += (velocities.column(i) - of(episode, i)).norm_squared();
+                power += velocities.column(i).norm_squared();
+            }
+        }
+        left <= SAME * SAME * power
+    };
+    let after = |episode: &Episode, i: usize| episode.step(i) / episode.times.seconds(i, i + 1);
+    let before = |episode: &Episode, i: usize| episode.step(i - 1) / episode.times.seconds(i - 1, i);
+    let both = |episode: &Episode, i: usize| {
+        (episode.step(i) + episode.step(i - 1)) / (episode.times.seconds(i, i + 1) + episode.times.seconds(i - 1, i))
+    };
+    off(&after) || off(&before) || off(&both)
+}
+
+/// Velocities in other units than the steps: brought to those of positions and stamps, and said.
+fn mend(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &mut Notes) {
+    let (low, high) = (fit.factors.min(), fit.factors.max());
+    let step = episodes[0].times.seconds(0, 1);
+    if step > SLOW && fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(&(factor * 1000.0))) {
+        episodes.iter_mut().for_each(|episode| episode.times = episode.times.divided_by(1000.0));
+        let what = format!("stamps are {step:.0} apart and velocities 1000 times the steps");
+        notes.decided("time step", format!("{} s", step / 1000.0), format!("{what}: stamps are milliseconds"), "--dt");
+        notes.found(
+            Verdict::Doubtful,
+            format!("{what}: stamps were read as milliseconds"),
+            "name the column t_ms, or give --dt",
+        );
+        return;
+    }
+    let common = low * high > 0.0 && high / low < AGREE && low / high < AGREE;
+    let factors = if common {
+        let factor = (low * high).sqrt().copysign(low);
+        DVector::repeat(channels.len(), 1.0 / whole(1.0 / factor, step))
+    } else {
+        fit.factors.clone()
+    };
+    for velocities in episodes.iter_mut().filter_map(|episode| episode.velocities.as_mut()) {
+        velocities.column_iter_mut().for_each(|mut column| column.component_mul_assign(&factors));
+    }
+    let (what, next) = if common {
+        let times = 1.0 / factors[0];
+        (format!("velocities are {} times the steps", short(times)), guess(times, step).to_owned())
+    } else {
+        let odd = (0..channels.len()).max_by(|&a, &b| fit.factors[a].ln_abs().total_cmp(&fit.factors[b].ln_abs()));
+        let odd = odd.unwrap_or(0);
+        let times = 1.0 / fit.factors[odd];
+        (
+            format!(
+                "velocities of channel {} are {} times its steps, unlike the others",
+                channels[odd].name,
+                short(times)
+            ),
+            guess(times, step).to_owned(),
+        )
+    };
+    notes.decided("velocities", "recorded, rescaled to agree with the steps", what.clone(), "--integration");
+    notes.found(Verdict::Doubtful, format!("{what}; they were converted to the units of positions and stamps"), next);
+}
+
+trait LnAbs {
+    /// How far from 1, up or down, a change of sign most of all.
+    fn ln_abs(self) -> f64;
+}
+
+impl LnAbs for f64 {
+    fn ln_abs(self) -> f64 {
+        if self < 0.0 { f64::INFINITY } else { self.ln().abs() }
+    }
+}
+
+/// Factors that mistakes have.
+fn usual(step: f64) -> [f64; 6] {
+    [1000.0, 0.001, 1f64.to_degrees(), 1f64.to_radians(), -1.0, step]
+}
+
+/// A factor as mistakes have it, where it is that near: rules of integration differ by some percent.
+fn whole(times: f64, step: f64) -> f64 {
+    usual(step).into_iter().find(|value| (times / value - 1.0).abs() < NEAR).unwrap_or(times)
+}
+
+fn guess(times: f64, step: f64) -> &'static str {
+    const WORDS: [&str; 6] = [
+        "velocity columns in millimetres, or stamps in milliseconds? Name the units in the file, or give --dt",
+        "positions in millimetres? Name the units in the file",
+        "degrees and radians mixed? Use one of them (--degrees)",
+        "degrees and radians mixed? Use one of them (--degrees)",
+        "check the sign: velocities point against the movement",
+        "these are steps, not velocities per second",
+    ];
+    let named = usual(step).into_iter().zip(WORDS).find(|(value, _)| (times / value - 1.0).abs() < NEAR);
+    named.map_or("check units and time step (--dt)", |(_, words)| words)
+}

@@ -1,0 +1,159 @@
+use motion::{Demonstrations, Trajectory, Verdict};
+use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
+use smoothing::PositionNoise;
+
+use crate::notes::Notes;
+use crate::repairs::agreement::Agreement;
+use crate::{VelocitySource, in_words};
+
+/// Positions count as exact if noise makes less than this share of the squared steps.
+const EXACT: f64 = 0.01;
+/// Above this share the user should know.
+const NOISY: f64 = 0.1;
+/// Velocities count as exact if noise makes less than this share of their squares.
+const EXACT_VELOCITIES: f64 = 1e-3;
+/// Velocities this noisy are worth less than positions.
+const USELESS_VELOCITIES: f64 = 0.2;
+
+/// Steps are multiples of another if they are so to this part of it.
+const WHOLE: f64 = 0.01;
+/// Digits are few if a value occurs so often on average.
+const REPEATED: usize = 4;
+
+/// Noise of recordings, estimated from third differences.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Noise {
+    /// Standard deviation of the noise in each channel, (n), in scaled units; none with too few samples for an estimate.
+    pub positions: Option<Vec<f64>>,
+    /// Share of the squared steps that is noise; 0 where it cannot be estimated.
+    pub step_share: f64,
+    /// Share of the squared recorded velocities that is noise; none where there are none or it cannot be estimated.
+    pub velocity_share: Option<f64>,
+}
+
+/// Of positions, and of velocities where they were recorded.
+pub(crate) fn of(demonstrations: &Demonstrations) -> Noise {
+    let positions = PositionNoise::of(demonstrations).ok().map(|noise| with_resolution(demonstrations, noise));
+    let velocity_share = velocity_noise(demonstrations).map(|(variance, power)| variance / power);
+    Noise {
+        step_share: positions.as_ref().map_or(0.0, |noise| noise.step_share),
+        positions: positions.map(|noise| noise.deviations.iter().copied().collect()),
+        velocity_share,
+    }
+}
+
+/// Positions with few digits are no better than those: a step q of the last digit is noise of deviation q/√12, which
+/// differences do not see while the digits stand still.
+fn with_resolution(demonstrations: &Demonstrations, noise: PositionNoise) -> PositionNoise {
+    let least = DVector::from_fn(demonstrations.dim(), |axis, _| {
+        resolution(demonstrations, axis).unwrap_or(0.0) / 12f64.sqrt()
+    });
+    let deviations = noise.deviations.sup(&least);
+    let before = noise.deviations.norm_squared();
+    if deviations == noise.deviations {
+        return noise;
+    }
+    let steps = demonstrations.trajectories().iter().map(|movement| {
+        let (x, steps) = (movement.states(), movement.n_samples() - 1);
+        ((x.columns(1, steps) - x.columns(0, steps)).norm_squared(), steps)
+    });
+    let (sum, count) = steps.fold((0.0, 0), |(sum, count), (square, steps)| (sum + square, count + steps));
+    let step_share = noise.step_share + 2.0 * (deviations.norm_squared() - before) * count as f64 / sum;
+    PositionNoise { deviations, step_share: step_share.min(1.0) }
+}
+
+/// The step of which all differences between a channel's values are multiples, if there are few values.
+pub(crate) fn resolution(demonstrations: &Demonstrations, axis: usize) -> Option<f64> {
+    let movements = demonstrations.trajectories().iter();
+    let mut values: Vec<f64> =
+        movements.flat_map(|movement| movement.states().row(axis).iter().copied().collect::<Vec<_>>()).collect();
+    let all = values.len();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    let least = values.windows(2).map(|pair| pair[1] - pair[0]).min_by(f64::total_cmp)?;
+    let whole = |step: f64| (step / least - (step / least).round()).abs() < WHOLE;
+    let few = REPEATED * values.len() < all;
+    (few && values.windows(2).all(|pair| whole(pair[1] - pair[0]))).then_some(least)
+}
+
+/// Variance of noise in recorded velocities, summed over axes, and their mean square.
+fn velocity_noise(demonstrations: &Demonstrations) -> Option<(f64, f64)> {
+    let as_positions = |trajectory: &Trajectory| {
+        let velocities = Trajectory::new(trajectory.velocities()?.clone(), trajectory.time_step()).ok()?;
+        match trajectory.times() {
+            None => Some(velocities),
+            Some(times) => velocities.with_times(times.to_vec()).ok(),
+        }
+    };
+    let velocities: Option<Vec<_>> = demonstrations.trajectories().iter().map(as_positions).collect();
+    let noise = PositionNoise::of(&Demonstrations::new(velocities?).ok()?).ok()?;
+    let each = demonstrations.trajectories().iter().filter_map(Trajectory::velocities);
+    let (power, count) = each.fold((0.0, 0), |(power, count), u| (power + u.norm_squared(), count + u.ncols()));
+    Some((noise.deviations.norm_squared(), power / count as f64))
+}
+
+/// The kind of recording where the user requested a smoothing.
+pub(crate) fn as_requested(demonstrations: &Demonstrations, noise: &Noise, agreement: Agreement) -> VelocitySource {
+    if agreement == Agreement::None {
+        return VelocitySource::PositionsAsRequested;
+    }
+    let noisy = noise.velocity_share.is_some_and(|share| share > EXACT_VELOCITIES);
+    match velocity_noise(demonstrations).filter(|_| noisy && agreement == Agreement::Own) {
+        Some((variance, _)) => VelocitySource::Noisy(variance / demonstrations.dim() as f64),
+        None => VelocitySource::Recorded,
+    }
+}
+
+/// The kind of recording for the learners.
+pub(crate) fn decide(
+    demonstrations: &Demonstrations,
+    noise: &Noise,
+    agreement: Agreement,
+    notes: &mut Notes,
+) -> VelocitySource {
+    let share = noise.step_share;
+    let words = match &noise.positions {
+        None => "too few consecutive samples to estimate position noise".to_owned(),
+        Some(_) if share < 1e-4 => "position noise is negligible".to_owned(),
+        Some(_) => format!("noise makes {} of the squared steps", percent(share)),
+    };
+    let noisy_velocities = noise.velocity_share.filter(|&share| share > EXACT_VELOCITIES);
+    let recorded = match agreement {
+        Agreement::None => VelocitySource::Positions,
+        Agreement::Differences if share > EXACT => VelocitySource::Positions,
+        _ if noisy_velocities.is_some_and(|share| share > USELESS_VELOCITIES) => VelocitySource::Positions,
+        _ if share > EXACT && noisy_velocities.is_none() => VelocitySource::Fused,
+        _ => match noisy_velocities.and(velocity_noise(demonstrations)) {
+            Some((variance, _)) => VelocitySource::Noisy(variance / demonstrations.dim() as f64),
+            None => VelocitySource::Recorded,
+        },
+    };
+    let (value, why) = match recorded {
+        VelocitySource::Recorded => ("velocities as recorded", words),
+        VelocitySource::Fused => ("velocities as recorded, positions fused with them", words),
+        VelocitySource::Noisy(_) => (
+            "velocities as recorded, with their noise",
+            format!("noise share of their squares: {}", percent(noisy_velocities.unwrap_or(0.0))),
+        ),
+        VelocitySource::Positions if agreement == Agreement::None => ("positions smoothed piecewise", words),
+        VelocitySource::Positions | VelocitySource::PositionsAsRequested => {
+            ("positions smoothed piecewise", format!("{words}; velocities are no better"))
+        }
+    };
+    notes.decided("smoothing", value, why, "--smooth");
+    if recorded == VelocitySource::Positions && share > NOISY {
+        notes.found(
+            Verdict::Good,
+            format!("noise makes {} of the squared steps", percent(share)),
+            "record velocities or commands, or measure positions more exactly",
+        );
+    }
+    recorded
+}
+
+/// Where steps are nothing but noise, its estimate may exceed them.
+fn percent(share: f64) -> String {
+    in_words::percent(share.min(1.0))
+}

@@ -1,0 +1,82 @@
+//! Samples at rest, before a movement begins and after it has ended.
+
+use motion::{Demonstrations, Episode, Recordings, Verdict};
+use nalgebra::DMatrix;
+
+use crate::notes::{Notes, and_more};
+use crate::samples::noise;
+
+/// At rest for fewer samples than this is no stand-still.
+const STILL: usize = 10;
+/// Noise of more than this share of a channel's spread is as large as the movement itself.
+const LOUD: f64 = 0.1;
+/// What changes by less than this share of its spread is at rest.
+const REST: f64 = 1e-6;
+
+/// How far from the first or last sample a channel is at rest, (n).
+struct Rest(Vec<f64>);
+
+impl Rest {
+    /// `noise`: standard deviation of every channel, (n), where it is known.
+    fn of(demonstrations: &Demonstrations, noise: Option<&[f64]>) -> Rest {
+        let values = |axis: usize| {
+            demonstrations
+                .trajectories()
+                .iter()
+                .flat_map(move |movement| movement.states().column_iter().map(move |x| x[axis]))
+        };
+        let bound = |axis: usize| {
+            let (low, high) = values(axis).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+            let (spread, noise) = (high - low, noise.map_or(0.0, |noise| noise[axis]));
+            (4.0 * noise).min(LOUD * spread).max(REST * spread)
+        };
+        Rest((0..demonstrations.dim()).map(bound).collect())
+    }
+
+    /// Samples at rest at the start and at the end of a movement (n, N).
+    fn ends(&self, states: &DMatrix<f64>) -> (usize, usize) {
+        let count = |samples: &mut dyn Iterator<Item = usize>| {
+            let Some(end) = samples.next() else { return 0 };
+            let near = |&i: &usize| (0..self.0.len()).all(|k| (states[(k, i)] - states[(k, end)]).abs() <= self.0[k]);
+            let still = samples.take_while(near).count();
+            if still < STILL { 0 } else { still }
+        };
+        let (start, end) = (count(&mut (0..states.ncols())), count(&mut (0..states.ncols()).rev()));
+        if start + end < states.ncols() { (start, end) } else { (0, end) }
+    }
+}
+
+/// Removes samples at rest at either end of every episode (`--trim-still`).
+pub fn trim_still(recordings: &mut Recordings) {
+    let moving = recordings.episodes.iter().filter_map(|episode| episode.trajectory().ok());
+    let Ok(demonstrations) = Demonstrations::new(moving.collect()) else { return };
+    let rest = Rest::of(&demonstrations, noise::of(&demonstrations).positions.as_deref());
+    for episode in &mut recordings.episodes {
+        let (start, end) = rest.ends(&episode.positions);
+        if start + end > 0 {
+            *episode = episode.part(start, episode.n_samples() - end);
+            let first = episode.times.stamps()[0];
+            episode.times.stamps_mut().iter_mut().for_each(|time| *time -= first);
+        }
+    }
+}
+
+/// Says where episodes stand still at an end.
+pub(crate) fn remark(demonstrations: &Demonstrations, noise: Option<&[f64]>, episodes: &[Episode], notes: &mut Notes) {
+    let rest = Rest::of(demonstrations, noise);
+    let stretches: Vec<(usize, &str, &str)> = episodes
+        .iter()
+        .flat_map(|episode| {
+            let (start, end) = rest.ends(&episode.positions);
+            [(start, "begins", &episode.name[..]), (end, "ends", &episode.name[..])]
+        })
+        .filter(|&(samples, ..)| samples > 0)
+        .collect();
+    if let Some((samples, verb, name)) = stretches.first() {
+        notes.found(
+            Verdict::Good,
+            format!("episode {name} {verb} with {samples} samples at rest{}", and_more(stretches.len())),
+            "nothing can be learnt there: --trim-still removes them",
+        );
+    }
+}

@@ -1,0 +1,83 @@
+//! Averages many noisy samples to fewer, more exact ones.
+
+use motion::{Demonstrations, MotionError, Trajectory};
+use nalgebra::DMatrix;
+
+use crate::in_words::percent;
+use crate::notes::Notes;
+use crate::samples::noise::Noise;
+
+/// Samples are averaged until noise makes at most this share of the squared steps.
+const CALM: f64 = 0.3;
+/// Movements keep at least so many samples.
+const LEAST: usize = 40;
+
+/// How many samples in a row become one: 1 leaves all as they are.
+///
+/// The mean of k samples has a k-th of their noise's variance, and steps between such means are k times as long.
+pub(crate) fn decide(demonstrations: &Demonstrations, noise: &Noise, notes: &mut Notes) -> usize {
+    let Some(deviations) = &noise.positions else { return 1 };
+    let variance: f64 = deviations.iter().map(|sd| sd * sd).sum();
+    let mut lengths: Vec<usize> = demonstrations.trajectories().iter().map(Trajectory::n_samples).collect();
+    let middle = lengths.len() / 2;
+    let usual = *lengths.select_nth_unstable(middle).1;
+    let mut taken = 1;
+    let mut share = noise.step_share;
+    while share > CALM && usual / (2 * taken) >= LEAST {
+        taken *= 2;
+        let Ok(fewer) = thinned(demonstrations, taken) else { break };
+        share = 2.0 * variance / taken as f64 / mean_squared_step(&fewer);
+    }
+    if taken > 1 {
+        let why = format!(
+            "noise share of the squared steps: {} before, {} after",
+            percent(noise.step_share.min(1.0)),
+            percent(share)
+        );
+        notes.decided("averaging", format!("over {taken} samples"), why, "--smooth");
+    }
+    taken
+}
+
+fn mean_squared_step(demonstrations: &Demonstrations) -> f64 {
+    let (mut sum, mut count) = (0.0, 0);
+    for movement in demonstrations.trajectories() {
+        let x = movement.states();
+        let steps = x.ncols() - 1;
+        sum += (x.columns(1, steps) - x.columns(0, steps)).norm_squared();
+        count += steps;
+    }
+    sum / count as f64
+}
+
+/// Means of so many samples in a row; a rest shorter than that is left out. Movements of fewer than two means stay.
+///
+/// # Errors
+/// Where means overflow.
+pub fn thinned(demonstrations: &Demonstrations, taken: usize) -> Result<Demonstrations, MotionError> {
+    let movements = demonstrations.trajectories().iter().map(|movement| means(movement, taken));
+    Demonstrations::new(movements.collect::<Result<_, _>>()?)
+}
+
+fn means(movement: &Trajectory, taken: usize) -> Result<Trajectory, MotionError> {
+    let count = movement.n_samples() / taken;
+    if taken == 1 || count < 2 {
+        return Ok(movement.clone());
+    }
+    let of = |values: &DMatrix<f64>| {
+        let means: Vec<_> = (0..count).map(|at| values.columns(at * taken, taken).column_mean()).collect();
+        DMatrix::from_columns(&means)
+    };
+    let thinned = Trajectory::new(of(movement.states()), movement.time_step() * taken as f64)?;
+    let thinned = match movement.times() {
+        None => thinned,
+        Some(times) => {
+            let mean = |at: usize| times[at * taken..(at + 1) * taken].iter().sum::<f64>() / taken as f64;
+            thinned.with_times((0..count).map(mean).collect())?
+        }
+    };
+    match movement.velocities() {
+        None => Ok(thinned),
+        Some(velocities) => thinned.with_velocities(of(velocities)),
+    }
+}
