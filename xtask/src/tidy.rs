@@ -16,6 +16,9 @@ use crate::sources::{Source, circles, product_lines};
 /// Names that say nothing about what is inside.
 const EMPTY_NAMES: [&str; 4] = ["utils", "common", "helpers", "prelude"];
 
+/// Files beyond which a folder of sources is no longer read at a glance.
+const MOST_FILES: usize = 15;
+
 /// Lines beyond which a source file holds more than one idea.
 const LONGEST_FILE: usize = 300;
 
@@ -80,6 +83,7 @@ pub(crate) fn execute() -> anyhow::Result<()> {
     for name in allowed.keys().filter(|name| !manifests.iter().any(|manifest| manifest.package.name == **name)) {
         faults.push(format!("xtask/dependencies.toml: there is no crate {name}; delete its entry"));
     }
+    faults.extend(wing_faults(&folders, &manifests));
     let page = read(&root.join(equations::PAGE))?;
     let equations = equations::defined(&page);
     for folder in ["crates", "xtask", "benches"] {
@@ -125,6 +129,20 @@ fn manifests(folders: &[PathBuf]) -> anyhow::Result<Vec<Manifest>> {
 
 fn is_of_paper(folder: &Path) -> bool {
     folder.ends_with("xtask") || folder.parent().is_some_and(|above| above.ends_with(PAPER))
+}
+
+/// What a user gets must not need what only the paper needs.
+fn wing_faults(folders: &[PathBuf], manifests: &[Manifest]) -> Vec<String> {
+    let (paper, users): (Vec<_>, Vec<_>) = folders.iter().zip(manifests).partition(|(folder, _)| is_of_paper(folder));
+    let users = users.into_iter().filter(|(folder, _)| !folder.ends_with("benches"));
+    let fault = |(_, user): (_, &Manifest)| {
+        let named = user.dependencies();
+        let needed = paper.iter().map(|(_, paper)| paper.package.name.as_str()).filter(|name| named.contains(name));
+        needed
+            .map(|name| format!("crate {} may not depend on {name}, which is the paper's", user.package.name))
+            .collect::<Vec<_>>()
+    };
+    users.flat_map(fault).collect()
 }
 
 /// How many lines of product code there are for whom.
@@ -174,7 +192,15 @@ fn dependency_faults(manifest: &Manifest, allowed: &BTreeMap<String, Allowed>) -
 }
 
 fn source_faults(folder: &Path, equations: &BTreeSet<&str>, faults: &mut Vec<String>) -> anyhow::Result<()> {
-    for path in entries(folder)? {
+    let paths = entries(folder)?;
+    let files = paths.iter().filter(|path| path.extension().is_some_and(|extension| extension == "rs")).count();
+    if files > MOST_FILES && folder.components().any(|part| part.as_os_str() == "src") {
+        faults.push(format!(
+            "{}: {files} files; {MOST_FILES} at most, group those that belong together",
+            folder.display()
+        ));
+    }
+    for path in paths {
         let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
         if path.is_dir() {
             source_faults(&path, equations, faults)?;
@@ -231,6 +257,19 @@ mod tests {
     #[test]
     fn this_workspace_is_tidy() {
         execute().unwrap();
+    }
+
+    #[test]
+    fn what_users_get_does_not_need_the_paper() {
+        let manifest = |text: &str| toml::from_str::<Manifest>(text).unwrap();
+        let folders = ["crates/plot", "crates/paper/figures", "benches"].map(|folder| Path::new("/w").join(folder));
+        let manifests = [
+            manifest("package.name = 'plot'\ndependencies = { figures = '1' }"),
+            manifest("package.name = 'figures'\ndependencies = { plot = '1' }"),
+            manifest("package.name = 'benches'\ndependencies = { figures = '1' }"),
+        ];
+        let faults = wing_faults(&folders, &manifests);
+        assert_eq!(faults, ["crate plot may not depend on figures, which is the paper's"]);
     }
 
     #[test]

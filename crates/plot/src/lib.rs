@@ -4,7 +4,7 @@
 //! - [`Curves`]: quantities against a quantity, linear or logarithmic, with bands, and named at their ends.
 //! - [`Canvas`]: lines, arrows and words without axes.
 //! - [`Relief`]: a scalar field or dots in perspective.
-//! - [`Space`]: things in space, the nearer ones before the others.
+//! - `Space`: things in space, the nearer ones before the others; with the feature `space`.
 //!
 //! Sizes of panels, widths of lines and radii of dots are in pixels; everything else is in the units of what is shown.
 //! Colours are written as in HTML, `#rrggbb`, as they are on white paper; in an SVG greys change for a reader who prefers dark
@@ -45,6 +45,7 @@ mod picture;
 mod plane;
 mod relief;
 mod sign;
+#[cfg(feature = "space")]
 mod space;
 mod ticks;
 
@@ -58,4 +59,5 @@ pub use picture::Picture;
 pub use plane::{Layer, Plane};
 pub use relief::Relief;
 pub use sign::{Filling, Sign};
+#[cfg(feature = "space")]
 pub use space::{Camera, Frame, Item, Paint, Space};

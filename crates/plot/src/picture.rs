@@ -105,10 +105,8 @@ fn name(definition: &str) -> Option<&str> {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Point3;
-
     use super::*;
-    use crate::{Camera, Item, Layer, Paint, Plane, Space};
+    use crate::{Layer, Plane};
 
     #[test]
     fn a_picture_is_the_same_whatever_was_drawn_before() {
@@ -136,8 +134,12 @@ mod tests {
         assert!(!first.contains("kuva-"), "{first}");
     }
 
+    #[cfg(feature = "space")]
     #[test]
     fn pixels_stand_in_the_panel_that_they_are_of() {
+        use crate::{Camera, Item, Paint, Space};
+        use nalgebra::Point3;
+
         let ball = |color| Space {
             title: String::new(),
             camera: Camera::ABOVE,

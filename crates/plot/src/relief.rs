@@ -62,7 +62,7 @@ impl Panel for Relief {
     }
 }
 
-/// Words along axes as in [`crate::Space`]: level, and none bolder than the others.
+/// Words along axes as in `Space`: level, and none bolder than the others.
 fn upright(element: &mut Primitive) {
     if let Primitive::Text { size, rotate: rotate @ Some(_), bold, .. } = element {
         (*size, *rotate, *bold) = (WORDS, None, false);

@@ -76,7 +76,7 @@ pub(crate) fn beside(max_rows: usize) -> Beside {
 /// # Errors
 /// If the robot's file is damaged.
 pub fn arm() -> anyhow::Result<ThreeLinkArm> {
-    Ok(ThreeLinkArm::new(include_str!("../../../../robots/planar_three_link.urdf"))?)
+    Ok(ThreeLinkArm::new(include_str!("../../../../../robots/planar_three_link.urdf"))?)
 }
 
 /// How PolicyAlign learns the arm.

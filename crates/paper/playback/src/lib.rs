@@ -8,8 +8,8 @@
 //! use playback::PalmTracking;
 //! use rand::SeedableRng;
 //!
-//! # let urdf = include_str!("../../../robots/asimo_upper_body.urdf");
-//! # let srdf = include_str!("../../../robots/asimo_upper_body.srdf");
+//! # let urdf = include_str!("../../../../robots/asimo_upper_body.urdf");
+//! # let srdf = include_str!("../../../../robots/asimo_upper_body.srdf");
 //! let grasp = Grasp::new(UpperBody::new(urdf, srdf)?);
 //! let start = grasp.start(&mut rand_chacha::ChaCha8Rng::seed_from_u64(1))?;
 //! let palms = grasp.movement(&start)?.observed;

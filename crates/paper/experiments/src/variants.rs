@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::measure::Measure;
 
 /// The committed ones.
-const COMMITTED: &str = include_str!("../../../docs/records/variants.json");
+const COMMITTED: &str = include_str!("../../../../docs/records/variants.json");
 
 /// Row and measure.
 pub type Cell = (String, Measure);

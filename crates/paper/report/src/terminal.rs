@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn the_committed_tables_fit_a_narrow_terminal() {
-        let text = include_str!("../../../docs/records/seed-1/results.json");
+        let text = include_str!("../../../../docs/records/seed-1/results.json");
         let results = Results::read("results.json", text).unwrap();
         let text = terminal(&registry().unwrap(), &results);
         let widest = text.lines().max_by_key(|line| measure_text_width(line)).unwrap();

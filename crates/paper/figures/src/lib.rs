@@ -154,7 +154,7 @@ impl Document {
 }
 
 impl Figure {
-    /// A figure with the words that `crates/figures/words.toml` has for it.
+    /// A figure with the words that `crates/paper/figures/words.toml` has for it.
     fn new(
         id: &'static str,
         experiment: Option<&'static str>,

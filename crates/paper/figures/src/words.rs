@@ -1,4 +1,4 @@
-//! What stands beside the figures, from `crates/figures/words.toml`.
+//! What stands beside the figures, from `crates/paper/figures/words.toml`.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -17,7 +17,7 @@ pub(super) struct Words {
 
 /// The words of all figures, by id.
 static ALL: LazyLock<BTreeMap<String, Words>> = LazyLock::new(|| {
-    toml::from_str(include_str!("../words.toml")).expect("crates/figures/words.toml has words for each figure")
+    toml::from_str(include_str!("../words.toml")).expect("crates/paper/figures/words.toml has words for each figure")
 });
 
 /// The words of a figure that has some.

@@ -159,7 +159,7 @@ mod tests {
     /// Either reading of Table 1 counts once.
     #[test]
     fn both_tallies_count_every_printed_cell_once() {
-        let text = include_str!("../../../docs/records/seed-1/results.json");
+        let text = include_str!("../../../../docs/records/seed-1/results.json");
         let (experiments, results) = (registry().unwrap(), Results::read("results.json", text).unwrap());
         let mut pairs: Vec<(&Experiment, &ExperimentResult)> = vec![];
         for result in &results.experiments {

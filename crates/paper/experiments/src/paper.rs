@@ -20,9 +20,9 @@ pub struct Printed {
 /// Printed figures by row and measure.
 pub type PaperTable = BTreeMap<String, BTreeMap<Measure, Printed>>;
 
-/// Reads one of the files in `crates/experiments/paper`.
+/// Reads one of the files in `crates/paper/experiments/paper`.
 pub(crate) fn paper_table(text: &str) -> anyhow::Result<PaperTable> {
-    toml::from_str(text).context("the paper's figures (crates/experiments/paper/*.toml) cannot be read")
+    toml::from_str(text).context("the paper's figures (crates/paper/experiments/paper/*.toml) cannot be read")
 }
 
 /// The row of [`Explanations`] whose texts are about every row that has none.
@@ -37,7 +37,7 @@ pub struct Explanations {
     pub quotes: Vec<(Quote, Cell)>,
 }
 
-/// Reads why single cells of an experiment stand out, from one of the files in `crates/experiments/paper`.
+/// Reads why single cells of an experiment stand out, from one of the files in `crates/paper/experiments/paper`.
 pub(crate) fn explanations(experiment: &str, text: &str) -> anyhow::Result<Explanations> {
     let read = || {
         let mut explanations = Explanations { texts: toml::from_str(text)?, quotes: Vec::new() };
@@ -51,5 +51,5 @@ pub(crate) fn explanations(experiment: &str, text: &str) -> anyhow::Result<Expla
         }
         Ok::<_, anyhow::Error>(explanations)
     };
-    read().context("the explanations (crates/experiments/paper/*-explained.toml) cannot be read")
+    read().context("the explanations (crates/paper/experiments/paper/*-explained.toml) cannot be read")
 }

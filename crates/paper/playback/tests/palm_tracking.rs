@@ -10,8 +10,8 @@ use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-const UPPER_BODY: &str = include_str!("../../../robots/asimo_upper_body.urdf");
-const UPPER_BODY_SRDF: &str = include_str!("../../../robots/asimo_upper_body.srdf");
+const UPPER_BODY: &str = include_str!("../../../../robots/asimo_upper_body.urdf");
+const UPPER_BODY_SRDF: &str = include_str!("../../../../robots/asimo_upper_body.srdf");
 
 fn upper_body() -> UpperBody {
     UpperBody::new(UPPER_BODY, UPPER_BODY_SRDF).expect("the project's own robot")

@@ -89,7 +89,7 @@ mod tests {
     #[test]
     fn a_cell_that_is_not_of_its_values_is_found() {
         let experiments = registry().unwrap();
-        let text = include_str!("../../../docs/records/seed-2/results.json");
+        let text = include_str!("../../../../docs/records/seed-2/results.json");
         let mut committed = Results::read("results.json", text).unwrap();
         committed.experiments.retain(|result| result.id == "table1");
         check(&experiments, &committed).unwrap();

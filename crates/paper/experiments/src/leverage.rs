@@ -9,7 +9,7 @@ use crate::measure::Measure;
 use crate::verdict::Verdict;
 
 /// The committed one.
-const COMMITTED: &str = include_str!("../../../docs/records/leverage.json");
+const COMMITTED: &str = include_str!("../../../../docs/records/leverage.json");
 
 /// What was measured, for every setting.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

@@ -70,8 +70,8 @@ mod tests {
     use super::sentence;
 
     const RECORDS: [&str; 2] = [
-        include_str!("../../../../docs/records/seed-1/results.json"),
-        include_str!("../../../../docs/records/seed-2/results.json"),
+        include_str!("../../../../../docs/records/seed-1/results.json"),
+        include_str!("../../../../../docs/records/seed-2/results.json"),
     ];
 
     #[test]

@@ -310,7 +310,7 @@ mod tests {
         }
         let mended = format!("from all around, they end {:.1} cm away", ends[4]);
         assert!(beside_paper::text("figure8").contains(&mended), "{mended}");
-        let guide = include_str!("../../../../docs/which-learner.md");
+        let guide = include_str!("../../../../../docs/which-learner.md");
         let learnt = ends[2];
         let (id, _) = shown(&playback).nth(2).unwrap();
         let hands =

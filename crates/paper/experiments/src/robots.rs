@@ -8,7 +8,7 @@ use demo_gen::UpperBody;
 /// # Errors
 /// If its files are damaged.
 pub fn upper_body() -> anyhow::Result<UpperBody> {
-    let urdf = include_str!("../../../robots/asimo_upper_body.urdf");
-    let srdf = include_str!("../../../robots/asimo_upper_body.srdf");
+    let urdf = include_str!("../../../../robots/asimo_upper_body.urdf");
+    let srdf = include_str!("../../../../robots/asimo_upper_body.srdf");
     UpperBody::new(urdf, srdf).context("robots/asimo_upper_body cannot be used")
 }

@@ -183,8 +183,8 @@ mod tests {
     fn what_stands_out_is_explained() {
         let experiments = registry().unwrap();
         for text in [
-            include_str!("../../../docs/records/seed-1/results.json"),
-            include_str!("../../../docs/records/seed-2/results.json"),
+            include_str!("../../../../docs/records/seed-1/results.json"),
+            include_str!("../../../../docs/records/seed-2/results.json"),
         ] {
             let results = Results::read("results.json", text).unwrap();
             for compared in compared(&experiments, &results, None) {

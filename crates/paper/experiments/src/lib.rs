@@ -75,9 +75,9 @@ pub struct Experiment {
     pub contests: Vec<Contest>,
     /// What is measured, in the table's order.
     pub setups: Vec<Setup>,
-    /// The printed figures: `crates/experiments/paper/*.toml`; empty where the paper shows curves only.
+    /// The printed figures: `crates/paper/experiments/paper/*.toml`; empty where the paper shows curves only.
     pub paper: PaperTable,
-    /// Why single cells stand out: `crates/experiments/paper/*-explained.toml`.
+    /// Why single cells stand out: `crates/paper/experiments/paper/*-explained.toml`.
     pub explanations: Explanations,
 }
 
@@ -96,12 +96,17 @@ impl Experiment {
     fn checked(self) -> anyhow::Result<Self> {
         let of_paper = |row: &&Row| !self.paper.is_empty() && row.of != RowOf::Contestant;
         for row in self.rows().filter(of_paper) {
-            ensure!(self.paper.contains_key(&row.id), "{}: crates/experiments/paper has no row {}", self.id, row.id);
+            ensure!(
+                self.paper.contains_key(&row.id),
+                "{}: crates/paper/experiments/paper has no row {}",
+                self.id,
+                row.id
+            );
         }
         for id in self.paper.keys().chain(self.explanations.texts.keys()) {
             ensure!(
                 id == EVERY_ROW || self.rows().any(|row| row.id == *id),
-                "{}: crates/experiments/paper has a row {id} that is not run",
+                "{}: crates/paper/experiments/paper has a row {id} that is not run",
                 self.id
             );
         }

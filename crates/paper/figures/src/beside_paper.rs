@@ -11,7 +11,7 @@ use crate::{Figure, Sources, figures};
 
 /// The full run that the texts speak of.
 pub(super) fn records() -> Sources {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/records/seed-1");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../docs/records/seed-1");
     let results = Results::read("results.json", &fs::read_to_string(folder.join("results.json")).unwrap()).unwrap();
     let document = |id: &str| {
         let text = fs::read_to_string(folder.join(format!("figures/{id}.json")))?;
