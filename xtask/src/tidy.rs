@@ -25,9 +25,6 @@ const LONGEST_FILE: usize = 300;
 /// Crates that only the paper needs.
 const PAPER: &str = "crates/paper";
 
-/// Packages whose circles of files are not cut yet.
-const REWORKED: [&str; 2] = ["demo-io", "prepare"];
-
 /// What a crate's `[dependencies]` may name.
 #[derive(Debug, Deserialize)]
 struct Allowed {
@@ -93,10 +90,8 @@ pub(crate) fn execute() -> anyhow::Result<()> {
     for folder in folders.iter().filter(|folder| !folder.ends_with("benches")) {
         let sources = sources(&folder.join("src"))?;
         *if is_of_paper(folder) { &mut paper } else { &mut users } += product_lines(&sources);
-        if !REWORKED.iter().any(|name| folder.ends_with(name)) {
-            let fault = |circle| format!("{}: {circle}", folder.display());
-            faults.extend(circles::faults(&sources).into_iter().map(fault));
-        }
+        let fault = |circle| format!("{}: {circle}", folder.display());
+        faults.extend(circles::faults(&sources).into_iter().map(fault));
     }
     say(&lines_in_words(users, paper));
     if faults.is_empty() {

@@ -1,6 +1,7 @@
 //! The paper's figures. A run computes documents, plain numbers kept as `figures/*.json`; figures are drawn from these
 //! and from the results, and from nothing else, so that they can be drawn again without a run.
 
+#[cfg(test)]
 mod beside_paper;
 mod beyond;
 mod demonstrated;
@@ -9,7 +10,6 @@ mod grasp_playback;
 mod miniature;
 mod numbered;
 mod overview;
-#[cfg(test)]
 mod scene;
 mod sound;
 mod state_plane;

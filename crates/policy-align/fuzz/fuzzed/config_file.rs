@@ -1,9 +1,9 @@
 use std::path::Path;
 
-use crate::cli::config::Config;
+use crate::cli::options::config::Config;
 use crate::cli::failure::Failure;
-use crate::cli::flags::{FitFlags, PrepareFlags, ReadFlags};
-use crate::cli::rollout_flags::RollOutFlags;
+use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags};
+use crate::cli::options::rollout_flags::RollOutFlags;
 
 /// Flags of any text are refused in three lines, or are options.
 pub(crate) fn config_file(text: &str) {

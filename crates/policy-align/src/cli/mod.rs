@@ -4,7 +4,7 @@ mod clock;
 pub(crate) mod failure;
 mod in_words;
 mod lines;
-mod options;
+pub(crate) mod options;
 mod pages;
 mod recorded;
 mod session;

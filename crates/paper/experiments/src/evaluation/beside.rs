@@ -221,7 +221,7 @@ impl<S: Scene> Trial for BesideTrial<S> {
 #[cfg(test)]
 mod tests {
     use super::super::exam::Protocol;
-    use super::super::table1::{toy_beside, toy_regressor};
+    use crate::tables::table1::{toy_beside, toy_regressor};
     use super::*;
     use crate::evaluation::pupil::Pupil;
     use crate::seed::generator;

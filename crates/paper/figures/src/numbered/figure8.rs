@@ -258,8 +258,8 @@ fn over_time(distances: &[Distances]) -> Csv {
 mod tests {
     use serde_json::{Value, json};
 
-    use super::super::beside_paper;
     use super::*;
+    use crate::beside_paper;
 
     /// One start; the right hand never moves, the left one goes along x, and ends this far behind its target.
     fn playback(behind: [f64; 4]) -> GraspPlayback {

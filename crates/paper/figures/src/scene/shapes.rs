@@ -5,7 +5,7 @@ use kinematics::{CollisionShape, Geometry, LinkPoses, RobotModel};
 use nalgebra::{IsometryMatrix3, Matrix3, Point3, Rotation3, Translation3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::rounded;
+use crate::rounded;
 
 /// A shape and its pose, metres: as documents hold it. `Link` says which link it is a part of: by name, then its pose is
 /// in the frame of the root; or by its place in a tree, then its pose is in the link's own frame.

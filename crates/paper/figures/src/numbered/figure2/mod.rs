@@ -9,8 +9,8 @@ use plot::{Dash, Layer, Mark, Picture, Plane, Stroke};
 use serde::{Deserialize, Serialize};
 
 use self::contact::{FACE, Finger, Movement, touching};
-use super::sound::{Sound, as_many, some, within};
-use super::{Csv, Document, Drawing, Figure, Sources, Who, rounded};
+use crate::sound::{Sound, as_many, some, within};
+use crate::{Csv, Document, Drawing, Figure, Sources, Who, rounded};
 
 /// Seconds at which postures are drawn, and the colours, ever darker, of the free and of the stopped finger.
 const POSTURES: [(f64, &str, &str, &str); 5] = [

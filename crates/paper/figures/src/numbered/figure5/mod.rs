@@ -6,14 +6,14 @@ mod draw;
 use plot::Field;
 use serde::{Deserialize, Serialize};
 
-use super::sound::{Sound, as_many, field, grid, some};
-use super::{Document, Figure};
+use crate::sound::{Sound, as_many, field, grid, some};
+use crate::{Document, Figure};
 
-pub(super) fn document() -> Document {
+pub(crate) fn document() -> Document {
     Document::new("figure5", None, compute::levels)
 }
 
-pub(super) fn figure() -> Figure {
+pub(crate) fn figure() -> Figure {
     Figure::new("figure5", Some("table1"), &["figure5"], draw::draw)
 }
 

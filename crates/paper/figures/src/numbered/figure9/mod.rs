@@ -8,15 +8,15 @@ use experiments::{ARM_SYSTEM, arm};
 use plot::Picture;
 use serde::{Deserialize, Serialize};
 
-use super::sound::{Sound, some};
-use super::{Document, Drawing, Figure, Sources, rounded};
+use crate::sound::{Sound, some};
+use crate::{Document, Drawing, Figure, Sources, rounded};
 use curves::Panels;
 
-pub(super) fn document() -> Document {
+pub(crate) fn document() -> Document {
     Document::new("figure9_movements", Some("figure9"), movements)
 }
 
-pub(super) fn figure() -> Figure {
+pub(crate) fn figure() -> Figure {
     Figure::new("figure9", Some("figure9"), &["figure9_movements", "figure9"], draw)
 }
 

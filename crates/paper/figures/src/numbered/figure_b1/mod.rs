@@ -10,10 +10,10 @@ use experiments::seed::generator;
 use plot::{Canvas, Dash, Mark, Picture, Stroke, Thing};
 use serde::{Deserialize, Serialize};
 
-use super::miniature::{Miniature, extent_of};
-use super::sound::{Sound, among, as_many, some};
-use super::{Csv, Document, Drawing, Figure, Sources, rounded};
 use crate::Who;
+use crate::miniature::{Miniature, extent_of};
+use crate::sound::{Sound, among, as_many, some};
+use crate::{Csv, Document, Drawing, Figure, Sources, rounded};
 use tree::Node;
 
 /// Data sets of Table 1 among which one is chosen.
