@@ -19,13 +19,10 @@ pub fn plain(text: &str) -> Cow<'_, str> {
 
 /// Whether [`plain`] spells a character out.
 pub fn is_hidden(c: char) -> bool {
-    match c {
-        '\n' | '\t' => false,
-        // Marks, embeddings, overrides and isolates of direction; separators of lines; what is no character.
-        '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{206f}' => true,
-        '\u{feff}' | '\u{fffe}' | '\u{ffff}' => true,
-        _ => c.is_control(),
-    }
+    // Marks, embeddings, overrides and isolates of direction; separators of lines; what is no character.
+    let turns = matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{206f}');
+    let breaks = matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}' | '\u{fffe}' | '\u{ffff}');
+    turns || breaks || (c.is_control() && !matches!(c, '\n' | '\t'))
 }
 
 #[cfg(test)]
