@@ -88,6 +88,10 @@ fn more_rows_than_error_bars_have_memory_for_are_refused() {
     let refused = |fit: Value| serde_json::from_value::<BothReadings>(fit).expect_err("too many rows").to_string();
     let said = refused(of_rows(MOST_ROWS + 1));
     assert!(said.contains("more than 10000 rows"), "{said}");
+    let learner = gp::SlopeGp { max_rows: MOST_ROWS + 1, ..gp::SlopeGp::default() };
+    let given = drawn::rows(2, (6, 8), drawn::descent, &mut drawn::rng(20));
+    let error = learner.fit(&given, &mut drawn::rng(21)).expect_err("too many rows");
+    assert_eq!(error.to_string(), "max_rows is 10001: it must be at most 10000");
     let mut wide = of_rows(1);
     wide["slope"]["slope_gp"]["dim"] = json!(2001);
     let said = refused(wide);

@@ -148,11 +148,11 @@ fn compare(python: &str, name: &str, model: &Model) {
     let (mut known, mut wrongly) = (0, 0);
     for (at, (state, found)) in states.column_iter().zip(found.chunks(4)).enumerate() {
         let action = policy.action(state);
-        if found[3] != 1.0 {
-            assert!(found[..2] == [0.0, 0.0] && found[2].is_nan(), "{name}: {state}");
-        } else {
+        if found[3] == 1.0 {
             error = (0..2).map(|k| (action[k] - found[k]).abs()).fold(error, f64::max);
             largest = largest.max(action.amax());
+        } else {
+            assert!(found[..2] == [0.0, 0.0] && found[2].is_nan(), "{name}: {state}");
         }
         if let Some(potential) = policy.potential().filter(|_| found[3] == 1.0) {
             potential_error = potential_error.max((potential.value(state) - found[2]).abs());

@@ -81,7 +81,9 @@ impl<'ast> Visit<'ast> for Paths<'_> {
 
     fn visit_item_use(&mut self, import: &'ast ItemUse) {
         if matches!(import.vis, Visibility::Inherited) {
-            imports(import).iter().for_each(|(_, path)| self.note(path));
+            for (_, path) in imports(import) {
+                self.note(&path);
+            }
         }
     }
 

@@ -62,8 +62,11 @@ pub(crate) struct Kept {
 impl Selection {
     pub(crate) fn check(&self) -> Result<(), GpError> {
         let wrong = |name, value, requirement| Err(GpError::Parameter { name, value, requirement });
-        if !(1..=MOST_ROWS).contains(&self.max_rows) {
-            return wrong("max_rows", self.max_rows as f64, "be at least 1 and at most 10000");
+        if self.max_rows == 0 {
+            return wrong("max_rows", self.max_rows as f64, "be at least 1");
+        }
+        if self.max_rows > MOST_ROWS {
+            return wrong("max_rows", self.max_rows as f64, "be at most 10000");
         }
         if self.hyper_rows == 0 {
             return wrong("hyper_rows", self.hyper_rows as f64, "be at least 1");

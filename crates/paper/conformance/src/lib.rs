@@ -86,7 +86,9 @@ pub fn compare(vectors: &Path, say: fn(&str)) -> anyhow::Result<()> {
     let odd = urdf_cases::check(&vectors.join("urdf_traps/expected.json"))?;
     let recordings = file_cases::check(&vectors.join("files/expected.json"))?;
     let compared = files + odd.files + recordings.compared;
-    skipped.iter().for_each(|line| say(line));
+    for line in &skipped {
+        say(line);
+    }
     ensure!(compared > 0, "there is no reference file in {} ({} skipped)", vectors.display(), skipped.len());
     for fault in odd.faults.iter().chain(&recordings.faults) {
         say(fault);

@@ -25,7 +25,7 @@ impl CSource {
         match &tables.learner {
             LearnerTables::Lwpr(lwpr) => c_lwpr::write(self, lwpr, tables.per_unit, &mut text),
             LearnerTables::Slope(slope, radius) => {
-                c_gp::write_slope(self, slope, (*radius, tables.per_unit), &mut text)
+                c_gp::write_slope(self, slope, (*radius, tables.per_unit), &mut text);
             }
             LearnerTables::Direct(direct, radius) => c_gp::write_direct(self, direct, *radius, &mut text),
         }

@@ -58,8 +58,11 @@ impl FitOptions {
         if self.folds < 2 {
             return wrong("--folds", self.folds as f64, "be at least 2");
         }
-        if !(50..=gp::MOST_ROWS).contains(&self.max_rows) {
-            return wrong("--max-rows", self.max_rows as f64, "be at least 50 and at most 10000");
+        if self.max_rows < 50 {
+            return wrong("--max-rows", self.max_rows as f64, "be at least 50");
+        }
+        if self.max_rows > gp::MOST_ROWS {
+            return wrong("--max-rows", self.max_rows as f64, "be at most 10000");
         }
         match self.init_d {
             Some(init_d) if !(init_d > 0.0 && init_d.is_finite()) => {
