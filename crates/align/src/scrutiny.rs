@@ -24,13 +24,13 @@ pub(crate) fn scrutinise(demonstrations: &Demonstrations) -> Vec<Warning> {
 fn alike(trajectories: &[Trajectory]) -> Vec<Warning> {
     let moving = |k: &usize| !stands_still(trajectories[*k].states());
     let twins = twins(trajectories.iter().map(Trajectory::states));
-    let warning = |j: usize| match twins[j] {
-        Some(k) => Some(Warning::Duplicated { trajectories: [k, j] }),
-        None => {
-            let backwards = |k: &usize| mirrored(trajectories[*k].states(), trajectories[j].states());
-            let k = (0..j).filter(moving).find(backwards)?;
-            Some(Warning::Mirrored { trajectories: [k, j] })
+    let warning = |j: usize| {
+        if let Some(k) = twins[j] {
+            return Some(Warning::Duplicated { trajectories: [k, j] });
         }
+        let backwards = |k: &usize| mirrored(trajectories[*k].states(), trajectories[j].states());
+        let k = (0..j).filter(moving).find(backwards)?;
+        Some(Warning::Mirrored { trajectories: [k, j] })
     };
     (0..trajectories.len()).filter(moving).filter_map(warning).collect()
 }

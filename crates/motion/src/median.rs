@@ -1,5 +1,29 @@
-/// The middle value, the upper of two; none of nothing. O(N).
+/// The middle value, the upper of two; none of no values. O(N).
 pub fn upper_median(mut values: Vec<f64>) -> Option<f64> {
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn of_two_middle_values_the_upper_one_counts() {
+        assert_eq!(upper_median(vec![]), None);
+        assert_eq!(upper_median(vec![7.0]), Some(7.0));
+        assert_eq!(upper_median(vec![3.0, 1.0]), Some(3.0));
+        assert_eq!(upper_median(vec![f64::INFINITY, 2.0, -1.0]), Some(2.0));
+    }
+
+    proptest! {
+        #[test]
+        fn it_is_the_one_in_the_middle_when_sorted(mut values in prop::collection::vec(-5.0..5.0_f64, 1..40)) {
+            let found = upper_median(values.clone());
+            values.sort_by(f64::total_cmp);
+            prop_assert_eq!(found, Some(values[values.len() / 2]));
+        }
+    }
 }

@@ -1,4 +1,4 @@
-use motion::{Demonstrations, Trajectory};
+use motion::{Demonstrations, Trajectory, upper_median};
 use serde::{Deserialize, Serialize};
 
 use crate::AlignError;
@@ -31,10 +31,9 @@ pub struct Origin {
 
 impl Origin {
     pub(crate) fn new(demonstrations: &Demonstrations) -> Self {
-        let mut steps: Vec<f64> = demonstrations.trajectories().iter().map(Trajectory::time_step).collect();
-        steps.sort_by(f64::total_cmp);
+        let steps: Vec<f64> = demonstrations.trajectories().iter().map(Trajectory::time_step).collect();
         Origin {
-            time_step: steps[steps.len() / 2],
+            time_step: upper_median(steps).expect("there is a demonstration"),
             n_trajectories: steps.len(),
             kept: None,
             warnings: Vec::new(),

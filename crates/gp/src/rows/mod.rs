@@ -6,7 +6,7 @@ pub(crate) mod noise_weights;
 pub(crate) mod scaling;
 pub(crate) mod thinning;
 
-use motion::SampleIndex;
+use motion::{SampleIndex, upper_median};
 use nalgebra::DMatrix;
 
 use crate::GpError;
@@ -138,9 +138,8 @@ impl Rows {
             (next - here).norm_squared() / (4.0 * here.norm_squared())
         };
         let changes = (0..self.len().saturating_sub(1)).filter(next_to_each_other).map(change);
-        let mut changes: Vec<f64> = changes.filter(|change| change.is_finite()).collect();
-        let middle = changes.len() / 2;
-        (!changes.is_empty()).then(|| *changes.select_nth_unstable_by(middle, f64::total_cmp).1)
+        let changes: Vec<f64> = changes.filter(|change| change.is_finite()).collect();
+        upper_median(changes)
     }
 
     /// Number of rows M.

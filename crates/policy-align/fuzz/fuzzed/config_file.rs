@@ -1,7 +1,7 @@
 use std::path::Path;
 
-use crate::cli::options::config::Config;
 use crate::cli::failure::Failure;
+use crate::cli::options::config::Config;
 use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags};
 use crate::cli::options::rollout_flags::RollOutFlags;
 

@@ -1,6 +1,6 @@
 //! Uncertainty of the policy between the demonstrated movements.
 
-use motion::{Demonstrations, LearntPolicy};
+use motion::{Demonstrations, LearntPolicy, upper_median};
 use nalgebra::DVector;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -20,10 +20,9 @@ const SURE: f64 = 0.5;
 pub(crate) fn share_unknown(policy: &dyn LearntPolicy, demonstrations: &Demonstrations, variance: f64) -> Option<f64> {
     let movements = demonstrations.trajectories();
     let mut rng = ChaCha8Rng::seed_from_u64(0);
-    let mut seconds: Vec<f64> =
-        movements.iter().map(|movement| movement.seconds(0, movement.n_samples() - 1)).collect();
-    let middle = seconds.len() / 2;
-    let step = *seconds.select_nth_unstable_by(middle, f64::total_cmp).1 / (STATES * STEPS) as f64;
+    let seconds: Vec<f64> = movements.iter().map(|movement| movement.seconds(0, movement.n_samples() - 1)).collect();
+    let usual = upper_median(seconds).expect("there is a demonstration");
+    let step = usual / (STATES * STEPS) as f64;
     let mut deviation = DVector::zeros(demonstrations.dim());
     let mut unknown = 0;
     for _ in 0..STARTS {

@@ -1,6 +1,6 @@
 //! Roll-outs of the unconstrained policy.
 
-use motion::{Demonstrations, Policy};
+use motion::{Demonstrations, Policy, upper_median};
 use nalgebra::DVector;
 
 /// Starts followed, at most.
@@ -23,10 +23,9 @@ pub(crate) fn share_leaving(policy: &dyn Policy, demonstrations: &Demonstrations
     }
     let margin = (&high - &low) * BEYOND;
     let (low, high) = (low - &margin, high + margin);
-    let mut seconds: Vec<f64> =
-        movements.iter().map(|movement| movement.seconds(0, movement.n_samples() - 1)).collect();
-    let middle = seconds.len() / 2;
-    let step = TIMES * *seconds.select_nth_unstable_by(middle, f64::total_cmp).1 / STEPS as f64;
+    let seconds: Vec<f64> = movements.iter().map(|movement| movement.seconds(0, movement.n_samples() - 1)).collect();
+    let usual = upper_median(seconds).expect("there is a demonstration");
+    let step = TIMES * usual / STEPS as f64;
     let every = movements.len().div_ceil(STARTS);
     let starts: Vec<_> = movements.iter().step_by(every).map(|movement| movement.state(0)).collect();
     let leaves = |start: &nalgebra::DVectorView<'_, f64>| {

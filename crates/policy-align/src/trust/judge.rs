@@ -1,6 +1,7 @@
 use std::cmp::Reverse;
 
 use gp::{Grouping, Reading};
+use motion::upper_median;
 use prepare::in_words::{percent, short};
 
 use super::numbers::TrustNumbers;
@@ -161,12 +162,8 @@ fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &s
 
 /// An episode that the others predict much worse than each other: another task, a fault of tracking, or a lone corner.
 fn about_episodes(numbers: &TrustNumbers, episodes: &[String], found: &mut dyn FnMut(Verdict, String, &str)) {
-    let mut errors: Vec<f64> = numbers.episode_errors.iter().map(|&(_, error)| error).collect();
-    let middle = errors.len() / 2;
-    if errors.is_empty() || numbers.grouping == Grouping::BlocksOfTime {
-        return;
-    }
-    let usual = *errors.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let errors: Vec<f64> = numbers.episode_errors.iter().map(|&(_, error)| error).collect();
+    let Some(usual) = upper_median(errors).filter(|_| numbers.grouping != Grouping::BlocksOfTime) else { return };
     let worst = numbers.episode_errors.iter().max_by(|(_, a), (_, b)| a.total_cmp(b));
     if let Some(&(episode, error)) =
         worst.filter(|&&(_, error)| error > ODD * usual && error > TrustNumbers::GOOD_HELD_OUT_ERROR)

@@ -221,10 +221,10 @@ impl<S: Scene> Trial for BesideTrial<S> {
 #[cfg(test)]
 mod tests {
     use super::super::exam::Protocol;
-    use crate::tables::table1::{toy_beside, toy_regressor};
     use super::*;
     use crate::evaluation::pupil::Pupil;
     use crate::seed::generator;
+    use crate::tables::table1::{toy_beside, toy_regressor};
     use gp::FrontEnd;
 
     /// The same samples as PolicyAlign's exam, and no learner has seen one of them.

@@ -244,9 +244,6 @@ fn by_constraint(prepared: &Prepared, judged: &Evaluation) -> BTreeMap<String, f
             errors.entry(label.clone()).or_default().push(*error);
         }
     }
-    let median = |mut errors: Vec<f64>| {
-        errors.sort_by(f64::total_cmp);
-        errors[errors.len() / 2]
-    };
-    errors.into_iter().take(SHOWN).map(|(label, errors)| (label, median(errors))).collect()
+    let median = |(label, errors): (String, Vec<f64>)| Some((label, motion::upper_median(errors)?));
+    errors.into_iter().take(SHOWN).filter_map(median).collect()
 }
