@@ -3,10 +3,8 @@
 
 #[path = "../../src/cli"]
 mod cli {
-    pub(crate) mod config;
     pub(crate) mod failure;
-    pub(crate) mod flags;
-    pub(crate) mod rollout_flags;
+    pub(crate) mod options;
     pub(crate) mod session;
 }
 #[path = "../fuzzed/config_file.rs"]
