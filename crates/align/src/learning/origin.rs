@@ -33,7 +33,7 @@ impl Origin {
     pub(crate) fn new(demonstrations: &Demonstrations) -> Self {
         let steps: Vec<f64> = demonstrations.trajectories().iter().map(Trajectory::time_step).collect();
         Origin {
-            time_step: upper_median(steps).expect("there is a demonstration"),
+            time_step: upper_median(steps.clone()).expect("there is a demonstration"),
             n_trajectories: steps.len(),
             kept: None,
             warnings: Vec::new(),

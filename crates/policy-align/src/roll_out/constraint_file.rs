@@ -23,7 +23,8 @@ use nalgebra::{DMatrix, DVector, Point3};
 use serde::Deserialize;
 use thiserror::Error;
 
-use super::constraint_set::{ConstraintSet, Kind, Part};
+use super::constraint_part::{Kind, Part};
+use super::constraint_set::ConstraintSet;
 use super::link_point::LinkPoint;
 
 /// Why constraints cannot be read.

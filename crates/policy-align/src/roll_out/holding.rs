@@ -1,6 +1,6 @@
 use std::collections::BTreeSet;
 
-use super::constraint_set::{ConstraintSet, Part};
+use super::constraint_part::Part;
 
 /// Which constraints hold, as time goes on: each is looked at when it begins and while it holds, not at every moment.
 #[derive(Debug, Clone)]
@@ -14,8 +14,7 @@ pub(crate) struct Holding<'a> {
 }
 
 impl<'a> Holding<'a> {
-    pub(crate) fn new(set: &'a ConstraintSet, over: fn(&Part, f64) -> bool) -> Self {
-        let parts = &set.parts;
+    pub(crate) fn new(parts: &'a [Part], over: fn(&Part, f64) -> bool) -> Self {
         let mut to_come: Vec<usize> = (0..parts.len()).collect();
         to_come.sort_by(|&a, &b| parts[b].from.total_cmp(&parts[a].from));
         Holding { parts, to_come, now: BTreeSet::new(), over }

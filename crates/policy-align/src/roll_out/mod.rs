@@ -1,6 +1,7 @@
 //! A learnt policy followed from a start, under constraints that need not have been in the data.
 
 mod constraint_file;
+mod constraint_part;
 mod constraint_set;
 mod error;
 mod holding;
@@ -114,7 +115,7 @@ impl RollOut {
         start: &DVector<f64>,
         (step, mut method): (f64, RungeKutta),
     ) -> Result<Path, RollOutError> {
-        let mut holding = Holding::new(&self.constraints, |part, time| part.until <= time);
+        let mut holding = Holding::new(&self.constraints.parts, |part, time| part.until <= time);
         let changes = self.constraints.changes();
         let mut watch = Watch::new(&self.constraints);
         let (mut times, mut states) = (vec![0.0], vec![start.clone()]);

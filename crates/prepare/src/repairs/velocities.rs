@@ -159,7 +159,9 @@ fn mend(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &mut
     let (low, high) = (fit.factors.min(), fit.factors.max());
     let step = episodes[0].times.seconds(0, 1);
     if step > SLOW && fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(&(factor * 1000.0))) {
-        episodes.iter_mut().for_each(|episode| episode.times = episode.times.divided_by(1000.0));
+        for episode in episodes.iter_mut() {
+            episode.times = episode.times.divided_by(1000.0);
+        }
         let what = format!("stamps are {step:.0} apart and velocities 1000 times the steps");
         notes.decided("time step", format!("{} s", step / 1000.0), format!("{what}: stamps are milliseconds"), "--dt");
         notes.found(
