@@ -23,7 +23,7 @@ fn rng() -> ChaCha8Rng {
 fn toy() -> Rows {
     let system = ToySystem { potential: ToyPotential::sinusoidal(), ..ToySystem::default() };
     let recordings = system.record(&mut rng()).expect("the system is sound");
-    FrontEnd::Map.rows(&demonstrations(&recordings).expect("recordings")).expect("rows")
+    FrontEnd::FiniteDifferences.rows(&demonstrations(&recordings).expect("recordings")).expect("rows")
 }
 
 /// 60 movements of 40 samples down a potential with three wells.

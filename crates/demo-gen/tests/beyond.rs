@@ -4,7 +4,7 @@
 
 use constraints::PfaffianConstraint;
 use demo_gen::beyond::{
-    BeyondSystem, DriftingConstraint, Handwriting, Hindrance, LimitCycle, Planes, Shown, Swirl, Wells,
+    BeyondSystem, ConstraintKind, DriftingConstraint, Handwriting, LimitCycle, Planes, Shown, Swirl, Wells,
 };
 use demo_gen::{DemoGenError, Recording, Redraw, RollOut};
 use motion::{Policy, Potential};
@@ -142,7 +142,7 @@ proptest! {
             Shown::LimitCycle,
             Shown::Handwriting,
         ][which];
-        let hindrance = [Hindrance::Free, Hindrance::Varying, Hindrance::OneForAll, Hindrance::HalfFree][hindrance];
+        let hindrance = [ConstraintKind::Free, ConstraintKind::Varying, ConstraintKind::OneForAll, ConstraintKind::HalfFree][hindrance];
         let roll_out = RollOut { n_samples: 7, sub_steps: 3, time_step: 0.5 };
         let system = BeyondSystem { shown, hindrance, n_trajectories: k, redraw: Redraw::Every(4), roll_out };
         let recordings = system.record(&mut generator(seed)).unwrap();
@@ -152,9 +152,9 @@ proptest! {
             prop_assert_eq!(&truth.states, observed.states());
             prop_assert_eq!(truth.potential.len(), if shown.has_potential() { 7 } else { 0 });
             let constrained = match hindrance {
-                Hindrance::Free => false,
-                Hindrance::Varying | Hindrance::OneForAll => true,
-                Hindrance::HalfFree => trajectory % 2 == 1,
+                ConstraintKind::Free => false,
+                ConstraintKind::Varying | ConstraintKind::OneForAll => true,
+                ConstraintKind::HalfFree => trajectory % 2 == 1,
             };
             for (i, projector) in truth.projectors.iter().enumerate() {
                 prop_assert_eq!(projector.rank(), if constrained { shown.dim().div_ceil(4) } else { 0 });
@@ -185,10 +185,10 @@ fn constraints_are_drawn_anew() {
         let n = |i: usize| -> DMatrix<f64> { recordings[1].truth.projectors[i].matrix() };
         [1, 3, 4, 7].map(|i| (n(i) - n(0)).amax() > 1e-6)
     };
-    assert_eq!(turned(Hindrance::Varying), [false, false, true, true]);
-    assert_eq!(turned(Hindrance::HalfFree), [false, false, true, true]);
-    assert_eq!(turned(Hindrance::OneForAll), [false; 4]);
-    assert_eq!(turned(Hindrance::Free), [false; 4]);
+    assert_eq!(turned(ConstraintKind::Varying), [false, false, true, true]);
+    assert_eq!(turned(ConstraintKind::HalfFree), [false, false, true, true]);
+    assert_eq!(turned(ConstraintKind::OneForAll), [false; 4]);
+    assert_eq!(turned(ConstraintKind::Free), [false; 4]);
 }
 
 #[test]

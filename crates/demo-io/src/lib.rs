@@ -62,5 +62,5 @@ pub use options::{Format, Nan, ReadOptions, SamplesAre};
 pub use read::{read, read_all};
 pub use regular_file::{read_bounded, read_bytes, read_text};
 pub use resample::{ResampleError, resampled};
-pub use whole_file::{Draft, Sink, abandon_drafts, write_whole};
+pub use whole_file::{Sink, TempFile, abandon_drafts, write_whole};
 pub use write::{WriteError, write};

@@ -34,7 +34,7 @@ pub fn write_whole<E: From<io::Error>>(
     path: &Path,
     fill: impl FnOnce(&mut dyn Sink) -> Result<(), E>,
 ) -> Result<(), E> {
-    Ok(Draft::of(path, fill)?.becomes_whole()?)
+    Ok(TempFile::of(path, fill)?.becomes_whole()?)
 }
 
 /// Removes drafts that are being written, and keeps others from being begun: for who ends the process at once, as an
@@ -54,7 +54,7 @@ fn drafts() -> MutexGuard<'static, Vec<PathBuf>> {
 
 /// A file that is on the disk, and not in its place. Of files that belong together all are written before the first is
 /// replaced.
-pub struct Draft {
+pub struct TempFile {
     place: PathBuf,
     /// None of what is no plain file.
     held: Option<(NamedTempFile, Known)>,
@@ -63,19 +63,22 @@ pub struct Draft {
 /// What [`abandon_drafts`] would remove, as long as this lives.
 struct Known(PathBuf);
 
-impl Draft {
+impl TempFile {
     /// As [`write_whole`], but that what stood there stays.
     ///
     /// # Errors
     /// What the system says, or `fill`.
-    pub fn of<E: From<io::Error>>(path: &Path, fill: impl FnOnce(&mut dyn Sink) -> Result<(), E>) -> Result<Draft, E> {
+    pub fn of<E: From<io::Error>>(
+        path: &Path,
+        fill: impl FnOnce(&mut dyn Sink) -> Result<(), E>,
+    ) -> Result<TempFile, E> {
         // A link stays a link: the file behind it is replaced.
         let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         if fs::metadata(&place).is_ok_and(|found| !found.is_file()) {
             let mut file = BufWriter::new(File::options().write(true).open(&place)?);
             fill(&mut file)?;
             file.flush()?;
-            return Ok(Draft { place, held: None });
+            return Ok(TempFile { place, held: None });
         }
         let (held, known) = begun(&place)?;
         let mut file = BufWriter::with_capacity(1 << 16, held.as_file());
@@ -83,7 +86,7 @@ impl Draft {
         file.flush()?;
         drop(file);
         held.as_file().sync_all()?;
-        Ok(Draft { place, held: Some((held, known)) })
+        Ok(TempFile { place, held: Some((held, known)) })
     }
 
     /// Replaces what stood in its place.
@@ -183,7 +186,7 @@ mod tests {
         for path in [&model, &page] {
             put(path, "old").unwrap();
         }
-        let draft = |path: &Path, text: &str| Draft::of(path, |file| file.write_all(text.as_bytes()));
+        let draft = |path: &Path, text: &str| TempFile::of(path, |file| file.write_all(text.as_bytes()));
         let begun = draft(&model, "new").unwrap();
         assert!(draft(&folder.path().join("none/model.html"), "new").is_err());
         drop(begun);

@@ -4,7 +4,7 @@
 
 use std::error::Error;
 
-use gp::{FrontEnd, ReadingLearner};
+use gp::{AutoGp, FrontEnd};
 use motion::{Demonstrations, LearntPolicy as _, MotionError, Policy as _, Trajectory};
 use nalgebra::{DMatrix, dvector};
 use rand::SeedableRng as _;
@@ -25,7 +25,7 @@ fn recorded(on_rails: bool) -> Result<Demonstrations, MotionError> {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let learner = ReadingLearner { front_end: FrontEnd::Velocities, ..ReadingLearner::default() };
+    let learner = AutoGp { front_end: FrontEnd::Velocities, ..AutoGp::default() };
     for on_rails in [true, false] {
         let rows = learner.front_end.rows(&recorded(on_rails)?)?;
         let learnt = learner.fit(&rows, &mut StdRng::seed_from_u64(1))?;

@@ -4,12 +4,12 @@
 //! |---|---|
 //! | [`SlopeGp`] | learns a potential from slopes along the observed motion: for unknown constraints that vary |
 //! | [`DirectGp`] | learns the velocities: for unconstrained motion |
-//! | [`ReadingLearner`] | fits both and hands out the one that the data support |
+//! | [`AutoGp`] | fits both and hands out the one that the data support |
 //! | [`FrontEnd`] | turns demonstrations into [`Rows`] of states and velocities |
 //! | [`TrustReport`] | warnings and numbers about a [`SlopeFit`] |
 //!
 //! ```
-//! use gp::{FrontEnd, Reading, ReadingLearner};
+//! use gp::{FrontEnd, Reading, AutoGp};
 //! use motion::{Demonstrations, Policy as _, Trajectory};
 //! use nalgebra::{DMatrix, dvector};
 //! use rand::SeedableRng as _;
@@ -26,11 +26,11 @@
 //! });
 //! let demonstrations = Demonstrations::new(movements.collect::<Result<_, _>>()?)?;
 //!
-//! let learner = ReadingLearner { front_end: FrontEnd::Velocities, ..ReadingLearner::default() };
+//! let learner = AutoGp { front_end: FrontEnd::Velocities, ..AutoGp::default() };
 //! let rows = learner.front_end.rows(&demonstrations)?;
 //! let learnt = learner.fit(&rows, &mut rand::rngs::StdRng::seed_from_u64(1))?;
 //!
-//! assert_eq!(learnt.reading(), Reading::Constrained); // so that the slope GP's policy is handed out
+//! assert_eq!(learnt.reading(), Hypothesis::Constrained); // so that the slope GP's policy is handed out
 //! let x = dvector![0.3, -0.4];
 //! assert!((learnt.action(x.as_view()) + &x).norm() < 1e-4);
 //! assert!(learnt.slope().uncertainty(x.as_view()).trace() < 1e-4); // cov π(x)
@@ -47,11 +47,11 @@
 //! # When it fails
 //!
 //! - **The same constraint in every demonstration** makes the velocity a function of the state, like an unconstrained
-//!   policy. The data cannot tell the two apart: [`Reading::Ambiguous`], and [`TrustReport::least_seen`] names the
+//!   policy. The data cannot tell the two apart: [`Hypothesis::Ambiguous`], and [`TrustReport::least_seen`] names the
 //!   direction that never moved.
 //! - **Constraints that push** (A u = b, b ≠ 0), move, or project obliquely: the slope GP assumes an orthogonal
 //!   projection onto the null space.
-//! - **Motion that depends on more than the state** (time, load, a moving target) is [`Reading::Unexplained`].
+//! - **Motion that depends on more than the state** (time, load, a moving target) is [`Hypothesis::Unexplained`].
 //! - **Corridors**: where all movements follow one narrow path, nothing tests the policy across it.
 //! - **Kinks in many dimensions** are learnt slowly; the held-out R² is then low and [`TrustReport::warnings`] says so.
 //! - **More than 1,500 rows** are thinned, since time grows with their cube ([`SlopeGp::max_rows`]).
@@ -86,8 +86,8 @@ pub use kernel::family::{Family, Trend};
 pub use kernel::shape::Shape;
 pub use left_out::LeftOut;
 pub use left_out::curl_test::CurlTest;
-pub use reading::Reading;
-pub use reading::both_readings::{BothReadings, ReadingLearner};
+pub use reading::Hypothesis;
+pub use reading::auto_gp::{AutoFit, AutoGp};
 pub use reading::near_passes::NearPasses;
 pub use reading::numbers::{ReadingNumbers, TrajectoryErrors};
 pub use report::identifiability::{Identifiability, LeastSeen};

@@ -2,12 +2,10 @@
 
 mod drawn;
 
-use demo_gen::beyond::{BeyondSystem, Hindrance, Shown};
+use demo_gen::beyond::{BeyondSystem, ConstraintKind, Shown};
 use demo_gen::demonstrations;
 use drawn::{descent, matrix, rng, rows, vector};
-use gp::{
-    BothReadings, CurlTest, DirectFit, DirectGp, Family, GpError, ModelKind, ReadingLearner, Rows, SlopeFit, SlopeGp,
-};
+use gp::{AutoFit, AutoGp, CurlTest, DirectFit, DirectGp, Family, GpError, ModelKind, Rows, SlopeFit, SlopeGp};
 use motion::{LearntPolicy, Policy, SampleIndex};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -78,7 +76,7 @@ proptest! {
     #[test]
     fn same_bits(seed in any::<u64>()) {
         let given = rows(2, (6, 10), |x| descent(x) + DVector::from_vec(vec![-x[1], x[0]]) * 0.3, &mut rng(seed));
-        let learner = ReadingLearner { slope: SlopeGp { max_rows: 50, hyper_rows: 40, ..SlopeGp::default() }, ..ReadingLearner::default() };
+        let learner = AutoGp { slope: SlopeGp { max_rows: 50, hyper_rows: 40, ..SlopeGp::default() }, ..AutoGp::default() };
         let with = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
             let fit = pool.install(|| learner.fit(&given, &mut rng(seed))).expect("a fit");
@@ -87,7 +85,7 @@ proptest! {
         let one = with(1);
         prop_assert_eq!(&one, &with(2));
         prop_assert_eq!(&one, &with(8));
-        let both: BothReadings = serde_json::from_str(&one).expect("what was written");
+        let both: AutoFit = serde_json::from_str(&one).expect("what was written");
         prop_assert_eq!(&one, &serde_json::to_string(&both).expect("numbers"));
         let slope: SlopeFit = serde_json::from_str(&serde_json::to_string(both.slope()).expect("numbers")).expect("a fit");
         let direct: DirectFit = serde_json::from_str(&serde_json::to_string(both.direct()).expect("numbers")).expect("a fit");
@@ -184,8 +182,8 @@ fn one_dimension_has_no_rotation_and_two_movements_are_cut() {
     let fit = SlopeGp::default().fit(&line, &mut rng(0)).expect("a fit");
     assert_eq!((fit.report().curl_t, fit.report().model), (None, ModelKind::Potential));
     let two = rows(2, (2, 16), descent, &mut rng(11));
-    let both = ReadingLearner::default().fit(&two, &mut rng(0)).expect("a fit");
-    assert_eq!(both.reading(), gp::Reading::TooFew);
+    let both = AutoGp::default().fit(&two, &mut rng(0)).expect("a fit");
+    assert_eq!(both.reading(), gp::Hypothesis::TooFew);
     assert_eq!(both.action(two.states().column(0)), both.direct().action(two.states().column(0)));
 }
 
@@ -209,7 +207,7 @@ fn an_exact_family_has_no_rival() {
 /// What is learnt of ten movements that nothing constrained, at 200 rows, and its nUPE: their velocities are the policy.
 fn freely(shown: Shown, seed: u64) -> (SlopeFit, f64) {
     let rng = &mut rng(seed);
-    let system = BeyondSystem { shown, n_trajectories: 10, hindrance: Hindrance::Free, ..BeyondSystem::default() };
+    let system = BeyondSystem { shown, n_trajectories: 10, hindrance: ConstraintKind::Free, ..BeyondSystem::default() };
     let shown = demonstrations(&system.record(rng).expect("movements")).expect("demonstrations");
     let rows = gp::FrontEnd::Velocities.rows(&shown).expect("rows");
     let fit = SlopeGp { max_rows: 200, ..SlopeGp::default() }.fit(&rows, rng).expect("a fit");

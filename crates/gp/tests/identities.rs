@@ -5,8 +5,7 @@ mod drawn;
 use demo_gen::{Recording, Redraw, ToyPotential, ToySystem, demonstrations};
 use drawn::{descent, matrix, rng, rows, vector};
 use gp::{
-    DirectData, DirectGp, DirectLearner, Family, FrontEnd, ReadingLearner, Rows, SlopeData, SlopeGp, SlopeLearner,
-    Trend,
+    AutoGp, DirectData, DirectGp, DirectLearner, Family, FrontEnd, Rows, SlopeData, SlopeGp, SlopeLearner, Trend,
 };
 use motion::{Learner, LearntPolicy, Policy as _, SampleIndex};
 use nalgebra::{DMatrix, DVector};
@@ -22,7 +21,7 @@ fn potentials() -> impl Strategy<Value = ToyPotential> {
 }
 
 fn front_ends() -> impl Strategy<Value = FrontEnd> {
-    prop_oneof![Just(FrontEnd::Map), Just(FrontEnd::Velocities)]
+    prop_oneof![Just(FrontEnd::FiniteDifferences), Just(FrontEnd::Velocities)]
 }
 
 fn slope(family: Family) -> SlopeGp {
@@ -58,7 +57,7 @@ proptest! {
         let learners: [Box<dyn Learner>; 3] = [
             Box::new(SlopeLearner { front_end: front_end.clone(), gp: slope(family) }),
             Box::new(DirectLearner { front_end: front_end.clone(), gp: direct(family) }),
-            Box::new(ReadingLearner { front_end, slope: slope(family), direct: direct(family), reading: None }),
+            Box::new(AutoGp { front_end, slope: slope(family), direct: direct(family), reading: None }),
         ];
         for learner in learners {
             let [learnt, of_forged] = [&recordings, &forged].map(|recordings| {

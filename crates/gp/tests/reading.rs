@@ -3,7 +3,7 @@
 mod drawn;
 
 use drawn::{descent, matrix, rng, rows};
-use gp::{Grouping, LeastSeen, NearPasses, Reading, ReadingLearner, ReadingNumbers, Rows};
+use gp::{AutoGp, Grouping, Hypothesis, LeastSeen, NearPasses, ReadingNumbers, Rows};
 use motion::{Policy as _, SampleIndex};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -60,8 +60,8 @@ proptest! {
         let least_seen = LeastSeen { share: 1.0, direction: vec![1.0] };
         let grouping = Grouping::Trajectories;
         let n = ReadingNumbers { a_s, a_d, q, t, lambda, t_lambda, p_d, gap, least_seen, hidden, trajectories, grouping };
-        prop_assert_eq!(n.reading(), if p_d > 0.5 && gap > 0.03 { Reading::Unexplained } else { Reading::Free });
-        prop_assert!(!n.takes_slope(Reading::Free) && !n.text(0.1).contains("leans towards constraints"));
+        prop_assert_eq!(n.reading(), if p_d > 0.5 && gap > 0.03 { Hypothesis::Unexplained } else { Hypothesis::Free });
+        prop_assert!(!n.takes_slope(Hypothesis::Free) && !n.text(0.1).contains("leans towards constraints"));
     }
 }
 
@@ -88,32 +88,32 @@ fn the_rule_in_its_order() {
     let unseen = || LeastSeen { share: 0.04, direction: vec![1.0, 0.0] };
     let constrained = || ReadingNumbers { q: 0.4, t: 2.0, ..numbers() };
     let cases = [
-        (numbers(), Reading::Ambiguous),
-        (ReadingNumbers { gap: 0.03, ..constrained() }, Reading::Free),
-        (ReadingNumbers { gap: 0.03, least_seen: unseen(), ..constrained() }, Reading::Ambiguous),
-        (constrained(), Reading::Constrained),
-        (ReadingNumbers { t: 1.99, ..constrained() }, Reading::Ambiguous),
-        (ReadingNumbers { q: 0.41, ..constrained() }, Reading::Ambiguous),
-        (ReadingNumbers { a_s: 0.81, ..constrained() }, Reading::Ambiguous),
-        (ReadingNumbers { trajectories: 4, ..constrained() }, Reading::Ambiguous),
-        (ReadingNumbers { trajectories: 4, p_d: 0.51, ..constrained() }, Reading::Unexplained),
-        (ReadingNumbers { lambda: 0.75, t_lambda: 2.0, ..numbers() }, Reading::Constrained),
-        (ReadingNumbers { lambda: 0.74, t_lambda: 2.0, ..numbers() }, Reading::Ambiguous),
-        (ReadingNumbers { lambda: 0.75, t_lambda: 1.99, ..numbers() }, Reading::Ambiguous),
-        (ReadingNumbers { lambda: 0.5, t_lambda: 2.0, p_d: 0.51, ..numbers() }, Reading::Constrained),
-        (ReadingNumbers { lambda: 0.49, t_lambda: 2.0, p_d: 0.51, ..numbers() }, Reading::Unexplained),
-        (ReadingNumbers { hidden: 0.07, ..constrained() }, Reading::Constrained),
-        (ReadingNumbers { hidden: 0.08, p_d: 0.41, ..constrained() }, Reading::Constrained),
-        (ReadingNumbers { hidden: 0.07, p_d: 0.41, ..constrained() }, Reading::Free),
-        (ReadingNumbers { hidden: 0.07, p_d: 0.51, ..constrained() }, Reading::Free),
-        (ReadingNumbers { hidden: 0.1, gap: 0.1, ..constrained() }, Reading::Free),
-        (ReadingNumbers { hidden: 0.1, gap: 0.11, ..constrained() }, Reading::Constrained),
-        (ReadingNumbers { hidden: 0.1, gap: 0.1, p_d: 0.09, ..constrained() }, Reading::Constrained),
-        (ReadingNumbers { hidden: 0.07, p_d: 0.41, least_seen: unseen(), ..constrained() }, Reading::Ambiguous),
-        (ReadingNumbers { p_d: 0.51, ..numbers() }, Reading::Unexplained),
-        (ReadingNumbers { gap: 0.1, ..numbers() }, Reading::Free),
-        (ReadingNumbers { gap: 0.1, least_seen: unseen(), ..numbers() }, Reading::Ambiguous),
-        (ReadingNumbers { grouping: Grouping::BlocksOfTime, ..constrained() }, Reading::TooFew),
+        (numbers(), Hypothesis::Ambiguous),
+        (ReadingNumbers { gap: 0.03, ..constrained() }, Hypothesis::Free),
+        (ReadingNumbers { gap: 0.03, least_seen: unseen(), ..constrained() }, Hypothesis::Ambiguous),
+        (constrained(), Hypothesis::Constrained),
+        (ReadingNumbers { t: 1.99, ..constrained() }, Hypothesis::Ambiguous),
+        (ReadingNumbers { q: 0.41, ..constrained() }, Hypothesis::Ambiguous),
+        (ReadingNumbers { a_s: 0.81, ..constrained() }, Hypothesis::Ambiguous),
+        (ReadingNumbers { trajectories: 4, ..constrained() }, Hypothesis::Ambiguous),
+        (ReadingNumbers { trajectories: 4, p_d: 0.51, ..constrained() }, Hypothesis::Unexplained),
+        (ReadingNumbers { lambda: 0.75, t_lambda: 2.0, ..numbers() }, Hypothesis::Constrained),
+        (ReadingNumbers { lambda: 0.74, t_lambda: 2.0, ..numbers() }, Hypothesis::Ambiguous),
+        (ReadingNumbers { lambda: 0.75, t_lambda: 1.99, ..numbers() }, Hypothesis::Ambiguous),
+        (ReadingNumbers { lambda: 0.5, t_lambda: 2.0, p_d: 0.51, ..numbers() }, Hypothesis::Constrained),
+        (ReadingNumbers { lambda: 0.49, t_lambda: 2.0, p_d: 0.51, ..numbers() }, Hypothesis::Unexplained),
+        (ReadingNumbers { hidden: 0.07, ..constrained() }, Hypothesis::Constrained),
+        (ReadingNumbers { hidden: 0.08, p_d: 0.41, ..constrained() }, Hypothesis::Constrained),
+        (ReadingNumbers { hidden: 0.07, p_d: 0.41, ..constrained() }, Hypothesis::Free),
+        (ReadingNumbers { hidden: 0.07, p_d: 0.51, ..constrained() }, Hypothesis::Free),
+        (ReadingNumbers { hidden: 0.1, gap: 0.1, ..constrained() }, Hypothesis::Free),
+        (ReadingNumbers { hidden: 0.1, gap: 0.11, ..constrained() }, Hypothesis::Constrained),
+        (ReadingNumbers { hidden: 0.1, gap: 0.1, p_d: 0.09, ..constrained() }, Hypothesis::Constrained),
+        (ReadingNumbers { hidden: 0.07, p_d: 0.41, least_seen: unseen(), ..constrained() }, Hypothesis::Ambiguous),
+        (ReadingNumbers { p_d: 0.51, ..numbers() }, Hypothesis::Unexplained),
+        (ReadingNumbers { gap: 0.1, ..numbers() }, Hypothesis::Free),
+        (ReadingNumbers { gap: 0.1, least_seen: unseen(), ..numbers() }, Hypothesis::Ambiguous),
+        (ReadingNumbers { grouping: Grouping::BlocksOfTime, ..constrained() }, Hypothesis::TooFew),
     ];
     for (numbers, reading) in cases {
         assert_eq!(numbers.reading(), reading, "{numbers:?}");
@@ -124,10 +124,12 @@ fn the_rule_in_its_order() {
 #[test]
 fn the_policy_follows_the_reading() {
     let n = numbers();
-    assert!(n.takes_slope(Reading::Constrained));
-    assert!(!n.takes_slope(Reading::Free) && !n.takes_slope(Reading::Ambiguous) && !n.takes_slope(Reading::TooFew));
-    assert!(n.takes_slope(Reading::Unexplained));
-    assert!(!ReadingNumbers { a_s: 0.04, ..n.clone() }.takes_slope(Reading::Unexplained));
+    assert!(n.takes_slope(Hypothesis::Constrained));
+    assert!(
+        !n.takes_slope(Hypothesis::Free) && !n.takes_slope(Hypothesis::Ambiguous) && !n.takes_slope(Hypothesis::TooFew)
+    );
+    assert!(n.takes_slope(Hypothesis::Unexplained));
+    assert!(!ReadingNumbers { a_s: 0.04, ..n.clone() }.takes_slope(Hypothesis::Unexplained));
     // Free, and far better explained by a potential.
     let potential = ReadingNumbers { q: 0.4, t: 2.0, hidden: 0.07, p_d: 0.41, ..n };
     assert!(potential.takes_slope(potential.reading()) && potential.text(0.1).contains("The slope policy is used"));
@@ -144,10 +146,10 @@ fn four_demonstrations_lean() {
 #[test]
 fn the_user_may_know_better() {
     let given = rows(2, (6, 10), descent, &mut rng(1));
-    let own = ReadingLearner { reading: Some(Reading::Free), ..ReadingLearner::default() };
+    let own = AutoGp { reading: Some(Hypothesis::Free), ..AutoGp::default() };
     let fit = own.fit(&given, &mut rng(2)).expect("a fit");
     let x = given.states().column(3);
-    assert_eq!(fit.reading(), Reading::Constrained);
+    assert_eq!(fit.reading(), Hypothesis::Constrained);
     assert_eq!(fit.action(x), fit.direct().action(x));
     assert!(fit.expected_nupe() >= fit.numbers().gap);
     assert!(fit.text().contains("You decided: Free"), "{}", fit.text());

@@ -2,7 +2,7 @@
 
 mod drawn;
 
-use gp::{BothReadings, MOST_ROWS};
+use gp::{AutoFit, MOST_ROWS};
 use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::DVector;
 use serde_json::{Value, json};
@@ -17,7 +17,7 @@ fn golden() -> Value {
 #[test]
 fn version_1_is_read() {
     let golden = golden();
-    let fit: BothReadings = serde_json::from_value(golden["fit"].clone()).expect("a fit");
+    let fit: AutoFit = serde_json::from_value(golden["fit"].clone()).expect("a fit");
     for case in golden["cases"].as_array().expect("cases") {
         let numbers = |name: &str| -> DVector<f64> {
             let numbers =
@@ -49,7 +49,7 @@ fn damaged_files_are_refused() {
     for (place, value) in damages {
         let mut fit = golden()["fit"].clone();
         *fit.pointer_mut(place).expect("a place in the file") = value;
-        assert!(serde_json::from_value::<BothReadings>(fit).is_err(), "{place}");
+        assert!(serde_json::from_value::<AutoFit>(fit).is_err(), "{place}");
     }
 }
 
@@ -73,7 +73,7 @@ fn reading_factors_nothing() {
     let rows = 1500;
     let stored = of_rows(rows);
     let mut fit = None;
-    let read = allocation_counter::measure(|| fit = serde_json::from_value::<BothReadings>(stored).ok());
+    let read = allocation_counter::measure(|| fit = serde_json::from_value::<AutoFit>(stored).ok());
     let one_factor = (8 * rows * rows) as u64;
     assert!(read.bytes_max < one_factor / 4, "{} bytes", read.bytes_max);
     let fit = fit.expect("a fit");
@@ -85,7 +85,7 @@ fn reading_factors_nothing() {
 
 #[test]
 fn more_rows_than_error_bars_have_memory_for_are_refused() {
-    let refused = |fit: Value| serde_json::from_value::<BothReadings>(fit).expect_err("too many rows").to_string();
+    let refused = |fit: Value| serde_json::from_value::<AutoFit>(fit).expect_err("too many rows").to_string();
     let said = refused(of_rows(MOST_ROWS + 1));
     assert!(said.contains("more than 10000 rows"), "{said}");
     let learner = gp::SlopeGp { max_rows: MOST_ROWS + 1, ..gp::SlopeGp::default() };
@@ -104,7 +104,7 @@ fn rows_without_a_factor_leave_the_prior() {
     // So much that sums overflow: there is no factor.
     stored["direct"]["direct_gp"]["blocks"][0][1] = json!(1e308);
     stored["direct"]["direct_gp"]["blocks"][3][1] = json!(1e308);
-    let fit: BothReadings = serde_json::from_value(stored).expect("a fit");
+    let fit: AutoFit = serde_json::from_value(stored).expect("a fit");
     let at = DVector::zeros(2);
     assert_eq!(fit.direct().support(at.as_view()), 0.0);
 }
@@ -114,7 +114,7 @@ fn rows_without_a_factor_leave_the_prior() {
 #[ignore = "writes the golden file"]
 fn write_golden() {
     use drawn::{descent, rng, rows, vector};
-    let learner = gp::ReadingLearner::default();
+    let learner = gp::AutoGp::default();
     let fit = learner.fit(&rows(2, (6, 8), descent, &mut rng(20)), &mut rng(21)).expect("a fit");
     let numbers = |vector: DVector<f64>| vector.data.as_vec().clone();
     let case = |seed: u64| {

@@ -1,7 +1,7 @@
 //! What the estimators' parameters mean to the library.
 
 use align::Bandwidth;
-use gp::Reading;
+use gp::Hypothesis;
 use policy_align::{FitOptions, LearnerChoice, PrepareOptions, Repair, VelocityUse};
 use pyo3::prelude::*;
 
@@ -66,8 +66,8 @@ impl Learning {
             },
             reading: match self.reading.as_deref() {
                 None => None,
-                Some("free") => Some(Reading::Free),
-                Some("constrained") => Some(Reading::Constrained),
+                Some("free") => Some(Hypothesis::Free),
+                Some("constrained") => Some(Hypothesis::Constrained),
                 Some(other) => return Err(unknown(other, "reading", "None, \"free\" or \"constrained\"")),
             },
             bandwidth: match &self.bandwidth {

@@ -1,5 +1,5 @@
 use align::PotentialPolicy;
-use gp::{BothReadings, DirectFit, SlopeFit};
+use gp::{AutoFit, DirectFit, SlopeFit};
 use motion::LearntPolicy;
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 pub enum Learnt {
     /// Slope GP and direct GP, and the choice between them.
-    Auto(Box<BothReadings>),
+    Auto(Box<AutoFit>),
     /// Aligned potentials and LWPR.
     PolicyAlign(Box<PotentialPolicy>),
     /// The slope GP alone.

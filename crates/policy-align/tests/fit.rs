@@ -8,7 +8,7 @@ mod cases;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use cases::{Case, Has, Plane, parabola};
-use gp::Reading;
+use gp::Hypothesis;
 use nalgebra::DMatrix;
 use policy_align::{
     EvaluateError, FitError, FitOptions, LearnerChoice, Learnt, Model, PrepareOptions, Prepared, Progress, Step, Truth,
@@ -90,7 +90,7 @@ fn decisions_say_what_was_done() {
         fit.decisions.iter().find(|decision| decision.what == what).unwrap().value.clone()
     };
     assert_eq!(value(&small(LearnerChoice::Auto), "learner"), "slope GP");
-    let free = FitOptions { reading: Some(Reading::Free), ..small(LearnerChoice::Auto) };
+    let free = FitOptions { reading: Some(Hypothesis::Free), ..small(LearnerChoice::Auto) };
     assert_eq!(value(&free, "learner"), "direct GP");
     let given = FitOptions {
         bandwidth: Some(align::Bandwidth::Medium),
@@ -102,7 +102,7 @@ fn decisions_say_what_was_done() {
     assert_eq!(value(&given, "integration"), "velocity");
     // Told to take movements for free that are not: the report keeps its own reading.
     let fit = fit(&prepared, &free).unwrap();
-    assert_eq!(fit.trust.numbers.reading, Reading::Constrained);
+    assert_eq!(fit.trust.numbers.reading, Hypothesis::Constrained);
     assert_ne!(fit.trust.verdict, Verdict::Good);
 }
 

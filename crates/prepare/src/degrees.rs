@@ -3,10 +3,10 @@ use std::f64::consts::TAU;
 use motion::Verdict;
 
 use crate::StateChannel;
-use crate::notes::Notes;
+use crate::findings::Findings;
 
 /// Says which channels seem to be angles in degrees.
-pub(crate) fn remark(state: &[StateChannel], notes: &mut Notes) {
+pub(crate) fn remark(state: &[StateChannel], notes: &mut Findings) {
     let degrees: Vec<&str> =
         state.iter().filter(|channel| in_degrees(channel)).map(|channel| channel.name.as_str()).collect();
     if !degrees.is_empty() {

@@ -2,7 +2,7 @@
 //!
 //! - [`Wells`], [`Planes`]: potentials; [`Swirl`], [`LimitCycle`], [`Handwriting`]: policies that have none.
 //! - [`DriftingConstraint`]: random rows that turn with the state.
-//! - [`BeyondSystem`]: data sets of them, free, constrained, or both ([`Hindrance`]).
+//! - [`BeyondSystem`]: data sets of them, free, constrained, or both ([`ConstraintKind`]).
 
 mod direction;
 mod drifting_constraint;
@@ -17,6 +17,6 @@ pub use drifting_constraint::DriftingConstraint;
 pub use handwriting::Handwriting;
 pub use planes::Planes;
 pub use shown::Shown;
-pub use system::{BeyondSystem, Hindrance};
+pub use system::{BeyondSystem, ConstraintKind};
 pub use wells::Wells;
 pub use whirls::{LimitCycle, Swirl};

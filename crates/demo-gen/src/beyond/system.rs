@@ -11,7 +11,7 @@ use crate::{DemoGenError, Recording, Redraw, RollOut, Truth};
 
 /// Which of the movements are constrained, and how.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub enum Hindrance {
+pub enum ConstraintKind {
     /// None is.
     Free,
     /// Each, by constraints of its own.
@@ -26,7 +26,7 @@ pub enum Hindrance {
 /// constraints that turn with the state ([`DriftingConstraint`], about one forbidden direction in four).
 ///
 /// ```
-/// use demo_gen::beyond::{BeyondSystem, Hindrance, Shown};
+/// use demo_gen::beyond::{BeyondSystem, ConstraintKind, Shown};
 /// use rand::SeedableRng;
 ///
 /// let system = BeyondSystem { shown: Shown::Wells { dim: 3 }, n_trajectories: 10, ..BeyondSystem::default() };
@@ -39,8 +39,8 @@ pub enum Hindrance {
 pub struct BeyondSystem {
     /// The policy. Default three wells in three dimensions.
     pub shown: Shown,
-    /// Default [`Hindrance::Varying`].
-    pub hindrance: Hindrance,
+    /// Default [`ConstraintKind::Varying`].
+    pub hindrance: ConstraintKind,
     /// Number of trajectories K. Default 60.
     pub n_trajectories: usize,
     /// When a constraint of one movement's own changes. Default every 20 samples.
@@ -53,7 +53,7 @@ impl Default for BeyondSystem {
     fn default() -> Self {
         BeyondSystem {
             shown: Shown::Wells { dim: 3 },
-            hindrance: Hindrance::Varying,
+            hindrance: ConstraintKind::Varying,
             n_trajectories: 60,
             redraw: Redraw::Every(20),
             roll_out: RollOut { sub_steps: 50, ..RollOut::default() },
@@ -79,8 +79,8 @@ impl BeyondSystem {
         let mut trajectory = 0;
         record_each(self.n_trajectories, || {
             let start = scene.start(rng);
-            let own =
-                self.hindrance == Hindrance::Varying || self.hindrance == Hindrance::HalfFree && trajectory % 2 == 1;
+            let own = self.hindrance == ConstraintKind::Varying
+                || self.hindrance == ConstraintKind::HalfFree && trajectory % 2 == 1;
             trajectory += 1;
             if own {
                 let phases = first_samples
@@ -91,7 +91,7 @@ impl BeyondSystem {
                 return scene.record(&self.roll_out, &constraint, &start);
             }
             match self.hindrance {
-                Hindrance::OneForAll => scene.record(&self.roll_out, &shared, &start),
+                ConstraintKind::OneForAll => scene.record(&self.roll_out, &shared, &start),
                 _ => scene.record(&self.roll_out, &Unconstrained { dim: self.shown.dim() }, &start),
             }
         })

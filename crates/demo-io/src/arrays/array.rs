@@ -7,7 +7,7 @@ use motion::Finding;
 
 /// What a file says of an array before its numbers are read.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Described {
+pub(crate) struct ArraySpec {
     pub(crate) name: String,
     /// The last index runs fastest.
     pub(crate) shape: Vec<usize>,
@@ -41,7 +41,7 @@ pub(crate) enum Data {
 /// Reads the numbers of an array by its index.
 pub(crate) type Load<'a> = dyn FnMut(usize) -> Result<Data, ReadError> + 'a;
 
-impl Described {
+impl ArraySpec {
     pub(crate) fn is_number(&self) -> bool {
         matches!(self.kind, Kind::Number(_))
     }

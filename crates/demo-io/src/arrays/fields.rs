@@ -1,6 +1,6 @@
 //! Which array is what, from names alone: for files whose arrays have names rather than columns.
 
-use crate::arrays::array::Described;
+use crate::arrays::array::ArraySpec;
 use crate::names::selection::{flags, glob, select};
 use crate::raw::MOST_CHANNELS;
 use crate::rows::roles::{is_time, no_column, shortened, velocity_names};
@@ -86,7 +86,7 @@ const NEVER: [&str; 12] = [
 ];
 
 /// Assigns arrays, of which all belong to one movement or to one set of movements.
-pub(crate) fn assign(described: &[Described], options: &ReadOptions, place: &str) -> Result<Fields, ReadError> {
+pub(crate) fn assign(described: &[ArraySpec], options: &ReadOptions, place: &str) -> Result<Fields, ReadError> {
     let names: Vec<&str> = described.iter().map(|array| &array.name[..]).collect();
     let ignored = flags(&options.ignore, &names);
     let called = |known: &[&str]| {
@@ -190,7 +190,7 @@ impl Fields {
 
 /// The array with the best name, or the only one that can be.
 fn guess_state(
-    described: &[Described],
+    described: &[ArraySpec],
     fields: &Fields,
     ignored: &[bool],
     place: &str,
@@ -220,13 +220,13 @@ fn guess_state(
         Ok(vec![index])
     } else {
         let what = if could.is_empty() { "no array could be the state" } else { "several arrays could be the state" };
-        let listed: Vec<String> = described.iter().map(Described::with_shape).collect();
+        let listed: Vec<String> = described.iter().map(ArraySpec::with_shape).collect();
         let remedy = format!("--state with one of (or several, which are joined): {}", shortened(&listed));
         Err(ReadError::NoRoles(Fault::new(what, place, remedy)))
     }
 }
 
-fn refuse_other_kinds(array: &Described, place: &str) -> Result<(), ReadError> {
+fn refuse_other_kinds(array: &ArraySpec, place: &str) -> Result<(), ReadError> {
     use crate::arrays::array::Kind;
     let name = &array.name;
     match &array.kind {

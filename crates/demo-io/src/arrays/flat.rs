@@ -1,8 +1,8 @@
 //! Arrays with names, side by side: one array an episode, one array of all, or one after another.
 
-use crate::arrays::array::{Data, Described, Load, unit_of};
+use crate::arrays::array::{ArraySpec, Data, Load, unit_of};
 use crate::arrays::fields::{Fields, assign, channel_names};
-use crate::arrays::grouped::{Group, families};
+use crate::arrays::grouped::{GroupedArrays, families};
 use crate::arrays::layout::{Stack, dimensions, lengths, stack};
 use crate::input::Input;
 use crate::raw::{Clock, MOST_EPISODES, RawEpisode, RawRecordings, Rows, no_time, period, unused};
@@ -12,24 +12,25 @@ use motion::{Channel, Finding};
 
 pub(crate) fn drafts(
     input: &Input<'_>,
-    described: &[Described],
+    described: &[ArraySpec],
     load: &mut Load<'_>,
 ) -> Result<RawRecordings, ReadError> {
     if let Some(demos) = families(described, input.options) {
-        return Group { input, described, demos, step: None, name_channels: |_, n| channel_names("x", n) }.drafts(load);
+        return GroupedArrays { input, described, demos, step: None, name_channels: |_, n| channel_names("x", n) }
+            .drafts(load);
     }
-    let set = Set { input, described, fields: assign(described, input.options, &input.name)? };
+    let set = Columns { input, described, fields: assign(described, input.options, &input.name)? };
     set.drafts(load)
 }
 
 /// The arrays of a file with their roles.
-struct Set<'a> {
+struct Columns<'a> {
     input: &'a Input<'a>,
-    described: &'a [Described],
+    described: &'a [ArraySpec],
     fields: Fields,
 }
 
-impl Set<'_> {
+impl Columns<'_> {
     fn drafts(&self, load: &mut Load<'_>) -> Result<RawRecordings, ReadError> {
         let Self { input, fields, .. } = self;
         let file = &input.name[..];
@@ -77,7 +78,7 @@ impl Set<'_> {
     }
 
     fn listed(&self) -> String {
-        let listed: Vec<String> = self.described.iter().map(Described::with_shape).collect();
+        let listed: Vec<String> = self.described.iter().map(ArraySpec::with_shape).collect();
         crate::rows::roles::shortened(&listed)
     }
 

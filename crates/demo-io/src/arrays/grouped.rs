@@ -1,6 +1,6 @@
 //! Arrays in groups: a group a demonstration, with the same names in each.
 
-use crate::arrays::array::{Data, Described, Kind, Load, unit_of};
+use crate::arrays::array::{ArraySpec, Data, Kind, Load, unit_of};
 use crate::arrays::fields::{Fields, assign};
 use crate::arrays::layout::{Stack, dimensions, lengths, stack};
 use crate::input::Input;
@@ -18,9 +18,9 @@ pub(crate) struct Demo {
 }
 
 /// All demonstrations of a file.
-pub(crate) struct Group<'a> {
+pub(crate) struct GroupedArrays<'a> {
     pub(crate) input: &'a Input<'a>,
-    pub(crate) described: &'a [Described],
+    pub(crate) described: &'a [ArraySpec],
     pub(crate) demos: Vec<Demo>,
     /// Seconds between samples, if the file says so elsewhere.
     pub(crate) step: Option<f64>,
@@ -28,7 +28,7 @@ pub(crate) struct Group<'a> {
     pub(crate) name_channels: fn(&str, usize) -> Vec<String>,
 }
 
-impl Group<'_> {
+impl GroupedArrays<'_> {
     pub(crate) fn drafts(&self, load: &mut Load<'_>) -> Result<RawRecordings, ReadError> {
         let file = &self.input.name[..];
         let Some(first) = self.demos.first() else {
@@ -38,17 +38,17 @@ impl Group<'_> {
             let what = format!("{} demonstrations, more than {MOST_EPISODES}", self.demos.len());
             return Err(ReadError::TooLarge(Fault::new(what, file, "files with fewer demonstrations")));
         }
-        let arrays: Vec<Described> = first
+        let arrays: Vec<ArraySpec> = first
             .fields
             .iter()
-            .map(|(name, index)| Described { name: name.clone(), ..self.described[*index].clone() })
+            .map(|(name, index)| ArraySpec { name: name.clone(), ..self.described[*index].clone() })
             .collect();
         let fields = assign(&arrays, self.input.options, &format!("{file}, {}", first.name))?;
         let step = period(self.input.options)?;
         let mut channels: Option<Vec<Channel>> = None;
         let mut episodes = Vec::with_capacity(self.demos.len());
         for demo in &self.demos {
-            let one = One { group: self, demo, arrays: &arrays, fields: &fields };
+            let one = DemoReader { group: self, demo, arrays: &arrays, fields: &fields };
             let (draft, n) = one.draft(step, load)?;
             match &channels {
                 None => channels = Some(one.channels(n, load)?),
@@ -76,14 +76,14 @@ impl Group<'_> {
 }
 
 /// One demonstration while it is read; `arrays` and `fields` are those of the first.
-struct One<'a> {
-    group: &'a Group<'a>,
+struct DemoReader<'a> {
+    group: &'a GroupedArrays<'a>,
     demo: &'a Demo,
-    arrays: &'a [Described],
+    arrays: &'a [ArraySpec],
     fields: &'a Fields,
 }
 
-impl One<'_> {
+impl DemoReader<'_> {
     /// The demonstration, and its number of channels.
     fn draft(&self, step: Option<f64>, load: &mut Load<'_>) -> Result<(RawEpisode, usize), ReadError> {
         let state = self.joined(&self.fields.state, load)?;
@@ -136,7 +136,7 @@ impl One<'_> {
         let mut joined: Option<Stack> = None;
         for &field in fields {
             let index = self.index(field)?;
-            let array = Described { name: self.arrays[field].name.clone(), ..self.group.described[index].clone() };
+            let array = ArraySpec { name: self.arrays[field].name.clone(), ..self.group.described[index].clone() };
             let (episodes, ..) = dimensions(&array, self.group.input, &place)?;
             let numbers = if episodes == 1 { load(index)?.numbers() } else { None };
             let Some(numbers) = numbers else {
@@ -231,7 +231,7 @@ impl One<'_> {
 
 /// Arrays whose names are numbered, one a demonstration: `demo_0`, `demo_1`; `x_0`, `v_0`, `x_1`, `v_1`; `demo_0/x`.
 /// What has no number belongs to all. None if this is not how the file is made.
-pub(crate) fn families(described: &[Described], options: &ReadOptions) -> Option<Vec<Demo>> {
+pub(crate) fn families(described: &[ArraySpec], options: &ReadOptions) -> Option<Vec<Demo>> {
     let names: Vec<&str> = described.iter().map(|array| &array.name[..]).collect();
     let mut demos: Vec<Demo> = Vec::new();
     let mut shared: Vec<(String, usize)> = Vec::new();
@@ -285,10 +285,10 @@ fn numbered(name: &str) -> Option<(String, String)> {
 mod tests {
     use super::*;
 
-    fn planes(names: &[&str]) -> Vec<Described> {
+    fn planes(names: &[&str]) -> Vec<ArraySpec> {
         let shape = |name: &str| if name == "dt" { vec![] } else { vec![12, 2] };
         let array =
-            |name: &&str| Described { name: (*name).to_owned(), shape: shape(name), kind: Kind::Number("float64") };
+            |name: &&str| ArraySpec { name: (*name).to_owned(), shape: shape(name), kind: Kind::Number("float64") };
         names.iter().map(array).collect()
     }
 

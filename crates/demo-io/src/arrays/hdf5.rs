@@ -5,9 +5,9 @@ mod tree;
 use hdf5_pure::{AttrValue, File, Group as Folder};
 
 use self::tree::Tree;
-use crate::arrays::array::Described;
+use crate::arrays::array::ArraySpec;
 use crate::arrays::flat;
-use crate::arrays::grouped::{Demo, Group};
+use crate::arrays::grouped::{Demo, GroupedArrays};
 use crate::input::Input;
 use crate::names::natural;
 use crate::raw::RawRecordings;
@@ -30,8 +30,8 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
         let described = side_by_side(&mut tree, &root, data.as_ref())?;
         return flat::drafts(input, &described, &mut |index| tree.load(index));
     }
-    let described: Vec<Described> = tree.described();
-    let group = Group { input, described: &described, demos, step: step(&root, parent, input)?, name_channels };
+    let described: Vec<ArraySpec> = tree.described();
+    let group = GroupedArrays { input, described: &described, demos, step: step(&root, parent, input)?, name_channels };
     group.drafts(&mut |index| {
         let data = tree.load(index)?;
         progress(data.len() as u64 * 8);
@@ -74,7 +74,7 @@ fn demos(tree: &mut Tree<'_>, parent: &Folder) -> Result<Vec<Demo>, ReadError> {
 }
 
 /// Arrays in the root, in `data` and in `meta`, as in a replay buffer.
-fn side_by_side(tree: &mut Tree<'_>, root: &Folder, data: Option<&Folder>) -> Result<Vec<Described>, ReadError> {
+fn side_by_side(tree: &mut Tree<'_>, root: &Folder, data: Option<&Folder>) -> Result<Vec<ArraySpec>, ReadError> {
     tree.arrays(root, "")?;
     if let Some(data) = data {
         tree.arrays(data, "")?;

@@ -1,6 +1,6 @@
 //! How the indices of an array are samples, channels and episodes.
 
-use crate::arrays::array::{Described, shape_text, transposed};
+use crate::arrays::array::{ArraySpec, shape_text, transposed};
 use crate::arrays::fields::too_many_channels;
 use crate::input::Input;
 use crate::{Fault, ReadError, SamplesAre};
@@ -16,7 +16,7 @@ pub(crate) struct Stack {
 
 /// K, N, n of a shape, as it lies in memory.
 pub(crate) fn dimensions(
-    array: &Described,
+    array: &ArraySpec,
     input: &Input<'_>,
     place: &str,
 ) -> Result<(usize, usize, usize), ReadError> {
@@ -51,7 +51,7 @@ pub(crate) fn dimensions(
 }
 
 /// Puts numbers in the order of samples.
-pub(crate) fn stack(array: &Described, numbers: Vec<f64>, input: &Input<'_>, place: &str) -> Result<Stack, ReadError> {
+pub(crate) fn stack(array: &ArraySpec, numbers: Vec<f64>, input: &Input<'_>, place: &str) -> Result<Stack, ReadError> {
     let (episodes, samples, channels) = dimensions(array, input, place)?;
     too_many_channels(channels, place)?;
     if channels == 0 {

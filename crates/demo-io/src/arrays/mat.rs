@@ -6,10 +6,10 @@ mod value;
 use self::elements::Elements;
 use self::value::Value;
 use crate::ReadError;
-use crate::arrays::array::{Data, Described, Kind};
+use crate::arrays::array::{ArraySpec, Data, Kind};
 use crate::arrays::fields::channel_names;
 use crate::arrays::flat;
-use crate::arrays::grouped::{Demo, Group};
+use crate::arrays::grouped::{Demo, GroupedArrays};
 use crate::input::Input;
 use crate::raw::RawRecordings;
 
@@ -36,8 +36,14 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
                 let own: Vec<String> = demo.fields.iter().map(|(name, _)| name.clone()).collect();
                 demo.fields.extend(shared.iter().filter(|(name, _)| !own.contains(name)).cloned());
             }
-            Group { input, described: &described, demos, step: None, name_channels: |_, n| channel_names("x", n) }
-                .drafts(&mut load)
+            GroupedArrays {
+                input,
+                described: &described,
+                demos,
+                step: None,
+                name_channels: |_, n| channel_names("x", n),
+            }
+            .drafts(&mut load)
         }
         None => flat::drafts(input, &described, &mut load),
     }
@@ -61,7 +67,7 @@ fn is_demo(fields: &[String]) -> bool {
 /// Arrays by index.
 #[derive(Default)]
 struct Store {
-    described: Vec<Described>,
+    described: Vec<ArraySpec>,
     data: Vec<Data>,
 }
 
@@ -82,7 +88,7 @@ impl Store {
             Value::Other(kind) => (Vec::new(), Kind::Other(kind.clone()), Data::Text(Vec::new())),
             Value::Cell(_) | Value::Struct { .. } => return None,
         };
-        self.described.push(Described { name: name.to_owned(), shape, kind });
+        self.described.push(ArraySpec { name: name.to_owned(), shape, kind });
         self.data.push(data);
         Some(self.data.len() - 1)
     }

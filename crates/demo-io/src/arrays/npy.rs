@@ -8,7 +8,7 @@ use std::io::Read;
 pub(crate) use self::header::Header;
 #[cfg(any(feature = "hdf5", feature = "parquet"))]
 pub(crate) use self::values::half;
-use crate::arrays::array::{Data, Described, Kind};
+use crate::arrays::array::{ArraySpec, Data, Kind};
 use crate::arrays::flat;
 use crate::input::Input;
 use crate::raw::RawRecordings;
@@ -29,8 +29,8 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
 }
 
 impl Header {
-    pub(crate) fn described(&self, name: String) -> Described {
-        Described { name, shape: self.shape.clone(), kind: self.kind() }
+    pub(crate) fn described(&self, name: String) -> ArraySpec {
+        ArraySpec { name, shape: self.shape.clone(), kind: self.kind() }
     }
 
     fn kind(&self) -> Kind {

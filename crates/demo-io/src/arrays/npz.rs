@@ -5,7 +5,7 @@ use std::io::Read;
 use flate2::read::DeflateDecoder;
 use rawzip::{CompressionMethod, ErrorKind, FileReader, RECOMMENDED_BUFFER_SIZE, ZipArchive, ZipArchiveEntryWayfinder};
 
-use crate::arrays::array::Described;
+use crate::arrays::array::ArraySpec;
 use crate::arrays::flat;
 use crate::arrays::npy::Header;
 use crate::input::Input;
@@ -17,7 +17,7 @@ use crate::{Fault, ReadError};
 const MOST_ENTRIES: usize = 100_000;
 
 struct Entry {
-    described: Described,
+    described: ArraySpec,
     wayfinder: ZipArchiveEntryWayfinder,
     deflated: bool,
 }
@@ -50,7 +50,7 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
                 "fewer a file",
             )));
         }
-        let described = Described { name: name.to_owned(), shape: Vec::new(), kind: crate::arrays::array::Kind::Text };
+        let described = ArraySpec { name: name.to_owned(), shape: Vec::new(), kind: crate::arrays::array::Kind::Text };
         entries.push(Entry { described, wayfinder: record.wayfinder(), deflated });
     }
     if entries.is_empty() {
@@ -61,7 +61,7 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
         let header = opened(&archive, entry, input, |reader| Header::read(reader, &place(file, entry)))?;
         entry.described = header.described(std::mem::take(&mut entry.described.name));
     }
-    let described: Vec<Described> = entries.iter().map(|entry| entry.described.clone()).collect();
+    let described: Vec<ArraySpec> = entries.iter().map(|entry| entry.described.clone()).collect();
     flat::drafts(input, &described, &mut |index| {
         let entry = &entries[index];
         progress(entry.wayfinder.compressed_size_hint());

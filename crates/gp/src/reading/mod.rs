@@ -1,6 +1,6 @@
 //! Whether the demonstrations were constrained.
 
-pub(crate) mod both_readings;
+pub(crate) mod auto_gp;
 pub(crate) mod near_passes;
 pub(crate) mod numbers;
 
@@ -15,7 +15,7 @@ use crate::rows::kept::Grouping;
 /// Whether hidden constraints acted on the demonstrations (R8).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Reading {
+pub enum Hypothesis {
     /// No sign of one: the direct policy, or the slope GP's where movements descend a potential that it learns far better.
     Free,
     /// Constraints hid part of the policy and varied: the slope policy.
@@ -43,20 +43,20 @@ const HIDDEN: f64 = 0.08;
 
 impl ReadingNumbers {
     /// (R8), in its order.
-    pub fn reading(&self) -> Reading {
+    pub fn reading(&self) -> Hypothesis {
         match () {
-            () if self.grouping == Grouping::BlocksOfTime => Reading::TooFew,
+            () if self.grouping == Grouping::BlocksOfTime => Hypothesis::TooFew,
             () if self.gap <= SAME || self.shows_a_potential() => {
                 if self.seen() {
-                    Reading::Free
+                    Hypothesis::Free
                 } else {
-                    Reading::Ambiguous
+                    Hypothesis::Ambiguous
                 }
             }
-            () if self.trajectories >= DEMONSTRATIONS && self.direction_tells() => Reading::Constrained,
-            () if self.p_d > UNEXPLAINED => Reading::Unexplained,
-            () if (self.gap <= CLOSE || self.is_a_line()) && self.seen() => Reading::Free,
-            () => Reading::Ambiguous,
+            () if self.trajectories >= DEMONSTRATIONS && self.direction_tells() => Hypothesis::Constrained,
+            () if self.p_d > UNEXPLAINED => Hypothesis::Unexplained,
+            () if (self.gap <= CLOSE || self.is_a_line()) && self.seen() => Hypothesis::Free,
+            () => Hypothesis::Ambiguous,
         }
     }
 
@@ -87,12 +87,12 @@ impl ReadingNumbers {
     }
 
     /// The policy to hand out: whether it is the slope GP's.
-    pub fn takes_slope(&self, reading: Reading) -> bool {
+    pub fn takes_slope(&self, reading: Hypothesis) -> bool {
         match reading {
-            Reading::Constrained => true,
-            Reading::Unexplained => self.a_s < self.a_d,
-            Reading::Free | Reading::Ambiguous => self.shows_a_potential(),
-            Reading::TooFew => false,
+            Hypothesis::Constrained => true,
+            Hypothesis::Unexplained => self.a_s < self.a_d,
+            Hypothesis::Free | Hypothesis::Ambiguous => self.shows_a_potential(),
+            Hypothesis::TooFew => false,
         }
     }
 
@@ -108,27 +108,27 @@ impl ReadingNumbers {
         let leans = self.trajectories < DEMONSTRATIONS && self.direction_tells() && self.hides();
         let few = if leans { " It leans towards constraints; record at least five demonstrations." } else { "" };
         match self.reading() {
-            Reading::Free if self.shows_a_potential() => format!(
+            Hypothesis::Free if self.shows_a_potential() => format!(
                 "Nothing in these demonstrations points to a hidden constraint: where they went, the policies that allow for one and that do not agree within {gap}. The slope policy is used: it predicts left-out movements far better (squared error {a_s} against {a_d}), as it can where movements descend a potential. A constraint that is the same in every demonstration cannot be seen in data."
             ),
-            Reading::Free => format!(
+            Hypothesis::Free => format!(
                 "Nothing in these demonstrations points to a hidden constraint: left-out movements are predicted from the place alone with an error of {p_d} of their variance, and the policy that allows for constraints agrees within {gap}. The direct policy is used. A constraint that is the same in every demonstration cannot be seen in data."
             ),
-            Reading::Constrained => format!(
+            Hypothesis::Constrained => format!(
                 "Constraints hid part of the policy, and they differed: knowing the direction a movement was let go in predicts its speed far better than the place alone (squared error {a_s} against {a_d}). The slope policy is used; about {hidden} of its length was hidden from view. Expected error {expected_nupe:.1e}."
             ),
-            Reading::Ambiguous if self.gap <= SAME || self.shows_a_potential() => format!(
+            Hypothesis::Ambiguous if self.gap <= SAME || self.shows_a_potential() => format!(
                 "Nothing ever moved along {}: either it wants not to, or it is always blocked there.",
                 direction(&self.least_seen.direction)
             ),
-            Reading::Ambiguous => format!(
+            Hypothesis::Ambiguous => format!(
                 "Two readings explain these demonstrations equally well. (a) Nothing was constrained: then the direct policy is right (used; left-out error {p_d}). (b) The same constraint acted always: then the policy is unknown across it, and the slope policy is one guess; the two differ by {gap}. Only you know: `--reading free` or `--reading constrained`, or record a few demonstrations that pass the same places in other directions.{few}"
             ),
-            Reading::Unexplained => format!(
+            Hypothesis::Unexplained => format!(
                 "Neither reading predicts left-out movements (errors {p_d} and {a_s}). Too few demonstrations, too much noise, or the movement does not depend on the place alone (time, load, target).{} No policy should be trusted.",
                 if self.lambda >= 0.5 && !leans && !self.is_a_line() { " It leans towards constraints." } else { few }
             ),
-            Reading::TooFew => "Too few demonstrations to tell whether constraints acted: the direct policy is used; record at least five.".to_owned(),
+            Hypothesis::TooFew => "Too few demonstrations to tell whether constraints acted: the direct policy is used; record at least five.".to_owned(),
         }
     }
 }

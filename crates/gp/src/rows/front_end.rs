@@ -13,7 +13,8 @@ pub enum FrontEnd {
     /// Positions of a simulator that takes Euler steps: u_i = (x_{i+1} − x_i)/δt for all samples but the last. Exact
     /// there, because the simulator is that map; elsewhere the policy found is too steep.
     #[default]
-    Map,
+    #[serde(rename = "Map")]
+    FiniteDifferences,
     /// Positions of a physical system: states and velocities by the smoother, velocities with their variance.
     Smoothed(Smoother),
     /// Noisy positions with clean velocities or commands: fused states, velocities as recorded. The remaining
@@ -33,7 +34,7 @@ impl FrontEnd {
     pub fn rows(&self, demonstrations: &Demonstrations) -> Result<Rows, GpError> {
         match self {
             FrontEnd::Velocities => rows_of(recorded(demonstrations, |trajectory| trajectory.states().clone())?),
-            FrontEnd::Map => rows_of(demonstrations.trajectories().iter().map(steps)),
+            FrontEnd::FiniteDifferences => rows_of(demonstrations.trajectories().iter().map(steps)),
             FrontEnd::Smoothed(smoother) => smoothed(smoother, demonstrations),
             FrontEnd::Fused(fusion) => fused(fusion, demonstrations),
         }

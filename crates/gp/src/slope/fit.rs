@@ -2,7 +2,7 @@ use nalgebra::{DMatrix, DVectorView};
 use rand::Rng;
 
 use crate::report::trust_report::TrustReport;
-use crate::slope::judgement::{Across, Chosen, report};
+use crate::slope::judgement::{CrossPathEvidence, ReportInput, report};
 use crate::slope::model::SlopeModel;
 use crate::slope::policy::{SlopePolicy, SlopePotential};
 use crate::slope::search::outcome;
@@ -26,7 +26,7 @@ impl SlopeGp {
     pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<SlopeFit, GpError> {
         let kept = self.selection()?.keep(rows, rng)?;
         let outcome = outcome(self, &kept)?;
-        let report = report(&Chosen { outcome: &outcome, kept: &kept, rows, across: Across::Untested });
+        let report = report(&ReportInput { outcome: &outcome, kept: &kept, rows, across: CrossPathEvidence::Untested });
         Ok(SlopeFit { model: outcome.taken.model, report })
     }
 }

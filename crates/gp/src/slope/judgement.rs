@@ -28,24 +28,24 @@ const SWITCHED: f64 = 0.5;
 const OPTIMISTIC: f64 = 2.0;
 
 /// Input of a report.
-pub(crate) struct Chosen<'a> {
+pub(crate) struct ReportInput<'a> {
     pub(crate) outcome: &'a Outcome,
     pub(crate) kept: &'a Kept,
     pub(crate) rows: &'a Rows,
-    pub(crate) across: Across,
+    pub(crate) across: CrossPathEvidence,
 }
 
 /// Whether movements passed the same places in other directions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Across {
+pub(crate) enum CrossPathEvidence {
     /// Constraints varied: held-out movements test the policy across the paths of the others.
     Tested,
     /// All movements may have gone alike, so that nothing tested the policy across them.
     Untested,
 }
 
-pub(crate) fn report(chosen: &Chosen<'_>) -> TrustReport {
-    let Chosen { outcome, kept, rows, across } = chosen;
+pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
+    let ReportInput { outcome, kept, rows, across } = chosen;
     let Outcome { data, taken, other, curl_t, families } = outcome;
     let (posterior, prior) = mean_covariances(&taken.model, &kept.states);
     let ambiguity = other.as_ref().map_or(0.0, |other| ambiguity(taken, other));
@@ -86,10 +86,10 @@ fn noise_share(taken: &Candidate) -> f64 {
 /// Factor on the posterior's variance, from how left-out movements were predicted: z² (S11) where that is over 1, since
 /// the posterior is then too narrow. A z² under 1 tells something of the posterior only as far as noise is a small part of the
 /// variance predicted, and of all directions only where movements left out went in others than those learnt from.
-fn calibration(z_squared: f64, noise_share: f64, across: Across) -> f64 {
+fn calibration(z_squared: f64, noise_share: f64, across: CrossPathEvidence) -> f64 {
     let least = match across {
-        Across::Tested => (OPTIMISTIC * z_squared).max(noise_share).min(1.0),
-        Across::Untested => 1.0,
+        CrossPathEvidence::Tested => (OPTIMISTIC * z_squared).max(noise_share).min(1.0),
+        CrossPathEvidence::Untested => 1.0,
     };
     z_squared.max(least)
 }
@@ -143,8 +143,8 @@ mod tests {
         /// twice what they say or the share of noise.
         #[test]
         fn a_posterior_is_narrowed_only_by_what_tested_it(z_squared in 0.0f64..9.0, noise in 0.0f64..1.0) {
-            let tested = calibration(z_squared, noise, Across::Tested);
-            let untested = calibration(z_squared, noise, Across::Untested);
+            let tested = calibration(z_squared, noise, CrossPathEvidence::Tested);
+            let untested = calibration(z_squared, noise, CrossPathEvidence::Untested);
             prop_assert_eq!(untested, z_squared.max(1.0));
             prop_assert!(tested <= untested && tested >= z_squared && tested >= noise);
             prop_assert!(tested >= (2.0 * z_squared).min(1.0));

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context as _, bail};
-use gp::{DirectBlock, DirectData, NearPasses, Reading, ReadingLearner, ReadingNumbers, Rows, Shape, SlopeData};
+use gp::{AutoGp, DirectBlock, DirectData, Hypothesis, NearPasses, ReadingNumbers, Rows, Shape, SlopeData};
 use motion::Policy as _;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng as _;
@@ -62,7 +62,7 @@ struct ReadingCase {
     positions: Vec<Table>,
     velocities: Vec<Table>,
     prototype: Prototype,
-    expected_reading: Reading,
+    expected_reading: Hypothesis,
     frozen: Frozen,
 }
 
@@ -144,7 +144,7 @@ pub(super) fn check_readings(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     agreements.push(Agreement::new("numbers with everything given", 1e-4));
     for case in &cases {
         case.compare_frozen(&mut agreements[2])?;
-        let fit = ReadingLearner::default().fit(&case.rows()?, &mut ChaCha8Rng::seed_from_u64(0))?;
+        let fit = AutoGp::default().fit(&case.rows()?, &mut ChaCha8Rng::seed_from_u64(0))?;
         let differs = f64::from(u8::from(fit.reading() != case.expected_reading));
         agreements[0].see([1.0 + differs], &[1.0]);
         let (ours, theirs) = (fit.numbers(), &case.prototype);

@@ -24,7 +24,7 @@ mod tables;
 pub mod variants;
 pub mod verdict;
 
-pub use evaluation::beside::{Beside, DATA_SETS};
+pub use evaluation::beside::{Baselines, DATA_SETS};
 pub use evaluation::contest::{Contest, Contestant, Entry};
 pub use evaluation::gaussians::Gaussians;
 pub use evaluation::judge::Judge;

@@ -83,7 +83,11 @@ fn overview(seed: u64) -> anyhow::Result<Overview> {
     let test = TestSamples::draw(&aligned, HELD_OUT, &mut rng)?;
     let naive = toy_naive().learn_policy(aligned.demonstrations(), &test.of_all, &mut rng)?;
     let learnt = aligned.learn_without(&test.of_all, &toy_regressor(), &mut rng)?;
-    let slope = toy_beside(FrontEnd::Map, ROWS).slope(aligned.demonstrations(), &test.of_all, &mut beside(&rng))?;
+    let slope = toy_beside(FrontEnd::FiniteDifferences, ROWS).slope(
+        aligned.demonstrations(),
+        &test.of_all,
+        &mut beside(&rng),
+    )?;
     let movement = |recording: &demo_gen::Recording| {
         let states = recording.observed.states().column_iter();
         Movement { points: states.map(|x| (rounded(x[0], 4), rounded(x[1], 4))).collect() }

@@ -29,7 +29,7 @@ pub fn color_of(learner: Contestant) -> Option<&'static str> {
         Contestant::PolicyAlign => Who::PolicyAlign,
         Contestant::SlopeGp => Who::SlopeGp,
         Contestant::DirectGp => Who::DirectGp,
-        Contestant::ConstraintConsistent | Contestant::SlopeGpNoTrend | Contestant::Reading => return None,
+        Contestant::ConstraintConsistent | Contestant::SlopeGpNoTrend | Contestant::AutoGp => return None,
     };
     Some(who.color())
 }

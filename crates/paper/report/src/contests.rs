@@ -128,7 +128,7 @@ impl ContestLine<'_> {
     /// Whose mean is the smallest; "automatic" and "no trend" are no learners of their own.
     pub(crate) fn least(&self) -> Contestant {
         let means =
-            self.cells.iter().filter(|(who, _)| !matches!(who, Contestant::Reading | Contestant::SlopeGpNoTrend));
+            self.cells.iter().filter(|(who, _)| !matches!(who, Contestant::AutoGp | Contestant::SlopeGpNoTrend));
         let means = means.filter_map(|(who, _)| Some((*who, self.mean(*who)?)));
         let least = means.min_by(|(_, a), (_, b)| a.total_cmp(b));
         least.map_or(Contestant::SlopeGp, |(who, _)| who)

@@ -103,7 +103,7 @@ pub(super) fn confusion(readings: &ExperimentResult) -> Vec<Vec<String>> {
     const READ: [Measure; 4] =
         [Measure::ReadFree, Measure::ReadConstrained, Measure::ReadAmbiguous, Measure::ReadUnexplained];
     let mut kinds: Vec<(&str, [usize; 5])> = Vec::new();
-    for (case, row) in rows_of(readings, Contestant::Reading) {
+    for (case, row) in rows_of(readings, Contestant::AutoGp) {
         let kind = case.split_once('/').map_or(case, |(kind, _)| kind);
         if kinds.last().is_none_or(|(last, _)| *last != kind) {
             kinds.push((kind, [0; 5]));
@@ -123,7 +123,7 @@ pub(super) fn confusion(readings: &ExperimentResult) -> Vec<Vec<String>> {
 /// Which free movements are not always classified as free, and how well the slope GP predicts in corridors.
 fn free(readings: &ExperimentResult) -> String {
     const WELL: f64 = 0.3;
-    let free = rows_of(readings, Contestant::Reading).filter(|(case, _)| case.starts_with("free/"));
+    let free = rows_of(readings, Contestant::AutoGp).filter(|(case, _)| case.starts_with("free/"));
     let often = |(case, row): (&str, &RowResult)| {
         let free = values(row, Measure::ReadFree).iter().flatten().filter(|share| **share > 0.0).count();
         let (case, of) = (case.trim_start_matches("free/"), row.data_sets - row.failed);

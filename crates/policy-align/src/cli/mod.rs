@@ -19,7 +19,7 @@ use clap::error::ErrorKind;
 use clap::{Command, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
 use failure::Failure;
-use session::{Said, Session, tell};
+use session::{Output, Session, tell};
 
 /// Learn a policy from movements recorded under unknown constraints.
 #[derive(Debug, Parser)]
@@ -77,7 +77,7 @@ pub(crate) fn run() -> Exit {
         Ok(cli) => cli.verb.run(&cli.session),
         Err(error) => usage(&error),
     };
-    match said.and_then(|Said { text, exit }| tell(&text).map(|()| exit)) {
+    match said.and_then(|Output { text, exit }| tell(&text).map(|()| exit)) {
         Ok(exit) => exit,
         Err(failure) => {
             complain(&failure.to_string());
@@ -87,7 +87,7 @@ pub(crate) fn run() -> Exit {
 }
 
 impl Verb {
-    fn run(&self, session: &Session) -> Result<Said, Failure> {
+    fn run(&self, session: &Session) -> Result<Output, Failure> {
         match self {
             Verb::Check(check) => check.run(session),
             Verb::Fit(fit) => fit.run(session),
@@ -105,11 +105,11 @@ impl Verb {
 }
 
 /// A command line that is not understood, in our three lines; help and version are results.
-fn usage(error: &clap::Error) -> Result<Said, Failure> {
+fn usage(error: &clap::Error) -> Result<Output, Failure> {
     if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
         // clap colours it as the terminal and NO_COLOR say.
         let _ = error.print();
-        return Ok(Said::done(String::new()));
+        return Ok(Output::done(String::new()));
     }
     let text = error.render().to_string();
     let what: Vec<&str> = text.lines().take_while(|line| !line.is_empty()).map(str::trim).collect();

@@ -25,18 +25,18 @@ pub(crate) struct Session {
 
 /// What a command has to say on standard output, and to the shell.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Said {
+pub(crate) struct Output {
     pub(crate) text: String,
     pub(crate) exit: Exit,
 }
 
-impl Said {
-    pub(crate) fn done(text: String) -> Said {
-        Said { text, exit: Exit::Done }
+impl Output {
+    pub(crate) fn done(text: String) -> Output {
+        Output { text, exit: Exit::Done }
     }
 
     /// One document in one line. What a terminal would not show is escaped, as JSON allows in its texts.
-    pub(crate) fn json(document: &Value, exit: Exit) -> Said {
+    pub(crate) fn json(document: &Value, exit: Exit) -> Output {
         let mut text = String::new();
         for c in document.to_string().chars() {
             if is_hidden(c) {
@@ -45,7 +45,7 @@ impl Said {
                 text.push(c);
             }
         }
-        Said { text: text + "\n", exit }
+        Output { text: text + "\n", exit }
     }
 }
 

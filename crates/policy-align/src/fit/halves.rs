@@ -1,6 +1,6 @@
 //! Split-half agreement: do halves of the movements give the same policy?
 
-use gp::{BothReadings, CurlTest, DirectGp, GpError, ModelKind, Rows, SlopeGp};
+use gp::{AutoFit, CurlTest, DirectGp, GpError, ModelKind, Rows, SlopeGp};
 use motion::Policy;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -19,7 +19,7 @@ pub(super) struct Limits {
 ///
 /// The error to expect is a quarter of it at most, if each half has twice the error of the whole and the errors of both
 /// have nothing to do with each other. What both lack, it cannot see.
-pub(super) fn of_slope(readings: &BothReadings, rows: &Rows, limits: Limits) -> Option<f64> {
+pub(super) fn of_slope(readings: &AutoFit, rows: &Rows, limits: Limits) -> Option<f64> {
     let report = readings.slope().report();
     let curl_test = if report.model == ModelKind::Potential { CurlTest::AssumePotential } else { CurlTest::Fit };
     let gp = SlopeGp {
@@ -34,7 +34,7 @@ pub(super) fn of_slope(readings: &BothReadings, rows: &Rows, limits: Limits) -> 
 }
 
 /// The same of direct policies.
-pub(super) fn of_direct(readings: &BothReadings, rows: &Rows, limits: Limits) -> Option<f64> {
+pub(super) fn of_direct(readings: &AutoFit, rows: &Rows, limits: Limits) -> Option<f64> {
     let gp = DirectGp {
         families: vec![readings.direct().family()],
         max_rows: limits.max_rows / 2,

@@ -12,13 +12,13 @@ pub use options::{FitOptions, LearnerChoice};
 pub use progress::{Progress, Step};
 pub(crate) use recorded_rows::rows;
 
-use gp::{BothReadings, DirectGp, FrontEnd, Reading, ReadingLearner, SlopeGp, TrajectoryErrors};
+use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, SlopeGp, TrajectoryErrors};
 use motion::{LearntPolicy, Policy, upper_median};
 use prepare::in_words::squared_error;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::trust::{AlignedNumbers, Evidence, TrustNumbers, judge, share_leaving, share_unknown};
+use crate::trust::{AlignedNumbers, TrustNumbers, VerdictInput, judge, share_leaving, share_unknown};
 use crate::{DataSummary, Decision, FitError, Learnt, MadeBy, Model, Prepared};
 use aligning::AlignedFit;
 
@@ -47,8 +47,12 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
         _ => None,
     };
     let numbers = numbers(prepared, options, &readings, aligned.as_ref(), &rows);
-    let trust =
-        judge(Evidence { numbers, findings: &prepared.findings, state: &prepared.state, episodes: &prepared.episodes });
+    let trust = judge(VerdictInput {
+        numbers,
+        findings: &prepared.findings,
+        state: &prepared.state,
+        episodes: &prepared.episodes,
+    });
     let learnt = match (options.learner, aligned) {
         (_, Some(aligned)) => {
             decisions.extend(aligned.decisions);
@@ -71,9 +75,9 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
     Ok(Model { made_by: MadeBy::this(), state, time_step, data, decisions, seed: options.seed, trust, learnt })
 }
 
-fn readings(rows: &gp::Rows, options: &FitOptions) -> Result<BothReadings, FitError> {
+fn readings(rows: &gp::Rows, options: &FitOptions) -> Result<AutoFit, FitError> {
     let (max_rows, hyper_rows) = (options.max_rows, (options.max_rows as f64 * HYPER_SHARE) as usize);
-    let learner = ReadingLearner {
+    let learner = AutoGp {
         front_end: FrontEnd::Velocities, // the rows are made already
         slope: SlopeGp { max_rows, hyper_rows, ..SlopeGp::default() },
         direct: DirectGp { max_rows, hyper_rows, ..DirectGp::default() },
@@ -82,7 +86,7 @@ fn readings(rows: &gp::Rows, options: &FitOptions) -> Result<BothReadings, FitEr
     Ok(learner.fit(rows, &mut ChaCha8Rng::seed_from_u64(options.seed))?)
 }
 
-fn learner_decision(options: &FitOptions, readings: &BothReadings) -> Decision {
+fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {
     let decision = |value: &str, why: String, flag: &str| Decision {
         what: "learner".to_owned(),
         value: value.to_owned(),
@@ -111,31 +115,31 @@ fn learner_decision(options: &FitOptions, readings: &BothReadings) -> Decision {
     }
 }
 
-fn named(reading: Reading) -> &'static str {
+fn named(reading: Hypothesis) -> &'static str {
     match reading {
-        Reading::Free => "free",
-        Reading::Constrained => "constrained",
-        Reading::Ambiguous => "ambiguous",
-        Reading::Unexplained => "unexplained",
-        Reading::TooFew => "too few to tell",
+        Hypothesis::Free => "free",
+        Hypothesis::Constrained => "constrained",
+        Hypothesis::Ambiguous => "ambiguous",
+        Hypothesis::Unexplained => "unexplained",
+        Hypothesis::TooFew => "too few to tell",
     }
 }
 
 /// What the data say about constraints.
-fn found(reading: Reading) -> &'static str {
+fn found(reading: Hypothesis) -> &'static str {
     match reading {
-        Reading::Free => "no constraints detected",
-        Reading::Constrained => "constraints detected",
-        Reading::Ambiguous => "free or constrained, both readings fit",
-        Reading::Unexplained => "neither reading fits",
-        Reading::TooFew => "too few movements to detect constraints",
+        Hypothesis::Free => "no constraints detected",
+        Hypothesis::Constrained => "constraints detected",
+        Hypothesis::Ambiguous => "free or constrained, both readings fit",
+        Hypothesis::Unexplained => "neither reading fits",
+        Hypothesis::TooFew => "too few movements to detect constraints",
     }
 }
 
 fn numbers(
     prepared: &Prepared,
     options: &FitOptions,
-    readings: &BothReadings,
+    readings: &AutoFit,
     aligned: Option<&AlignedFit>,
     rows: &gp::Rows,
 ) -> TrustNumbers {
@@ -208,14 +212,14 @@ fn numbers(
 }
 
 /// Uncertainty of the policy between the demonstrated movements.
-fn unknown(readings: &BothReadings, prepared: &Prepared, rows: &gp::Rows) -> f64 {
+fn unknown(readings: &AutoFit, prepared: &Prepared, rows: &gp::Rows) -> f64 {
     let states = actions::states(rows);
     let variance = actions::spread(&actions::actions(readings, &states)) / states.ncols() as f64;
     share_unknown(readings, &prepared.demonstrations, variance).unwrap_or(1.0)
 }
 
 /// E′ of every movement left out, as if it were as fast as all are.
-fn episode_errors(readings: &BothReadings, takes_slope: bool) -> Vec<(usize, f64)> {
+fn episode_errors(readings: &AutoFit, takes_slope: bool) -> Vec<(usize, f64)> {
     let left_out = readings.left_out();
     let seen = left_out.iter().map(|errors| errors.seen).sum::<f64>() / left_out.len() as f64;
     let hidden = if takes_slope { readings.numbers().hidden } else { 0.0 };

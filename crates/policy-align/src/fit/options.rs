@@ -1,5 +1,5 @@
 use align::Bandwidth;
-use gp::Reading;
+use gp::Hypothesis;
 use serde::{Deserialize, Serialize};
 
 use crate::FitError;
@@ -10,7 +10,7 @@ pub struct FitOptions {
     /// `--learner`.
     pub learner: LearnerChoice,
     /// A reading given by the user, which overrides that of the data (`--reading`).
-    pub reading: Option<Reading>,
+    pub reading: Option<Hypothesis>,
     /// For PolicyAlign; none: chosen by held-out movements (`--bandwidth`).
     pub bandwidth: Option<Bandwidth>,
     /// For PolicyAlign; none: chosen by held-out movements (`--init-d`).

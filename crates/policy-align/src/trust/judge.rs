@@ -1,6 +1,6 @@
 use std::cmp::Reverse;
 
-use gp::{Grouping, Reading};
+use gp::{Grouping, Hypothesis};
 use motion::upper_median;
 use prepare::in_words::{percent, short};
 
@@ -25,7 +25,7 @@ const UNKNOWN: f64 = 0.1;
 const LEAVING: f64 = 0.5;
 
 /// Input of a verdict.
-pub(crate) struct Evidence<'a> {
+pub(crate) struct VerdictInput<'a> {
     pub(crate) numbers: TrustNumbers,
     /// Found while preparing.
     pub(crate) findings: &'a [Finding],
@@ -35,8 +35,8 @@ pub(crate) struct Evidence<'a> {
 }
 
 /// The findings, the worst first, and the verdict that follows.
-pub(crate) fn judge(evidence: Evidence<'_>) -> Trust {
-    let Evidence { numbers, findings, state, episodes } = evidence;
+pub(crate) fn judge(evidence: VerdictInput<'_>) -> Trust {
+    let VerdictInput { numbers, findings, state, episodes } = evidence;
     let mut findings = findings.to_vec();
     let mut found = |verdict, what: String, next: &str| findings.push(Finding { verdict, what, next: next.to_owned() });
     about_reading(&numbers, state, &mut found);
@@ -48,8 +48,8 @@ pub(crate) fn judge(evidence: Evidence<'_>) -> Trust {
 
 fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn FnMut(Verdict, String, &str)) {
     match numbers.reading {
-        Reading::Constrained => {}
-        Reading::Free if numbers.direction_coverage < SPREAD => found(
+        Hypothesis::Constrained => {}
+        Hypothesis::Free if numbers.direction_coverage < SPREAD => found(
             Verdict::Doubtful,
             format!(
                 "no constraint was detected, but movements hardly vary along {} (coverage {})",
@@ -58,12 +58,12 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
             ),
             "either the policy does not move that way or a constraint always blocks it: record movements in that direction",
         ),
-        Reading::Free => found(
+        Hypothesis::Free => found(
             Verdict::Good,
             "no constraint was detected; one common to all movements cannot be detected".to_owned(),
             "if there is one, record movements without it",
         ),
-        Reading::Ambiguous => found(
+        Hypothesis::Ambiguous => found(
             Verdict::Doubtful,
             format!(
                 "two readings explain these movements equally well, no constraint or one common to all: their policies differ by {}",
@@ -71,7 +71,7 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
             ),
             "set --reading free or --reading constrained, or record movements that cross the same places in other directions",
         ),
-        Reading::Unexplained => found(
+        Hypothesis::Unexplained => found(
             if numbers.held_out_error > WRONG { Verdict::DoNotUse } else { Verdict::Doubtful },
             format!(
                 "held-out movements are not predicted: error {} without constraints, {} with",
@@ -80,7 +80,7 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
             ),
             "record more movements or reduce noise, or add what else the motion depends on (time, load, target) to the state",
         ),
-        Reading::TooFew => {
+        Hypothesis::TooFew => {
             found(Verdict::Doubtful, "too few movements to detect constraints".to_owned(), "record at least five");
         }
     }

@@ -9,6 +9,6 @@ mod words;
 
 pub(crate) use between::share_unknown;
 pub(crate) use freely::share_leaving;
-pub(crate) use judge::{Evidence, judge};
+pub(crate) use judge::{VerdictInput, judge};
 pub use numbers::{AlignedNumbers, TrustNumbers};
 pub use report::Trust;

@@ -1,4 +1,4 @@
-use gp::{Grouping, ModelKind, Reading};
+use gp::{Grouping, Hypothesis, ModelKind};
 use serde::{Deserialize, Serialize};
 
 /// The numbers behind a verdict. Shares are of 1; errors are squared, as shares of the policy's variance unless said.
@@ -8,7 +8,7 @@ pub struct TrustNumbers {
     /// Movements learnt from.
     pub episodes: usize,
     /// The reading of the data: whether constraints acted.
-    pub reading: Reading,
+    pub reading: Hypothesis,
     /// E′ of the policy handed out: error along the path of movements left out, as a share of the policy's squares.
     pub held_out_error: f64,
     /// The same of every movement that was left out: its place among the episodes, and its error.

@@ -1,7 +1,7 @@
 //! Recordings with their truth, good and bad, as laboratories make them.
 
 use constraints::{LinearConstraint, PfaffianConstraint, Switching, Unconstrained};
-use demo_gen::beyond::{BeyondSystem, Hindrance, Shown};
+use demo_gen::beyond::{BeyondSystem, ConstraintKind, Shown};
 use demo_gen::{Parabola, Recording, RollOut, Sinusoidal, ThreeLinkArm, with_position_noise};
 use motion::{Channel, Episode, Recordings, Source};
 use motion::{LearntPolicy, Policy, Potential};
@@ -209,7 +209,7 @@ pub(crate) fn at_rate(hertz: f64, seconds: f64) -> RollOut {
     RollOut { time_step: 1.0 / hertz, n_samples: (seconds * hertz) as usize, sub_steps: 1 }
 }
 
-pub(crate) fn beyond(shown: Shown, hindrance: Hindrance, count: usize, seed: u64) -> Vec<Recording> {
+pub(crate) fn beyond(shown: Shown, hindrance: ConstraintKind, count: usize, seed: u64) -> Vec<Recording> {
     let system = BeyondSystem { shown, hindrance, n_trajectories: count + FRESH, ..BeyondSystem::default() };
     system.record(&mut ChaCha8Rng::seed_from_u64(seed)).unwrap()
 }
@@ -410,24 +410,28 @@ pub(crate) fn all() -> Vec<Named> {
             Case::of(&Plane { roll_out: fine(), ..Plane::default() }.policies(&[&whirl], s), 40, Velocities)
         }),
         case("limit cycle, constrained", |s| {
-            Case::of(&beyond(Shown::LimitCycle, Hindrance::Varying, 40, s), 40, Velocities)
+            Case::of(&beyond(Shown::LimitCycle, ConstraintKind::Varying, 40, s), 40, Velocities)
         }),
         case("limit cycle, 1 % noise", |s| {
-            Case::of(&noisy(&beyond(Shown::LimitCycle, Hindrance::Varying, 40, s), 0.01, s), 40, Positions)
+            Case::of(&noisy(&beyond(Shown::LimitCycle, ConstraintKind::Varying, 40, s), 0.01, s), 40, Positions)
         }),
-        case("limit cycle, free", |s| Case::of(&beyond(Shown::LimitCycle, Hindrance::Free, 40, s), 40, Velocities)),
+        case("limit cycle, free", |s| {
+            Case::of(&beyond(Shown::LimitCycle, ConstraintKind::Free, 40, s), 40, Velocities)
+        }),
         case("swirl 3-D, constrained", |s| {
-            Case::of(&beyond(Shown::Swirl { dim: 3 }, Hindrance::Varying, 60, s), 60, Velocities)
+            Case::of(&beyond(Shown::Swirl { dim: 3 }, ConstraintKind::Varying, 60, s), 60, Velocities)
         }),
-        case("handwriting, free, 5", |s| Case::of(&beyond(Shown::Handwriting, Hindrance::Free, 5, s), 5, Positions)),
+        case("handwriting, free, 5", |s| {
+            Case::of(&beyond(Shown::Handwriting, ConstraintKind::Free, 5, s), 5, Positions)
+        }),
         case("handwriting, free, 10", |s| {
-            Case::of(&beyond(Shown::Handwriting, Hindrance::Free, 10, s), 10, Velocities)
+            Case::of(&beyond(Shown::Handwriting, ConstraintKind::Free, 10, s), 10, Velocities)
         }),
         case("handwriting, free, 10, 1 % noise", |s| {
-            Case::of(&noisy(&beyond(Shown::Handwriting, Hindrance::Free, 10, s), 0.01, s), 10, Positions)
+            Case::of(&noisy(&beyond(Shown::Handwriting, ConstraintKind::Free, 10, s), 0.01, s), 10, Positions)
         }),
         case("handwriting, constrained, 40", |s| {
-            Case::of(&beyond(Shown::Handwriting, Hindrance::Varying, 40, s), 40, Velocities)
+            Case::of(&beyond(Shown::Handwriting, ConstraintKind::Varying, 40, s), 40, Velocities)
         }),
         case("one fixed constraint, parabola", move |s| {
             Case::of(&Plane { under: Under::Fixed, ..Plane::default() }.potential(&parabola(), s), 40, Velocities)
@@ -443,19 +447,19 @@ pub(crate) fn all() -> Vec<Named> {
             )
         }),
         case("one turning constraint for all, 2-D", |s| {
-            Case::of(&beyond(Shown::Sinusoidal, Hindrance::OneForAll, 40, s), 40, Velocities)
+            Case::of(&beyond(Shown::Sinusoidal, ConstraintKind::OneForAll, 40, s), 40, Velocities)
         }),
         case("one turning constraint for all, 2-D, 5", |s| {
-            Case::of(&beyond(Shown::Sinusoidal, Hindrance::OneForAll, 5, s), 5, Velocities)
+            Case::of(&beyond(Shown::Sinusoidal, ConstraintKind::OneForAll, 5, s), 5, Velocities)
         }),
         case("one turning constraint for all, 3-D", |s| {
-            Case::of(&beyond(Shown::Wells { dim: 3 }, Hindrance::OneForAll, 60, s), 60, Velocities)
+            Case::of(&beyond(Shown::Wells { dim: 3 }, ConstraintKind::OneForAll, 60, s), 60, Velocities)
         }),
         case("one turning constraint for all, 3-D, 1 % noise", |s| {
-            Case::of(&noisy(&beyond(Shown::Wells { dim: 3 }, Hindrance::OneForAll, 60, s), 0.01, s), 60, Positions)
+            Case::of(&noisy(&beyond(Shown::Wells { dim: 3 }, ConstraintKind::OneForAll, 60, s), 0.01, s), 60, Positions)
         }),
         case("one turning constraint for all, 6-D", |s| {
-            Case::of(&beyond(Shown::Planes { dim: 6, edge: 0.1 }, Hindrance::OneForAll, 60, s), 60, Velocities)
+            Case::of(&beyond(Shown::Planes { dim: 6, edge: 0.1 }, ConstraintKind::OneForAll, 60, s), 60, Velocities)
         }),
         case("parabola, 10 movements", move |s| Case::of(&of_parabola(10, s), 10, Velocities)),
         case("sinusoid, 10 movements", move |s| Case::of(&of_sinusoid(10, s), 10, Velocities)),
@@ -468,54 +472,60 @@ pub(crate) fn all() -> Vec<Named> {
         case("sinusoid, 5 movements", move |s| Case::of(&of_sinusoid(5, s), 5, Velocities)),
         case("sinusoid, 5 movements, 1 % noise", move |s| Case::of(&noisy(&of_sinusoid(5, s), 0.01, s), 5, Positions)),
         case("wells 3-D, 5 movements", |s| {
-            Case::of(&beyond(Shown::Wells { dim: 3 }, Hindrance::Varying, 5, s), 5, Velocities)
+            Case::of(&beyond(Shown::Wells { dim: 3 }, ConstraintKind::Varying, 5, s), 5, Velocities)
         }),
-        case("wells 3-D", |s| Case::of(&beyond(Shown::Wells { dim: 3 }, Hindrance::Varying, 60, s), 60, Velocities)),
+        case("wells 3-D", |s| {
+            Case::of(&beyond(Shown::Wells { dim: 3 }, ConstraintKind::Varying, 60, s), 60, Velocities)
+        }),
         case("wells 3-D, 1 % noise", |s| {
-            Case::of(&noisy(&beyond(Shown::Wells { dim: 3 }, Hindrance::Varying, 60, s), 0.01, s), 60, Positions)
+            Case::of(&noisy(&beyond(Shown::Wells { dim: 3 }, ConstraintKind::Varying, 60, s), 0.01, s), 60, Positions)
         }),
         case("wells 3-D, 5 % noise", |s| {
-            Case::of(&noisy(&beyond(Shown::Wells { dim: 3 }, Hindrance::Varying, 60, s), 0.05, s), 60, Positions)
+            Case::of(&noisy(&beyond(Shown::Wells { dim: 3 }, ConstraintKind::Varying, 60, s), 0.05, s), 60, Positions)
         }),
         case("wells 3-D, half free", |s| {
-            Case::of(&beyond(Shown::Wells { dim: 3 }, Hindrance::HalfFree, 40, s), 40, Velocities)
+            Case::of(&beyond(Shown::Wells { dim: 3 }, ConstraintKind::HalfFree, 40, s), 40, Velocities)
         }),
-        case("wells 3-D, free", |s| Case::of(&beyond(Shown::Wells { dim: 3 }, Hindrance::Free, 20, s), 20, Velocities)),
+        case("wells 3-D, free", |s| {
+            Case::of(&beyond(Shown::Wells { dim: 3 }, ConstraintKind::Free, 20, s), 20, Velocities)
+        }),
         case("wells 3-D, free, 5", |s| {
-            Case::of(&beyond(Shown::Wells { dim: 3 }, Hindrance::Free, 5, s), 5, Velocities)
+            Case::of(&beyond(Shown::Wells { dim: 3 }, ConstraintKind::Free, 5, s), 5, Velocities)
         }),
         case("sinusoid, free, 1 % noise", |s| {
-            Case::of(&noisy(&beyond(Shown::Sinusoidal, Hindrance::Free, 20, s), 0.01, s), 20, Positions)
+            Case::of(&noisy(&beyond(Shown::Sinusoidal, ConstraintKind::Free, 20, s), 0.01, s), 20, Positions)
         }),
         case("three-link arm", |s| Case::of(&arm(40, s), 40, Positions)),
         case("seven joints, wells", |s| {
-            Case::of(&beyond(Shown::Wells { dim: 7 }, Hindrance::Varying, 60, s), 60, Velocities)
+            Case::of(&beyond(Shown::Wells { dim: 7 }, ConstraintKind::Varying, 60, s), 60, Velocities)
         }),
         case("seven joints, planes", |s| {
-            Case::of(&beyond(Shown::Planes { dim: 7, edge: 0.1 }, Hindrance::Varying, 60, s), 60, Velocities)
+            Case::of(&beyond(Shown::Planes { dim: 7, edge: 0.1 }, ConstraintKind::Varying, 60, s), 60, Velocities)
         }),
         case("seven joints, 1 % noise", |s| {
-            Case::of(&noisy(&beyond(Shown::Wells { dim: 7 }, Hindrance::Varying, 60, s), 0.01, s), 60, Positions)
+            Case::of(&noisy(&beyond(Shown::Wells { dim: 7 }, ConstraintKind::Varying, 60, s), 0.01, s), 60, Positions)
         }),
         case("seven joints, 12 movements", |s| {
-            Case::of(&beyond(Shown::Wells { dim: 7 }, Hindrance::Varying, 12, s), 12, Velocities)
+            Case::of(&beyond(Shown::Wells { dim: 7 }, ConstraintKind::Varying, 12, s), 12, Velocities)
         }),
         case("kinks 2-D", |s| {
-            Case::of(&beyond(Shown::Planes { dim: 2, edge: 0.0 }, Hindrance::Varying, 60, s), 60, Velocities)
+            Case::of(&beyond(Shown::Planes { dim: 2, edge: 0.0 }, ConstraintKind::Varying, 60, s), 60, Velocities)
         }),
         case("kinks 3-D", |s| {
-            Case::of(&beyond(Shown::Planes { dim: 3, edge: 0.0 }, Hindrance::Varying, 60, s), 60, Velocities)
+            Case::of(&beyond(Shown::Planes { dim: 3, edge: 0.0 }, ConstraintKind::Varying, 60, s), 60, Velocities)
         }),
         case("kinks 6-D", |s| {
-            Case::of(&beyond(Shown::Planes { dim: 6, edge: 0.0 }, Hindrance::Varying, 60, s), 60, Velocities)
+            Case::of(&beyond(Shown::Planes { dim: 6, edge: 0.0 }, ConstraintKind::Varying, 60, s), 60, Velocities)
         }),
         case("kinks 6-D, half free", |s| {
-            Case::of(&beyond(Shown::Planes { dim: 6, edge: 0.0 }, Hindrance::HalfFree, 60, s), 60, Velocities)
+            Case::of(&beyond(Shown::Planes { dim: 6, edge: 0.0 }, ConstraintKind::HalfFree, 60, s), 60, Velocities)
         }),
         case("kinks 2-D, free", |s| {
-            Case::of(&beyond(Shown::Planes { dim: 2, edge: 0.0 }, Hindrance::Free, 20, s), 20, Velocities)
+            Case::of(&beyond(Shown::Planes { dim: 2, edge: 0.0 }, ConstraintKind::Free, 20, s), 20, Velocities)
         }),
-        case("22 joints", |s| Case::of(&beyond(Shown::Wells { dim: 22 }, Hindrance::Varying, 60, s), 60, Velocities)),
+        case("22 joints", |s| {
+            Case::of(&beyond(Shown::Wells { dim: 22 }, ConstraintKind::Varying, 60, s), 60, Velocities)
+        }),
         case("two goals", move |s| {
             let to = |at: f64| Own(2, move |x: &[f64]| vec![-0.1 * (x[0] - at), -0.1 * x[1]]);
             Case::of(&Plane::default().policies(&[&to(1.0), &to(-1.0)], s), 40, Velocities)

@@ -5,7 +5,7 @@
 use align::{Bandwidth, LwprRegressor, PolicyAlign};
 use constraints::Unconstrained;
 use demo_gen::{RollOut, ToySystem, demonstrations};
-use gp::{DirectGp, FrontEnd, ReadingLearner, Rows, SlopeGp};
+use gp::{AutoGp, DirectGp, FrontEnd, Rows, SlopeGp};
 use motion::Demonstrations;
 use nalgebra::{DMatrix, DVector};
 use policy_align::{
@@ -60,7 +60,7 @@ pub(crate) fn direct(demonstrations: &Demonstrations) -> Model {
 }
 
 pub(crate) fn auto(demonstrations: &Demonstrations) -> Model {
-    let learner = ReadingLearner { slope: slope_gp(), direct: direct_gp(), ..ReadingLearner::default() };
+    let learner = AutoGp { slope: slope_gp(), direct: direct_gp(), ..AutoGp::default() };
     let fit = learner.fit(&rows(demonstrations), &mut ChaCha8Rng::seed_from_u64(1)).unwrap();
     model(Learnt::Auto(Box::new(fit)), demonstrations)
 }
@@ -133,7 +133,7 @@ pub(crate) fn model(learnt: Learnt, demonstrations: &Demonstrations) -> Model {
             }],
             numbers: TrustNumbers {
                 episodes: demonstrations.n_trajectories(),
-                reading: gp::Reading::Constrained,
+                reading: gp::Hypothesis::Constrained,
                 held_out_error: 0.2,
                 episode_errors: vec![(0, 0.1), (2, 0.4)],
                 held_out_error_direct: 0.6,

@@ -3,7 +3,7 @@ use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 use smoothing::PositionNoise;
 
-use crate::notes::Notes;
+use crate::findings::Findings;
 use crate::repairs::agreement::Agreement;
 use crate::{VelocitySource, in_words};
 
@@ -111,7 +111,7 @@ pub(crate) fn decide(
     demonstrations: &Demonstrations,
     noise: &Noise,
     agreement: Agreement,
-    notes: &mut Notes,
+    notes: &mut Findings,
 ) -> VelocitySource {
     let share = noise.step_share;
     let words = match &noise.positions {

@@ -3,7 +3,7 @@
 use motion::{Demonstrations, Episode, Recordings, Verdict};
 use nalgebra::DMatrix;
 
-use crate::notes::{Notes, and_more};
+use crate::findings::{Findings, and_more};
 use crate::samples::noise;
 
 /// At rest for fewer samples than this is no stand-still.
@@ -62,7 +62,12 @@ pub fn trim_still(recordings: &mut Recordings) {
 }
 
 /// Says where episodes stand still at an end.
-pub(crate) fn remark(demonstrations: &Demonstrations, noise: Option<&[f64]>, episodes: &[Episode], notes: &mut Notes) {
+pub(crate) fn remark(
+    demonstrations: &Demonstrations,
+    noise: Option<&[f64]>,
+    episodes: &[Episode],
+    notes: &mut Findings,
+) {
     let rest = Rest::of(demonstrations, noise);
     let stretches: Vec<(usize, &str, &str)> = episodes
         .iter()

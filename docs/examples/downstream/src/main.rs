@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // The slope GP, which reports its uncertainty.
     let gp = SlopeGp { max_rows: 150, ..SlopeGp::default() };
-    let fit = gp.fit(&FrontEnd::Map.rows(&demonstrations)?, &mut StdRng::seed_from_u64(1))?;
+    let fit = gp.fit(&FrontEnd::FiniteDifferences.rows(&demonstrations)?, &mut StdRng::seed_from_u64(1))?;
     let (action, mut deviation) = (fit.action(x.as_view()), dvector![0.0, 0.0]);
     fit.action_sd_into(x.as_view(), deviation.as_view_mut());
     println!("slope GP: action {:.3?} ± {:.0e}", action.as_slice(), deviation.amax());

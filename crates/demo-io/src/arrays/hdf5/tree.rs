@@ -1,13 +1,13 @@
 use hdf5_pure::{Chunk, DType, Dataset, Error, File, FormatError, Group};
 
-use crate::arrays::array::{Data, Described, Kind};
+use crate::arrays::array::{ArraySpec, Data, Kind};
 use crate::input::Input;
 use crate::{Fault, ReadError};
 
 /// The arrays of a file that were found so far.
 pub(super) struct Tree<'a> {
     input: &'a Input<'a>,
-    arrays: Vec<(Described, Dataset)>,
+    arrays: Vec<(ArraySpec, Dataset)>,
 }
 
 impl<'a> Tree<'a> {
@@ -23,7 +23,7 @@ impl<'a> Tree<'a> {
         result.map_err(|error| failed(&error, self.input))
     }
 
-    pub(super) fn described(&self) -> Vec<Described> {
+    pub(super) fn described(&self) -> Vec<ArraySpec> {
         self.arrays.iter().map(|(described, _)| described.clone()).collect()
     }
 
@@ -36,7 +36,7 @@ impl<'a> Tree<'a> {
                 self.ok(dataset.shape())?.into_iter().map(|length| usize::try_from(length).ok()).collect();
             let (Some(shape), Ok(kind)) = (shape, dataset.dtype().map(kind)) else { continue };
             let name = format!("{prefix}{name}");
-            self.arrays.push((Described { name: name.clone(), shape, kind }, dataset));
+            self.arrays.push((ArraySpec { name: name.clone(), shape, kind }, dataset));
             found.push((name, self.arrays.len() - 1));
         }
         Ok(found)
@@ -64,7 +64,7 @@ impl<'a> Tree<'a> {
     }
 
     /// Chunks that lie in the file: the reader takes memory for a chunk before it looks for it.
-    fn require_whole_chunks(&self, described: &Described, dataset: &Dataset) -> Result<(), ReadError> {
+    fn require_whole_chunks(&self, described: &ArraySpec, dataset: &Dataset) -> Result<(), ReadError> {
         let outside =
             |chunk: &Chunk| chunk.address.checked_add(chunk.storage_size).is_none_or(|end| end > self.input.len);
         // Chunks of the one kind of index that cannot be listed are checked by the reader, one by one.

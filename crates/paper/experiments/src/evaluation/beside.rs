@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use align::{Aligned, DirectPolicyLearning, PolicyAlign};
 use demo_gen::{Grasp, HandInPlane, Recording, ThreeLinkArm, ToySystem, demonstrations};
-use gp::{BothReadings, SlopeFit, Trend};
+use gp::{AutoFit, SlopeFit, Trend};
 use motion::{Demonstrations, Learner as _, LearntPolicy, SampleIndex};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
@@ -25,7 +25,7 @@ pub const DATA_SETS: u32 = 5;
 
 /// Who learns beside.
 #[derive(Serialize)]
-pub struct Beside {
+pub struct Baselines {
     /// The naive learner, where the paper's table has none.
     pub(crate) naive: Option<DirectPolicyLearning>,
     /// Least squares on radial basis functions, where states are planar.
@@ -41,11 +41,11 @@ pub(crate) struct Sat<'a> {
     judges: Vec<[Judge<'a>; 2]>,
     naive: Option<Box<dyn LearntPolicy>>,
     radial_basis: Option<RadialBasis>,
-    both: BothReadings,
+    both: AutoFit,
     no_trend: SlopeFit,
 }
 
-impl Beside {
+impl Baselines {
     /// Work of one data set, in the unit of [`Setup::cost`](crate::Setup::cost).
     pub(crate) fn cost(&self) -> u64 {
         // Measured: two fits of 1500 rows take about four seconds.
@@ -203,7 +203,7 @@ impl Scene for Grasp {
 pub(crate) struct BesideTrial<S> {
     pub(crate) scene: S,
     pub(crate) algorithms: Vec<PolicyAlign>,
-    pub(crate) beside: Beside,
+    pub(crate) beside: Baselines,
 }
 
 impl<S: Scene> Trial for BesideTrial<S> {
@@ -222,7 +222,7 @@ impl<S: Scene> Trial for BesideTrial<S> {
 mod tests {
     use super::super::exam::Protocol;
     use super::*;
-    use crate::evaluation::pupil::Pupil;
+    use crate::evaluation::entrant::Entrant;
     use crate::seed::generator;
     use crate::tables::table1::{toy_beside, toy_regressor};
     use gp::FrontEnd;
@@ -233,9 +233,9 @@ mod tests {
         let system = ToySystem { n_trajectories: 20, ..ToySystem::default() };
         let mut rng = generator(1, 0, 0);
         let recordings = system.record(&mut rng).unwrap();
-        let (beside, algorithm) = (toy_beside(FrontEnd::Map, 150), PolicyAlign::default());
+        let (beside, algorithm) = (toy_beside(FrontEnd::FiniteDifferences, 150), PolicyAlign::default());
         let sat = beside.sit(&recordings, std::slice::from_ref(&algorithm), &rng).unwrap();
-        let pupils = vec![Pupil::PolicyAlign(toy_regressor())];
+        let pupils = vec![Entrant::PolicyAlign(toy_regressor())];
         let protocol = Protocol { algorithm: algorithm.clone(), pupils, held_out: beside.held_out };
         let exam = protocol.examine(&recordings, &mut rng).unwrap();
         assert_eq!(sat.judges(0)[0].samples(), exam.judge().samples());

@@ -136,7 +136,7 @@ mod tests {
 
     use super::*;
     use crate::evaluation::judge::Judge;
-    use crate::evaluation::seen::samples_of;
+    use crate::evaluation::observation_model::samples_of;
     use crate::seed::generator;
 
     /// On clean movements it finds the policy, and −∇φ is what its potential says.

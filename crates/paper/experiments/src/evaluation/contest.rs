@@ -18,7 +18,7 @@ pub enum Contestant {
     /// A Gaussian process on the velocities.
     DirectGp,
     /// The slope GP or the direct GP, whichever the data support.
-    Reading,
+    AutoGp,
 }
 
 impl Contestant {
@@ -30,7 +30,7 @@ impl Contestant {
         Contestant::SlopeGp,
         Contestant::SlopeGpNoTrend,
         Contestant::DirectGp,
-        Contestant::Reading,
+        Contestant::AutoGp,
     ];
 
     /// Its name in rows.
@@ -42,7 +42,7 @@ impl Contestant {
             Contestant::SlopeGp => "slope_gp",
             Contestant::SlopeGpNoTrend => "slope_gp_no_trend",
             Contestant::DirectGp => "direct_gp",
-            Contestant::Reading => "reading",
+            Contestant::AutoGp => "reading",
         }
     }
 
@@ -55,7 +55,7 @@ impl Contestant {
             Contestant::SlopeGp => "slope GP",
             Contestant::SlopeGpNoTrend => "slope GP, no trend",
             Contestant::DirectGp => "direct GP",
-            Contestant::Reading => "automatic",
+            Contestant::AutoGp => "automatic",
         }
     }
 }
@@ -80,7 +80,7 @@ impl Contestant {
                 "the same without quadratic potentials among the forms it chooses from: what is left where they do not contain the truth"
             }
             Contestant::DirectGp => "a Gaussian process on the velocities as they were seen: a stronger direct learner",
-            Contestant::Reading => {
+            Contestant::AutoGp => {
                 "the slope GP or the direct GP, whichever fits how the data are read (free or constrained)"
             }
         }

@@ -10,8 +10,8 @@ use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
 use crate::Measures;
+use crate::evaluation::entrant::Entrant;
 use crate::evaluation::judge::Judge;
-use crate::evaluation::pupil::Pupil;
 use crate::evaluation::test_samples::TestSamples;
 use crate::measure::Measure;
 
@@ -20,7 +20,7 @@ pub(crate) const TESTED_ON: &str =
     "held-out samples of the movements that alignment keeps; measures named _all: of all movements";
 
 /// What was learnt, and those who judge it.
-pub(crate) struct Exam<'a> {
+pub(crate) struct Evaluation<'a> {
     aligned: Aligned,
     judge: Judge<'a>,
     judge_of_all: Judge<'a>,
@@ -41,25 +41,29 @@ pub(crate) fn errors(judge: &Judge<'_>, learnt: &dyn LearntPolicy) -> anyhow::Re
 #[derive(Serialize)]
 pub(crate) struct Protocol {
     pub(crate) algorithm: PolicyAlign,
-    pub(crate) pupils: Vec<Pupil>,
+    pub(crate) pupils: Vec<Entrant>,
     /// Share of the samples that is held out.
     pub(crate) held_out: f64,
 }
 
 impl Protocol {
     /// Aligns the recordings, draws what is held out, and lets each learner learn.
-    pub(crate) fn examine<'a>(&self, recordings: &'a [Recording], rng: &mut ChaCha8Rng) -> anyhow::Result<Exam<'a>> {
+    pub(crate) fn examine<'a>(
+        &self,
+        recordings: &'a [Recording],
+        rng: &mut ChaCha8Rng,
+    ) -> anyhow::Result<Evaluation<'a>> {
         let aligned = self.algorithm.align(&demonstrations(recordings)?)?;
         let test = TestSamples::draw(&aligned, self.held_out, rng)?;
         let judge = Judge::new(recordings, &test.of_kept);
         let judge_of_all = Judge::new(recordings, &test.of_all);
         let learnt =
             self.pupils.iter().map(|pupil| pupil.learn(&aligned, &test.of_all, rng)).collect::<Result<_, _>>()?;
-        Ok(Exam { aligned, judge, judge_of_all, learnt })
+        Ok(Evaluation { aligned, judge, judge_of_all, learnt })
     }
 }
 
-impl<'a> Exam<'a> {
+impl<'a> Evaluation<'a> {
     /// What each learner found, in their order.
     pub(crate) fn learnt(&self) -> impl Iterator<Item = &dyn LearntPolicy> {
         self.learnt.iter().map(|learnt| &**learnt)
@@ -121,19 +125,19 @@ impl<'a> Exam<'a> {
 mod tests {
     use align::{Bandwidth, DirectPolicyLearning, LwprRegressor};
     use demo_gen::{ToyPotential, ToySystem};
-    use gp::{ReadingLearner, SlopeGp, SlopeLearner};
+    use gp::{AutoGp, SlopeGp, SlopeLearner};
     use proptest::prelude::*;
 
     use super::*;
     use crate::seed::generator;
 
-    fn pupils() -> Vec<Pupil> {
+    fn pupils() -> Vec<Entrant> {
         let slope = || SlopeGp { max_rows: 60, hyper_rows: 40, ..SlopeGp::default() };
         vec![
-            Pupil::PolicyAlign(LwprRegressor { passes: 2, ..LwprRegressor::default() }),
-            Pupil::other(DirectPolicyLearning::default()).unwrap(),
-            Pupil::other(SlopeLearner { gp: slope(), ..SlopeLearner::default() }).unwrap(),
-            Pupil::other(ReadingLearner { slope: slope(), ..ReadingLearner::default() }).unwrap(),
+            Entrant::PolicyAlign(LwprRegressor { passes: 2, ..LwprRegressor::default() }),
+            Entrant::other(DirectPolicyLearning::default()).unwrap(),
+            Entrant::other(SlopeLearner { gp: slope(), ..SlopeLearner::default() }).unwrap(),
+            Entrant::other(AutoGp { slope: slope(), ..AutoGp::default() }).unwrap(),
         ]
     }
 

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::Measures;
 use crate::evaluation::judge::Judge;
-use crate::evaluation::seen::samples_of;
+use crate::evaluation::observation_model::samples_of;
 use crate::measure::Measure;
 use crate::seed;
 

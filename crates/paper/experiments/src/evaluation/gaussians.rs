@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use gp::{BothReadings, DirectGp, FrontEnd, ModelKind, Reading, ReadingLearner, SlopeFit, SlopeGp, Trend};
+use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, ModelKind, SlopeFit, SlopeGp, Trend};
 use motion::{Demonstrations, SampleIndex, SampleSet};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
@@ -37,11 +37,11 @@ impl Gaussians {
         demonstrations: &Demonstrations,
         held_out: &[SampleIndex],
         rng: &mut ChaCha8Rng,
-    ) -> anyhow::Result<BothReadings> {
-        let learner = ReadingLearner {
+    ) -> anyhow::Result<AutoFit> {
+        let learner = AutoGp {
             slope: self.slope_gp(Trend::Quadratic),
             direct: DirectGp { max_rows: self.max_rows, hyper_rows: self.hyper_rows, ..DirectGp::default() },
-            ..ReadingLearner::default()
+            ..AutoGp::default()
         };
         Ok(learner.fit(&self.rows(demonstrations, held_out)?, rng)?)
     }
@@ -79,12 +79,12 @@ pub(crate) fn own_expectations(fit: &SlopeFit) -> BTreeMap<Measure, f64> {
 }
 
 /// What the data are taken for.
-pub(crate) fn reading_of(both: &BothReadings) -> BTreeMap<Measure, f64> {
+pub(crate) fn reading_of(both: &AutoFit) -> BTreeMap<Measure, f64> {
     let readings = [
-        (Measure::ReadFree, Reading::Free),
-        (Measure::ReadConstrained, Reading::Constrained),
-        (Measure::ReadAmbiguous, Reading::Ambiguous),
-        (Measure::ReadUnexplained, Reading::Unexplained),
+        (Measure::ReadFree, Hypothesis::Free),
+        (Measure::ReadConstrained, Hypothesis::Constrained),
+        (Measure::ReadAmbiguous, Hypothesis::Ambiguous),
+        (Measure::ReadUnexplained, Hypothesis::Unexplained),
     ];
     readings.into_iter().map(|(measure, reading)| (measure, percent(both.reading() == reading))).collect()
 }

@@ -5,8 +5,8 @@ use lwpr::LwprParams;
 use nalgebra::DVector;
 
 use crate::Setup;
+use crate::evaluation::entrant::Entrant;
 use crate::evaluation::exam::Protocol;
-use crate::evaluation::pupil::Pupil;
 use crate::setting::{Class, SILENT, Setting};
 
 /// What the learners of an experiment have in common.
@@ -46,7 +46,7 @@ impl Recipe {
 
     /// PolicyAlign alone, with this regression; other learners are added to it.
     pub(crate) fn protocol(&self, algorithm: PolicyAlign, dim: usize, spread: f64) -> Protocol {
-        let pupils = vec![Pupil::PolicyAlign(self.regressor(dim, spread))];
+        let pupils = vec![Entrant::PolicyAlign(self.regressor(dim, spread))];
         Protocol { algorithm, pupils, held_out: self.held_out }
     }
 

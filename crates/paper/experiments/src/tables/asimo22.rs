@@ -6,7 +6,7 @@ use gp::FrontEnd;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
-use crate::evaluation::beside::{Beside, BesideTrial, DATA_SETS};
+use crate::evaluation::beside::{Baselines, BesideTrial, DATA_SETS};
 use crate::evaluation::contest::{Contest, Contestant};
 use crate::evaluation::exam::Protocol;
 use crate::evaluation::gaussians::Gaussians;
@@ -67,9 +67,14 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
 
 /// Who learns beside PolicyAlign. The naive learner has wider fields than PolicyAlign, with which its error is lower, and fewer
 /// passes.
-fn beside() -> Beside {
+fn beside() -> Baselines {
     let naive = Some(DirectPolicyLearning { passes: 3, ..Recipe::default().naive(22, 2.2) });
-    Beside { naive, constraint_consistent: None, gaussians: Gaussians::new(FrontEnd::Map, 1000), held_out: HELD_OUT }
+    Baselines {
+        naive,
+        constraint_consistent: None,
+        gaussians: Gaussians::new(FrontEnd::FiniteDifferences, 1000),
+        held_out: HELD_OUT,
+    }
 }
 
 /// What PolicyAlign's inputs are divided by.

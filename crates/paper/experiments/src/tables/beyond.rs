@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use align::{Bandwidth, DirectPolicyLearning, LwprRegressor, PolicyAlign};
-use demo_gen::beyond::{BeyondSystem, Hindrance, Shown};
+use demo_gen::beyond::{BeyondSystem, ConstraintKind, Shown};
 use demo_gen::demonstrations;
 use gp::Trend;
 use lwpr::LwprParams;
@@ -15,7 +15,7 @@ use crate::evaluation::contest::{Contest, Contestant, row_id};
 use crate::evaluation::exam::errors;
 use crate::evaluation::gaussians::{Gaussians, own_expectations, reading_of};
 use crate::evaluation::judge::Judge;
-use crate::evaluation::seen::{Seen, samples_of};
+use crate::evaluation::observation_model::{ObservationModel, samples_of};
 use crate::measure::{Measure, RowOf};
 use crate::seed::beside;
 use crate::{Experiment, Measures, Row, Setup, Trial};
@@ -33,7 +33,7 @@ const WHO: [Contestant; 6] = [
     Contestant::SlopeGp,
     Contestant::SlopeGpNoTrend,
     Contestant::DirectGp,
-    Contestant::Reading,
+    Contestant::AutoGp,
 ];
 
 /// One data set's kind.
@@ -41,16 +41,16 @@ struct Case {
     name: &'static str,
     shown: Shown,
     n_trajectories: usize,
-    hindrance: Hindrance,
-    seen: Seen,
+    hindrance: ConstraintKind,
+    seen: ObservationModel,
     /// Rows that the Gaussian processes learn from.
     max_rows: usize,
 }
 
 /// In the order of the table; new ones last, since each has its own random numbers.
 fn cases() -> Vec<Case> {
-    use Hindrance::{Free, OneForAll, Varying};
-    use Seen::{NoisyStates, Positions, Velocities};
+    use ConstraintKind::{Free, OneForAll, Varying};
+    use ObservationModel::{NoisyStates, Positions, Velocities};
     use Shown::{Handwriting, LimitCycle, Planes, Sinusoidal, Swirl, Wells};
     let rows = [
         ("sinus-2d-10-demonstrations", Sinusoidal, 10, Varying, Velocities, 900),
@@ -160,7 +160,7 @@ fn setup((system_number, case): (u32, Case)) -> Setup {
 #[derive(Serialize)]
 struct BeyondTrial {
     system: BeyondSystem,
-    seen: Seen,
+    seen: ObservationModel,
     lwpr: LwprRegressor,
     gaussians: Gaussians,
 }

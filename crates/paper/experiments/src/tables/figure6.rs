@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 use smoothing::{Fusion, Smoother};
 
-use crate::evaluation::beside::{Beside, DATA_SETS};
+use crate::evaluation::beside::{Baselines, DATA_SETS};
 use crate::evaluation::contest::{Contest, Contestant};
 use crate::evaluation::exam::Protocol;
 use crate::measure::Measure;
@@ -35,8 +35,13 @@ pub(crate) fn figure6_left() -> Experiment {
         let algorithm = PolicyAlign { bandwidth, ..PolicyAlign::default() };
         setup(name, &TRAJECTORIES_PERCENT, algorithm, Against::Trajectories)
     };
-    let beside =
-        setup_beside(BESIDE_LEFT, &TRAJECTORIES_PERCENT, Integration::default(), Against::Trajectories, FrontEnd::Map);
+    let beside = setup_beside(
+        BESIDE_LEFT,
+        &TRAJECTORIES_PERCENT,
+        Integration::default(),
+        Against::Trajectories,
+        FrontEnd::FiniteDifferences,
+    );
     Experiment {
         id: "figure6_left",
         title: "Figure 6, left: error against the amount of data",
@@ -95,7 +100,7 @@ const ROWS: usize = 500;
 
 /// A line of the table: of the learners beside, and of PolicyAlign by another name.
 fn contest(case: &str, policy_align: &str, percent: f64) -> Contest {
-    let contestants = toy_beside(FrontEnd::Map, ROWS).contestants();
+    let contestants = toy_beside(FrontEnd::FiniteDifferences, ROWS).contestants();
     let row = format!("{policy_align}-{percent}");
     Contest::of(&format!("{case}-{percent}"), Measure::Nupe, &contestants).with(
         Contestant::PolicyAlign,
@@ -176,7 +181,7 @@ struct CurveTrial {
     system: ToySystem,
     protocol: Protocol,
     /// Who learns instead of the pupils, if anybody does.
-    beside: Option<Beside>,
+    beside: Option<Baselines>,
     against: Against,
     percent: Vec<f64>,
 }

@@ -10,8 +10,8 @@ use nalgebra::{DVectorView, Vector3};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
-use crate::evaluation::beside::{Beside, DATA_SETS};
-use crate::evaluation::exam::{Exam, Protocol, errors as errors_of};
+use crate::evaluation::beside::{Baselines, DATA_SETS};
+use crate::evaluation::exam::{Evaluation, Protocol, errors as errors_of};
 use crate::evaluation::recipe::Recipe;
 use crate::measure::{Measure, RowOf};
 use crate::tables::three_link::{ARM_SYSTEM, arm, beside, protocol};
@@ -148,7 +148,7 @@ impl Trial for DistanceTrial {
 struct DistancesBeside {
     arm: ThreeLinkArm,
     algorithm: PolicyAlign,
-    beside: Beside,
+    beside: Baselines,
 }
 
 impl Trial for DistancesBeside {
@@ -171,7 +171,7 @@ impl Trial for DistancesBeside {
 
 /// Errors of what was learnt at the test samples within a distance; none where there are too few.
 fn errors(
-    exam: &Exam<'_>,
+    exam: &Evaluation<'_>,
     learnt: &dyn LearntPolicy,
     distance: Distance,
     bound: f64,

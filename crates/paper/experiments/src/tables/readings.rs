@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use demo_gen::beyond::{BeyondSystem, Hindrance, Shown};
+use demo_gen::beyond::{BeyondSystem, ConstraintKind, Shown};
 use demo_gen::demonstrations;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
@@ -11,7 +11,7 @@ use crate::evaluation::contest::{Contest, Contestant, row_id};
 use crate::evaluation::exam::errors;
 use crate::evaluation::gaussians::{Gaussians, own_expectations, reading_of};
 use crate::evaluation::judge::Judge;
-use crate::evaluation::seen::{Seen, samples_of};
+use crate::evaluation::observation_model::{ObservationModel, samples_of};
 use crate::measure::{Measure, RowOf};
 use crate::seed::beside;
 use crate::{Experiment, Measures, Row, Setup, Trial};
@@ -23,14 +23,14 @@ const FIRST_SYSTEM: u32 = 600;
 const TESTED_ON: &str = "the true states of all samples; handwriting: of two movements that were not learnt from";
 
 /// Who learns.
-const CONTESTANTS: [Contestant; 3] = [Contestant::SlopeGp, Contestant::DirectGp, Contestant::Reading];
+const CONTESTANTS: [Contestant; 3] = [Contestant::SlopeGp, Contestant::DirectGp, Contestant::AutoGp];
 
 /// Movements of one kind.
 struct Kind {
     name: &'static str,
     shown: Shown,
     n_trajectories: usize,
-    hindrance: Hindrance,
+    hindrance: ConstraintKind,
     /// Trajectories at the end that are not learnt from but tested on.
     held_out: usize,
     data_sets: Option<u32>,
@@ -38,7 +38,7 @@ struct Kind {
 
 /// In the order of the table; new ones last, since each has its own random numbers.
 fn kinds() -> Vec<Kind> {
-    use Hindrance::{Free, HalfFree, OneForAll, Varying};
+    use ConstraintKind::{Free, HalfFree, OneForAll, Varying};
     use Shown::{LimitCycle, Planes, Sinusoidal, Swirl, Wells};
     let (wells, swirl) = (Wells { dim: 3 }, Swirl { dim: 3 });
     let (kinks, far_kinks, softplus) =
@@ -111,7 +111,7 @@ fn setup((system_number, kind): (u32, Kind)) -> Setup {
     let Kind { name, shown, n_trajectories, hindrance, held_out, data_sets } = kind;
     let row = |contestant| Row { id: row_id(name, contestant), of: RowOf::Contestant, tested_on: TESTED_ON };
     let system = BeyondSystem { shown, n_trajectories, hindrance, ..BeyondSystem::default() };
-    let gaussians = Gaussians::new(Seen::Velocities.front_end(), 400);
+    let gaussians = Gaussians::new(ObservationModel::Velocities.front_end(), 400);
     Setup {
         id: name.to_owned(),
         rows: CONTESTANTS.map(row).into(),

@@ -6,7 +6,7 @@ use gp::FrontEnd;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
-use crate::evaluation::beside::{Beside, BesideTrial, DATA_SETS};
+use crate::evaluation::beside::{Baselines, BesideTrial, DATA_SETS};
 use crate::evaluation::constraint_consistent::ConstraintConsistent;
 use crate::evaluation::contest::Contest;
 use crate::evaluation::exam::Protocol;
@@ -190,7 +190,7 @@ fn setups(redraw: Redraw, first_system: u32, max_rows: fn(usize) -> usize) -> Ve
     let mut setups = toy.printed();
     for (number, name, size, potential) in systems() {
         let algorithms = BANDWIDTHS.map(|(_, bandwidth)| PolicyAlign { bandwidth, ..PolicyAlign::default() }).into();
-        let beside = toy_beside(FrontEnd::Map, max_rows(size));
+        let beside = toy_beside(FrontEnd::FiniteDifferences, max_rows(size));
         setups.push(Setup {
             id: format!("{name}-{size}x{size}-beside"),
             rows: cases(name, size).iter().flat_map(|case| beside.rows(case)).collect(),
@@ -210,15 +210,15 @@ fn cases(name: &str, size: usize) -> [String; 3] {
 
 /// The learners on each system, in each bandwidth.
 fn contests() -> Vec<Contest> {
-    let beside = toy_beside(FrontEnd::Map, 1);
+    let beside = toy_beside(FrontEnd::FiniteDifferences, 1);
     let cases = systems().into_iter().flat_map(|(_, name, size, _)| cases(name, size));
     let lines = |case: String| [Measure::Nupe, Measure::NupeFresh].map(|measure| beside.contest(&case, measure));
     cases.flat_map(lines).collect()
 }
 
 /// Who learns the toy system beside PolicyAlign.
-pub fn toy_beside(front_end: FrontEnd, max_rows: usize) -> Beside {
-    Beside {
+pub fn toy_beside(front_end: FrontEnd, max_rows: usize) -> Baselines {
+    Baselines {
         naive: Some(toy_naive()),
         constraint_consistent: Some(ConstraintConsistent::default()),
         gaussians: Gaussians::new(front_end, max_rows),

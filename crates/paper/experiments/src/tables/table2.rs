@@ -8,11 +8,11 @@ use gp::FrontEnd;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
-use crate::evaluation::beside::{Beside, DATA_SETS};
+use crate::evaluation::beside::{Baselines, DATA_SETS};
 use crate::evaluation::contest::{Contest, Contestant};
+use crate::evaluation::entrant::Entrant;
 use crate::evaluation::exam::Protocol;
 use crate::evaluation::gaussians::Gaussians;
-use crate::evaluation::pupil::Pupil;
 use crate::evaluation::recipe::{HELD_OUT, Recipe};
 use crate::measure::Measure;
 use crate::paper::{explanations, paper_table};
@@ -96,7 +96,7 @@ impl Bench {
         let Bench { grasp, spread, naive_spread, recipe } = self;
         let mut protocol = recipe.protocol(PolicyAlign::default(), 6, spread);
         // In the order of [`MEASURES`].
-        protocol.pupils.push(Pupil::other(recipe.naive(6, naive_spread))?);
+        protocol.pupils.push(Entrant::other(recipe.naive(6, naive_spread))?);
         Ok(Setup {
             id: "grasp".to_owned(),
             rows: CASES.into_iter().chain(["alignment"]).map(Row::of_learner).collect(),
@@ -145,11 +145,11 @@ const CASES: [&str; 3] = ["training", "unseen_barrier", "unconstrained"];
 const CASE: &str = "grasp";
 
 /// Who learns beside PolicyAlign and the naive learner.
-pub fn grasp_beside() -> Beside {
-    Beside {
+pub fn grasp_beside() -> Baselines {
+    Baselines {
         naive: None,
         constraint_consistent: None,
-        gaussians: Gaussians::new(FrontEnd::Map, 1000),
+        gaussians: Gaussians::new(FrontEnd::FiniteDifferences, 1000),
         held_out: HELD_OUT,
     }
 }
@@ -188,7 +188,7 @@ const ERRORS: [[Measure; 2]; 3] = [
 struct GraspBeside {
     grasp: Grasp,
     algorithm: PolicyAlign,
-    beside: Beside,
+    beside: Baselines,
 }
 
 impl Trial for GraspBeside {

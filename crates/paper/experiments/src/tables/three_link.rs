@@ -6,11 +6,11 @@ use gp::FrontEnd;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
-use crate::evaluation::beside::{Beside, BesideTrial, DATA_SETS};
+use crate::evaluation::beside::{Baselines, BesideTrial, DATA_SETS};
 use crate::evaluation::contest::{Contest, Contestant};
+use crate::evaluation::entrant::Entrant;
 use crate::evaluation::exam::{Protocol, TESTED_ON};
 use crate::evaluation::gaussians::Gaussians;
-use crate::evaluation::pupil::Pupil;
 use crate::evaluation::recipe::{HELD_OUT, Recipe};
 use crate::measure::{Measure, RowOf};
 use crate::paper::{explanations, paper_table};
@@ -62,11 +62,11 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
 }
 
 /// Who learns beside PolicyAlign and the naive learner.
-pub(crate) fn beside(max_rows: usize) -> Beside {
-    Beside {
+pub(crate) fn beside(max_rows: usize) -> Baselines {
+    Baselines {
         naive: None,
         constraint_consistent: None,
-        gaussians: Gaussians::new(FrontEnd::Map, max_rows),
+        gaussians: Gaussians::new(FrontEnd::FiniteDifferences, max_rows),
         held_out: HELD_OUT,
     }
 }
@@ -89,7 +89,7 @@ fn printed(arm: ThreeLinkArm, recipe: &Recipe) -> anyhow::Result<Setup> {
     let rows = [("policy_align", RowOf::Learner), ("naive", RowOf::Baseline)];
     let mut protocol = protocol(recipe);
     // In the order of the rows.
-    protocol.pupils.push(Pupil::other(recipe.naive(3, 1.0))?);
+    protocol.pupils.push(Entrant::other(recipe.naive(3, 1.0))?);
     Ok(Setup {
         id: "three_link".to_owned(),
         rows: rows.map(|(id, of)| Row { id: id.to_owned(), of, tested_on: TESTED_ON }).into(),

@@ -3,7 +3,7 @@
 use align::Bandwidth;
 use clap::Args;
 use demo_io::ReadOptions;
-use gp::Reading;
+use gp::Hypothesis;
 use policy_align::{FitOptions, LearnerChoice, PrepareOptions, Repair, Smoothing, VelocityUse};
 use serde::{Deserialize, Serialize};
 
@@ -247,8 +247,8 @@ impl FitFlags {
                 _ => LearnerChoice::Auto,
             },
             reading: match self.reading.as_deref() {
-                Some("free") => Some(Reading::Free),
-                Some("constrained") => Some(Reading::Constrained),
+                Some("free") => Some(Hypothesis::Free),
+                Some("constrained") => Some(Hypothesis::Constrained),
                 _ => None,
             },
             bandwidth,

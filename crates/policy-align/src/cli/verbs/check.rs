@@ -13,7 +13,7 @@ use crate::cli::options::config::Config;
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
 use crate::cli::pages::check_page::check_page;
 use crate::cli::recorded::{named, read, unsaid};
-use crate::cli::session::{Said, Session};
+use crate::cli::session::{Output, Session};
 
 /// Examine recordings before learning
 #[derive(Debug, Args)]
@@ -37,7 +37,7 @@ pub(crate) struct Check {
 }
 
 impl Check {
-    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+    pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let config = Config::of(session)?;
         let flags = config.under("read", &self.read)?;
         let options = config.under("prepare", &self.prepare)?.options(flags.dt)?;
@@ -57,7 +57,7 @@ impl Check {
                 "noise": prepared.noise, "direction_coverage": coverage,
                 "least_seen": direction.as_slice(), "decisions": prepared.decisions, "findings": prepared.findings,
             });
-            return Ok(Said::json(&document, exit));
+            return Ok(Output::json(&document, exit));
         }
         let mut lines = Lines::default();
         about(&prepared, &named(&self.files), &mut lines);
@@ -68,10 +68,10 @@ impl Check {
             lines.add("written", &path.display().to_string());
         }
         if refused {
-            return Ok(Said { text: lines.into_text(), exit });
+            return Ok(Output { text: lines.into_text(), exit });
         }
         let given = self.files.iter().map(|file| quoted(file)).collect::<Vec<_>>().join(" ");
-        Ok(Said { text: lines.next(&format!("policy-align fit {given} -o model.json")), exit })
+        Ok(Output { text: lines.next(&format!("policy-align fit {given} -o model.json")), exit })
     }
 }
 

@@ -8,7 +8,7 @@ use crate::cli::lines::{Lines, counted};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::ReadFlags;
 use crate::cli::recorded::read;
-use crate::cli::session::{Said, Session};
+use crate::cli::session::{Output, Session};
 use crate::cli::verbs::rollout::unwritten;
 
 /// Write recordings in another format
@@ -35,7 +35,7 @@ pub(crate) struct Convert {
 }
 
 impl Convert {
-    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+    pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let reading = Config::of(session)?.under("read", &self.read)?;
         let mut recordings = read(session, &self.files, &reading)?;
         if let Some(rate) = self.resample {
@@ -57,6 +57,6 @@ impl Convert {
                 counted(samples, "sample")
             ),
         );
-        Ok(Said::done(lines.next(&format!("policy-align check {}", quoted(&self.output)))))
+        Ok(Output::done(lines.next(&format!("policy-align check {}", quoted(&self.output)))))
     }
 }

@@ -16,7 +16,7 @@ use crate::cli::lines::{Lines, counted, short, squared_error};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
 use crate::cli::recorded::{named, read, summaries};
-use crate::cli::session::{Said, Session};
+use crate::cli::session::{Output, Session};
 use crate::cli::trust_files::load;
 
 /// Constraints that are listed, at most.
@@ -54,7 +54,7 @@ pub(crate) struct Evaluate {
 }
 
 impl Evaluate {
-    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+    pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let model = load(session, &self.model)?;
         let config = Config::of(session)?;
         let mut reading = config.under("read", &self.read)?;
@@ -96,7 +96,7 @@ impl Evaluate {
                 "evaluation": judged, "episodes": prepared.episodes, "constraints": constraints,
                 "constraints_left_out": left_out, "training_files": training,
             });
-            return Ok(Said::json(&document, exit));
+            return Ok(Output::json(&document, exit));
         }
         let mut lines = Lines::default();
         tell(&prepared, &judged, &mut lines);
@@ -118,7 +118,7 @@ impl Evaluate {
         if let Some(most) = self.require {
             lines.add("required", &format!("at most {}: {}", short(most), if failed { "not met" } else { "met" }));
         }
-        Ok(Said { text: lines.into_text(), exit })
+        Ok(Output { text: lines.into_text(), exit })
     }
 
     fn left_out(

@@ -10,7 +10,7 @@ use crate::cli::lines::{Lines, counted, list, size};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::numbers;
 use crate::cli::options::rollout_flags::RollOutFlags;
-use crate::cli::session::{Said, Session};
+use crate::cli::session::{Output, Session};
 use crate::cli::trust_files::load;
 use crate::cli::verbs::rollout::{followed, write_paths};
 
@@ -72,7 +72,7 @@ impl Target {
 }
 
 impl Export {
-    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+    pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let model = load(session, &self.model)?;
         let output = self.output.clone().unwrap_or_else(|| self.model.with_extension(self.to.extension()));
         if self.to == Target::Mcap {
@@ -102,10 +102,10 @@ impl Export {
             Target::Onnx => format!("{LOAD_ONNX} {}", quoted(&output)),
             _ => format!("cc -std=c99 -O2 -c {}", quoted(&output)),
         };
-        Ok(Said::done(lines.next(&next)))
+        Ok(Output::done(lines.next(&next)))
     }
 
-    fn roll_outs(&self, session: &Session, model: &Model, output: &Path) -> Result<Said, Failure> {
+    fn roll_outs(&self, session: &Session, model: &Model, output: &Path) -> Result<Output, Failure> {
         if output.extension().is_none_or(|extension| extension != "mcap") {
             return Err(Failure::usage("MCAP files end in .mcap", shown(output), "`rollout -o` for other formats"));
         }
@@ -130,6 +130,6 @@ impl Export {
         let written =
             format!("{}: {}, {}", output.display(), counted(paths.len(), "roll-out"), counted(samples, "sample"));
         lines.add("written", &written);
-        Ok(Said::done(lines.next(&format!("rerun {}", quoted(output)))))
+        Ok(Output::done(lines.next(&format!("rerun {}", quoted(output)))))
     }
 }

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use clap::Args;
-use demo_io::Draft;
+use demo_io::TempFile;
 use motion::Recordings;
 use policy_align::{Evaluation, Finding, Model, Prepared, Progress, Verdict, checksum_of, evaluate, fit, prepare};
 use serde_json::json;
@@ -17,7 +17,7 @@ use crate::cli::options::config::{Config, printed};
 use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags};
 use crate::cli::pages::trust_page::trust_page;
 use crate::cli::recorded::{base_name, named, read, summaries, unsaid};
-use crate::cli::session::{Said, Session};
+use crate::cli::session::{Output, Session};
 use crate::cli::trust_files::{MEMBER, trust_files, warn_of_others};
 use crate::cli::verbs::check::findings;
 
@@ -52,12 +52,12 @@ pub(crate) struct Fit {
 }
 
 impl Fit {
-    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+    pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let config = Config::of(session)?;
         let (reading, preparing) = (config.under("read", &self.read)?, config.under("prepare", &self.prepare)?);
         let learning = config.under("fit", &self.learning)?;
         if self.print_config {
-            return Ok(Said::done(printed(&reading, &preparing, &learning)?));
+            return Ok(Output::done(printed(&reading, &preparing, &learning)?));
         }
         let (prepare_options, fit_options) = (preparing.options(reading.dt)?, learning.options()?);
         let place = || named(&self.files);
@@ -108,7 +108,7 @@ impl Fit {
         (model, unsaid): (&Model, &[Finding]),
         written: &[PathBuf],
         held_out: Option<&Evaluation>,
-    ) -> Said {
+    ) -> Output {
         let exit = if model.trust.verdict == Verdict::DoNotUse { Exit::Refused } else { Exit::Done };
         if session.json {
             let files: Vec<String> =
@@ -117,7 +117,7 @@ impl Fit {
                 "written": files, "trust": model.trust, "decisions": model.decisions, "data": model.data,
                 "hold_out": held_out,
             });
-            return Said::json(&document, exit);
+            return Output::json(&document, exit);
         }
         let mut lines = Lines::default();
         let data = &model.data;
@@ -164,7 +164,7 @@ impl Fit {
             let (model, picture) = (quoted(&self.output), quoted(&self.output.with_extension("svg")));
             lines.next(&format!("policy-align plot {model} -o {picture}"))
         };
-        Said { text: next, exit }
+        Output { text: next, exit }
     }
 }
 
@@ -199,7 +199,7 @@ fn judged(held_out: &Recordings, options: &policy_align::PrepareOptions, model: 
 fn replace(files: &[(PathBuf, String)]) -> Result<(), Failure> {
     let failed = |path: &Path, error: io::Error| Failure::writing(path, error);
     let draft = |(path, text): &(PathBuf, String)| {
-        Draft::of(path, |file| file.write_all(text.as_bytes())).map_err(|error| failed(path, error))
+        TempFile::of(path, |file| file.write_all(text.as_bytes())).map_err(|error| failed(path, error))
     };
     let drafts = files.iter().map(draft).collect::<Result<Vec<_>, _>>()?;
     let mut replaced = drafts.into_iter().zip(files);

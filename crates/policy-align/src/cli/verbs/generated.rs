@@ -8,7 +8,7 @@ use policy_align::write_whole;
 
 use crate::cli::Cli;
 use crate::cli::failure::{Exit, Failure};
-use crate::cli::session::Said;
+use crate::cli::session::Output;
 
 /// Print shell completions
 #[derive(Debug, Args)]
@@ -20,10 +20,10 @@ pub(crate) struct Completions {
 }
 
 impl Completions {
-    pub(crate) fn run(&self) -> Said {
+    pub(crate) fn run(&self) -> Output {
         let mut text = Vec::new();
         clap_complete::generate(self.shell, &mut Cli::command(), "policy-align", &mut text);
-        Said::done(String::from_utf8_lossy(&text).into_owned())
+        Output::done(String::from_utf8_lossy(&text).into_owned())
     }
 }
 
@@ -37,10 +37,10 @@ pub(crate) struct Man {
 }
 
 impl Man {
-    pub(crate) fn run(&self) -> Result<Said, Failure> {
+    pub(crate) fn run(&self) -> Result<Output, Failure> {
         let mut command = Cli::command();
         command.build();
-        let Some(folder) = &self.to else { return Ok(Said::done(page(command, "policy-align")?)) };
+        let Some(folder) = &self.to else { return Ok(Output::done(page(command, "policy-align")?)) };
         for sub in command.get_subcommands().cloned().collect::<Vec<_>>() {
             let name = format!("policy-align-{}", sub.get_name());
             let path = folder.join(format!("{name}.1"));
@@ -49,7 +49,7 @@ impl Man {
         let path = folder.join("policy-align.1");
         write_whole(&path, page(command, "policy-align")?.as_bytes())
             .map_err(|error| Failure::writing(&path, error))?;
-        Ok(Said::done(String::new()))
+        Ok(Output::done(String::new()))
     }
 }
 

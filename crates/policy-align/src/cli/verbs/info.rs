@@ -7,7 +7,7 @@ use text::quoted;
 use crate::cli::failure::{Exit, Failure};
 use crate::cli::in_words::{learner, verdict};
 use crate::cli::lines::{Lines, counted, short};
-use crate::cli::session::{Said, Session};
+use crate::cli::session::{Output, Session};
 use crate::cli::trust_files::load;
 use crate::cli::verbs::check::findings;
 
@@ -20,14 +20,14 @@ pub(crate) struct Info {
 }
 
 impl Info {
-    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+    pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let model = load(session, &self.model)?;
         if session.json {
             let document = json!({
                 "made_by": model.made_by, "state": model.state, "time_step": model.time_step, "data": model.data,
                 "learner": learner(&model), "decisions": model.decisions, "seed": model.seed, "trust": model.trust,
             });
-            return Ok(Said::json(&document, Exit::Done));
+            return Ok(Output::json(&document, Exit::Done));
         }
         let mut lines = Lines::default();
         lines.add("made by", &format!("{}, {}", model.made_by.program, model.made_by.time));
@@ -59,6 +59,6 @@ impl Info {
         lines.add("trust", verdict(&model));
         findings(&model.trust.findings, 4, &mut lines);
         let middle: Vec<String> = model.state.iter().map(|channel| short(channel.median)).collect();
-        Ok(Said::done(lines.next(&format!("policy-align predict {} --at {}", quoted(&self.model), middle.join(",")))))
+        Ok(Output::done(lines.next(&format!("policy-align predict {} --at {}", quoted(&self.model), middle.join(",")))))
     }
 }

@@ -12,7 +12,7 @@ use crate::cli::options::flags::{ReadFlags, numbers};
 use crate::cli::options::rollout_flags::RollOutFlags;
 use crate::cli::pages::picture::{Picture, draw};
 use crate::cli::recorded::{base_name, read};
-use crate::cli::session::{Said, Session};
+use crate::cli::session::{Output, Session};
 use crate::cli::trust_files::load;
 use crate::cli::verbs::rollout::followed;
 
@@ -46,7 +46,7 @@ pub(crate) struct Plot {
 }
 
 impl Plot {
-    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+    pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let model = load(session, &self.model)?;
         let config = Config::of(session)?;
         let dims = dims(&self.dims, &model)?;
@@ -81,7 +81,11 @@ impl Plot {
         );
         let start: Vec<String> =
             model.state.iter().map(|channel| short(channel.high * 0.5 + channel.median * 0.5)).collect();
-        Ok(Said::done(lines.next(&format!("policy-align rollout {} --from {}", quoted(&self.model), start.join(",")))))
+        Ok(Output::done(lines.next(&format!(
+            "policy-align rollout {} --from {}",
+            quoted(&self.model),
+            start.join(",")
+        ))))
     }
 }
 

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use crate::cli::failure::{Exit, Failure};
 use crate::cli::lines::{Lines, counted, list, short};
 use crate::cli::options::flags::numbers;
-use crate::cli::session::{Said, Session};
+use crate::cli::session::{Output, Session};
 use crate::cli::table::states;
 use crate::cli::trust_files::load;
 
@@ -78,7 +78,7 @@ impl Prediction {
 }
 
 impl Predict {
-    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+    pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let model = load(session, &self.model)?;
         let states = match (&self.at, &self.states) {
             (Some(at), _) => Self::one(at, &model)?,
@@ -98,13 +98,13 @@ impl Predict {
         bar.finish_and_clear();
         let predictions = self.with_outside(predictions)?;
         if session.json {
-            return Ok(Said::json(&document(&model, &states, &predictions), Exit::Done));
+            return Ok(Output::json(&document(&model, &states, &predictions), Exit::Done));
         }
         if let (Some(_), None) = (&self.at, &self.output) {
-            return Ok(Said::done(one_prediction(&model, &predictions[0])));
+            return Ok(Output::done(one_prediction(&model, &predictions[0])));
         }
         let text = csv(&model, &states, &predictions);
-        let Some(path) = &self.output else { return Ok(Said::done(text)) };
+        let Some(path) = &self.output else { return Ok(Output::done(text)) };
         write_whole(path, text.as_bytes()).map_err(|error| Failure::writing(path, error))?;
         let unsupported = predictions.iter().filter(|prediction| !prediction.supported).count();
         let mut lines = Lines::default();
@@ -116,7 +116,7 @@ impl Predict {
                 counted(predictions.len(), "state")
             ),
         );
-        Ok(Said::done(lines.into_text()))
+        Ok(Output::done(lines.into_text()))
     }
 
     fn one(at: &str, model: &Model) -> Result<DMatrix<f64>, Failure> {

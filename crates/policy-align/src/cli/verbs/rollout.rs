@@ -15,7 +15,7 @@ use crate::cli::options::flags::numbers;
 use crate::cli::options::rollout_flags::RollOutFlags;
 use crate::cli::pages::picture::{Picture, draw};
 use crate::cli::recorded::base_name;
-use crate::cli::session::{Said, Session};
+use crate::cli::session::{Output, Session};
 use crate::cli::trust_files::load;
 
 /// Roll out a policy from a start, under constraints
@@ -60,7 +60,7 @@ pub(crate) struct RollOut {
 }
 
 impl RollOut {
-    pub(crate) fn run(&self, session: &Session) -> Result<Said, Failure> {
+    pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let model = load(session, &self.model)?;
         let flags = Config::of(session)?.under("rollout", &self.follow)?;
         let start = DVector::from_vec(numbers(&self.from, "--from")?);
@@ -83,9 +83,9 @@ impl RollOut {
                 "velocities": columns(&followed.velocities), "stop": stop(&followed.stop),
                 "broken_by": followed.broken_by.map(|(by, _)| by),
             });
-            return Ok(Said::json(&document, Exit::Done));
+            return Ok(Output::json(&document, Exit::Done));
         }
-        Ok(Said::done(self.summary(&followed)))
+        Ok(Output::done(self.summary(&followed)))
     }
 
     fn summary(&self, followed: &Path) -> String {

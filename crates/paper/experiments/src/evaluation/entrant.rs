@@ -8,7 +8,7 @@ use serde_json::Value;
 
 /// One entry in the list of learners that an experiment scores.
 #[derive(Serialize)]
-pub(crate) enum Pupil {
+pub(crate) enum Entrant {
     /// The paper's method: regression on the potentials as the exam has aligned them. It is what
     /// [`align::PotentialPolicyLearning`] learns, to the last bit, without aligning once more.
     PolicyAlign(LwprRegressor),
@@ -22,10 +22,10 @@ pub(crate) enum Pupil {
     },
 }
 
-impl Pupil {
+impl Entrant {
     /// A learner that begins with the demonstrations.
-    pub(crate) fn other<L: Learner + Serialize + 'static>(learner: L) -> anyhow::Result<Pupil> {
-        Ok(Pupil::Other { parameters: serde_json::to_value(&learner)?, learner: Box::new(learner) })
+    pub(crate) fn other<L: Learner + Serialize + 'static>(learner: L) -> anyhow::Result<Entrant> {
+        Ok(Entrant::Other { parameters: serde_json::to_value(&learner)?, learner: Box::new(learner) })
     }
 
     /// Learns from all samples but those held out.
@@ -36,8 +36,8 @@ impl Pupil {
         rng: &mut ChaCha8Rng,
     ) -> anyhow::Result<Box<dyn LearntPolicy>> {
         match self {
-            Pupil::PolicyAlign(regressor) => Ok(Box::new(aligned.learn_without(held_out, regressor, rng)?)),
-            Pupil::Other { learner, .. } => {
+            Entrant::PolicyAlign(regressor) => Ok(Box::new(aligned.learn_without(held_out, regressor, rng)?)),
+            Entrant::Other { learner, .. } => {
                 learner.learn(aligned.demonstrations(), held_out, rng).map_err(anyhow::Error::from_boxed)
             }
         }
@@ -62,7 +62,7 @@ mod tests {
         let aligned = align.align(&demonstrations).unwrap();
         let held_out = demonstrations.hold_out_samples(aligned.kept(), 0.1, &mut generator(1, 0, 1)).unwrap();
         let whole = PotentialPolicyLearning { align, regressor: regressor.clone() };
-        let [short, long] = [Pupil::PolicyAlign(regressor), Pupil::other(whole).unwrap()]
+        let [short, long] = [Entrant::PolicyAlign(regressor), Entrant::other(whole).unwrap()]
             .map(|pupil| pupil.learn(&aligned, &held_out, &mut generator(1, 0, 2)).unwrap());
         for trajectory in demonstrations.trajectories() {
             for state in trajectory.states().column_iter() {

@@ -10,7 +10,7 @@ use smoothing::{Fusion, Smoother};
 
 /// What is recorded. Noise is a share of each dimension's standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(crate) enum Seen {
+pub(crate) enum ObservationModel {
     /// Positions and velocities, both exact.
     Velocities,
     /// Positions with noise, and exact velocities.
@@ -19,13 +19,13 @@ pub(crate) enum Seen {
     Positions(f64),
 }
 
-impl Seen {
+impl ObservationModel {
     /// The same movements as they are recorded.
     pub(crate) fn of(self, recordings: Vec<Recording>, rng: &mut ChaCha8Rng) -> anyhow::Result<Vec<Recording>> {
         match self {
-            Seen::Velocities => Ok(recordings),
-            Seen::NoisyStates(noise) => Ok(with_position_noise(&recordings, noise, rng)?),
-            Seen::Positions(noise) => {
+            ObservationModel::Velocities => Ok(recordings),
+            ObservationModel::NoisyStates(noise) => Ok(with_position_noise(&recordings, noise, rng)?),
+            ObservationModel::Positions(noise) => {
                 let noisy = with_position_noise(&recordings, noise, rng)?;
                 noisy.into_iter().map(without_velocities).collect()
             }
@@ -35,17 +35,17 @@ impl Seen {
     /// How the Gaussian processes take it.
     pub(crate) fn front_end(self) -> FrontEnd {
         match self {
-            Seen::Velocities => FrontEnd::Velocities,
-            Seen::NoisyStates(_) => FrontEnd::Fused(Fusion::default()),
-            Seen::Positions(_) => FrontEnd::Smoothed(Smoother::default()),
+            ObservationModel::Velocities => FrontEnd::Velocities,
+            ObservationModel::NoisyStates(_) => FrontEnd::Fused(Fusion::default()),
+            ObservationModel::Positions(_) => FrontEnd::Smoothed(Smoother::default()),
         }
     }
 
     /// How PolicyAlign takes it.
     pub(crate) fn integration(self) -> Integration {
         match self {
-            Seen::Velocities | Seen::NoisyStates(_) => Integration::Velocity,
-            Seen::Positions(_) => Integration::Displacement,
+            ObservationModel::Velocities | ObservationModel::NoisyStates(_) => Integration::Velocity,
+            ObservationModel::Positions(_) => Integration::Displacement,
         }
     }
 }

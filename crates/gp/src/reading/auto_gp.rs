@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::direct::direct_gp::{DirectFit, DirectGp};
 use crate::left_out::comparison::difference;
-use crate::reading::Reading;
+use crate::reading::Hypothesis;
 use crate::reading::numbers::{Compared, ReadingNumbers, TrajectoryErrors};
 use crate::slope::fit::SlopeFit;
-use crate::slope::judgement::{Across, Chosen, NOTHING_KNOWN, report};
+use crate::slope::judgement::{CrossPathEvidence, NOTHING_KNOWN, ReportInput, report};
 use crate::slope::search::outcome;
 use crate::slope::slope_gp::SlopeGp;
 use crate::{FrontEnd, GpError, Rows};
@@ -16,7 +16,7 @@ use crate::{FrontEnd, GpError, Rows};
 /// Fits the slope GP and the direct GP to the same rows, compares them on held-out demonstrations, and hands out the
 /// policy that the data support (R8). No learner is right for both free and constrained movement.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct ReadingLearner {
+pub struct AutoGp {
     /// How recordings become rows.
     pub front_end: FrontEnd,
     /// The learner for constrained movement; its limits on rows hold for both.
@@ -24,31 +24,31 @@ pub struct ReadingLearner {
     /// The learner for free movement.
     pub direct: DirectGp,
     /// A reading given by the user, which overrides that of the data.
-    pub reading: Option<Reading>,
+    pub reading: Option<Hypothesis>,
 }
 
 /// Both policies, and which of them the data support.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct BothReadings {
+pub struct AutoFit {
     pub(crate) slope: SlopeFit,
     pub(crate) direct: DirectFit,
     pub(crate) numbers: ReadingNumbers,
     /// The reading of the data when this was learnt; older stored models have none and are read by today's rule.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) reading: Option<Reading>,
-    pub(crate) overridden: Option<Reading>,
+    pub(crate) reading: Option<Hypothesis>,
+    pub(crate) overridden: Option<Hypothesis>,
     /// Models that were stored before this was kept have none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) left_out: Vec<TrajectoryErrors>,
 }
 
-impl ReadingLearner {
+impl AutoGp {
     /// Learns from rows. The generator draws one permutation and, where rows are thinned, an offset.
     ///
     /// # Errors
     /// As [`SlopeGp::fit`] and [`DirectGp::fit`].
-    pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<BothReadings, GpError> {
+    pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<AutoFit, GpError> {
         let kept = self.slope.selection()?.keep(rows, rng)?;
         let (slope, direct) = rayon::join(|| outcome(&self.slope, &kept), || self.direct.outcome(&kept));
         let (slope, direct) = (slope?, direct?);
@@ -64,26 +64,19 @@ impl ReadingLearner {
         let (numbers, left_out) = (ReadingNumbers::compared(&compared), compared.errors());
         let reading = numbers.reading();
         // Left-out movements test the slope policy in all directions where it is the better one whichever way they went.
-        let tested = reading == Reading::Constrained || numbers.shows_a_potential();
-        let across = if tested { Across::Tested } else { Across::Untested };
-        let mut report = report(&Chosen { outcome: &slope, kept: &kept, rows, across });
-        if across == Across::Untested {
+        let tested = reading == Hypothesis::Constrained || numbers.shows_a_potential();
+        let across = if tested { CrossPathEvidence::Tested } else { CrossPathEvidence::Untested };
+        let mut report = report(&ReportInput { outcome: &slope, kept: &kept, rows, across });
+        if across == CrossPathEvidence::Untested {
             let away = difference(&direct.actions, &slope.taken.actions);
             report.expected_nupe = expected_beside((reading, numbers.gap, numbers.p_d), away, report.expected_nupe);
         }
         let slope = SlopeFit { model: slope.taken.model, report };
-        Ok(BothReadings {
-            slope,
-            direct: direct.fit,
-            numbers,
-            reading: Some(reading),
-            overridden: self.reading,
-            left_out,
-        })
+        Ok(AutoFit { slope, direct: direct.fit, numbers, reading: Some(reading), overridden: self.reading, left_out })
     }
 }
 
-impl Learner for ReadingLearner {
+impl Learner for AutoGp {
     fn learn(
         &self,
         demonstrations: &Demonstrations,
@@ -94,14 +87,14 @@ impl Learner for ReadingLearner {
     }
 }
 
-impl BothReadings {
+impl AutoFit {
     /// The reading of the data.
-    pub fn reading(&self) -> Reading {
+    pub fn reading(&self) -> Hypothesis {
         self.reading.unwrap_or_else(|| self.numbers.reading())
     }
 
     /// The reading given by the user, if any.
-    pub fn overridden(&self) -> Option<Reading> {
+    pub fn overridden(&self) -> Option<Hypothesis> {
         self.overridden
     }
 
@@ -129,7 +122,7 @@ impl BothReadings {
     pub fn expected_nupe(&self) -> f64 {
         match (self.takes_slope(), self.reading()) {
             (true, _) => self.slope.report.expected_nupe,
-            (false, Reading::Constrained) => self.numbers.p_d.max(self.numbers.gap),
+            (false, Hypothesis::Constrained) => self.numbers.p_d.max(self.numbers.gap),
             (false, _) => self.numbers.p_d,
         }
     }
@@ -153,7 +146,7 @@ impl BothReadings {
     }
 }
 
-impl Policy for BothReadings {
+impl Policy for AutoFit {
     fn dim(&self) -> usize {
         self.handed_out().dim()
     }
@@ -163,7 +156,7 @@ impl Policy for BothReadings {
     }
 }
 
-impl LearntPolicy for BothReadings {
+impl LearntPolicy for AutoFit {
     fn potential(&self) -> Option<&dyn Potential> {
         self.handed_out().potential()
     }
@@ -177,7 +170,7 @@ impl LearntPolicy for BothReadings {
     }
 
     fn warnings(&self) -> Vec<String> {
-        let doubtful = matches!(self.reading(), Reading::Ambiguous | Reading::Unexplained | Reading::TooFew);
+        let doubtful = matches!(self.reading(), Hypothesis::Ambiguous | Hypothesis::Unexplained | Hypothesis::TooFew);
         let text = doubtful.then(|| self.text());
         text.into_iter().chain(self.handed_out().warnings()).collect()
     }
@@ -185,11 +178,11 @@ impl LearntPolicy for BothReadings {
 
 /// The error to expect of the slope policy, which itself expects `own`, beside the direct one (R6): `gap` is how far that is
 /// away, `p_d` what it errs on movements left out, `away` the slope policy's error if it were the truth.
-fn expected_beside((reading, gap, p_d): (Reading, f64, f64), away: f64, own: f64) -> f64 {
+fn expected_beside((reading, gap, p_d): (Hypothesis, f64, f64), away: f64, own: f64) -> f64 {
     let expected = match reading {
         // The direct policy is the right one. Learnt from all movements it errs by nothing to p_d, and the slope policy by
         // `away` to what both make possible: the middle of these, by their orders of magnitude.
-        Reading::Free => {
+        Hypothesis::Free => {
             let most = (away.sqrt() + p_d.max(0.0).sqrt()).powi(2);
             (away * own.max(away).min(most)).sqrt()
         }
@@ -215,10 +208,10 @@ mod tests {
             own in 0.0f64..=1.0,
         ) {
             let expected = |reading| expected_beside((reading, gap, p_d), away, own);
-            for reading in [Reading::Ambiguous, Reading::Unexplained, Reading::Constrained] {
+            for reading in [Hypothesis::Ambiguous, Hypothesis::Unexplained, Hypothesis::Constrained] {
                 prop_assert_eq!(expected(reading), own.max(gap).min(1.0));
             }
-            let free = expected(Reading::Free);
+            let free = expected(Hypothesis::Free);
             let bound = away + p_d.max(0.0) + 2.0 * (away * p_d.max(0.0)).sqrt();
             prop_assert!(free >= away.min(1.0) - 1e-12 && free <= bound.min(1.0) + 1e-12);
             prop_assert!(own < away || own > bound || free <= own + 1e-12);
@@ -227,7 +220,7 @@ mod tests {
         /// Where the direct policy is exact, its distance is the error.
         #[test]
         fn an_exact_direct_policy_knows_the_error(away in 0.0f64..=1.0, own in 0.0f64..=1.0) {
-            let expected = expected_beside((Reading::Free, 0.5, 0.0), away, own);
+            let expected = expected_beside((Hypothesis::Free, 0.5, 0.0), away, own);
             prop_assert!((expected - away).abs() <= 1e-12);
         }
     }
@@ -236,7 +229,7 @@ mod tests {
     #[test]
     fn where_nothing_varies_nothing_is_known() {
         for away in [f64::NAN, f64::INFINITY] {
-            assert_eq!(expected_beside((Reading::Free, 0.5, 0.1), away, 0.2), 1.0);
+            assert_eq!(expected_beside((Hypothesis::Free, 0.5, 0.1), away, 0.2), 1.0);
         }
     }
 }
