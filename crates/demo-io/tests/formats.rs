@@ -70,6 +70,24 @@ fn files_cut_off_anywhere_are_refused() {
     }
 }
 
+/// The library would count through a list that it skips, for seconds and without asking for memory.
+#[test]
+fn a_list_longer_than_its_file_is_refused() {
+    const MARK: usize = 4;
+    let whole = std::fs::read(kept("lists.parquet")).unwrap();
+    let (rest, mark) = whole.split_at(whole.len() - MARK);
+    let (rest, length) = rest.split_last_chunk::<4>().unwrap();
+    // The description's end, before which a field 100 is put: 2³¹ − 1 truth values, which take no bytes.
+    let (stop, described) = rest.split_last().unwrap();
+    let list = [0x09, 0xc8, 0x01, 0xf1, 0xff, 0xff, 0xff, 0xff, 0x07];
+    let length = u32::from_le_bytes(*length) + list.len() as u32;
+    let hostile = [described, &list, &[*stop], &length.to_le_bytes(), mark].concat();
+    let files = Files::new();
+    let file = files.add("lists.parquet", &hostile);
+    let error = read_with(&file, &ReadOptions::default()).expect_err("should be refused");
+    assert_eq!(error.code(), "Corrupt", "{error}");
+}
+
 #[test]
 fn a_folder_of_lerobot_is_read_by_its_rate_and_names() {
     let files = Files::new();
