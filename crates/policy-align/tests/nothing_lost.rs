@@ -30,7 +30,9 @@ fn odd() -> String {
     assert!(copy.len() > 10);
     let fields = copy[0].split(',').count() - 1;
     writeln!(text, "single{}", ",0".repeat(fields)).unwrap();
-    copy.iter().for_each(|line| writeln!(text, "{line}").unwrap());
+    for line in &copy {
+        writeln!(text, "{line}").unwrap();
+    }
     text
 }
 
@@ -75,9 +77,9 @@ fn half_precision() -> Vec<u8> {
         for i in 0..samples {
             for axis in 0..2 {
                 let value = 1.0 + 0.9 * (-0.1 * i as f32).exp() * ((k * 2 + axis) as f32).sin();
-                // All values lie in [0.0625, 2): the exponent fits, and the mantissa is cut to ten bits.
+                // Values lie in [0.0625, 2): the exponent, less 127 and plus 15, fits; the mantissa is cut to ten bits.
                 let bits = value.to_bits();
-                let half = ((((bits >> 23) & 0xff) as i32 - 127 + 15) as u16) << 10 | ((bits >> 13) & 0x3ff) as u16;
+                let half = (((((bits >> 23) & 0xff) - 112) << 10) | ((bits >> 13) & 0x3ff)) as u16;
                 bytes.extend(half.to_le_bytes());
             }
         }

@@ -256,7 +256,7 @@ fn noise_as_large_as_the_movement_is_no_stand_still() {
     let number = |i: usize| (i.wrapping_mul(2_654_435_761) >> 7) % 1000;
     let mut loud = recordings();
     loud.episodes.truncate(1);
-    loud.episodes[0].times = (0..200).map(|i| i as f64 * STEP).collect();
+    loud.episodes[0].times = (0..200).map(|i| f64::from(i) * STEP).collect();
     loud.episodes[0].positions = DMatrix::from_fn(2, 200, |axis, i| number(i + 500 * axis) as f64);
     loud.episodes[0].velocities = None;
     assert!(!prepared(&loud).findings.iter().any(|finding| finding.what.contains("at rest")));

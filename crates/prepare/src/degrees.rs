@@ -3,10 +3,10 @@ use std::f64::consts::TAU;
 use motion::Verdict;
 
 use crate::StateChannel;
-use crate::findings::Findings;
+use crate::notes::Notes;
 
 /// Says which channels seem to be angles in degrees.
-pub(crate) fn remark(state: &[StateChannel], notes: &mut Findings) {
+pub(crate) fn remark(state: &[StateChannel], notes: &mut Notes) {
     let degrees: Vec<&str> =
         state.iter().filter(|channel| in_degrees(channel)).map(|channel| channel.name.as_str()).collect();
     if !degrees.is_empty() {

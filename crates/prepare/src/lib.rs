@@ -48,8 +48,8 @@ mod channel;
 mod degrees;
 mod directions;
 mod error;
-mod findings;
 pub mod in_words;
+mod notes;
 mod options;
 mod prepared;
 mod remarks;
@@ -71,7 +71,7 @@ pub use velocity_source::VelocitySource;
 
 use motion::{Recordings, Trajectory, upper_median};
 
-use findings::Findings;
+use notes::Notes;
 
 /// Makes demonstrations of recordings: time, units, velocities, noise, and what is wrong with them.
 ///
@@ -79,7 +79,7 @@ use findings::Findings;
 /// [`PrepareError`] where nothing can be learnt: no episode, no motion, rows and columns exchanged, or an option that
 /// does not fit.
 pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prepared, PrepareError> {
-    let mut notes = Findings { findings: recordings.findings.clone(), ..Findings::default() };
+    let mut notes = Notes { findings: recordings.findings.clone(), ..Notes::default() };
     let scales = scale::scales(recordings, options, &mut notes)?;
     let mut episodes = repairs::episodes::movements(recordings, &scales, &mut notes)?;
     repairs::duplicates::leave_out(&mut episodes, &mut notes);

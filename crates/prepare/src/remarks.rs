@@ -3,8 +3,8 @@
 use motion::{Demonstrations, Trajectory, Verdict};
 
 use crate::StateChannel;
-use crate::findings::Findings;
 use crate::in_words::{percent, short};
+use crate::notes::Notes;
 use crate::samples::noise::resolution;
 
 /// A channel that spreads so many times as much as most others has another unit, it seems.
@@ -16,7 +16,7 @@ const LOOP: f64 = 0.05;
 /// Positions have few digits if a step of the last digit is this share of a channel's spread.
 const COARSE: f64 = 0.01;
 
-pub(crate) fn about(demonstrations: &Demonstrations, state: &[StateChannel], notes: &mut Findings) {
+pub(crate) fn about(demonstrations: &Demonstrations, state: &[StateChannel], notes: &mut Notes) {
     let spreads = spreads(demonstrations);
     mixed_units(&spreads, state, notes);
     few(demonstrations, notes);
@@ -40,7 +40,7 @@ fn spreads(demonstrations: &Demonstrations) -> Vec<f64> {
         .collect()
 }
 
-fn mixed_units(spreads: &[f64], state: &[StateChannel], notes: &mut Findings) {
+fn mixed_units(spreads: &[f64], state: &[StateChannel], notes: &mut Notes) {
     let mut sorted: Vec<f64> = spreads.iter().copied().filter(|&spread| spread > 0.0).collect();
     sorted.sort_by(f64::total_cmp);
     let Some((&largest, others)) = sorted.split_last() else { return };
@@ -57,7 +57,7 @@ fn mixed_units(spreads: &[f64], state: &[StateChannel], notes: &mut Findings) {
     );
 }
 
-fn few(demonstrations: &Demonstrations, notes: &mut Findings) {
+fn few(demonstrations: &Demonstrations, notes: &mut Notes) {
     let count = demonstrations.n_trajectories();
     if count < FEW {
         let (verb, plural) = if count == 1 { ("is", "") } else { ("are", "s") };
@@ -69,7 +69,7 @@ fn few(demonstrations: &Demonstrations, notes: &mut Findings) {
     }
 }
 
-fn loops(demonstrations: &Demonstrations, notes: &mut Findings) {
+fn loops(demonstrations: &Demonstrations, notes: &mut Notes) {
     let is_loop = |movement: &&Trajectory| {
         let last = movement.n_samples() - 1;
         let length: f64 = (0..last).map(|i| (movement.state(i + 1) - movement.state(i)).norm()).sum();
@@ -87,7 +87,7 @@ fn loops(demonstrations: &Demonstrations, notes: &mut Findings) {
     }
 }
 
-fn coarse(demonstrations: &Demonstrations, spreads: &[f64], state: &[StateChannel], notes: &mut Findings) {
+fn coarse(demonstrations: &Demonstrations, spreads: &[f64], state: &[StateChannel], notes: &mut Notes) {
     for (axis, channel) in state.iter().enumerate() {
         let Some(least) = resolution(demonstrations, axis) else { continue };
         if least > COARSE * spreads[axis] {

@@ -1,7 +1,7 @@
 use motion::{Demonstrations, Recordings, upper_median};
 use nalgebra::DVector;
 
-use crate::findings::Findings;
+use crate::notes::Notes;
 use crate::options::PrepareOptions;
 use crate::{PrepareError, StateChannel};
 
@@ -9,7 +9,7 @@ use crate::{PrepareError, StateChannel};
 pub(crate) fn scales(
     recordings: &Recordings,
     options: &PrepareOptions,
-    notes: &mut Findings,
+    notes: &mut Notes,
 ) -> Result<DVector<f64>, PrepareError> {
     let mut scales = DVector::repeat(recordings.state.len(), 1.0);
     for (name, factor) in &options.scale {

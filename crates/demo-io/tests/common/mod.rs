@@ -57,7 +57,8 @@ pub fn refused(name: &str, content: impl AsRef<[u8]>, options: &ReadOptions, cod
 
 /// What was found while reading, a line each.
 pub fn said(recordings: &Recordings) -> String {
-    recordings.findings.iter().map(|finding| format!("{}: {}\n", finding.what, finding.next)).collect()
+    let lines = recordings.findings.iter().map(|finding| format!("{}: {}", finding.what, finding.next));
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 /// Names of the state.

@@ -1,10 +1,10 @@
 use motion::oddities::twins;
 use motion::{Episode, Verdict};
 
-use crate::findings::Findings;
+use crate::notes::Notes;
 
 /// The same movement twice counts once: it would be left out to test the prediction of itself.
-pub(crate) fn leave_out(episodes: &mut Vec<Episode>, notes: &mut Findings) {
+pub(crate) fn leave_out(episodes: &mut Vec<Episode>, notes: &mut Notes) {
     let twins = twins(episodes.iter().map(|episode| &episode.positions));
     let copied = twins.iter().flatten().count();
     if copied == 0 {

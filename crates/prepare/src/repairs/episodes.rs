@@ -5,13 +5,13 @@ use motion::{Demonstrations, Episode, Recordings};
 use nalgebra::DVector;
 
 use crate::PrepareError;
-use crate::findings::Findings;
+use crate::notes::Notes;
 
 /// Every episode that is a movement, in scaled units.
 pub(crate) fn movements(
     recordings: &Recordings,
     scales: &DVector<f64>,
-    notes: &mut Findings,
+    notes: &mut Notes,
 ) -> Result<Vec<Episode>, PrepareError> {
     let longest = recordings.episodes.iter().map(Episode::n_samples).max().ok_or(PrepareError::Empty)?;
     let dim = recordings.state.len();
@@ -32,7 +32,7 @@ pub(crate) fn movements(
 }
 
 /// Leaves out what never changes.
-pub(crate) fn leave_out_still(episodes: &mut Vec<Episode>, notes: &mut Findings) {
+pub(crate) fn leave_out_still(episodes: &mut Vec<Episode>, notes: &mut Notes) {
     episodes.retain(|episode| {
         let still = stands_still(&episode.positions);
         if still {

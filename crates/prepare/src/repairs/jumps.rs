@@ -1,8 +1,8 @@
 use motion::oddities::{LongStep, long_steps};
 use motion::{Channel, Episode, Verdict};
 
-use crate::findings::Findings;
 use crate::in_words::short;
+use crate::notes::Notes;
 
 /// Shorter pieces than this are not worth learning from.
 const LEAST: usize = 4;
@@ -10,7 +10,7 @@ const LEAST: usize = 4;
 const MANY: f64 = 0.2;
 
 /// Cuts episodes where a single step stands out from all about it: samples are missing there, or one is wrong.
-pub(crate) fn cut(episodes: &mut Vec<Episode>, channels: &[Channel], notes: &mut Findings) {
+pub(crate) fn cut(episodes: &mut Vec<Episode>, channels: &[Channel], notes: &mut Notes) {
     let (count, mut cut, mut first) = (episodes.len(), 0, None);
     *episodes = episodes
         .drain(..)
@@ -46,7 +46,7 @@ fn in_words(episode: &Episode, jump: &LongStep, channels: &[Channel]) -> String 
     )
 }
 
-fn pieces(episode: &Episode, jumps: &[LongStep], notes: &mut Findings) -> Vec<Episode> {
+fn pieces(episode: &Episode, jumps: &[LongStep], notes: &mut Notes) -> Vec<Episode> {
     let mut from = 0;
     let mut pieces = Vec::new();
     for to in jumps.iter().map(|jump| jump.sample + 1).chain([episode.n_samples()]) {

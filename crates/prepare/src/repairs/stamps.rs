@@ -1,8 +1,8 @@
 use motion::{Demonstrations, Episode, Times, Trajectory, Verdict, upper_median};
 
 use crate::PrepareError;
-use crate::findings::{Findings, and_more};
 use crate::in_words::{percent, short};
+use crate::notes::{Notes, and_more};
 use crate::options::PrepareOptions;
 
 /// Stamps that differ by less than this share of a step are even.
@@ -18,7 +18,7 @@ const GAP: f64 = 3.0;
 pub(crate) fn decide(
     episodes: &mut [Episode],
     options: &PrepareOptions,
-    notes: &mut Findings,
+    notes: &mut Notes,
 ) -> Result<(), PrepareError> {
     if let Some(time_step) = options.time_step {
         if !(time_step > 0.0 && time_step.is_finite()) {
@@ -64,7 +64,7 @@ pub(crate) fn decide(
     Ok(())
 }
 
-fn decided(episodes: &[Episode], (uneven, worst): (usize, f64), notes: &mut Findings) {
+fn decided(episodes: &[Episode], (uneven, worst): (usize, f64), notes: &mut Notes) {
     let Some(usual) = upper_median(episodes.iter().filter_map(|episode| episode.times.median_step()).collect()) else {
         return;
     };
@@ -82,7 +82,7 @@ fn decided(episodes: &[Episode], (uneven, worst): (usize, f64), notes: &mut Find
 }
 
 /// A time step that is hardly one in seconds.
-pub(crate) fn doubt(demonstrations: &Demonstrations, notes: &mut Findings) {
+pub(crate) fn doubt(demonstrations: &Demonstrations, notes: &mut Notes) {
     let steps = demonstrations.trajectories().iter().map(Trajectory::time_step).collect();
     let Some(usual) = upper_median(steps).filter(|&usual| usual > SLOW) else { return };
     let movement = &demonstrations.trajectories()[0];

@@ -1,8 +1,8 @@
 use motion::{Channel, Episode, Verdict};
 use nalgebra::DVector;
 
-use crate::findings::Findings;
 use crate::in_words::{percent, short};
+use crate::notes::Notes;
 use crate::options::{PrepareOptions, VelocityUse};
 use crate::repairs::agreement::Agreement;
 use crate::samples::noise::Noise;
@@ -28,7 +28,7 @@ pub(crate) fn decide(
     options: &PrepareOptions,
     channels: &[Channel],
     noise: &Noise,
-    notes: &mut Findings,
+    notes: &mut Notes,
 ) -> Agreement {
     let recorded = episodes.iter().filter(|episode| episode.velocities.is_some()).count();
     if recorded < episodes.len() || options.velocities == VelocityUse::Ignored {
@@ -155,7 +155,7 @@ fn made_of_positions(episodes: &[Episode]) -> bool {
 }
 
 /// Velocities in other units than the steps: brought to those of positions and stamps, and said.
-fn mend(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &mut Findings) {
+fn mend(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &mut Notes) {
     let (low, high) = (fit.factors.min(), fit.factors.max());
     let step = episodes[0].times.seconds(0, 1);
     if step > SLOW && fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(&(factor * 1000.0))) {

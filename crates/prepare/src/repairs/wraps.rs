@@ -2,8 +2,8 @@ use std::f64::consts::TAU;
 
 use motion::{Channel, Episode, Verdict};
 
-use crate::findings::{Findings, and_more};
 use crate::in_words::short;
+use crate::notes::{Notes, and_more};
 
 /// A step over this share of a turn is a wrap.
 const WRAP: f64 = 0.75;
@@ -11,7 +11,7 @@ const WRAP: f64 = 0.75;
 const RANGE: std::ops::RangeInclusive<f64> = 0.9..=1.02;
 
 /// Angles that jump by a whole turn go on instead; every movement ends within half a turn of where all end.
-pub(crate) fn unwrap(episodes: &mut [Episode], channels: &[Channel], notes: &mut Findings) {
+pub(crate) fn unwrap(episodes: &mut [Episode], channels: &[Channel], notes: &mut Notes) {
     for (channel, described) in channels.iter().enumerate() {
         let Some(turn) = turn(episodes, channel) else { continue };
         let wraps: Vec<(String, f64)> = episodes.iter().filter_map(|episode| wrap(episode, channel, turn)).collect();

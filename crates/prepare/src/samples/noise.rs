@@ -3,7 +3,7 @@ use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 use smoothing::PositionNoise;
 
-use crate::findings::Findings;
+use crate::notes::Notes;
 use crate::repairs::agreement::Agreement;
 use crate::{VelocitySource, in_words};
 
@@ -111,7 +111,7 @@ pub(crate) fn decide(
     demonstrations: &Demonstrations,
     noise: &Noise,
     agreement: Agreement,
-    notes: &mut Findings,
+    notes: &mut Notes,
 ) -> VelocitySource {
     let share = noise.step_share;
     let words = match &noise.positions {

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use smoothing::{SavitzkyGolay, SmoothingError};
 
 use crate::PrepareError;
-use crate::findings::Findings;
+use crate::notes::Notes;
 use crate::options::Smoothing;
 
 /// Fewer samples in a window than this smooth nothing: a parabola goes through three.
@@ -15,7 +15,7 @@ const LEAST: usize = 5;
 pub(crate) fn as_requested(
     demonstrations: &Demonstrations,
     smoothing: Smoothing,
-    notes: &mut Findings,
+    notes: &mut Notes,
 ) -> Result<Option<Demonstrations>, PrepareError> {
     let step = demonstrations.trajectories()[0].time_step();
     let window = match smoothing {

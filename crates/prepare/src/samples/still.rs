@@ -3,18 +3,24 @@
 use motion::{Demonstrations, Episode, Recordings, Verdict};
 use nalgebra::DMatrix;
 
-use crate::findings::{Findings, and_more};
+use crate::notes::{Notes, and_more};
 use crate::samples::noise;
 
 /// At rest for fewer samples than this is no stand-still.
 const STILL: usize = 10;
 /// Noise of more than this share of a channel's spread is as large as the movement itself.
 const LOUD: f64 = 0.1;
+/// With more noise than this share of a channel's spread, slow and still look alike.
+const QUIET: f64 = 0.0025;
 /// What changes by less than this share of its spread is at rest.
 const REST: f64 = 1e-6;
 
-/// How far from the first or last sample a channel is at rest, (n).
-struct Rest(Vec<f64>);
+/// How far from the first or last sample each channel is at rest, (n).
+struct Rest {
+    bounds: Vec<f64>,
+    /// Whether noise is small enough to tell rest from slow motion.
+    quiet: bool,
+}
 
 impl Rest {
     /// `noise`: standard deviation of every channel, (n), where it is known.
@@ -25,19 +31,24 @@ impl Rest {
                 .iter()
                 .flat_map(move |movement| movement.states().column_iter().map(move |x| x[axis]))
         };
-        let bound = |axis: usize| {
+        let spread = |axis: usize| {
             let (low, high) = values(axis).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-            let (spread, noise) = (high - low, noise.map_or(0.0, |noise| noise[axis]));
-            (4.0 * noise).min(LOUD * spread).max(REST * spread)
+            high - low
         };
-        Rest((0..demonstrations.dim()).map(bound).collect())
+        let noise = |axis: usize| noise.map_or(0.0, |noise| noise[axis]);
+        let spreads: Vec<f64> = (0..demonstrations.dim()).map(spread).collect();
+        let bound = |(axis, spread): (usize, &f64)| (4.0 * noise(axis)).min(LOUD * spread).max(REST * spread);
+        let quiet = spreads.iter().enumerate().all(|(axis, spread)| noise(axis) <= QUIET * spread);
+        Rest { bounds: spreads.iter().enumerate().map(bound).collect(), quiet }
     }
 
     /// Samples at rest at the start and at the end of a movement (n, N).
     fn ends(&self, states: &DMatrix<f64>) -> (usize, usize) {
         let count = |samples: &mut dyn Iterator<Item = usize>| {
             let Some(end) = samples.next() else { return 0 };
-            let near = |&i: &usize| (0..self.0.len()).all(|k| (states[(k, i)] - states[(k, end)]).abs() <= self.0[k]);
+            let near = |&i: &usize| {
+                (0..self.bounds.len()).all(|k| (states[(k, i)] - states[(k, end)]).abs() <= self.bounds[k])
+            };
             let still = samples.take_while(near).count();
             if still < STILL { 0 } else { still }
         };
@@ -62,12 +73,7 @@ pub fn trim_still(recordings: &mut Recordings) {
 }
 
 /// Says where episodes stand still at an end.
-pub(crate) fn remark(
-    demonstrations: &Demonstrations,
-    noise: Option<&[f64]>,
-    episodes: &[Episode],
-    notes: &mut Findings,
-) {
+pub(crate) fn remark(demonstrations: &Demonstrations, noise: Option<&[f64]>, episodes: &[Episode], notes: &mut Notes) {
     let rest = Rest::of(demonstrations, noise);
     let stretches: Vec<(usize, &str, &str)> = episodes
         .iter()
@@ -77,7 +83,7 @@ pub(crate) fn remark(
         })
         .filter(|&(samples, ..)| samples > 0)
         .collect();
-    if let Some((samples, verb, name)) = stretches.first() {
+    if let (Some((samples, verb, name)), true) = (stretches.first(), rest.quiet) {
         notes.found(
             Verdict::Good,
             format!("episode {name} {verb} with {samples} samples at rest{}", and_more(stretches.len())),

@@ -3,8 +3,8 @@
 use motion::{Demonstrations, MotionError, Trajectory};
 use nalgebra::DMatrix;
 
-use crate::findings::Findings;
 use crate::in_words::percent;
+use crate::notes::Notes;
 use crate::samples::noise::Noise;
 
 /// Samples are averaged until noise makes at most this share of the squared steps.
@@ -15,7 +15,7 @@ const LEAST: usize = 40;
 /// How many samples in a row become one: 1 leaves all as they are.
 ///
 /// The mean of k samples has a k-th of their noise's variance, and steps between such means are k times as long.
-pub(crate) fn decide(demonstrations: &Demonstrations, noise: &Noise, notes: &mut Findings) -> usize {
+pub(crate) fn decide(demonstrations: &Demonstrations, noise: &Noise, notes: &mut Notes) -> usize {
     let Some(deviations) = &noise.positions else { return 1 };
     let variance: f64 = deviations.iter().map(|sd| sd * sd).sum();
     let mut lengths: Vec<usize> = demonstrations.trajectories().iter().map(Trajectory::n_samples).collect();

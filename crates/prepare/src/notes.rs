@@ -2,13 +2,13 @@ use motion::{Decision, Finding, LeftOut, Verdict};
 
 /// Decisions and findings collected while preparing.
 #[derive(Debug, Default)]
-pub(crate) struct Findings {
+pub(crate) struct Notes {
     pub(crate) decisions: Vec<Decision>,
     pub(crate) findings: Vec<Finding>,
     pub(crate) left_out: Vec<LeftOut>,
 }
 
-impl Findings {
+impl Notes {
     pub(crate) fn decided(&mut self, what: &str, value: impl Into<String>, why: impl Into<String>, flag: &str) {
         let (what, flag) = (what.to_owned(), flag.to_owned());
         self.decisions.push(Decision { what, value: value.into(), why: why.into(), flag });
