@@ -53,7 +53,7 @@ pub fn page(contents: &Contents<'_>) -> String {
 
 /// A figure on a card, under a heading that may have said its title.
 fn card(figure: &Figure, svg: &str, heading: &str) -> Markup {
-    let remark = figure.beside_paper.map(|text| ("Baselines the paper's figure.", text));
+    let remark = figure.beside_paper.map(|text| ("Beside the paper's figure.", text));
     Card { id: figure.id, title: figure.title, caption: figure.caption, remark, svg }.under(heading)
 }
 

@@ -27,7 +27,7 @@ const GOAL: &str = "#cc79a7";
 const NAMES: [Option<&str>; 2] = [Some("movement"), Some("line l")];
 const NAMELESS: [Option<&str>; 2] = [None; 2];
 
-/// ObservationModel from the first two joints: q₁ to the right, q₂ upwards.
+/// Seen from the first two joints: q₁ to the right, q₂ upwards.
 const ABOVE: Camera = Camera { azimuth: -90.0, elevation: 90.0 };
 
 /// (a) in perspective; (b), (c) on the first two joints, with planes along the line and a cylinder around it.
@@ -36,15 +36,8 @@ pub(super) fn scenes(movements: &[Vec<(f64, f64, f64)>]) -> [Space; 3] {
     let perspective = Camera { azimuth: -50.0, elevation: 20.0 };
     [
         scene("(a) Movements in joint space", perspective, NAMES, shown, vec![], vec![]),
-        scene("(b) ObservationModel along q₃: planes at a distance d", ABOVE, NAMELESS, shown, planes(), depth()),
-        scene(
-            "(c) ObservationModel along q₃: a cylinder of radius r",
-            ABOVE,
-            NAMELESS,
-            shown,
-            vec![cylinder()],
-            radius(),
-        ),
+        scene("(b) Seen along q₃: planes at a distance d", ABOVE, NAMELESS, shown, planes(), depth()),
+        scene("(c) Seen along q₃: a cylinder of radius r", ABOVE, NAMELESS, shown, vec![cylinder()], radius()),
     ]
 }
 
