@@ -9,7 +9,7 @@
 //! | [`TrustReport`] | warnings and numbers about a [`SlopeFit`] |
 //!
 //! ```
-//! use gp::{FrontEnd, Reading, AutoGp};
+//! use gp::{AutoGp, FrontEnd, Hypothesis};
 //! use motion::{Demonstrations, Policy as _, Trajectory};
 //! use nalgebra::{DMatrix, dvector};
 //! use rand::SeedableRng as _;

@@ -9,10 +9,10 @@ from policy_align import Demonstrations, PolicyAlignError, PolicyAlignWarning, S
 
 
 def test_what_is_noticed_is_warned_of(tmp_path) -> None:
-    path = tmp_path / "gap.csv"
-    stamps = [0.1 * k for k in range(10)] + [3.0 + 0.1 * k for k in range(10)]
-    path.write_text("t,x\n" + "".join(f"{t},{np.sin(t)}\n" for t in stamps))
-    with pytest.warns(PolicyAlignWarning, match="split_gap=SECONDS splits there") as warned:
+    path = tmp_path / "commas.csv"
+    rows = (f"{0.1 * k:.1f};{np.sin(k):.6f}\n".replace(".", ",") for k in range(20))
+    path.write_text("t;x\n" + "".join(rows))
+    with pytest.warns(PolicyAlignWarning, match='read as points: decimal="[.]" if') as warned:
         found = Demonstrations.read(path)
     assert found.notes == [str(warning.message) for warning in warned]
 
