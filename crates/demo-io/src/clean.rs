@@ -159,7 +159,6 @@ fn leave_out_twins(draft: &mut RawEpisode, word: &str) -> Option<Finding> {
 
 /// Cuts where stamps are more than `longest` seconds apart.
 fn split(draft: RawEpisode, longest: f64) -> Vec<RawEpisode> {
-    let n = draft.dim();
     let mut cuts: Vec<usize> = vec![0];
     cuts.extend((1..draft.len()).filter(|&sample| draft.times[sample] - draft.times[sample - 1] > longest));
     cuts.push(draft.len());
@@ -167,17 +166,7 @@ fn split(draft: RawEpisode, longest: f64) -> Vec<RawEpisode> {
         return vec![draft];
     }
     let part = |(number, cut): (usize, &[usize])| {
-        let samples = cut[0]..cut[1];
-        let columns = samples.start * n..samples.end * n;
-        RawEpisode {
-            name: format!("{}_{number}", draft.name),
-            file: draft.file.clone(),
-            rows: draft.rows.chosen(samples.clone()),
-            times: draft.times[samples].to_vec(),
-            positions: draft.positions[columns.clone()].to_vec(),
-            velocities: draft.velocities.get(columns).map_or_else(Vec::new, <[f64]>::to_vec),
-            constraint: draft.constraint.clone(),
-        }
+        draft.part(cut[0]..cut[1], format!("{}_{number}", draft.name), draft.constraint.clone())
     };
     cuts.windows(2).enumerate().map(part).collect()
 }
@@ -205,11 +194,6 @@ fn unwrap_angles(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<()
 }
 
 impl RawEpisode {
-    /// n, or 0 without samples.
-    fn dim(&self) -> usize {
-        self.positions.len().checked_div(self.len()).unwrap_or(0)
-    }
-
     /// Leaves some samples, in the order given.
     fn keep(&mut self, samples: &[usize], n: usize) {
         self.rows = self.rows.chosen(samples.iter().copied());

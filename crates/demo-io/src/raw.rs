@@ -1,5 +1,7 @@
 //! Episodes as a reader finds them, before anything is checked.
 
+use std::ops::Range;
+
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use motion::{Channel, Episode, Finding, Recordings, Source, Times, Verdict};
 use nalgebra::DMatrix;
@@ -60,6 +62,26 @@ impl RawRecordings {
 impl RawEpisode {
     pub(crate) fn len(&self) -> usize {
         self.times.len()
+    }
+
+    /// n, or 0 without samples.
+    pub(crate) fn dim(&self) -> usize {
+        self.positions.len().checked_div(self.len()).unwrap_or(0)
+    }
+
+    /// Some samples in a row, as an episode by themselves.
+    pub(crate) fn part(&self, samples: Range<usize>, name: String, constraint: Option<String>) -> RawEpisode {
+        let n = self.dim();
+        let columns = samples.start * n..samples.end * n;
+        RawEpisode {
+            name,
+            file: self.file.clone(),
+            rows: self.rows.chosen(samples.clone()),
+            times: self.times[samples].to_vec(),
+            positions: self.positions[columns.clone()].to_vec(),
+            velocities: self.velocities.get(columns).map_or_else(Vec::new, <[f64]>::to_vec),
+            constraint,
+        }
     }
 
     /// Where sample `sample` stands: "demos.csv, line 17 (episode 1)".

@@ -111,33 +111,30 @@ impl Episode {
     /// Samples `from` to `to`, the last not included.
     #[must_use]
     pub fn part(&self, from: usize, to: usize) -> Episode {
-        let columns = |values: &DMatrix<f64>| values.columns(from, to - from).into_owned();
         let at = |sample: usize| self.row(sample).map(|(_, row)| row);
         let rows = self.source.rows.and_then(|rows| Some(Rows { first: at(from)?, last: at(to.max(1) - 1)?, ..rows }));
-        Episode {
-            name: self.name.clone(),
-            source: Source { file: self.source.file.clone(), rows },
-            times: self.times.part(from..to),
-            positions: columns(&self.positions),
-            velocities: self.velocities.as_ref().map(columns),
-            constraint: self.constraint.clone(),
-        }
+        let source = Source { file: self.source.file.clone(), rows };
+        self.with(self.times.part(from..to), source, |values| values.columns(from, to - from).into_owned())
     }
 
     /// With every channel multiplied by its factor, (n).
     #[must_use]
     pub fn scaled(&self, factors: &DVector<f64>) -> Episode {
-        let scaled = |values: &DMatrix<f64>| {
+        self.with(self.times.clone(), self.source.clone(), |values| {
             let mut values = values.clone();
             values.column_iter_mut().for_each(|mut column| column.component_mul_assign(factors));
             values
-        };
+        })
+    }
+
+    /// The same movement with positions and velocities that `of` makes of its own.
+    fn with(&self, times: Times, source: Source, of: impl Fn(&DMatrix<f64>) -> DMatrix<f64>) -> Episode {
         Episode {
             name: self.name.clone(),
-            source: self.source.clone(),
-            times: self.times.clone(),
-            positions: scaled(&self.positions),
-            velocities: self.velocities.as_ref().map(scaled),
+            source,
+            times,
+            positions: of(&self.positions),
+            velocities: self.velocities.as_ref().map(of),
             constraint: self.constraint.clone(),
         }
     }

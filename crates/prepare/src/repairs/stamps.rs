@@ -30,17 +30,15 @@ pub(crate) fn decide(
         notes.decided("time step", format!("{time_step} s"), "given", "--dt");
         return Ok(());
     }
-    let (mut uneven, mut worst, mut gaps) = (0, 0.0_f64, Vec::new());
+    let (mut uneven, mut worst, mut gaps, mut first) = (0, 0.0_f64, 0, None);
     for episode in episodes.iter_mut() {
         let steps: Vec<f64> = episode.times.steps().collect();
         let usual = episode.times.median_step().unwrap_or(1.0);
         let jitter = steps.iter().map(|step| (step - usual).abs() / usual).filter(|&off| off < GAP - 1.0);
         let jitter = jitter.fold(0.0, f64::max);
         let long = (0..steps.len()).filter(|&step| steps[step] >= GAP * usual);
-        let found: Vec<String> = long
-            .map(|i| format!("{}: {} s instead of {} s", episode.place(i + 1), short(steps[i]), short(usual)))
-            .collect();
-        if jitter > EVEN || !found.is_empty() {
+        let long: Vec<usize> = long.collect();
+        if jitter > EVEN || !long.is_empty() {
             uneven += 1;
             worst = worst.max(jitter);
         } else {
@@ -48,16 +46,16 @@ pub(crate) fn decide(
             let mean = steps.iter().sum::<f64>() / steps.len().max(1) as f64;
             episode.times = Times::Even { step: whole(mean), len: episode.n_samples() };
         }
-        gaps.extend(found);
+        gaps += long.len();
+        if let (None, Some(&i)) = (&first, long.first()) {
+            first = Some(format!("{}: {} s instead of {} s", episode.place(i + 1), short(steps[i]), short(usual)));
+        }
     }
     decided(episodes, (uneven, worst), notes);
-    if let Some(first) = gaps.first() {
+    if let Some(first) = first {
         notes.found(
             Verdict::Good,
-            format!(
-                "a step takes over {GAP} times the usual time ({first}){}: samples are missing",
-                and_more(gaps.len())
-            ),
+            format!("a step takes over {GAP} times the usual time ({first}){}: samples are missing", and_more(gaps)),
             "--split-gap SECONDS splits episodes there, if the movement went on meanwhile",
         );
     }

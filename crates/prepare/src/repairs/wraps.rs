@@ -14,8 +14,9 @@ const RANGE: std::ops::RangeInclusive<f64> = 0.9..=1.02;
 pub(crate) fn unwrap(episodes: &mut [Episode], channels: &[Channel], notes: &mut Notes) {
     for (channel, described) in channels.iter().enumerate() {
         let Some(turn) = turn(episodes, channel) else { continue };
-        let wraps: Vec<(String, f64)> = episodes.iter().filter_map(|episode| wrap(episode, channel, turn)).collect();
-        let Some((place, step)) = wraps.first() else { continue };
+        let mut wraps = episodes.iter().filter_map(|episode| Some((episode, wrap(episode, channel, turn)?)));
+        let Some((first, (sample, step))) = wraps.next() else { continue };
+        let (place, wrapped) = (first.place(sample), 1 + wraps.count());
         for episode in episodes.iter_mut() {
             go_on(episode, channel, turn);
         }
@@ -24,15 +25,15 @@ pub(crate) fn unwrap(episodes: &mut [Episode], channels: &[Channel], notes: &mut
         notes.decided(
             "angles",
             format!("{name} unwrapped"),
-            format!("it jumps by a whole turn in {} of {} episodes", wraps.len(), episodes.len()),
+            format!("it jumps by a whole turn in {} of {} episodes", wrapped, episodes.len()),
             "--wraps",
         );
         notes.found(
             Verdict::Doubtful,
             format!(
                 "channel '{name}' jumps by {}, nearly a whole turn ({place}){}; it was unwrapped",
-                short(*step),
-                and_more(wraps.len())
+                short(step),
+                and_more(wrapped)
             ),
             "check that all episodes now end at the same place, or choose the angles yourself (--wraps keep --unwrap NAMES)",
         );
@@ -52,11 +53,11 @@ fn turn(episodes: &[Episode], channel: usize) -> Option<f64> {
     [TAU, 360.0].into_iter().find(|&turn| fills(turn))
 }
 
-/// Where a movement jumps by a whole turn, and the size of the step.
-fn wrap(episode: &Episode, channel: usize, turn: f64) -> Option<(String, f64)> {
+/// The first sample that is a whole turn from the one before, and the size of the step.
+fn wrap(episode: &Episode, channel: usize, turn: f64) -> Option<(usize, f64)> {
     let step = |i: usize| (episode.positions[(channel, i)] - episode.positions[(channel, i - 1)]).abs();
     let at = (1..episode.n_samples()).find(|&i| step(i) > WRAP * turn)?;
-    Some((episode.place(at), step(at)))
+    Some((at, step(at)))
 }
 
 fn go_on(episode: &mut Episode, channel: usize, turn: f64) {

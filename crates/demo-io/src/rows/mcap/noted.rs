@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::raw::RawEpisode;
 
 /// The episodes that [`crate::write`] noted beside the messages; otherwise all is one.
-pub(super) fn episodes(draft: RawEpisode, n: usize, metadata: &BTreeMap<String, String>) -> Vec<RawEpisode> {
+pub(super) fn episodes(draft: RawEpisode, metadata: &BTreeMap<String, String>) -> Vec<RawEpisode> {
     let noted =
         metadata.get("episodes").and_then(|text| serde_json::from_str::<Vec<Noted>>(text).ok()).unwrap_or_default();
     let total: usize = noted.iter().fold(0, |total, episode| total.saturating_add(episode.messages));
@@ -16,16 +16,7 @@ pub(super) fn episodes(draft: RawEpisode, n: usize, metadata: &BTreeMap<String, 
     let cut = noted.into_iter().map(|episode| {
         let samples = start..start + episode.messages;
         start = samples.end;
-        let columns = samples.start * n..samples.end * n;
-        RawEpisode {
-            name: episode.name,
-            file: draft.file.clone(),
-            rows: draft.rows.chosen(samples.clone()),
-            times: draft.times[samples].to_vec(),
-            positions: draft.positions[columns.clone()].to_vec(),
-            velocities: draft.velocities.get(columns).map_or_else(Vec::new, <[f64]>::to_vec),
-            constraint: episode.constraint,
-        }
+        draft.part(samples, episode.name, episode.constraint)
     });
     cut.collect()
 }

@@ -216,7 +216,7 @@ impl<'a> Topic<'a> {
             Channel { unit: metadata.get(&format!("unit/{name}")).cloned(), name }
         };
         let channels = columns.iter().map(channel).collect();
-        let episodes = episodes(draft, columns.len(), metadata);
+        let episodes = episodes(draft, metadata);
         Ok(RawRecordings { channels, episodes, findings, word: "message", drop_constant: false })
     }
 
