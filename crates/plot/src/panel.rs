@@ -36,6 +36,7 @@ impl Sketch {
     }
 
     /// Adds pixels over all that is drawn so far.
+    #[cfg(feature = "space")]
     pub(crate) fn add_raster(&mut self, raster: Option<Raster>) {
         if let Some(raster) = raster {
             self.scene.add(Sketch::group(self.rasters.len()));
