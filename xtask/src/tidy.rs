@@ -34,7 +34,9 @@ struct Allowed {
 
 #[derive(Debug, Deserialize)]
 struct Manifest {
-    package: Package,
+    /// Of its folder, which is also what dependants call it.
+    #[serde(skip)]
+    name: String,
     #[serde(flatten)]
     tables: Tables,
     /// Tables for single platforms.
@@ -61,11 +63,6 @@ impl Manifest {
     }
 }
 
-#[derive(Debug, Deserialize)]
-struct Package {
-    name: String,
-}
-
 /// Fails with a list of everything that breaks the rules.
 pub(crate) fn execute() -> anyhow::Result<()> {
     let root = repository()?;
@@ -77,7 +74,7 @@ pub(crate) fn execute() -> anyhow::Result<()> {
     for manifest in &manifests {
         faults.extend(dependency_faults(manifest, &allowed));
     }
-    for name in allowed.keys().filter(|name| !manifests.iter().any(|manifest| manifest.package.name == **name)) {
+    for name in allowed.keys().filter(|name| !manifests.iter().any(|manifest| manifest.name == **name)) {
         faults.push(format!("xtask/dependencies.toml: there is no crate {name}; delete its entry"));
     }
     faults.extend(wing_faults(&folders, &manifests));
@@ -117,7 +114,10 @@ fn package_folders(root: &Path) -> anyhow::Result<Vec<PathBuf>> {
 fn manifests(folders: &[PathBuf]) -> anyhow::Result<Vec<Manifest>> {
     let parse = |folder: &PathBuf| {
         let path = folder.join("Cargo.toml");
-        toml::from_str(&read(&path)?).with_context(|| format!("{} cannot be read", path.display()))
+        let manifest: Manifest =
+            toml::from_str(&read(&path)?).with_context(|| format!("{} cannot be read", path.display()))?;
+        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Manifest { name, ..manifest })
     };
     folders.iter().map(parse).collect()
 }
@@ -132,9 +132,9 @@ fn wing_faults(folders: &[PathBuf], manifests: &[Manifest]) -> Vec<String> {
     let users = users.into_iter().filter(|(folder, _)| !folder.ends_with("benches"));
     let fault = |(_, user): (_, &Manifest)| {
         let named = user.dependencies();
-        let needed = paper.iter().map(|(_, paper)| paper.package.name.as_str()).filter(|name| named.contains(name));
+        let needed = paper.iter().map(|(_, paper)| paper.name.as_str()).filter(|name| named.contains(name));
         needed
-            .map(|name| format!("crate {} may not depend on {name}, which is the paper's", user.package.name))
+            .map(|name| format!("crate {} may not depend on {name}, which is the paper's", user.name))
             .collect::<Vec<_>>()
     };
     users.flat_map(fault).collect()
@@ -165,7 +165,7 @@ fn sources(folder: &Path) -> anyhow::Result<Vec<Source>> {
 }
 
 fn dependency_faults(manifest: &Manifest, allowed: &BTreeMap<String, Allowed>) -> Vec<String> {
-    let name = &manifest.package.name;
+    let name = &manifest.name;
     let Some(own) = allowed.get(name) else {
         return vec![format!("crate {name} has no entry in xtask/dependencies.toml; decide what it may depend on")];
     };
@@ -249,6 +249,10 @@ fn read(path: &Path) -> anyhow::Result<String> {
 mod tests {
     use super::*;
 
+    fn manifest(name: &str, tables: &str) -> Manifest {
+        Manifest { name: name.to_owned(), ..toml::from_str(tables).unwrap() }
+    }
+
     #[test]
     fn this_workspace_is_tidy() {
         execute().unwrap();
@@ -256,12 +260,11 @@ mod tests {
 
     #[test]
     fn what_users_get_does_not_need_the_paper() {
-        let manifest = |text: &str| toml::from_str::<Manifest>(text).unwrap();
         let folders = ["crates/plot", "crates/paper/figures", "benches"].map(|folder| Path::new("/w").join(folder));
         let manifests = [
-            manifest("package.name = 'plot'\ndependencies = { figures = '1' }"),
-            manifest("package.name = 'figures'\ndependencies = { plot = '1' }"),
-            manifest("package.name = 'benches'\ndependencies = { figures = '1' }"),
+            manifest("plot", "dependencies = { figures = '1' }"),
+            manifest("figures", "dependencies = { plot = '1' }"),
+            manifest("benches", "dependencies = { figures = '1' }"),
         ];
         let faults = wing_faults(&folders, &manifests);
         assert_eq!(faults, ["crate plot may not depend on figures, which is the paper's"]);
@@ -283,9 +286,9 @@ mod tests {
              metrics = { siblings = [], third_party = [] }",
         )
         .unwrap();
-        let manifest = "package.name = 'align'\ndependencies = { motion = '1', faer = '1', libc = '1' }\n\
-                        target.'cfg(unix)'.dependencies = { metrics = '1' }";
-        let faults = dependency_faults(&toml::from_str(manifest).unwrap(), &allowed);
+        let tables = "dependencies = { motion = '1', faer = '1', libc = '1' }\n\
+                      target.'cfg(unix)'.dependencies = { metrics = '1' }";
+        let faults = dependency_faults(&manifest("align", tables), &allowed);
         assert_eq!(
             faults,
             [

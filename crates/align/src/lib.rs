@@ -96,7 +96,7 @@ pub use local_potential::LocalPotential;
 pub use samples::{SampleIter, Samples};
 pub use warning::Warning;
 
-/// The program of docs/rust.md, compiled.
+/// The program of the README, compiled.
 #[cfg(doctest)]
-#[doc = include_str!("../../../docs/rust.md")]
-struct RustPage;
+#[doc = include_str!("../README.md")]
+struct Readme;

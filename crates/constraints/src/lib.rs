@@ -42,3 +42,8 @@ pub use linear::LinearConstraint;
 pub use point::PointConstraint;
 pub use projector::NullSpaceProjector;
 pub use switching::Switching;
+
+/// The program of the README, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

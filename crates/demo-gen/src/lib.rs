@@ -62,3 +62,8 @@ pub use robots::upper_body::{Side, UpperBody};
 pub use roll_out::RollOut;
 pub use toy::ToySystem;
 pub use toy_potential::ToyPotential;
+
+/// The program of the README, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -64,3 +64,8 @@ pub use regular_file::{read_bounded, read_bytes, read_text};
 pub use resample::{ResampleError, resampled};
 pub use whole_file::{Sink, TempFile, abandon_drafts, write_whole};
 pub use write::{WriteError, write};
+
+/// The program of the README, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

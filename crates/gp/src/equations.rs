@@ -1,1 +1,1 @@
-#![doc = include_str!("../../../docs/slope-gp.md")]
+#![doc = include_str!("../equations.md")]

@@ -101,3 +101,8 @@ pub use slope::learner::SlopeLearner;
 pub use slope::model::SlopeModel;
 pub use slope::policy::{SlopePolicy, SlopePotential};
 pub use slope::slope_gp::SlopeGp;
+
+/// The program of the README, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -49,3 +49,8 @@ pub use forward::{Chain, LinkPoses, Workspace};
 pub use model::{Attachment, CollisionShape, Joint, JointMotion, LinkId, MotionKind, RobotModel};
 pub use resolved_rate::ResolvedRate;
 pub use urdf::{Element, Geometry, JointKind, UrdfProblem, UrdfWarning};
+
+/// The program of the README, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -29,3 +29,8 @@ pub use group::{LANES, Lanes, groups_of, total};
 pub use number::Number;
 pub use register::Register;
 pub use sin_cos::sin_cos_all;
+
+/// The program of the README, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

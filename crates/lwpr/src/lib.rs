@@ -74,3 +74,8 @@ pub use prediction::{LocalPrediction, Prediction, Predictor};
 pub use settings::kernel::Kernel;
 pub use settings::params::{LwprParams, Metric, MetricAdaptation, Pruning};
 pub use standardised::{StandardisedModel, Training};
+
+/// The program of the README, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

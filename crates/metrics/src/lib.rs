@@ -36,3 +36,8 @@ pub use error::{MetricsError, Series};
 pub use policy::{ncpe, nupe};
 pub use potential::{alignment_nmse, potential_nmse};
 pub use summary::Summary;
+
+/// The program of the README, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -90,3 +90,8 @@ pub use sample_index::SampleIndex;
 pub use sample_set::SampleSet;
 pub use times::Times;
 pub use trajectory::Trajectory;
+
+/// The program of the README, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

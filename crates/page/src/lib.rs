@@ -34,3 +34,8 @@ pub use figure::{Card, name};
 pub use markdown::markdown_table;
 pub use scale::{Reference, Scale};
 pub use strip::{Strip, axis, key};
+
+/// The program of the README, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

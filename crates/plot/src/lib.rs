@@ -61,3 +61,8 @@ pub use relief::Relief;
 pub use sign::{Filling, Sign};
 #[cfg(feature = "space")]
 pub use space::{Camera, Frame, Item, Paint, Space};
+
+/// The program of the README, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

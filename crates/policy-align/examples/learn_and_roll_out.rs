@@ -6,9 +6,9 @@
 use std::error::Error;
 use std::sync::atomic::AtomicBool;
 
-use demo_io::ReadOptions;
-use motion::{LearntPolicy as _, Policy as _};
-use nalgebra::{DMatrix, DVector};
+use policy_align::demo_io::{self, ReadOptions};
+use policy_align::motion::{LearntPolicy as _, Policy as _};
+use policy_align::nalgebra::{DMatrix, DVector};
 use policy_align::{ConstraintSet, FitOptions, PrepareOptions, Progress, RollOut, fit, prepare, spread_starts};
 
 fn main() -> Result<(), Box<dyn Error>> {

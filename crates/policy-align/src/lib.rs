@@ -4,9 +4,9 @@
 //! ```
 //! use std::sync::atomic::AtomicBool;
 //!
-//! use motion::Policy as _;
-//! use nalgebra::dvector;
-//! use policy_align::{FitOptions, PrepareOptions, Progress, Verdict, fit, prepare};
+//! use policy_align::motion::Policy as _;
+//! use policy_align::nalgebra::{self, dvector}; // its macros name it
+//! use policy_align::{FitOptions, PrepareOptions, Progress, Verdict, demo_io, fit, prepare};
 //!
 //! // 40 movements of a point that slides down a bowl along rails, π(x) = −2x.
 //! let file = std::path::Path::new("../../docs/examples/toy.csv");
@@ -73,6 +73,8 @@ mod roll_out;
 mod stored;
 mod trust;
 
+/// What a program needs besides, so that it depends on this crate alone.
+pub use ::{align, constraints, demo_io, gp, kinematics, lwpr, motion, nalgebra, prepare, rand, smoothing};
 pub use error::FitError;
 pub use evaluate::{EvaluateError, Evaluation, Truth, evaluate};
 pub use export::{CSource, ExportError, Precision, to_onnx};
@@ -89,3 +91,13 @@ pub use prepare::{
 pub use roll_out::{ConstraintFileError, ConstraintSet, JointLimits, Path, RollOut, RollOutError, Stop, spread_starts};
 pub use stored::{ModelError, checksum_of, sha256, sha256_of_file, write_whole};
 pub use trust::{AlignedNumbers, Trust, TrustNumbers};
+
+/// The program of the README, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
+/// The program of docs/rust.md, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/rust.md")]
+struct RustPage;

@@ -130,3 +130,8 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
         left_out: notes.left_out,
     })
 }
+
+/// The program of the README, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

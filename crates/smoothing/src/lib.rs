@@ -59,3 +59,8 @@ pub use piecewise::scaled::AxisScale;
 pub use piecewise::smoothed::{Smoothed, SmoothedMovement};
 pub use piecewise::smoother::{NoiseVariance, Smoother};
 pub use savitzky_golay::SavitzkyGolay;
+
+/// The program of the README, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

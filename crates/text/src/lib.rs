@@ -16,3 +16,8 @@ mod quoted;
 
 pub use plain::{is_hidden, plain};
 pub use quoted::quoted;
+
+/// The program of the README, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

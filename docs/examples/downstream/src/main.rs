@@ -1,8 +1,8 @@
-use align::{Bandwidth, LwprRegressor, PolicyAlign, PotentialPolicy};
-use gp::{FrontEnd, SlopeGp};
-use motion::{Demonstrations, LearntPolicy, Policy};
-use nalgebra::{DMatrix, dvector};
-use rand::{SeedableRng, rngs::StdRng};
+use policy_align::align::{Bandwidth, LwprRegressor, PolicyAlign, PotentialPolicy};
+use policy_align::gp::{FrontEnd, SlopeGp};
+use policy_align::motion::{Demonstrations, LearntPolicy, Policy};
+use policy_align::nalgebra::{self, DMatrix, dvector}; // its macros name it
+use policy_align::rand::{SeedableRng, rngs::StdRng};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = std::env::args().nth(1).unwrap_or_else(|| "policy.json".to_owned());
