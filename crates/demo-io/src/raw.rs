@@ -165,7 +165,7 @@ impl Clock {
     /// Seconds of `len` samples.
     pub(crate) fn seconds(self, len: usize, ticks: TicksPerSecond) -> Vec<f64> {
         match self {
-            Clock::Even(period) => (0..len).map(|sample| sample as f64 * period).collect(),
+            Clock::Even(period) => even_times(period, len),
             Clock::Stamps { mut since, .. } => {
                 if ticks.0 != 1.0 {
                     for time in &mut since {
@@ -176,6 +176,27 @@ impl Clock {
             }
         }
     }
+}
+
+/// Seconds of `len` samples, `step` apart.
+pub(crate) fn even_times(step: f64, len: usize) -> Vec<f64> {
+    (0..len).map(|sample| sample as f64 * step).collect()
+}
+
+/// Seconds of stamps since the first of them. Their unit is `ticks` if it is known, else what the first one has with it, else
+/// what `name` and its size suggest.
+pub(crate) fn seconds_since_first(
+    stamps: impl Iterator<Item = (Stamp, Option<TicksPerSecond>)>,
+    name: &str,
+    ticks: &mut Option<TicksPerSecond>,
+) -> Vec<f64> {
+    let mut clock = Clock::new(None);
+    for (stamp, unit) in stamps {
+        let guess = || stamp.is_finite().then(|| unit.unwrap_or_else(|| TicksPerSecond::guess(name, stamp)));
+        *ticks = ticks.or_else(guess);
+        clock.push(stamp);
+    }
+    clock.seconds(0, ticks.unwrap_or(TicksPerSecond(1.0)))
 }
 
 /// `--dt` if it is a time.

@@ -69,10 +69,6 @@ impl ArraySpec {
     }
 }
 
-pub(crate) fn unit_of(name: &str, first: Stamp, unit: Option<TicksPerSecond>) -> TicksPerSecond {
-    unit.unwrap_or_else(|| TicksPerSecond::guess(name, first))
-}
-
 pub(crate) fn shape_text(shape: &[usize]) -> String {
     shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
 }

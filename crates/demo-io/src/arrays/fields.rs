@@ -250,9 +250,9 @@ fn refuse_other_kinds(array: &ArraySpec, place: &str) -> Result<(), ReadError> {
     }
 }
 
-/// Names of channels: given, or made from the array's name: `x0`, `robot0_joint_pos_0`.
-pub(crate) fn channel_names(stem: &str, n: usize) -> Vec<String> {
-    (0..n).map(|channel| format!("{stem}{channel}")).collect()
+/// `x0`, `x1` and so on, where a file has no names of n channels.
+pub(crate) fn counted_names(n: usize) -> Vec<String> {
+    (0..n).map(|channel| format!("x{channel}")).collect()
 }
 
 pub(crate) fn too_many_channels(n: usize, place: &str) -> Result<(), ReadError> {

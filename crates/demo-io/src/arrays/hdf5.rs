@@ -6,8 +6,9 @@ use hdf5_pure::{AttrValue, File, Group as Folder};
 
 use self::tree::Tree;
 use crate::arrays::array::ArraySpec;
+use crate::arrays::demo::Demo;
 use crate::arrays::flat;
-use crate::arrays::grouped::{Demo, GroupedArrays};
+use crate::arrays::grouped::GroupedArrays;
 use crate::input::Input;
 use crate::names::natural;
 use crate::raw::RawRecordings;
@@ -31,17 +32,12 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
         return flat::drafts(input, &described, &mut |index| tree.load(index));
     }
     let described: Vec<ArraySpec> = tree.described();
-    let group = GroupedArrays { input, described: &described, demos, step: step(&root, parent, input)?, name_channels };
-    group.drafts(&mut |index| {
+    let step = step(&root, parent, input)?;
+    GroupedArrays { input, described: &described, demos, step, named_by_array: true }.drafts(&mut |index| {
         let data = tree.load(index)?;
         progress(data.len() as u64 * 8);
         Ok(data)
     })
-}
-
-/// `robot0_joint_pos_0`; a single channel has the array's name.
-fn name_channels(array: &str, n: usize) -> Vec<String> {
-    (0..n).map(|channel| format!("{array}_{channel}")).collect()
 }
 
 /// The groups in `parent` that hold arrays, in natural order. What lies in `obs` is found under its own name.

@@ -69,6 +69,10 @@ pub(crate) fn stack(array: &ArraySpec, numbers: Vec<f64>, input: &Input<'_>, pla
 }
 
 impl Stack {
+    pub(crate) fn shape(&self) -> (usize, usize, usize) {
+        (self.episodes, self.samples, self.channels)
+    }
+
     /// Appends the channels of another array to each sample.
     pub(crate) fn join(self, other: &Stack, place: &str) -> Result<Self, ReadError> {
         if (self.episodes, self.samples) != (other.episodes, other.samples) {

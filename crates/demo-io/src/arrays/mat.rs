@@ -7,9 +7,9 @@ use self::elements::Elements;
 use self::value::Value;
 use crate::ReadError;
 use crate::arrays::array::{ArraySpec, Data, Kind};
-use crate::arrays::fields::channel_names;
+use crate::arrays::demo::Demo;
 use crate::arrays::flat;
-use crate::arrays::grouped::{Demo, GroupedArrays};
+use crate::arrays::grouped::GroupedArrays;
 use crate::input::Input;
 use crate::raw::RawRecordings;
 
@@ -36,14 +36,7 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
                 let own: Vec<String> = demo.fields.iter().map(|(name, _)| name.clone()).collect();
                 demo.fields.extend(shared.iter().filter(|(name, _)| !own.contains(name)).cloned());
             }
-            GroupedArrays {
-                input,
-                described: &described,
-                demos,
-                step: None,
-                name_channels: |_, n| channel_names("x", n),
-            }
-            .drafts(&mut load)
+            GroupedArrays { input, described: &described, demos, step: None, named_by_array: false }.drafts(&mut load)
         }
         None => flat::drafts(input, &described, &mut load),
     }

@@ -1,6 +1,7 @@
 //! Files of arrays: what is described before it is read, and which array is what.
 
 pub(crate) mod array;
+mod demo;
 pub(crate) mod fields;
 pub(crate) mod flat;
 mod grouped;
@@ -11,3 +12,4 @@ pub(crate) mod layout;
 pub(crate) mod mat;
 pub(crate) mod npy;
 pub(crate) mod npz;
+mod reader;

@@ -1,8 +1,8 @@
 use crate::arrays::layout::lengths;
 use crate::input::Input;
-use crate::raw::{Clock, MOST_EPISODES, RawEpisode, RawRecordings, Rows, no_time, period};
+use crate::raw::{MOST_EPISODES, RawEpisode, RawRecordings, Rows, even_times, no_time, period, seconds_since_first};
 use crate::rows::json::Json;
-use crate::rows::stamps::{Stamp, TicksPerSecond};
+use crate::rows::stamps::Stamp;
 use crate::{Fault, ReadError};
 use motion::Channel;
 
@@ -87,21 +87,15 @@ impl<'a> EpisodeLines<'a> {
             if stamps.len() != len {
                 return Err(lengths(&format!("'{name}'"), len, stamps.len(), place));
             }
-            let mut clock = Clock::new(None);
-            let mut ticks = None;
-            for stamp in stamps {
-                let (stamp, unit) = match stamp {
-                    Json::Whole(value) => (Stamp::whole(*value), None),
-                    Json::Text(text) => Stamp::text(text).unwrap_or((Stamp::MISSING, None)),
-                    other => (Stamp::number(other.number().unwrap_or(f64::NAN)), None),
-                };
-                ticks = ticks.or_else(|| stamp.is_finite().then(|| crate::arrays::array::unit_of(name, stamp, unit)));
-                clock.push(stamp);
-            }
-            return Ok(clock.seconds(len, ticks.unwrap_or(TicksPerSecond(1.0))));
+            let stamps = stamps.iter().map(|stamp| match stamp {
+                Json::Whole(value) => (Stamp::whole(*value), None),
+                Json::Text(text) => Stamp::text(text).unwrap_or((Stamp::MISSING, None)),
+                other => (Stamp::number(other.number().unwrap_or(f64::NAN)), None),
+            });
+            return Ok(seconds_since_first(stamps, name, &mut None));
         }
         match step {
-            Some(step) if step.is_finite() && step > 0.0 => Ok(Clock::Even(step).seconds(len, TicksPerSecond(1.0))),
+            Some(step) if step.is_finite() && step > 0.0 => Ok(even_times(step, len)),
             _ => Err(no_time(place, "'dt' or 'times' in each line")),
         }
     }
@@ -156,6 +150,6 @@ fn channels(line: &Json, n: usize) -> Vec<Channel> {
         }
         _ => vec![None; n],
     };
-    let names = texts(&["names", "columns"]).unwrap_or_else(|| crate::arrays::fields::channel_names("x", n));
+    let names = texts(&["names", "columns"]).unwrap_or_else(|| crate::arrays::fields::counted_names(n));
     names.into_iter().zip(units).map(|(name, unit)| Channel { name, unit }).collect()
 }

@@ -1,0 +1,176 @@
+//! Arrays whose roles are known: the state among them, its times and its labels.
+
+use crate::arrays::array::{ArraySpec, Data, Kind, Load};
+use crate::arrays::demo::Demo;
+use crate::arrays::fields::Fields;
+use crate::arrays::layout::{Stack, dimensions, lengths, stack};
+use crate::input::Input;
+use crate::raw::{no_time, unused};
+use crate::rows::roles::no_column;
+use crate::{Fault, ReadError};
+use motion::{Channel, Finding};
+
+/// The arrays of a file, or those of one demonstration in it.
+pub(crate) struct ArrayReader<'a> {
+    pub(crate) input: &'a Input<'a>,
+    /// All arrays of the file.
+    pub(crate) described: &'a [ArraySpec],
+    /// None if all arrays of the file belong together.
+    pub(crate) demo: Option<&'a Demo>,
+    /// The arrays to which `fields` refers: those of the file, or of its first demonstration.
+    pub(crate) arrays: &'a [ArraySpec],
+    pub(crate) fields: &'a Fields,
+    /// Whether channels are called after their array, `robot0_joint_pos_0`, or counted, `x0`.
+    pub(crate) named_by_array: bool,
+}
+
+impl ArrayReader<'_> {
+    pub(crate) fn place(&self) -> String {
+        match self.demo {
+            Some(demo) => format!("{}, {}", self.input.name, demo.name),
+            None => self.input.name.clone(),
+        }
+    }
+
+    /// The index of a field among all arrays of the file.
+    fn index(&self, field: usize) -> Result<usize, ReadError> {
+        let Some(demo) = self.demo else { return Ok(field) };
+        let name = &self.arrays[field].name;
+        let found = demo.fields.iter().find(|(other, _)| other == name).map(|(_, index)| *index);
+        found.ok_or_else(|| {
+            let names: Vec<&str> = demo.fields.iter().map(|(name, _)| &name[..]).collect();
+            no_column(name, &names, &self.place())
+        })
+    }
+
+    fn spec(&self, field: usize) -> Result<ArraySpec, ReadError> {
+        Ok(ArraySpec { name: self.arrays[field].name.clone(), ..self.described[self.index(field)?].clone() })
+    }
+
+    fn load(&self, field: usize, load: &mut Load<'_>) -> Result<Data, ReadError> {
+        load(self.index(field)?)
+    }
+
+    /// The state, and its velocities, sample after sample, or nothing where there are none.
+    pub(crate) fn state(&self, load: &mut Load<'_>) -> Result<(Stack, Vec<f64>), ReadError> {
+        let state = self.joined(&self.fields.state, load)?;
+        let Some(&first) = self.fields.velocity.first() else { return Ok((state, Vec::new())) };
+        let velocity = self.joined(&self.fields.velocity, load)?;
+        if velocity.shape() == state.shape() {
+            return Ok((state, velocity.numbers));
+        }
+        let (positions, velocities) = (self.spec(self.fields.state[0])?, self.spec(first)?);
+        let what = format!("{} and {} differ in shape", positions.with_shape(), velocities.with_shape());
+        let remedy = "arrays of equal shape, or --ignore with the other's name";
+        Err(ReadError::Lengths(Fault::new(what, self.place(), remedy)))
+    }
+
+    /// Arrays side by side, channel after channel.
+    fn joined(&self, fields: &[usize], load: &mut Load<'_>) -> Result<Stack, ReadError> {
+        let place = self.place();
+        let mut joined: Option<Stack> = None;
+        for &field in fields {
+            let array = self.spec(field)?;
+            // What would be refused is refused before it is read.
+            let (episodes, ..) = dimensions(&array, self.input, &place)?;
+            let fits = self.demo.is_none() || episodes == 1;
+            let Some(numbers) = (if fits { self.load(field, load)?.numbers() } else { None }) else {
+                let what = format!("{} is not (samples, channels)", array.with_shape());
+                return Err(ReadError::Type(Fault::new(what, place, "--state with arrays (samples, channels)")));
+            };
+            let stack = stack(&array, numbers, self.input, &place)?;
+            joined = Some(match joined {
+                Some(joined) => joined.join(&stack, &place)?,
+                None => stack,
+            });
+        }
+        joined.ok_or_else(|| no_column("state", &[], &place))
+    }
+
+    /// A value for each sample, as many as one of `counts`.
+    pub(crate) fn by_sample(&self, field: usize, counts: &[usize], load: &mut Load<'_>) -> Result<Data, ReadError> {
+        let values = self.load(field, load)?;
+        if counts.contains(&values.len()) {
+            return Ok(values);
+        }
+        Err(lengths(&format!("array '{}'", self.arrays[field].name), counts[0], values.len(), &self.place()))
+    }
+
+    /// Seconds between samples, from the first array of steps or rates with a number of values that `fits`.
+    pub(crate) fn steps(
+        &self,
+        fits: impl Fn(usize) -> bool,
+        load: &mut Load<'_>,
+    ) -> Result<Option<Vec<f64>>, ReadError> {
+        for (field, is_rate) in [(self.fields.step, false), (self.fields.rate, true)] {
+            let Some(field) = field else { continue };
+            let values = self.load(field, load)?.numbers().unwrap_or_default();
+            if !fits(values.len()) {
+                continue;
+            }
+            let steps: Vec<f64> = values.iter().map(|&value| if is_rate { 1.0 / value } else { value }).collect();
+            if steps.is_empty() || steps.iter().any(|step| !(step.is_finite() && *step > 0.0)) {
+                let name = &self.arrays[field].name;
+                return Err(no_time(format!("{}, array '{name}' is no positive number", self.place()), "stamps"));
+            }
+            return Ok(Some(steps));
+        }
+        Ok(None)
+    }
+
+    /// A label of each of `count` episodes, where the array has as many.
+    pub(crate) fn labels(
+        &self,
+        field: Option<usize>,
+        count: usize,
+        load: &mut Load<'_>,
+    ) -> Result<Option<Vec<String>>, ReadError> {
+        let labels = |field: &usize| matches!(self.arrays[*field].kind, Kind::Text | Kind::Number(_));
+        let Some(field) = field.filter(labels) else { return Ok(None) };
+        let data = self.load(field, load)?;
+        Ok((data.len() == count).then(|| (0..count).map(|at| data.label(at)).collect()))
+    }
+
+    /// The n channels of the state.
+    pub(crate) fn channels(&self, n: usize, load: &mut Load<'_>) -> Result<Vec<Channel>, ReadError> {
+        let mut texts = |field: Option<usize>| -> Result<Option<Vec<String>>, ReadError> {
+            let Some(field) = field else { return Ok(None) };
+            Ok(match self.load(field, load)? {
+                Data::Text(texts) if texts.len() == n => Some(texts),
+                _ => None,
+            })
+        };
+        let units = texts(self.fields.units)?.unwrap_or_else(|| vec![String::new(); n]);
+        let names = match texts(self.fields.names)? {
+            Some(names) => names,
+            None => self.made_names()?,
+        };
+        let channel = |(name, unit): (String, String)| Channel { name, unit: (!unit.is_empty()).then_some(unit) };
+        Ok(names.into_iter().zip(units).map(channel).collect())
+    }
+
+    /// Array after array, counted through where an earlier one has the same names.
+    fn made_names(&self) -> Result<Vec<String>, ReadError> {
+        let mut names: Vec<String> = Vec::new();
+        for &field in &self.fields.state {
+            let array = self.spec(field)?;
+            let (_, _, n) = dimensions(&array, self.input, &self.place())?;
+            let name = |channel: usize| match self.named_by_array {
+                true => format!("{}_{channel}", array.name),
+                false => format!("x{channel}"),
+            };
+            let taken = (0..n).any(|channel| names.contains(&name(channel)));
+            let first = if taken { names.len() } else { 0 };
+            names.extend((first..first + n).map(name));
+        }
+        Ok(names)
+    }
+
+    /// Arrays that are coarse, and those that were not used.
+    pub(crate) fn findings(&self) -> Vec<Finding> {
+        let coarse = self.fields.state.iter().filter_map(|&field| self.arrays[field].coarse(&self.input.name));
+        let not_used = self.arrays.iter().enumerate().filter(|(field, _)| !self.fields.uses(*field));
+        let not_used: Vec<&str> = not_used.map(|(_, array)| &array.name[..]).collect();
+        coarse.chain(unused("arrays", &not_used)).collect()
+    }
+}
