@@ -4,8 +4,7 @@ mod finite;
 
 use self::finite::make_finite;
 use crate::names::selection::{flags, select};
-use crate::raw::remark;
-use crate::raw::{RawEpisode, RawRecordings};
+use crate::raw::{RawEpisode, RawRecordings, positive, remark};
 use crate::rows::roles;
 use crate::{Fault, ReadError, ReadOptions};
 use motion::Finding;
@@ -18,7 +17,7 @@ pub(crate) fn clean(drafts: &mut RawRecordings, options: &ReadOptions) -> Result
     }
     name_units(drafts, options)?;
     degrees_to_radians(drafts, options)?;
-    let names: Vec<String> = drafts.channels.iter().map(|channel| channel.name.clone()).collect();
+    let names = drafts.names();
     let mut episodes = Vec::with_capacity(drafts.episodes.len());
     for mut draft in drafts.episodes.drain(..) {
         make_finite(&mut draft, &names, drafts.word, options.nan)?;
@@ -40,17 +39,6 @@ pub(crate) fn clean(drafts: &mut RawRecordings, options: &ReadOptions) -> Result
     Ok(())
 }
 
-fn positive(seconds: Option<f64>, flag: &str) -> Result<(), ReadError> {
-    match seconds {
-        Some(value) if !(value.is_finite() && value > 0.0) => Err(ReadError::Option(Fault::new(
-            format!("{flag} is {value}"),
-            "the flags",
-            format!("{flag} with seconds above 0"),
-        ))),
-        _ => Ok(()),
-    }
-}
-
 /// Columns nobody named that never change are no state: a counter that stands, a sensor that is off.
 fn leave_out_constant(drafts: &mut RawRecordings) {
     let n = drafts.channels.len();
@@ -70,13 +58,8 @@ fn leave_out_constant(drafts: &mut RawRecordings) {
     if recorded || changes.iter().all(|&changes| changes) || !changes.contains(&true) {
         return;
     }
-    let names: Vec<&str> = drafts
-        .channels
-        .iter()
-        .zip(&changes)
-        .filter(|(_, changes)| !**changes)
-        .map(|(channel, _)| channel.name.as_str())
-        .collect();
+    let constant = drafts.channels.iter().zip(&changes).filter(|(_, changes)| !**changes);
+    let names: Vec<&str> = constant.map(|(channel, _)| &channel.name[..]).collect();
     let what = format!("constant columns are not taken as state: {}", roles::shortened(&names));
     drafts.findings.push(remark(what, "--state with their names takes them"));
     let mut column = changes.iter();
@@ -89,7 +72,7 @@ fn leave_out_constant(drafts: &mut RawRecordings) {
 
 /// `--units m`, `--units x=mm`.
 fn name_units(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<(), ReadError> {
-    let names: Vec<String> = drafts.channels.iter().map(|channel| channel.name.clone()).collect();
+    let names = drafts.names();
     for assignment in options.units.iter().flat_map(|text| text.split(',')) {
         let (pattern, unit) = assignment.split_once('=').unwrap_or(("*", assignment));
         for channel in named(&[pattern.trim().to_owned()], &names, "--units")? {
@@ -100,14 +83,12 @@ fn name_units(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<(), R
 }
 
 fn named(patterns: &[String], names: &[String], flag: &str) -> Result<Vec<usize>, ReadError> {
-    select(patterns, names).map_err(|pattern| {
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        roles::no_column(&pattern, &names, &format!("{flag}, among the channels of the state"))
-    })
+    let place = format!("{flag}, among the channels of the state");
+    select(patterns, names).map_err(|pattern| roles::no_column(&pattern, names, &place))
 }
 
 fn degrees_to_radians(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<(), ReadError> {
-    let names: Vec<String> = drafts.channels.iter().map(|channel| channel.name.clone()).collect();
+    let names = drafts.names();
     for channel in named(&options.degrees, &names, "--degrees")? {
         drafts.channels[channel].unit = Some("rad".to_owned());
         for draft in &mut drafts.episodes {
@@ -173,7 +154,7 @@ fn split(draft: RawEpisode, longest: f64) -> Vec<RawEpisode> {
 
 /// Steps of more than half a turn become short ones.
 fn unwrap_angles(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<(), ReadError> {
-    let names: Vec<String> = drafts.channels.iter().map(|channel| channel.name.clone()).collect();
+    let names = drafts.names();
     if options.unwrap.iter().any(|pattern| pattern != "*") {
         named(&options.unwrap, &names, "--unwrap")?;
     }

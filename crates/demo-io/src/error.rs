@@ -100,6 +100,23 @@ read_error! {
     Option,
 }
 
+impl ReadError {
+    /// A file whose content is damaged or contradicts itself.
+    pub(crate) fn corrupt(what: impl Into<String>, place: impl Into<String>) -> Self {
+        ReadError::Corrupt(Fault::new(what, place, "another copy of the file"))
+    }
+
+    /// A file that ends too early.
+    pub(crate) fn truncated(what: impl Into<String>, place: impl Into<String>) -> Self {
+        ReadError::Truncated(Fault::new(what, place, "another copy of the file: this one is not whole"))
+    }
+
+    /// A file that would take much more memory than it has bytes.
+    pub(crate) fn grows(what: impl Into<String>, place: impl Into<String>) -> Self {
+        ReadError::TooLarge(Fault::new(what, place, "--trust if you trust its source"))
+    }
+}
+
 impl Fault {
     /// Each in one line, whatever names of files and columns hold.
     pub(crate) fn new(what: impl Into<String>, place: impl Into<String>, remedy: impl Into<String>) -> Self {

@@ -67,7 +67,7 @@ impl<'a> Input<'a> {
             None if self.options.trust => {}
             None => {
                 let what = format!("{} bytes unpack to more than 64 times as much", self.len);
-                return Err(ReadError::TooLarge(Fault::new(what, &self.name, "--trust if you trust its source")));
+                return Err(ReadError::grows(what, &self.name));
             }
         }
         Ok(())
@@ -122,5 +122,5 @@ pub(crate) fn unreadable(error: &std::io::Error, name: &str) -> ReadError {
 
 /// What went wrong while bytes were decompressed or checked.
 pub(crate) fn damaged(error: &std::io::Error, file: &str) -> ReadError {
-    ReadError::Corrupt(Fault::new(format!("the data are damaged: {error}"), file, "another copy of the file"))
+    ReadError::corrupt(format!("the data are damaged: {error}"), file)
 }

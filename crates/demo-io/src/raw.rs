@@ -42,6 +42,11 @@ pub(crate) const MOST_EPISODES: usize = 1_000_000;
 pub(crate) const MOST_CHANNELS: usize = 4096;
 
 impl RawRecordings {
+    /// Of the channels, n.
+    pub(crate) fn names(&self) -> Vec<String> {
+        self.channels.iter().map(|channel| channel.name.clone()).collect()
+    }
+
     /// As everybody else takes them.
     pub(crate) fn checked(self) -> Recordings {
         let RawRecordings { channels, episodes, findings, word, .. } = self;
@@ -199,14 +204,20 @@ pub(crate) fn seconds_since_first(
     clock.seconds(0, ticks.unwrap_or(TicksPerSecond(1.0)))
 }
 
-/// `--dt` if it is a time.
-pub(crate) fn period(options: &ReadOptions) -> Result<Option<f64>, ReadError> {
-    match options.dt {
-        Some(dt) if !(dt.is_finite() && dt > 0.0) => {
-            Err(ReadError::Option(Fault::new(format!("--dt is {dt}"), "the flags", "--dt with seconds above 0")))
+/// Seconds that a flag names, if they are more than 0.
+pub(crate) fn positive(seconds: Option<f64>, flag: &str) -> Result<Option<f64>, ReadError> {
+    match seconds {
+        Some(value) if !(value.is_finite() && value > 0.0) => {
+            let (what, remedy) = (format!("{flag} is {value}"), format!("{flag} with seconds above 0"));
+            Err(ReadError::Option(Fault::new(what, "the flags", remedy)))
         }
-        dt => Ok(dt),
+        _ => Ok(seconds),
     }
+}
+
+/// `--dt`: seconds between samples.
+pub(crate) fn period(options: &ReadOptions) -> Result<Option<f64>, ReadError> {
+    positive(options.dt, "--dt")
 }
 
 pub(crate) fn no_time(place: impl Into<String>, what_is_time: &str) -> ReadError {

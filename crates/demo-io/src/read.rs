@@ -98,11 +98,8 @@ fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> 
 #[cfg(not(all(feature = "parquet", feature = "hdf5", feature = "mcap", feature = "mat")))]
 fn not_built(name: &str, feature: &str) -> ReadError {
     let what = format!("this needs the feature '{feature}', which was not built in");
-    ReadError::Unsupported(Fault::new(
-        what,
-        name,
-        format!("cargo build --features {feature}, or convert the file to CSV or NPZ"),
-    ))
+    let remedy = format!("cargo build --features {feature}, or convert the file to CSV or NPZ");
+    ReadError::Unsupported(Fault::new(what, name, remedy))
 }
 
 /// The files of a folder in natural order, as one set.

@@ -16,7 +16,17 @@ enum Content {
 }
 
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
-const MCAP: &[u8] = b"\x89MCAP0\r\n";
+
+/// First bytes of the formats that are not text.
+const MAGIC: [(&[u8], Format); 7] = [
+    (crate::arrays::npy::MAGIC, Format::Npy),
+    (b"PK\x03\x04", Format::Npz),
+    (b"PK\x05\x06", Format::Npz),
+    (HDF5, Format::Hdf5),
+    (b"\x89MCAP0\r\n", Format::Mcap),
+    (b"PAR1", Format::Parquet),
+    (b"MATLAB 5.0", Format::Mat),
+];
 
 /// The format to read `input` as: content wins over extension, `--as` over both.
 ///
@@ -41,11 +51,8 @@ pub(crate) fn format(input: &Input<'_>) -> Result<Format, ReadError> {
         (_, Some(asked)) => Err(not_this(input, asked, looks_like(content))),
         (Content::Text, None) if !has_rows(&input.head) => {
             let remedy = "a recording: CSV, NPZ, JSON lines, LeRobot, HDF5, MCAP or MAT";
-            Err(ReadError::NotThisFormat(Fault::new(
-                "not a recording: no line is a row of numbers",
-                &input.name,
-                remedy,
-            )))
+            let what = "not a recording: no line is a row of numbers";
+            Err(ReadError::NotThisFormat(Fault::new(what, &input.name, remedy)))
         }
         (Content::Text | Content::Other, None) => Ok(Format::Csv),
     }
@@ -77,22 +84,10 @@ fn by_extension(extension: &str) -> Option<Format> {
 fn content(head: &[u8], extension: &str) -> Content {
     let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
     let first = text.iter().find(|byte| !byte.is_ascii_whitespace());
-    if head.starts_with(crate::arrays::npy::MAGIC) {
-        return Content::Known(Format::Npy);
+    if let Some((_, format)) = MAGIC.iter().find(|(magic, _)| head.starts_with(magic)) {
+        return Content::Known(*format);
     }
-    if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
-        return Content::Known(Format::Npz);
-    }
-    if head.starts_with(HDF5) {
-        return Content::Known(Format::Hdf5);
-    }
-    if head.starts_with(MCAP) {
-        return Content::Known(Format::Mcap);
-    }
-    if head.starts_with(b"PAR1") {
-        return Content::Known(Format::Parquet);
-    }
-    if head.starts_with(b"MATLAB 5.0") || (extension == "mat" && is_mat(head)) {
+    if extension == "mat" && is_mat(head) {
         return Content::Known(Format::Mat);
     }
     match first {
@@ -148,32 +143,34 @@ fn name(format: Format) -> &'static str {
 fn not_this(input: &Input<'_>, asked: Format, found: &str) -> ReadError {
     let article = if matches!(asked, Format::Npy | Format::Npz | Format::Hdf5 | Format::Mcap) { "an" } else { "a" };
     let what = format!("not {article} {} file; it looks like {found}", name(asked));
-    ReadError::NotThisFormat(Fault::new(
-        what,
-        &input.name,
-        "--as with the format it has (csv, jsonl, npz, …), or another file",
-    ))
+    let remedy = "--as with the format it has (csv, jsonl, npz, …), or another file";
+    ReadError::NotThisFormat(Fault::new(what, &input.name, remedy))
 }
 
-/// Known formats that are not read, with the command that helps.
+/// First bytes of formats that are not read, what they are, and the command that helps.
+const NOT_READ: [(&[u8], &str, &str); 4] = [
+    (
+        b"SQLite format 3\0",
+        "a bag of ROS 2 in sqlite3 storage, which is not read",
+        "ros2 bag convert -i BAG -o out.yaml with 'storage_id: mcap' in out.yaml, or rosbags-convert --src BAG --dst OUT --dst-storage mcap",
+    ),
+    (
+        b"#ROSBAG V",
+        "a bag of ROS 1, which is not read",
+        "rosbags-convert --src FILE.bag --dst OUT --dst-storage mcap (pip install rosbags)",
+    ),
+    (b"\x1f\x8b", "a file compressed by gzip, which is not read", "gunzip FILE"),
+    (b"\x28\xb5\x2f\xfd", "a file compressed by zstd, which is not read", "unzstd FILE"),
+];
+
+/// Refuses known formats that are not read.
 fn refuse_unread(input: &Input<'_>, extension: &str) -> Result<(), ReadError> {
     let head = &input.head[..];
-    let (what, remedy) = if head.starts_with(b"SQLite format 3\0") {
-        (
-            "a bag of ROS 2 in sqlite3 storage, which is not read",
-            "ros2 bag convert -i BAG -o out.yaml with 'storage_id: mcap' in out.yaml, or rosbags-convert --src BAG --dst OUT --dst-storage mcap",
-        )
-    } else if head.starts_with(b"#ROSBAG V") {
-        (
-            "a bag of ROS 1, which is not read",
-            "rosbags-convert --src FILE.bag --dst OUT --dst-storage mcap (pip install rosbags)",
-        )
+    let begins = |(magic, ..): &&(&[u8], &'static str, &'static str)| head.starts_with(magic);
+    let (what, remedy) = if let Some(&(_, what, remedy)) = NOT_READ.iter().find(begins) {
+        (what, remedy)
     } else if is_mat73(head) {
         ("a MAT-file of version 7.3, which is not read", "in MATLAB: save('out.mat', …, '-v7')")
-    } else if head.starts_with(b"\x1f\x8b") {
-        ("a file compressed by gzip, which is not read", "gunzip FILE")
-    } else if head.starts_with(b"\x28\xb5\x2f\xfd") {
-        ("a file compressed by zstd, which is not read", "unzstd FILE")
     } else if matches!(extension, "pkl" | "pickle" | "pt" | "pth") || matches!(head, [0x80, 2..=5, ..]) {
         let remedy = "in Python, with a file you trust: np.savez(path, **{f'demo_{i}': d for i, d in enumerate(demos)}, dt=0.01)";
         let what = "a pickle: reading it would run what is inside";

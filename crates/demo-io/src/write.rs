@@ -90,22 +90,12 @@ pub fn write(path: &Path, recordings: &Recordings) -> Result<(), WriteError> {
 }
 
 /// What goes wrong while bytes are made.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 enum Failure {
-    Io(io::Error),
-    Write(WriteError),
-}
-
-impl From<io::Error> for Failure {
-    fn from(error: io::Error) -> Self {
-        Failure::Io(error)
-    }
-}
-
-impl From<WriteError> for Failure {
-    fn from(error: WriteError) -> Self {
-        Failure::Write(error)
-    }
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    #[error(transparent)]
+    Write(#[from] WriteError),
 }
 
 fn whole(path: &Path, fill: impl FnOnce(&mut dyn Sink) -> Result<(), Failure>) -> Result<(), WriteError> {

@@ -53,6 +53,11 @@ impl Demonstrations {
         self.trajectories[0].dim()
     }
 
+    /// Coordinate `axis` of every sample, movement after movement.
+    pub fn values(&self, axis: usize) -> impl Iterator<Item = f64> + Clone {
+        self.trajectories.iter().flat_map(move |movement| movement.states().column_iter().map(move |x| x[axis]))
+    }
+
     /// Number of samples of all movements together, M = Σ_k N_k.
     pub fn n_samples(&self) -> usize {
         self.trajectories.iter().map(Trajectory::n_samples).sum()

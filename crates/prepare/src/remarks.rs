@@ -26,18 +26,12 @@ pub(crate) fn about(demonstrations: &Demonstrations, state: &[StateChannel], not
 
 fn spreads(demonstrations: &Demonstrations) -> Vec<f64> {
     let samples = demonstrations.n_samples() as f64;
-    let values = |axis: usize| {
-        demonstrations
-            .trajectories()
-            .iter()
-            .flat_map(move |movement| movement.states().row(axis).iter().copied().collect::<Vec<_>>())
+    let spread = |axis: usize| {
+        let values = demonstrations.values(axis);
+        let mean = values.clone().sum::<f64>() / samples;
+        (values.map(|x| (x - mean).powi(2)).sum::<f64>() / samples).sqrt()
     };
-    (0..demonstrations.dim())
-        .map(|axis| {
-            let mean = values(axis).sum::<f64>() / samples;
-            (values(axis).map(|x| (x - mean).powi(2)).sum::<f64>() / samples).sqrt()
-        })
-        .collect()
+    (0..demonstrations.dim()).map(spread).collect()
 }
 
 fn mixed_units(spreads: &[f64], state: &[StateChannel], notes: &mut Notes) {

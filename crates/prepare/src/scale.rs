@@ -27,6 +27,11 @@ pub(crate) fn scales(
     Ok(scales)
 }
 
+/// The least and the largest of some values.
+pub(crate) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+}
+
 /// Names, units and ranges, in the user's units.
 pub(crate) fn channels(
     recordings: &Recordings,
@@ -34,15 +39,9 @@ pub(crate) fn channels(
     demonstrations: &Demonstrations,
 ) -> Vec<StateChannel> {
     let of = |(at, channel): (usize, &motion::Channel)| {
-        let values: Vec<f64> = demonstrations
-            .trajectories()
-            .iter()
-            .flat_map(|trajectory| trajectory.states().row(at).iter().copied().collect::<Vec<_>>())
-            .map(|x| x / scales[at])
-            .collect();
-        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let median = upper_median(values).expect("demonstrations have samples");
+        let values = demonstrations.values(at).map(|x| x / scales[at]);
+        let (low, high) = range(values.clone());
+        let median = upper_median(values.collect()).expect("demonstrations have samples");
         StateChannel { name: channel.name.clone(), unit: channel.unit.clone(), scale: scales[at], low, high, median }
     };
     recordings.state.iter().enumerate().map(of).collect()

@@ -60,7 +60,7 @@ fn demos(tree: &mut Tree<'_>, parent: &Folder) -> Result<Vec<Demo>, ReadError> {
         let observed = !fields.is_empty();
         let own = tree.arrays(&group, "")?;
         // The simulator's whole state beside observations is asked for or not used.
-        let asked = |name: &str| !observed || name != "states" || !tree.input().options.state.is_empty();
+        let asked = |name: &str| !observed || name != "states" || !tree.input.options.state.is_empty();
         fields.extend(own.into_iter().filter(|(name, _)| asked(name)));
         if !fields.is_empty() {
             demos.push(Demo { name, fields });
@@ -81,11 +81,8 @@ fn side_by_side(tree: &mut Tree<'_>, root: &Folder, data: Option<&Folder>) -> Re
     let described = tree.described();
     if described.is_empty() {
         let what = "there is no array in the file";
-        return Err(ReadError::Empty(Fault::new(
-            what,
-            &tree.input().name,
-            "/data/demo_0/obs/<key> with arrays (samples, channels)",
-        )));
+        let remedy = "/data/demo_0/obs/<key> with arrays (samples, channels)";
+        return Err(ReadError::Empty(Fault::new(what, &tree.input.name, remedy)));
     }
     Ok(described)
 }

@@ -88,9 +88,6 @@ impl Stack {
 /// Arrays that belong together differ in length.
 pub(crate) fn lengths(what: &str, expected: usize, found: usize, place: &str) -> ReadError {
     let what = format!("{what}: {found} samples where {expected} are expected");
-    ReadError::Lengths(Fault::new(
-        what,
-        place,
-        "arrays of equal length; --samples-are if rows and columns are exchanged",
-    ))
+    let remedy = "arrays of equal length; --samples-are if rows and columns are exchanged";
+    ReadError::Lengths(Fault::new(what, place, remedy))
 }

@@ -8,11 +8,11 @@ use std::io::Read;
 pub(crate) use self::header::Header;
 #[cfg(any(feature = "hdf5", feature = "parquet"))]
 pub(crate) use self::values::half;
+use crate::ReadError;
 use crate::arrays::array::{ArraySpec, Data, Kind};
 use crate::arrays::flat;
 use crate::input::Input;
 use crate::raw::RawRecordings;
-use crate::{Fault, ReadError};
 
 pub(crate) const MAGIC: &[u8] = b"\x93NUMPY";
 
@@ -81,5 +81,5 @@ impl Header {
 
 fn truncated(shape: &str, file: &str) -> ReadError {
     let what = format!("the file ends before the array of shape ({shape}) that it announces");
-    ReadError::Truncated(Fault::new(what, file, "another copy of the file: this one is not whole"))
+    ReadError::truncated(what, file)
 }

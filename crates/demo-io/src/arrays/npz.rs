@@ -36,19 +36,13 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
             method if method == CompressionMethod::DEFLATE => true,
             method => {
                 let what = format!("'{name}' is compressed by {method:?}");
-                return Err(ReadError::Unsupported(Fault::new(
-                    what,
-                    file,
-                    "numpy.savez or numpy.savez_compressed to write it",
-                )));
+                let remedy = "numpy.savez or numpy.savez_compressed to write it";
+                return Err(ReadError::Unsupported(Fault::new(what, file, remedy)));
             }
         };
         if entries.len() == MOST_ENTRIES {
-            return Err(ReadError::TooLarge(Fault::new(
-                format!("more than {MOST_ENTRIES} arrays"),
-                file,
-                "fewer a file",
-            )));
+            let remedy = "fewer a file";
+            return Err(ReadError::TooLarge(Fault::new(format!("more than {MOST_ENTRIES} arrays"), file, remedy)));
         }
         let described = ArraySpec { name: name.to_owned(), shape: Vec::new(), kind: crate::arrays::array::Kind::Text };
         entries.push(Entry { described, wayfinder: record.wayfinder(), deflated });
@@ -97,7 +91,7 @@ fn opened<T>(
     }
     if unpacked > packed.saturating_mul(64).saturating_add(1 << 20) && !input.options.trust {
         let what = format!("'{}' grows from {packed} to {unpacked} bytes", entry.described.name);
-        return Err(ReadError::TooLarge(Fault::new(what, file, "--trust if you trust its source")));
+        return Err(ReadError::grows(what, file));
     }
     let opened = archive.get_entry(entry.wayfinder).map_err(|error| zip(&error, file))?;
     if entry.deflated {
@@ -109,14 +103,12 @@ fn opened<T>(
 
 fn cut(file: &str) -> ReadError {
     let what = "the archive is cut off: its directory, which stands at the end, is missing or points behind it";
-    ReadError::Truncated(Fault::new(what, file, "another copy of the file: this one is not whole"))
+    ReadError::truncated(what, file)
 }
 
 fn zip(error: &rawzip::Error, file: &str) -> ReadError {
     match error.kind() {
         ErrorKind::MissingEndOfCentralDirectory | ErrorKind::Eof | ErrorKind::InvalidEndOfCentralDirectory => cut(file),
-        _ => {
-            ReadError::Corrupt(Fault::new(format!("the archive is damaged: {error}"), file, "another copy of the file"))
-        }
+        _ => ReadError::corrupt(format!("the archive is damaged: {error}"), file),
     }
 }

@@ -84,7 +84,7 @@ impl ArrayReader<'_> {
                 None => stack,
             });
         }
-        joined.ok_or_else(|| no_column("state", &[], &place))
+        joined.ok_or_else(|| no_column::<&str>("state", &[], &place))
     }
 
     /// A value for each sample, as many as one of `counts`.

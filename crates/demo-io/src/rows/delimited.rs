@@ -21,9 +21,9 @@ use crate::{Fault, ReadError};
 pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<RawRecordings, ReadError> {
     let dialect = Dialect::of(input)?;
     let source = Guarded::new(input, &dialect, progress)?;
-    let since_record = source.since_record();
+    let since_record = Rc::clone(&source.since_record);
     let mut reader = csv::ReaderBuilder::new()
-        .delimiter(dialect.delimiter())
+        .delimiter(dialect.separator)
         .comment(Some(b'#'))
         .has_headers(false)
         .flexible(true)
@@ -32,8 +32,8 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
     let mut rows = Rows { reader: &mut reader, fields: 0, file: input.name.clone(), since_record };
     let mut record = ByteRecord::new();
     let mut head: Vec<(u64, ByteRecord)> = Vec::new();
-    let header = match dialect.commented_header() {
-        Some(header) => Some(header.to_vec()),
+    let header = match &dialect.header {
+        Some(header) => Some(header.clone()),
         None => rows.header(&dialect, &mut record, &mut head)?,
     };
     if let Some(header) = &header {
@@ -52,14 +52,11 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
     if no_header && input.options.state.is_empty() {
         return Err(no_header_error(&input.name, *first_line, names.len()));
     }
-    let columns: Vec<Column> = names
-        .into_iter()
-        .enumerate()
-        .map(|(column, name)| Column {
-            name,
-            content: content(head.iter().map(|(_, record)| dialect.fields(record)), column),
-        })
-        .collect();
+    let column = |(column, name): (usize, String)| Column {
+        name,
+        content: content(head.iter().map(|(_, record)| dialect.fields(record).number(column))),
+    };
+    let columns: Vec<Column> = names.into_iter().enumerate().map(column).collect();
     let mut table = Table::new(&columns, (&input.name, &input.stem), "line", input.options)?.with_hint(hint);
     for (line, record) in &head {
         table.push(*line, &dialect.fields(record))?;

@@ -6,7 +6,7 @@ use crate::input::Input;
 use crate::raw::RawRecordings;
 use crate::rows::json::{Json, MOST_LEAVES};
 use crate::rows::roles::Column;
-use crate::rows::table::{HEAD_ROWS, Table, content};
+use crate::rows::table::{HEAD_ROWS, Row as _, Table, content};
 use crate::{Fault, ReadError};
 
 /// Rows of documents whose columns are the paths of the first.
@@ -30,7 +30,11 @@ impl<'a> Documents<'a> {
             table.push(place, &row)
         } else {
             self.head.push((place, row));
-            if self.head.len() < HEAD_ROWS { Ok(()) } else { self.begin() }
+            if self.head.len() == HEAD_ROWS {
+                self.table = Some(self.begin()?);
+                self.head.clear();
+            }
+            Ok(())
         }
     }
 
@@ -87,28 +91,24 @@ impl<'a> Documents<'a> {
         Ok(row)
     }
 
-    fn begin(&mut self) -> Result<(), ReadError> {
+    /// Makes the table, by the rows that came first.
+    fn begin(&self) -> Result<Table, ReadError> {
         let column = |(at, name): (usize, &String)| Column {
             name: name.clone(),
-            content: content(self.head.iter().map(|(_, row)| row), at),
+            content: content(self.head.iter().map(|(_, row)| row.number(at))),
         };
         let columns: Vec<Column> = self.names.iter().enumerate().map(column).collect();
         let input = self.input;
         let mut table = Table::new(&columns, (&input.name, &input.stem), self.word, input.options)?;
-        for (place, row) in self.head.drain(..) {
-            table.push(place, &row)?;
-        }
-        self.table = Some(table);
-        Ok(())
+        self.head.iter().try_for_each(|(place, row)| table.push(*place, row))?;
+        Ok(table)
     }
 
-    pub(crate) fn finish(mut self) -> Result<RawRecordings, ReadError> {
-        if self.table.is_none() {
-            self.begin()?;
-        }
-        match self.table {
-            Some(table) => Ok(table.finish()),
-            None => Err(ReadError::Empty(Fault::new("there is no row", &self.input.name, "another file"))),
-        }
+    pub(crate) fn finish(self) -> Result<RawRecordings, ReadError> {
+        let table = match self.table {
+            Some(table) => table,
+            None => self.begin()?,
+        };
+        Ok(table.finish())
     }
 }

@@ -66,11 +66,8 @@ impl<R: BufRead> Lines<R> {
             progress(read);
             if read == LONGEST_LINE {
                 let place = format!("{file}, line {}", self.line);
-                return Err(ReadError::TooLarge(Fault::new(
-                    "a line of more than 1 GB",
-                    place,
-                    "one line per episode, or per sample",
-                )));
+                let remedy = "one line per episode, or per sample";
+                return Err(ReadError::TooLarge(Fault::new("a line of more than 1 GB", place, remedy)));
             }
             let text = self.text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&self.text);
             if !text.trim_ascii().is_empty() {

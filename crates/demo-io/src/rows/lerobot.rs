@@ -33,11 +33,8 @@ pub(crate) fn read(
         crate::joined::add(&mut joined, drafts, &name_of(&file))?;
     }
     let drafts = joined.ok_or_else(|| {
-        ReadError::MissingFile(Fault::new(
-            "there is no Parquet file in data/",
-            &name,
-            "hf download REPOSITORY --repo-type dataset",
-        ))
+        let remedy = "hf download REPOSITORY --repo-type dataset";
+        ReadError::MissingFile(Fault::new("there is no Parquet file in data/", &name, remedy))
     })?;
     if options.episode.is_none() {
         info.refuse_missing(path, &name, &drafts)?;
@@ -100,11 +97,8 @@ impl Info {
         };
         let what = format!("episode {missing} is listed in meta/ but not on disk");
         let place = format!("{name}, {}", self.file_of(missing));
-        Err(ReadError::MissingFile(Fault::new(
-            what,
-            place,
-            "hf download REPOSITORY --repo-type dataset (and git lfs pull)",
-        )))
+        let remedy = "hf download REPOSITORY --repo-type dataset (and git lfs pull)";
+        Err(ReadError::MissingFile(Fault::new(what, place, remedy)))
     }
 
     /// Where an episode should stand; the pattern itself if files hold several.

@@ -64,7 +64,7 @@ impl Bag<'_> {
             }
             Record::Channel { id, schema, topic: name, encoding } => {
                 let schema = self.schemas.get(&schema).cloned().unwrap_or_default();
-                let known = self.topics.iter().position(|topic| topic.is(name, &schema));
+                let known = self.topics.iter().position(|topic| topic.name == name && topic.schema == schema);
                 let topic = match known {
                     Some(topic) => topic,
                     None if self.topics.len() == MOST_TOPICS => {
@@ -101,14 +101,14 @@ impl Bag<'_> {
             Err(ReadError::NoTopic(Fault::new(what, file, remedy)))
         };
         let mut fitting: Vec<Topic<'_>> = match asked {
-            Some(asked) => self.topics.into_iter().filter(|topic| topic.name() == asked).collect(),
-            None => self.topics.into_iter().filter(Topic::is_known).collect(),
+            Some(asked) => self.topics.into_iter().filter(|topic| topic.name == asked).collect(),
+            None => self.topics.into_iter().filter(|topic| topic.kind.is_some()).collect(),
         };
         if fitting.len() > 1 {
-            fitting.retain(|topic| topic.len() > 0);
+            fitting.retain(|topic| topic.messages > 0);
         }
         match (fitting.pop(), fitting.is_empty()) {
-            (Some(topic), true) if topic.is_known() => topic.finish(&self.metadata),
+            (Some(topic), true) if topic.kind.is_some() => topic.finish(&self.metadata),
             (Some(topic), true) => no_topic(format!("the topic {topic} has a type that is not read")),
             (Some(_), false) => no_topic("several topics could be the state".to_owned()),
             (None, _) => {

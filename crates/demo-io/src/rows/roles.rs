@@ -194,11 +194,8 @@ impl Roles {
         }
         if let Some(&both) = self.state.iter().find(|index| self.velocity.contains(index)) {
             let what = format!("'{}' is named as state and as velocity", names[both]);
-            return Err(ReadError::AmbiguousColumn(Fault::new(
-                what,
-                place,
-                "--state and --velocity with other columns",
-            )));
+            let remedy = "--state and --velocity with other columns";
+            return Err(ReadError::AmbiguousColumn(Fault::new(what, place, remedy)));
         }
         Ok(self)
     }
@@ -237,7 +234,7 @@ fn one(pattern: Option<&str>, flag: &str, names: &[&str], place: &str) -> Result
 }
 
 /// What was asked for does not exist; names what does, and the nearest.
-pub(crate) fn no_column(pattern: &str, names: &[&str], place: &str) -> ReadError {
+pub(crate) fn no_column<S: AsRef<str>>(pattern: &str, names: &[S], place: &str) -> ReadError {
     let what = format!("there is no '{pattern}'");
     ReadError::NoColumn(Fault::new(what, place, format!("one of: {}", shortened(names))))
 }

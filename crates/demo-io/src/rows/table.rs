@@ -18,20 +18,6 @@ pub(crate) trait Row {
     fn label(&self, column: usize, label: &mut String);
 }
 
-impl<R: Row> Row for &R {
-    fn number(&self, column: usize) -> Result<f64, String> {
-        (*self).number(column)
-    }
-
-    fn stamp(&self, column: usize) -> Result<(Stamp, Option<TicksPerSecond>), String> {
-        (*self).stamp(column)
-    }
-
-    fn label(&self, column: usize, label: &mut String) {
-        (*self).label(column, label);
-    }
-}
-
 /// Collects rows into episodes, in the order in which their labels appear.
 pub(crate) struct Table {
     file: String,
@@ -228,12 +214,12 @@ fn fill(row: &impl Row, columns: &[usize], numbers: &mut Vec<f64>) -> Result<(),
 /// Columns are judged by so many rows.
 pub(crate) const HEAD_ROWS: usize = 64;
 
-/// What the first rows of a column hold.
-pub(crate) fn content<R: Row>(rows: impl Iterator<Item = R>, column: usize) -> Content {
+/// What a column holds, judged by its numbers in the first rows.
+pub(crate) fn content(numbers: impl Iterator<Item = Result<f64, String>>) -> Content {
     let mut last: Option<f64> = None;
     let mut counting = true;
-    for row in rows {
-        let Ok(value) = row.number(column) else { return Content::Text };
+    for number in numbers {
+        let Ok(value) = number else { return Content::Text };
         counting &= value.fract() == 0.0 && last.is_none_or(|last| value == last + 1.0 || value < last);
         last = Some(value);
     }

@@ -4,31 +4,11 @@ mod record;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-use self::bag::{Bag, Topic};
+use self::bag::Bag;
 use super::{Failure, has_velocities};
 use crate::rows::cdr::Writer;
 use crate::rows::mcap::{METADATA, Noted};
 use motion::Recordings;
-
-const TOPIC: &str = "/joint_states";
-const TYPE: &str = "sensor_msgs/msg/JointState";
-
-/// What viewers need to know to take messages apart.
-const SCHEMA: &str = "\
-std_msgs/Header header
-string[] name
-float64[] position
-float64[] velocity
-float64[] effort
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-";
 
 /// Stamp of the first sample: 0 would mean that a driver left it out.
 const START: u64 = 1_000_000_000;
@@ -39,7 +19,7 @@ const PAUSE: u64 = 5_000_000_000;
 /// Messages of `sensor_msgs/msg/JointState`, a message a sample; names of movements and units stand in a metadata record.
 pub(super) fn write(file: impl Write, recordings: &Recordings) -> Result<(), Failure> {
     has_velocities(recordings)?;
-    let mut bag = Bag::create(file, Topic { name: TOPIC, schema: (TYPE, SCHEMA) })?;
+    let mut bag = Bag::create(file)?;
     let mut start = START;
     for episode in &recordings.episodes {
         let mut stamp = start;

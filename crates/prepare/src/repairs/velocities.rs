@@ -32,9 +32,7 @@ pub(crate) fn decide(
 ) -> Agreement {
     let recorded = episodes.iter().filter(|episode| episode.velocities.is_some()).count();
     if recorded < episodes.len() || options.velocities == VelocityUse::Ignored {
-        for episode in episodes.iter_mut() {
-            episode.velocities = None;
-        }
+        episodes.iter_mut().for_each(|episode| episode.velocities = None);
         let why = match recorded {
             0 => "none recorded".to_owned(),
             _ if recorded < episodes.len() => format!("only {recorded} of {} episodes have them", episodes.len()),
@@ -49,21 +47,13 @@ pub(crate) fn decide(
     }
     let fit = Steps::of(episodes, noise);
     if fit.explained < UNRELATED {
-        for episode in episodes.iter_mut() {
-            episode.velocities = None;
-        }
-        notes.decided(
-            "velocities",
-            "from positions",
-            format!("those recorded explain {} of the steps", percent(fit.explained.max(0.0))),
-            "--integration",
-        );
+        episodes.iter_mut().for_each(|episode| episode.velocities = None);
+        let explained = percent(fit.explained.max(0.0));
+        let why = format!("those recorded explain {explained} of the steps");
+        notes.decided("velocities", "from positions", why, "--integration");
         notes.found(
             Verdict::Doubtful,
-            format!(
-                "recorded velocities do not match the steps (they explain {} of them) and were ignored",
-                percent(fit.explained.max(0.0))
-            ),
+            format!("recorded velocities do not match the steps (they explain {explained} of them) and were ignored"),
             "check that these columns are velocities of the same channels in the same order",
         );
         return Agreement::None;
@@ -116,7 +106,7 @@ impl Steps {
 }
 
 /// Displacement and what velocities make of it, over parts of a movement.
-fn parts(episode: &Episode) -> Vec<(DVector<f64>, DVector<f64>)> {
+fn parts(episode: &Episode) -> Vec<Part> {
     let steps = episode.n_samples() - 1;
     let parts = PARTS.min((steps / 2).max(1));
     let Some(velocities) = &episode.velocities else { return Vec::new() };
@@ -159,9 +149,7 @@ fn mend(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &mut
     let (low, high) = (fit.factors.min(), fit.factors.max());
     let step = episodes[0].times.seconds(0, 1);
     if step > SLOW && fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(&(factor * 1000.0))) {
-        for episode in episodes.iter_mut() {
-            episode.times = episode.times.divided_by(1000.0);
-        }
+        episodes.iter_mut().for_each(|episode| episode.times = episode.times.divided_by(1000.0));
         let what = format!("stamps are {step:.0} apart and velocities 1000 times the steps");
         notes.decided("time step", format!("{} s", step / 1000.0), format!("{what}: stamps are milliseconds"), "--dt");
         notes.found(
@@ -174,63 +162,44 @@ fn mend(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &mut
     let common = low * high > 0.0 && high / low < AGREE && low / high < AGREE;
     let factors = if common {
         let factor = (low * high).sqrt().copysign(low);
-        DVector::repeat(channels.len(), 1.0 / whole(1.0 / factor, step))
+        DVector::repeat(channels.len(), 1.0 / mistake(1.0 / factor, step).map_or(1.0 / factor, |(times, _)| times))
     } else {
         fit.factors.clone()
     };
     for velocities in episodes.iter_mut().filter_map(|episode| episode.velocities.as_mut()) {
         velocities.column_iter_mut().for_each(|mut column| column.component_mul_assign(&factors));
     }
-    let (what, next) = if common {
+    let (what, times) = if common {
         let times = 1.0 / factors[0];
-        (format!("velocities are {} times the steps", short(times)), guess(times, step).to_owned())
+        (format!("velocities are {} times the steps", short(times)), times)
     } else {
-        let odd = (0..channels.len()).max_by(|&a, &b| fit.factors[a].ln_abs().total_cmp(&fit.factors[b].ln_abs()));
-        let odd = odd.unwrap_or(0);
-        let times = 1.0 / fit.factors[odd];
-        (
-            format!(
-                "velocities of channel {} are {} times its steps, unlike the others",
-                channels[odd].name,
-                short(times)
-            ),
-            guess(times, step).to_owned(),
-        )
+        let odd = (0..channels.len()).max_by(|&a, &b| off(fit.factors[a]).total_cmp(&off(fit.factors[b]))).unwrap_or(0);
+        let (name, times) = (&channels[odd].name, 1.0 / fit.factors[odd]);
+        (format!("velocities of channel {name} are {} times its steps, unlike the others", short(times)), times)
     };
+    let next = mistake(times, step).map_or("check units and time step (--dt)", |(_, words)| words);
     notes.decided("velocities", "recorded, rescaled to agree with the steps", what.clone(), "--integration");
     notes.found(Verdict::Doubtful, format!("{what}; they were converted to the units of positions and stamps"), next);
 }
 
-trait LnAbs {
-    /// How far from 1, up or down, a change of sign most of all.
-    fn ln_abs(self) -> f64;
+/// How far a factor is from 1, up or down; a change of sign most of all.
+fn off(factor: f64) -> f64 {
+    if factor < 0.0 { f64::INFINITY } else { factor.ln().abs() }
 }
 
-impl LnAbs for f64 {
-    fn ln_abs(self) -> f64 {
-        if self < 0.0 { f64::INFINITY } else { self.ln().abs() }
-    }
-}
-
-/// Factors that mistakes have.
-fn usual(step: f64) -> [f64; 6] {
-    [1000.0, 0.001, 1f64.to_degrees(), 1f64.to_radians(), -1.0, step]
-}
-
-/// A factor as mistakes have it, where it is that near: rules of integration differ by some percent.
-fn whole(times: f64, step: f64) -> f64 {
-    usual(step).into_iter().find(|value| (times / value - 1.0).abs() < NEAR).unwrap_or(times)
-}
-
-fn guess(times: f64, step: f64) -> &'static str {
-    const WORDS: [&str; 6] = [
-        "velocity columns in millimetres, or stamps in milliseconds? Name the units in the file, or give --dt",
-        "positions in millimetres? Name the units in the file",
-        "degrees and radians mixed? Use one of them (--degrees)",
-        "degrees and radians mixed? Use one of them (--degrees)",
-        "check the sign: velocities point against the movement",
-        "these are steps, not velocities per second",
+/// The factor of a usual mistake that is near `times`, since rules of integration differ by some percent, and the advice.
+fn mistake(times: f64, step: f64) -> Option<(f64, &'static str)> {
+    let degrees = "degrees and radians mixed? Use one of them (--degrees)";
+    let mistakes = [
+        (
+            1000.0,
+            "velocity columns in millimetres, or stamps in milliseconds? Name the units in the file, or give --dt",
+        ),
+        (0.001, "positions in millimetres? Name the units in the file"),
+        (1f64.to_degrees(), degrees),
+        (1f64.to_radians(), degrees),
+        (-1.0, "check the sign: velocities point against the movement"),
+        (step, "these are steps, not velocities per second"),
     ];
-    let named = usual(step).into_iter().zip(WORDS).find(|(value, _)| (times / value - 1.0).abs() < NEAR);
-    named.map_or("check units and time step (--dt)", |(_, words)| words)
+    mistakes.into_iter().find(|(factor, _)| (times / factor - 1.0).abs() < NEAR)
 }

@@ -4,6 +4,7 @@ use motion::{Channel, Episode, Verdict};
 
 use crate::in_words::short;
 use crate::notes::{Notes, and_more};
+use crate::scale::range;
 
 /// A step over this share of a turn is a wrap.
 const WRAP: f64 = 0.75;
@@ -42,9 +43,7 @@ pub(crate) fn unwrap(episodes: &mut [Episode], channels: &[Channel], notes: &mut
 
 /// A whole turn in the units of a channel whose values fill one, in radians or degrees.
 fn turn(episodes: &[Episode], channel: usize) -> Option<f64> {
-    let values =
-        || episodes.iter().flat_map(|episode| episode.positions.row(channel).iter().copied().collect::<Vec<_>>());
-    let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let (low, high) = range(episodes.iter().flat_map(|episode| episode.positions.column_iter().map(|x| x[channel])));
     let fills = |turn: f64| {
         let symmetric = RANGE.contains(&(high / (turn / 2.0))) && RANGE.contains(&(-low / (turn / 2.0)));
         let positive = RANGE.contains(&(high / turn)) && low.abs() < 0.1 * turn;

@@ -55,20 +55,23 @@ fn with_resolution(demonstrations: &Demonstrations, noise: PositionNoise) -> Pos
     if deviations == noise.deviations {
         return noise;
     }
-    let steps = demonstrations.trajectories().iter().map(|movement| {
-        let (x, steps) = (movement.states(), movement.n_samples() - 1);
-        ((x.columns(1, steps) - x.columns(0, steps)).norm_squared(), steps)
-    });
-    let (sum, count) = steps.fold((0.0, 0), |(sum, count), (square, steps)| (sum + square, count + steps));
+    let (sum, count) = squared_steps(demonstrations);
     let step_share = noise.step_share + 2.0 * (deviations.norm_squared() - before) * count as f64 / sum;
     PositionNoise { deviations, step_share: step_share.min(1.0) }
 }
 
+/// Sum of the squared steps, and how many there are.
+pub(crate) fn squared_steps(demonstrations: &Demonstrations) -> (f64, usize) {
+    let steps = demonstrations.trajectories().iter().map(|movement| {
+        let (x, steps) = (movement.states(), movement.n_samples() - 1);
+        ((x.columns(1, steps) - x.columns(0, steps)).norm_squared(), steps)
+    });
+    steps.fold((0.0, 0), |(sum, count), (square, steps)| (sum + square, count + steps))
+}
+
 /// The step of which all differences between a channel's values are multiples, if there are few values.
 pub(crate) fn resolution(demonstrations: &Demonstrations, axis: usize) -> Option<f64> {
-    let movements = demonstrations.trajectories().iter();
-    let mut values: Vec<f64> =
-        movements.flat_map(|movement| movement.states().row(axis).iter().copied().collect::<Vec<_>>()).collect();
+    let mut values: Vec<f64> = demonstrations.values(axis).collect();
     let all = values.len();
     values.sort_by(f64::total_cmp);
     values.dedup();

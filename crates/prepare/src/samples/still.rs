@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 
 use crate::notes::{Notes, and_more};
 use crate::samples::noise;
+use crate::scale::range;
 
 /// At rest for fewer samples than this is no stand-still.
 const STILL: usize = 10;
@@ -25,14 +26,8 @@ struct Rest {
 impl Rest {
     /// `noise`: standard deviation of every channel, (n), where it is known.
     fn of(demonstrations: &Demonstrations, noise: Option<&[f64]>) -> Rest {
-        let values = |axis: usize| {
-            demonstrations
-                .trajectories()
-                .iter()
-                .flat_map(move |movement| movement.states().column_iter().map(move |x| x[axis]))
-        };
         let spread = |axis: usize| {
-            let (low, high) = values(axis).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+            let (low, high) = range(demonstrations.values(axis));
             high - low
         };
         let noise = |axis: usize| noise.map_or(0.0, |noise| noise[axis]);

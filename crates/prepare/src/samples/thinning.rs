@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 
 use crate::in_words::percent;
 use crate::notes::Notes;
-use crate::samples::noise::Noise;
+use crate::samples::noise::{Noise, squared_steps};
 
 /// Samples are averaged until noise makes at most this share of the squared steps.
 const CALM: f64 = 0.3;
@@ -26,7 +26,8 @@ pub(crate) fn decide(demonstrations: &Demonstrations, noise: &Noise, notes: &mut
     while share > CALM && usual / (2 * taken) >= LEAST {
         taken *= 2;
         let Ok(fewer) = thinned(demonstrations, taken) else { break };
-        share = 2.0 * variance / taken as f64 / mean_squared_step(&fewer);
+        let (sum, count) = squared_steps(&fewer);
+        share = 2.0 * variance / taken as f64 / (sum / count as f64);
     }
     if taken > 1 {
         let why = format!(
@@ -37,17 +38,6 @@ pub(crate) fn decide(demonstrations: &Demonstrations, noise: &Noise, notes: &mut
         notes.decided("averaging", format!("over {taken} samples"), why, "--smooth");
     }
     taken
-}
-
-fn mean_squared_step(demonstrations: &Demonstrations) -> f64 {
-    let (mut sum, mut count) = (0.0, 0);
-    for movement in demonstrations.trajectories() {
-        let x = movement.states();
-        let steps = x.ncols() - 1;
-        sum += (x.columns(1, steps) - x.columns(0, steps)).norm_squared();
-        count += steps;
-    }
-    sum / count as f64
 }
 
 /// Means of so many samples in a row; a rest shorter than that is left out. Movements of fewer than two means stay.

@@ -38,7 +38,7 @@ pub(crate) struct ScaledMovement<'a> {
 impl<'a> Scaled<'a> {
     pub(crate) fn new(demonstrations: &'a Demonstrations, scale: &AxisScale) -> Result<Self, SmoothingError> {
         let (movements, dim) = (demonstrations.trajectories(), demonstrations.dim());
-        let variances = DVector::from_fn(dim, |axis, _| variance_of_axis(movements, axis));
+        let variances = DVector::from_fn(dim, |axis, _| variance_of_axis(demonstrations, axis));
         if variances.iter().any(|variance| !variance.is_finite()) {
             return Err(SmoothingError::Overflow);
         }
@@ -98,9 +98,9 @@ fn checked(scales: &DVector<f64>, dim: usize) -> Result<&DVector<f64>, Smoothing
 }
 
 /// Variance of one coordinate over all samples of all movements.
-fn variance_of_axis(movements: &[Trajectory], axis: usize) -> f64 {
-    let values = || movements.iter().flat_map(|movement| movement.states().column_iter().map(|state| state[axis]));
-    let first = movements[0].states()[(axis, 0)];
+fn variance_of_axis(demonstrations: &Demonstrations, axis: usize) -> f64 {
+    let values = || demonstrations.values(axis);
+    let first = demonstrations.trajectories()[0].states()[(axis, 0)];
     if values().all(|value| value == first) {
         return 0.0; // the mean of equal numbers may differ from them by rounding
     }

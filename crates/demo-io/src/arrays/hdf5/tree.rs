@@ -6,17 +6,13 @@ use crate::{Fault, ReadError};
 
 /// The arrays of a file that were found so far.
 pub(super) struct Tree<'a> {
-    input: &'a Input<'a>,
+    pub(super) input: &'a Input<'a>,
     arrays: Vec<(ArraySpec, Dataset)>,
 }
 
 impl<'a> Tree<'a> {
     pub(super) fn new(input: &'a Input<'a>) -> Self {
         Self { input, arrays: Vec::new() }
-    }
-
-    pub(super) fn input(&self) -> &'a Input<'a> {
-        self.input
     }
 
     pub(super) fn ok<T>(&self, result: Result<T, Error>) -> Result<T, ReadError> {
@@ -60,7 +56,7 @@ impl<'a> Tree<'a> {
             return Ok(data);
         }
         let what = format!("'{}' holds {} values", described.with_shape(), data.len());
-        Err(ReadError::Corrupt(Fault::new(what, &self.input.name, "another copy of the file")))
+        Err(ReadError::corrupt(what, &self.input.name))
     }
 
     /// Chunks that lie in the file: the reader takes memory for a chunk before it looks for it.
@@ -70,7 +66,7 @@ impl<'a> Tree<'a> {
         // Chunks of the one kind of index that cannot be listed are checked by the reader, one by one.
         if dataset.is_chunked() && dataset.chunks().is_ok_and(|chunks| chunks.iter().any(outside)) {
             let what = format!("'{}' has a part beyond the end of the file", described.with_shape());
-            return Err(ReadError::Corrupt(Fault::new(what, &self.input.name, "another copy of the file")));
+            return Err(ReadError::corrupt(what, &self.input.name));
         }
         Ok(())
     }
@@ -120,31 +116,27 @@ pub(super) fn mask(file: &File, filter: &str, input: &Input<'_>) -> Result<Vec<S
 
 pub(super) fn failed(error: &Error, input: &Input<'_>) -> ReadError {
     let file = &input.name;
-    let copy = "another copy of the file: this one is not whole";
     match error {
         Error::Format(FormatError::UnexpectedEof { .. }) => {
-            ReadError::Truncated(Fault::new(format!("the file is cut off: {error}"), file, copy))
+            ReadError::truncated(format!("the file is cut off: {error}"), file)
         }
         Error::Io(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
-            ReadError::Truncated(Fault::new("the file is cut off", file, copy))
+            ReadError::truncated("the file is cut off", file)
         }
         Error::Io(error) => crate::input::unreadable(error, file),
-        Error::Format(FormatError::SignatureNotFound) => ReadError::NotThisFormat(Fault::new(
-            "not an HDF5 file: its signature is missing",
-            file,
-            "--as with the format it has",
-        )),
+        Error::Format(FormatError::SignatureNotFound) => {
+            let what = "not an HDF5 file: its signature is missing";
+            ReadError::NotThisFormat(Fault::new(what, file, "--as with the format it has"))
+        }
         _ => {
             let text = error.to_string();
-            let newer = text.contains("nsupported") || text.contains("version");
-            let what =
-                if newer { "of a kind of HDF5 that is not read" } else { "damaged, or of a kind that is not read" };
-            let fault = Fault::new(
-                format!("the file is {what}: {text}"),
-                file,
-                "h5repack -j 1 -k 2 -f GZIP=4 IN OUT, or another copy of the file",
-            );
-            if newer { ReadError::Unsupported(fault) } else { ReadError::Corrupt(fault) }
+            let remedy = "h5repack -j 1 -k 2 -f GZIP=4 IN OUT, or another copy of the file";
+            let fault = |kind: &str| Fault::new(format!("the file is {kind}: {text}"), file, remedy);
+            if text.contains("nsupported") || text.contains("version") {
+                ReadError::Unsupported(fault("of a kind of HDF5 that is not read"))
+            } else {
+                ReadError::Corrupt(fault("damaged, or of a kind that is not read"))
+            }
         }
     }
 }

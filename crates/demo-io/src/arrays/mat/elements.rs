@@ -66,7 +66,7 @@ impl<'a> Elements<'a> {
         self.input.charge(read as u64)?;
         if read as u64 == most {
             let what = format!("a variable grows from {} to more than {most} bytes", packed.len());
-            return Err(ReadError::TooLarge(Fault::new(what, &self.input.name, "--trust if you trust its source")));
+            return Err(ReadError::grows(what, &self.input.name));
         }
         Ok(unpacked)
     }
@@ -84,7 +84,7 @@ impl<'a> Elements<'a> {
     fn next(&mut self) -> Result<Element<'a>, ReadError> {
         let cut = || {
             let what = "the file ends within a variable";
-            ReadError::Truncated(Fault::new(what, &self.input.name, "another copy of the file: this one is not whole"))
+            ReadError::truncated(what, &self.input.name)
         };
         let tag = self.u32_at(0).ok_or_else(cut)?;
         // Up to four bytes stand in the tag itself.

@@ -24,10 +24,7 @@ const LONGEST: u32 = 1 << 20;
 
 impl Header {
     pub(crate) fn read(from: &mut dyn Read, file: &str) -> Result<Self, ReadError> {
-        let cut = |_| {
-            let remedy = "another copy of the file: this one is not whole";
-            ReadError::Truncated(Fault::new("the file ends within the header of an array", file, remedy))
-        };
+        let cut = |_| ReadError::truncated("the file ends within the header of an array", file);
         let mut start = [0; 8];
         from.read_exact(&mut start).map_err(cut)?;
         if !start.starts_with(MAGIC) {
@@ -40,7 +37,7 @@ impl Header {
         let length = u32::from_le_bytes(length);
         if length > LONGEST {
             let what = format!("the header of an array is {length} bytes long");
-            return Err(ReadError::Corrupt(Fault::new(what, file, "another copy of the file")));
+            return Err(ReadError::corrupt(what, file));
         }
         let mut text = vec![0; length as usize];
         from.read_exact(&mut text).map_err(cut)?;

@@ -24,10 +24,10 @@ pub(super) fn read(header: &Header, count: usize, from: &mut dyn Read) -> io::Re
             let not_a_time = |ticks: Vec<i64>| Data::Dates(ticks, TicksPerSecond(header.ticks));
             each(size, count, from, whole(i64::from_le_bytes)).map(not_a_time)
         }
-        ('i', 1) => each(size, count, from, whole(|b| i64::from(i8::from_le_bytes([b[0]])))).map(Data::Whole),
-        ('i', 2) => each(size, count, from, whole(|b| i64::from(i16::from_le_bytes([b[0], b[1]])))).map(Data::Whole),
-        ('i', 4) => {
-            each(size, count, from, whole(|b| i64::from(i32::from_le_bytes([b[0], b[1], b[2], b[3]])))).map(Data::Whole)
+        ('i', 1 | 2 | 4) => {
+            let unused = 64 - 8 * size as u32;
+            each(size, count, from, move |bytes| i64::from_le_bytes(widened(bytes, big)) << unused >> unused)
+                .map(Data::Whole)
         }
         _ => Err(io::ErrorKind::InvalidData.into()),
     }

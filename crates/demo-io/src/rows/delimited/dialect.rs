@@ -7,13 +7,14 @@ use crate::{Fault, ReadError};
 /// How a file separates fields, and what stands before its rows.
 #[derive(Debug)]
 pub(super) struct Dialect {
-    separator: u8,
+    pub(super) separator: u8,
     /// Runs of blanks separate.
     pub(super) blanks: bool,
     pub(super) decimal_comma: bool,
     /// Bytes of a byte order mark.
     pub(super) mark: usize,
-    header: Option<Vec<String>>,
+    /// Names from the last comment before the rows, as `numpy.savetxt` writes them.
+    pub(super) header: Option<Vec<String>>,
 }
 
 /// Lines looked at to find the separator.
@@ -63,17 +64,8 @@ impl Dialect {
         Ok(Self { separator, blanks: separator == b' ', decimal_comma, mark, header })
     }
 
-    pub(super) fn delimiter(&self) -> u8 {
-        self.separator
-    }
-
     pub(super) fn fields<'a>(&self, record: &'a ByteRecord) -> Fields<'a> {
         Fields { record, decimal_comma: self.decimal_comma }
-    }
-
-    /// Names from the last comment before the rows, as `numpy.savetxt` writes them.
-    pub(super) fn commented_header(&self) -> Option<&[String]> {
-        self.header.as_deref()
     }
 }
 

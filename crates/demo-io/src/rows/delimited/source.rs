@@ -15,7 +15,8 @@ const LONGEST_RECORD: usize = 16 << 20;
 pub(super) struct Guarded<'a> {
     file: File,
     progress: &'a mut dyn FnMut(u64),
-    since_record: Rc<Cell<usize>>,
+    /// Bytes read since the last record: to be set to 0 with each.
+    pub(super) since_record: Rc<Cell<usize>>,
     skip: usize,
     blanks: Option<Squeeze>,
 }
@@ -33,11 +34,6 @@ impl<'a> Guarded<'a> {
             skip: dialect.mark,
             blanks: dialect.blanks.then(Squeeze::default),
         })
-    }
-
-    /// To be set to 0 with each record.
-    pub(super) fn since_record(&self) -> Rc<Cell<usize>> {
-        Rc::clone(&self.since_record)
     }
 }
 

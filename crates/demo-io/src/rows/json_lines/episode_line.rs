@@ -43,11 +43,8 @@ impl<'a> EpisodeLines<'a> {
         }
         crate::arrays::fields::too_many_channels(n, &place)?;
         if self.episodes.len() == MOST_EPISODES {
-            return Err(ReadError::TooLarge(Fault::new(
-                format!("more than {MOST_EPISODES} episodes"),
-                place,
-                "files with fewer episodes",
-            )));
+            let remedy = "files with fewer episodes";
+            return Err(ReadError::TooLarge(Fault::new(format!("more than {MOST_EPISODES} episodes"), place, remedy)));
         }
         let positions = numbers(samples, n, "state", &place)?;
         let velocities = match one_of(line, &["velocity", "velocities"]) {
@@ -127,11 +124,8 @@ fn numbers(samples: &[Json], n: usize, key: &str, place: &str) -> Result<Vec<f64
         }
         for value in values {
             numbers.push(value.number().ok_or_else(|| {
-                ReadError::NotANumber(Fault::new(
-                    format!("'{value}' is not a number"),
-                    place(),
-                    "numbers, or null where one is missing",
-                ))
+                let remedy = "numbers, or null where one is missing";
+                ReadError::NotANumber(Fault::new(format!("'{value}' is not a number"), place(), remedy))
             })?);
         }
     }

@@ -6,7 +6,8 @@ pub(super) struct Fields<'a> {
 }
 
 /// The record ends before its fields, or a text is none.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+#[error("a record does not hold what its kind asks for")]
 pub(super) struct Misfit;
 
 impl<'a> Fields<'a> {

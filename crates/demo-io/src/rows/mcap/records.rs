@@ -1,8 +1,10 @@
 use std::io::{self, BufReader, Read};
 
+use thiserror::Error;
+
 use super::fields::{Fields, Misfit};
 use super::format::{MAGIC, opcode};
-use super::record::{Kind, Record};
+use super::record::Record;
 use super::source::{Summed, Watched, content, head, skip};
 use crate::input::{Input, unreadable};
 use crate::{Fault, ReadError};
@@ -31,35 +33,25 @@ pub(super) fn each(
         Err(Stop::Bytes(error)) if error.raw_os_error().is_some() => Err(unreadable(&error, &input.name)),
         // Whatever was missing is behind the end of the file.
         Err(Stop::Bytes(_)) if file.ended() => Ok(End::Cut),
-        Err(Stop::Bytes(error)) => Err(damaged(&format!("what was packed cannot be unpacked ({error})"), &input.name)),
-        Err(Stop::Damaged(what)) => Err(damaged(&what, &input.name)),
+        Err(stop) => {
+            let remedy = "another copy of the file, or mcap recover FILE";
+            Err(ReadError::Corrupt(Fault::new(format!("the bag is damaged: {stop}"), &input.name, remedy)))
+        }
     }
 }
 
 /// Why reading ends early.
+#[derive(Debug, Error)]
 enum Stop {
     /// Bytes that cannot be had, from the file or unpacked.
-    Bytes(io::Error),
+    #[error("what was packed cannot be unpacked ({0})")]
+    Bytes(#[from] io::Error),
+    #[error("{0}")]
     Damaged(String),
-    Refused(ReadError),
-}
-
-impl From<io::Error> for Stop {
-    fn from(error: io::Error) -> Self {
-        Stop::Bytes(error)
-    }
-}
-
-impl From<ReadError> for Stop {
-    fn from(error: ReadError) -> Self {
-        Stop::Refused(error)
-    }
-}
-
-impl From<Misfit> for Stop {
-    fn from(_: Misfit) -> Self {
-        Stop::Damaged("a record does not hold what its kind asks for".to_owned())
-    }
+    #[error(transparent)]
+    Misfit(#[from] Misfit),
+    #[error(transparent)]
+    Refused(#[from] ReadError),
 }
 
 struct Reader<'a, 'v> {
@@ -95,7 +87,9 @@ impl Reader<'_, '_> {
         if kind == 0 {
             return Err(Stop::Damaged("there is a record of kind 0".to_owned()));
         }
-        let Some(kind) = Kind::of(kind) else { return Ok(skip(source, length)?) };
+        if !Record::is_read(kind) {
+            return Ok(skip(source, length)?);
+        }
         let record = Record::parse(kind, content(source, length, &mut self.buffer)?)?;
         Ok((self.visit)(record)?)
     }
@@ -162,12 +156,4 @@ fn agree(stated: u32, sum: u32, what: &str) -> Result<(), Stop> {
     } else {
         Err(Stop::Damaged(format!("{what} does not have its check sum")))
     }
-}
-
-fn damaged(what: &str, file: &str) -> ReadError {
-    ReadError::Corrupt(Fault::new(
-        format!("the bag is damaged: {what}"),
-        file,
-        "another copy of the file, or mcap recover FILE",
-    ))
 }

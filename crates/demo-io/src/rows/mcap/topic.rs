@@ -17,14 +17,16 @@ use motion::{Channel, Finding};
 /// The messages of a topic. What is wrong with them matters only if the topic is chosen.
 pub(super) struct Topic<'a> {
     input: &'a Input<'a>,
-    name: String,
-    schema: String,
-    kind: Option<Type>,
+    pub(super) name: String,
+    pub(super) schema: String,
+    /// None if it is not read.
+    pub(super) kind: Option<Type>,
     /// Messages by the set of their names, since several programs publish on one topic.
     sets: Vec<Set>,
     by_names: HashMap<Vec<String>, usize>,
     documents: Option<Documents<'a>>,
-    messages: u64,
+    /// How many there are.
+    pub(super) messages: u64,
     fault: Option<ReadError>,
 }
 
@@ -62,22 +64,6 @@ impl<'a> Topic<'a> {
             messages: 0,
             fault: None,
         }
-    }
-
-    pub(super) fn is(&self, name: &str, schema: &str) -> bool {
-        self.name == name && self.schema == schema
-    }
-
-    pub(super) fn name(&self) -> &str {
-        &self.name
-    }
-
-    pub(super) fn is_known(&self) -> bool {
-        self.kind.is_some()
-    }
-
-    pub(super) fn len(&self) -> u64 {
-        self.messages
     }
 
     /// Adds a message that was logged at `log_time` nanoseconds since 1970.
@@ -168,11 +154,8 @@ impl<'a> Topic<'a> {
         }
         if self.messages == 0 {
             let remedy = "another bag, or --topic with one that has messages";
-            return Err(ReadError::Empty(Fault::new(
-                format!("there is no message on {self}"),
-                &self.input.name,
-                remedy,
-            )));
+            let what = format!("there is no message on {self}");
+            return Err(ReadError::Empty(Fault::new(what, &self.input.name, remedy)));
         }
         if let Some(documents) = self.documents.take() {
             return documents.finish();

@@ -84,6 +84,7 @@ const STRUCTURE: u8 = 12;
 impl Holds {
     fn is(&self, kind: u8) -> bool {
         match self {
+            Holds::Any => true,
             Holds::Truth => matches!(kind, 1 | 2),
             Holds::Byte => kind == BYTE,
             Holds::Integer | Holds::Size(_) => (4..=6).contains(&kind),
@@ -116,7 +117,7 @@ impl Description<'_> {
                 0 => zigzag(self.integer()?) as i16,
                 step => number.checked_add(step).ok_or(Stop::Unreadable)?,
             };
-            let holds = fields.iter().find(|field| field.0 == number).map(|field| &field.1);
+            let holds = usize::try_from(number).ok().and_then(|number| fields.get(number.checked_sub(1)?));
             if holds.is_some_and(|holds| !holds.is(kind)) {
                 return Err(Stop::Other);
             }

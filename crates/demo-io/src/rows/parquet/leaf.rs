@@ -8,6 +8,7 @@ use parquet::schema::types::ColumnDescriptor;
 use super::descriptions;
 use super::failure::{damaged, failed};
 use crate::arrays::array::Data;
+use crate::arrays::npy;
 use crate::input::Input;
 use crate::raw::MOST_CHANNELS;
 use crate::rows::stamps::{Stamp, TicksPerSecond};
@@ -108,11 +109,8 @@ impl Leaf {
         if starts.len() != rows + 1 || !even {
             let what = format!("'{}' holds lists of different lengths, or too few", self.name);
             let place = format!("{}, column '{}'", input.name, self.name);
-            return Err(ReadError::Ragged(Fault::new(
-                what,
-                place,
-                "--state with columns of numbers or lists of one length",
-            )));
+            let remedy = "--state with columns of numbers or lists of one length";
+            return Err(ReadError::Ragged(Fault::new(what, place, remedy)));
         }
         Ok(Values { data, ticks: self.ticks })
     }
@@ -143,40 +141,33 @@ impl Leaf {
     ) -> Result<(Data, Vec<usize>), ReadError> {
         let reader = group.get_column_reader(self.index).map_err(|error| failed(&error, input))?;
         let missing = f64::NAN;
+        let half = |bytes: &[u8]| bytes.try_into().map_or(missing, |bytes| npy::half(u16::from_le_bytes(bytes)));
         let read = match reader {
-            ColumnReader::DoubleColumnReader(reader) => self.filled(reader, rows, |value| *value, missing).map(numbers),
-            ColumnReader::FloatColumnReader(reader) => {
-                self.filled(reader, rows, |value| f64::from(*value), missing).map(numbers)
+            ColumnReader::DoubleColumnReader(reader) => {
+                self.filled(reader, rows, |value| *value, missing, Data::Numbers)
             }
-            ColumnReader::Int64ColumnReader(reader) => self.filled(reader, rows, |value| Some(*value), None).map(whole),
+            ColumnReader::FloatColumnReader(reader) => {
+                self.filled(reader, rows, |value| f64::from(*value), missing, Data::Numbers)
+            }
+            ColumnReader::Int64ColumnReader(reader) => self.filled(reader, rows, |value| Some(*value), None, whole),
             ColumnReader::Int32ColumnReader(reader) => {
-                self.filled(reader, rows, |value| Some(i64::from(*value)), None).map(whole)
+                self.filled(reader, rows, |value| Some(i64::from(*value)), None, whole)
             }
             ColumnReader::BoolColumnReader(reader) => {
-                self.filled(reader, rows, |value| Some(i64::from(*value)), None).map(whole)
+                self.filled(reader, rows, |value| Some(i64::from(*value)), None, whole)
             }
             ColumnReader::Int96ColumnReader(reader) => {
-                self.filled(reader, rows, |value| Some(value.to_nanos()), None).map(whole)
+                self.filled(reader, rows, |value| Some(value.to_nanos()), None, whole)
             }
-            ColumnReader::ByteArrayColumnReader(reader) => self
-                .filled(reader, rows, |value| text(value.data()), String::new())
-                .map(|(texts, starts)| (Data::Text(texts), starts)),
-            ColumnReader::FixedLenByteArrayColumnReader(reader) if self.half => self
-                .filled(
-                    reader,
-                    rows,
-                    |value| {
-                        value
-                            .data()
-                            .try_into()
-                            .map_or(missing, |bytes| crate::arrays::npy::half(u16::from_le_bytes(bytes)))
-                    },
-                    missing,
-                )
-                .map(numbers),
-            ColumnReader::FixedLenByteArrayColumnReader(reader) => self
-                .filled(reader, rows, |value| text(value.data()), String::new())
-                .map(|(texts, starts)| (Data::Text(texts), starts)),
+            ColumnReader::ByteArrayColumnReader(reader) => {
+                self.filled(reader, rows, |value| text(value.data()), String::new(), Data::Text)
+            }
+            ColumnReader::FixedLenByteArrayColumnReader(reader) if self.half => {
+                self.filled(reader, rows, |value| half(value.data()), missing, Data::Numbers)
+            }
+            ColumnReader::FixedLenByteArrayColumnReader(reader) => {
+                self.filled(reader, rows, |value| text(value.data()), String::new(), Data::Text)
+            }
         };
         read.map_err(|error| failed(&error, input))
     }
@@ -188,7 +179,8 @@ impl Leaf {
         rows: usize,
         convert: impl Fn(&T::T) -> V,
         missing: V,
-    ) -> parquet::errors::Result<(Vec<V>, Vec<usize>)> {
+        data: impl FnOnce(Vec<V>) -> Data,
+    ) -> parquet::errors::Result<(Data, Vec<usize>)> {
         let mut filled: Vec<V> = Vec::new();
         let mut starts: Vec<usize> = Vec::new();
         let (mut values, mut defined, mut repeated) = (Vec::new(), Vec::new(), Vec::new());
@@ -218,24 +210,19 @@ impl Leaf {
             }
         }
         starts.push(filled.len());
-        Ok((filled, starts))
+        Ok((data(filled), starts))
     }
 }
 
 /// Records at once.
 const BATCH: usize = 4096;
 
-fn numbers((values, starts): (Vec<f64>, Vec<usize>)) -> (Data, Vec<usize>) {
-    (Data::Numbers(values), starts)
-}
-
 /// Whole numbers; with one missing they become f64, which knows NaN.
-fn whole((values, starts): (Vec<Option<i64>>, Vec<usize>)) -> (Data, Vec<usize>) {
-    let data = match values.iter().copied().collect::<Option<Vec<i64>>>() {
+fn whole(values: Vec<Option<i64>>) -> Data {
+    match values.iter().copied().collect::<Option<Vec<i64>>>() {
         Some(values) => Data::Whole(values),
         None => Data::Numbers(values.into_iter().map(|value| value.map_or(f64::NAN, |value| value as f64)).collect()),
-    };
-    (data, starts)
+    }
 }
 
 fn text(bytes: &[u8]) -> String {

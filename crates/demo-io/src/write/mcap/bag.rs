@@ -12,17 +12,29 @@ const CHUNK: usize = 768 << 10;
 const SCHEMA: u16 = 1;
 const CHANNEL: u16 = 1;
 
-/// What the messages of a bag are.
-pub(super) struct Topic {
-    pub(super) name: &'static str,
-    /// Name and text of the type.
-    pub(super) schema: (&'static str, &'static str),
-}
+const TOPIC: &str = "/joint_states";
+const TYPE: &str = "sensor_msgs/msg/JointState";
 
-/// Writes a bag from its beginning to its end.
+/// What viewers need to know to take messages apart.
+const DEFINITION: &str = "\
+std_msgs/Header header
+string[] name
+float64[] position
+float64[] velocity
+float64[] effort
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+";
+
+/// Writes a bag of joint states from its beginning to its end.
 pub(super) struct Bag<W> {
     out: Out<W>,
-    topic: Topic,
     chunk: Chunk,
     chunks: Vec<ChunkIndex>,
     messages: u64,
@@ -48,16 +60,16 @@ struct ChunkIndex {
 }
 
 impl<W: Write> Bag<W> {
-    pub(super) fn create(inner: W, topic: Topic) -> io::Result<Self> {
+    pub(super) fn create(inner: W) -> io::Result<Self> {
         let mut out = Out::new(inner);
         out.write_all(&MAGIC)?;
         let mut header = Record::new(opcode::HEADER);
         header.text("ros2");
         header.text("demo-io");
         out.record(&header)?;
-        out.record(&topic.schema())?;
-        out.record(&topic.channel())?;
-        Ok(Self { out, topic, chunk: Chunk::default(), chunks: Vec::new(), messages: 0 })
+        out.record(&schema())?;
+        out.record(&channel())?;
+        Ok(Self { out, chunk: Chunk::default(), chunks: Vec::new(), messages: 0 })
     }
 
     /// Adds a message at `time` nanoseconds; times do not fall.
@@ -134,8 +146,8 @@ impl<W: Write> Bag<W> {
         index.u64(length);
         index.text(name);
         let groups = [
-            vec![self.topic.schema()],
-            vec![self.topic.channel()],
+            vec![schema()],
+            vec![channel()],
             vec![self.statistics()],
             self.chunks.iter().map(ChunkIndex::record).collect(),
             vec![index],
@@ -184,26 +196,24 @@ impl<W: Write> Bag<W> {
     }
 }
 
-impl Topic {
-    fn schema(&self) -> Record {
-        let (name, text) = self.schema;
-        let mut schema = Record::new(opcode::SCHEMA);
-        schema.u16(SCHEMA);
-        schema.text(name);
-        schema.text("ros2msg");
-        schema.text(text);
-        schema
-    }
+/// The type of the messages.
+fn schema() -> Record {
+    let mut schema = Record::new(opcode::SCHEMA);
+    schema.u16(SCHEMA);
+    schema.text(TYPE);
+    schema.text("ros2msg");
+    schema.text(DEFINITION);
+    schema
+}
 
-    fn channel(&self) -> Record {
-        let mut channel = Record::new(opcode::CHANNEL);
-        channel.u16(CHANNEL);
-        channel.u16(SCHEMA);
-        channel.text(self.name);
-        channel.text("cdr");
-        channel.map(&BTreeMap::new());
-        channel
-    }
+fn channel() -> Record {
+    let mut channel = Record::new(opcode::CHANNEL);
+    channel.u16(CHANNEL);
+    channel.u16(SCHEMA);
+    channel.text(TOPIC);
+    channel.text("cdr");
+    channel.map(&BTreeMap::new());
+    channel
 }
 
 impl ChunkIndex {
