@@ -106,8 +106,7 @@ fn degrees_to_radians(drafts: &mut RawRecordings, options: &ReadOptions) -> Resu
 fn sort(draft: &mut RawEpisode) {
     let mut order: Vec<usize> = (0..draft.len()).collect();
     order.sort_by(|&a, &b| draft.times[a].total_cmp(&draft.times[b]));
-    let n = draft.dim();
-    draft.keep(&order, n);
+    *draft = draft.chosen(order.into_iter());
 }
 
 fn refuse_backwards(draft: &RawEpisode, word: &str) -> Result<(), ReadError> {
@@ -133,8 +132,7 @@ fn leave_out_twins(draft: &mut RawEpisode, word: &str) -> Option<Finding> {
         twins => format!(" (and {} more)", twins - 1),
     };
     let what = format!("{}: a stamp occurs twice; kept the first of its samples{more}", draft.place(first, word));
-    let n = draft.dim();
-    draft.keep(&kept, n);
+    *draft = draft.chosen(kept.into_iter());
     Some(remark(what, "check the recorder's clock"))
 }
 
@@ -147,7 +145,8 @@ fn split(draft: RawEpisode, longest: f64) -> Vec<RawEpisode> {
         return vec![draft];
     }
     let part = |(number, cut): (usize, &[usize])| {
-        draft.part(cut[0]..cut[1], format!("{}_{number}", draft.name), draft.constraint.clone())
+        let name = format!("{}_{number}", draft.name);
+        RawEpisode { name, ..draft.chosen(cut[0]..cut[1]) }
     };
     cuts.windows(2).enumerate().map(part).collect()
 }
@@ -172,21 +171,6 @@ fn unwrap_angles(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<()
         }
     }
     Ok(())
-}
-
-impl RawEpisode {
-    /// Leaves some samples, in the order given.
-    fn keep(&mut self, samples: &[usize], n: usize) {
-        self.rows = self.rows.chosen(samples.iter().copied());
-        let columns = |numbers: &[f64]| -> Vec<f64> {
-            samples.iter().flat_map(|&sample| &numbers[sample * n..(sample + 1) * n]).copied().collect()
-        };
-        self.positions = columns(&self.positions);
-        if !self.velocities.is_empty() {
-            self.velocities = columns(&self.velocities);
-        }
-        self.times = samples.iter().map(|&sample| self.times[sample]).collect();
-    }
 }
 
 /// Three or four digits, without a tail of zeros.

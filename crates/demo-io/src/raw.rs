@@ -1,7 +1,5 @@
 //! Episodes as a reader finds them, before anything is checked.
 
-use std::ops::Range;
-
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use motion::{Channel, Episode, Finding, Recordings, Source, Times, Verdict};
 use nalgebra::DMatrix;
@@ -69,23 +67,21 @@ impl RawEpisode {
         self.times.len()
     }
 
-    /// n, or 0 without samples.
-    pub(crate) fn dim(&self) -> usize {
-        self.positions.len().checked_div(self.len()).unwrap_or(0)
-    }
-
-    /// Some samples in a row, as an episode by themselves.
-    pub(crate) fn part(&self, samples: Range<usize>, name: String, constraint: Option<String>) -> RawEpisode {
-        let n = self.dim();
-        let columns = samples.start * n..samples.end * n;
+    /// Some samples, in the order given.
+    pub(crate) fn chosen(&self, samples: impl Iterator<Item = usize> + Clone) -> RawEpisode {
+        // Velocities may be missing.
+        let columns = |numbers: &[f64]| -> Vec<f64> {
+            let n = numbers.len().checked_div(self.len()).unwrap_or(0);
+            samples.clone().flat_map(|sample| &numbers[sample * n..(sample + 1) * n]).copied().collect()
+        };
         RawEpisode {
-            name,
+            name: self.name.clone(),
             file: self.file.clone(),
             rows: self.rows.chosen(samples.clone()),
-            times: self.times[samples].to_vec(),
-            positions: self.positions[columns.clone()].to_vec(),
-            velocities: self.velocities.get(columns).map_or_else(Vec::new, <[f64]>::to_vec),
-            constraint,
+            times: samples.clone().map(|sample| self.times[sample]).collect(),
+            positions: columns(&self.positions),
+            velocities: columns(&self.velocities),
+            constraint: self.constraint.clone(),
         }
     }
 

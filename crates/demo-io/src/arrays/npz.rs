@@ -8,8 +8,7 @@ use rawzip::{CompressionMethod, ErrorKind, FileReader, RECOMMENDED_BUFFER_SIZE, 
 use crate::arrays::array::ArraySpec;
 use crate::arrays::flat;
 use crate::arrays::npy::Header;
-use crate::input::Input;
-use crate::input::damaged;
+use crate::input::{Input, damaged};
 use crate::raw::RawRecordings;
 use crate::{Fault, ReadError};
 
@@ -17,7 +16,7 @@ use crate::{Fault, ReadError};
 const MOST_ENTRIES: usize = 100_000;
 
 struct Entry {
-    described: ArraySpec,
+    name: String,
     wayfinder: ZipArchiveEntryWayfinder,
     deflated: bool,
 }
@@ -44,18 +43,17 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
             let remedy = "fewer a file";
             return Err(ReadError::TooLarge(Fault::new(format!("more than {MOST_ENTRIES} arrays"), file, remedy)));
         }
-        let described = ArraySpec { name: name.to_owned(), shape: Vec::new(), kind: crate::arrays::array::Kind::Text };
-        entries.push(Entry { described, wayfinder: record.wayfinder(), deflated });
+        entries.push(Entry { name: name.to_owned(), wayfinder: record.wayfinder(), deflated });
     }
     if entries.is_empty() {
         let what = "an archive without NumPy arrays";
         return Err(ReadError::NotThisFormat(Fault::new(what, file, "numpy.savez to write it")));
     }
-    for entry in &mut entries {
+    let described = |entry: &Entry| -> Result<ArraySpec, ReadError> {
         let header = opened(&archive, entry, input, |reader| Header::read(reader, &place(file, entry)))?;
-        entry.described = header.described(std::mem::take(&mut entry.described.name));
-    }
-    let described: Vec<ArraySpec> = entries.iter().map(|entry| entry.described.clone()).collect();
+        Ok(header.described(entry.name.clone()))
+    };
+    let described = entries.iter().map(described).collect::<Result<Vec<_>, _>>()?;
     flat::drafts(input, &described, &mut |index| {
         let entry = &entries[index];
         progress(entry.wayfinder.compressed_size_hint());
@@ -74,7 +72,7 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
 }
 
 fn place(file: &str, entry: &Entry) -> String {
-    format!("{file}, array '{}'", entry.described.name)
+    format!("{file}, array '{}'", entry.name)
 }
 
 /// Hands the entry's decompressed and checked bytes to `use_it`.
@@ -90,7 +88,7 @@ fn opened<T>(
         return Err(cut(file));
     }
     if unpacked > packed.saturating_mul(64).saturating_add(1 << 20) && !input.options.trust {
-        let what = format!("'{}' grows from {packed} to {unpacked} bytes", entry.described.name);
+        let what = format!("'{}' grows from {packed} to {unpacked} bytes", entry.name);
         return Err(ReadError::grows(what, file));
     }
     let opened = archive.get_entry(entry.wayfinder).map_err(|error| zip(&error, file))?;

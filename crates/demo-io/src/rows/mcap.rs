@@ -1,6 +1,5 @@
 //! Bags of ROS 2 in MCAP: one topic becomes one recording.
 
-mod fields;
 pub(crate) mod format;
 mod messages;
 mod noted;
@@ -16,8 +15,7 @@ use self::record::Record;
 use self::records::End;
 use self::topic::Topic;
 use crate::input::Input;
-use crate::raw::RawRecordings;
-use crate::raw::remark;
+use crate::raw::{RawRecordings, remark};
 use crate::rows::roles::shortened;
 use crate::{Fault, ReadError};
 

@@ -1,7 +1,5 @@
 //! Files of rows: a row or a message a sample, with named columns.
 
-#[cfg(feature = "mcap")]
-pub(crate) mod cdr;
 pub(crate) mod delimited;
 mod documents;
 pub(crate) mod json;
@@ -10,6 +8,8 @@ pub(crate) mod json_lines;
 pub(crate) mod lerobot;
 #[cfg(feature = "mcap")]
 pub(crate) mod mcap;
+#[cfg(feature = "mcap")]
+pub(crate) mod packed;
 #[cfg(feature = "parquet")]
 pub(crate) mod parquet;
 pub(crate) mod roles;

@@ -13,8 +13,7 @@ use self::failure::failed;
 use self::leaf::Leaf;
 use crate::input::Input;
 use crate::names::selection::select;
-use crate::raw::RawRecordings;
-use crate::raw::remark;
+use crate::raw::{RawRecordings, remark};
 use crate::rows::roles::{Column, Content};
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use crate::rows::table::{Row, Table};
@@ -180,6 +179,11 @@ impl Columns {
         Ok(columns)
     }
 
+    fn stamps(&self, period: f64) -> Option<Stamps<'_>> {
+        let leaf = |name: &str| self.leaves.iter().find(|leaf| leaf.name == name && !leaf.list && !leaf.text);
+        Some(Stamps { period, stamp: leaf("timestamp")?, frame: leaf("frame_index")?, finding: None })
+    }
+
     fn state_is_list(&self, options: &ReadOptions) -> bool {
         !options.state.is_empty() || self.leaves.iter().any(|leaf| leaf.list)
     }
@@ -205,13 +209,6 @@ struct Stamps<'a> {
     stamp: &'a Leaf,
     frame: &'a Leaf,
     finding: Option<Finding>,
-}
-
-impl Columns {
-    fn stamps(&self, period: f64) -> Option<Stamps<'_>> {
-        let leaf = |name: &str| self.leaves.iter().find(|leaf| leaf.name == name && !leaf.list && !leaf.text);
-        Some(Stamps { period, stamp: leaf("timestamp")?, frame: leaf("frame_index")?, finding: None })
-    }
 }
 
 impl Stamps<'_> {

@@ -121,7 +121,7 @@ impl Roles {
         options: &ReadOptions,
         place: &str,
     ) -> Result<(), ReadError> {
-        let mut velocity_of: Vec<(usize, usize)> = Vec::new();
+        let mut velocities: Vec<usize> = Vec::new();
         if options.velocity.is_empty() {
             let lowered: Vec<(usize, String)> = free.iter().map(|&index| (index, base(names[index]))).collect();
             let mut by_name: HashMap<&str, usize> = HashMap::new();
@@ -129,16 +129,12 @@ impl Roles {
                 by_name.entry(name).or_insert(*index);
             }
             for (index, name) in &lowered {
-                if velocity_of.iter().any(|&(_, velocity)| velocity == *index) {
-                    continue;
-                }
-                let velocity = velocity_names(name).find_map(|wanted| by_name.get(wanted.as_str()).copied());
-                if let Some(velocity) = velocity.filter(|velocity| velocity != index) {
-                    velocity_of.push((*index, velocity));
+                if !velocities.contains(index) {
+                    let velocity = velocity_names(name).find_map(|wanted| by_name.get(wanted.as_str()).copied());
+                    velocities.extend(velocity.filter(|velocity| velocity != index));
                 }
             }
         }
-        let velocities: Vec<usize> = velocity_of.iter().map(|&(_, velocity)| velocity).collect();
         // What is a velocity has no velocity of its own here: 'ddx' beside 'x' and 'dx' stays state and is found lacking.
         self.state = free.iter().copied().filter(|index| !velocities.contains(index)).collect();
         free.retain(|index| velocities.contains(index));
@@ -164,13 +160,8 @@ impl Roles {
         if found.iter().all(Option::is_none) {
             return Ok(());
         }
-        let lacking: Vec<&str> = self
-            .state
-            .iter()
-            .zip(&found)
-            .filter(|(_, found)| found.is_none())
-            .map(|(&index, _)| names[index])
-            .collect();
+        let states = self.state.iter().zip(&found);
+        let lacking: Vec<&str> = states.filter(|(_, found)| found.is_none()).map(|(&index, _)| names[index]).collect();
         if !lacking.is_empty() {
             let known: Vec<&str> = found.iter().flatten().map(|&index| names[index]).collect();
             let what = format!("some states have a velocity ({}), but {} lack one", known.join(", "), quoted(&lacking));
@@ -189,7 +180,8 @@ impl Roles {
         let (states, velocities) = (self.state.len(), self.velocity.len());
         if velocities != 0 && velocities != states {
             let what = format!("{states} columns of state but {velocities} of velocity");
-            let remedy = format!("--velocity with one column for each of {}", quoted_at(names, &self.state));
+            let state: Vec<&str> = self.state.iter().map(|&index| names[index]).collect();
+            let remedy = format!("--velocity with one column for each of {}", quoted(&state));
             return Err(ReadError::NoRoles(Fault::new(what, place, remedy)));
         }
         if let Some(&both) = self.state.iter().find(|index| self.velocity.contains(index)) {
@@ -249,10 +241,6 @@ pub(crate) fn shortened<S: AsRef<str>>(names: &[S]) -> String {
 fn quoted(names: &[&str]) -> String {
     let names: Vec<String> = names.iter().map(|name| format!("'{name}'")).collect();
     shortened(&names)
-}
-
-fn quoted_at(names: &[&str], indices: &[usize]) -> String {
-    quoted(&indices.iter().map(|&index| names[index]).collect::<Vec<_>>())
 }
 
 #[cfg(test)]

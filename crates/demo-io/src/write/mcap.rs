@@ -6,8 +6,9 @@ use std::io::{self, Write};
 
 use self::bag::Bag;
 use super::{Failure, has_velocities};
-use crate::rows::cdr::Writer;
+
 use crate::rows::mcap::{METADATA, Noted};
+use crate::rows::packed::Writer;
 use motion::Recordings;
 
 /// Stamp of the first sample: 0 would mean that a driver left it out.

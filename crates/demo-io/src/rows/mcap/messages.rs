@@ -1,4 +1,4 @@
-use crate::rows::cdr::{Cdr, Short};
+use crate::rows::packed::{Misfit, Reader};
 
 /// Types of messages that hold a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,42 +41,42 @@ impl Type {
         }
     }
 
-    pub(super) fn decode(self, bytes: &[u8]) -> Result<Message<'_>, Short> {
-        let mut cdr = Cdr::new(bytes)?;
+    pub(super) fn decode(self, bytes: &[u8]) -> Result<Message<'_>, Misfit> {
+        let mut reader = Reader::of_message(bytes)?;
         let mut message = Message { stamp: None, names: Vec::new(), positions: Vec::new(), velocities: Vec::new() };
         if self != Type::Numbers {
-            let (seconds, nanoseconds) = (cdr.i32()?, cdr.u32()?);
+            let (seconds, nanoseconds) = (reader.i32()?, reader.u32()?);
             message.stamp = Some(i64::from(seconds) * 1_000_000_000 + i64::from(nanoseconds));
-            cdr.text()?;
+            reader.closed_text()?;
         }
         match self {
             Type::JointState => {
-                message.names = cdr.texts()?;
-                message.positions = cdr.numbers()?;
-                message.velocities = cdr.numbers()?;
-                cdr.numbers()?;
+                message.names = reader.texts()?;
+                message.positions = reader.numbers()?;
+                message.velocities = reader.numbers()?;
+                reader.numbers()?;
             }
-            Type::Pose => message.fixed(&mut cdr, &POSE)?,
-            Type::Twist => message.fixed(&mut cdr, &TWIST)?,
+            Type::Pose => message.fixed(&mut reader, &POSE)?,
+            Type::Twist => message.fixed(&mut reader, &TWIST)?,
             Type::Numbers => {
-                for _ in 0..cdr.u32()? {
-                    cdr.text()?;
-                    cdr.u32()?;
-                    cdr.u32()?;
+                for _ in 0..reader.u32()? {
+                    reader.closed_text()?;
+                    reader.u32()?;
+                    reader.u32()?;
                 }
-                cdr.u32()?;
-                message.positions = cdr.numbers()?;
+                reader.u32()?;
+                message.positions = reader.numbers()?;
             }
-            Type::Json => return Err(Short),
+            Type::Json => return Err(Misfit),
         }
         Ok(message)
     }
 }
 
 impl Message<'_> {
-    fn fixed(&mut self, cdr: &mut Cdr<'_>, names: &[&'static str]) -> Result<(), Short> {
+    fn fixed(&mut self, reader: &mut Reader<'_>, names: &[&'static str]) -> Result<(), Misfit> {
         self.names = names.to_vec();
-        self.positions = names.iter().map(|_| cdr.f64()).collect::<Result<_, _>>()?;
+        self.positions = names.iter().map(|_| reader.f64()).collect::<Result<_, _>>()?;
         Ok(())
     }
 }

@@ -16,7 +16,7 @@ pub(super) fn episodes(draft: RawEpisode, metadata: &BTreeMap<String, String>) -
     let cut = noted.into_iter().map(|episode| {
         let samples = start..start + episode.messages;
         start = samples.end;
-        draft.part(samples, episode.name, episode.constraint)
+        RawEpisode { name: episode.name, constraint: episode.constraint, ..draft.chosen(samples) }
     });
     cut.collect()
 }

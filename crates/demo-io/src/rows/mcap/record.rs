@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 
-use super::fields::{Fields, Misfit};
 use super::format::opcode;
+use crate::rows::packed::{Misfit, Reader};
 
 /// What of a bag is of use here.
 #[derive(Debug, PartialEq)]
@@ -36,7 +36,7 @@ impl<'a> Record<'a> {
 
     /// The record of a kind that is read.
     pub(super) fn parse(kind: u8, content: &'a [u8]) -> Result<Self, Misfit> {
-        let mut fields = Fields::new(content);
+        let mut fields = Reader::of_record(content);
         Ok(match kind {
             opcode::SCHEMA => Record::Schema { id: fields.u16()?, name: fields.text()? },
             opcode::CHANNEL => Record::Channel {

@@ -2,11 +2,11 @@ use std::io::{self, BufReader, Read};
 
 use thiserror::Error;
 
-use super::fields::{Fields, Misfit};
 use super::format::{MAGIC, opcode};
 use super::record::Record;
 use super::source::{Summed, Watched, content, head, skip};
 use crate::input::{Input, unreadable};
+use crate::rows::packed::{self, Misfit};
 use crate::{Fault, ReadError};
 
 /// How a bag ends.
@@ -70,7 +70,7 @@ impl Reader<'_, '_> {
             match kind {
                 opcode::CHUNK => self.chunk(file, length)?,
                 opcode::DATA_END => {
-                    let stated = Fields::new(content(file, length, &mut self.buffer)?).u32()?;
+                    let stated = packed::Reader::of_record(content(file, length, &mut self.buffer)?).u32()?;
                     agree(stated, sum, "the data")?;
                 }
                 opcode::FOOTER => {
@@ -98,7 +98,7 @@ impl Reader<'_, '_> {
         let mut packed = file.take(length);
         let mut fixed = [0; 32];
         packed.read_exact(&mut fixed)?;
-        let mut fields = Fields::new(&fixed[16..]);
+        let mut fields = packed::Reader::of_record(&fixed[16..]);
         let (unpacked, stated, name) = (fields.u64()?, fields.u32()?, fields.u32()?);
         let compression =
             String::from_utf8_lossy(content(&mut packed, u64::from(name), &mut self.buffer)?).into_owned();
