@@ -3,7 +3,7 @@
 mod finite;
 
 use self::finite::make_finite;
-use crate::names::selection::{flags, select};
+use crate::names::selection::flags;
 use crate::raw::{RawEpisode, RawRecordings, positive, remark};
 use crate::rows::roles;
 use crate::{Fault, ReadError, ReadOptions};
@@ -82,9 +82,9 @@ fn name_units(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<(), R
     Ok(())
 }
 
+/// The channels that a flag's patterns name.
 fn named(patterns: &[String], names: &[String], flag: &str) -> Result<Vec<usize>, ReadError> {
-    let place = format!("{flag}, among the channels of the state");
-    select(patterns, names).map_err(|pattern| roles::no_column(&pattern, names, &place))
+    roles::named(patterns, names, &format!("{flag}, among the channels of the state"))
 }
 
 fn degrees_to_radians(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<(), ReadError> {

@@ -1,14 +1,29 @@
 //! Episodes of several files as one set.
 
+use std::path::Path;
+
+use crate::input::name_of;
 use crate::raw::RawRecordings;
 use crate::{Fault, ReadError};
 
+/// What `read` finds in each of some files, in their order; none without a file.
+pub(crate) fn joined<P: AsRef<Path>>(
+    paths: &[P],
+    mut read: impl FnMut(&Path) -> Result<RawRecordings, ReadError>,
+) -> Result<Option<RawRecordings>, ReadError> {
+    let mut joined: Option<RawRecordings> = None;
+    for path in paths.iter().map(AsRef::as_ref) {
+        let more = read(path)?;
+        match &mut joined {
+            Some(joined) => join(joined, more, &name_of(path))?,
+            None => joined = Some(more),
+        }
+    }
+    Ok(joined)
+}
+
 /// Appends the episodes of another file.
-pub(crate) fn add(joined: &mut Option<RawRecordings>, more: RawRecordings, file: &str) -> Result<(), ReadError> {
-    let Some(joined) = joined else {
-        *joined = Some(more);
-        return Ok(());
-    };
+fn join(joined: &mut RawRecordings, more: RawRecordings, file: &str) -> Result<(), ReadError> {
     if joined.channels != more.channels {
         let what = format!("channels differ: {} here, {} before", more.names().join(", "), joined.names().join(", "));
         let remedy = "--state with channels that all files have, or files of one kind";

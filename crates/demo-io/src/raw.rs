@@ -77,7 +77,7 @@ impl RawEpisode {
         RawEpisode {
             name: self.name.clone(),
             file: self.file.clone(),
-            rows: self.rows.chosen(samples.clone()),
+            rows: samples.clone().map(|sample| self.rows.at(sample)).collect(),
             times: samples.clone().map(|sample| self.times[sample]).collect(),
             positions: columns(&self.positions),
             velocities: columns(&self.velocities),
@@ -129,13 +129,12 @@ impl Rows {
     pub(crate) fn ends(&self, word: &'static str) -> Option<motion::Rows> {
         (self.len > 0).then(|| motion::Rows { word, first: self.at(0), last: self.at(self.len - 1) })
     }
+}
 
-    /// The places of some samples.
-    pub(crate) fn chosen(&self, samples: impl IntoIterator<Item = usize>) -> Self {
+impl FromIterator<u64> for Rows {
+    fn from_iter<I: IntoIterator<Item = u64>>(places: I) -> Self {
         let mut rows = Rows::default();
-        for sample in samples {
-            rows.push(self.at(sample));
-        }
+        places.into_iter().for_each(|place| rows.push(place));
         rows
     }
 }
@@ -239,15 +238,12 @@ mod tests {
 
     #[test]
     fn rows_are_runs() {
-        let mut rows = Rows::default();
-        for place in [2, 3, 4, 9, 10, 7] {
-            rows.push(place);
-        }
+        let rows: Rows = [2, 3, 4, 9, 10, 7].into_iter().collect();
         assert_eq!(rows.runs.len(), 3);
         assert_eq!((0..6).map(|sample| rows.at(sample)).collect::<Vec<_>>(), [2, 3, 4, 9, 10, 7]);
         let ends = |first, last| Some(motion::Rows { word: "line", first, last });
         assert_eq!(rows.ends("line"), ends(2, 7));
-        assert_eq!(rows.chosen([1, 3]).ends("line"), ends(3, 9));
+        assert_eq!([1, 3].into_iter().map(|sample| rows.at(sample)).collect::<Rows>().ends("line"), ends(3, 9));
         assert_eq!(Rows::default().ends("line"), None);
     }
 

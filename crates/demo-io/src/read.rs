@@ -6,7 +6,7 @@ use crate::clean::clean;
 #[cfg(any(feature = "parquet", feature = "hdf5", feature = "mcap", feature = "mat"))]
 use crate::guard::guarded;
 use crate::input::{Input, name_of, unreadable};
-use crate::joined::add;
+use crate::joined::joined;
 use crate::names::natural;
 use crate::raw::RawRecordings;
 use crate::rows::{delimited, json_lines};
@@ -36,14 +36,10 @@ pub fn read_all(
     options: &ReadOptions,
     progress: &mut dyn FnMut(u64),
 ) -> Result<Recordings, ReadError> {
-    let mut joined: Option<RawRecordings> = None;
-    for path in paths {
-        let mut drafts = drafts(path, options, progress)?;
-        if paths.len() > 1 {
-            name_by_file(&mut drafts, path);
-        }
-        add(&mut joined, drafts, &name_of(path))?;
-    }
+    let joined = joined(paths, |path| {
+        let drafts = drafts(path, options, progress)?;
+        Ok(if paths.len() > 1 { named_by_file(drafts, path) } else { drafts })
+    })?;
     let place = || paths.first().map(|path| name_of(path)).unwrap_or_default();
     let nothing = |what: &str| ReadError::Empty(Fault::new(what, place(), "recordings with movements"));
     let mut drafts = joined.ok_or_else(|| nothing("no file was given"))?;
@@ -57,14 +53,22 @@ pub fn read_all(
     Ok(drafts.checked())
 }
 
+/// Reads with a library that a feature brings, and that may panic at damaged files.
+macro_rules! with_feature {
+    ($feature:literal, $name:expr, $read:expr) => {{
+        #[cfg(feature = $feature)]
+        let outcome = guarded($name, || $read);
+        #[cfg(not(feature = $feature))]
+        let outcome = Err(not_built($name, $feature));
+        outcome
+    }};
+}
+
 fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> Result<RawRecordings, ReadError> {
     let name = name_of(path);
     if path.is_dir() {
         return match sniff::folder(path, &name)? {
-            #[cfg(feature = "parquet")]
-            Folder::LeRobot => guarded(&name, || crate::rows::lerobot::read(path, options, progress)),
-            #[cfg(not(feature = "parquet"))]
-            Folder::LeRobot => Err(not_built(&name, "parquet")),
+            Folder::LeRobot => with_feature!("parquet", &name, crate::rows::lerobot::read(path, options, progress)),
             Folder::Files => folder(path, &name, options, progress),
         };
     }
@@ -76,22 +80,16 @@ fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> 
         Format::Jsonl => json_lines::read(&input, progress),
         Format::Npy => npy::read(&input, progress),
         Format::Npz => npz::read(&input, progress),
-        #[cfg(feature = "parquet")]
-        Format::LeRobot | Format::Parquet => guarded(&name, || crate::rows::parquet::read(&input, progress)),
-        #[cfg(not(feature = "parquet"))]
-        Format::LeRobot | Format::Parquet => Err(not_built(&name, "parquet")),
-        #[cfg(feature = "hdf5")]
-        Format::Hdf5 => guarded(&name, || crate::arrays::hdf5::read(&input, progress)),
-        #[cfg(not(feature = "hdf5"))]
-        Format::Hdf5 => Err(not_built(&name, "hdf5")),
-        #[cfg(feature = "mcap")]
-        Format::Mcap => guarded(&name, || crate::rows::mcap::read(&input, progress)),
-        #[cfg(not(feature = "mcap"))]
-        Format::Mcap => Err(not_built(&name, "mcap")),
-        #[cfg(feature = "mat")]
-        Format::Mat => guarded(&name, || crate::arrays::mat::read(&input, progress)),
-        #[cfg(not(feature = "mat"))]
-        Format::Mat => Err(not_built(&name, "mat")),
+        Format::LeRobot | Format::Parquet => {
+            with_feature!(
+                "parquet",
+                &name,
+                crate::rows::parquet::read(&input, &crate::rows::parquet::Described::default(), progress)
+            )
+        }
+        Format::Hdf5 => with_feature!("hdf5", &name, crate::arrays::hdf5::read(&input, progress)),
+        Format::Mcap => with_feature!("mcap", &name, crate::rows::mcap::read(&input, progress)),
+        Format::Mat => with_feature!("mat", &name, crate::arrays::mat::read(&input, progress)),
     }
 }
 
@@ -114,12 +112,7 @@ fn folder(
     let mut files: Vec<PathBuf> = entries.iter().map(fs::DirEntry::path).filter(|path| path.is_file()).collect();
     files.retain(|file| sniff::is_recording(file));
     files.sort_by(|a, b| natural::compare(&name_of(a), &name_of(b)));
-    let mut joined: Option<RawRecordings> = None;
-    for file in &files {
-        let mut drafts = drafts(file, options, progress)?;
-        name_by_file(&mut drafts, file);
-        add(&mut joined, drafts, &name_of(file))?;
-    }
+    let joined = joined(&files, |file| Ok(named_by_file(drafts(file, options, progress)?, file)))?;
     joined.ok_or_else(|| {
         let what = "there is no file of a known format in the folder";
         ReadError::Empty(Fault::new(what, name, "a folder with .csv, .npz, .jsonl, .mcap … files, a movement each"))
@@ -127,9 +120,10 @@ fn folder(
 }
 
 /// Episodes of one file among several carry its name, since they are numbered in each.
-fn name_by_file(drafts: &mut RawRecordings, file: &Path) {
+fn named_by_file(mut drafts: RawRecordings, file: &Path) -> RawRecordings {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     for draft in drafts.episodes.iter_mut().filter(|draft| draft.name != stem) {
         draft.name = format!("{stem}/{}", draft.name);
     }
+    drafts
 }

@@ -49,3 +49,13 @@ pub enum SmoothingError {
         needed: usize,
     },
 }
+
+/// Refuses a parameter that is not `fine`.
+pub(crate) fn require(
+    fine: bool,
+    name: &'static str,
+    value: f64,
+    requirement: &'static str,
+) -> Result<(), SmoothingError> {
+    if fine { Ok(()) } else { Err(SmoothingError::Parameter { name, value, requirement }) }
+}

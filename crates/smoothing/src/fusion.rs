@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::SmoothingError;
+use crate::error::require;
 use crate::increments::StepRule;
 use crate::kalman::Gains;
 
@@ -81,19 +82,11 @@ impl Fusion {
     }
 
     fn check(&self) -> Result<(), SmoothingError> {
-        let none = |name| SmoothingError::Parameter { name, value: 0.0, requirement: "name at least one" };
-        if self.rules.is_empty() {
-            return Err(none("rules"));
-        }
-        if self.log10_ratios.is_empty() {
-            return Err(none("log10_ratios"));
-        }
-        match self.log10_ratios.iter().find(|log10| !(-300.0..=300.0).contains(*log10)) {
-            None => Ok(()),
-            Some(&value) => {
-                Err(SmoothingError::Parameter { name: "log10_ratios", value, requirement: "lie within ±300" })
-            }
-        }
+        require(!self.rules.is_empty(), "rules", 0.0, "name at least one")?;
+        require(!self.log10_ratios.is_empty(), "log10_ratios", 0.0, "name at least one")?;
+        let within =
+            |&log10: &f64| require((-300.0..=300.0).contains(&log10), "log10_ratios", log10, "lie within ±300");
+        self.log10_ratios.iter().try_for_each(within)
     }
 }
 

@@ -2,6 +2,7 @@ use motion::{Demonstrations, Trajectory};
 use nalgebra::DMatrix;
 
 use crate::SmoothingError;
+use crate::error::require;
 use crate::piecewise::polynomials::Polynomials;
 
 /// Savitzky–Golay filter: replaces each sample by the value of the polynomial that fits its neighbours best.
@@ -61,14 +62,8 @@ impl SavitzkyGolay {
 
     fn check(&self) -> Result<(), SmoothingError> {
         let window = self.window as f64;
-        if self.window.is_multiple_of(2) {
-            return Err(SmoothingError::Parameter { name: "window", value: window, requirement: "be odd" });
-        }
-        if self.window <= self.degree {
-            let requirement = "be more than the degree";
-            return Err(SmoothingError::Parameter { name: "window", value: window, requirement });
-        }
-        Ok(())
+        require(!self.window.is_multiple_of(2), "window", window, "be odd")?;
+        require(self.window > self.degree, "window", window, "be more than the degree")
     }
 }
 

@@ -1,9 +1,9 @@
 //! Which array is what, from names alone: for files whose arrays have names rather than columns.
 
-use crate::arrays::array::ArraySpec;
-use crate::names::selection::{flags, glob, select};
+use crate::arrays::array::{ArraySpec, Kind};
+use crate::names::selection::{flags, glob};
 use crate::raw::MOST_CHANNELS;
-use crate::rows::roles::{is_time, no_column, shortened, velocity_names};
+use crate::rows::roles::{is_time, named, shortened, velocity_names};
 use crate::{Fault, ReadError, ReadOptions};
 
 /// Indices of arrays by role.
@@ -89,37 +89,26 @@ const NEVER: [&str; 12] = [
 pub(crate) fn assign(described: &[ArraySpec], options: &ReadOptions, place: &str) -> Result<Fields, ReadError> {
     let names: Vec<&str> = described.iter().map(|array| &array.name[..]).collect();
     let ignored = flags(&options.ignore, &names);
-    let called = |known: &[&str]| {
-        let fits = |&index: &usize| !ignored[index] && known.contains(&&names[index].to_lowercase()[..]);
-        (0..names.len()).find(fits)
+    let first = |fits: &dyn Fn(&str) -> bool| (0..names.len()).find(|&index| !ignored[index] && fits(names[index]));
+    let called = |known: &[&str]| first(&|name| known.contains(&&name.to_lowercase()[..]));
+    let asked = |pattern: &Option<String>| -> Result<Option<usize>, ReadError> {
+        Ok(named(pattern.as_slice(), &names, place)?.first().copied())
     };
-    let asked = |pattern: Option<&String>| match pattern {
-        Some(pattern) => select(std::slice::from_ref(pattern), &names)
-            .map(|found| found.first().copied())
-            .map_err(|pattern| no_column(&pattern, &names, place)),
-        None => Ok(None),
-    };
-    let select = |patterns: &[String]| select(patterns, &names).map_err(|pattern| no_column(&pattern, &names, place));
     let mut fields = Fields {
-        state: select(&options.state)?,
-        velocity: select(&options.velocity)?,
-        time: asked(options.time.as_ref())?,
+        state: named(&options.state, &names, place)?,
+        velocity: named(&options.velocity, &names, place)?,
+        time: asked(&options.time)?,
         step: called(&["dt", "time_step", "timestep", "sample_time", "sampling_time", "period"]),
         rate: called(&["fps", "hz", "rate", "frequency", "freq", "control_freq"]),
-        episode: asked(options.episode.as_ref())?,
+        episode: asked(&options.episode)?,
         ends: called(&["episode_ends"]),
-        constraint: match asked(options.constraint_column.as_ref())? {
-            None => called(&["constraint", "constraints", "condition", "conditions"]),
-            asked => asked,
-        },
+        constraint: asked(&options.constraint_column)?
+            .or_else(|| called(&["constraint", "constraints", "condition", "conditions"])),
         names: called(&["names", "columns", "channels", "state_names", "joint_names"]),
         units: called(&["units", "unit"]),
         episode_names: called(&["episode_names"]),
     };
-    fields.time = fields.time.or_else(|| {
-        let fits = |&index: &usize| !ignored[index] && is_time(names[index]);
-        (0..names.len()).find(fits)
-    });
+    fields.time = fields.time.or_else(|| first(&is_time));
     fields.episode = fields.episode.or_else(|| {
         let known = [
             "episode",
@@ -139,13 +128,10 @@ pub(crate) fn assign(described: &[ArraySpec], options: &ReadOptions, place: &str
     if fields.state.is_empty() {
         fields.state = guess_state(described, &fields, &ignored, place)?;
     }
-    for &index in &fields.state {
-        refuse_other_kinds(&described[index], place)?;
-    }
     if fields.velocity.is_empty() {
         fields.velocity = fields.guess_velocities(&names, &ignored);
     }
-    for &index in &fields.velocity {
+    for &index in fields.state.iter().chain(&fields.velocity) {
         refuse_other_kinds(&described[index], place)?;
     }
     Ok(fields)
@@ -227,27 +213,22 @@ fn guess_state(
 }
 
 fn refuse_other_kinds(array: &ArraySpec, place: &str) -> Result<(), ReadError> {
-    use crate::arrays::array::Kind;
     let name = &array.name;
-    match &array.kind {
-        Kind::Number("datetime64") => {
-            let remedy = "--state with an array of numbers";
-            Err(ReadError::Type(Fault::new(format!("'{name}' holds dates"), place, remedy)))
-        }
-        Kind::Number(_) => Ok(()),
-        Kind::Text => {
-            Err(ReadError::Type(Fault::new(format!("'{name}' holds text"), place, "--state with an array of numbers")))
-        }
+    let numbers = "--state with an array of numbers";
+    let (what, remedy) = match &array.kind {
+        Kind::Number("datetime64") => ("dates".to_owned(), numbers),
+        Kind::Number(_) => return Ok(()),
+        Kind::Text => ("text".to_owned(), numbers),
         Kind::Pickled => {
             let what = format!("'{name}' holds Python objects, a pickle; reading it would run what is inside");
             let remedy = "in Python: np.savez(path, **{f'demo_{i}': d for i, d in enumerate(demos)}, dt=0.01), one array a demonstration";
-            Err(ReadError::Pickled(Fault::new(what, place, remedy)))
+            return Err(ReadError::Pickled(Fault::new(what, place, remedy)));
         }
         Kind::Other(kind) => {
-            let remedy = "save real numbers (float64), for records one array a field";
-            Err(ReadError::Type(Fault::new(format!("'{name}' holds {kind}, which are no coordinates"), place, remedy)))
+            (format!("{kind}, which are no coordinates"), "save real numbers (float64), for records one array a field")
         }
-    }
+    };
+    Err(ReadError::Type(Fault::new(format!("'{name}' holds {what}"), place, remedy)))
 }
 
 /// `x0`, `x1` and so on, where a file has no names of n channels.

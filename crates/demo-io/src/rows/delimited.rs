@@ -56,7 +56,8 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
         content: content(head.iter().map(|(_, record)| dialect.fields(record).number(column))),
     };
     let columns: Vec<Column> = names.into_iter().enumerate().map(column).collect();
-    let mut table = Table::new(&columns, (&input.name, &input.stem), "line", input.options)?.with_hint(hint);
+    let mut table = Table::new(&columns, (&input.name, &input.stem), "line", input.options)?;
+    table.hint = hint;
     for (line, record) in &head {
         table.push(*line, &dialect.fields(record))?;
     }
@@ -100,7 +101,10 @@ impl<R: std::io::Read> Rows<'_, R> {
                 self.fields = record.len();
             }
             if record.len() != self.fields {
-                return Err(self.ragged(line, record.len()));
+                let what = format!("{} fields where {} are expected", record.len(), self.fields);
+                let place = format!("{}, line {line}", self.file);
+                let remedy = "correct the line; --separator if fields are divided wrongly";
+                return Err(ReadError::Ragged(Fault::new(what, place, remedy)));
             }
             return Ok(Some(line));
         }
@@ -121,16 +125,10 @@ impl<R: std::io::Read> Rows<'_, R> {
             return Ok(None);
         }
         let name = |field: &[u8]| String::from_utf8(field.trim_ascii().to_vec());
-        match record.iter().map(name).collect() {
-            Ok(names) => Ok(Some(names)),
-            Err(_) => Err(encoding(&self.file, line)),
-        }
-    }
-
-    fn ragged(&self, line: u64, found: usize) -> ReadError {
-        let what = format!("{found} fields where {} are expected", self.fields);
-        let place = format!("{}, line {line}", self.file);
-        ReadError::Ragged(Fault::new(what, place, "correct the line; --separator if fields are divided wrongly"))
+        record.iter().map(name).collect::<Result<_, _>>().map(Some).map_err(|_| {
+            let (what, place) = ("the text is not UTF-8", format!("{}, line {line}", self.file));
+            ReadError::Encoding(Fault::new(what, place, "save it as UTF-8 (or plain ASCII)"))
+        })
     }
 
     fn unreadable(&self, error: &csv::Error) -> ReadError {
@@ -156,11 +154,6 @@ fn no_header_error(file: &str, line: u64, columns: usize) -> ReadError {
     let what = format!("there is no header: line {line} begins with numbers, and {columns} columns have no name");
     let remedy = "--state 2,3 --time 1 (columns count from 0; also --episode 0, --velocity 4,5), or write a first line with names";
     ReadError::NoRoles(Fault::new(what, file, remedy))
-}
-
-fn encoding(file: &str, line: u64) -> ReadError {
-    let what = "the text is not UTF-8";
-    ReadError::Encoding(Fault::new(what, format!("{file}, line {line}"), "save it as UTF-8 (or plain ASCII)"))
 }
 
 /// A decimal comma among points.

@@ -47,12 +47,9 @@ impl<'a> Documents<'a> {
         let mut unknown = None;
         let mut next = 0;
         document.leaves(&mut String::new(), &mut |path, leaf| {
-            let column = if self.names.get(next).is_some_and(|name| name == path) {
-                Some(next)
-            } else {
-                self.index.get(path).copied()
-            };
-            match column {
+            // Mostly in the order of the first.
+            let expected = Some(next).filter(|&next| self.names.get(next).is_some_and(|name| name == path));
+            match expected.or_else(|| self.index.get(path).copied()) {
                 Some(column) => {
                     row[column] = leaf.clone();
                     next = column + 1;

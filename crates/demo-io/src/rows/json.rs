@@ -63,6 +63,15 @@ impl Json {
         }
     }
 
+    /// With the unit, if the text decides it.
+    pub(crate) fn stamp(&self) -> Option<(Stamp, Option<TicksPerSecond>)> {
+        match self {
+            Json::Whole(value) => Some((Stamp::whole(*value), None)),
+            Json::Text(text) => Stamp::text(text),
+            other => other.number().map(|value| (Stamp::number(value), None)),
+        }
+    }
+
     pub(crate) fn list(&self) -> Option<&[Json]> {
         match self {
             Json::List(values) => Some(values),
@@ -91,13 +100,7 @@ impl Row for Vec<Json> {
     }
 
     fn stamp(&self, column: usize) -> Result<(Stamp, Option<TicksPerSecond>), String> {
-        match &self[column] {
-            Json::Whole(value) => Ok((Stamp::whole(*value), None)),
-            Json::Number(value) => Ok((Stamp::number(*value), None)),
-            Json::Null => Ok((Stamp::MISSING, None)),
-            Json::Text(text) => Stamp::text(text).ok_or_else(|| text.clone()),
-            other => Err(other.to_string()),
-        }
+        self[column].stamp().ok_or_else(|| self[column].to_string())
     }
 
     fn label(&self, column: usize, label: &mut String) {

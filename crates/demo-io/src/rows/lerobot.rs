@@ -6,6 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::input::{Input, name_of, unreadable};
+use crate::joined::joined;
 use crate::names::natural;
 use crate::raw::RawRecordings;
 use crate::regular_file::read_bytes;
@@ -26,12 +27,7 @@ pub(crate) fn read(
     let described = Described { elements: info.elements(), period: info.period };
     let mut files = parquet_files(&path.join("data"), &name)?;
     files.sort_by(|a, b| natural::compare(&a.to_string_lossy(), &b.to_string_lossy()));
-    let mut joined: Option<RawRecordings> = None;
-    for file in files {
-        let input = Input::new(&file, options)?;
-        let drafts = parquet::read_described(&input, &described, progress)?;
-        crate::joined::add(&mut joined, drafts, &name_of(&file))?;
-    }
+    let joined = joined(&files, |file| parquet::read(&Input::new(file, options)?, &described, progress))?;
     let drafts = joined.ok_or_else(|| {
         let remedy = "hf download REPOSITORY --repo-type dataset";
         ReadError::MissingFile(Fault::new("there is no Parquet file in data/", &name, remedy))

@@ -12,7 +12,6 @@ use std::collections::{BTreeMap, HashMap};
 
 pub(crate) use self::noted::Noted;
 use self::record::Record;
-use self::records::End;
 use self::topic::Topic;
 use crate::input::Input;
 use crate::raw::{RawRecordings, remark};
@@ -33,9 +32,9 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
         by_channel: HashMap::new(),
         metadata: BTreeMap::new(),
     };
-    let end = records::each(input, progress, |record| bag.add(record))?;
+    let whole = records::each(input, progress, |record| bag.add(record))?;
     let mut drafts = bag.finish()?;
-    if end == End::Cut {
+    if !whole {
         let what = format!(
             "{} ends in the middle of a record, as if its recorder was killed; what is whole was read",
             input.name

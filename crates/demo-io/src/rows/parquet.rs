@@ -32,11 +32,7 @@ pub(crate) struct Described {
 /// The column of LeRobot and of what imitates it.
 pub(crate) const STATE: &str = "observation.state";
 
-pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<RawRecordings, ReadError> {
-    read_described(input, &Described::default(), progress)
-}
-
-pub(crate) fn read_described(
+pub(crate) fn read(
     input: &Input<'_>,
     described: &Described,
     progress: &mut dyn FnMut(u64),
@@ -51,7 +47,7 @@ pub(crate) fn read_described(
     let columns = Columns::new(leaves);
     let options = columns.options(input.options, described, &input.name)?;
     let names: Vec<Column> = columns.expanded();
-    let listed = columns.state_is_list(&options);
+    let listed = !options.state.is_empty() || columns.leaves.iter().any(|leaf| leaf.list);
     let mut table = Table::new(&names, (&input.name, &input.stem), "row", &options)?;
     let used = table.used();
     let mut checked = described.period.filter(|_| input.options.dt.is_none()).and_then(|period| columns.stamps(period));
@@ -113,10 +109,10 @@ impl Columns {
     }
 
     fn expanded(&self) -> Vec<Column> {
-        let content = |column: usize| match () {
-            () if self.leaves[self.owners[column]].text => Content::Text,
-            () if self.leaves[self.owners[column]].whole => Content::Counting,
-            () => Content::Numbers,
+        let content = |column: usize| match &self.leaves[self.owners[column]] {
+            Leaf { text: true, .. } => Content::Text,
+            Leaf { whole: true, .. } => Content::Counting,
+            _ => Content::Numbers,
         };
         (0..self.owners.len()).map(|column| Column { name: self.name(column), content: content(column) }).collect()
     }
@@ -182,10 +178,6 @@ impl Columns {
     fn stamps(&self, period: f64) -> Option<Stamps<'_>> {
         let leaf = |name: &str| self.leaves.iter().find(|leaf| leaf.name == name && !leaf.list && !leaf.text);
         Some(Stamps { period, stamp: leaf("timestamp")?, frame: leaf("frame_index")?, finding: None })
-    }
-
-    fn state_is_list(&self, options: &ReadOptions) -> bool {
-        !options.state.is_empty() || self.leaves.iter().any(|leaf| leaf.list)
     }
 }
 

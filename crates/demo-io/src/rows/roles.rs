@@ -211,7 +211,8 @@ fn refuse_twins(names: &[&str], ignored: &[bool], options: &ReadOptions, place: 
     Ok(())
 }
 
-fn named(patterns: &[String], names: &[&str], place: &str) -> Result<Vec<usize>, ReadError> {
+/// The columns that patterns name, in the order of the patterns.
+pub(crate) fn named<S: AsRef<str>>(patterns: &[String], names: &[S], place: &str) -> Result<Vec<usize>, ReadError> {
     select(patterns, names).map_err(|pattern| no_column(&pattern, names, place))
 }
 

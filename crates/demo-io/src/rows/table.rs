@@ -36,8 +36,8 @@ pub(crate) struct Table {
     by_label: HashMap<String, usize>,
     current: Option<usize>,
     label: String,
-    /// What a number that is none may be helped by.
-    hint: fn(&str) -> Option<String>,
+    /// Advice on a field that is no number.
+    pub(crate) hint: fn(&str) -> Option<String>,
 }
 
 impl Table {
@@ -72,12 +72,6 @@ impl Table {
             label: String::new(),
             hint: |_| None,
         })
-    }
-
-    /// With advice on fields that are no numbers.
-    pub(crate) fn with_hint(mut self, hint: fn(&str) -> Option<String>) -> Self {
-        self.hint = hint;
-        self
     }
 
     /// The columns that have a role.

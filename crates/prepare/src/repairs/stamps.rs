@@ -36,8 +36,7 @@ pub(crate) fn decide(
         let usual = episode.times.median_step().unwrap_or(1.0);
         let jitter = steps.iter().map(|step| (step - usual).abs() / usual).filter(|&off| off < GAP - 1.0);
         let jitter = jitter.fold(0.0, f64::max);
-        let long = (0..steps.len()).filter(|&step| steps[step] >= GAP * usual);
-        let long: Vec<usize> = long.collect();
+        let long: Vec<usize> = (0..steps.len()).filter(|&step| steps[step] >= GAP * usual).collect();
         if jitter > EVEN || !long.is_empty() {
             uneven += 1;
             worst = worst.max(jitter);
@@ -103,10 +102,7 @@ fn whole(time_step: f64) -> f64 {
     let near = |candidate: f64| (candidate > 0.0 && (candidate / time_step - 1.0).abs() < WHOLE).then_some(candidate);
     let rate = near(1.0 / (1.0 / time_step).round()).filter(|step| step.is_finite());
     let milliseconds = near((time_step * 1000.0).round() / 1000.0);
-    match (rate, milliseconds) {
-        (Some(rate), Some(ms)) if (ms - time_step).abs() < (rate - time_step).abs() => ms,
-        (Some(rate), _) => rate,
-        (None, Some(ms)) => ms,
-        (None, None) => time_step,
-    }
+    let off = |step: &f64| (step - time_step).abs();
+    let nearest = [rate, milliseconds].into_iter().flatten().min_by(|a, b| off(a).total_cmp(&off(b)));
+    nearest.unwrap_or(time_step)
 }

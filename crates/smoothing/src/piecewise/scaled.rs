@@ -5,6 +5,7 @@ use nalgebra::DVector;
 use serde::Serialize;
 
 use crate::SmoothingError;
+use crate::error::require;
 
 /// Divisor of each axis before smoothing.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -42,13 +43,13 @@ impl<'a> Scaled<'a> {
         if variances.iter().any(|variance| !variance.is_finite()) {
             return Err(SmoothingError::Overflow);
         }
-        let scales =
-            match scale {
-                AxisScale::StandardDeviation => variances.map(f64::sqrt),
-                AxisScale::Given(scales) => DVector::from_fn(checked(scales, dim)?.len(), |axis, _| {
-                    if variances[axis] > 0.0 { scales[axis] } else { 0.0 }
-                }),
-            };
+        let scales = match scale {
+            AxisScale::StandardDeviation => variances.map(f64::sqrt),
+            AxisScale::Given(scales) => {
+                check(scales, dim)?;
+                DVector::from_fn(dim, |axis, _| if variances[axis] > 0.0 { scales[axis] } else { 0.0 })
+            }
+        };
         let moving: Vec<usize> = (0..dim).filter(|&axis| scales[axis] > 0.0).collect();
         if moving.is_empty() {
             return Err(SmoothingError::NoMotion);
@@ -85,16 +86,13 @@ impl<'a> ScaledMovement<'a> {
     }
 }
 
-fn checked(scales: &DVector<f64>, dim: usize) -> Result<&DVector<f64>, SmoothingError> {
+fn check(scales: &DVector<f64>, dim: usize) -> Result<(), SmoothingError> {
     if scales.len() != dim {
         return Err(SmoothingError::AxisScales { found: scales.len(), expected: dim });
     }
-    match scales.iter().find(|scale| !(scale.is_finite() && **scale > 0.0)) {
-        None => Ok(scales),
-        Some(&value) => {
-            Err(SmoothingError::Parameter { name: "axis_scale", value, requirement: "be positive and finite" })
-        }
-    }
+    let positive =
+        |&scale: &f64| require(scale.is_finite() && scale > 0.0, "axis_scale", scale, "be positive and finite");
+    scales.iter().try_for_each(positive)
 }
 
 /// Variance of one coordinate over all samples of all movements.

@@ -3,6 +3,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::SmoothingError;
+use crate::error::require;
 use crate::piecewise::averages::Averages;
 use crate::piecewise::evidence::NoiseModel;
 use crate::piecewise::noise_by_evidence::{most_likely, some_energies};
@@ -82,9 +83,6 @@ impl Smoother {
     }
 
     fn check(&self) -> Result<(), SmoothingError> {
-        let require = |fine: bool, name, value, requirement| {
-            if fine { Ok(()) } else { Err(SmoothingError::Parameter { name, value, requirement }) }
-        };
         let (degrees, switch) = (self.degrees.len(), self.switch_probability);
         require(degrees > 0, "degrees", 0.0, "name at least one degree")?;
         let highest = self.columns() - 1;

@@ -84,11 +84,7 @@ impl<'a> EpisodeLines<'a> {
             if stamps.len() != len {
                 return Err(lengths(&format!("'{name}'"), len, stamps.len(), place));
             }
-            let stamps = stamps.iter().map(|stamp| match stamp {
-                Json::Whole(value) => (Stamp::whole(*value), None),
-                Json::Text(text) => Stamp::text(text).unwrap_or((Stamp::MISSING, None)),
-                other => (Stamp::number(other.number().unwrap_or(f64::NAN)), None),
-            });
+            let stamps = stamps.iter().map(|stamp| stamp.stamp().unwrap_or((Stamp::MISSING, None)));
             return Ok(seconds_since_first(stamps, name, &mut None));
         }
         match step {

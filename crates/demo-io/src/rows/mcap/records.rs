@@ -9,30 +9,23 @@ use crate::input::{Input, unreadable};
 use crate::rows::packed::{self, Misfit};
 use crate::{Fault, ReadError};
 
-/// How a bag ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum End {
-    Whole,
-    /// In the middle of a record.
-    Cut,
-}
-
-/// Calls `visit` with the records of a bag, in the order of the file, whatever its index says.
+/// Calls `visit` with the records of a bag, in the order of the file and without its index. False if the bag ends in the middle
+/// of a record.
 ///
 /// Records are unpacked one after another, so that a bag need not fit into memory and what a killed recorder left can be read.
 pub(super) fn each(
     input: &Input<'_>,
     progress: &mut dyn FnMut(u64),
     mut visit: impl FnMut(Record<'_>) -> Result<(), ReadError>,
-) -> Result<End, ReadError> {
+) -> Result<bool, ReadError> {
     let mut file = Summed::new(Watched::new(input.open()?, progress));
     let mut reader = Reader { input, visit: &mut visit, buffer: Vec::new() };
     match reader.bag(&mut file) {
-        Ok(()) => Ok(End::Whole),
+        Ok(()) => Ok(true),
         Err(Stop::Refused(error)) => Err(error),
         Err(Stop::Bytes(error)) if error.raw_os_error().is_some() => Err(unreadable(&error, &input.name)),
         // Whatever was missing is behind the end of the file.
-        Err(Stop::Bytes(_)) if file.ended() => Ok(End::Cut),
+        Err(Stop::Bytes(_)) if file.ended => Ok(false),
         Err(stop) => {
             let remedy = "another copy of the file, or mcap recover FILE";
             Err(ReadError::Corrupt(Fault::new(format!("the bag is damaged: {stop}"), &input.name, remedy)))

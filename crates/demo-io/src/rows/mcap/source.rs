@@ -9,7 +9,8 @@ const BLOCK: usize = 256 << 10;
 pub(super) struct Summed<R> {
     inner: R,
     sum: Hasher,
-    ended: bool,
+    /// Whether more was wanted than there is.
+    pub(super) ended: bool,
 }
 
 impl<R: Read> Summed<R> {
@@ -20,11 +21,6 @@ impl<R: Read> Summed<R> {
     /// CRC-32 of all that was read.
     pub(super) fn sum(&self) -> u32 {
         self.sum.clone().finalize()
-    }
-
-    /// Whether more was wanted than there is.
-    pub(super) fn ended(&self) -> bool {
-        self.ended
     }
 }
 

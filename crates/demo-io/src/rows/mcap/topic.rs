@@ -6,7 +6,7 @@ use super::noted::episodes;
 use crate::input::Input;
 use crate::names::natural;
 use crate::names::selection::{flags, select};
-use crate::raw::{Clock, RawEpisode, RawRecordings, Rows, period, remark, unused};
+use crate::raw::{Clock, RawEpisode, RawRecordings, period, remark, unused};
 use crate::rows::documents::Documents;
 use crate::rows::json::Json;
 use crate::rows::roles::no_column;
@@ -181,14 +181,10 @@ impl<'a> Topic<'a> {
         for &stamp in stamps {
             clock.push(Stamp::whole(stamp));
         }
-        let mut rows = Rows::default();
-        for &number in &set.numbers {
-            rows.push(number);
-        }
         let draft = RawEpisode {
             name: self.input.stem.clone(),
             file: self.input.name.clone(),
-            rows,
+            rows: set.numbers.iter().copied().collect(),
             times: clock.seconds(len, TicksPerSecond(1e9)),
             positions: pick(&set.positions),
             velocities: if recorded && !unwanted { pick(&set.velocities) } else { Vec::new() },

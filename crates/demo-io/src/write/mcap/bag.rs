@@ -91,7 +91,7 @@ impl<W: Write> Bag<W> {
         let Chunk { records, index } = std::mem::take(&mut self.chunk);
         let (Some(&(first, _)), Some(&(last, _))) = (index.first(), index.last()) else { return Ok(()) };
         let packed = zstd::bulk::compress(&records, zstd::DEFAULT_COMPRESSION_LEVEL)?;
-        let start = self.out.position();
+        let start = self.out.position;
         let mut chunk = Record::new(opcode::CHUNK);
         chunk.u64(first);
         chunk.u64(last);
@@ -101,7 +101,7 @@ impl<W: Write> Bag<W> {
         chunk.u64(packed.len() as u64);
         chunk.bytes(&packed);
         self.out.record(&chunk)?;
-        let behind = self.out.position();
+        let behind = self.out.position;
         let mut times = Record::new(opcode::MESSAGE_INDEX);
         times.u16(CHANNEL);
         times.block(|block| {
@@ -115,7 +115,7 @@ impl<W: Write> Bag<W> {
             times: (first, last),
             start,
             length: behind - start,
-            index: (behind, self.out.position() - behind),
+            index: (behind, self.out.position - behind),
             packed: packed.len() as u64,
             unpacked: records.len() as u64,
         });
@@ -125,12 +125,12 @@ impl<W: Write> Bag<W> {
     /// Closes the bag, with `entries` as a metadata record called `name`.
     pub(super) fn finish(mut self, name: &str, entries: &BTreeMap<String, String>) -> io::Result<()> {
         self.close_chunk()?;
-        let start = self.out.position();
+        let start = self.out.position;
         let mut metadata = Record::new(opcode::METADATA);
         metadata.text(name);
         metadata.map(entries);
         self.out.record(&metadata)?;
-        let metadata = (start, self.out.position() - start);
+        let metadata = (start, self.out.position - start);
         let mut end = Record::new(opcode::DATA_END);
         end.u32(self.out.sum().finalize());
         self.out.record(&end)?;
@@ -139,7 +139,7 @@ impl<W: Write> Bag<W> {
 
     /// What a viewer reads first: everything again but the messages, and where they are.
     fn summary(mut self, name: &str, (at, length): (u64, u64)) -> io::Result<()> {
-        let start = self.out.position();
+        let start = self.out.position;
         self.out.sum_from_here();
         let mut index = Record::new(opcode::METADATA_INDEX);
         index.u64(at);
@@ -154,16 +154,16 @@ impl<W: Write> Bag<W> {
         ];
         let mut offsets = Vec::new();
         for group in groups {
-            let start = self.out.position();
-            let Some(kind) = group.first().map(Record::kind) else { continue };
+            let start = self.out.position;
+            let Some(kind) = group.first().map(|record| record.kind) else { continue };
             group.iter().try_for_each(|record| self.out.record(record))?;
             let mut offset = Record::new(opcode::SUMMARY_OFFSET);
             offset.bytes(&[kind]);
             offset.u64(start);
-            offset.u64(self.out.position() - start);
+            offset.u64(self.out.position - start);
             offsets.push(offset);
         }
-        let offsets_start = self.out.position();
+        let offsets_start = self.out.position;
         offsets.iter().try_for_each(|record| self.out.record(record))?;
         // The sum covers the footer up to where it stands itself.
         let mut footer = Record::new(opcode::FOOTER);
@@ -172,7 +172,7 @@ impl<W: Write> Bag<W> {
         let mut sum = self.out.sum();
         sum.update(&[opcode::FOOTER]);
         sum.update(&20u64.to_le_bytes());
-        sum.update(footer.content());
+        sum.update(&footer.content);
         footer.u32(sum.finalize());
         self.out.record(&footer)?;
         self.out.write_all(&MAGIC)

@@ -5,21 +5,13 @@ use crc32fast::Hasher;
 
 /// A record while its fields are put together.
 pub(super) struct Record {
-    kind: u8,
-    content: Vec<u8>,
+    pub(super) kind: u8,
+    pub(super) content: Vec<u8>,
 }
 
 impl Record {
     pub(super) fn new(kind: u8) -> Self {
         Self { kind, content: Vec::new() }
-    }
-
-    pub(super) fn kind(&self) -> u8 {
-        self.kind
-    }
-
-    pub(super) fn content(&self) -> &[u8] {
-        &self.content
     }
 
     pub(super) fn bytes(&mut self, bytes: &[u8]) {
@@ -71,7 +63,8 @@ impl Record {
 /// Where bytes go, with their number and check sum.
 pub(super) struct Out<W> {
     inner: W,
-    position: u64,
+    /// Bytes written.
+    pub(super) position: u64,
     sum: Hasher,
 }
 
@@ -82,11 +75,6 @@ impl<W: Write> Out<W> {
 
     pub(super) fn record(&mut self, record: &Record) -> io::Result<()> {
         record.write(self)
-    }
-
-    /// Bytes written.
-    pub(super) fn position(&self) -> u64 {
-        self.position
     }
 
     /// Of what was written, or written since [`sum_from_here`](Self::sum_from_here).
