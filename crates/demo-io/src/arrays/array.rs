@@ -48,11 +48,7 @@ impl ArraySpec {
 
     /// `robot0_joint_pos (60, 7)`.
     pub(crate) fn with_shape(&self) -> String {
-        format!("{} ({})", self.name, self.shape_text())
-    }
-
-    pub(crate) fn shape_text(&self) -> String {
-        shape_text(&self.shape)
+        format!("{} ({})", self.name, shape_text(&self.shape))
     }
 
     /// Whole numbers and short ones are noise that the user should know of.

@@ -25,7 +25,7 @@ pub(crate) fn dimensions(
         [first, second] => (1, first, second),
         [episodes, first, second] => (episodes, first, second),
         _ => {
-            let what = format!("'{}' has {} indices ({})", array.name, array.shape.len(), array.shape_text());
+            let what = format!("'{}' has {} indices ({})", array.name, array.shape.len(), shape_text(&array.shape));
             let remedy = "--state with an array (samples, channels) or (episodes, samples, channels)";
             return Err(ReadError::NoRoles(Fault::new(what, place, remedy)));
         }
@@ -55,7 +55,7 @@ pub(crate) fn stack(array: &ArraySpec, numbers: Vec<f64>, input: &Input<'_>, pla
     let (episodes, samples, channels) = dimensions(array, input, place)?;
     too_many_channels(channels, place)?;
     if channels == 0 {
-        let what = format!("'{}' has shape ({}): no channel", array.name, array.shape_text());
+        let what = format!("'{}' has shape ({}): no channel", array.name, shape_text(&array.shape));
         return Err(ReadError::Empty(Fault::new(what, place, "--state with another array")));
     }
     let columns = input.samples_are() == Some(SamplesAre::Columns) && array.shape.len() > 1;

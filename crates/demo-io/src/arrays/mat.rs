@@ -88,29 +88,26 @@ impl Store {
 
     /// Demonstrations of a cell array of structures or of arrays, or of an array of structures.
     fn demos(&mut self, name: &str, value: &Value) -> Option<Vec<Demo>> {
-        let mut demos = Vec::new();
-        match value {
+        let demos: Vec<Demo> = match value {
             Value::Struct { fields, values } if !fields.is_empty() => {
-                for (number, values) in values.chunks_exact(fields.len()).enumerate() {
-                    demos.push(self.demo(number, fields, values));
-                }
+                let each = values.chunks_exact(fields.len()).enumerate();
+                each.map(|(number, values)| self.demo(number, fields, values)).collect()
             }
             Value::Cell(values) => {
-                for (number, value) in values.iter().enumerate() {
-                    match value {
-                        Value::Struct { fields, values } if values.len() == fields.len() => {
-                            demos.push(self.demo(number, fields, values));
-                        }
-                        Value::Numbers { .. } => {
-                            let field = (name.to_owned(), self.add(name, value)?);
-                            demos.push(Demo { name: number.to_string(), fields: vec![field] });
-                        }
-                        _ => return None,
+                let demo = |(number, value): (usize, &Value)| match value {
+                    Value::Struct { fields, values } if values.len() == fields.len() => {
+                        Some(self.demo(number, fields, values))
                     }
-                }
+                    Value::Numbers { .. } => {
+                        let field = (name.to_owned(), self.add(name, value)?);
+                        Some(Demo { name: number.to_string(), fields: vec![field] })
+                    }
+                    _ => None,
+                };
+                values.iter().enumerate().map(demo).collect::<Option<_>>()?
             }
             _ => return None,
-        }
+        };
         (!demos.is_empty()).then_some(demos)
     }
 

@@ -1,6 +1,6 @@
 //! Averages many noisy samples to fewer, more exact ones.
 
-use motion::{Demonstrations, MotionError, Trajectory};
+use motion::{Demonstrations, MotionError, Trajectory, upper_median};
 use nalgebra::DMatrix;
 
 use crate::in_words::percent;
@@ -18,9 +18,8 @@ const LEAST: usize = 40;
 pub(crate) fn decide(demonstrations: &Demonstrations, noise: &Noise, notes: &mut Notes) -> usize {
     let Some(deviations) = &noise.positions else { return 1 };
     let variance: f64 = deviations.iter().map(|sd| sd * sd).sum();
-    let mut lengths: Vec<usize> = demonstrations.trajectories().iter().map(Trajectory::n_samples).collect();
-    let middle = lengths.len() / 2;
-    let usual = *lengths.select_nth_unstable(middle).1;
+    let lengths = demonstrations.trajectories().iter().map(|movement| movement.n_samples() as f64);
+    let usual = upper_median(lengths.collect()).expect("there is a movement") as usize;
     let mut taken = 1;
     let mut share = noise.step_share;
     while share > CALM && usual / (2 * taken) >= LEAST {

@@ -1,3 +1,4 @@
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 
@@ -9,7 +10,7 @@ use crate::names::selection::{flags, select};
 use crate::raw::{Clock, RawEpisode, RawRecordings, period, remark, unused};
 use crate::rows::documents::Documents;
 use crate::rows::json::Json;
-use crate::rows::roles::no_column;
+use crate::rows::roles::named;
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use crate::{Fault, ReadError};
 use motion::{Channel, Finding};
@@ -202,8 +203,11 @@ impl<'a> Topic<'a> {
     /// The set of messages to take, and which of its names are the state.
     fn chosen(&self) -> Result<(usize, Vec<usize>), ReadError> {
         let options = self.input.options;
-        let largest = (0..self.sets.len()).max_by_key(|&at| (self.sets[at].numbers.len(), std::cmp::Reverse(at)));
-        let Some(largest) = largest else {
+        // The first of several.
+        let largest_of = |fits: &dyn Fn(&usize) -> bool| {
+            (0..self.sets.len()).filter(fits).max_by_key(|&at| (self.sets[at].numbers.len(), Reverse(at)))
+        };
+        let Some(largest) = largest_of(&|_| true) else {
             let what = format!("no message on {self} has as many positions as names");
             return Err(ReadError::NoRoles(Fault::new(what, &self.input.name, "another topic: --topic")));
         };
@@ -215,16 +219,12 @@ impl<'a> Topic<'a> {
             return Ok((largest, self.sets[largest].in_order((0..names.len()).filter(place).collect())));
         }
         let fits = |at: &usize| select(&options.state, &self.sets[*at].names).is_ok();
-        let fitting =
-            (0..self.sets.len()).filter(fits).max_by_key(|&at| (self.sets[at].numbers.len(), std::cmp::Reverse(at)));
-        let at = fitting.unwrap_or(largest);
-        let names: Vec<&str> = self.sets[at].names.iter().map(String::as_str).collect();
-        let chosen = select(&options.state, &names);
+        let at = largest_of(&fits).unwrap_or(largest);
         let place = format!("{}, topic {}", self.input.name, self.name);
         // A glob names no order.
         let any = options.state.iter().any(|pattern| pattern.contains('*'));
         let ordered = |columns| if any { self.sets[at].in_order(columns) } else { columns };
-        chosen.map(|columns| (at, ordered(columns))).map_err(|pattern| no_column(&pattern, &names, &place))
+        Ok((at, ordered(named(&options.state, &self.sets[at].names, &place)?)))
     }
 
     fn left_out(&self, set: usize, columns: &[usize]) -> Vec<Finding> {

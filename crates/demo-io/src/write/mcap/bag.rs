@@ -66,9 +66,9 @@ impl<W: Write> Bag<W> {
         let mut header = Record::new(opcode::HEADER);
         header.text("ros2");
         header.text("demo-io");
-        out.record(&header)?;
-        out.record(&schema())?;
-        out.record(&channel())?;
+        header.write(&mut out)?;
+        schema().write(&mut out)?;
+        channel().write(&mut out)?;
         Ok(Self { out, chunk: Chunk::default(), chunks: Vec::new(), messages: 0 })
     }
 
@@ -100,7 +100,7 @@ impl<W: Write> Bag<W> {
         chunk.text("zstd");
         chunk.u64(packed.len() as u64);
         chunk.bytes(&packed);
-        self.out.record(&chunk)?;
+        chunk.write(&mut self.out)?;
         let behind = self.out.position;
         let mut times = Record::new(opcode::MESSAGE_INDEX);
         times.u16(CHANNEL);
@@ -110,7 +110,7 @@ impl<W: Write> Bag<W> {
                 block.u64(*offset);
             }
         });
-        self.out.record(&times)?;
+        times.write(&mut self.out)?;
         self.chunks.push(ChunkIndex {
             times: (first, last),
             start,
@@ -129,18 +129,18 @@ impl<W: Write> Bag<W> {
         let mut metadata = Record::new(opcode::METADATA);
         metadata.text(name);
         metadata.map(entries);
-        self.out.record(&metadata)?;
+        metadata.write(&mut self.out)?;
         let metadata = (start, self.out.position - start);
         let mut end = Record::new(opcode::DATA_END);
-        end.u32(self.out.sum().finalize());
-        self.out.record(&end)?;
+        end.u32(self.out.sum.clone().finalize());
+        end.write(&mut self.out)?;
         self.summary(name, metadata)
     }
 
     /// What a viewer reads first: everything again but the messages, and where they are.
     fn summary(mut self, name: &str, (at, length): (u64, u64)) -> io::Result<()> {
         let start = self.out.position;
-        self.out.sum_from_here();
+        self.out.sum.reset();
         let mut index = Record::new(opcode::METADATA_INDEX);
         index.u64(at);
         index.u64(length);
@@ -156,7 +156,7 @@ impl<W: Write> Bag<W> {
         for group in groups {
             let start = self.out.position;
             let Some(kind) = group.first().map(|record| record.kind) else { continue };
-            group.iter().try_for_each(|record| self.out.record(record))?;
+            group.iter().try_for_each(|record| record.write(&mut self.out))?;
             let mut offset = Record::new(opcode::SUMMARY_OFFSET);
             offset.bytes(&[kind]);
             offset.u64(start);
@@ -164,17 +164,17 @@ impl<W: Write> Bag<W> {
             offsets.push(offset);
         }
         let offsets_start = self.out.position;
-        offsets.iter().try_for_each(|record| self.out.record(record))?;
+        offsets.iter().try_for_each(|record| record.write(&mut self.out))?;
         // The sum covers the footer up to where it stands itself.
         let mut footer = Record::new(opcode::FOOTER);
         footer.u64(start);
         footer.u64(offsets_start);
-        let mut sum = self.out.sum();
+        let mut sum = self.out.sum.clone();
         sum.update(&[opcode::FOOTER]);
         sum.update(&20u64.to_le_bytes());
         sum.update(&footer.content);
         footer.u32(sum.finalize());
-        self.out.record(&footer)?;
+        footer.write(&mut self.out)?;
         self.out.write_all(&MAGIC)
     }
 

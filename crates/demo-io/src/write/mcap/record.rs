@@ -65,25 +65,13 @@ pub(super) struct Out<W> {
     inner: W,
     /// Bytes written.
     pub(super) position: u64,
-    sum: Hasher,
+    /// Of what was written since it was reset.
+    pub(super) sum: Hasher,
 }
 
 impl<W: Write> Out<W> {
     pub(super) fn new(inner: W) -> Self {
         Self { inner, position: 0, sum: Hasher::new() }
-    }
-
-    pub(super) fn record(&mut self, record: &Record) -> io::Result<()> {
-        record.write(self)
-    }
-
-    /// Of what was written, or written since [`sum_from_here`](Self::sum_from_here).
-    pub(super) fn sum(&self) -> Hasher {
-        self.sum.clone()
-    }
-
-    pub(super) fn sum_from_here(&mut self) {
-        self.sum = Hasher::new();
     }
 }
 
