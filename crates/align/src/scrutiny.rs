@@ -1,6 +1,6 @@
 //! Checks of the demonstrations for faults that no alignment mends.
 
-use motion::oddities::{long_steps, mirrored, stands_still, twins};
+use motion::anomalies::{duplicates, long_steps, mirrored, stands_still};
 use motion::{Demonstrations, Trajectory};
 
 use crate::Warning;
@@ -23,9 +23,9 @@ pub(crate) fn scrutinise(demonstrations: &Demonstrations) -> Vec<Warning> {
 /// Pairs that share all states, forwards or backwards; of several alike, each with the first.
 fn alike(trajectories: &[Trajectory]) -> Vec<Warning> {
     let moving = |k: &usize| !stands_still(trajectories[*k].states());
-    let twins = twins(trajectories.iter().map(Trajectory::states));
+    let duplicates = duplicates(trajectories.iter().map(Trajectory::states));
     let warning = |j: usize| {
-        if let Some(k) = twins[j] {
+        if let Some(k) = duplicates[j] {
             return Some(Warning::Duplicated { trajectories: [k, j] });
         }
         let backwards = |k: &usize| mirrored(trajectories[*k].states(), trajectories[j].states());

@@ -1,4 +1,4 @@
-//! From what a reader found to samples one may believe: finite, in order of time, none twice.
+//! From what a reader found to valid samples: finite, in order of time, none twice.
 
 mod finite;
 
@@ -32,14 +32,14 @@ pub(crate) fn clean(drafts: &mut RawRecordings, options: &ReadOptions) -> Result
     }
     for draft in &mut episodes {
         from_zero(draft);
-        drafts.findings.extend(leave_out_twins(draft, drafts.word));
+        drafts.findings.extend(leave_out_duplicates(draft, drafts.word));
     }
     drafts.episodes = episodes;
     unwrap_angles(drafts, options)?;
     Ok(())
 }
 
-/// Columns nobody named that never change are no state: a counter that stands, a sensor that is off.
+/// Columns that never change and were not named are no state: a counter that does not run, a sensor that is off.
 fn leave_out_constant(drafts: &mut RawRecordings) {
     let n = drafts.channels.len();
     let mut first: Vec<f64> = vec![f64::NAN; n];
@@ -102,7 +102,7 @@ fn degrees_to_radians(drafts: &mut RawRecordings, options: &ReadOptions) -> Resu
     Ok(())
 }
 
-/// Into the order of stamps; equal ones keep theirs.
+/// Into the order of stamps; equal ones stay in theirs.
 fn sort(draft: &mut RawEpisode) {
     let mut order: Vec<usize> = (0..draft.len()).collect();
     order.sort_by(|&a, &b| draft.times[a].total_cmp(&draft.times[b]));
@@ -122,17 +122,17 @@ fn from_zero(draft: &mut RawEpisode) {
     draft.times.iter_mut().for_each(|time| *time -= first);
 }
 
-/// Of samples with equal stamps the first is kept.
-fn leave_out_twins(draft: &mut RawEpisode, word: &str) -> Option<Finding> {
-    let twin = |sample: &usize| *sample > 0 && draft.times[*sample] == draft.times[sample - 1];
-    let first = (0..draft.len()).find(twin)?;
-    let kept: Vec<usize> = (0..draft.len()).filter(|sample| !twin(sample)).collect();
-    let more = match draft.len() - kept.len() {
+/// Retains the first of samples with equal stamps.
+fn leave_out_duplicates(draft: &mut RawEpisode, word: &str) -> Option<Finding> {
+    let duplicate = |sample: &usize| *sample > 0 && draft.times[*sample] == draft.times[sample - 1];
+    let first = (0..draft.len()).find(duplicate)?;
+    let retained: Vec<usize> = (0..draft.len()).filter(|sample| !duplicate(sample)).collect();
+    let more = match draft.len() - retained.len() {
         1 => String::new(),
-        twins => format!(" (and {} more)", twins - 1),
+        duplicates => format!(" (and {} more)", duplicates - 1),
     };
     let what = format!("{}: a stamp occurs twice; kept the first of its samples{more}", draft.place(first, word));
-    *draft = draft.chosen(kept.into_iter());
+    *draft = draft.chosen(retained.into_iter());
     Some(remark(what, "check the recorder's clock"))
 }
 

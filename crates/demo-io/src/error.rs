@@ -7,7 +7,7 @@ use thiserror::Error;
 pub struct Fault {
     /// What is wrong, one line.
     pub what: String,
-    /// File, line, column, episode, as far as they are known.
+    /// File, line, column, episode, where they are known.
     pub place: String,
     /// A flag, a command or a choice that helps.
     pub remedy: String,
@@ -118,7 +118,7 @@ impl ReadError {
 }
 
 impl Fault {
-    /// Each in one line, whatever names of files and columns hold.
+    /// Each text becomes one line: names of files and columns may hold line ends.
     pub(crate) fn new(what: impl Into<String>, place: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self { what: in_one_line(what.into()), place: in_one_line(place.into()), remedy: in_one_line(remedy.into()) }
     }

@@ -1,9 +1,8 @@
-//! Recordings of movements: what a file says, with names, units and stamps, before anybody decides what to make of it.
+//! Reads recordings of movements from files, with names, units and stamps, and writes them.
 //!
-//! [`read`] finds out the format, which columns are time, movement, state and velocity, and the unit of stamps; what is wrong is an
-//! error of three lines ([`ReadError`]), what did not prevent reading is a
-//! [`motion::Finding`]. Nothing is left out without one, and nobody here judges what was recorded: `prepare` does. [`ReadOptions`]
-//! overrides whatever was found out.
+//! [`read`] detects the format, which columns are time, movement, state and velocity, and the unit of stamps. [`ReadOptions`]
+//! overrides what it detects. A file that cannot be read is an error of three lines ([`ReadError`]). What does not prevent
+//! reading is a [`motion::Finding`], and nothing is left out without one. What was recorded is judged by `prepare`, not here.
 //!
 //! ```
 //! use demo_io::{ReadOptions, read, write};

@@ -45,7 +45,7 @@ impl RawRecordings {
         self.channels.iter().map(|channel| channel.name.clone()).collect()
     }
 
-    /// As everybody else takes them.
+    /// As other crates take them.
     pub(crate) fn checked(self) -> Recordings {
         let RawRecordings { channels, episodes, findings, word, .. } = self;
         let n = channels.len();
@@ -85,7 +85,7 @@ impl RawEpisode {
         }
     }
 
-    /// Where sample `sample` stands: "demos.csv, line 17 (episode 1)".
+    /// Where `sample` is in the file: "demos.csv, line 17 (episode 1)".
     pub(crate) fn place(&self, sample: usize, word: &str) -> String {
         let Self { name, file, rows, .. } = self;
         match word {
@@ -95,7 +95,7 @@ impl RawEpisode {
     }
 }
 
-/// Where each sample stands in the file, as runs of consecutive places: a few bytes for most episodes.
+/// Where each sample is in the file, as runs of consecutive places: a few bytes for most episodes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Rows {
     /// First sample and its place, of each run.

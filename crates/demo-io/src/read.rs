@@ -14,9 +14,9 @@ use crate::sniff::{self, Folder};
 use crate::{Fault, Format, ReadError, ReadOptions};
 use motion::Recordings;
 
-/// Reads a file, or a folder of files with a movement each, whatever its format.
+/// Reads a file, or a folder of files with a movement each, of any format.
 ///
-/// `progress` is told how many more bytes were read, now and then.
+/// Calls `progress` now and then with the number of bytes read since the last call.
 ///
 /// # Errors
 ///

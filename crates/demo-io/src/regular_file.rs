@@ -4,10 +4,10 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// Bytes of a text that somebody wrote, as a configuration or the description of a robot, at most.
+/// Most bytes of a text written by hand, such as a configuration or the description of a robot.
 const TEXT: u64 = 16 << 20;
 
-/// A text that somebody wrote.
+/// Reads a text written by hand, of at most 16 MB.
 ///
 /// # Errors
 /// As [`read_bytes`], and what is not UTF-8.
@@ -15,7 +15,7 @@ pub fn read_text(path: &Path) -> io::Result<String> {
     String::from_utf8(read_bytes(path, TEXT)?).map_err(|_| io::Error::new(ErrorKind::InvalidData, "it is not UTF-8"))
 }
 
-/// What a file holds as it is opened; what is written to it later is not read.
+/// Reads what a file holds when it is opened, and nothing that is written to it later.
 ///
 /// # Errors
 /// What the system says, what is not a plain file, and one of more than `most` bytes.
@@ -27,7 +27,7 @@ pub fn read_bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     read_bounded(file.take(len), most)
 }
 
-/// All that a source gives, such as standard input.
+/// Reads a source such as standard input to its end.
 ///
 /// # Errors
 /// What the system says, and more than `most` bytes.

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::input::Input;
 use crate::{Fault, Format, ReadError};
 
-/// What the content shows.
+/// Kind of content, by the first bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Content {
     Known(Format),
@@ -111,7 +111,7 @@ fn has_rows(head: &[u8]) -> bool {
     String::from_utf8_lossy(head).lines().any(is_row)
 }
 
-/// The header of a MAT-file of version 5 with a text of its own: version and byte order stand at 124.
+/// The header of a MAT-file of version 5 with another description than MATLAB's: the byte order is at byte 126.
 fn is_mat(head: &[u8]) -> bool {
     head.get(126..128).is_some_and(|order| order == b"IM" || order == b"MI")
 }

@@ -23,10 +23,10 @@ pub trait Sink: Write + Seek {}
 
 impl<T: Write + Seek> Sink for T {}
 
-/// Writes a whole file or nothing: `fill` writes to a draft beside it, and what stood there before stays until everything
-/// is on the disk. Rights and links of an old file stay.
+/// Writes a whole file or nothing: `fill` writes to a draft in the same folder, and an old file is replaced once everything is
+/// on the disk. Its permissions stay, and so do links to it.
 ///
-/// What is not a plain file, as a pipe, is written to as it is.
+/// A pipe or device is written to directly.
 ///
 /// # Errors
 /// What the system says, or `fill`.
@@ -34,15 +34,15 @@ pub fn write_whole<E: From<io::Error>>(
     path: &Path,
     fill: impl FnOnce(&mut dyn Sink) -> Result<(), E>,
 ) -> Result<(), E> {
-    Ok(TempFile::of(path, fill)?.becomes_whole()?)
+    Ok(TempFile::of(path, fill)?.persist()?)
 }
 
-/// Removes drafts that are being written, and keeps others from being begun: for who ends the process at once, as an
-/// interrupt does. Files that stood there before stay.
+/// Removes drafts that are being written and prevents new ones, before the process ends at once, as on an interrupt. Old files
+/// stay.
 pub fn abandon_drafts() {
     let drafts = drafts();
     for draft in drafts.iter() {
-        // The process ends; there is nobody to tell.
+        // The process ends: nothing can be done about a failure.
         let _ = fs::remove_file(draft);
     }
     std::mem::forget(drafts);
@@ -52,7 +52,7 @@ fn drafts() -> MutexGuard<'static, Vec<PathBuf>> {
     DRAFTS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A file that is on the disk, and not in its place. Of files that belong together all are written before the first is
+/// A file that is on the disk, but not yet in its place. So files that belong together can all be written before the first is
 /// replaced.
 pub struct TempFile {
     place: PathBuf,
@@ -64,7 +64,7 @@ pub struct TempFile {
 struct Known(PathBuf);
 
 impl TempFile {
-    /// As [`write_whole`], but that what stood there stays.
+    /// As [`write_whole`], but an old file stays until [`persist`](Self::persist).
     ///
     /// # Errors
     /// What the system says, or `fill`.
@@ -89,11 +89,11 @@ impl TempFile {
         Ok(TempFile { place, held: Some((held, known)) })
     }
 
-    /// Replaces what stood in its place.
+    /// Puts the file in its place, and replaces an old one.
     ///
     /// # Errors
     /// What the system says.
-    pub fn becomes_whole(self) -> io::Result<()> {
+    pub fn persist(self) -> io::Result<()> {
         let Some((file, known)) = self.held else { return Ok(()) };
         // An interrupt comes before or after.
         let drafts = drafts();
@@ -114,12 +114,12 @@ fn begun(place: &Path) -> io::Result<(NamedTempFile, Known)> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;
-        let kept = fs::metadata(place).map(|found| found.permissions());
-        builder.permissions(kept.unwrap_or_else(|_| fs::Permissions::from_mode(0o666)));
+        let permissions = fs::metadata(place).map(|found| found.permissions());
+        builder.permissions(permissions.unwrap_or_else(|_| fs::Permissions::from_mode(0o666)));
     }
     let mut drafts = drafts();
     let file = builder.tempfile_in(folder)?;
-    // Where there are no locks, nobody takes it for abandoned.
+    // Without locks, drafts are never taken for abandoned.
     let _ = file.as_file().try_lock();
     drafts.push(file.path().to_owned());
     let known = Known(file.path().to_owned());
@@ -139,7 +139,7 @@ fn remove_abandoned(folder: &Path) {
     }
 }
 
-/// Whether nobody has it locked, and not just because it is new.
+/// Whether no process has it locked, and not just because it is new.
 fn is_abandoned(draft: &Path) -> bool {
     let Ok(file) = File::open(draft) else { return false };
     let age = file.metadata().and_then(|found| found.modified()).ok().and_then(|time| time.elapsed().ok());
@@ -194,7 +194,7 @@ mod tests {
         let begun = [draft(&model, "new").unwrap(), draft(&page, "new").unwrap()];
         assert_eq!(fs::read_to_string(&model).unwrap(), "old");
         for draft in begun {
-            draft.becomes_whole().unwrap();
+            draft.persist().unwrap();
         }
         assert_eq!([&model, &page].map(|path| fs::read_to_string(path).unwrap()), ["new", "new"]);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);

@@ -66,7 +66,7 @@ pub enum WriteError {
 
 /// Writes recordings in the format of the extension: csv, tsv, npz, jsonl, and with the feature `mcap` mcap.
 ///
-/// The file appears whole or not at all: a temporary file beside it is renamed.
+/// The file appears whole or not at all: a temporary file in the same folder is renamed.
 ///
 /// # Errors
 ///

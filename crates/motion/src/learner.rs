@@ -8,15 +8,15 @@ use crate::{Demonstrations, Policy, Potential, SampleIndex};
 /// Why a learner could not learn; each learner's own error, whose message says what, where and what next.
 pub type LearnError = Box<dyn std::error::Error + Send + Sync>;
 
-/// A way to learn a policy from demonstrations.
+/// A method that learns a policy from demonstrations.
 ///
-/// A learner is a plain set of parameters. `Debug` shows all of them: equal texts mean equal learners.
+/// A learner is a plain set of parameters. `Debug` prints all of them: equal texts mean equal learners.
 pub trait Learner: Debug + Send + Sync {
     /// Learns from all samples but those held out, which may come in any order. The same generator gives the same bits
     /// at any number of threads.
     ///
     /// # Errors
-    /// Whatever the learner refuses: parameters out of range, or demonstrations it can make nothing of.
+    /// [`LearnError`] for parameters out of range, or demonstrations that the learner cannot use.
     fn learn(
         &self,
         demonstrations: &Demonstrations,

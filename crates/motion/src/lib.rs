@@ -3,7 +3,7 @@
 //! ([`Policy`], [`Potential`]), and the interface of all learners ([`Learner`], which returns a [`LearntPolicy`]).
 //!
 //! Samples are **columns**: a movement of `N` samples of an `n`-dimensional state is an (n, N) matrix, so that a state
-//! is a contiguous view. Times are seconds; a state has whatever unit its dimensions have (radians, metres).
+//! is a contiguous view. Times are seconds; a state has the units of its dimensions (radians, metres).
 //!
 //! ```
 //! use motion::{Demonstrations, Trajectory};
@@ -65,13 +65,13 @@
 //! # Ok::<(), motion::LearnError>(())
 //! ```
 
+pub mod anomalies;
 mod demonstrations;
 mod error;
 mod finding;
 mod hold_out;
 mod learner;
 mod median;
-pub mod oddities;
 mod policy;
 mod recordings;
 mod sample_index;

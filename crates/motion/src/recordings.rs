@@ -6,7 +6,7 @@ use crate::{Finding, MotionError, Times, Trajectory};
 /// What was recorded: n channels of state, and episodes of any length.
 ///
 /// Of every episode, positions have n rows and a column a sample, stamps ascend, and numbers are finite. It may be too
-/// short to be a movement: whoever learns leaves it out and says so.
+/// short to be a movement: `prepare` leaves it out and reports it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recordings {
     /// Dimensions of the state, n of them.
@@ -31,7 +31,7 @@ pub struct Channel {
 pub struct Episode {
     /// As in the file: "3", "take 3", "demo_3".
     pub name: String,
-    /// Where it stands, for messages.
+    /// Where it comes from, for messages.
     pub source: Source,
     /// When each sample was taken, N of them; stamps ascend.
     pub times: Times,
@@ -43,16 +43,16 @@ pub struct Episode {
     pub constraint: Option<String>,
 }
 
-/// Where an episode stands.
+/// Where an episode comes from.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Source {
     /// Name of the file, without folders; empty if there is none.
     pub file: String,
-    /// Where its samples stand in the file; none where that says nothing.
+    /// Where its samples are in the file; none where that says nothing.
     pub rows: Option<Rows>,
 }
 
-/// Where samples stand in a file.
+/// Where samples are in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rows {
     /// What is counted: "line", "row", "message", "sample".
@@ -127,7 +127,7 @@ impl Episode {
         })
     }
 
-    /// The same movement with positions and velocities that `of` makes of its own.
+    /// The same movement with `of` applied to positions and velocities.
     fn with(&self, times: Times, source: Source, of: impl Fn(&DMatrix<f64>) -> DMatrix<f64>) -> Episode {
         Episode {
             name: self.name.clone(),
@@ -142,7 +142,7 @@ impl Episode {
     /// As a learner takes it.
     ///
     /// # Errors
-    /// Whatever [`Trajectory`] refuses.
+    /// [`MotionError`] if it is no valid [`Trajectory`].
     pub fn trajectory(&self) -> Result<Trajectory, MotionError> {
         let states = self.positions.clone();
         let trajectory = match &self.times {
@@ -155,7 +155,7 @@ impl Episode {
         }
     }
 
-    /// Where a sample stands: "demos.csv, line 17 (episode 1)".
+    /// Where a sample is in its file: "demos.csv, line 17 (episode 1)".
     pub fn place(&self, sample: usize) -> String {
         let (name, file) = (&self.name, &self.source.file);
         match self.row(sample) {

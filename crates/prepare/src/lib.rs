@@ -30,7 +30,7 @@
 //! # Ok::<(), prepare::PrepareError>(())
 //! ```
 //!
-//! Nobody else looks for what is odd about recordings: readers hand on what they find, learners take what is prepared.
+//! No other crate judges recordings: readers pass on what they find, learners take what is prepared.
 //! [`Prepared`] holds the demonstrations, every [`Decision`](motion::Decision) with the flag that overrides it, every
 //! [`Finding`](motion::Finding), those of the reader first, and every episode that was [left out](motion::LeftOut). The guide
 //! is `docs/your-own-data.md`; `docs/decisions/trust.md` gives the reasons.
@@ -39,7 +39,7 @@
 //!
 //! - [`PrepareError`]: no episodes, no motion, rows and columns exchanged, or an option that does not fit the data.
 //! - **Episodes that are duplicates or stand still** are dropped and listed in [`Prepared::left_out`].
-//! - **Time stamps in the wrong unit without velocities** look like a slower policy; only the time step shows it.
+//! - **Time stamps in the wrong unit without velocities** look like a slower policy; only the time step reveals it.
 //! - **Noise of more than a few per cent in positions alone** cannot be removed without losing the velocity. Record
 //!   velocities or commands.
 //! - **Mixed units** (metres and radians): nothing chooses a metric for you. [`PrepareOptions::scale`] sets one.
@@ -48,8 +48,8 @@ mod channel;
 mod degrees;
 mod directions;
 mod error;
-pub mod in_words;
 mod notes;
+pub mod numbers;
 mod options;
 mod prepared;
 mod remarks;

@@ -35,7 +35,7 @@ pub enum Repair {
     /// Repaired and reported.
     #[default]
     Auto,
-    /// Kept: it is no fault.
+    /// Left as they are: no faults.
     Keep,
 }
 

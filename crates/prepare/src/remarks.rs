@@ -3,8 +3,8 @@
 use motion::{Demonstrations, Trajectory, Verdict};
 
 use crate::StateChannel;
-use crate::in_words::{percent, short};
 use crate::notes::Notes;
+use crate::numbers::{percent, short};
 use crate::samples::noise::resolution;
 
 /// A channel that spreads so many times as much as most others has another unit, it seems.

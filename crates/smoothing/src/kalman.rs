@@ -6,31 +6,31 @@ use nalgebra::DMatrix;
 /// Variances and gains at every sample; they do not depend on the positions.
 #[derive(Debug)]
 pub(crate) struct Gains {
-    /// Variance after sample i was seen.
-    seen: Vec<f64>,
-    /// Variance before it was seen; the first sample is where the filter starts.
-    foreseen: Vec<f64>,
+    /// Variance of the state given samples up to i.
+    filtered: Vec<f64>,
+    /// Variance of the state given samples before i; the filter starts at the first sample.
+    predicted: Vec<f64>,
 }
 
 impl Gains {
     /// For `n_samples`, process noise `ratio` = q/ρ a step; the first sample is known to within the noise.
     pub(crate) fn new(n_samples: usize, ratio: f64) -> Self {
-        let (mut seen, mut foreseen) = (vec![1.0], vec![f64::INFINITY]);
+        let (mut filtered, mut predicted) = (vec![1.0], vec![f64::INFINITY]);
         for i in 1..n_samples {
-            let before = seen[i - 1] + ratio;
-            foreseen.push(before);
-            seen.push(before / (before + 1.0));
+            let before = filtered[i - 1] + ratio;
+            predicted.push(before);
+            filtered.push(before / (before + 1.0));
         }
-        Gains { seen, foreseen }
+        Gains { filtered, predicted }
     }
 
-    /// Variance S_i of what a sample shows beyond what was foreseen.
+    /// Variance S_i of the innovation: what a sample differs from its prediction.
     pub(crate) fn innovation_variance(&self, sample: usize) -> f64 {
-        self.foreseen[sample] + 1.0
+        self.predicted[sample] + 1.0
     }
 
-    /// Filters positions (n, N), `steps` (n, N − 1) foreseen between them, into `states` (n, N), and calls
-    /// `innovation` with every sample but the first and the square Σ_j e_ij² of what it shows beyond the foreseen.
+    /// Filters positions (n, N), `steps` (n, N − 1) predicted between them, into `states` (n, N), and calls
+    /// `innovation` with every sample but the first and the square Σ_j e_ij² of its innovation.
     pub(crate) fn filter(
         &self,
         positions: &DMatrix<f64>,
@@ -42,10 +42,10 @@ impl Gains {
         for i in 1..positions.ncols() {
             let mut square = 0.0;
             for j in 0..positions.nrows() {
-                let foreseen = states[(j, i - 1)] + steps[(j, i - 1)];
-                let error = positions[(j, i)] - foreseen;
+                let predicted = states[(j, i - 1)] + steps[(j, i - 1)];
+                let error = positions[(j, i)] - predicted;
                 square += error * error;
-                states[(j, i)] = foreseen + self.seen[i] * error;
+                states[(j, i)] = predicted + self.filtered[i] * error;
             }
             innovation(i, square);
         }
@@ -54,13 +54,13 @@ impl Gains {
     /// Goes back over filtered `states` (n, N) and leaves smoothed ones; returns their variances (N).
     pub(crate) fn smooth(&self, steps: &DMatrix<f64>, states: &mut DMatrix<f64>) -> Vec<f64> {
         let last = states.ncols() - 1;
-        let mut variance = self.seen[..=last].to_vec();
+        let mut variance = self.filtered[..=last].to_vec();
         for i in (0..last).rev() {
-            let gain = self.seen[i] / self.foreseen[i + 1];
+            let gain = self.filtered[i] / self.predicted[i + 1];
             for j in 0..states.nrows() {
                 states[(j, i)] += gain * (states[(j, i + 1)] - states[(j, i)] - steps[(j, i)]);
             }
-            variance[i] += gain * gain * (variance[i + 1] - self.foreseen[i + 1]);
+            variance[i] += gain * gain * (variance[i + 1] - self.predicted[i + 1]);
         }
         variance
     }

@@ -13,7 +13,7 @@
 //! use nalgebra::DMatrix;
 //! use smoothing::Smoother;
 //!
-//! // Two movements towards the origin, seen 50 times a second.
+//! // Two movements towards the origin, recorded 50 times a second.
 //! let movements = [1.0, -2.0].map(|start| {
 //!     DMatrix::from_fn(2, 40, |axis, i| start * (axis as f64 + 0.5) * (-0.02 * i as f64).exp())
 //! });

@@ -1,4 +1,4 @@
-//! Which array is what, from names alone: for files whose arrays have names rather than columns.
+//! Roles of arrays, from their names.
 
 use crate::arrays::array::{ArraySpec, Kind};
 use crate::names::selection::{flags, glob};

@@ -40,7 +40,7 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
     })
 }
 
-/// The groups in `parent` that hold arrays, in natural order. What lies in `obs` is found under its own name.
+/// The groups in `parent` that hold arrays, in natural order. Arrays in `obs` go by their name alone.
 fn demos(tree: &mut Tree<'_>, parent: &Folder) -> Result<Vec<Demo>, ReadError> {
     let mut names = tree.ok(parent.groups())?;
     names.retain(|name| !matches!(&name[..], "mask" | "meta"));
@@ -59,7 +59,7 @@ fn demos(tree: &mut Tree<'_>, parent: &Folder) -> Result<Vec<Demo>, ReadError> {
         }
         let observed = !fields.is_empty();
         let own = tree.arrays(&group, "")?;
-        // The simulator's whole state beside observations is asked for or not used.
+        // Next to observations, the simulator's whole state is used only on request.
         let asked = |name: &str| !observed || name != "states" || !tree.input.options.state.is_empty();
         fields.extend(own.into_iter().filter(|(name, _)| asked(name)));
         if !fields.is_empty() {
@@ -71,12 +71,9 @@ fn demos(tree: &mut Tree<'_>, parent: &Folder) -> Result<Vec<Demo>, ReadError> {
 
 /// Arrays in the root, in `data` and in `meta`, as in a replay buffer.
 fn side_by_side(tree: &mut Tree<'_>, root: &Folder, data: Option<&Folder>) -> Result<Vec<ArraySpec>, ReadError> {
-    tree.arrays(root, "")?;
-    if let Some(data) = data {
-        tree.arrays(data, "")?;
-    }
-    if let Ok(meta) = root.group("meta") {
-        tree.arrays(&meta, "")?;
+    let meta = root.group("meta").ok();
+    for folder in [Some(root), data, meta.as_ref()].into_iter().flatten() {
+        tree.arrays(folder, "")?;
     }
     let described = tree.described();
     if described.is_empty() {

@@ -12,7 +12,7 @@ use crate::input::{Input, damaged};
 use crate::raw::RawRecordings;
 use crate::{Fault, ReadError};
 
-/// Entries of an archive; more arrays than that nobody writes.
+/// Most arrays of an archive.
 const MOST_ENTRIES: usize = 100_000;
 
 struct Entry {

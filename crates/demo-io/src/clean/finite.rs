@@ -14,8 +14,8 @@ pub(super) fn make_finite(draft: &mut RawEpisode, names: &[String], word: &str, 
         Nan::Refuse => Err(not_finite(draft, first, names, word)),
         Nan::Drop => {
             let mut bad = bad.into_iter().peekable();
-            let kept: Vec<usize> = (0..draft.len()).filter(|sample| bad.next_if_eq(sample).is_none()).collect();
-            *draft = draft.chosen(kept.into_iter());
+            let finite: Vec<usize> = (0..draft.len()).filter(|sample| bad.next_if_eq(sample).is_none()).collect();
+            *draft = draft.chosen(finite.into_iter());
             Ok(())
         }
         Nan::Fill => bad.chunk_by(|a, b| a + 1 == *b).try_for_each(|run| {
@@ -44,7 +44,7 @@ fn not_finite(draft: &RawEpisode, sample: usize, names: &[String], word: &str) -
         let values = numbers.get(sample * n..(sample + 1) * n)?;
         values.iter().enumerate().find(|(_, value)| !value.is_finite()).map(|(channel, &value)| (channel, value))
     };
-    let (whose, value) = if !draft.times[sample].is_finite() {
+    let (what, value) = if !draft.times[sample].is_finite() {
         ("the stamp".to_owned(), draft.times[sample])
     } else if let Some((channel, value)) = here(&draft.positions) {
         (format!("'{}'", names[channel]), value)
@@ -54,7 +54,7 @@ fn not_finite(draft: &RawEpisode, sample: usize, names: &[String], word: &str) -
     };
     let found = if value.is_nan() { "missing or NaN".to_owned() } else { format!("{value}") };
     let remedy = "--nan drop (leaves the sample out) or --nan fill (interpolates gaps of up to 3 samples)";
-    ReadError::NotFinite(Fault::new(format!("{whose} is no finite number: {found}"), draft.place(sample, word), remedy))
+    ReadError::NotFinite(Fault::new(format!("{what} is no finite number: {found}"), draft.place(sample, word), remedy))
 }
 
 /// Straight between the samples around a run, in time; only what is missing.

@@ -10,7 +10,7 @@ use std::rc::Rc;
 use csv::ByteRecord;
 
 use self::dialect::Dialect;
-use self::source::Guarded;
+use self::source::TextSource;
 use crate::input::Input;
 use crate::raw::{RawRecordings, remark};
 use crate::rows::roles::Column;
@@ -19,7 +19,7 @@ use crate::{Fault, ReadError};
 
 pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<RawRecordings, ReadError> {
     let dialect = Dialect::of(input)?;
-    let source = Guarded::new(input, &dialect, progress)?;
+    let source = TextSource::new(input, &dialect, progress)?;
     let since_record = Rc::clone(&source.since_record);
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(dialect.separator)
@@ -49,7 +49,10 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
     let no_header = header.is_none();
     let names = header.unwrap_or_else(|| (0..first.len()).map(|column| format!("c{column}")).collect());
     if no_header && input.options.state.is_empty() {
-        return Err(no_header_error(&input.name, *first_line, names.len()));
+        let n = names.len();
+        let what = format!("there is no header: line {first_line} begins with numbers, and {n} columns have no name");
+        let remedy = "--state 2,3 --time 1 (columns count from 0; also --episode 0, --velocity 4,5), or write a first line with names";
+        return Err(ReadError::NoRoles(Fault::new(what, &input.name, remedy)));
     }
     let column = |(column, name): (usize, String)| Column {
         name,
@@ -148,12 +151,6 @@ impl<R: std::io::Read> Rows<'_, R> {
 fn is_counted(record: &ByteRecord) -> bool {
     let names = record.iter().enumerate().filter(|(at, field)| *at > 0 || !field.is_empty());
     record.len() > 2 && names.enumerate().all(|(number, (_, field))| field == number.to_string().as_bytes())
-}
-
-fn no_header_error(file: &str, line: u64, columns: usize) -> ReadError {
-    let what = format!("there is no header: line {line} begins with numbers, and {columns} columns have no name");
-    let remedy = "--state 2,3 --time 1 (columns count from 0; also --episode 0, --velocity 4,5), or write a first line with names";
-    ReadError::NoRoles(Fault::new(what, file, remedy))
 }
 
 /// A decimal comma among points.

@@ -174,8 +174,8 @@ mod tests {
     #[test]
     fn leaves_keep_their_order_and_have_paths() {
         let json: Json = serde_json::from_str(r#"{"z": 1, "vel": [0.5, null], "a": {"b": true, "c": "no"}}"#).unwrap();
-        let mut seen = Vec::new();
-        json.leaves(&mut String::new(), &mut |path, leaf| seen.push(format!("{path}={leaf}")));
-        assert_eq!(seen, ["z=1", "vel.0=0.5", "vel.1=", "a.b=1", "a.c=no"]);
+        let mut found = Vec::new();
+        json.leaves(&mut String::new(), &mut |path, leaf| found.push(format!("{path}={leaf}")));
+        assert_eq!(found, ["z=1", "vel.0=0.5", "vel.1=", "a.b=1", "a.c=no"]);
     }
 }

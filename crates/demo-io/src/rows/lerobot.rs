@@ -1,5 +1,5 @@
 //! A folder as LeRobot writes it: `meta/info.json` and Parquet files in `data/`. The files on disk and their column
-//! `episode_index` are followed, whatever version the folder says it has.
+//! `episode_index` count, not the version that the folder states.
 
 use std::collections::{BTreeSet, HashMap};
 use std::fs;

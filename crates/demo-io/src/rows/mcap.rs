@@ -1,8 +1,8 @@
 //! Bags of ROS 2 in MCAP: one topic becomes one recording.
 
+mod episodes;
 pub(crate) mod format;
 mod messages;
-mod noted;
 mod record;
 mod records;
 mod source;
@@ -10,7 +10,7 @@ mod topic;
 
 use std::collections::{BTreeMap, HashMap};
 
-pub(crate) use self::noted::Noted;
+pub(crate) use self::episodes::EpisodeEntry;
 use self::record::Record;
 use self::topic::Topic;
 use crate::input::Input;
@@ -18,7 +18,7 @@ use crate::raw::{RawRecordings, remark};
 use crate::rows::roles::shortened;
 use crate::{Fault, ReadError};
 
-/// Name of the metadata record in which [`crate::write`] keeps what messages cannot say.
+/// Name of the metadata record in which [`crate::write`] stores what messages cannot hold.
 pub(crate) const METADATA: &str = "demo-io";
 
 /// A bag has hardly more topics than that.
@@ -35,10 +35,8 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
     let whole = records::each(input, progress, |record| bag.add(record))?;
     let mut drafts = bag.finish()?;
     if !whole {
-        let what = format!(
-            "{} ends in the middle of a record, as if its recorder was killed; what is whole was read",
-            input.name
-        );
+        let why = "in the middle of a record, as if its recorder was killed; what is whole was read";
+        let what = format!("{} ends {why}", input.name);
         drafts.findings.push(remark(what, "mcap recover FILE repairs it"));
     }
     Ok(drafts)

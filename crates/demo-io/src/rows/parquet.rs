@@ -195,7 +195,7 @@ fn rename(drafts: &mut RawRecordings, described: &Described) {
     }
 }
 
-/// Stamps beside a rate: they are not used, since single precision makes them wobble, but must agree with it.
+/// Stamps next to a rate: they are not used, since single precision makes them uneven, but must agree with it.
 struct Stamps<'a> {
     period: f64,
     stamp: &'a Leaf,

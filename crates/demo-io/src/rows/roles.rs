@@ -1,4 +1,4 @@
-//! Which column is what, from names alone.
+//! Roles of columns, from their names.
 
 mod names;
 
@@ -36,7 +36,7 @@ pub(crate) struct Roles {
     pub(crate) state: Vec<usize>,
     /// As many as the state, or none.
     pub(crate) velocity: Vec<usize>,
-    /// Not used although nobody said so.
+    /// Not used, and not named by `--ignore` either.
     pub(crate) ignored: Vec<usize>,
     /// Whether the state was found here rather than named by the user.
     pub(crate) state_guessed: bool,
@@ -63,11 +63,11 @@ const EPISODES: [&str; 14] = [
 const CONSTRAINTS: [&str; 4] = ["constraint", "condition", "task", "task_index"];
 const NEVER_STATE: [&str; 7] = ["*effort*", "*torque*", "*current*", "*temperature*", "reward", "done", "success"];
 
-/// Assigns every column of `columns`; `place` is where to say it stands.
+/// Assigns every column of `columns`; `place` names the file in errors.
 pub(crate) fn assign(columns: &[Column], options: &ReadOptions, place: &str) -> Result<Roles, ReadError> {
     let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
     let ignored_by_user = flags(&options.ignore, &names);
-    refuse_twins(&names, &ignored_by_user, options, place)?;
+    refuse_duplicate_names(&names, &ignored_by_user, options, place)?;
     let mut roles = Roles {
         time: one(options.time.as_deref(), "--time", &names, place)?,
         episode: one(options.episode.as_deref(), "--episode", &names, place)?,
@@ -135,7 +135,7 @@ impl Roles {
                 }
             }
         }
-        // What is a velocity has no velocity of its own here: 'ddx' beside 'x' and 'dx' stays state and is found lacking.
+        // What is a velocity has no velocity of its own here: 'ddx' next to 'x' and 'dx' stays state, and lacks one.
         self.state = free.iter().copied().filter(|index| !velocities.contains(index)).collect();
         free.retain(|index| velocities.contains(index));
         if self.state.is_empty() {
@@ -194,17 +194,22 @@ impl Roles {
 }
 
 /// Two columns of one name, unless columns were chosen by number.
-fn refuse_twins(names: &[&str], ignored: &[bool], options: &ReadOptions, place: &str) -> Result<(), ReadError> {
+fn refuse_duplicate_names(
+    names: &[&str],
+    ignored: &[bool],
+    options: &ReadOptions,
+    place: &str,
+) -> Result<(), ReadError> {
     let numbers = |pattern: &String| pattern.bytes().all(|letter| letter.is_ascii_digit() || b"-, ".contains(&letter));
     if !options.state.is_empty() && options.state.iter().chain(&options.velocity).all(numbers) {
         return Ok(());
     }
     let mut first: HashMap<&str, usize> = HashMap::new();
     for (index, name) in names.iter().enumerate().filter(|(index, name)| !name.is_empty() && !ignored[*index]) {
-        if let Some(twin) = first.insert(name, index) {
-            let what = format!("'{name}' names columns {twin} and {index}");
+        if let Some(other) = first.insert(name, index) {
+            let what = format!("'{name}' names columns {other} and {index}");
             let last = index - 1;
-            let remedy = format!("rename one, or choose columns by number, which count from 0: --state {twin}-{last}");
+            let remedy = format!("rename one, or choose columns by number, which count from 0: --state {other}-{last}");
             return Err(ReadError::AmbiguousColumn(Fault::new(what, place, remedy)));
         }
     }
@@ -234,9 +239,9 @@ pub(crate) fn no_column<S: AsRef<str>>(pattern: &str, names: &[S], place: &str) 
 
 /// Names with commas between, not more than a screen of them.
 pub(crate) fn shortened<S: AsRef<str>>(names: &[S]) -> String {
-    let shown: Vec<&str> = names.iter().take(40).map(AsRef::as_ref).collect();
+    let first_names: Vec<&str> = names.iter().take(40).map(AsRef::as_ref).collect();
     let more = if names.len() > 40 { format!(", … ({} in all)", names.len()) } else { String::new() };
-    shown.join(", ") + &more
+    first_names.join(", ") + &more
 }
 
 fn quoted(names: &[&str]) -> String {

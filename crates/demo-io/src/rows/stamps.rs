@@ -1,7 +1,7 @@
 //! Stamps of every kind to seconds from an episode's first sample.
 //!
-//! Seconds since 1970 in f64 resolve 2.4e-7 s, which makes the steps of a 1 kHz recording wobble; so stamps are kept as a
-//! whole number and a rest, and the first is subtracted before anything is divided.
+//! Seconds since 1970 in f64 resolve 2.4e-7 s, which makes the steps of a 1 kHz recording uneven. So stamps are stored as a
+//! whole number and a fraction, and the first is subtracted before any division.
 
 /// A stamp in some unit, not yet in f64: `whole` + `part`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,7 +14,7 @@ pub(crate) struct Stamp {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TicksPerSecond(pub(crate) f64);
 
-/// Below this, f64 has all digits that anybody writes.
+/// Below this, f64 holds all digits that files have.
 const LARGE: f64 = 1e6;
 
 impl Stamp {

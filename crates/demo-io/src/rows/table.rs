@@ -1,4 +1,4 @@
-//! Rows with named columns become episodes, whatever the format.
+//! Rows with named columns, of any format, become episodes.
 
 use std::collections::{HashMap, HashSet};
 
@@ -81,7 +81,7 @@ impl Table {
         [*time, *episode, *constraint].into_iter().flatten().chain(state.iter().chain(velocity).copied()).collect()
     }
 
-    /// Adds a row, which stands at `place`.
+    /// Adds the row at `place`.
     pub(crate) fn push(&mut self, place: u64, row: &impl Row) -> Result<(), ReadError> {
         let episode = self.episode_of(row)?;
         if let (Some(column), None) = (self.roles.time, self.period) {
@@ -160,10 +160,10 @@ impl Table {
     }
 
     fn not_a_number(&self, text: &str, column: usize, place: u64) -> ReadError {
-        let shown: String = text.chars().take(40).collect();
+        let start: String = text.chars().take(40).collect();
         let name = &self.names[column];
         let role = if self.roles.time == Some(column) { "stamp" } else { "number" };
-        let what = format!("'{shown}' is not a {role}");
+        let what = format!("'{start}' is not a {role}");
         let place = format!("{}, {} {place}, column '{name}'", self.file, self.word);
         let remedy = (self.hint)(text).unwrap_or_else(|| {
             format!("correct the file, or --ignore '{name}' if the column does not belong to the state")

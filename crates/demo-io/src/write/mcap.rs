@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use self::bag::Bag;
 use super::{Failure, has_velocities};
 
-use crate::rows::mcap::{METADATA, Noted};
+use crate::rows::mcap::{EpisodeEntry, METADATA};
 use crate::rows::packed::Writer;
 use motion::Recordings;
 
@@ -51,16 +51,16 @@ fn message(recordings: &Recordings, episode: &motion::Episode, sample: usize, st
 }
 
 fn metadata(recordings: &Recordings) -> io::Result<BTreeMap<String, String>> {
-    let noted: Vec<Noted> = recordings
+    let entries: Vec<EpisodeEntry> = recordings
         .episodes
         .iter()
-        .map(|episode| Noted {
+        .map(|episode| EpisodeEntry {
             name: episode.name.clone(),
             messages: episode.times.len(),
             constraint: episode.constraint.clone(),
         })
         .collect();
-    let mut metadata = BTreeMap::from([("episodes".to_owned(), serde_json::to_string(&noted)?)]);
+    let mut metadata = BTreeMap::from([("episodes".to_owned(), serde_json::to_string(&entries)?)]);
     for channel in &recordings.state {
         if let Some(unit) = &channel.unit {
             metadata.insert(format!("unit/{}", channel.name), unit.clone());

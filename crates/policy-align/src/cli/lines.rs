@@ -1,4 +1,4 @@
-pub(crate) use prepare::in_words::{short, squared_error};
+pub(crate) use prepare::numbers::{short, squared_error};
 use text::plain;
 
 /// Columns of the terminal that are used.

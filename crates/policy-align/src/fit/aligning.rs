@@ -5,7 +5,7 @@ use gp::Rows;
 use lwpr::LwprParams;
 use motion::{Demonstrations, LearntPolicy, Potential};
 use nalgebra::{DMatrix, DVector};
-use prepare::in_words::squared_error;
+use prepare::numbers::squared_error;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

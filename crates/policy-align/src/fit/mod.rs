@@ -14,7 +14,7 @@ pub(crate) use recorded_rows::rows;
 
 use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, SlopeGp, TrajectoryErrors};
 use motion::{LearntPolicy, Policy, upper_median};
-use prepare::in_words::squared_error;
+use prepare::numbers::squared_error;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 

@@ -1,4 +1,4 @@
-use prepare::in_words::short;
+use prepare::numbers::short;
 use thiserror::Error;
 
 /// Why a policy cannot be followed. A message says what and where; [`RollOutError::remedy`] what next.

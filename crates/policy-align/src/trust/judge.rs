@@ -2,7 +2,7 @@ use std::cmp::Reverse;
 
 use gp::{Grouping, Hypothesis};
 use motion::upper_median;
-use prepare::in_words::{percent, short};
+use prepare::numbers::{percent, short};
 
 use super::numbers::TrustNumbers;
 use super::words::direction;

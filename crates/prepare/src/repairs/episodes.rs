@@ -1,6 +1,6 @@
 //! Episodes that no learner can use, and the others as it takes them.
 
-use motion::oddities::stands_still;
+use motion::anomalies::stands_still;
 use motion::{Demonstrations, Episode, Recordings};
 use nalgebra::DVector;
 

@@ -1,8 +1,8 @@
-use motion::oddities::{LongStep, long_steps};
+use motion::anomalies::{LongStep, long_steps};
 use motion::{Channel, Episode, Verdict};
 
-use crate::in_words::short;
 use crate::notes::Notes;
+use crate::numbers::short;
 
 /// Shorter pieces than this are not worth learning from.
 const LEAST: usize = 4;
@@ -18,7 +18,7 @@ pub(crate) fn cut(episodes: &mut Vec<Episode>, channels: &[Channel], notes: &mut
             let jumps = long_steps(&episode.positions);
             let Some(jump) = jumps.first() else { return vec![episode] };
             cut += 1;
-            first.get_or_insert_with(|| in_words(&episode, jump, channels));
+            first.get_or_insert_with(|| described(&episode, jump, channels));
             pieces(&episode, &jumps, notes)
         })
         .collect();
@@ -34,7 +34,7 @@ pub(crate) fn cut(episodes: &mut Vec<Episode>, channels: &[Channel], notes: &mut
     );
 }
 
-fn in_words(episode: &Episode, jump: &LongStep, channels: &[Channel]) -> String {
+fn described(episode: &Episode, jump: &LongStep, channels: &[Channel]) -> String {
     let step = episode.step(jump.sample);
     let most = step.icamax();
     format!(

@@ -1,4 +1,4 @@
-//! What is wrong with recordings and can be mended, or left out.
+//! Repairs of faulty recordings.
 
 pub(crate) mod agreement;
 pub(crate) mod duplicates;

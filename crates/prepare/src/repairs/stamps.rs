@@ -1,8 +1,8 @@
 use motion::{Demonstrations, Episode, Times, Trajectory, Verdict, upper_median};
 
 use crate::PrepareError;
-use crate::in_words::{percent, short};
 use crate::notes::{Notes, and_more};
+use crate::numbers::{percent, short};
 use crate::options::PrepareOptions;
 
 /// Stamps that differ by less than this share of a step are even.

@@ -1,8 +1,8 @@
 use motion::{Channel, Episode, Verdict};
 use nalgebra::DVector;
 
-use crate::in_words::{percent, short};
 use crate::notes::Notes;
+use crate::numbers::{percent, short};
 use crate::options::{PrepareOptions, VelocityUse};
 use crate::repairs::agreement::Agreement;
 use crate::samples::noise::Noise;
@@ -68,14 +68,14 @@ pub(crate) fn decide(
         notes.decided("velocities", "recorded", why, "--integration");
         return if differences { Agreement::Differences } else { Agreement::Own };
     }
-    mend(episodes, &fit, channels, notes);
+    rescale(episodes, &fit, channels, notes);
     Agreement::Own
 }
 
-/// Of a part of a movement: its step D, and S = Σ u δt, the step by its velocities; both (n).
+/// A part of a movement: its step D, and S = Σ u δt, the step by its velocities; both (n).
 type Part = (DVector<f64>, DVector<f64>);
 
-/// Steps as multiples of what velocities say, over parts of movements: Σ D S / Σ S² in each channel, S = Σ u δt.
+/// Steps as multiples of those by velocities, over parts of movements: Σ D S / Σ S² in each channel, S = Σ u δt.
 struct Steps {
     /// (n).
     factors: DVector<f64>,
@@ -92,7 +92,7 @@ impl Steps {
         let common = sum(&|(d, s)| d.dot(s)) / power;
         let factor = |axis: usize| {
             let own = sum(&|(_, s)| s[axis].powi(2));
-            // A channel that hardly moves says nothing of its factor.
+            // A channel that hardly moves does not determine its factor.
             if own > 1e-6 * power { sum(&|(d, s)| d[axis] * s[axis]) / own } else { common }
         };
         let factors = DVector::from_fn(dim, |axis, _| factor(axis));
@@ -105,7 +105,7 @@ impl Steps {
     }
 }
 
-/// Displacement and what velocities make of it, over parts of a movement.
+/// Displacements of parts of a movement, and those that velocities give.
 fn parts(episode: &Episode) -> Vec<Part> {
     let steps = episode.n_samples() - 1;
     let parts = PARTS.min((steps / 2).max(1));
@@ -114,11 +114,11 @@ fn parts(episode: &Episode) -> Vec<Part> {
         .map(|part| {
             let (from, to) = (part * steps / parts, (part + 1) * steps / parts);
             let moved = episode.positions.column(to) - episode.positions.column(from);
-            let mut said = DVector::zeros(moved.len());
+            let mut integral = DVector::zeros(moved.len());
             for i in from..to {
-                said += (velocities.column(i) + velocities.column(i + 1)) * (0.5 * episode.times.seconds(i, i + 1));
+                integral += (velocities.column(i) + velocities.column(i + 1)) * (0.5 * episode.times.seconds(i, i + 1));
             }
-            (moved, said)
+            (moved, integral)
         })
         .collect()
 }
@@ -144,8 +144,8 @@ fn made_of_positions(episodes: &[Episode]) -> bool {
     off(&after) || off(&before) || off(&both)
 }
 
-/// Velocities in other units than the steps: brought to those of positions and stamps, and said.
-fn mend(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &mut Notes) {
+/// Converts velocities in other units than the steps to those of positions and stamps, and reports it.
+fn rescale(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &mut Notes) {
     let (low, high) = (fit.factors.min(), fit.factors.max());
     let step = episodes[0].times.seconds(0, 1);
     if step > SLOW && fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(&(factor * 1000.0))) {

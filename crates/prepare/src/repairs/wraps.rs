@@ -2,8 +2,8 @@ use std::f64::consts::TAU;
 
 use motion::{Channel, Episode, Verdict};
 
-use crate::in_words::short;
 use crate::notes::{Notes, and_more};
+use crate::numbers::short;
 use crate::scale::range;
 
 /// A step over this share of a turn is a wrap.

@@ -5,7 +5,7 @@ use smoothing::PositionNoise;
 
 use crate::notes::Notes;
 use crate::repairs::agreement::Agreement;
-use crate::{VelocitySource, in_words};
+use crate::{VelocitySource, numbers};
 
 /// Positions count as exact if noise makes less than this share of the squared steps.
 const EXACT: f64 = 0.01;
@@ -158,5 +158,5 @@ pub(crate) fn decide(
 
 /// Where steps are nothing but noise, its estimate may exceed them.
 fn percent(share: f64) -> String {
-    in_words::percent(share.min(1.0))
+    numbers::percent(share.min(1.0))
 }

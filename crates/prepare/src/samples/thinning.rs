@@ -3,13 +3,13 @@
 use motion::{Demonstrations, MotionError, Trajectory, upper_median};
 use nalgebra::DMatrix;
 
-use crate::in_words::percent;
 use crate::notes::Notes;
+use crate::numbers::percent;
 use crate::samples::noise::{Noise, squared_steps};
 
 /// Samples are averaged until noise makes at most this share of the squared steps.
 const CALM: f64 = 0.3;
-/// Movements keep at least so many samples.
+/// Movements retain at least so many samples.
 const LEAST: usize = 40;
 
 /// How many samples in a row become one: 1 leaves all as they are.

@@ -85,7 +85,7 @@ struct Fit<'a> {
     s2: f64,
 }
 
-/// Weighted means and squared deviations, kept current (so that small deviations keep their digits).
+/// Weighted means and squared deviations, updated with each fit, so that small deviations lose no digits.
 struct Sum {
     weights: Vec<f64>,
     mean: DMatrix<f64>,

@@ -1,4 +1,4 @@
-//! Exact sums over all ways to cut a movement into windows, (S16).
+//! Exact sums over all segmentations of a movement into windows, (S16).
 
 use crate::piecewise::evidence::{NoiseModel, log_sum_exp};
 use crate::piecewise::windows::{Energy, Window, windows};

@@ -16,7 +16,7 @@ use crate::piecewise::windows::{Bases, Energy, MAX_COLUMNS, energies};
 ///
 /// A movement falls into windows; within one every dimension is a polynomial of time, and between two of them anything
 /// may change, as it does when a constraint switches. Where windows begin and of which degree they are is not decided:
-/// all ways to cut a movement are weighed by their evidence (forward–backward recursion, Fearnhead 2006).
+/// all segmentations of a movement are weighted by their evidence (forward–backward recursion, Fearnhead 2006).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Smoother {
     /// Degrees that a window may have, equally likely beforehand; at most 7.

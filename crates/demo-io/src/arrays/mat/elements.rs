@@ -10,7 +10,7 @@ use crate::{Fault, ReadError};
 const COMPRESSED: u32 = 15;
 const MATRIX: u32 = 14;
 
-/// Structures within structures: deeper than that nobody nests.
+/// Most structures within each other.
 const DEEPEST: usize = 16;
 
 /// Data elements one after another: a tag with type and length, then bytes.

@@ -4,7 +4,7 @@ use super::fields::Fields;
 use crate::input::Input;
 use crate::{Fault, ReadError};
 
-/// How a file separates fields, and what stands before its rows.
+/// How a file separates fields, and what comes before its rows.
 #[derive(Debug)]
 pub(super) struct Dialect {
     pub(super) separator: u8,

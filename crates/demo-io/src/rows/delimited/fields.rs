@@ -33,7 +33,7 @@ impl Row for Fields<'_> {
     fn label(&self, column: usize, label: &mut String) {
         label.clear();
         let field = String::from_utf8_lossy(self.record[column].trim_ascii());
-        // What pandas makes of whole numbers beside a missing one.
+        // What pandas makes of whole numbers in a column with a missing one.
         let whole = field.strip_suffix(".0").filter(|digits| digits.bytes().all(|digit| digit.is_ascii_digit()));
         label.push_str(whole.unwrap_or(&field));
     }

@@ -12,7 +12,7 @@ use crate::input::Input;
 const LONGEST_RECORD: usize = 16 << 20;
 
 /// The file's text as the parser should see it: without byte order mark, runs of blanks as one, and no endless records.
-pub(super) struct Guarded<'a> {
+pub(super) struct TextSource<'a> {
     file: File,
     progress: &'a mut dyn FnMut(u64),
     /// Bytes read since the last record: to be set to 0 with each.
@@ -21,7 +21,7 @@ pub(super) struct Guarded<'a> {
     blanks: Option<Squeeze>,
 }
 
-impl<'a> Guarded<'a> {
+impl<'a> TextSource<'a> {
     pub(super) fn new(
         input: &Input<'_>,
         dialect: &Dialect,
@@ -37,7 +37,7 @@ impl<'a> Guarded<'a> {
     }
 }
 
-impl Read for Guarded<'_> {
+impl Read for TextSource<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         loop {
             // A blank may come out that was read before: one more byte than goes in.
@@ -51,14 +51,14 @@ impl Read for Guarded<'_> {
             self.since_record.set(since);
             let skipped = self.skip.min(read);
             self.skip -= skipped;
-            let kept = if let Some(squeeze) = &mut self.blanks {
+            let written = if let Some(squeeze) = &mut self.blanks {
                 squeeze.squeeze(buffer, start + skipped..start + read)
             } else {
                 buffer.copy_within(skipped..read, 0);
                 read - skipped
             };
-            if kept > 0 || read == 0 {
-                return Ok(kept);
+            if written > 0 || read == 0 {
+                return Ok(written);
             }
         }
     }
@@ -75,28 +75,28 @@ struct Squeeze {
 impl Squeeze {
     /// Squeezes what stands at `range`, which begins at 1 at least, to the front.
     fn squeeze(&mut self, text: &mut [u8], range: Range<usize>) -> usize {
-        let mut kept = 0;
+        let mut written = 0;
         for at in range {
             let letter = text[at];
             match letter {
                 b' ' | b'\t' if !self.quoted => self.pending = self.in_line,
                 b'\n' | b'\r' => {
                     (self.in_line, self.pending) = (false, false);
-                    text[kept] = letter;
-                    kept += 1;
+                    text[written] = letter;
+                    written += 1;
                 }
                 _ => {
                     self.quoted ^= letter == b'"';
                     if self.pending {
-                        text[kept] = b' ';
-                        kept += 1;
+                        text[written] = b' ';
+                        written += 1;
                     }
                     (self.in_line, self.pending) = (true, false);
-                    text[kept] = letter;
-                    kept += 1;
+                    text[written] = letter;
+                    written += 1;
                 }
             }
         }
-        kept
+        written
     }
 }

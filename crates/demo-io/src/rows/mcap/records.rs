@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::format::{MAGIC, opcode};
 use super::record::Record;
-use super::source::{Summed, Watched, content, head, skip};
+use super::source::{ChecksumReader, ProgressReader, content, head, skip};
 use crate::input::{Input, unreadable};
 use crate::rows::packed::{self, Misfit};
 use crate::{Fault, ReadError};
@@ -18,13 +18,13 @@ pub(super) fn each(
     progress: &mut dyn FnMut(u64),
     mut visit: impl FnMut(Record<'_>) -> Result<(), ReadError>,
 ) -> Result<bool, ReadError> {
-    let mut file = Summed::new(Watched::new(input.open()?, progress));
+    let mut file = ChecksumReader::new(ProgressReader::new(input.open()?, progress));
     let mut reader = Reader { input, visit: &mut visit, buffer: Vec::new() };
     match reader.bag(&mut file) {
         Ok(()) => Ok(true),
         Err(Stop::Refused(error)) => Err(error),
         Err(Stop::Bytes(error)) if error.raw_os_error().is_some() => Err(unreadable(&error, &input.name)),
-        // Whatever was missing is behind the end of the file.
+        // What is missing would be behind the end of the file.
         Err(Stop::Bytes(_)) if file.ended => Ok(false),
         Err(stop) => {
             let remedy = "another copy of the file, or mcap recover FILE";
@@ -55,7 +55,7 @@ struct Reader<'a, 'v> {
 }
 
 impl Reader<'_, '_> {
-    fn bag<R: Read>(&mut self, file: &mut Summed<R>) -> Result<(), Stop> {
+    fn bag<R: Read>(&mut self, file: &mut ChecksumReader<R>) -> Result<(), Stop> {
         magic(file, "begin")?;
         loop {
             let sum = file.sum();
@@ -87,7 +87,7 @@ impl Reader<'_, '_> {
         Ok((self.visit)(record)?)
     }
 
-    fn chunk<R: Read>(&mut self, file: &mut Summed<R>, length: u64) -> Result<(), Stop> {
+    fn chunk<R: Read>(&mut self, file: &mut ChecksumReader<R>, length: u64) -> Result<(), Stop> {
         let mut packed = file.take(length);
         let mut fixed = [0; 32];
         packed.read_exact(&mut fixed)?;
@@ -114,7 +114,7 @@ impl Reader<'_, '_> {
                 return Err(Stop::Damaged(what));
             }
         };
-        let mut records = Summed::new(unpacking).take(unpacked);
+        let mut records = ChecksumReader::new(unpacking).take(unpacked);
         while let Some((kind, length)) = head(&mut records)? {
             if length > records.limit() {
                 return Err(Stop::Damaged("a record is longer than its chunk".to_owned()));

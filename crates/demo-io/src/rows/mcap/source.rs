@@ -5,15 +5,15 @@ use crc32fast::Hasher;
 /// Read at once.
 const BLOCK: usize = 256 << 10;
 
-/// A source of bytes that keeps their check sum and knows whether it ended.
-pub(super) struct Summed<R> {
+/// A reader that computes the check sum of its bytes and records whether they ended.
+pub(super) struct ChecksumReader<R> {
     inner: R,
     sum: Hasher,
     /// Whether more was wanted than there is.
     pub(super) ended: bool,
 }
 
-impl<R: Read> Summed<R> {
+impl<R: Read> ChecksumReader<R> {
     pub(super) fn new(inner: R) -> Self {
         Self { inner, sum: Hasher::new(), ended: false }
     }
@@ -24,7 +24,7 @@ impl<R: Read> Summed<R> {
     }
 }
 
-impl<R: Read> Read for Summed<R> {
+impl<R: Read> Read for ChecksumReader<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let read = self.inner.read(buffer)?;
         self.ended |= read == 0 && !buffer.is_empty();
@@ -33,19 +33,19 @@ impl<R: Read> Read for Summed<R> {
     }
 }
 
-/// A source that says how much of it was read.
-pub(super) struct Watched<'a, R> {
+/// A reader that reports how many bytes it read.
+pub(super) struct ProgressReader<'a, R> {
     inner: R,
     progress: &'a mut dyn FnMut(u64),
 }
 
-impl<'a, R: Read> Watched<'a, R> {
+impl<'a, R: Read> ProgressReader<'a, R> {
     pub(super) fn new(inner: R, progress: &'a mut dyn FnMut(u64)) -> BufReader<Self> {
         BufReader::with_capacity(BLOCK, Self { inner, progress })
     }
 }
 
-impl<R: Read> Read for Watched<'_, R> {
+impl<R: Read> Read for ProgressReader<'_, R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let read = self.inner.read(buffer)?;
         (self.progress)(read as u64);
@@ -64,7 +64,7 @@ pub(super) fn head(source: &mut impl Read) -> io::Result<Option<(u8, u64)>> {
     Ok(Some((kind[0], u64::from_le_bytes(length))))
 }
 
-/// The content of a record. Memory is taken for bytes that are there, whatever `length` says.
+/// The content of a record. It allocates only for bytes that are there, not for all of `length`.
 pub(super) fn content<'b>(source: &mut impl Read, length: u64, buffer: &'b mut Vec<u8>) -> io::Result<&'b [u8]> {
     buffer.clear();
     while (buffer.len() as u64) < length {

@@ -2,8 +2,8 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 
+use super::episodes::episodes;
 use super::messages::{Message, Type};
-use super::noted::episodes;
 use crate::input::Input;
 use crate::names::natural;
 use crate::names::selection::{flags, select};

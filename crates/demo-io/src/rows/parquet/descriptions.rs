@@ -1,6 +1,6 @@
-//! A file's own descriptions, followed before the library believes them: it reads a field as what the format says is there,
-//! whatever the file says, and counts a list of two thousand million truth values through, though the file has no byte for
-//! them.
+//! Checks a file's descriptions of itself before the library reads them. The library takes a field for what the format says
+//! even where the file says otherwise, and counts through a list of two thousand million truth values though the file has no
+//! byte for them.
 //!
 //! Descriptions are in Thrift's compact protocol: fields of a kind each, up to a kind 0.
 

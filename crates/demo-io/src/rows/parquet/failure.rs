@@ -1,4 +1,4 @@
-//! What the library's errors mean for whoever has the file.
+//! Errors of the Parquet library, as errors of the file.
 
 use std::fmt::Display;
 

@@ -1,4 +1,4 @@
-//! What a column's name says: a time, a unit, whose velocity.
+//! What a column's name says: whether it is a time, its unit, and the names that its velocity may have.
 
 const TIMES: [&str; 14] = [
     "t",
@@ -89,6 +89,6 @@ pub(crate) fn velocity_names(state: &str) -> impl Iterator<Item = String> + use<
     } else if s.contains("pos") {
         names.push(s.replacen("pos", "vel", 1));
     }
-    // `dt` is a time step, and `d` nobody's velocity.
+    // `dt` is a time step, not the velocity of `t`.
     names.into_iter().filter(|name| name != "dt")
 }

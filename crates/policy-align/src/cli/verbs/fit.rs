@@ -203,5 +203,5 @@ fn replace(files: &[(PathBuf, String)]) -> Result<(), Failure> {
     };
     let drafts = files.iter().map(draft).collect::<Result<Vec<_>, _>>()?;
     let mut replaced = drafts.into_iter().zip(files);
-    replaced.try_for_each(|(draft, (path, _))| draft.becomes_whole().map_err(|error| failed(path, error)))
+    replaced.try_for_each(|(draft, (path, _))| draft.persist().map_err(|error| failed(path, error)))
 }

@@ -39,7 +39,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn three_digits_are_shown() {
+    fn three_digits_are_printed() {
         for (value, expected) in [
             (0.0, "0"),
             (1.0, "1"),

@@ -1,4 +1,4 @@
-//! What is odd about movements, whoever asks: steps that stand out, movements that stand still or occur twice.
+//! Anomalies of movements: steps that stand out, movements that stand still or occur twice.
 
 use std::collections::HashMap;
 
@@ -50,15 +50,15 @@ pub fn long_steps(states: &DMatrix<f64>) -> Vec<LongStep> {
 }
 
 /// For each movement (n, N_k) the first before it that has the same states, if there is one. O(M) for M samples.
-pub fn twins<'a>(movements: impl IntoIterator<Item = &'a DMatrix<f64>>) -> Vec<Option<usize>> {
+pub fn duplicates<'a>(movements: impl IntoIterator<Item = &'a DMatrix<f64>>) -> Vec<Option<usize>> {
     let mut first = HashMap::<(usize, Vec<u64>), usize>::new();
-    let twin = |(index, states): (usize, &DMatrix<f64>)| {
+    let duplicate = |(index, states): (usize, &DMatrix<f64>)| {
         // Adding 0 makes −0 a 0.
         let bits = states.iter().map(|x| (x + 0.0).to_bits()).collect();
         let found = *first.entry((states.nrows(), bits)).or_insert(index);
         (found < index).then_some(found)
     };
-    movements.into_iter().enumerate().map(twin).collect()
+    movements.into_iter().enumerate().map(duplicate).collect()
 }
 
 /// Whether one movement (n, N) is the other, run backwards.
