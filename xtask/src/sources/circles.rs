@@ -1,10 +1,12 @@
 //! Files of a package that use each other: none can be read, or changed, without the rest of its circle.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::Source;
 use super::module_tree::ModuleTree;
-use super::uses::{Uses, uses};
+
+/// Names of items, by the source that uses them and the other that defines them.
+type Uses = BTreeMap<(usize, usize), BTreeSet<String>>;
 
 /// One fault for each circle, with the names that tie it.
 pub(crate) fn faults(sources: &[Source]) -> Vec<String> {
@@ -21,6 +23,19 @@ pub(crate) fn faults(sources: &[Source]) -> Vec<String> {
         format!("{} use each other; move what ties them to a file of its own{ties}", files.join(", "))
     };
     circles(&uses, sources.len()).into_iter().map(fault).collect()
+}
+
+/// What a module uses of those that it lies in does not count: it is a part of them. Neither do methods and fields, nor what
+/// is imported only to hand it on.
+fn uses(tree: &ModuleTree<'_>) -> Uses {
+    let mut uses = Uses::new();
+    for (number, module) in tree.modules.iter().enumerate() {
+        let items = module.paths.iter().filter_map(|path| tree.item(number, path));
+        for (name, file) in items.filter(|&(_, file)| !tree.is_within(number, file)) {
+            uses.entry((module.file, file)).or_default().insert(name.to_owned());
+        }
+    }
+    uses
 }
 
 /// Sets of files of which each leads to all others.

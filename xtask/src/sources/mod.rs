@@ -2,15 +2,12 @@
 
 pub(crate) mod circles;
 mod module_tree;
-mod uses;
+mod paths;
 
 use std::path::PathBuf;
 
-use anyhow::Context as _;
-use proc_macro2::{TokenStream, TokenTree};
-use syn::spanned::Spanned;
-use syn::visit::Visit;
-use syn::{Attribute, ImplItem, Item};
+use anyhow::anyhow;
+use proc_macro2::{Delimiter, Group, LexError, TokenStream, TokenTree};
 
 /// One file of a package.
 pub(crate) struct Source {
@@ -18,15 +15,16 @@ pub(crate) struct Source {
     path: PathBuf,
     /// Lines outside items that only tests compile.
     product_lines: usize,
-    items: Vec<Item>,
+    /// What these lines hold, without attributes.
+    tokens: TokenStream,
 }
 
 impl Source {
     pub(crate) fn parse(path: PathBuf, text: &str) -> anyhow::Result<Source> {
-        let file = syn::parse_file(text).with_context(|| format!("{} is not Rust", path.display()))?;
-        let mut tests = TestLines(0);
-        tests.visit_file(&file);
-        Ok(Source { path, product_lines: text.lines().count() - tests.0, items: file.items })
+        let tokens = text.parse().map_err(|error: LexError| anyhow!("{} is not Rust: {error}", path.display()))?;
+        let mut product_lines = text.lines().count();
+        let tokens = without_tests(tokens, &mut product_lines);
+        Ok(Source { path, product_lines, tokens })
     }
 }
 
@@ -36,78 +34,66 @@ pub(crate) fn product_lines(sources: &[Source]) -> usize {
     files.into_iter().map(|file| sources[file].product_lines).sum()
 }
 
-/// Counts the lines of items that only tests compile, attributes and documentation included.
-struct TestLines(usize);
-
-impl TestLines {
-    fn is_test(&mut self, attributes: &[Attribute], item: &impl Spanned) -> bool {
-        let test_only = test_only(attributes);
-        if test_only {
-            let span = item.span();
-            self.0 += span.end().line + 1 - span.start().line;
+/// Tokens without attributes and without the items that only tests compile. The lines of these are taken from `lines`,
+/// attributes and documentation included.
+fn without_tests(tokens: TokenStream, lines: &mut usize) -> TokenStream {
+    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+    let mut retained = TokenStream::new();
+    let mut rest = &tokens[..];
+    while let Some(first) = rest.first() {
+        let (mut end, mut only_tests) = (0, false);
+        while let [mark, TokenTree::Group(attribute), ..] = &rest[end..]
+            && is_mark(mark, '#')
+        {
+            only_tests |= is_test_only(attribute.stream());
+            end += 2;
         }
-        test_only
+        if only_tests {
+            let item = rest[end..].iter().position(ends_item);
+            end = item.map_or(rest.len(), |last| end + last + 1);
+            *lines -= rest[end - 1].span().end().line + 1 - first.span().start().line;
+        } else if end == 0 {
+            retained.extend([match first {
+                TokenTree::Group(group) => Group::new(group.delimiter(), without_tests(group.stream(), lines)).into(),
+                token => token.clone(),
+            }]);
+            end = 1;
+        }
+        rest = &rest[end..];
+    }
+    retained
+}
+
+fn ends_item(token: &TokenTree) -> bool {
+    match token {
+        TokenTree::Group(body) => body.delimiter() == Delimiter::Brace,
+        token => is_mark(token, ';'),
     }
 }
 
-impl<'ast> Visit<'ast> for TestLines {
-    fn visit_item(&mut self, item: &'ast Item) {
-        if !self.is_test(attributes(item), item) {
-            syn::visit::visit_item(self, item);
-        }
-    }
-
-    fn visit_impl_item(&mut self, item: &'ast ImplItem) {
-        if !self.is_test(attributes_within(item), item) {
-            syn::visit::visit_impl_item(self, item);
-        }
-    }
+/// Whether it is `cfg(test)` or `cfg(all(test, ..))`.
+fn is_test_only(attribute: TokenStream) -> bool {
+    let is_test = |condition: TokenTree| is_word(&condition, "test");
+    let all = within("cfg", attribute.clone()).and_then(|condition| within("all", condition));
+    let only = within("cfg", attribute).filter(|condition| condition.clone().into_iter().count() == 1);
+    all.or(only).is_some_and(|conditions| conditions.into_iter().any(is_test))
 }
 
-/// Whether `#[cfg(test)]` or `#[cfg(all(test, ..))]` is among them.
-fn test_only(attributes: &[Attribute]) -> bool {
-    attributes.iter().filter(|attribute| attribute.path().is_ident("cfg")).any(|attribute| {
-        let condition = attribute.parse_args::<TokenStream>().unwrap_or_default();
-        let mut tokens = condition.into_iter();
-        match (tokens.next(), tokens.next()) {
-            (Some(only), None) => is_word(&only, "test"),
-            (Some(all), Some(TokenTree::Group(conditions))) if is_word(&all, "all") => {
-                conditions.stream().into_iter().any(|condition| is_word(&condition, "test"))
-            }
-            _ => false,
-        }
-    })
+/// What is in parentheses after a word.
+fn within(word: &str, tokens: TokenStream) -> Option<TokenStream> {
+    let mut tokens = tokens.into_iter();
+    match (tokens.next()?, tokens.next()?) {
+        (first, TokenTree::Group(group)) if is_word(&first, word) => Some(group.stream()),
+        _ => None,
+    }
 }
 
 fn is_word(token: &TokenTree, word: &str) -> bool {
     matches!(token, TokenTree::Ident(ident) if ident == word)
 }
 
-fn attributes(item: &Item) -> &[Attribute] {
-    match item {
-        Item::Const(item) => &item.attrs,
-        Item::Enum(item) => &item.attrs,
-        Item::Fn(item) => &item.attrs,
-        Item::Impl(item) => &item.attrs,
-        Item::Macro(item) => &item.attrs,
-        Item::Mod(item) => &item.attrs,
-        Item::Static(item) => &item.attrs,
-        Item::Struct(item) => &item.attrs,
-        Item::Trait(item) => &item.attrs,
-        Item::Type(item) => &item.attrs,
-        Item::Use(item) => &item.attrs,
-        _ => &[],
-    }
-}
-
-fn attributes_within(item: &ImplItem) -> &[Attribute] {
-    match item {
-        ImplItem::Const(item) => &item.attrs,
-        ImplItem::Fn(item) => &item.attrs,
-        ImplItem::Macro(item) => &item.attrs,
-        ImplItem::Type(item) => &item.attrs,
-        _ => &[],
-    }
+fn is_mark(token: &TokenTree, mark: char) -> bool {
+    matches!(token, TokenTree::Punct(punct) if punct.as_char() == mark)
 }
 
 #[cfg(test)]

@@ -1,29 +1,33 @@
 //! Modules of a package, and which file defines what a path names.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use syn::{Ident, Item, ItemUse, UseTree};
+use proc_macro2::{TokenStream, TokenTree};
 
-use super::{Source, attributes, test_only};
+use super::paths::{ALL, imports, paths};
+use super::{Source, is_mark, is_word};
 
 /// Imports followed from one to the next; a chain that is longer names itself.
 const LONGEST_CHAIN: usize = 8;
 
+/// What stands before the name of an item.
+const KEYWORDS: [&str; 7] = ["const", "enum", "fn", "static", "struct", "trait", "type"];
+
 /// Modules outside tests, those of a library and of a program with a root each.
 pub(super) struct ModuleTree<'a> {
     sources: &'a [Source],
-    pub(super) modules: Vec<Module<'a>>,
+    pub(super) modules: Vec<Module>,
 }
 
-pub(super) struct Module<'a> {
+pub(super) struct Module {
     /// The source that it stands in.
     pub(super) file: usize,
-    pub(super) items: &'a [Item],
     parent: Option<usize>,
-    names: BTreeMap<String, Vec<Name>>,
-    /// Paths of imports that end in `*`.
-    globs: Vec<Vec<String>>,
+    /// What names stand for; "*" for everything of a module.
+    names: Vec<(String, Name)>,
+    /// Paths in it, but for what is imported only to hand it on.
+    pub(super) paths: Vec<Vec<String>>,
 }
 
 /// What a name stands for in a module.
@@ -46,7 +50,7 @@ impl<'a> ModuleTree<'a> {
         let mut tree = ModuleTree { sources, modules: Vec::new() };
         for (file, source) in sources.iter().enumerate() {
             if ["lib.rs", "main.rs"].iter().any(|root| source.path == Path::new(root)) {
-                tree.add(file, &source.items, None, &PathBuf::new());
+                tree.add(file, source.tokens.clone(), None, &PathBuf::new());
             }
         }
         tree
@@ -58,46 +62,63 @@ impl<'a> ModuleTree<'a> {
     }
 
     /// Adds a module whose children stand in `folder`, and these; gives its number.
-    fn add(&mut self, file: usize, items: &'a [Item], parent: Option<usize>, folder: &Path) -> usize {
+    fn add(&mut self, file: usize, tokens: TokenStream, parent: Option<usize>, folder: &Path) -> usize {
         let own = self.modules.len();
-        self.modules.push(Module { file, items, parent, names: BTreeMap::new(), globs: Vec::new() });
-        for item in items.iter().filter(|item| !test_only(attributes(item))) {
-            match item {
-                Item::Mod(child) => {
-                    let folder = folder.join(child.ident.to_string());
-                    let inside = child.content.as_ref().map(|(_, items)| (file, items.as_slice()));
-                    if let Some((file, items)) = inside.or_else(|| self.declared(&folder)) {
-                        let number = self.add(file, items, Some(own), &folder);
-                        self.name(own, child.ident.to_string(), Name::Module(number));
-                    }
+        self.modules.push(Module { file, parent, names: Vec::new(), paths: Vec::new() });
+        let (mut names, mut used, mut body) = (Vec::new(), Vec::new(), TokenStream::new());
+        let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+        let mut at = 0;
+        while at < tokens.len() {
+            let length = match &tokens[at..] {
+                [keyword, TokenTree::Ident(name), content, ..] if is_word(keyword, "mod") => {
+                    let folder = folder.join(name.to_string());
+                    let child = match content {
+                        TokenTree::Group(inside) => Some((file, inside.stream())),
+                        _ => self.declared(&folder),
+                    };
+                    let number = child.map(|(file, tokens)| self.add(file, tokens, Some(own), &folder));
+                    names.extend(number.map(|number| (name.to_string(), Name::Module(number))));
+                    3
                 }
-                Item::Use(import) => {
-                    for (name, path) in imports(import) {
-                        match name {
-                            Some(name) => self.name(own, name, Name::Import(path)),
-                            None => self.modules[own].globs.push(path),
+                // Not `use<>`, which says what a type captures.
+                [keyword, import @ ..]
+                    if is_word(keyword, "use") && !import.first().is_some_and(|t| is_mark(t, '<')) =>
+                {
+                    let length = import.iter().position(|token| is_mark(token, ';')).unwrap_or(import.len());
+                    for (name, path) in imports(import[..length].iter().cloned().collect()) {
+                        if !is_public(&tokens[..at]) {
+                            used.push(path.clone());
                         }
+                        names.push((name, Name::Import(path)));
                     }
+                    1 + length
                 }
-                item => {
-                    if let Some(name) = defined(item) {
-                        self.name(own, name.to_string(), Name::Item);
-                    }
+                [TokenTree::Ident(keyword), TokenTree::Ident(name), ..]
+                    if KEYWORDS.iter().any(|word| keyword == word) =>
+                {
+                    names.push((name.to_string(), Name::Item));
+                    1
                 }
-            }
+                [token, ..] => {
+                    body.extend([token.clone()]);
+                    1
+                }
+                [] => 0,
+            };
+            at += length;
         }
+        // What a module names itself hides all names that it has from another.
+        names.sort_by_key(|(name, _)| name == ALL);
+        used.extend(paths(body));
+        (self.modules[own].names, self.modules[own].paths) = (names, used);
         own
     }
 
     /// The file of a module that is only declared.
-    fn declared(&self, folder: &Path) -> Option<(usize, &'a [Item])> {
+    fn declared(&self, folder: &Path) -> Option<(usize, TokenStream)> {
         let paths = [folder.with_extension("rs"), folder.join("mod.rs")];
         let file = self.sources.iter().position(|source| paths.contains(&source.path))?;
-        Some((file, &self.sources[file].items))
-    }
-
-    fn name(&mut self, module: usize, name: String, meaning: Name) {
-        self.modules[module].names.entry(name).or_default().push(meaning);
+        Some((file, self.sources[file].tokens.clone()))
     }
 
     /// The item that `path` names in a module, and the source that defines it; none if it is a module or of another crate.
@@ -114,7 +135,7 @@ impl<'a> ModuleTree<'a> {
         for (at, segment) in path.iter().enumerate() {
             let Found::Module(inner) = found else { return Some((found, &path[..at])) };
             found = match segment.as_str() {
-                "self" => found,
+                "self" | ALL => found,
                 "super" => Found::Module(self.modules[inner].parent?),
                 "crate" => Found::Module(self.root(inner)),
                 name => self.look_up(inner, name, at + 1 == path.len(), chain)?,
@@ -137,53 +158,28 @@ impl<'a> ModuleTree<'a> {
     fn look_up(&self, module: usize, name: &str, last: bool, chain: usize) -> Option<Found> {
         let chain = chain.checked_sub(1)?;
         let here = &self.modules[module];
-        let meant = |meaning: &Name| match meaning {
+        let meant = |(known, meaning): &(String, Name)| match meaning {
+            Name::Import(path) if known == ALL => match self.find(module, path, chain)?.0 {
+                Found::Module(number) if number != module => self.look_up(number, name, last, chain),
+                _ => None,
+            },
+            _ if known != name || name == "_" => None,
             Name::Module(number) => Some(Found::Module(*number)),
             Name::Item => Some(Found::Item(here.file)),
             Name::Import(path) => self.find(module, path, chain).map(|(found, _)| found),
         };
-        let inside = |glob: &Vec<String>| match self.find(module, glob, chain)?.0 {
-            Found::Module(number) if number != module => self.look_up(number, name, last, chain),
-            _ => None,
-        };
-        let named = here.names.get(name).into_iter().flatten().filter_map(meant);
-        let all: Vec<Found> = named.chain(here.globs.iter().filter_map(inside)).collect();
-        let right = |found: &&Found| matches!(found, Found::Item(_)) == last;
-        all.iter().find(right).or(all.first()).copied()
+        let mut other = None;
+        for found in here.names.iter().filter_map(meant) {
+            if matches!(found, Found::Item(_)) == last {
+                return Some(found);
+            }
+            other = other.or(Some(found));
+        }
+        other
     }
 }
 
-/// What an import brings: a name, or none for `*`, and the path that it stands for. Nothing of `::other_crate`.
-pub(super) fn imports(import: &ItemUse) -> Vec<(Option<String>, Vec<String>)> {
-    let mut found = Vec::new();
-    if import.leading_colon.is_none() {
-        collect(&import.tree, &[], &mut found);
-    }
-    found
-}
-
-fn collect(tree: &UseTree, path: &[String], found: &mut Vec<(Option<String>, Vec<String>)>) {
-    let with = |ident: &Ident| [path, &[ident.to_string()]].concat();
-    match tree {
-        UseTree::Path(tree) => collect(&tree.tree, &with(&tree.ident), found),
-        UseTree::Name(tree) if tree.ident == "self" => found.push((path.last().cloned(), path.to_vec())),
-        UseTree::Name(tree) => found.push((Some(tree.ident.to_string()), with(&tree.ident))),
-        UseTree::Rename(tree) => found.push((Some(tree.rename.to_string()), with(&tree.ident))),
-        UseTree::Glob(_) => found.push((None, path.to_vec())),
-        UseTree::Group(tree) => tree.items.iter().for_each(|tree| collect(tree, path, found)),
-    }
-}
-
-fn defined(item: &Item) -> Option<&Ident> {
-    match item {
-        Item::Const(item) => Some(&item.ident),
-        Item::Enum(item) => Some(&item.ident),
-        Item::Fn(item) => Some(&item.sig.ident),
-        Item::Macro(item) => item.ident.as_ref(),
-        Item::Static(item) => Some(&item.ident),
-        Item::Struct(item) => Some(&item.ident),
-        Item::Trait(item) => Some(&item.ident),
-        Item::Type(item) => Some(&item.ident),
-        _ => None,
-    }
+/// Whether these tokens end with `pub` or `pub(..)`.
+fn is_public(before: &[TokenTree]) -> bool {
+    matches!(before, [.., word] | [.., word, TokenTree::Group(_)] if is_word(word, "pub"))
 }
