@@ -6,7 +6,7 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use demo_gen::beyond::{BeyondSystem, Shown};
+use demo_gen::beyond::{BeyondSystem, PolicyKind};
 use demo_gen::{ToyPotential, ToySystem, demonstrations};
 use gp::{CurlTest, DirectGp, Family, FrontEnd, Rows, SlopeFit, SlopeGp};
 use motion::{LearntPolicy, Policy, Potential};
@@ -28,7 +28,7 @@ fn toy() -> Rows {
 
 /// 60 movements of 40 samples down a potential with three wells.
 fn wells(dim: usize) -> Rows {
-    let system = BeyondSystem { shown: Shown::Wells { dim }, ..BeyondSystem::default() };
+    let system = BeyondSystem { policy: PolicyKind::Wells { dim }, ..BeyondSystem::default() };
     let recordings = system.record(&mut rng()).expect("the system is sound");
     FrontEnd::Velocities.rows(&demonstrations(&recordings).expect("recordings")).expect("rows")
 }

@@ -126,7 +126,7 @@ impl Leverage {
         experiment.setups = (setting.with)(value)?;
         experiment.setups.retain(wanted);
         let experiments: [Experiment; 1] = [experiment];
-        let plan = Plan { data_sets: Some(self.data_sets), of_contestants: Some(0), seed: self.seed };
+        let plan = Plan { data_sets: Some(self.data_sets), of_comparisons: Some(0), seed: self.seed };
         let mut work = Work::find(&experiments, plan, records)?;
         work.measure(|_| true, records)?;
         summarise(&experiments, &work.outcomes())?.pop().context("one experiment has one result")

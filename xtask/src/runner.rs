@@ -16,7 +16,7 @@ pub(crate) struct Plan {
     /// Overrides each experiment's own number of data sets.
     pub(crate) data_sets: Option<u32>,
     /// The same for setups that only hold learners against each other; they take longest.
-    pub(crate) of_contestants: Option<u32>,
+    pub(crate) of_comparisons: Option<u32>,
     /// Seed of all random numbers.
     pub(crate) seed: u64,
 }
@@ -25,7 +25,7 @@ impl Plan {
     /// Repetitions of a setup of an experiment; of one that has its own number, no more than that.
     pub(crate) fn data_sets(&self, experiment: &Experiment, setup: &Setup) -> u32 {
         let own = setup.data_sets_of(experiment);
-        let asked = if setup.is_of_contestants() { self.of_contestants } else { self.data_sets };
+        let asked = if setup.is_of_comparisons() { self.of_comparisons } else { self.data_sets };
         asked.map_or(own, |asked| if setup.data_sets.is_some() { asked.min(own) } else { asked })
     }
 }

@@ -23,27 +23,25 @@ impl ToyPotential {
     pub fn sinusoidal() -> Self {
         ToyPotential::Sinusoidal(Sinusoidal { amplitude: 0.1 })
     }
+
+    fn as_potential(&self) -> &dyn Potential {
+        match self {
+            ToyPotential::Parabola(potential) => potential,
+            ToyPotential::Sinusoidal(potential) => potential,
+        }
+    }
 }
 
 impl Potential for ToyPotential {
     fn dim(&self) -> usize {
-        match self {
-            ToyPotential::Parabola(potential) => potential.dim(),
-            ToyPotential::Sinusoidal(potential) => potential.dim(),
-        }
+        self.as_potential().dim()
     }
 
     fn value(&self, state: DVectorView<'_, f64>) -> f64 {
-        match self {
-            ToyPotential::Parabola(potential) => potential.value(state),
-            ToyPotential::Sinusoidal(potential) => potential.value(state),
-        }
+        self.as_potential().value(state)
     }
 
     fn gradient_into(&self, state: DVectorView<'_, f64>, gradient: DVectorViewMut<'_, f64>) {
-        match self {
-            ToyPotential::Parabola(potential) => potential.gradient_into(state, gradient),
-            ToyPotential::Sinusoidal(potential) => potential.gradient_into(state, gradient),
-        }
+        self.as_potential().gradient_into(state, gradient);
     }
 }

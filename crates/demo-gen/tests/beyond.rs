@@ -4,7 +4,7 @@
 
 use constraints::PfaffianConstraint;
 use demo_gen::beyond::{
-    BeyondSystem, ConstraintKind, DriftingConstraint, Handwriting, LimitCycle, Planes, Shown, Swirl, Wells,
+    BeyondSystem, ConstraintKind, DriftingConstraint, Handwriting, LimitCycle, Planes, PolicyKind, Swirl, Wells,
 };
 use demo_gen::{DemoGenError, Recording, Redraw, RollOut};
 use motion::{Policy, Potential};
@@ -133,31 +133,31 @@ proptest! {
 
     /// What is recorded is true: u = Nπ, Nu = u, and everyone is constrained as asked for.
     #[test]
-    fn recordings_are_true(seed in any::<u64>(), which in 0..6usize, hindrance in 0..4usize, k in 1..5usize) {
-        let shown = [
-            Shown::Sinusoidal,
-            Shown::Wells { dim: 6 },
-            Shown::Planes { dim: 3, edge: 0.1 },
-            Shown::Swirl { dim: 3 },
-            Shown::LimitCycle,
-            Shown::Handwriting,
+    fn recordings_are_true(seed in any::<u64>(), which in 0..6usize, constraint in 0..4usize, k in 1..5usize) {
+        let policy = [
+            PolicyKind::Sinusoidal,
+            PolicyKind::Wells { dim: 6 },
+            PolicyKind::Planes { dim: 3, edge: 0.1 },
+            PolicyKind::Swirl { dim: 3 },
+            PolicyKind::LimitCycle,
+            PolicyKind::Handwriting,
         ][which];
-        let hindrance = [ConstraintKind::Free, ConstraintKind::Varying, ConstraintKind::OneForAll, ConstraintKind::HalfFree][hindrance];
+        let constraint = [ConstraintKind::Free, ConstraintKind::Varying, ConstraintKind::OneForAll, ConstraintKind::HalfFree][constraint];
         let roll_out = RollOut { n_samples: 7, sub_steps: 3, time_step: 0.5 };
-        let system = BeyondSystem { shown, hindrance, n_trajectories: k, redraw: Redraw::Every(4), roll_out };
+        let system = BeyondSystem { policy, constraint, n_trajectories: k, redraw: Redraw::Every(4), roll_out };
         let recordings = system.record(&mut generator(seed)).unwrap();
         prop_assert_eq!(recordings.len(), k);
         for (trajectory, Recording { observed, truth }) in recordings.iter().enumerate() {
-            prop_assert_eq!(observed.states().shape(), (shown.dim(), 7));
+            prop_assert_eq!(observed.states().shape(), (policy.dim(), 7));
             prop_assert_eq!(&truth.states, observed.states());
-            prop_assert_eq!(truth.potential.len(), if shown.has_potential() { 7 } else { 0 });
-            let constrained = match hindrance {
+            prop_assert_eq!(truth.potential.len(), if policy.has_potential() { 7 } else { 0 });
+            let constrained = match constraint {
                 ConstraintKind::Free => false,
                 ConstraintKind::Varying | ConstraintKind::OneForAll => true,
                 ConstraintKind::HalfFree => trajectory % 2 == 1,
             };
             for (i, projector) in truth.projectors.iter().enumerate() {
-                prop_assert_eq!(projector.rank(), if constrained { shown.dim().div_ceil(4) } else { 0 });
+                prop_assert_eq!(projector.rank(), if constrained { policy.dim().div_ceil(4) } else { 0 });
                 let velocity = observed.velocities().unwrap().column(i);
                 prop_assert!((projector.project(truth.actions.column(i)) - velocity).amax() < 1e-14);
                 prop_assert!((projector.project(velocity) - velocity).amax() < 1e-13);
@@ -173,10 +173,10 @@ proptest! {
 fn constraints_are_drawn_anew() {
     // All start and stay at one place, so that nothing but a new draw can turn the projector.
     let roll_out = RollOut { n_samples: 8, sub_steps: 1, time_step: 1e-12 };
-    let turned = |hindrance| {
+    let turned = |constraint| {
         let system = BeyondSystem {
-            shown: Shown::Planes { dim: 3, edge: 0.1 },
-            hindrance,
+            policy: PolicyKind::Planes { dim: 3, edge: 0.1 },
+            constraint,
             n_trajectories: 2,
             redraw: Redraw::Every(4),
             roll_out,
@@ -196,11 +196,11 @@ fn bad_input() {
     let record = |system: BeyondSystem| system.record(&mut generator(1)).unwrap_err();
     let good = BeyondSystem::default;
     let none = DemoGenError::TooFewDimensions { found: 0, least: 1 };
-    assert_eq!(record(BeyondSystem { shown: Shown::Wells { dim: 0 }, ..good() }), none);
+    assert_eq!(record(BeyondSystem { policy: PolicyKind::Wells { dim: 0 }, ..good() }), none);
     let flat = DemoGenError::TooFewDimensions { found: 1, least: 2 };
-    assert_eq!(record(BeyondSystem { shown: Shown::Swirl { dim: 1 }, ..good() }), flat);
-    let sharp = Shown::Planes { dim: 2, edge: -1.0 };
-    assert_eq!(record(BeyondSystem { shown: sharp, ..good() }), DemoGenError::Edge { edge: -1.0 });
+    assert_eq!(record(BeyondSystem { policy: PolicyKind::Swirl { dim: 1 }, ..good() }), flat);
+    let sharp = PolicyKind::Planes { dim: 2, edge: -1.0 };
+    assert_eq!(record(BeyondSystem { policy: sharp, ..good() }), DemoGenError::Edge { edge: -1.0 });
     assert_eq!(record(BeyondSystem { n_trajectories: 0, ..good() }), DemoGenError::NoTrajectory);
     let redraw = Redraw::Every(0);
     assert_eq!(record(BeyondSystem { redraw, ..good() }), DemoGenError::Redraw { redraw, n_samples: 40 });

@@ -2,7 +2,7 @@
 
 mod drawn;
 
-use demo_gen::beyond::{BeyondSystem, ConstraintKind, Shown};
+use demo_gen::beyond::{BeyondSystem, ConstraintKind, PolicyKind as Shown};
 use demo_gen::demonstrations;
 use drawn::{descent, matrix, rng, rows, vector};
 use gp::{AutoFit, AutoGp, CurlTest, DirectFit, DirectGp, Family, GpError, ModelKind, Rows, SlopeFit, SlopeGp};
@@ -205,9 +205,10 @@ fn an_exact_family_has_no_rival() {
 }
 
 /// What is learnt of ten movements that nothing constrained, at 200 rows, and its nUPE: their velocities are the policy.
-fn freely(shown: Shown, seed: u64) -> (SlopeFit, f64) {
+fn freely(policy: Shown, seed: u64) -> (SlopeFit, f64) {
     let rng = &mut rng(seed);
-    let system = BeyondSystem { shown, n_trajectories: 10, hindrance: ConstraintKind::Free, ..BeyondSystem::default() };
+    let system =
+        BeyondSystem { policy, n_trajectories: 10, constraint: ConstraintKind::Free, ..BeyondSystem::default() };
     let shown = demonstrations(&system.record(rng).expect("movements")).expect("demonstrations");
     let rows = gp::FrontEnd::Velocities.rows(&shown).expect("rows");
     let fit = SlopeGp { max_rows: 200, ..SlopeGp::default() }.fit(&rows, rng).expect("a fit");

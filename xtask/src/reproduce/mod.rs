@@ -123,7 +123,7 @@ impl Reproduce {
 
     fn plan(&self) -> Plan {
         let quick = |number| self.data_sets.or(self.quick.then_some(number));
-        Plan { data_sets: quick(QUICK_DATA_SETS), of_contestants: quick(1), seed: self.seed }
+        Plan { data_sets: quick(QUICK_DATA_SETS), of_comparisons: quick(1), seed: self.seed }
     }
 
     /// The records of the folder, and of all shards to be merged; without a word where all of them can be used.

@@ -4,8 +4,8 @@ use nalgebra::{DMatrix, DVector};
 use rand::{Rng, RngExt};
 use serde::Serialize;
 
-use super::shown::{Field, Scene};
-use super::{DriftingConstraint, Shown};
+use super::policy_kind::{Field, Scene};
+use super::{DriftingConstraint, PolicyKind};
 use crate::recording::record_each;
 use crate::{DemoGenError, Recording, Redraw, RollOut, Truth};
 
@@ -26,10 +26,10 @@ pub enum ConstraintKind {
 /// constraints that turn with the state ([`DriftingConstraint`], about one forbidden direction in four).
 ///
 /// ```
-/// use demo_gen::beyond::{BeyondSystem, ConstraintKind, Shown};
+/// use demo_gen::beyond::{BeyondSystem, ConstraintKind, PolicyKind};
 /// use rand::SeedableRng;
 ///
-/// let system = BeyondSystem { shown: Shown::Wells { dim: 3 }, n_trajectories: 10, ..BeyondSystem::default() };
+/// let system = BeyondSystem { policy: PolicyKind::Wells { dim: 3 }, n_trajectories: 10, ..BeyondSystem::default() };
 /// let recordings = system.record(&mut rand_chacha::ChaCha8Rng::seed_from_u64(1))?;
 /// assert_eq!(recordings[9].observed.states().shape(), (3, 40));
 /// assert_eq!(recordings[9].truth.projectors[0].rank(), 1);
@@ -38,9 +38,11 @@ pub enum ConstraintKind {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BeyondSystem {
     /// The policy. Default three wells in three dimensions.
-    pub shown: Shown,
+    #[serde(rename = "shown")]
+    pub policy: PolicyKind,
     /// Default [`ConstraintKind::Varying`].
-    pub hindrance: ConstraintKind,
+    #[serde(rename = "hindrance")]
+    pub constraint: ConstraintKind,
     /// Number of trajectories K. Default 60.
     pub n_trajectories: usize,
     /// When a constraint of one movement's own changes. Default every 20 samples.
@@ -52,8 +54,8 @@ pub struct BeyondSystem {
 impl Default for BeyondSystem {
     fn default() -> Self {
         BeyondSystem {
-            shown: Shown::Wells { dim: 3 },
-            hindrance: ConstraintKind::Varying,
+            policy: PolicyKind::Wells { dim: 3 },
+            constraint: ConstraintKind::Varying,
             n_trajectories: 60,
             redraw: Redraw::Every(20),
             roll_out: RollOut { sub_steps: 50, ..RollOut::default() },
@@ -71,16 +73,16 @@ impl BeyondSystem {
     /// [`DemoGenError::TooFewDimensions`], [`DemoGenError::Edge`], [`DemoGenError::NoTrajectory`],
     /// [`DemoGenError::Redraw`], or what [`RollOut::record`] says.
     pub fn record<R: Rng + ?Sized>(&self, rng: &mut R) -> Result<Vec<Recording>, DemoGenError> {
-        self.shown.check()?;
+        self.policy.check()?;
         self.roll_out.check()?;
         let first_samples = self.redraw.first_samples(self.roll_out.n_samples)?;
-        let scene = self.shown.draw(rng);
+        let scene = self.policy.draw(rng);
         let shared = self.draw_constraint(rng);
         let mut trajectory = 0;
         record_each(self.n_trajectories, || {
             let start = scene.start(rng);
-            let own = self.hindrance == ConstraintKind::Varying
-                || self.hindrance == ConstraintKind::HalfFree && trajectory % 2 == 1;
+            let own = self.constraint == ConstraintKind::Varying
+                || self.constraint == ConstraintKind::HalfFree && trajectory % 2 == 1;
             trajectory += 1;
             if own {
                 let phases = first_samples
@@ -90,15 +92,15 @@ impl BeyondSystem {
                     .map_err(|source| DemoGenError::Constraint { sample: 0, source })?;
                 return scene.record(&self.roll_out, &constraint, &start);
             }
-            match self.hindrance {
+            match self.constraint {
                 ConstraintKind::OneForAll => scene.record(&self.roll_out, &shared, &start),
-                _ => scene.record(&self.roll_out, &Unconstrained { dim: self.shown.dim() }, &start),
+                _ => scene.record(&self.roll_out, &Unconstrained { dim: self.policy.dim() }, &start),
             }
         })
     }
 
     fn draw_constraint<R: Rng + ?Sized>(&self, rng: &mut R) -> DriftingConstraint {
-        let dim = self.shown.dim();
+        let dim = self.policy.dim();
         DriftingConstraint::draw(dim.div_ceil(4), dim, rng)
     }
 }

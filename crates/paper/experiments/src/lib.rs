@@ -24,8 +24,8 @@ mod tables;
 pub mod variants;
 pub mod verdict;
 
-pub use evaluation::beside::{Baselines, DATA_SETS};
-pub use evaluation::contest::{Contest, Contestant, Entry};
+pub use evaluation::baselines::{Baselines, DATA_SETS};
+pub use evaluation::comparison::{Comparison, Entry, Method};
 pub use evaluation::gaussians::Gaussians;
 pub use evaluation::judge::Judge;
 pub use evaluation::recipe::HELD_OUT;
@@ -35,10 +35,10 @@ pub use robots::upper_body;
 pub use setting::{Class, Setting, shown};
 pub use settings::{n_fitted, quotable, settings};
 pub use tables::beyond::case_on_the_plane;
-pub use tables::figure6::{BANDWIDTHS, BESIDE_LEFT, BESIDE_RIGHT, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
+pub use tables::figure6::{BANDWIDTHS, BASELINES_LEFT, BASELINES_RIGHT, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
 pub use tables::figure9::{Distance, TENTHS, line};
-pub use tables::table1::{PARABOLA_SYSTEM, SINUSOIDAL_SYSTEM, toy_beside, toy_naive, toy_regressor};
-pub use tables::table2::{GRASP_SYSTEM, grasp, grasp_beside, grasp_naive, grasp_regressor};
+pub use tables::table1::{PARABOLA_SYSTEM, SINUSOIDAL_SYSTEM, toy_baselines, toy_naive, toy_regressor};
+pub use tables::table2::{GRASP_SYSTEM, grasp, grasp_baselines, grasp_naive, grasp_regressor};
 pub use tables::three_link::{ARM_SYSTEM, arm};
 
 use std::collections::BTreeMap;
@@ -46,12 +46,13 @@ use std::collections::BTreeMap;
 use anyhow::ensure;
 use rand_chacha::ChaCha8Rng;
 
-use evaluation::exam::TESTED_ON;
+use evaluation::protocol::TESTED_ON;
 
 use crate::measure::{Measure, RowOf};
 use crate::paper::{EVERY_ROW, Explanations, PaperTable, Printed};
 
 /// A table or figure.
+#[derive(Default)]
 pub struct Experiment {
     /// Identifier on the command line and in the results.
     pub id: &'static str,
@@ -70,9 +71,9 @@ pub struct Experiment {
     /// The experiment of which it is another reading: its cells are no further figures of the paper.
     pub another_reading_of: Option<&'static str>,
     /// What has to be said beside the table of learners.
-    pub contests_remark: Option<&'static str>,
+    pub comparisons_remark: Option<&'static str>,
     /// Learners held against each other, a line for each error; empty where there is one learner alone.
-    pub contests: Vec<Contest>,
+    pub comparisons: Vec<Comparison>,
     /// What is measured, in the table's order.
     pub setups: Vec<Setup>,
     /// The printed figures: `crates/paper/experiments/paper/*.toml`; empty where the paper shows curves only.
@@ -94,7 +95,7 @@ impl Experiment {
 
     /// Fails if the printed figures and the rows do not belong together, as after a slip in a name.
     fn checked(self) -> anyhow::Result<Self> {
-        let of_paper = |row: &&Row| !self.paper.is_empty() && row.of != RowOf::Contestant;
+        let of_paper = |row: &&Row| !self.paper.is_empty() && row.of != RowOf::Additional;
         for row in self.rows().filter(of_paper) {
             ensure!(
                 self.paper.contains_key(&row.id),
@@ -110,7 +111,7 @@ impl Experiment {
                 self.id
             );
         }
-        for entry in self.contests.iter().flat_map(|contest| &contest.entries) {
+        for entry in self.comparisons.iter().flat_map(|comparison| &comparison.entries) {
             let (id, row) = (self.id, &entry.row);
             ensure!(self.rows().any(|other| other.id == *row), "{id}: a contest has a row {row} that is not run");
         }
@@ -147,8 +148,8 @@ impl Setup {
     }
 
     /// Whether its rows only hold learners against each other.
-    pub fn is_of_contestants(&self) -> bool {
-        self.rows.iter().all(|row| row.of == RowOf::Contestant)
+    pub fn is_of_comparisons(&self) -> bool {
+        self.rows.iter().all(|row| row.of == RowOf::Additional)
     }
 }
 
@@ -163,7 +164,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// A row of a learner's errors in an exam.
+    /// A row of a learner's errors in an evaluation.
     fn of_learner(id: &str) -> Row {
         Row { id: id.to_owned(), of: RowOf::Learner, tested_on: TESTED_ON }
     }

@@ -72,76 +72,51 @@ pub enum RowOf {
     Learner,
     /// The baseline.
     Baseline,
-    /// A learner that the paper does not have: it stands in tables of learners only.
-    Contestant,
+    /// A learner that the paper does not have: it stands in comparisons only.
+    Additional,
 }
 
 impl Measure {
     /// The measure's name in tables and records.
     pub fn name(self) -> &'static str {
-        match self {
-            Measure::PotentialNmse => "potential_nmse",
-            Measure::Nupe => "nupe",
-            Measure::Ncpe => "ncpe",
-            Measure::NcpeUnseen => "ncpe_unseen",
-            Measure::Disc => "disc",
-            Measure::AlignmentNmse => "alignment_nmse",
-            Measure::Naive => "naive",
-            Measure::PolicyAlign => "policy_align",
-            Measure::NupeAll => "nupe_all",
-            Measure::NcpeAll => "ncpe_all",
-            Measure::NupeFresh => "nupe_fresh",
-            Measure::NcpeUnseenAll => "ncpe_unseen_all",
-            Measure::NaiveAll => "naive_all",
-            Measure::PolicyAlignAll => "policy_align_all",
-            Measure::Unsupported => "unsupported",
-            Measure::BeyondLimits => "beyond_limits",
-            Measure::ExpectedNupe => "expected_nupe",
-            Measure::Rotation => "rotation",
-            Measure::ReadFree => "read_free",
-            Measure::ReadConstrained => "read_constrained",
-            Measure::ReadAmbiguous => "read_ambiguous",
-            Measure::ReadUnexplained => "read_unexplained",
-        }
+        self.names().0
     }
 
-    /// The measure's name for readers.
+    /// The measure's name for readers; of a share it ends with "%".
     pub fn label(self) -> &'static str {
+        self.names().1
+    }
+
+    fn names(self) -> (&'static str, &'static str) {
         match self {
-            Measure::PotentialNmse => "potential nMSE",
-            Measure::Nupe => "nUPE",
-            Measure::Ncpe => "nCPE",
-            Measure::NcpeUnseen => "nCPE, unseen",
-            Measure::Disc => "discarded %",
-            Measure::AlignmentNmse => "alignment nMSE",
-            Measure::Naive => "naive",
-            Measure::PolicyAlign => "PolicyAlign",
-            Measure::NupeAll => "nUPE, all movements",
-            Measure::NcpeAll => "nCPE, all movements",
-            Measure::NupeFresh => "nUPE, fresh movements",
-            Measure::NcpeUnseenAll => "nCPE, unseen, all movements",
-            Measure::NaiveAll => "naive, all movements",
-            Measure::PolicyAlignAll => "PolicyAlign, all movements",
-            Measure::Unsupported => "unsupported %",
-            Measure::BeyondLimits => "beyond limits %",
-            Measure::ExpectedNupe => "nUPE expected",
-            Measure::Rotation => "rotation found %",
-            Measure::ReadFree => "read as free %",
-            Measure::ReadConstrained => "read as constrained %",
-            Measure::ReadAmbiguous => "read as ambiguous %",
-            Measure::ReadUnexplained => "read as unexplained %",
+            Measure::PotentialNmse => ("potential_nmse", "potential nMSE"),
+            Measure::Nupe => ("nupe", "nUPE"),
+            Measure::Ncpe => ("ncpe", "nCPE"),
+            Measure::NcpeUnseen => ("ncpe_unseen", "nCPE, unseen"),
+            Measure::Disc => ("disc", "discarded %"),
+            Measure::AlignmentNmse => ("alignment_nmse", "alignment nMSE"),
+            Measure::Naive => ("naive", "naive"),
+            Measure::PolicyAlign => ("policy_align", "PolicyAlign"),
+            Measure::NupeAll => ("nupe_all", "nUPE, all movements"),
+            Measure::NcpeAll => ("ncpe_all", "nCPE, all movements"),
+            Measure::NupeFresh => ("nupe_fresh", "nUPE, fresh movements"),
+            Measure::NcpeUnseenAll => ("ncpe_unseen_all", "nCPE, unseen, all movements"),
+            Measure::NaiveAll => ("naive_all", "naive, all movements"),
+            Measure::PolicyAlignAll => ("policy_align_all", "PolicyAlign, all movements"),
+            Measure::Unsupported => ("unsupported", "unsupported %"),
+            Measure::BeyondLimits => ("beyond_limits", "beyond limits %"),
+            Measure::ExpectedNupe => ("expected_nupe", "nUPE expected"),
+            Measure::Rotation => ("rotation", "rotation found %"),
+            Measure::ReadFree => ("read_free", "read as free %"),
+            Measure::ReadConstrained => ("read_constrained", "read as constrained %"),
+            Measure::ReadAmbiguous => ("read_ambiguous", "read as ambiguous %"),
+            Measure::ReadUnexplained => ("read_unexplained", "read as unexplained %"),
         }
     }
 
     /// Whether it is in percent.
     fn is_share(self) -> bool {
-        use Measure::{
-            BeyondLimits, Disc, ReadAmbiguous, ReadConstrained, ReadFree, ReadUnexplained, Rotation, Unsupported,
-        };
-        matches!(
-            self,
-            Disc | Unsupported | BeyondLimits | Rotation | ReadFree | ReadConstrained | ReadAmbiguous | ReadUnexplained
-        )
+        self.label().ends_with('%')
     }
 
     /// How it is judged in a row.
@@ -150,7 +125,7 @@ impl Measure {
             _ if self.is_share() => Kind::Share,
             (Measure::Naive | Measure::NaiveAll, _) | (_, RowOf::Baseline) => Kind::BaselineError,
             (Measure::AlignmentNmse, _) => Kind::SetUpError,
-            (_, RowOf::Learner | RowOf::Contestant) => Kind::LearnerError,
+            (_, RowOf::Learner | RowOf::Additional) => Kind::LearnerError,
         }
     }
 
@@ -162,17 +137,17 @@ impl Measure {
 
     /// A value as tables print it.
     pub fn show(self, value: f64) -> String {
-        self.show_beside(value, value)
+        self.show_like(value, value)
     }
 
     /// A standard deviation with the decimals of its mean, as far as something is left of it.
     pub fn show_sd(self, sd: f64, mean: f64) -> String {
-        let beside = self.show_beside(sd, mean);
-        if sd != 0.0 && beside.parse() == Ok(0.0) && !self.is_share() { self.show(sd) } else { beside }
+        let shown = self.show_like(sd, mean);
+        if sd != 0.0 && shown.parse() == Ok(0.0) && !self.is_share() { self.show(sd) } else { shown }
     }
 
     /// A value with the decimals that suit another one.
-    fn show_beside(self, value: f64, other: f64) -> String {
+    fn show_like(self, value: f64, other: f64) -> String {
         match self {
             _ if self.is_share() => format!("{value:.2}"),
             // What is exact but for rounding.

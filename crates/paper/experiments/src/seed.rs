@@ -15,7 +15,7 @@ pub fn generator(seed: u64, system: u32, data_set: u32) -> ChaCha8Rng {
 
 /// A generator beside that of a data set, in a stream that no data set has: what is drawn from it takes nothing from
 /// the other, wherever that one stands.
-pub fn beside(rng: &ChaCha8Rng) -> ChaCha8Rng {
+pub fn separate_stream(rng: &ChaCha8Rng) -> ChaCha8Rng {
     apart(rng, 1 << 63)
 }
 

@@ -42,31 +42,25 @@ pub(crate) fn verdict(kind: Kind, ours: f64, paper: Printed) -> Verdict {
 impl Verdict {
     /// The word beside one cell.
     pub fn word(self) -> &'static str {
-        match self {
-            Verdict::Agrees => "agrees",
-            Verdict::Lower => "lower",
-            Verdict::Higher => "higher",
-            Verdict::Differs => "differs",
-        }
+        self.words()[0]
     }
 
     /// The words after one cell.
     pub fn singular(self) -> &'static str {
-        match self {
-            Verdict::Agrees => "agrees",
-            Verdict::Lower => "is lower",
-            Verdict::Higher => "is higher",
-            Verdict::Differs => "differs",
-        }
+        self.words()[1]
     }
 
     /// The words after a number of cells.
     pub fn plural(self) -> &'static str {
+        self.words()[2]
+    }
+
+    fn words(self) -> [&'static str; 3] {
         match self {
-            Verdict::Agrees => "agree",
-            Verdict::Lower => "are lower",
-            Verdict::Higher => "are higher",
-            Verdict::Differs => "differ",
+            Verdict::Agrees => ["agrees", "agrees", "agree"],
+            Verdict::Lower => ["lower", "is lower", "are lower"],
+            Verdict::Higher => ["higher", "is higher", "are higher"],
+            Verdict::Differs => ["differs", "differs", "differ"],
         }
     }
 

@@ -43,7 +43,7 @@ pub(super) const FIRST: Style = Style { dash: Dash::Solid, filling: Filling::Ful
 pub(super) const SECOND: Style = Style { dash: Dash::Dashed, filling: Filling::Hollow };
 
 /// The policy's error of learners beside PolicyAlign, and what their rows are called.
-pub(super) const BESIDE: [(Error, &str); 2] = [
+pub(super) const BASELINES: [(Error, &str); 2] = [
     (Error { measure: Measure::Nupe, name: "π, slope GP", color: "#cc79a7", mark: Mark::Down }, "slope_gp"),
     (
         Error { measure: Measure::Nupe, name: "π, slope GP without trend", color: "#7a4b94", mark: Mark::Cross },

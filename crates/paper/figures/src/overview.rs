@@ -2,8 +2,8 @@
 
 use align::{Bandwidth, PolicyAlign};
 use demo_gen::{ToySystem, demonstrations};
-use experiments::seed::{beside, generator};
-use experiments::{HELD_OUT, PARABOLA_SYSTEM, TestSamples, toy_beside, toy_naive, toy_regressor};
+use experiments::seed::{generator, separate_stream};
+use experiments::{HELD_OUT, PARABOLA_SYSTEM, TestSamples, toy_baselines, toy_naive, toy_regressor};
 use gp::FrontEnd;
 use motion::NegativeGradient;
 use nalgebra::DMatrix;
@@ -83,10 +83,10 @@ fn overview(seed: u64) -> anyhow::Result<Overview> {
     let test = TestSamples::draw(&aligned, HELD_OUT, &mut rng)?;
     let naive = toy_naive().learn_policy(aligned.demonstrations(), &test.of_all, &mut rng)?;
     let learnt = aligned.learn_without(&test.of_all, &toy_regressor(), &mut rng)?;
-    let slope = toy_beside(FrontEnd::FiniteDifferences, ROWS).slope(
+    let slope = toy_baselines(FrontEnd::FiniteDifferences, ROWS).slope(
         aligned.demonstrations(),
         &test.of_all,
-        &mut beside(&rng),
+        &mut separate_stream(&rng),
     )?;
     let movement = |recording: &demo_gen::Recording| {
         let states = recording.observed.states().column_iter();

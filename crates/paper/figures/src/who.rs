@@ -1,6 +1,6 @@
 //! Who moves: one colour and line each in every picture.
 
-use experiments::Contestant;
+use experiments::Method;
 use plot::{Dash, Stroke};
 
 /// Who moves: one colour and line each in every picture, distinct in grey and for colour-blind people.
@@ -23,13 +23,13 @@ pub(crate) enum Who {
 }
 
 /// The colour of a learner in every figure, as in HTML; none where no figure shows it.
-pub fn color_of(learner: Contestant) -> Option<&'static str> {
+pub fn color_of(learner: Method) -> Option<&'static str> {
     let who = match learner {
-        Contestant::Naive => Who::Naive,
-        Contestant::PolicyAlign => Who::PolicyAlign,
-        Contestant::SlopeGp => Who::SlopeGp,
-        Contestant::DirectGp => Who::DirectGp,
-        Contestant::ConstraintConsistent | Contestant::SlopeGpNoTrend | Contestant::AutoGp => return None,
+        Method::Naive => Who::Naive,
+        Method::PolicyAlign => Who::PolicyAlign,
+        Method::SlopeGp => Who::SlopeGp,
+        Method::DirectGp => Who::DirectGp,
+        Method::ConstraintConsistent | Method::SlopeGpNoTrend | Method::AutoGp => return None,
     };
     Some(who.color())
 }

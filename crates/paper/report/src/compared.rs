@@ -77,8 +77,8 @@ impl<'a> Compared<'a> {
 
     /// The rows of the paper's own learners; the others stand in tables of learners.
     pub(super) fn rows(&self) -> impl Iterator<Item = &'a RowResult> {
-        let contestant = |id: &str| self.experiment.rows().any(|row| row.id == id && row.of == RowOf::Contestant);
-        self.result.rows.iter().filter(move |row| !contestant(&row.id))
+        let method = |id: &str| self.experiment.rows().any(|row| row.id == id && row.of == RowOf::Additional);
+        self.result.rows.iter().filter(move |row| !method(&row.id))
     }
 
     /// Their cells.

@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 
 use experiments::measure::Measure;
 use experiments::results::{ExperimentResult, Results, RowResult};
-use experiments::{Contestant, DATA_SETS, Experiment};
+use experiments::{DATA_SETS, Experiment, Method};
 use page::markdown_table;
 
-use super::contests::{ContestLine, Contests, shown_mean};
+use super::comparisons::{ComparisonLine, Comparisons, shown_mean};
 
 /// Errors below this are as good as none, and need no forecast.
 const WORTH_A_FORECAST: f64 = 1e-3;
@@ -22,13 +22,13 @@ const SHOWN_WHOLE: &str = "beyond";
 /// What a reader needs in order to choose, as Markdown; every table is in the report.
 pub fn learners(experiments: &[Experiment], results: &Results) -> String {
     let all = experiments.iter().filter_map(|experiment| {
-        let contests = Contests::of(experiment, results.experiment(experiment.id)?)?;
-        Some((experiment, contests))
+        let comparisons = Comparisons::of(experiment, results.experiment(experiment.id)?)?;
+        Some((experiment, comparisons))
     });
     let all: Vec<_> = all.collect();
     let mut text = format!("### Who has the least mean error\n\n{}\n", wins(&all));
-    if let Some((experiment, contests)) = all.iter().find(|(experiment, _)| experiment.id == SHOWN_WHOLE) {
-        let _ = write!(text, "### {}\n\n{}\n", experiment.title, contests.markdown());
+    if let Some((experiment, comparisons)) = all.iter().find(|(experiment, _)| experiment.id == SHOWN_WHOLE) {
+        let _ = write!(text, "### {}\n\n{}\n", experiment.title, comparisons.markdown());
     }
     if let Some(readings) = results.experiment("readings") {
         let table = markdown_table(&READ_AS, &confusion(readings));
@@ -39,15 +39,15 @@ pub fn learners(experiments: &[Experiment], results: &Results) -> String {
 }
 
 /// How often each learner has the least mean error, and the naive one less than PolicyAlign: a line an experiment.
-fn wins(all: &[(&Experiment, Contests<'_>)]) -> String {
-    let winners: BTreeSet<Contestant> =
-        all.iter().flat_map(|(_, contests)| contests.lines.iter().map(ContestLine::least)).collect();
-    let line = |(experiment, contests): &(&Experiment, Contests<'_>)| {
+fn wins(all: &[(&Experiment, Comparisons<'_>)]) -> String {
+    let winners: BTreeSet<Method> =
+        all.iter().flat_map(|(_, comparisons)| comparisons.lines.iter().map(ComparisonLine::least)).collect();
+    let line = |(experiment, comparisons): &(&Experiment, Comparisons<'_>)| {
         let count =
-            |wanted: &dyn Fn(&ContestLine<'_>) -> bool| contests.lines.iter().filter(|line| wanted(line)).count();
+            |wanted: &dyn Fn(&ComparisonLine<'_>) -> bool| comparisons.lines.iter().filter(|line| wanted(line)).count();
         let of_all =
-            [contests.lines.len()].into_iter().chain(winners.iter().map(|who| count(&|line| line.least() == *who)));
-        let counts = of_all.chain([count(&|line| line.is_ahead_of_policy_align(Contestant::Naive))]);
+            [comparisons.lines.len()].into_iter().chain(winners.iter().map(|who| count(&|line| line.least() == *who)));
+        let counts = of_all.chain([count(&|line| line.is_ahead_of_policy_align(Method::Naive))]);
         [experiment.title.to_owned()].into_iter().chain(counts.map(|count| count.to_string())).collect()
     };
     let names = winners.iter().map(|who| who.label());
@@ -61,10 +61,11 @@ fn wins(all: &[(&Experiment, Contests<'_>)]) -> String {
 pub fn on_new_movements(experiments: &[Experiment], results: &[ExperimentResult]) -> Vec<String> {
     let errors = |id: &str, case: &str, measure: Measure| {
         let experiment = experiments.iter().find(|experiment| experiment.id == id)?;
-        let contests = Contests::of(experiment, results.iter().find(|result| result.id == id)?)?;
-        let line = contests.lines.iter().find(|line| line.contest.case == case && line.contest.measure == measure)?;
+        let comparisons = Comparisons::of(experiment, results.iter().find(|result| result.id == id)?)?;
+        let line =
+            comparisons.lines.iter().find(|line| line.comparison.case == case && line.comparison.measure == measure)?;
         let of = |who| line.mean(who).map(shown_mean);
-        Some([of(Contestant::Naive)?, of(Contestant::PolicyAlign)?, of(Contestant::SlopeGp)?])
+        Some([of(Method::Naive)?, of(Method::PolicyAlign)?, of(Method::SlopeGp)?])
     };
     let fresh = errors("table1", "sinusoidal-100x100-medium", Measure::NupeFresh).map(|[naive, align, slope]| {
         format!(
@@ -82,7 +83,7 @@ pub fn on_new_movements(experiments: &[Experiment], results: &[ExperimentResult]
 }
 
 /// The rows of a learner, each with its case.
-fn rows_of(result: &ExperimentResult, who: Contestant) -> impl Iterator<Item = (&str, &RowResult)> {
+fn rows_of(result: &ExperimentResult, who: Method) -> impl Iterator<Item = (&str, &RowResult)> {
     result.rows.iter().filter_map(move |row| {
         let (case, learner) = row.id.rsplit_once('/')?;
         (learner == who.id()).then_some((case, row))
@@ -103,7 +104,7 @@ pub(super) fn confusion(readings: &ExperimentResult) -> Vec<Vec<String>> {
     const READ: [Measure; 4] =
         [Measure::ReadFree, Measure::ReadConstrained, Measure::ReadAmbiguous, Measure::ReadUnexplained];
     let mut kinds: Vec<(&str, [usize; 5])> = Vec::new();
-    for (case, row) in rows_of(readings, Contestant::AutoGp) {
+    for (case, row) in rows_of(readings, Method::AutoGp) {
         let kind = case.split_once('/').map_or(case, |(kind, _)| kind);
         if kinds.last().is_none_or(|(last, _)| *last != kind) {
             kinds.push((kind, [0; 5]));
@@ -123,7 +124,7 @@ pub(super) fn confusion(readings: &ExperimentResult) -> Vec<Vec<String>> {
 /// Which free movements are not always classified as free, and how well the slope GP predicts in corridors.
 fn free(readings: &ExperimentResult) -> String {
     const WELL: f64 = 0.3;
-    let free = rows_of(readings, Contestant::AutoGp).filter(|(case, _)| case.starts_with("free/"));
+    let free = rows_of(readings, Method::AutoGp).filter(|(case, _)| case.starts_with("free/"));
     let often = |(case, row): (&str, &RowResult)| {
         let free = values(row, Measure::ReadFree).iter().flatten().filter(|share| **share > 0.0).count();
         let (case, of) = (case.trim_start_matches("free/"), row.data_sets - row.failed);
@@ -131,7 +132,7 @@ fn free(readings: &ExperimentResult) -> String {
     };
     let named: Vec<String> = free.filter_map(often).collect();
     let but = if named.is_empty() { String::new() } else { format!(", except {}", named.join(", ")) };
-    let corridors = rows_of(readings, Contestant::SlopeGp).filter(|(case, _)| case.starts_with("handwriting"));
+    let corridors = rows_of(readings, Method::SlopeGp).filter(|(case, _)| case.starts_with("handwriting"));
     let corridors = corridors.map(|(_, row)| {
         let errors: Vec<f64> = values(row, Measure::Nupe).iter().flatten().copied().collect();
         let well = errors.iter().filter(|error| **error <= WELL).count();
@@ -142,7 +143,7 @@ fn free(readings: &ExperimentResult) -> String {
 
 /// Expected over true error of every fit of the slope GP and of the direct GP that errs by something.
 fn expected(results: &Results) -> String {
-    let line = |(under, who): (Under, Contestant)| {
+    let line = |(under, who): (Under, Method)| {
         let rows = results.experiments.iter().flat_map(|result| rows_of(result, who));
         let mut ratios: Vec<f64> =
             rows.filter(|(case, _)| Under::of(case) == under).flat_map(|(_, row)| ratios(row)).collect();
@@ -154,7 +155,7 @@ fn expected(results: &Results) -> String {
         let range = [show(0), show(n / 2), show(n.saturating_sub(1))];
         [who.label().to_owned(), under.name().to_owned(), n.to_string(), near, far].into_iter().chain(range).collect()
     };
-    let whom = [Contestant::SlopeGp, Contestant::SlopeGpNoTrend, Contestant::DirectGp];
+    let whom = [Method::SlopeGp, Method::SlopeGpNoTrend, Method::DirectGp];
     let both = [Under::Varying, Under::NoneOrOne].into_iter().flat_map(|under| whom.map(|who| (under, who)));
     let lines: Vec<Vec<String>> = both.map(line).collect();
     let header = [
@@ -180,7 +181,7 @@ fn expected(results: &Results) -> String {
 
 /// How many of the slope GP's fits to the wanted cases expect their error within ten times.
 fn share(results: &Results, wanted: fn(&str) -> bool) -> String {
-    let rows = results.experiments.iter().flat_map(|result| rows_of(result, Contestant::SlopeGp));
+    let rows = results.experiments.iter().flat_map(|result| rows_of(result, Method::SlopeGp));
     let ratios: Vec<f64> = rows.filter(|(case, _)| wanted(case)).flat_map(|(_, row)| ratios(row)).collect();
     let within = ratios.iter().filter(|ratio| (0.1..=10.0).contains(*ratio)).count();
     format!("{within} of {}", ratios.len())
@@ -190,7 +191,7 @@ fn share(results: &Results, wanted: fn(&str) -> bool) -> String {
 fn outside(results: &[ExperimentResult]) -> Vec<String> {
     let mut named = Vec::new();
     for result in results {
-        for (case, row) in rows_of(result, Contestant::SlopeGp).filter(|(case, _)| Under::of(case) == Under::Varying) {
+        for (case, row) in rows_of(result, Method::SlopeGp).filter(|(case, _)| Under::of(case) == Under::Varying) {
             let ratios = ratios(row);
             for (far, word) in [
                 (ratios.iter().filter(|ratio| **ratio > 10.0).count(), "high"),
@@ -241,7 +242,7 @@ fn rotation(results: &Results) -> String {
     let mut seen = BTreeSet::new();
     let (mut there, mut not_there) = ([0; 2], [0; 2]);
     for result in &results.experiments {
-        for who in [Contestant::SlopeGp, Contestant::SlopeGpNoTrend] {
+        for who in [Method::SlopeGp, Method::SlopeGpNoTrend] {
             for (case, row) in rows_of(result, who) {
                 // Rows that differ in what they are tested on come from the same fits.
                 let fits: Vec<u64> = values(row, Measure::ExpectedNupe).iter().flatten().map(|v| v.to_bits()).collect();
@@ -317,7 +318,7 @@ mod tests {
         ];
         let table1 = experiments.iter().find(|experiment| experiment.id == "table1").unwrap();
         let result = result("table1", rows);
-        let table = wins(&[(table1, Contests::of(table1, &result).unwrap())]);
+        let table = wins(&[(table1, Comparisons::of(table1, &result).unwrap())]);
         let expected = format!(
             "| experiment | comparisons | naive | slope GP | naive ahead of PolicyAlign |\n| --- | --- | --- | --- | --- |\n\
              | {} | 3 | 1 | 2 | 1 |\n",

@@ -6,7 +6,7 @@
 //! It is given experiments, results and drawn figures; to read and write is up to whoever asks.
 
 mod compared;
-mod contests;
+mod comparisons;
 mod learners;
 mod legend;
 mod markdown;

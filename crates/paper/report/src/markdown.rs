@@ -10,7 +10,7 @@ use experiments::verdict::Verdict;
 use page::markdown_table;
 
 use super::compared::{Compared, FEW, Line, compared};
-use super::contests::{CAUTION, Contests};
+use super::comparisons::{CAUTION, Comparisons};
 use super::legend::{MEASURES, RULE, names};
 use super::tally::Tally;
 
@@ -91,14 +91,14 @@ fn section(compared: &Compared<'_>, seed: u64) -> String {
         text += &folded(&format!("All {n} means"), &table(compared, &in_full(compared), |_| true));
         text += &explanations(compared);
     }
-    text + &contests(compared)
+    text + &comparisons(compared)
 }
 
 /// Learners side by side, where there are several.
-fn contests(compared: &Compared<'_>) -> String {
-    let Some(contests) = Contests::of(compared.experiment, compared.result) else { return String::new() };
-    let remark = contests.remark.map_or(String::new(), |remark| format!("{remark}\n\n"));
-    folded("Learners side by side", &format!("{}\n\n{remark}{}", contests.findings(), contests.markdown()))
+fn comparisons(compared: &Compared<'_>) -> String {
+    let Some(comparisons) = Comparisons::of(compared.experiment, compared.result) else { return String::new() };
+    let remark = comparisons.remark.map_or(String::new(), |remark| format!("{remark}\n\n"));
+    folded("Learners side by side", &format!("{}\n\n{remark}{}", comparisons.findings(), comparisons.markdown()))
 }
 
 /// What is seen only by who opens it. Markdown within needs the empty lines.

@@ -8,7 +8,7 @@ use experiments::results::Results;
 use experiments::verdict::Verdict;
 
 use super::compared::{Compared, Line, compared};
-use super::contests::Contests;
+use super::comparisons::Comparisons;
 use super::tally::Tally;
 
 /// A table an experiment; colours are left out where the standard output is no terminal, and by `NO_COLOR`.
@@ -47,9 +47,10 @@ fn section(compared: &Compared<'_>) -> String {
 
 /// What the report has of an experiment that prints no numbers.
 fn counted(compared: &Compared<'_>) -> String {
-    let contests = Contests::of(compared.experiment, compared.result).map_or(0, |contests| contests.lines.len());
+    let comparisons =
+        Comparisons::of(compared.experiment, compared.result).map_or(0, |comparisons| comparisons.lines.len());
     match compared.rows().count() {
-        0 => format!("{contests} lines of learners side by side: see the report"),
+        0 => format!("{comparisons} lines of learners side by side: see the report"),
         rows => format!("{rows} rows: see the report"),
     }
 }

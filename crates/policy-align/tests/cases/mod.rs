@@ -1,7 +1,7 @@
 //! Recordings with their truth, good and bad, as laboratories make them.
 
 use constraints::{LinearConstraint, PfaffianConstraint, Switching, Unconstrained};
-use demo_gen::beyond::{BeyondSystem, ConstraintKind, Shown};
+use demo_gen::beyond::{BeyondSystem, ConstraintKind, PolicyKind as Shown};
 use demo_gen::{Parabola, Recording, RollOut, Sinusoidal, ThreeLinkArm, with_position_noise};
 use motion::{Channel, Episode, Recordings, Source};
 use motion::{LearntPolicy, Policy, Potential};
@@ -209,8 +209,8 @@ pub(crate) fn at_rate(hertz: f64, seconds: f64) -> RollOut {
     RollOut { time_step: 1.0 / hertz, n_samples: (seconds * hertz) as usize, sub_steps: 1 }
 }
 
-pub(crate) fn beyond(shown: Shown, hindrance: ConstraintKind, count: usize, seed: u64) -> Vec<Recording> {
-    let system = BeyondSystem { shown, hindrance, n_trajectories: count + FRESH, ..BeyondSystem::default() };
+pub(crate) fn beyond(policy: Shown, constraint: ConstraintKind, count: usize, seed: u64) -> Vec<Recording> {
+    let system = BeyondSystem { policy, constraint, n_trajectories: count + FRESH, ..BeyondSystem::default() };
     system.record(&mut ChaCha8Rng::seed_from_u64(seed)).unwrap()
 }
 

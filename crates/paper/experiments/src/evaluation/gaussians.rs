@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 
 use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, ModelKind, SlopeFit, SlopeGp, Trend};
-use motion::{Demonstrations, SampleIndex, SampleSet};
+use motion::{Demonstrations, LearntPolicy, SampleIndex, SampleSet};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
+use crate::evaluation::judge::Judge;
+use crate::evaluation::protocol::errors;
 use crate::measure::Measure;
 
 /// The slope GP and the direct GP, both as they come, from at most so many rows.
@@ -67,6 +69,17 @@ impl Gaussians {
         let rows = self.front_end.rows(demonstrations)?;
         Ok(rows.without(|trajectory, sample| held_out.contains(SampleIndex { trajectory, sample })))
     }
+}
+
+/// Rows of the slope GP, of the direct GP and of the choice between them: errors, and what they say of themselves.
+pub(crate) fn rows(judge: &Judge<'_>, both: &AutoFit) -> anyhow::Result<[BTreeMap<Measure, f64>; 3]> {
+    let [slope, direct, either]: [&dyn LearntPolicy; 3] = [both.slope(), both.direct(), both];
+    let [mut slope, mut direct, mut either] = [errors(judge, slope)?, errors(judge, direct)?, errors(judge, either)?];
+    slope.extend(own_expectations(both.slope()));
+    direct.insert(Measure::ExpectedNupe, 1.0 - both.direct().r_squared());
+    either.insert(Measure::ExpectedNupe, both.expected_nupe());
+    either.extend(reading_of(both));
+    Ok([slope, direct, either])
 }
 
 /// What a slope GP expects of itself.

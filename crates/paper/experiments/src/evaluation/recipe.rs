@@ -5,8 +5,8 @@ use lwpr::LwprParams;
 use nalgebra::DVector;
 
 use crate::Setup;
-use crate::evaluation::entrant::Entrant;
-use crate::evaluation::exam::Protocol;
+use crate::evaluation::candidate::Candidate;
+use crate::evaluation::protocol::Protocol;
 use crate::setting::{Class, SILENT, Setting};
 
 /// What the learners of an experiment have in common.
@@ -46,8 +46,8 @@ impl Recipe {
 
     /// PolicyAlign alone, with this regression; other learners are added to it.
     pub(crate) fn protocol(&self, algorithm: PolicyAlign, dim: usize, spread: f64) -> Protocol {
-        let pupils = vec![Entrant::PolicyAlign(self.regressor(dim, spread))];
-        Protocol { algorithm, pupils, held_out: self.held_out }
+        let candidates = vec![Candidate::PolicyAlign(self.regressor(dim, spread))];
+        Protocol { algorithm, candidates, held_out: self.held_out }
     }
 
     fn passes(&self, dim: usize) -> usize {

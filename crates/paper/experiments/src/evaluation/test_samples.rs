@@ -4,7 +4,7 @@ use align::Aligned;
 use motion::SampleIndex;
 use rand_chacha::ChaCha8Rng;
 
-use crate::seed::beside;
+use crate::seed::separate_stream;
 
 /// The samples of one data set that are held out, ascending.
 pub struct TestSamples {
@@ -25,7 +25,7 @@ impl TestSamples {
         let of_kept = demonstrations.hold_out_samples(aligned.kept(), share, rng)?;
         let mut of_all = of_kept.clone();
         if !aligned.discarded().is_empty() {
-            of_all.extend(demonstrations.hold_out_samples(aligned.discarded(), share, &mut beside(rng))?);
+            of_all.extend(demonstrations.hold_out_samples(aligned.discarded(), share, &mut separate_stream(rng))?);
             of_all.sort_unstable();
         }
         Ok(TestSamples { of_kept, of_all })

@@ -6,10 +6,10 @@ use gp::FrontEnd;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
-use crate::evaluation::beside::{Baselines, BesideTrial, DATA_SETS};
-use crate::evaluation::contest::{Contest, Contestant};
-use crate::evaluation::exam::Protocol;
+use crate::evaluation::baselines::{Baselines, BaselinesTrial};
+use crate::evaluation::comparison::{Comparison, Method};
 use crate::evaluation::gaussians::Gaussians;
+use crate::evaluation::protocol::Protocol;
 use crate::evaluation::recipe::{HELD_OUT, Recipe};
 use crate::measure::Measure;
 use crate::paper::{explanations, paper_table};
@@ -29,9 +29,9 @@ const CASE: &str = "body";
 /// The experiment.
 pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
     let scenario = HandInPlane::new(upper_body()?);
-    let beside = beside();
-    let contest =
-        |measure| Contest::of(CASE, measure, &beside.contestants()).with(Contestant::PolicyAlign, ROW, measure);
+    let baselines = baselines();
+    let comparison =
+        |measure| Comparison::of(CASE, measure, &baselines.methods()).with(Method::PolicyAlign, ROW, measure);
     Ok(Experiment {
         id: "asimo22",
         section: "4.3",
@@ -46,28 +46,20 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
             "The paper has no naive learner here. Ours errs less than PolicyAlign.",
         ],
         decisions: "asimo22.md",
-        contests_remark: None,
-        another_reading_of: None,
-        contests: [Measure::Nupe, Measure::Ncpe].map(contest).into(),
+        comparisons: [Measure::Nupe, Measure::Ncpe].map(comparison).into(),
         setups: vec![
             printed(scenario.clone(), SPREAD, &recipe()),
-            Setup {
-                id: "beside".to_owned(),
-                rows: beside.rows(CASE),
-                system: BODY_SYSTEM,
-                data_sets: Some(DATA_SETS),
-                cost: beside.cost(),
-                trial: Box::new(BesideTrial { scene: scenario, algorithms: vec![PolicyAlign::default()], beside }),
-            },
+            BaselinesTrial::setup(("beside", BODY_SYSTEM), &[CASE], scenario, vec![PolicyAlign::default()], baselines),
         ],
         paper: paper_table(include_str!("../../paper/asimo22.toml"))?,
         explanations: explanations("asimo22", include_str!("../../paper/asimo22-explained.toml"))?,
+        ..Experiment::default()
     })
 }
 
 /// Who learns beside PolicyAlign. The naive learner has wider fields than PolicyAlign, with which its error is lower, and fewer
 /// passes.
-fn beside() -> Baselines {
+fn baselines() -> Baselines {
     let naive = Some(DirectPolicyLearning { passes: 3, ..Recipe::default().naive(22, 2.2) });
     Baselines {
         naive,
@@ -138,7 +130,7 @@ struct BodyTrial {
 impl Trial for BodyTrial {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.scenario.record(rng)?;
-        let mut rows = self.protocol.examine(&recordings, rng)?.rows()?;
+        let mut rows = self.protocol.evaluate(&recordings, rng)?.rows()?;
         let leaving = n_leaving_limits(self.scenario.body.robot(), &recordings)?;
         rows[0].insert(Measure::BeyondLimits, 100.0 * leaving as f64 / recordings.len() as f64);
         Ok(rows)

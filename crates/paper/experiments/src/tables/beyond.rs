@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use align::{Bandwidth, DirectPolicyLearning, LwprRegressor, PolicyAlign};
-use demo_gen::beyond::{BeyondSystem, ConstraintKind, Shown};
+use demo_gen::beyond::{BeyondSystem, ConstraintKind, PolicyKind};
 use demo_gen::demonstrations;
 use gp::Trend;
 use lwpr::LwprParams;
@@ -11,13 +11,13 @@ use motion::{Demonstrations, Learner as _};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
-use crate::evaluation::contest::{Contest, Contestant, row_id};
-use crate::evaluation::exam::errors;
-use crate::evaluation::gaussians::{Gaussians, own_expectations, reading_of};
+use crate::evaluation::comparison::{Comparison, Method, row_id};
+use crate::evaluation::gaussians::{Gaussians, own_expectations, rows};
 use crate::evaluation::judge::Judge;
 use crate::evaluation::observation_model::{ObservationModel, samples_of};
+use crate::evaluation::protocol::errors;
 use crate::measure::{Measure, RowOf};
-use crate::seed::beside;
+use crate::seed::separate_stream;
 use crate::{Experiment, Measures, Row, Setup, Trial};
 
 /// The first of the systems; the cases follow.
@@ -27,22 +27,14 @@ const FIRST_SYSTEM: u32 = 500;
 const TESTED_ON: &str = "the true states of all samples";
 
 /// Who learns, in the order of the rows.
-const WHO: [Contestant; 6] = [
-    Contestant::Naive,
-    Contestant::PolicyAlign,
-    Contestant::SlopeGp,
-    Contestant::SlopeGpNoTrend,
-    Contestant::DirectGp,
-    Contestant::AutoGp,
-];
+const WHO: [Method; 6] =
+    [Method::Naive, Method::PolicyAlign, Method::SlopeGp, Method::SlopeGpNoTrend, Method::DirectGp, Method::AutoGp];
 
 /// One data set's kind.
 struct Case {
     name: &'static str,
-    shown: Shown,
-    n_trajectories: usize,
-    hindrance: ConstraintKind,
-    seen: ObservationModel,
+    system: BeyondSystem,
+    observation: ObservationModel,
     /// Rows that the Gaussian processes learn from.
     max_rows: usize,
 }
@@ -51,46 +43,40 @@ struct Case {
 fn cases() -> Vec<Case> {
     use ConstraintKind::{Free, OneForAll, Varying};
     use ObservationModel::{NoisyStates, Positions, Velocities};
-    use Shown::{Handwriting, LimitCycle, Planes, Sinusoidal, Swirl, Wells};
-    let rows = [
-        ("sinus-2d-10-demonstrations", Sinusoidal, 10, Varying, Velocities, 900),
-        ("sinus-2d-5-demonstrations", Sinusoidal, 5, Varying, Velocities, 900),
-        ("wells-3d", Wells { dim: 3 }, 60, Varying, Velocities, 500),
-        ("wells-22d", Wells { dim: 22 }, 100, Varying, Velocities, 900),
-        ("softplus-6d", Planes { dim: 6, edge: 0.1 }, 60, Varying, Velocities, 700),
-        ("relu-2d", Planes { dim: 2, edge: 0.0 }, 60, Varying, Velocities, 900),
-        ("relu-3d", Planes { dim: 3, edge: 0.0 }, 60, Varying, Velocities, 900),
-        ("relu-6d", Planes { dim: 6, edge: 0.0 }, 60, Varying, Velocities, 900),
-        ("swirl-3d", Swirl { dim: 3 }, 60, Varying, Velocities, 500),
-        ("limit-cycle-2d", LimitCycle, 20, Varying, Velocities, 500),
-        ("sinus-2d-noise-20-velocities", Sinusoidal, 40, Varying, NoisyStates(0.2), 700),
-        ("wells-3d-noise-20-velocities", Wells { dim: 3 }, 60, Varying, NoisyStates(0.2), 700),
-        ("sinus-2d-positions-noise-1", Sinusoidal, 40, Varying, Positions(0.01), 700),
-        ("sinus-2d-positions-noise-5", Sinusoidal, 40, Varying, Positions(0.05), 700),
-        ("wells-3d-positions-noise-1", Wells { dim: 3 }, 60, Varying, Positions(0.01), 700),
-        ("wells-3d-positions-noise-5", Wells { dim: 3 }, 60, Varying, Positions(0.05), 700),
-        ("wells-22d-positions-noise-1", Wells { dim: 22 }, 100, Varying, Positions(0.01), 700),
-        ("limit-cycle-2d-positions-noise-1", LimitCycle, 40, Varying, Positions(0.01), 500),
-        ("sinus-2d-free", Sinusoidal, 20, Free, Velocities, 500),
-        ("handwriting-free", Handwriting, 7, Free, Velocities, 500),
-        ("wells-3d-one-constraint-for-all", Wells { dim: 3 }, 20, OneForAll, Velocities, 500),
-    ];
-    let case = |(name, shown, n_trajectories, hindrance, seen, max_rows)| Case {
-        name,
-        shown,
-        n_trajectories,
-        hindrance,
-        seen,
-        max_rows,
+    use PolicyKind::{Handwriting, LimitCycle, Planes, Sinusoidal, Swirl, Wells};
+    let case = |name, policy, n_trajectories, constraint, observation, max_rows| {
+        let system = BeyondSystem { policy, n_trajectories, constraint, ..BeyondSystem::default() };
+        Case { name, system, observation, max_rows }
     };
-    rows.map(case).into()
+    vec![
+        case("sinus-2d-10-demonstrations", Sinusoidal, 10, Varying, Velocities, 900),
+        case("sinus-2d-5-demonstrations", Sinusoidal, 5, Varying, Velocities, 900),
+        case("wells-3d", Wells { dim: 3 }, 60, Varying, Velocities, 500),
+        case("wells-22d", Wells { dim: 22 }, 100, Varying, Velocities, 900),
+        case("softplus-6d", Planes { dim: 6, edge: 0.1 }, 60, Varying, Velocities, 700),
+        case("relu-2d", Planes { dim: 2, edge: 0.0 }, 60, Varying, Velocities, 900),
+        case("relu-3d", Planes { dim: 3, edge: 0.0 }, 60, Varying, Velocities, 900),
+        case("relu-6d", Planes { dim: 6, edge: 0.0 }, 60, Varying, Velocities, 900),
+        case("swirl-3d", Swirl { dim: 3 }, 60, Varying, Velocities, 500),
+        case("limit-cycle-2d", LimitCycle, 20, Varying, Velocities, 500),
+        case("sinus-2d-noise-20-velocities", Sinusoidal, 40, Varying, NoisyStates(0.2), 700),
+        case("wells-3d-noise-20-velocities", Wells { dim: 3 }, 60, Varying, NoisyStates(0.2), 700),
+        case("sinus-2d-positions-noise-1", Sinusoidal, 40, Varying, Positions(0.01), 700),
+        case("sinus-2d-positions-noise-5", Sinusoidal, 40, Varying, Positions(0.05), 700),
+        case("wells-3d-positions-noise-1", Wells { dim: 3 }, 60, Varying, Positions(0.01), 700),
+        case("wells-3d-positions-noise-5", Wells { dim: 3 }, 60, Varying, Positions(0.05), 700),
+        case("wells-22d-positions-noise-1", Wells { dim: 22 }, 100, Varying, Positions(0.01), 700),
+        case("limit-cycle-2d-positions-noise-1", LimitCycle, 40, Varying, Positions(0.01), 500),
+        case("sinus-2d-free", Sinusoidal, 20, Free, Velocities, 500),
+        case("handwriting-free", Handwriting, 7, Free, Velocities, 500),
+        case("wells-3d-one-constraint-for-all", Wells { dim: 3 }, 20, OneForAll, Velocities, 500),
+    ]
 }
 
 /// The experiment.
 pub(crate) fn beyond() -> Experiment {
     let cases = cases();
-    let contests = cases.iter().map(|case| Contest::of(case.name, Measure::Nupe, &WHO)).collect();
-    let (paper, explanations) = Default::default();
+    let comparisons = cases.iter().map(|case| Comparison::of(case.name, Measure::Nupe, &WHO)).collect();
     Experiment {
         id: "beyond",
         section: "none",
@@ -101,32 +87,23 @@ pub(crate) fn beyond() -> Experiment {
                  All learners have their default settings, except LWPR in 22 dimensions, where wider fields and one pass serve it better; PolicyAlign has the narrow or \
                  the medium bandwidth, whichever has the lower true error in that data set. Nothing is held out: the policy is hidden at the states that are seen. \"Automatic\" is the slope GP or the direct \
                  GP, as the data are read.",
-        reservations: &[],
         decisions: "beyond.md",
-        contests_remark: None,
-        another_reading_of: None,
-        contests,
+        comparisons,
         setups: (FIRST_SYSTEM..).zip(cases).map(setup).collect(),
-        paper,
-        explanations,
+        ..Experiment::default()
     }
 }
 
 /// A case that can be drawn: its system, by its number, and what learns from it.
 pub fn case_on_the_plane() -> (u32, BeyondSystem, Gaussians) {
     let case = cases().swap_remove(0);
-    let (system, gaussians) = (case.system(), case.gaussians());
-    (FIRST_SYSTEM, system, gaussians)
+    let gaussians = case.gaussians();
+    (FIRST_SYSTEM, case.system, gaussians)
 }
 
 impl Case {
-    fn system(&self) -> BeyondSystem {
-        let &Case { shown, n_trajectories, hindrance, .. } = self;
-        BeyondSystem { shown, n_trajectories, hindrance, ..BeyondSystem::default() }
-    }
-
     fn gaussians(&self) -> Gaussians {
-        Gaussians::new(self.seen.front_end(), self.max_rows)
+        Gaussians::new(self.observation.front_end(), self.max_rows)
     }
 
     /// LWPR as it comes, but in 22 dimensions: states are so far apart there that fields of the default width hold hardly
@@ -134,7 +111,7 @@ impl Case {
     /// and need a fortieth of the time.
     fn lwpr(&self) -> LwprRegressor {
         let regressor = LwprRegressor::default();
-        if self.system().shown.dim() < 22 {
+        if self.system.policy.dim() < 22 {
             return regressor;
         }
         let params = LwprParams { init_d: 0.3, ..regressor.params };
@@ -142,25 +119,25 @@ impl Case {
     }
 }
 
-fn setup((system_number, case): (u32, Case)) -> Setup {
-    let (system, gaussians, lwpr) = (case.system(), case.gaussians(), case.lwpr());
-    let Case { name, n_trajectories, seen, max_rows, .. } = case;
-    let row = |contestant| Row { id: row_id(name, contestant), of: RowOf::Contestant, tested_on: TESTED_ON };
-    let cost = 40 * (max_rows.min(39 * n_trajectories) as u64).pow(2);
+fn setup((number, case): (u32, Case)) -> Setup {
+    let (gaussians, lwpr) = (case.gaussians(), case.lwpr());
+    let Case { name, system, observation, max_rows } = case;
+    let row = |method| Row { id: row_id(name, method), of: RowOf::Additional, tested_on: TESTED_ON };
     Setup {
         id: name.to_owned(),
         rows: WHO.map(row).into(),
-        system: system_number,
+        system: number,
         data_sets: None,
-        cost,
-        trial: Box::new(BeyondTrial { system, seen, lwpr, gaussians }),
+        cost: 40 * (max_rows.min(39 * system.n_trajectories) as u64).pow(2),
+        trial: Box::new(BeyondTrial { system, observation, lwpr, gaussians }),
     }
 }
 
 #[derive(Serialize)]
 struct BeyondTrial {
     system: BeyondSystem,
-    seen: ObservationModel,
+    #[serde(rename = "seen")]
+    observation: ObservationModel,
     lwpr: LwprRegressor,
     gaussians: Gaussians,
 }
@@ -168,27 +145,19 @@ struct BeyondTrial {
 impl Trial for BeyondTrial {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.system.record(rng)?;
-        let recordings = self.seen.of(recordings, rng)?;
+        let recordings = self.observation.of(recordings, rng)?;
         let demonstrations = demonstrations(&recordings)?;
         let judge = Judge::new(&recordings, &samples_of(&recordings, 0..recordings.len()));
         let LwprRegressor { params, passes, cutoff } = self.lwpr.clone();
         let naive = DirectPolicyLearning { params, passes, cutoff };
         let naive = naive.learn(&demonstrations, &[], rng).map_err(anyhow::Error::from_boxed)?;
-        let both = self.gaussians.both(&demonstrations, &[], &mut beside(rng))?;
-        let no_trend = self.gaussians.slope(Trend::None, &demonstrations, &[], &mut beside(rng))?;
-        let with = |mut row: BTreeMap<Measure, f64>, expected: BTreeMap<Measure, f64>| {
-            row.extend(expected);
-            row
-        };
-        let expects = |nupe| BTreeMap::from([(Measure::ExpectedNupe, nupe)]);
-        Ok(vec![
-            errors(&judge, &*naive)?,
-            self.policy_align(&demonstrations, &judge, rng),
-            with(errors(&judge, both.slope())?, own_expectations(both.slope())),
-            with(errors(&judge, &no_trend)?, own_expectations(&no_trend)),
-            with(errors(&judge, both.direct())?, expects(1.0 - both.direct().r_squared())),
-            with(with(errors(&judge, &both)?, expects(both.expected_nupe())), reading_of(&both)),
-        ])
+        let both = self.gaussians.both(&demonstrations, &[], &mut separate_stream(rng))?;
+        let no_trend = self.gaussians.slope(Trend::None, &demonstrations, &[], &mut separate_stream(rng))?;
+        let [slope, direct, either] = rows(&judge, &both)?;
+        let mut of_no_trend = errors(&judge, &no_trend)?;
+        of_no_trend.extend(own_expectations(&no_trend));
+        let policy_align = self.policy_align(&demonstrations, &judge, rng);
+        Ok(vec![errors(&judge, &*naive)?, policy_align, slope, of_no_trend, direct, either])
     }
 }
 
@@ -201,7 +170,8 @@ impl BeyondTrial {
         rng: &mut ChaCha8Rng,
     ) -> BTreeMap<Measure, f64> {
         let learnt = |bandwidth| {
-            let algorithm = PolicyAlign { bandwidth, integration: self.seen.integration(), ..PolicyAlign::default() };
+            let algorithm =
+                PolicyAlign { bandwidth, integration: self.observation.integration(), ..PolicyAlign::default() };
             let policy = algorithm.align(demonstrations).ok()?.learn(&self.lwpr, rng).ok()?;
             errors(judge, &policy).ok()
         };

@@ -9,11 +9,11 @@ use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 use smoothing::{Fusion, Smoother};
 
-use crate::evaluation::beside::{Baselines, DATA_SETS};
-use crate::evaluation::contest::{Contest, Contestant};
-use crate::evaluation::exam::Protocol;
+use crate::evaluation::baselines::Baselines;
+use crate::evaluation::comparison::{Comparison, Method};
+use crate::evaluation::protocol::Protocol;
 use crate::measure::Measure;
-use crate::tables::table1::{PARABOLA_SYSTEM, learning_cost, toy_beside, toy_protocol};
+use crate::tables::table1::{PARABOLA_SYSTEM, learning_cost, toy_baselines, toy_protocol};
 use crate::{Experiment, Measures, Row, Setup, Trial};
 
 /// What is learnt from, percent of the trajectories.
@@ -35,8 +35,8 @@ pub(crate) fn figure6_left() -> Experiment {
         let algorithm = PolicyAlign { bandwidth, ..PolicyAlign::default() };
         setup(name, &TRAJECTORIES_PERCENT, algorithm, Against::Trajectories)
     };
-    let beside = setup_beside(
-        BESIDE_LEFT,
+    let baselines = baseline_setup(
+        BASELINES_LEFT,
         &TRAJECTORIES_PERCENT,
         Integration::default(),
         Against::Trajectories,
@@ -47,11 +47,11 @@ pub(crate) fn figure6_left() -> Experiment {
         title: "Figure 6, left: error against the amount of data",
         remark: "Of the 40 trajectories of Table 1's parabola (40 samples each) the first 10 to 100 percent are used. \
                  Regression as in Table 1; test samples from the trajectories that are kept of those used.",
-        contests_remark: Some(
+        comparisons_remark: Some(
             "Learnt from `map-20` means: from 20 % of the trajectories. PolicyAlign has the narrow bandwidth.",
         ),
-        contests: TRAJECTORIES_PERCENT.map(|percent| contest(BESIDE_LEFT, "narrow", percent)).into(),
-        setups: BANDWIDTHS.map(setup).into_iter().chain([beside]).collect(),
+        comparisons: TRAJECTORIES_PERCENT.map(|percent| comparison(BASELINES_LEFT, "narrow", percent)).into(),
+        setups: BANDWIDTHS.map(setup).into_iter().chain([baselines]).collect(),
         ..curves()
     }
 }
@@ -63,15 +63,15 @@ pub(crate) fn figure6_right() -> Experiment {
         setup(&format!("{rule}-{name}"), &NOISE_PERCENT, algorithm, Against::Noise)
     };
     let setups = RULES.into_iter().flat_map(|rule| BANDWIDTHS.map(|bandwidth| setup(rule, bandwidth)));
-    let contests = |((rule, _), name): ((&str, Integration), &'static str)| {
-        NOISE_PERCENT.map(|percent| contest(name, &format!("{rule}-narrow"), percent))
+    let comparisons = |((rule, _), name): ((&str, Integration), &'static str)| {
+        NOISE_PERCENT.map(|percent| comparison(name, &format!("{rule}-narrow"), percent))
     };
-    let beside = |((_, integration), name): ((&str, Integration), &'static str)| {
+    let baselines = |((_, integration), name): ((&str, Integration), &'static str)| {
         let front_end = match integration {
             Integration::Displacement => FrontEnd::Smoothed(Smoother::default()),
             _ => FrontEnd::Fused(Fusion::default()),
         };
-        setup_beside(name, &NOISE_PERCENT, integration, Against::Noise, front_end)
+        baseline_setup(name, &NOISE_PERCENT, integration, Against::Noise, front_end)
     };
     Experiment {
         id: "figure6_right",
@@ -79,79 +79,53 @@ pub(crate) fn figure6_right() -> Experiment {
         remark: "Gaussian noise, in percent of each dimension's standard deviation, on the recorded positions of Table 1's parabola; \
                  recorded velocities are clean. Potentials are integrated from velocities, or from displacements (9). \
                  Regression as in Table 1; errors are against the truth at the true states.",
-        contests: RULES.into_iter().zip(BESIDE_RIGHT).flat_map(contests).collect(),
-        contests_remark: Some(
+        comparisons: RULES.into_iter().zip(BASELINES_RIGHT).flat_map(comparisons).collect(),
+        comparisons_remark: Some(
             "Learnt from `fused-5` or `smoothed-5` means: with 5 % noise on positions. Not all learn from the same here: naive learner and radial basis take the recorded velocities, which are clean, in all rows. \
              In the rows `fused-…` PolicyAlign takes them too, and the Gaussian processes positions and velocities together; in the rows \
              `smoothed-…` PolicyAlign and the Gaussian processes have noisy positions alone, of which the latter are smoothed.",
         ),
-        setups: setups.chain(RULES.into_iter().zip(BESIDE_RIGHT).map(beside)).collect(),
+        setups: setups.chain(RULES.into_iter().zip(BASELINES_RIGHT).map(baselines)).collect(),
         ..curves()
     }
 }
 
-/// Cases of the learners beside PolicyAlign.
-pub const BESIDE_LEFT: &str = "map";
+/// Cases of the baselines.
+pub const BASELINES_LEFT: &str = "map";
 /// In the order of [`RULES`].
-pub const BESIDE_RIGHT: [&str; 2] = ["fused", "smoothed"];
+pub const BASELINES_RIGHT: [&str; 2] = ["fused", "smoothed"];
 
 /// Rows that the Gaussian processes learn from.
 const ROWS: usize = 500;
 
-/// A line of the table: of the learners beside, and of PolicyAlign by another name.
-fn contest(case: &str, policy_align: &str, percent: f64) -> Contest {
-    let contestants = toy_beside(FrontEnd::FiniteDifferences, ROWS).contestants();
+/// A line of the table: of the baselines, and of PolicyAlign by another name.
+fn comparison(case: &str, policy_align: &str, percent: f64) -> Comparison {
+    let methods = toy_baselines(FrontEnd::FiniteDifferences, ROWS).methods();
     let row = format!("{policy_align}-{percent}");
-    Contest::of(&format!("{case}-{percent}"), Measure::Nupe, &contestants).with(
-        Contestant::PolicyAlign,
-        &row,
-        Measure::Nupe,
-    )
+    Comparison::of(&format!("{case}-{percent}"), Measure::Nupe, &methods).with(Method::PolicyAlign, &row, Measure::Nupe)
 }
 
-fn setup_beside(case: &str, percent: &[f64], integration: Integration, against: Against, front_end: FrontEnd) -> Setup {
-    let beside = toy_beside(front_end, ROWS);
-    let rows = percent.iter().flat_map(|percent| beside.rows(&format!("{case}-{percent}"))).collect();
-    let cost = beside.cost() * percent.len() as u64;
-    let trial = CurveTrial {
-        system: ToySystem::default(),
-        protocol: Protocol {
-            algorithm: PolicyAlign { integration, ..PolicyAlign::default() },
-            pupils: vec![],
-            held_out: beside.held_out,
-        },
-        beside: Some(beside),
-        against,
-        percent: percent.to_vec(),
+fn baseline_setup(
+    case: &str,
+    percent: &[f64],
+    integration: Integration,
+    against: Against,
+    front_end: FrontEnd,
+) -> Setup {
+    let cases: Vec<String> = percent.iter().map(|percent| format!("{case}-{percent}")).collect();
+    let trial = |baselines: Baselines| {
+        let algorithm = PolicyAlign { integration, ..PolicyAlign::default() };
+        let protocol = Protocol { algorithm, candidates: vec![], held_out: baselines.held_out };
+        let (system, percent) = (ToySystem::default(), percent.to_vec());
+        CurveTrial { system, protocol, baselines: Some(baselines), against, percent }
     };
-    Setup {
-        id: case.to_owned(),
-        rows,
-        system: PARABOLA_SYSTEM,
-        data_sets: Some(DATA_SETS),
-        cost,
-        trial: Box::new(trial),
-    }
+    let setup = toy_baselines(front_end, ROWS).setup((case, PARABOLA_SYSTEM), &cases, trial);
+    Setup { cost: setup.cost * percent.len() as u64, ..setup }
 }
 
 /// What both panels share.
 fn curves() -> Experiment {
-    let (paper, explanations) = Default::default();
-    Experiment {
-        id: "",
-        section: "4.1",
-        title: "",
-        data_sets: 20,
-        remark: "",
-        reservations: &[],
-        decisions: "figure6.md",
-        contests_remark: None,
-        another_reading_of: None,
-        contests: vec![],
-        setups: vec![],
-        paper,
-        explanations,
-    }
+    Experiment { section: "4.1", data_sets: 20, decisions: "figure6.md", ..Experiment::default() }
 }
 
 fn setup(id: &str, percent: &[f64], algorithm: PolicyAlign, against: Against) -> Setup {
@@ -159,7 +133,7 @@ fn setup(id: &str, percent: &[f64], algorithm: PolicyAlign, against: Against) ->
     let trial = CurveTrial {
         system: ToySystem::default(),
         protocol: toy_protocol(algorithm),
-        beside: None,
+        baselines: None,
         against,
         percent: percent.to_vec(),
     };
@@ -180,8 +154,9 @@ enum Against {
 struct CurveTrial {
     system: ToySystem,
     protocol: Protocol,
-    /// Who learns instead of the pupils, if anybody does.
-    beside: Option<Baselines>,
+    /// Who learns instead of the candidates, if anybody does.
+    #[serde(rename = "beside")]
+    baselines: Option<Baselines>,
     against: Against,
     percent: Vec<f64>,
 }
@@ -196,10 +171,10 @@ impl CurveTrial {
     }
 
     /// What is measured at one point.
-    fn point(&self, seen: &[Recording], rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
-        match &self.beside {
-            Some(beside) => beside.sit(seen, std::slice::from_ref(&self.protocol.algorithm), rng)?.rows(),
-            None => self.protocol.examine(seen, rng)?.rows(),
+    fn point(&self, observed: &[Recording], rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
+        match &self.baselines {
+            Some(baselines) => baselines.train(observed, std::slice::from_ref(&self.protocol.algorithm), rng)?.rows(),
+            None => self.protocol.evaluate(observed, rng)?.rows(),
         }
     }
 
@@ -220,8 +195,8 @@ impl Trial for CurveTrial {
         let noise = ChaCha8Rng::from_rng(rng);
         let mut rows = Vec::new();
         for &percent in &self.percent {
-            let seen = self.at(percent, &recordings, &noise)?;
-            let of_point = self.point(&seen, &mut learning.clone());
+            let observed = self.at(percent, &recordings, &noise)?;
+            let of_point = self.point(&observed, &mut learning.clone());
             rows.extend(of_point.with_context(|| format!("{:?}, {percent} %", self.against))?);
         }
         Ok(rows)

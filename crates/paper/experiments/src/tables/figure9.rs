@@ -10,11 +10,11 @@ use nalgebra::{DVectorView, Vector3};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
-use crate::evaluation::beside::{Baselines, DATA_SETS};
-use crate::evaluation::exam::{Evaluation, Protocol, errors as errors_of};
+use crate::evaluation::baselines::Baselines;
+use crate::evaluation::protocol::{Evaluation, Protocol, errors as errors_of};
 use crate::evaluation::recipe::Recipe;
 use crate::measure::{Measure, RowOf};
-use crate::tables::three_link::{ARM_SYSTEM, arm, beside, protocol};
+use crate::tables::three_link::{ARM_SYSTEM, arm, baselines, protocol};
 use crate::{Experiment, Measures, Row, Setup, Trial};
 
 /// Bounds on the distance, in tenths of a radian.
@@ -30,11 +30,12 @@ const TESTED_ON: &str = "held-out samples of the movements that alignment keeps,
 pub(crate) fn figure9() -> anyhow::Result<Experiment> {
     let rows = cases().into_iter().map(|id| Row { id, of: RowOf::Learner, tested_on: TESTED_ON }).collect();
     let trial = DistanceTrial { arm: arm()?, protocol: protocol(&Recipe::default()) };
-    let (beside, cases) = (beside(ROWS), cases());
-    let rows_beside = cases.iter().flat_map(|case| beside.rows(case)).map(|row| Row { tested_on: TESTED_ON, ..row });
-    let rows_beside = rows_beside.collect();
-    let contests = cases.iter().map(|case| beside.contest(case, Measure::Nupe)).collect();
-    let (paper, explanations) = Default::default();
+    let (baselines, cases) = (baselines(ROWS), cases());
+    let comparisons = cases.iter().map(|case| baselines.comparison(case, Measure::Nupe)).collect();
+    let (arm, algorithm) = (arm()?, PolicyAlign::default());
+    let of_baselines = |baselines| DistanceBaselines { arm, algorithm, baselines };
+    let mut of_baselines = baselines.setup(("beside", ARM_SYSTEM), &cases, of_baselines);
+    of_baselines.rows.iter_mut().for_each(|row| row.tested_on = TESTED_ON);
     Ok(Experiment {
         id: "figure9",
         section: "4.4",
@@ -43,11 +44,8 @@ pub(crate) fn figure9() -> anyhow::Result<Experiment> {
         remark: "Data sets, learner and test samples of the three-link arm; of the samples only those nearer than c radians to the posture \
                  along the line (rows d-c), or nearer than c to the line (rows r-c). The variances in (A1)–(A3) are of \
                  these samples too. A data set with fewer than 10 of them has no value there.",
-        reservations: &[],
         decisions: "figure9.md",
-        contests_remark: None,
-        another_reading_of: None,
-        contests,
+        comparisons,
         setups: vec![
             Setup {
                 id: "distances".to_owned(),
@@ -57,17 +55,9 @@ pub(crate) fn figure9() -> anyhow::Result<Experiment> {
                 cost: 1_500_000,
                 trial: Box::new(trial),
             },
-            Setup {
-                id: "beside".to_owned(),
-                rows: rows_beside,
-                system: ARM_SYSTEM,
-                data_sets: Some(DATA_SETS),
-                cost: beside.cost(),
-                trial: Box::new(DistancesBeside { arm: arm()?, algorithm: PolicyAlign::default(), beside }),
-            },
+            of_baselines,
         ],
-        paper,
-        explanations,
+        ..Experiment::default()
     })
 }
 
@@ -130,12 +120,12 @@ struct DistanceTrial {
 impl Trial for DistanceTrial {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.arm.record(rng)?;
-        let exam = self.protocol.examine(&recordings, rng)?;
+        let evaluation = self.protocol.evaluate(&recordings, rng)?;
         let mut rows = Vec::new();
-        for learnt in exam.learnt() {
+        for learnt in evaluation.learnt() {
             for distance in Distance::BOTH {
                 for tenths in TENTHS {
-                    rows.push(errors(&exam, learnt, distance, f64::from(tenths) / 10.0)?);
+                    rows.push(errors(&evaluation, learnt, distance, f64::from(tenths) / 10.0)?);
                 }
             }
         }
@@ -143,26 +133,27 @@ impl Trial for DistanceTrial {
     }
 }
 
-/// The same of the learners beside PolicyAlign.
+/// The same of the baselines.
 #[derive(Serialize)]
-struct DistancesBeside {
+struct DistanceBaselines {
     arm: ThreeLinkArm,
     algorithm: PolicyAlign,
-    beside: Baselines,
+    #[serde(rename = "beside")]
+    baselines: Baselines,
 }
 
-impl Trial for DistancesBeside {
+impl Trial for DistanceBaselines {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.arm.record(rng)?;
-        let sat = self.beside.sit(&recordings, std::slice::from_ref(&self.algorithm), rng)?;
+        let trained = self.baselines.train(&recordings, std::slice::from_ref(&self.algorithm), rng)?;
         let mut rows = Vec::new();
         for distance in Distance::BOTH {
             for tenths in TENTHS {
-                let judge = sat.judges(0)[0].among(|state| distance.of(state) < f64::from(tenths) / 10.0);
+                let judge = trained.judges(0)[0].among(|state| distance.of(state) < f64::from(tenths) / 10.0);
                 let row = |learnt| {
                     if judge.n_samples() < FEWEST_SAMPLES { Ok(BTreeMap::new()) } else { errors_of(&judge, learnt) }
                 };
-                rows.extend(sat.learnt().into_iter().map(row).collect::<anyhow::Result<Vec<_>>>()?);
+                rows.extend(trained.learnt().into_iter().map(row).collect::<anyhow::Result<Vec<_>>>()?);
             }
         }
         Ok(rows)
@@ -171,13 +162,13 @@ impl Trial for DistancesBeside {
 
 /// Errors of what was learnt at the test samples within a distance; none where there are too few.
 fn errors(
-    exam: &Evaluation<'_>,
+    evaluation: &Evaluation<'_>,
     learnt: &dyn LearntPolicy,
     distance: Distance,
     bound: f64,
 ) -> anyhow::Result<BTreeMap<Measure, f64>> {
-    let judge = exam.judge().among(|state| distance.of(state) < bound);
-    if judge.n_samples() < FEWEST_SAMPLES { Ok(BTreeMap::new()) } else { exam.errors(&judge, learnt) }
+    let judge = evaluation.judge().among(|state| distance.of(state) < bound);
+    if judge.n_samples() < FEWEST_SAMPLES { Ok(BTreeMap::new()) } else { evaluation.errors(&judge, learnt) }
 }
 
 #[cfg(test)]

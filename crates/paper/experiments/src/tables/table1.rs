@@ -6,12 +6,12 @@ use gp::FrontEnd;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
-use crate::evaluation::beside::{Baselines, BesideTrial, DATA_SETS};
+use crate::evaluation::baselines::{Baselines, BaselinesTrial};
+use crate::evaluation::comparison::Comparison;
 use crate::evaluation::constraint_consistent::ConstraintConsistent;
-use crate::evaluation::contest::Contest;
-use crate::evaluation::exam::Protocol;
 use crate::evaluation::fresh::{add_errors, fresh};
 use crate::evaluation::gaussians::Gaussians;
+use crate::evaluation::protocol::Protocol;
 use crate::evaluation::recipe::{HELD_OUT, Recipe};
 use crate::measure::Measure;
 use crate::paper::{explanations, paper_table};
@@ -37,12 +37,12 @@ pub(crate) fn table1() -> anyhow::Result<Experiment> {
                  and a fifth of them is held out.",
         reservations: &RESERVATIONS,
         decisions: "table1.md",
-        contests_remark: Some(BANDWIDTH_IS_OF_POLICY_ALIGN),
-        another_reading_of: None,
-        contests: contests(),
+        comparisons_remark: Some(BANDWIDTH_IS_OF_POLICY_ALIGN),
+        comparisons: comparisons(),
         setups: setups(Redraw::Every(REDRAW), 0, max_rows),
         paper: paper_table(include_str!("../../paper/table1.toml"))?,
         explanations: explanations("table1", include_str!("../../paper/table1-explained.toml"))?,
+        ..Experiment::default()
     })
 }
 
@@ -54,14 +54,14 @@ pub(crate) fn table1_literal() -> anyhow::Result<Experiment> {
         title: "Table 1, taken literally",
         data_sets: 100,
         remark: "As Table 1, but the constraint is \"re-sampled twice\" during each movement to the letter: three segments of equal length.",
-        reservations: &[],
         decisions: "table1.md",
-        contests_remark: Some(BANDWIDTH_IS_OF_POLICY_ALIGN),
+        comparisons_remark: Some(BANDWIDTH_IS_OF_POLICY_ALIGN),
         another_reading_of: Some("table1"),
-        contests: contests(),
+        comparisons: comparisons(),
         setups: setups(Redraw::Segments(3), LITERAL, |_| LITERAL_ROWS),
         paper: paper_table(include_str!("../../paper/table1.toml"))?,
         explanations: explanations("table1-literal", include_str!("../../paper/table1-literal-explained.toml"))?,
+        ..Experiment::default()
     })
 }
 
@@ -190,15 +190,10 @@ fn setups(redraw: Redraw, first_system: u32, max_rows: fn(usize) -> usize) -> Ve
     let mut setups = toy.printed();
     for (number, name, size, potential) in systems() {
         let algorithms = BANDWIDTHS.map(|(_, bandwidth)| PolicyAlign { bandwidth, ..PolicyAlign::default() }).into();
-        let beside = toy_beside(FrontEnd::FiniteDifferences, max_rows(size));
-        setups.push(Setup {
-            id: format!("{name}-{size}x{size}-beside"),
-            rows: cases(name, size).iter().flat_map(|case| beside.rows(case)).collect(),
-            system: first_system + number,
-            data_sets: Some(DATA_SETS),
-            cost: beside.cost(),
-            trial: Box::new(BesideTrial { scene: toy.system(size, potential), algorithms, beside }),
-        });
+        let baselines = toy_baselines(FrontEnd::FiniteDifferences, max_rows(size));
+        let id = (&*format!("{name}-{size}x{size}-beside"), first_system + number);
+        let scene = toy.system(size, potential);
+        setups.push(BaselinesTrial::setup(id, &cases(name, size), scene, algorithms, baselines));
     }
     setups
 }
@@ -209,15 +204,15 @@ fn cases(name: &str, size: usize) -> [String; 3] {
 }
 
 /// The learners on each system, in each bandwidth.
-fn contests() -> Vec<Contest> {
-    let beside = toy_beside(FrontEnd::FiniteDifferences, 1);
+fn comparisons() -> Vec<Comparison> {
+    let baselines = toy_baselines(FrontEnd::FiniteDifferences, 1);
     let cases = systems().into_iter().flat_map(|(_, name, size, _)| cases(name, size));
-    let lines = |case: String| [Measure::Nupe, Measure::NupeFresh].map(|measure| beside.contest(&case, measure));
+    let lines = |case: String| [Measure::Nupe, Measure::NupeFresh].map(|measure| baselines.comparison(&case, measure));
     cases.flat_map(lines).collect()
 }
 
 /// Who learns the toy system beside PolicyAlign.
-pub fn toy_beside(front_end: FrontEnd, max_rows: usize) -> Baselines {
+pub fn toy_baselines(front_end: FrontEnd, max_rows: usize) -> Baselines {
     Baselines {
         naive: Some(toy_naive()),
         constraint_consistent: Some(ConstraintConsistent::default()),
@@ -257,9 +252,9 @@ pub(crate) fn learning_cost(n_trajectories: usize, n_samples: usize) -> u64 {
 impl Trial for ToyTrial {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.system.record(rng)?;
-        let exam = self.protocol.examine(&recordings, rng)?;
-        let mut rows = exam.rows()?;
-        add_errors(&mut rows, exam.learnt(), &fresh(&self.system, rng)?)?;
+        let evaluation = self.protocol.evaluate(&recordings, rng)?;
+        let mut rows = evaluation.rows()?;
+        add_errors(&mut rows, evaluation.learnt(), &fresh(&self.system, rng)?)?;
         Ok(rows)
     }
 }

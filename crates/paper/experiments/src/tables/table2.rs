@@ -8,11 +8,11 @@ use gp::FrontEnd;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
-use crate::evaluation::beside::{Baselines, DATA_SETS};
-use crate::evaluation::contest::{Contest, Contestant};
-use crate::evaluation::entrant::Entrant;
-use crate::evaluation::exam::Protocol;
+use crate::evaluation::baselines::Baselines;
+use crate::evaluation::candidate::Candidate;
+use crate::evaluation::comparison::{Comparison, Method};
 use crate::evaluation::gaussians::Gaussians;
+use crate::evaluation::protocol::Protocol;
 use crate::evaluation::recipe::{HELD_OUT, Recipe};
 use crate::measure::Measure;
 use crate::paper::{explanations, paper_table};
@@ -29,12 +29,12 @@ const NAIVE_SPREAD: f64 = 0.4;
 
 /// The experiment.
 pub(crate) fn table2() -> anyhow::Result<Experiment> {
-    let beside = grasp_beside();
-    let contest = |(case, [measure, _]): (&str, [Measure; 2])| Contest {
+    let (baselines, grasp) = (grasp_baselines(), grasp()?);
+    let comparison = |(case, [measure, _]): (&str, [Measure; 2])| Comparison {
         case: case.to_owned(),
-        ..Contest::of(CASE, measure, &beside.contestants())
-            .with(Contestant::PolicyAlign, case, Measure::PolicyAlign)
-            .with(Contestant::Naive, case, Measure::Naive)
+        ..Comparison::of(CASE, measure, &baselines.methods())
+            .with(Method::PolicyAlign, case, Measure::PolicyAlign)
+            .with(Method::Naive, case, Measure::Naive)
     };
     Ok(Experiment {
         id: "table2",
@@ -52,22 +52,18 @@ pub(crate) fn table2() -> anyhow::Result<Experiment> {
             "The error of the learnt potential is more than four times the printed one: receptive fields that give the printed errors of the policy are too wide for it.",
         ],
         decisions: "table2.md",
-        contests_remark: None,
-        another_reading_of: None,
-        contests: CASES.into_iter().zip(ERRORS).map(contest).collect(),
+        comparisons: CASES.into_iter().zip(ERRORS).map(comparison).collect(),
         setups: vec![
             Bench::new()?.printed()?,
-            Setup {
-                id: "beside".to_owned(),
-                rows: beside.rows(CASE),
-                system: GRASP_SYSTEM,
-                data_sets: Some(DATA_SETS),
-                cost: beside.cost(),
-                trial: Box::new(GraspBeside { grasp: grasp()?, algorithm: PolicyAlign::default(), beside }),
-            },
+            baselines.setup(("beside", GRASP_SYSTEM), &[CASE], |baselines| GraspBaselines {
+                grasp,
+                algorithm: PolicyAlign::default(),
+                baselines,
+            }),
         ],
         paper: paper_table(include_str!("../../paper/table2.toml"))?,
         explanations: explanations("table2", include_str!("../../paper/table2-explained.toml"))?,
+        ..Experiment::default()
     })
 }
 
@@ -96,7 +92,7 @@ impl Bench {
         let Bench { grasp, spread, naive_spread, recipe } = self;
         let mut protocol = recipe.protocol(PolicyAlign::default(), 6, spread);
         // In the order of [`MEASURES`].
-        protocol.pupils.push(Entrant::other(recipe.naive(6, naive_spread))?);
+        protocol.candidates.push(Candidate::other(recipe.naive(6, naive_spread))?);
         Ok(Setup {
             id: "grasp".to_owned(),
             rows: CASES.into_iter().chain(["alignment"]).map(Row::of_learner).collect(),
@@ -145,7 +141,7 @@ const CASES: [&str; 3] = ["training", "unseen_barrier", "unconstrained"];
 const CASE: &str = "grasp";
 
 /// Who learns beside PolicyAlign and the naive learner.
-pub fn grasp_beside() -> Baselines {
+pub fn grasp_baselines() -> Baselines {
     Baselines {
         naive: None,
         constraint_consistent: None,
@@ -183,22 +179,23 @@ const ERRORS: [[Measure; 2]; 3] = [
     [Measure::Nupe, Measure::NupeAll],
 ];
 
-/// The learners beside.
+/// The baselines.
 #[derive(Serialize)]
-struct GraspBeside {
+struct GraspBaselines {
     grasp: Grasp,
     algorithm: PolicyAlign,
-    beside: Baselines,
+    #[serde(rename = "beside")]
+    baselines: Baselines,
 }
 
-impl Trial for GraspBeside {
+impl Trial for GraspBaselines {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.grasp.record(rng)?;
         let obstacle = self.grasp.scene.central_obstacle()?;
-        let sat = self.beside.sit(&recordings, std::slice::from_ref(&self.algorithm), rng)?;
-        let mut rows = sat.rows()?;
-        for (row, learnt) in rows.iter_mut().zip(sat.learnt()) {
-            row.insert(Measure::NcpeUnseen, sat.judges(0)[0].policy_under(&learnt, &obstacle)?);
+        let trained = self.baselines.train(&recordings, std::slice::from_ref(&self.algorithm), rng)?;
+        let mut rows = trained.rows()?;
+        for (row, learnt) in rows.iter_mut().zip(trained.learnt()) {
+            row.insert(Measure::NcpeUnseen, trained.judges(0)[0].policy_under(&learnt, &obstacle)?);
         }
         Ok(rows)
     }
@@ -215,11 +212,11 @@ impl Trial for GraspTrial {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.grasp.record(rng)?;
         let obstacle = self.grasp.scene.central_obstacle()?;
-        let exam = self.protocol.examine(&recordings, rng)?;
-        let mut of_learners = exam.rows()?;
-        for (errors, learnt) in of_learners.iter_mut().zip(exam.learnt()) {
+        let evaluation = self.protocol.evaluate(&recordings, rng)?;
+        let mut of_learners = evaluation.rows()?;
+        for (errors, learnt) in of_learners.iter_mut().zip(evaluation.learnt()) {
             errors.extend(
-                [Measure::NcpeUnseen, Measure::NcpeUnseenAll].into_iter().zip(exam.unseen(&learnt, &obstacle)?),
+                [Measure::NcpeUnseen, Measure::NcpeUnseenAll].into_iter().zip(evaluation.unseen(&learnt, &obstacle)?),
             );
         }
         // A row of the table is one kind of error, of all learners.

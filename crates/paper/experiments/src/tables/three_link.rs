@@ -6,11 +6,11 @@ use gp::FrontEnd;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
-use crate::evaluation::beside::{Baselines, BesideTrial, DATA_SETS};
-use crate::evaluation::contest::{Contest, Contestant};
-use crate::evaluation::entrant::Entrant;
-use crate::evaluation::exam::{Protocol, TESTED_ON};
+use crate::evaluation::baselines::{Baselines, BaselinesTrial};
+use crate::evaluation::candidate::Candidate;
+use crate::evaluation::comparison::{Comparison, Method};
 use crate::evaluation::gaussians::Gaussians;
+use crate::evaluation::protocol::{Protocol, TESTED_ON};
 use crate::evaluation::recipe::{HELD_OUT, Recipe};
 use crate::measure::{Measure, RowOf};
 use crate::paper::{explanations, paper_table};
@@ -25,13 +25,14 @@ const CASE: &str = "arm";
 
 /// The experiment.
 pub(crate) fn three_link() -> anyhow::Result<Experiment> {
-    let beside = beside(1500);
-    let contest =
-        |measure| {
-            Contest::of(CASE, measure, &beside.contestants())
-                .with(Contestant::PolicyAlign, "policy_align", measure)
-                .with(Contestant::Naive, "naive", measure)
-        };
+    let baselines = baselines(1500);
+    let comparison = |measure| {
+        Comparison::of(CASE, measure, &baselines.methods()).with(Method::PolicyAlign, "policy_align", measure).with(
+            Method::Naive,
+            "naive",
+            measure,
+        )
+    };
     Ok(Experiment {
         id: "three_link",
         section: "4.4",
@@ -40,29 +41,20 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
         remark: "Unit links, starts uniform in [-1, 1]^3 (the axes of Figure 9), δt = 0.5 s, plain Euler, narrow bandwidth. Both learners have Table 1's \
                  regression (3 passes). The printed errors of the naive baseline are compared with \
                  its errors on held-out samples of all movements, since it discards none.",
-        reservations: &[],
         decisions: "three-link.md",
-        contests_remark: None,
-        another_reading_of: None,
-        contests: [Measure::Nupe, Measure::Ncpe].map(contest).into(),
+        comparisons: [Measure::Nupe, Measure::Ncpe].map(comparison).into(),
         setups: vec![
             printed(arm()?, &Recipe::default())?,
-            Setup {
-                id: "beside".to_owned(),
-                rows: beside.rows(CASE),
-                system: ARM_SYSTEM,
-                data_sets: Some(DATA_SETS),
-                cost: beside.cost(),
-                trial: Box::new(BesideTrial { scene: arm()?, algorithms: vec![PolicyAlign::default()], beside }),
-            },
+            BaselinesTrial::setup(("beside", ARM_SYSTEM), &[CASE], arm()?, vec![PolicyAlign::default()], baselines),
         ],
         paper: paper_table(include_str!("../../paper/three_link.toml"))?,
         explanations: explanations("three_link", include_str!("../../paper/three_link-explained.toml"))?,
+        ..Experiment::default()
     })
 }
 
 /// Who learns beside PolicyAlign and the naive learner.
-pub(crate) fn beside(max_rows: usize) -> Baselines {
+pub(crate) fn baselines(max_rows: usize) -> Baselines {
     Baselines {
         naive: None,
         constraint_consistent: None,
@@ -89,7 +81,7 @@ fn printed(arm: ThreeLinkArm, recipe: &Recipe) -> anyhow::Result<Setup> {
     let rows = [("policy_align", RowOf::Learner), ("naive", RowOf::Baseline)];
     let mut protocol = protocol(recipe);
     // In the order of the rows.
-    protocol.pupils.push(Entrant::other(recipe.naive(3, 1.0))?);
+    protocol.candidates.push(Candidate::other(recipe.naive(3, 1.0))?);
     Ok(Setup {
         id: "three_link".to_owned(),
         rows: rows.map(|(id, of)| Row { id: id.to_owned(), of, tested_on: TESTED_ON }).into(),
@@ -126,7 +118,7 @@ struct ArmTrial {
 impl Trial for ArmTrial {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.arm.record(rng)?;
-        let mut rows = self.protocol.examine(&recordings, rng)?.rows()?;
+        let mut rows = self.protocol.evaluate(&recordings, rng)?.rows()?;
         let leaving = n_leaving_limits(&self.arm.robot, &recordings)?;
         rows[0].insert(Measure::BeyondLimits, 100.0 * leaving as f64 / recordings.len() as f64);
         Ok(rows)

@@ -3,7 +3,7 @@
 use constraints::Unconstrained;
 use demo_gen::{Grasp, GraspStart, Recording};
 use experiments::grasp;
-use experiments::seed::beside;
+use experiments::seed::separate_stream;
 use motion::Policy as _;
 use nalgebra::{DVector, Point3};
 use rand::{Rng, RngExt as _};
@@ -55,7 +55,7 @@ impl AllAround {
 fn all_around(seed: u64) -> anyhow::Result<AllAround> {
     let grasp = grasp()?;
     let DataSet { mut recordings, shown, mut rng } = DataSet::draw(&grasp, seed)?;
-    recordings.extend(from_all_around(&grasp, recordings.len(), &mut beside(&rng))?);
+    recordings.extend(from_all_around(&grasp, recordings.len(), &mut separate_stream(&rng))?);
     let Learnt { policy, .. } = Learnt::from(&recordings, &mut rng)?;
     let free = Unconstrained { dim: policy.dim() };
     let palms = |start: &GraspStart| {

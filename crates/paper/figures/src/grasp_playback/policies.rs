@@ -2,8 +2,8 @@
 
 use align::{Aligned, DirectPolicyLearning, LwprRegressor, PolicyAlign, PotentialPolicy};
 use demo_gen::{Grasp, Recording, demonstrations};
-use experiments::seed::beside;
-use experiments::{HELD_OUT, TestSamples, grasp_beside, grasp_naive, grasp_regressor};
+use experiments::seed::separate_stream;
+use experiments::{HELD_OUT, TestSamples, grasp_baselines, grasp_naive, grasp_regressor};
 use motion::{NegativeGradient, Policy};
 use rand_chacha::ChaCha8Rng;
 
@@ -43,7 +43,7 @@ pub(super) fn policies(
     let Learnt { aligned, test, policy } = Learnt::from(recordings, rng)?;
     let naive = DirectPolicyLearning { cutoff: CUTOFF, ..grasp_naive() };
     let naive = naive.learn_policy(aligned.demonstrations(), &test.of_all, rng)?;
-    let slope = grasp_beside().slope(aligned.demonstrations(), &test.of_all, &mut beside(rng))?;
+    let slope = grasp_baselines().slope(aligned.demonstrations(), &test.of_all, &mut separate_stream(rng))?;
     let expert = NegativeGradient(grasp.scene.potential());
     Ok([Box::new(expert), Box::new(naive), Box::new(policy), Box::new(slope)])
 }

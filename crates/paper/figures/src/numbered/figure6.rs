@@ -1,10 +1,10 @@
 //! Fig. 6: errors on the parabola against the amount of data, and against noise.
 
 use anyhow::Context as _;
-use experiments::{BANDWIDTHS, BESIDE_LEFT, BESIDE_RIGHT, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
+use experiments::{BANDWIDTHS, BASELINES_LEFT, BASELINES_RIGHT, NOISE_PERCENT, RULES, TRAJECTORIES_PERCENT};
 use plot::{Axis, Curve, Curves, Note, Picture};
 
-use crate::errors::{BESIDE, FIRST, SECOND, Series, Style, axis_down_to};
+use crate::errors::{BASELINES, FIRST, SECOND, Series, Style, axis_down_to};
 use crate::{Csv, Drawing, Figure, Sources};
 
 /// In the order of [`BANDWIDTHS`]: how it is drawn, and what its curves are called.
@@ -31,7 +31,7 @@ pub(crate) fn right() -> Figure {
 
 fn draw_left(sources: &Sources) -> anyhow::Result<Drawing> {
     let series = series(sources, "figure6_left", "", &TRAJECTORIES_PERCENT)?;
-    let lines = lines(&series, &beside(sources, "figure6_left", BESIDE_LEFT, &TRAJECTORIES_PERCENT)?);
+    let lines = lines(&series, &baselines(sources, "figure6_left", BASELINES_LEFT, &TRAJECTORIES_PERCENT)?);
     let panel = Curves {
         title: "Learning from fewer trajectories".to_owned(),
         x_label: "Trajectories learnt from (% of 40)".to_owned(),
@@ -49,7 +49,7 @@ fn draw_left(sources: &Sources) -> anyhow::Result<Drawing> {
 fn draw_right(sources: &Sources) -> anyhow::Result<Drawing> {
     let [velocity, displacement] = RULES.map(|(rule, _)| series(sources, "figure6_right", rule, &NOISE_PERCENT));
     let (velocity, displacement) = (velocity?, displacement?);
-    let [fused, smoothed] = BESIDE_RIGHT.map(|case| beside(sources, "figure6_right", case, &NOISE_PERCENT));
+    let [fused, smoothed] = BASELINES_RIGHT.map(|case| baselines(sources, "figure6_right", case, &NOISE_PERCENT));
     let lines = [lines(&velocity, &fused?), lines(&displacement, &smoothed?)];
     let y_axis = axis_down_to(lines.iter().flatten(), RIGHT[0]);
     let beyond = beyond(&displacement);
@@ -88,17 +88,17 @@ fn series<'a>(sources: &'a Sources, id: &str, rule: &str, percent: &[f64]) -> an
 }
 
 /// A curve for each learner beside PolicyAlign that was run.
-fn beside(sources: &Sources, id: &str, case: &str, percent: &[f64]) -> anyhow::Result<Vec<Curve>> {
+fn baselines(sources: &Sources, id: &str, case: &str, percent: &[f64]) -> anyhow::Result<Vec<Curve>> {
     let result = sources.experiment(id).with_context(|| format!("{id} was not run"))?;
     let of = |learner: &str| percent.iter().map(|&x| (x, format!("{case}-{x}/{learner}"))).collect();
-    let curves = BESIDE
+    let curves = BASELINES
         .map(|(error, learner)| Series { result, rows: of(learner), of: "", style: FIRST }.curve(error))
         .into_iter();
     Ok(curves.filter(|curve| !curve.points.is_empty()).collect())
 }
 
 /// The three errors of both bandwidths, those of the second without bands, as they would lie on those of the first; and others.
-fn lines(series: &[Series<'_>], beside: &[Curve]) -> Vec<Curve> {
+fn lines(series: &[Series<'_>], baselines: &[Curve]) -> Vec<Curve> {
     let mut lines = vec![];
     for (series, banded) in series.iter().zip([true, false]) {
         for mut curve in series.curves() {
@@ -106,7 +106,7 @@ fn lines(series: &[Series<'_>], beside: &[Curve]) -> Vec<Curve> {
             lines.push(curve);
         }
     }
-    lines.extend_from_slice(beside);
+    lines.extend_from_slice(baselines);
     lines
 }
 
@@ -150,8 +150,8 @@ mod tests {
     #[test]
     fn no_curve_of_the_committed_run_is_lost_below_its_axis() {
         let sources = records();
-        let beside = beside(&sources, "figure6_left", BESIDE_LEFT, &TRAJECTORIES_PERCENT).unwrap();
-        let lines = lines(&series(&sources, "figure6_left", "", &TRAJECTORIES_PERCENT).unwrap(), &beside);
+        let baselines = baselines(&sources, "figure6_left", BASELINES_LEFT, &TRAJECTORIES_PERCENT).unwrap();
+        let lines = lines(&series(&sources, "figure6_left", "", &TRAJECTORIES_PERCENT).unwrap(), &baselines);
         assert_eq!(lines.len(), 8);
         let Axis::Logarithmic { lowest } = axis_down_to(&lines, LEFT[0]) else { panic!("a linear axis") };
         let within = |point: &(f64, f64, f64)| (lowest..=LEFT[1]).contains(&point.1);

@@ -7,7 +7,7 @@ use super::table::{columns, grid, is_printed, list, scales, sideways};
 use super::verdict_bar::{bar, words};
 use super::{Contents, fitted, readings, reservations, view};
 use crate::compared::Compared;
-use crate::contests::Contests;
+use crate::comparisons::Comparisons;
 use crate::tally::Tally;
 
 /// The section of an experiment.
@@ -30,10 +30,10 @@ pub(super) fn section(compared: &Compared<'_>, contents: &Contents<'_>) -> Marku
             (printed(compared)) (reservations::folded(compared, contents))
             @if experiment.id == view::EXPERIMENT { (view::way(contents.sources)) }
             @for (figure, svg) in &figures { (super::card(figure, svg, experiment.title)) }
-            (fitted::table(compared)) (contests(compared)) (left_open(compared))
+            (fitted::table(compared)) (comparisons(compared)) (left_open(compared))
         } @else {
             @for (figure, svg) in &figures { (super::card(figure, svg, experiment.title)) }
-            (readings::counts(compared)) (contests(compared)) (left_open(compared))
+            (readings::counts(compared)) (comparisons(compared)) (left_open(compared))
             @if compared.rows().next().is_some() { (curves(compared)) }
         }
     }
@@ -79,17 +79,17 @@ fn curves(compared: &Compared<'_>) -> Markup {
 }
 
 /// Learners side by side, where there are several.
-fn contests(compared: &Compared<'_>) -> Markup {
+fn comparisons(compared: &Compared<'_>) -> Markup {
     html! {
-        @if let Some(contests) = Contests::of(compared.experiment, compared.result) {
+        @if let Some(comparisons) = Comparisons::of(compared.experiment, compared.result) {
             h3 { "Learners side by side" }
-            p { (emphasised(&contests.findings())) " " a href={ "#" (super::learners::ID) } { "The learners" } }
-            @if let Some(remark) = contests.remark { p { (emphasised(remark)) } }
+            p { (emphasised(&comparisons.findings())) " " a href={ "#" (super::learners::ID) } { "The learners" } }
+            @if let Some(remark) = comparisons.remark { p { (emphasised(remark)) } }
             (sideways(&format!("Learners side by side: {}", compared.experiment.id), &html! {
-                table .contests {
-                    thead { tr { @for (at, name) in contests.header().iter().enumerate() { th scope="col" .number[at > 1] { (name) } } } }
+                table .comparisons {
+                    thead { tr { @for (at, name) in comparisons.header().iter().enumerate() { th scope="col" .number[at > 1] { (name) } } } }
                     tbody {
-                        @for row in contests.rows() {
+                        @for row in comparisons.rows() {
                             tr {
                                 th scope="row" { (row[0]) }
                                 @for (at, cell) in row[1..].iter().enumerate() { td .number[at > 0] { (emphasised(cell)) } }

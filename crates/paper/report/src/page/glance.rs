@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use experiments::measure::Measure;
 use experiments::verdict::Verdict;
-use experiments::{Contestant, Experiment, n_fitted};
+use experiments::{Experiment, Method, n_fitted};
 use figures::ends_of_reaching;
 use maud::{Markup, html};
 
@@ -13,7 +13,7 @@ use super::fitted;
 use super::verdict_bar::{bar, words};
 use super::{Contents, OVERVIEW, view};
 use crate::compared::{Compared, FEW, Line};
-use crate::contests::Contests;
+use crate::comparisons::Comparisons;
 use crate::tally::Tally;
 
 pub(super) fn opening(contents: &Contents<'_>, all: &[Compared<'_>]) -> Markup {
@@ -84,10 +84,12 @@ fn centimetres(metres: f64) -> String {
 /// The experiments with numbers in the paper in all of whose policies the naive learner errs less than PolicyAlign.
 fn where_naive_errs_less<'a>(all: &[Compared<'a>]) -> impl Iterator<Item = &'a Experiment> {
     let is_ahead = |compared: &&Compared<'_>| {
-        let contests = Contests::of(compared.experiment, compared.result);
-        let of_policies =
-            contests.iter().flat_map(|contests| &contests.lines).filter(|line| line.contest.measure == Measure::Nupe);
-        let ahead: Vec<bool> = of_policies.map(|line| line.is_ahead_of_policy_align(Contestant::Naive)).collect();
+        let comparisons = Comparisons::of(compared.experiment, compared.result);
+        let of_policies = comparisons
+            .iter()
+            .flat_map(|comparisons| &comparisons.lines)
+            .filter(|line| line.comparison.measure == Measure::Nupe);
+        let ahead: Vec<bool> = of_policies.map(|line| line.is_ahead_of_policy_align(Method::Naive)).collect();
         !ahead.is_empty() && ahead.into_iter().all(|ahead| ahead)
     };
     all.iter().filter(|compared| compared.is_printed()).filter(is_ahead).map(|compared| compared.experiment)

@@ -1,12 +1,12 @@
 //! The glossary: learners, errors, and names of rows and settings.
 
-use experiments::Contestant;
+use experiments::Method;
 use experiments::measure::Measure;
 use figures::color_of;
 use maud::{Markup, html};
 use page::{Part, emphasised};
 
-use crate::contests::CAUTION;
+use crate::comparisons::CAUTION;
 use crate::legend::{MEASURES, TERMS, names};
 
 /// Its address within the page.
@@ -18,7 +18,7 @@ pub(super) fn part() -> Part {
     let body = html! {
         h2 { (title) }
         dl .measures {
-            @for who in Contestant::ALL { div { dt { (swatch(who)) (who.label()) } dd { (who.description()) } } }
+            @for who in Method::ALL { div { dt { (swatch(who)) (who.label()) } dd { (who.description()) } } }
         }
         p { (emphasised(CAUTION)) }
         h3 { "Errors" }
@@ -36,6 +36,6 @@ pub(super) fn part() -> Part {
 }
 
 /// Its colour in the figures, where it has one.
-fn swatch(who: Contestant) -> Markup {
+fn swatch(who: Method) -> Markup {
     html! { @if let Some(color) = color_of(who) { span .swatch style={ "background:" (color) } {} } }
 }

@@ -4,7 +4,7 @@ use anyhow::Context as _;
 use experiments::{Distance, TENTHS};
 use plot::{Curve, Curves};
 
-use crate::errors::{BESIDE, FIRST, Series, axis_down_to};
+use crate::errors::{BASELINES, FIRST, Series, axis_down_to};
 use crate::{Csv, Sources};
 
 /// Pixels, and of them for the names of curves.
@@ -30,21 +30,21 @@ pub(super) fn panels(sources: &Sources) -> anyhow::Result<Panels> {
         style: FIRST,
     };
     let [along, around] = Distance::BOTH.map(series);
-    let (error, learner) = BESIDE[0];
-    let beside = |distance: Distance| {
+    let (error, learner) = BASELINES[0];
+    let baselines = |distance: Distance| {
         let rows = TENTHS.map(|tenths| (f64::from(tenths) / 10.0, format!("{}/{learner}", distance.row(tenths))));
         Series { result, rows: rows.collect(), of: "", style: FIRST }.curve(error)
     };
-    let [beside_along, beside_around] = Distance::BOTH.map(beside);
+    let [baselines_along, baselines_around] = Distance::BOTH.map(baselines);
     Ok(Panels {
-        along: panel("(d) Samples within d of the goal along the line", "d (rad)", &along, beside_along),
-        around: panel("(e) Samples within r of the line", "r (rad)", &around, beside_around),
+        along: panel("(d) Samples within d of the goal along the line", "d (rad)", &along, baselines_along),
+        around: panel("(e) Samples within r of the line", "r (rad)", &around, baselines_around),
         tables: vec![along.table("d", "d"), around.table("r", "r")],
     })
 }
 
-fn panel(title: &str, x_label: &str, series: &Series<'_>, beside: Curve) -> Curves {
-    let lines: Vec<Curve> = series.curves().chain((!beside.points.is_empty()).then_some(beside)).collect();
+fn panel(title: &str, x_label: &str, series: &Series<'_>, baselines: Curve) -> Curves {
+    let lines: Vec<Curve> = series.curves().chain((!baselines.points.is_empty()).then_some(baselines)).collect();
     Curves {
         title: title.to_owned(),
         x_label: x_label.to_owned(),

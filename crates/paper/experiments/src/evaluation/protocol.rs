@@ -1,4 +1,4 @@
-//! An exam: every learner gets the same recordings and the same samples held out of them, and is judged by the same truth.
+//! An evaluation: every candidate gets the same recordings and the same samples held out of them, and is judged by the same truth.
 
 use std::collections::BTreeMap;
 
@@ -10,12 +10,12 @@ use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
 use crate::Measures;
-use crate::evaluation::entrant::Entrant;
+use crate::evaluation::candidate::Candidate;
 use crate::evaluation::judge::Judge;
 use crate::evaluation::test_samples::TestSamples;
 use crate::measure::Measure;
 
-/// What an exam tests on.
+/// What an evaluation tests on.
 pub(crate) const TESTED_ON: &str =
     "held-out samples of the movements that alignment keeps; measures named _all: of all movements";
 
@@ -37,18 +37,19 @@ pub(crate) fn errors(judge: &Judge<'_>, learnt: &dyn LearntPolicy) -> anyhow::Re
     Ok(errors)
 }
 
-/// Who sits an exam, and of how many samples.
+/// Who is evaluated, and on what share of the samples.
 #[derive(Serialize)]
 pub(crate) struct Protocol {
     pub(crate) algorithm: PolicyAlign,
-    pub(crate) pupils: Vec<Entrant>,
+    #[serde(rename = "pupils")]
+    pub(crate) candidates: Vec<Candidate>,
     /// Share of the samples that is held out.
     pub(crate) held_out: f64,
 }
 
 impl Protocol {
     /// Aligns the recordings, draws what is held out, and lets each learner learn.
-    pub(crate) fn examine<'a>(
+    pub(crate) fn evaluate<'a>(
         &self,
         recordings: &'a [Recording],
         rng: &mut ChaCha8Rng,
@@ -57,8 +58,11 @@ impl Protocol {
         let test = TestSamples::draw(&aligned, self.held_out, rng)?;
         let judge = Judge::new(recordings, &test.of_kept);
         let judge_of_all = Judge::new(recordings, &test.of_all);
-        let learnt =
-            self.pupils.iter().map(|pupil| pupil.learn(&aligned, &test.of_all, rng)).collect::<Result<_, _>>()?;
+        let learnt = self
+            .candidates
+            .iter()
+            .map(|candidate| candidate.learn(&aligned, &test.of_all, rng))
+            .collect::<Result<_, _>>()?;
         Ok(Evaluation { aligned, judge, judge_of_all, learnt })
     }
 }
@@ -131,13 +135,13 @@ mod tests {
     use super::*;
     use crate::seed::generator;
 
-    fn pupils() -> Vec<Entrant> {
+    fn candidates() -> Vec<Candidate> {
         let slope = || SlopeGp { max_rows: 60, hyper_rows: 40, ..SlopeGp::default() };
         vec![
-            Entrant::PolicyAlign(LwprRegressor { passes: 2, ..LwprRegressor::default() }),
-            Entrant::other(DirectPolicyLearning::default()).unwrap(),
-            Entrant::other(SlopeLearner { gp: slope(), ..SlopeLearner::default() }).unwrap(),
-            Entrant::other(AutoGp { slope: slope(), ..AutoGp::default() }).unwrap(),
+            Candidate::PolicyAlign(LwprRegressor { passes: 2, ..LwprRegressor::default() }),
+            Candidate::other(DirectPolicyLearning::default()).unwrap(),
+            Candidate::other(SlopeLearner { gp: slope(), ..SlopeLearner::default() }).unwrap(),
+            Candidate::other(AutoGp { slope: slope(), ..AutoGp::default() }).unwrap(),
         ]
     }
 
@@ -156,12 +160,12 @@ mod tests {
             let swap = |(recording, other): (&Recording, Recording)| Recording { truth: other.truth, ..recording.clone() };
             let forged: Vec<Recording> = recordings.iter().zip(others).map(swap).collect();
             let algorithm = PolicyAlign { bandwidth: Bandwidth::Medium, ..PolicyAlign::default() };
-            let protocol = Protocol { algorithm, pupils: pupils(), held_out };
-            let [exam, of_forged] = [&recordings, &forged]
-                .map(|recordings| protocol.examine(recordings, &mut generator(seed, 0, 1)).unwrap());
-            prop_assert_eq!(&exam.aligned, &of_forged.aligned);
-            prop_assert_eq!(exam.judge.samples(), of_forged.judge.samples());
-            for (ours, theirs) in exam.learnt().zip(of_forged.learnt()) {
+            let protocol = Protocol { algorithm, candidates: candidates(), held_out };
+            let [evaluation, of_forged] = [&recordings, &forged]
+                .map(|recordings| protocol.evaluate(recordings, &mut generator(seed, 0, 1)).unwrap());
+            prop_assert_eq!(&evaluation.aligned, &of_forged.aligned);
+            prop_assert_eq!(evaluation.judge.samples(), of_forged.judge.samples());
+            for (ours, theirs) in evaluation.learnt().zip(of_forged.learnt()) {
                 prop_assert_eq!((ours.kept(), ours.warnings()), (theirs.kept(), theirs.warnings()));
                 for state in recordings.iter().flat_map(|recording| recording.observed.states().column_iter()) {
                     let bits = |learnt: &dyn LearntPolicy| learnt.action(state).map(f64::to_bits);
@@ -169,7 +173,7 @@ mod tests {
                     prop_assert_eq!(ours.support(state).to_bits(), theirs.support(state).to_bits());
                 }
             }
-            for (ours, theirs) in exam.rows().unwrap().iter().zip(of_forged.rows().unwrap()) {
+            for (ours, theirs) in evaluation.rows().unwrap().iter().zip(of_forged.rows().unwrap()) {
                 prop_assert!(ours[&Measure::Nupe] != theirs[&Measure::Nupe], "a mark that does not know the truth");
             }
         }

@@ -1,10 +1,10 @@
-//! Learners held against each other, as a table shows them: a line for each error, a column for each learner.
+//! Learners compared, as a table shows them: a line for each error, a column for each learner.
 
 use crate::measure::Measure;
 
 /// Whom such tables have a column for, in its order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Contestant {
+pub enum Method {
     /// LWPR on the velocities.
     Naive,
     /// The paper's method.
@@ -21,66 +21,66 @@ pub enum Contestant {
     AutoGp,
 }
 
-impl Contestant {
+impl Method {
     /// In the order of the columns.
-    pub const ALL: [Contestant; 7] = [
-        Contestant::Naive,
-        Contestant::PolicyAlign,
-        Contestant::ConstraintConsistent,
-        Contestant::SlopeGp,
-        Contestant::SlopeGpNoTrend,
-        Contestant::DirectGp,
-        Contestant::AutoGp,
+    pub const ALL: [Method; 7] = [
+        Method::Naive,
+        Method::PolicyAlign,
+        Method::ConstraintConsistent,
+        Method::SlopeGp,
+        Method::SlopeGpNoTrend,
+        Method::DirectGp,
+        Method::AutoGp,
     ];
 
     /// Its name in rows.
     pub fn id(self) -> &'static str {
         match self {
-            Contestant::Naive => "naive",
-            Contestant::PolicyAlign => "policy_align",
-            Contestant::ConstraintConsistent => "radial_basis",
-            Contestant::SlopeGp => "slope_gp",
-            Contestant::SlopeGpNoTrend => "slope_gp_no_trend",
-            Contestant::DirectGp => "direct_gp",
-            Contestant::AutoGp => "reading",
+            Method::Naive => "naive",
+            Method::PolicyAlign => "policy_align",
+            Method::ConstraintConsistent => "radial_basis",
+            Method::SlopeGp => "slope_gp",
+            Method::SlopeGpNoTrend => "slope_gp_no_trend",
+            Method::DirectGp => "direct_gp",
+            Method::AutoGp => "reading",
         }
     }
 
     /// Its name for readers.
     pub fn label(self) -> &'static str {
         match self {
-            Contestant::Naive => "naive",
-            Contestant::PolicyAlign => "PolicyAlign",
-            Contestant::ConstraintConsistent => "radial basis",
-            Contestant::SlopeGp => "slope GP",
-            Contestant::SlopeGpNoTrend => "slope GP, no trend",
-            Contestant::DirectGp => "direct GP",
-            Contestant::AutoGp => "automatic",
+            Method::Naive => "naive",
+            Method::PolicyAlign => "PolicyAlign",
+            Method::ConstraintConsistent => "radial basis",
+            Method::SlopeGp => "slope GP",
+            Method::SlopeGpNoTrend => "slope GP, no trend",
+            Method::DirectGp => "direct GP",
+            Method::AutoGp => "automatic",
         }
     }
 }
 
-impl Contestant {
+impl Method {
     /// What it learns from and how, in a line.
     pub fn description(self) -> &'static str {
         match self {
-            Contestant::Naive => {
+            Method::Naive => {
                 "direct policy learning, the paper's baseline: LWPR (locally weighted projection regression) on the velocities as they were seen, which averages what constraints let through"
             }
-            Contestant::PolicyAlign => {
+            Method::PolicyAlign => {
                 "the paper's method: potentials are integrated along each trajectory, aligned, and learnt by LWPR; the policy is their negative gradient"
             }
-            Contestant::ConstraintConsistent => {
+            Method::ConstraintConsistent => {
                 "a later method of Howard and others: a policy of radial basis functions whose part along each observed movement is as long as that movement"
             }
-            Contestant::SlopeGp => {
+            Method::SlopeGp => {
                 "a Gaussian process on the potential: what it observes at every sample is the length of the policy along the movement; nothing is aligned or discarded, and it has error bars"
             }
-            Contestant::SlopeGpNoTrend => {
+            Method::SlopeGpNoTrend => {
                 "the same without quadratic potentials among the forms it chooses from: what is left where they do not contain the truth"
             }
-            Contestant::DirectGp => "a Gaussian process on the velocities as they were seen: a stronger direct learner",
-            Contestant::AutoGp => {
+            Method::DirectGp => "a Gaussian process on the velocities as they were seen: a stronger direct learner",
+            Method::AutoGp => {
                 "the slope GP or the direct GP, whichever fits how the data are read (free or constrained)"
             }
         }
@@ -88,7 +88,7 @@ impl Contestant {
 }
 
 /// One line of such a table: an error of each learner on the same data sets.
-pub struct Contest {
+pub struct Comparison {
     /// What was learnt from.
     pub case: String,
     /// The error.
@@ -100,29 +100,29 @@ pub struct Contest {
 /// The cell of one learner.
 pub struct Entry {
     /// Who.
-    pub contestant: Contestant,
+    pub method: Method,
     /// In which row.
     pub row: String,
     /// Which error of the row.
     pub measure: Measure,
 }
 
-impl Contest {
+impl Comparison {
     /// Of learners whose rows are named `case/learner`.
-    pub(crate) fn of(case: &str, measure: Measure, contestants: &[Contestant]) -> Contest {
-        let entry = |&contestant: &Contestant| Entry { contestant, row: row_id(case, contestant), measure };
-        Contest { case: case.to_owned(), measure, entries: contestants.iter().map(entry).collect() }
+    pub(crate) fn of(case: &str, measure: Measure, methods: &[Method]) -> Comparison {
+        let entry = |&method: &Method| Entry { method, row: row_id(case, method), measure };
+        Comparison { case: case.to_owned(), measure, entries: methods.iter().map(entry).collect() }
     }
 
     /// And one whose error stands elsewhere.
-    pub(crate) fn with(mut self, contestant: Contestant, row: &str, measure: Measure) -> Contest {
-        self.entries.push(Entry { contestant, row: row.to_owned(), measure });
-        self.entries.sort_by_key(|entry| entry.contestant);
+    pub(crate) fn with(mut self, method: Method, row: &str, measure: Measure) -> Comparison {
+        self.entries.push(Entry { method, row: row.to_owned(), measure });
+        self.entries.sort_by_key(|entry| entry.method);
         self
     }
 }
 
 /// The row of a learner in a case.
-pub(crate) fn row_id(case: &str, contestant: Contestant) -> String {
-    format!("{case}/{}", contestant.id())
+pub(crate) fn row_id(case: &str, method: Method) -> String {
+    format!("{case}/{}", method.id())
 }

@@ -7,7 +7,7 @@ use crate::{DemoGenError, Sinusoidal};
 
 /// What kind of policy is shown; each data set draws its own.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub enum Shown {
+pub enum PolicyKind {
     /// The paper's sinusoidal potential on the plane, the same in every data set.
     Sinusoidal,
     /// Three wells ([`Wells::draw`]).
@@ -48,24 +48,24 @@ pub(super) struct Scene {
     pub(super) half_width: f64,
 }
 
-impl Shown {
+impl PolicyKind {
     /// Dimension n of the state.
     pub fn dim(self) -> usize {
         match self {
-            Shown::Wells { dim } | Shown::Planes { dim, .. } | Shown::Swirl { dim } => dim,
-            Shown::Sinusoidal | Shown::LimitCycle | Shown::Handwriting => 2,
+            PolicyKind::Wells { dim } | PolicyKind::Planes { dim, .. } | PolicyKind::Swirl { dim } => dim,
+            PolicyKind::Sinusoidal | PolicyKind::LimitCycle | PolicyKind::Handwriting => 2,
         }
     }
 
     /// Whether its policy descends a potential.
     pub fn has_potential(self) -> bool {
-        matches!(self, Shown::Sinusoidal | Shown::Wells { .. } | Shown::Planes { .. })
+        matches!(self, PolicyKind::Sinusoidal | PolicyKind::Wells { .. } | PolicyKind::Planes { .. })
     }
 
     pub(super) fn check(self) -> Result<(), DemoGenError> {
-        let least = if matches!(self, Shown::Swirl { .. }) { 2 } else { 1 };
+        let least = if matches!(self, PolicyKind::Swirl { .. }) { 2 } else { 1 };
         match self {
-            Shown::Planes { edge, .. } if !(edge.is_finite() && edge >= 0.0) => Err(DemoGenError::Edge { edge }),
+            PolicyKind::Planes { edge, .. } if !(edge.is_finite() && edge >= 0.0) => Err(DemoGenError::Edge { edge }),
             _ if self.dim() < least => Err(DemoGenError::TooFewDimensions { found: self.dim(), least }),
             _ => Ok(()),
         }
@@ -77,12 +77,12 @@ impl Shown {
             |potential| Scene { field: Field::OfPotential(potential), middle: middle.clone(), half_width: 2.0 };
         let policy = |policy, half_width| Scene { field: Field::OfPolicy(policy), middle: middle.clone(), half_width };
         match self {
-            Shown::Sinusoidal => potential(Box::new(Sinusoidal { amplitude: 0.1 })),
-            Shown::Wells { dim } => potential(Box::new(Wells::draw(dim, rng))),
-            Shown::Planes { dim, edge } => potential(Box::new(Planes::draw(dim, edge, rng))),
-            Shown::Swirl { dim } => policy(Box::new(Swirl::draw(dim, rng)), 2.0),
-            Shown::LimitCycle => policy(Box::new(LimitCycle { speed: 0.15 }), 1.5),
-            Shown::Handwriting => {
+            PolicyKind::Sinusoidal => potential(Box::new(Sinusoidal { amplitude: 0.1 })),
+            PolicyKind::Wells { dim } => potential(Box::new(Wells::draw(dim, rng))),
+            PolicyKind::Planes { dim, edge } => potential(Box::new(Planes::draw(dim, edge, rng))),
+            PolicyKind::Swirl { dim } => policy(Box::new(Swirl::draw(dim, rng)), 2.0),
+            PolicyKind::LimitCycle => policy(Box::new(LimitCycle { speed: 0.15 }), 1.5),
+            PolicyKind::Handwriting => {
                 let line = Handwriting::draw(rng);
                 let middle = line.start().iter().copied().collect();
                 Scene { field: Field::OfPolicy(Box::new(line)), middle, half_width: 0.25 }

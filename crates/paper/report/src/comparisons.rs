@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use experiments::measure::Measure;
 use experiments::results::{Cell, ExperimentResult};
 use experiments::variants::two_digits;
-use experiments::{Contest, Contestant, Experiment};
+use experiments::{Comparison, Experiment, Method};
 use page::markdown_table;
 
 use super::compared::NOTHING;
@@ -17,39 +17,39 @@ const FEW: usize = 5;
 /// A ratio below this is shown as "0": it says nothing but that rounding is left.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// The contests of an experiment, as far as they were run.
-pub(crate) struct Contests<'a> {
+/// The comparisons of an experiment, as far as they were run.
+pub(crate) struct Comparisons<'a> {
     /// What has to be said of them.
     pub(crate) remark: Option<&'static str>,
     /// Who has a column.
-    pub(crate) contestants: Vec<Contestant>,
-    pub(crate) lines: Vec<ContestLine<'a>>,
+    pub(crate) methods: Vec<Method>,
+    pub(crate) lines: Vec<ComparisonLine<'a>>,
 }
 
 /// One error of several learners, on the data sets that all of them have.
-pub(crate) struct ContestLine<'a> {
-    pub(crate) contest: &'a Contest,
+pub(crate) struct ComparisonLine<'a> {
+    pub(crate) comparison: &'a Comparison,
     pub(crate) n: usize,
-    cells: Vec<(Contestant, &'a Cell)>,
+    cells: Vec<(Method, &'a Cell)>,
 }
 
-impl<'a> Contests<'a> {
+impl<'a> Comparisons<'a> {
     /// Nothing where an experiment has none, or none was run.
-    pub(crate) fn of(experiment: &'a Experiment, result: &'a ExperimentResult) -> Option<Contests<'a>> {
+    pub(crate) fn of(experiment: &'a Experiment, result: &'a ExperimentResult) -> Option<Comparisons<'a>> {
         let cell = |row: &str, measure: Measure| {
             result.rows.iter().find(|other| other.id == row).and_then(|row| row.measures.get(&measure))
         };
-        let line = |contest: &'a Contest| {
-            let found = contest.entries.iter();
+        let line = |comparison: &'a Comparison| {
+            let found = comparison.entries.iter();
             let cells: Vec<_> =
-                found.filter_map(|entry| Some((entry.contestant, cell(&entry.row, entry.measure)?))).collect();
+                found.filter_map(|entry| Some((entry.method, cell(&entry.row, entry.measure)?))).collect();
             let n = cells.iter().map(|(_, cell)| cell.values.len()).min()?;
-            cells.iter().any(|(who, _)| *who == Contestant::SlopeGp).then_some(ContestLine { contest, n, cells })
+            cells.iter().any(|(who, _)| *who == Method::SlopeGp).then_some(ComparisonLine { comparison, n, cells })
         };
-        let lines: Vec<_> = experiment.contests.iter().filter_map(line).collect();
-        let takes_part = |who: &Contestant| lines.iter().any(|line| line.mean(*who).is_some());
-        let contestants: Vec<_> = Contestant::ALL.into_iter().filter(takes_part).collect();
-        (!lines.is_empty()).then_some(Contests { remark: experiment.contests_remark, contestants, lines })
+        let lines: Vec<_> = experiment.comparisons.iter().filter_map(line).collect();
+        let takes_part = |who: &Method| lines.iter().any(|line| line.mean(*who).is_some());
+        let methods: Vec<_> = Method::ALL.into_iter().filter(takes_part).collect();
+        (!lines.is_empty()).then_some(Comparisons { remark: experiment.comparisons_remark, methods, lines })
     }
 
     /// As a table.
@@ -59,36 +59,36 @@ impl<'a> Contests<'a> {
 
     /// What stands over the columns.
     pub(crate) fn header(&self) -> Vec<&'static str> {
-        let learners = self.contestants.iter().map(|who| who.label());
+        let learners = self.methods.iter().map(|who| who.label());
         let ratio = self.has_ratio().then_some("slope GP / PolicyAlign");
         ["learnt from", "error of", "n"].into_iter().chain(learners).chain(ratio).collect()
     }
 
-    /// One line a contest: its case, its error, its data sets, each learner's mean, the least emphasised, and a ratio of means.
+    /// One line a comparison: its case, its error, its data sets, each learner's mean, the least emphasised, and a ratio of means.
     pub(crate) fn rows(&self) -> Vec<Vec<String>> {
         self.lines.iter().map(|line| self.row(line)).collect()
     }
 
-    fn row(&self, line: &ContestLine<'_>) -> Vec<String> {
-        let measure = line.contest.measure;
-        let least = self.contestants.iter().filter_map(|who| line.mean(*who)).fold(f64::INFINITY, f64::min);
-        let mean = |who: &Contestant| match line.mean(*who) {
+    fn row(&self, line: &ComparisonLine<'_>) -> Vec<String> {
+        let measure = line.comparison.measure;
+        let least = self.methods.iter().filter_map(|who| line.mean(*who)).fold(f64::INFINITY, f64::min);
+        let mean = |who: &Method| match line.mean(*who) {
             None => NOTHING.to_owned(),
             Some(mean) if mean == least => format!("**{}**", shown_mean(mean)),
             Some(mean) => shown_mean(mean),
         };
         let ratio = self.has_ratio().then(|| line.ratio().map_or(NOTHING.to_owned(), shown_ratio));
-        let first = [line.contest.case.clone(), measure.label().to_owned(), line.n.to_string()];
-        first.into_iter().chain(self.contestants.iter().map(mean)).chain(ratio).collect()
+        let first = [line.comparison.case.clone(), measure.label().to_owned(), line.n.to_string()];
+        first.into_iter().chain(self.methods.iter().map(mean)).chain(ratio).collect()
     }
 
     /// Who errs least, and where PolicyAlign errs more than another method of its time.
     pub(crate) fn findings(&self) -> String {
-        let mut least: BTreeMap<Contestant, usize> = BTreeMap::new();
+        let mut least: BTreeMap<Method, usize> = BTreeMap::new();
         for line in &self.lines {
             *least.entry(line.least()).or_default() += 1;
         }
-        let mut ranked: Vec<(Contestant, usize)> = least.into_iter().collect();
+        let mut ranked: Vec<(Method, usize)> = least.into_iter().collect();
         ranked.sort_by_key(|&(_, times)| std::cmp::Reverse(times));
         let mut text = String::new();
         for (at, (who, times)) in ranked.iter().enumerate() {
@@ -99,11 +99,9 @@ impl<'a> Contests<'a> {
             };
         }
         text.push('.');
-        for (who, name) in
-            [(Contestant::Naive, "The naive learner"), (Contestant::ConstraintConsistent, "Radial basis")]
-        {
+        for (who, name) in [(Method::Naive, "The naive learner"), (Method::ConstraintConsistent, "Radial basis")] {
             let ahead: Vec<String> =
-                self.lines.iter().filter(|line| line.is_ahead_of_policy_align(who)).map(ContestLine::name).collect();
+                self.lines.iter().filter(|line| line.is_ahead_of_policy_align(who)).map(ComparisonLine::name).collect();
             let named = if ahead.len() <= FEW { format!(": {}", ahead.join(", ")) } else { String::new() };
             if !ahead.is_empty() {
                 let _ = write!(text, " {name} errs less than PolicyAlign in {}{named}.", ahead.len());
@@ -113,39 +111,38 @@ impl<'a> Contests<'a> {
     }
 
     fn has_ratio(&self) -> bool {
-        self.contestants.contains(&Contestant::PolicyAlign)
+        self.methods.contains(&Method::PolicyAlign)
     }
 }
 
-impl ContestLine<'_> {
+impl ComparisonLine<'_> {
     /// The mean over the data sets that all have.
-    pub(crate) fn mean(&self, who: Contestant) -> Option<f64> {
+    pub(crate) fn mean(&self, who: Method) -> Option<f64> {
         let (_, cell) = self.cells.iter().find(|(other, _)| *other == who)?;
         let values: Vec<f64> = cell.values[..self.n].iter().flatten().copied().collect();
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     }
 
     /// Whose mean is the smallest; "automatic" and "no trend" are no learners of their own.
-    pub(crate) fn least(&self) -> Contestant {
-        let means =
-            self.cells.iter().filter(|(who, _)| !matches!(who, Contestant::AutoGp | Contestant::SlopeGpNoTrend));
+    pub(crate) fn least(&self) -> Method {
+        let means = self.cells.iter().filter(|(who, _)| !matches!(who, Method::AutoGp | Method::SlopeGpNoTrend));
         let means = means.filter_map(|(who, _)| Some((*who, self.mean(*who)?)));
         let least = means.min_by(|(_, a), (_, b)| a.total_cmp(b));
-        least.map_or(Contestant::SlopeGp, |(who, _)| who)
+        least.map_or(Method::SlopeGp, |(who, _)| who)
     }
 
-    pub(crate) fn is_ahead_of_policy_align(&self, who: Contestant) -> bool {
-        self.mean(who).zip(self.mean(Contestant::PolicyAlign)).is_some_and(|(who, policy_align)| who < policy_align)
+    pub(crate) fn is_ahead_of_policy_align(&self, who: Method) -> bool {
+        self.mean(who).zip(self.mean(Method::PolicyAlign)).is_some_and(|(who, policy_align)| who < policy_align)
     }
 
     /// Its case, and of which error.
     fn name(&self) -> String {
-        format!("`{}` {}", self.contest.case, self.contest.measure.label())
+        format!("`{}` {}", self.comparison.case, self.comparison.measure.label())
     }
 
     /// The slope GP's mean over PolicyAlign's.
     fn ratio(&self) -> Option<f64> {
-        Some(self.mean(Contestant::SlopeGp)? / self.mean(Contestant::PolicyAlign)?)
+        Some(self.mean(Method::SlopeGp)? / self.mean(Method::PolicyAlign)?)
     }
 }
 
@@ -203,13 +200,13 @@ mod tests {
             row(&format!("{case}/naive"), &[None, Some(0.5)]),
         ];
         let result = ExperimentResult { id: "table1".to_owned(), section: "4.1".to_owned(), rows };
-        let contests = Contests::of(table1, &result).unwrap();
-        assert_eq!(contests.contestants, [Contestant::Naive, Contestant::PolicyAlign, Contestant::SlopeGp]);
+        let comparisons = Comparisons::of(table1, &result).unwrap();
+        assert_eq!(comparisons.methods, [Method::Naive, Method::PolicyAlign, Method::SlopeGp]);
         let findings = "Of 1 comparisons, slope GP has the least error in 1.";
-        assert_eq!(contests.findings(), findings);
+        assert_eq!(comparisons.findings(), findings);
         let expected = [case, "nUPE", "2", "0.50", "0.20", "**0.0020**", "0.01"];
-        assert_eq!(contests.rows(), [expected.map(str::to_owned).to_vec()]);
-        assert_eq!(contests.header().len(), expected.len());
+        assert_eq!(comparisons.rows(), [expected.map(str::to_owned).to_vec()]);
+        assert_eq!(comparisons.header().len(), expected.len());
     }
 
     #[test]
@@ -218,7 +215,7 @@ mod tests {
         let table1 = experiments.iter().find(|experiment| experiment.id == "table1").unwrap();
         let rows = vec![row("parabola-40x40-narrow", &[Some(0.1)])];
         let result = ExperimentResult { id: "table1".to_owned(), section: "4.1".to_owned(), rows };
-        assert!(Contests::of(table1, &result).is_none());
+        assert!(Comparisons::of(table1, &result).is_none());
     }
 
     #[test]

@@ -1,29 +1,29 @@
-//! The learners beside the paper's: the same recordings, the same held-out samples, the same judge.
+//! Baselines, compared with the paper's learner: the same recordings, the same held-out samples, the same judge.
 
 use std::collections::BTreeMap;
 
 use align::{Aligned, DirectPolicyLearning, PolicyAlign};
-use demo_gen::{Grasp, HandInPlane, Recording, ThreeLinkArm, ToySystem, demonstrations};
+use demo_gen::{HandInPlane, Recording, ThreeLinkArm, ToySystem, demonstrations};
 use gp::{AutoFit, SlopeFit, Trend};
 use motion::{Demonstrations, Learner as _, LearntPolicy, SampleIndex};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
+use crate::evaluation::comparison::{Comparison, Method, row_id};
 use crate::evaluation::constraint_consistent::{ConstraintConsistent, RadialBasis};
-use crate::evaluation::contest::{Contest, Contestant, row_id};
-use crate::evaluation::exam::{TESTED_ON, errors};
 use crate::evaluation::fresh;
 use crate::evaluation::gaussians::{Gaussians, own_expectations, reading_of};
 use crate::evaluation::judge::Judge;
+use crate::evaluation::protocol::{TESTED_ON, errors};
 use crate::evaluation::test_samples::TestSamples;
 use crate::measure::{Measure, RowOf};
-use crate::seed::beside;
-use crate::{Measures, Row, Trial};
+use crate::seed::separate_stream;
+use crate::{Measures, Row, Setup, Trial};
 
 /// Data sets that they learn from: errors that are smaller by orders of magnitude need no hundred.
 pub const DATA_SETS: u32 = 5;
 
-/// Who learns beside.
+/// Who is compared with the paper's learner.
 #[derive(Serialize)]
 pub struct Baselines {
     /// The naive learner, where the paper's table has none.
@@ -36,7 +36,7 @@ pub struct Baselines {
 }
 
 /// What they learnt, and those who judge it.
-pub(crate) struct Sat<'a> {
+pub(crate) struct TrainedBaselines<'a> {
     /// For each alignment: on samples of the movements that it keeps, and of all.
     judges: Vec<[Judge<'a>; 2]>,
     naive: Option<Box<dyn LearntPolicy>>,
@@ -53,22 +53,34 @@ impl Baselines {
     }
 
     /// In the order of the rows.
-    pub(crate) fn contestants(&self) -> Vec<Contestant> {
-        let naive = self.naive.as_ref().map(|_| Contestant::Naive);
-        let radial_basis = self.constraint_consistent.as_ref().map(|_| Contestant::ConstraintConsistent);
+    pub(crate) fn methods(&self) -> Vec<Method> {
+        let naive = self.naive.as_ref().map(|_| Method::Naive);
+        let radial_basis = self.constraint_consistent.as_ref().map(|_| Method::ConstraintConsistent);
         let baselines = naive.into_iter().chain(radial_basis);
-        baselines.chain([Contestant::SlopeGp, Contestant::SlopeGpNoTrend, Contestant::DirectGp]).collect()
+        baselines.chain([Method::SlopeGp, Method::SlopeGpNoTrend, Method::DirectGp]).collect()
     }
 
     /// The rows of a case.
     pub(crate) fn rows(&self, case: &str) -> Vec<Row> {
-        let row = |contestant| Row { id: row_id(case, contestant), of: RowOf::Contestant, tested_on: TESTED_ON };
-        self.contestants().into_iter().map(row).collect()
+        let row = |method| Row { id: row_id(case, method), of: RowOf::Additional, tested_on: TESTED_ON };
+        self.methods().into_iter().map(row).collect()
     }
 
     /// A line of the table: those of a case and PolicyAlign, of which the case is named.
-    pub(crate) fn contest(&self, case: &str, measure: Measure) -> Contest {
-        Contest::of(case, measure, &self.contestants()).with(Contestant::PolicyAlign, case, measure)
+    pub(crate) fn comparison(&self, case: &str, measure: Measure) -> Comparison {
+        Comparison::of(case, measure, &self.methods()).with(Method::PolicyAlign, case, measure)
+    }
+
+    /// The setup of this name and system in which a trial of them measures the rows of these cases.
+    pub(crate) fn setup<T: Trial + 'static>(
+        self,
+        (id, system): (&str, u32),
+        cases: &[impl AsRef<str>],
+        trial: impl FnOnce(Baselines) -> T,
+    ) -> Setup {
+        let rows = cases.iter().flat_map(|case| self.rows(case.as_ref())).collect();
+        let (id, cost) = (id.to_owned(), self.cost());
+        Setup { id, rows, system, data_sets: Some(DATA_SETS), cost, trial: Box::new(trial(self)) }
     }
 
     /// The slope GP alone.
@@ -86,27 +98,27 @@ impl Baselines {
 
     /// Lets them learn from all samples but those held out for any of the alignments. The generator stands where it does
     /// when alignment draws its test samples, and is left there.
-    pub(crate) fn sit<'a>(
+    pub(crate) fn train<'a>(
         &self,
         recordings: &'a [Recording],
         algorithms: &[PolicyAlign],
         rng: &ChaCha8Rng,
-    ) -> anyhow::Result<Sat<'a>> {
+    ) -> anyhow::Result<TrainedBaselines<'a>> {
         let demonstrations = demonstrations(recordings)?;
-        let sit = |algorithm: &PolicyAlign| {
+        let align = |algorithm: &PolicyAlign| {
             let aligned = algorithm.align(&demonstrations)?;
             let test = TestSamples::draw(&aligned, self.held_out, &mut rng.clone())?;
             Ok((aligned, test))
         };
-        let sat: Vec<(Aligned, TestSamples)> = algorithms.iter().map(sit).collect::<anyhow::Result<_>>()?;
-        let held_out: Vec<SampleIndex> = sat.iter().flat_map(|(_, test)| &test.of_all).copied().collect();
-        let own = || beside(rng);
+        let trained: Vec<(Aligned, TestSamples)> = algorithms.iter().map(align).collect::<anyhow::Result<_>>()?;
+        let held_out: Vec<SampleIndex> = trained.iter().flat_map(|(_, test)| &test.of_all).copied().collect();
+        let own = || separate_stream(rng);
         let learn = |naive: &DirectPolicyLearning| naive.learn(&demonstrations, &held_out, &mut own());
         let judges = |(_, test): &(Aligned, TestSamples)| {
             [Judge::new(recordings, &test.of_kept), Judge::new(recordings, &test.of_all)]
         };
-        Ok(Sat {
-            judges: sat.iter().map(judges).collect(),
+        Ok(TrainedBaselines {
+            judges: trained.iter().map(judges).collect(),
             naive: self.naive.as_ref().map(learn).transpose().map_err(anyhow::Error::from_boxed)?,
             radial_basis: self
                 .constraint_consistent
@@ -119,7 +131,7 @@ impl Baselines {
     }
 }
 
-impl<'a> Sat<'a> {
+impl<'a> TrainedBaselines<'a> {
     /// In the order of the rows.
     pub(crate) fn learnt(&self) -> Vec<&dyn LearntPolicy> {
         let naive = self.naive.as_deref();
@@ -192,27 +204,35 @@ impl Scene for ThreeLinkArm {
     }
 }
 
-impl Scene for Grasp {
-    fn recordings(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Vec<Recording>> {
-        Ok(self.record(rng)?)
+/// Their rows of a table, for one or more alignments of the same recordings.
+#[derive(Serialize)]
+pub(crate) struct BaselinesTrial<S> {
+    pub(crate) scene: S,
+    pub(crate) algorithms: Vec<PolicyAlign>,
+    #[serde(rename = "beside")]
+    pub(crate) baselines: Baselines,
+}
+
+impl<S: Scene + 'static> BaselinesTrial<S> {
+    /// Such trials, of a scene.
+    pub(crate) fn setup(
+        id: (&str, u32),
+        cases: &[impl AsRef<str>],
+        scene: S,
+        algorithms: Vec<PolicyAlign>,
+        baselines: Baselines,
+    ) -> Setup {
+        baselines.setup(id, cases, |baselines| BaselinesTrial { scene, algorithms, baselines })
     }
 }
 
-/// Their rows of a table, for one or more alignments of the same recordings.
-#[derive(Serialize)]
-pub(crate) struct BesideTrial<S> {
-    pub(crate) scene: S,
-    pub(crate) algorithms: Vec<PolicyAlign>,
-    pub(crate) beside: Baselines,
-}
-
-impl<S: Scene> Trial for BesideTrial<S> {
+impl<S: Scene> Trial for BaselinesTrial<S> {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.scene.recordings(rng)?;
-        let sat = self.beside.sit(&recordings, &self.algorithms, rng)?;
-        let mut rows = sat.rows()?;
+        let trained = self.baselines.train(&recordings, &self.algorithms, rng)?;
+        let mut rows = trained.rows()?;
         if let Some(recordings) = self.scene.fresh(rng)? {
-            fresh::add_errors(&mut rows, sat.learnt().into_iter().cycle(), &recordings)?;
+            fresh::add_errors(&mut rows, trained.learnt().into_iter().cycle(), &recordings)?;
         }
         Ok(rows)
     }
@@ -220,29 +240,29 @@ impl<S: Scene> Trial for BesideTrial<S> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::exam::Protocol;
+    use super::super::protocol::Protocol;
     use super::*;
-    use crate::evaluation::entrant::Entrant;
+    use crate::evaluation::candidate::Candidate;
     use crate::seed::generator;
-    use crate::tables::table1::{toy_beside, toy_regressor};
+    use crate::tables::table1::{toy_baselines, toy_regressor};
     use gp::FrontEnd;
 
-    /// The same samples as PolicyAlign's exam, and no learner has seen one of them.
+    /// The same samples as PolicyAlign's evaluation, and no learner has seen one of them.
     #[test]
     fn they_are_tested_where_policy_align_is() {
         let system = ToySystem { n_trajectories: 20, ..ToySystem::default() };
         let mut rng = generator(1, 0, 0);
         let recordings = system.record(&mut rng).unwrap();
-        let (beside, algorithm) = (toy_beside(FrontEnd::FiniteDifferences, 150), PolicyAlign::default());
-        let sat = beside.sit(&recordings, std::slice::from_ref(&algorithm), &rng).unwrap();
-        let pupils = vec![Entrant::PolicyAlign(toy_regressor())];
-        let protocol = Protocol { algorithm: algorithm.clone(), pupils, held_out: beside.held_out };
-        let exam = protocol.examine(&recordings, &mut rng).unwrap();
-        assert_eq!(sat.judges(0)[0].samples(), exam.judge().samples());
-        assert_eq!(sat.both.slope().report().rows, 150);
+        let (baselines, algorithm) = (toy_baselines(FrontEnd::FiniteDifferences, 150), PolicyAlign::default());
+        let trained = baselines.train(&recordings, std::slice::from_ref(&algorithm), &rng).unwrap();
+        let candidates = vec![Candidate::PolicyAlign(toy_regressor())];
+        let protocol = Protocol { algorithm: algorithm.clone(), candidates, held_out: baselines.held_out };
+        let evaluation = protocol.evaluate(&recordings, &mut rng).unwrap();
+        assert_eq!(trained.judges(0)[0].samples(), evaluation.judge().samples());
+        assert_eq!(trained.both.slope().report().rows, 150);
 
-        let rows = sat.rows().unwrap();
-        assert_eq!(rows.len(), beside.rows("case").len());
+        let rows = trained.rows().unwrap();
+        assert_eq!(rows.len(), baselines.rows("case").len());
         let [naive, radial_basis, slope, no_trend, direct] = [0, 1, 2, 3, 4].map(|row| rows[row][&Measure::Nupe]);
         // The parabola is in the slope GP's families; without a trend it is not.
         assert!(slope < 1e-12 && slope < no_trend && no_trend < 1e-2, "{slope} {no_trend}");

@@ -1,4 +1,4 @@
-//! Those who sit an exam.
+//! Learners that an experiment evaluates.
 
 use align::{Aligned, LwprRegressor};
 use motion::{Learner, LearntPolicy, SampleIndex};
@@ -6,10 +6,10 @@ use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 use serde_json::Value;
 
-/// One entry in the list of learners that an experiment scores.
+/// One of the learners that an experiment scores.
 #[derive(Serialize)]
-pub(crate) enum Entrant {
-    /// The paper's method: regression on the potentials as the exam has aligned them. It is what
+pub(crate) enum Candidate {
+    /// The paper's method: regression on the potentials as the evaluation has aligned them. It is what
     /// [`align::PotentialPolicyLearning`] learns, to the last bit, without aligning once more.
     PolicyAlign(LwprRegressor),
     /// A learner that begins with the demonstrations.
@@ -22,10 +22,10 @@ pub(crate) enum Entrant {
     },
 }
 
-impl Entrant {
+impl Candidate {
     /// A learner that begins with the demonstrations.
-    pub(crate) fn other<L: Learner + Serialize + 'static>(learner: L) -> anyhow::Result<Entrant> {
-        Ok(Entrant::Other { parameters: serde_json::to_value(&learner)?, learner: Box::new(learner) })
+    pub(crate) fn other<L: Learner + Serialize + 'static>(learner: L) -> anyhow::Result<Candidate> {
+        Ok(Candidate::Other { parameters: serde_json::to_value(&learner)?, learner: Box::new(learner) })
     }
 
     /// Learns from all samples but those held out.
@@ -36,8 +36,8 @@ impl Entrant {
         rng: &mut ChaCha8Rng,
     ) -> anyhow::Result<Box<dyn LearntPolicy>> {
         match self {
-            Entrant::PolicyAlign(regressor) => Ok(Box::new(aligned.learn_without(held_out, regressor, rng)?)),
-            Entrant::Other { learner, .. } => {
+            Candidate::PolicyAlign(regressor) => Ok(Box::new(aligned.learn_without(held_out, regressor, rng)?)),
+            Candidate::Other { learner, .. } => {
                 learner.learn(aligned.demonstrations(), held_out, rng).map_err(anyhow::Error::from_boxed)
             }
         }
@@ -62,8 +62,8 @@ mod tests {
         let aligned = align.align(&demonstrations).unwrap();
         let held_out = demonstrations.hold_out_samples(aligned.kept(), 0.1, &mut generator(1, 0, 1)).unwrap();
         let whole = PotentialPolicyLearning { align, regressor: regressor.clone() };
-        let [short, long] = [Entrant::PolicyAlign(regressor), Entrant::other(whole).unwrap()]
-            .map(|pupil| pupil.learn(&aligned, &held_out, &mut generator(1, 0, 2)).unwrap());
+        let [short, long] = [Candidate::PolicyAlign(regressor), Candidate::other(whole).unwrap()]
+            .map(|candidate| candidate.learn(&aligned, &held_out, &mut generator(1, 0, 2)).unwrap());
         for trajectory in demonstrations.trajectories() {
             for state in trajectory.states().column_iter() {
                 assert_eq!(short.action(state), long.action(state));
