@@ -1,10 +1,10 @@
 use motion::Demonstrations;
 use serde::{Deserialize, Serialize};
 
-use crate::levelling::bipartition::bipartition;
-use crate::levelling::offsets::group_offsets;
-use crate::levelling::responsibilities::{Responsibilities, squared_radius};
-use crate::scrutiny::scrutinise;
+use crate::checks::check;
+use crate::offsets::bipartition::bipartition;
+use crate::offsets::group_offsets::group_offsets;
+use crate::offsets::responsibilities::{Responsibilities, squared_radius};
 use crate::search::{NearestSamples, SearchSpace};
 use crate::{AlignError, Aligned, AlignmentObjective, Bandwidth, Integration, Warning};
 
@@ -60,7 +60,7 @@ impl PolicyAlign {
             let partition = bipartition(&objective.laplacian, self.eigenvalue_threshold)?;
             let offsets = group_offsets(&responsibilities, &objective, &partition.groups[0])?;
             let mut warnings = Warning::about(&partition, self.eigenvalue_threshold);
-            warnings.extend(scrutinise(demonstrations));
+            warnings.extend(check(demonstrations));
             Ok(Aligned::new(demonstrations, potentials, sigma_squared, objective, partition, offsets, warnings))
         })
     }

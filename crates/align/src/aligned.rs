@@ -1,7 +1,7 @@
 use motion::{Demonstrations, SampleIndex};
 use nalgebra::{DVector, DVectorView};
 
-use crate::levelling::bipartition::Partition;
+use crate::offsets::bipartition::Partition;
 use crate::{AlignmentObjective, LocalPotential, Split, Warning};
 
 /// Aligned local potentials, the result of [`PolicyAlign::align`](crate::PolicyAlign::align).

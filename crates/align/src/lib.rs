@@ -66,19 +66,19 @@
 //! `docs/notation.md` maps the symbols of the paper to names.
 //!
 //! To read the source: `algorithm` has one line for each step; `integration`, `bandwidth`, and the folders `search`
-//! (nearest samples) and `levelling` (responsibilities, objective, groups, offsets) implement them; `learning` has the
+//! (nearest samples) and `offsets` (responsibilities, objective, groups, offsets) implement them; `learning` has the
 //! regression and the policies.
 
 mod algorithm;
 mod aligned;
 mod bandwidth;
+mod checks;
 mod error;
 mod integration;
 mod learning;
-mod levelling;
 mod local_potential;
+mod offsets;
 mod samples;
-mod scrutiny;
 mod search;
 mod warning;
 
@@ -91,8 +91,8 @@ pub use learning::{
     DirectPolicy, DirectPolicyLearning, GlobalPotential, Label, LwprRegressor, Origin, PotentialPolicy,
     PotentialPolicyLearning, Regressor,
 };
-pub use levelling::{AlignmentObjective, Split, SplitCause};
 pub use local_potential::LocalPotential;
+pub use offsets::{AlignmentObjective, Split, SplitCause};
 pub use samples::{SampleIter, Samples};
 pub use warning::Warning;
 

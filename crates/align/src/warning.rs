@@ -1,6 +1,6 @@
 use std::fmt;
 
-use crate::levelling::bipartition::Partition;
+use crate::offsets::bipartition::Partition;
 
 /// More than this share of trajectories discarded is worth a word.
 const MANY: f64 = 0.5;

@@ -16,7 +16,7 @@ impl Agreement {
     }
 
     /// Compares an array with the reference's; another length, or a number that is none, is infinitely far.
-    pub(super) fn see(&mut self, ours: impl IntoIterator<Item = f64>, theirs: &[f64]) {
+    pub(super) fn compare(&mut self, ours: impl IntoIterator<Item = f64>, theirs: &[f64]) {
         let ours: Vec<f64> = ours.into_iter().collect();
         let largest = theirs.iter().fold(0.0, |largest, theirs| f64::max(largest, theirs.abs()));
         let difference = ours

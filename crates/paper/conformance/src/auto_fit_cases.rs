@@ -100,7 +100,7 @@ impl System {
         let wrong = [(least - report.r_squared).max(0.0) / margin, f64::from(!right), f64::from(!expected)];
         let excess = [over[0].max(over[1]), wrong[0], wrong[1], wrong[2]];
         for (agreement, excess) in agreements.iter_mut().zip(excess) {
-            agreement.see([1.0 + excess], &[1.0]);
+            agreement.compare([1.0 + excess], &[1.0]);
         }
         Ok(())
     }

@@ -85,22 +85,22 @@ impl Case {
         let [mut value, mut gradient, mut confidence, mut activation] = [Difference::default(); 4];
         for (i, x) in columns(&self.x_test).column_iter().enumerate() {
             for output in 0..self.n_out {
-                activation.see(predictor.max_activation(x.as_view(), output), self.max_activation[i][output]);
+                activation.compare(predictor.max_activation(x.as_view(), output), self.max_activation[i][output]);
             }
             let Some(prediction) = predictor.predict(x.as_view()) else {
                 // The reference says so by an enormous confidence; otherwise this is infinitely wrong.
                 let excused = self.confidence[i].iter().any(|&confidence| confidence > NO_SUPPORT);
-                value.see(if excused { 0.0 } else { f64::INFINITY }, 0.0);
+                value.compare(if excused { 0.0 } else { f64::INFINITY }, 0.0);
                 continue;
             };
             for output in 0..self.n_out {
-                value.see(prediction.value[output], self.value[i][output]);
+                value.compare(prediction.value[output], self.value[i][output]);
                 for k in 0..self.n_in {
-                    gradient.see(prediction.gradient[(output, k)], self.gradient[i][output][k]);
+                    gradient.compare(prediction.gradient[(output, k)], self.gradient[i][output][k]);
                 }
                 let (ours, theirs) = (prediction.confidence[output], self.confidence[i][output]);
                 if ours.is_finite() || !self.is_young() {
-                    confidence.see(ours, theirs);
+                    confidence.compare(ours, theirs);
                 }
             }
         }
@@ -142,7 +142,7 @@ struct Difference {
 }
 
 impl Difference {
-    fn see(&mut self, ours: f64, theirs: f64) {
+    fn compare(&mut self, ours: f64, theirs: f64) {
         let difference = (ours - theirs).abs();
         self.difference = self.difference.max(if difference.is_nan() { f64::INFINITY } else { difference });
         self.reference = self.reference.max(theirs.abs());

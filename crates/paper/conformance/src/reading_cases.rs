@@ -96,25 +96,25 @@ pub(super) fn check_direct(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let given = rows(&case.x, &case.u, &case.trajectory)?;
     let data = DirectData::new(&given, case.noise_weights.clone())?;
     let (mean, scale) = data.scaling();
-    agreements[0].see(mean.iter().copied(), &case.mean);
-    agreements[0].see([scale, data.unit()], &[case.scale, case.unit]);
+    agreements[0].compare(mean.iter().copied(), &case.mean);
+    agreements[0].compare([scale, data.unit()], &[case.scale, case.unit]);
     let z: Table = case.x.iter().map(|x| x.iter().zip(mean).map(|(x, mean)| (x - mean) / scale).collect()).collect();
     for fit in &case.fits {
         let blocks: Vec<DirectBlock> = fit.blocks.iter().map(direct_block).collect::<anyhow::Result<_>>()?;
         for (block, corner) in blocks.iter().zip(&fit.kernel_corner) {
             let pairs = (0..corner.len()).flat_map(|i| (0..corner.len()).map(move |j| (i, j)));
-            agreements[0].see(pairs.map(|(i, j)| block.covariance(view(&z[i]), view(&z[j]))), &corner.concat());
+            agreements[0].compare(pairs.map(|(i, j)| block.covariance(view(&z[i]), view(&z[j]))), &corner.concat());
         }
         let evidence = data.evidence(&blocks, &fit.theta).context("no Cholesky factor")?;
-        agreements[0].see([evidence.value], &[fit.evidence]);
-        agreements[1].see(evidence.gradient.iter().copied(), &fit.gradient);
+        agreements[0].compare([evidence.value], &[fit.evidence]);
+        agreements[1].compare(evidence.gradient.iter().copied(), &fit.gradient);
         let (model, left_out) = data.condition(&blocks, &fit.theta, 1.0).context("no Cholesky factor")?;
-        agreements[0].see(left_out.residuals.transpose().iter().copied(), &fit.loto_residual.concat());
-        agreements[0].see(left_out.variances, &fit.loto_variance);
-        agreements[0].see([left_out.r_squared], &[fit.r_squared]);
+        agreements[0].compare(left_out.residuals.transpose().iter().copied(), &fit.loto_residual.concat());
+        agreements[0].compare(left_out.variances, &fit.loto_variance);
+        agreements[0].compare([left_out.r_squared], &[fit.r_squared]);
         let at = || fit.at.iter().map(|x| view(x));
-        agreements[0].see(at().flat_map(|x| model.action(x).data.as_vec().clone()), &fit.policy.concat());
-        agreements[0].see(at().map(|x| model.variance(x)), &fit.variance);
+        agreements[0].compare(at().flat_map(|x| model.action(x).data.as_vec().clone()), &fit.policy.concat());
+        agreements[0].compare(at().map(|x| model.variance(x)), &fit.variance);
     }
     Ok(agreements)
 }
@@ -128,9 +128,9 @@ pub(super) fn check_near(file: &Path) -> anyhow::Result<Vec<Agreement>> {
         for result in &case.results {
             let near = NearPasses::of(&given, result.delta, &mut ChaCha8Rng::seed_from_u64(0))?;
             let counts = [near.pairs, near.samples].map(|count| count as f64);
-            agreements[0].see(counts, &[result.pairs, result.samples].map(|count| count as f64));
+            agreements[0].compare(counts, &[result.pairs, result.samples].map(|count| count as f64));
             let share = |share: Option<f64>| share.into_iter().collect::<Vec<_>>();
-            agreements[1].see(share(near.share), &share(result.share));
+            agreements[1].compare(share(near.share), &share(result.share));
         }
     }
     Ok(agreements)
@@ -146,7 +146,7 @@ pub(super) fn check_readings(file: &Path) -> anyhow::Result<Vec<Agreement>> {
         case.compare_frozen(&mut agreements[2])?;
         let fit = AutoGp::default().fit(&case.rows()?, &mut ChaCha8Rng::seed_from_u64(0))?;
         let differs = f64::from(u8::from(fit.reading() != case.expected_reading));
-        agreements[0].see([1.0 + differs], &[1.0]);
+        agreements[0].compare([1.0 + differs], &[1.0]);
         let (ours, theirs) = (fit.numbers(), &case.prototype);
         let least = ours.least_seen.share * ours.least_seen.direction.len() as f64;
         let numbers = [
@@ -157,7 +157,7 @@ pub(super) fn check_readings(file: &Path) -> anyhow::Result<Vec<Agreement>> {
             (least, theirs.least_d),
         ];
         for (ours, theirs) in numbers.into_iter().filter(|(_, theirs)| *theirs > 1e-3) {
-            agreements[1].see([1.0 + (ours / theirs).ln() / 3.0_f64.ln()], &[1.0]);
+            agreements[1].compare([1.0 + (ours / theirs).ln() / 3.0_f64.ln()], &[1.0]);
         }
     }
     Ok(agreements)
@@ -188,7 +188,7 @@ impl ReadingCase {
             (ours.hidden, theirs.hidden.max(0.0)),
         ];
         for (ours, theirs) in numbers {
-            agreement.see([ours], &[theirs]);
+            agreement.compare([ours], &[theirs]);
         }
         Ok(())
     }

@@ -111,19 +111,19 @@ pub(super) fn check_kernels(file: &Path) -> anyhow::Result<Vec<Agreement>> {
             let [z2, n2] = [&case.z2, &case.n2].map(|rows| |i: usize| view(&rows[i]));
             let flat = |table: &Table| table.concat();
             let slopes = pairs().map(|(i, j)| block.slope_slope(z(i), n(i), z2(j), n2(j)));
-            agreements[0].see(slopes, &flat(&reference.slope_slope));
+            agreements[0].compare(slopes, &flat(&reference.slope_slope));
             let policies = pairs().flat_map(|(i, j)| block.policy_slope(z(i), z2(j), n2(j)).data.as_vec().clone());
-            agreements[0].see(policies, &reference.policy_slope.concat().concat());
+            agreements[0].compare(policies, &reference.policy_slope.concat().concat());
             if let Some(expected) = &reference.potential_slope {
                 let ours = pairs().map(|(i, j)| block.potential_slope(z(i), z2(j), n2(j)).unwrap_or(f64::NAN));
                 // At one and the same state it is 0; the reference has what rounding left of that.
                 let expected: Vec<f64> =
                     flat(expected).iter().map(|&e| if e.abs() < 1e-15 { 0.0 } else { e }).collect();
-                agreements[0].see(ours, &expected);
+                agreements[0].compare(ours, &expected);
             }
             if let Some(expected) = &reference.potential_potential {
                 let ours = pairs().map(|(i, j)| block.potential_potential(z(i), z2(j)).unwrap_or(f64::NAN));
-                agreements[0].see(ours, &flat(expected));
+                agreements[0].compare(ours, &flat(expected));
             }
         }
     }
@@ -138,8 +138,8 @@ pub(super) fn check_evidence(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let data = given.rows.data(&mut agreements[0])?;
     for case in &given.cases {
         let evidence = data.evidence(&blocks(&case.blocks)?, &case.theta).context("no Cholesky factor")?;
-        agreements[1].see([evidence.value], &[case.j]);
-        agreements[2].see(evidence.gradient.iter().copied(), &case.gradient);
+        agreements[1].compare([evidence.value], &[case.j]);
+        agreements[2].compare(evidence.gradient.iter().copied(), &case.gradient);
     }
     Ok(agreements)
 }
@@ -152,10 +152,10 @@ pub(super) fn check_left_out(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     for case in &given.cases {
         let model = data.condition(&blocks(&case.blocks)?, &case.theta, case.kappa);
         let (model, LeftOut { residuals, variances, r_squared, z_squared }) = model.context("no Cholesky factor")?;
-        agreements[1].see(residuals.iter().copied(), &case.residuals);
-        agreements[1].see(variances, &case.variances);
-        agreements[1].see(model.weights().iter().copied(), &case.alpha);
-        agreements[1].see([r_squared, z_squared], &[case.r_squared, case.z_squared]);
+        agreements[1].compare(residuals.iter().copied(), &case.residuals);
+        agreements[1].compare(variances, &case.variances);
+        agreements[1].compare(model.weights().iter().copied(), &case.alpha);
+        agreements[1].compare([r_squared, z_squared], &[case.r_squared, case.z_squared]);
     }
     Ok(agreements)
 }
@@ -175,7 +175,7 @@ pub(super) fn check_frozen(file: &Path) -> anyhow::Result<Vec<Agreement>> {
             let model = data.condition(&blocks(&case.blocks)?, &case.theta, 1.0);
             let (model, _) = model.context("no Cholesky factor")?;
             let means = if case.family == "rough" { 2 } else { 1 };
-            agreements[means].see(model.weights().iter().copied(), &case.alpha);
+            agreements[means].compare(model.weights().iter().copied(), &case.alpha);
             case.compare_means(system, &model, &mut agreements[means]);
             case.compare_covariances(system, &model, &mut agreements[3]);
         }
@@ -187,27 +187,28 @@ impl FrozenCase {
     fn compare_means(&self, system: &FrozenSystem, model: &SlopeModel, agreement: &mut Agreement) {
         let at = || system.x_test.iter().map(|x| view(x));
         let actions = at().flat_map(|x| model.policy().action(x).data.as_vec().clone());
-        agreement.see(actions, &self.policy.concat());
+        agreement.compare(actions, &self.policy.concat());
         if let Some(expected) = &self.potential {
             let potential = |x| model.potential().map_or(f64::NAN, |potential| potential.value(x));
-            agreement.see(at().map(potential), expected);
+            agreement.compare(at().map(potential), expected);
         }
         if let Some(expected) = &self.potential_difference {
-            agreement.see(Self::differences(system, model).map(|(value, _)| value), expected);
+            agreement.compare(Self::differences(system, model).map(|(value, _)| value), expected);
         }
         if let Some(expected) = &self.rotational_part {
             let rotation = model.rotational_part();
-            agreement.see(at().flat_map(|x| rotation.action(x).data.as_vec().clone()), &expected.concat());
+            agreement.compare(at().flat_map(|x| rotation.action(x).data.as_vec().clone()), &expected.concat());
         }
     }
 
     fn compare_covariances(&self, system: &FrozenSystem, model: &SlopeModel, agreement: &mut Agreement) {
         let at = || system.x_test.iter().map(|x| view(x));
         let numbers = |matrix: DMatrix<f64>| matrix.data.as_vec().clone();
-        agreement.see(at().flat_map(|x| numbers(model.covariance(x))), &self.covariance.concat().concat());
-        agreement.see(at().flat_map(|x| numbers(model.prior_covariance(x))), &self.prior_covariance.concat().concat());
+        agreement.compare(at().flat_map(|x| numbers(model.covariance(x))), &self.covariance.concat().concat());
+        agreement
+            .compare(at().flat_map(|x| numbers(model.prior_covariance(x))), &self.prior_covariance.concat().concat());
         if let Some(expected) = &self.potential_difference_variance {
-            agreement.see(Self::differences(system, model).map(|(_, variance)| variance), expected);
+            agreement.compare(Self::differences(system, model).map(|(_, variance)| variance), expected);
         }
     }
 
@@ -223,8 +224,8 @@ impl GivenRows {
         let rows = rows(&self.x, &self.u, &self.trajectory)?;
         let data = SlopeData::new(&rows, self.d_weights.clone())?;
         let (mean, scale) = data.scaling();
-        scaling.see(mean.iter().copied(), &self.mean);
-        scaling.see([scale, data.speed()], &[self.scale, self.r_bar]);
+        scaling.compare(mean.iter().copied(), &self.mean);
+        scaling.compare([scale, data.speed()], &[self.scale, self.r_bar]);
         Ok(data)
     }
 }

@@ -52,10 +52,10 @@ pub(super) fn check_smoother(file: &Path) -> anyhow::Result<Vec<Agreement>> {
         let axes = AxisScale::Given(DVector::from_element(movements.dim(), 1.0));
         let given = Smoother { axis_scale: axes, noise: NoiseVariance::Given(case.s_squared), ..Smoother::default() };
         let smoothed = given.smooth(&movements)?;
-        agreements[0].see(smoothed.movements.iter().map(|movement| movement.log_evidence), &case.log_evidence);
+        agreements[0].compare(smoothed.movements.iter().map(|movement| movement.log_evidence), &case.log_evidence);
         case.compare_averages(&smoothed, &mut agreements[1]);
         let found = Smoother { noise: NoiseVariance::ByEvidence, ..given }.smooth(&movements)?;
-        agreements[2].see([found.noise_variance], &[case.s_squared_auto]);
+        agreements[2].compare([found.noise_variance], &[case.s_squared_auto]);
     }
     Ok(agreements)
 }
@@ -63,11 +63,12 @@ pub(super) fn check_smoother(file: &Path) -> anyhow::Result<Vec<Agreement>> {
 impl SmootherCase {
     fn compare_averages(&self, ours: &Smoothed, agreement: &mut Agreement) {
         let ours = || ours.movements.iter();
-        agreement.see(ours().flat_map(|ours| ours.states.iter().copied()), &flat(&self.states));
-        agreement.see(ours().flat_map(|ours| ours.velocities.iter().copied()), &flat(&self.velocities));
-        agreement.see(ours().flat_map(|ours| ours.state_variance.iter().copied()), &self.state_variance.concat());
-        agreement.see(ours().flat_map(|ours| ours.velocity_variance.iter().copied()), &self.velocity_variance.concat());
-        agreement.see(ours().flat_map(|ours| ours.window_begins.iter().copied()), &self.window_begins.concat());
+        agreement.compare(ours().flat_map(|ours| ours.states.iter().copied()), &flat(&self.states));
+        agreement.compare(ours().flat_map(|ours| ours.velocities.iter().copied()), &flat(&self.velocities));
+        agreement.compare(ours().flat_map(|ours| ours.state_variance.iter().copied()), &self.state_variance.concat());
+        agreement
+            .compare(ours().flat_map(|ours| ours.velocity_variance.iter().copied()), &self.velocity_variance.concat());
+        agreement.compare(ours().flat_map(|ours| ours.window_begins.iter().copied()), &self.window_begins.concat());
     }
 }
 
@@ -84,9 +85,10 @@ pub(super) fn check_fusion(file: &Path) -> anyhow::Result<Vec<Agreement>> {
         ensure!(rule == case.rule, "the rule is {rule}, in the reference {}", case.rule);
         let (ratio, theirs) = (ours.log10_ratio, case.log10_q_over_rho);
         ensure!(ratio == theirs, "log10 q/rho is {ratio}, in the reference {theirs}");
-        agreement.see([ours.noise_variance], &[case.rho]);
-        agreement.see(ours.movements.iter().flat_map(|ours| ours.states.iter().copied()), &flat(&case.states));
-        agreement.see(ours.movements.iter().flat_map(|ours| ours.variance.iter().copied()), &case.variance.concat());
+        agreement.compare([ours.noise_variance], &[case.rho]);
+        agreement.compare(ours.movements.iter().flat_map(|ours| ours.states.iter().copied()), &flat(&case.states));
+        agreement
+            .compare(ours.movements.iter().flat_map(|ours| ours.variance.iter().copied()), &case.variance.concat());
     }
     Ok(vec![agreement])
 }

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::Who;
 use crate::sound::{Sound, field, some};
 use crate::state_plane::{Arrow, actions, compared, on_grid, state_plane};
-use crate::{Document, Drawing, Figure, Sources, demonstrated, rounded};
+use crate::{Drawing, Sources, demonstrated, rounded};
 
 /// Starts of the movements are drawn from [−2, 2]².
 const EXTENT: f64 = 2.0;
@@ -33,17 +33,9 @@ const LEAST_ERROR: f64 = 1e-9;
 const SIZE: (f64, f64) = (330.0, 350.0);
 const SIZE_WITH_SCALE: (f64, f64) = (430.0, 350.0);
 
-pub(super) fn document() -> Document {
-    Document::new("beyond_fields", Some("beyond"), fields)
-}
-
-pub(super) fn figure() -> Figure {
-    Figure::new("beyond", Some("beyond"), &["beyond_fields"], draw)
-}
-
 /// The first data set of ten movements, and what is learnt from it. Arrows are (x₁, x₂, u₁, u₂).
 #[derive(Serialize, Deserialize)]
-struct Fields {
+pub(crate) struct Fields {
     movements: Vec<Vec<(f64, f64)>>,
     contours: Field,
     truth: Vec<Arrow>,
@@ -69,7 +61,7 @@ impl Sound for Fields {
     }
 }
 
-fn fields(seed: u64) -> anyhow::Result<Fields> {
+pub(crate) fn fields(seed: u64) -> anyhow::Result<Fields> {
     let (number, system, gaussians) = case_on_the_plane();
     let mut rng = generator(seed, number, 0);
     let recordings = system.record(&mut rng)?;
@@ -105,7 +97,7 @@ fn fields(seed: u64) -> anyhow::Result<Fields> {
     })
 }
 
-fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let fields: Fields = sources.document("beyond_fields")?;
     let movements = || fields.movements.iter().map(|movement| (&movement[..], true));
     let plane = |title: &str, layers| state_plane(title, EXTENT, layers, SIZE);

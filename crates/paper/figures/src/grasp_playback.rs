@@ -15,7 +15,6 @@ use anyhow::ensure;
 use experiments::grasp;
 use serde::{Deserialize, Serialize};
 
-use crate::Document;
 use crate::sound::{Sound, as_many, some};
 use constraint::Constraint;
 use movements::movements;
@@ -29,10 +28,6 @@ pub(crate) use starts_shown::starts_shown;
 
 /// Start postures that are shown.
 const STARTS: usize = 4;
-
-pub(crate) fn document() -> Document {
-    Document::new("grasp_playback", Some("table2"), grasp_playback)
-}
 
 /// Lengths in metres, angles in radians, all in the heel's frame: x forward, y left, z up.
 #[derive(Serialize, Deserialize)]
@@ -68,7 +63,7 @@ pub(crate) struct Choice {
     pub(crate) label: String,
 }
 
-fn grasp_playback(seed: u64) -> anyhow::Result<GraspPlayback> {
+pub(crate) fn grasp_playback(seed: u64) -> anyhow::Result<GraspPlayback> {
     let grasp = grasp()?;
     let choice = |id: &str, label: &str| Choice { id: id.to_owned(), label: label.to_owned() };
     Ok(GraspPlayback {

@@ -31,6 +31,7 @@ use serde_json::Value;
 use sound::Sound;
 use words::{Words, words};
 
+use numbered::figure8::ALL_AROUND_DOCUMENT;
 pub use numbered::figure8::{Ends, ends_of_reaching};
 use who::Who;
 pub use who::color_of;
@@ -94,37 +95,39 @@ pub struct Sources {
 
 /// All documents.
 pub fn documents() -> Vec<Document> {
+    use numbered::{figure_b1, figure1, figure2, figure3, figure4, figure5, figure9};
     vec![
-        overview::document(),
-        numbered::figure1::document(),
-        numbered::figure2::document(),
-        numbered::figure3::document(),
-        numbered::figure4::document(),
-        numbered::figure5::document(),
-        numbered::figure9::document(),
-        numbered::figure_b1::document(),
-        grasp_playback::document(),
-        grasp_playback::all_around::document(),
-        beyond::document(),
+        Document::new("overview", None, overview::overview),
+        Document::new("figure1", None, |_| figure1::ready()),
+        Document::new("figure2", None, |_| figure2::shown()),
+        Document::new("figure3", None, |_| figure3::vectors()),
+        Document::new("figure4", None, |_| figure4::hills()),
+        Document::new("figure5", None, figure5::compute::levels),
+        Document::new("figure9_movements", Some("figure9"), figure9::movements),
+        Document::new("figureB1", Some("table1"), figure_b1::coming_apart),
+        Document::new("grasp_playback", Some("table2"), grasp_playback::grasp_playback),
+        Document::new(ALL_AROUND_DOCUMENT, Some("table2"), grasp_playback::all_around::all_around),
+        Document::new("beyond_fields", Some("beyond"), beyond::fields),
     ]
 }
 
 /// All figures, in the paper's order.
 pub fn figures() -> Vec<Figure> {
+    use numbered::{figure_b1, figure1, figure2, figure3, figure4, figure5, figure6, figure7, figure8, figure9};
     vec![
-        overview::figure(),
-        numbered::figure1::figure(),
-        numbered::figure2::figure(),
-        numbered::figure3::figure(),
-        numbered::figure4::figure(),
-        numbered::figure5::figure(),
-        numbered::figure6::left(),
-        numbered::figure6::right(),
-        numbered::figure7::figure(),
-        numbered::figure8::figure(),
-        numbered::figure9::figure(),
-        numbered::figure_b1::figure(),
-        beyond::figure(),
+        Figure::new("overview", None, &["overview"], overview::draw),
+        Figure::new("figure1", None, &["figure1"], figure1::draw),
+        Figure::new("figure2", None, &["figure2"], figure2::draw),
+        Figure::new("figure3", None, &["figure3"], figure3::draw),
+        Figure::new("figure4", None, &["figure4"], figure4::draw),
+        Figure::new("figure5", Some("table1"), &["figure5"], figure5::draw::draw),
+        Figure::new("figure6_left", Some("figure6_left"), &["figure6_left"], figure6::draw_left),
+        Figure::new("figure6_right", Some("figure6_right"), &["figure6_right"], figure6::draw_right),
+        Figure::new("figure7", Some("table2"), &["grasp_playback"], figure7::draw),
+        Figure::new("figure8", Some("table2"), &["grasp_playback"], figure8::draw).with(&[ALL_AROUND_DOCUMENT]),
+        Figure::new("figure9", Some("figure9"), &["figure9_movements", "figure9"], figure9::draw),
+        Figure::new("figureB1", Some("table1"), &["figureB1"], figure_b1::draw),
+        Figure::new("beyond", Some("beyond"), &["beyond_fields"], beyond::draw),
     ]
 }
 

@@ -15,7 +15,7 @@ use crate::miniature::{Miniature, extent_of};
 use crate::sound::{Sound, as_many, some};
 use crate::state_plane::{Arrow, WIDTHS, actions, every_second};
 use crate::who::TRUTH;
-use crate::{Document, Drawing, Figure, Sources, rounded};
+use crate::{Drawing, Sources, rounded};
 
 /// Starts of the movements are drawn from [−2, 2]²; shown is a little more, as movements leave that square.
 const SHOWN: f64 = 2.2;
@@ -35,17 +35,9 @@ const ROWS: usize = 500;
 /// Arrows are drawn as long as this many seconds of movement.
 const ARROW_SECONDS: f64 = 3.0;
 
-pub(crate) fn document() -> Document {
-    Document::new("overview", None, overview)
-}
-
-pub(crate) fn figure() -> Figure {
-    Figure::new("overview", None, &["overview"], draw)
-}
-
 /// The first data set of the toy system, and what is learnt from it.
 #[derive(Serialize, Deserialize)]
-struct Overview {
+pub(crate) struct Overview {
     movements: Vec<Movement>,
     /// (x₁, x₂, u₁, u₂).
     expert: Vec<Arrow>,
@@ -74,7 +66,7 @@ impl Sound for Overview {
     }
 }
 
-fn overview(seed: u64) -> anyhow::Result<Overview> {
+pub(crate) fn overview(seed: u64) -> anyhow::Result<Overview> {
     let mut rng = generator(seed, PARABOLA_SYSTEM, 0);
     let system = ToySystem::default();
     let recordings = system.record(&mut rng)?;
@@ -110,7 +102,7 @@ fn title(who: Who) -> &'static str {
     }
 }
 
-fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let overview: Overview = sources.document("overview")?;
     let extent = extent_of(overview.movements.iter().flat_map(|movement| &movement.points), SHOWN);
     let mut number = 0;

@@ -14,15 +14,11 @@ use super::data_set::DataSet;
 use super::movements::{DECIMALS, Movement, rows};
 use super::policies::Learnt;
 use super::robot::FARTHEST;
+use crate::rounded;
 use crate::sound::{Sound, as_many, grid, some, within};
-use crate::{Document, rounded};
 
 /// Palms start around their places at the ball: each coordinate is at most this far off, metres.
 const AROUND: f64 = 0.1;
-
-pub(crate) fn document() -> Document {
-    Document::new("grasp_all_around", Some("table2"), all_around)
-}
 
 /// Where the policy wants the palms with nothing in the way: by start, one row of six a sample, metres.
 #[derive(Serialize, Deserialize)]
@@ -52,7 +48,7 @@ impl AllAround {
 }
 
 /// The same learner from the same demonstrations, and as many again that begin around the ball.
-fn all_around(seed: u64) -> anyhow::Result<AllAround> {
+pub(crate) fn all_around(seed: u64) -> anyhow::Result<AllAround> {
     let grasp = grasp()?;
     let DataSet { mut recordings, shown, mut rng } = DataSet::draw(&grasp, seed)?;
     recordings.extend(from_all_around(&grasp, recordings.len(), &mut separate_stream(&rng))?);

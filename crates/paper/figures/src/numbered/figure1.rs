@@ -9,19 +9,11 @@ use serde::{Deserialize, Serialize};
 use crate::scene::items::items;
 use crate::scene::shapes::{self, Kind, Shape};
 use crate::sound::{self, Sound, some};
-use crate::{Document, Drawing, Figure, Sources, rounded};
-
-pub(crate) fn document() -> Document {
-    Document::new("figure1", None, |_| ready())
-}
-
-pub(crate) fn figure() -> Figure {
-    Figure::new("figure1", None, &["figure1"], draw)
-}
+use crate::{Drawing, Sources, rounded};
 
 /// The robot in the posture "ready", metres in the heel's frame.
 #[derive(Debug, Serialize, Deserialize)]
-struct Robot {
+pub(crate) struct Robot {
     shapes: Vec<Shape>,
     joints: Vec<Joint>,
 }
@@ -44,7 +36,7 @@ impl Sound for Robot {
     }
 }
 
-fn ready() -> anyhow::Result<Robot> {
+pub(crate) fn ready() -> anyhow::Result<Robot> {
     let body = upper_body()?;
     let robot = body.robot();
     let mut workspace = Workspace::new();
@@ -65,7 +57,7 @@ fn ready() -> anyhow::Result<Robot> {
     Ok(Robot { shapes: shapes::posed(robot, &poses)?, joints })
 }
 
-fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let robot: Robot = sources.document("figure1")?;
     let title = format!("{} joints", robot.joints.len());
     let view = |title: &str, width, over: Vec<Item>| Space {

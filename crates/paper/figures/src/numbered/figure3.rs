@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Who;
 use crate::sound::Sound;
-use crate::{Document, Drawing, Figure, Sources, rounded};
+use crate::{Drawing, Sources, rounded};
 
 /// What a system wants to do: forwards, towards the reader, upwards.
 const POLICY: [f64; 3] = [0.8, -0.6, 0.7];
@@ -24,17 +24,9 @@ const GREY: &str = "#5a5a5a";
 /// A colour beside those of [`Who`], for the other policy.
 const PURPLE: &str = "#9a4a7c";
 
-pub(crate) fn document() -> Document {
-    Document::new("figure3", None, |_| vectors())
-}
-
-pub(crate) fn figure() -> Figure {
-    Figure::new("figure3", None, &["figure3"], draw)
-}
-
 /// Velocities from one point.
 #[derive(Serialize, Deserialize)]
-struct Vectors {
+pub(crate) struct Vectors {
     policy: [f64; 3],
     /// What the vertical and the horizontal constraint leave of it.
     seen: [[f64; 3]; 2],
@@ -54,7 +46,7 @@ impl Sound for Vectors {
     }
 }
 
-fn vectors() -> anyhow::Result<Vectors> {
+pub(crate) fn vectors() -> anyhow::Result<Vectors> {
     let vertical = NullSpaceProjector::new(&dmatrix![0.0, 1.0, 0.0])?;
     let horizontal = NullSpaceProjector::new(&dmatrix![0.0, 0.0, 1.0])?;
     let [policy, other] = [POLICY, OTHER].map(|[x, y, z]| dvector![x, y, z]);
@@ -72,7 +64,7 @@ fn vectors() -> anyhow::Result<Vectors> {
     })
 }
 
-fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let Vectors { policy, seen: [first, second], mean, mean_seen, other, other_seen } = sources.document("figure3")?;
     let (expert, shown, naive) = (Who::Expert.color(), Who::Demonstration.color(), Who::Naive.color());
     let observed = [arrow(first, shown, 3.0), arrow(second, shown, 3.0)];

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::sound::{Sound, field as sound_field, some};
 use crate::state_plane::state_plane;
-use crate::{Csv, Document, Drawing, Figure, Sources, rounded};
+use crate::{Csv, Drawing, Sources, rounded};
 
 /// Drawn is [−2, 2]².
 const EXTENT: f64 = 2.0;
@@ -27,14 +27,6 @@ const BUMPS: [(f64, [f64; 2], f64); 5] = [
 
 /// Arrows are drawn as long as so many seconds of movement.
 const ARROW_SECONDS: f64 = 0.25;
-
-pub(crate) fn document() -> Document {
-    Document::new("figure4", None, |_| hills())
-}
-
-pub(crate) fn figure() -> Figure {
-    Figure::new("figure4", None, &["figure4"], draw)
-}
 
 /// φ(x) = Σ aᵢ exp(−‖x − cᵢ‖² / 2sᵢ²).
 struct Hills;
@@ -65,7 +57,7 @@ fn at((height, centre, breadth): &(f64, [f64; 2], f64), state: DVectorView<'_, f
 }
 
 #[derive(Serialize, Deserialize)]
-struct Shown {
+pub(crate) struct Shown {
     potential: Field,
     /// (x₁, x₂, u₁, u₂).
     unconstrained: Vec<(f64, f64, f64, f64)>,
@@ -84,7 +76,7 @@ impl Sound for Shown {
     }
 }
 
-fn hills() -> anyhow::Result<Shown> {
+pub(crate) fn hills() -> anyhow::Result<Shown> {
     let blocked = LinearConstraint::new(dmatrix![1.0, 0.0])?;
     let policy = NegativeGradient(Hills);
     let places = (0..81).map(|i| [f64::from(i % 9 - 4), f64::from(i / 9 - 4)].map(|step| 0.45 * step));
@@ -133,7 +125,7 @@ fn extrema() -> [Vec<(f64, f64)>; 2] {
     [maxima, minima]
 }
 
-fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let shown: Shown = sources.document("figure4")?;
     let heights = shown.potential.values.iter().flatten();
     let (lowest, highest) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));

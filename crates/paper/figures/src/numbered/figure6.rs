@@ -5,7 +5,7 @@ use experiments::{BANDWIDTHS, BASELINES_LEFT, BASELINES_RIGHT, NOISE_PERCENT, RU
 use plot::{Axis, Curve, Curves, Note, Picture};
 
 use crate::errors::{BASELINES, FIRST, SECOND, Series, Style, axis_down_to};
-use crate::{Csv, Drawing, Figure, Sources};
+use crate::{Csv, Drawing, Sources};
 
 /// In the order of [`BANDWIDTHS`]: how it is drawn, and what its curves are called.
 const STYLES: [(Style, &str); 2] = [(FIRST, ", narrow"), (SECOND, ", medium")];
@@ -21,15 +21,7 @@ const LEFT: [f64; 2] = [1e-3, 4.0];
 /// beyond that curves go is said, not drawn.
 const RIGHT: [f64; 2] = [1e-6, 10.0];
 
-pub(crate) fn left() -> Figure {
-    Figure::new("figure6_left", Some("figure6_left"), &["figure6_left"], draw_left)
-}
-
-pub(crate) fn right() -> Figure {
-    Figure::new("figure6_right", Some("figure6_right"), &["figure6_right"], draw_right)
-}
-
-fn draw_left(sources: &Sources) -> anyhow::Result<Drawing> {
+pub(crate) fn draw_left(sources: &Sources) -> anyhow::Result<Drawing> {
     let series = series(sources, "figure6_left", "", &TRAJECTORIES_PERCENT)?;
     let lines = lines(&series, &baselines(sources, "figure6_left", BASELINES_LEFT, &TRAJECTORIES_PERCENT)?);
     let panel = Curves {
@@ -46,7 +38,7 @@ fn draw_left(sources: &Sources) -> anyhow::Result<Drawing> {
     Ok(Drawing { picture: Picture::rows(&[&[&panel]]), tables })
 }
 
-fn draw_right(sources: &Sources) -> anyhow::Result<Drawing> {
+pub(crate) fn draw_right(sources: &Sources) -> anyhow::Result<Drawing> {
     let [velocity, displacement] = RULES.map(|(rule, _)| series(sources, "figure6_right", rule, &NOISE_PERCENT));
     let (velocity, displacement) = (velocity?, displacement?);
     let [fused, smoothed] = BASELINES_RIGHT.map(|case| baselines(sources, "figure6_right", case, &NOISE_PERCENT));

@@ -8,16 +8,12 @@ use crate::Who;
 use crate::grasp_playback::{GraspPlayback, Movement};
 use crate::scene::stage;
 use crate::scene::stage::Actor;
-use crate::{Drawing, Figure, Sources};
+use crate::{Drawing, Sources};
 
 /// Postures that are shown.
 const FRAMES: usize = 6;
 
-pub(crate) fn figure() -> Figure {
-    Figure::new("figure7", Some("table2"), &["grasp_playback"], draw)
-}
-
-fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let playback: GraspPlayback = sources.document("grasp_playback")?;
     let shown = playback.movements.iter().find(|m| m.constraint == "gap" && m.learner == "expert" && m.start == 0);
     let shown = shown.context("no movement of the expert through the gap")?;

@@ -9,11 +9,7 @@ use crate::grasp_playback::all_around::AllAround;
 use crate::grasp_playback::{GraspPlayback, LEARNERS, Movement};
 use crate::scene::stage;
 use crate::who::TRUTH;
-use crate::{Csv, Drawing, Figure, Sources, rounded};
-
-pub(crate) fn figure() -> Figure {
-    Figure::new("figure8", Some("table2"), &["grasp_playback"], draw).with(&[ALL_AROUND_DOCUMENT])
-}
+use crate::{Csv, Drawing, Sources, rounded};
 
 /// From mark to mark on a curve, seconds.
 const EVERY: f64 = 5.0;
@@ -24,7 +20,7 @@ const CENTIMETRES: f64 = 100.0;
 /// Who is drawn here alone.
 const ALL_AROUND: (&str, Who) = ("all_around", Who::PolicyAlignAllAround);
 
-fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let playback = played(sources)?;
     let frame = frame(&playback);
     let mut learners: Vec<(&str, Who)> = shown(&playback).filter(|(_, who)| *who != Who::Expert).collect();
@@ -44,7 +40,7 @@ const COLUMNS: usize = 3;
 const SIZE: (f64, f64) = (400.0, 440.0);
 
 /// The movements of those who saw the goal from all sides.
-const ALL_AROUND_DOCUMENT: &str = "grasp_all_around";
+pub(crate) const ALL_AROUND_DOCUMENT: &str = "grasp_all_around";
 
 /// The movements of everybody; older figure data have none of those who saw the goal from all sides.
 fn played(sources: &Sources) -> anyhow::Result<GraspPlayback> {

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use self::contact::{FACE, Finger, Movement, touching};
 use crate::sound::{Sound, as_many, some, within};
-use crate::{Csv, Document, Drawing, Figure, Sources, Who, rounded};
+use crate::{Csv, Drawing, Sources, Who, rounded};
 
 /// Seconds at which postures are drawn, and the colours, ever darker, of the free and of the stopped finger.
 const POSTURES: [(f64, &str, &str, &str); 5] = [
@@ -33,16 +33,8 @@ const ARROW_SECONDS: f64 = 0.17;
 /// Shorter ones, radians as drawn, would be a head and nothing else.
 const SHORTEST_ARROW: f64 = 0.14;
 
-pub(crate) fn document() -> Document {
-    Document::new("figure2", None, |_| shown())
-}
-
-pub(crate) fn figure() -> Figure {
-    Figure::new("figure2", None, &["figure2"], draw)
-}
-
 #[derive(Serialize, Deserialize)]
-struct Shown {
+pub(crate) struct Shown {
     free: Movement,
     stopped: Movement,
     /// Angles at which the tip touches the box, all around those at which it would be inside.
@@ -69,7 +61,7 @@ impl Sound for Shown {
     }
 }
 
-fn shown() -> anyhow::Result<Shown> {
+pub(crate) fn shown() -> anyhow::Result<Shown> {
     let finger = Finger::new()?;
     let contact = finger.contact()?;
     let touching: Vec<_> = touching(72).into_iter().map(|(a, b)| (rounded(a, 4), rounded(b, 4))).collect();
@@ -91,7 +83,7 @@ fn shown() -> anyhow::Result<Shown> {
     })
 }
 
-fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let shown: Shown = sources.document("figure2")?;
     let free = POSTURES.map(|(time, label, color, _)| (time, label, color));
     let stopped = POSTURES.map(|(time, label, _, color)| (time, label, color));

@@ -29,7 +29,7 @@ struct Found {
     rng: ChaCha8Rng,
 }
 
-pub(super) fn levels(seed: u64) -> anyhow::Result<Levels> {
+pub(crate) fn levels(seed: u64) -> anyhow::Result<Levels> {
     let system = ToySystem::default();
     let Found { data_set, recordings, aligned, mut rng } = like_the_paper(&system, seed)?;
     let test = TestSamples::draw(&aligned, HELD_OUT, &mut rng)?;

@@ -11,7 +11,7 @@ const EXTENT: f64 = 2.0;
 const BOX: f64 = 2.2;
 const HEIGHTS: [f64; 2] = [-0.04, 0.4];
 
-pub(super) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let levels: Levels = sources.document("figure5")?;
     let small = (420.0, 430.0);
     let large = (630.0, 500.0);

@@ -1,25 +1,16 @@
 //! Fig. 5: one data set of the parabola, from what is seen of it to the learnt surface.
 
-mod compute;
-mod draw;
+pub(crate) mod compute;
+pub(crate) mod draw;
 
 use plot::Field;
 use serde::{Deserialize, Serialize};
 
 use crate::sound::{Sound, as_many, field, grid, some};
-use crate::{Document, Figure};
-
-pub(crate) fn document() -> Document {
-    Document::new("figure5", None, compute::levels)
-}
-
-pub(crate) fn figure() -> Figure {
-    Figure::new("figure5", Some("table1"), &["figure5"], draw::draw)
-}
 
 /// What the figure shows.
 #[derive(Serialize, Deserialize)]
-struct Levels {
+pub(crate) struct Levels {
     /// Which data set of the system it is.
     data_set: u32,
     movements: Vec<Movement>,

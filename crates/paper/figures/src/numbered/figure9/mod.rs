@@ -9,20 +9,12 @@ use plot::Picture;
 use serde::{Deserialize, Serialize};
 
 use crate::sound::{Sound, some};
-use crate::{Document, Drawing, Figure, Sources, rounded};
+use crate::{Drawing, Sources, rounded};
 use curves::Panels;
-
-pub(crate) fn document() -> Document {
-    Document::new("figure9_movements", Some("figure9"), movements)
-}
-
-pub(crate) fn figure() -> Figure {
-    Figure::new("figure9", Some("figure9"), &["figure9_movements", "figure9"], draw)
-}
 
 /// Movements of the first data set, (q₁, q₂, q₃) in radians.
 #[derive(Serialize, Deserialize)]
-struct Movements(Vec<Vec<(f64, f64, f64)>>);
+pub(crate) struct Movements(Vec<Vec<(f64, f64, f64)>>);
 
 impl Sound for Movements {
     const LARGEST: f64 = 10.0;
@@ -33,14 +25,14 @@ impl Sound for Movements {
     }
 }
 
-fn movements(seed: u64) -> anyhow::Result<Movements> {
+pub(crate) fn movements(seed: u64) -> anyhow::Result<Movements> {
     let recordings = arm()?.record(&mut generator(seed, ARM_SYSTEM, 0))?;
     let posture = |q: nalgebra::DVectorView<'_, f64>| (rounded(q[0], 4), rounded(q[1], 4), rounded(q[2], 4));
     let movement = |recording: &demo_gen::Recording| recording.truth.states.column_iter().map(posture).collect();
     Ok(Movements(recordings.iter().map(movement).collect()))
 }
 
-fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let Movements(movements) = sources.document("figure9_movements")?;
     let [joint_space, planes, cylinder] = scenes::scenes(&movements);
     let Panels { along, around, tables } = curves::panels(sources)?;

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::Who;
 use crate::miniature::{Miniature, extent_of};
 use crate::sound::{Sound, among, as_many, some};
-use crate::{Csv, Document, Drawing, Figure, Sources, rounded};
+use crate::{Csv, Drawing, Sources, rounded};
 use tree::Node;
 
 /// Data sets of Table 1 among which one is chosen.
@@ -46,16 +46,8 @@ fn look(kept: bool) -> Look {
     Look { color: if kept { KEPT } else { CUT_OFF }, dash: Dash::Solid, width: 1.4 }
 }
 
-pub(crate) fn document() -> Document {
-    Document::new("figureB1", Some("table1"), coming_apart)
-}
-
-pub(crate) fn figure() -> Figure {
-    Figure::new("figureB1", Some("table1"), &["figureB1"], draw)
-}
-
 #[derive(Serialize, Deserialize)]
-struct ComingApart {
+pub(crate) struct ComingApart {
     data_set: u32,
     movements: Vec<Vec<(f64, f64)>>,
     steps: Vec<Step>,
@@ -73,7 +65,7 @@ struct Step {
 
 /// The data set that comes apart in most steps, though in no more than fit; of several that in which most trajectories
 /// are parted from larger groups.
-fn coming_apart(seed: u64) -> anyhow::Result<ComingApart> {
+pub(crate) fn coming_apart(seed: u64) -> anyhow::Result<ComingApart> {
     let mut best = None;
     for data_set in 0..DATA_SETS {
         let system = ToySystem { potential: ToyPotential::sinusoidal(), ..ToySystem::default() };
@@ -126,7 +118,7 @@ impl Step {
     }
 }
 
-fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
+pub(crate) fn draw(sources: &Sources) -> anyhow::Result<Drawing> {
     let apart: ComingApart = sources.document("figureB1")?;
     let root = Node::of((0..apart.movements.len()).collect(), &apart.steps, &apart.kept);
     let all = root.all();

@@ -6,7 +6,7 @@ use motion::{Demonstrations, Trajectory};
 use crate::Warning;
 
 /// Anomalies of the demonstrations, trajectory by trajectory.
-pub(crate) fn scrutinise(demonstrations: &Demonstrations) -> Vec<Warning> {
+pub(crate) fn check(demonstrations: &Demonstrations) -> Vec<Warning> {
     let trajectories = demonstrations.trajectories();
     let longest = trajectories.iter().map(Trajectory::n_samples).max().unwrap_or(0);
     let dim = demonstrations.dim();

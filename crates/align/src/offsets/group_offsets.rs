@@ -40,8 +40,8 @@ pub(crate) fn group_offsets(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::levelling::bipartition::bipartition;
-    use crate::levelling::responsibilities::squared_radius;
+    use crate::offsets::bipartition::bipartition;
+    use crate::offsets::responsibilities::squared_radius;
     use crate::search::SearchSpace;
     use motion::Demonstrations;
     use nalgebra::DMatrix;

@@ -3,10 +3,10 @@
 pub(crate) mod bipartition;
 mod compensated;
 mod eigen;
+pub(crate) mod group_offsets;
 mod laplacian;
 mod linear_term;
 mod objective;
-pub(crate) mod offsets;
 pub(crate) mod responsibilities;
 mod split;
 mod two_means;
