@@ -12,9 +12,9 @@ use anyhow::Context as _;
 use clap::Args;
 use experiments::leverage::{Changed, Leverage as Measured, Turned};
 use experiments::measure::Measure;
-use experiments::results::ExperimentResult;
+use experiments::results::{Cell as CellResult, ExperimentResult, RowResult};
 use experiments::summary::summarise;
-use experiments::variants::{Cell, Quote, Variants, quotes};
+use experiments::variants::{Cell, Variants, quotes};
 use experiments::verdict::Verdict;
 use experiments::{Experiment, Setting, Setup, quotable, registry, settings, shown};
 use page::markdown_table;
@@ -83,7 +83,9 @@ impl Leverage {
     fn quoted(&self, records: &Arc<Records>) -> anyhow::Result<Variants> {
         let mut variants = Variants::from_seed(self.seed);
         for experiment in registry()? {
-            let of_page = if experiment.id == "table1" { few_movements()? } else { Vec::new() };
+            let text = if experiment.id == "table1" { FEW_MOVEMENTS } else { "" };
+            // Every quote of the page names its cell.
+            let of_page = quotes(&(String::new(), Measure::NupeFresh), text)?;
             for (quote, cell) in experiment.explanations.quotes.iter().chain(&of_page) {
                 let is_meant = |setting: &Setting| setting.experiment == experiment.id && setting.name == quote.setting;
                 let setting = quotable().find(is_meant);
@@ -110,7 +112,12 @@ impl Leverage {
     }
 
     fn verdicts(&self, setting: &Setting, value: f64, records: &Arc<Records>) -> anyhow::Result<Verdicts> {
-        Ok(verdicts(&self.result(setting, value, |_| true, records)?).collect())
+        let result = self.result(setting, value, |_| true, records)?;
+        let of_row = |row: &RowResult| {
+            let verdict = |(&measure, cell): (&Measure, &CellResult)| Some(((row.id.clone(), measure), cell.verdict?));
+            row.measures.iter().filter_map(verdict).collect::<Verdicts>()
+        };
+        Ok(result.rows.iter().flat_map(of_row).collect())
     }
 
     /// The experiment at a setting's value, as far as its setups are wanted.
@@ -131,16 +138,6 @@ impl Leverage {
         work.measure(|_| true, records)?;
         summarise(&experiments, &work.outcomes())?.pop().context("one experiment has one result")
     }
-}
-
-fn few_movements() -> anyhow::Result<Vec<(Quote, Cell)>> {
-    // Every one names its cell.
-    quotes(&(String::new(), Measure::NupeFresh), FEW_MOVEMENTS)
-}
-
-fn verdicts(result: &ExperimentResult) -> impl Iterator<Item = (Cell, Verdict)> {
-    let cells = result.rows.iter().flat_map(|row| row.measures.iter().map(move |(measure, cell)| (row, measure, cell)));
-    cells.filter_map(|(row, measure, cell)| Some(((row.id.clone(), *measure), cell.verdict?)))
 }
 
 /// Cells whose verdict is another, from what to what.

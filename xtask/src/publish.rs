@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, ensure};
 use clap::Args;
 use experiments::leverage::Leverage;
-use experiments::results::{ExperimentResult, Results};
+use experiments::results::Results;
 use experiments::summary::check;
 use experiments::{Experiment, Setup, n_fitted, registry};
 use figures::{Figure, Sources, compute, draw, figures};
@@ -176,7 +176,7 @@ fn complete(experiments: &[Experiment], results: &Results) -> anyhow::Result<()>
 
 /// The tallies, the printed cells of each experiment but for other readings of it, and where the figures are.
 fn reproduction(experiments: &[Experiment], Committed { first, second }: &Committed) -> String {
-    let of_second = Tally::of_first_readings(pairs(experiments, second)).sentence();
+    let of_second = Tally::of_first_readings(second.of(experiments)).sentence();
     let tallies = format!("{}\nWith seed {}: {of_second}\n\n", tallies(experiments, &first.results), second.seed);
     let section = |Section { experiment, text }: Section<'_>| {
         let Experiment { id, title, section, decisions, .. } = experiment;
@@ -194,8 +194,8 @@ fn reproduction(experiments: &[Experiment], Committed { first, second }: &Commit
 
 /// The results in short: how the printed cells compare, and how far the learners' policies carry.
 fn headline(experiments: &[Experiment], first: &Results, second: &Results) -> String {
-    let tally = Tally::of_first_readings(pairs(experiments, first));
-    let of_second = Tally::of_first_readings(pairs(experiments, second));
+    let tally = Tally::of_first_readings(first.of(experiments));
+    let of_second = Tally::of_first_readings(second.of(experiments));
     let (close, all) = tally.close();
     let paper = format!(
         "Of the paper's {} numbers {} (agree: within one printed standard deviation); the median factor between ours and the printed is {:.2}, {close} of \
@@ -218,22 +218,13 @@ fn tallies(experiments: &[Experiment], results: &Results) -> String {
         let factor = tally.median_factor().map_or(String::new(), |factor| format!("{factor:.2}"));
         vec![experiment.to_owned(), section.to_owned(), factor, format!("{close} of {all}"), tally.verdicts()]
     };
-    let counted =
-        pairs(experiments, results).map(|(experiment, result)| (experiment, Tally::of([(experiment, result)])));
+    let counted = results.of(experiments).map(|(experiment, result)| (experiment, Tally::of([(experiment, result)])));
     let counted = counted.filter(|(_, tally)| tally.total() > 0);
     let mut rows: Vec<_> =
         counted.map(|(experiment, tally)| line(experiment.title, experiment.section, &tally)).collect();
-    rows.push(line("**all, as they fit best**", "", &Tally::of_first_readings(pairs(experiments, results))));
-    rows.push(line("all, as the paper says it", "", &Tally::of_literal_readings(pairs(experiments, results))));
+    rows.push(line("**all, as they fit best**", "", &Tally::of_first_readings(results.of(experiments))));
+    rows.push(line("all, as the paper says it", "", &Tally::of_literal_readings(results.of(experiments))));
     markdown_table(&["experiment", "section", "median factor", "within 1.5", "printed numbers"], &rows)
-}
-
-/// Experiments with their results.
-fn pairs<'a>(
-    experiments: &'a [Experiment],
-    results: &'a Results,
-) -> impl Iterator<Item = (&'a Experiment, &'a ExperimentResult)> {
-    experiments.iter().filter_map(|experiment| Some((experiment, results.experiment(experiment.id)?)))
 }
 
 #[cfg(test)]

@@ -61,7 +61,19 @@ impl PolicyAlign {
             let offsets = group_offsets(&responsibilities, &objective, &partition.groups[0])?;
             let mut warnings = Warning::about(&partition, self.eigenvalue_threshold);
             warnings.extend(check(demonstrations));
-            Ok(Aligned::new(demonstrations, potentials, sigma_squared, objective, partition, offsets, warnings))
+            let mut discarded = partition.groups[1..].concat();
+            discarded.sort_unstable();
+            let demonstrations = demonstrations.clone();
+            Ok(Aligned {
+                demonstrations,
+                potentials,
+                sigma_squared,
+                objective,
+                partition,
+                discarded,
+                offsets,
+                warnings,
+            })
         })
     }
 

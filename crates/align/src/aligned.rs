@@ -7,40 +7,18 @@ use crate::{AlignmentObjective, LocalPotential, Split, Warning};
 /// Aligned local potentials, the result of [`PolicyAlign::align`](crate::PolicyAlign::align).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Aligned {
-    demonstrations: Demonstrations,
-    potentials: Vec<Vec<f64>>,
-    sigma_squared: f64,
-    objective: AlignmentObjective,
-    partition: Partition,
-    discarded: Vec<usize>,
-    offsets: DVector<f64>,
-    warnings: Vec<Warning>,
+    pub(crate) demonstrations: Demonstrations,
+    pub(crate) potentials: Vec<Vec<f64>>,
+    pub(crate) sigma_squared: f64,
+    pub(crate) objective: AlignmentObjective,
+    pub(crate) partition: Partition,
+    /// All of `partition` but the first group, ascending.
+    pub(crate) discarded: Vec<usize>,
+    pub(crate) offsets: DVector<f64>,
+    pub(crate) warnings: Vec<Warning>,
 }
 
 impl Aligned {
-    pub(crate) fn new(
-        demonstrations: &Demonstrations,
-        potentials: Vec<Vec<f64>>,
-        sigma_squared: f64,
-        objective: AlignmentObjective,
-        partition: Partition,
-        offsets: DVector<f64>,
-        warnings: Vec<Warning>,
-    ) -> Self {
-        let mut discarded = partition.groups[1..].concat();
-        discarded.sort_unstable();
-        Aligned {
-            demonstrations: demonstrations.clone(),
-            potentials,
-            sigma_squared,
-            objective,
-            partition,
-            discarded,
-            offsets,
-            warnings,
-        }
-    }
-
     /// The trajectories that take part, ascending: the largest group whose offsets the data determine.
     pub fn kept(&self) -> &[usize] {
         &self.partition.groups[0]

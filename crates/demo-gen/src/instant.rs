@@ -5,75 +5,55 @@ use nalgebra::{DMatrix, DVector, DVectorView};
 use crate::{DemoGenError, Quantity, Recording, Truth};
 
 /// Who acts, and what constrains it.
-pub(crate) struct System<'a, D, C: ?Sized> {
-    pub(crate) actor: D,
-    pub(crate) constraint: &'a C,
+pub(crate) struct System<'a> {
+    pub(crate) actor: Actor<'a>,
+    pub(crate) constraint: &'a dyn PfaffianConstraint,
 }
 
 /// A policy, and what is known of its potential.
-pub(crate) trait Actor {
-    /// The potential's value at a state; nothing for a policy that may have none.
-    type Potential;
-
-    fn dim(&self) -> usize;
-
-    /// The action at a state (n) and the potential there, both finite; errors name `sample`.
-    fn act(&self, state: DVectorView<'_, f64>, sample: usize) -> Result<(DVector<f64>, Self::Potential), DemoGenError>;
+#[derive(Clone, Copy)]
+pub(crate) enum Actor<'a> {
+    /// The policy −∇φ of a potential.
+    OfPotential(&'a dyn Potential),
+    /// A policy of which no potential is known.
+    OfPolicy(&'a dyn Policy),
 }
 
-/// The policy −∇φ of a potential.
-pub(crate) struct OfPotential<'a, P: ?Sized>(pub(crate) &'a P);
-
-/// A policy of which no potential is known.
-pub(crate) struct OfPolicy<'a, P: ?Sized>(pub(crate) &'a P);
-
-impl<P: Potential + ?Sized> Actor for OfPotential<'_, P> {
-    type Potential = f64;
-
-    fn dim(&self) -> usize {
-        self.0.dim()
+impl Actor<'_> {
+    pub(crate) fn dim(self) -> usize {
+        match self {
+            Actor::OfPotential(potential) => potential.dim(),
+            Actor::OfPolicy(policy) => policy.dim(),
+        }
     }
 
-    fn act(&self, state: DVectorView<'_, f64>, sample: usize) -> Result<(DVector<f64>, f64), DemoGenError> {
-        let value = self.0.value(state);
-        finite(&[value], Quantity::Potential, sample)?;
-        let action = -self.0.gradient(state);
+    /// The action at a state (n) and the potential there, if it is known, all finite; errors name `sample`.
+    fn act(self, state: DVectorView<'_, f64>, sample: usize) -> Result<(DVector<f64>, Option<f64>), DemoGenError> {
+        let (action, potential) = match self {
+            Actor::OfPotential(potential) => {
+                let value = potential.value(state);
+                finite(&[value], Quantity::Potential, sample)?;
+                (-potential.gradient(state), Some(value))
+            }
+            Actor::OfPolicy(policy) => (policy.action(state), None),
+        };
         finite(action.as_slice(), Quantity::Policy, sample)?;
-        Ok((action, value))
-    }
-}
-
-impl<P: Policy + ?Sized> Actor for OfPolicy<'_, P> {
-    type Potential = ();
-
-    fn dim(&self) -> usize {
-        self.0.dim()
-    }
-
-    fn act(&self, state: DVectorView<'_, f64>, sample: usize) -> Result<(DVector<f64>, ()), DemoGenError> {
-        let action = self.0.action(state);
-        finite(action.as_slice(), Quantity::Policy, sample)?;
-        Ok((action, ()))
+        Ok((action, potential))
     }
 }
 
 /// Everything that is true of the system at one time. All of it is finite.
-pub(crate) struct Instant<T> {
+pub(crate) struct Instant {
     pub(crate) state: DVector<f64>,
     pub(crate) velocity: DVector<f64>,
-    potential: T,
+    potential: Option<f64>,
     action: DVector<f64>,
     projector: NullSpaceProjector,
 }
 
-impl<D: Actor, C: PfaffianConstraint + ?Sized> System<'_, D, C> {
+impl System<'_> {
     /// The system in `state` at `time`; errors name `sample`.
-    pub(crate) fn instant(
-        &self,
-        state: DVector<f64>,
-        time: f64,
-        sample: usize,
-    ) -> Result<Instant<D::Potential>, DemoGenError> {
+    pub(crate) fn instant(&self, state: DVector<f64>, time: f64, sample: usize) -> Result<Instant, DemoGenError> {
         finite(state.as_slice(), Quantity::State, sample)?;
         let (action, potential) = self.actor.act(state.as_view(), sample)?;
         let projector = self
@@ -92,24 +72,24 @@ fn finite(values: &[f64], quantity: Quantity, sample: usize) -> Result<(), DemoG
 }
 
 /// What an observer sees of two or more instants, `time_step` seconds apart.
-pub(crate) fn observed<T>(instants: &[Instant<T>], time_step: f64) -> Result<Trajectory, DemoGenError> {
+pub(crate) fn observed(instants: &[Instant], time_step: f64) -> Result<Trajectory, DemoGenError> {
     let states = columns(instants, |instant| &instant.state);
     Ok(Trajectory::new(states, time_step)?.with_velocities(columns(instants, |instant| &instant.velocity))?)
 }
 
 impl Recording {
     /// The recording of a movement at two or more instants, `time_step` seconds apart.
-    pub(crate) fn of(instants: Vec<Instant<f64>>, time_step: f64) -> Result<Recording, DemoGenError> {
+    pub(crate) fn of(instants: Vec<Instant>, time_step: f64) -> Result<Recording, DemoGenError> {
         let observed = observed(&instants, time_step)?;
         let states = columns(&instants, |instant| &instant.state);
         let actions = columns(&instants, |instant| &instant.action);
-        let potential = DVector::from_iterator(instants.len(), instants.iter().map(|instant| instant.potential));
+        let potential: Vec<f64> = instants.iter().filter_map(|instant| instant.potential).collect();
         let projectors = instants.into_iter().map(|instant| instant.projector).collect();
-        Ok(Recording { observed, truth: Truth { states, potential, actions, projectors } })
+        Ok(Recording { observed, truth: Truth { states, potential: potential.into(), actions, projectors } })
     }
 }
 
-fn columns<T>(instants: &[Instant<T>], part: fn(&Instant<T>) -> &DVector<f64>) -> DMatrix<f64> {
+fn columns(instants: &[Instant], part: fn(&Instant) -> &DVector<f64>) -> DMatrix<f64> {
     let dim = instants.first().map_or(0, |instant| instant.state.len());
     let values = instants.iter().flat_map(|instant| part(instant).iter().copied());
     DMatrix::from_iterator(dim, instants.len(), values)

@@ -3,7 +3,7 @@ use motion::{Policy, Potential, Trajectory};
 use nalgebra::{DVector, DVectorView};
 use serde::Serialize;
 
-use crate::instant::{Actor, Instant, OfPolicy, OfPotential, System, observed};
+use crate::instant::{Actor, Instant, System, observed};
 use crate::{DemoGenError, Part, Recording};
 
 /// How a movement is simulated: x ← x + δt N(x,t) π(x), from time 0.
@@ -42,7 +42,7 @@ impl RollOut {
         P: Potential + ?Sized,
         C: PfaffianConstraint + ?Sized,
     {
-        Recording::of(self.instants(&System { actor: OfPotential(potential), constraint }, start)?, self.time_step)
+        self.recording(&System { actor: Actor::OfPotential(&potential), constraint: &constraint }, start)
     }
 
     /// The movement of any policy from `start` (n), as [`RollOut::record`] makes that of a potential: N states with their
@@ -85,19 +85,21 @@ impl RollOut {
         P: Policy + ?Sized,
         C: PfaffianConstraint + ?Sized,
     {
-        observed(&self.instants(&System { actor: OfPolicy(policy), constraint }, start)?, self.time_step)
+        let system = System { actor: Actor::OfPolicy(&policy), constraint: &constraint };
+        observed(&self.instants(&system, start)?, self.time_step)
+    }
+
+    /// The movement of a system, with its truth.
+    pub(crate) fn recording(
+        &self,
+        system: &System<'_>,
+        start: DVectorView<'_, f64>,
+    ) -> Result<Recording, DemoGenError> {
+        Recording::of(self.instants(system, start)?, self.time_step)
     }
 
     /// All samples of a movement.
-    fn instants<D, C>(
-        &self,
-        system: &System<'_, D, C>,
-        start: DVectorView<'_, f64>,
-    ) -> Result<Vec<Instant<D::Potential>>, DemoGenError>
-    where
-        D: Actor,
-        C: PfaffianConstraint + ?Sized,
-    {
+    fn instants(&self, system: &System<'_>, start: DVectorView<'_, f64>) -> Result<Vec<Instant>, DemoGenError> {
         self.check()?;
         let expected = system.actor.dim();
         for (part, found) in [(Part::Start, start.len()), (Part::Constraint, system.constraint.dim())] {
@@ -114,16 +116,7 @@ impl RollOut {
     }
 
     /// The state one time step after `sample`.
-    fn advance<D, C>(
-        &self,
-        system: &System<'_, D, C>,
-        from: &Instant<D::Potential>,
-        sample: usize,
-    ) -> Result<DVector<f64>, DemoGenError>
-    where
-        D: Actor,
-        C: PfaffianConstraint + ?Sized,
-    {
+    fn advance(&self, system: &System<'_>, from: &Instant, sample: usize) -> Result<DVector<f64>, DemoGenError> {
         let step = self.time_step / self.sub_steps as f64;
         let mut state = &from.state + step * &from.velocity;
         for sub_step in 1..self.sub_steps {

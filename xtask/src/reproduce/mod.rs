@@ -191,20 +191,13 @@ impl Reproduce {
 
     /// Says how it went; a row of which nothing could be measured is an error.
     fn conclude(&self, experiments: &[Experiment], results: &Results, folder: &RunFolder) -> anyhow::Result<()> {
-        let measured: Vec<_> = results
-            .experiments
-            .iter()
-            .filter_map(|result| {
-                experiments.iter().find(|experiment| experiment.id == result.id).map(|experiment| (experiment, result))
-            })
-            .collect();
-        for &(experiment, result) in &measured {
+        for (experiment, result) in results.of(experiments) {
             let tally = Tally::of([(experiment, result)]);
             if tally.total() > 0 {
                 say(&format!("{}: {}", experiment.id, tally.sentences().join("\n")));
             }
         }
-        let total = Tally::of_first_readings(measured);
+        let total = Tally::of_first_readings(results.of(experiments));
         if total.total() > 0 {
             say(&format!("in all: {}", total.sentences().join("\n")));
         }

@@ -1,13 +1,13 @@
 use constraints::{PfaffianConstraint, Switching, Unconstrained};
-use motion::{Policy, Trajectory};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use rand::{Rng, RngExt};
 use serde::Serialize;
 
 use super::policy_kind::{Field, Scene};
 use super::{DriftingConstraint, PolicyKind};
+use crate::instant::{Actor, System};
 use crate::recording::record_each;
-use crate::{DemoGenError, Recording, Redraw, RollOut, Truth};
+use crate::{DemoGenError, Recording, Redraw, RollOut};
 
 /// Which of the movements are constrained, and how.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -111,38 +111,16 @@ impl Scene {
         DVector::from_iterator(self.middle.len(), from_middle)
     }
 
-    fn record<C: PfaffianConstraint>(
+    fn record(
         &self,
         roll_out: &RollOut,
-        constraint: &C,
+        constraint: &dyn PfaffianConstraint,
         start: &DVector<f64>,
     ) -> Result<Recording, DemoGenError> {
-        match &self.field {
-            Field::OfPotential(potential) => roll_out.record(&**potential, constraint, start.as_view()),
-            Field::OfPolicy(policy) => {
-                let observed = roll_out.follow(&**policy, constraint, start.as_view())?;
-                let truth = truth(&**policy, constraint, &observed)?;
-                Ok(Recording { observed, truth })
-            }
-        }
+        let actor = match &self.field {
+            Field::OfPotential(potential) => Actor::OfPotential(&**potential),
+            Field::OfPolicy(policy) => Actor::OfPolicy(&**policy),
+        };
+        roll_out.recording(&System { actor, constraint }, start.as_view())
     }
-}
-
-/// What is true of a movement of a policy without potential.
-fn truth<C: PfaffianConstraint>(
-    policy: &dyn Policy,
-    constraint: &C,
-    observed: &Trajectory,
-) -> Result<Truth, DemoGenError> {
-    let mut actions = DMatrix::zeros(observed.dim(), observed.n_samples());
-    for (state, action) in observed.states().column_iter().zip(actions.column_iter_mut()) {
-        policy.action_into(state, action);
-    }
-    let at = |sample: usize| {
-        let time = observed.time_step() * sample as f64;
-        let projector = constraint.null_space_projector(observed.state(sample), time);
-        projector.map_err(|source| DemoGenError::Constraint { sample, source })
-    };
-    let projectors = (0..observed.n_samples()).map(at).collect::<Result<_, _>>()?;
-    Ok(Truth { states: observed.states().clone(), potential: DVector::zeros(0), actions, projectors })
 }

@@ -6,7 +6,7 @@ use pulp::Simd;
 use crate::field::element::{Element, add_scaled};
 use crate::field::{Field, Layout};
 use crate::learning::activation_table::{ActivationTable, distance};
-use crate::learning::memory::Seen;
+use crate::learning::memory::KnownDistances;
 use crate::settings::Settings;
 use crate::settings::kernel::Activation;
 use crate::{Kernel, Metric};
@@ -42,7 +42,7 @@ impl Group {
 
 /// The fields that a sample activates, in list order.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Near {
+pub(crate) struct ActivatedFields {
     len: usize,
     fields: Vec<usize>,
     /// Distances and activations: of a narrow model's fields where they have their place among all, so that nothing is moved
@@ -53,9 +53,9 @@ pub(crate) struct Near {
     largest: f64,
 }
 
-impl Near {
-    /// Looks for the fields closer than the radius to the padded, normalised sample `x`; those it has `seen` are not
-    /// compared again, for which there must be no table.
+impl ActivatedFields {
+    /// Looks for the fields closer than the radius to the padded, normalised sample `x`; those whose distance is `known`
+    /// are not compared again, for which there must be no table.
     #[inline(always)]
     pub(crate) fn find<S: Simd>(
         &mut self,
@@ -64,34 +64,34 @@ impl Near {
         (fields, table): (&[Field], &ActivationTable),
         (x, squared_radius): (&[f64], f64),
         scratch: &mut [f64],
-        seen: Option<&mut Seen>,
+        known: Option<&mut KnownDistances>,
     ) {
         self.clear(fields.len());
         if settings.narrow() {
-            self.look_up(simd, settings, table, (x, squared_radius));
+            self.search_table(simd, settings, table, (x, squared_radius));
             return;
         }
-        let from = match &seen {
-            Some(seen) => self.recall(seen),
+        let from = match &known {
+            Some(known) => self.recall(known),
             None => 0,
         };
         if settings.params.metric == Metric::Diagonal {
             if settings.width == 24 {
-                self.look::<S>(simd, (fields, from), (&x[..24], squared_radius), &mut scratch[..24]);
+                self.search::<S>(simd, (fields, from), (&x[..24], squared_radius), &mut scratch[..24]);
             } else {
-                self.look::<S>(simd, (fields, from), (x, squared_radius), &mut scratch[..settings.width]);
+                self.search::<S>(simd, (fields, from), (x, squared_radius), &mut scratch[..settings.width]);
             }
         } else {
             let layout = Layout::new(settings, settings.width);
             for (k, field) in fields.iter().enumerate().skip(from) {
-                self.see(k, full_distance(field, layout, x, &mut scratch[..layout.width]), squared_radius);
+                self.add(k, full_distance(field, layout, x, &mut scratch[..layout.width]), squared_radius);
             }
         }
-        if let Some(seen) = seen {
-            let known = seen.fields.len();
-            seen.fields.extend_from_slice(&self.fields[known..self.len]);
-            seen.q.extend((known..self.len).map(|place| self.groups[place / LANES].q[place % LANES]));
-            seen.n_compared = fields.len();
+        if let Some(known) = known {
+            let n_known = known.fields.len();
+            known.fields.extend_from_slice(&self.fields[n_known..self.len]);
+            known.q.extend((n_known..self.len).map(|place| self.groups[place / LANES].q[place % LANES]));
+            known.n_compared = fields.len();
         }
         self.activate(simd, settings.params.kernel);
     }
@@ -99,18 +99,18 @@ impl Near {
     /// [`find`](Self::find) in the table of a narrow model. With two
     /// dimensions, which the compiler then knows, arithmetic is shorter than loops around it.
     #[inline(always)]
-    fn look_up<S: Simd>(&mut self, simd: S, settings: &Settings, table: &ActivationTable, sample: (&[f64], f64)) {
+    fn search_table<S: Simd>(&mut self, simd: S, settings: &Settings, table: &ActivationTable, sample: (&[f64], f64)) {
         let kernel = settings.params.kernel;
         match (settings.params.metric, settings.n_in) {
-            (Metric::Diagonal, 2) => self.look_up_with(simd, (Metric::Diagonal, 2), kernel, table, sample),
-            (Metric::Full, 2) => self.look_up_with(simd, (Metric::Full, 2), kernel, table, sample),
-            shape => self.look_up_with(simd, shape, kernel, table, sample),
+            (Metric::Diagonal, 2) => self.search_table_with(simd, (Metric::Diagonal, 2), kernel, table, sample),
+            (Metric::Full, 2) => self.search_table_with(simd, (Metric::Full, 2), kernel, table, sample),
+            shape => self.search_table_with(simd, shape, kernel, table, sample),
         }
     }
 
-    /// [`look_up`](Self::look_up) for one kind of metric and one number of dimensions.
+    /// [`search_table`](Self::search_table) for one kind of metric and one number of dimensions.
     #[inline(always)]
-    fn look_up_with<S: Simd>(
+    fn search_table_with<S: Simd>(
         &mut self,
         simd: S,
         (metric, n): (Metric, usize),
@@ -129,23 +129,23 @@ impl Near {
                 }
                 distance(simd, metric, (&dx[..n], elements), part).store(&mut q, part);
             }
-            largest = self.see_group(kernel, (b, &q), squared_radius, largest);
+            largest = self.add_group(kernel, (b, &q), squared_radius, largest);
         }
-        self.all_seen(largest);
+        self.finish_table(largest);
     }
 
     /// Takes over what is known of a sample. Returns with how many fields it has been compared.
     #[inline(always)]
-    fn recall(&mut self, seen: &Seen) -> usize {
-        for (&field, &q) in seen.fields.iter().zip(&seen.q) {
-            self.see(field, q, f64::INFINITY);
+    fn recall(&mut self, known: &KnownDistances) -> usize {
+        for (&field, &q) in known.fields.iter().zip(&known.q) {
+            self.add(field, q, f64::INFINITY);
         }
-        seen.n_compared
+        known.n_compared
     }
 
     /// [`find`](Self::find) with a wide diagonal metric, from field `from` on.
     #[inline(always)]
-    fn look<S: Simd>(
+    fn search<S: Simd>(
         &mut self,
         simd: S,
         (fields, from): (&[Field], usize),
@@ -153,13 +153,13 @@ impl Near {
         scratch: &mut [f64],
     ) {
         for (k, field) in fields.iter().enumerate().skip(from) {
-            self.see(k, diagonal_distance(simd, field, x, scratch), squared_radius);
+            self.add(k, diagonal_distance(simd, field, x, scratch), squared_radius);
         }
     }
 
-    /// Holds field `field` alone.
+    /// Makes field `field` the only one.
     #[inline(always)]
-    pub(crate) fn only(&mut self, field: usize, q: f64, activation: Activation<f64>) {
+    pub(crate) fn set_single(&mut self, field: usize, q: f64, activation: Activation<f64>) {
         self.clear(1);
         (self.len, self.fields[0]) = (1, field);
         let Group { q: first, activation: Activation { w, slope, curvature } } = &mut self.groups[0];
@@ -182,13 +182,13 @@ impl Near {
 
     /// Keeps field and distance if it is within the radius, without a branch: which fields are near cannot be predicted.
     #[inline(always)]
-    fn see(&mut self, field: usize, q: f64, squared_radius: f64) {
+    fn add(&mut self, field: usize, q: f64, squared_radius: f64) {
         self.fields[self.len] = field;
         self.groups[self.len / LANES].q[self.len % LANES] = q;
         self.len += usize::from(q < squared_radius);
     }
 
-    /// Distances of the fields seen become activations, several at a time.
+    /// Distances of the fields added become activations, several at a time.
     #[inline(always)]
     fn activate<S: Simd>(&mut self, simd: S, kernel: Kernel) {
         let mut largest = Register::splat(simd, 0.0);
@@ -205,10 +205,10 @@ impl Near {
         self.largest = largest.largest();
     }
 
-    /// [`see`](Self::see) and [`activate`](Self::activate) for the eight fields of group `g` of a narrow model. Returns the
+    /// [`add`](Self::add) and [`activate`](Self::activate) for the eight fields of group `g` of a narrow model. Returns the
     /// larger of their activations and `largest`.
     #[inline(always)]
-    fn see_group<S: Simd>(
+    fn add_group<S: Simd>(
         &mut self,
         kernel: Kernel,
         (g, q): (usize, &Lanes),
@@ -237,9 +237,9 @@ impl Near {
         largest
     }
 
-    /// All fields of a narrow model have been seen.
+    /// All fields of a narrow model have been added.
     #[inline(always)]
-    fn all_seen<S: Simd>(&mut self, largest: Register<S>) {
+    fn finish_table<S: Simd>(&mut self, largest: Register<S>) {
         (self.among_all, self.largest) = (true, largest.largest());
     }
 

@@ -11,7 +11,7 @@ use lanes::LANES;
 use pulp::Simd;
 
 use crate::field::Field;
-use crate::learning::activation::Near;
+use crate::learning::activation::ActivatedFields;
 use crate::learning::chunk::{Chunk, Shape};
 use crate::learning::lane_block::LaneBlock;
 use crate::learning::rules::{LearnFromOne, Workspace};
@@ -39,7 +39,7 @@ pub(crate) struct BatchScratch {
     /// long one at the end.
     load: Vec<usize>,
     workspace: Workspace,
-    near: Near,
+    activated: ActivatedFields,
 }
 
 /// A sample needs a field, but there are enough.
@@ -62,7 +62,7 @@ impl BatchScratch {
             start: Vec::new(),
             load: Vec::new(),
             workspace: Workspace::new(settings, settings.width),
-            near: Near::default(),
+            activated: ActivatedFields::default(),
         }
     }
 }
@@ -290,10 +290,10 @@ impl pulp::WithSimd for Alone<'_, '_> {
             let activation = settings.params.kernel.at(q);
             training.see(sample, k, activation.w);
             let (x, y) = (training.chunk.row(sample), training.y[sample]);
-            let BatchScratch { near, workspace, .. } = &mut *training.scratch;
-            near.only(0, q, activation);
+            let BatchScratch { activated, workspace, .. } = &mut *training.scratch;
+            activated.set_single(0, q, activation);
             let fields = std::slice::from_mut(&mut *field);
-            LearnFromOne { settings, fields, table: None, near, x, y, workspace }.run(simd);
+            LearnFromOne { settings, fields, table: None, activated, x, y, workspace }.run(simd);
             next = sample + 1;
         }
     }

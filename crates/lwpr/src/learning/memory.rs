@@ -9,12 +9,12 @@ const MOST: usize = 1 << 20;
 /// For each output and each sample of a batch the fields that it activates.
 #[derive(Debug)]
 pub(crate) struct Memory {
-    outputs: Vec<Vec<Seen>>,
+    outputs: Vec<Vec<KnownDistances>>,
 }
 
 /// The fields that a sample activates, among those that it has been compared with.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Seen {
+pub(crate) struct KnownDistances {
     pub(super) fields: Vec<usize>,
     pub(super) q: Vec<f64>,
     pub(super) n_compared: usize,
@@ -26,11 +26,11 @@ impl Memory {
     pub(crate) fn new(settings: &Settings, n_samples: usize, passes: usize) -> Option<Self> {
         let stays = settings.params.adaptation == MetricAdaptation::Fixed && settings.params.w_prune == 1.0;
         let pays = passes > 1 && !settings.narrow() && n_samples.saturating_mul(settings.n_out) <= MOST;
-        (stays && pays).then(|| Memory { outputs: vec![vec![Seen::default(); n_samples]; settings.n_out] })
+        (stays && pays).then(|| Memory { outputs: vec![vec![KnownDistances::default(); n_samples]; settings.n_out] })
     }
 
     #[inline(always)]
-    pub(crate) fn of(&mut self, output: usize, sample: usize) -> &mut Seen {
+    pub(crate) fn of(&mut self, output: usize, sample: usize) -> &mut KnownDistances {
         &mut self.outputs[output][sample]
     }
 }

@@ -3,7 +3,7 @@
 use lanes::Register;
 use pulp::Simd;
 
-use super::activation::{ActivatedField, Near};
+use super::activation::{ActivatedField, ActivatedFields};
 use super::activation_table::ActivationTable;
 use super::full_metric::FullScratch;
 use super::metric::{Diagonal, Full, Shape, update_metric};
@@ -46,7 +46,7 @@ pub(crate) struct LearnFromOne<'a> {
     pub(crate) fields: &'a mut [Field],
     /// The fields' metrics, where others look at them.
     pub(crate) table: Option<&'a mut ActivationTable>,
-    pub(crate) near: &'a Near,
+    pub(crate) activated: &'a ActivatedFields,
     pub(crate) x: &'a [f64],
     pub(crate) y: f64,
     pub(crate) workspace: &'a mut Workspace,
@@ -91,7 +91,12 @@ impl LearnFromOne<'_> {
     /// Works in `rows` and `gram`; the length of `x` is that of rows.
     #[inline(always)]
     fn all<M: Shape, E: Element<f64>>(
-        (settings, fields, mut table, near): (&Settings, &mut [Field], Option<&mut ActivationTable>, &Near),
+        (settings, fields, mut table, activated): (
+            &Settings,
+            &mut [Field],
+            Option<&mut ActivationTable>,
+            &ActivatedFields,
+        ),
         token: E::Token,
         (x, y): (&[f64], f64),
         (rows, gram): (&mut [f64], &mut [f64]),
@@ -99,7 +104,7 @@ impl LearnFromOne<'_> {
         // Rows of two are not padded: then all is a constant.
         let n_in = if x.len() == 2 { 2 } else { settings.n_in };
         let layout = Layout::of(settings, x.len(), (M::METRIC, n_in));
-        for ActivatedField { field: k, q, activation } in near.iter() {
+        for ActivatedField { field: k, q, activation } in activated.iter() {
             if q < settings.training_squared_radius {
                 let field = &mut fields[k];
                 let wanted = train::<f64, E, M>(((), token), field, (settings, layout), (x, y), activation, rows, gram);
@@ -126,11 +131,11 @@ impl<M: Shape, const WIDTH: usize> pulp::WithSimd for OfWidth<'_, M, WIDTH> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let LearnFromOne { settings, fields, table, near, x, y, .. } = self.learn;
+        let LearnFromOne { settings, fields, table, activated, x, y, .. } = self.learn;
         let scratch = &mut Scratch { rows: [[0.0; WIDTH]; SCRATCH_ROWS], gram: [[0.0; WIDTH]; WIDTH] };
         let Scratch { rows, gram } = scratch;
         let scratch = (rows.as_flattened_mut(), gram.as_flattened_mut());
-        let (all, sample) = ((settings, fields, table, near), (&x[..WIDTH], y));
+        let (all, sample) = ((settings, fields, table, activated), (&x[..WIDTH], y));
         if const { WIDTH.is_multiple_of(S::F64_LANES) } {
             LearnFromOne::all::<M, Register<S>>(all, simd, sample, scratch);
         } else {
@@ -151,9 +156,9 @@ impl<M: Shape, const REGISTERS: bool> pulp::WithSimd for OfAnyWidth<'_, M, REGIS
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let LearnFromOne { settings, fields, table, near, x, y, workspace } = self.learn;
+        let LearnFromOne { settings, fields, table, activated, x, y, workspace } = self.learn;
         let scratch = (&mut workspace.rows[..], &mut workspace.gram[..]);
-        let (all, sample) = ((settings, fields, table, near), (&x[..settings.width], y));
+        let (all, sample) = ((settings, fields, table, activated), (&x[..settings.width], y));
         if const { REGISTERS } {
             LearnFromOne::all::<M, Register<S>>(all, simd, sample, scratch);
         } else {

@@ -2,9 +2,9 @@
 
 use crate::Pruning;
 use crate::field::Field;
-use crate::learning::activation::{ActivatedField, Near};
+use crate::learning::activation::{ActivatedField, ActivatedFields};
 use crate::learning::activation_table::ActivationTable;
-use crate::learning::memory::Seen;
+use crate::learning::memory::KnownDistances;
 use crate::learning::rules::{LearnFromOne, Workspace};
 use crate::settings::Settings;
 
@@ -25,9 +25,9 @@ pub(crate) struct Strongest {
 
 impl Strongest {
     /// Among the fields near a sample but one; of equal ones the earlier counts. Only few samples ask.
-    fn among(near: &Near, but: Option<usize>) -> Self {
+    fn among(activated: &ActivatedFields, but: Option<usize>) -> Self {
         let mut strongest = Strongest::default();
-        for ActivatedField { field, activation, .. } in near.iter() {
+        for ActivatedField { field, activation, .. } in activated.iter() {
             if activation.w > strongest.w && Some(field) != but {
                 strongest = Strongest { w: activation.w, field };
             }
@@ -51,7 +51,7 @@ impl Strongest {
 }
 
 impl SubModel {
-    /// Finds the fields that the normalised sample `x` activates, some of which may have been `seen`, and how strongly.
+    /// Finds the fields that the normalised sample `x` activates, to some of which distances may be `known`, and how strongly.
     #[inline(always)]
     pub(crate) fn activate<S: pulp::Simd>(
         &self,
@@ -59,10 +59,10 @@ impl SubModel {
         settings: &Settings,
         x: &[f64],
         workspace: &mut Workspace,
-        (near, seen): (&mut Near, Option<&mut Seen>),
+        (activated, known): (&mut ActivatedFields, Option<&mut KnownDistances>),
     ) {
         let (fields, sample) = ((&self.fields[..], &self.table), (x, settings.squared_radius));
-        near.find(simd, settings, fields, sample, &mut workspace.rows, seen);
+        activated.find(simd, settings, fields, sample, &mut workspace.rows, known);
     }
 
     /// One step of learning from the normalised sample (x, y): 1.4 of the algorithm for one output.
@@ -73,15 +73,15 @@ impl SubModel {
         settings: &Settings,
         (x, y): (&[f64], f64),
         workspace: &mut Workspace,
-        near: &Near,
+        activated: &ActivatedFields,
     ) {
         let table = settings.narrow().then_some(&mut self.table);
-        LearnFromOne { settings, fields: &mut self.fields, table, near, x, y, workspace }.run(simd);
-        if near.asks_for_field(settings) {
-            self.create(settings, x, y, Strongest::among(near, None));
+        LearnFromOne { settings, fields: &mut self.fields, table, activated, x, y, workspace }.run(simd);
+        if activated.asks_for_field(settings) {
+            self.create(settings, x, y, Strongest::among(activated, None));
         } else if settings.params.w_prune < 1.0 {
-            let first = Strongest::among(near, None).field;
-            let second = Strongest::among(near, Some(first));
+            let first = Strongest::among(activated, None).field;
+            let second = Strongest::among(activated, Some(first));
             if second.w > settings.params.w_prune {
                 self.prune(settings, (first, second.field));
             }

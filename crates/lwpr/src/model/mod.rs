@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Side;
 use crate::field::rows::Rows;
-use crate::learning::activation::Near;
+use crate::learning::activation::ActivatedFields;
 use crate::learning::memory::Memory;
 use crate::learning::rules::Workspace;
 use crate::learning::sub_model::SubModel;
@@ -35,7 +35,7 @@ struct Online {
     x: Rows,
     workspace: Workspace,
     /// For each output.
-    near: Vec<Near>,
+    activated: Vec<ActivatedFields>,
 }
 
 /// [`Lwpr::update_checked`] for the samples of `order`, one after the other, compiled for the processor at hand.
@@ -82,7 +82,7 @@ impl Lwpr {
         let online = Online {
             x: Rows::zeros(settings.width),
             workspace: Workspace::new(&settings, settings.width),
-            near: vec![Near::default(); settings.n_out],
+            activated: vec![ActivatedFields::default(); settings.n_out],
         };
         Lwpr { settings, outputs, n_data, online }
     }
@@ -112,16 +112,16 @@ impl Lwpr {
             *normalised = x / norm;
         }
         let limit = settings.params.max_receptive_fields.unwrap_or(usize::MAX);
-        for (k, (sub_model, near)) in outputs.iter().zip(&mut online.near).enumerate() {
-            let seen = memory.as_mut().map(|memory| memory.of(k, sample));
-            sub_model.activate(simd, settings, &online.x, &mut online.workspace, (near, seen));
-            if near.asks_for_field(settings) && sub_model.fields.len() >= limit {
+        for (k, (sub_model, activated)) in outputs.iter().zip(&mut online.activated).enumerate() {
+            let known = memory.as_mut().map(|memory| memory.of(k, sample));
+            sub_model.activate(simd, settings, &online.x, &mut online.workspace, (activated, known));
+            if activated.asks_for_field(settings) && sub_model.fields.len() >= limit {
                 return Err(LwprError::TooManyReceptiveFields { sample, output: k, limit });
             }
         }
         for (k, sub_model) in outputs.iter_mut().enumerate() {
             let y = y[k] / settings.norm_out[k];
-            sub_model.learn(simd, settings, (&online.x, y), &mut online.workspace, &online.near[k]);
+            sub_model.learn(simd, settings, (&online.x, y), &mut online.workspace, &online.activated[k]);
         }
         *n_data += 1;
         Ok(())

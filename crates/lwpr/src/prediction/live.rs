@@ -10,7 +10,7 @@ use super::sweep::Wanted;
 use super::{Prediction, is_query};
 use crate::field::element::{Element, add_scaled};
 use crate::field::{DIRECTION_ROWS, Field, Layout};
-use crate::learning::activation::{ActivatedField, Near};
+use crate::learning::activation::{ActivatedField, ActivatedFields};
 use crate::learning::sub_model::SubModel;
 use crate::settings::Settings;
 use crate::{Lwpr, Metric};
@@ -30,7 +30,7 @@ struct Term {
 struct Scratch {
     /// x, x − mean less what the directions explain, M(x − c).
     rows: Vec<f64>,
-    near: Near,
+    activated: ActivatedFields,
     terms: Vec<Term>,
     vectors: Vec<f64>,
 }
@@ -105,7 +105,7 @@ impl pulp::WithSimd for Ask<'_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) -> Option<f64> {
         let width = self.settings.width;
-        let Scratch { rows, near, terms, .. } = &mut *self.scratch;
+        let Scratch { rows, activated, terms, .. } = &mut *self.scratch;
         rows.clear();
         rows.resize(3 * width, 0.0);
         let (x, rest) = rows.split_at_mut(width);
@@ -119,7 +119,7 @@ impl pulp::WithSimd for Ask<'_> {
             self.settings.params.kernel.squared_radius(self.cutoff.min(1.0)) + 1e-6
         };
         let fields = (&self.sub_model.fields[..], &self.sub_model.table);
-        near.find(simd, self.settings, fields, (x, squared_radius), rest, None);
+        activated.find(simd, self.settings, fields, (x, squared_radius), rest, None);
         terms.clear();
         if S::F64_LANES > 1 && width.is_multiple_of(S::F64_LANES) {
             self.answer::<Register<S>>(simd)
@@ -133,11 +133,11 @@ impl Ask<'_> {
     #[inline(always)]
     fn answer<E: Element<f64>>(self, token: E::Token) -> Option<f64> {
         let Ask { settings, sub_model, norm_out, cutoff, wanted, scratch, .. } = self;
-        let Scratch { rows, near, terms, vectors } = scratch;
+        let Scratch { rows, activated, terms, vectors } = scratch;
         let width = settings.width;
         let (x, rest) = rows.split_at_mut(width);
         let (mut nearest, mut sum_w, mut sum_wy) = (0.0, 0.0, 0.0);
-        for ActivatedField { field, activation, .. } in near.iter() {
+        for ActivatedField { field, activation, .. } in activated.iter() {
             nearest = if activation.w > nearest { activation.w } else { nearest };
             let field = &sub_model.fields[field];
             if activation.w <= cutoff || !field.is_trustworthy() {

@@ -28,6 +28,11 @@ impl Agreement {
         self.worst = self.worst.max(if ours.len() == theirs.len() { relative } else { f64::INFINITY });
     }
 
+    /// Takes in a difference that is known already; NaN is infinitely far.
+    pub(super) fn differs_by(&mut self, difference: f64) {
+        self.worst = self.worst.max(if difference.is_nan() { f64::INFINITY } else { difference });
+    }
+
     pub(super) fn holds(&self) -> bool {
         self.worst <= self.tolerance
     }

@@ -9,7 +9,7 @@ use kinematics::{Joint, RobotModel, Workspace};
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix3xX, Matrix6xX};
 use serde::Deserialize;
 
-use super::read_json;
+use super::{Agreement, TOLERANCE, read_json};
 
 #[derive(Debug, Deserialize)]
 struct Case {
@@ -32,8 +32,8 @@ struct Frame {
     jacobian: Vec<Vec<f64>>,
 }
 
-/// The largest difference over all configurations and frames, whichever way they are computed.
-pub(super) fn check(file: &Path) -> anyhow::Result<f64> {
+/// Poses and Jacobians over all configurations and frames, whichever way they are computed.
+pub(super) fn check(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let case: Case = read_json(file)?;
     let urdf = file.with_file_name(&case.urdf);
     let text = fs::read_to_string(&urdf).with_context(|| format!("cannot read {}", urdf.display()))?;
@@ -42,28 +42,26 @@ pub(super) fn check(file: &Path) -> anyhow::Result<f64> {
     ensure!(names == case.joints, "the joints are {names:?}, in the reference {:?}", case.joints);
     let root = robot.link_name(robot.root());
     ensure!(root == case.root_link, "the root link is {root}, in the reference {}", case.root_link);
-    let mut worst = 0.0;
+    let mut agreement = Agreement::new("poses and Jacobians", TOLERANCE);
     for configuration in &case.configurations {
-        worst = f64::max(worst, difference(&robot, configuration)?);
+        compare(&robot, configuration, &mut agreement)?;
     }
-    Ok(worst)
+    Ok(vec![agreement])
 }
 
-fn difference(robot: &RobotModel, reference: &Configuration) -> anyhow::Result<f64> {
+fn compare(robot: &RobotModel, reference: &Configuration, agreement: &mut Agreement) -> anyhow::Result<()> {
     let q = DVector::from_column_slice(&reference.q);
     let mut workspace = Workspace::new();
     let mut six = Matrix6xX::zeros(robot.n_joints());
     let mut three = Matrix3xX::zeros(robot.n_joints());
-    let mut worst = 0.0;
     for (name, expected) in &reference.frames {
         let link = robot.link(name)?;
         let (pose, jacobian) = (matrix(&expected.pose), matrix(&expected.jacobian));
         let mut compare = |reached: Isometry3<f64>, six: &Matrix6xX<f64>, three: &Matrix3xX<f64>| {
             let reached = DMatrix::from_column_slice(4, 4, reached.to_homogeneous().as_slice());
-            for difference in [(reached - &pose).amax(), (six - &jacobian).amax(), (three - jacobian.rows(0, 3)).amax()]
-            {
-                worst = f64::max(worst, difference);
-            }
+            agreement.differs_by((reached - &pose).amax());
+            agreement.differs_by((six - &jacobian).amax());
+            agreement.differs_by((three - jacobian.rows(0, 3)).amax());
         };
         let poses = robot.forward_kinematics(q.as_view(), &mut workspace)?;
         poses.jacobian(link, &mut six)?;
@@ -74,7 +72,7 @@ fn difference(robot: &RobotModel, reference: &Configuration) -> anyhow::Result<f
         chain.position_jacobian(q.as_view(), &mut workspace, &mut three)?;
         compare(nalgebra::convert(reached), &six, &three);
     }
-    Ok(worst)
+    Ok(())
 }
 
 fn matrix(rows: &[Vec<f64>]) -> DMatrix<f64> {

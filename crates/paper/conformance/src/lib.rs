@@ -21,22 +21,19 @@ use serde_json::Value;
 
 use self::agreement::Agreement;
 
-/// One reference file and how far we are from it.
-struct Checked {
-    file: PathBuf,
-    /// Largest difference, in the unit that the tolerance is in.
-    worst: f64,
-}
-
 /// Folders with something to compare.
 const FOLDERS: [&str; 6] = ["lwpr", "kinematics", "slope_gp", "reading", "urdf_traps", "files"];
 
-/// Largest difference that counts as agreement: absolute for robots (metres, radians), for LWPR relative to the largest
-/// reference value of the same kind.
+/// Largest difference that counts as agreement unless said: absolute for robots (metres, radians), else relative to the
+/// largest reference value of the same kind.
 const TOLERANCE: f64 = 1e-10;
 
 /// Compares the numbers of a file, each kind with a tolerance of its own.
 type Check = fn(&Path) -> anyhow::Result<Vec<Agreement>>;
+
+/// What is compared in lwpr/*.json and kinematics/*.json: files of one kind, which none of them names.
+const LWPR: [(&str, Check); 1] = [("", lwpr_cases::check)];
+const KINEMATICS: [(&str, Check); 1] = [("", kinematics_cases::check)];
 
 /// What is compared in slope_gp/*.json, by kind of file.
 const SLOPE_GP: [(&str, Check); 7] = [
@@ -57,22 +54,14 @@ const READING: [(&str, Check); 3] = [
 ];
 
 /// Compares everything in a folder with lwpr/*.json, kinematics/*.json and their robots, slope_gp/*.json, reading/*.json,
-/// urdf_traps/expected.json and files/expected.json with their files; says, line by line, how far each is off.
+/// urdf_traps/expected.json and files/expected.json with their files; says, line by line, how far each kind of number is off.
 ///
 /// # Errors
 /// If a file disagrees, or if there is none.
 pub fn compare(vectors: &Path, say: fn(&str)) -> anyhow::Result<()> {
     let (mut disagreeing, mut files, mut skipped) = (0, 0, unknown_folders(vectors)?);
-    for (folder, check) in
-        [("lwpr", lwpr_cases::check as fn(&Path) -> anyhow::Result<f64>), ("kinematics", kinematics_cases::check)]
-    {
-        for file in json_files(&vectors.join(folder))? {
-            let worst = check(&file).with_context(|| format!("{} cannot be compared", file.display()))?;
-            disagreeing += usize::from(Checked { file, worst }.report(say) > TOLERANCE);
-            files += 1;
-        }
-    }
-    for (folder, checks) in [("slope_gp", &SLOPE_GP[..]), ("reading", &READING[..])] {
+    let all = [("lwpr", &LWPR[..]), ("kinematics", &KINEMATICS), ("slope_gp", &SLOPE_GP), ("reading", &READING)];
+    for (folder, checks) in all {
         for file in json_files(&vectors.join(folder))? {
             match check_of(&file, checks)? {
                 Ok(check) => {
@@ -100,15 +89,6 @@ pub fn compare(vectors: &Path, say: fn(&str)) -> anyhow::Result<()> {
     let skipped = if skipped.is_empty() { String::new() } else { format!(", {} skipped", skipped.len()) };
     say(&format!("conformance: {compared} reference cases agree (tolerance {TOLERANCE:.0e} unless said){skipped}"));
     Ok(())
-}
-
-impl Checked {
-    /// Says the difference and returns it; NaN counts as infinitely far.
-    fn report(&self, say: fn(&str)) -> f64 {
-        let worst = if self.worst.is_nan() { f64::INFINITY } else { self.worst };
-        say(&format!("{worst:9.1e}  {}", self.file.display()));
-        worst
-    }
 }
 
 /// How a file is compared, or why it is not: by its member `kind`, which in a list its first entry has, or without that

@@ -7,7 +7,7 @@ use lwpr::{Kernel, Lwpr, LwprParams, Metric, MetricAdaptation, Predictor};
 use nalgebra::DVector;
 use serde::Deserialize;
 
-use super::{columns, read_json};
+use super::{Agreement, TOLERANCE, columns, read_json};
 
 /// Confidence from here on means that no receptive field was in reach.
 const NO_SUPPORT: f64 = 1e18;
@@ -54,8 +54,8 @@ struct Params {
     init_D_diagonal: f64,
 }
 
-/// The largest difference of values, gradients, activations and confidence, each over its largest reference value.
-pub(super) fn check(file: &Path) -> anyhow::Result<f64> {
+/// Values, gradients, activations and confidence.
+pub(super) fn check(file: &Path) -> anyhow::Result<Vec<Agreement>> {
     let case: Case = read_json(file)?;
     let mut model = case.params.ours().build(case.n_in, case.n_out)?;
     let (xs, ys) = (columns(&case.x_train), columns(&case.y_train));
@@ -81,30 +81,38 @@ impl Case {
         samples as f64 * (1.0 - self.params.init_lambda) < ERRORS_FROM
     }
 
-    fn compare(&self, predictor: &Predictor) -> f64 {
-        let [mut value, mut gradient, mut confidence, mut activation] = [Difference::default(); 4];
+    fn compare(&self, predictor: &Predictor) -> Vec<Agreement> {
+        let [mut value, mut gradient, mut confidence, mut activation] = [const { Vec::new() }; 4];
         for (i, x) in columns(&self.x_test).column_iter().enumerate() {
             for output in 0..self.n_out {
-                activation.compare(predictor.max_activation(x.as_view(), output), self.max_activation[i][output]);
+                activation.push((predictor.max_activation(x.as_view(), output), self.max_activation[i][output]));
             }
             let Some(prediction) = predictor.predict(x.as_view()) else {
                 // The reference says so by an enormous confidence; otherwise this is infinitely wrong.
                 let excused = self.confidence[i].iter().any(|&confidence| confidence > NO_SUPPORT);
-                value.compare(if excused { 0.0 } else { f64::INFINITY }, 0.0);
+                value.push((if excused { 0.0 } else { f64::INFINITY }, 0.0));
                 continue;
             };
             for output in 0..self.n_out {
-                value.compare(prediction.value[output], self.value[i][output]);
+                value.push((prediction.value[output], self.value[i][output]));
                 for k in 0..self.n_in {
-                    gradient.compare(prediction.gradient[(output, k)], self.gradient[i][output][k]);
+                    gradient.push((prediction.gradient[(output, k)], self.gradient[i][output][k]));
                 }
                 let (ours, theirs) = (prediction.confidence[output], self.confidence[i][output]);
                 if ours.is_finite() || !self.is_young() {
-                    confidence.compare(ours, theirs);
+                    confidence.push((ours, theirs));
                 }
             }
         }
-        [value, gradient, confidence, activation].iter().map(Difference::relative).fold(0.0, f64::max)
+        let numbers =
+            [("values", value), ("gradients", gradient), ("confidence", confidence), ("activations", activation)];
+        let agreement = |(what, pairs): (_, Vec<(f64, f64)>)| {
+            let mut agreement = Agreement::new(what, TOLERANCE);
+            let (ours, theirs): (Vec<f64>, Vec<f64>) = pairs.into_iter().unzip();
+            agreement.compare(ours, &theirs);
+            agreement
+        };
+        numbers.map(agreement).into()
     }
 }
 
@@ -131,24 +139,5 @@ impl Params {
             norm_out: Some(DVector::from_column_slice(&self.norm_out)),
             ..LwprParams::default()
         }
-    }
-}
-
-/// The largest difference and the largest reference value.
-#[derive(Debug, Clone, Copy, Default)]
-struct Difference {
-    difference: f64,
-    reference: f64,
-}
-
-impl Difference {
-    fn compare(&mut self, ours: f64, theirs: f64) {
-        let difference = (ours - theirs).abs();
-        self.difference = self.difference.max(if difference.is_nan() { f64::INFINITY } else { difference });
-        self.reference = self.reference.max(theirs.abs());
-    }
-
-    fn relative(&self) -> f64 {
-        if self.difference == 0.0 { 0.0 } else { self.difference / self.reference }
     }
 }

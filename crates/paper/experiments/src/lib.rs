@@ -142,6 +142,11 @@ pub struct Setup {
 }
 
 impl Setup {
+    /// A setup that sees as many data sets as its experiment.
+    fn new(id: &str, system: u32, cost: u64, rows: Vec<Row>, trial: impl Trial + 'static) -> Setup {
+        Setup { id: id.to_owned(), rows, system, data_sets: None, cost, trial: Box::new(trial) }
+    }
+
     /// How many data sets it sees in its experiment.
     pub fn data_sets_of(&self, experiment: &Experiment) -> u32 {
         self.data_sets.unwrap_or(experiment.data_sets)

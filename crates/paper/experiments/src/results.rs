@@ -66,6 +66,14 @@ impl Results {
         self.experiments.iter().find(|result| result.id == id)
     }
 
+    /// The experiments that were run, each with its results.
+    pub fn of<'a>(
+        &'a self,
+        experiments: &'a [Experiment],
+    ) -> impl Iterator<Item = (&'a Experiment, &'a ExperimentResult)> {
+        experiments.iter().filter_map(|experiment| Some((experiment, self.experiment(experiment.id)?)))
+    }
+
     /// Fails where there are results of other experiments than these.
     ///
     /// # Errors

@@ -12,7 +12,9 @@ pub(super) trait Sound {
     const LARGEST: f64;
 
     /// Whether its parts fit together; the error says which do not.
-    fn check(&self) -> anyhow::Result<()>;
+    fn check(&self) -> anyhow::Result<()> {
+        Ok(())
+    }
 }
 
 /// The first number that is farther from 0 than this.

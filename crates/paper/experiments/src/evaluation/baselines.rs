@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use align::{Aligned, DirectPolicyLearning, PolicyAlign};
 use demo_gen::{HandInPlane, Recording, ThreeLinkArm, ToySystem, demonstrations};
-use gp::{AutoFit, SlopeFit, Trend};
+use gp::{AutoFit, FrontEnd, SlopeFit, Trend};
 use motion::{Demonstrations, Learner as _, LearntPolicy, SampleIndex};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
@@ -15,6 +15,7 @@ use crate::evaluation::fresh;
 use crate::evaluation::gaussians::{Gaussians, own_expectations, reading_of};
 use crate::evaluation::judge::Judge;
 use crate::evaluation::protocol::{TESTED_ON, errors};
+use crate::evaluation::recipe::HELD_OUT;
 use crate::evaluation::test_samples::TestSamples;
 use crate::measure::{Measure, RowOf};
 use crate::seed::separate_stream;
@@ -46,6 +47,12 @@ pub(crate) struct TrainedBaselines<'a> {
 }
 
 impl Baselines {
+    /// The Gaussian processes alone.
+    pub(crate) fn of_gaussians(front_end: FrontEnd, max_rows: usize) -> Baselines {
+        let gaussians = Gaussians::new(front_end, max_rows);
+        Baselines { naive: None, constraint_consistent: None, gaussians, held_out: HELD_OUT }
+    }
+
     /// Work of one data set, in the unit of [`Setup::cost`](crate::Setup::cost).
     pub(crate) fn cost(&self) -> u64 {
         // Measured: two fits of 1500 rows take about four seconds.
@@ -79,8 +86,8 @@ impl Baselines {
         trial: impl FnOnce(Baselines) -> T,
     ) -> Setup {
         let rows = cases.iter().flat_map(|case| self.rows(case.as_ref())).collect();
-        let (id, cost) = (id.to_owned(), self.cost());
-        Setup { id, rows, system, data_sets: Some(DATA_SETS), cost, trial: Box::new(trial(self)) }
+        let cost = self.cost();
+        Setup { data_sets: Some(DATA_SETS), ..Setup::new(id, system, cost, rows, trial(self)) }
     }
 
     /// The slope GP alone.
@@ -114,11 +121,8 @@ impl Baselines {
         let held_out: Vec<SampleIndex> = trained.iter().flat_map(|(_, test)| &test.of_all).copied().collect();
         let own = || separate_stream(rng);
         let learn = |naive: &DirectPolicyLearning| naive.learn(&demonstrations, &held_out, &mut own());
-        let judges = |(_, test): &(Aligned, TestSamples)| {
-            [Judge::new(recordings, &test.of_kept), Judge::new(recordings, &test.of_all)]
-        };
         Ok(TrainedBaselines {
-            judges: trained.iter().map(judges).collect(),
+            judges: trained.iter().map(|(_, test)| test.judges(recordings)).collect(),
             naive: self.naive.as_ref().map(learn).transpose().map_err(anyhow::Error::from_boxed)?,
             radial_basis: self
                 .constraint_consistent
@@ -245,7 +249,6 @@ mod tests {
     use crate::evaluation::candidate::Candidate;
     use crate::seed::generator;
     use crate::tables::table1::{toy_baselines, toy_regressor};
-    use gp::FrontEnd;
 
     /// The same samples as PolicyAlign's evaluation, and no learner has seen one of them.
     #[test]

@@ -22,8 +22,8 @@ pub(crate) const TESTED_ON: &str =
 /// What was learnt, and those who judge it.
 pub(crate) struct Evaluation<'a> {
     aligned: Aligned,
-    judge: Judge<'a>,
-    judge_of_all: Judge<'a>,
+    /// On samples of the movements that alignment keeps, and of all.
+    judges: [Judge<'a>; 2],
     learnt: Vec<Box<dyn LearntPolicy>>,
 }
 
@@ -56,14 +56,12 @@ impl Protocol {
     ) -> anyhow::Result<Evaluation<'a>> {
         let aligned = self.algorithm.align(&demonstrations(recordings)?)?;
         let test = TestSamples::draw(&aligned, self.held_out, rng)?;
-        let judge = Judge::new(recordings, &test.of_kept);
-        let judge_of_all = Judge::new(recordings, &test.of_all);
         let learnt = self
             .candidates
             .iter()
             .map(|candidate| candidate.learn(&aligned, &test.of_all, rng))
             .collect::<Result<_, _>>()?;
-        Ok(Evaluation { aligned, judge, judge_of_all, learnt })
+        Ok(Evaluation { aligned, judges: test.judges(recordings), learnt })
     }
 }
 
@@ -75,15 +73,15 @@ impl<'a> Evaluation<'a> {
 
     /// Who judges on the samples of kept movements.
     pub(crate) fn judge(&self) -> &Judge<'a> {
-        &self.judge
+        &self.judges[0]
     }
 
     /// A row for each learner, in their order: its errors on samples of kept movements, and those of its policy on
     /// samples of all.
     pub(crate) fn rows(&self) -> anyhow::Result<Measures> {
         let row = |learnt: &dyn LearntPolicy| {
-            let mut row = self.errors(&self.judge, learnt)?;
-            let [nupe, ncpe] = self.judge_of_all.policy(&learnt)?;
+            let mut row = self.errors(self.judge(), learnt)?;
+            let [nupe, ncpe] = self.judges[1].policy(&learnt)?;
             row.extend([(Measure::NupeAll, nupe), (Measure::NcpeAll, ncpe)]);
             row.insert(Measure::Unsupported, self.unsupported_percent(learnt));
             if let Some(kept) = learnt.kept() {
@@ -98,7 +96,8 @@ impl<'a> Evaluation<'a> {
     /// Error of a policy under a constraint that holds at time 0 and in no recording: on samples of kept movements, and
     /// of all.
     pub(crate) fn unseen(&self, policy: &dyn Policy, constraint: &dyn PfaffianConstraint) -> anyhow::Result<[f64; 2]> {
-        Ok([self.judge.policy_under(policy, constraint)?, self.judge_of_all.policy_under(policy, constraint)?])
+        let [kept, all] = self.judges.each_ref().map(|judge| judge.policy_under(policy, constraint));
+        Ok([kept?, all?])
     }
 
     /// Errors of what was learnt before a judge on samples of kept movements: of its potential too, if it has one, and
@@ -118,7 +117,7 @@ impl<'a> Evaluation<'a> {
     /// Share of the test samples, as they were observed, of which the demonstrations say nothing.
     fn unsupported_percent(&self, learnt: &dyn LearntPolicy) -> f64 {
         let trajectories = self.aligned.demonstrations().trajectories();
-        let samples = self.judge.samples();
+        let samples = self.judge().samples();
         let unsupported =
             samples.iter().filter(|at| learnt.support(trajectories[at.trajectory].state(at.sample)) == 0.0);
         100.0 * (unsupported.count() as f64 / samples.len() as f64)
@@ -164,7 +163,7 @@ mod tests {
             let [evaluation, of_forged] = [&recordings, &forged]
                 .map(|recordings| protocol.evaluate(recordings, &mut generator(seed, 0, 1)).unwrap());
             prop_assert_eq!(&evaluation.aligned, &of_forged.aligned);
-            prop_assert_eq!(evaluation.judge.samples(), of_forged.judge.samples());
+            prop_assert_eq!(evaluation.judge().samples(), of_forged.judge().samples());
             for (ours, theirs) in evaluation.learnt().zip(of_forged.learnt()) {
                 prop_assert_eq!((ours.kept(), ours.warnings()), (theirs.kept(), theirs.warnings()));
                 for state in recordings.iter().flat_map(|recording| recording.observed.states().column_iter()) {

@@ -1,9 +1,11 @@
 //! Samples that no learner sees, so that all can be tested on them.
 
 use align::Aligned;
+use demo_gen::Recording;
 use motion::SampleIndex;
 use rand_chacha::ChaCha8Rng;
 
+use crate::evaluation::judge::Judge;
 use crate::seed::separate_stream;
 
 /// The samples of one data set that are held out, ascending.
@@ -15,6 +17,11 @@ pub struct TestSamples {
 }
 
 impl TestSamples {
+    /// Who judges on the samples of kept movements, and on those of all.
+    pub(crate) fn judges<'a>(&self, recordings: &'a [Recording]) -> [Judge<'a>; 2] {
+        [&self.of_kept, &self.of_all].map(|samples| Judge::new(recordings, samples))
+    }
+
     /// Draws a share of the samples, in (0, 1). Those of discarded trajectories come from a stream of their own, so that they change none of the
     /// random numbers that learning goes on with.
     ///

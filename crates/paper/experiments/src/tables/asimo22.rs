@@ -8,9 +8,8 @@ use serde::Serialize;
 
 use crate::evaluation::baselines::{Baselines, BaselinesTrial};
 use crate::evaluation::comparison::{Comparison, Method};
-use crate::evaluation::gaussians::Gaussians;
 use crate::evaluation::protocol::Protocol;
-use crate::evaluation::recipe::{HELD_OUT, Recipe};
+use crate::evaluation::recipe::Recipe;
 use crate::measure::Measure;
 use crate::paper::{explanations, paper_table};
 use crate::robots::upper_body;
@@ -61,12 +60,7 @@ pub(crate) fn asimo22() -> anyhow::Result<Experiment> {
 /// passes.
 fn baselines() -> Baselines {
     let naive = Some(DirectPolicyLearning { passes: 3, ..Recipe::default().naive(22, 2.2) });
-    Baselines {
-        naive,
-        constraint_consistent: None,
-        gaussians: Gaussians::new(FrontEnd::FiniteDifferences, 1000),
-        held_out: HELD_OUT,
-    }
+    Baselines { naive, ..Baselines::of_gaussians(FrontEnd::FiniteDifferences, 1000) }
 }
 
 /// What PolicyAlign's inputs are divided by.
@@ -83,14 +77,7 @@ fn recipe() -> Recipe {
 /// The printed row.
 fn printed(scenario: HandInPlane, spread: f64, recipe: &Recipe) -> Setup {
     let protocol = recipe.protocol(PolicyAlign::default(), 22, spread);
-    Setup {
-        id: ROW.to_owned(),
-        rows: vec![Row::of_learner(ROW)],
-        system: BODY_SYSTEM,
-        data_sets: None,
-        cost: 20_000_000,
-        trial: Box::new(BodyTrial { scenario, protocol }),
-    }
+    Setup::new(ROW, BODY_SYSTEM, 20_000_000, vec![Row::of_learner(ROW)], BodyTrial { scenario, protocol })
 }
 
 /// Where its numbers come from.

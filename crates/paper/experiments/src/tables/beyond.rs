@@ -123,14 +123,8 @@ fn setup((number, case): (u32, Case)) -> Setup {
     let (gaussians, lwpr) = (case.gaussians(), case.lwpr());
     let Case { name, system, observation, max_rows } = case;
     let row = |method| Row { id: row_id(name, method), of: RowOf::Additional, tested_on: TESTED_ON };
-    Setup {
-        id: name.to_owned(),
-        rows: WHO.map(row).into(),
-        system: number,
-        data_sets: None,
-        cost: 40 * (max_rows.min(39 * system.n_trajectories) as u64).pow(2),
-        trial: Box::new(BeyondTrial { system, observation, lwpr, gaussians }),
-    }
+    let cost = 40 * (max_rows.min(39 * system.n_trajectories) as u64).pow(2);
+    Setup::new(name, number, cost, WHO.map(row).into(), BeyondTrial { system, observation, lwpr, gaussians })
 }
 
 #[derive(Serialize)]

@@ -130,16 +130,11 @@ fn curves() -> Experiment {
 
 fn setup(id: &str, percent: &[f64], algorithm: PolicyAlign, against: Against) -> Setup {
     let row = |percent: &f64| Row::of_learner(&format!("{id}-{percent}"));
-    let trial = CurveTrial {
-        system: ToySystem::default(),
-        protocol: toy_protocol(algorithm),
-        baselines: None,
-        against,
-        percent: percent.to_vec(),
-    };
+    let (system, protocol) = (ToySystem::default(), toy_protocol(algorithm));
+    let trial = CurveTrial { system, protocol, baselines: None, against, percent: percent.to_vec() };
     let cost = percent.iter().map(|&percent| learning_cost(trial.trajectories(percent), trial.system.n_samples)).sum();
     let rows = percent.iter().map(row).collect();
-    Setup { id: id.to_owned(), rows, system: PARABOLA_SYSTEM, data_sets: None, cost, trial: Box::new(trial) }
+    Setup::new(id, PARABOLA_SYSTEM, cost, rows, trial)
 }
 
 /// What changes along a curve.

@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 
 use align::PolicyAlign;
 use demo_gen::ThreeLinkArm;
-use motion::LearntPolicy;
 use nalgebra::{DVectorView, Vector3};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
 use crate::evaluation::baselines::Baselines;
-use crate::evaluation::protocol::{Evaluation, Protocol, errors as errors_of};
+use crate::evaluation::judge::Judge;
+use crate::evaluation::protocol::{Protocol, errors};
 use crate::evaluation::recipe::Recipe;
 use crate::measure::{Measure, RowOf};
 use crate::tables::three_link::{ARM_SYSTEM, arm, baselines, protocol};
@@ -46,17 +46,7 @@ pub(crate) fn figure9() -> anyhow::Result<Experiment> {
                  these samples too. A data set with fewer than 10 of them has no value there.",
         decisions: "figure9.md",
         comparisons,
-        setups: vec![
-            Setup {
-                id: "distances".to_owned(),
-                rows,
-                system: ARM_SYSTEM,
-                data_sets: None,
-                cost: 1_500_000,
-                trial: Box::new(trial),
-            },
-            of_baselines,
-        ],
+        setups: vec![Setup::new("distances", ARM_SYSTEM, 1_500_000, rows, trial), of_baselines],
         ..Experiment::default()
     })
 }
@@ -66,7 +56,7 @@ const ROWS: usize = 500;
 
 /// What is tested on, in the order of the rows.
 fn cases() -> Vec<String> {
-    Distance::BOTH.into_iter().flat_map(|distance| TENTHS.map(move |tenths| distance.row(tenths))).collect()
+    bounds().map(|(distance, tenths)| distance.row(tenths)).collect()
 }
 
 /// How far a posture is from the one that the policy aims at, in two parts.
@@ -121,15 +111,13 @@ impl Trial for DistanceTrial {
     fn run(&self, rng: &mut ChaCha8Rng) -> anyhow::Result<Measures> {
         let recordings = self.arm.record(rng)?;
         let evaluation = self.protocol.evaluate(&recordings, rng)?;
-        let mut rows = Vec::new();
-        for learnt in evaluation.learnt() {
-            for distance in Distance::BOTH {
-                for tenths in TENTHS {
-                    rows.push(errors(&evaluation, learnt, distance, f64::from(tenths) / 10.0)?);
-                }
-            }
-        }
-        Ok(rows)
+        let judges: Vec<_> = bounds().map(|bound| within(evaluation.judge(), bound)).collect();
+        let row = |learnt, judge: &Option<Judge<'_>>| match judge {
+            Some(judge) => evaluation.errors(judge, learnt),
+            None => Ok(BTreeMap::new()),
+        };
+        let rows = evaluation.learnt().flat_map(|learnt| judges.iter().map(move |judge| row(learnt, judge)));
+        rows.collect()
     }
 }
 
@@ -147,28 +135,25 @@ impl Trial for DistanceBaselines {
         let recordings = self.arm.record(rng)?;
         let trained = self.baselines.train(&recordings, std::slice::from_ref(&self.algorithm), rng)?;
         let mut rows = Vec::new();
-        for distance in Distance::BOTH {
-            for tenths in TENTHS {
-                let judge = trained.judges(0)[0].among(|state| distance.of(state) < f64::from(tenths) / 10.0);
-                let row = |learnt| {
-                    if judge.n_samples() < FEWEST_SAMPLES { Ok(BTreeMap::new()) } else { errors_of(&judge, learnt) }
-                };
-                rows.extend(trained.learnt().into_iter().map(row).collect::<anyhow::Result<Vec<_>>>()?);
+        for bound in bounds() {
+            let judge = within(&trained.judges(0)[0], bound);
+            for learnt in trained.learnt() {
+                rows.push(judge.as_ref().map_or(Ok(BTreeMap::new()), |judge| errors(judge, learnt))?);
             }
         }
         Ok(rows)
     }
 }
 
-/// Errors of what was learnt at the test samples within a distance; none where there are too few.
-fn errors(
-    evaluation: &Evaluation<'_>,
-    learnt: &dyn LearntPolicy,
-    distance: Distance,
-    bound: f64,
-) -> anyhow::Result<BTreeMap<Measure, f64>> {
-    let judge = evaluation.judge().among(|state| distance.of(state) < bound);
-    if judge.n_samples() < FEWEST_SAMPLES { Ok(BTreeMap::new()) } else { evaluation.errors(&judge, learnt) }
+/// Distances and their bounds in tenths, in the order of the rows.
+fn bounds() -> impl Iterator<Item = (Distance, u32)> {
+    Distance::BOTH.into_iter().flat_map(|distance| TENTHS.map(move |tenths| (distance, tenths)))
+}
+
+/// The test at the samples within a bound; none where there are too few.
+fn within<'a>(judge: &Judge<'a>, (distance, tenths): (Distance, u32)) -> Option<Judge<'a>> {
+    let judge = judge.among(|state| distance.of(state) < f64::from(tenths) / 10.0);
+    (judge.n_samples() >= FEWEST_SAMPLES).then_some(judge)
 }
 
 #[cfg(test)]

@@ -93,14 +93,8 @@ fn setup((number, kind): (u32, Kind)) -> Setup {
     let Kind { name, system, held_out, data_sets } = kind;
     let row = |method| Row { id: row_id(name, method), of: RowOf::Additional, tested_on: TESTED_ON };
     let gaussians = Gaussians::new(ObservationModel::Velocities.front_end(), 400);
-    Setup {
-        id: name.to_owned(),
-        rows: METHODS.map(row).into(),
-        system: number,
-        data_sets,
-        cost: 8_000_000,
-        trial: Box::new(ReadingTrial { system, held_out, gaussians }),
-    }
+    let trial = ReadingTrial { system, held_out, gaussians };
+    Setup { data_sets, ..Setup::new(name, number, 8_000_000, METHODS.map(row).into(), trial) }
 }
 
 #[derive(Serialize)]

@@ -10,9 +10,8 @@ use crate::evaluation::baselines::{Baselines, BaselinesTrial};
 use crate::evaluation::comparison::Comparison;
 use crate::evaluation::constraint_consistent::ConstraintConsistent;
 use crate::evaluation::fresh::{add_errors, fresh};
-use crate::evaluation::gaussians::Gaussians;
 use crate::evaluation::protocol::Protocol;
-use crate::evaluation::recipe::{HELD_OUT, Recipe};
+use crate::evaluation::recipe::Recipe;
 use crate::measure::Measure;
 use crate::paper::{explanations, paper_table};
 use crate::setting::{Class, SILENT, Setting};
@@ -134,8 +133,8 @@ impl Toy {
                 let algorithm = PolicyAlign { bandwidth, ..PolicyAlign::default() };
                 let protocol = self.recipe.protocol(algorithm, 2, 1.0);
                 let (cost, system_number) = (learning_cost(size, size), self.first_system + number);
-                let trial = Box::new(ToyTrial { system: system.clone(), protocol });
-                setups.push(Setup { id, rows: vec![row], system: system_number, data_sets: None, cost, trial });
+                let trial = ToyTrial { system: system.clone(), protocol };
+                setups.push(Setup::new(&id, system_number, cost, vec![row], trial));
             }
         }
         setups
@@ -216,8 +215,7 @@ pub fn toy_baselines(front_end: FrontEnd, max_rows: usize) -> Baselines {
     Baselines {
         naive: Some(toy_naive()),
         constraint_consistent: Some(ConstraintConsistent::default()),
-        gaussians: Gaussians::new(front_end, max_rows),
-        held_out: HELD_OUT,
+        ..Baselines::of_gaussians(front_end, max_rows)
     }
 }
 

@@ -11,9 +11,8 @@ use serde::Serialize;
 use crate::evaluation::baselines::Baselines;
 use crate::evaluation::candidate::Candidate;
 use crate::evaluation::comparison::{Comparison, Method};
-use crate::evaluation::gaussians::Gaussians;
 use crate::evaluation::protocol::Protocol;
-use crate::evaluation::recipe::{HELD_OUT, Recipe};
+use crate::evaluation::recipe::Recipe;
 use crate::measure::Measure;
 use crate::paper::{explanations, paper_table};
 use crate::robots::upper_body;
@@ -93,14 +92,8 @@ impl Bench {
         let mut protocol = recipe.protocol(PolicyAlign::default(), 6, spread);
         // In the order of [`MEASURES`].
         protocol.candidates.push(Candidate::other(recipe.naive(6, naive_spread))?);
-        Ok(Setup {
-            id: "grasp".to_owned(),
-            rows: CASES.into_iter().chain(["alignment"]).map(Row::of_learner).collect(),
-            system: GRASP_SYSTEM,
-            data_sets: None,
-            cost: 2_000_000,
-            trial: Box::new(GraspTrial { grasp, protocol }),
-        })
+        let rows = CASES.into_iter().chain(["alignment"]).map(Row::of_learner).collect();
+        Ok(Setup::new("grasp", GRASP_SYSTEM, 2_000_000, rows, GraspTrial { grasp, protocol }))
     }
 }
 
@@ -142,12 +135,7 @@ const CASE: &str = "grasp";
 
 /// Who learns beside PolicyAlign and the naive learner.
 pub fn grasp_baselines() -> Baselines {
-    Baselines {
-        naive: None,
-        constraint_consistent: None,
-        gaussians: Gaussians::new(FrontEnd::FiniteDifferences, 1000),
-        held_out: HELD_OUT,
-    }
+    Baselines::of_gaussians(FrontEnd::FiniteDifferences, 1000)
 }
 
 /// What is demonstrated.

@@ -9,9 +9,8 @@ use serde::Serialize;
 use crate::evaluation::baselines::{Baselines, BaselinesTrial};
 use crate::evaluation::candidate::Candidate;
 use crate::evaluation::comparison::{Comparison, Method};
-use crate::evaluation::gaussians::Gaussians;
 use crate::evaluation::protocol::{Protocol, TESTED_ON};
-use crate::evaluation::recipe::{HELD_OUT, Recipe};
+use crate::evaluation::recipe::Recipe;
 use crate::measure::{Measure, RowOf};
 use crate::paper::{explanations, paper_table};
 use crate::setting::{Class, SILENT, Setting, TIME_STEP};
@@ -55,12 +54,7 @@ pub(crate) fn three_link() -> anyhow::Result<Experiment> {
 
 /// Who learns beside PolicyAlign and the naive learner.
 pub(crate) fn baselines(max_rows: usize) -> Baselines {
-    Baselines {
-        naive: None,
-        constraint_consistent: None,
-        gaussians: Gaussians::new(FrontEnd::FiniteDifferences, max_rows),
-        held_out: HELD_OUT,
-    }
+    Baselines::of_gaussians(FrontEnd::FiniteDifferences, max_rows)
 }
 
 /// The arm of Section 4.4.
@@ -82,14 +76,8 @@ fn printed(arm: ThreeLinkArm, recipe: &Recipe) -> anyhow::Result<Setup> {
     let mut protocol = protocol(recipe);
     // In the order of the rows.
     protocol.candidates.push(Candidate::other(recipe.naive(3, 1.0))?);
-    Ok(Setup {
-        id: "three_link".to_owned(),
-        rows: rows.map(|(id, of)| Row { id: id.to_owned(), of, tested_on: TESTED_ON }).into(),
-        system: ARM_SYSTEM,
-        data_sets: None,
-        cost: 2_000_000,
-        trial: Box::new(ArmTrial { arm, protocol }),
-    })
+    let rows = rows.map(|(id, of)| Row { id: id.to_owned(), of, tested_on: TESTED_ON }).into();
+    Ok(Setup::new("three_link", ARM_SYSTEM, 2_000_000, rows, ArmTrial { arm, protocol }))
 }
 
 /// Where its numbers come from.

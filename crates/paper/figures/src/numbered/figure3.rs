@@ -40,10 +40,6 @@ pub(crate) struct Vectors {
 
 impl Sound for Vectors {
     const LARGEST: f64 = 10.0;
-
-    fn check(&self) -> anyhow::Result<()> {
-        Ok(())
-    }
 }
 
 pub(crate) fn vectors() -> anyhow::Result<Vectors> {
