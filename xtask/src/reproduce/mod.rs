@@ -133,11 +133,9 @@ impl Reproduce {
         for shard in &self.merge {
             records.add(&shard.join("records.jsonl"))?;
         }
-        match records.unreadable() {
-            0 => (),
-            lines => {
-                say(&format!("{lines} line(s) of records.jsonl are torn, damaged or of an older form, and not used"));
-            }
+        let lines = records.unreadable();
+        if lines > 0 {
+            say(&format!("{lines} line(s) of records.jsonl are torn, damaged or of an older form, and not used"));
         }
         Ok(records)
     }

@@ -113,7 +113,7 @@ impl Experiment {
         }
         for entry in self.comparisons.iter().flat_map(|comparison| &comparison.entries) {
             let (id, row) = (self.id, &entry.row);
-            ensure!(self.rows().any(|other| other.id == *row), "{id}: a contest has a row {row} that is not run");
+            ensure!(self.rows().any(|other| other.id == *row), "{id}: a comparison has a row {row} that is not run");
         }
         Ok(self)
     }

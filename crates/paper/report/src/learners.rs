@@ -21,11 +21,8 @@ const SHOWN_WHOLE: &str = "beyond";
 
 /// What a reader needs in order to choose, as Markdown; every table is in the report.
 pub fn learners(experiments: &[Experiment], results: &Results) -> String {
-    let all = experiments.iter().filter_map(|experiment| {
-        let comparisons = Comparisons::of(experiment, results.experiment(experiment.id)?)?;
-        Some((experiment, comparisons))
-    });
-    let all: Vec<_> = all.collect();
+    let compared = |(experiment, result)| Some((experiment, Comparisons::of(experiment, result)?));
+    let all: Vec<_> = results.of(experiments).filter_map(compared).collect();
     let mut text = format!("### Who has the least mean error\n\n{}\n", wins(&all));
     if let Some((experiment, comparisons)) = all.iter().find(|(experiment, _)| experiment.id == SHOWN_WHOLE) {
         let _ = write!(text, "### {}\n\n{}\n", experiment.title, comparisons.markdown());

@@ -117,12 +117,12 @@ impl Baselines {
             let test = TestSamples::draw(&aligned, self.held_out, &mut rng.clone())?;
             Ok((aligned, test))
         };
-        let trained: Vec<(Aligned, TestSamples)> = algorithms.iter().map(align).collect::<anyhow::Result<_>>()?;
-        let held_out: Vec<SampleIndex> = trained.iter().flat_map(|(_, test)| &test.of_all).copied().collect();
+        let alignments: Vec<(Aligned, TestSamples)> = algorithms.iter().map(align).collect::<anyhow::Result<_>>()?;
+        let held_out: Vec<SampleIndex> = alignments.iter().flat_map(|(_, test)| &test.of_all).copied().collect();
         let own = || separate_stream(rng);
         let learn = |naive: &DirectPolicyLearning| naive.learn(&demonstrations, &held_out, &mut own());
         Ok(TrainedBaselines {
-            judges: trained.iter().map(|(_, test)| test.judges(recordings)).collect(),
+            judges: alignments.iter().map(|(_, test)| test.judges(recordings)).collect(),
             naive: self.naive.as_ref().map(learn).transpose().map_err(anyhow::Error::from_boxed)?,
             radial_basis: self
                 .constraint_consistent

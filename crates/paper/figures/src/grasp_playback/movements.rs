@@ -85,8 +85,8 @@ impl Stage<'_> {
         let (policy, start) = (&*policies[learner], &starts[number]);
         let barrier = constraint.barrier(grasp, start)?;
         let free = Unconstrained { dim: policy.dim() };
-        let hindrance: &dyn PfaffianConstraint = barrier.as_ref().map_or(&free, |barrier| barrier);
-        let palms = grasp.roll_out.follow(policy, hindrance, start.palms.as_view())?;
+        let active: &dyn PfaffianConstraint = barrier.as_ref().map_or(&free, |barrier| barrier);
+        let palms = grasp.roll_out.follow(policy, active, start.palms.as_view())?;
         let path = PalmTracking::default().follow(&grasp.body, &palms, start.posture.as_view())?;
         let kept = |values: &DMatrix<f64>| values.map(|value| rounded(value, DECIMALS));
         let (joints, palms) = (kept(&path.configurations), kept(palms.states()));

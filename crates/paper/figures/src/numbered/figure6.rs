@@ -39,7 +39,8 @@ pub(crate) fn draw_left(sources: &Sources) -> anyhow::Result<Drawing> {
 }
 
 pub(crate) fn draw_right(sources: &Sources) -> anyhow::Result<Drawing> {
-    let [velocity, displacement] = RULES.map(|(rule, _)| series(sources, "figure6_right", rule, &NOISE_PERCENT));
+    let [velocity, displacement] =
+        RULES.map(|(rule, _)| series(sources, "figure6_right", &format!("{rule}-"), &NOISE_PERCENT));
     let (velocity, displacement) = (velocity?, displacement?);
     let [fused, smoothed] = BASELINES_RIGHT.map(|case| baselines(sources, "figure6_right", case, &NOISE_PERCENT));
     let lines = [lines(&velocity, &fused?), lines(&displacement, &smoothed?)];
@@ -66,10 +67,9 @@ pub(crate) fn draw_right(sources: &Sources) -> anyhow::Result<Drawing> {
     Ok(Drawing { picture: Picture::rows(&[&[&panels[0], &panels[1]]]), tables: all })
 }
 
-/// One series for each bandwidth.
-fn series<'a>(sources: &'a Sources, id: &str, rule: &str, percent: &[f64]) -> anyhow::Result<Vec<Series<'a>>> {
+/// One series for each bandwidth, whose rows begin with `prefix`.
+fn series<'a>(sources: &'a Sources, id: &str, prefix: &str, percent: &[f64]) -> anyhow::Result<Vec<Series<'a>>> {
     let result = sources.experiment(id).with_context(|| format!("{id} was not run"))?;
-    let prefix = if rule.is_empty() { String::new() } else { format!("{rule}-") };
     let series = BANDWIDTHS.iter().zip(STYLES).map(|((bandwidth, _), (style, of))| Series {
         result,
         rows: percent.iter().map(|&x| (x, format!("{prefix}{bandwidth}-{x}"))).collect(),
@@ -153,7 +153,7 @@ mod tests {
     #[test]
     fn how_far_curves_go_beyond_the_axis_is_said() {
         let sources = records();
-        let of = |rule| beyond(&series(&sources, "figure6_right", rule, &NOISE_PERCENT).unwrap());
+        let of = |rule| beyond(&series(&sources, "figure6_right", &format!("{rule}-"), &NOISE_PERCENT).unwrap());
         assert!(of(RULES[0].0).is_none());
         let result = sources.experiment("figure6_right").unwrap();
         let largest =
