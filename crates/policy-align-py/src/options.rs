@@ -1,8 +1,7 @@
 //! What the estimators' parameters mean to the library.
 
 use align::Bandwidth;
-use gp::Hypothesis;
-use policy_align::{FitOptions, LearnerChoice, PrepareOptions, Repair, VelocityUse};
+use policy_align::{Choice, FitOptions, PrepareOptions};
 use pyo3::prelude::*;
 
 use crate::refusal::Refusal;
@@ -40,17 +39,12 @@ pub(crate) struct Learning {
 
 impl Preparing {
     pub(crate) fn options(self) -> Result<PrepareOptions, Refusal> {
-        let velocities = match self.integration.as_str() {
-            "auto" => VelocityUse::Auto,
-            "velocity" => VelocityUse::Recorded,
-            "displacement" => VelocityUse::Ignored,
-            other => return Err(unknown(other, "integration", "\"auto\", \"velocity\" or \"displacement\"")),
-        };
+        let velocities = chosen(&self.integration, "integration", "")?;
         let smoothing = self.smooth.parse();
         let smoothing = smoothing.map_err(|what: String| {
             Refusal::new(what, "smooth", "smooth=\"auto\", \"off\", 9 (samples) or \"0.2s\"")
         })?;
-        let (jumps, wraps) = (repair(&self.jumps, "jumps")?, repair(&self.wraps, "wraps")?);
+        let (jumps, wraps) = (chosen(&self.jumps, "jumps", "")?, chosen(&self.wraps, "wraps", "")?);
         Ok(PrepareOptions { scale: self.scale, time_step: None, velocities, smoothing, jumps, wraps })
     }
 }
@@ -58,26 +52,11 @@ impl Preparing {
 impl Learning {
     pub(crate) fn options(self) -> Result<FitOptions, Refusal> {
         Ok(FitOptions {
-            learner: match self.learner.as_str() {
-                "policy_align" => LearnerChoice::PolicyAlign,
-                "slope" => LearnerChoice::Slope,
-                "direct" => LearnerChoice::Direct,
-                _ => LearnerChoice::Auto,
-            },
-            reading: match self.reading.as_deref() {
-                None => None,
-                Some("free") => Some(Hypothesis::Free),
-                Some("constrained") => Some(Hypothesis::Constrained),
-                Some(other) => return Err(unknown(other, "reading", "None, \"free\" or \"constrained\"")),
-            },
+            learner: chosen(&self.learner.replace('_', "-"), "learner", "")?,
+            reading: self.reading.as_deref().map(|word| chosen(word, "reading", "None, ")).transpose()?,
             bandwidth: match &self.bandwidth {
-                NumberOrWord::Word(word) => match word.as_str() {
-                    "auto" => None,
-                    "narrow" => Some(Bandwidth::Narrow),
-                    "medium" => Some(Bandwidth::Medium),
-                    "wide" => Some(Bandwidth::Wide),
-                    _ => return Err(no_number(word, "bandwidth")),
-                },
+                NumberOrWord::Word(word) if word == "auto" => None,
+                NumberOrWord::Word(word) => Some(Bandwidth::of(word).ok_or_else(|| no_number(word, "bandwidth"))?),
                 NumberOrWord::Number(number) => Some(Bandwidth::Fixed(positive(*number, "bandwidth")?)),
             },
             init_d: match &self.init_d {
@@ -92,12 +71,10 @@ impl Learning {
     }
 }
 
-fn repair(word: &str, name: &str) -> Result<Repair, Refusal> {
-    match word {
-        "auto" => Ok(Repair::Auto),
-        "keep" => Ok(Repair::Keep),
-        other => Err(unknown(other, name, "\"auto\" or \"keep\"")),
-    }
+/// What a word chooses; `or` begins the list of what else could have been given.
+fn chosen<C: Choice>(word: &str, name: &str, or: &str) -> Result<C, Refusal> {
+    let hint = || format!("{or}{}", C::listed("\""));
+    C::of(word).ok_or_else(|| Refusal::new(format!("'{word}' is none of the choices"), name, hint()))
 }
 
 fn positive(number: f64, name: &str) -> Result<f64, Refusal> {
@@ -106,8 +83,4 @@ fn positive(number: f64, name: &str) -> Result<f64, Refusal> {
 
 fn no_number(given: &str, name: &str) -> Refusal {
     Refusal::new(format!("'{given}' is no positive number"), name, format!("{name}=\"auto\""))
-}
-
-fn unknown(given: &str, name: &str, known: &str) -> Refusal {
-    Refusal::new(format!("'{given}' is none of the choices"), name, known)
 }

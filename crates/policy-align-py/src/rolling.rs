@@ -76,7 +76,7 @@ pub(crate) fn follow(
     constraint: Constraint<'_>,
     limits: Option<&std::path::Path>,
 ) -> PyResult<Path> {
-    let channels: Vec<String> = model.state.iter().map(|channel| channel.name.clone()).collect();
+    let channels = model.channels();
     let raised = Raised::default();
     let constraints = match constraint {
         Constraint::Function(None) => ConstraintSet::default(),

@@ -60,6 +60,7 @@
 //! - [`PrepareError`], [`FitError`], [`ModelError`], [`RollOutError`] and [`ExportError`] say what was refused and what
 //!   to do.
 
+mod choice;
 mod error;
 mod evaluate;
 mod export;
@@ -75,6 +76,7 @@ mod trust;
 
 /// What a program needs besides, so that it depends on this crate alone.
 pub use ::{align, constraints, demo_io, gp, kinematics, lwpr, motion, nalgebra, prepare, rand, smoothing};
+pub use choice::Choice;
 pub use error::FitError;
 pub use evaluate::{EvaluateError, Evaluation, Truth, evaluate};
 pub use export::{CSource, ExportError, Precision, to_onnx};
@@ -90,7 +92,7 @@ pub use prepare::{
 };
 pub use roll_out::{ConstraintFileError, ConstraintSet, JointLimits, Path, RollOut, RollOutError, Stop, spread_starts};
 pub use stored::{ModelError, checksum_of, sha256, sha256_of_file, write_whole};
-pub use trust::{AlignedNumbers, Trust, TrustNumbers};
+pub use trust::{AlignedNumbers, Trust, TrustNumbers, direction_by_channels};
 
 /// The program of the README, compiled.
 #[cfg(doctest)]

@@ -1,6 +1,7 @@
 use std::io;
 use std::path::Path;
 
+use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
 use crate::{Decision, Learnt, LeftOut, StateChannel, Trust, sha256_of_file};
@@ -56,13 +57,29 @@ pub struct DataSummary {
 }
 
 impl MadeBy {
-    /// This program, at a time that nobody has said yet.
+    /// This program, at a time that is not known yet.
     pub fn this() -> MadeBy {
         MadeBy { program: concat!("policy-align ", env!("CARGO_PKG_VERSION")).to_owned(), time: String::new() }
     }
 }
 
 impl Model {
+    /// Names of the state's channels, (n).
+    pub fn channels(&self) -> Vec<String> {
+        self.state.iter().map(|channel| channel.name.clone()).collect()
+    }
+
+    /// Factors by which states of the recording are multiplied before the learner's policy is asked, (n).
+    pub fn scales(&self) -> DVector<f64> {
+        DVector::from_iterator(self.state.len(), self.state.iter().map(|channel| channel.scale))
+    }
+
+    /// What the learner's potential is multiplied by: 1 / s² where all channels share the scale s, else 1.
+    pub(crate) fn potential_factor(&self) -> f64 {
+        let scale = self.state[0].scale;
+        if self.state.iter().all(|channel| channel.scale == scale) { scale.powi(-2) } else { 1.0 }
+    }
+
     /// Factors by which recordings are multiplied as those learnt from were, as
     /// [`PrepareOptions::scale`](crate::PrepareOptions::scale) takes them: of channels that have one.
     pub fn scale(&self) -> Vec<(String, f64)> {

@@ -37,9 +37,7 @@ impl Model {
     /// The policy, in the units of the recording.
     pub fn policy(&self) -> ModelPolicy<'_> {
         let learnt = self.learnt.policy();
-        let scale = DVector::from_iterator(self.state.len(), self.state.iter().map(|channel| channel.scale));
-        let shared = scale.iter().all(|&s| s == scale[0]);
-        let per_unit = if shared { scale[0].powi(-2) } else { 1.0 };
+        let (scale, per_unit) = (self.scales(), self.potential_factor());
         let potential = learnt.potential().map(|_| ModelPotential { learnt, scale: scale.clone(), per_unit });
         let least_support = match self.learnt {
             Learnt::PolicyAlign(_) => f64::MIN_POSITIVE,
@@ -47,9 +45,7 @@ impl Model {
         };
         ModelPolicy { learnt, scale, potential, least_support, bounds: self.bounds() }
     }
-}
 
-impl Model {
     /// Range of every channel that counts as known: the demonstrated range, a quarter wider on either side, (n).
     pub fn bounds(&self) -> Vec<[f64; 2]> {
         let bound = |channel: &StateChannel| {

@@ -42,22 +42,20 @@ impl Failure {
         Failure::new(Exit::Usage, what, place, remedy)
     }
 
+    /// Of a message that says what next after its last semicolon; of others `otherwise` says it.
+    pub(crate) fn of_text(exit: Exit, text: &str, place: impl Into<String>, otherwise: &str) -> Self {
+        let (what, remedy) = text.rsplit_once("; ").unwrap_or((text, otherwise));
+        Failure::new(exit, what, place, remedy)
+    }
+
     pub(crate) fn writing(path: &Path, reason: impl fmt::Display) -> Self {
-        Failure::new(
-            Exit::File,
-            format!("cannot be written: {reason}"),
-            shown(path),
-            "-o with a path in a writable folder",
-        )
+        let what = format!("cannot be written: {reason}");
+        Failure::new(Exit::File, what, shown(path), "-o with a path in a writable folder")
     }
 
     pub(crate) fn reading(path: &Path, reason: impl fmt::Display) -> Self {
-        Failure::new(
-            Exit::File,
-            format!("cannot be read: {reason}"),
-            shown(path),
-            "check the path (relative to the current folder) and its permissions",
-        )
+        let remedy = "check the path (relative to the current folder) and its permissions";
+        Failure::new(Exit::File, format!("cannot be read: {reason}"), shown(path), remedy)
     }
 
     pub(crate) fn model(path: &Path, error: &ModelError) -> Self {
@@ -73,9 +71,6 @@ impl Failure {
     }
 
     pub(crate) fn prepare(error: &PrepareError, place: String) -> Self {
-        // Messages say what next after a semicolon.
-        let text = error.to_string();
-        let (what, remedy) = text.rsplit_once("; ").unwrap_or((&text, "other recordings"));
         let exit = match error {
             PrepareError::UnknownChannel { .. }
             | PrepareError::Scale { .. }
@@ -83,15 +78,13 @@ impl Failure {
             | PrepareError::Smoothing { .. } => Exit::Usage,
             _ => Exit::Refused,
         };
-        Failure::new(exit, what, place, remedy)
+        Failure::of_text(exit, &error.to_string(), place, "other recordings")
     }
 
     pub(crate) fn fit(error: &FitError, place: String) -> Self {
-        let text = error.to_string();
-        let (what, remedy) =
-            text.rsplit_once("; ").unwrap_or((&text, "more recordings, or `policy-align check` to examine these"));
         let exit = if matches!(error, FitError::Option { .. }) { Exit::Usage } else { Exit::Refused };
-        Failure::new(exit, what, place, remedy)
+        let otherwise = "more recordings, or `policy-align check` to examine these";
+        Failure::of_text(exit, &error.to_string(), place, otherwise)
     }
 
     pub(crate) fn constraints(path: &Path, error: &ConstraintFileError) -> Self {
@@ -106,10 +99,11 @@ impl From<ReadError> for Failure {
     fn from(error: ReadError) -> Self {
         let fault = error.fault();
         let exit = match error {
-            ReadError::Option(_) => Exit::Usage,
-            ReadError::NoColumn(_) | ReadError::AmbiguousColumn(_) | ReadError::NoRoles(_) | ReadError::NoTime(_) => {
-                Exit::Usage
-            }
+            ReadError::Option(_)
+            | ReadError::NoColumn(_)
+            | ReadError::AmbiguousColumn(_)
+            | ReadError::NoRoles(_)
+            | ReadError::NoTime(_) => Exit::Usage,
             _ => Exit::File,
         };
         Failure::new(exit, &fault.what, &fault.place, &fault.remedy)

@@ -1,3 +1,5 @@
+use std::path::Path;
+
 pub(crate) use prepare::numbers::{short, squared_error};
 use text::plain;
 
@@ -20,6 +22,11 @@ impl Lines {
             self.0.push('\n');
             start = " ".repeat(LABEL);
         }
+    }
+
+    /// A file that was written, and what is in it.
+    pub(crate) fn written(&mut self, path: &Path, what: &str) {
+        self.add("written", &format!("{}: {what}", path.display()));
     }
 
     /// The last line, set apart: what to do next.
@@ -66,6 +73,11 @@ pub(crate) fn size(bytes: usize) -> String {
         1000..1_000_000 => format!("{} kB", short(bytes as f64 / 1e3)),
         _ => format!("{} MB", short(bytes as f64 / 1e6)),
     }
+}
+
+/// "1 episode, 50 samples".
+pub(crate) fn amount(episodes: usize, samples: usize) -> String {
+    format!("{}, {}", counted(episodes, "episode"), counted(samples, "sample"))
 }
 
 /// "1 episode", "40 episodes".

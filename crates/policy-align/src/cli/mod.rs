@@ -1,8 +1,8 @@
 //! The program: a verb a file.
 
 mod clock;
+mod describe;
 pub(crate) mod failure;
-mod in_words;
 mod lines;
 pub(crate) mod options;
 mod pages;
@@ -63,7 +63,7 @@ Example:
 fn command() -> Command {
     let brief = |command: Command| {
         command.mut_args(|flag| {
-            let rare = flag.get_long().is_some_and(|long| options::flags::RARE.contains(&long));
+            let rare = options::flags::is_rare(&flag);
             flag.hide(rare)
         })
     };

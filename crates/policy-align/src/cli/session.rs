@@ -1,9 +1,10 @@
 use std::io::{self, IsTerminal as _, Write as _};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use policy_align::write_whole;
 use serde_json::Value;
 use text::{is_hidden, plain};
 
@@ -78,6 +79,11 @@ impl Session {
         });
         bar
     }
+}
+
+/// Writes a whole file or nothing.
+pub(crate) fn write(path: &Path, contents: &[u8]) -> Result<(), Failure> {
+    write_whole(path, contents).map_err(|error| Failure::writing(path, error))
 }
 
 /// Writes a result; who closes the pipe has read enough. Other programs read data as they are.

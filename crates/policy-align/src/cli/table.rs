@@ -43,12 +43,8 @@ fn parsed(text: &str, model: &Model, place: &str) -> Result<DMatrix<f64>, Failur
         let line = record.position().map_or(1, csv::Position::line);
         let Some(columns) = &columns else {
             let found = columns_of(&record, model).ok_or_else(|| {
-                let names: Vec<&str> = model.state.iter().map(|channel| channel.name.as_str()).collect();
-                fault(
-                    format!("the first row does not name all of {}", names.join(", ")),
-                    line,
-                    "a header with these names, or only these columns",
-                )
+                let what = format!("the first row does not name all of {}", model.channels().join(", "));
+                fault(what, line, "a header with these names, or only these columns")
             })?;
             let is_header = record.iter().any(|field| field.parse::<f64>().is_err());
             if !is_header {

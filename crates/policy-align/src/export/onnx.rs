@@ -67,14 +67,13 @@ fn described(model: &Model, graph: &Message) -> Vec<u8> {
         Verdict::Doubtful => "doubtful",
         Verdict::DoNotUse => "do not use",
     };
-    let names: Vec<&str> = model.state.iter().map(|channel| channel.name.as_str()).collect();
     Message::default()
         .integer(1, FORMAT)
         .text(2, "policy-align")
         .text(3, env!("CARGO_PKG_VERSION"))
         .message(7, graph)
         .message(8, &Message::default().text(1, "").integer(2, OPERATORS))
-        .message(14, &entry("state", &names.join(",")))
+        .message(14, &entry("state", &model.channels().join(",")))
         .message(14, &entry("time_step", &model.time_step.to_string()))
         .message(14, &entry("trust", verdict))
         .into_bytes()

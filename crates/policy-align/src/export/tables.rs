@@ -27,8 +27,6 @@ pub(super) enum LearnerTables<'a> {
 
 impl Tables<'_> {
     pub(super) fn of(model: &Model) -> Result<Tables<'_>, ExportError> {
-        let scale = DVector::from_iterator(model.state.len(), model.state.iter().map(|channel| channel.scale));
-        let shared = scale.iter().all(|&s| s == scale[0]);
         let learner = match &model.learnt {
             Learnt::PolicyAlign(policy) => {
                 LearnerTables::Lwpr(LwprTables::new(policy.global_potential().regression())?)
@@ -38,7 +36,7 @@ impl Tables<'_> {
             Learnt::Auto(both) if both.takes_slope() => LearnerTables::slope(model, both.slope()),
             Learnt::Auto(both) => LearnerTables::direct(model, both.direct()),
         };
-        Ok(Tables { per_unit: if shared { scale[0].powi(-2) } else { 1.0 }, scale, bounds: model.bounds(), learner })
+        Ok(Tables { scale: model.scales(), bounds: model.bounds(), per_unit: model.potential_factor(), learner })
     }
 
     pub(super) fn dim(&self) -> usize {

@@ -100,9 +100,8 @@ impl RollOut {
         if samples > LONGEST as f64 {
             return Err(RollOutError::TooLong { samples });
         }
-        let scale = DVector::from_iterator(start.len(), model.state.iter().map(|channel| channel.scale));
-        let run =
-            Run { policy: &policy, constraints: &self.constraints, scale, switches: self.switches(seconds), seconds };
+        let (constraints, switches) = (&self.constraints, self.switches(seconds));
+        let run = Run { policy: &policy, constraints, scale: model.scales(), switches, seconds };
         let steps = STEPS.max(STEPS_EACH * (samples as usize + run.switches.len()));
         let tolerance = tolerance(model, self.constraints.least_radius());
         self.followed(&run, model, start, (step, RungeKutta::new(tolerance, model.data.longest, steps)))
@@ -161,8 +160,7 @@ impl RollOut {
     fn check_start(&self, model: &Model, policy: &ModelPolicy<'_>, start: &DVector<f64>) -> Result<(), RollOutError> {
         let (found, expected) = (start.len(), model.state.len());
         if found != expected {
-            let names = model.state.iter().map(|channel| channel.name.clone()).collect();
-            return Err(RollOutError::Start { found, expected, names });
+            return Err(RollOutError::Start { found, expected, names: model.channels() });
         }
         if let Some(at) = start.iter().position(|x| !x.is_finite()) {
             return Err(RollOutError::StartNotFinite { channel: model.state[at].name.clone() });

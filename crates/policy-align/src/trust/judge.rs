@@ -4,8 +4,8 @@ use gp::{Grouping, Hypothesis};
 use motion::upper_median;
 use prepare::numbers::{percent, short};
 
+use super::direction::direction_by_channels as direction;
 use super::numbers::TrustNumbers;
-use super::words::direction;
 use crate::{Finding, StateChannel, Trust, Verdict};
 
 /// Left-out error along the path from which a policy is wrong.

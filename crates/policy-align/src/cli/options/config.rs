@@ -9,7 +9,7 @@ use serde::de::DeserializeOwned;
 use toml::Table;
 
 use crate::cli::failure::{Failure, shown};
-use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags};
+use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags, given};
 use crate::cli::options::rollout_flags::RollOutFlags;
 use crate::cli::session::Session;
 
@@ -61,7 +61,7 @@ impl Config {
                 "`policy-align fit --print-config` writes one",
             )
         };
-        let given = Table::try_from(flags).map_err(|error| {
+        let given = given(flags).map_err(|error| {
             let remedy = "flags that a configuration file could hold: numbers up to 2^63, paths in UTF-8";
             Failure::usage(error.to_string(), "command line", remedy)
         })?;
@@ -107,15 +107,11 @@ fn check(name: &str, known: &[String], what: &str, text: &str, path: &Path) -> R
 /// A complete file: every key with its help, those without a value as comments.
 pub(crate) fn printed(read: &ReadFlags, prepare: &PrepareFlags, fit: &FitFlags) -> Result<String, Failure> {
     let wrong = |error: toml::ser::Error| Failure::usage(error.to_string(), "flags", "--help");
-    let set = [
-        Table::try_from(read).map_err(wrong)?,
-        Table::try_from(prepare).map_err(wrong)?,
-        Table::try_from(fit).map_err(wrong)?,
-        Table::new(),
-    ];
+    let set = [given(read), given(prepare), given(fit), Ok(Table::new())];
     let mut text =
         String::from("# Flags of policy-align, read by --config. Those of the command line take precedence.\n");
     for ((name, command), table) in groups().zip(set) {
+        let table = table.map_err(wrong)?;
         let _ = write!(text, "\n[{name}]\n");
         for argument in command.get_arguments() {
             let Some(long) = argument.get_long() else { continue };

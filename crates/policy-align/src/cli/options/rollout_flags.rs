@@ -13,25 +13,21 @@ use crate::cli::failure::{Failure, shown};
 pub(crate) struct RollOutFlags {
     /// Constraints of the roll-out
     #[arg(long, value_name = "FILE.toml")]
-    #[serde(skip_serializing_if = "Option::is_none")]
     constraint: Option<PathBuf>,
     /// Longest duration [default: 3 times the longest episode]
     #[arg(long, value_name = "SECONDS")]
-    #[serde(skip_serializing_if = "Option::is_none")]
     seconds: Option<f64>,
     /// Time between samples [default: the model's time step]
     #[arg(long, value_name = "SECONDS")]
-    #[serde(skip_serializing_if = "Option::is_none")]
     step: Option<f64>,
     /// Robot whose joint limits stop the roll-out
     #[arg(long, value_name = "FILE.urdf")]
-    #[serde(skip_serializing_if = "Option::is_none")]
     limits: Option<PathBuf>,
 }
 
 impl RollOutFlags {
     pub(crate) fn roll_out(&self, model: &Model) -> Result<RollOut, Failure> {
-        let channels: Vec<String> = model.state.iter().map(|channel| channel.name.clone()).collect();
+        let channels = model.channels();
         let constraints = match &self.constraint {
             None => ConstraintSet::default(),
             Some(path) => ConstraintSet::load(path, &channels).map_err(|error| Failure::constraints(path, &error))?,

@@ -1,59 +1,47 @@
 //! The page that says what can be said before learning.
 
 use maud::{Markup, html};
-use nalgebra::DVector;
-use page::{Card, Document, Part};
+use motion::Trajectory;
+use nalgebra::{DVector, DVectorView};
+use page::{Card, Part};
 use plot::{Layer, Plane};
-use policy_align::{Finding, Prepared, Verdict};
-use text::plain;
+use policy_align::{Prepared, StateChannel, Verdict, direction_by_channels};
 
 use crate::cli::lines::{counted, short};
-use crate::cli::pages::page_parts::{
-    NUMBERS, STYLE, channels, decisions, direction, found, left_out, part, row, table,
-};
-use crate::cli::pages::picture::{SHOWN, with_unit};
+use crate::cli::pages::page_parts::{self, COVERAGE, NOISE, channels, decisions, left_out, opening, page, part};
+use crate::cli::pages::picture::{DEMONSTRATED, with_unit};
 
 /// Empty space around what is drawn, as a share of its range.
 const MARGIN: f64 = 0.06;
 /// Movements that are drawn, at most.
 const DRAWN: usize = 200;
 
-/// The page of recordings. `seen`: how evenly directions are seen, and the one seen least.
-pub(crate) fn check_page(prepared: &Prepared, name: &str, seen: (f64, &DVector<f64>)) -> String {
+const SENTENCES: [&str; 3] = [
+    "All checks passed: these recordings can be learnt from.",
+    "Doubtful: read the findings before you learn from these recordings.",
+    "Do not learn from these recordings as they are.",
+];
+
+/// The page of recordings. `coverage`: how evenly directions are observed, and the one observed least, (n).
+pub(crate) fn check_page(prepared: &Prepared, name: &str, coverage: (f64, &DVector<f64>)) -> String {
     let title = format!("What was recorded in {name}");
-    let opening = Part { id: "recorded".to_owned(), title: "Recorded".to_owned(), body: opening(prepared, &title) };
+    let data = html! {
+        (counted(prepared.demonstrations.n_trajectories(), "episode")) " with "
+        (counted(prepared.demonstrations.n_samples(), "sample")) " of "
+        (counted(prepared.state.len(), "channel")) "."
+    };
+    let worst = prepared.findings.iter().map(|finding| finding.verdict).max().unwrap_or(Verdict::Good);
+    let body = opening(("recorded", &title), (worst, SENTENCES), &prepared.findings, &data);
+    let opening = Part { id: "recorded".to_owned(), title: "Recorded".to_owned(), body };
     let mut parts = Vec::new();
     if prepared.state.len() >= 2 {
         parts.push(part("movements", "Movements", &movements(prepared)));
     }
-    parts.push(part("numbers", "Numbers", &numbers(prepared, seen)));
+    parts.push(part("numbers", "Numbers", &numbers(prepared, coverage)));
     parts.push(part("decisions", "Decisions", &decisions(&prepared.decisions)));
     let data = html! { (channels(&prepared.state)) (left_out(&prepared.left_out)) };
     parts.push(part("data", "Data", &data));
-    plain(&Document { title: &title, name, opening, parts, style: STYLE }.html()).into_owned()
-}
-
-fn opening(prepared: &Prepared, title: &str) -> Markup {
-    let worst = prepared.findings.iter().map(|finding| finding.verdict).max().unwrap_or(Verdict::Good);
-    let (class, words) = match worst {
-        Verdict::Good => ("conclusion", "All checks passed: these recordings can be learnt from."),
-        Verdict::Doubtful => {
-            ("conclusion doubtful", "Doubtful: read the findings before you learn from these recordings.")
-        }
-        Verdict::DoNotUse => ("conclusion wrong", "Do not learn from these recordings as they are."),
-    };
-    let mut findings: Vec<&Finding> = prepared.findings.iter().collect();
-    findings.sort_by_key(|finding| std::cmp::Reverse(finding.verdict));
-    html! {
-        h1 #recorded { (title) }
-        p class=(class) { (words) }
-        @if !findings.is_empty() {
-            ul .findings { @for finding in findings { (found(finding)) } }
-        }
-        p { (counted(prepared.demonstrations.n_trajectories(), "episode")) " with "
-            (counted(prepared.demonstrations.n_samples(), "sample")) " of "
-            (counted(prepared.state.len(), "channel")) "." }
-    }
+    page(&title, name, opening, parts)
 }
 
 /// The first two channels against each other.
@@ -61,18 +49,14 @@ fn movements(prepared: &Prepared) -> Markup {
     let channels = [&prepared.state[0], &prepared.state[1]];
     let every = prepared.demonstrations.n_trajectories().div_ceil(DRAWN);
     let drawn = prepared.demonstrations.trajectories().iter().step_by(every);
-    let path = |movement: &motion::Trajectory| {
-        let place =
-            |state: nalgebra::DVectorView<'_, f64>| (state[0] / channels[0].scale, state[1] / channels[1].scale);
-        Layer::Path { points: movement.states().column_iter().map(place).collect(), stroke: SHOWN, label: None }
+    let place = |state: DVectorView<'_, f64>| (state[0] / channels[0].scale, state[1] / channels[1].scale);
+    let path = |movement: &Trajectory| {
+        let points = movement.states().column_iter().map(place).collect();
+        Layer::Path { points, stroke: DEMONSTRATED, label: None }
     };
-    let start = |movement: &motion::Trajectory| {
-        let state = movement.state(0);
-        (state[0] / channels[0].scale, state[1] / channels[1].scale)
-    };
-    let starts = drawn.clone().map(start).collect();
-    let mut layers: Vec<Layer> = drawn.map(path).collect();
-    layers.push(Layer::Dots { points: starts, color: SHOWN.color, radius: 2.5 });
+    let points = drawn.clone().map(|movement| place(movement.state(0))).collect();
+    let starts = Layer::Dots { points, color: DEMONSTRATED.color, radius: 2.5 };
+    let layers = drawn.map(path).chain([starts]).collect();
     let range = |axis: usize| {
         let width = (channels[axis].high - channels[axis].low).max(f64::MIN_POSITIVE);
         [channels[axis].low - MARGIN * width, channels[axis].high + MARGIN * width]
@@ -93,24 +77,23 @@ fn movements(prepared: &Prepared) -> Markup {
 
 fn numbers(prepared: &Prepared, (coverage, least): (f64, &DVector<f64>)) -> Markup {
     let noise = &prepared.noise;
-    let mut rows = vec![
-        row("Seconds between samples", &short(prepared.time_step), "even, and short against the movement"),
-        row("Share of noise in the squared steps", &short(noise.step_share), "below 0.1"),
-    ];
-    if let Some(share) = noise.velocity_share {
-        rows.push(row("Share of noise in the squared velocities", &short(share), "below 0.01"));
-    }
-    for (channel, deviation) in prepared.state.iter().zip(noise.positions.iter().flatten()) {
+    let deviation = |(channel, deviation): (&StateChannel, &f64)| {
         let what = format!("Noise of {}, standard deviation", channel.name);
-        rows.push(row(&what, &short(deviation / channel.scale), "far below its range"));
-    }
-    rows.push(row(
-        "Coverage of the least observed direction",
-        &short(coverage),
-        "above 0.1; 1 if all directions are alike",
-    ));
+        (what, Some(short(deviation / channel.scale)), "far below its range")
+    };
+    let positions = noise.positions.iter().flatten();
+    let deviations: Vec<_> = prepared.state.iter().zip(positions).map(deviation).collect();
+    let velocities = ("Share of noise in the squared velocities", noise.velocity_share.map(short), "below 0.01");
+    let time_step = Some(short(prepared.time_step));
+    let rows = [
+        ("Seconds between samples", time_step, "even, and short against the movement"),
+        (NOISE.0, Some(short(noise.step_share)), NOISE.1),
+        velocities,
+    ];
+    let deviations = deviations.iter().map(|(what, value, good)| (what.as_str(), value.clone(), *good));
+    let rows = rows.into_iter().chain(deviations).chain([(COVERAGE.0, Some(short(coverage)), COVERAGE.1)]);
     html! {
-        (table(&NUMBERS, &rows))
-        p { "Least observed direction: motion along " (direction(&prepared.state, least.as_slice())) "." }
+        (page_parts::numbers(rows))
+        p { "Least observed direction: motion along " (direction_by_channels(least.as_slice(), &prepared.state)) "." }
     }
 }

@@ -1,29 +1,60 @@
 //! What the trust page and the page of a check have in common.
 
+use std::cmp::Reverse;
+
 use maud::{Markup, html};
-use page::Part;
+use page::{Document, Part};
 use policy_align::{Decision, Finding, LeftOut, StateChannel, Verdict};
+use text::plain;
 
 use crate::cli::lines::{list, short};
 
-pub(crate) const STYLE: &str = include_str!("page_parts.css");
+const STYLE: &str = include_str!("page_parts.css");
 
 /// A column of a table: its title and the class of its cells, `value` for numbers.
-pub(crate) type Column = (&'static str, &'static str);
+type Column = (&'static str, &'static str);
 
-/// Columns of tables of numbers.
-pub(crate) const NUMBERS: [Column; 3] = [("What", ""), ("Value", "value"), ("Good is", "")];
+/// Numbers that both pages have, and which are good.
+pub(crate) const COVERAGE: (&str, &str) =
+    ("Coverage of the least observed direction", "above 0.1; 1 if all directions are alike");
+pub(crate) const NOISE: (&str, &str) = ("Share of noise in the squared steps", "below 0.1");
+
+const NUMBERS: [Column; 3] = [("What", ""), ("Value", "value"), ("Good is", "")];
 const DECISIONS: [Column; 4] = [("What", ""), ("Decided", ""), ("Why", ""), ("Flag", "")];
 const CHANNELS: [Column; 4] = [("Channel", ""), ("Unit", ""), ("Least, median, largest", "value"), ("Scale", "value")];
-
-/// Part of a direction from which on a channel is named.
-const NAMED: f64 = 0.1;
 
 pub(crate) fn part(id: &str, title: &str, body: &Markup) -> Part {
     Part { id: id.to_owned(), title: title.to_owned(), body: html! { h2 { (title) } (body) } }
 }
 
-pub(crate) fn found(finding: &Finding) -> Markup {
+/// The page of this title, without characters that cannot be seen.
+pub(crate) fn page(title: &str, name: &str, opening: Part, parts: Vec<Part>) -> String {
+    plain(&Document { title, name, opening, parts, style: STYLE }.html()).into_owned()
+}
+
+/// The heading, the verdict in one of three sentences, its findings, the worst first, and a paragraph on the data.
+pub(crate) fn opening(
+    (id, title): (&str, &str),
+    (verdict, [good, doubtful, wrong]): (Verdict, [&str; 3]),
+    findings: &[Finding],
+    data: &Markup,
+) -> Markup {
+    let (class, sentence) = match verdict {
+        Verdict::Good => ("conclusion", good),
+        Verdict::Doubtful => ("conclusion doubtful", doubtful),
+        Verdict::DoNotUse => ("conclusion wrong", wrong),
+    };
+    let mut findings: Vec<&Finding> = findings.iter().collect();
+    findings.sort_by_key(|finding| Reverse(finding.verdict));
+    html! {
+        h1 id=(id) { (title) }
+        p class=(class) { (sentence) }
+        @if !findings.is_empty() { ul .findings { @for finding in findings { (found(finding)) } } }
+        p { (data) }
+    }
+}
+
+fn found(finding: &Finding) -> Markup {
     let label = match finding.verdict {
         Verdict::Good => "Remark",
         Verdict::Doubtful => "Doubtful",
@@ -33,7 +64,7 @@ pub(crate) fn found(finding: &Finding) -> Markup {
 }
 
 /// A table. In a narrow window each row becomes a block, in which cells name their columns.
-pub(crate) fn table(columns: &[Column], rows: &[Vec<Markup>]) -> Markup {
+fn table(columns: &[Column], rows: &[Vec<Markup>]) -> Markup {
     html! {
         table .numbers {
             thead { tr { @for (title, class) in columns { th scope="col" class=(class) { (title) } } } }
@@ -46,29 +77,12 @@ pub(crate) fn table(columns: &[Column], rows: &[Vec<Markup>]) -> Markup {
     }
 }
 
-/// A row of [`NUMBERS`].
-pub(crate) fn row(what: &str, value: &str, good: &str) -> Vec<Markup> {
-    [what, value, good].map(|cell| html! { (cell) }).into()
-}
-
-/// A direction of the state as a sum of channels, the largest first: "x", or "0.8 x − 0.6 y". It has no sign.
-pub(crate) fn direction(state: &[StateChannel], direction: &[f64]) -> String {
-    let named = direction.iter().copied().zip(state.iter().map(|channel| channel.name.as_str()));
-    let mut parts: Vec<(f64, &str)> = named.filter(|(part, _)| part.abs() >= NAMED).collect();
-    parts.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
-    let sign = parts.first().map_or(1.0, |(part, _)| part.signum());
-    let term = |(at, (part, name)): (usize, &(f64, &str))| {
-        let sign = match (at, part * sign < 0.0) {
-            (0, _) => "",
-            (_, true) => " − ",
-            (_, false) => " + ",
-        };
-        format!("{sign}{} {name}", short((part.abs() * 100.0).round() / 100.0))
+/// A table of numbers, those that there are: what they are, their values, and which would be good.
+pub(crate) fn numbers<'a>(rows: impl IntoIterator<Item = (&'a str, Option<String>, &'a str)>) -> Markup {
+    let row = |(what, value, good): (&str, Option<String>, &str)| {
+        value.map(|value| [what, &value, good].map(|cell| html! { (cell) }).into())
     };
-    match parts[..] {
-        [(_, only)] => only.to_owned(),
-        _ => parts.iter().enumerate().map(term).collect(),
-    }
+    table(&NUMBERS, &rows.into_iter().filter_map(row).collect::<Vec<_>>())
 }
 
 pub(crate) fn decisions(decisions: &[Decision]) -> Markup {
@@ -96,26 +110,4 @@ pub(crate) fn channels(state: &[StateChannel]) -> Markup {
 pub(crate) fn left_out(episodes: &[LeftOut]) -> Markup {
     let listed: Vec<String> = episodes.iter().map(|left| format!("{} ({})", left.episode, left.why)).collect();
     html! { @if !listed.is_empty() { p { "Left out: " (listed.join(", ")) "." } } }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn directions_name_the_channels_that_matter() {
-        let channel = |name: &str| StateChannel {
-            name: name.to_owned(),
-            unit: None,
-            scale: 1.0,
-            low: 0.0,
-            high: 1.0,
-            median: 0.5,
-        };
-        let state = ["x", "y", "z"].map(channel);
-        assert_eq!(direction(&state, &[-0.999, 0.008, 0.0]), "x");
-        assert_eq!(direction(&state, &[0.6, 0.0, -0.8]), "0.8 z − 0.6 x");
-        assert_eq!(direction(&state, &[-0.6, 0.52, -0.61]), "0.61 z + 0.6 x − 0.52 y");
-        assert_eq!(direction(&state, &[0.0; 3]), "");
-    }
 }

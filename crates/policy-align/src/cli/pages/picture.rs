@@ -18,34 +18,24 @@ const FINE: usize = 49;
 const MARGIN: f64 = 0.12;
 const SIZE: (f64, f64) = (640.0, 660.0);
 const UNKNOWN: &str = "#dcdcdc";
-pub(crate) const SHOWN: Stroke = Stroke { color: "#56a0d3", width: 1.3, dash: Dash::Solid };
+pub(crate) const DEMONSTRATED: Stroke = Stroke { color: "#56a0d3", width: 1.3, dash: Dash::Solid };
 const FOLLOWED: Stroke = Stroke { color: "#d55e00", width: 2.4, dash: Dash::Solid };
 const ARROW: &str = "#6a6a6a";
 
 /// What is drawn.
 pub(crate) struct Picture<'a> {
     /// Above it.
-    title: String,
-    model: &'a Model,
+    pub(crate) title: String,
+    pub(crate) model: &'a Model,
     /// Channels across and up.
-    dims: [usize; 2],
+    pub(crate) dims: [usize; 2],
     /// Demonstrations, (n, N) each.
-    shown: Vec<DMatrix<f64>>,
+    pub(crate) demonstrated: Vec<DMatrix<f64>>,
     /// Movements that the policy makes.
-    followed: Vec<DMatrix<f64>>,
+    pub(crate) followed: Vec<DMatrix<f64>>,
 }
 
-impl<'a> Picture<'a> {
-    pub(crate) fn of(
-        title: String,
-        model: &'a Model,
-        dims: [usize; 2],
-        shown: Vec<DMatrix<f64>>,
-        followed: Vec<DMatrix<f64>>,
-    ) -> Self {
-        Picture { title, model, dims, shown, followed }
-    }
-
+impl Picture<'_> {
     /// From and to, of a channel.
     fn range(&self, axis: usize) -> [f64; 2] {
         let channel = &self.model.state[self.dims[axis]];
@@ -94,8 +84,12 @@ impl<'a> Picture<'a> {
         }
         layers.extend(unknown(&x, &y, &known));
         let named = |at: usize, name: &str| (at == 0).then(|| name.to_owned());
-        for (at, movement) in self.shown.iter().enumerate() {
-            layers.push(Layer::Path { points: self.points(movement), stroke: SHOWN, label: named(at, "demonstrated") });
+        for (at, movement) in self.demonstrated.iter().enumerate() {
+            layers.push(Layer::Path {
+                points: self.points(movement),
+                stroke: DEMONSTRATED,
+                label: named(at, "demonstrated"),
+            });
         }
         layers.extend(self.arrows());
         for (at, movement) in self.followed.iter().enumerate() {

@@ -1,63 +1,55 @@
 //! The page that says how far to trust a policy.
 
 use maud::{Markup, html};
-use motion::{Demonstrations, LearntPolicy as _};
+use motion::{Demonstrations, LearntPolicy as _, Trajectory};
 use nalgebra::DMatrix;
-use page::{Card, Document, Part};
-use policy_align::{Model, TrustNumbers, Verdict};
-use text::plain;
+use page::{Card, Part};
+use policy_align::{AlignedNumbers, Model, TrustNumbers, direction_by_channels};
 
-use crate::cli::in_words::learner;
+use crate::cli::describe::learner;
 use crate::cli::lines::{counted, short};
-use crate::cli::pages::page_parts::{
-    NUMBERS, STYLE, channels, decisions, direction, found, left_out, part, row, table,
-};
+use crate::cli::pages::page_parts::{self, COVERAGE, NOISE, channels, decisions, left_out, opening, page, part};
 use crate::cli::pages::picture::Picture;
 use crate::cli::trust_files::{DIGITS, NAMED};
 
+/// Numbers that are good or bad only next to others.
+const COMPARED: &str = "for comparison";
+const FIELD: &str = "The learnt policy";
+const SENTENCES: [&str; 3] = [
+    "Good: all checks passed.",
+    "Doubtful: read the findings before you use it.",
+    "Do not use: the policy is wrong, or cannot be checked.",
+];
+
 /// The page of a model, with a picture of the demonstrations if they are given, in the units of the learner.
-pub(crate) fn trust_page(model: &Model, name: &str, checksum: &str, shown: Option<&Demonstrations>) -> String {
+pub(crate) fn trust_page(model: &Model, name: &str, checksum: &str, demonstrations: Option<&Demonstrations>) -> String {
     let title = format!("How far to trust {name}");
-    let opening = Part { id: "verdict".to_owned(), title: "Verdict".to_owned(), body: opening(model, &title) };
+    let learnt = html! {
+        "Learnt by " (learner(model)) ", from " (counted(model.data.episodes, "episode")) " with "
+        (counted(model.data.samples, "sample")) ". All checks work without the true policy. They cannot detect a \
+         constraint that is the same in every demonstration."
+    };
+    let verdict = (model.trust.verdict, SENTENCES);
+    let body = opening(("verdict", &title), verdict, &model.trust.findings, &learnt);
+    let opening = Part { id: "verdict".to_owned(), title: "Verdict".to_owned(), body };
     let mut parts = Vec::new();
     if model.state.len() >= 2 {
-        parts.push(part("field", FIELD, &field(model, shown)));
+        parts.push(part("field", FIELD, &field(model, demonstrations)));
     }
     parts.push(part("numbers", "Numbers", &numbers(model)));
     parts.push(part("decisions", "Decisions", &decisions(&model.decisions)));
     parts.push(part("data", "Data", &data(model, checksum)));
-    plain(&Document { title: &title, name, opening, parts, style: STYLE }.html()).into_owned()
+    page(&title, name, opening, parts)
 }
 
-const FIELD: &str = "The learnt policy";
-
-fn opening(model: &Model, title: &str) -> Markup {
-    let (class, words) = match model.trust.verdict {
-        Verdict::Good => ("conclusion", "Good: all checks passed."),
-        Verdict::Doubtful => ("conclusion doubtful", "Doubtful: read the findings before you use it."),
-        Verdict::DoNotUse => ("conclusion wrong", "Do not use: the policy is wrong, or cannot be checked."),
+fn field(model: &Model, demonstrations: Option<&Demonstrations>) -> Markup {
+    let unscaled = |movement: &Trajectory| {
+        let states = movement.states();
+        DMatrix::from_fn(states.nrows(), states.ncols(), |k, i| states[(k, i)] / model.state[k].scale)
     };
-    html! {
-        h1 #verdict { (title) }
-        p class=(class) { (words) }
-        @if !model.trust.findings.is_empty() {
-            ul .findings { @for finding in &model.trust.findings { (found(finding)) } }
-        }
-        p { "Learnt by " (learner(model)) ", from " (counted(model.data.episodes, "episode")) " with "
-            (counted(model.data.samples, "sample")) ". All checks work without the true policy. They cannot detect a \
-             constraint that is the same in every demonstration." }
-    }
-}
-
-fn field(model: &Model, shown: Option<&Demonstrations>) -> Markup {
-    let movements = shown.map_or_else(Vec::new, |shown| {
-        let unscaled = |states: &DMatrix<f64>| {
-            DMatrix::from_fn(states.nrows(), states.ncols(), |k, i| states[(k, i)] / model.state[k].scale)
-        };
-        shown.trajectories().iter().map(|movement| unscaled(movement.states())).collect()
-    });
-    let plane = Picture::of(FIELD.to_owned(), model, [0, 1], movements, vec![]).plane();
-    let svg = plot::Picture::rows(&[&[&plane]]).svg();
+    let demonstrated = demonstrations.map_or(&[][..], Demonstrations::trajectories).iter().map(unscaled).collect();
+    let picture = Picture { title: FIELD.to_owned(), model, dims: [0, 1], demonstrated, followed: vec![] };
+    let svg = plot::Picture::rows(&[&[&picture.plane()]]).svg();
     let potential = if model.policy().potential().is_some() {
         " Thin lines join states of equal potential, with its value; the policy leads downhill."
     } else {
@@ -73,77 +65,46 @@ fn field(model: &Model, shown: Option<&Demonstrations>) -> Markup {
 
 fn numbers(model: &Model) -> Markup {
     let numbers = &model.trust.numbers;
-    let mut rows = vec![
-        row(
-            "Cross-validated error along the observed motion",
-            &short(numbers.held_out_error),
-            &below(TrustNumbers::GOOD_HELD_OUT_ERROR),
-        ),
-        row(
-            "The same for the direct learner (plain averaging)",
-            &short(numbers.held_out_error_direct),
-            "for comparison",
-        ),
-        row(
-            "Cross-validated error of the direct learner in all directions",
-            &short(numbers.direct_error),
-            "for comparison",
-        ),
-        row(
-            "Error expected from the posterior variance",
-            &short(numbers.expected_error),
-            &below(TrustNumbers::GOOD_EXPECTED_ERROR),
-        ),
-        row("Difference between slope and direct policy", &short(numbers.gap), "large where constraints acted"),
-    ];
-    if let Some((_, error)) = numbers.episode_errors.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
-        rows.push(row("Cross-validated error of the worst episode", &short(*error), "near that of all episodes"));
-    }
-    if let Some(halves) = numbers.halves {
-        rows.push(row(
-            "Difference between the policies learnt from either half of the episodes",
-            &short(halves),
-            &below(TrustNumbers::GOOD_HALVES),
-        ));
-    }
-    rows.extend([
-        row(
+    let below = |threshold: f64| format!("below {threshold}");
+    let (held_out, expected) = (below(TrustNumbers::GOOD_HELD_OUT_ERROR), below(TrustNumbers::GOOD_EXPECTED_ERROR));
+    let halves = below(TrustNumbers::GOOD_HALVES);
+    let worst = numbers.episode_errors.iter().map(|&(_, error)| error).max_by(f64::total_cmp);
+    let of_policy = [
+        ("Cross-validated error along the observed motion", Some(numbers.held_out_error), &*held_out),
+        ("The same for the direct learner (plain averaging)", Some(numbers.held_out_error_direct), COMPARED),
+        ("Cross-validated error of the direct learner in all directions", Some(numbers.direct_error), COMPARED),
+        ("Error expected from the posterior variance", Some(numbers.expected_error), &expected),
+        ("Difference between slope and direct policy", Some(numbers.gap), "large where constraints acted"),
+        ("Cross-validated error of the worst episode", worst, "near that of all episodes"),
+        ("Difference between the policies learnt from either half of the episodes", numbers.halves, &halves),
+        (
             "Squared errors divided by the variance that the policy predicts",
-            &short(numbers.z_squared),
+            Some(numbers.z_squared),
             "about 1, below 4",
         ),
-        row(
-            "Coverage of the least observed direction",
-            &short(numbers.direction_coverage),
-            "above 0.1; 1 if all directions are alike",
-        ),
-        row(
-            "Rotation: share of the policy that no potential explains",
-            &short(numbers.rotation_share),
-            "0 for a potential",
-        ),
-        row("Share of rollouts that leave the demonstrated region", &short(numbers.leaving), "0"),
-        row("Share of noise in the squared steps", &short(numbers.step_noise), "below 0.1"),
-    ]);
-    if let Some(aligned) = &numbers.aligned {
-        rows.extend([
-            row("Episodes aligned", &format!("{} of {}", aligned.kept, aligned.kept + aligned.discarded), "nearly all"),
-            row("Disagreement of the aligned potentials", &short(aligned.residual), "below 0.1"),
-            row("Share of held-out samples outside every receptive field", &short(aligned.unsupported), "below 0.05"),
-            row("Difference from the Gaussian process", &short(aligned.difference), "below 0.1"),
-        ]);
-    }
+        (COVERAGE.0, Some(numbers.direction_coverage), COVERAGE.1),
+        ("Rotation: share of the policy that no potential explains", Some(numbers.rotation_share), "0 for a potential"),
+        ("Share of rollouts that leave the demonstrated region", Some(numbers.leaving), "0"),
+        (NOISE.0, Some(numbers.step_noise), NOISE.1),
+    ];
+    let aligned = numbers.aligned.as_ref();
+    let episodes = |aligned: &AlignedNumbers| format!("{} of {}", aligned.kept, aligned.kept + aligned.discarded);
+    let episodes = ("Episodes aligned", aligned.map(episodes), "nearly all");
+    let unsupported = aligned.map(|aligned| aligned.unsupported);
+    let of_alignment = [
+        ("Disagreement of the aligned potentials", aligned.map(|aligned| aligned.residual), "below 0.1"),
+        ("Share of held-out samples outside every receptive field", unsupported, "below 0.05"),
+        ("Difference from the Gaussian process", aligned.map(|aligned| aligned.difference), "below 0.1"),
+    ];
+    let row = |(what, value, good): (_, Option<f64>, _)| (what, value.map(short), good);
+    let rows = of_policy.map(row).into_iter().chain([episodes]).chain(of_alignment.map(row));
+    let [unseen, least_known] = [&numbers.unseen_direction, &numbers.least_known_direction]
+        .map(|direction| direction_by_channels(direction, &model.state));
     html! {
         p { "Errors are mean squared errors as a share of the mean squared action: 0 is exact, 1 is no better than standing still." }
-        (table(&NUMBERS, &rows))
-        p { "Least observed direction: motion along " (direction(&model.state, &numbers.unseen_direction))
-            ". The policy is least certain along " (direction(&model.state, &numbers.least_known_direction)) "." }
+        (page_parts::numbers(rows))
+        p { "Least observed direction: motion along " (unseen) ". The policy is least certain along " (least_known) "." }
     }
-}
-
-/// What verdicts ask for.
-fn below(threshold: f64) -> String {
-    format!("below {threshold}")
 }
 
 fn data(model: &Model, checksum: &str) -> Markup {

@@ -2,7 +2,7 @@ use std::cmp::Reverse;
 use std::path::PathBuf;
 
 use clap::Args;
-use policy_align::{Finding, Prepared, Verdict, write_whole};
+use policy_align::{Finding, Prepared, Verdict};
 use prepare::{directions, prepare};
 use serde_json::json;
 use text::quoted;
@@ -13,7 +13,7 @@ use crate::cli::options::config::Config;
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
 use crate::cli::pages::check_page::check_page;
 use crate::cli::recorded::{named, read, unsaid};
-use crate::cli::session::{Output, Session};
+use crate::cli::session::{Output, Session, write};
 
 /// Examine recordings before learning
 #[derive(Debug, Args)]
@@ -48,7 +48,7 @@ impl Check {
         let (coverage, direction) = directions(&prepared.demonstrations);
         if let Some(path) = &self.html {
             let page = check_page(&prepared, &named(&self.files), (coverage, &direction));
-            write_whole(path, page.as_bytes()).map_err(|error| Failure::writing(path, error))?;
+            write(path, page.as_bytes())?;
         }
         if session.json {
             let document = json!({

@@ -3,8 +3,8 @@ use std::path::PathBuf;
 use clap::Args;
 use text::quoted;
 
-use crate::cli::failure::Failure;
-use crate::cli::lines::{Lines, counted};
+use crate::cli::failure::{Exit, Failure};
+use crate::cli::lines::{Lines, amount};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::ReadFlags;
 use crate::cli::recorded::read;
@@ -40,23 +40,13 @@ impl Convert {
         let mut recordings = read(session, &self.files, &reading)?;
         if let Some(rate) = self.resample {
             recordings = demo_io::resampled(&recordings, rate).map_err(|error| {
-                let text = error.to_string();
-                let (what, remedy) = text.split_once("; ").unwrap_or((&text, "another rate"));
-                Failure::usage(what, format!("--resample {rate}"), remedy)
+                Failure::of_text(Exit::Usage, &error.to_string(), format!("--resample {rate}"), "another rate")
             })?;
         }
         demo_io::write(&self.output, &recordings).map_err(|error| unwritten(&self.output, error))?;
         let samples = recordings.episodes.iter().map(|episode| episode.times.len()).sum();
         let mut lines = Lines::default();
-        lines.add(
-            "written",
-            &format!(
-                "{}: {}, {}",
-                self.output.display(),
-                counted(recordings.episodes.len(), "episode"),
-                counted(samples, "sample")
-            ),
-        );
+        lines.written(&self.output, &amount(recordings.episodes.len(), samples));
         Ok(Output::done(lines.next(&format!("policy-align check {}", quoted(&self.output)))))
     }
 }

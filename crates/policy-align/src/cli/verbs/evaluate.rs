@@ -12,7 +12,7 @@ use serde_json::json;
 use text::quoted;
 
 use crate::cli::failure::{Exit, Failure};
-use crate::cli::lines::{Lines, counted, short, squared_error};
+use crate::cli::lines::{Lines, amount, counted, short, squared_error};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
 use crate::cli::recorded::{named, read, summaries};
@@ -57,26 +57,17 @@ impl Evaluate {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let model = load(session, &self.model)?;
         let config = Config::of(session)?;
-        let mut reading = config.under("read", &self.read)?;
-        if reading.state.is_empty() {
-            reading.state = model.state.iter().map(|channel| channel.name.clone()).collect();
-        }
+        let reading = config.under("read", &self.read)?.with_channels_of(&model);
         let mut options = config.under("prepare", &self.prepare)?.options(reading.dt)?;
         // The learner saw the state times these, whatever is said now.
         options.scale = model.scale();
         let prepared = self.prepared(session, &reading, &options)?;
-        let names = |state: &[policy_align::StateChannel]| state.iter().map(|c| c.name.clone()).collect::<Vec<_>>();
-        if names(&prepared.state) != names(&model.state) {
-            let what = format!(
-                "the channels are {}, the model's {}",
-                names(&prepared.state).join(", "),
-                names(&model.state).join(", ")
-            );
-            return Err(Failure::usage(
-                what,
-                named(&self.files),
-                format!("--state {}", quoted(Path::new(&names(&model.state).join(",")))),
-            ));
+        let found: Vec<String> = prepared.state.iter().map(|channel| channel.name.clone()).collect();
+        let expected = model.channels();
+        if found != expected {
+            let what = format!("the channels are {}, the model's {}", found.join(", "), expected.join(", "));
+            let remedy = format!("--state {}", quoted(Path::new(&expected.join(","))));
+            return Err(Failure::usage(what, named(&self.files), remedy));
         }
         let truth = self.truth(session, &reading, &prepared, &model)?;
         let judged = evaluate(model.learnt.policy(), &prepared, truth.as_ref()).map_err(|error| {
@@ -101,12 +92,9 @@ impl Evaluate {
         let mut lines = Lines::default();
         tell(&prepared, &judged, &mut lines);
         if !training.is_empty() {
-            let those = if training.len() == 1 { "is" } else { "are" };
-            let what = format!(
-                "{} {those} training data: use other recordings to measure generalisation",
-                training.join(", ")
-            );
-            lines.add("warning", &what);
+            let (files, are) = (training.join(", "), if training.len() == 1 { "is" } else { "are" });
+            let advice = "use other recordings to measure generalisation";
+            lines.add("warning", &format!("{files} {are} training data: {advice}"));
         }
         if self.leave_constraint_out {
             tell_left_out(&left_out, &mut lines);
@@ -138,11 +126,7 @@ impl Evaluate {
         bar.finish_and_clear();
         left_out.map_err(|error| match error {
             EvaluateError::Fit(error) => Failure::fit(&error, named(&self.files)),
-            error => {
-                let text = error.to_string();
-                let (what, remedy) = text.split_once("; ").unwrap_or((&text, "other recordings"));
-                Failure::new(Exit::Refused, what, named(&self.files), remedy)
-            }
+            error => Failure::of_text(Exit::Refused, &error.to_string(), named(&self.files), "other recordings"),
         })
     }
 
@@ -167,7 +151,7 @@ impl Evaluate {
         columns.velocity.clear();
         let quiet = Session { quiet: true, ..session.clone() };
         let recordings = read(&quiet, &self.files, &columns)?;
-        let scale = DVector::from_iterator(model.state.len(), model.state.iter().map(|channel| channel.scale));
+        let scale = model.scales();
         let columns: Vec<DVector<f64>> = recordings
             .episodes
             .iter()
@@ -202,19 +186,10 @@ fn options_like(model: &Model) -> FitOptions {
 }
 
 fn tell(prepared: &Prepared, judged: &Evaluation, lines: &mut Lines) {
-    let count = prepared.demonstrations.n_trajectories();
-    lines.add(
-        "evaluated on",
-        &format!("{}, {}", counted(count, "episode"), counted(prepared.demonstrations.n_samples(), "sample")),
-    );
-    lines.add(
-        "error",
-        &format!(
-            "relative to the policy: {}, relative to the motion: {}",
-            squared_error(judged.policy_error),
-            squared_error(judged.slope_error)
-        ),
-    );
+    let demonstrations = &prepared.demonstrations;
+    lines.add("evaluated on", &amount(demonstrations.n_trajectories(), demonstrations.n_samples()));
+    let [of_policy, of_motion] = [judged.policy_error, judged.slope_error].map(squared_error);
+    lines.add("error", &format!("relative to the policy: {of_policy}, relative to the motion: {of_motion}"));
     let errors = prepared.episodes.iter().zip(&judged.episodes).filter_map(|(name, error)| Some((name, (*error)?)));
     if let Some((name, error)) = errors.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, error)| *error >= 0.01) {
         lines.add("worst", &format!("episode {name}: {} relative to the motion", short(error)));

@@ -2,7 +2,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use nalgebra::DVector;
-use policy_align::{CSource, ExportError, Model, Precision, spread_starts, to_onnx, write_whole};
+use policy_align::{CSource, ExportError, Model, Precision, spread_starts, to_onnx};
 use text::quoted;
 
 use crate::cli::failure::{Exit, Failure, shown};
@@ -10,7 +10,7 @@ use crate::cli::lines::{Lines, counted, list, size};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::numbers;
 use crate::cli::options::rollout_flags::RollOutFlags;
-use crate::cli::session::{Output, Session};
+use crate::cli::session::{Output, Session, write};
 use crate::cli::trust_files::load;
 use crate::cli::verbs::rollout::{followed, write_paths};
 
@@ -61,48 +61,33 @@ enum Target {
     Mcap,
 }
 
-impl Target {
-    fn extension(self) -> &'static str {
-        match self {
-            Target::C => "c",
-            Target::Onnx => "onnx",
-            Target::Mcap => "mcap",
-        }
-    }
-}
-
 impl Export {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let model = load(session, &self.model)?;
-        let output = self.output.clone().unwrap_or_else(|| self.model.with_extension(self.to.extension()));
-        if self.to == Target::Mcap {
-            return self.roll_outs(session, &model, &output);
-        }
-        if !self.from.is_empty() || self.follow != RollOutFlags::default() {
+        let output = |extension| self.output.clone().unwrap_or_else(|| self.model.with_extension(extension));
+        if self.to != Target::Mcap && (!self.from.is_empty() || self.follow != RollOutFlags::default()) {
             return Err(Failure::usage("only MCAP holds roll-outs", "roll-out flags", "--to mcap"));
         }
         let precision = if self.float { Precision::Single } else { Precision::Double };
-        let bytes = match self.to {
-            Target::Onnx => to_onnx(&model),
-            _ => CSource { name: self.name.clone(), precision }.of(&model).map(String::into_bytes),
+        let (output, bytes, next) = match self.to {
+            Target::Mcap => return self.roll_outs(session, &model, &output("mcap")),
+            Target::Onnx => (output("onnx"), to_onnx(&model), LOAD_ONNX),
+            Target::C => {
+                let source = CSource { name: self.name.clone(), precision }.of(&model);
+                (output("c"), source.map(String::into_bytes), "cc -std=c99 -O2 -c")
+            }
         };
         let bytes = bytes.map_err(|error| match error {
             ExportError::Name { .. } => Failure::usage(error.to_string(), "--name", "--name policy"),
-            error => Failure::new(
-                Exit::Refused,
-                error.to_string(),
-                shown(&self.model),
-                "another learner: `policy-align fit --learner`",
-            ),
+            error => {
+                let remedy = "another learner: `policy-align fit --learner`";
+                Failure::new(Exit::Refused, error.to_string(), shown(&self.model), remedy)
+            }
         })?;
-        write_whole(&output, &bytes).map_err(|error| Failure::writing(&output, error))?;
+        write(&output, &bytes)?;
         let mut lines = Lines::default();
         lines.add("written", &format!("{} ({})", output.display(), size(bytes.len())));
-        let next = match self.to {
-            Target::Onnx => format!("{LOAD_ONNX} {}", quoted(&output)),
-            _ => format!("cc -std=c99 -O2 -c {}", quoted(&output)),
-        };
-        Ok(Output::done(lines.next(&next)))
+        Ok(Output::done(lines.next(&format!("{next} {}", quoted(&output)))))
     }
 
     fn roll_outs(&self, session: &Session, model: &Model, output: &Path) -> Result<Output, Failure> {
@@ -119,17 +104,12 @@ impl Export {
             let what = "no start was found within the data";
             return Err(Failure::new(Exit::Refused, what, shown(&self.model), "--from with a recorded state"));
         }
-        let paths = starts.iter().map(|start| {
-            let from = list(start.iter().copied());
-            followed(&flags, model, start, &from)
-        });
+        let paths = starts.iter().map(|start| followed(&flags, model, start, &list(start.iter().copied())));
         let paths = paths.collect::<Result<Vec<_>, _>>()?;
         write_paths(output, model, &paths)?;
         let samples = paths.iter().map(|path| path.times.len()).sum();
         let mut lines = Lines::default();
-        let written =
-            format!("{}: {}, {}", output.display(), counted(paths.len(), "roll-out"), counted(samples, "sample"));
-        lines.add("written", &written);
+        lines.written(output, &format!("{}, {}", counted(paths.len(), "roll-out"), counted(samples, "sample")));
         Ok(Output::done(lines.next(&format!("rerun {}", quoted(output)))))
     }
 }

@@ -10,9 +10,9 @@ use serde_json::json;
 use text::quoted;
 
 use crate::cli::clock::now;
+use crate::cli::describe::verdict;
 use crate::cli::failure::{Exit, Failure};
-use crate::cli::in_words::verdict;
-use crate::cli::lines::{Lines, counted, size, squared_error};
+use crate::cli::lines::{Lines, amount, counted, size, squared_error};
 use crate::cli::options::config::{Config, printed};
 use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags};
 use crate::cli::pages::trust_page::trust_page;
@@ -123,48 +123,31 @@ impl Fit {
         let data = &model.data;
         let left_out =
             if data.left_out.is_empty() { String::new() } else { format!(", {} left out", data.left_out.len()) };
-        lines.add(
-            "learnt from",
-            &format!("{}, {}{left_out}", counted(data.episodes, "episode"), counted(data.samples, "sample")),
-        );
+        lines.add("learnt from", &format!("{}{left_out}", amount(data.episodes, data.samples)));
         if let Some(decision) = model.decisions.iter().find(|decision| decision.what == "learner") {
             lines.add("learner", &format!("{} ({})", decision.value, decision.why));
         }
         let numbers = &model.trust.numbers;
-        lines.add(
-            "held out",
-            &format!(
-                "error: {} (direct learner: {})",
-                squared_error(numbers.held_out_error),
-                squared_error(numbers.held_out_error_direct)
-            ),
-        );
+        let [own, direct] = [numbers.held_out_error, numbers.held_out_error_direct].map(squared_error);
+        lines.add("held out", &format!("error: {own} (direct learner: {direct})"));
         if let Some(judged) = held_out {
-            lines.add(
-                "hold-out",
-                &format!(
-                    "error on {}: {}",
-                    counted(judged.episodes.len(), "episode"),
-                    squared_error(judged.policy_error)
-                ),
-            );
+            let episodes = counted(judged.episodes.len(), "episode");
+            lines.add("hold-out", &format!("error on {episodes}: {}", squared_error(judged.policy_error)));
         }
         lines.add("trust", verdict(model));
         findings(unsaid, 3, &mut lines);
         let bytes = std::fs::metadata(&self.output).map_or(0, |found| found.len() as usize);
-        let beside = written.iter().map(|path| format!(", {}", path.display())).collect::<Vec<_>>().concat();
-        lines.add("written", &format!("{} ({}){beside}", self.output.display(), size(bytes)));
-        let next = if exit == Exit::Refused {
-            let page = written.first().map_or_else(
-                || format!("policy-align info {}", quoted(&self.output)),
-                |page| format!("open {}", quoted(page)),
-            );
-            lines.next(&page)
-        } else {
-            let (model, picture) = (quoted(&self.output), quoted(&self.output.with_extension("svg")));
-            lines.next(&format!("policy-align plot {model} -o {picture}"))
+        let report: String = written.iter().map(|path| format!(", {}", path.display())).collect();
+        lines.add("written", &format!("{} ({}){report}", self.output.display(), size(bytes)));
+        let model = quoted(&self.output);
+        let next = match written.first() {
+            _ if exit == Exit::Done => {
+                format!("policy-align plot {model} -o {}", quoted(&self.output.with_extension("svg")))
+            }
+            Some(page) => format!("open {}", quoted(page)),
+            None => format!("policy-align info {model}"),
         };
-        Output { text: next, exit }
+        Output { text: lines.next(&next), exit }
     }
 }
 
@@ -176,12 +159,8 @@ fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Rec
     for name in names {
         if !recordings.episodes.iter().any(|episode| episode.name == *name) {
             let known: Vec<&str> = recordings.episodes.iter().take(5).map(|episode| episode.name.as_str()).collect();
-            let remedy = format!("one of {}, …", known.join(", "));
-            return Err(Failure::usage(
-                format!("there is no episode '{name}'"),
-                format!("--hold-out, {place}"),
-                remedy,
-            ));
+            let (what, remedy) = (format!("there is no episode '{name}'"), format!("one of {}, …", known.join(", ")));
+            return Err(Failure::usage(what, format!("--hold-out, {place}"), remedy));
         }
     }
     let (held, kept) = recordings.episodes.into_iter().partition(|episode| names.contains(&episode.name));

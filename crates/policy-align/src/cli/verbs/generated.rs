@@ -4,11 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Args, Command, CommandFactory as _};
 use clap_complete::Shell;
-use policy_align::write_whole;
 
 use crate::cli::Cli;
 use crate::cli::failure::{Exit, Failure};
-use crate::cli::session::Output;
+use crate::cli::session::{Output, write};
 
 /// Print shell completions
 #[derive(Debug, Args)]
@@ -43,12 +42,9 @@ impl Man {
         let Some(folder) = &self.to else { return Ok(Output::done(page(command, "policy-align")?)) };
         for sub in command.get_subcommands().cloned().collect::<Vec<_>>() {
             let name = format!("policy-align-{}", sub.get_name());
-            let path = folder.join(format!("{name}.1"));
-            write_whole(&path, page(sub, &name)?.as_bytes()).map_err(|error| Failure::writing(&path, error))?;
+            write(&folder.join(format!("{name}.1")), page(sub, &name)?.as_bytes())?;
         }
-        let path = folder.join("policy-align.1");
-        write_whole(&path, page(command, "policy-align")?.as_bytes())
-            .map_err(|error| Failure::writing(&path, error))?;
+        write(&folder.join("policy-align.1"), page(command, "policy-align")?.as_bytes())?;
         Ok(Output::done(String::new()))
     }
 }

@@ -4,9 +4,9 @@ use clap::Args;
 use serde_json::json;
 use text::quoted;
 
+use crate::cli::describe::{learner, verdict};
 use crate::cli::failure::{Exit, Failure};
-use crate::cli::in_words::{learner, verdict};
-use crate::cli::lines::{Lines, counted, short};
+use crate::cli::lines::{Lines, amount, short};
 use crate::cli::session::{Output, Session};
 use crate::cli::trust_files::load;
 use crate::cli::verbs::check::findings;
@@ -32,15 +32,8 @@ impl Info {
         let mut lines = Lines::default();
         lines.add("made by", &format!("{}, {}", model.made_by.program, model.made_by.time));
         let files: Vec<&str> = model.data.files.iter().take(3).map(|file| file.name.as_str()).collect();
-        lines.add(
-            "learnt from",
-            &format!(
-                "{}, {} ({})",
-                counted(model.data.episodes, "episode"),
-                counted(model.data.samples, "sample"),
-                files.join(", ")
-            ),
-        );
+        let data = amount(model.data.episodes, model.data.samples);
+        lines.add("learnt from", &format!("{data} ({})", files.join(", ")));
         lines.add("learner", &learner(&model));
         let channel = |channel: &policy_align::StateChannel| {
             let unit = channel.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
@@ -52,10 +45,8 @@ impl Info {
             channels.push("…".to_owned());
         }
         lines.add("state", &channels.join(", "));
-        lines.add(
-            "time",
-            &format!("dt {} s, the longest episode {} s", short(model.time_step), short(model.data.longest)),
-        );
+        let [step, longest] = [model.time_step, model.data.longest].map(short);
+        lines.add("time", &format!("dt {step} s, the longest episode {longest} s"));
         lines.add("trust", verdict(&model));
         findings(&model.trust.findings, 4, &mut lines);
         let middle: Vec<String> = model.state.iter().map(|channel| short(channel.median)).collect();

@@ -2,7 +2,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use nalgebra::DVector;
-use policy_align::{Model, write_whole};
+use policy_align::Model;
 use text::quoted;
 
 use crate::cli::failure::Failure;
@@ -12,7 +12,7 @@ use crate::cli::options::flags::{ReadFlags, numbers};
 use crate::cli::options::rollout_flags::RollOutFlags;
 use crate::cli::pages::picture::{Picture, draw};
 use crate::cli::recorded::{base_name, read};
-use crate::cli::session::{Output, Session};
+use crate::cli::session::{Output, Session, write};
 use crate::cli::trust_files::load;
 use crate::cli::verbs::rollout::followed;
 
@@ -50,11 +50,8 @@ impl Plot {
         let model = load(session, &self.model)?;
         let config = Config::of(session)?;
         let dims = dims(&self.dims, &model)?;
-        let mut reading = config.under("read", &self.read)?;
-        if reading.state.is_empty() {
-            reading.state = model.state.iter().map(|channel| channel.name.clone()).collect();
-        }
-        let shown = if self.files.is_empty() {
+        let reading = config.under("read", &self.read)?.with_channels_of(&model);
+        let demonstrated = if self.files.is_empty() {
             vec![]
         } else {
             let recordings = read(session, &self.files, &reading)?;
@@ -66,54 +63,34 @@ impl Plot {
             Ok(followed(&flags, &model, &start, from)?.states)
         });
         let title = format!("Policy of {} (grey: outside the demonstrations)", base_name(&self.model));
-        let picture = Picture::of(title, &model, dims, shown, paths.collect::<Result<_, Failure>>()?);
-        write_whole(&self.output, &draw(&self.output, &picture)?)
-            .map_err(|error| Failure::writing(&self.output, error))?;
+        let followed = paths.collect::<Result<_, Failure>>()?;
+        let picture = Picture { title, model: &model, dims, demonstrated, followed };
+        write(&self.output, &draw(&self.output, &picture)?)?;
         let mut lines = Lines::default();
-        lines.add(
-            "written",
-            &format!(
-                "{}: {} across, {} up",
-                self.output.display(),
-                model.state[dims[0]].name,
-                model.state[dims[1]].name
-            ),
-        );
+        let [across, up] = dims.map(|dim| &model.state[dim].name);
+        lines.written(&self.output, &format!("{across} across, {up} up"));
         let start: Vec<String> =
             model.state.iter().map(|channel| short(channel.high * 0.5 + channel.median * 0.5)).collect();
-        Ok(Output::done(lines.next(&format!(
-            "policy-align rollout {} --from {}",
-            quoted(&self.model),
-            start.join(",")
-        ))))
+        let (model, start) = (quoted(&self.model), start.join(","));
+        Ok(Output::done(lines.next(&format!("policy-align rollout {model} --from {start}"))))
     }
 }
 
 /// The channels to draw, by name.
 fn dims(names: &[String], model: &Model) -> Result<[usize; 2], Failure> {
-    let known: Vec<&str> = model.state.iter().map(|channel| channel.name.as_str()).collect();
+    let known = model.channels();
     if known.len() < 2 {
-        return Err(Failure::usage(
-            "a state of one channel cannot be plotted",
-            "plot",
-            "`policy-align predict` with a file of states",
-        ));
+        let remedy = "`policy-align predict` with a file of states";
+        return Err(Failure::usage("a state of one channel cannot be plotted", "plot", remedy));
     }
     let place = |name: &String| known.iter().position(|known| known == name);
+    let refused = |what: &str, remedy: String| Err(Failure::usage(what, "--dims", remedy));
     match names {
         [] => Ok([0, 1]),
         [x, y] => match (place(x), place(y)) {
             (Some(x), Some(y)) if x != y => Ok([x, y]),
-            _ => Err(Failure::usage(
-                format!("'{x},{y}' are not two channels"),
-                "--dims",
-                format!("two of {}", known.join(", ")),
-            )),
+            _ => refused(&format!("'{x},{y}' are not two channels"), format!("two of {}", known.join(", "))),
         },
-        _ => Err(Failure::usage(
-            "a plot has two channels",
-            "--dims",
-            format!("--dims {}", quoted(Path::new(&known[..2].join(",")))),
-        )),
+        _ => refused("a plot has two channels", format!("--dims {}", quoted(Path::new(&known[..2].join(","))))),
     }
 }

@@ -4,14 +4,14 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::{DMatrix, DVector, DVectorView};
-use policy_align::{Model, ModelPolicy, write_whole};
+use policy_align::{Model, ModelPolicy, StateChannel};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use crate::cli::failure::{Exit, Failure};
 use crate::cli::lines::{Lines, counted, list, short};
 use crate::cli::options::flags::numbers;
-use crate::cli::session::{Output, Session};
+use crate::cli::session::{Output, Session, write};
 use crate::cli::table::states;
 use crate::cli::trust_files::load;
 
@@ -105,29 +105,20 @@ impl Predict {
         }
         let text = csv(&model, &states, &predictions);
         let Some(path) = &self.output else { return Ok(Output::done(text)) };
-        write_whole(path, text.as_bytes()).map_err(|error| Failure::writing(path, error))?;
+        write(path, text.as_bytes())?;
         let unsupported = predictions.iter().filter(|prediction| !prediction.supported).count();
+        let states = counted(predictions.len(), "state");
         let mut lines = Lines::default();
-        lines.add(
-            "written",
-            &format!(
-                "{}: {}, {unsupported} of them outside the data",
-                path.display(),
-                counted(predictions.len(), "state")
-            ),
-        );
+        lines.written(path, &format!("{states}, {unsupported} of them outside the data"));
         Ok(Output::done(lines.into_text()))
     }
 
     fn one(at: &str, model: &Model) -> Result<DMatrix<f64>, Failure> {
         let numbers = numbers(at, "--at")?;
         if numbers.len() != model.state.len() || !numbers.iter().all(|number| number.is_finite()) {
-            let names: Vec<&str> = model.state.iter().map(|channel| channel.name.as_str()).collect();
-            return Err(Failure::usage(
-                format!("{} finite numbers are needed", model.state.len()),
-                format!("--at {at}"),
-                format!("one for each of {}", names.join(", ")),
-            ));
+            let what = format!("{} finite numbers are needed", model.state.len());
+            let remedy = format!("one for each of {}", model.channels().join(", "));
+            return Err(Failure::usage(what, format!("--at {at}"), remedy));
         }
         Ok(DMatrix::from_vec(numbers.len(), 1, numbers))
     }
@@ -165,16 +156,14 @@ fn one_prediction(model: &Model, prediction: &Prediction) -> String {
 }
 
 fn csv(model: &Model, states: &DMatrix<f64>, predictions: &[Prediction]) -> String {
-    let names = || model.state.iter().map(|channel| channel.name.as_str());
     let quoted = |name: String| {
         if name.contains([',', '"', '\n']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name }
     };
-    let mut header: Vec<String> = names().map(|name| quoted(name.to_owned())).collect();
-    header.extend(names().map(|name| quoted(format!("u_{name}"))));
-    header.push("potential".to_owned());
-    header.extend(names().map(|name| quoted(format!("sd_{name}"))));
-    header.extend(["support".to_owned(), "known".to_owned()]);
-    let mut text = header.join(",") + "\n";
+    let names = |prefix: &str| {
+        let name = |channel: &StateChannel| quoted(format!("{prefix}{}", channel.name));
+        model.state.iter().map(name).collect::<Vec<_>>().join(",")
+    };
+    let mut text = format!("{},{},potential,{},support,known\n", names(""), names("u_"), names("sd_"));
     for (state, prediction) in states.column_iter().zip(predictions) {
         for number in state.iter().chain(&prediction.action) {
             let _ = write!(text, "{number},");
@@ -200,6 +189,5 @@ fn document(model: &Model, states: &DMatrix<f64>, predictions: &[Prediction]) ->
             "known": prediction.supported,
         })
     };
-    let names: Vec<&str> = model.state.iter().map(|channel| channel.name.as_str()).collect();
-    json!({ "channels": names, "predictions": states.column_iter().zip(predictions).map(one).collect::<Vec<_>>() })
+    json!({ "channels": model.channels(), "predictions": states.column_iter().zip(predictions).map(one).collect::<Vec<_>>() })
 }

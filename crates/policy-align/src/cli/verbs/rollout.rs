@@ -4,7 +4,7 @@ use clap::Args;
 use demo_io::WriteError;
 use motion::{Channel, Episode, Recordings, Source, Times};
 use nalgebra::DVector;
-use policy_align::{Model, Path, RollOutError, Stop, write_whole};
+use policy_align::{Model, Path, RollOutError, Stop};
 use serde_json::json;
 use text::quoted;
 
@@ -15,7 +15,7 @@ use crate::cli::options::flags::numbers;
 use crate::cli::options::rollout_flags::RollOutFlags;
 use crate::cli::pages::picture::{Picture, draw};
 use crate::cli::recorded::base_name;
-use crate::cli::session::{Output, Session};
+use crate::cli::session::{Output, Session, write};
 use crate::cli::trust_files::load;
 
 /// Roll out a policy from a start, under constraints
@@ -70,9 +70,9 @@ impl RollOut {
         }
         if let Some(plot) = &self.plot {
             let title = format!("Rollout of {} (grey: outside the demonstrations)", base_name(&self.model));
-            let picture =
-                Picture::of(title, &model, [0, 1.min(model.state.len() - 1)], vec![], vec![followed.states.clone()]);
-            write_whole(plot, &draw(plot, &picture)?).map_err(|error| Failure::writing(plot, error))?;
+            let (dims, followed) = ([0, 1.min(model.state.len() - 1)], vec![followed.states.clone()]);
+            let picture = Picture { title, model: &model, dims, demonstrated: vec![], followed };
+            write(plot, &draw(plot, &picture)?)?;
         }
         if session.json {
             let columns = |matrix: &nalgebra::DMatrix<f64>| {
@@ -91,15 +91,8 @@ impl RollOut {
     fn summary(&self, followed: &Path) -> String {
         let mut lines = Lines::default();
         let (count, last) = (followed.times.len(), followed.times.len() - 1);
-        let end = list(followed.states.column(last).iter().copied());
-        lines.add(
-            "moved",
-            &format!(
-                "{} → {end} in {} s",
-                list(followed.states.column(0).iter().copied()),
-                short(followed.times[last])
-            ),
-        );
+        let [start, end] = [0, last].map(|at| list(followed.states.column(at).iter().copied()));
+        lines.add("moved", &format!("{start} → {end} in {} s", short(followed.times[last])));
         lines.add("ended", &stop(&followed.stop));
         if let Some((by, which)) = followed.broken_by {
             let how = if by == 0.0 { "exactly".to_owned() } else { format!("to {} (constraint {which})", short(by)) };
@@ -168,10 +161,6 @@ pub(crate) fn write_paths(output: &path::Path, model: &Model, paths: &[Path]) ->
 pub(crate) fn unwritten(output: &path::Path, error: WriteError) -> Failure {
     match error {
         WriteError::Io { source, .. } => Failure::writing(output, source),
-        error => {
-            let text = error.to_string();
-            let (what, remedy) = text.split_once("; ").unwrap_or((&text, "another format"));
-            Failure::usage(what, shown(output), remedy)
-        }
+        error => Failure::of_text(Exit::Usage, &error.to_string(), shown(output), "another format"),
     }
 }

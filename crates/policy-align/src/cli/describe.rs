@@ -1,10 +1,10 @@
-//! What a model is, in words.
+//! Descriptions of a model.
 
 use policy_align::{Learnt, Model, Verdict};
 
 use crate::cli::lines::counted;
 
-/// The verdict in words.
+/// Its verdict.
 pub(crate) fn verdict(model: &Model) -> &'static str {
     match model.trust.verdict {
         Verdict::Good => "good: all checks passed",
@@ -13,7 +13,7 @@ pub(crate) fn verdict(model: &Model) -> &'static str {
     }
 }
 
-/// What learnt it, in words.
+/// What learnt it.
 pub(crate) fn learner(model: &Model) -> String {
     match &model.learnt {
         Learnt::PolicyAlign(policy) => {
