@@ -1,42 +1,28 @@
-//! The program's hints name its flags, and those of the library Rust's types. Whoever writes Python has arguments.
+//! The program's texts name its flags, and those of the library Rust's types. In Python they name arguments.
 
-/// Flags that are arguments here, with the words that are among their values: `--nan drop` is `nan="drop"`. Flags of other
-/// programs (`rosbags-convert --src`) stay as they are.
-const ARGUMENTS: [(&str, &[&str]); 33] = [
-    ("as", &[]),
+use serde_json::Value;
+
+/// Flags that are arguments here; those of other programs (`rosbags-convert --src`) stay as they are.
+const ARGUMENTS: &str = "as bandwidth constraint-column decimal degrees dt episode filter folds ignore init-d integration \
+                         jumps learner max-rows nan reading samples-are scale seed separator smooth sort split-gap state \
+                         time topic trim-still trust units unwrap velocity wraps";
+
+/// Values that are words: `--nan drop` is `nan="drop"`.
+const WORDS: [(&str, &[&str]); 10] = [
     ("bandwidth", &["auto"]),
-    ("constraint-column", &[]),
     ("decimal", &[".", ","]),
-    ("degrees", &[]),
-    ("dt", &[]),
-    ("episode", &[]),
-    ("filter", &[]),
-    ("folds", &[]),
-    ("ignore", &[]),
     ("init-d", &["auto"]),
     ("integration", &["velocity", "displacement"]),
     ("jumps", &["auto", "keep"]),
-    ("learner", &[]),
-    ("max-rows", &[]),
     ("nan", &["drop", "fill", "refuse"]),
     ("reading", &["free", "constrained"]),
     ("samples-are", &["rows", "columns"]),
-    ("scale", &[]),
-    ("seed", &[]),
-    ("separator", &[]),
     ("smooth", &["auto", "off"]),
-    ("sort", &[]),
-    ("split-gap", &[]),
-    ("state", &[]),
-    ("time", &[]),
-    ("topic", &[]),
-    ("trim-still", &[]),
-    ("trust", &[]),
-    ("units", &[]),
-    ("unwrap", &[]),
-    ("velocity", &[]),
     ("wraps", &["auto", "keep"]),
 ];
+
+/// Members of the library's documents that are sentences: of findings, decisions and episodes left out, and warnings.
+const SENTENCES: [&str; 5] = ["what", "value", "why", "next", "warnings"];
 
 /// What the library's types are called here.
 const TYPES: [(&str, &str); 5] = [
@@ -60,9 +46,9 @@ pub(crate) fn in_python(text: &str) -> String {
         out.push_str(before);
         let length = flag.find(|c: char| !(c.is_ascii_lowercase() || c == '-')).unwrap_or(flag.len());
         let (name, after) = flag.split_at(length);
-        rest = if let Some((name, words)) = ARGUMENTS.iter().find(|(known, _)| *known == name) {
+        rest = if ARGUMENTS.split(' ').any(|known| known == name) {
             out.push_str(&argument(name));
-            value(name, words, after, &mut out)
+            value(name, after, &mut out)
         } else {
             out.push_str("--");
             flag
@@ -76,6 +62,19 @@ pub(crate) fn named_in_python(text: &str) -> String {
     in_python(text).replace("= ", " ").replace("=: ", ": ")
 }
 
+/// The same for all sentences of a document, in place.
+pub(crate) fn document_in_python(document: &mut Value) {
+    fn translate(member: &str, value: &mut Value) {
+        match value {
+            Value::String(text) if SENTENCES.contains(&member) => *text = in_python(text),
+            Value::Array(entries) => entries.iter_mut().for_each(|entry| translate(member, entry)),
+            Value::Object(members) => members.iter_mut().for_each(|(name, value)| translate(name, value)),
+            _ => {}
+        }
+    }
+    translate("", document);
+}
+
 fn argument(name: &str) -> String {
     match name {
         "as" => "format=".to_owned(),
@@ -85,8 +84,9 @@ fn argument(name: &str) -> String {
 }
 
 /// Writes the value of a flag where it is one; gives back what follows it.
-fn value<'a>(name: &str, words: &[&str], after: &'a str, out: &mut String) -> &'a str {
+fn value<'a>(name: &str, after: &'a str, out: &mut String) -> &'a str {
     let Some(given) = after.strip_prefix(' ') else { return after };
+    let words = WORDS.iter().find(|(flag, _)| *flag == name).map_or(&[][..], |(_, words)| words);
     let ends = |word: &str| given[word.len()..].chars().next().is_none_or(|c| !c.is_alphanumeric());
     if let Some(word) = words.iter().find(|word| given.starts_with(**word) && ends(word)) {
         out.extend(["\"", word, "\""]);

@@ -1,6 +1,8 @@
 use motion::LearntPolicy as _;
 use policy_align::{Learnt, Model};
-use serde_json::{Value, json};
+use serde_json::json;
+
+use crate::hints::document_in_python;
 
 /// Everything in a model but the policy itself, as JSON.
 pub(crate) fn about(model: &Model) -> String {
@@ -13,7 +15,7 @@ pub(crate) fn about(model: &Model) -> String {
     if matches!(model.learnt, Learnt::PolicyAlign(_)) && document["kept"].is_null() {
         document["kept"] = json!((0..model.data.episodes).collect::<Vec<_>>());
     }
-    hints(&mut document["trust"]["findings"]);
+    document_in_python(&mut document);
     document.to_string()
 }
 
@@ -24,14 +26,5 @@ pub(crate) fn learner(learnt: &Learnt) -> &'static str {
         Learnt::PolicyAlign(_) => "policy_align",
         Learnt::Slope(_) => "slope",
         Learnt::Direct(_) => "direct",
-    }
-}
-
-/// What next, in Python's words.
-fn hints(findings: &mut Value) {
-    for finding in findings.as_array_mut().into_iter().flatten() {
-        if let Value::String(next) = &mut finding["next"] {
-            *next = crate::hints::in_python(next);
-        }
     }
 }

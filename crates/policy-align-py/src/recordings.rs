@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use serde_json::json;
 
 use crate::arrays::{array, matrix};
-use crate::hints::in_python;
+use crate::hints::{document_in_python, in_python};
 use crate::interruptible::interruptible;
 use crate::options::Preparing;
 use crate::refusal::Refusal;
@@ -159,11 +159,12 @@ impl Recordings {
             prepare(&inner.recordings, &options)
                 .map_err(|error| Refusal::prepare(&error, &inner.place, &names_of(&inner.recordings)))
         })??;
-        let document = json!({
+        let mut document = json!({
             "episodes": prepared.episodes, "samples": prepared.demonstrations.n_samples(),
             "state": prepared.state, "time_step": prepared.time_step, "left_out": prepared.left_out,
             "decisions": prepared.decisions, "findings": prepared.findings,
         });
+        document_in_python(&mut document);
         Ok(document.to_string())
     }
 }

@@ -126,6 +126,22 @@ def test_hints_name_arguments(tmp_path) -> None:
         Demonstrations.read(TOY, speed="x")
 
 
+def test_findings_and_decisions_name_arguments() -> None:
+    seconds = DT * np.arange(80)
+    angles = [start + 4.0 * (1.0 - np.exp(-seconds)) for start in np.linspace(-3.0, 3.0, 13)]
+    wrapped = [np.column_stack([np.angle(np.exp(1j * angle)), 2.0 * np.exp(-seconds)]) for angle in angles]
+    recordings = Demonstrations(wrapped, dt=DT, channels=["angle", "x"])
+    check = recordings.check()
+    advice = next(finding.next for finding in check.findings if "whole turn" in finding.what)
+    assert 'choose the angles yourself (wraps="keep" unwrap=NAMES)' in advice
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        model = SlopeGp(max_rows=60).fit(recordings)
+    assert advice in [finding.next for finding in model.trust_.findings]
+    texts = [str(check), str(model.trust_), *map(str, model.decisions_), *map(str, model.left_out_)]
+    assert not [text for text in texts if "--" in text]
+
+
 def test_files_that_do_not_exist_are_reported(tmp_path) -> None:
     with pytest.raises(PolicyAlignError) as error:
         Demonstrations.read(tmp_path / "none.csv")

@@ -51,7 +51,7 @@ pub(crate) struct ReadFlags {
     /// Channels in degrees, converted to radians
     #[arg(long, value_name = "PATTERNS")]
     degrees: Vec<String>,
-    /// Angles to unwrap
+    /// Angles (radians) to unwrap in what is read, also by `convert`
     #[arg(long, value_name = "PATTERNS")]
     unwrap: Vec<String>,
     /// Samples that are not finite: refuse, drop or fill [default: refuse]
@@ -109,7 +109,7 @@ pub(crate) struct PrepareFlags {
     /// Jumps: auto (split episodes there) or keep
     #[arg(long, value_name = "REPAIR", hide_possible_values = true, value_parser = ["auto", "keep"])]
     jumps: Option<String>,
-    /// Angles that jump by a whole turn: auto (unwrap) or keep
+    /// Wraps found before learning: auto (unwrap those angles) or keep
     #[arg(long, value_name = "REPAIR", hide_possible_values = true, value_parser = ["auto", "keep"])]
     wraps: Option<String>,
 }
