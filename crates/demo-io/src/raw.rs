@@ -74,15 +74,11 @@ impl RawEpisode {
             let n = numbers.len().checked_div(self.len()).unwrap_or(0);
             samples.clone().flat_map(|sample| &numbers[sample * n..(sample + 1) * n]).copied().collect()
         };
-        RawEpisode {
-            name: self.name.clone(),
-            file: self.file.clone(),
-            rows: samples.clone().map(|sample| self.rows.at(sample)).collect(),
-            times: samples.clone().map(|sample| self.times[sample]).collect(),
-            positions: columns(&self.positions),
-            velocities: columns(&self.velocities),
-            constraint: self.constraint.clone(),
-        }
+        let (positions, velocities) = (columns(&self.positions), columns(&self.velocities));
+        let rows = samples.clone().map(|sample| self.rows.at(sample)).collect();
+        let times = samples.map(|sample| self.times[sample]).collect();
+        let (name, file, constraint) = (self.name.clone(), self.file.clone(), self.constraint.clone());
+        RawEpisode { name, file, rows, times, positions, velocities, constraint }
     }
 
     /// Where `sample` is in the file: "demos.csv, line 17 (episode 1)".

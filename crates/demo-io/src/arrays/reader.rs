@@ -155,10 +155,8 @@ impl ArrayReader<'_> {
         for &field in &self.fields.state {
             let array = self.spec(field)?;
             let (_, _, n) = dimensions(&array, self.input, &self.place())?;
-            let name = |channel: usize| match self.named_by_array {
-                true => format!("{}_{channel}", array.name),
-                false => format!("x{channel}"),
-            };
+            let stem = if self.named_by_array { format!("{}_", array.name) } else { "x".to_owned() };
+            let name = |channel: usize| format!("{stem}{channel}");
             let taken = (0..n).any(|channel| names.contains(&name(channel)));
             let first = if taken { names.len() } else { 0 };
             names.extend((first..first + n).map(name));

@@ -32,7 +32,9 @@ pub(crate) fn decide(
 ) -> Agreement {
     let recorded = episodes.iter().filter(|episode| episode.velocities.is_some()).count();
     if recorded < episodes.len() || options.velocities == VelocityUse::Ignored {
-        episodes.iter_mut().for_each(|episode| episode.velocities = None);
+        for episode in episodes.iter_mut() {
+            episode.velocities = None;
+        }
         let why = match recorded {
             0 => "none recorded".to_owned(),
             _ if recorded < episodes.len() => format!("only {recorded} of {} episodes have them", episodes.len()),
@@ -47,7 +49,9 @@ pub(crate) fn decide(
     }
     let fit = Steps::of(episodes, noise);
     if fit.explained < UNRELATED {
-        episodes.iter_mut().for_each(|episode| episode.velocities = None);
+        for episode in episodes.iter_mut() {
+            episode.velocities = None;
+        }
         let explained = percent(fit.explained.max(0.0));
         let why = format!("those recorded explain {explained} of the steps");
         notes.decided("velocities", "from positions", why, "--integration");
@@ -149,7 +153,9 @@ fn rescale(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &
     let (low, high) = (fit.factors.min(), fit.factors.max());
     let step = episodes[0].times.seconds(0, 1);
     if step > SLOW && fit.factors.iter().all(|factor| (1.0 / AGREE..AGREE).contains(&(factor * 1000.0))) {
-        episodes.iter_mut().for_each(|episode| episode.times = episode.times.divided_by(1000.0));
+        for episode in episodes.iter_mut() {
+            episode.times = episode.times.divided_by(1000.0);
+        }
         let what = format!("stamps are {step:.0} apart and velocities 1000 times the steps");
         notes.decided("time step", format!("{} s", step / 1000.0), format!("{what}: stamps are milliseconds"), "--dt");
         notes.found(
