@@ -5,6 +5,7 @@ use kuva::render::color::Color;
 use kuva::render::render::{Primitive, Scene, TextAnchor};
 
 use crate::Sketch;
+use crate::drawing::elements::words;
 
 /// Pixels from the scale to its name's foot, and the name's size.
 const GAP: f64 = 8.0;
@@ -21,14 +22,5 @@ pub(crate) fn complete(name: &str, scene: &mut Scene) {
     let bars = elements[..outline].iter().rev().take_while(|element| is_bar(element)).count();
     elements.insert(outline, Primitive::GroupEnd);
     elements.insert(outline - bars, Sketch::backdrop());
-    elements.push(Primitive::Text {
-        x: x + width / 2.0,
-        y: y - GAP,
-        content: name.to_owned(),
-        size: SIZE,
-        anchor: TextAnchor::Middle,
-        rotate: None,
-        bold: false,
-        color: None,
-    });
+    elements.push(words((x + width / 2.0, y - GAP), name, SIZE, TextAnchor::Middle));
 }

@@ -5,9 +5,10 @@ use kuva::render::annotations::TextAnnotation;
 use kuva::render::color::Color;
 use kuva::render::layout::{ComputedLayout, TickFormat};
 use kuva::render::plots::Plot;
-use kuva::render::render::{Primitive, Scene, render_multiple};
+use kuva::render::render::{Scene, render_multiple};
 
 use crate::axis::tick;
+use crate::drawing::elements::line;
 use crate::drawing::sheet::{Edge, titled, with_axes};
 use crate::names::{self, Name};
 use crate::{Axis, Panel, Sign, Sketch, Stroke};
@@ -192,20 +193,15 @@ fn inside(points: &[(f64, f64)], [low, high]: [f64; 2]) -> Vec<Vec<(f64, f64)>> 
 fn broken((x, y): (f64, f64), scene: &mut Scene) {
     const HALF: (f64, f64) = (7.0, 3.0);
     for below in [6.0, 11.0] {
-        scene.add(Primitive::Line {
-            x1: x - HALF.0,
-            y1: y + below + HALF.1,
-            x2: x + HALF.0,
-            y2: y + below - HALF.1,
-            stroke: Color::from("black"),
-            stroke_width: 1.2,
-            stroke_dasharray: None,
-        });
+        let (from, to) = ((x - HALF.0, y + below + HALF.1), (x + HALF.0, y + below - HALF.1));
+        scene.add(line(from, to, Color::from("black"), 1.2));
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use kuva::render::render::Primitive;
+
     use super::*;
     use crate::{Dash, Filling, Mark};
 

@@ -7,6 +7,7 @@ use kuva::render::plots::Plot;
 use kuva::render::render::{Primitive, Scene};
 
 use crate::Field;
+use crate::drawing::elements::rectangle;
 use crate::ticks::{decimals, ticks};
 
 /// Lines, about.
@@ -78,16 +79,8 @@ pub(crate) fn uncross(labels: &[Label], scene: &mut Scene) {
             *y += ABOVE + 0.36 * f64::from(SIZE);
             *color = Some(Color::from(INK));
             let (width, height) = (LETTER * content.chars().count() as f64 + 4.0, f64::from(SIZE) + 2.0);
-            drawn.push(Primitive::Rect {
-                x: *x - width / 2.0,
-                y: *y - 0.36 * f64::from(SIZE) - height / 2.0,
-                width,
-                height,
-                fill: Color::from("#ffffff"),
-                stroke: None,
-                stroke_width: None,
-                opacity: Some(0.85),
-            });
+            let corner = (*x - width / 2.0, *y - 0.36 * f64::from(SIZE) - height / 2.0);
+            drawn.push(rectangle(corner, (width, height), Color::from("#ffffff"), 0.85));
         }
         drawn.push(element);
     }

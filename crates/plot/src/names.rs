@@ -1,7 +1,9 @@
 //! Names at the ends of curves, none on another.
 
 use kuva::render::color::Color;
-use kuva::render::render::{Primitive, Scene, TextAnchor};
+use kuva::render::render::{Scene, TextAnchor};
+
+use crate::drawing::elements::{line, words};
 
 /// A name and the end of its curve, pixels.
 pub(crate) struct Name<'a> {
@@ -25,25 +27,8 @@ pub(crate) fn draw(mut names: Vec<Name<'_>>, left: f64, scene: &mut Scene) {
     names.sort_by(|a, b| a.end.1.total_cmp(&b.end.1));
     let wanted: Vec<f64> = names.iter().map(|name| name.end.1).collect();
     for (Name { text, color, end }, y) in names.iter().zip(spread(&wanted, APART)) {
-        scene.add(Primitive::Line {
-            x1: end.0 + FROM,
-            y1: end.1,
-            x2: left - TO,
-            y2: y,
-            stroke: Color::from(*color),
-            stroke_width: 1.2,
-            stroke_dasharray: None,
-        });
-        scene.add(Primitive::Text {
-            x: left,
-            y: y + 0.36 * f64::from(SIZE),
-            content: (*text).to_owned(),
-            size: SIZE,
-            anchor: TextAnchor::Start,
-            rotate: None,
-            bold: false,
-            color: None,
-        });
+        scene.add(line((end.0 + FROM, end.1), (left - TO, y), Color::from(*color), 1.2));
+        scene.add(words((left, y + 0.36 * f64::from(SIZE)), text, SIZE, TextAnchor::Start));
     }
 }
 

@@ -1,6 +1,7 @@
 use kuva::render::color::Color;
-use kuva::render::render::{PathData, Primitive, Scene, TextAnchor};
+use kuva::render::render::{Primitive, Scene, TextAnchor};
 
+use crate::drawing::elements::{area, line};
 use crate::sign::shape;
 use crate::{Mark, Panel, Sketch, Stroke};
 
@@ -103,26 +104,8 @@ fn arrow(from: (f64, f64), to: (f64, f64), color: &str, width: f64) -> Vec<Primi
     let head = (2.0 * width + 4.5).min(0.65 * length);
     let (along, across) = (head / length, 0.45 * head / length);
     let foot = (to.0 - along * u, to.1 - along * v);
-    let (left, right) = ((foot.0 - across * v, foot.1 + across * u), (foot.0 + across * v, foot.1 - across * u));
-    let d = format!("M{:.2} {:.2}L{:.2} {:.2}L{:.2} {:.2}Z", to.0, to.1, left.0, left.1, right.0, right.1);
-    let shaft = Primitive::Line {
-        x1: from.0,
-        y1: from.1,
-        x2: foot.0,
-        y2: foot.1,
-        stroke: Color::from(color),
-        stroke_width: width,
-        stroke_dasharray: None,
-    };
-    let head = PathData {
-        d,
-        fill: Some(Color::from(color)),
-        stroke: Color::None,
-        stroke_width: 0.0,
-        opacity: None,
-        stroke_dasharray: None,
-    };
-    vec![shaft, Primitive::Path(Box::new(head))]
+    let corners = [to, (foot.0 - across * v, foot.1 + across * u), (foot.0 + across * v, foot.1 - across * u)];
+    vec![line(from, foot, Color::from(color), width), area(&corners, Color::from(color))]
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 pub(crate) mod canvas;
 pub(crate) mod dashes;
+pub(crate) mod elements;
 pub(crate) mod raster;
 pub(crate) mod samples;
 pub(crate) mod sheet;

@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use kuva::render::color::Color;
 use kuva::render::render::Primitive;
 
+use crate::drawing::elements::rectangle;
+
 /// Dots along a side of a pixel.
 pub(crate) const DOTS: usize = 2;
 
@@ -44,16 +46,9 @@ impl Raster {
             for run in dots.chunk_by(|a, b| a == b) {
                 let [red, green, blue, share] = run[0];
                 if share > 0 {
-                    areas.push(Primitive::Rect {
-                        x: self.corner.0 + column as f64 * side,
-                        y: self.corner.1 + row as f64 * side,
-                        width: run.len() as f64 * side + lap,
-                        height: side + lap,
-                        fill: Color::Rgb(red, green, blue),
-                        stroke: None,
-                        stroke_width: None,
-                        opacity: Some(f64::from(share) / 255.0),
-                    });
+                    let corner = (self.corner.0 + column as f64 * side, self.corner.1 + row as f64 * side);
+                    let size = (run.len() as f64 * side + lap, side + lap);
+                    areas.push(rectangle(corner, size, Color::Rgb(red, green, blue), f64::from(share) / 255.0));
                 }
                 column += run.len();
             }

@@ -2,7 +2,9 @@
 //! without a head.
 
 use kuva::render::color::Color;
-use kuva::render::render::{PathData, Primitive, Scene};
+use kuva::render::render::{Primitive, Scene};
+
+use crate::drawing::elements::area;
 
 /// Pixels from the sample's ends to the name.
 const FROM: f64 = 26.0;
@@ -42,13 +44,5 @@ pub(crate) fn draw(names: &[(&str, Sample)], scene: &mut Scene) {
 /// The head of an arrow to the right.
 fn arrowhead((x, y): (f64, f64), color: &Color) -> Primitive {
     let (length, half) = HEAD;
-    let foot = x - length;
-    Primitive::Path(Box::new(PathData {
-        d: format!("M{x:.2} {y:.2}L{foot:.2} {:.2}L{foot:.2} {:.2}Z", y - half, y + half),
-        fill: Some(color.clone()),
-        stroke: Color::None,
-        stroke_width: 0.0,
-        opacity: None,
-        stroke_dasharray: None,
-    }))
+    area(&[(x, y), (x - length, y - half), (x - length, y + half)], color.clone())
 }

@@ -4,6 +4,7 @@ use kuva::backend::raster::RasterBackend;
 use kuva::render::color::Color;
 use kuva::render::render::{Primitive, Scene, TextAnchor};
 
+use crate::drawing::elements::{rectangle, words};
 use crate::drawing::raster::DOTS;
 
 /// Degrees by which the words of an upright axis are turned.
@@ -30,17 +31,7 @@ fn dots(content: &str, size: u32, font_family: Option<&String>) -> Option<Vec<(f
     let (width, foot) = ((content.chars().count() as f64 * size_px).ceil() + 20.0, (1.5 * size_px).ceil());
     let mut scene = Scene::new(width, 2.0 * size_px.ceil());
     scene.font_family = font_family.cloned();
-    let (content, anchor) = (content.to_owned(), TextAnchor::Middle);
-    scene.add(Primitive::Text {
-        x: width / 2.0,
-        y: foot,
-        content,
-        size,
-        anchor,
-        rotate: None,
-        bold: false,
-        color: None,
-    });
+    scene.add(words((width / 2.0, foot), content, size, TextAnchor::Middle));
     let file = RasterBackend::new().with_scale(DOTS as f32).render_scene(&scene).ok()?;
     let mut decoder = png::Decoder::new(std::io::Cursor::new(file));
     decoder.set_transformations(png::Transformations::normalize_to_color8() | png::Transformations::ALPHA);
@@ -61,15 +52,8 @@ fn dots(content: &str, size: u32, font_family: Option<&String>) -> Option<Vec<(f
 fn areas(dots: &[(f64, f64, f64)], (x, y): (f64, f64), color: &Color) -> Vec<Primitive> {
     let side = 1.0 / DOTS as f64;
     let [x, y] = [x, y].map(|place| (place / side).round() * side);
-    let area = |&(right, down, share): &(f64, f64, f64)| Primitive::Rect {
-        x: x + down * side,
-        y: y - (right + 1.0) * side,
-        width: side,
-        height: side,
-        fill: color.clone(),
-        stroke: None,
-        stroke_width: None,
-        opacity: Some(share),
+    let area = |&(right, down, share): &(f64, f64, f64)| {
+        rectangle((x + down * side, y - (right + 1.0) * side), (side, side), color.clone(), share)
     };
     dots.iter().map(area).collect()
 }

@@ -6,8 +6,8 @@ use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 use super::item::WORDS;
 use super::legend;
-use super::lines::{area, polyline};
 use super::view::{Extent, Room, View, corners};
+use crate::drawing::elements::{area, polyline};
 use crate::ticks::{decimals, ticks};
 
 /// A box with axes.
@@ -64,7 +64,7 @@ impl Frame {
         let [across, up] = [(axis + 1) % 3, (axis + 2) % 3].map(|side| 1 << side);
         let all = corners([self.lowest, self.highest]);
         let outline = [0, across, across + up, up].map(|corner| on(all[corner]));
-        scene.add(area(&outline, Color::from("#f6f6f6")));
+        scene.add(area(&outline.map(|corner| (corner.x, corner.y)), Color::from("#f6f6f6")));
         for along in (0..3).filter(|&along| along != axis) {
             for tick in self.ticks(along, view) {
                 let line = [self.lowest, self.highest].map(|mut end| {

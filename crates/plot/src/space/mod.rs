@@ -10,7 +10,6 @@ mod extents;
 mod frame;
 mod item;
 mod legend;
-mod lines;
 mod shade;
 mod solid;
 mod stroke;
@@ -24,6 +23,7 @@ pub use camera::Camera;
 pub use frame::Frame;
 pub use item::{Item, Paint};
 
+use crate::drawing::elements;
 use crate::drawing::raster::Raster;
 use crate::{Panel, Sketch};
 use view::{Area, Extent, View};
@@ -108,16 +108,7 @@ impl Space {
 
     fn add_title(&self, scene: &mut Scene) {
         if !self.title.is_empty() {
-            scene.add(Primitive::Text {
-                x: self.size.0 / 2.0,
-                y: MARGIN + 14.0,
-                content: self.title.clone(),
-                size: 15,
-                anchor: TextAnchor::Middle,
-                rotate: None,
-                bold: false,
-                color: None,
-            });
+            scene.add(elements::words((self.size.0 / 2.0, MARGIN + 14.0), &self.title, 15, TextAnchor::Middle));
         }
     }
 }

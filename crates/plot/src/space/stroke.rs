@@ -6,10 +6,10 @@ use nalgebra::{Point2, Point3, Vector2};
 
 use super::cast::{Body, seen};
 use super::item::Item;
-use super::lines::{area, disc, polyline};
 use super::shade::{Rgb, color, rgb};
 use super::view::View;
 use crate::drawing::dashes::dashed;
+use crate::drawing::elements::{area, disc, polyline};
 use crate::{Dash, Stroke};
 
 /// Whether it is hidden is asked at steps of so many pixels.
@@ -78,7 +78,7 @@ fn arrow(from: Point3<f64>, to: Point3<f64>, style: &Stroke, bodies: &[Body], sc
     let middle = nalgebra::center(&foot, &to);
     if let Some(color) = seen(rgb(style.color), &middle.xy(), middle.z + LIFT, bodies) {
         let corners = [to.xy(), foot.xy() + aside, foot.xy() - aside];
-        scene.add(area(&corners, self::color(color)));
+        scene.add(area(&corners.map(|corner| (corner.x, corner.y)), self::color(color)));
         scene.add(polyline(&[corners[0], corners[1], corners[2], corners[0]], self::color(color), 0.9));
     }
 }

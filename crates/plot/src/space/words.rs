@@ -5,9 +5,9 @@ use kuva::render::render::{Scene, TextAnchor};
 use nalgebra::Point2;
 
 use super::item::{DISC, WORDS};
-use super::lines::{disc, polyline};
 use super::view::View;
 use super::{Item, legend, shade};
+use crate::drawing::elements::{disc, polyline};
 
 /// Notes farther than this from their point have a line to it, pixels.
 const FAR: f64 = 14.0;
