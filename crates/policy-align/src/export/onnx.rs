@@ -20,23 +20,22 @@ const FORMAT: u64 = 8;
 pub fn to_onnx(model: &Model) -> Result<Vec<u8>, ExportError> {
     let tables = Tables::of(model)?;
     let n = tables.dim();
-    let mut graph = Graph::default();
+    let graph = Graph::default();
     let scale = graph.constant(&[n], tables.scale.iter().copied());
     let scaled = graph.node("Mul", &["x", &scale]);
     let asked = match &tables.learner {
-        LearnerTables::Lwpr(lwpr) => onnx_lwpr::write(&mut graph, lwpr, &scaled),
-        LearnerTables::Slope(slope, radius) => onnx_gp::write_slope(&mut graph, slope, *radius, &scaled),
-        LearnerTables::Direct(direct, radius) => onnx_gp::write_direct(&mut graph, direct, *radius, &scaled),
+        LearnerTables::Lwpr(lwpr) => onnx_lwpr::write(&graph, lwpr, &scaled),
+        LearnerTables::Slope(slope, radius) => onnx_gp::write_slope(&graph, slope, *radius, &scaled),
+        LearnerTables::Direct(direct, radius) => onnx_gp::write_direct(&graph, direct, *radius, &scaled),
     };
-    let support = within(&mut graph, &tables.bounds, &asked.support);
+    let support = within(&graph, &tables.bounds, &asked.support);
     let action = graph.node("Div", &[&asked.action, &scale]);
-    let (column, zero) = (graph.unsqueezed(&support, 1), graph.number(0.0));
-    let action = graph.node("Where", &[&column, &action, &zero]);
+    let action = graph.node("Where", &[&graph.unsqueezed(&support, 1), &action, &graph.number(0.0)]);
     graph.output(&action, "u");
     let mut outputs = vec![("u", Output::Vectors(n))];
     if let Some(potential) = &asked.potential {
-        let (potential, none) = (graph.times(potential, tables.per_unit), graph.number(f64::NAN));
-        let potential = graph.node("Where", &[&support, &potential, &none]);
+        let scaled = graph.times(potential, tables.per_unit);
+        let potential = graph.node("Where", &[&support, &scaled, &graph.number(f64::NAN)]);
         graph.output(&potential, "phi");
         outputs.push(("phi", Output::Numbers));
     }
@@ -46,16 +45,14 @@ pub fn to_onnx(model: &Model) -> Result<Vec<u8>, ExportError> {
 }
 
 /// Support, within bounds.
-fn within(graph: &mut Graph, bounds: &[[f64; 2]], support: &str) -> String {
+fn within(graph: &Graph, bounds: &[[f64; 2]], support: &str) -> String {
     let low = graph.constant(&[bounds.len()], bounds.iter().map(|[low, _]| *low));
     let high = graph.constant(&[bounds.len()], bounds.iter().map(|[_, high]| *high));
     // How far beyond, summed over channels: 0 within.
-    let (below, above) = (graph.node("Sub", &[&low, "x"]), graph.node("Sub", &["x", &high]));
-    let (below, above) = (graph.node("Relu", &[&below]), graph.node("Relu", &[&above]));
-    let beyond = graph.node("Add", &[&below, &above]);
-    let beyond = graph.sum(&beyond, 1);
-    let zero = graph.number(0.0);
-    let within = graph.node("LessOrEqual", &[&beyond, &zero]);
+    let sides = [[&*low, "x"], ["x", &high]].map(|difference| graph.node("Sub", &difference));
+    let [below, above] = sides.map(|side| graph.node("Relu", &[&side]));
+    let beyond = graph.sum(&graph.node("Add", &[&below, &above]), 1);
+    let within = graph.node("LessOrEqual", &[&beyond, &graph.number(0.0)]);
     graph.node("And", &[support, &within])
 }
 

@@ -4,88 +4,71 @@ use nalgebra::DMatrix;
 use super::onnx_graph::{Asked, Graph};
 
 /// Scaled coordinates z, (B, n), their differences from the learnt states, (B, M, n), and squares of these, (B, M).
-fn differences(graph: &mut Graph, scaled: &ScaledStates<'_>, state: &str) -> [String; 3] {
+fn differences(graph: &Graph, scaled: &ScaledStates<'_>, state: &str) -> [String; 3] {
     let (n, m) = scaled.z.shape();
     let mean = graph.constant(&[n], scaled.mean.iter().copied());
     let spread = graph.number(scaled.spread);
-    let centred = graph.node("Sub", &[state, &mean]);
-    let z = graph.node("Div", &[&centred, &spread]);
+    let z = graph.node("Div", &[&graph.node("Sub", &[state, &mean]), &spread]);
     let learnt = graph.constant(&[1, m, n], scaled.z.iter().copied());
-    let column = graph.unsqueezed(&z, 1);
-    let apart = graph.node("Sub", &[&column, &learnt]);
-    let squares = graph.node("Mul", &[&apart, &apart]);
-    let squared = graph.sum(&squares, 2);
+    let apart = graph.node("Sub", &[&graph.unsqueezed(&z, 1), &learnt]);
+    let squared = graph.sum(&graph.node("Mul", &[&apart, &apart]), 2);
     [z, apart, squared]
 }
 
-fn support(graph: &mut Graph, squared_radius: f64, squared: &str) -> String {
-    let nearest = graph.least(squared, 1);
-    let squared_radius = graph.number(squared_radius);
-    graph.node("LessOrEqual", &[&nearest, &squared_radius])
+fn support(graph: &Graph, squared_radius: f64, squared: &str) -> String {
+    graph.node("LessOrEqual", &[&graph.least(squared, 1), &graph.number(squared_radius)])
 }
 
 /// A matrix (n, M) with a row a column, (M, n).
-fn rows(graph: &mut Graph, matrix: &DMatrix<f64>) -> String {
+fn rows(graph: &Graph, matrix: &DMatrix<f64>) -> String {
     graph.constant(&[matrix.ncols(), matrix.nrows()], matrix.iter().copied())
 }
 
 /// π = speed (Σ g v − h (vᵀa) a + c + Q z), and φ.
-pub(super) fn write_slope(graph: &mut Graph, slope: &SlopeFormula<'_>, squared_radius: f64, state: &str) -> Asked {
+pub(super) fn write_slope(graph: &Graph, slope: &SlopeFormula<'_>, squared_radius: f64, state: &str) -> Asked {
     let [z, apart, squared] = differences(graph, &slope.scaled, state);
     let n = slope.scaled.mean.len();
     let directions = rows(graph, &slope.directions);
-    let along = graph.node("Mul", &[&apart, &directions]);
-    let along = graph.sum(&along, 2);
+    let along = graph.sum(&graph.node("Mul", &[&apart, &directions]), 2);
     let [g, h] = slopes(graph, slope, &squared);
     let straight = graph.product(&g, &directions);
-    let bent = graph.node("Mul", &[&h, &along]);
-    let bent = graph.unsqueezed(&bent, 2);
-    let bent = graph.node("Mul", &[&bent, &apart]);
-    let bent = graph.sum(&bent, 1);
+    let bent = graph.unsqueezed(&graph.node("Mul", &[&h, &along]), 2);
+    let bent = graph.sum(&graph.node("Mul", &[&bent, &apart]), 1);
     let constant = graph.constant(&[n], slope.constant.iter().copied());
     // Columns of Q are rows of its transpose, which multiplies from the right.
-    let matrix = rows(graph, &slope.matrix);
-    let sloped = graph.product(&z, &matrix);
+    let sloped = graph.product(&z, &rows(graph, &slope.matrix));
     let trend = graph.node("Add", &[&sloped, &constant]);
-    let action = graph.node("Sub", &[&straight, &bent]);
-    let action = graph.node("Add", &[&action, &trend]);
+    let action = graph.node("Add", &[&graph.node("Sub", &[&straight, &bent]), &trend]);
     let potential = slope.has_potential.then(|| {
-        let falling = graph.node("Mul", &[&g, &along]);
-        let falling = graph.sum(&falling, 1);
-        let half = graph.times(&sloped, 0.5);
-        let half = graph.node("Add", &[&half, &constant]);
-        let trend = graph.node("Mul", &[&z, &half]);
-        let trend = graph.sum(&trend, 1);
-        let value = graph.node("Add", &[&falling, &trend]);
-        graph.times(&value, -slope.scaled.speed * slope.scaled.spread)
+        let falling = graph.sum(&graph.node("Mul", &[&g, &along]), 1);
+        let half = graph.node("Add", &[&graph.times(&sloped, 0.5), &constant]);
+        let trend = graph.sum(&graph.node("Mul", &[&z, &half]), 1);
+        graph.times(&graph.node("Add", &[&falling, &trend]), -slope.scaled.speed * slope.scaled.spread)
     });
     let support = support(graph, squared_radius, &squared);
     Asked { action: graph.times(&action, slope.scaled.speed), potential, support }
 }
 
 /// û = unit Σ k(z, z') A.
-pub(super) fn write_direct(graph: &mut Graph, direct: &DirectFormula<'_>, squared_radius: f64, state: &str) -> Asked {
+pub(super) fn write_direct(graph: &Graph, direct: &DirectFormula<'_>, squared_radius: f64, state: &str) -> Asked {
     let [z, _, squared] = differences(graph, &direct.scaled, state);
     let (n, m) = direct.scaled.z.shape();
     let learnt = graph.constant(&[n, m], direct.scaled.z.transpose().iter().copied());
     let product = graph.product(&z, &learnt);
     let [constant, linear, quadratic] = direct.trend.map(|factor| graph.number(factor));
-    let trend = graph.node("Mul", &[&product, &quadratic]);
-    let trend = graph.node("Add", &[&trend, &linear]);
+    let trend = graph.node("Add", &[&graph.node("Mul", &[&product, &quadratic]), &linear]);
     let trend = graph.node("Mul", &[&trend, &product]);
     let mut sum = graph.node("Add", &[&trend, &constant]);
     for &term in &direct.terms {
-        let covariance = covariance(graph, term, &squared);
-        sum = graph.node("Add", &[&sum, &covariance]);
+        sum = graph.node("Add", &[&sum, &covariance(graph, term, &squared)]);
     }
-    let weights = rows(graph, direct.weights);
-    let action = graph.product(&sum, &weights);
+    let action = graph.product(&sum, &rows(graph, direct.weights));
     let support = support(graph, squared_radius, &squared);
     Asked { action: graph.times(&action, direct.scaled.speed), potential: None, support }
 }
 
 /// g and h of (S3), summed over the terms, (B, M) each.
-fn slopes(graph: &mut Graph, slope: &SlopeFormula<'_>, squared: &str) -> [String; 2] {
+fn slopes(graph: &Graph, slope: &SlopeFormula<'_>, squared: &str) -> [String; 2] {
     // Without any term: zeros of the right shape.
     let mut sums = [graph.times(squared, 0.0), graph.times(squared, 0.0)];
     for &term in &slope.terms {
@@ -98,19 +81,16 @@ fn slopes(graph: &mut Graph, slope: &SlopeFormula<'_>, squared: &str) -> [String
 }
 
 /// amplitude · e^(factor · tensor).
-fn exponential(graph: &mut Graph, amplitude: f64, factor: f64, tensor: &str) -> String {
-    let exponent = graph.times(tensor, factor);
-    let exponential = graph.node("Exp", &[&exponent]);
-    graph.times(&exponential, amplitude)
+fn exponential(graph: &Graph, amplitude: f64, factor: f64, tensor: &str) -> String {
+    graph.times(&graph.node("Exp", &[&graph.times(tensor, factor)]), amplitude)
 }
 
 /// √(factor · s).
-fn root(graph: &mut Graph, factor: f64, squared: &str) -> String {
-    let scaled = graph.times(squared, factor);
-    graph.node("Sqrt", &[&scaled])
+fn root(graph: &Graph, factor: f64, squared: &str) -> String {
+    graph.node("Sqrt", &[&graph.times(squared, factor)])
 }
 
-fn slope_term(graph: &mut Graph, term: Term, dim: usize, squared: &str) -> [String; 2] {
+fn slope_term(graph: &Graph, term: Term, dim: usize, squared: &str) -> [String; 2] {
     let Term { fall, length, amplitude } = term;
     let per_square = 1.0 / (length * length);
     match fall {
@@ -122,18 +102,15 @@ fn slope_term(graph: &mut Graph, term: Term, dim: usize, squared: &str) -> [Stri
         Fall::Shape(Shape::Matern52) => {
             let r = root(graph, 5.0 * per_square, squared);
             let e = exponential(graph, amplitude, -1.0, &r);
-            let one = graph.number(1.0);
-            let factor = graph.node("Add", &[&r, &one]);
+            let factor = graph.node("Add", &[&r, &graph.number(1.0)]);
             [graph.node("Mul", &[&factor, &e]), graph.times(&e, 5.0 * per_square)]
         }
         Fall::Shape(Shape::Matern32) => {
             let rate = 3.0_f64.sqrt() / length;
             let distance = graph.node("Sqrt", &[squared]);
             let g = exponential(graph, amplitude, -rate, &distance);
-            let tiny = graph.number(1e-12);
-            let distance = graph.node("Max", &[&distance, &tiny]);
-            let h = graph.times(&g, rate);
-            let h = graph.node("Div", &[&h, &distance]);
+            let distance = graph.node("Max", &[&distance, &graph.number(1e-12)]);
+            let h = graph.node("Div", &[&graph.times(&g, rate), &distance]);
             [g, h]
         }
         Fall::DivergenceFree => {
@@ -146,7 +123,7 @@ fn slope_term(graph: &mut Graph, term: Term, dim: usize, squared: &str) -> [Stri
     }
 }
 
-fn covariance(graph: &mut Graph, term: Term, squared: &str) -> String {
+fn covariance(graph: &Graph, term: Term, squared: &str) -> String {
     let Term { fall, length, amplitude } = term;
     let per_square = 1.0 / (length * length);
     let polynomial = match fall {
@@ -158,12 +135,9 @@ fn covariance(graph: &mut Graph, term: Term, squared: &str) -> String {
     };
     let r = root(graph, if polynomial.is_some() { 5.0 } else { 3.0 } * per_square, squared);
     let e = exponential(graph, amplitude, -1.0, &r);
-    let one = graph.number(1.0);
-    let mut factor = graph.node("Add", &[&r, &one]);
+    let mut factor = graph.node("Add", &[&r, &graph.number(1.0)]);
     if let Some(third) = polynomial {
-        let square = graph.node("Mul", &[&r, &r]);
-        let square = graph.times(&square, third);
-        factor = graph.node("Add", &[&factor, &square]);
+        factor = graph.node("Add", &[&factor, &graph.times(&graph.node("Mul", &[&r, &r]), third)]);
     }
     graph.node("Mul", &[&factor, &e])
 }

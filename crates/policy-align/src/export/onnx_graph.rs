@@ -1,3 +1,5 @@
+use std::cell::{Cell, RefCell};
+
 use super::protobuf::Message;
 
 /// Types of ONNX tensors.
@@ -11,9 +13,9 @@ pub(super) type Tensor = String;
 /// A graph of ONNX operators on doubles, made node by node. Names count up, so that the same model gives the same bytes.
 #[derive(Debug, Default)]
 pub(super) struct Graph {
-    nodes: Message,
-    constants: Message,
-    made: usize,
+    nodes: RefCell<Message>,
+    constants: RefCell<Message>,
+    made: Cell<usize>,
 }
 
 /// What an output is.
@@ -38,62 +40,62 @@ pub(super) struct Asked {
 }
 
 impl Graph {
-    fn name(&mut self, what: &str) -> Tensor {
-        self.made += 1;
-        format!("{what}_{}", self.made)
+    fn name(&self, what: &str) -> Tensor {
+        self.made.set(self.made.get() + 1);
+        format!("{what}_{}", self.made.get())
     }
 
     /// Doubles in rows, of this shape.
-    pub(super) fn constant(&mut self, shape: &[usize], values: impl IntoIterator<Item = f64>) -> Tensor {
+    pub(super) fn constant(&self, shape: &[usize], values: impl IntoIterator<Item = f64>) -> Tensor {
         let bytes: Vec<u8> = values.into_iter().flat_map(f64::to_le_bytes).collect();
         self.tensor(shape, DOUBLE, &bytes)
     }
 
     /// One double.
-    pub(super) fn number(&mut self, value: f64) -> Tensor {
+    pub(super) fn number(&self, value: f64) -> Tensor {
         self.constant(&[], [value])
     }
 
-    fn axis(&mut self, axis: u64) -> Tensor {
+    fn axis(&self, axis: u64) -> Tensor {
         self.tensor(&[1], INT64, &axis.to_le_bytes())
     }
 
-    fn tensor(&mut self, shape: &[usize], kind: u64, bytes: &[u8]) -> Tensor {
+    fn tensor(&self, shape: &[usize], kind: u64, bytes: &[u8]) -> Tensor {
         let name = self.name("c");
         let shaped = shape.iter().fold(Message::default(), |message, &length| message.integer(1, length as u64));
         let tensor = shaped.integer(2, kind).text(8, &name).bytes(9, bytes);
-        self.constants = std::mem::take(&mut self.constants).message(5, &tensor);
+        self.constants.replace_with(|constants| std::mem::take(constants).message(5, &tensor));
         name
     }
 
     /// A node without attributes.
-    pub(super) fn node(&mut self, operator: &str, inputs: &[&str]) -> Tensor {
+    pub(super) fn node(&self, operator: &str, inputs: &[&str]) -> Tensor {
         let name = self.name("t");
         self.add(operator, inputs, &name, &[]);
         name
     }
 
     /// Gives a tensor the name of an output.
-    pub(super) fn output(&mut self, tensor: &str, name: &str) {
+    pub(super) fn output(&self, tensor: &str, name: &str) {
         self.add("Identity", &[tensor], name, &[]);
     }
 
-    fn add(&mut self, operator: &str, inputs: &[&str], output: &str, attributes: &[Message]) {
+    fn add(&self, operator: &str, inputs: &[&str], output: &str, attributes: &[Message]) {
         let node = inputs.iter().fold(Message::default(), |node, input| node.text(1, input));
         let node = node.text(2, output).text(4, operator);
         let node = attributes.iter().fold(node, |node, attribute| node.message(5, attribute));
-        self.nodes = std::mem::take(&mut self.nodes).message(1, &node);
+        self.nodes.replace_with(|nodes| std::mem::take(nodes).message(1, &node));
     }
 
     /// Sum along an axis, which disappears.
-    pub(super) fn sum(&mut self, tensor: &str, axis: u64) -> Tensor {
+    pub(super) fn sum(&self, tensor: &str, axis: u64) -> Tensor {
         let (axis, name) = (self.axis(axis), self.name("t"));
         self.add("ReduceSum", &[tensor, &axis], &name, &[integer("keepdims", 0)]);
         name
     }
 
     /// Least number along an axis, which disappears.
-    pub(super) fn least(&mut self, tensor: &str, axis: u64) -> Tensor {
+    pub(super) fn least(&self, tensor: &str, axis: u64) -> Tensor {
         let name = self.name("t");
         let axes = Message::default().text(1, "axes").integer(8, axis).integer(20, 7);
         self.add("ReduceMin", &[tensor], &name, &[axes, integer("keepdims", 0)]);
@@ -101,28 +103,24 @@ impl Graph {
     }
 
     /// With a new axis of length 1.
-    pub(super) fn unsqueezed(&mut self, tensor: &str, axis: u64) -> Tensor {
-        let axis = self.axis(axis);
-        self.node("Unsqueeze", &[tensor, &axis])
+    pub(super) fn unsqueezed(&self, tensor: &str, axis: u64) -> Tensor {
+        self.node("Unsqueeze", &[tensor, &self.axis(axis)])
     }
 
     /// Rows (B, M) times a matrix (M, n). Not by `MatMul`: onnxruntime joins that with numbers beside it, which it rounds
     /// to single precision.
-    pub(super) fn product(&mut self, rows: &str, matrix: &str) -> Tensor {
-        let rows = self.unsqueezed(rows, 2);
-        let products = self.node("Mul", &[&rows, matrix]);
-        self.sum(&products, 1)
+    pub(super) fn product(&self, rows: &str, matrix: &str) -> Tensor {
+        self.sum(&self.node("Mul", &[&self.unsqueezed(rows, 2), matrix]), 1)
     }
 
     /// Times a number.
-    pub(super) fn times(&mut self, tensor: &str, factor: f64) -> Tensor {
-        let factor = self.number(factor);
-        self.node("Mul", &[tensor, &factor])
+    pub(super) fn times(&self, tensor: &str, factor: f64) -> Tensor {
+        self.node("Mul", &[tensor, &self.number(factor)])
     }
 
     /// The graph of an input `x`, (B, n).
     pub(super) fn finished(self, n: usize, outputs: &[(&str, Output)]) -> Message {
-        let graph = self.nodes.text(2, "policy").joined(&self.constants);
+        let graph = self.nodes.into_inner().text(2, "policy").joined(&self.constants.into_inner());
         let graph = graph.message(11, &value("x", DOUBLE, Some(n)));
         outputs.iter().fold(graph, |graph, (name, output)| {
             let value = match output {
