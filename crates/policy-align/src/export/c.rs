@@ -139,10 +139,16 @@ impl CSource {
         }
     }
 
+    pub(super) fn numbers<const N: usize>(&self, values: [f64; N]) -> [String; N] {
+        values.map(|value| self.number(value))
+    }
+
     /// A table with one dimension.
     pub(super) fn vector(&self, name: &str, values: &[f64], text: &mut String) {
         let _ = writeln!(text, "static const real {name}[{}] = {{", values.len());
-        self.lines(values, text);
+        for line in values.chunks(4) {
+            let _ = writeln!(text, "    {},", self.listed(line));
+        }
         text.push_str("};\n");
     }
 
@@ -150,17 +156,13 @@ impl CSource {
     pub(super) fn columns(&self, name: &str, matrix: &DMatrix<f64>, text: &mut String) {
         let _ = writeln!(text, "static const real {name}[{}][{}] = {{", matrix.ncols(), matrix.nrows());
         for column in matrix.column_iter() {
-            let numbers: Vec<String> = column.iter().map(|&value| self.number(value)).collect();
-            let _ = writeln!(text, "    {{{}}},", numbers.join(", "));
+            let _ = writeln!(text, "    {{{}}},", self.listed(column.iter()));
         }
         text.push_str("};\n");
     }
 
-    fn lines(&self, values: &[f64], text: &mut String) {
-        for line in values.chunks(4) {
-            let numbers: Vec<String> = line.iter().map(|&value| self.number(value)).collect();
-            let _ = writeln!(text, "    {},", numbers.join(", "));
-        }
+    fn listed<'a>(&self, values: impl IntoIterator<Item = &'a f64>) -> String {
+        values.into_iter().map(|&value| self.number(value)).collect::<Vec<_>>().join(", ")
     }
 }
 

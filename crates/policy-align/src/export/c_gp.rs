@@ -118,43 +118,29 @@ fn ending(c: &CSource, squared_radius: f64) -> String {
 fn slope_term(c: &CSource, term: Term, dim: usize) -> String {
     let Term { fall, length, amplitude } = term;
     let (exp, sqrt) = (c.function("exp"), c.function("sqrt"));
-    let number = |value| c.number(value);
     let squared = length * length;
     match fall {
-        Fall::Shape(Shape::SquaredExponential) => format!(
-            "        {{ real e = {} * {exp}({} * s); g += e; h += {} * e; }}\n",
-            number(amplitude),
-            number(-0.5 / squared),
-            number(1.0 / squared)
-        ),
-        Fall::Shape(Shape::Matern52) => format!(
-            "        {{ real r = {sqrt}({five} * s) / {}, e = {} * {exp}(-r); g += ({} + r) * e; h += {} * e; }}\n",
-            number(length),
-            number(amplitude),
-            number(1.0),
-            number(5.0 / squared),
-            five = number(5.0)
-        ),
+        Fall::Shape(Shape::SquaredExponential) => {
+            let [amplitude, rate, bend] = c.numbers([amplitude, -0.5 / squared, 1.0 / squared]);
+            format!("        {{ real e = {amplitude} * {exp}({rate} * s); g += e; h += {bend} * e; }}\n")
+        }
+        Fall::Shape(Shape::Matern52) => {
+            let [five, length, amplitude, one, bend] = c.numbers([5.0, length, amplitude, 1.0, 5.0 / squared]);
+            let distance = format!("r = {sqrt}({five} * s) / {length}, e = {amplitude} * {exp}(-r)");
+            format!("        {{ real {distance}; g += ({one} + r) * e; h += {bend} * e; }}\n")
+        }
         Fall::Shape(Shape::Matern32) => {
             let rate = 3.0_f64.sqrt() / length;
-            format!(
-                "        {{ real r = {sqrt}(s), e = {} * {exp}({} * r); g += e; h += {} * e / (r > {tiny} ? r : {tiny}); }}\n",
-                number(amplitude),
-                number(-rate),
-                number(rate),
-                tiny = number(1e-12)
-            )
+            let [amplitude, falling, rate, tiny] = c.numbers([amplitude, -rate, rate, 1e-12]);
+            let distance = format!("r = {sqrt}(s), e = {amplitude} * {exp}({falling} * r)");
+            format!("        {{ real {distance}; g += e; h += {rate} * e / (r > {tiny} ? r : {tiny}); }}\n")
         }
         Fall::DivergenceFree => {
             let others = dim as f64 - 1.0;
-            format!(
-                "        {{ real r = s / {}, e = {} * {exp}({} * r); g += e * ({} - r); h -= {} * e; }}\n",
-                number(squared),
-                number(amplitude / others.max(1.0)),
-                number(-0.5),
-                number(others),
-                number(1.0 / squared)
-            )
+            let amplitude = amplitude / others.max(1.0);
+            let [squared, amplitude, rate, others, bend] = c.numbers([squared, amplitude, -0.5, others, 1.0 / squared]);
+            let distance = format!("r = s / {squared}, e = {amplitude} * {exp}({rate} * r)");
+            format!("        {{ real {distance}; g += e * ({others} - r); h -= {bend} * e; }}\n")
         }
     }
 }
@@ -163,25 +149,15 @@ fn slope_term(c: &CSource, term: Term, dim: usize) -> String {
 fn direct_term(c: &CSource, term: Term) -> String {
     let Term { fall, length, amplitude } = term;
     let (exp, sqrt) = (c.function("exp"), c.function("sqrt"));
-    let number = |value| c.number(value);
-    match fall {
-        Fall::Shape(Shape::Matern52) => format!(
-            "        {{ real r = {sqrt}({} * s) / {}; c += {} * ({one} + r + r * r / {}) * {exp}(-r); }}\n",
-            number(5.0),
-            number(length),
-            number(amplitude),
-            number(3.0),
-            one = number(1.0)
-        ),
-        Fall::Shape(Shape::Matern32) => format!(
-            "        {{ real r = {sqrt}({} * s) / {}; c += {} * ({} + r) * {exp}(-r); }}\n",
-            number(3.0),
-            number(length),
-            number(amplitude),
-            number(1.0)
-        ),
+    let rate = c.number(-0.5 / (length * length));
+    let [amplitude, length, one, three, five] = c.numbers([amplitude, length, 1.0, 3.0, 5.0]);
+    let (square, polynomial) = match fall {
+        Fall::Shape(Shape::Matern52) => (five, format!("({one} + r + r * r / {three})")),
+        Fall::Shape(Shape::Matern32) => (three, format!("({one} + r)")),
         Fall::Shape(Shape::SquaredExponential) | Fall::DivergenceFree => {
-            format!("        c += {} * {exp}({} * s);\n", number(amplitude), number(-0.5 / (length * length)))
+            return format!("        c += {amplitude} * {exp}({rate} * s);\n");
         }
-    }
+    };
+    let distance = format!("r = {sqrt}({square} * s) / {length}");
+    format!("        {{ real {distance}; c += {amplitude} * {polynomial} * {exp}(-r); }}\n")
 }

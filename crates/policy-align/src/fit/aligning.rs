@@ -12,6 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use smoothing::SavitzkyGolay;
 
+use super::decision::decision;
 use super::options::FitOptions;
 use super::progress::Progress;
 use super::recorded_rows::averaged;
@@ -128,8 +129,7 @@ pub(super) fn fit(
     progress: &mut Progress<'_>,
 ) -> Result<AlignedFit, FitError> {
     let (demonstrations, integration, why) = integrable(prepared)?;
-    let mut decisions =
-        vec![decision("integration", format!("{integration:?}").to_lowercase(), why.to_owned(), "--integration")];
+    let mut decisions = vec![decision("integration", format!("{integration:?}").to_lowercase(), why, "--integration")];
     progress.begin(2, 4, "choosing bandwidth and receptive fields")?;
     let tried = grid(&demonstrations, integration, (rows, reference), options, progress)?;
     let best = choose(&tried).ok_or(FitError::Cancelled)?;
@@ -153,10 +153,6 @@ pub(super) fn fit(
     let policy = aligned.learn(&regressor(best.init_d), &mut ChaCha8Rng::seed_from_u64(options.seed))?;
     let residual = residual(&aligned, &policy);
     Ok(AlignedFit { policy, sigma_squared: best.sigma_squared, decisions, held_out: best.total(), residual })
-}
-
-fn decision(what: &str, value: String, why: String, flag: &str) -> Decision {
-    Decision { what: what.to_owned(), value, why, flag: flag.to_owned() }
 }
 
 fn regressor(init_d: f64) -> LwprRegressor {

@@ -2,6 +2,7 @@
 
 mod actions;
 mod aligning;
+mod decision;
 mod halves;
 mod options;
 mod progress;
@@ -21,6 +22,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::trust::{AlignedNumbers, TrustNumbers, VerdictInput, judge, share_leaving, share_unknown};
 use crate::{DataSummary, Decision, FitError, Learnt, MadeBy, Model, Prepared};
 use aligning::AlignedFit;
+use decision::decision;
 
 /// Rows that amplitudes are chosen on, as a share of those learnt from.
 const HYPER_SHARE: f64 = 0.5;
@@ -87,22 +89,17 @@ fn readings(rows: &gp::Rows, options: &FitOptions) -> Result<AutoFit, FitError> 
 }
 
 fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {
-    let decision = |value: &str, why: String, flag: &str| Decision {
-        what: "learner".to_owned(),
-        value: value.to_owned(),
-        why,
-        flag: flag.to_owned(),
-    };
+    let given = |learner| decision("learner", learner, "given", "--learner");
     match options.learner {
-        LearnerChoice::PolicyAlign => decision("policy-align", "given".to_owned(), "--learner"),
-        LearnerChoice::Slope => decision("slope GP", "given".to_owned(), "--learner"),
-        LearnerChoice::Direct => decision("direct GP", "given".to_owned(), "--learner"),
+        LearnerChoice::PolicyAlign => given("policy-align"),
+        LearnerChoice::Slope => given("slope GP"),
+        LearnerChoice::Direct => given("direct GP"),
         LearnerChoice::Auto => {
             let numbers = readings.numbers();
             let reading = options.reading.unwrap_or(readings.reading());
             let learner = if numbers.takes_slope(reading) { "slope GP" } else { "direct GP" };
             let why = match options.reading {
-                Some(reading) => format!("reading given: {}", named(reading)),
+                Some(reading) => format!("reading given: {reading:?}").to_lowercase(),
                 None => format!(
                     "{}: held-out error {} with direction, {} without",
                     found(reading),
@@ -110,18 +107,8 @@ fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {
                     squared_error(numbers.a_d)
                 ),
             };
-            decision(learner, why, "--reading")
+            decision("learner", learner, why, "--reading")
         }
-    }
-}
-
-fn named(reading: Hypothesis) -> &'static str {
-    match reading {
-        Hypothesis::Free => "free",
-        Hypothesis::Constrained => "constrained",
-        Hypothesis::Ambiguous => "ambiguous",
-        Hypothesis::Unexplained => "unexplained",
-        Hypothesis::TooFew => "too few to tell",
     }
 }
 

@@ -19,12 +19,12 @@ pub(crate) struct Part {
 pub(crate) type Rows = dyn Fn(DVectorView<'_, f64>, f64) -> Result<DMatrix<f64>, String> + Send + Sync;
 
 /// The kind of constraint.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub(crate) enum Kind {
     /// The state keeps its value along each row of A, (k, n).
     Normal(DMatrix<f64>),
     /// It does not move along rows that change with state and time.
-    Function(Arc<Rows>),
+    Function(Function),
     /// A link's origin keeps its height over a plane through where it is; rows of normals, (k, 3).
     Plane(LinkPoint, DMatrix<f64>),
     /// The state does not come nearer than `radius` to `centre`.
@@ -41,17 +41,20 @@ pub(crate) enum Said {
     Distance { clearance: f64, radius: f64, gradient: DVector<f64> },
 }
 
-impl fmt::Debug for Kind {
+impl Said {
+    /// Of a distance from a ball's centre; its gradient, (n), is given times the distance.
+    fn distance(distance: f64, radius: f64, scaled: DVector<f64>) -> Self {
+        Said::Distance { clearance: distance - radius, radius, gradient: scaled / distance.max(1e-300) }
+    }
+}
+
+/// [`Rows`] that are shared.
+#[derive(Clone)]
+pub(crate) struct Function(pub(crate) Arc<Rows>);
+
+impl fmt::Debug for Function {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Kind::Normal(rows) => f.debug_tuple("Normal").field(rows).finish(),
-            Kind::Function(_) => f.write_str("Function"),
-            Kind::Plane(link, normals) => f.debug_tuple("Plane").field(link).field(normals).finish(),
-            Kind::Ball { centre, radius } => f.debug_tuple("Ball").field(centre).field(radius).finish(),
-            Kind::LinkBall { link, centre, radius } => {
-                f.debug_tuple("LinkBall").field(link).field(centre).field(radius).finish()
-            }
-        }
+        f.write_str("A(x, t)")
     }
 }
 
@@ -59,19 +62,16 @@ impl Kind {
     pub(crate) fn at(&self, state: DVectorView<'_, f64>, time: f64) -> Result<Said, String> {
         Ok(match self {
             Kind::Normal(rows) => Said::Rows(rows.clone()),
-            Kind::Function(rows) => Said::Rows(fitting(rows(state, time)?, state.len())?),
+            Kind::Function(Function(rows)) => Said::Rows(fitting(rows(state, time)?, state.len())?),
             Kind::Plane(link, normals) => Said::Rows(normals * link.at(state)?.1),
             Kind::Ball { centre, radius } => {
                 let apart = state - centre;
-                let distance = apart.norm();
-                Said::Distance { clearance: distance - radius, radius: *radius, gradient: apart / distance.max(1e-300) }
+                Said::distance(apart.norm(), *radius, apart)
             }
             Kind::LinkBall { link, centre, radius } => {
                 let (origin, jacobian) = link.at(state)?;
                 let apart = origin - centre;
-                let distance = apart.norm();
-                let gradient = jacobian.tr_mul(&apart) / distance.max(1e-300);
-                Said::Distance { clearance: distance - radius, radius: *radius, gradient }
+                Said::distance(apart.norm(), *radius, jacobian.tr_mul(&apart))
             }
         })
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use constraints::NullSpaceProjector;
 use nalgebra::{DMatrix, DVector, DVectorView};
 
-use super::constraint_part::{Kind, Part, Said, fitting};
+use super::constraint_part::{Function, Kind, Part, Said, fitting};
 use super::holding::Holding;
 
 /// From which distance on a ball slows what approaches it, and at which it stops it, in radii: what steps err by stays
@@ -46,7 +46,7 @@ impl ConstraintSet {
     pub fn function(
         rows: impl Fn(DVectorView<'_, f64>, f64) -> Result<DMatrix<f64>, String> + Send + Sync + 'static,
     ) -> ConstraintSet {
-        ConstraintSet::always(Kind::Function(Arc::new(rows)))
+        ConstraintSet::always(Kind::Function(Function(Arc::new(rows))))
     }
 
     fn always(kind: Kind) -> ConstraintSet {

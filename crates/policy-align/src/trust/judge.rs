@@ -4,7 +4,7 @@ use gp::{Grouping, Hypothesis};
 use motion::upper_median;
 use prepare::numbers::{percent, short};
 
-use super::direction::direction_by_channels as direction;
+use super::direction::direction_by_channels;
 use super::numbers::TrustNumbers;
 use crate::{Finding, StateChannel, Trust, Verdict};
 
@@ -47,15 +47,13 @@ pub(crate) fn judge(evidence: VerdictInput<'_>) -> Trust {
 }
 
 fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn FnMut(Verdict, String, &str)) {
+    let direction = direction_by_channels(&numbers.unseen_direction, state);
+    let coverage = short(numbers.direction_coverage);
     match numbers.reading {
         Hypothesis::Constrained => {}
         Hypothesis::Free if numbers.direction_coverage < SPREAD => found(
             Verdict::Doubtful,
-            format!(
-                "no constraint was detected, but movements hardly vary along {} (coverage {})",
-                direction(&numbers.unseen_direction, state),
-                short(numbers.direction_coverage)
-            ),
+            format!("no constraint was detected, but movements hardly vary along {direction} (coverage {coverage})"),
             "either the policy does not move that way or a constraint always blocks it: record movements in that direction",
         ),
         Hypothesis::Free => found(
@@ -87,11 +85,7 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
     if numbers.direction_coverage < UNSEEN {
         found(
             Verdict::Doubtful,
-            format!(
-                "almost no movement along {} (coverage {})",
-                direction(&numbers.unseen_direction, state),
-                short(numbers.direction_coverage)
-            ),
+            format!("almost no movement along {direction} (coverage {coverage})"),
             "record movements in that direction",
         );
     }
@@ -114,15 +108,9 @@ fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &s
         );
     }
     let held = numbers.held_out_error;
-    if held > WRONG {
+    if held > TrustNumbers::GOOD_HELD_OUT_ERROR {
         found(
-            Verdict::DoNotUse,
-            format!("held-out movements are predicted with an error of {}", percent(held)),
-            "record more movements, especially where errors are largest",
-        );
-    } else if held > TrustNumbers::GOOD_HELD_OUT_ERROR {
-        found(
-            Verdict::Doubtful,
+            if held > WRONG { Verdict::DoNotUse } else { Verdict::Doubtful },
             format!("held-out movements are predicted with an error of {}", percent(held)),
             "record more movements, especially where errors are largest",
         );
@@ -163,19 +151,14 @@ fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &s
 /// An episode that the others predict much worse than each other: another task, a fault of tracking, or a lone corner.
 fn about_episodes(numbers: &TrustNumbers, episodes: &[String], found: &mut dyn FnMut(Verdict, String, &str)) {
     let errors: Vec<f64> = numbers.episode_errors.iter().map(|&(_, error)| error).collect();
-    let Some(usual) = upper_median(errors).filter(|_| numbers.grouping != Grouping::BlocksOfTime) else { return };
     let worst = numbers.episode_errors.iter().max_by(|(_, a), (_, b)| a.total_cmp(b));
-    if let Some(&(episode, error)) =
-        worst.filter(|&&(_, error)| error > ODD * usual && error > TrustNumbers::GOOD_HELD_OUT_ERROR)
-    {
+    let (Some(usual), Some(&(episode, error))) = (upper_median(errors), worst) else { return };
+    let is_odd = error > ODD * usual && error > TrustNumbers::GOOD_HELD_OUT_ERROR;
+    if is_odd && numbers.grouping != Grouping::BlocksOfTime {
+        let (episode, error, usual) = (&episodes[episode], percent(error), percent(usual));
         found(
             Verdict::Good,
-            format!(
-                "episode {} is predicted worst: error {}, median {}",
-                episodes[episode],
-                percent(error),
-                percent(usual)
-            ),
+            format!("episode {episode} is predicted worst: error {error}, median {usual}"),
             "check it: another task, a tracking fault, or a place that no other movement visits?",
         );
     }
