@@ -53,7 +53,7 @@ fn words(text: &str) -> Vec<&str> {
     words
 }
 
-/// An interval, a power, or a name with a hyphen beside a single letter.
+/// An interval, a power, or a name with a hyphen next to a single letter.
 fn is_term(word: &str) -> bool {
     let name = word.trim_matches(|letter: char| !letter.is_alphanumeric());
     let mut parts = name.split('-');

@@ -6,7 +6,7 @@ use maud::{Markup, html};
 
 use crate::emphasised;
 
-/// A picture with title and caption, under a heading that may have said the title already; the title is then shown only
+/// A picture with title and caption, under a heading that may repeat the title; the title is then visible only
 /// where the figure is enlarged. It is an image, not a part of the page, so that names in it are its own. What it shows
 /// is in the caption; it is not read out twice. Light or dark it must be by itself, as the reader prefers.
 #[derive(Debug, Clone, Copy)]

@@ -1,12 +1,12 @@
 //! How a report looks: one page of HTML that needs nothing else, and tables in Markdown.
 //!
 //! - [`Document`]: the page, with contents, style and script in it. [`Part`]: what can be gone to.
-//! - [`Card`]: a figure that can be enlarged. It is given as SVG, whoever drew it.
-//! - [`Strip`] on a [`Scale`]: every value of a cell as a dot, so that outliers are seen. [`axis`], [`key`] explain them.
+//! - [`Card`]: a figure that can be enlarged. It is given as SVG.
+//! - [`Strip`] on a [`Scale`]: every value of a cell as a dot, so that outliers are visible. [`axis`], [`key`] explain them.
 //! - [`emphasised`]: sentences with emphasis, code and powers.
 //! - [`markdown_table`]: a table in Markdown.
 //!
-//! What a report says is up to whoever makes it. Bodies are [`maud::Markup`], which escapes what is put into it.
+//! The contents are up to the caller. Bodies are [`maud::Markup`], which escapes what is put into it.
 //!
 //! ```
 //! use maud::html;

@@ -1,6 +1,6 @@
 //! Markdown tables.
 
-/// A table with a header line; every row must have as many cells. Cells are not padded: who reads the text draws the columns.
+/// A table with a header line; every row must have as many cells. Cells are not padded.
 ///
 /// # Panics
 ///

@@ -1,4 +1,4 @@
-//! A strip: every data set of a cell as a dot, over what it is compared with, so that outliers are seen.
+//! A strip: every data set of a cell as a dot, over what it is compared with, so that outliers are visible.
 
 use maud::{Markup, html};
 
@@ -9,7 +9,7 @@ const WIDTH: f64 = 190.0;
 const HEIGHT: f64 = 24.0;
 const AXIS_HEIGHT: f64 = 16.0;
 
-/// Pixels at either end, so that whole dots and labels are seen.
+/// Pixels at either end, so that whole dots and labels are visible.
 const INSET: f64 = 8.0;
 
 /// Dots keep clear of the upper and lower edge by so many pixels.
@@ -53,7 +53,7 @@ impl Strip<'_> {
         }
     }
 
-    /// The strip in words.
+    /// A description of the strip, for readers who cannot see it.
     fn summary(&self) -> String {
         let values = self.values.iter().flatten();
         let (least, most) =

@@ -22,7 +22,7 @@ pub struct Curve {
     pub stroke: Stroke,
     /// At each point.
     pub sign: Sign,
-    /// Beside its last point, where that is on the axis.
+    /// Next to its last point, where that is on the axis.
     pub name: String,
 }
 
@@ -98,14 +98,14 @@ impl Panel for Curves {
         let named = self.lines.iter().filter(|curve| !curve.name.is_empty());
         let named =
             named.filter_map(|curve| Some(Name { text: &curve.name, color: curve.stroke.color, end: end(curve)? }));
-        names::draw(named.collect(), self.size.0 - self.room + BESIDE, &mut scene);
+        names::draw(named.collect(), self.size.0 - self.room + NAME_GAP, &mut scene);
         scene.width = self.size.0;
         Sketch::new(scene)
     }
 }
 
 /// Pixels from the axes to names.
-const BESIDE: f64 = 14.0;
+const NAME_GAP: f64 = 14.0;
 
 impl Curves {
     fn place(&self, value: f64) -> f64 {

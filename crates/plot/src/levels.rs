@@ -25,7 +25,7 @@ const ABOVE: f64 = 6.0;
 /// Values are written so far apart, as a share of the panel.
 const APART: f64 = 0.05;
 
-/// Points at which the way is looked at along which values are written.
+/// Points of the line along which values are written.
 const POINTS: usize = 400;
 
 /// A value on its line.
@@ -49,16 +49,16 @@ pub(crate) fn lines(field: &Field, known: &[Vec<bool>], label: String) -> Option
     (!levels.is_empty()).then(|| Plot::Contour(contours.with_line_color(LINE).with_line_width(0.9).with_legend(label)))
 }
 
-/// The values, along the straight way from the lowest known place to the highest, which meets every line.
+/// The values, along the straight line from the lowest known place to the highest, which meets every line.
 pub(crate) fn labels(field: &Field, known: &[Vec<bool>]) -> Vec<Label> {
     let levels = levels(field, known);
     let decimals = decimals(&levels);
     let (Some(low), Some(high)) = (extreme(field, known, 1.0), extreme(field, known, -1.0)) else { return vec![] };
     let extent = [&field.x, &field.y].map(|grid| grid[grid.len() - 1] - grid[0]).into_iter().fold(0.0, f64::max);
-    let way: Vec<_> = (0..=POINTS).map(|i| field.between(low, high, i as f64 / POINTS as f64)).collect();
+    let line: Vec<_> = (0..=POINTS).map(|i| field.between(low, high, i as f64 / POINTS as f64)).collect();
     let mut labels: Vec<Label> = vec![];
     for level in levels {
-        let met = way.windows(2).find(|pair| (pair[0].1 <= level) != (pair[1].1 <= level));
+        let met = line.windows(2).find(|pair| (pair[0].1 <= level) != (pair[1].1 <= level));
         let Some(at) = met.map(|pair| pair[0].0) else { continue };
         let far = |label: &Label| (label.at.0 - at.0).hypot(label.at.1 - at.1) >= APART * extent;
         if labels.iter().all(far) {

@@ -6,7 +6,7 @@
 //! - [`Relief`]: a scalar field or dots in perspective.
 //! - `Space`: things in space, the nearer ones before the others; with the feature `space`.
 //!
-//! Sizes of panels, widths of lines and radii of dots are in pixels; everything else is in the units of what is shown.
+//! Sizes of panels, widths of lines and radii of dots are in pixels; everything else is in the units of the data.
 //! Colours are written as in HTML, `#rrggbb`, as they are on white paper; in an SVG greys change for a reader who prefers dark
 //! pages. The same panels give the same bytes.
 //!
@@ -21,7 +21,7 @@
 //!     y_label: "y (m)".to_owned(),
 //!     x: [-1.0, 1.0],
 //!     y: [0.0, 1.0],
-//!     layers: vec![Layer::Path { points, stroke, label: Some("shown".to_owned()) }],
+//!     layers: vec![Layer::Path { points, stroke, label: Some("demonstrated".to_owned()) }],
 //!     size: Plane::SQUARE,
 //! };
 //! let picture = Picture::rows(&[&[&plane]]);

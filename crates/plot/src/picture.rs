@@ -10,7 +10,7 @@ use crate::{Panel, PlotError, Sketch, decimals};
 /// Pixels between panels.
 const GAP: f64 = 10.0;
 
-/// A picture, ready to be written in either form. The same panels give the same bytes, whatever was drawn before.
+/// A picture, ready to be written in either form. The same panels give the same bytes.
 #[derive(Debug)]
 pub struct Picture(Sketch);
 
@@ -74,7 +74,7 @@ fn dotted(element: &Primitive, rasters: &[Raster]) -> Vec<Primitive> {
 }
 
 /// Puts a panel on the sheet. Clipping areas get names of their own: the crate counts them over all pictures of the
-/// program, in whatever order they are drawn, and a picture stands beside others in one page.
+/// program, in the order they are drawn, and several pictures may be in one page.
 fn place(sheet: &mut Sketch, Sketch { scene, rasters }: Sketch, (x, y): (f64, f64), number: usize) {
     let names: Vec<String> = scene.defs.iter().filter_map(|def| name(def)).map(str::to_owned).collect();
     let own = |name: &str| names.iter().position(|other| other == name).map(|at| format!("panel-{number}-clip-{at}"));

@@ -5,7 +5,7 @@ use numpy::ndarray::Array2;
 use numpy::{PyArray2, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
 
-/// An (N, n) array as the (n, N) matrix that it is. Another thread may write to the array while nobody holds the lock,
+/// An (N, n) array as the (n, N) matrix that it is. Another thread may write to the array while no thread holds the lock,
 /// so nothing is computed on it in place.
 ///
 /// `as_slice` is content with Fortran's order, too, and would hand out the transpose.

@@ -15,7 +15,7 @@ use crate::options::{Learning, Preparing};
 use crate::recordings::{Recorded, Recordings, names_of};
 use crate::refusal::Refusal;
 use crate::rolling::{self, Constraint};
-use crate::{model_words, pool};
+use crate::{model_document, pool};
 
 /// A learnt policy.
 #[pyclass(frozen, module = "policy_align._native")]
@@ -80,13 +80,13 @@ impl Fitted {
 
     /// Everything in the model but the policy itself, as JSON.
     fn about(&self) -> String {
-        model_words::about(&self.model)
+        model_document::about(&self.model)
     }
 
     /// The name of what has learnt.
     #[getter]
     fn learner(&self) -> &'static str {
-        model_words::learner(&self.model.learnt)
+        model_document::learner(&self.model.learnt)
     }
 
     /// Dimension of the state.
@@ -142,7 +142,7 @@ impl Fitted {
         Ok(Some(PyArray1::from_iter(py, values.into_iter().flatten())))
     }
 
-    /// How much the demonstrations say about each state, from 0 to 1, (N).
+    /// How much the demonstrations support each state, from 0 to 1, (N).
     fn support<'py>(&self, py: Python<'py>, states: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let values = self.of_states(py, &states, |policy, state| policy.support(state))?;
         Ok(PyArray1::from_vec(py, values))
@@ -162,7 +162,7 @@ impl Fitted {
         Ok(PyArray1::from_vec(py, values))
     }
 
-    /// Holds the policy against movements; as JSON.
+    /// Evaluates the policy on movements; as JSON.
     fn evaluate(&self, py: Python<'_>, recordings: &Recordings, preparing: Preparing) -> PyResult<String> {
         let options = PrepareOptions { scale: self.model.scale(), ..preparing.options()? };
         let (inner, model) = (Arc::clone(&recordings.inner), Arc::clone(&self.model));

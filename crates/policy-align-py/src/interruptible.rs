@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 const LOOK: Duration = Duration::from_millis(50);
 
 /// Computes something that may take long, without the interpreter's lock. Ctrl-C raises at once and sets the flag, upon
-/// which the work, that nobody waits for any more, should end.
+/// which the work, whose result is no longer needed, should end.
 pub(crate) fn interruptible<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
@@ -21,7 +21,7 @@ pub(crate) fn interruptible<T: Send + 'static>(
     let flag = Arc::clone(&cancelled);
     let (done, mut result) = channel();
     let work = move || {
-        // If nobody waits any more, nobody wants the result.
+        // After an interrupt, the result is not needed.
         let _ = done.send(catch_unwind(AssertUnwindSafe(|| work(&flag))));
     };
     thread::Builder::new().spawn(work)?;

@@ -1,14 +1,14 @@
 //! The native half of the Python package `policy_align`: what `python/policy_align/*.py` stand on.
 //!
-//! Python checks types and makes arrays C-ordered; here they are copied once, and whatever computes does so without the
-//! interpreter's lock, on memory of its own. Rows are samples in Python and columns in Rust, so that a C-ordered (N, n)
+//! Python checks types and makes arrays C-ordered; here they are copied once, and computations run without the
+//! interpreter's lock, on their own memory. Rows are samples in Python and columns in Rust, so that a C-ordered (N, n)
 //! array is an (n, N) matrix as it lies.
 
 mod arrays;
 mod fitted;
 mod hints;
 mod interruptible;
-mod model_words;
+mod model_document;
 mod options;
 mod pool;
 mod recordings;

@@ -12,7 +12,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 /// By process and number of threads.
 type Pools = HashMap<(u32, usize), Arc<ThreadPool>>;
 
-/// Those of a process before a fork are kept: nobody is there to end them.
+/// Those of a process before a fork stay: no thread is left to end them.
 static POOLS: LazyLock<Mutex<Pools>> = LazyLock::new(Mutex::default);
 
 /// Runs something on so many threads, 0: as many as rayon thinks right. Results do not depend on it.

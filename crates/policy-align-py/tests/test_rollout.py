@@ -64,7 +64,7 @@ def test_what_a_function_raises_arrives(slope: SlopeGp) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (([1.0],), "the start has 1 numbers, the state 2: x, y"),
+        (([1.0],), "the start has 1 number, the state 2: x, y"),
         (([[1.0, 2.0]],), "Expected 1D array, got 2D array instead"),
         (([np.nan, 0.0],), "the start is not finite in channel 'x'"),
         (([90.0, 0.0],), "the start is outside the data"),
@@ -79,12 +79,12 @@ def test_starts_and_times_are_looked_at(arguments: tuple, words: str, slope: Slo
 
 
 def test_constraints_are_looked_at(slope: SlopeGp, tmp_path) -> None:
-    for constraint, words in (([0.0, 0.0], "no direction"), ([1.0], "1 numbers"), ([[np.inf, 1.0]], "not finite")):
+    for constraint, words in (([0.0, 0.0], "no direction"), ([1.0], "1 number,"), ([[np.inf, 1.0]], "not finite")):
         with pytest.raises(PolicyAlignError, match=words):
             slope.rollout(START, constraint=constraint)
     file = tmp_path / "wall.toml"
     file.write_text("[[constraint]]\nnormal = [1]\n")
-    with pytest.raises(PolicyAlignError, match="`normal` has 1 numbers"):
+    with pytest.raises(PolicyAlignError, match="`normal` has 1 number"):
         slope.rollout(START, constraint=file)
     with pytest.raises(FileNotFoundError):
         slope.rollout(START, constraint=tmp_path / "none.toml")

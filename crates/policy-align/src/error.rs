@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FitError {
-    /// Somebody asked to stop.
+    /// The fit was cancelled.
     #[error("stopped on request; nothing was learnt")]
     Cancelled,
     /// An option lies outside its range.

@@ -128,7 +128,7 @@ pub enum EvaluateError {
         expected: usize,
     },
     /// No constraint can be left out.
-    #[error("the recordings name {found} constraints; --constraint-column with a column that names at least two")]
+    #[error("the recordings name {found} constraint{}; --constraint-column with a column that names at least two", if *found == 1 { "" } else { "s" })]
     Constraints {
         /// Labels.
         found: usize,

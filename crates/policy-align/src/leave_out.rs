@@ -35,11 +35,11 @@ pub fn leave_constraints_out(
         return Err(EvaluateError::Constraints { found: labels.len() });
     }
     let without = |label: &String| {
-        let (out, kept): (Vec<usize>, Vec<usize>) =
+        let (out, others): (Vec<usize>, Vec<usize>) =
             (0..prepared.constraints.len()).partition(|&k| prepared.constraints[k].as_ref() == Some(label));
-        let learnt = fit(&only(prepared, &kept), options, progress)?;
+        let learnt = fit(&only(prepared, &others), options, progress)?;
         let evaluation = evaluate(learnt.learnt.policy(), &only(prepared, &out), None)?;
-        Ok(ConstraintLeftOut { constraint: label.clone(), learnt_from: kept.len(), evaluation })
+        Ok(ConstraintLeftOut { constraint: label.clone(), learnt_from: others.len(), evaluation })
     };
     labels.into_iter().map(without).collect()
 }

@@ -12,7 +12,7 @@ use cli::{Exit, complain};
 
 fn main() -> ExitCode {
     std::panic::set_hook(Box::new(report));
-    // Whoever interrupts wants an end at once. Files are written whole or not at all.
+    // An interrupt ends the program at once. Files are written whole or not at all.
     let _ = ctrlc::set_handler(|| {
         demo_io::abandon_drafts();
         exit(Exit::Interrupted as i32)

@@ -10,7 +10,7 @@ use crate::{Decision, Learnt, LeftOut, StateChannel, Trust, sha256_of_file};
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Model {
-    /// Who made it, and when.
+    /// The program that made it, and when.
     pub made_by: MadeBy,
     /// Dimensions of the state, n of them.
     pub state: Vec<StateChannel>,
@@ -28,7 +28,7 @@ pub struct Model {
     pub learnt: Learnt,
 }
 
-/// Who made a model, and when.
+/// The program that made a model, and when.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MadeBy {
@@ -69,7 +69,7 @@ impl Model {
         self.state.iter().map(|channel| channel.name.clone()).collect()
     }
 
-    /// Factors by which states of the recording are multiplied before the learner's policy is asked, (n).
+    /// Factors by which states of the recording are multiplied before the learner's policy is evaluated, (n).
     pub fn scales(&self) -> DVector<f64> {
         DVector::from_iterator(self.state.len(), self.state.iter().map(|channel| channel.scale))
     }

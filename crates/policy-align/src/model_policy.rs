@@ -7,7 +7,7 @@ use crate::{Learnt, Model, StateChannel};
 
 /// Share of the prior variance of a Gaussian process that the demonstrations must have taken away where it is used.
 const LEAST_KNOWN: f64 = 0.5;
-/// Share of its range by which a channel may lie beyond what was shown. A Gaussian process with a trend follows it
+/// Share of its range by which a channel may lie beyond the demonstrated range. A Gaussian process with a trend follows it
 /// at any distance, where no demonstration supports it.
 pub(crate) const BEYOND: f64 = 0.25;
 
@@ -136,12 +136,12 @@ thread_local! {
     static SCALED: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Asks at S x.
-fn scaled<T>(state: DVectorView<'_, f64>, scale: &DVector<f64>, ask: impl FnOnce(DVectorView<'_, f64>) -> T) -> T {
+/// Evaluates at S x.
+fn scaled<T>(state: DVectorView<'_, f64>, scale: &DVector<f64>, evaluate: impl FnOnce(DVectorView<'_, f64>) -> T) -> T {
     assert_eq!(state.len(), scale.len(), "a state has as many dimensions as the policy");
     SCALED.with_borrow_mut(|place| {
         place.clear();
         place.extend(state.iter().zip(scale).map(|(x, s)| x * s));
-        ask(DVectorView::from_slice(place, scale.len()))
+        evaluate(DVectorView::from_slice(place, scale.len()))
     })
 }

@@ -151,7 +151,7 @@ fn errors_have_three_lines_and_a_code() {
         ("predict toy.json no.json", 3, "no.json, line 1"),
         ("rollout toy.json --from 99,99", 1, "outside the data (support 0, at least 0.5 needed)"),
         ("rollout toy.json --from 1,1 --seconds 0", 2, "seconds is 0"),
-        ("rollout toy.json --from 1,1 --constraint bad.toml", 2, "constraint 1: `normal` has 1 numbers: it needs 2"),
+        ("rollout toy.json --from 1,1 --constraint bad.toml", 2, "constraint 1: `normal` has 1 number: it needs 2"),
         ("rollout toy.json --from 1,1 --constraint none.toml", 3, "none.toml"),
         ("plot toy.json -o field.gif", 2, ".svg or .png"),
         ("plot toy.json --dims x,q", 2, "two of x, y"),

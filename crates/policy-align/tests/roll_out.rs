@@ -226,7 +226,7 @@ fn what_cannot_be_followed_is_refused() {
     let (model, good) = (toy_model(), dvector![1.0, 1.0]);
     let refused = |roll_out: RollOut, start: &DVector<f64>| roll_out.follow(&model, start).unwrap_err();
     let error = refused(RollOut::default(), &dvector![1.0]);
-    assert_eq!(error.to_string(), "the start has 1 numbers, the state 2: x, y");
+    assert_eq!(error.to_string(), "the start has 1 number, the state 2: x, y");
     assert!(matches!(refused(RollOut::default(), &dvector![1.0, f64::NAN]), RollOutError::StartNotFinite { .. }));
     assert!(matches!(refused(RollOut::default(), &dvector![80.0, 80.0]), RollOutError::Unsupported { .. }));
     let ball = constraints("[[constraint]]\npoint = [1, 1.1]\nradius = 0.3");

@@ -1,4 +1,4 @@
-//! What others wrote, made fit for where it is shown: names of channels, units and files come with recordings, which need
+//! Text of unknown origin, made safe to print: names of channels, units and files come with recordings, which need
 //! not be trusted.
 //!
 //! - [`plain`]: for a terminal, a drawing or a comment.

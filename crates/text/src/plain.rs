@@ -1,20 +1,20 @@
 use std::borrow::Cow;
 
-/// Text in which every character can be seen. What moves the cursor of a terminal or changes its state, what turns the
+/// Text in which every character is visible. What moves the cursor of a terminal or changes its state, what turns the
 /// direction of writing, and what XML does not allow is spelt out, as `\u{1b}`; ends of lines and tabs stay.
 pub fn plain(text: &str) -> Cow<'_, str> {
     if !text.contains(is_hidden) {
         return Cow::Borrowed(text);
     }
-    let mut shown = String::with_capacity(text.len() + 8);
+    let mut visible = String::with_capacity(text.len() + 8);
     for c in text.chars() {
         if is_hidden(c) {
-            shown.extend(c.escape_unicode());
+            visible.extend(c.escape_unicode());
         } else {
-            shown.push(c);
+            visible.push(c);
         }
     }
-    Cow::Owned(shown)
+    Cow::Owned(visible)
 }
 
 /// Whether [`plain`] spells a character out.

@@ -1,5 +1,5 @@
 //! Colours and widths of a drawing in a style sheet: what many elements share is written once, and what changes in the
-//! dark has its colours of the dark beside those of the light.
+//! dark has its colours of the dark next to those of the light.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -19,7 +19,7 @@ pub(crate) const BACKDROP: &str = "class=\"backdrop\"";
 const DIMMED: f64 = 0.5;
 
 /// The drawing with a class for every style that recurs or changes in the dark, and a style sheet at its beginning. In the
-/// light and on paper it looks the same; whoever cannot read style sheets of the dark shows it as in the light.
+/// light and on paper it looks the same; a viewer without style sheets of the dark draws it as in the light.
 pub(crate) fn with_style_sheet(svg: &str) -> String {
     let mut count: HashMap<Style, usize> = HashMap::new();
     for (_, element) in elements(svg) {

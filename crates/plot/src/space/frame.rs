@@ -94,7 +94,7 @@ impl Frame {
             let foot = at(tick);
             scene.add(polyline(&[foot, foot + outward * TICK], black(), 1.0));
             let number = format!("{:.decimals$}", if tick.abs() < 1e-9 { 0.0 } else { tick });
-            scene.add(beside(foot + outward * NUMBER, outward, &number));
+            scene.add(tick_label(foot + outward * NUMBER, outward, &number));
         }
         let middle = at(f64::midpoint(self.lowest[axis], self.highest[axis])) + outward * LABEL;
         let rotate = (outward.x.abs() > 0.8).then_some(-90.0);
@@ -118,13 +118,13 @@ impl Frame {
 
     fn ticks(&self, axis: usize, view: &View) -> Vec<f64> {
         let (low, high) = (self.lowest[axis], self.highest[axis]);
-        let seen = view.length(view.direction(&Vector3::ith(axis, 1.0)).xy().norm() * (high - low));
-        ticks(low, high, (seen / APART).max(2.0))
+        let length = view.length(view.direction(&Vector3::ith(axis, 1.0)).xy().norm() * (high - low));
+        ticks(low, high, (length / APART).max(2.0))
     }
 }
 
-/// A word with its middle here, or where it is beside the box its nearer end.
-fn beside(at: Point2<f64>, outward: Vector2<f64>, word: &str) -> Primitive {
+/// A word with its middle here, or next to the box its nearer end.
+fn tick_label(at: Point2<f64>, outward: Vector2<f64>, word: &str) -> Primitive {
     let (anchor, back) = match outward.x {
         x if x < -0.8 => (TextAnchor::End, 8.0),
         x if x > 0.8 => (TextAnchor::Start, -8.0),

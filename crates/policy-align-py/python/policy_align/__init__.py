@@ -1,11 +1,11 @@
-"""Learn movement policies from demonstrations made under constraints that nobody tells.
+"""Learn movement policies from demonstrations made under unknown constraints.
 
 >>> from policy_align import SlopeGp                                   # doctest: +SKIP
 >>> model = SlopeGp().fit(trajectories, dt=0.05)                       # doctest: +SKIP
 >>> u, std = model.predict(X, return_std=True)                         # doctest: +SKIP
 
 ``PolicyAlign``, ``SlopeGp`` and ``DirectGp`` are the learners, ``AutoGp`` takes the Gaussian process that the data
-support; ``Demonstrations`` holds recordings, of files or of memory; ``load`` reads a model file, whoever wrote it.
+support; ``Demonstrations`` holds recordings, of files or of memory; ``load`` reads any model file.
 Rows are samples everywhere.
 """
 

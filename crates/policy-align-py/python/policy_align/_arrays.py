@@ -1,4 +1,4 @@
-"""Whatever looks like numbers, as the C-ordered double precision that the native half takes."""
+"""Array-likes as the C-ordered double precision that the native half takes."""
 
 from __future__ import annotations
 

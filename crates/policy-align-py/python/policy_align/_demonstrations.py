@@ -31,7 +31,8 @@ class Check:
     findings: tuple[Finding, ...]
 
     def __str__(self) -> str:
-        head = f"{self.episodes} episodes, {self.samples} samples, states {', '.join(self.channels)}"
+        amount = f"{_counted(self.episodes, 'episode')}, {_counted(self.samples, 'sample')}"
+        head = f"{amount}, {'state' if len(self.channels) == 1 else 'states'} {', '.join(self.channels)}"
         left_out = [f"left out {name}: {why}" for name, why in self.left_out]
         return "\n".join([head, *left_out, *map(str, self.decisions), *(f"- {finding}" for finding in self.findings)])
 
@@ -133,7 +134,7 @@ class Demonstrations:
         jumps: str = "auto",
         wraps: str = "auto",
     ) -> Check:
-        """Everything that can be said before learning; parameters as of the learners."""
+        """All findings and decisions before learning; parameters as of the learners."""
         found = json.loads(self._native.check(preparing(integration, scale, smooth, jumps, wraps)))
         return Check(
             len(found["episodes"]),
@@ -194,7 +195,8 @@ class Demonstrations:
 
     def __repr__(self) -> str:
         total = sum(len(one) for one in self)
-        return f"<Demonstrations: {len(self)} movements, {total} samples of {', '.join(self.channels)}>"
+        amount = f"{_counted(len(self), 'movement')}, {_counted(total, 'sample')}"
+        return f"<Demonstrations: {amount} of {', '.join(self.channels)}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         native = self._native
@@ -213,9 +215,13 @@ class Demonstrations:
 def preparing(
     integration: str, scale: dict[str, float] | None, smooth: str | int, jumps: str, wraps: str
 ) -> dict[str, Any]:
-    """What the native half is told of how recordings are prepared."""
+    """The native half's options of preparation."""
     factors = list((scale or {}).items())
     return {"integration": integration, "scale": factors, "smooth": str(smooth), "jumps": jumps, "wraps": wraps}
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 
 def _restored(movements: tuple[Any, ...], origin: tuple[str, str, str]) -> Demonstrations:

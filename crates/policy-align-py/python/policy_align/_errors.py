@@ -37,7 +37,7 @@ class PolicyAlignError(ValueError):
 
 
 class NotFittedError(ValueError, AttributeError):
-    """Something was asked of an estimator that has learnt nothing; as scikit-learn's error of this name."""
+    """An estimator was used before ``fit``; as scikit-learn's error of this name."""
 
 
 class PolicyAlignWarning(UserWarning):

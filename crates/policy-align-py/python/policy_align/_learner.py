@@ -17,12 +17,12 @@ from . import _native
 from ._arrays import Floats, samples
 from ._demonstrations import Demonstrations, preparing
 from ._errors import NotFittedError, PolicyAlignError, PolicyAlignWarning
-from ._manners import Manners
+from ._estimator import Estimator
 from ._rollout import Constraint, Path, follow
 from ._trust import Decision, Trust, decisions, findings
 
 
-class Learner(Manners):
+class Learner(Estimator):
     """fit, predict, and what was learnt."""
 
     #: The name of the learner in a model file.
@@ -105,7 +105,7 @@ class Learner(Manners):
             return fitted.predict(states)
         deviation = fitted.deviation(states)
         if deviation is None:
-            hint = "SlopeGp or AutoGp; supports(X) says where PolicyAlign was taught"
+            hint = "SlopeGp or AutoGp; supports(X) tells where PolicyAlign has data"
             raise PolicyAlignError(f"{type(self).__name__} estimates no standard deviation", "return_std=True", hint)
         return fitted.predict(states), deviation
 
@@ -118,7 +118,7 @@ class Learner(Manners):
         return found
 
     def support(self, X: Any) -> Floats:
-        """How much the demonstrations say about each state, from 0 to 1, (N)."""
+        """How much the demonstrations support each state, from 0 to 1, (N)."""
         fitted = self._needed()
         return fitted.support(samples(X, "X", fitted.dim, type(self).__name__))
 
@@ -136,7 +136,7 @@ class Learner(Manners):
         constraint: Constraint = None,
         limits: str | os.PathLike[str] | None = None,
     ) -> Path:
-        """Follows the policy from a state (n), under constraints that nobody need have demonstrated.
+        """Follows the policy from a state (n), under constraints that need not have been demonstrated.
 
         ``constraint``: A with A u = 0, rows (k, n) or one row (n); a function A(x, t); or the name of a file of
         constraints, as the program reads it. ``limits``: a robot's URDF, whose joints have the channels' names.

@@ -1,4 +1,4 @@
-"""What is said about a policy beside its numbers."""
+"""Verdict, findings and decisions."""
 
 from __future__ import annotations
 

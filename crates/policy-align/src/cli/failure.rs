@@ -50,12 +50,12 @@ impl Failure {
 
     pub(crate) fn writing(path: &Path, reason: impl fmt::Display) -> Self {
         let what = format!("cannot be written: {reason}");
-        Failure::new(Exit::File, what, shown(path), "-o with a path in a writable folder")
+        Failure::new(Exit::File, what, displayed(path), "-o with a path in a writable folder")
     }
 
     pub(crate) fn reading(path: &Path, reason: impl fmt::Display) -> Self {
         let remedy = "check the path (relative to the current folder) and its permissions";
-        Failure::new(Exit::File, format!("cannot be read: {reason}"), shown(path), remedy)
+        Failure::new(Exit::File, format!("cannot be read: {reason}"), displayed(path), remedy)
     }
 
     pub(crate) fn model(path: &Path, error: &ModelError) -> Self {
@@ -67,7 +67,7 @@ impl Failure {
             }
             _ => "another copy of the file, or fit again".to_owned(),
         };
-        Failure::new(Exit::File, error.to_string(), shown(path), remedy)
+        Failure::new(Exit::File, error.to_string(), displayed(path), remedy)
     }
 
     pub(crate) fn prepare(error: &PrepareError, place: String) -> Self {
@@ -90,7 +90,7 @@ impl Failure {
     pub(crate) fn constraints(path: &Path, error: &ConstraintFileError) -> Self {
         match error {
             ConstraintFileError::File { file, source } => Failure::reading(Path::new(file), source),
-            _ => Failure::usage(error.to_string(), shown(path), "see the format in `policy-align rollout --help`"),
+            _ => Failure::usage(error.to_string(), displayed(path), "see the format in `policy-align rollout --help`"),
         }
     }
 }
@@ -118,6 +118,6 @@ impl fmt::Display for Failure {
 }
 
 /// A path as the user wrote it.
-pub(crate) fn shown(path: &Path) -> String {
+pub(crate) fn displayed(path: &Path) -> String {
     path.display().to_string()
 }

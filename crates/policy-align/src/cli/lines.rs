@@ -8,7 +8,7 @@ const WIDTH: usize = 80;
 /// Columns of a line's label.
 const LABEL: usize = 13;
 
-/// What a command says: lines with a label each, folded to the width of a terminal, without characters that cannot be seen.
+/// The output of a command: lines with a label each, folded to the width of a terminal, without invisible characters.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Lines(String);
 

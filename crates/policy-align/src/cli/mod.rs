@@ -70,14 +70,14 @@ fn command() -> Command {
     ["fit", "evaluate", "plot", "convert"].into_iter().fold(Cli::command(), |cli, verb| cli.mut_subcommand(verb, brief))
 }
 
-/// Does what the command line says.
+/// Runs the command line.
 pub(crate) fn run() -> Exit {
     let parsed = command().try_get_matches().and_then(|matches| Cli::from_arg_matches(&matches));
-    let said = match parsed {
+    let result = match parsed {
         Ok(cli) => cli.verb.run(&cli.session),
         Err(error) => usage(&error),
     };
-    match said.and_then(|Output { text, exit }| tell(&text).map(|()| exit)) {
+    match result.and_then(|Output { text, exit }| tell(&text).map(|()| exit)) {
         Ok(exit) => exit,
         Err(failure) => {
             complain(&failure.to_string());

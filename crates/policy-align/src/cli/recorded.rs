@@ -5,15 +5,15 @@ use std::path::{Path, PathBuf};
 use motion::{Finding, Recordings};
 use policy_align::FileSummary;
 
-use crate::cli::failure::{Failure, shown};
+use crate::cli::failure::{Failure, displayed};
 use crate::cli::lines::counted;
 use crate::cli::options::flags::ReadFlags;
 use crate::cli::session::Session;
 
 /// Warnings that are printed: a recorder that repeats itself would fill the screen.
-const SHOWN: usize = 6;
+const PRINTED: usize = 6;
 
-/// Reads them, with a bar if it takes long; says what was found meanwhile.
+/// Reads them, with a bar if it takes long; warns of what was found meanwhile.
 pub(crate) fn read(session: &Session, files: &[PathBuf], flags: &ReadFlags) -> Result<Recordings, Failure> {
     let bytes = files.iter().filter_map(|file| std::fs::metadata(file).ok()).map(|found| found.len()).sum();
     let bar = session.bar(bytes, "reading  {bar:30} {bytes} of {total_bytes}, {eta} left");
@@ -28,16 +28,16 @@ pub(crate) fn read(session: &Session, files: &[PathBuf], flags: &ReadFlags) -> R
 }
 
 fn warn(session: &Session, findings: &[Finding]) {
-    for finding in findings.iter().take(SHOWN) {
+    for finding in findings.iter().take(PRINTED) {
         session.warn(&format!("{}: {}", finding.what, finding.next));
     }
-    if findings.len() > SHOWN {
-        session.warn(&format!("and {} more: check --json lists all", findings.len() - SHOWN));
+    if findings.len() > PRINTED {
+        session.warn(&format!("and {} more: check --json lists all", findings.len() - PRINTED));
     }
 }
 
-/// Findings other than those that reading has said already.
-pub(crate) fn unsaid(findings: &[Finding], recordings: &Recordings) -> Vec<Finding> {
+/// Findings other than those that reading has printed already.
+pub(crate) fn unreported(findings: &[Finding], recordings: &Recordings) -> Vec<Finding> {
     findings.iter().filter(|finding| !recordings.findings.contains(finding)).cloned().collect()
 }
 
@@ -50,7 +50,7 @@ pub(crate) fn summaries(files: &[PathBuf]) -> Result<Vec<FileSummary>, Failure> 
 
 /// Without folders: a model does not tell where it was made.
 pub(crate) fn base_name(path: &Path) -> String {
-    path.file_name().map_or_else(|| shown(path), |name| name.to_string_lossy().into_owned())
+    path.file_name().map_or_else(|| displayed(path), |name| name.to_string_lossy().into_owned())
 }
 
 /// The files in a few words.

@@ -24,7 +24,7 @@ pub(crate) struct Session {
     pub(crate) config: Option<PathBuf>,
 }
 
-/// What a command has to say on standard output, and to the shell.
+/// The output of a command on standard output, and its exit code.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Output {
     pub(crate) text: String,
@@ -51,7 +51,7 @@ impl Output {
 }
 
 impl Session {
-    /// Tells the user something beside the result.
+    /// Prints a warning next to the result.
     pub(crate) fn warn(&self, text: &str) {
         if !self.quiet {
             complain(&format!("warning: {text}"));
@@ -86,7 +86,7 @@ pub(crate) fn write(path: &Path, contents: &[u8]) -> Result<(), Failure> {
     write_whole(path, contents).map_err(|error| Failure::writing(path, error))
 }
 
-/// Writes a result; who closes the pipe has read enough. Other programs read data as they are.
+/// Writes a result; a closed pipe is no error. Other programs read data as they are.
 pub(crate) fn tell(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
     let text = if stdout.is_terminal() { plain(text) } else { text.into() };

@@ -1,11 +1,11 @@
-//! States of a file, as prediction wants them: a column for each channel, found by name, or the channels alone.
+//! States of a file, as prediction needs them: a column for each channel, found by name, or the channels alone.
 
 use std::path::Path;
 
 use nalgebra::DMatrix;
 use policy_align::Model;
 
-use crate::cli::failure::{Exit, Failure, shown};
+use crate::cli::failure::{Exit, Failure, displayed};
 
 /// Bytes of states, at most.
 const LARGEST: u64 = 1 << 30;
@@ -19,7 +19,7 @@ pub(crate) fn states(path: &Path, model: &Model) -> Result<DMatrix<f64>, Failure
     };
     let bytes = bytes.map_err(|error| Failure::reading(path, error))?;
     let text = str::from_utf8(&bytes).map_err(|_| Failure::reading(path, "it is not UTF-8"))?;
-    parsed(text, model, &shown(path))
+    parsed(text, model, &displayed(path))
 }
 
 fn parsed(text: &str, model: &Model, place: &str) -> Result<DMatrix<f64>, Failure> {

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use policy_align::{Model, ModelError, checksum_of};
 use serde_json::Value;
 
-use crate::cli::failure::{Failure, shown};
+use crate::cli::failure::{Failure, displayed};
 use crate::cli::session::Session;
 
-/// What a page says before the checksum of its model.
+/// Text of a page before the checksum of its model.
 pub(crate) const NAMED: &str = "Checksum of the model: ";
 /// Digits of it in a page.
 pub(crate) const DIGITS: usize = 16;
@@ -42,7 +42,7 @@ pub(crate) fn warn_of_others(session: &Session, model: &Path, checksum: &str) {
     for (path, named) in [(page, of_page), (numbers, of_numbers)] {
         if named.is_some_and(|named| !checksum.starts_with(&named)) {
             let remedy = "delete it, or fit again";
-            session.warn(&format!("{} reports on another model than {}; {remedy}", shown(&path), shown(model)));
+            session.warn(&format!("{} reports on another model than {}; {remedy}", displayed(&path), displayed(model)));
         }
     }
 }

@@ -23,17 +23,17 @@ pub fn to_onnx(model: &Model) -> Result<Vec<u8>, ExportError> {
     let graph = Graph::default();
     let scale = graph.constant(&[n], tables.scale.iter().copied());
     let scaled = graph.node("Mul", &["x", &scale]);
-    let asked = match &tables.learner {
+    let learner = match &tables.learner {
         LearnerTables::Lwpr(lwpr) => onnx_lwpr::write(&graph, lwpr, &scaled),
         LearnerTables::Slope(slope, radius) => onnx_gp::write_slope(&graph, slope, *radius, &scaled),
         LearnerTables::Direct(direct, radius) => onnx_gp::write_direct(&graph, direct, *radius, &scaled),
     };
-    let support = within(&graph, &tables.bounds, &asked.support);
-    let action = graph.node("Div", &[&asked.action, &scale]);
+    let support = within(&graph, &tables.bounds, &learner.support);
+    let action = graph.node("Div", &[&learner.action, &scale]);
     let action = graph.node("Where", &[&graph.unsqueezed(&support, 1), &action, &graph.number(0.0)]);
     graph.output(&action, "u");
     let mut outputs = vec![("u", Output::Vectors(n))];
-    if let Some(potential) = &asked.potential {
+    if let Some(potential) = &learner.potential {
         let scaled = graph.times(potential, tables.per_unit);
         let potential = graph.node("Where", &[&support, &scaled, &graph.number(f64::NAN)]);
         graph.output(&potential, "phi");

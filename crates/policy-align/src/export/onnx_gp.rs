@@ -1,7 +1,7 @@
 use gp::{DirectFormula, Fall, ScaledStates, Shape, SlopeFormula, Term};
 use nalgebra::DMatrix;
 
-use super::onnx_graph::{Asked, Graph};
+use super::onnx_graph::{Graph, LearnerOutputs};
 
 /// Scaled coordinates z, (B, n), their differences from the learnt states, (B, M, n), and squares of these, (B, M).
 fn differences(graph: &Graph, scaled: &ScaledStates<'_>, state: &str) -> [String; 3] {
@@ -25,7 +25,7 @@ fn rows(graph: &Graph, matrix: &DMatrix<f64>) -> String {
 }
 
 /// π = speed (Σ g v − h (vᵀa) a + c + Q z), and φ.
-pub(super) fn write_slope(graph: &Graph, slope: &SlopeFormula<'_>, squared_radius: f64, state: &str) -> Asked {
+pub(super) fn write_slope(graph: &Graph, slope: &SlopeFormula<'_>, squared_radius: f64, state: &str) -> LearnerOutputs {
     let [z, apart, squared] = differences(graph, &slope.scaled, state);
     let n = slope.scaled.mean.len();
     let directions = rows(graph, &slope.directions);
@@ -46,11 +46,16 @@ pub(super) fn write_slope(graph: &Graph, slope: &SlopeFormula<'_>, squared_radiu
         graph.times(&graph.node("Add", &[&falling, &trend]), -slope.scaled.speed * slope.scaled.spread)
     });
     let support = support(graph, squared_radius, &squared);
-    Asked { action: graph.times(&action, slope.scaled.speed), potential, support }
+    LearnerOutputs { action: graph.times(&action, slope.scaled.speed), potential, support }
 }
 
 /// û = unit Σ k(z, z') A.
-pub(super) fn write_direct(graph: &Graph, direct: &DirectFormula<'_>, squared_radius: f64, state: &str) -> Asked {
+pub(super) fn write_direct(
+    graph: &Graph,
+    direct: &DirectFormula<'_>,
+    squared_radius: f64,
+    state: &str,
+) -> LearnerOutputs {
     let [z, _, squared] = differences(graph, &direct.scaled, state);
     let (n, m) = direct.scaled.z.shape();
     let learnt = graph.constant(&[n, m], direct.scaled.z.transpose().iter().copied());
@@ -64,7 +69,7 @@ pub(super) fn write_direct(graph: &Graph, direct: &DirectFormula<'_>, squared_ra
     }
     let action = graph.product(&sum, &rows(graph, direct.weights));
     let support = support(graph, squared_radius, &squared);
-    Asked { action: graph.times(&action, direct.scaled.speed), potential: None, support }
+    LearnerOutputs { action: graph.times(&action, direct.scaled.speed), potential: None, support }
 }
 
 /// g and h of (S3), summed over the terms, (B, M) each.

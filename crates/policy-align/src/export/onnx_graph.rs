@@ -29,8 +29,8 @@ pub(super) enum Output {
     Truths,
 }
 
-/// What a learner's graph says of scaled states.
-pub(super) struct Asked {
+/// Tensors that a learner's graph computes from scaled states.
+pub(super) struct LearnerOutputs {
     /// Per second, (B, n).
     pub(super) action: String,
     /// In the learner's units, (B).
@@ -107,7 +107,7 @@ impl Graph {
         self.node("Unsqueeze", &[tensor, &self.axis(axis)])
     }
 
-    /// Rows (B, M) times a matrix (M, n). Not by `MatMul`: onnxruntime joins that with numbers beside it, which it rounds
+    /// Rows (B, M) times a matrix (M, n). Not by `MatMul`: onnxruntime joins that with adjacent numbers, which it rounds
     /// to single precision.
     pub(super) fn product(&self, rows: &str, matrix: &str) -> Tensor {
         self.sum(&self.node("Mul", &[&self.unsqueezed(rows, 2), matrix]), 1)

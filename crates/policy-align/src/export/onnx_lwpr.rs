@@ -1,10 +1,10 @@
 use lwpr::{Kernel, LocalPrediction};
 
 use super::lwpr_tables::LwprTables;
-use super::onnx_graph::{Asked, Graph};
+use super::onnx_graph::{Graph, LearnerOutputs};
 
 /// f = mean + norm_out Σ w y / Σ w and its gradient at scaled states (B, n).
-pub(super) fn write<'a>(graph: &Graph, lwpr: &LwprTables<'a>, scaled: &str) -> Asked {
+pub(super) fn write<'a>(graph: &Graph, lwpr: &LwprTables<'a>, scaled: &str) -> LearnerOutputs {
     let (n, m) = (lwpr.norm_in.len(), lwpr.fields.len());
     let each = |of: fn(&LocalPrediction<'a>) -> &'a [f64]| lwpr.fields.iter().flat_map(of).copied().collect::<Vec<_>>();
     let norm = graph.constant(&[n], lwpr.norm_in.iter().copied());
@@ -37,7 +37,7 @@ pub(super) fn write<'a>(graph: &Graph, lwpr: &LwprTables<'a>, scaled: &str) -> A
     let gradient = graph.node("Div", &[&gradient, &graph.unsqueezed(&divisor, 1)]);
     let gradient = graph.node("Div", &[&gradient, &norm]);
     let potential = graph.node("Add", &[&graph.times(&value, lwpr.norm_out), &graph.number(lwpr.mean)]);
-    Asked { action: graph.times(&gradient, -lwpr.norm_out), potential: Some(potential), support }
+    LearnerOutputs { action: graph.times(&gradient, -lwpr.norm_out), potential: Some(potential), support }
 }
 
 /// w of q, and twice its derivative.

@@ -5,30 +5,30 @@ use rayon::prelude::*;
 use crate::Model;
 use crate::halton::between;
 
-/// States at which the model is asked whether it knows them.
-const ASKED: usize = 1000;
+/// States at which the model's support is evaluated.
+const STATES: usize = 1000;
 /// Share of the states within the radius that the model may not know.
 const UNKNOWN: f64 = 0.05;
 
 /// How far from a learnt state a state still counts as known in an exported Gaussian process, squared, in its scaled
 /// coordinates; negative if nothing does.
 ///
-/// The variance that decides in the model itself needs a matrix of the size of all samples squared. What is exported asks
-/// for the nearest learnt state instead: the radius goes as far as 95 % of the states within it, evenly spread over the
+/// The variance that decides in the model itself needs a matrix of the size of all samples squared. What is exported uses
+/// the distance to the nearest learnt state instead: the radius goes as far as 95 % of the states within it, evenly spread over the
 /// model's bounds, are known to the model.
 pub(super) fn squared_radius(model: &Model, scaled: &ScaledStates<'_>) -> f64 {
     let (policy, bounds) = (model.policy(), model.bounds());
-    let asked = (1..=ASKED).into_par_iter().map(|index| {
+    let evaluated = (1..=STATES).into_par_iter().map(|index| {
         let state = between(&bounds, index);
         let z =
             DVector::from_fn(state.len(), |k, _| (state[k] * model.state[k].scale - scaled.mean[k]) / scaled.spread);
         let nearest = scaled.z.column_iter().map(|row| (row - &z).norm_squared()).fold(f64::INFINITY, f64::min);
         (nearest, policy.is_supported(state.as_view()))
     });
-    let mut asked: Vec<_> = asked.collect();
-    asked.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut evaluated: Vec<_> = evaluated.collect();
+    evaluated.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (mut unknown, mut squared_radius) = (0, -1.0);
-    for (count, (squared, known)) in asked.into_iter().enumerate() {
+    for (count, (squared, known)) in evaluated.into_iter().enumerate() {
         unknown += usize::from(!known);
         if known && unknown as f64 <= UNKNOWN * (count + 1) as f64 {
             squared_radius = squared;

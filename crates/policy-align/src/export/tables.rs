@@ -8,7 +8,7 @@ use crate::{Learnt, Model};
 
 /// A policy as tables of numbers, with what every learner's has in common.
 pub(super) struct Tables<'a> {
-    /// The state is multiplied by this before it is asked, the action divided, (n).
+    /// The state is multiplied by this before the learner's policy is evaluated, the action divided, (n).
     pub(super) scale: DVector<f64>,
     /// What counts as known lies between, (n).
     pub(super) bounds: Vec<[f64; 2]>,

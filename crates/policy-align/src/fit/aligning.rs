@@ -42,35 +42,35 @@ pub(crate) struct AlignedFit {
 pub(crate) struct HeldOut {
     pub(crate) squares: f64,
     /// Σ r².
-    pub(crate) seen: f64,
+    pub(crate) observed: f64,
     /// Σ ‖π̂‖².
-    pub(crate) wanted: f64,
+    pub(crate) predicted: f64,
     /// Σ ‖π̂ − π̂_GP‖², of the Gaussian process that knows all movements.
-    pub(crate) apart: f64,
+    pub(crate) differences: f64,
     pub(crate) samples: usize,
-    /// Samples that the policy knows nothing of.
+    /// Samples outside the policy's support.
     pub(crate) unsupported: usize,
 }
 
 impl HeldOut {
     /// E: 0 explains every movement left out, 1 is as good as standing still.
     pub(crate) fn to_choose(self) -> f64 {
-        self.squares / self.seen
+        self.squares / self.observed
     }
 
-    /// E′: as a share of the policy, for a policy may be right where constraints hardly let it move. One that wants
-    /// nothing misses all.
+    /// E′: as a share of the policy, for a policy may be right where constraints hardly let it move. One that is zero everywhere
+    /// misses all.
     pub(crate) fn to_judge(self) -> f64 {
-        let share = self.squares / self.wanted;
+        let share = self.squares / self.predicted;
         if share.is_finite() { share } else { 1.0 }
     }
 
     fn plus(self, other: HeldOut) -> HeldOut {
         HeldOut {
             squares: self.squares + other.squares,
-            seen: self.seen + other.seen,
-            wanted: self.wanted + other.wanted,
-            apart: self.apart + other.apart,
+            observed: self.observed + other.observed,
+            predicted: self.predicted + other.predicted,
+            differences: self.differences + other.differences,
             samples: self.samples + other.samples,
             unsupported: self.unsupported + other.unsupported,
         }
@@ -133,13 +133,13 @@ pub(super) fn fit(
     progress.begin(2, 4, "choosing bandwidth and receptive fields")?;
     let tried = grid(&demonstrations, integration, (rows, reference), options, progress)?;
     let best = choose(&tried).ok_or(FitError::Cancelled)?;
-    let said = format!(
+    let why_best = format!(
         "best of {} by cross-validation over {} folds of episodes: held-out error {}",
         tried.len(),
         best.folds.len(),
         squared_error(best.total().to_choose())
     );
-    let given = |flag: bool| if flag { "given".to_owned() } else { said.clone() };
+    let given = |flag: bool| if flag { "given".to_owned() } else { why_best.clone() };
     decisions.push(decision(
         "bandwidth",
         format!("{:?} (σ² {:.3e})", best.bandwidth, best.sigma_squared).to_lowercase(),
@@ -197,13 +197,13 @@ fn grid(
             return Err(FitError::Cancelled);
         }
         let held: Vec<usize> = folds[fold].clone();
-        let kept: Vec<_> = (0..demonstrations.n_trajectories()).filter(|k| !held.contains(k)).collect();
-        let seen = kept.iter().map(|&k| demonstrations.trajectories()[k].clone()).collect();
+        let others: Vec<_> = (0..demonstrations.n_trajectories()).filter(|k| !held.contains(k)).collect();
+        let training = others.iter().map(|&k| demonstrations.trajectories()[k].clone()).collect();
         // A fold is not everything.
-        let seen = Demonstrations::new(seen)
+        let training = Demonstrations::new(training)
             .map_err(|error| FitError::Gp(gp::GpError::Cleaning { reason: error.to_string() }))?;
         let align = PolicyAlign { integration, bandwidth: Bandwidth::Fixed(sigma_squared), ..PolicyAlign::default() };
-        let aligned = align.align(&seen)?;
+        let aligned = align.align(&training)?;
         let test: Vec<usize> = (0..rows.len()).filter(|&row| held.contains(&rows.indices()[row].trajectory)).collect();
         let errors = sizes.iter().map(|&init_d| {
             let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
@@ -263,9 +263,9 @@ pub(crate) fn held_out(
         }
         policy.action_into(x, action.as_view_mut());
         sums.squares += (u.dot(&action) / r - r).powi(2);
-        sums.seen += r * r;
-        sums.wanted += action.norm_squared();
-        sums.apart += reference.map_or(0.0, |reference| (&action - reference.column(row)).norm_squared());
+        sums.observed += r * r;
+        sums.predicted += action.norm_squared();
+        sums.differences += reference.map_or(0.0, |reference| (&action - reference.column(row)).norm_squared());
         sums.samples += 1;
         sums.unsupported += usize::from(policy.support(x) == 0.0);
     }

@@ -18,7 +18,7 @@ pub(super) struct Limits {
 /// would give; none if halves are too few to learn from.
 ///
 /// The error to expect is a quarter of it at most, if each half has twice the error of the whole and the errors of both
-/// have nothing to do with each other. What both lack, it cannot see.
+/// have nothing to do with each other. What both lack, it cannot detect.
 pub(super) fn of_slope(readings: &AutoFit, rows: &Rows, limits: Limits) -> Option<f64> {
     let report = readings.slope().report();
     let curl_test = if report.model == ModelKind::Potential { CurlTest::AssumePotential } else { CurlTest::Fit };

@@ -112,7 +112,7 @@ fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {
     }
 }
 
-/// What the data say about constraints.
+/// Whether the data show constraints.
 fn found(reading: Hypothesis) -> &'static str {
     match reading {
         Hypothesis::Free => "no constraints detected",
@@ -150,14 +150,14 @@ fn numbers(
     };
     let own = if takes_slope { report.expected_nupe } else { readings.expected_nupe() };
     let aligned_numbers = aligned.map(|aligned| {
-        let kept = aligned.policy.kept().map_or(prepared.demonstrations.n_trajectories(), <[usize]>::len);
+        let aligned_count = aligned.policy.kept().map_or(prepared.demonstrations.n_trajectories(), <[usize]>::len);
         AlignedNumbers {
             sigma_squared: Some(aligned.sigma_squared),
-            kept,
-            discarded: prepared.demonstrations.n_trajectories() - kept,
+            kept: aligned_count,
+            discarded: prepared.demonstrations.n_trajectories() - aligned_count,
             residual: aligned.residual,
             unsupported: aligned.held_out.unsupported as f64 / aligned.held_out.samples.max(1) as f64,
-            difference: aligned.held_out.apart / actions::spread(&actions::actions(readings, rows.states()))
+            difference: aligned.held_out.differences / actions::spread(&actions::actions(readings, rows.states()))
                 * rows.len() as f64
                 / aligned.held_out.samples.max(1) as f64,
         }
@@ -208,8 +208,8 @@ fn unknown(readings: &AutoFit, prepared: &Prepared, rows: &gp::Rows) -> f64 {
 /// E′ of every movement left out, as if it were as fast as all are.
 fn episode_errors(readings: &AutoFit, takes_slope: bool) -> Vec<(usize, f64)> {
     let left_out = readings.left_out();
-    let seen = left_out.iter().map(|errors| errors.seen).sum::<f64>() / left_out.len() as f64;
+    let observed = left_out.iter().map(|errors| errors.seen).sum::<f64>() / left_out.len() as f64;
     let hidden = if takes_slope { readings.numbers().hidden } else { 0.0 };
     let error = |errors: &TrajectoryErrors| if takes_slope { errors.slope } else { errors.direct };
-    left_out.iter().map(|errors| (errors.trajectory, error(errors) / seen * (1.0 - hidden))).collect()
+    left_out.iter().map(|errors| (errors.trajectory, error(errors) / observed * (1.0 - hidden))).collect()
 }

@@ -168,7 +168,8 @@ impl Rows {
 
 fn vector(name: &str, numbers: Vec<f64>, n: usize) -> Result<DVector<f64>, String> {
     if numbers.len() != n || !numbers.iter().all(|number| number.is_finite()) {
-        return Err(format!("`{name}` has {} numbers: it needs {n}, all finite", numbers.len()));
+        let (count, s) = (numbers.len(), if numbers.len() == 1 { "" } else { "s" });
+        return Err(format!("`{name}` has {count} number{s}: it needs {n}, all finite"));
     }
     Ok(DVector::from_vec(numbers))
 }

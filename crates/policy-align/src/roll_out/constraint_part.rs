@@ -34,17 +34,17 @@ pub(crate) enum Kind {
 }
 
 /// A part evaluated at a state.
-pub(crate) enum Said {
+pub(crate) enum Evaluated {
     /// Rows of A u = 0, in units of the state.
     Rows(DMatrix<f64>),
     /// Distance from the ball, its radius, and the gradient of the distance, (n).
     Distance { clearance: f64, radius: f64, gradient: DVector<f64> },
 }
 
-impl Said {
+impl Evaluated {
     /// Of a distance from a ball's centre; its gradient, (n), is given times the distance.
     fn distance(distance: f64, radius: f64, scaled: DVector<f64>) -> Self {
-        Said::Distance { clearance: distance - radius, radius, gradient: scaled / distance.max(1e-300) }
+        Evaluated::Distance { clearance: distance - radius, radius, gradient: scaled / distance.max(1e-300) }
     }
 }
 
@@ -59,19 +59,19 @@ impl fmt::Debug for Function {
 }
 
 impl Kind {
-    pub(crate) fn at(&self, state: DVectorView<'_, f64>, time: f64) -> Result<Said, String> {
+    pub(crate) fn at(&self, state: DVectorView<'_, f64>, time: f64) -> Result<Evaluated, String> {
         Ok(match self {
-            Kind::Normal(rows) => Said::Rows(rows.clone()),
-            Kind::Function(Function(rows)) => Said::Rows(fitting(rows(state, time)?, state.len())?),
-            Kind::Plane(link, normals) => Said::Rows(normals * link.at(state)?.1),
+            Kind::Normal(rows) => Evaluated::Rows(rows.clone()),
+            Kind::Function(Function(rows)) => Evaluated::Rows(fitting(rows(state, time)?, state.len())?),
+            Kind::Plane(link, normals) => Evaluated::Rows(normals * link.at(state)?.1),
             Kind::Ball { centre, radius } => {
                 let apart = state - centre;
-                Said::distance(apart.norm(), *radius, apart)
+                Evaluated::distance(apart.norm(), *radius, apart)
             }
             Kind::LinkBall { link, centre, radius } => {
                 let (origin, jacobian) = link.at(state)?;
                 let apart = origin - centre;
-                Said::distance(apart.norm(), *radius, jacobian.tr_mul(&apart))
+                Evaluated::distance(apart.norm(), *radius, jacobian.tr_mul(&apart))
             }
         })
     }
@@ -89,8 +89,8 @@ impl Kind {
             Kind::Function(_) => (DVector::zeros(0), false),
             Kind::Plane(link, normals) => (unit_rows(normals) * link.at(state)?.0.coords, false),
             Kind::Ball { .. } | Kind::LinkBall { .. } => match self.at(state, time)? {
-                Said::Distance { clearance, .. } => (DVector::from_element(1, clearance), true),
-                Said::Rows(_) => (DVector::zeros(0), true),
+                Evaluated::Distance { clearance, .. } => (DVector::from_element(1, clearance), true),
+                Evaluated::Rows(_) => (DVector::zeros(0), true),
             },
         })
     }
@@ -99,7 +99,8 @@ impl Kind {
 /// Rows of as many finite numbers as the state has.
 pub(crate) fn fitting(rows: DMatrix<f64>, n: usize) -> Result<DMatrix<f64>, String> {
     if rows.ncols() != n {
-        return Err(format!("its rows have {} numbers, the state {n}", rows.ncols()));
+        let s = if rows.ncols() == 1 { "" } else { "s" };
+        return Err(format!("its rows have {} number{s}, the state {n}", rows.ncols()));
     }
     if rows.iter().any(|number| !number.is_finite()) {
         return Err("it has a number that is not finite".to_owned());

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use constraints::NullSpaceProjector;
 use nalgebra::{DMatrix, DVector, DVectorView};
 
-use super::constraint_part::{Function, Kind, Part, Said, fitting};
+use super::constraint_part::{Evaluated, Function, Kind, Part, fitting};
 use super::holding::Holding;
 
 /// From which distance on a ball slows what approaches it, and at which it stops it, in radii: what steps err by stays
@@ -27,7 +27,7 @@ impl ConstraintSet {
     /// The state (n) keeps its value along each row of A, (k, n), from beginning to end.
     ///
     /// # Errors
-    /// In words: rows of another length than the state, without a direction, or not finite.
+    /// In a sentence: rows of another length than the state, without a direction, or not finite.
     pub fn normal(rows: DMatrix<f64>, n: usize) -> Result<ConstraintSet, String> {
         let rows = fitting(rows, n)?;
         if rows.nrows() == 0 || rows.row_iter().any(|row| row.norm() == 0.0) {
@@ -37,10 +37,10 @@ impl ConstraintSet {
     }
 
     /// A(x, t) u = 0, from beginning to end, with A as a function of state (n) and seconds. It gives (k, n), where k may
-    /// change, or in words why it has no value there.
+    /// change, or a sentence why it has no value there.
     ///
-    /// Rows that change forbid directions of movement; whether they keep anything, and so [`Path::broken_by`], only who
-    /// made the function knows: it is 0 here.
+    /// Rows that change forbid directions of movement; whether they keep anything, and so [`Path::broken_by`], only its
+    /// author knows: it is 0 here.
     ///
     /// [`Path::broken_by`]: crate::Path::broken_by
     pub fn function(
@@ -92,8 +92,8 @@ impl ConstraintSet {
         let (mut rows, mut balls) = (Vec::new(), Vec::new());
         for &at in holding {
             match self.parts[at].kind.at(state, time).map_err(|reason| (at + 1, reason))? {
-                Said::Rows(matrix) => rows.extend(matrix.row_iter().map(nalgebra::Matrix::into_owned)),
-                Said::Distance { clearance, radius, gradient } => {
+                Evaluated::Rows(matrix) => rows.extend(matrix.row_iter().map(nalgebra::Matrix::into_owned)),
+                Evaluated::Distance { clearance, radius, gradient } => {
                     let bands = (clearance / radius - MARGIN) / (BAND - MARGIN);
                     balls.push((bands.max(-1.0), gradient.component_div(scale)));
                 }
@@ -136,7 +136,7 @@ fn keep_off(balls: &[(f64, DVector<f64>)], free: &NullSpaceProjector, wanted: &m
             return;
         }
     }
-    // Several balls leave no way that this finds.
+    // Several balls leave no motion that this finds.
     wanted.fill(0.0);
 }
 
@@ -161,7 +161,7 @@ impl<'a> Watch<'a> {
     }
 
     /// At a state, at times that do not go back.
-    pub(crate) fn see(&mut self, state: DVectorView<'_, f64>, time: f64) -> Result<(), Fault> {
+    pub(crate) fn update(&mut self, state: DVectorView<'_, f64>, time: f64) -> Result<(), Fault> {
         for &at in self.holding.at(time) {
             let begun = &mut self.begun[at];
             let (kept, is_distance) = self.set.parts[at].kind.kept(state, time).map_err(|reason| (at + 1, reason))?;

@@ -6,7 +6,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum RollOutError {
     /// The start has another length than the state.
-    #[error("the start has {found} numbers, the state {expected}: {}", .names.join(", "))]
+    #[error("the start has {found} number{}, the state {expected}: {}", if *found == 1 { "" } else { "s" }, .names.join(", "))]
     Start {
         /// Numbers given.
         found: usize,

@@ -12,7 +12,7 @@ impl JointLimits {
     /// The limits of a robot (the text of its URDF) for the channels that are named like its joints, in radians or metres.
     ///
     /// # Errors
-    /// In words: what is wrong with the text, or that no channel is a joint.
+    /// In a sentence: what is wrong with the text, or that no channel is a joint.
     pub fn from_urdf(text: &str, channels: &[String]) -> Result<Self, String> {
         let robot = RobotModel::from_urdf(text).map_err(|error| error.to_string())?;
         let of = |(at, name): (usize, &String)| {

@@ -12,7 +12,7 @@ pub(crate) struct LinkPoint {
 
 impl LinkPoint {
     /// # Errors
-    /// In words: a link that is not there, or a channel that is no joint, or a joint that moves the link and is no
+    /// In a sentence: a link that is not there, or a channel that is no joint, or a joint that moves the link and is no
     /// channel.
     pub(crate) fn new(robot: &RobotModel, link: &str, channels: &[String]) -> Result<Self, String> {
         let link = robot.link(link).map_err(|error| error.to_string())?;

@@ -119,7 +119,7 @@ impl RollOut {
         let mut watch = Watch::new(&self.constraints);
         let (mut times, mut states) = (vec![0.0], vec![start.clone()]);
         let mut velocities = vec![run.velocity(holding.at(0.0), start, 0.0)?];
-        watch.see(start.as_view(), 0.0).map_err(fault(0.0))?;
+        watch.update(start.as_view(), 0.0).map_err(fault(0.0))?;
         let mut resting = 0;
         let stop = loop {
             let (time, state) = (times[times.len() - 1], &states[states.len() - 1]);
@@ -136,7 +136,7 @@ impl RollOut {
                 break Stop::Limit(joint.to_owned());
             }
             let velocity = run.velocity(holding.at(next_time), &next, next_time)?;
-            watch.see(next.as_view(), next_time).map_err(fault(next_time))?;
+            watch.update(next.as_view(), next_time).map_err(fault(next_time))?;
             let slow = velocity.component_mul(&run.scale).norm() < AT_REST * model.data.speed;
             resting = if slow { resting + 1 } else { 0 };
             times.push(next_time);
@@ -173,7 +173,7 @@ impl RollOut {
             return Err(RollOutError::StartBeyondLimit { joint: joint.to_owned() });
         }
         let mut watch = Watch::new(&self.constraints);
-        watch.see(start.as_view(), 0.0).map_err(fault(0.0))?;
+        watch.update(start.as_view(), 0.0).map_err(fault(0.0))?;
         if watch.broken_by > 0.0 {
             return Err(RollOutError::StartBreaks { constraint: watch.worst, by: watch.broken_by });
         }

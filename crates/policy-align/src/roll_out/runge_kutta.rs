@@ -1,9 +1,9 @@
 use nalgebra::DVector;
 
-/// Shortest step, as a share of the way: where a constraint takes hold a solution has an edge, which no step resolves.
+/// Shortest step, as a share of the interval: where a constraint takes hold a solution has an edge, which no step resolves.
 const SHORTEST: f64 = 1e-6;
 
-/// Why a way was not followed to its end.
+/// Why a solution was not followed to its end.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Halt<E> {
     /// The field has no value somewhere.
@@ -27,7 +27,7 @@ pub(crate) struct RungeKutta {
     tolerance: DVector<f64>,
     /// The step to try next, in seconds.
     step: f64,
-    /// Ways of more seconds than this have the shortest step of one that is so long.
+    /// Intervals of more seconds than this have the shortest step of one of this length.
     longest: f64,
     /// Steps at most, those tried in vain among them, and what is left of them.
     limit: usize,

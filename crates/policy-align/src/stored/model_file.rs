@@ -117,9 +117,9 @@ impl Model {
         if !(positive(self.data.longest) && not_negative(self.data.speed)) {
             return Some(("data".to_owned(), "the duration must be positive and the speed not negative".to_owned()));
         }
-        let (said, worst) = (self.trust.verdict, Trust::verdict_of(&self.trust.findings));
-        if said != worst {
-            let reason = format!("it is {}, but the worst of the findings is {}", word(said), word(worst));
+        let (stored, worst) = (self.trust.verdict, Trust::verdict_of(&self.trust.findings));
+        if stored != worst {
+            let reason = format!("it is {}, but the worst of the findings is {}", word(stored), word(worst));
             return Some(("trust.verdict".to_owned(), reason));
         }
         let sound = |channel: &StateChannel| {

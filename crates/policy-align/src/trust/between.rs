@@ -5,18 +5,18 @@ use nalgebra::DVector;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Starts made up.
+/// Random starts.
 const STARTS: usize = 24;
-/// States looked at along each way, and steps between two of them.
+/// States evaluated along each roll-out, and steps between two of them.
 const STATES: usize = 8;
 const STEPS: usize = 10;
-/// A start lies on the line through two that were shown, as far beyond either as this share of their distance.
+/// A start lies on the line through two demonstrated ones, as far beyond either as this share of their distance.
 const BEYOND: f64 = 0.25;
-/// The policy does not know itself where its error bars are over this share of its standard deviation.
+/// The policy is uncertain where its error bars are over this share of its standard deviation.
 const SURE: f64 = 0.5;
 
-/// Share of the states on free ways from made-up starts at which the policy's error bars are as large as half of what it
-/// varies by; none if it has no error bars. `variance`: mean of ‖π̂ − mean‖² over what was shown.
+/// Share of the states on unconstrained roll-outs from random starts at which the policy's error bars are as large as half of what it
+/// varies by; none if it has no error bars. `variance`: mean of ‖π̂ − mean‖² over the demonstrations.
 pub(crate) fn share_unknown(policy: &dyn LearntPolicy, demonstrations: &Demonstrations, variance: f64) -> Option<f64> {
     let movements = demonstrations.trajectories();
     let mut rng = ChaCha8Rng::seed_from_u64(0);

@@ -8,10 +8,10 @@ const STARTS: usize = 20;
 /// Each for so many times the usual movement, in so many steps.
 const TIMES: f64 = 5.0;
 const STEPS: usize = 200;
-/// Beyond what was shown by this share of its extent, nothing is known.
+/// The demonstrated region is wider than the demonstrations by this share of their extent.
 const BEYOND: f64 = 0.3;
 
-/// Share of the demonstrated starts from which the policy, followed freely, leaves what was shown.
+/// Share of the demonstrated starts from which the policy, rolled out without constraints, leaves the demonstrated region.
 pub(crate) fn share_leaving(policy: &dyn Policy, demonstrations: &Demonstrations) -> f64 {
     let movements = demonstrations.trajectories();
     let dim = demonstrations.dim();

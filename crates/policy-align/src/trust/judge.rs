@@ -19,9 +19,9 @@ const ODD: f64 = 10.0;
 const SPREAD: f64 = 0.25;
 /// Less coverage than this and one direction is a guess.
 const UNSEEN: f64 = 0.1;
-/// More of the ways between what was shown unknown than this, and other movements will meet it.
+/// Share of uncertain states between the demonstrations from which other movements will meet them.
 const UNKNOWN: f64 = 0.1;
-/// From more starts than this share, and the goal lies outside what was shown.
+/// Share of starts whose roll-outs leave the data from which the goal lies outside it.
 const LEAVING: f64 = 0.5;
 
 /// Input of a verdict.

@@ -1,7 +1,7 @@
 use gp::{Grouping, Hypothesis, ModelKind};
 use serde::{Deserialize, Serialize};
 
-/// The numbers behind a verdict. Shares are of 1; errors are squared, as shares of the policy's variance unless said.
+/// The numbers behind a verdict. Shares are of 1; errors are squared, as shares of the policy's variance unless stated.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrustNumbers {
@@ -27,9 +27,9 @@ pub struct TrustNumbers {
     pub slope_r_squared: f64,
     /// Mean squared left-out error over its predicted variance; 1 where error bars are right.
     pub z_squared: f64,
-    /// n λ_min of the mean of the directions' products: 1 if all directions are seen alike, 0 if one never is.
+    /// n λ_min of the mean of the directions' products: 1 if all directions are observed alike, 0 if one never is.
     pub direction_coverage: f64,
-    /// The direction seen least, (n).
+    /// The least observed direction, (n).
     pub unseen_direction: Vec<f64>,
     /// Posterior over prior variance along the direction that is known least.
     pub least_known: f64,
@@ -44,10 +44,10 @@ pub struct TrustNumbers {
     /// Difference of the Gaussian processes' policies that every other movement alone would give, as a share of the
     /// policy's variance; none where halves are too few.
     pub halves: Option<f64>,
-    /// Share of the states on free ways from starts between those shown at which the Gaussian process's error bars are
+    /// Share of the states on unconstrained roll-outs from starts between the demonstrated ones at which the Gaussian process's error bars are
     /// as large as half of what its policy varies by.
     pub unknown: f64,
-    /// Share of the demonstrated starts from which the policy, followed freely, leaves what was shown.
+    /// Share of the demonstrated starts from which the policy, rolled out without constraints, leaves the demonstrated region.
     pub leaving: f64,
     /// Share of the squared steps that is noise.
     pub step_noise: f64,
@@ -70,18 +70,18 @@ impl TrustNumbers {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AlignedNumbers {
-    /// σ² of the responsibilities, in the learner's units squared; none in files of before it was kept.
+    /// σ² of the responsibilities, in the learner's units squared; none in files written before it was stored.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sigma_squared: Option<f64>,
-    /// Movements kept.
+    /// Movements that were aligned.
     pub kept: usize,
-    /// Number of connected groups.
+    /// Movements that were not aligned.
     pub discarded: usize,
     /// Root mean square of levelled minus learnt potential, over its standard deviation.
     pub residual: f64,
     /// Share of held-out samples outside the policy's support.
     pub unsupported: f64,
-    /// Difference of what it says of movements left out from the Gaussian process's policy, as a share of that one's
+    /// Difference of its predictions of movements left out from those of the Gaussian process's policy, as a share of that one's
     /// variance.
     pub difference: f64,
 }

@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::Table;
 
-use crate::cli::failure::{Failure, shown};
+use crate::cli::failure::{Failure, displayed};
 use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags, given};
 use crate::cli::options::rollout_flags::RollOutFlags;
 use crate::cli::session::Session;
@@ -33,7 +33,7 @@ impl Config {
             let line = error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
             Failure::usage(
                 error.message().to_owned(),
-                format!("{}, line {line}", shown(path)),
+                format!("{}, line {line}", displayed(path)),
                 "`policy-align fit --print-config` writes one",
             )
         })?;
@@ -46,7 +46,7 @@ impl Config {
                 check(key, &keys, "key", text, path)?;
             }
         }
-        Ok(Config { tables, place: shown(path) })
+        Ok(Config { tables, place: displayed(path) })
     }
 
     /// Flags, and the file's where there are none.
@@ -101,7 +101,7 @@ fn check(name: &str, known: &[String], what: &str, text: &str, path: &Path) -> R
     let likeness = |other: &&String| strsim::jaro_winkler(name, other);
     let nearest = known.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
     let remedy = nearest.map_or_else(String::new, |nearest| format!("'{nearest}', the nearest {what}"));
-    Err(Failure::usage(format!("unknown {what} '{name}'"), format!("{}, line {line}", shown(path)), remedy))
+    Err(Failure::usage(format!("unknown {what} '{name}'"), format!("{}, line {line}", displayed(path)), remedy))
 }
 
 /// A complete file: every key with its help, those without a value as comments.

@@ -4,7 +4,7 @@ use clap::Args;
 use policy_align::{ConstraintSet, JointLimits, Model, RollOut};
 use serde::{Deserialize, Serialize};
 
-use crate::cli::failure::{Failure, shown};
+use crate::cli::failure::{Failure, displayed};
 
 /// How a policy is followed: table `[rollout]`.
 #[derive(Debug, Clone, Default, PartialEq, Args, Serialize, Deserialize)]
@@ -38,7 +38,7 @@ impl RollOutFlags {
                 let text = demo_io::read_text(path).map_err(|error| Failure::reading(path, error))?;
                 let limits = JointLimits::from_urdf(&text, &channels);
                 Some(limits.map_err(|reason| {
-                    Failure::usage(reason, shown(path), "a URDF with joints named like the channels")
+                    Failure::usage(reason, displayed(path), "a URDF with joints named like the channels")
                 })?)
             }
         };

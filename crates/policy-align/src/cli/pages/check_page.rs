@@ -1,4 +1,4 @@
-//! The page that says what can be said before learning.
+//! The page of a check: what is known before learning.
 
 use maud::{Markup, html};
 use motion::Trajectory;

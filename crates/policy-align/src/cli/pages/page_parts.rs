@@ -27,7 +27,7 @@ pub(crate) fn part(id: &str, title: &str, body: &Markup) -> Part {
     Part { id: id.to_owned(), title: title.to_owned(), body: html! { h2 { (title) } (body) } }
 }
 
-/// The page of this title, without characters that cannot be seen.
+/// The page of this title, without invisible characters.
 pub(crate) fn page(title: &str, name: &str, opening: Part, parts: Vec<Part>) -> String {
     plain(&Document { title, name, opening, parts, style: STYLE }.html()).into_owned()
 }

@@ -9,9 +9,9 @@ use policy_align::{Model, ModelPolicy, StateChannel};
 use rayon::prelude::*;
 use text::plain;
 
-use crate::cli::failure::{Exit, Failure, shown};
+use crate::cli::failure::{Exit, Failure, displayed};
 
-/// Places asked along each axis: for arrows, and for potential and support.
+/// Grid points along each axis: for arrows, and for potential and support.
 const ARROWS: usize = 16;
 const FINE: usize = 49;
 /// Empty space around the data, as a share of its range.
@@ -48,7 +48,7 @@ impl Picture<'_> {
         (0..count).map(|i| from + (to - from) * i as f64 / (count - 1) as f64).collect()
     }
 
-    /// Whether demonstrations tell anything of a place: it is in their range, and the policy is supported there.
+    /// Whether demonstrations support a place: it is in their range, and the policy is supported there.
     fn is_known(&self, policy: &ModelPolicy<'_>, place: [f64; 2]) -> bool {
         let within = |(&dim, value): (&usize, f64)| {
             let channel = &self.model.state[dim];
@@ -175,7 +175,7 @@ pub(crate) fn draw(path: &Path, picture: &Picture<'_>) -> Result<Vec<u8>, Failur
     match path.extension().and_then(|extension| extension.to_str()) {
         Some("svg") => Ok(drawn.svg().into_bytes()),
         Some("png") => drawn.png().map_err(|error| Failure::writing(path, error)),
-        _ => Err(Failure::new(Exit::Usage, "pictures end in .svg or .png", shown(path), "-o field.svg")),
+        _ => Err(Failure::new(Exit::Usage, "pictures end in .svg or .png", displayed(path), "-o field.svg")),
     }
 }
 

@@ -1,4 +1,4 @@
-//! The page that says how far to trust a policy.
+//! The trust report: how far to trust a policy.
 
 use maud::{Markup, html};
 use motion::{Demonstrations, LearntPolicy as _, Trajectory};

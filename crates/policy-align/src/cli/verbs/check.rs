@@ -12,7 +12,7 @@ use crate::cli::lines::{Lines, counted, short};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
 use crate::cli::pages::check_page::check_page;
-use crate::cli::recorded::{named, read, unsaid};
+use crate::cli::recorded::{named, read, unreported};
 use crate::cli::session::{Output, Session, write};
 
 /// Examine recordings before learning
@@ -61,9 +61,9 @@ impl Check {
         }
         let mut lines = Lines::default();
         about(&prepared, &named(&self.files), &mut lines);
-        let seen = if coverage < 0.1 { "one direction hardly occurs" } else { "every direction occurs" };
-        lines.add("directions", &format!("coverage {} of 1: {seen}", short(coverage)));
-        findings(&unsaid(&prepared.findings, &recordings), 10_usize.saturating_sub(lines.count()), &mut lines);
+        let evenness = if coverage < 0.1 { "one direction hardly occurs" } else { "every direction occurs" };
+        lines.add("directions", &format!("coverage {} of 1: {evenness}", short(coverage)));
+        findings(&unreported(&prepared.findings, &recordings), 10_usize.saturating_sub(lines.count()), &mut lines);
         if let Some(path) = &self.html {
             lines.add("written", &path.display().to_string());
         }
@@ -116,7 +116,7 @@ pub(crate) fn findings(findings: &[Finding], room: usize, lines: &mut Lines) {
     let begun = lines.count();
     let mut findings: Vec<&Finding> = findings.iter().collect();
     findings.sort_by_key(|finding| Reverse(finding.verdict));
-    for (shown, finding) in findings.iter().enumerate() {
+    for (printed, finding) in findings.iter().enumerate() {
         let label = match finding.verdict {
             Verdict::Good => "remark",
             Verdict::Doubtful => "warning",
@@ -124,8 +124,8 @@ pub(crate) fn findings(findings: &[Finding], room: usize, lines: &mut Lines) {
         };
         let mut longer = lines.clone();
         longer.add(label, &format!("{}: {}", finding.what, finding.next));
-        if shown > 0 && finding.verdict == Verdict::Good && longer.count() - begun > room {
-            lines.add("", &format!("and {}: --json shows all", counted(findings.len() - shown, "remark")));
+        if printed > 0 && finding.verdict == Verdict::Good && longer.count() - begun > room {
+            lines.add("", &format!("and {}: --json shows all", counted(findings.len() - printed, "remark")));
             return;
         }
         *lines = longer;

@@ -20,7 +20,7 @@ use crate::cli::session::{Output, Session};
 use crate::cli::trust_files::load;
 
 /// Constraints that are listed, at most.
-const SHOWN: usize = 5;
+const LISTED: usize = 5;
 
 /// Evaluate a model on other recordings
 #[derive(Debug, Args)]
@@ -59,7 +59,7 @@ impl Evaluate {
         let config = Config::of(session)?;
         let reading = config.under("read", &self.read)?.with_channels_of(&model);
         let mut options = config.under("prepare", &self.prepare)?.options(reading.dt)?;
-        // The learner saw the state times these, whatever is said now.
+        // The learner's states were multiplied by these, whatever the flags are.
         options.scale = model.scale();
         let prepared = self.prepared(session, &reading, &options)?;
         let found: Vec<String> = prepared.state.iter().map(|channel| channel.name.clone()).collect();
@@ -201,13 +201,13 @@ fn tell(prepared: &Prepared, judged: &Evaluation, lines: &mut Lines) {
 }
 
 fn tell_left_out(left_out: &[ConstraintLeftOut], lines: &mut Lines) {
-    for left in left_out.iter().take(SHOWN) {
+    for left in left_out.iter().take(LISTED) {
         let Evaluation { policy_error, episodes, .. } = &left.evaluation;
         let (error, count) = (squared_error(*policy_error), counted(episodes.len(), "episode"));
         lines.add("left out", &format!("{}: {error} when learnt without it ({count})", left.constraint));
     }
-    if left_out.len() > SHOWN {
-        lines.add("", &format!("and {} more: --json shows all", left_out.len() - SHOWN));
+    if left_out.len() > LISTED {
+        lines.add("", &format!("and {} more: --json shows all", left_out.len() - LISTED));
     }
 }
 
@@ -220,5 +220,5 @@ fn by_constraint(prepared: &Prepared, judged: &Evaluation) -> BTreeMap<String, f
         }
     }
     let median = |(label, errors): (String, Vec<f64>)| Some((label, motion::upper_median(errors)?));
-    errors.into_iter().take(SHOWN).filter_map(median).collect()
+    errors.into_iter().take(LISTED).filter_map(median).collect()
 }

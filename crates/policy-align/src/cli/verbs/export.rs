@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use policy_align::{CSource, ExportError, Model, Precision, spread_starts, to_onnx};
 use text::quoted;
 
-use crate::cli::failure::{Exit, Failure, shown};
+use crate::cli::failure::{Exit, Failure, displayed};
 use crate::cli::lines::{Lines, counted, list, size};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::numbers;
@@ -81,7 +81,7 @@ impl Export {
             ExportError::Name { .. } => Failure::usage(error.to_string(), "--name", "--name policy"),
             error => {
                 let remedy = "another learner: `policy-align fit --learner`";
-                Failure::new(Exit::Refused, error.to_string(), shown(&self.model), remedy)
+                Failure::new(Exit::Refused, error.to_string(), displayed(&self.model), remedy)
             }
         })?;
         write(&output, &bytes)?;
@@ -92,7 +92,7 @@ impl Export {
 
     fn roll_outs(&self, session: &Session, model: &Model, output: &Path) -> Result<Output, Failure> {
         if output.extension().is_none_or(|extension| extension != "mcap") {
-            return Err(Failure::usage("MCAP files end in .mcap", shown(output), "`rollout -o` for other formats"));
+            return Err(Failure::usage("MCAP files end in .mcap", displayed(output), "`rollout -o` for other formats"));
         }
         let flags = Config::of(session)?.under("rollout", &self.follow)?;
         let given = self.from.iter().map(|from| Ok(DVector::from_vec(numbers(from, "--from")?)));
@@ -102,7 +102,7 @@ impl Export {
         }
         if starts.is_empty() {
             let what = "no start was found within the data";
-            return Err(Failure::new(Exit::Refused, what, shown(&self.model), "--from with a recorded state"));
+            return Err(Failure::new(Exit::Refused, what, displayed(&self.model), "--from with a recorded state"));
         }
         let paths = starts.iter().map(|start| followed(&flags, model, start, &list(start.iter().copied())));
         let paths = paths.collect::<Result<Vec<_>, _>>()?;

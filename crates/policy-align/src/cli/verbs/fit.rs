@@ -16,7 +16,7 @@ use crate::cli::lines::{Lines, amount, counted, size, squared_error};
 use crate::cli::options::config::{Config, printed};
 use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags};
 use crate::cli::pages::trust_page::trust_page;
-use crate::cli::recorded::{base_name, named, read, summaries, unsaid};
+use crate::cli::recorded::{base_name, named, read, summaries, unreported};
 use crate::cli::session::{Output, Session};
 use crate::cli::trust_files::{MEMBER, trust_files, warn_of_others};
 use crate::cli::verbs::check::findings;
@@ -24,7 +24,7 @@ use crate::cli::verbs::check::findings;
 /// Learn a policy and report how far to trust it
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Writes a trust report beside the model: MODEL.trust.html and MODEL.trust.json.
+Writes a trust report next to the model: MODEL.trust.html and MODEL.trust.json.
 Exit code 1 if its verdict is \"do not use\".
 All flags of reading files: policy-align check --help
 
@@ -88,8 +88,8 @@ impl Fit {
         replace(&files)?;
         warn_of_others(session, &self.output, &checksum);
         let report: Vec<PathBuf> = files.into_iter().skip(1).map(|(path, _)| path).collect();
-        let unsaid = unsaid(&model.trust.findings, &recordings);
-        Ok(self.said(session, (&model, &unsaid), &report, judged.as_ref()))
+        let unreported = unreported(&model.trust.findings, &recordings);
+        Ok(self.output(session, (&model, &unreported), &report, judged.as_ref()))
     }
 
     /// The page and its numbers.
@@ -102,10 +102,10 @@ impl Fit {
         [(page, html), (numbers, format!("{document:#}\n"))]
     }
 
-    fn said(
+    fn output(
         &self,
         session: &Session,
-        (model, unsaid): (&Model, &[Finding]),
+        (model, unreported): (&Model, &[Finding]),
         written: &[PathBuf],
         held_out: Option<&Evaluation>,
     ) -> Output {
@@ -135,7 +135,7 @@ impl Fit {
             lines.add("hold-out", &format!("error on {episodes}: {}", squared_error(judged.policy_error)));
         }
         lines.add("trust", verdict(model));
-        findings(unsaid, 3, &mut lines);
+        findings(unreported, 3, &mut lines);
         let bytes = std::fs::metadata(&self.output).map_or(0, |found| found.len() as usize);
         let report: String = written.iter().map(|path| format!(", {}", path.display())).collect();
         lines.add("written", &format!("{} ({}){report}", self.output.display(), size(bytes)));
@@ -163,9 +163,9 @@ fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Rec
             return Err(Failure::usage(what, format!("--hold-out, {place}"), remedy));
         }
     }
-    let (held, kept) = recordings.episodes.into_iter().partition(|episode| names.contains(&episode.name));
+    let (held, others) = recordings.episodes.into_iter().partition(|episode| names.contains(&episode.name));
     let of = |episodes, findings| Recordings { state: recordings.state.clone(), episodes, findings };
-    Ok((of(kept, recordings.findings), Some(of(held, vec![]))))
+    Ok((of(others, recordings.findings), Some(of(held, vec![]))))
 }
 
 fn judged(held_out: &Recordings, options: &policy_align::PrepareOptions, model: &Model) -> Result<Evaluation, Failure> {

@@ -52,7 +52,7 @@ enum Outside {
     Error,
 }
 
-/// What a model says of a state.
+/// The prediction of a model at a state.
 struct Prediction {
     action: DVector<f64>,
     /// None outside the data, and of policies without one; so the deviation.

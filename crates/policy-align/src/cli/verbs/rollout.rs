@@ -8,7 +8,7 @@ use policy_align::{Model, Path, RollOutError, Stop};
 use serde_json::json;
 use text::quoted;
 
-use crate::cli::failure::{Exit, Failure, shown};
+use crate::cli::failure::{Exit, Failure, displayed};
 use crate::cli::lines::{Lines, counted, list, short};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::numbers;
@@ -95,8 +95,9 @@ impl RollOut {
         lines.add("moved", &format!("{start} → {end} in {} s", short(followed.times[last])));
         lines.add("ended", &stop(&followed.stop));
         if let Some((by, which)) = followed.broken_by {
-            let how = if by == 0.0 { "exactly".to_owned() } else { format!("to {} (constraint {which})", short(by)) };
-            lines.add("constraints", &format!("kept {how}"));
+            let how =
+                if by == 0.0 { "exactly".to_owned() } else { format!("within {} (constraint {which})", short(by)) };
+            lines.add("constraints", &format!("satisfied {how}"));
         }
         lines.add("states", &format!("{}, all within the data", counted(count, "sample")));
         let written: Vec<String> =
@@ -112,7 +113,7 @@ impl RollOut {
     }
 }
 
-/// Follows a policy as flags say.
+/// Rolls out a policy with the options of flags.
 pub(crate) fn followed(flags: &RollOutFlags, model: &Model, start: &DVector<f64>, from: &str) -> Result<Path, Failure> {
     flags.roll_out(model)?.follow(model, start).map_err(|error| {
         let exit = match error {
@@ -161,6 +162,6 @@ pub(crate) fn write_paths(output: &path::Path, model: &Model, paths: &[Path]) ->
 pub(crate) fn unwritten(output: &path::Path, error: WriteError) -> Failure {
     match error {
         WriteError::Io { source, .. } => Failure::writing(output, source),
-        error => Failure::of_text(Exit::Usage, &error.to_string(), shown(output), "another format"),
+        error => Failure::of_text(Exit::Usage, &error.to_string(), displayed(output), "another format"),
     }
 }

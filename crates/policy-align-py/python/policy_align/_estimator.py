@@ -6,7 +6,7 @@ import inspect
 from typing import Any, Self
 
 
-class Manners:
+class Estimator:
     """``get_params``, ``set_params``, ``repr`` and tags: ``clone``, ``GridSearchCV`` and ``Pipeline`` work with these.
 
     ``__init__`` stores every parameter untouched under its name, and does nothing else; ``fit`` looks at them.
