@@ -137,7 +137,7 @@ impl Fit {
         lines.add("trust", verdict(model));
         findings(unreported, 3, &mut lines);
         let bytes = std::fs::metadata(&self.output).map_or(0, |found| found.len() as usize);
-        let report: String = written.iter().map(|path| format!(", {}", path.display())).collect();
+        let report = written.iter().map(|path| format!(", {}", path.display())).collect::<Vec<_>>().concat();
         lines.add("written", &format!("{} ({}){report}", self.output.display(), size(bytes)));
         let model = quoted(&self.output);
         let next = match written.first() {
