@@ -71,6 +71,7 @@ mod report;
 mod rows;
 mod slope;
 mod stored;
+mod stretches;
 mod support;
 
 pub use direct::data::DirectData;

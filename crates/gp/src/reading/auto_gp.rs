@@ -9,6 +9,7 @@ use crate::reading::Hypothesis;
 use crate::reading::numbers::{Compared, ReadingNumbers, TrajectoryErrors};
 use crate::slope::fit::SlopeFit;
 use crate::slope::judgement::{CrossPathEvidence, NOTHING_KNOWN, ReportInput, report};
+use crate::slope::pushed::pushed;
 use crate::slope::search::outcome;
 use crate::slope::slope_gp::SlopeGp;
 use crate::{FrontEnd, GpError, Rows};
@@ -60,13 +61,34 @@ impl AutoGp {
             slope: (&slope.taken.left_out, &slope.taken.actions),
             direct: (&direct.left_out, &direct.actions),
             direct_unit: direct.fit.model.unit,
+            shares: None,
         };
-        let (numbers, left_out) = (ReadingNumbers::compared(&compared), compared.errors());
-        let reading = numbers.reading();
+        let mut numbers = ReadingNumbers::compared(&compared);
+        let mut reading = numbers.reading();
+        let mut left_out = compared.errors();
+        let pushed = if reading == Hypothesis::Free { None } else { pushed(&self.slope, rows, &kept, &slope) };
+        // Where directions of stretches do not tell, nothing pushed.
+        let pushed = pushed.filter(|pushed| {
+            let actions = pushed.outcome.taken.model.actions(&kept.states);
+            let shares = pushed.shares(&kept.trajectories);
+            let slope = (&pushed.outcome.taken.left_out, &actions);
+            let compared = Compared { slope, shares: Some(&shares), ..compared };
+            let with_push = ReadingNumbers::compared(&compared);
+            let tells = with_push.direction_tells();
+            if tells {
+                (numbers, reading, left_out) = (with_push, Hypothesis::Constrained, compared.errors());
+            }
+            tells
+        });
+        let (slope, kept, push) = match pushed {
+            Some(pushed) => (pushed.outcome, pushed.kept, Some(pushed.push)),
+            None => (slope, kept, None),
+        };
         // Left-out movements test the slope policy in all directions where it is the better one whichever way they went.
         let tested = reading == Hypothesis::Constrained || numbers.shows_a_potential();
         let across = if tested { CrossPathEvidence::Tested } else { CrossPathEvidence::Untested };
         let mut report = report(&ReportInput { outcome: &slope, kept: &kept, rows, across });
+        report.push = push;
         if across == CrossPathEvidence::Untested {
             let away = difference(&direct.actions, &slope.taken.actions);
             report.expected_nupe = expected_beside((reading, numbers.gap, numbers.p_d), away, report.expected_nupe);
@@ -129,7 +151,13 @@ impl AutoFit {
 
     /// The reading in words, for the user.
     pub fn text(&self) -> String {
-        let text = self.numbers.text(self.slope.report.expected_nupe);
+        let mut text = self.numbers.text_of(self.reading(), self.slope.report.expected_nupe);
+        if let Some(push) = self.slope.report.push {
+            let percent = 100.0 * push;
+            text.push_str(&format!(
+                " The constraints also pushed, on average with {percent:.0} % of the policy's speed: it was learnt from the directions in which velocities differ."
+            ));
+        }
         match self.overridden {
             None => text,
             Some(reading) => format!("{text} You decided: {reading:?}."),

@@ -103,11 +103,16 @@ impl ReadingNumbers {
 
     /// The reading in words, for the user. `expected_nupe` is the slope policy's.
     pub fn text(&self, expected_nupe: f64) -> String {
+        self.text_of(self.reading(), expected_nupe)
+    }
+
+    /// The same of a reading that more than these numbers led to.
+    pub(crate) fn text_of(&self, reading: Hypothesis, expected_nupe: f64) -> String {
         let &ReadingNumbers { a_s, a_d, p_d, gap, hidden, .. } = self;
         let (a_s, a_d, p_d, gap, hidden) = (Percent(a_s), Percent(a_d), Percent(p_d), Percent(gap), Percent(hidden));
         let leans = self.trajectories < DEMONSTRATIONS && self.direction_tells() && self.hides();
         let few = if leans { " It leans towards constraints; record at least five demonstrations." } else { "" };
-        match self.reading() {
+        match reading {
             Hypothesis::Free if self.shows_a_potential() => format!(
                 "Nothing in these demonstrations points to a hidden constraint: where they went, the policies that allow for one and that do not agree within {gap}. The slope policy is used: it predicts left-out movements far better (squared error {a_s} against {a_d}), as it can where movements descend a potential. A constraint that is the same in every demonstration cannot be seen in data."
             ),

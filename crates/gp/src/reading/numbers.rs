@@ -60,6 +60,7 @@ pub struct TrajectoryErrors {
 }
 
 /// Two models of the same rows.
+#[derive(Clone, Copy)]
 pub(crate) struct Compared<'a> {
     pub(crate) speeds: &'a [f64],
     pub(crate) grouping: Grouping,
@@ -72,6 +73,8 @@ pub(crate) struct Compared<'a> {
     pub(crate) direct: (&'a LeftOut, &'a DMatrix<f64>),
     /// ū.
     pub(crate) direct_unit: f64,
+    /// What the slope GP errs on each group, as a share of what was to predict, where it learnt from other rows than `data`.
+    pub(crate) shares: Option<&'a [f64]>,
 }
 
 impl Compared<'_> {
@@ -80,16 +83,20 @@ impl Compared<'_> {
         let &Compared { speeds, data, slope, direct, direct_unit, .. } = self;
         let mean_weight = data.noise_weights.iter().map(|d| 1.0 / d).sum::<f64>() / data.noise_weights.len() as f64;
         let weight = |row: usize| 1.0 / (data.noise_weights[row] * mean_weight);
-        let errors = |(rows, &trajectory): (&Vec<usize>, &usize)| {
-            let power = |of: &dyn Fn(usize) -> f64| rows.iter().map(|&row| weight(row) * of(row).powi(2)).sum();
+        let errors = |(group, (rows, &trajectory)): (usize, (&Vec<usize>, &usize))| {
+            let power = |of: &dyn Fn(usize) -> f64| rows.iter().map(|&row| weight(row) * of(row).powi(2)).sum::<f64>();
+            let seen = power(&|row| speeds[row]);
             TrajectoryErrors {
                 trajectory,
-                slope: power(&|row| data.speed * slope.0.residuals[(row, 0)]),
+                slope: match self.shares {
+                    Some(shares) => shares[group] * seen,
+                    None => power(&|row| data.speed * slope.0.residuals[(row, 0)]),
+                },
                 direct: power(&|row| direct_unit * (direct.0.residuals.row(row) * data.n.column(row)).x),
-                seen: power(&|row| speeds[row]),
+                seen,
             }
         };
-        data.groups.iter().zip(self.trajectories).map(errors).collect()
+        data.groups.iter().zip(self.trajectories).enumerate().map(errors).collect()
     }
 }
 
@@ -112,6 +119,7 @@ impl ReadingNumbers {
             slope: (slope_left_out, &slope.actions(rows.states())),
             direct: (direct_left_out, &direct.actions(rows.states())),
             direct_unit: direct.unit,
+            shares: None,
         })
     }
 

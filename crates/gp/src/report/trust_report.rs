@@ -43,6 +43,10 @@ pub struct TrustReport {
     pub noise: Option<f64>,
     /// Number of samples before which a constraint probably switched.
     pub switches: Option<usize>,
+    /// Root mean square of the pushes A⁺b of constraints, as a share of the policy's speed, where the policy was learnt from
+    /// directions in which velocities differ.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub push: Option<f64>,
 }
 
 /// Whether the policy has a potential.

@@ -49,6 +49,8 @@ pub(crate) struct Kept {
     /// r = |u|, (M).
     pub(crate) speeds: Vec<f64>,
     pub(crate) variances: Option<Vec<f64>>,
+    /// D, where the rows come with it.
+    pub(crate) weights: Option<Vec<f64>>,
     pub(crate) groups: Vec<Vec<usize>>,
     /// The trajectory that each group is of.
     pub(crate) trajectories: Vec<usize>,
@@ -121,6 +123,7 @@ impl Selection {
             velocities: rows.velocities().select_columns(&usable),
             speeds: usable.iter().map(|&row| speeds[row]).collect(),
             variances: rows.variances().map(|variances| usable.iter().map(|&row| variances[row]).collect()),
+            weights: None,
             hyper: positions(&usable, &hyper),
             trajectories: groups.iter().map(|rows_of| rows.indices()[usable[rows_of[0]]].trajectory).collect(),
             groups,

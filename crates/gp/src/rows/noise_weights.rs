@@ -26,7 +26,7 @@ pub(crate) fn direct_weights(variances: &[f64], unit_squared: f64) -> Vec<f64> {
 }
 
 /// In units of the median.
-fn relative(variances: Vec<f64>) -> Vec<f64> {
+pub(crate) fn relative(variances: Vec<f64>) -> Vec<f64> {
     let mut sorted = variances.clone();
     sorted.sort_by(f64::total_cmp);
     let middle = sorted.len() / 2;

@@ -5,6 +5,7 @@ use crate::report::trust_report::TrustReport;
 use crate::slope::judgement::{CrossPathEvidence, ReportInput, report};
 use crate::slope::model::SlopeModel;
 use crate::slope::policy::{SlopePolicy, SlopePotential};
+use crate::slope::pushed::pushed;
 use crate::slope::search::outcome;
 use crate::slope::slope_gp::SlopeGp;
 use crate::{GpError, Rows};
@@ -25,8 +26,14 @@ impl SlopeGp {
     /// [`GpError::Parameter`], or why the rows are refused: too few, no motion, one state, no Cholesky factor.
     pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<SlopeFit, GpError> {
         let kept = self.selection()?.keep(rows, rng)?;
-        let outcome = outcome(self, &kept)?;
-        let report = report(&ReportInput { outcome: &outcome, kept: &kept, rows, across: CrossPathEvidence::Untested });
+        let plain = outcome(self, &kept)?;
+        let (outcome, kept, push) = match pushed(self, rows, &kept, &plain) {
+            Some(pushed) => (pushed.outcome, pushed.kept, Some(pushed.push)),
+            None => (plain, kept, None),
+        };
+        let across = CrossPathEvidence::Untested;
+        let report = report(&ReportInput { outcome: &outcome, kept: &kept, rows, across });
+        let report = TrustReport { push, ..report };
         Ok(SlopeFit { model: outcome.taken.model, report })
     }
 }

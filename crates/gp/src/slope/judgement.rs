@@ -73,6 +73,7 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
         grouping: kept.grouping,
         noise: rows.noise(),
         switches: rows.switches().map(count),
+        push: None,
     }
 }
 

@@ -80,6 +80,9 @@ fn pays(kept: &Kept, alike: &Outcome, weighed: &Outcome) -> bool {
 
 /// Steps 3 and 4: noise weights, first from a guess of the policy's length, then from a pilot policy.
 fn weighted(gp: &SlopeGp, kept: &Kept) -> Result<SlopeData, GpError> {
+    if let Some(weights) = &kept.weights {
+        return SlopeData::from_kept(kept, weights.clone());
+    }
     let Some(variances) = &kept.variances else {
         return SlopeData::from_kept(kept, vec![1.0; kept.speeds.len()]);
     };

@@ -1,0 +1,56 @@
+//! Rows of stretches in place of rows of samples, where constraints push: step 10 of a fit.
+
+use crate::Rows;
+use crate::rows::kept::Kept;
+use crate::slope::search::{Outcome, outcome};
+use crate::slope::slope_gp::SlopeGp;
+use crate::stretches::Stretches;
+
+/// Mean square of pushes, in units of what noise alone gives, below which nothing pushes.
+const LEAST_SIGNIFICANCE: f64 = 4.0;
+
+/// A search on rows of stretches.
+pub(crate) struct Pushed {
+    pub(crate) outcome: Outcome,
+    pub(crate) kept: Kept,
+    /// Root mean square of the pushes A⁺b, as a share of the policy's where it was learnt.
+    pub(crate) push: f64,
+}
+
+/// The search on rows of stretches, if it predicts left-out movements better than `plain`, the one on rows of samples. Not
+/// tried where that predicts nearly exactly, or where nothing pushes.
+pub(crate) fn pushed(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) -> Option<Pushed> {
+    if plain.taken.left_out.is_nearly_exact() {
+        return None;
+    }
+    let stretches = Stretches::of(rows)?;
+    if stretches.significance() < LEAST_SIGNIFICANCE {
+        return None;
+    }
+    let of_stretches = stretches.rows(rows, kept, &gp.selection().ok()?)?;
+    let outcome = outcome(gp, &of_stretches).ok()?;
+    let better = outcome.taken.left_out.r_squared > plain.taken.left_out.r_squared;
+    let actions = &outcome.taken.actions;
+    let push = stretches.push() / (actions.norm_squared() / actions.ncols() as f64).sqrt();
+    better.then_some(Pushed { outcome, kept: of_stretches, push })
+}
+
+impl Pushed {
+    /// Held-out squared error on each of these trajectories, as a share of what was to predict; on one without stretches the
+    /// share of all others together.
+    pub(crate) fn shares(&self, trajectories: &[usize]) -> Vec<f64> {
+        let Outcome { data, taken, .. } = &self.outcome;
+        let weighed = |rows: &[usize], of: &dyn Fn(usize) -> f64| -> f64 {
+            rows.iter().map(|&row| of(row).powi(2) / data.noise_weights[row]).sum()
+        };
+        let share = |rows: &[usize]| {
+            weighed(rows, &|row| taken.left_out.residuals[(row, 0)]) / weighed(rows, &|row| data.targets[(row, 0)])
+        };
+        let all = share(&data.groups.concat());
+        let place = |trajectory: &usize| self.kept.trajectories.iter().position(|of| of == trajectory);
+        trajectories
+            .iter()
+            .map(|trajectory| place(trajectory).map_or(all, |group| share(&data.groups[group])))
+            .collect()
+    }
+}

@@ -1,0 +1,110 @@
+//! Stretches of a movement along which one constraint A u = b acted: (S19) to (S22).
+//!
+//! While A and b stay constant, u = Nπ + A⁺b. The second part, the push, cancels in differences of velocities, which lie in
+//! the null space of A. Every direction v in which they lie gives a linear equation vᵀπ(x_i) = vᵀu_i for all samples of the
+//! stretch: rows like those of (S1), but free of the push.
+
+mod noise;
+pub(crate) mod rows;
+mod segmentation;
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use crate::Rows;
+use noise::velocity_noise;
+use segmentation::{Segment, segments};
+
+/// Most samples of a movement among which switches are looked for; of longer ones, evenly many.
+const MOST_SAMPLES: usize = 60;
+/// Most dimensions; the search takes time with the cube of them.
+const MOST_DIMENSIONS: usize = 12;
+/// Standard deviations of the noise that a direction must stand out by, for a stretch of one sample.
+const STANDS_OUT: f64 = 8.0;
+
+/// Samples of one movement during which A and b did not change, and what their velocities show of A and b.
+#[derive(Debug, Clone)]
+pub(crate) struct Stretch {
+    pub(crate) trajectory: usize,
+    /// First and last sample.
+    pub(crate) samples: (usize, usize),
+    /// Orthonormal directions in the null space of A, (n, m) with m < n.
+    pub(crate) directions: DMatrix<f64>,
+    /// Length of the velocities along each direction about their mean: the singular values s_k, (m).
+    pub(crate) lengths: Vec<f64>,
+    /// The push A⁺b: the mean velocity along the normals of the plane that the velocities lie in, (n).
+    pub(crate) push: DVector<f64>,
+    /// Its square in units of the variance that noise gives it, and how many normals there are.
+    pub(crate) significance: (f64, usize),
+}
+
+/// All stretches of some movements.
+#[derive(Debug, Clone)]
+pub(crate) struct Stretches {
+    pub(crate) stretches: Vec<Stretch>,
+    /// s², the variance of a velocity along an axis.
+    pub(crate) noise: f64,
+}
+
+impl Stretches {
+    /// Looks for stretches in all movements; none in so many dimensions, or in so few samples, that nothing can be found.
+    /// Takes time with the number of movements and the cube of the dimension.
+    pub(crate) fn of(rows: &Rows) -> Option<Stretches> {
+        if rows.dim() < 2 || rows.dim() > MOST_DIMENSIONS {
+            return None;
+        }
+        let at: Vec<usize> = (0..rows.len()).collect();
+        let trajectory = |row: usize| rows.indices()[row].trajectory;
+        let movements: Vec<&[usize]> = at.chunk_by(|&a, &b| trajectory(a) == trajectory(b)).collect();
+        let noise = velocity_noise(rows, &movements)?;
+        let of_movement = |movement: &&[usize]| {
+            let few = evenly(movement, MOST_SAMPLES);
+            let found = segments(&rows.velocities().select_columns(&few), noise);
+            found.iter().filter_map(|segment| stretch(rows, movement, &few, segment, noise)).collect::<Vec<_>>()
+        };
+        let stretches: Vec<Stretch> = movements.par_iter().flat_map_iter(of_movement).collect();
+        (!stretches.is_empty()).then_some(Stretches { stretches, noise })
+    }
+}
+
+/// At most so many of the rows, evenly far from each other, with the first and the last.
+fn evenly(rows: &[usize], most: usize) -> Vec<usize> {
+    if rows.len() <= most {
+        return rows.to_vec();
+    }
+    (0..most).map(|at| rows[at * (rows.len() - 1) / (most - 1)]).collect()
+}
+
+/// The directions of a segment, over all of its samples; none if no direction stands out from the noise.
+fn stretch(rows: &Rows, movement: &[usize], few: &[usize], segment: &Segment, noise: f64) -> Option<Stretch> {
+    let (first, last) = (few[segment.begin], few[segment.end - 1]);
+    let inside: Vec<usize> = movement.iter().copied().filter(|&row| (first..=last).contains(&row)).collect();
+    let mut velocities = rows.velocities().select_columns(&inside);
+    let mean = velocities.column_mean();
+    for mut velocity in velocities.column_iter_mut() {
+        velocity -= &mean;
+    }
+    let least = STANDS_OUT * noise.sqrt() * (inside.len() as f64).powf(0.25);
+    let svd = velocities.svd(true, false);
+    let standing_out = |&k: &usize| svd.singular_values[k] >= least && svd.singular_values[k] > 0.0;
+    let taken: Vec<usize> = (0..svd.singular_values.len()).filter(standing_out).take(segment.rank).collect();
+    if taken.is_empty() {
+        return None;
+    }
+    let directions = svd.u.as_ref()?.select_columns(&taken);
+    let plane = svd.u.as_ref()?.columns(0, segment.rank).into_owned();
+    let along = plane.tr_mul(&mean);
+    let push = &mean - &plane * &along;
+    // Noise moves the mean, and it tilts the plane.
+    let tilt: f64 = along.iter().zip(&svd.singular_values).map(|(u, s)| (u / s).powi(2)).sum();
+    let variance = noise * (1.0 / inside.len() as f64 + tilt);
+    let index = |row: usize| rows.indices()[row];
+    Some(Stretch {
+        trajectory: index(first).trajectory,
+        samples: (index(first).sample, index(last).sample),
+        significance: (push.norm_squared() / variance, rows.dim() - segment.rank),
+        push,
+        lengths: taken.iter().map(|&k| svd.singular_values[k]).collect(),
+        directions,
+    })
+}

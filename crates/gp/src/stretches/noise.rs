@@ -1,0 +1,49 @@
+//! (S19): the noise of velocities, before anything is known of constraints.
+
+use nalgebra::DMatrix;
+
+use crate::Rows;
+use motion::upper_median;
+
+/// Squares of the coefficients 1, 3, 3, 1 of a third difference, summed.
+const THIRD_DIFFERENCE: f64 = 20.0;
+/// Samples beyond the dimension in a window whose least extent is noise where a constraint acts.
+const WINDOW: usize = 5;
+/// The quantile of windows: most of these hold no switch where switches are few.
+const QUANTILE: f64 = 0.3;
+/// What the least extent of a window can be, relative to noise.
+const TIMES: f64 = 3.0;
+/// Least variance, in mean squares of the velocities: what rounding leaves.
+const ROUNDING: f64 = 1e-14;
+
+/// s², the variance of a velocity along an axis: the smaller of two upper bounds. Third differences also hold the curvature
+/// of the motion, the least extent of windows also holds switches and free movement. At least the median of variances that
+/// are known; none without three samples next to each other.
+pub(super) fn velocity_noise(rows: &Rows, movements: &[&[usize]]) -> Option<f64> {
+    let dim = rows.dim();
+    let velocity = |row: usize| rows.velocities().column(row);
+    let third =
+        |at: &[usize]| (velocity(at[3]) - velocity(at[0]) + 3.0 * (velocity(at[1]) - velocity(at[2]))).norm_squared();
+    let thirds: Vec<f64> = movements.iter().flat_map(|movement| movement.windows(4).map(third)).collect();
+    // The median of χ² with n degrees of freedom is about n (1 − 2/9n)³.
+    let median_of_chi_squared = dim as f64 * (1.0 - 2.0 / (9.0 * dim as f64)).powi(3);
+    let from_differences = upper_median(thirds)? / (THIRD_DIFFERENCE * median_of_chi_squared);
+    let extent = |at: &[usize]| least_extent(&rows.velocities().select_columns(at));
+    let windows = movements.iter().flat_map(|movement| movement.chunks_exact(dim + WINDOW).map(extent));
+    let mut extents: Vec<f64> = windows.collect();
+    extents.sort_by(f64::total_cmp);
+    let from_windows = extents.get((QUANTILE * extents.len() as f64) as usize).copied().unwrap_or(f64::INFINITY);
+    let mean_square = rows.velocities().norm_squared() / rows.len() as f64;
+    let known = rows.variances().and_then(|variances| upper_median(variances.to_vec())).unwrap_or(0.0);
+    Some(from_differences.min(TIMES * from_windows).max(ROUNDING * mean_square).max(known))
+}
+
+/// The least eigenvalue of the centred scatter, per degree of freedom.
+fn least_extent(velocities: &DMatrix<f64>) -> f64 {
+    let mean = velocities.column_mean();
+    let mut centred = velocities.clone();
+    for mut velocity in centred.column_iter_mut() {
+        velocity -= &mean;
+    }
+    (&centred * centred.transpose()).symmetric_eigenvalues().min().max(0.0) / WINDOW as f64
+}

@@ -1,0 +1,95 @@
+//! (S21), (S22): rows of stretches.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::Rows;
+use crate::rows::kept::{Kept, RowsDropped, Selection};
+use crate::rows::noise_weights::relative;
+use crate::stretches::{Stretch, Stretches};
+use motion::{SampleIndex, upper_median};
+
+/// Rows are used whose squared length exceeds this share of the mean square of all.
+const LEAST: f64 = 1e-12;
+/// Share of the movements that must have stretches: models of different movements are not compared.
+const COVERED: f64 = 0.5;
+
+/// One equation vᵀπ(x) = vᵀu.
+struct Equation {
+    /// The sample's row.
+    row: usize,
+    /// v (vᵀu), the part of the velocity along v.
+    velocity: DVector<f64>,
+    /// |vᵀu|.
+    length: f64,
+    /// s_k of its direction.
+    direction_length: f64,
+}
+
+impl Stretches {
+    /// Rows of all samples that lie in stretches, with their noise weights (S22); evenly many of them, where they are more
+    /// than `selection` allows. None if they are of far fewer movements than `kept` ones.
+    pub(crate) fn rows(&self, rows: &Rows, kept: &Kept, selection: &Selection) -> Option<Kept> {
+        let mut equations: Vec<Equation> = (0..rows.len()).flat_map(|row| self.equations(rows, row)).collect();
+        let mean_square = equations.iter().map(|of| of.length.powi(2)).sum::<f64>() / equations.len() as f64;
+        equations.retain(|of| of.length.powi(2) > LEAST * mean_square);
+        let found = equations.len();
+        let equations: Vec<Equation> =
+            equations.into_iter().step_by(found.div_ceil(selection.max_rows).max(1)).collect();
+        let lengths: Vec<f64> = equations.iter().map(|of| of.length).collect();
+        let policy_squared = 2.0 * upper_median(lengths.clone())?.powi(2);
+        let variance = |of: &Equation| self.noise * (1.0 + policy_squared / of.direction_length.powi(2));
+        let all: Vec<usize> = (0..equations.len()).collect();
+        let index = |at: usize| rows.indices()[equations[at].row];
+        let same = |&a: &usize, &b: &usize| index(a).trajectory == index(b).trajectory;
+        let groups: Vec<Vec<usize>> = all.chunk_by(same).map(<[usize]>::to_vec).collect();
+        if groups.len() < 3 || (groups.len() as f64) < COVERED * kept.groups.len() as f64 {
+            return None;
+        }
+        let columns: Vec<DVector<f64>> = equations.iter().map(|of| of.velocity.clone()).collect();
+        let used: Vec<usize> = equations.iter().map(|of| of.row).collect();
+        Some(Kept {
+            states: rows.states().select_columns(&used),
+            velocities: DMatrix::from_columns(&columns),
+            speeds: lengths,
+            variances: None,
+            weights: Some(relative(equations.iter().map(variance).collect())),
+            trajectories: groups.iter().map(|rows_of| index(rows_of[0]).trajectory).collect(),
+            groups,
+            hyper: all.iter().copied().step_by(all.len().div_ceil(selection.hyper_rows).max(1)).collect(),
+            grouping: kept.grouping,
+            dropped: RowsDropped { thinned: found - equations.len(), ..RowsDropped::default() },
+        })
+    }
+
+    /// (S21) of one sample, a direction each.
+    fn equations(&self, rows: &Rows, row: usize) -> Vec<Equation> {
+        let Some(stretch) = self.at(rows.indices()[row]) else { return Vec::new() };
+        let velocity = rows.velocities().column(row);
+        let along = |(direction, &direction_length): (nalgebra::DVectorView<'_, f64>, &f64)| {
+            let part = direction.dot(&velocity);
+            Equation { row, velocity: direction * part, length: part.abs(), direction_length }
+        };
+        stretch.directions.column_iter().zip(&stretch.lengths).map(along).collect()
+    }
+
+    /// The stretch that holds a sample.
+    fn at(&self, index: SampleIndex) -> Option<&Stretch> {
+        let before = |stretch: &Stretch| (stretch.trajectory, stretch.samples.1) < (index.trajectory, index.sample);
+        let next = self.stretches.get(self.stretches.partition_point(before))?;
+        (next.trajectory == index.trajectory && next.samples.0 <= index.sample).then_some(next)
+    }
+
+    /// Root mean square of the pushes A⁺b, in units of the state per second.
+    pub(crate) fn push(&self) -> f64 {
+        let squares: f64 = self.stretches.iter().map(|stretch| stretch.push.norm_squared()).sum();
+        (squares / self.stretches.len() as f64).sqrt()
+    }
+
+    /// Mean square of the pushes along normals, in units of what noise would give: about 1 where nothing pushes.
+    pub(crate) fn significance(&self) -> f64 {
+        let all = self.stretches.iter().map(|stretch| stretch.significance);
+        let (squares, normals) =
+            all.fold((0.0, 0), |(squares, normals), (square, count)| (squares + square, normals + count));
+        squares / normals as f64
+    }
+}

@@ -1,0 +1,160 @@
+//! (S20): where in a movement the constraint switched.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Half the logarithm of the number of samples, about: what a parameter costs in half squared standard deviations.
+const PARAMETER: f64 = 2.5;
+/// What one more dimension of the plane costs. Without it a plane takes in a foreign sample by one dimension more, since a
+/// plane of q + 1 dimensions goes through it exactly.
+const DIMENSION: f64 = 10.0;
+/// What one more segment costs.
+const SEGMENT: f64 = 6.0;
+/// Samples beyond the dimension of the plane that a segment needs.
+const SPARE: usize = 4;
+
+/// Samples `begin..end` whose velocities lie in a plane of `rank` dimensions, 0 < rank < n.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Segment {
+    pub(super) begin: usize,
+    pub(super) end: usize,
+    pub(super) rank: usize,
+}
+
+/// Cuts a movement into segments whose velocities, (n, N), lie in planes, or in none. `noise` is the variance of a velocity
+/// along an axis. A dynamic programme over all pairs: time with N² n³.
+pub(super) fn segments(velocities: &DMatrix<f64>, noise: f64) -> Vec<Segment> {
+    let (dim, count) = velocities.shape();
+    let sums = PrefixSums::of(velocities);
+    // The least cost of the samples before each, and the segment that ends there, if any.
+    let mut costs = vec![0.0; count + 1];
+    let mut ending: Vec<Option<Segment>> = vec![None; count + 1];
+    for end in 1..=count {
+        costs[end] = costs[end - 1] + PARAMETER * dim as f64;
+        for begin in 0..(end + 1).saturating_sub(SPARE) {
+            let (cost, rank) = plane_cost(&sums, (begin, end), noise);
+            if costs[begin] + cost < costs[end] {
+                costs[end] = costs[begin] + cost;
+                ending[end] = Some(Segment { begin, end, rank });
+            }
+        }
+    }
+    let mut found = Vec::new();
+    let mut at = count;
+    while at > 0 {
+        at = ending[at].map_or(at - 1, |segment| {
+            found.push(segment);
+            segment.begin
+        });
+    }
+    found.retain(|segment| segment.rank > 0);
+    found.reverse();
+    found
+}
+
+/// The least cost of planes through these samples, and their dimension.
+fn plane_cost(sums: &PrefixSums, (begin, end): (usize, usize), noise: f64) -> (f64, usize) {
+    let length = end - begin;
+    let dim = sums.dim;
+    let eigenvalues = sums.scatter(begin, end).symmetric_eigenvalues();
+    let mut eigenvalues = eigenvalues.as_slice().to_vec();
+    eigenvalues.sort_by(f64::total_cmp);
+    let mut best = (f64::INFINITY, 0);
+    let mut residual: f64 = eigenvalues.iter().map(|value| value.max(0.0)).sum();
+    for rank in 0..dim {
+        if length < rank + SPARE {
+            break;
+        }
+        let parameters = (rank * length + (rank + 1) * (dim - rank)) as f64;
+        let cost = residual / noise + PARAMETER * parameters + DIMENSION * rank as f64 + SEGMENT;
+        if cost < best.0 {
+            best = (cost, rank);
+        }
+        residual -= eigenvalues[dim - 1 - rank].max(0.0);
+    }
+    best
+}
+
+/// Sums of u and u uᵀ over the first samples, of velocities about their mean.
+struct PrefixSums {
+    dim: usize,
+    first: Vec<DVector<f64>>,
+    second: Vec<DMatrix<f64>>,
+}
+
+impl PrefixSums {
+    fn of(velocities: &DMatrix<f64>) -> Self {
+        let dim = velocities.nrows();
+        let mean = velocities.column_mean();
+        let (mut first, mut second) = (vec![DVector::zeros(dim)], vec![DMatrix::zeros(dim, dim)]);
+        for (at, velocity) in velocities.column_iter().enumerate() {
+            let centred = velocity - &mean;
+            second.push(&second[at] + &centred * centred.transpose());
+            first.push(&first[at] + centred);
+        }
+        PrefixSums { dim, first, second }
+    }
+
+    /// Σ (u − ū)(u − ū)ᵀ over `begin..end`.
+    fn scatter(&self, begin: usize, end: usize) -> DMatrix<f64> {
+        let sum = &self.first[end] - &self.first[begin];
+        let mut scatter = &self.second[end] - &self.second[begin];
+        scatter.ger(-1.0 / (end - begin) as f64, &sum, &sum, 1.0);
+        scatter
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+
+    /// Random velocities whose part along a normal is constant, with another normal and another constant from `switch` on.
+    fn pushed(dim: usize, count: usize, switch: usize, seed: u64) -> DMatrix<f64> {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut draw = |rows, columns| DMatrix::from_fn(rows, columns, |_, _| 2.0 * rng.random::<f64>() - 1.0);
+        let mut velocities = draw(dim, count);
+        for part in [0..switch, switch..count] {
+            let (normal, push) = (draw(dim, 1).normalize(), draw(1, 1)[0]);
+            for at in part {
+                let along = velocities.column(at).dot(&normal.column(0));
+                velocities.column_mut(at).axpy(push - along, &normal.column(0), 1.0);
+            }
+        }
+        velocities
+    }
+
+    proptest! {
+        /// A switch between two planes is found to the sample, and so is the dimension of both.
+        #[test]
+        fn switches_are_found(dim in 2usize..5, before in 25usize..40, after in 25usize..40, seed in any::<u64>()) {
+            let velocities = pushed(dim, before + after, before, seed);
+            let found = segments(&velocities, 1e-10);
+            let rank = dim - 1;
+            let expected =
+                [Segment { begin: 0, end: before, rank }, Segment { begin: before, end: before + after, rank }];
+            prop_assert_eq!(found, expected);
+        }
+
+        /// Sums over the beginning give the scatter of any part as its definition does.
+        #[test]
+        fn scatters_are_as_defined(dim in 1usize..5, begin in 0usize..10, length in 2usize..10, seed in any::<u64>()) {
+            let velocities = pushed(dim, 20, 10, seed);
+            let part = velocities.columns(begin, length).into_owned();
+            let mean = part.column_mean();
+            let centred = DMatrix::from_fn(dim, length, |axis, at| part[(axis, at)] - mean[axis]);
+            let scatter = PrefixSums::of(&velocities).scatter(begin, begin + length);
+            prop_assert!((scatter - &centred * centred.transpose()).amax() < 1e-12);
+        }
+
+        /// Velocities in all directions have no segment, whatever the noise is thought to be below them.
+        #[test]
+        fn free_movement_has_none(dim in 2usize..5, count in 20usize..50, seed in any::<u64>()) {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let velocities = DMatrix::from_fn(dim, count, |_, _| 2.0 * rng.random::<f64>() - 1.0);
+            prop_assert_eq!(segments(&velocities, 1e-8), []);
+        }
+    }
+}
