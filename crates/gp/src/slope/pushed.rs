@@ -6,7 +6,7 @@ use crate::slope::search::{Outcome, outcome};
 use crate::slope::slope_gp::SlopeGp;
 use crate::stretches::Stretches;
 
-/// Mean square of pushes, in units of what noise alone gives, below which nothing pushes.
+/// (S24): mean square of pushes, in units of what noise alone gives, below which nothing pushes.
 const LEAST_SIGNIFICANCE: f64 = 4.0;
 
 /// A search on rows of stretches.
@@ -17,7 +17,7 @@ pub(crate) struct Pushed {
     pub(crate) push: f64,
 }
 
-/// The search on rows of stretches, if it predicts left-out movements better than `plain`, the one on rows of samples. Not
+/// The search on rows of stretches (S22), if it predicts left-out movements better than `plain`, the one on rows of samples. Not
 /// tried where that predicts nearly exactly, or where nothing pushes.
 pub(crate) fn pushed(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) -> Option<Pushed> {
     if plain.taken.left_out.is_nearly_exact() {

@@ -1,4 +1,4 @@
-//! Stretches of a movement along which one constraint A u = b acted: (S19) to (S22).
+//! Stretches of a movement along which one constraint A u = b acted: (S20) to (S23).
 //!
 //! While A and b stay constant, u = Nπ + A⁺b. The second part, the push, cancels in differences of velocities, which lie in
 //! the null space of A. Every direction v in which they lie gives a linear equation vᵀπ(x_i) = vᵀu_i for all samples of the

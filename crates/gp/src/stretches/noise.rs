@@ -1,4 +1,4 @@
-//! (S19): the noise of velocities, before anything is known of constraints.
+//! (S20): the noise of velocities, before anything is known of constraints.
 
 use nalgebra::DMatrix;
 

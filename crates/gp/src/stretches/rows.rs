@@ -1,4 +1,4 @@
-//! (S21), (S22): rows of stretches.
+//! (S22), (S23): rows of stretches.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -26,7 +26,7 @@ struct Equation {
 }
 
 impl Stretches {
-    /// Rows of all samples that lie in stretches, with their noise weights (S22); evenly many of them, where they are more
+    /// Rows of all samples that lie in stretches, with their noise weights (S23); evenly many of them, where they are more
     /// than `selection` allows. None if they are of far fewer movements than `kept` ones.
     pub(crate) fn rows(&self, rows: &Rows, kept: &Kept, selection: &Selection) -> Option<Kept> {
         let mut equations: Vec<Equation> = (0..rows.len()).flat_map(|row| self.equations(rows, row)).collect();
@@ -61,7 +61,7 @@ impl Stretches {
         })
     }
 
-    /// (S21) of one sample, a direction each.
+    /// (S22) of one sample, a direction each.
     fn equations(&self, rows: &Rows, row: usize) -> Vec<Equation> {
         let Some(stretch) = self.at(rows.indices()[row]) else { return Vec::new() };
         let velocity = rows.velocities().column(row);

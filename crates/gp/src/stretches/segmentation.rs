@@ -1,4 +1,4 @@
-//! (S20): where in a movement the constraint switched.
+//! (S21): where in a movement the constraint switched.
 
 use nalgebra::{DMatrix, DVector};
 
