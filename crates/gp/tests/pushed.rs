@@ -158,3 +158,22 @@ fn survey() {
         }
     }
 }
+
+#[test]
+fn scales() {
+    let which = std::env::var("SYS").unwrap_or_default();
+    for system in SYSTEMS.iter().filter(|s| s.name.starts_with(&which)) {
+        for noise in [0.0, 0.05] {
+            for seed in 0..2 {
+                for factor in [5.0, 57.3] {
+                    let right = FrontEnd::Velocities.rows(&system.movements(0.0, noise, seed)).unwrap();
+                    let stretch = |of: &DMatrix<f64>| DMatrix::from_fn(system.dim, of.ncols(), |axis, at| of[(axis, at)] * if axis == 1 { factor } else { 1.0 });
+                    let rows = gp::Rows::new(stretch(right.states()), stretch(right.velocities()), right.indices().to_vec()).unwrap();
+                    let gp = SlopeGp { families: vec![gp::Family::Smooth], ..SlopeGp::default() };
+                    let learnt = gp.learn_scales(&rows, &mut ChaCha8Rng::seed_from_u64(seed)).unwrap();
+                    eprintln!("{} noise {noise} seed {seed} factor {factor}: {:?}", system.name, learnt.map(|l| (l.factors[1] * factor, l.factors, l.left_out, l.t)));
+                }
+            }
+        }
+    }
+}

@@ -3,7 +3,7 @@
 #![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
 
 pub(crate) mod family_fit;
-mod lbfgs;
+pub(crate) mod lbfgs;
 
 use std::ops::Range;
 

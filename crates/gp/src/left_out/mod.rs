@@ -28,7 +28,7 @@ pub struct LeftOut {
 /// Held-out error, as a share of the variance, below which prediction can select nothing more.
 const EXACT: f64 = 1e-8;
 /// Held-out error below which differences between models are insignificant and a model's family is not in question.
-const NEARLY_EXACT: f64 = 1e-3;
+pub(crate) const NEARLY_EXACT: f64 = 1e-3;
 
 impl LeftOut {
     /// Whether prediction is so good that more noise and other families need not be tried.

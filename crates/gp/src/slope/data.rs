@@ -34,6 +34,13 @@ pub struct SlopeData {
     pub(crate) groups: Vec<Vec<usize>>,
 }
 
+/// What (S25) needs, (n, n) each.
+#[derive(Debug)]
+pub(crate) struct AxisErrors {
+    pub(crate) errors: DMatrix<f64>,
+    pub(crate) targets: DMatrix<f64>,
+}
+
 impl SlopeData {
     /// Every row, with noise weights D, (M); rows of a trajectory need not be contiguous.
     ///
@@ -130,6 +137,24 @@ impl SlopeData {
         let level = move |kappa| Level::at(&covariance, found, kappa, &self.conditions());
         let fit = |level| FamilyFit { amplitudes: amplitudes.to_vec(), level };
         kappas().filter(move |&kappa| kappa > from).map_while(level).map(fit)
+    }
+
+    /// (S25): products of left-out errors, and of targets, of every pair of axes, for targets n_ij u_ij of one axis j each. None
+    /// without Cholesky factor.
+    pub(crate) fn axis_errors(&self, blocks: &[Block], fit: &FamilyFit) -> Option<AxisErrors> {
+        let (dim, rows) = self.n.shape();
+        let targets = DMatrix::from_fn(rows, dim, |row, axis| self.targets[(row, 0)] * self.n[(axis, row)].powi(2));
+        let conditions = Conditions { targets: &targets, ..self.conditions() };
+        let covariance = self.covariance(blocks).sum(&fit.amplitudes);
+        let level = Level::at(&covariance, fit.level.found, fit.level.kappa, &conditions)?;
+        let product = |of: &DMatrix<f64>| {
+            let mut weighed = of.clone();
+            for (mut row, weight) in weighed.row_iter_mut().zip(&self.noise_weights) {
+                row /= *weight;
+            }
+            weighed.tr_mul(of)
+        };
+        Some(AxisErrors { errors: product(&level.left_out.residuals), targets: product(&targets) })
     }
 
     pub(crate) fn model(&self, blocks: Vec<Block>, fit: FamilyFit) -> SlopeModel {
