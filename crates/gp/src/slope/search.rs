@@ -30,7 +30,7 @@ pub(crate) struct Outcome {
 /// The search: steps 3 to 8, and step 9, which weighs certain velocities where they are not predicted nearly exactly.
 pub(crate) fn outcome(gp: &SlopeGp, kept: &Kept) -> Result<Outcome, GpError> {
     let alike = searched(gp, kept, weighted(gp, kept)?)?;
-    if kept.variances.is_some() || alike.taken.left_out.is_nearly_exact() {
+    if kept.variances.is_some() || kept.weights.is_some() || alike.taken.left_out.is_nearly_exact() {
         return Ok(alike);
     }
     Ok(weighed(gp, kept, &alike.taken).filter(|weighed| pays(kept, &alike, weighed)).unwrap_or(alike))
