@@ -1,7 +1,8 @@
-use motion::{Decision, Demonstrations, Finding, LeftOut};
+use motion::{Decision, Demonstrations, Finding, LeftOut, MotionError, Trajectory};
+use nalgebra::{DMatrix, DVector};
 
 use crate::options::Smoothing;
-use crate::samples::noise::Noise;
+use crate::samples::noise::{self, Noise};
 use crate::{StateChannel, VelocitySource};
 
 /// Demonstrations ready for learning, with all decisions and findings.
@@ -31,4 +32,39 @@ pub struct Prepared {
     pub findings: Vec<Finding>,
     /// Episodes that are not used.
     pub left_out: Vec<LeftOut>,
+}
+
+impl Prepared {
+    /// The same movements with every channel times a further factor, (n), and the noise in these units.
+    ///
+    /// # Errors
+    /// [`MotionError`] where a product is not finite.
+    pub fn rescaled(&self, factors: &DVector<f64>) -> Result<Self, MotionError> {
+        let movements = self.demonstrations.trajectories().iter().map(|movement| rescaled(movement, factors));
+        let demonstrations = Demonstrations::new(movements.collect::<Result<_, _>>()?)?;
+        let state = self.state.iter().zip(factors);
+        let velocities = match self.velocities {
+            VelocitySource::Noisy(_) => noise::of_recorded(&demonstrations),
+            other => other,
+        };
+        Ok(Prepared {
+            noise: noise::of(&demonstrations),
+            velocities,
+            state: state.map(|(of, factor)| StateChannel { scale: of.scale * factor, ..of.clone() }).collect(),
+            demonstrations,
+            ..self.clone()
+        })
+    }
+}
+
+fn rescaled(movement: &Trajectory, factors: &DVector<f64>) -> Result<Trajectory, MotionError> {
+    let scaled = |of: &DMatrix<f64>| DMatrix::from_fn(of.nrows(), of.ncols(), |axis, at| factors[axis] * of[(axis, at)]);
+    let mut anew = Trajectory::new(scaled(movement.states()), movement.time_step())?;
+    if let Some(times) = movement.times() {
+        anew = anew.with_times(times.to_vec())?;
+    }
+    match movement.velocities() {
+        Some(velocities) => anew.with_velocities(scaled(velocities)),
+        None => Ok(anew),
+    }
 }

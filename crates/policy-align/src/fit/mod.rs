@@ -7,6 +7,7 @@ mod halves;
 mod options;
 mod progress;
 mod recorded_rows;
+mod units;
 
 pub(crate) use aligning::held_out;
 pub use options::{FitOptions, LearnerChoice};
@@ -38,7 +39,16 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
     progress.begin(0, steps, "cleaning the recordings")?;
     let rows = rows(prepared)?;
     progress.begin(1, steps, "learning with and without constraints")?;
-    let readings = readings(&rows, options)?;
+    let readings = learn(&rows, options)?;
+    let rescaled = units::learnt(prepared, &rows, &readings, options)?;
+    let (prepared, rows, readings) = match &rescaled {
+        Some(rescaled) => {
+            let rows = recorded_rows::rows(rescaled)?;
+            let readings = learn(&rows, options)?;
+            (rescaled, rows, readings)
+        }
+        None => (prepared, rows, readings),
+    };
     let mut decisions = prepared.decisions.clone();
     decisions.push(learner_decision(options, &readings));
     let aligned = match options.learner {
@@ -77,7 +87,7 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
     Ok(Model { made_by: MadeBy::this(), state, time_step, data, decisions, seed: options.seed, trust, learnt })
 }
 
-fn readings(rows: &gp::Rows, options: &FitOptions) -> Result<AutoFit, FitError> {
+fn learn(rows: &gp::Rows, options: &FitOptions) -> Result<AutoFit, FitError> {
     let (max_rows, hyper_rows) = (options.max_rows, (options.max_rows as f64 * HYPER_SHARE) as usize);
     let learner = AutoGp {
         front_end: FrontEnd::Velocities, // the rows are made already

@@ -103,7 +103,12 @@ pub(crate) fn as_requested(demonstrations: &Demonstrations, noise: &Noise, agree
         return VelocitySource::PositionsAsRequested;
     }
     let noisy = noise.velocity_share.is_some_and(|share| share > EXACT_VELOCITIES);
-    match velocity_noise(demonstrations).filter(|_| noisy && agreement == Agreement::Own) {
+    if noisy && agreement == Agreement::Own { of_recorded(demonstrations) } else { VelocitySource::Recorded }
+}
+
+/// Recorded velocities, with their noise where it can be estimated.
+pub(crate) fn of_recorded(demonstrations: &Demonstrations) -> VelocitySource {
+    match velocity_noise(demonstrations) {
         Some((variance, _)) => VelocitySource::Noisy(variance / demonstrations.dim() as f64),
         None => VelocitySource::Recorded,
     }
@@ -128,10 +133,8 @@ pub(crate) fn decide(
         Agreement::Differences if share > EXACT => VelocitySource::Positions,
         _ if noisy_velocities.is_some_and(|share| share > USELESS_VELOCITIES) => VelocitySource::Positions,
         _ if share > EXACT && noisy_velocities.is_none() => VelocitySource::Fused,
-        _ => match noisy_velocities.and(velocity_noise(demonstrations)) {
-            Some((variance, _)) => VelocitySource::Noisy(variance / demonstrations.dim() as f64),
-            None => VelocitySource::Recorded,
-        },
+        _ if noisy_velocities.is_some() => of_recorded(demonstrations),
+        _ => VelocitySource::Recorded,
     };
     let (value, why) = match recorded {
         VelocitySource::Recorded => ("velocities as recorded", words),

@@ -1,0 +1,55 @@
+//! The unit of each channel, learnt where constraints tell of another than the recorded one.
+
+use gp::{AutoFit, Hypothesis, LearntScales, Rows, SlopeGp};
+use motion::Decision;
+use nalgebra::DVector;
+use prepare::numbers::squared_error;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use super::options::{FitOptions, LearnerChoice};
+use crate::{FitError, Prepared};
+
+/// The movements in the units that the constraints tell of; none if the recorded ones are as good, or the user chose one.
+pub(super) fn learnt(
+    prepared: &Prepared,
+    rows: &Rows,
+    readings: &AutoFit,
+    options: &FitOptions,
+) -> Result<Option<Prepared>, FitError> {
+    let chosen = prepared.decisions.iter().any(|decision| decision.flag == "--scale");
+    let reading = options.reading.unwrap_or(readings.reading());
+    let constrained = !matches!(reading, Hypothesis::Free | Hypothesis::TooFew);
+    if chosen || !constrained || options.learner == LearnerChoice::Direct {
+        return Ok(None);
+    }
+    let family = readings.slope().report().family;
+    let gp = SlopeGp { families: vec![family], max_rows: options.max_rows, ..SlopeGp::default() };
+    let Some(scales) = gp.learn_scales(rows, &mut ChaCha8Rng::seed_from_u64(options.seed))? else { return Ok(None) };
+    let factors = DVector::from_iterator(scales.factors.len(), scales.factors.iter().map(|&factor| in_short(factor)));
+    let mut rescaled = prepared.rescaled(&factors).map_err(|error| super::recorded_rows::cleaning(&error))?;
+    rescaled.decisions.extend(decisions(prepared, &scales, &factors));
+    Ok(Some(rescaled))
+}
+
+/// With four significant digits, so that it can be typed.
+fn in_short(factor: f64) -> f64 {
+    format!("{factor:.3e}").parse().expect("a number that was printed")
+}
+
+fn decisions(prepared: &Prepared, scales: &LearntScales, factors: &DVector<f64>) -> Vec<Decision> {
+    let (before, after) = scales.left_out;
+    let why = format!(
+        "constraints are at right angles in this unit: held-out error {}, as recorded {}",
+        squared_error(after),
+        squared_error(before)
+    );
+    let changed = prepared.state.iter().zip(factors).filter(|(_, factor)| **factor != 1.0);
+    let decision = |(channel, factor): (&prepare::StateChannel, &f64)| Decision {
+        what: "scale".to_owned(),
+        value: format!("{} times {factor}", channel.name),
+        why: why.clone(),
+        flag: "--scale".to_owned(),
+    };
+    changed.map(decision).collect()
+}
