@@ -97,8 +97,8 @@ pub use report::trust_report::{FamilyNumbers, FamilyReport, ModelKind, TrustRepo
 pub use rows::front_end::FrontEnd;
 pub use rows::kept::{Grouping, RowsDropped};
 pub use rows::{MOST_ROWS, Rows};
-pub use slope::data::SlopeData;
 pub use scales::LearntScales;
+pub use slope::data::SlopeData;
 pub use slope::fit::SlopeFit;
 pub use slope::learner::SlopeLearner;
 pub use slope::model::SlopeModel;

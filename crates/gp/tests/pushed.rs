@@ -167,11 +167,21 @@ fn scales() {
             for seed in 0..2 {
                 for factor in [5.0, 57.3] {
                     let right = FrontEnd::Velocities.rows(&system.movements(0.0, noise, seed)).unwrap();
-                    let stretch = |of: &DMatrix<f64>| DMatrix::from_fn(system.dim, of.ncols(), |axis, at| of[(axis, at)] * if axis == 1 { factor } else { 1.0 });
-                    let rows = gp::Rows::new(stretch(right.states()), stretch(right.velocities()), right.indices().to_vec()).unwrap();
+                    let stretch = |of: &DMatrix<f64>| {
+                        DMatrix::from_fn(system.dim, of.ncols(), |axis, at| {
+                            of[(axis, at)] * if axis == 1 { factor } else { 1.0 }
+                        })
+                    };
+                    let rows =
+                        gp::Rows::new(stretch(right.states()), stretch(right.velocities()), right.indices().to_vec())
+                            .unwrap();
                     let gp = SlopeGp { families: vec![gp::Family::Smooth], ..SlopeGp::default() };
                     let learnt = gp.learn_scales(&rows, &mut ChaCha8Rng::seed_from_u64(seed)).unwrap();
-                    eprintln!("{} noise {noise} seed {seed} factor {factor}: {:?}", system.name, learnt.map(|l| (l.factors[1] * factor, l.factors, l.left_out, l.t)));
+                    eprintln!(
+                        "{} noise {noise} seed {seed} factor {factor}: {:?}",
+                        system.name,
+                        learnt.map(|l| (l.factors[1] * factor, l.factors, l.left_out, l.t))
+                    );
                 }
             }
         }

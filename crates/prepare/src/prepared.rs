@@ -3,7 +3,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::options::Smoothing;
 use crate::samples::noise::{self, Noise};
-use crate::{StateChannel, VelocitySource};
+use crate::{StateChannel, VelocitySource, remarks};
 
 /// Demonstrations ready for learning, with all decisions and findings.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,14 +35,17 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// The same movements with every channel times a further factor, (n), and the noise in these units.
+    /// The same movements with every channel times a further factor, (n), with the noise and the findings on units that follow.
     ///
     /// # Errors
     /// [`MotionError`] where a product is not finite.
     pub fn rescaled(&self, factors: &DVector<f64>) -> Result<Self, MotionError> {
         let movements = self.demonstrations.trajectories().iter().map(|movement| rescaled(movement, factors));
         let demonstrations = Demonstrations::new(movements.collect::<Result<_, _>>()?)?;
-        let state = self.state.iter().zip(factors);
+        let scaled = |(of, factor): (&StateChannel, &f64)| StateChannel { scale: of.scale * factor, ..of.clone() };
+        let state: Vec<StateChannel> = self.state.iter().zip(factors).map(scaled).collect();
+        let mixed_before = remarks::mixed_units(&self.demonstrations, &self.state);
+        let others = self.findings.iter().filter(|&finding| Some(finding) != mixed_before.as_ref()).cloned();
         let velocities = match self.velocities {
             VelocitySource::Noisy(_) => noise::of_recorded(&demonstrations),
             other => other,
@@ -50,7 +53,8 @@ impl Prepared {
         Ok(Prepared {
             noise: noise::of(&demonstrations),
             velocities,
-            state: state.map(|(of, factor)| StateChannel { scale: of.scale * factor, ..of.clone() }).collect(),
+            findings: others.chain(remarks::mixed_units(&demonstrations, &state)).collect(),
+            state,
             demonstrations,
             ..self.clone()
         })
@@ -58,7 +62,8 @@ impl Prepared {
 }
 
 fn rescaled(movement: &Trajectory, factors: &DVector<f64>) -> Result<Trajectory, MotionError> {
-    let scaled = |of: &DMatrix<f64>| DMatrix::from_fn(of.nrows(), of.ncols(), |axis, at| factors[axis] * of[(axis, at)]);
+    let scaled =
+        |of: &DMatrix<f64>| DMatrix::from_fn(of.nrows(), of.ncols(), |axis, at| factors[axis] * of[(axis, at)]);
     let mut anew = Trajectory::new(scaled(movement.states()), movement.time_step())?;
     if let Some(times) = movement.times() {
         anew = anew.with_times(times.to_vec())?;

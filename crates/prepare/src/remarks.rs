@@ -1,6 +1,6 @@
 //! Further findings before learning.
 
-use motion::{Demonstrations, Trajectory, Verdict};
+use motion::{Demonstrations, Finding, Trajectory, Verdict};
 
 use crate::StateChannel;
 use crate::notes::Notes;
@@ -17,11 +17,10 @@ const LOOP: f64 = 0.05;
 const COARSE: f64 = 0.01;
 
 pub(crate) fn about(demonstrations: &Demonstrations, state: &[StateChannel], notes: &mut Notes) {
-    let spreads = spreads(demonstrations);
-    mixed_units(&spreads, state, notes);
+    notes.findings.extend(mixed_units(demonstrations, state));
     few(demonstrations, notes);
     loops(demonstrations, notes);
-    coarse(demonstrations, &spreads, state, notes);
+    coarse(demonstrations, &spreads(demonstrations), state, notes);
 }
 
 fn spreads(demonstrations: &Demonstrations) -> Vec<f64> {
@@ -34,21 +33,19 @@ fn spreads(demonstrations: &Demonstrations) -> Vec<f64> {
     (0..demonstrations.dim()).map(spread).collect()
 }
 
-fn mixed_units(spreads: &[f64], state: &[StateChannel], notes: &mut Notes) {
+/// A channel whose values spread as if it had another unit than the others.
+pub(crate) fn mixed_units(demonstrations: &Demonstrations, state: &[StateChannel]) -> Option<Finding> {
+    let spreads = spreads(demonstrations);
     let mut sorted: Vec<f64> = spreads.iter().copied().filter(|&spread| spread > 0.0).collect();
     sorted.sort_by(f64::total_cmp);
-    let Some((&largest, others)) = sorted.split_last() else { return };
-    let Some(&usual) = others.get(others.len() / 2) else { return };
-    let times = largest / usual;
-    if times < MIXED {
-        return;
-    }
+    let (&largest, others) = sorted.split_last()?;
+    let times = largest / others.get(others.len() / 2)?;
     let name = spreads.iter().position(|&spread| spread == largest).map_or("", |at| state[at].name.as_str());
-    notes.found(
-        Verdict::Doubtful,
-        format!("channel {name} varies {times:.0} times as much as the others: different unit (degrees, millimetres)?"),
-        format!("all channels need one unit, because constraints act at right angles: --degrees {name} or --scale {name}=FACTOR"),
-    );
+    (times >= MIXED).then(|| Finding {
+        verdict: Verdict::Doubtful,
+        what: format!("channel {name} varies {times:.0} times as much as the others: different unit (degrees, millimetres)?"),
+        next: format!("all channels need one unit, because constraints act at right angles: --degrees {name} or --scale {name}=FACTOR"),
+    })
 }
 
 fn few(demonstrations: &Demonstrations, notes: &mut Notes) {

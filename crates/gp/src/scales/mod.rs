@@ -70,7 +70,8 @@ impl SlopeGp {
         let family = self.families[0];
         let dim = kept.states.nrows();
         let recorded = round(&kept, family, self.trend, DVector::repeat(dim, 1.0));
-        let Some(recorded) = recorded.filter(|round| dim > 1 && round.unexplained > crate::left_out::NEARLY_EXACT) else {
+        let Some(recorded) = recorded.filter(|round| dim > 1 && round.unexplained > crate::left_out::NEARLY_EXACT)
+        else {
             return Ok(None);
         };
         let spread = DVector::from_iterator(dim, kept.states.row_iter().map(|axis| axis.variance().sqrt()));
@@ -120,7 +121,8 @@ fn accepted(recorded: &Round, learnt: &Round) -> Option<LearntScales> {
 
 /// A fit with every axis multiplied by its factor; none without Cholesky factor.
 fn round(kept: &Kept, family: Family, trend: Trend, factors: DVector<f64>) -> Option<Round> {
-    let scaled = |of: &DMatrix<f64>| DMatrix::from_fn(of.nrows(), of.ncols(), |axis, at| factors[axis] * of[(axis, at)]);
+    let scaled =
+        |of: &DMatrix<f64>| DMatrix::from_fn(of.nrows(), of.ncols(), |axis, at| factors[axis] * of[(axis, at)]);
     let velocities = scaled(&kept.velocities);
     let speeds: Vec<f64> = velocities.column_iter().map(|velocity| velocity.norm()).collect();
     let kept = Kept { states: scaled(&kept.states), velocities, speeds, variances: None, ..kept.clone() };
