@@ -49,8 +49,8 @@
 //! - **The same constraint in every demonstration** makes the velocity a function of the state, like an unconstrained
 //!   policy. The data cannot tell the two apart: [`Hypothesis::Ambiguous`], and [`TrustReport::least_seen`] names the
 //!   direction that never moved.
-//! - **Constraints that push** (A u = b, b ≠ 0), move, or project obliquely: the slope GP assumes an orthogonal
-//!   projection onto the null space.
+//! - **Constraints that push** (A u = b, b ≠ 0) with A or b changing from sample to sample, or that project obliquely.
+//!   While A and b are constant, directions in which velocities differ are learnt from ([`TrustReport::push`]).
 //! - **Motion that depends on more than the state** (time, load, a moving target) is [`Hypothesis::Unexplained`].
 //! - **Corridors**: where all movements follow one narrow path, nothing tests the policy across it.
 //! - **Kinks in many dimensions** are learnt slowly; the held-out R² is then low and [`TrustReport::warnings`] says so.

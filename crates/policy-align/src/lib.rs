@@ -52,10 +52,11 @@
 //!
 //! - **The same constraint in every recording** hides part of the policy; no learner can recover it. The verdict is
 //!   then doubtful.
-//! - **Constraints that push** (A u = b with b ≠ 0), move or project obliquely violate the assumption of an orthogonal
-//!   projection.
+//! - **Constraints that push** (A u = b with b ≠ 0) are recovered only while A and b stay constant for some twenty
+//!   samples, and oblique projections not at all.
 //! - **Motion that depends on more than the recorded state** (time, load, a moving target): "do not use".
-//! - **Mixed units**: constraints act at right angles in some unit. [`PrepareOptions::scale`] chooses it.
+//! - **Mixed units**: constraints act at right angles in some unit. [`fit()`] learns it where the data tell;
+//!   [`PrepareOptions::scale`] chooses it.
 //! - **Outside the demonstrated region** a policy extrapolates: [`ModelPolicy::is_supported`] is false there.
 //! - [`PrepareError`], [`FitError`], [`ModelError`], [`RollOutError`] and [`ExportError`] say what was refused and what
 //!   to do.

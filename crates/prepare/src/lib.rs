@@ -42,7 +42,8 @@
 //! - **Time stamps in the wrong unit without velocities** look like a slower policy; only the time step reveals it.
 //! - **Noise of more than a few per cent in positions alone** cannot be removed without losing the velocity. Record
 //!   velocities or commands.
-//! - **Mixed units** (metres and radians): nothing chooses a metric for you. [`PrepareOptions::scale`] sets one.
+//! - **Mixed units** (metres and radians): [`PrepareOptions::scale`] sets a factor; learners may find
+//!   one ([`Prepared::rescaled`]).
 
 mod channel;
 mod degrees;

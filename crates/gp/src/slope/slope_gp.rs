@@ -9,7 +9,8 @@ use crate::rows::kept::Selection;
 ///
 /// Under a constraint u = Nπ with N the orthogonal projection onto the null space, uᵀπ = uᵀu whichever N it is: every
 /// sample is one linear equation in π. The same holds for orthogonal projections onto convex cones (Moreau), but not for
-/// constraints that push (A u = b) or move, nor for oblique projections. Nothing is aligned or discarded.
+/// oblique projections. Where constraints push (A u = b) and stay constant for a while, rows of stretches (S22) take the
+/// place of samples. Nothing is aligned or discarded.
 ///
 /// The method combines derivative observations in Gaussian processes (Solak, Murray-Smith, Leithead, Leith, Rasmussen
 /// 2003; Rasmussen & Williams 2006, 9.4) with the inconsistency loss of Howard, Klanke, Gienger, Goerick, Vijayakumar 2009.

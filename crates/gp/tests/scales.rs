@@ -1,0 +1,64 @@
+//! The unit of each axis is learnt from constraints, which act at right angles in the right one only.
+
+#![allow(clippy::unwrap_used)] // A panic is how a test fails.
+
+mod systems;
+
+use gp::{Family, FrontEnd, LearntScales, Rows, SlopeGp};
+use nalgebra::DMatrix;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use systems::{ANGLES, HIMMELBLAU, System, WELLS};
+
+/// What is learnt where axis 1 was recorded in a unit so many times too small.
+fn learnt(system: &System, factor: f64, noise: f64) -> Option<LearntScales> {
+    let right = FrontEnd::Velocities.rows(&system.movements(0.0, noise, 1)).unwrap();
+    let scaled = |of: &DMatrix<f64>| {
+        DMatrix::from_fn(of.nrows(), of.ncols(), |axis, at| of[(axis, at)] * if axis == 1 { factor } else { 1.0 })
+    };
+    let rows = Rows::new(scaled(right.states()), scaled(right.velocities()), right.indices().to_vec()).unwrap();
+    let gp = SlopeGp { families: vec![Family::Smooth], ..SlopeGp::default() };
+    gp.learn_scales(&rows, &mut ChaCha8Rng::seed_from_u64(1)).unwrap()
+}
+
+fn worst_error(learnt: &LearntScales, factor: f64) -> f64 {
+    let right = |axis| if axis == 1 { factor } else { 1.0 };
+    let errors = learnt.factors.iter().enumerate().map(|(axis, scale)| (scale * right(axis) - 1.0).abs());
+    errors.fold(0.0, f64::max)
+}
+
+#[test]
+fn units_are_found() {
+    for system in [HIMMELBLAU, ANGLES, WELLS] {
+        for factor in [2.0, 5.0, 1000.0] {
+            let learnt = learnt(&system, factor, 0.0).unwrap();
+            let error = worst_error(&learnt, factor);
+            assert!(error < 0.02, "{} dimensions, {factor}: {error:.1e}", system.dim);
+            assert!(learnt.left_out.1 < 0.1 * learnt.left_out.0 && learnt.t > 2.5, "{learnt:?}");
+        }
+    }
+}
+
+#[test]
+fn units_are_found_in_noise() {
+    for system in [ANGLES, WELLS] {
+        let error = worst_error(&learnt(&system, 5.0, 0.05).unwrap(), 5.0);
+        assert!(error < 0.1, "{} dimensions: {error:.1e}", system.dim);
+    }
+}
+
+/// A plain factor is replaced by what it must have been.
+#[test]
+fn millimetres_are_exact() {
+    let learnt = learnt(&ANGLES, 1000.0, 0.0).unwrap();
+    assert!((learnt.factors[1] * 1000.0 - 1.0).abs() < 1e-12, "{learnt:?}");
+}
+
+#[test]
+fn right_units_stay() {
+    for system in [HIMMELBLAU, ANGLES, WELLS] {
+        for noise in [0.0, 0.05] {
+            assert_eq!(learnt(&system, 1.0, noise), None, "{} dimensions, noise {noise}", system.dim);
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Potentials to descend under constraints A u = b, new for each movement and once within it.
+
+use motion::{Demonstrations, Trajectory};
+use nalgebra::{DMatrix, DVector};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+const MOVEMENTS: usize = 60;
+const SAMPLES: usize = 40;
+
+/// A potential to descend, on [−span, span]ⁿ.
+#[derive(Clone, Copy)]
+pub(crate) struct System {
+    pub(crate) dim: usize,
+    span: f64,
+    /// Rows of A.
+    rank: usize,
+    potential: fn(&[f64]) -> f64,
+}
+
+fn himmelblau(x: &[f64]) -> f64 {
+    ((x[0] * x[0] + x[1] - 11.0).powi(2) + (x[0] + x[1] * x[1] - 7.0).powi(2)) / 100.0
+}
+
+fn angles(x: &[f64]) -> f64 {
+    let pairs = (x[0] - x[1]).cos() + (x[1] - x[2]).cos() + (x[0] - x[2]).cos();
+    -pairs - 0.5 * x[0].cos() - 0.5 * (2.0 * x[1]).cos()
+}
+
+fn wells(x: &[f64]) -> f64 {
+    let centres =
+        [[0.5, 0.3, -0.4, 0.2, 0.1, -0.5], [-0.6, 0.2, 0.3, -0.3, 0.4, 0.2], [0.1, -0.6, 0.2, 0.5, -0.4, 0.3]];
+    let bowl: f64 = x.iter().map(|x| 0.3 * x * x).sum();
+    let well = |c: &[f64; 6]| -(-x.iter().zip(c).map(|(x, c)| (x - c).powi(2)).sum::<f64>()).exp();
+    bowl + centres.iter().map(well).sum::<f64>()
+}
+
+pub(crate) const HIMMELBLAU: System = System { dim: 2, span: 4.0, rank: 1, potential: himmelblau };
+pub(crate) const ANGLES: System = System { dim: 3, span: 2.0, rank: 1, potential: angles };
+pub(crate) const WELLS: System = System { dim: 6, span: 1.0, rank: 2, potential: wells };
+
+impl System {
+    /// −∇φ by central differences of order four.
+    pub(crate) fn policy(&self, x: &DVector<f64>) -> DVector<f64> {
+        let step = 1e-3 * self.span;
+        DVector::from_fn(self.dim, |axis, _| {
+            let at = |by: f64| {
+                let mut x = x.clone();
+                x[axis] += by * step;
+                (self.potential)(x.as_slice())
+            };
+            -(8.0 * (at(1.0) - at(-1.0)) - at(2.0) + at(-2.0)) / (12.0 * step)
+        })
+    }
+
+    /// Root mean square of the policy on the whole box.
+    pub(crate) fn rms(&self) -> f64 {
+        let mut rng = ChaCha8Rng::seed_from_u64(99);
+        let square = |_| self.policy(&self.start(&mut rng)).norm_squared();
+        ((0..500).map(square).sum::<f64>() / 500.0).sqrt()
+    }
+
+    fn start(&self, rng: &mut ChaCha8Rng) -> DVector<f64> {
+        DVector::from_fn(self.dim, |_, _| self.span * (2.0 * rng.random::<f64>() - 1.0))
+    }
+
+    /// Movements under A u = b, A new for each and once within it, |A⁺b| = `push` of the root mean square of the policy.
+    pub(crate) fn movements(&self, push: f64, noise: f64, seed: u64) -> Demonstrations {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let rms = self.rms();
+        let step = 2.0 * self.span / (40.0 * rms);
+        let movements = (0..MOVEMENTS).map(|_| {
+            let mut x = self.start(&mut rng);
+            let switch = 10 + (20.0 * rng.random::<f64>()) as usize;
+            let mut basis = DMatrix::zeros(self.dim, self.rank);
+            let mut pushed = DVector::zeros(self.dim);
+            let (mut states, mut velocities) = (Vec::new(), Vec::new());
+            for sample in 0..SAMPLES {
+                if sample == 0 || sample == switch {
+                    let draw = DMatrix::from_fn(self.dim, self.rank, |_, _| normal(&mut rng));
+                    basis = draw.qr().q();
+                    let b = DVector::from_fn(self.rank, |_, _| normal(&mut rng)).normalize() * push * rms;
+                    pushed = &basis * b;
+                }
+                let policy = self.policy(&x);
+                let u = &policy - &basis * basis.tr_mul(&policy) + &pushed;
+                states.extend_from_slice(x.as_slice());
+                velocities.extend(u.iter().map(|u| u + noise * rms / (self.dim as f64).sqrt() * normal(&mut rng)));
+                x += step * u;
+            }
+            let matrix = |numbers| DMatrix::from_vec(self.dim, SAMPLES, numbers);
+            Trajectory::new(matrix(states), step).unwrap().with_velocities(matrix(velocities)).unwrap()
+        });
+        Demonstrations::new(movements.collect()).unwrap()
+    }
+}
+
+fn normal(rng: &mut ChaCha8Rng) -> f64 {
+    rng.sample(rand_distr::StandardNormal)
+}
