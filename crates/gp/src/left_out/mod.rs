@@ -3,7 +3,6 @@
 pub(crate) mod comparison;
 pub(crate) mod curl_test;
 pub(crate) mod level;
-pub(crate) mod weights_test;
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Par};

@@ -128,7 +128,7 @@ fn round(kept: &Kept, family: Family, trend: Trend, factors: DVector<f64>) -> Op
     let kept = Kept { states: scaled(&kept.states), velocities, speeds, variances: None, ..kept.clone() };
     let data = SlopeData::from_kept(&kept, vec![1.0; kept.speeds.len()]).ok()?;
     let blocks = family.blocks(trend);
-    let fit = data.fit(&blocks, &kept.hyper, None)?;
+    let fit = data.fit(&blocks, &kept.hyper)?;
     let axes = data.axis_errors(&blocks, &fit)?;
     let left_out = &fit.level.left_out;
     let unexplained = 1.0 - left_out.r_squared;
