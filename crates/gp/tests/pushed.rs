@@ -4,7 +4,7 @@
 
 mod systems;
 
-use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, SlopeGp};
+use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, PushTest, SlopeGp};
 use motion::Policy;
 use nalgebra::DVector;
 use rand::SeedableRng;
@@ -14,7 +14,7 @@ use systems::{ANGLES, HIMMELBLAU, System, WELLS};
 fn learnt(system: &System, push: f64, noise: f64, seed: u64) -> AutoFit {
     let rows = FrontEnd::Velocities.rows(&system.movements(push, noise, seed)).unwrap();
     let learner = AutoGp {
-        slope: SlopeGp { max_rows: 400, hyper_rows: 200, ..SlopeGp::default() },
+        slope: SlopeGp { max_rows: 400, hyper_rows: 200, push_test: PushTest::Fit, ..SlopeGp::default() },
         direct: DirectGp { max_rows: 400, hyper_rows: 200, ..DirectGp::default() },
         ..AutoGp::default()
     };

@@ -4,6 +4,7 @@ use crate::GpError;
 use crate::kernel::family::{Family, Trend};
 use crate::left_out::curl_test::CurlTest;
 use crate::rows::kept::Selection;
+use crate::slope::pushed::PushTest;
 
 /// A Gaussian process on a potential, observed only through slopes along the motion (S1).
 ///
@@ -33,6 +34,9 @@ pub struct SlopeGp {
     pub least_speed: f64,
     /// Whether a rotational component is tested.
     pub curl_test: CurlTest,
+    /// Whether constraints may push.
+    #[serde(default, skip_serializing_if = "PushTest::is_off")]
+    pub push_test: PushTest,
 }
 
 impl Default for SlopeGp {
@@ -45,6 +49,7 @@ impl Default for SlopeGp {
             least_snr: 1.5,
             least_speed: 1e-6,
             curl_test: CurlTest::Fit,
+            push_test: PushTest::AssumeNone,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Split-half agreement: do halves of the movements give the same policy?
 
-use gp::{AutoFit, CurlTest, DirectGp, GpError, ModelKind, Rows, SlopeGp};
+use gp::{AutoFit, CurlTest, DirectGp, GpError, ModelKind, PushTest, Rows, SlopeGp};
 use motion::Policy;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -27,6 +27,7 @@ pub(super) fn of_slope(readings: &AutoFit, rows: &Rows, limits: Limits) -> Optio
         max_rows: limits.max_rows / 2,
         hyper_rows: limits.max_rows / 4,
         curl_test,
+        push_test: if report.push.is_some() { PushTest::Fit } else { PushTest::AssumeNone },
         ..SlopeGp::default()
     };
     let learn = |rows: &Rows| gp.fit(rows, &mut ChaCha8Rng::seed_from_u64(limits.seed));

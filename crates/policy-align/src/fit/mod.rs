@@ -14,14 +14,14 @@ pub use options::{FitOptions, LearnerChoice};
 pub use progress::{Progress, Step};
 pub(crate) use recorded_rows::rows;
 
-use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, SlopeGp, TrajectoryErrors};
+use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, PushTest, SlopeGp, TrajectoryErrors};
 use motion::{LearntPolicy, Policy, upper_median};
 use prepare::numbers::squared_error;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::trust::{AlignedNumbers, TrustNumbers, VerdictInput, judge, share_leaving, share_unknown};
-use crate::{DataSummary, Decision, FitError, Learnt, MadeBy, Model, Prepared};
+use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, Prepared, Verdict};
 use aligning::AlignedFit;
 use decision::decision;
 
@@ -59,12 +59,9 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
         _ => None,
     };
     let numbers = numbers(prepared, options, &readings, aligned.as_ref(), &rows);
-    let trust = judge(VerdictInput {
-        numbers,
-        findings: &prepared.findings,
-        state: &prepared.state,
-        episodes: &prepared.episodes,
-    });
+    let findings: Vec<Finding> = prepared.findings.iter().cloned().chain(pushed(&readings)).collect();
+    let trust =
+        judge(VerdictInput { numbers, findings: &findings, state: &prepared.state, episodes: &prepared.episodes });
     let learnt = match (options.learner, aligned) {
         (_, Some(aligned)) => {
             decisions.extend(aligned.decisions);
@@ -91,11 +88,21 @@ fn learn(rows: &gp::Rows, options: &FitOptions) -> Result<AutoFit, FitError> {
     let (max_rows, hyper_rows) = (options.max_rows, (options.max_rows as f64 * HYPER_SHARE) as usize);
     let learner = AutoGp {
         front_end: FrontEnd::Velocities, // the rows are made already
-        slope: SlopeGp { max_rows, hyper_rows, ..SlopeGp::default() },
+        slope: SlopeGp { max_rows, hyper_rows, push_test: PushTest::Fit, ..SlopeGp::default() },
         direct: DirectGp { max_rows, hyper_rows, ..DirectGp::default() },
         reading: options.reading,
     };
     Ok(learner.fit(rows, &mut ChaCha8Rng::seed_from_u64(options.seed))?)
+}
+
+/// A remark on constraints that pushed, where the policy was learnt in spite of them.
+fn pushed(readings: &AutoFit) -> Option<Finding> {
+    let push = readings.slope().report().push.filter(|_| readings.takes_slope())?;
+    Some(Finding {
+        verdict: Verdict::Good,
+        what: format!("constraints pushed, on average with {:.0} % of the policy's speed", 100.0 * push),
+        next: "the policy was learnt from the directions in which velocities differ: nothing to do".to_owned(),
+    })
 }
 
 fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {
