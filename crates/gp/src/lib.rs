@@ -103,7 +103,7 @@ pub use slope::fit::SlopeFit;
 pub use slope::learner::SlopeLearner;
 pub use slope::model::SlopeModel;
 pub use slope::policy::{SlopePolicy, SlopePotential};
-pub use slope::pushed::PushTest;
+pub use slope::push_test::PushTest;
 pub use slope::slope_gp::SlopeGp;
 
 /// The program of the README, compiled.

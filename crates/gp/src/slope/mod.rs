@@ -9,6 +9,7 @@ pub(crate) mod learner;
 pub(crate) mod least_hidden;
 pub(crate) mod model;
 pub(crate) mod policy;
+pub(crate) mod push_test;
 pub(crate) mod pushed;
 pub(crate) mod search;
 pub(crate) mod slope_gp;

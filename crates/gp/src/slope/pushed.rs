@@ -1,31 +1,11 @@
-//! Rows of stretches in place of rows of samples, where constraints push: step 10 of a fit.
-
-use serde::{Deserialize, Serialize};
+//! Rows of stretches in place of rows of samples, where constraints push: after the search on samples.
 
 use crate::Rows;
 use crate::rows::kept::Kept;
+use crate::slope::push_test::PushTest;
 use crate::slope::search::{Outcome, outcome};
 use crate::slope::slope_gp::SlopeGp;
 use crate::stretches::Stretches;
-
-/// Whether constraints A u = b may have b ≠ 0.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum PushTest {
-    /// b = 0, as in the paper: one search, on rows of samples.
-    #[default]
-    AssumeNone,
-    /// A second search on rows of stretches (S22) where something pushes (S24). The better one in predicting left-out
-    /// movements is kept.
-    Fit,
-}
-
-impl PushTest {
-    #[allow(clippy::trivially_copy_pass_by_ref)] // serde wants it
-    pub(crate) fn is_off(&self) -> bool {
-        *self == PushTest::AssumeNone
-    }
-}
 
 /// (S24): mean square of pushes, in units of what noise alone gives, below which nothing pushes.
 const LEAST_SIGNIFICANCE: f64 = 4.0;

@@ -4,7 +4,7 @@ use crate::GpError;
 use crate::kernel::family::{Family, Trend};
 use crate::left_out::curl_test::CurlTest;
 use crate::rows::kept::Selection;
-use crate::slope::pushed::PushTest;
+use crate::slope::push_test::PushTest;
 
 /// A Gaussian process on a potential, observed only through slopes along the motion (S1).
 ///
