@@ -24,12 +24,8 @@ fn learnt(system: &System, push: f64, noise: f64, seed: u64) -> AutoFit {
 /// nUPE on states of new movements.
 fn error(system: &System, fit: &dyn Policy, seed: u64) -> f64 {
     let fresh = system.movements(0.0, 0.0, 1000 + seed);
-    let states: Vec<DVector<f64>> = fresh
-        .trajectories()
-        .iter()
-        .take(30)
-        .flat_map(|t| t.states().column_iter().step_by(2).map(|x| x.into_owned()).collect::<Vec<_>>())
-        .collect();
+    let states = fresh.trajectories().iter().take(30).flat_map(|movement| movement.states().column_iter().step_by(2));
+    let states: Vec<DVector<f64>> = states.map(|x| DVector::from_column_slice(x.as_slice())).collect();
     let truth: Vec<DVector<f64>> = states.iter().map(|x| system.policy(x)).collect();
     let mean = truth.iter().fold(DVector::zeros(system.dim), |sum, u| sum + u) / truth.len() as f64;
     let spread: f64 = truth.iter().map(|u| (u - &mean).norm_squared()).sum();

@@ -151,13 +151,12 @@ impl AutoFit {
 
     /// The reading in words, for the user.
     pub fn text(&self) -> String {
-        let mut text = self.numbers.text_of(self.reading(), self.slope.report.expected_nupe);
-        if let Some(push) = self.slope.report.push {
+        let text = self.numbers.text_of(self.reading(), self.slope.report.expected_nupe);
+        let pushed = self.slope.report.push.map_or_else(String::new, |push| {
             let percent = 100.0 * push;
-            text.push_str(&format!(
-                " The constraints also pushed, on average with {percent:.0} % of the policy's speed: it was learnt from the directions in which velocities differ."
-            ));
-        }
+            format!(" The constraints also pushed, on average with {percent:.0} % of the policy's speed: it was learnt from the directions in which velocities differ.")
+        });
+        let text = text + &pushed;
         match self.overridden {
             None => text,
             Some(reading) => format!("{text} You decided: {reading:?}."),

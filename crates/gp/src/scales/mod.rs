@@ -116,7 +116,7 @@ fn accepted(recorded: &Round, learnt: &Round) -> Option<LearntScales> {
     let t = t_of_mean(&gains);
     let better = t >= LEAST_T && learnt.unexplained <= LEFT * recorded.unexplained;
     let differs = most / least > 1.0 + SAME && difference(&recorded.actions, &learnt.actions) > DIFFERS;
-    (better && differs).then(|| LearntScales { factors, left_out: (recorded.unexplained, learnt.unexplained), t })
+    (better && differs).then_some(LearntScales { factors, left_out: (recorded.unexplained, learnt.unexplained), t })
 }
 
 /// A fit with every axis multiplied by its factor; none without Cholesky factor.
