@@ -31,6 +31,9 @@ const DIFFERS: f64 = 0.05;
 /// Scales that differ by less than this share are one.
 const SAME: f64 = 0.05;
 
+/// How many times the spread of an axis may be worth that of another.
+const MOST_WORTH: f64 = 100.0;
+
 /// Units that predict left-out movements better than those recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LearntScales {
@@ -92,7 +95,12 @@ impl SlopeGp {
             (Some(best), Some(plain)) if plain.unexplained <= best.unexplained => Some(plain),
             (best, _) => best,
         };
-        Ok(best.and_then(|best| accepted(&recorded, &best)))
+        // An axis that is worth next to nothing was explained away, not measured.
+        let sound = |best: &Round| {
+            let worth = best.factors.component_mul(&spread);
+            worth.max() <= MOST_WORTH * worth.min()
+        };
+        Ok(best.filter(sound).and_then(|best| accepted(&recorded, &best)))
     }
 }
 
