@@ -5,7 +5,8 @@
 mod systems;
 
 use gp::{Family, FrontEnd, LearntScales, Rows, SlopeGp};
-use nalgebra::DMatrix;
+use motion::scaled;
+use nalgebra::DVector;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use systems::{ANGLES, HIMMELBLAU, System, WELLS};
@@ -13,10 +14,9 @@ use systems::{ANGLES, HIMMELBLAU, System, WELLS};
 /// What is learnt where axis 1 was recorded in a unit so many times too small.
 fn learnt(system: &System, factor: f64, noise: f64) -> Option<LearntScales> {
     let right = FrontEnd::Velocities.rows(&system.movements(0.0, noise, 1)).unwrap();
-    let scaled = |of: &DMatrix<f64>| {
-        DMatrix::from_fn(of.nrows(), of.ncols(), |axis, at| of[(axis, at)] * if axis == 1 { factor } else { 1.0 })
-    };
-    let rows = Rows::new(scaled(right.states()), scaled(right.velocities()), right.indices().to_vec()).unwrap();
+    let factors = DVector::from_fn(system.dim, |axis, _| if axis == 1 { factor } else { 1.0 });
+    let [states, velocities] = [right.states(), right.velocities()].map(|of| scaled(of, &factors));
+    let rows = Rows::new(states, velocities, right.indices().to_vec()).unwrap();
     let gp = SlopeGp { families: vec![Family::Smooth], ..SlopeGp::default() };
     gp.learn_scales(&rows, &mut ChaCha8Rng::seed_from_u64(1)).unwrap()
 }

@@ -76,6 +76,7 @@ mod policy;
 mod recordings;
 mod sample_index;
 mod sample_set;
+mod scaled;
 mod times;
 mod trajectory;
 
@@ -88,6 +89,7 @@ pub use policy::{NegativeGradient, Policy, Potential};
 pub use recordings::{Channel, Episode, Recordings, Rows, Source};
 pub use sample_index::SampleIndex;
 pub use sample_set::SampleSet;
+pub use scaled::scaled;
 pub use times::Times;
 pub use trajectory::Trajectory;
 

@@ -1,7 +1,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::median::upper_median;
-use crate::{Finding, MotionError, Times, Trajectory};
+use crate::{Finding, MotionError, Times, Trajectory, scaled};
 
 /// What was recorded: n channels of state, and episodes of any length.
 ///
@@ -120,11 +120,7 @@ impl Episode {
     /// With every channel multiplied by its factor, (n).
     #[must_use]
     pub fn scaled(&self, factors: &DVector<f64>) -> Episode {
-        self.with(self.times.clone(), self.source.clone(), |values| {
-            let mut values = values.clone();
-            values.column_iter_mut().for_each(|mut column| column.component_mul_assign(factors));
-            values
-        })
+        self.with(self.times.clone(), self.source.clone(), |values| scaled(values, factors))
     }
 
     /// The same movement with `of` applied to positions and velocities.

@@ -1,6 +1,6 @@
-use nalgebra::{DMatrix, DVectorView};
+use nalgebra::{DMatrix, DVector, DVectorView};
 
-use crate::{MotionError, Series, Times};
+use crate::{MotionError, Series, Times, scaled};
 
 /// One observed movement: states x₁..x_N, evenly spaced in time or each with its stamp, and the velocities u₁..u_N where
 /// they were recorded.
@@ -56,6 +56,20 @@ impl Trajectory {
         }
         require_finite(&velocities, Series::Velocities)?;
         Ok(Trajectory { velocities: Some(velocities), ..self })
+    }
+
+    /// The same movement with every dimension multiplied by its factor, (n).
+    ///
+    /// # Errors
+    /// [`MotionError::NotFinite`] if a product is not.
+    pub fn scaled(&self, factors: &DVector<f64>) -> Result<Self, MotionError> {
+        let states = scaled(&self.states, factors);
+        require_finite(&states, Series::States)?;
+        let anew = Trajectory { states, velocities: None, times: self.times.clone() };
+        match &self.velocities {
+            Some(velocities) => anew.with_velocities(scaled(velocities, factors)),
+            None => Ok(anew),
+        }
     }
 
     /// The same movement with a time stamp for every sample, (N), in seconds, strictly ascending. Stamps that are even to

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use cases::{Case, Has, Plane, parabola};
 use gp::Hypothesis;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use policy_align::{
     EvaluateError, FitError, FitOptions, LearnerChoice, Learnt, Model, PrepareOptions, Prepared, Progress, Step, Truth,
     Verdict, evaluate, prepare,
@@ -80,6 +80,23 @@ fn units_do_not_matter() {
             assert_eq!(other, verdict);
         }
     }
+}
+
+/// Without --scale, the constraints tell that y is in millimetres.
+#[test]
+fn units_are_learnt() {
+    let mixed = few().in_units(&[1.0, 1000.0]);
+    let model = fit(&prepared(&mixed), &small(LearnerChoice::Auto)).unwrap();
+    let scale = model.decisions.iter().find(|decision| decision.what == "scale").unwrap();
+    assert_eq!((scale.value.as_str(), scale.flag.as_str()), ("y times 0.001", "--scale"));
+    let scales = DVector::from_iterator(2, model.state.iter().map(|channel| channel.scale));
+    assert_eq!(scales.as_slice(), [1.0, 0.001]);
+    assert!(mixed.error(model.learnt.policy(), &scales) < 1e-3);
+    assert_eq!(model.trust.verdict, Verdict::Good, "{:?}", model.trust.findings);
+    // What the user chooses stays.
+    let options = PrepareOptions { scale: vec![("y".to_owned(), 1.0)], ..PrepareOptions::default() };
+    let chosen = prepare(&mixed.recordings, &options).unwrap();
+    assert_eq!(fit(&chosen, &small(LearnerChoice::Auto)).unwrap().state[1].scale, 1.0);
 }
 
 #[test]

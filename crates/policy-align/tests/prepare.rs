@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use motion::{Channel, Episode, Recordings, Source};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use policy_align::{
     Finding, PrepareError, PrepareOptions, Prepared, Repair, Smoothing, VelocitySource, VelocityUse, Verdict, prepare,
     trim_still,
@@ -51,6 +51,27 @@ fn decided<'a>(prepared: &'a Prepared, what: &str) -> &'a str {
 fn verdict(prepared: &Prepared, words: &str) -> Verdict {
     let found = prepared.findings.iter().find(|finding| finding.what.contains(words));
     found.unwrap_or_else(|| panic!("'{words}' is not in {:?}", prepared.findings)).verdict
+}
+
+proptest! {
+    /// A factor after preparing does what `--scale` does before, also to noise and to what is found about units.
+    #[test]
+    fn rescaling_is_what_the_option_does(factor in -9.0..9.0f64, noise in prop::sample::select(vec![0.0, 0.01])) {
+        let factor = factor.exp();
+        let noisy = |values: &mut DMatrix<f64>| {
+            let shake = |at: usize| noise * (1e4 * (at as f64).sin()).fract();
+            values.iter_mut().enumerate().for_each(|(at, value)| *value += shake(at));
+        };
+        let recordings = changed(|episode| noisy(episode.velocities.as_mut().unwrap()));
+        let options = PrepareOptions { scale: vec![("y".to_owned(), factor)], ..PrepareOptions::default() };
+        let expected = prepare(&recordings, &options).unwrap();
+        let found = prepared(&recordings).rescaled(&DVector::from_vec(vec![1.0, factor])).unwrap();
+        prop_assert_eq!(&found.demonstrations, &expected.demonstrations);
+        prop_assert_eq!(&found.noise, &expected.noise);
+        prop_assert_eq!(found.velocities, expected.velocities);
+        prop_assert_eq!(&found.findings, &expected.findings);
+        prop_assert_eq!(found.state[1].scale, factor);
+    }
 }
 
 #[test]

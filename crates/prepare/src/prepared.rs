@@ -1,5 +1,5 @@
-use motion::{Decision, Demonstrations, Finding, LeftOut, MotionError, Trajectory};
-use nalgebra::{DMatrix, DVector};
+use motion::{Decision, Demonstrations, Finding, LeftOut, MotionError};
+use nalgebra::DVector;
 
 use crate::options::Smoothing;
 use crate::samples::noise::{self, Noise};
@@ -40,36 +40,28 @@ impl Prepared {
     /// # Errors
     /// [`MotionError`] where a product is not finite.
     pub fn rescaled(&self, factors: &DVector<f64>) -> Result<Self, MotionError> {
-        let movements = self.demonstrations.trajectories().iter().map(|movement| rescaled(movement, factors));
+        let movements = self.demonstrations.trajectories().iter().map(|movement| movement.scaled(factors));
         let demonstrations = Demonstrations::new(movements.collect::<Result<_, _>>()?)?;
         let scaled = |(of, factor): (&StateChannel, &f64)| StateChannel { scale: of.scale * factor, ..of.clone() };
         let state: Vec<StateChannel> = self.state.iter().zip(factors).map(scaled).collect();
         let mixed_before = remarks::mixed_units(&self.demonstrations, &self.state);
         let others = self.findings.iter().filter(|&finding| Some(finding) != mixed_before.as_ref()).cloned();
+        let noise = noise::of(&demonstrations);
+        // Where smoothing was requested, velocities that count as exact may be differences.
         let velocities = match self.velocities {
-            VelocitySource::Noisy(_) => noise::of_recorded(&demonstrations),
+            VelocitySource::Recorded if self.smoothing == Smoothing::Auto => {
+                noise::of_recorded(&demonstrations, &noise)
+            }
+            VelocitySource::Noisy(_) => noise::of_recorded(&demonstrations, &noise),
             other => other,
         };
         Ok(Prepared {
-            noise: noise::of(&demonstrations),
+            noise,
             velocities,
             findings: others.chain(remarks::mixed_units(&demonstrations, &state)).collect(),
             state,
             demonstrations,
             ..self.clone()
         })
-    }
-}
-
-fn rescaled(movement: &Trajectory, factors: &DVector<f64>) -> Result<Trajectory, MotionError> {
-    let scaled =
-        |of: &DMatrix<f64>| DMatrix::from_fn(of.nrows(), of.ncols(), |axis, at| factors[axis] * of[(axis, at)]);
-    let mut anew = Trajectory::new(scaled(movement.states()), movement.time_step())?;
-    if let Some(times) = movement.times() {
-        anew = anew.with_times(times.to_vec())?;
-    }
-    match movement.velocities() {
-        Some(velocities) => anew.with_velocities(scaled(velocities)),
-        None => Ok(anew),
     }
 }

@@ -27,7 +27,7 @@ pub struct LeftOut {
 /// Held-out error, as a share of the variance, below which prediction can select nothing more.
 const EXACT: f64 = 1e-8;
 /// Held-out error below which differences between models are insignificant and a model's family is not in question.
-pub(crate) const NEARLY_EXACT: f64 = 1e-3;
+const NEARLY_EXACT: f64 = 1e-3;
 
 impl LeftOut {
     /// Whether prediction is so good that more noise and other families need not be tried.
@@ -37,8 +37,13 @@ impl LeftOut {
 
     /// Whether prediction is so good that it does not decide between models.
     pub(crate) fn is_nearly_exact(&self) -> bool {
-        1.0 - self.r_squared <= NEARLY_EXACT
+        is_nearly_exact(self.r_squared)
     }
+}
+
+/// The same of a held-out R².
+pub(crate) fn is_nearly_exact(r_squared: f64) -> bool {
+    1.0 - r_squared <= NEARLY_EXACT
 }
 
 /// Of every group of rows T: V_T = ((K⁻¹)_TT)⁻¹ and e_T = V_T α_T, (K⁻¹)_TT = X_Tᵀ X_T with X = L⁻¹. None if a

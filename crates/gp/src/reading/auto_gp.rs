@@ -63,32 +63,29 @@ impl AutoGp {
             direct_unit: direct.fit.model.unit,
             shares: None,
         };
-        let mut numbers = ReadingNumbers::compared(&compared);
-        let mut reading = numbers.reading();
-        let mut left_out = compared.errors();
+        let (numbers, left_out) = (ReadingNumbers::compared(&compared), compared.errors());
+        let reading = numbers.reading();
         let pushed = if reading == Hypothesis::Free { None } else { pushed(&self.slope, rows, &kept, &slope) };
         // Where directions of stretches do not tell, nothing pushed.
-        let pushed = pushed.filter(|pushed| {
+        let telling = pushed.and_then(|pushed| {
             let actions = pushed.outcome.taken.model.actions(&kept.states);
             let shares = pushed.shares(&kept.trajectories);
             let slope = (&pushed.outcome.taken.left_out, &actions);
             let compared = Compared { slope, shares: Some(&shares), ..compared };
-            let with_push = ReadingNumbers::compared(&compared);
-            let tells = with_push.direction_tells();
-            if tells {
-                (numbers, reading, left_out) = (with_push, Hypothesis::Constrained, compared.errors());
-            }
-            tells
+            let numbers = ReadingNumbers::compared(&compared);
+            let left_out = compared.errors();
+            numbers.direction_tells().then_some((pushed, numbers, left_out))
         });
-        let (slope, kept, push) = match pushed {
-            Some(pushed) => (pushed.outcome, pushed.kept, Some(pushed.push)),
-            None => (slope, kept, None),
+        let (slope, kept, numbers, left_out, reading) = match telling {
+            Some((pushed, numbers, left_out)) => {
+                (pushed.outcome, pushed.kept, numbers, left_out, Hypothesis::Constrained)
+            }
+            None => (slope, kept, numbers, left_out, reading),
         };
         // Left-out movements test the slope policy in all directions where it is the better one whichever way they went.
         let tested = reading == Hypothesis::Constrained || numbers.shows_a_potential();
         let across = if tested { CrossPathEvidence::Tested } else { CrossPathEvidence::Untested };
         let mut report = report(&ReportInput { outcome: &slope, kept: &kept, rows, across });
-        report.push = push;
         if across == CrossPathEvidence::Untested {
             let away = difference(&direct.actions, &slope.taken.actions);
             report.expected_nupe = expected_beside((reading, numbers.gap, numbers.p_d), away, report.expected_nupe);

@@ -2,6 +2,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::kernel::block::Block;
 use crate::kernel::family::Family;
+use crate::left_out::is_nearly_exact;
 use crate::report::identifiability::{Identifiability, LeastSeen, direction};
 use crate::rows::kept::{Grouping, RowsDropped};
 
@@ -86,6 +87,11 @@ pub struct FamilyNumbers {
 }
 
 impl TrustReport {
+    /// Whether left-out movements are predicted so well, 1 − R² ≤ 1e-3, that nothing is left to explain.
+    pub fn is_nearly_exact(&self) -> bool {
+        is_nearly_exact(self.r_squared)
+    }
+
     /// Warnings about the policy, one sentence each.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();

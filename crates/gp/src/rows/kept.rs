@@ -39,6 +39,15 @@ pub struct RowsDropped {
     pub thinned: usize,
 }
 
+/// What rows of stretches (S22) come with.
+#[derive(Debug, Clone)]
+pub(crate) struct OfStretches {
+    /// D (S23), (M).
+    pub(crate) weights: Vec<f64>,
+    /// Root mean square of the pushes A⁺b, in units of the state per second.
+    pub(crate) push: f64,
+}
+
 /// Rows kept, in the order of trajectories and samples.
 #[derive(Debug, Clone)]
 pub(crate) struct Kept {
@@ -49,8 +58,8 @@ pub(crate) struct Kept {
     /// r = |u|, (M).
     pub(crate) speeds: Vec<f64>,
     pub(crate) variances: Option<Vec<f64>>,
-    /// D, where the rows come with it.
-    pub(crate) weights: Option<Vec<f64>>,
+    /// Where they are of stretches.
+    pub(crate) of_stretches: Option<OfStretches>,
     pub(crate) groups: Vec<Vec<usize>>,
     /// The trajectory that each group is of.
     pub(crate) trajectories: Vec<usize>,
@@ -123,7 +132,7 @@ impl Selection {
             velocities: rows.velocities().select_columns(&usable),
             speeds: usable.iter().map(|&row| speeds[row]).collect(),
             variances: rows.variances().map(|variances| usable.iter().map(|&row| variances[row]).collect()),
-            weights: None,
+            of_stretches: None,
             hyper: positions(&usable, &hyper),
             trajectories: groups.iter().map(|rows_of| rows.indices()[usable[rows_of[0]]].trajectory).collect(),
             groups,

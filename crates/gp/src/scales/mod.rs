@@ -5,14 +5,16 @@
 
 mod quotient;
 
-use motion::upper_median;
+use motion::{scaled, upper_median};
 use nalgebra::{DMatrix, DVector};
 use rand::Rng;
 
-use crate::kernel::family::{Family, Trend};
+use crate::evidence::family_fit::FamilyFit;
+use crate::kernel::block::Block;
+use crate::left_out::LeftOut;
 use crate::left_out::comparison::{difference, t_of_mean};
 use crate::rows::kept::{Kept, Selection};
-use crate::slope::data::{AxisErrors, SlopeData};
+use crate::slope::data::SlopeData;
 use crate::slope::slope_gp::SlopeGp;
 use crate::{GpError, Rows};
 use quotient::least_error;
@@ -48,12 +50,51 @@ pub struct LearntScales {
 /// A fit in some units.
 struct Round {
     factors: DVector<f64>,
-    unexplained: f64,
+    data: SlopeData,
+    blocks: Vec<Block>,
+    fit: FamilyFit,
+}
+
+impl Round {
+    /// With every axis multiplied by its factor; none without Cholesky factor.
+    fn new(kept: &Kept, blocks: Vec<Block>, factors: DVector<f64>) -> Option<Round> {
+        let velocities = scaled(&kept.velocities, &factors);
+        let speeds: Vec<f64> = velocities.column_iter().map(|velocity| velocity.norm()).collect();
+        let states = scaled(&kept.states, &factors);
+        let kept = Kept { states, velocities, speeds, variances: None, ..kept.clone() };
+        let data = SlopeData::from_kept(&kept, vec![1.0; kept.speeds.len()]).ok()?;
+        let fit = data.fit(&blocks, &kept.hyper)?;
+        Some(Round { factors, data, blocks, fit })
+    }
+
+    fn left_out(&self) -> &LeftOut {
+        &self.fit.level.left_out
+    }
+
+    /// 1 − R².
+    fn unexplained(&self) -> f64 {
+        1.0 - self.left_out().r_squared
+    }
+
+    /// The factors of the next round (S25); none without Cholesky factor.
+    fn improved(&self) -> Option<DVector<f64>> {
+        let axes = self.data.axis_errors(&self.blocks, &self.fit)?;
+        Some(self.factors.component_mul(&least_error(&axes.errors, &axes.targets).map(f64::sqrt)))
+    }
+
     /// Left-out squared error of each trajectory, as a share of everything to predict.
-    shares: Vec<f64>,
+    fn shares(&self) -> Vec<f64> {
+        let (residuals, all) = (&self.left_out().residuals, self.data.targets.norm_squared());
+        let share = |rows: &Vec<usize>| rows.iter().map(|&row| residuals[(row, 0)].powi(2)).sum::<f64>() / all;
+        self.data.groups.iter().map(share).collect()
+    }
+
     /// π̂ at the rows, in units of the recording.
-    actions: DMatrix<f64>,
-    axes: AxisErrors,
+    fn actions(self, kept: &Kept) -> DMatrix<f64> {
+        let states = scaled(&kept.states, &self.factors);
+        let actions = self.data.model(self.blocks, self.fit).actions(&states);
+        scaled(&actions, &self.factors.map(f64::recip))
+    }
 }
 
 impl SlopeGp {
@@ -70,29 +111,26 @@ impl SlopeGp {
             ..selection
         };
         let kept = few.keep(rows, rng)?;
-        let family = self.families[0];
+        let round = |factors| Round::new(&kept, self.families[0].blocks(self.trend), factors);
         let dim = kept.states.nrows();
-        let recorded = round(&kept, family, self.trend, DVector::repeat(dim, 1.0));
-        let Some(recorded) = recorded.filter(|round| dim > 1 && round.unexplained > crate::left_out::NEARLY_EXACT)
-        else {
-            return Ok(None);
-        };
         let spread = DVector::from_iterator(dim, kept.states.row_iter().map(|axis| axis.variance().sqrt()));
-        if spread.min() <= 0.0 {
+        if dim == 1 || spread.min() <= 0.0 {
             return Ok(None);
         }
-        let mut factors = spread.map(|spread| 1.0 / spread);
+        let recorded = round(DVector::repeat(dim, 1.0));
+        let Some(recorded) = recorded.filter(|round| !round.left_out().is_nearly_exact()) else { return Ok(None) };
+        let mut factors = Some(spread.map(f64::recip));
         let mut best: Option<Round> = None;
         for _ in 0..ROUNDS {
-            let Some(now) = round(&kept, family, self.trend, factors.clone()) else { break };
-            factors.component_mul_assign(&least_error(&now.axes.errors, &now.axes.targets).map(f64::sqrt));
-            if best.as_ref().is_none_or(|best| now.unexplained < best.unexplained) {
+            let Some(now) = factors.take().and_then(round) else { break };
+            factors = now.improved();
+            if best.as_ref().is_none_or(|best| now.unexplained() < best.unexplained()) {
                 best = Some(now);
             }
         }
-        let plain = best.as_ref().and_then(|best| round(&kept, family, self.trend, in_plain_units(&best.factors)));
+        let plain = best.as_ref().and_then(|best| round(in_plain_units(&best.factors)));
         let best = match (best, plain) {
-            (Some(best), Some(plain)) if plain.unexplained <= best.unexplained => Some(plain),
+            (Some(best), Some(plain)) if plain.unexplained() <= best.unexplained() => Some(plain),
             (best, _) => best,
         };
         // An axis that is worth next to nothing was explained away, not measured.
@@ -100,7 +138,7 @@ impl SlopeGp {
             let worth = best.factors.component_mul(&spread);
             worth.max() <= MOST_WORTH * worth.min()
         };
-        Ok(best.filter(sound).and_then(|best| accepted(&recorded, &best)))
+        Ok(best.filter(sound).and_then(|best| accepted(recorded, best, &kept)))
     }
 }
 
@@ -117,37 +155,15 @@ fn in_plain_units(factors: &DVector<f64>) -> DVector<f64> {
 }
 
 /// The scales of `learnt`, if they are better by more than chance and make a difference.
-fn accepted(recorded: &Round, learnt: &Round) -> Option<LearntScales> {
+fn accepted(recorded: Round, learnt: Round, kept: &Kept) -> Option<LearntScales> {
     let factors: Vec<f64> = learnt.factors.iter().map(|factor| factor / learnt.factors[0]).collect();
     let (least, most) = factors.iter().fold((1.0_f64, 1.0_f64), |(least, most), &f| (least.min(f), most.max(f)));
-    let gains: Vec<f64> = recorded.shares.iter().zip(&learnt.shares).map(|(before, after)| before - after).collect();
+    let gains: Vec<f64> = recorded.shares().iter().zip(learnt.shares()).map(|(before, after)| before - after).collect();
     let t = t_of_mean(&gains);
-    let better = t >= LEAST_T && learnt.unexplained <= LEFT * recorded.unexplained;
-    let differs = most / least > 1.0 + SAME && difference(&recorded.actions, &learnt.actions) > DIFFERS;
-    (better && differs).then_some(LearntScales { factors, left_out: (recorded.unexplained, learnt.unexplained), t })
-}
-
-/// A fit with every axis multiplied by its factor; none without Cholesky factor.
-fn round(kept: &Kept, family: Family, trend: Trend, factors: DVector<f64>) -> Option<Round> {
-    let scaled =
-        |of: &DMatrix<f64>| DMatrix::from_fn(of.nrows(), of.ncols(), |axis, at| factors[axis] * of[(axis, at)]);
-    let velocities = scaled(&kept.velocities);
-    let speeds: Vec<f64> = velocities.column_iter().map(|velocity| velocity.norm()).collect();
-    let kept = Kept { states: scaled(&kept.states), velocities, speeds, variances: None, ..kept.clone() };
-    let data = SlopeData::from_kept(&kept, vec![1.0; kept.speeds.len()]).ok()?;
-    let blocks = family.blocks(trend);
-    let fit = data.fit(&blocks, &kept.hyper)?;
-    let axes = data.axis_errors(&blocks, &fit)?;
-    let left_out = &fit.level.left_out;
-    let unexplained = 1.0 - left_out.r_squared;
-    let all: f64 = data.targets.norm_squared();
-    let share = |rows: &Vec<usize>| rows.iter().map(|&row| left_out.residuals[(row, 0)].powi(2)).sum::<f64>() / all;
-    let shares = data.groups.iter().map(share).collect();
-    let mut actions = data.model(blocks, fit).actions(&kept.states);
-    for mut action in actions.column_iter_mut() {
-        action.component_div_assign(&factors);
-    }
-    Some(Round { factors, unexplained, shares, actions, axes })
+    let left_out = (recorded.unexplained(), learnt.unexplained());
+    let better = t >= LEAST_T && left_out.1 <= LEFT * left_out.0 && most / least > 1.0 + SAME;
+    let differs = better && difference(&recorded.actions(kept), &learnt.actions(kept)) > DIFFERS;
+    differs.then_some(LearntScales { factors, left_out, t })
 }
 
 #[cfg(test)]

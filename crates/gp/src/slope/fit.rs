@@ -27,13 +27,12 @@ impl SlopeGp {
     pub fn fit<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<SlopeFit, GpError> {
         let kept = self.selection()?.keep(rows, rng)?;
         let plain = outcome(self, &kept)?;
-        let (outcome, kept, push) = match pushed(self, rows, &kept, &plain) {
-            Some(pushed) => (pushed.outcome, pushed.kept, Some(pushed.push)),
-            None => (plain, kept, None),
+        let (outcome, kept) = match pushed(self, rows, &kept, &plain) {
+            Some(pushed) => (pushed.outcome, pushed.kept),
+            None => (plain, kept),
         };
         let across = CrossPathEvidence::Untested;
         let report = report(&ReportInput { outcome: &outcome, kept: &kept, rows, across });
-        let report = TrustReport { push, ..report };
         Ok(SlopeFit { model: outcome.taken.model, report })
     }
 }

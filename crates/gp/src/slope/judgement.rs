@@ -73,7 +73,7 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
         grouping: kept.grouping,
         noise: rows.noise(),
         switches: rows.switches().map(count),
-        push: None,
+        push: kept.of_stretches.as_ref().map(|of| of.push / root_mean_square(&taken.actions)),
     }
 }
 
@@ -93,6 +93,10 @@ fn calibration(z_squared: f64, noise_share: f64, across: CrossPathEvidence) -> f
         CrossPathEvidence::Untested => 1.0,
     };
     z_squared.max(least)
+}
+
+fn root_mean_square(actions: &DMatrix<f64>) -> f64 {
+    (actions.norm_squared() / actions.ncols() as f64).sqrt()
 }
 
 /// Δ of (R6).

@@ -14,8 +14,6 @@ const LEAST_SIGNIFICANCE: f64 = 4.0;
 pub(crate) struct Pushed {
     pub(crate) outcome: Outcome,
     pub(crate) kept: Kept,
-    /// Root mean square of the pushes A⁺b, as a share of the policy's where it was learnt.
-    pub(crate) push: f64,
 }
 
 /// The search on rows of stretches (S22), if it predicts left-out movements better than `plain`, the one on rows of samples. Not
@@ -31,9 +29,7 @@ pub(crate) fn pushed(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) ->
     let of_stretches = stretches.rows(rows, kept, &gp.selection().ok()?)?;
     let outcome = outcome(gp, &of_stretches).ok()?;
     let better = outcome.taken.left_out.r_squared > plain.taken.left_out.r_squared;
-    let actions = &outcome.taken.actions;
-    let push = stretches.push() / (actions.norm_squared() / actions.ncols() as f64).sqrt();
-    better.then_some(Pushed { outcome, kept: of_stretches, push })
+    better.then_some(Pushed { outcome, kept: of_stretches })
 }
 
 impl Pushed {

@@ -54,8 +54,8 @@ pub(crate) fn outcome(gp: &SlopeGp, kept: &Kept) -> Result<Outcome, GpError> {
 
 /// Steps 3 and 4: noise weights, first from a guess of the policy's length, then from a pilot policy.
 fn weighted(gp: &SlopeGp, kept: &Kept) -> Result<SlopeData, GpError> {
-    if let Some(weights) = &kept.weights {
-        return SlopeData::from_kept(kept, weights.clone());
+    if let Some(of_stretches) = &kept.of_stretches {
+        return SlopeData::from_kept(kept, of_stretches.weights.clone());
     }
     let Some(variances) = &kept.variances else {
         return SlopeData::from_kept(kept, vec![1.0; kept.speeds.len()]);

@@ -67,6 +67,14 @@ impl Stretches {
     }
 }
 
+/// The mean of the columns, and the columns about it.
+fn centred(columns: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
+    let mean = columns.column_mean();
+    let mut centred = columns.clone();
+    centred.column_iter_mut().for_each(|mut column| column -= &mean);
+    (mean, centred)
+}
+
 /// At most so many of the rows, evenly far from each other, with the first and the last.
 fn evenly(rows: &[usize], most: usize) -> Vec<usize> {
     if rows.len() <= most {
@@ -79,13 +87,9 @@ fn evenly(rows: &[usize], most: usize) -> Vec<usize> {
 fn stretch(rows: &Rows, movement: &[usize], few: &[usize], segment: &Segment, noise: f64) -> Option<Stretch> {
     let (first, last) = (few[segment.begin], few[segment.end - 1]);
     let inside: Vec<usize> = movement.iter().copied().filter(|&row| (first..=last).contains(&row)).collect();
-    let mut velocities = rows.velocities().select_columns(&inside);
-    let mean = velocities.column_mean();
-    for mut velocity in velocities.column_iter_mut() {
-        velocity -= &mean;
-    }
+    let (mean, centred) = centred(&rows.velocities().select_columns(&inside));
     let least = STANDS_OUT * noise.sqrt() * (inside.len() as f64).powf(0.25);
-    let svd = velocities.svd(true, false);
+    let svd = centred.svd(true, false);
     let standing_out = |&k: &usize| svd.singular_values[k] >= least && svd.singular_values[k] > 0.0;
     let taken: Vec<usize> = (0..svd.singular_values.len()).filter(standing_out).take(segment.rank).collect();
     if taken.is_empty() {

@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 
 use crate::Rows;
+use crate::stretches::centred;
 use motion::upper_median;
 
 /// Squares of the coefficients 1, 3, 3, 1 of a third difference, summed.
@@ -40,10 +41,6 @@ pub(super) fn velocity_noise(rows: &Rows, movements: &[&[usize]]) -> Option<f64>
 
 /// The least eigenvalue of the centred scatter, per degree of freedom.
 fn least_extent(velocities: &DMatrix<f64>) -> f64 {
-    let mean = velocities.column_mean();
-    let mut centred = velocities.clone();
-    for mut velocity in centred.column_iter_mut() {
-        velocity -= &mean;
-    }
+    let (_, centred) = centred(velocities);
     (&centred * centred.transpose()).symmetric_eigenvalues().min().max(0.0) / WINDOW as f64
 }

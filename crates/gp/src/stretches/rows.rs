@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::Rows;
-use crate::rows::kept::{Kept, RowsDropped, Selection};
+use crate::rows::kept::{Kept, OfStretches, RowsDropped, Selection};
 use crate::rows::noise_weights::relative;
 use crate::stretches::{Stretch, Stretches};
 use motion::{SampleIndex, upper_median};
@@ -52,7 +52,10 @@ impl Stretches {
             velocities: DMatrix::from_columns(&columns),
             speeds: lengths,
             variances: None,
-            weights: Some(relative(equations.iter().map(variance).collect())),
+            of_stretches: Some(OfStretches {
+                weights: relative(equations.iter().map(variance).collect()),
+                push: self.push(),
+            }),
             trajectories: groups.iter().map(|rows_of| index(rows_of[0]).trajectory).collect(),
             groups,
             hyper: all.iter().copied().step_by(all.len().div_ceil(selection.hyper_rows).max(1)).collect(),
@@ -80,7 +83,7 @@ impl Stretches {
     }
 
     /// Root mean square of the pushes A⁺b, in units of the state per second.
-    pub(crate) fn push(&self) -> f64 {
+    fn push(&self) -> f64 {
         let squares: f64 = self.stretches.iter().map(|stretch| stretch.push.norm_squared()).sum();
         (squares / self.stretches.len() as f64).sqrt()
     }

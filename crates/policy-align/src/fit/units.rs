@@ -7,6 +7,7 @@ use prepare::numbers::squared_error;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
+use super::decision::decision;
 use super::options::{FitOptions, LearnerChoice};
 use crate::{FitError, Prepared};
 
@@ -20,10 +21,11 @@ pub(super) fn learnt(
     let chosen = prepared.decisions.iter().any(|decision| decision.flag == "--scale");
     let reading = options.reading.unwrap_or(readings.reading());
     let constrained = !matches!(reading, Hypothesis::Free | Hypothesis::TooFew);
-    if chosen || !constrained || options.learner == LearnerChoice::Direct {
+    let report = readings.slope().report();
+    if chosen || !constrained || report.is_nearly_exact() || options.learner == LearnerChoice::Direct {
         return Ok(None);
     }
-    let family = readings.slope().report().family;
+    let family = report.family;
     let gp = SlopeGp { families: vec![family], max_rows: options.max_rows, ..SlopeGp::default() };
     let Some(scales) = gp.learn_scales(rows, &mut ChaCha8Rng::seed_from_u64(options.seed))? else { return Ok(None) };
     let factors = DVector::from_iterator(scales.factors.len(), scales.factors.iter().map(|&factor| in_short(factor)));
@@ -45,11 +47,7 @@ fn decisions(prepared: &Prepared, scales: &LearntScales, factors: &DVector<f64>)
         squared_error(before)
     );
     let changed = prepared.state.iter().zip(factors).filter(|(_, factor)| **factor != 1.0);
-    let decision = |(channel, factor): (&prepare::StateChannel, &f64)| Decision {
-        what: "scale".to_owned(),
-        value: format!("{} times {factor}", channel.name),
-        why: why.clone(),
-        flag: "--scale".to_owned(),
-    };
-    changed.map(decision).collect()
+    changed
+        .map(|(channel, factor)| decision("scale", format!("{} times {factor}", channel.name), why.as_str(), "--scale"))
+        .collect()
 }

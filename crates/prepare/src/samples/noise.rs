@@ -102,13 +102,13 @@ pub(crate) fn as_requested(demonstrations: &Demonstrations, noise: &Noise, agree
     if agreement == Agreement::None {
         return VelocitySource::PositionsAsRequested;
     }
-    let noisy = noise.velocity_share.is_some_and(|share| share > EXACT_VELOCITIES);
-    if noisy && agreement == Agreement::Own { of_recorded(demonstrations) } else { VelocitySource::Recorded }
+    if agreement == Agreement::Own { of_recorded(demonstrations, noise) } else { VelocitySource::Recorded }
 }
 
-/// Recorded velocities, with their noise where it can be estimated.
-pub(crate) fn of_recorded(demonstrations: &Demonstrations) -> VelocitySource {
-    match velocity_noise(demonstrations) {
+/// Recorded velocities, with their noise if that is more than negligible.
+pub(crate) fn of_recorded(demonstrations: &Demonstrations, noise: &Noise) -> VelocitySource {
+    let noisy = noise.velocity_share.filter(|&share| share > EXACT_VELOCITIES);
+    match noisy.and_then(|_| velocity_noise(demonstrations)) {
         Some((variance, _)) => VelocitySource::Noisy(variance / demonstrations.dim() as f64),
         None => VelocitySource::Recorded,
     }
@@ -133,8 +133,7 @@ pub(crate) fn decide(
         Agreement::Differences if share > EXACT => VelocitySource::Positions,
         _ if noisy_velocities.is_some_and(|share| share > USELESS_VELOCITIES) => VelocitySource::Positions,
         _ if share > EXACT && noisy_velocities.is_none() => VelocitySource::Fused,
-        _ if noisy_velocities.is_some() => of_recorded(demonstrations),
-        _ => VelocitySource::Recorded,
+        _ => of_recorded(demonstrations, noise),
     };
     let (value, why) = match recorded {
         VelocitySource::Recorded => ("velocities as recorded", words),
