@@ -3,9 +3,11 @@
 use std::collections::BTreeSet;
 
 use motion::Demonstrations;
+use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
-use crate::{EvaluateError, Evaluation, FitOptions, Prepared, Progress, evaluate, fit};
+use crate::fit::cleaning;
+use crate::{EvaluateError, Evaluation, FitError, FitOptions, Model, Prepared, Progress, evaluate, fit};
 
 /// Movements under one constraint, predicted by what was learnt under all others.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -38,10 +40,20 @@ pub fn leave_constraints_out(
         let (out, others): (Vec<usize>, Vec<usize>) =
             (0..prepared.constraints.len()).partition(|&k| prepared.constraints[k].as_ref() == Some(label));
         let learnt = fit(&only(prepared, &others), options, progress)?;
-        let evaluation = evaluate(learnt.learnt.policy(), &only(prepared, &out), None)?;
+        let evaluation = evaluate(learnt.learnt.policy(), &in_units_of(&learnt, only(prepared, &out))?, None)?;
         Ok(ConstraintLeftOut { constraint: label.clone(), learnt_from: others.len(), evaluation })
     };
     labels.into_iter().map(without).collect()
+}
+
+/// Movements in the units of a model, which may have learnt them.
+fn in_units_of(model: &Model, prepared: Prepared) -> Result<Prepared, FitError> {
+    let factors = model.state.iter().zip(&prepared.state).map(|(learnt, own)| learnt.scale / own.scale);
+    let factors = DVector::from_iterator(prepared.state.len(), factors);
+    if factors.iter().all(|&factor| factor == 1.0) {
+        return Ok(prepared);
+    }
+    Ok(prepared.rescaled(&factors).map_err(|error| cleaning(&error))?)
 }
 
 /// Some of the movements, prepared as all were.

@@ -14,7 +14,6 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use cases::{Case, Named};
-use nalgebra::DVector;
 use policy_align::{FitOptions, LearnerChoice, PrepareOptions, Progress, TrustNumbers, Verdict, fit, prepare};
 
 /// A policy is right below this error (nUPE).
@@ -58,8 +57,7 @@ fn said(named: &Named, seed: u64, learner: LearnerChoice) -> Said {
 }
 
 fn error(case: &Case, fit: &policy_align::Model) -> f64 {
-    let scales = DVector::from_iterator(fit.state.len(), fit.state.iter().map(|channel| channel.scale));
-    case.error(fit.learnt.policy(), &scales)
+    case.error(fit.learnt.policy(), &fit.scales())
 }
 
 impl Said {

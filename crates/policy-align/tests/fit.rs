@@ -9,10 +9,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use cases::{Case, Has, Plane, parabola};
 use gp::Hypothesis;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use policy_align::{
     EvaluateError, FitError, FitOptions, LearnerChoice, Learnt, Model, PrepareOptions, Prepared, Progress, Step, Truth,
-    Verdict, evaluate, prepare,
+    Verdict, evaluate, leave_constraints_out, prepare,
 };
 
 fn few() -> Case {
@@ -89,14 +89,30 @@ fn units_are_learnt() {
     let model = fit(&prepared(&mixed), &small(LearnerChoice::Auto)).unwrap();
     let scale = model.decisions.iter().find(|decision| decision.what == "scale").unwrap();
     assert_eq!((scale.value.as_str(), scale.flag.as_str()), ("y times 0.001", "--scale"));
-    let scales = DVector::from_iterator(2, model.state.iter().map(|channel| channel.scale));
-    assert_eq!(scales.as_slice(), [1.0, 0.001]);
-    assert!(mixed.error(model.learnt.policy(), &scales) < 1e-3);
+    assert_eq!(model.scales().as_slice(), [1.0, 0.001]);
+    assert!(mixed.error(model.learnt.policy(), &model.scales()) < 1e-3);
     assert_eq!(model.trust.verdict, Verdict::Good, "{:?}", model.trust.findings);
     // What the user chooses stays.
     let options = PrepareOptions { scale: vec![("y".to_owned(), 1.0)], ..PrepareOptions::default() };
     let chosen = prepare(&mixed.recordings, &options).unwrap();
     assert_eq!(fit(&chosen, &small(LearnerChoice::Auto)).unwrap().state[1].scale, 1.0);
+}
+
+/// What is left out is predicted in the unit that the others tell.
+#[test]
+fn units_are_learnt_without_each_constraint() {
+    let movements = Plane { count: 24, ..Plane::default() }.potential(&parabola(), 5);
+    let mut mixed = Case::of(&movements, 24, Has::Velocities).in_units(&[1.0, 1000.0]);
+    for (k, episode) in mixed.recordings.episodes.iter_mut().enumerate() {
+        episode.constraint = Some(["wall", "table", "rail"][k % 3].to_owned());
+    }
+    let cancelled = AtomicBool::new(false);
+    let mut progress = Progress { cancelled: &cancelled, report: &mut |_| () };
+    let left_out = leave_constraints_out(&prepared(&mixed), &small(LearnerChoice::Auto), &mut progress).unwrap();
+    assert_eq!(left_out.len(), 3);
+    for left_out in left_out {
+        assert!(left_out.evaluation.policy_error < 1e-3, "{left_out:?}");
+    }
 }
 
 #[test]

@@ -71,6 +71,20 @@ proptest! {
         prop_assert_eq!(found.velocities, expected.velocities);
         prop_assert_eq!(&found.findings, &expected.findings);
         prop_assert_eq!(found.state[1].scale, factor);
+        // Smoothed positions have lost their noise, which is remembered.
+        let smooth = |options: PrepareOptions| PrepareOptions { smoothing: Smoothing::Samples(9), ..options };
+        let expected = prepare(&recordings, &smooth(options)).unwrap();
+        let found = prepare(&recordings, &smooth(PrepareOptions::default())).unwrap();
+        let found = found.rescaled(&DVector::from_vec(vec![1.0, factor])).unwrap();
+        prop_assert_eq!(found.velocities, expected.velocities);
+        for (found, expected) in found.noise.positions.iter().flatten().zip(expected.noise.positions.iter().flatten()) {
+            prop_assert!((found - expected).abs() <= 1e-9 * expected, "{} {}", found, expected);
+        }
+        let pairs = found.demonstrations.trajectories().iter().zip(expected.demonstrations.trajectories());
+        for (found, expected) in pairs {
+            let scale = expected.states().amax();
+            prop_assert!((found.states() - expected.states()).amax() <= 1e-12 * scale);
+        }
     }
 }
 

@@ -336,6 +336,32 @@ fn a_constraint_left_out_is_predicted_by_the_others() {
     assert_eq!(ran.code, Some(1), "{}{}", ran.out, ran.err);
 }
 
+/// With y in millimetres, held-out episodes and the picture of the page are in the units of the file.
+#[test]
+fn held_out_episodes_are_in_learnt_units() {
+    let text = std::fs::read_to_string(folder().join("toy.csv")).unwrap();
+    let mut lines = text.lines();
+    let header = lines.next().unwrap();
+    let in_millimetres: Vec<bool> = header.split(',').map(|name| name.contains('y')).collect();
+    assert_eq!(in_millimetres.iter().filter(|&&is_y| is_y).count(), 2, "{header}");
+    let scaled = |line: &str| {
+        let fields = line.split(',').zip(&in_millimetres);
+        let fields = fields.map(|(field, &is_y)| match is_y {
+            true => (1000.0 * field.parse::<f64>().unwrap()).to_string(),
+            false => field.to_owned(),
+        });
+        fields.collect::<Vec<_>>().join(",")
+    };
+    let mixed: Vec<String> = std::iter::once(header.to_owned()).chain(lines.map(scaled)).collect();
+    std::fs::write(folder().join("mixed.csv"), mixed.join("\n")).unwrap();
+    let ran = run("fit mixed.csv -o mixed.json --hold-out 3 --hold-out 4 --json");
+    assert_eq!(ran.code, Some(0), "{}{}", ran.out, ran.err);
+    let document: Value = serde_json::from_str(&ran.out).unwrap();
+    let scale = document["decisions"].as_array().unwrap().iter().find(|decision| decision["what"] == "scale").unwrap();
+    assert_eq!(scale["value"], "y times 0.001");
+    assert!(document["hold_out"]["policy_error"].as_f64().unwrap() < 1e-3, "{}", document["hold_out"]);
+}
+
 #[test]
 fn the_page_of_a_check_says_what_the_check_says() {
     assert_eq!(run("check toy.csv --html page.html").code, Some(0));

@@ -34,6 +34,11 @@ pub fn percent(share: f64) -> String {
     }
 }
 
+/// "1 episode", "40 episodes".
+pub fn counted(count: usize, what: &str) -> String {
+    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -44,9 +44,24 @@ impl Prepared {
         let demonstrations = Demonstrations::new(movements.collect::<Result<_, _>>()?)?;
         let scaled = |(of, factor): (&StateChannel, &f64)| StateChannel { scale: of.scale * factor, ..of.clone() };
         let state: Vec<StateChannel> = self.state.iter().zip(factors).map(scaled).collect();
-        let mixed_before = remarks::mixed_units(&self.demonstrations, &self.state);
+        let mixed_before = remarks::mixed_units(&remarks::spreads(&self.demonstrations), &self.state);
         let others = self.findings.iter().filter(|&finding| Some(finding) != mixed_before.as_ref()).cloned();
-        let noise = noise::of(&demonstrations);
+        let anew = noise::of(&demonstrations);
+        let noise = match self.smoothing {
+            Smoothing::Auto | Smoothing::Off => {
+                Noise { velocity_share: anew.velocity_share.or(self.noise.velocity_share), ..anew }
+            }
+            // Positions are smooth already: their noise is what was recorded, its share of the steps that before scaling.
+            Smoothing::Samples(_) | Smoothing::Seconds(_) => {
+                let scaled =
+                    |of: &Vec<f64>| of.iter().zip(factors).map(|(deviation, factor)| deviation * factor).collect();
+                Noise {
+                    positions: self.noise.positions.as_ref().map(scaled),
+                    velocity_share: anew.velocity_share.or(self.noise.velocity_share),
+                    step_share: self.noise.step_share,
+                }
+            }
+        };
         // Where smoothing was requested, velocities that count as exact may be differences.
         let velocities = match self.velocities {
             VelocitySource::Recorded if self.smoothing == Smoothing::Auto => {
@@ -58,7 +73,7 @@ impl Prepared {
         Ok(Prepared {
             noise,
             velocities,
-            findings: others.chain(remarks::mixed_units(&demonstrations, &state)).collect(),
+            findings: others.chain(remarks::mixed_units(&remarks::spreads(&demonstrations), &state)).collect(),
             state,
             demonstrations,
             ..self.clone()

@@ -4,7 +4,7 @@ use motion::{Demonstrations, Finding, Trajectory, Verdict};
 
 use crate::StateChannel;
 use crate::notes::Notes;
-use crate::numbers::{percent, short};
+use crate::numbers::{counted, percent, short};
 use crate::samples::noise::resolution;
 
 /// A channel that spreads so many times as much as most others has another unit, it seems.
@@ -17,13 +17,15 @@ const LOOP: f64 = 0.05;
 const COARSE: f64 = 0.01;
 
 pub(crate) fn about(demonstrations: &Demonstrations, state: &[StateChannel], notes: &mut Notes) {
-    notes.findings.extend(mixed_units(demonstrations, state));
+    let spreads = spreads(demonstrations);
+    notes.findings.extend(mixed_units(&spreads, state));
     few(demonstrations, notes);
     loops(demonstrations, notes);
-    coarse(demonstrations, &spreads(demonstrations), state, notes);
+    coarse(demonstrations, &spreads, state, notes);
 }
 
-fn spreads(demonstrations: &Demonstrations) -> Vec<f64> {
+/// Standard deviation of every channel, (n).
+pub(crate) fn spreads(demonstrations: &Demonstrations) -> Vec<f64> {
     let samples = demonstrations.n_samples() as f64;
     let spread = |axis: usize| {
         let values = demonstrations.values(axis);
@@ -34,8 +36,7 @@ fn spreads(demonstrations: &Demonstrations) -> Vec<f64> {
 }
 
 /// A channel whose values spread as if it had another unit than the others.
-pub(crate) fn mixed_units(demonstrations: &Demonstrations, state: &[StateChannel]) -> Option<Finding> {
-    let spreads = spreads(demonstrations);
+pub(crate) fn mixed_units(spreads: &[f64], state: &[StateChannel]) -> Option<Finding> {
     let mut sorted: Vec<f64> = spreads.iter().copied().filter(|&spread| spread > 0.0).collect();
     sorted.sort_by(f64::total_cmp);
     let (&largest, others) = sorted.split_last()?;
@@ -51,10 +52,10 @@ pub(crate) fn mixed_units(demonstrations: &Demonstrations, state: &[StateChannel
 fn few(demonstrations: &Demonstrations, notes: &mut Notes) {
     let count = demonstrations.n_trajectories();
     if count < FEW {
-        let (verb, plural) = if count == 1 { ("is", "") } else { ("are", "s") };
+        let verb = if count == 1 { "is" } else { "are" };
         notes.found(
             Verdict::Doubtful,
-            format!("{count} movement{plural} {verb} too few to infer what constraints hid"),
+            format!("{} {verb} too few to infer what constraints hid", counted(count, "movement")),
             "record at least 10, from different starts and under different constraints",
         );
     }

@@ -1,6 +1,6 @@
 use std::path::Path;
 
-pub(crate) use prepare::numbers::{short, squared_error};
+pub(crate) use prepare::numbers::{counted, short, squared_error};
 use text::plain;
 
 /// Columns of the terminal that are used.
@@ -78,11 +78,6 @@ pub(crate) fn size(bytes: usize) -> String {
 /// "1 episode, 50 samples".
 pub(crate) fn amount(episodes: usize, samples: usize) -> String {
     format!("{}, {}", counted(episodes, "episode"), counted(samples, "sample"))
-}
-
-/// "1 episode", "40 episodes".
-pub(crate) fn counted(count: usize, what: &str) -> String {
-    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }
 
 #[cfg(test)]

@@ -61,13 +61,15 @@ Example:
 
 /// All commands, each with the flags in its help that it needs most: `check --help` lists all those of reading.
 fn command() -> Command {
+    let rare = options::flags::rare();
     let brief = |command: Command| {
         command.mut_args(|flag| {
-            let rare = options::flags::is_rare(&flag);
-            flag.hide(rare)
+            let hidden = rare.contains(flag.get_id());
+            flag.hide(hidden)
         })
     };
-    ["fit", "evaluate", "plot", "convert"].into_iter().fold(Cli::command(), |cli, verb| cli.mut_subcommand(verb, brief))
+    let brief = |cli: Command, verb| cli.mut_subcommand(verb, brief);
+    ["fit", "evaluate", "plot", "convert"].into_iter().fold(Cli::command(), brief)
 }
 
 /// Runs the command line.

@@ -12,7 +12,7 @@ mod units;
 pub(crate) use aligning::held_out;
 pub use options::{FitOptions, LearnerChoice};
 pub use progress::{Progress, Step};
-pub(crate) use recorded_rows::rows;
+pub(crate) use recorded_rows::{cleaning, rows};
 
 use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, PushTest, SlopeGp, TrajectoryErrors};
 use motion::{LearntPolicy, Policy, upper_median};
@@ -59,7 +59,7 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
         _ => None,
     };
     let numbers = numbers(prepared, options, &readings, aligned.as_ref(), &rows);
-    let findings: Vec<Finding> = prepared.findings.iter().cloned().chain(pushed(&readings)).collect();
+    let findings: Vec<Finding> = prepared.findings.iter().cloned().chain(pushed(&readings, options.learner)).collect();
     let trust =
         judge(VerdictInput { numbers, findings: &findings, state: &prepared.state, episodes: &prepared.episodes });
     let learnt = match (options.learner, aligned) {
@@ -95,14 +95,25 @@ fn learn(rows: &gp::Rows, options: &FitOptions) -> Result<AutoFit, FitError> {
     Ok(learner.fit(rows, &mut ChaCha8Rng::seed_from_u64(options.seed))?)
 }
 
-/// A remark on constraints that pushed, where the policy was learnt in spite of them.
-fn pushed(readings: &AutoFit) -> Option<Finding> {
-    let push = readings.slope().report().push.filter(|_| readings.takes_slope())?;
-    Some(Finding {
-        verdict: Verdict::Good,
-        what: format!("constraints pushed, on average with {:.0} % of the policy's speed", 100.0 * push),
-        next: "the policy was learnt from the directions in which velocities differ: nothing to do".to_owned(),
-    })
+/// Whether the Gaussian process's policy, beside PolicyAlign or instead of it, is the slope GP's.
+fn takes_slope(readings: &AutoFit, learner: LearnerChoice) -> bool {
+    match learner {
+        LearnerChoice::Slope => true,
+        LearnerChoice::Direct => false,
+        LearnerChoice::Auto | LearnerChoice::PolicyAlign => readings.takes_slope(),
+    }
+}
+
+/// Constraints that pushed: a remark where the policy was learnt in spite of them, a doubt elsewhere.
+fn pushed(readings: &AutoFit, learner: LearnerChoice) -> Option<Finding> {
+    let push = readings.slope().report().push?;
+    let (verdict, next) = if learner != LearnerChoice::PolicyAlign && takes_slope(readings, learner) {
+        (Verdict::Good, "the policy was learnt from the directions in which velocities differ: nothing to do")
+    } else {
+        (Verdict::Doubtful, "--learner slope, which learns from the directions in which velocities differ")
+    };
+    let what = format!("constraints pushed, on average with {:.0} % of the policy's speed", 100.0 * push);
+    Some(Finding { verdict, what, next: next.to_owned() })
 }
 
 fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {
@@ -112,9 +123,8 @@ fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {
         LearnerChoice::Slope => given("slope GP"),
         LearnerChoice::Direct => given("direct GP"),
         LearnerChoice::Auto => {
-            let numbers = readings.numbers();
-            let reading = options.reading.unwrap_or(readings.reading());
-            let learner = if numbers.takes_slope(reading) { "slope GP" } else { "direct GP" };
+            let (numbers, reading) = (readings.numbers(), readings.reading());
+            let learner = if readings.takes_slope() { "slope GP" } else { "direct GP" };
             let why = match options.reading {
                 Some(reading) => format!("reading given: {reading:?}").to_lowercase(),
                 None => format!(
@@ -148,11 +158,7 @@ fn numbers(
     rows: &gp::Rows,
 ) -> TrustNumbers {
     let (of, report) = (readings.numbers(), readings.slope().report());
-    let takes_slope = match options.learner {
-        LearnerChoice::Slope => true,
-        LearnerChoice::Direct => false,
-        _ => of.takes_slope(options.reading.unwrap_or(readings.reading())),
-    };
+    let takes_slope = takes_slope(readings, options.learner);
     let policy: &dyn Policy = match aligned {
         Some(aligned) => &aligned.policy,
         None if options.learner == LearnerChoice::Auto => readings,

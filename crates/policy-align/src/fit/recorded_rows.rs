@@ -29,6 +29,6 @@ pub(super) fn averaged(prepared: &Prepared) -> Result<Demonstrations, GpError> {
     thinned(&prepared.demonstrations, prepared.averaged).map_err(|error| cleaning(&error))
 }
 
-pub(super) fn cleaning(error: &MotionError) -> GpError {
+pub(crate) fn cleaning(error: &MotionError) -> GpError {
     GpError::Cleaning { reason: error.to_string() }
 }

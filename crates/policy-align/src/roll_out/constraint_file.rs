@@ -16,6 +16,7 @@
 //! plane = [0, 0, 1]           # or point and radius, metres, to keep it out of a ball
 //! ```
 
+use prepare::numbers::counted;
 use std::path::Path;
 
 use kinematics::RobotModel;
@@ -168,8 +169,7 @@ impl Rows {
 
 fn vector(name: &str, numbers: Vec<f64>, n: usize) -> Result<DVector<f64>, String> {
     if numbers.len() != n || !numbers.iter().all(|number| number.is_finite()) {
-        let (count, s) = (numbers.len(), if numbers.len() == 1 { "" } else { "s" });
-        return Err(format!("`{name}` has {count} number{s}: it needs {n}, all finite"));
+        return Err(format!("`{name}` has {}: it needs {n}, all finite", counted(numbers.len(), "number")));
     }
     Ok(DVector::from_vec(numbers))
 }

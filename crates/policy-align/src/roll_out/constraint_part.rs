@@ -1,3 +1,4 @@
+use prepare::numbers::counted;
 use std::fmt;
 use std::sync::Arc;
 
@@ -99,8 +100,7 @@ impl Kind {
 /// Rows of as many finite numbers as the state has.
 pub(crate) fn fitting(rows: DMatrix<f64>, n: usize) -> Result<DMatrix<f64>, String> {
     if rows.ncols() != n {
-        let s = if rows.ncols() == 1 { "" } else { "s" };
-        return Err(format!("its rows have {} number{s}, the state {n}", rows.ncols()));
+        return Err(format!("its rows have {}, the state {n}", counted(rows.ncols(), "number")));
     }
     if rows.iter().any(|number| !number.is_finite()) {
         return Err("it has a number that is not finite".to_owned());

@@ -1,4 +1,4 @@
-use prepare::numbers::short;
+use prepare::numbers::{counted, short};
 use thiserror::Error;
 
 /// Why a policy cannot be followed. A message says what and where; [`RollOutError::remedy`] what next.
@@ -6,7 +6,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum RollOutError {
     /// The start has another length than the state.
-    #[error("the start has {found} number{}, the state {expected}: {}", if *found == 1 { "" } else { "s" }, .names.join(", "))]
+    #[error("the start has {}, the state {expected}: {}", counted(*found, "number"), .names.join(", "))]
     Start {
         /// Numbers given.
         found: usize,

@@ -83,13 +83,7 @@ pub(crate) fn resolution(demonstrations: &Demonstrations, axis: usize) -> Option
 
 /// Variance of noise in recorded velocities, summed over axes, and their mean square.
 fn velocity_noise(demonstrations: &Demonstrations) -> Option<(f64, f64)> {
-    let as_positions = |trajectory: &Trajectory| {
-        let velocities = Trajectory::new(trajectory.velocities()?.clone(), trajectory.time_step()).ok()?;
-        match trajectory.times() {
-            None => Some(velocities),
-            Some(times) => velocities.with_times(times.to_vec()).ok(),
-        }
-    };
+    let as_positions = |trajectory: &Trajectory| trajectory.with_states(trajectory.velocities()?.clone()).ok();
     let velocities: Option<Vec<_>> = demonstrations.trajectories().iter().map(as_positions).collect();
     let noise = PositionNoise::of(&Demonstrations::new(velocities?).ok()?).ok()?;
     let each = demonstrations.trajectories().iter().filter_map(Trajectory::velocities);

@@ -1,22 +1,31 @@
 //! Flags that several commands share. Each group is a table of a configuration file, with the same names.
 
+use std::collections::HashSet;
+
 use align::Bandwidth;
-use clap::{Arg, Args, Command};
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, Args, Command, Id};
 use demo_io::ReadOptions;
-use policy_align::{Choice, FitOptions, Model, PrepareOptions, Smoothing};
+use gp::Hypothesis;
+use policy_align::{Choice, FitOptions, LearnerChoice, Model, PrepareOptions, Repair, Smoothing, VelocityUse};
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use crate::cli::failure::Failure;
 
+/// What the flag of a choice takes.
+fn words<C: Choice>() -> PossibleValuesParser {
+    PossibleValuesParser::new(C::WORDS.iter().map(|(word, _)| *word))
+}
+
 /// Flags of reading that the help of every command lists; `check --help` lists the others, too.
 const USUAL: [&str; 6] = ["state", "velocity", "time", "episode", "ignore", "dt"];
 
-/// Whether a flag is one of reading that only `check --help` lists.
-pub(crate) fn is_rare(flag: &Arg) -> bool {
+/// Flags of reading that only `check --help` lists.
+pub(crate) fn rare() -> HashSet<Id> {
     let reading = ReadFlags::augment_args(Command::new("read"));
-    let is_of_reading = reading.get_arguments().any(|other| other.get_id() == flag.get_id());
-    is_of_reading && flag.get_long().is_some_and(|long| !USUAL.contains(&long))
+    let is_rare = |flag: &&Arg| flag.get_long().is_some_and(|long| !USUAL.contains(&long));
+    reading.get_arguments().filter(is_rare).map(|flag| flag.get_id().clone()).collect()
 }
 
 /// How files are read: table `[read]`.
@@ -101,16 +110,16 @@ pub(crate) struct PrepareFlags {
     #[arg(long, value_name = "NAME=FACTOR", value_delimiter = ',')]
     scale: Vec<String>,
     /// Velocities: auto, velocity (recorded) or displacement (from positions)
-    #[arg(long, value_name = "SOURCE", hide_possible_values = true, value_parser = ["auto", "velocity", "displacement"])]
+    #[arg(long, value_name = "SOURCE", hide_possible_values = true, value_parser = words::<VelocityUse>())]
     integration: Option<String>,
     /// Smoothing: auto, off, or a window in samples (9) or seconds (0.2s)
     #[arg(long, value_name = "WINDOW")]
     smooth: Option<String>,
     /// Jumps: auto (split episodes there) or keep
-    #[arg(long, value_name = "REPAIR", hide_possible_values = true, value_parser = ["auto", "keep"])]
+    #[arg(long, value_name = "REPAIR", hide_possible_values = true, value_parser = words::<Repair>())]
     jumps: Option<String>,
     /// Wraps found before learning: auto (unwrap those angles) or keep
-    #[arg(long, value_name = "REPAIR", hide_possible_values = true, value_parser = ["auto", "keep"])]
+    #[arg(long, value_name = "REPAIR", hide_possible_values = true, value_parser = words::<Repair>())]
     wraps: Option<String>,
 }
 
@@ -120,10 +129,10 @@ pub(crate) struct PrepareFlags {
 #[command(next_help_heading = "Learning")]
 pub(crate) struct FitFlags {
     /// Learner: auto, policy-align, slope or direct [default: auto]
-    #[arg(long, value_name = "LEARNER", hide_possible_values = true, value_parser = ["auto", "policy-align", "slope", "direct"])]
+    #[arg(long, value_name = "LEARNER", hide_possible_values = true, value_parser = words::<LearnerChoice>())]
     learner: Option<String>,
     /// Reading of the movements, if known: free or constrained
-    #[arg(long, value_name = "READING", hide_possible_values = true, value_parser = ["free", "constrained"])]
+    #[arg(long, value_name = "READING", hide_possible_values = true, value_parser = words::<Hypothesis>())]
     reading: Option<String>,
     /// For policy-align: auto, narrow, medium, wide or σ² [default: auto]
     #[arg(long, value_name = "BANDWIDTH")]

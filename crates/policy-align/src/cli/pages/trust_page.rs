@@ -1,10 +1,10 @@
 //! The trust report: how far to trust a policy.
 
 use maud::{Markup, html};
-use motion::{Demonstrations, LearntPolicy as _, Trajectory};
+use motion::{LearntPolicy as _, Trajectory};
 use nalgebra::DMatrix;
 use page::{Card, Part};
-use policy_align::{AlignedNumbers, Model, TrustNumbers, direction_by_channels};
+use policy_align::{AlignedNumbers, Model, Prepared, TrustNumbers, direction_by_channels};
 
 use crate::cli::describe::learner;
 use crate::cli::lines::{counted, short};
@@ -21,8 +21,8 @@ const SENTENCES: [&str; 3] = [
     "Do not use: the policy is wrong, or cannot be checked.",
 ];
 
-/// The page of a model, with a picture of the demonstrations if they are given, in the units of the learner.
-pub(crate) fn trust_page(model: &Model, name: &str, checksum: &str, demonstrations: Option<&Demonstrations>) -> String {
+/// The page of a model, with a picture of the demonstrations that it was learnt from, as they were prepared.
+pub(crate) fn trust_page(model: &Model, name: &str, checksum: &str, prepared: &Prepared) -> String {
     let title = format!("How far to trust {name}");
     let learnt = html! {
         "Learnt by " (learner(model)) ", from " (counted(model.data.episodes, "episode")) " with "
@@ -34,7 +34,7 @@ pub(crate) fn trust_page(model: &Model, name: &str, checksum: &str, demonstratio
     let opening = Part { id: "verdict".to_owned(), title: "Verdict".to_owned(), body };
     let mut parts = Vec::new();
     if model.state.len() >= 2 {
-        parts.push(part("field", FIELD, &field(model, demonstrations)));
+        parts.push(part("field", FIELD, &field(model, prepared)));
     }
     parts.push(part("numbers", "Numbers", &numbers(model)));
     parts.push(part("decisions", "Decisions", &decisions(&model.decisions)));
@@ -42,12 +42,13 @@ pub(crate) fn trust_page(model: &Model, name: &str, checksum: &str, demonstratio
     page(&title, name, opening, parts)
 }
 
-fn field(model: &Model, demonstrations: Option<&Demonstrations>) -> Markup {
+fn field(model: &Model, prepared: &Prepared) -> Markup {
+    // Not the model's scales, which it may have learnt.
     let unscaled = |movement: &Trajectory| {
         let states = movement.states();
-        DMatrix::from_fn(states.nrows(), states.ncols(), |k, i| states[(k, i)] / model.state[k].scale)
+        DMatrix::from_fn(states.nrows(), states.ncols(), |k, i| states[(k, i)] / prepared.state[k].scale)
     };
-    let demonstrated = demonstrations.map_or(&[][..], Demonstrations::trajectories).iter().map(unscaled).collect();
+    let demonstrated = prepared.demonstrations.trajectories().iter().map(unscaled).collect();
     let picture = Picture { title: FIELD.to_owned(), model, dims: [0, 1], demonstrated, followed: vec![] };
     let svg = plot::Picture::rows(&[&[&picture.plane()]]).svg();
     let potential = if model.policy().potential().is_some() {

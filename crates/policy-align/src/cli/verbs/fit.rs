@@ -5,7 +5,9 @@ use std::sync::atomic::AtomicBool;
 use clap::Args;
 use demo_io::TempFile;
 use motion::Recordings;
-use policy_align::{Evaluation, Finding, Model, Prepared, Progress, Verdict, checksum_of, evaluate, fit, prepare};
+use policy_align::{
+    Evaluation, Finding, Model, PrepareOptions, Prepared, Progress, Verdict, checksum_of, evaluate, fit, prepare,
+};
 use serde_json::json;
 use text::quoted;
 
@@ -95,7 +97,7 @@ impl Fit {
     /// The page and its numbers.
     fn report(&self, model: &Model, prepared: &Prepared, checksum: &str) -> [(PathBuf, String); 2] {
         let [page, numbers] = trust_files(&self.output);
-        let html = trust_page(model, &base_name(&self.output), checksum, Some(&prepared.demonstrations));
+        let html = trust_page(model, &base_name(&self.output), checksum, prepared);
         let document = json!({
             MEMBER: checksum, "trust": model.trust, "decisions": model.decisions, "left_out": model.data.left_out,
         });
@@ -168,8 +170,10 @@ fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Rec
     Ok((of(others, recordings.findings), Some(of(held, vec![]))))
 }
 
-fn judged(held_out: &Recordings, options: &policy_align::PrepareOptions, model: &Model) -> Result<Evaluation, Failure> {
-    let prepared = prepare(held_out, options).map_err(|error| Failure::prepare(&error, "--hold-out".to_owned()))?;
+fn judged(held_out: &Recordings, options: &PrepareOptions, model: &Model) -> Result<Evaluation, Failure> {
+    // In the units of the model, which may have learnt them.
+    let options = PrepareOptions { scale: model.scale(), ..options.clone() };
+    let prepared = prepare(held_out, &options).map_err(|error| Failure::prepare(&error, "--hold-out".to_owned()))?;
     evaluate(model.learnt.policy(), &prepared, None)
         .map_err(|error| Failure::new(Exit::Refused, error.to_string(), "--hold-out", "other episodes"))
 }
