@@ -12,7 +12,7 @@ use anyhow::Context as _;
 use clap::Args;
 use experiments::leverage::{Changed, Leverage as Measured, Turned};
 use experiments::measure::Measure;
-use experiments::results::{Cell as CellResult, ExperimentResult, RowResult};
+use experiments::results::{ExperimentResult, RowResult};
 use experiments::summary::summarise;
 use experiments::variants::{Cell, Variants, quotes};
 use experiments::verdict::Verdict;
@@ -113,11 +113,10 @@ impl Leverage {
 
     fn verdicts(&self, setting: &Setting, value: f64, records: &Arc<Records>) -> anyhow::Result<Verdicts> {
         let result = self.result(setting, value, |_| true, records)?;
-        let of_row = |row: &RowResult| {
-            let verdict = |(&measure, cell): (&Measure, &CellResult)| Some(((row.id.clone(), measure), cell.verdict?));
-            row.measures.iter().filter_map(verdict).collect::<Verdicts>()
+        let of_row = |RowResult { id, measures, .. }| {
+            measures.into_iter().filter_map(move |(measure, cell)| Some(((id.clone(), measure), cell.verdict?)))
         };
-        Ok(result.rows.iter().flat_map(of_row).collect())
+        Ok(result.rows.into_iter().flat_map(of_row).collect())
     }
 
     /// The experiment at a setting's value, as far as its setups are wanted.

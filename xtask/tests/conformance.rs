@@ -37,6 +37,12 @@ fn a_file_is_known_by_its_kind_and_what_is_skipped_is_said() {
         let line = said.lines().find(|line| line.contains(name)).unwrap_or_default();
         assert!(line.contains("skipped") && line.contains(why), "{said}");
     }
+    let lwpr = vectors.join("lwpr");
+    fs::create_dir(&lwpr).unwrap();
+    fs::write(lwpr.join("x.json"), r#"{"kind": "a"}"#).unwrap();
+    let (success, said) = conformance(vectors);
+    assert!(!success && said.contains("x.json cannot be compared"), "{said}");
+    fs::remove_dir_all(&lwpr).unwrap();
     fs::write(cases.join("anything.json"), KERNELS).unwrap();
     let (success, said) = conformance(vectors);
     assert!(success && said.contains("anything.json: covariances"), "{said}");

@@ -106,7 +106,7 @@ fn degrees_to_radians(drafts: &mut RawRecordings, options: &ReadOptions) -> Resu
 fn sort(draft: &mut RawEpisode) {
     let mut order: Vec<usize> = (0..draft.len()).collect();
     order.sort_by(|&a, &b| draft.times[a].total_cmp(&draft.times[b]));
-    *draft = draft.chosen(order.into_iter());
+    *draft = draft.chosen(order.iter().copied());
 }
 
 fn refuse_backwards(draft: &RawEpisode, word: &str) -> Result<(), ReadError> {
@@ -132,7 +132,7 @@ fn leave_out_duplicates(draft: &mut RawEpisode, word: &str) -> Option<Finding> {
         duplicates => format!(" (and {} more)", duplicates - 1),
     };
     let what = format!("{}: a stamp occurs twice; kept the first of its samples{more}", draft.place(first, word));
-    *draft = draft.chosen(retained.into_iter());
+    *draft = draft.chosen(retained.iter().copied());
     Some(remark(what, "check the recorder's clock"))
 }
 

@@ -174,6 +174,11 @@ impl Clock {
     }
 }
 
+/// `x0`, `x1` and so on, where a file has no names of n channels.
+pub(crate) fn counted_names(n: usize) -> Vec<String> {
+    (0..n).map(|channel| format!("x{channel}")).collect()
+}
+
 /// Seconds of `len` samples, `step` apart.
 pub(crate) fn even_times(step: f64, len: usize) -> Vec<f64> {
     (0..len).map(|sample| sample as f64 * step).collect()

@@ -63,11 +63,21 @@ impl Trajectory {
     /// # Errors
     /// [`MotionError::NotFinite`] if a product is not.
     pub fn scaled(&self, factors: &DVector<f64>) -> Result<Self, MotionError> {
-        let states = scaled(&self.states, factors);
-        require_finite(&states, Series::States)?;
-        let anew = Trajectory { states, velocities: None, times: self.times.clone() };
+        let anew = self.with_states(scaled(&self.states, factors))?;
         match &self.velocities {
             Some(velocities) => anew.with_velocities(scaled(velocities, factors)),
+            None => Ok(anew),
+        }
+    }
+
+    /// A movement through other states, (n, N), at the same times, without velocities.
+    ///
+    /// # Errors
+    /// As [`Trajectory::new`] and [`Trajectory::with_times`].
+    pub fn with_states(&self, states: DMatrix<f64>) -> Result<Self, MotionError> {
+        let anew = Trajectory::new(states, self.time_step())?;
+        match self.times() {
+            Some(times) => anew.with_times(times.to_vec()),
             None => Ok(anew),
         }
     }

@@ -49,11 +49,7 @@ impl SavitzkyGolay {
                 trajectory.times().map(|times| weights(&Polynomials::at(&times[first..][..window], degrees), window));
             around.mul_to(&own.as_ref().unwrap_or(&even).column(i - first), &mut states.column_mut(i));
         }
-        let smoothed = Trajectory::new(states, trajectory.time_step())?;
-        let smoothed = match trajectory.times() {
-            None => smoothed,
-            Some(times) => smoothed.with_times(times.to_vec())?,
-        };
+        let smoothed = trajectory.with_states(states)?;
         Ok(match trajectory.velocities() {
             None => smoothed,
             Some(velocities) => smoothed.with_velocities(velocities.clone())?,

@@ -38,10 +38,10 @@ pub enum ConstraintKind {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BeyondSystem {
     /// The policy. Default three wells in three dimensions.
-    #[serde(rename = "shown")]
+    #[serde(rename = "shown")] // in stored records
     pub policy: PolicyKind,
     /// Default [`ConstraintKind::Varying`].
-    #[serde(rename = "hindrance")]
+    #[serde(rename = "hindrance")] // in stored records
     pub constraint: ConstraintKind,
     /// Number of trajectories K. Default 60.
     pub n_trajectories: usize,

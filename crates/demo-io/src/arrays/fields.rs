@@ -231,11 +231,6 @@ fn refuse_other_kinds(array: &ArraySpec, place: &str) -> Result<(), ReadError> {
     Err(ReadError::Type(Fault::new(format!("'{name}' holds {what}"), place, remedy)))
 }
 
-/// `x0`, `x1` and so on, where a file has no names of n channels.
-pub(crate) fn counted_names(n: usize) -> Vec<String> {
-    (0..n).map(|channel| format!("x{channel}")).collect()
-}
-
 pub(crate) fn too_many_channels(n: usize, place: &str) -> Result<(), ReadError> {
     if n <= MOST_CHANNELS {
         return Ok(());

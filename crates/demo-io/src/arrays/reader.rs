@@ -54,13 +54,18 @@ impl ArrayReader<'_> {
     /// The state, and its velocities, sample after sample, or nothing where there are none.
     pub(crate) fn state(&self, load: &mut Load<'_>) -> Result<(Stack, Vec<f64>), ReadError> {
         let state = self.joined(&self.fields.state, load)?;
-        let Some(&first) = self.fields.velocity.first() else { return Ok((state, Vec::new())) };
+        if self.fields.velocity.is_empty() {
+            return Ok((state, Vec::new()));
+        }
         let velocity = self.joined(&self.fields.velocity, load)?;
         if velocity.shape() == state.shape() {
             return Ok((state, velocity.numbers));
         }
-        let (positions, velocities) = (self.spec(self.fields.state[0])?, self.spec(first)?);
-        let what = format!("{} and {} differ in shape", positions.with_shape(), velocities.with_shape());
+        let list = |fields: &[usize]| -> Result<String, ReadError> {
+            let specs = fields.iter().map(|&field| Ok(self.spec(field)?.with_shape()));
+            Ok(specs.collect::<Result<Vec<_>, ReadError>>()?.join(" with "))
+        };
+        let what = format!("{} and {} differ in shape", list(&self.fields.state)?, list(&self.fields.velocity)?);
         let remedy = "arrays of equal shape, or --ignore with the other's name";
         Err(ReadError::Lengths(Fault::new(what, self.place(), remedy)))
     }

@@ -15,7 +15,7 @@ pub(super) fn make_finite(draft: &mut RawEpisode, names: &[String], word: &str, 
         Nan::Drop => {
             let mut bad = bad.into_iter().peekable();
             let finite: Vec<usize> = (0..draft.len()).filter(|sample| bad.next_if_eq(sample).is_none()).collect();
-            *draft = draft.chosen(finite.into_iter());
+            *draft = draft.chosen(finite.iter().copied());
             Ok(())
         }
         Nan::Fill => bad.chunk_by(|a, b| a + 1 == *b).try_for_each(|run| {

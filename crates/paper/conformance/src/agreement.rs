@@ -28,9 +28,11 @@ impl Agreement {
         self.worst = self.worst.max(if ours.len() == theirs.len() { relative } else { f64::INFINITY });
     }
 
-    /// Takes in a difference that is known already; NaN is infinitely far.
-    pub(super) fn differs_by(&mut self, difference: f64) {
-        self.worst = self.worst.max(if difference.is_nan() { f64::INFINITY } else { difference });
+    /// Takes in differences that are known already; NaN is infinitely far.
+    pub(super) fn differ_by(&mut self, differences: impl IntoIterator<Item = f64>) {
+        for difference in differences {
+            self.worst = self.worst.max(if difference.is_nan() { f64::INFINITY } else { difference.abs() });
+        }
     }
 
     pub(super) fn holds(&self) -> bool {

@@ -59,9 +59,9 @@ fn compare(robot: &RobotModel, reference: &Configuration, agreement: &mut Agreem
         let (pose, jacobian) = (matrix(&expected.pose), matrix(&expected.jacobian));
         let mut compare = |reached: Isometry3<f64>, six: &Matrix6xX<f64>, three: &Matrix3xX<f64>| {
             let reached = DMatrix::from_column_slice(4, 4, reached.to_homogeneous().as_slice());
-            agreement.differs_by((reached - &pose).amax());
-            agreement.differs_by((six - &jacobian).amax());
-            agreement.differs_by((three - jacobian.rows(0, 3)).amax());
+            agreement.differ_by((reached - &pose).iter().copied());
+            agreement.differ_by((six - &jacobian).iter().copied());
+            agreement.differ_by((three - jacobian.rows(0, 3)).iter().copied());
         };
         let poses = robot.forward_kinematics(q.as_view(), &mut workspace)?;
         poses.jacobian(link, &mut six)?;

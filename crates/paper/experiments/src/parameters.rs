@@ -1,4 +1,5 @@
-//! What a trial is, as data: it is part of the records' keys.
+//! What a trial is, as data: it is part of the records' keys. Names that changed in code keep their old form there
+//! (`serde(rename)`), since another one would orphan all records.
 
 use serde::Serialize;
 use serde_json::Value;

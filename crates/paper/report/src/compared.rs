@@ -77,8 +77,8 @@ impl<'a> Compared<'a> {
 
     /// The rows of the paper's own learners; the others stand in tables of learners.
     pub(super) fn rows(&self) -> impl Iterator<Item = &'a RowResult> {
-        let method = |id: &str| self.experiment.rows().any(|row| row.id == id && row.of == RowOf::Additional);
-        self.result.rows.iter().filter(move |row| !method(&row.id))
+        let is_additional = |id: &str| self.experiment.rows().any(|row| row.id == id && row.of == RowOf::Additional);
+        self.result.rows.iter().filter(move |row| !is_additional(&row.id))
     }
 
     /// Their cells.

@@ -62,7 +62,8 @@ class PolicyAlign(Learner):
 class SlopeGp(Learner):
     __doc__ = f"""A Gaussian process on uᵀπ = uᵀu, for constraints that project π orthogonally onto their null space.
 
-    It holds for orthogonal projections onto convex cones as well, but not for constraints that push (A u = b) or move.
+    It holds for orthogonal projections onto convex cones as well. Constraints may push (A u = b) while A and b stay
+    constant for some twenty samples.
 
     {Learner.__init__.__doc__}"""
     _learner = "slope"

@@ -1,6 +1,8 @@
 use crate::arrays::layout::lengths;
 use crate::input::Input;
-use crate::raw::{MOST_EPISODES, RawEpisode, RawRecordings, Rows, even_times, no_time, period, seconds_since_first};
+use crate::raw::{
+    MOST_EPISODES, RawEpisode, RawRecordings, Rows, counted_names, even_times, no_time, period, seconds_since_first,
+};
 use crate::rows::json::Json;
 use crate::rows::stamps::Stamp;
 use crate::{Fault, ReadError};
@@ -140,6 +142,6 @@ fn channels(line: &Json, n: usize) -> Vec<Channel> {
         }
         _ => vec![None; n],
     };
-    let names = texts(&["names", "columns"]).unwrap_or_else(|| crate::arrays::fields::counted_names(n));
+    let names = texts(&["names", "columns"]).unwrap_or_else(|| counted_names(n));
     names.into_iter().zip(units).map(|(name, unit)| Channel { name, unit }).collect()
 }

@@ -7,7 +7,7 @@ use super::messages::{Message, Type};
 use crate::input::Input;
 use crate::names::natural;
 use crate::names::selection::{flags, select};
-use crate::raw::{Clock, RawEpisode, RawRecordings, period, remark, unused};
+use crate::raw::{RawEpisode, RawRecordings, counted_names, even_times, period, remark, seconds_since_first, unused};
 use crate::rows::documents::Documents;
 use crate::rows::json::Json;
 use crate::rows::roles::named;
@@ -113,7 +113,7 @@ impl<'a> Topic<'a> {
         let n = message.positions.len();
         let counted: Vec<String>;
         let names: Vec<&str> = if message.names.is_empty() {
-            counted = (0..n).map(|at| format!("x{at}")).collect();
+            counted = counted_names(n);
             counted.iter().map(String::as_str).collect()
         } else {
             message.names.clone()
@@ -177,16 +177,18 @@ impl<'a> Topic<'a> {
             samples.flat_map(|sample| columns.iter().map(|&column| sample[column])).collect()
         };
         let stamped = set.stamps.iter().all(|&stamp| stamp != 0);
-        let mut clock = Clock::new(period(self.input.options)?);
         let stamps = if stamped { &set.stamps } else { &set.log_times };
-        for &stamp in stamps {
-            clock.push(Stamp::whole(stamp));
-        }
+        let times = if let Some(step) = period(self.input.options)? {
+            even_times(step, len)
+        } else {
+            let stamps = stamps.iter().map(|&stamp| (Stamp::whole(stamp), None));
+            seconds_since_first(stamps, "", &mut Some(TicksPerSecond(1e9)))
+        };
         let draft = RawEpisode {
             name: self.input.stem.clone(),
             file: self.input.name.clone(),
             rows: set.numbers.iter().copied().collect(),
-            times: clock.seconds(len, TicksPerSecond(1e9)),
+            times,
             positions: pick(&set.positions),
             velocities: if recorded && !unwanted { pick(&set.velocities) } else { Vec::new() },
             constraint: None,
