@@ -346,9 +346,8 @@ fn held_out_episodes_are_in_learnt_units() {
     assert_eq!(in_millimetres.iter().filter(|&&is_y| is_y).count(), 2, "{header}");
     let scaled = |line: &str| {
         let fields = line.split(',').zip(&in_millimetres);
-        let fields = fields.map(|(field, &is_y)| {
-            if is_y { (1000.0 * field.parse::<f64>().unwrap()).to_string() } else { field.to_owned() }
-        });
+        let millimetres = |field: &str| (1000.0 * field.parse::<f64>().unwrap()).to_string();
+        let fields = fields.map(|(field, &is_y)| if is_y { millimetres(field) } else { field.to_owned() });
         fields.collect::<Vec<_>>().join(",")
     };
     let mixed: Vec<String> = std::iter::once(header.to_owned()).chain(lines.map(scaled)).collect();
