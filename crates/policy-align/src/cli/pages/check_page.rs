@@ -63,8 +63,8 @@ fn movements(prepared: &Prepared) -> Markup {
     };
     let plane = Plane {
         title: "The recorded movements".to_owned(),
-        x_label: with_unit(channels[0]),
-        y_label: with_unit(channels[1]),
+        x_label: with_unit(channels[0], 1.0),
+        y_label: with_unit(channels[1], 1.0),
         x: range(0),
         y: range(1),
         layers,

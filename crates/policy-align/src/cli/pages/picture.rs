@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use text::plain;
 
 use crate::cli::failure::{Exit, Failure, displayed};
+use crate::cli::lines::short;
 
 /// Grid points along each axis: for arrows, and for potential and support.
 const ARROWS: usize = 16;
@@ -36,11 +37,23 @@ pub(crate) struct Picture<'a> {
 }
 
 impl Picture<'_> {
-    /// From and to, of a channel.
+    /// What each channel is drawn times: its scale, where the two differ, so that right angles are right angles.
+    fn factors(&self) -> [f64; 2] {
+        let scales = self.dims.map(|dim| self.model.state[dim].scale);
+        if scales[0] == scales[1] { [1.0; 2] } else { scales }
+    }
+
+    /// From and to, as drawn.
     fn range(&self, axis: usize) -> [f64; 2] {
-        let channel = &self.model.state[self.dims[axis]];
+        let (channel, factor) = (&self.model.state[self.dims[axis]], self.factors()[axis]);
         let width = (channel.high - channel.low).max(f64::MIN_POSITIVE);
-        [channel.low - MARGIN * width, channel.high + MARGIN * width]
+        [channel.low - MARGIN * width, channel.high + MARGIN * width].map(|value| value * factor)
+    }
+
+    /// Values of the channels at a place.
+    fn values(&self, place: [f64; 2]) -> [f64; 2] {
+        let factors = self.factors();
+        [place[0] / factors[0], place[1] / factors[1]]
     }
 
     fn places(&self, axis: usize, count: usize) -> Vec<f64> {
@@ -54,13 +67,13 @@ impl Picture<'_> {
             let channel = &self.model.state[dim];
             (channel.low..=channel.high).contains(&value)
         };
-        self.dims.iter().zip(place).all(within) && policy.is_supported(self.state(place).as_view())
+        self.dims.iter().zip(self.values(place)).all(within) && policy.is_supported(self.state(place).as_view())
     }
 
     /// The state at a place; all other channels are at their median.
     fn state(&self, place: [f64; 2]) -> DVector<f64> {
         let mut state = DVector::from_iterator(self.model.state.len(), self.model.state.iter().map(|c| c.median));
-        for (dim, value) in self.dims.into_iter().zip(place) {
+        for (dim, value) in self.dims.into_iter().zip(self.values(place)) {
             state[dim] = value;
         }
         state
@@ -97,24 +110,27 @@ impl Picture<'_> {
             layers.push(Layer::Dots { points: points[..1].to_vec(), color: FOLLOWED.color, radius: 4.0 });
             layers.push(Layer::Path { points, stroke: FOLLOWED, label: named(at, "rolled out") });
         }
-        let [x_label, y_label] = self.dims.map(|dim| with_unit(&self.model.state[dim]));
+        let [x, y] = self.factors();
+        let label = |axis: usize, factor: f64| with_unit(&self.model.state[self.dims[axis]], factor);
+        let (x_label, y_label) = (label(0, x), label(1, y));
         let title = plain(&self.title).into_owned();
         Plane { title, x_label, y_label, x: self.range(0), y: self.range(1), layers, size: SIZE }
     }
 
     fn points(&self, movement: &DMatrix<f64>) -> Vec<(f64, f64)> {
-        movement.column_iter().map(|state| (state[self.dims[0]], state[self.dims[1]])).collect()
+        let [x, y] = self.factors();
+        movement.column_iter().map(|state| (x * state[self.dims[0]], y * state[self.dims[1]])).collect()
     }
 
     /// The policy, where it is known.
     fn arrows(&self) -> Option<Layer> {
-        let policy = self.model.policy();
+        let (policy, [x, y]) = (self.model.policy(), self.factors());
         let (xs, ys) = (self.places(0, ARROWS), self.places(1, ARROWS));
         let places: Vec<[f64; 2]> = ys.iter().flat_map(|&y| xs.iter().map(move |&x| [x, y])).collect();
         let arrow = |&place: &[f64; 2]| {
             self.is_known(&policy, place).then(|| {
                 let action = policy.action(self.state(place).as_view());
-                (place[0], place[1], action[self.dims[0]], action[self.dims[1]])
+                (place[0], place[1], x * action[self.dims[0]], y * action[self.dims[1]])
             })
         };
         let arrows: Vec<_> = places.par_iter().filter_map(arrow).collect();
@@ -133,9 +149,10 @@ impl Picture<'_> {
     }
 }
 
-/// A channel as an axis is labelled: XML does not allow every character.
-pub(crate) fn with_unit(channel: &StateChannel) -> String {
-    let label = format!("{} ({})", channel.name, channel.unit.as_deref().unwrap_or("no unit given"));
+/// A channel, drawn times a factor, as an axis is labelled: XML does not allow every character.
+pub(crate) fn with_unit(channel: &StateChannel, factor: f64) -> String {
+    let times = if factor == 1.0 { String::new() } else { format!(" times {}", short(factor)) };
+    let label = format!("{}{times} ({})", channel.name, channel.unit.as_deref().unwrap_or("no unit given"));
     plain(&label).into_owned()
 }
 

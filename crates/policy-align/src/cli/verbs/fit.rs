@@ -6,7 +6,8 @@ use clap::Args;
 use demo_io::TempFile;
 use motion::Recordings;
 use policy_align::{
-    Evaluation, Finding, Model, PrepareOptions, Prepared, Progress, Verdict, checksum_of, evaluate, fit, prepare,
+    Decision, Evaluation, Finding, Model, PrepareOptions, Prepared, Progress, Verdict, checksum_of, evaluate, fit,
+    prepare,
 };
 use serde_json::json;
 use text::quoted;
@@ -126,8 +127,9 @@ impl Fit {
         let left_out =
             if data.left_out.is_empty() { String::new() } else { format!(", {} left out", data.left_out.len()) };
         lines.add("learnt from", &format!("{}{left_out}", amount(data.episodes, data.samples)));
-        if let Some(decision) = model.decisions.iter().find(|decision| decision.what == "learner") {
-            lines.add("learner", &format!("{} ({})", decision.value, decision.why));
+        let is_major = |of: &&Decision| of.what == "learner" || (of.what == "scale" && of.why != "given");
+        for Decision { what, value, why, .. } in model.decisions.iter().filter(is_major) {
+            lines.add(what, &format!("{value} ({why})"));
         }
         let numbers = &model.trust.numbers;
         let [own, direct] = [numbers.held_out_error, numbers.held_out_error_direct].map(squared_error);
