@@ -10,6 +10,11 @@ use crate::{GpError, Rows};
 pub enum FrontEnd {
     /// Recorded velocities or commands, taken as exact: (x_i, u_i) for all i.
     Velocities,
+    /// Recorded velocities or commands with white noise: (x_i, u_i) for all i, each with this variance.
+    NoisyVelocities {
+        /// s² of (S2): variance of a velocity along every axis, in squared units of the state per second.
+        variance: f64,
+    },
     /// Positions of a simulator that takes Euler steps: u_i = (x_{i+1} − x_i)/δt for all samples but the last. Exact
     /// there, because the simulator is that map; elsewhere the policy found is too steep.
     #[default]
@@ -29,11 +34,16 @@ impl FrontEnd {
     /// The rows of all trajectories, in order.
     ///
     /// # Errors
-    /// [`GpError::NoVelocities`] if they are needed, [`GpError::Cleaning`] if the smoother refuses, [`GpError::Overflow`]
-    /// if squares of speeds are not finite.
+    /// [`GpError::NoVelocities`] if they are needed, [`GpError::Value`] for a variance that is negative or not finite,
+    /// [`GpError::Cleaning`] if the smoother refuses, [`GpError::Overflow`] if squares of speeds are not finite.
     pub fn rows(&self, demonstrations: &Demonstrations) -> Result<Rows, GpError> {
         match self {
             FrontEnd::Velocities => rows_of(recorded(demonstrations, |trajectory| trajectory.states().clone())?),
+            &FrontEnd::NoisyVelocities { variance } => {
+                let rows = FrontEnd::Velocities.rows(demonstrations)?;
+                let count = rows.len();
+                rows.with_variances(vec![variance; count])
+            }
             FrontEnd::FiniteDifferences => rows_of(demonstrations.trajectories().iter().map(steps)),
             FrontEnd::Smoothed(smoother) => smoothed(smoother, demonstrations),
             FrontEnd::Fused(fusion) => fused(fusion, demonstrations),

@@ -1,12 +1,13 @@
-//! Families and rotation tried one after the other: steps 3 to 8 of a fit.
+//! Families and rotation tried one after the other: steps 3 to 9 of a fit.
 
 use crate::GpError;
 use crate::evidence::family_fit::each_until_exact;
 use crate::kernel::family::Family;
 use crate::left_out::curl_test::{CurlTest, curl_t, takes_rotation};
+use crate::left_out::weights_test::{weights_pay, weights_t};
 use crate::report::trust_report::{FamilyReport, ModelKind};
 use crate::rows::kept::Kept;
-use crate::rows::noise_weights::slope_weights;
+use crate::rows::noise_weights::{certain_weights, slope_weights};
 use crate::slope::candidate::Candidate;
 use crate::slope::data::SlopeData;
 use crate::slope::least_hidden::least_hidden;
@@ -26,9 +27,17 @@ pub(crate) struct Outcome {
     pub(crate) families: Vec<FamilyReport>,
 }
 
-/// The search, a line a step.
+/// The search: steps 3 to 8, and step 9, which weighs certain velocities where they are not predicted nearly exactly.
 pub(crate) fn outcome(gp: &SlopeGp, kept: &Kept) -> Result<Outcome, GpError> {
-    let data = weighted(gp, kept)?;
+    let alike = searched(gp, kept, weighted(gp, kept)?)?;
+    if kept.variances.is_some() || alike.taken.left_out.is_nearly_exact() {
+        return Ok(alike);
+    }
+    Ok(weighed(gp, kept, &alike.taken).filter(|weighed| pays(kept, &alike, weighed)).unwrap_or(alike))
+}
+
+/// Steps 5 to 8 with given noise weights.
+fn searched(gp: &SlopeGp, kept: &Kept, data: SlopeData) -> Result<Outcome, GpError> {
     let mut families = Vec::new();
     let tried = each_until_exact(
         &gp.families,
@@ -52,6 +61,23 @@ pub(crate) fn outcome(gp: &SlopeGp, kept: &Kept) -> Result<Outcome, GpError> {
     Ok(Outcome { data, taken, other: Some(other), curl_t: Some(t), families })
 }
 
+/// Step 9: the search again with the weights (S18) of a policy that was itself fitted with those of `taken`; none where
+/// nothing has a Cholesky factor.
+fn weighed(gp: &SlopeGp, kept: &Kept, taken: &Candidate) -> Option<Outcome> {
+    let weighed_by = |lengths: &[f64]| SlopeData::from_kept(kept, certain_weights(&kept.speeds, lengths)).ok();
+    let pilot = candidate(gp, &weighed_by(&taken.lengths())?, kept, taken.family, taken.kind)?;
+    searched(gp, kept, weighed_by(&pilot.lengths())?).ok()
+}
+
+/// Whether the weights of step 9 predict movements left out better.
+fn pays(kept: &Kept, alike: &Outcome, weighed: &Outcome) -> bool {
+    let errors = |outcome: &Outcome| -> Vec<f64> {
+        outcome.taken.left_out.residuals.iter().map(|residual| outcome.data.speed * residual).collect()
+    };
+    let SlopeData { noise_weights, groups, .. } = &weighed.data;
+    weights_pay(weights_t((&errors(alike), &errors(weighed)), &kept.speeds, noise_weights, groups))
+}
+
 /// Steps 3 and 4: noise weights, first from a guess of the policy's length, then from a pilot policy.
 fn weighted(gp: &SlopeGp, kept: &Kept) -> Result<SlopeData, GpError> {
     let Some(variances) = &kept.variances else {
@@ -72,7 +98,7 @@ fn candidate(gp: &SlopeGp, data: &SlopeData, kept: &Kept, family: Family, kind: 
         ModelKind::Potential => family.blocks(gp.trend),
         ModelKind::Helmholtz => family.helmholtz_blocks(gp.trend),
     };
-    let fit = data.fit(&blocks, &kept.hyper)?;
+    let fit = data.fit(&blocks, &kept.hyper, family.second_start(&blocks).as_deref())?;
     Some(Candidate::new(data, kept, (family, kind), blocks, fit))
 }
 

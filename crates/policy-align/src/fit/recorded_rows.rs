@@ -11,22 +11,14 @@ pub(crate) fn rows(prepared: &Prepared) -> Result<Rows, GpError> {
         VelocitySource::PositionsAsRequested => with_slopes(&demonstrations).map_err(|error| cleaning(&error))?,
         _ => demonstrations,
     };
-    let rows = front_end(prepared.velocities).rows(&demonstrations)?;
-    match prepared.velocities {
-        VelocitySource::Noisy(variance) => {
-            let count = rows.len();
-            rows.with_variances(vec![variance; count])
-        }
-        _ => Ok(rows),
-    }
+    front_end(prepared.velocities).rows(&demonstrations)
 }
 
 /// The front end that makes rows of a Gaussian process from what was recorded.
 fn front_end(velocities: VelocitySource) -> FrontEnd {
     match velocities {
-        VelocitySource::Recorded | VelocitySource::Noisy(_) | VelocitySource::PositionsAsRequested => {
-            FrontEnd::Velocities
-        }
+        VelocitySource::Recorded | VelocitySource::PositionsAsRequested => FrontEnd::Velocities,
+        VelocitySource::Noisy(variance) => FrontEnd::NoisyVelocities { variance },
         VelocitySource::Fused => FrontEnd::Fused(smoothing::Fusion::default()),
         VelocitySource::Positions => FrontEnd::Smoothed(smoothing::Smoother::default()),
     }
