@@ -6,6 +6,8 @@ use crate::left_out::comparison::t_of_mean;
 const NEGLIGIBLE: f64 = 1e-4;
 /// t of λ from which weights pay.
 const LEAST_T: f64 = 2.0;
+/// t of λ under which a pilot shows that weights will not pay.
+const HOPELESS_T: f64 = -1.0;
 
 /// Held-out errors of one model, (M), in units of speed.
 pub(crate) type Errors<'a> = &'a [f64];
@@ -29,6 +31,11 @@ pub(crate) fn weights_t(
 /// Whether movements left out are predicted better with weights, by more than chance.
 pub(crate) fn weights_pay(t: f64) -> bool {
     t >= LEAST_T
+}
+
+/// Whether a pilot with weights predicts so much worse that a search with them is not worth its time.
+pub(crate) fn weights_cost(t: f64) -> bool {
+    t < HOPELESS_T
 }
 
 #[cfg(test)]

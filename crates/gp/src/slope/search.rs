@@ -4,7 +4,7 @@ use crate::GpError;
 use crate::evidence::family_fit::each_until_exact;
 use crate::kernel::family::Family;
 use crate::left_out::curl_test::{CurlTest, curl_t, takes_rotation};
-use crate::left_out::weights_test::{weights_pay, weights_t};
+use crate::left_out::weights_test::{weights_cost, weights_pay, weights_t};
 use crate::report::trust_report::{FamilyReport, ModelKind};
 use crate::rows::kept::Kept;
 use crate::rows::noise_weights::{certain_weights, slope_weights};
@@ -33,7 +33,7 @@ pub(crate) fn outcome(gp: &SlopeGp, kept: &Kept) -> Result<Outcome, GpError> {
     if kept.variances.is_some() || alike.taken.left_out.is_nearly_exact() {
         return Ok(alike);
     }
-    Ok(weighed(gp, kept, &alike.taken).filter(|weighed| pays(kept, &alike, weighed)).unwrap_or(alike))
+    Ok(weighed(gp, kept, &alike)?.unwrap_or(alike))
 }
 
 /// Steps 5 to 8 with given noise weights.
@@ -61,21 +61,26 @@ fn searched(gp: &SlopeGp, kept: &Kept, data: SlopeData) -> Result<Outcome, GpErr
     Ok(Outcome { data, taken, other: Some(other), curl_t: Some(t), families })
 }
 
-/// Step 9: the search again with the weights (S18) of a policy that was itself fitted with those of `taken`; none where
-/// nothing has a Cholesky factor.
-fn weighed(gp: &SlopeGp, kept: &Kept, taken: &Candidate) -> Option<Outcome> {
-    let weighed_by = |lengths: &[f64]| SlopeData::from_kept(kept, certain_weights(&kept.speeds, lengths)).ok();
-    let pilot = candidate(gp, &weighed_by(&taken.lengths())?, kept, taken.family, taken.kind)?;
-    searched(gp, kept, weighed_by(&pilot.lengths())?).ok()
+/// Step 9: the search again with the weights (S18) of a pilot policy, which was itself fitted with those of the model taken;
+/// none if that does not predict better, or if already the pilot predicts rather worse.
+fn weighed(gp: &SlopeGp, kept: &Kept, alike: &Outcome) -> Result<Option<Outcome>, GpError> {
+    let weighed_by = |lengths: &[f64]| SlopeData::from_kept(kept, certain_weights(&kept.speeds, lengths));
+    let data = weighed_by(&alike.taken.lengths())?;
+    let Some(pilot) = candidate(gp, &data, kept, alike.taken.family, alike.taken.kind) else { return Ok(None) };
+    if weights_cost(gain_t(kept, alike, (&data, &pilot))) {
+        return Ok(None);
+    }
+    let weighed = searched(gp, kept, weighed_by(&pilot.lengths())?)?;
+    Ok(weights_pay(gain_t(kept, alike, (&weighed.data, &weighed.taken))).then_some(weighed))
 }
 
-/// Whether the weights of step 9 predict movements left out better.
-fn pays(kept: &Kept, alike: &Outcome, weighed: &Outcome) -> bool {
-    let errors = |outcome: &Outcome| -> Vec<f64> {
-        outcome.taken.left_out.residuals.iter().map(|residual| outcome.data.speed * residual).collect()
+/// t of (S18): how surely a model with weights predicts movements left out better.
+fn gain_t(kept: &Kept, alike: &Outcome, (data, weighed): (&SlopeData, &Candidate)) -> f64 {
+    let errors = |data: &SlopeData, candidate: &Candidate| -> Vec<f64> {
+        candidate.left_out.residuals.iter().map(|residual| data.speed * residual).collect()
     };
-    let SlopeData { noise_weights, groups, .. } = &weighed.data;
-    weights_pay(weights_t((&errors(alike), &errors(weighed)), &kept.speeds, noise_weights, groups))
+    let both = (errors(&alike.data, &alike.taken), errors(data, weighed));
+    weights_t((&both.0, &both.1), &kept.speeds, &data.noise_weights, &data.groups)
 }
 
 /// Steps 3 and 4: noise weights, first from a guess of the policy's length, then from a pilot policy.
