@@ -114,7 +114,7 @@ pub(crate) fn data_set(system: &System, disturbed: Disturbed, seed: u64) -> Data
     let rms = (without.iter().map(|x| policy(x).norm_squared()).sum::<f64>() / without.len() as f64).sqrt();
     let (states, mut velocities) = record(disturbed.press * rms, rng);
     let shown = SHOWN * SAMPLES;
-    let speed = (velocities[..shown].iter().map(|u| u.norm_squared()).sum::<f64>() / shown as f64).sqrt();
+    let speed = (velocities[..shown].iter().map(DVector::norm_squared).sum::<f64>() / shown as f64).sqrt();
     let deviation = disturbed.noise * speed;
     for velocity in &mut velocities[..shown] {
         velocity.apply(|u| *u += deviation * normal(rng));

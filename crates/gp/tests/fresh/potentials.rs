@@ -110,7 +110,7 @@ fn chain(x: &DVector<f64>) -> DVector<f64> {
 
 /// Half the squared distance of a planar arm's hand from a point, and of its joints from rest.
 fn arm(x: &DVector<f64>) -> DVector<f64> {
-    let mut angles = vec![0.0; 7];
+    let mut angles = [0.0; 7];
     let mut sum = 0.0;
     for k in 0..7 {
         sum += x[k];
