@@ -115,7 +115,7 @@ impl DirectData {
 
     /// Amplitudes by marginal likelihood on the hyper rows, noise by held-out prediction.
     pub(crate) fn fit(&self, blocks: &[DirectBlock], hyper: &[usize]) -> Option<FamilyFit> {
-        fit_family(&self.covariance(blocks), hyper, &self.conditions())
+        fit_family(&self.covariance(blocks), hyper, &self.conditions(), None)
     }
 
     pub(crate) fn model(&self, blocks: Vec<DirectBlock>, fit: FamilyFit) -> DirectModel {

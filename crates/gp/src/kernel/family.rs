@@ -55,6 +55,16 @@ impl Family {
         trend.iter().copied().chain(scales.map(|scale| Block::Potential(self.shape(), scale))).collect()
     }
 
+    /// Amplitudes of `blocks`, (B), from which a family is searched a second time: long scales alone. Only (S8) of `smooth`
+    /// has a minimum there that the first search misses.
+    pub(crate) fn second_start(self, blocks: &[Block]) -> Option<Vec<f64>> {
+        let amplitude = |block: &Block| match block {
+            Block::Potential(_, scale) | Block::DivergenceFree(scale) if *scale >= 1.0 => 1.0,
+            _ => 0.01,
+        };
+        (self == Family::Smooth).then(|| blocks.iter().map(amplitude).collect())
+    }
+
     /// The same with blocks for rotation: a Helmholtz decomposition, which has no potential.
     pub fn helmholtz_blocks(self, trend: Trend) -> Vec<Block> {
         let rotation = [Block::Skew].into_iter().chain([0.25, 0.5, 1.0, 2.0].map(Block::DivergenceFree));

@@ -3,6 +3,7 @@
 pub(crate) mod comparison;
 pub(crate) mod curl_test;
 pub(crate) mod level;
+pub(crate) mod weights_test;
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Par};

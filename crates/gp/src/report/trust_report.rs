@@ -14,7 +14,11 @@ pub struct TrustReport {
     pub r_squared: f64,
     /// Mean squared held-out error over its predictive variance (S11); above 4 the noise model is wrong.
     pub z_squared: f64,
-    /// Expected normalised error of the policy (nUPE), with what the alternative model says (R6), and with
+    /// γ of (S19): factor on the posterior's variance, in error bars and in `expected_nupe`. Models that were stored before
+    /// this was kept have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<f64>,
+    /// Expected normalised error of the policy (nUPE) on movements that were not shown (S19), with what the alternative model says (R6), and with
     /// [`Rows::step_change`](crate::Rows::step_change).
     pub expected_nupe: f64,
     /// Difference of the alternative model's policy, where it predicts nearly as well (R6): across the paths the policy
@@ -90,6 +94,11 @@ impl TrustReport {
     /// Whether left-out movements are predicted so well, 1 − R² ≤ 1e-3, that nothing is left to explain.
     pub fn is_nearly_exact(&self) -> bool {
         is_nearly_exact(self.r_squared)
+    }
+
+    /// Factor on (S13) in error bars: [`TrustReport::calibration`], or max(1, z²) of an older model.
+    pub fn variance_factor(&self) -> f64 {
+        self.calibration.unwrap_or(self.z_squared.max(1.0))
     }
 
     /// Warnings about the policy, one sentence each.

@@ -63,7 +63,7 @@ impl Round {
         let states = scaled(&kept.states, &factors);
         let kept = Kept { states, velocities, speeds, variances: None, ..kept.clone() };
         let data = SlopeData::from_kept(&kept, vec![1.0; kept.speeds.len()]).ok()?;
-        let fit = data.fit(&blocks, &kept.hyper)?;
+        let fit = data.fit(&blocks, &kept.hyper, None)?;
         Some(Round { factors, data, blocks, fit })
     }
 

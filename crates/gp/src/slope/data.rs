@@ -120,9 +120,10 @@ impl SlopeData {
         Some((self.model(blocks.to_vec(), fit), left_out))
     }
 
-    /// Amplitudes by marginal likelihood on the hyper rows, noise by held-out prediction: (S8), (S11).
-    pub(crate) fn fit(&self, blocks: &[Block], hyper: &[usize]) -> Option<FamilyFit> {
-        fit_family(&self.covariance(blocks), hyper, &self.conditions())
+    /// Amplitudes by marginal likelihood on the hyper rows, noise by held-out prediction: (S8), (S11). Searched a second
+    /// time from other amplitudes, if there are any.
+    pub(crate) fn fit(&self, blocks: &[Block], hyper: &[usize], second_start: Option<&[f64]>) -> Option<FamilyFit> {
+        fit_family(&self.covariance(blocks), hyper, &self.conditions(), second_start)
     }
 
     /// The same amplitudes with every level of noise κ > `from`, as far as there is a Cholesky factor.

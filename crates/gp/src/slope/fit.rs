@@ -48,7 +48,8 @@ impl SlopeFit {
         self.model.potential()
     }
 
-    /// (S13): cov π(x), (n, n), in squared units of the state per second, not yet times max(1, z²). Costs n M².
+    /// (S13): cov π(x), (n, n), in squared units of the state per second, not yet times
+    /// [`TrustReport::variance_factor`]. Costs n M².
     pub fn uncertainty(&self, state: DVectorView<'_, f64>) -> DMatrix<f64> {
         self.model.covariance(state)
     }

@@ -1,14 +1,16 @@
-//! The trust report of a slope GP, with the error to expect (R6).
+//! The trust report of a slope GP, with the error to expect on new movements (R6), (S19).
 
 use nalgebra::{DMatrix, DVectorView};
 use rayon::prelude::*;
 
 use crate::Rows;
+use crate::kernel::covariance::NOISE_FLOOR;
 use crate::left_out::comparison::{difference, spread};
 use crate::report::identifiability::{Identifiability, LeastSeen};
 use crate::report::trust_report::{ModelKind, TrustReport};
 use crate::rows::kept::Kept;
 use crate::slope::candidate::Candidate;
+use crate::slope::data::SlopeData;
 use crate::slope::model::SlopeModel;
 use crate::slope::search::Outcome;
 
@@ -49,16 +51,16 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
     let Outcome { data, taken, other, curl_t, families } = outcome;
     let (posterior, prior) = mean_covariances(&taken.model, &kept.states);
     let ambiguity = other.as_ref().map_or(0.0, |other| ambiguity(taken, other));
-    let states = every_so_many(kept.states.ncols());
-    let variance = spread(&taken.actions.select_columns(&states)) / states.len() as f64;
     let calibration = calibration(taken.left_out.z_squared, noise_share(taken), *across);
-    let error = posterior.trace() * calibration / variance;
+    let variance = spread(&taken.actions) / kept.speeds.len() as f64;
+    let error = calibration * posterior.trace().max(on_new_movements(data, taken)) / variance;
     // Before its first sample every movement begins.
     let after_first = |switches: &Vec<f64>| switches.iter().skip(1).filter(|&&p| p > SWITCHED).count();
     let count = |switches: &[Vec<f64>]| switches.iter().map(after_first).sum();
     TrustReport {
         r_squared: taken.left_out.r_squared,
         z_squared: taken.left_out.z_squared,
+        calibration: Some(calibration),
         expected_nupe: (error + ambiguity + rows.step_change().unwrap_or(0.0)).min(NOTHING_KNOWN),
         ambiguity,
         identifiability: Identifiability::of(&posterior, &prior),
@@ -77,6 +79,16 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
     }
 }
 
+/// Trace of the policy's covariance on movements that were not shown, as far as those left out say along their motion, in
+/// squared units of the state per second (S19).
+fn on_new_movements(data: &SlopeData, taken: &Candidate) -> f64 {
+    let noise = taken.model.noise + NOISE_FLOOR;
+    let each = taken.left_out.variances.iter().zip(&data.noise_weights);
+    let along: f64 = each.map(|(variance, weight)| (variance - noise * weight).max(0.0)).sum();
+    let (dim, rows) = data.n.shape();
+    dim as f64 * data.speed.powi(2) * along / rows as f64
+}
+
 /// Share of noise in the variance predicted of left-out movements, by the weights of (S11).
 fn noise_share(taken: &Candidate) -> f64 {
     let SlopeModel { noise, noise_weights, .. } = &taken.model;
@@ -84,7 +96,7 @@ fn noise_share(taken: &Candidate) -> f64 {
     noise * noise_weights.len() as f64 / predicted.sum::<f64>()
 }
 
-/// Factor on the posterior's variance, from how left-out movements were predicted: z² (S11) where that is over 1, since
+/// γ of (S19): factor on the posterior's variance, from how left-out movements were predicted: z² (S11) where that is over 1, since
 /// the posterior is then too narrow. A z² under 1 tells something of the posterior only as far as noise is a small part of the
 /// variance predicted, and of all directions only where movements left out went in others than those learnt from.
 fn calibration(z_squared: f64, noise_share: f64, across: CrossPathEvidence) -> f64 {

@@ -50,7 +50,7 @@ impl LearntPolicy for SlopeFit {
     }
 
     fn action_sd_into(&self, state: DVectorView<'_, f64>, mut deviation: DVectorViewMut<'_, f64>) -> bool {
-        let factor = self.report.z_squared.max(1.0);
+        let factor = self.report.variance_factor();
         let variances = self.model.covariance(state).diagonal();
         deviation.copy_from(&variances.map(|variance| (factor * variance.max(0.0)).sqrt()));
         true

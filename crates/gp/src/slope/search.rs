@@ -1,12 +1,13 @@
-//! Families and rotation tried one after the other: steps 3 to 8 of a fit.
+//! Families and rotation tried one after the other: steps 3 to 9 of a fit.
 
 use crate::GpError;
 use crate::evidence::family_fit::each_until_exact;
 use crate::kernel::family::Family;
 use crate::left_out::curl_test::{CurlTest, curl_t, takes_rotation};
+use crate::left_out::weights_test::{weights_cost, weights_pay, weights_t};
 use crate::report::trust_report::{FamilyReport, ModelKind};
 use crate::rows::kept::Kept;
-use crate::rows::noise_weights::slope_weights;
+use crate::rows::noise_weights::{certain_weights, slope_weights};
 use crate::slope::candidate::Candidate;
 use crate::slope::data::SlopeData;
 use crate::slope::least_hidden::least_hidden;
@@ -26,9 +27,17 @@ pub(crate) struct Outcome {
     pub(crate) families: Vec<FamilyReport>,
 }
 
-/// The search, a line a step.
+/// The search: steps 3 to 8, and step 9, which weighs certain velocities where they are not predicted nearly exactly.
 pub(crate) fn outcome(gp: &SlopeGp, kept: &Kept) -> Result<Outcome, GpError> {
-    let data = weighted(gp, kept)?;
+    let alike = searched(gp, kept, weighted(gp, kept)?)?;
+    if kept.variances.is_some() || kept.of_stretches.is_some() || alike.taken.left_out.is_nearly_exact() {
+        return Ok(alike);
+    }
+    Ok(weighed(gp, kept, &alike)?.unwrap_or(alike))
+}
+
+/// Steps 5 to 8 with given noise weights.
+fn searched(gp: &SlopeGp, kept: &Kept, data: SlopeData) -> Result<Outcome, GpError> {
     let mut families = Vec::new();
     let tried = each_until_exact(
         &gp.families,
@@ -50,6 +59,28 @@ pub(crate) fn outcome(gp: &SlopeGp, kept: &Kept) -> Result<Outcome, GpError> {
         None => (potential, rotation),
     };
     Ok(Outcome { data, taken, other: Some(other), curl_t: Some(t), families })
+}
+
+/// Step 9: the search again with the weights (S18) of a pilot policy, which was itself fitted with those of the model taken;
+/// none if that does not predict better, or if already the pilot predicts rather worse.
+fn weighed(gp: &SlopeGp, kept: &Kept, alike: &Outcome) -> Result<Option<Outcome>, GpError> {
+    let weighed_by = |lengths: &[f64]| SlopeData::from_kept(kept, certain_weights(&kept.speeds, lengths));
+    let data = weighed_by(&alike.taken.lengths())?;
+    let Some(pilot) = candidate(gp, &data, kept, alike.taken.family, alike.taken.kind) else { return Ok(None) };
+    if weights_cost(gain_t(kept, alike, (&data, &pilot))) {
+        return Ok(None);
+    }
+    let weighed = searched(gp, kept, weighed_by(&pilot.lengths())?)?;
+    Ok(weights_pay(gain_t(kept, alike, (&weighed.data, &weighed.taken))).then_some(weighed))
+}
+
+/// t of (S18): how surely a model with weights predicts movements left out better.
+fn gain_t(kept: &Kept, alike: &Outcome, (data, weighed): (&SlopeData, &Candidate)) -> f64 {
+    let errors = |data: &SlopeData, candidate: &Candidate| -> Vec<f64> {
+        candidate.left_out.residuals.iter().map(|residual| data.speed * residual).collect()
+    };
+    let both = (errors(&alike.data, &alike.taken), errors(data, weighed));
+    weights_t((&both.0, &both.1), &kept.speeds, &data.noise_weights, &data.groups)
 }
 
 /// Steps 3 and 4: noise weights, first from a guess of the policy's length, then from a pilot policy.
@@ -75,7 +106,7 @@ fn candidate(gp: &SlopeGp, data: &SlopeData, kept: &Kept, family: Family, kind: 
         ModelKind::Potential => family.blocks(gp.trend),
         ModelKind::Helmholtz => family.helmholtz_blocks(gp.trend),
     };
-    let fit = data.fit(&blocks, &kept.hyper)?;
+    let fit = data.fit(&blocks, &kept.hyper, family.second_start(&blocks).as_deref())?;
     Some(Candidate::new(data, kept, (family, kind), blocks, fit))
 }
 

@@ -19,7 +19,7 @@ pub struct TrustNumbers {
     pub direct_error: f64,
     /// Difference of slope and direct policy.
     pub gap: f64,
-    /// Expected error (nUPE) of the Gaussian process's policy.
+    /// Expected error (nUPE) of the Gaussian process's policy on new movements.
     pub expected_error: f64,
     /// Difference of the slope policies with and without rotation, where both predict about as well.
     pub ambiguity: f64,

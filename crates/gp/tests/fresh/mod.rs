@@ -1,0 +1,176 @@
+//! Movements of a dozen potentials under random constraints that may press, and what is learnt of them on movements that
+//! were not shown.
+mod potentials;
+
+use demo_gen::beyond::{BeyondSystem, PolicyKind};
+use demo_gen::{Recording, demonstrations};
+use gp::{FrontEnd, Rows};
+use motion::{LearntPolicy, SampleIndex};
+use nalgebra::{DMatrix, DVector};
+use rand::RngExt as _;
+use rand_chacha::ChaCha8Rng;
+
+pub(crate) use potentials::{SYSTEMS, System};
+
+/// Movements shown, and others for the test; samples of each, their distance in seconds, and Runge-Kutta steps between.
+const SHOWN: usize = 40;
+const FRESH: usize = 20;
+const SAMPLES: usize = 40;
+const TIME_STEP: f64 = 0.1;
+const SUB_STEPS: usize = 20;
+/// Samples after which a constraint is drawn anew.
+const REDRAW: usize = 20;
+
+/// How a data set was disturbed.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Disturbed {
+    /// ‖A⁺b‖ over the root mean square of the policy.
+    pub(crate) press: f64,
+    /// Standard deviation of the velocities' noise along every axis, over the root mean square of the speed.
+    pub(crate) noise: f64,
+    /// Whether the learner is told the noise's variance.
+    pub(crate) told: bool,
+}
+
+/// Rows of the movements shown, with states and policy of the others, (n, Q) each.
+pub(crate) struct DataSet {
+    pub(crate) rows: Rows,
+    pub(crate) fresh: (DMatrix<f64>, DMatrix<f64>),
+}
+
+/// A constraint A(x) u = b of one stretch of time, rank k.
+struct Constraint {
+    at_origin: DMatrix<f64>,
+    drifts: Vec<DMatrix<f64>>,
+    press: DVector<f64>,
+}
+
+impl Constraint {
+    fn draw(system: &System, press: f64, rng: &mut ChaCha8Rng) -> Self {
+        let (rank, dim) = (system.rank, system.dim);
+        let drift = 0.25 / (dim as f64).sqrt() / (0.5 * system.half_width);
+        let mut normal = |deviation: f64| DMatrix::from_fn(rank, dim, |_, _| deviation * normal(rng));
+        let at_origin = normal(1.0);
+        let drifts = (0..dim).map(|_| normal(drift)).collect();
+        let direction = DVector::from_fn(rank, |_, _| self::normal(rng)).normalize();
+        Constraint { at_origin, drifts, press: direction * press }
+    }
+
+    /// Nπ + A⁺b with ‖A⁺b‖ = press.
+    fn velocity(&self, x: &DVector<f64>, policy: &DVector<f64>) -> DVector<f64> {
+        let mut a = self.at_origin.clone();
+        for (x, drift) in x.iter().zip(&self.drifts) {
+            a += drift * *x;
+        }
+        // Orthonormal columns that span the rows of A.
+        let q = a.transpose().qr().q();
+        policy - &q * (q.tr_mul(policy)) + &q * &self.press
+    }
+}
+
+/// Standard normal, by Box and Muller.
+fn normal(rng: &mut ChaCha8Rng) -> f64 {
+    let (a, b): (f64, f64) = (rng.random_range(f64::EPSILON..1.0), rng.random_range(0.0..std::f64::consts::TAU));
+    (-2.0 * a.ln()).sqrt() * b.cos()
+}
+
+/// One data set of a system.
+pub(crate) fn data_set(system: &System, disturbed: Disturbed, seed: u64) -> DataSet {
+    let rng = &mut super::drawn::rng(seed);
+    let start = |rng: &mut ChaCha8Rng| {
+        DVector::from_fn(system.dim, |k, _| system.middle[k] + rng.random_range(-system.half_width..system.half_width))
+    };
+    // A median speed that crosses 1.2 half widths in the time of a movement.
+    let slopes: Vec<f64> = (0..200).map(|_| (system.gradient)(&start(rng)).norm()).collect();
+    let median = motion::upper_median(slopes).expect("slopes");
+    let factor = 1.2 * system.half_width / (median * TIME_STEP * SAMPLES as f64);
+    let policy = |x: &DVector<f64>| (system.gradient)(x) * -factor;
+    let record = |press: f64, rng: &mut ChaCha8Rng| {
+        let (mut states, mut velocities) = (Vec::new(), Vec::new());
+        for _ in 0..SHOWN + FRESH {
+            let mut x = start(rng);
+            let mut constraint = Constraint::draw(system, press, rng);
+            for sample in 0..SAMPLES {
+                if sample == REDRAW {
+                    constraint = Constraint::draw(system, press, rng);
+                }
+                let flow = |x: &DVector<f64>| constraint.velocity(x, &policy(x));
+                states.push(x.clone());
+                velocities.push(flow(&x));
+                let h = TIME_STEP / SUB_STEPS as f64;
+                for _ in 0..SUB_STEPS {
+                    let a = flow(&x);
+                    let b = flow(&(&x + &a * (0.5 * h)));
+                    let c = flow(&(&x + &b * (0.5 * h)));
+                    let d = flow(&(&x + &c * h));
+                    x += (a + b * 2.0 + c * 2.0 + d) * (h / 6.0);
+                }
+            }
+        }
+        (states, velocities)
+    };
+    // The policy's size is that along the same movements without a press.
+    let (without, _) = record(0.0, &mut rng.clone());
+    let rms = (without.iter().map(|x| policy(x).norm_squared()).sum::<f64>() / without.len() as f64).sqrt();
+    let (states, mut velocities) = record(disturbed.press * rms, rng);
+    let shown = SHOWN * SAMPLES;
+    let speed = (velocities[..shown].iter().map(DVector::norm_squared).sum::<f64>() / shown as f64).sqrt();
+    let deviation = disturbed.noise * speed;
+    for velocity in &mut velocities[..shown] {
+        velocity.apply(|u| *u += deviation * normal(rng));
+    }
+    let indices = (0..shown).map(|row| SampleIndex { trajectory: row / SAMPLES, sample: row % SAMPLES }).collect();
+    let (x, u) = (DMatrix::from_columns(&states[..shown]), DMatrix::from_columns(&velocities[..shown]));
+    let rows = Rows::new(x, u, indices).expect("finite rows");
+    let rows = if disturbed.told {
+        rows.with_variances(vec![deviation * deviation; shown]).expect("a variance")
+    } else {
+        rows
+    };
+    let actions = |states: &[DVector<f64>]| DMatrix::from_columns(&states.iter().map(policy).collect::<Vec<_>>());
+    let fresh: Vec<DVector<f64>> = states[shown..].iter().step_by(5).cloned().collect();
+    DataSet { rows, fresh: (DMatrix::from_columns(&fresh), actions(&fresh)) }
+}
+
+/// The same of a system of `demo_gen`: sixty movements shown, twenty not.
+pub(crate) fn beyond(policy: PolicyKind, disturbed: Disturbed, seed: u64) -> DataSet {
+    assert_eq!(disturbed.press, 0.0, "these constraints do not press");
+    let rng = &mut super::drawn::rng(seed);
+    let system = BeyondSystem { policy, n_trajectories: 80, ..BeyondSystem::default() };
+    let recordings = system.record(rng).expect("movements");
+    let (of_rows, fresh) = recordings.split_at(60);
+    let rows = FrontEnd::Velocities.rows(&demonstrations(of_rows).expect("movements")).expect("rows");
+    let deviation = disturbed.noise * rows.velocities().norm() / (rows.len() as f64).sqrt();
+    let velocities = rows.velocities().map(|u| u + deviation * normal(rng));
+    let rows = Rows::new(rows.states().clone(), velocities, rows.indices().to_vec()).expect("finite rows");
+    let count = rows.len();
+    let rows =
+        if disturbed.told { rows.with_variances(vec![deviation.powi(2); count]).expect("a variance") } else { rows };
+    let columns = |of: fn(&Recording) -> &DMatrix<f64>| {
+        DMatrix::from_columns(&fresh.iter().flat_map(|each| of(each).column_iter().step_by(5)).collect::<Vec<_>>())
+    };
+    let states: fn(&Recording) -> &DMatrix<f64> = |each| &each.truth.states;
+    let actions: fn(&Recording) -> &DMatrix<f64> = |each| &each.truth.actions;
+    DataSet { rows, fresh: (columns(states), columns(actions)) }
+}
+
+/// What was learnt, on movements that were not shown.
+pub(crate) struct Judged {
+    /// Σ‖π̂ − π‖² over Σ‖π − mean π‖².
+    pub(crate) nupe: f64,
+    /// Shares of components within one and two error bars.
+    pub(crate) covered: [f64; 2],
+}
+
+pub(crate) fn judge(policy: &dyn LearntPolicy, (states, truth): &(DMatrix<f64>, DMatrix<f64>)) -> Judged {
+    let (mut learnt, mut bars) = (DMatrix::zeros(truth.nrows(), truth.ncols()), truth.clone());
+    for (at, state) in states.column_iter().enumerate() {
+        learnt.set_column(at, &policy.action(state));
+        assert!(policy.action_sd_into(state, bars.column_mut(at)));
+    }
+    let off = (&learnt - truth).abs();
+    let within = |times: f64| {
+        off.iter().zip(&bars).filter(|(off, bar)| **off <= times * **bar).count() as f64 / off.len() as f64
+    };
+    Judged { nupe: metrics::nupe(truth, &learnt).expect("a score"), covered: [within(1.0), within(2.0)] }
+}
