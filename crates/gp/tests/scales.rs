@@ -4,7 +4,7 @@
 
 mod systems;
 
-use gp::{Family, FrontEnd, LearntScales, Rows, SlopeGp};
+use gp::{Family, FrontEnd, LearntScales, PushTest, Rows, SlopeGp};
 use motion::scaled;
 use nalgebra::DVector;
 use rand::SeedableRng;
@@ -13,11 +13,15 @@ use systems::{ANGLES, HIMMELBLAU, System, WELLS};
 
 /// What is learnt where axis 1 was recorded in a unit so many times too small.
 fn learnt(system: &System, factor: f64, noise: f64) -> Option<LearntScales> {
-    let right = FrontEnd::Velocities.rows(&system.movements(0.0, noise, 1)).unwrap();
+    pushed(system, factor, (0.0, noise), PushTest::AssumeNone)
+}
+
+fn pushed(system: &System, factor: f64, (push, noise): (f64, f64), push_test: PushTest) -> Option<LearntScales> {
+    let right = FrontEnd::Velocities.rows(&system.movements(push, noise, 1)).unwrap();
     let factors = DVector::from_fn(system.dim, |axis, _| if axis == 1 { factor } else { 1.0 });
     let [states, velocities] = [right.states(), right.velocities()].map(|of| scaled(of, &factors));
     let rows = Rows::new(states, velocities, right.indices().to_vec()).unwrap();
-    let gp = SlopeGp { families: vec![Family::Smooth], ..SlopeGp::default() };
+    let gp = SlopeGp { families: vec![Family::Smooth], push_test, ..SlopeGp::default() };
     gp.learn_scales(&rows, &mut ChaCha8Rng::seed_from_u64(1)).unwrap()
 }
 
@@ -60,5 +64,19 @@ fn right_units_stay() {
         for noise in [0.0, 0.05] {
             assert_eq!(learnt(&system, 1.0, noise), None, "{} dimensions, noise {noise}", system.dim);
         }
+    }
+}
+
+/// Constraints that push, recorded in mixed units: from samples alone scales are wrong or none.
+#[test]
+fn units_are_found_where_constraints_push() {
+    for (system, noise, most) in [(ANGLES, 0.0, 0.02), (WELLS, 0.0, 0.02), (ANGLES, 0.02, 0.15)] {
+        for factor in [5.0, 1000.0] {
+            let learnt = pushed(&system, factor, (0.3, noise), PushTest::Fit).unwrap();
+            let error = worst_error(&learnt, factor);
+            assert!(error < most, "{} dimensions, noise {noise}, {factor}: {error:.1e} {learnt:?}", system.dim);
+        }
+        let right = pushed(&system, 1.0, (0.3, noise), PushTest::Fit);
+        assert_eq!(right, None, "{} dimensions, noise {noise}", system.dim);
     }
 }

@@ -1,6 +1,7 @@
 //! The rows that a fit learns from: steps 1 and 2 of it.
 
-use nalgebra::DMatrix;
+use motion::scaled;
+use nalgebra::{DMatrix, DVector};
 use rand::Rng;
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
@@ -44,6 +45,8 @@ pub struct RowsDropped {
 pub(crate) struct OfStretches {
     /// D (S23), (M).
     pub(crate) weights: Vec<f64>,
+    /// The whole velocity u of each row's sample, (n, M).
+    pub(crate) observed: DMatrix<f64>,
     /// Root mean square of the pushes A⁺b, in units of the state per second.
     pub(crate) push: f64,
 }
@@ -68,6 +71,28 @@ pub(crate) struct Kept {
     pub(crate) hyper: Vec<usize>,
     pub(crate) grouping: Grouping,
     pub(crate) dropped: RowsDropped,
+}
+
+impl Kept {
+    /// Whole velocities u, (n, M), also of rows of stretches.
+    pub(crate) fn observed(&self) -> &DMatrix<f64> {
+        self.of_stretches.as_ref().map_or(&self.velocities, |of| &of.observed)
+    }
+
+    /// The same rows with every axis multiplied by its factor, and certain velocities. A direction v of a stretch becomes Cv.
+    pub(crate) fn scaled(&self, factors: &DVector<f64>) -> Kept {
+        let mut velocities = scaled(&self.velocities, factors);
+        let of_stretches = self.of_stretches.as_ref().map(|of| {
+            let observed = scaled(&of.observed, factors);
+            for (mut along, u) in velocities.column_iter_mut().zip(observed.column_iter()) {
+                let length = along.dot(&u) / along.norm_squared();
+                along *= length;
+            }
+            OfStretches { observed, ..of.clone() }
+        });
+        let speeds = velocities.column_iter().map(|velocity| velocity.norm()).collect();
+        Kept { states: scaled(&self.states, factors), velocities, speeds, variances: None, of_stretches, ..self.clone() }
+    }
 }
 
 impl Selection {

@@ -15,7 +15,9 @@ use crate::left_out::LeftOut;
 use crate::left_out::comparison::{difference, t_of_mean};
 use crate::rows::kept::{Kept, Selection};
 use crate::slope::data::SlopeData;
+use crate::slope::push_test::PushTest;
 use crate::slope::slope_gp::SlopeGp;
+use crate::stretches::Stretches;
 use crate::{GpError, Rows};
 use quotient::least_error;
 
@@ -50,6 +52,8 @@ pub struct LearntScales {
 /// A fit in some units.
 struct Round {
     factors: DVector<f64>,
+    /// Whole velocities u, (n, M).
+    velocities: DMatrix<f64>,
     data: SlopeData,
     blocks: Vec<Block>,
     fit: FamilyFit,
@@ -58,13 +62,11 @@ struct Round {
 impl Round {
     /// With every axis multiplied by its factor; none without Cholesky factor.
     fn new(kept: &Kept, blocks: Vec<Block>, factors: DVector<f64>) -> Option<Round> {
-        let velocities = scaled(&kept.velocities, &factors);
-        let speeds: Vec<f64> = velocities.column_iter().map(|velocity| velocity.norm()).collect();
-        let states = scaled(&kept.states, &factors);
-        let kept = Kept { states, velocities, speeds, variances: None, ..kept.clone() };
-        let data = SlopeData::from_kept(&kept, vec![1.0; kept.speeds.len()]).ok()?;
+        let kept = kept.scaled(&factors);
+        let weights = kept.of_stretches.as_ref().map_or_else(|| vec![1.0; kept.speeds.len()], |of| of.weights.clone());
+        let data = SlopeData::from_kept(&kept, weights).ok()?;
         let fit = data.fit(&blocks, &kept.hyper, None)?;
-        Some(Round { factors, data, blocks, fit })
+        Some(Round { factors, velocities: kept.observed().clone(), data, blocks, fit })
     }
 
     fn left_out(&self) -> &LeftOut {
@@ -78,15 +80,20 @@ impl Round {
 
     /// The factors of the next round (S25); none without Cholesky factor.
     fn improved(&self) -> Option<DVector<f64>> {
-        let axes = self.data.axis_errors(&self.blocks, &self.fit)?;
+        let axes = self.data.axis_errors(&self.velocities, &self.blocks, &self.fit)?;
         Some(self.factors.component_mul(&least_error(&axes.errors, &axes.targets).map(f64::sqrt)))
     }
 
-    /// Left-out squared error of each trajectory, as a share of everything to predict.
+    /// Left-out squared error of each trajectory, at most that of predicting nothing, as a share of everything to predict.
     fn shares(&self) -> Vec<f64> {
-        let (residuals, all) = (&self.left_out().residuals, self.data.targets.norm_squared());
-        let share = |rows: &Vec<usize>| rows.iter().map(|&row| residuals[(row, 0)].powi(2)).sum::<f64>() / all;
-        self.data.groups.iter().map(share).collect()
+        let SlopeData { targets, noise_weights, groups, .. } = &self.data;
+        let weighed = |of: &DMatrix<f64>, rows: &[usize]| -> f64 {
+            rows.iter().map(|&row| of[(row, 0)].powi(2) / noise_weights[row]).sum()
+        };
+        let all: Vec<f64> = groups.iter().map(|rows| weighed(targets, rows)).collect();
+        let errors = groups.iter().map(|rows| weighed(&self.left_out().residuals, rows));
+        let everything: f64 = all.iter().sum();
+        errors.zip(&all).map(|(error, all)| error.min(*all) / everything).collect()
     }
 
     /// π̂ at the rows, in units of the recording.
@@ -99,7 +106,7 @@ impl Round {
 
 impl SlopeGp {
     /// Learns a factor for every axis with its first family; none if the units recorded are as good, or where nothing tells.
-    /// At most eight fits to 600 rows.
+    /// At most eight fits to 600 rows, and as many to rows of stretches where constraints may push and do.
     ///
     /// # Errors
     /// As [`SlopeGp::fit`].
@@ -111,35 +118,53 @@ impl SlopeGp {
             ..selection
         };
         let kept = few.keep(rows, rng)?;
-        let round = |factors| Round::new(&kept, self.families[0].blocks(self.trend), factors);
         let dim = kept.states.nrows();
         let spread = DVector::from_iterator(dim, kept.states.row_iter().map(|axis| axis.variance().sqrt()));
         if dim == 1 || spread.min() <= 0.0 {
             return Ok(None);
         }
-        let recorded = round(DVector::repeat(dim, 1.0));
-        let Some(recorded) = recorded.filter(|round| !round.left_out().is_nearly_exact()) else { return Ok(None) };
-        let mut factors = Some(spread.map(f64::recip));
-        let mut best: Option<Round> = None;
-        for _ in 0..ROUNDS {
-            let Some(now) = factors.take().and_then(round) else { break };
-            factors = now.improved();
-            if best.as_ref().is_none_or(|best| now.unexplained() < best.unexplained()) {
-                best = Some(now);
-            }
-        }
-        let plain = best.as_ref().and_then(|best| round(in_plain_units(&best.factors)));
-        let best = match (best, plain) {
-            (Some(best), Some(plain)) if plain.unexplained() <= best.unexplained() => Some(plain),
-            (best, _) => best,
+        let blocks = self.families[0].blocks(self.trend);
+        let of_samples = better_units(&kept, &blocks, &spread);
+        let of_stretches = match self.push_test {
+            PushTest::AssumeNone => None,
+            PushTest::Fit => stretches(rows, &kept, &few, &spread),
         };
-        // An axis that is worth next to nothing was explained away, not measured.
-        let sound = |best: &Round| {
-            let worth = best.factors.component_mul(&spread);
-            worth.max() <= MOST_WORTH * worth.min()
-        };
-        Ok(best.filter(sound).and_then(|best| accepted(recorded, best, &kept)))
+        let of_stretches = of_stretches.and_then(|kept| better_units(&kept, &blocks, &spread));
+        let found = of_samples.into_iter().chain(of_stretches);
+        Ok(found.min_by(|a, b| a.left_out.1.total_cmp(&b.left_out.1)))
     }
+}
+
+/// Rows of stretches, found with every axis divided by its `spread`, in the recorded units; none where nothing pushes.
+fn stretches(rows: &Rows, kept: &Kept, selection: &Selection, spread: &DVector<f64>) -> Option<Kept> {
+    let [states, velocities] = [rows.states(), rows.velocities()].map(|of| scaled(of, &spread.map(f64::recip)));
+    let alike = Rows::new(states, velocities, rows.indices().to_vec()).ok()?;
+    let stretches = Stretches::of(&alike).filter(Stretches::push_is_significant)?;
+    Some(stretches.rows(&alike, kept, selection)?.scaled(spread))
+}
+
+/// Units in which these rows are predicted better than in the recorded ones; axes vary by `spread`.
+fn better_units(kept: &Kept, blocks: &[Block], spread: &DVector<f64>) -> Option<LearntScales> {
+    let round = |factors| Round::new(kept, blocks.to_vec(), factors);
+    let recorded = round(DVector::repeat(spread.len(), 1.0)).filter(|round| !round.left_out().is_nearly_exact())?;
+    let mut factors = Some(spread.map(f64::recip));
+    let mut best: Option<Round> = None;
+    for _ in 0..ROUNDS {
+        let Some(now) = factors.take().and_then(round) else { break };
+        factors = now.improved();
+        if best.as_ref().is_none_or(|best| now.unexplained() < best.unexplained()) {
+            best = Some(now);
+        }
+    }
+    let best = best?;
+    let best = match round(in_plain_units(&best.factors)) {
+        Some(plain) if plain.unexplained() <= best.unexplained() => plain,
+        _ => best,
+    };
+    // An axis that is worth next to nothing was explained away, not measured.
+    let worth = best.factors.component_mul(spread);
+    let sound = worth.max() <= MOST_WORTH * worth.min();
+    if sound { accepted(recorded, best, kept) } else { None }
 }
 
 /// Factors relative to their median, with a power of ten, times 1 or a degree in radians, in place of what is close to it: most

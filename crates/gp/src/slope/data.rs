@@ -139,11 +139,15 @@ impl SlopeData {
         kappas().filter(move |&kappa| kappa > from).map_while(level).map(fit)
     }
 
-    /// (S25): products of left-out errors, and of targets, of every pair of axes, for targets n_ij u_ij of one axis j each. None
-    /// without Cholesky factor.
-    pub(crate) fn axis_errors(&self, blocks: &[Block], fit: &FamilyFit) -> Option<AxisErrors> {
-        let (dim, rows) = self.n.shape();
-        let targets = DMatrix::from_fn(rows, dim, |row, axis| self.targets[(row, 0)] * self.n[(axis, row)].powi(2));
+    /// (S25): products of left-out errors, and of targets, of every pair of axes, for targets n_ij u_ij of one axis j each, with
+    /// whole velocities u, (n, M). None without Cholesky factor.
+    pub(crate) fn axis_errors(
+        &self,
+        velocities: &DMatrix<f64>,
+        blocks: &[Block],
+        fit: &FamilyFit,
+    ) -> Option<AxisErrors> {
+        let targets = self.n.component_mul(velocities).transpose() / self.speed;
         let conditions = Conditions { targets: &targets, ..self.conditions() };
         let covariance = self.covariance(blocks).sum(&fit.amplitudes);
         let level = Level::at(&covariance, fit.level.found, fit.level.kappa, &conditions)?;

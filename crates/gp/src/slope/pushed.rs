@@ -7,9 +7,6 @@ use crate::slope::search::{Outcome, outcome};
 use crate::slope::slope_gp::SlopeGp;
 use crate::stretches::Stretches;
 
-/// (S24): mean square of pushes, in units of what noise alone gives, below which nothing pushes.
-const LEAST_SIGNIFICANCE: f64 = 4.0;
-
 /// A search on rows of stretches.
 pub(crate) struct Pushed {
     pub(crate) outcome: Outcome,
@@ -22,10 +19,7 @@ pub(crate) fn pushed(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) ->
     if gp.push_test == PushTest::AssumeNone || plain.taken.left_out.is_nearly_exact() {
         return None;
     }
-    let stretches = Stretches::of(rows)?;
-    if stretches.significance() < LEAST_SIGNIFICANCE {
-        return None;
-    }
+    let stretches = Stretches::of(rows).filter(Stretches::push_is_significant)?;
     let of_stretches = stretches.rows(rows, kept, &gp.selection().ok()?)?;
     let outcome = outcome(gp, &of_stretches).ok()?;
     let better = outcome.taken.left_out.r_squared > plain.taken.left_out.r_squared;

@@ -10,6 +10,8 @@ use motion::{SampleIndex, upper_median};
 
 /// Rows are used whose squared length exceeds this share of the mean square of all.
 const LEAST: f64 = 1e-12;
+/// (S24): mean square of pushes, in units of what noise alone gives, below which nothing pushes.
+const LEAST_SIGNIFICANCE: f64 = 4.0;
 /// Share of the movements that must have stretches: models of different movements are not compared.
 const COVERED: f64 = 0.5;
 
@@ -53,6 +55,7 @@ impl Stretches {
             speeds: lengths,
             variances: None,
             of_stretches: Some(OfStretches {
+                observed: rows.velocities().select_columns(&used),
                 weights: relative(equations.iter().map(variance).collect()),
                 push: self.push(),
             }),
@@ -88,8 +91,13 @@ impl Stretches {
         (squares / self.stretches.len() as f64).sqrt()
     }
 
+    /// (S24).
+    pub(crate) fn push_is_significant(&self) -> bool {
+        self.significance() >= LEAST_SIGNIFICANCE
+    }
+
     /// Mean square of the pushes along normals, in units of what noise would give: about 1 where nothing pushes.
-    pub(crate) fn significance(&self) -> f64 {
+    fn significance(&self) -> f64 {
         let all = self.stretches.iter().map(|stretch| stretch.significance);
         let (squares, normals) =
             all.fold((0.0, 0), |(squares, normals), (square, count)| (squares + square, normals + count));

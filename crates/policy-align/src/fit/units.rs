@@ -1,6 +1,6 @@
 //! The unit of each channel, learnt where constraints tell of another than the recorded one.
 
-use gp::{AutoFit, Hypothesis, LearntScales, Rows, SlopeGp};
+use gp::{AutoFit, Hypothesis, LearntScales, PushTest, Rows, SlopeGp};
 use motion::Decision;
 use nalgebra::DVector;
 use prepare::numbers::squared_error;
@@ -26,7 +26,8 @@ pub(super) fn learnt(
         return Ok(None);
     }
     let family = report.family;
-    let gp = SlopeGp { families: vec![family], max_rows: options.max_rows, ..SlopeGp::default() };
+    let (families, push_test) = (vec![family], PushTest::Fit);
+    let gp = SlopeGp { families, push_test, max_rows: options.max_rows, ..SlopeGp::default() };
     let Some(scales) = gp.learn_scales(rows, &mut ChaCha8Rng::seed_from_u64(options.seed))? else { return Ok(None) };
     let factors = DVector::from_iterator(scales.factors.len(), scales.factors.iter().map(|&factor| in_short(factor)));
     let mut rescaled = prepared.rescaled(&factors).map_err(|error| super::recorded_rows::cleaning(&error))?;
