@@ -46,7 +46,7 @@ mod urdf;
 pub use collision::{Clearance, MeshShape, Nearby, SelfCollision};
 pub use error::KinematicsError;
 pub use forward::{Chain, LinkPoses, Workspace};
-pub use model::{Attachment, CollisionShape, Joint, JointMotion, LinkId, MotionKind, RobotModel};
+pub use model::{Attachment, CollisionShape, Inertial, Joint, JointMotion, LinkId, MotionKind, RobotModel};
 pub use resolved_rate::ResolvedRate;
 pub use urdf::{Element, Geometry, JointKind, UrdfProblem, UrdfWarning};
 

@@ -34,6 +34,7 @@ pub(crate) struct Learning {
     init_d: NumberOrWord,
     folds: usize,
     max_rows: usize,
+    robot: Option<String>,
     seed: u64,
 }
 
@@ -67,6 +68,7 @@ impl Learning {
             folds: self.folds,
             seed: self.seed,
             max_rows: self.max_rows,
+            robot: self.robot,
         })
     }
 }

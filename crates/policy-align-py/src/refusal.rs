@@ -62,6 +62,7 @@ impl Refusal {
     pub(crate) fn fit(error: &FitError, place: &str) -> Self {
         let otherwise = match error {
             FitError::Option { .. } => "another number",
+            FitError::Robot { .. } => "a URDF whose joints are named like the channels",
             _ => "more recordings, or Demonstrations.check() for what is wrong with these",
         };
         let refusal = Refusal::of_text(&error.to_string(), place, otherwise);

@@ -19,6 +19,12 @@ pub enum FitError {
         /// What it must satisfy.
         requirement: &'static str,
     },
+    /// A robot's mass matrix cannot be used.
+    #[error("robot: {reason}")]
+    Robot {
+        /// Why.
+        reason: String,
+    },
     /// A Gaussian process refuses.
     #[error(transparent)]
     Gp(#[from] GpError),

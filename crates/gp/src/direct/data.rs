@@ -55,7 +55,7 @@ impl DirectData {
             None => vec![1.0; kept.speeds.len()],
             Some(variances) => direct_weights(variances, unit_squared),
         };
-        Self::of(&kept.states, &kept.velocities, weights, kept.groups.clone())
+        Self::of(&kept.states, kept.observed(), weights, kept.groups.clone())
     }
 
     fn of(

@@ -4,7 +4,7 @@ use rand::Rng;
 use serde::{Deserialize, Serialize};
 
 use crate::direct::direct_gp::{DirectFit, DirectGp};
-use crate::left_out::comparison::difference;
+use crate::left_out::comparison::{difference, t_of_mean};
 use crate::reading::Hypothesis;
 use crate::reading::numbers::{Compared, ReadingNumbers, TrajectoryErrors};
 use crate::slope::fit::SlopeFit;
@@ -125,6 +125,14 @@ impl AutoFit {
     /// Held-out errors of each trajectory.
     pub fn left_out(&self) -> &[TrajectoryErrors] {
         &self.left_out
+    }
+
+    /// t of the mean, over trajectories, of how much better `other` predicts them left out than this: the difference of the slope
+    /// GPs' errors, at most those of predicting nothing, as shares of what there is to predict. Both are of the same trajectories.
+    pub fn gain_t(&self, other: &AutoFit) -> f64 {
+        let share = |of: &TrajectoryErrors| (of.slope / of.seen).min(1.0);
+        let gains: Vec<f64> = self.left_out.iter().zip(&other.left_out).map(|(own, of)| share(own) - share(of)).collect();
+        t_of_mean(&gains)
     }
 
     /// The policy for constrained movement.

@@ -6,7 +6,7 @@ use rand::Rng;
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
-use crate::rows::MOST_ROWS;
+use crate::rows::{MOST_ROWS, parts_along};
 use crate::rows::thinning::thinned;
 use crate::{GpError, Rows};
 
@@ -45,8 +45,6 @@ pub struct RowsDropped {
 pub(crate) struct OfStretches {
     /// D (S23), (M).
     pub(crate) weights: Vec<f64>,
-    /// The whole velocity u of each row's sample, (n, M).
-    pub(crate) observed: DMatrix<f64>,
     /// Root mean square of the pushes A⁺b, in units of the state per second.
     pub(crate) push: f64,
 }
@@ -56,10 +54,12 @@ pub(crate) struct OfStretches {
 pub(crate) struct Kept {
     /// (n, M).
     pub(crate) states: DMatrix<f64>,
-    /// (n, M).
+    /// The part of the velocity along the direction of each row, (n, M): the whole but in rows of stretches and of momenta.
     pub(crate) velocities: DMatrix<f64>,
-    /// r = |u|, (M).
+    /// r, the length of that part, (M).
     pub(crate) speeds: Vec<f64>,
+    /// Whole velocities, (n, M), where rows have parts.
+    pub(crate) whole: Option<DMatrix<f64>>,
     pub(crate) variances: Option<Vec<f64>>,
     /// Where they are of stretches.
     pub(crate) of_stretches: Option<OfStretches>,
@@ -74,24 +74,18 @@ pub(crate) struct Kept {
 }
 
 impl Kept {
-    /// Whole velocities u, (n, M), also of rows of stretches.
+    /// Whole velocities u, (n, M).
     pub(crate) fn observed(&self) -> &DMatrix<f64> {
-        self.of_stretches.as_ref().map_or(&self.velocities, |of| &of.observed)
+        self.whole.as_ref().unwrap_or(&self.velocities)
     }
 
     /// The same rows with every axis multiplied by its factor, and certain velocities. A direction v of a stretch becomes Cv.
     pub(crate) fn scaled(&self, factors: &DVector<f64>) -> Kept {
-        let mut velocities = scaled(&self.velocities, factors);
-        let of_stretches = self.of_stretches.as_ref().map(|of| {
-            let observed = scaled(&of.observed, factors);
-            for (mut along, u) in velocities.column_iter_mut().zip(observed.column_iter()) {
-                let length = along.dot(&u) / along.norm_squared();
-                along *= length;
-            }
-            OfStretches { observed, ..of.clone() }
-        });
+        let whole = self.whole.as_ref().map(|whole| scaled(whole, factors));
+        let along = scaled(&self.velocities, factors);
+        let velocities = whole.as_ref().map_or_else(|| along.clone(), |whole| parts_along(whole, &along));
         let speeds = velocities.column_iter().map(|velocity| velocity.norm()).collect();
-        Kept { states: scaled(&self.states, factors), velocities, speeds, variances: None, of_stretches, ..self.clone() }
+        Kept { states: scaled(&self.states, factors), velocities, speeds, whole, variances: None, ..self.clone() }
     }
 }
 
@@ -152,10 +146,12 @@ impl Selection {
             return Err(GpError::TooFewTrajectories { found: groups.len() });
         }
         dropped.thinned = dropped.thinned.min(rows.len());
+        let velocities = rows.parts().select_columns(&usable);
         Ok(Kept {
             states: rows.states().select_columns(&usable),
-            velocities: rows.velocities().select_columns(&usable),
-            speeds: usable.iter().map(|&row| speeds[row]).collect(),
+            speeds: velocities.column_iter().map(|part| part.norm()).collect(),
+            velocities,
+            whole: rows.momenta().map(|_| rows.velocities().select_columns(&usable)),
             variances: rows.variances().map(|variances| usable.iter().map(|&row| variances[row]).collect()),
             of_stretches: None,
             hyper: positions(&usable, &hyper),

@@ -6,6 +6,8 @@ pub(crate) mod noise_weights;
 pub(crate) mod scaling;
 pub(crate) mod thinning;
 
+use std::borrow::Cow;
+
 use motion::{SampleIndex, upper_median};
 use nalgebra::DMatrix;
 
@@ -21,6 +23,8 @@ pub struct Rows {
     velocities: DMatrix<f64>,
     variances: Option<Vec<f64>>,
     indices: Vec<SampleIndex>,
+    /// Mu, (n, M), where constraints are at right angles in another metric.
+    momenta: Option<DMatrix<f64>>,
     noise: Option<f64>,
     switches: Option<Vec<Vec<f64>>>,
 }
@@ -55,7 +59,7 @@ impl Rows {
                 return Err(GpError::Overflow { what: if what == "state" { "distance" } else { "speed" } });
             }
         }
-        Ok(Rows { states, velocities, variances: None, indices, noise: None, switches: None })
+        Ok(Rows { states, velocities, variances: None, indices, momenta: None, noise: None, switches: None })
     }
 
     /// Adds uncertainty of the velocities: `variances` (M), of each row's velocity along every axis.
@@ -70,6 +74,28 @@ impl Rows {
         match variances.iter().position(|&variance| !(0.0..1e300).contains(&variance)) {
             Some(row) => Err(GpError::Value { what: "variance", row, value: variances[row] }),
             None => Ok(Rows { variances: Some(variances), ..self }),
+        }
+    }
+
+    /// Constraints are at right angles in the metric M(x): u = π − M⁻¹Aᵀ(AM⁻¹Aᵀ)⁻¹(Aπ), as where a robot's mass matrix weighs its joints.
+    /// `momenta` (n, M) holds M(x)u of each row, from which (S30) follows in place of (S1).
+    ///
+    /// # Errors
+    /// [`GpError::Lengths`], or [`GpError::Value`] for what is not finite or where uᵀMu is not positive though u ≠ 0.
+    pub fn with_momenta(self, momenta: DMatrix<f64>) -> Result<Self, GpError> {
+        let found = if momenta.nrows() == self.dim() { momenta.ncols() } else { 0 };
+        if found != self.len() {
+            return Err(GpError::Lengths { what: "momenta", found, expected: self.len() });
+        }
+        let power = |row: usize| momenta.column(row).dot(&self.velocities.column(row));
+        let sound = |&row: &usize| {
+            let power = power(row);
+            momenta.column(row).iter().all(|value| value.is_finite())
+                && (power > 0.0 && power.is_finite() || self.velocities.column(row).amax() == 0.0)
+        };
+        match (0..self.len()).find(|row| !sound(row)) {
+            Some(row) => Err(GpError::Value { what: "momentum along the velocity", row, value: power(row) }),
+            None => Ok(Rows { momenta: Some(momenta), ..self }),
         }
     }
 
@@ -90,6 +116,7 @@ impl Rows {
             velocities: self.velocities.select_columns(&rows),
             variances: self.variances.map(|variances| rows.iter().map(|&row| variances[row]).collect()),
             indices: rows.iter().map(|&row| self.indices[row]).collect(),
+            momenta: self.momenta.map(|momenta| momenta.select_columns(&rows)),
             ..self
         }
     }
@@ -107,6 +134,19 @@ impl Rows {
     /// Variance of every row's velocity along each axis, (M); none if they are certain.
     pub fn variances(&self) -> Option<&[f64]> {
         self.variances.as_deref()
+    }
+
+    /// M(x)u of each row, (n, M); none in the metric of the coordinates themselves.
+    pub fn momenta(&self) -> Option<&DMatrix<f64>> {
+        self.momenta.as_ref()
+    }
+
+    /// The part of each velocity along the direction of its equation, (n, M): along M(x)u (S30), or all of it (S1).
+    pub(crate) fn parts(&self) -> Cow<'_, DMatrix<f64>> {
+        match &self.momenta {
+            Some(momenta) => Cow::Owned(parts_along(&self.velocities, momenta)),
+            None => Cow::Borrowed(&self.velocities),
+        }
     }
 
     /// Which sample of which trajectory every row is.
@@ -156,4 +196,14 @@ impl Rows {
     pub fn dim(&self) -> usize {
         self.states.nrows()
     }
+}
+
+/// The part of each velocity along a direction of any length; zero along none. All (n, M).
+pub(crate) fn parts_along(velocities: &DMatrix<f64>, directions: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut parts = directions.clone();
+    for (mut part, velocity) in parts.column_iter_mut().zip(velocities.column_iter()) {
+        let unit = part.try_normalize(0.0).unwrap_or_else(|| part.clone_owned());
+        part.copy_from(&(&unit * unit.dot(&velocity)));
+    }
+    parts
 }

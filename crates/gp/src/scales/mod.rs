@@ -105,7 +105,7 @@ impl Round {
 }
 
 impl SlopeGp {
-    /// Learns a factor for every axis with its first family; none if the units recorded are as good, or where nothing tells.
+    /// Learns a factor for every axis with its first family; none if the units recorded are as good, in another metric, or where nothing tells.
     /// At most eight fits to 600 rows, and as many to rows of stretches where constraints may push and do.
     ///
     /// # Errors
@@ -120,7 +120,7 @@ impl SlopeGp {
         let kept = few.keep(rows, rng)?;
         let dim = kept.states.nrows();
         let spread = DVector::from_iterator(dim, kept.states.row_iter().map(|axis| axis.variance().sqrt()));
-        if dim == 1 || spread.min() <= 0.0 {
+        if dim == 1 || spread.min() <= 0.0 || rows.momenta().is_some() {
             return Ok(None);
         }
         let blocks = self.families[0].blocks(self.trend);

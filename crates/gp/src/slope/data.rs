@@ -52,7 +52,8 @@ impl SlopeData {
         if found != expected {
             return Err(GpError::Lengths { what: "noise weights", found, expected });
         }
-        let speeds: Vec<f64> = rows.velocities().column_iter().map(|velocity| velocity.norm()).collect();
+        let parts = rows.parts();
+        let speeds: Vec<f64> = parts.column_iter().map(|part| part.norm()).collect();
         for (what, values) in [("speed", &speeds), ("noise weight", &noise_weights)] {
             if let Some(row) = values.iter().position(|&value| !(value > 0.0 && value.is_finite())) {
                 return Err(GpError::Value { what, row, value: values[row] });
@@ -63,7 +64,7 @@ impl SlopeData {
             groups.entry(index.trajectory).or_default().push(row);
         }
         let groups = groups.into_values().collect();
-        Self::of(rows.states(), rows.velocities(), &speeds, noise_weights, groups)
+        Self::of(rows.states(), &parts, &speeds, noise_weights, groups)
     }
 
     pub(crate) fn from_kept(kept: &Kept, noise_weights: Vec<f64>) -> Result<Self, GpError> {

@@ -47,10 +47,11 @@ pub(crate) struct Stretches {
 }
 
 impl Stretches {
-    /// Looks for stretches in all movements; none in so many dimensions, or in so few samples, that nothing can be found.
+    /// Looks for stretches in all movements; none in another metric, in so many dimensions, or in so few samples, that
+    /// nothing can be found.
     /// Takes time with the number of movements and the cube of the dimension.
     pub(crate) fn of(rows: &Rows) -> Option<Stretches> {
-        if rows.dim() < 2 || rows.dim() > MOST_DIMENSIONS {
+        if rows.dim() < 2 || rows.dim() > MOST_DIMENSIONS || rows.momenta().is_some() {
             return None;
         }
         let at: Vec<usize> = (0..rows.len()).collect();

@@ -53,9 +53,9 @@ impl Stretches {
             states: rows.states().select_columns(&used),
             velocities: DMatrix::from_columns(&columns),
             speeds: lengths,
+            whole: Some(rows.velocities().select_columns(&used)),
             variances: None,
             of_stretches: Some(OfStretches {
-                observed: rows.velocities().select_columns(&used),
                 weights: relative(equations.iter().map(variance).collect()),
                 push: self.push(),
             }),

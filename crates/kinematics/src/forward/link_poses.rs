@@ -74,6 +74,10 @@ impl LinkPoses<'_> {
         Ok(())
     }
 
+    pub(crate) fn robot(&self) -> &RobotModel {
+        self.robot
+    }
+
     #[cfg(feature = "collision")]
     pub(crate) fn n_joints(&self) -> usize {
         self.robot.n_joints()

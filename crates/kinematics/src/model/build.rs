@@ -1,14 +1,14 @@
 use nalgebra::IsometryMatrix3;
 
 use super::{
-    CollisionShape, Joint, LinkId, RobotModel,
+    CollisionShape, Inertial, Joint, LinkId, RobotModel,
     mimic::{self, is_active},
     tree::{self, Branch},
 };
 use crate::{
     JointKind, KinematicsError,
     nodes::{Coupling, Motion, Node, padded},
-    urdf::{self, UrdfCollision, UrdfJoint, UrdfMotion, UrdfRobot},
+    urdf::{self, UrdfCollision, UrdfInertial, UrdfJoint, UrdfMotion, UrdfRobot},
 };
 
 impl RobotModel {
@@ -31,6 +31,7 @@ impl RobotModel {
             couplings: Vec::new(),
             joints: urdf.joints.iter().filter_map(active).collect(),
             collision_shapes: urdf.collisions.map(|shapes| placed_shapes(shapes, &branches)),
+            inertials: urdf.inertials.map(|inertials| placed_inertials(inertials, &branches)),
             name: urdf.name,
             warnings: urdf.warnings,
         };
@@ -82,12 +83,26 @@ impl TryFrom<&urdf_rs::Robot> for RobotModel {
     }
 }
 
-/// Collision shapes with their links in the order of the tree.
-fn placed_shapes(shapes: Vec<UrdfCollision>, branches: &[Branch]) -> Vec<CollisionShape> {
+/// Where in the tree each link of the document stands.
+fn places(branches: &[Branch]) -> Vec<LinkId> {
     let mut places = vec![LinkId(0); branches.len()];
     for (place, branch) in branches.iter().enumerate() {
         places[branch.link] = LinkId(place);
     }
+    places
+}
+
+/// Inertia with its links in the order of the tree.
+fn placed_inertials(inertials: Vec<UrdfInertial>, branches: &[Branch]) -> Vec<Inertial> {
+    let places = places(branches);
+    let placed =
+        |UrdfInertial { link, origin, mass, tensor }| Inertial { link: places[link], origin, mass, tensor };
+    inertials.into_iter().map(placed).collect()
+}
+
+/// Collision shapes with their links in the order of the tree.
+fn placed_shapes(shapes: Vec<UrdfCollision>, branches: &[Branch]) -> Vec<CollisionShape> {
+    let places = places(branches);
     let placed = |UrdfCollision { link, origin, geometry }| CollisionShape { link: places[link], origin, geometry };
     shapes.into_iter().map(placed).collect()
 }

@@ -13,7 +13,7 @@ use std::sync::Arc;
 pub use attachment::{Attachment, JointMotion, MotionKind};
 pub use joint::Joint;
 pub(crate) use joint::placeable;
-use nalgebra::IsometryMatrix3;
+use nalgebra::{IsometryMatrix3, Matrix3};
 
 use crate::{
     Geometry, KinematicsError, UrdfWarning,
@@ -42,6 +42,7 @@ pub struct RobotModel {
     pub(crate) couplings: Vec<Coupling>,
     pub(crate) joints: Arc<[Joint]>,
     pub(crate) collision_shapes: Result<Vec<CollisionShape>, KinematicsError>,
+    pub(crate) inertials: Result<Vec<Inertial>, KinematicsError>,
     pub(crate) warnings: Vec<UrdfWarning>,
 }
 
@@ -54,6 +55,19 @@ pub struct CollisionShape {
     pub origin: IsometryMatrix3<f64>,
     /// The shape in its own frame.
     pub geometry: Geometry,
+}
+
+/// How a link resists motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inertial {
+    /// The link.
+    pub link: LinkId,
+    /// The centre of mass and the axes of `tensor`, in the link's frame, metres.
+    pub origin: IsometryMatrix3<f64>,
+    /// Kilograms.
+    pub mass: f64,
+    /// Inertia tensor about the centre of mass, kg m².
+    pub tensor: Matrix3<f64>,
 }
 
 impl RobotModel {
@@ -117,6 +131,14 @@ impl RobotModel {
     /// [`KinematicsError::Urdf`] with the link whose `<collision>` is at fault; kinematics works all the same.
     pub fn collision_shapes(&self) -> Result<&[CollisionShape], KinematicsError> {
         self.collision_shapes.as_deref().map_err(Clone::clone)
+    }
+
+    /// Masses and inertia tensors of the links that have any.
+    ///
+    /// # Errors
+    /// [`KinematicsError::Urdf`] with the link whose `<inertial>` is at fault; kinematics works all the same.
+    pub fn inertials(&self) -> Result<&[Inertial], KinematicsError> {
+        self.inertials.as_deref().map_err(Clone::clone)
     }
 
     /// Parts of the file that were ignored.

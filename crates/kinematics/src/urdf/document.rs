@@ -1,7 +1,7 @@
 use roxmltree::Node;
 
 use super::{
-    Element, UrdfCollision, UrdfJoint, UrdfProblem, UrdfWarning, geometry, joint, lenient,
+    Element, UrdfCollision, UrdfInertial, UrdfJoint, UrdfProblem, UrdfWarning, geometry, inertial, joint, lenient,
     tag::{children, name_of},
     version::Version,
 };
@@ -15,6 +15,8 @@ pub(crate) struct UrdfRobot {
     pub(crate) joints: Vec<UrdfJoint>,
     /// Faults here are for those who ask for collision shapes; kinematics does not need them.
     pub(crate) collisions: Result<Vec<UrdfCollision>, KinematicsError>,
+    /// Faults here are for those who ask for inertia.
+    pub(crate) inertials: Result<Vec<UrdfInertial>, KinematicsError>,
     pub(crate) warnings: Vec<UrdfWarning>,
 }
 
@@ -61,6 +63,10 @@ fn read_robot(robot: Node<'_, '_>) -> Result<UrdfRobot, KinematicsError> {
         .map(|(index, node)| geometry::read(node, index, &links[index], version, &mut warnings))
         .collect::<Result<Vec<_>, _>>()
         .map(|links| links.concat());
+    let inertials = children(robot, "link")
+        .enumerate()
+        .filter_map(|(index, node)| inertial::read(node, index, &links[index], version, &mut warnings).transpose())
+        .collect();
     let name = robot.attribute("name").unwrap_or_default().to_owned();
-    Ok(UrdfRobot { name, links, joints, collisions, warnings })
+    Ok(UrdfRobot { name, links, joints, collisions, inertials, warnings })
 }

@@ -4,7 +4,7 @@ use nalgebra::{IsometryMatrix3, Translation3, Vector3};
 use urdf_rs::{Joint, JointLimit, JointType, Link, Pose, Robot};
 
 use super::{
-    Element, Geometry, JointKind, Mimic, UrdfCollision, UrdfJoint, UrdfMotion, UrdfProblem, UrdfRobot,
+    Element, Geometry, JointKind, Mimic, UrdfCollision, UrdfInertial, UrdfJoint, UrdfMotion, UrdfProblem, UrdfRobot,
     joint::{direction, in_order},
     number::{bounded, each, finite, size},
     origin::fixed_axes,
@@ -25,7 +25,9 @@ pub(crate) fn from_urdf_rs(robot: &Robot) -> Result<UrdfRobot, KinematicsError> 
     let collisions = robot.links.iter().enumerate();
     let collisions = collisions.map(|(index, link)| read_collisions(link, index)).collect::<Result<Vec<_>, _>>();
     let collisions = collisions.map(|links| links.concat());
-    Ok(UrdfRobot { name: robot.name.clone(), links, joints, collisions, warnings: Vec::new() })
+    let inertials = robot.links.iter().enumerate();
+    let inertials = inertials.filter_map(|(index, link)| read_inertial(link, index).transpose()).collect();
+    Ok(UrdfRobot { name: robot.name.clone(), links, joints, collisions, inertials, warnings: Vec::new() })
 }
 
 fn named(name: &str, unnamed: impl FnOnce() -> Element, attribute: &'static str) -> Result<String, KinematicsError> {
@@ -100,6 +102,13 @@ fn read_collisions(link: &Link, index: usize) -> Result<Vec<UrdfCollision>, Kine
     };
     let refused = |problem| KinematicsError::urdf(Element::Link(link.name.clone()), problem);
     link.collision.iter().map(|collision| read(collision).map_err(refused)).collect()
+}
+
+fn read_inertial(link: &Link, index: usize) -> Result<Option<UrdfInertial>, KinematicsError> {
+    let urdf_rs::Inertial { origin: pose, mass, inertia } = &link.inertial;
+    let urdf_rs::Inertia { ixx, ixy, ixz, iyy, iyz, izz } = *inertia;
+    let read = origin(pose).and_then(|pose| UrdfInertial::of(index, pose, mass.value, [ixx, ixy, ixz, iyy, iyz, izz]));
+    read.map_err(|problem| KinematicsError::urdf(Element::Link(link.name.clone()), problem))
 }
 
 fn shape(geometry: &urdf_rs::Geometry) -> Result<Geometry, UrdfProblem> {

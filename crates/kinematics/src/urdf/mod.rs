@@ -6,6 +6,7 @@ mod element;
 #[cfg(feature = "urdf-rs")]
 mod from_urdf_rs;
 mod geometry;
+mod inertial;
 mod joint;
 mod lenient;
 mod number;
@@ -23,6 +24,7 @@ pub use element::{Element, UrdfWarning};
 pub(crate) use from_urdf_rs::from_urdf_rs;
 pub use geometry::Geometry;
 pub(crate) use geometry::UrdfCollision;
+pub(crate) use inertial::UrdfInertial;
 pub use joint::JointKind;
 pub(crate) use joint::{Mimic, UrdfJoint, UrdfMotion};
 pub(crate) use number::bounded;

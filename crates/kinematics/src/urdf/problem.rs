@@ -181,6 +181,12 @@ pub enum UrdfProblem {
         /// The length, in metres.
         value: f64,
     },
+    /// A mass below zero.
+    #[error("mass.value: {mass} is negative; masses are not")]
+    NegativeMass {
+        /// The mass, in kilograms.
+        mass: f64,
+    },
     /// Several links have no parent.
     #[error("it has several roots: {}; exactly one link may be without a parent joint", roots.join(", "))]
     SeveralRoots {

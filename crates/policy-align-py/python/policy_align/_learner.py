@@ -36,6 +36,7 @@ class Learner(Estimator):
     jumps: str
     wraps: str
     max_rows: int
+    robot: str | os.PathLike[str] | None
     random_state: int
     n_jobs: int | None
 
@@ -48,6 +49,7 @@ class Learner(Estimator):
         jumps: str = "auto",
         wraps: str = "auto",
         max_rows: int = 400,
+        robot: str | os.PathLike[str] | None = None,
         random_state: int = 1,
         n_jobs: int | None = None,
     ) -> None:
@@ -55,7 +57,8 @@ class Learner(Estimator):
         factors of channels' units. ``smooth``, of positions: "auto", "off", a window of samples (9) or of seconds ("0.2s").
         ``jumps``: "auto" cuts movements where one step is far too long, "keep" does not. ``wraps``: with "auto" angles that
         jump by a whole turn go on instead, with "keep" they jump. ``max_rows``: samples learnt from, at most.
-        ``random_state``: the seed, a whole number. ``n_jobs``: threads, None or -1 for all; results do not depend on it.
+        ``robot``: a URDF whose joints are named like the channels; its mass matrix is tried as the metric in which constraints are
+        at right angles. ``random_state``: the seed, a whole number. ``n_jobs``: threads, None or -1 for all; results do not depend on it.
         """
         self._store(locals())
 
@@ -260,6 +263,7 @@ class Learner(Estimator):
             "init_d": getattr(self, "init_d", "auto"),
             "folds": getattr(self, "folds", 5),
             "max_rows": self.max_rows,
+            "robot": _text(getattr(self, "robot", None)),
             "seed": self.random_state,
         }
 
@@ -279,6 +283,13 @@ def _demonstrations(
     if any(given is not None for given in (dt, times, velocities, lengths)):
         raise TypeError("Demonstrations have their own times and velocities")
     return X
+
+
+def _text(path: str | os.PathLike[str] | None) -> str | None:
+    if path is None:
+        return None
+    with open(path, encoding="utf-8") as file:
+        return file.read()
 
 
 def _threads(n_jobs: int | None) -> int:

@@ -95,6 +95,7 @@ class AutoGp(Learner):
         jumps: str = "auto",
         wraps: str = "auto",
         max_rows: int = 400,
+        robot: str | os.PathLike[str] | None = None,
         random_state: int = 1,
         n_jobs: int | None = None,
     ) -> None:

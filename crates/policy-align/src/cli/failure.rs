@@ -82,8 +82,11 @@ impl Failure {
     }
 
     pub(crate) fn fit(error: &FitError, place: String) -> Self {
-        let exit = if matches!(error, FitError::Option { .. }) { Exit::Usage } else { Exit::Refused };
-        let otherwise = "more recordings, or `policy-align check` to examine these";
+        let (exit, otherwise) = match error {
+            FitError::Option { .. } => (Exit::Usage, "another number"),
+            FitError::Robot { .. } => (Exit::Usage, "a URDF whose joints are named like the channels"),
+            _ => (Exit::Refused, "more recordings, or `policy-align check` to examine these"),
+        };
         Failure::of_text(exit, &error.to_string(), place, otherwise)
     }
 

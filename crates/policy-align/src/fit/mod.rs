@@ -4,6 +4,7 @@ mod actions;
 mod aligning;
 mod decision;
 mod halves;
+mod inertia;
 mod options;
 mod progress;
 mod recorded_rows;
@@ -40,16 +41,22 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
     let rows = rows(prepared)?;
     progress.begin(1, steps, "learning with and without constraints")?;
     let readings = learn(&rows, options)?;
-    let rescaled = units::learnt(prepared, &rows, &readings, options)?;
-    let (prepared, rows, readings) = match &rescaled {
-        Some(rescaled) => {
+    let weighed = inertia::weighed(prepared, &rows, &readings, options)?;
+    let rescaled = match &weighed {
+        Some(_) => None,
+        None => units::learnt(prepared, &rows, &readings, options)?,
+    };
+    let metric = weighed.as_ref().map(|weighed| weighed.decision.clone());
+    let (prepared, rows, readings) = match (weighed, &rescaled) {
+        (Some(inertia::Weighed { rows, readings, .. }), _) => (prepared, rows, readings),
+        (None, Some(rescaled)) => {
             let rows = recorded_rows::rows(rescaled)?;
             let readings = learn(&rows, options)?;
             (rescaled, rows, readings)
         }
-        None => (prepared, rows, readings),
+        (None, None) => (prepared, rows, readings),
     };
-    let mut decisions = prepared.decisions.clone();
+    let mut decisions: Vec<Decision> = prepared.decisions.iter().cloned().chain(metric).collect();
     decisions.push(learner_decision(options, &readings));
     let aligned = match options.learner {
         LearnerChoice::PolicyAlign => {

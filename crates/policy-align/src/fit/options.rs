@@ -21,6 +21,8 @@ pub struct FitOptions {
     pub seed: u64,
     /// Rows that Gaussian processes learn from, at most, spread in time along the movements (`--max-rows`).
     pub max_rows: usize,
+    /// Text of a URDF whose joints are the channels (`--robot`): its mass matrix is tried as the metric of constraints.
+    pub robot: Option<String>,
 }
 
 /// The learner.
@@ -48,6 +50,7 @@ impl Default for FitOptions {
             folds: 5,
             seed: 1,
             max_rows: 400,
+            robot: None,
         }
     }
 }

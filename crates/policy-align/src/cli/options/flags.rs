@@ -1,6 +1,7 @@
 //! Flags that several commands share. Each group is a table of a configuration file, with the same names.
 
 use std::collections::HashSet;
+use std::path::{Path, PathBuf};
 
 use align::Bandwidth;
 use clap::builder::PossibleValuesParser;
@@ -149,6 +150,9 @@ pub(crate) struct FitFlags {
     /// Most samples that a Gaussian process learns from [default: 400]
     #[arg(long, value_name = "NUMBER")]
     max_rows: Option<usize>,
+    /// Robot whose joints are the channels: tries its mass matrix as the metric of constraints
+    #[arg(long, value_name = "FILE.urdf")]
+    robot: Option<PathBuf>,
     /// Episodes to evaluate on instead of learning from them
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) hold_out: Vec<String>,
@@ -216,8 +220,14 @@ impl FitFlags {
             folds: self.folds.unwrap_or(default.folds),
             seed: self.seed.unwrap_or(default.seed),
             max_rows: self.max_rows.unwrap_or(default.max_rows),
+            robot: self.robot.as_ref().map(|path| urdf(path)).transpose()?,
         })
     }
+}
+
+/// The text of a robot.
+pub(crate) fn urdf(path: &Path) -> Result<String, Failure> {
+    demo_io::read_text(path).map_err(|error| Failure::reading(path, error))
 }
 
 fn chosen<C: Choice>(word: Option<&str>, flag: &str) -> Result<Option<C>, Failure> {

@@ -5,6 +5,7 @@ use policy_align::{ConstraintSet, JointLimits, Model, RollOut};
 use serde::{Deserialize, Serialize};
 
 use crate::cli::failure::{Failure, displayed};
+use crate::cli::options::flags::urdf;
 
 /// How a policy is followed: table `[rollout]`.
 #[derive(Debug, Clone, Default, PartialEq, Args, Serialize, Deserialize)]
@@ -35,8 +36,7 @@ impl RollOutFlags {
         let limits = match &self.limits {
             None => None,
             Some(path) => {
-                let text = demo_io::read_text(path).map_err(|error| Failure::reading(path, error))?;
-                let limits = JointLimits::from_urdf(&text, &channels);
+                let limits = JointLimits::from_urdf(&urdf(path)?, &channels);
                 Some(limits.map_err(|reason| {
                     Failure::usage(reason, displayed(path), "a URDF with joints named like the channels")
                 })?)
