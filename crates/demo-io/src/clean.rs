@@ -6,7 +6,7 @@ use self::finite::make_finite;
 use crate::names::selection::flags;
 use crate::raw::{RawEpisode, RawRecordings, positive, remark};
 use crate::rows::roles;
-use crate::{Fault, ReadError, ReadOptions};
+use crate::{Fault, Nan, ReadError, ReadOptions};
 use motion::Finding;
 
 /// Checks and repairs every episode, as the options say.
@@ -19,8 +19,10 @@ pub(crate) fn clean(drafts: &mut RawRecordings, options: &ReadOptions) -> Result
     degrees_to_radians(drafts, options)?;
     let names = drafts.names();
     let mut episodes = Vec::with_capacity(drafts.episodes.len());
+    let (mut missing, mut samples) = (0, 0);
     for mut draft in drafts.episodes.drain(..) {
-        make_finite(&mut draft, &names, drafts.word, options.nan)?;
+        samples += draft.len();
+        missing += make_finite(&mut draft, &names, drafts.word, options.nan)?;
         if options.sort {
             sort(&mut draft);
         }
@@ -30,6 +32,7 @@ pub(crate) fn clean(drafts: &mut RawRecordings, options: &ReadOptions) -> Result
             None => episodes.push(draft),
         }
     }
+    drafts.findings.extend(not_recorded(missing, samples, options.nan));
     for draft in &mut episodes {
         from_zero(draft);
         drafts.findings.extend(leave_out_duplicates(draft, drafts.word));
@@ -68,6 +71,16 @@ fn leave_out_constant(drafts: &mut RawRecordings) {
         let mut column = changes.iter().cycle();
         draft.positions.retain(|_| *column.next().unwrap_or(&true));
     }
+}
+
+/// What became of samples that were not finite.
+fn not_recorded(missing: usize, samples: usize, nan: Nan) -> Option<Finding> {
+    let what = match nan {
+        Nan::Drop => "were left out",
+        Nan::Refuse | Nan::Fill => "were interpolated",
+    };
+    let what = format!("{missing} of {samples} samples were not finite and {what}");
+    (missing > 0).then(|| remark(what, "check the recorder: what is missing is often missing where it matters"))
 }
 
 /// `--units m`, `--units x=mm`.

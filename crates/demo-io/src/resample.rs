@@ -13,7 +13,7 @@ const MOST_NUMBERS: f64 = 1e9;
 #[non_exhaustive]
 pub enum ResampleError {
     /// No rate.
-    #[error("a rate of {rate} Hz is none; give a positive, finite number")]
+    #[error("{rate} Hz is not a rate; give a positive, finite number")]
     Rate {
         /// As given.
         rate: f64,
@@ -61,6 +61,9 @@ pub fn resampled(recordings: &Recordings, rate: f64) -> Result<Recordings, Resam
 }
 
 fn along(episode: &Episode, rate: f64) -> Result<Episode, ResampleError> {
+    if episode.n_samples() < 2 {
+        return Ok(episode.clone());
+    }
     let seconds = episode.times.duration();
     // Stamps that were rounded do not cost the last sample.
     let steps = (seconds * rate * (1.0 + 1e-9)).floor() as usize;

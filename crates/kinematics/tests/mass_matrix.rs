@@ -43,12 +43,14 @@ fn kinetic_energy(robot: &RobotModel, q: &DVector<f64>, velocity: &DVector<f64>)
     let step = 1e-5;
     let (before, after) = (frames(robot, &(q - velocity * step)), frames(robot, &(q + velocity * step)));
     let each = before.iter().zip(&after).zip(robot.inertials().unwrap());
-    let energy = |((before, after), inertial): ((&IsometryMatrix3<f64>, &IsometryMatrix3<f64>), &kinematics::Inertial)| {
-        let v: Vector3<f64> = (after.translation.vector - before.translation.vector) / (2.0 * step);
-        let turn: Matrix3<f64> = (before.rotation.inverse() * after.rotation).into_inner() / (2.0 * step);
-        let omega = 0.5 * Vector3::new(turn[(2, 1)] - turn[(1, 2)], turn[(0, 2)] - turn[(2, 0)], turn[(1, 0)] - turn[(0, 1)]);
-        0.5 * (inertial.mass * v.norm_squared() + omega.dot(&(inertial.tensor * omega)))
-    };
+    let energy =
+        |((before, after), inertial): ((&IsometryMatrix3<f64>, &IsometryMatrix3<f64>), &kinematics::Inertial)| {
+            let v: Vector3<f64> = (after.translation.vector - before.translation.vector) / (2.0 * step);
+            let turn: Matrix3<f64> = (before.rotation.inverse() * after.rotation).into_inner() / (2.0 * step);
+            let omega = 0.5
+                * Vector3::new(turn[(2, 1)] - turn[(1, 2)], turn[(0, 2)] - turn[(2, 0)], turn[(1, 0)] - turn[(0, 1)]);
+            0.5 * (inertial.mass * v.norm_squared() + omega.dot(&(inertial.tensor * omega)))
+        };
     each.map(energy).sum()
 }
 

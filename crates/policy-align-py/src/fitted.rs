@@ -170,7 +170,7 @@ impl Fitted {
             let Recorded { recordings, place, .. } = &*inner;
             let prepared = prepare(recordings, &options)
                 .map_err(|error| Refusal::prepare(&error, place, &names_of(recordings)))?;
-            evaluate(model.learnt.policy(), &prepared, None).map_err(|error| Refusal::evaluate(&error))
+            evaluate(&model, &prepared, None).map_err(|error| Refusal::evaluate(&error))
         })?;
         let judged: Result<Evaluation, Refusal> = judged;
         Ok(serde_json::json!(judged?).to_string())

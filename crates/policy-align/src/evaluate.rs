@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use crate::fit::{held_out, rows};
-use crate::{FitError, Prepared};
+use crate::{FitError, Model, Prepared};
 
 /// Errors of a policy on movements.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -19,7 +19,7 @@ pub struct Evaluation {
     pub episodes: Vec<Option<f64>>,
     /// uᵀπ̂/r − r of every sample that moves, in units of the scaled state per second.
     pub residuals: Vec<f64>,
-    /// Share of samples within the policy's support.
+    /// Share of samples within the data that the model was learnt from: [`ModelPolicy::is_supported`](crate::ModelPolicy::is_supported).
     pub supported: f64,
     /// Error of the unconstrained policy; none without truth.
     pub nupe: Option<f64>,
@@ -41,11 +41,8 @@ pub struct Truth {
 /// # Errors
 /// [`GpError`] if the movements cannot be cleaned, or the policy has another dimension; [`EvaluateError::Metrics`] if the
 /// truth does not fit the movements.
-pub fn evaluate(
-    policy: &dyn LearntPolicy,
-    prepared: &Prepared,
-    truth: Option<&Truth>,
-) -> Result<Evaluation, EvaluateError> {
+pub fn evaluate(model: &Model, prepared: &Prepared, truth: Option<&Truth>) -> Result<Evaluation, EvaluateError> {
+    let policy = model.learnt.policy();
     let dim = prepared.demonstrations.dim();
     if policy.dim() != dim {
         return Err(EvaluateError::Dimension { policy: policy.dim(), movements: dim });
@@ -67,10 +64,18 @@ pub fn evaluate(
         policy_error: total.to_judge(),
         episodes: (0..prepared.demonstrations.n_trajectories()).map(of_trajectory).collect(),
         residuals: residuals(policy, &rows),
-        supported: 1.0 - total.unsupported as f64 / total.samples.max(1) as f64,
+        supported: supported(model, &rows),
         nupe,
         ncpe,
     })
+}
+
+/// Share of the rows' states at which the model supports its policy.
+fn supported(model: &Model, rows: &gp::Rows) -> f64 {
+    let (policy, scales) = (model.policy(), model.scales());
+    let within =
+        rows.states().column_iter().filter(|state| policy.is_supported(state.component_div(&scales).as_view()));
+    within.count() as f64 / rows.len() as f64
 }
 
 fn residuals(policy: &dyn LearntPolicy, rows: &gp::Rows) -> Vec<f64> {

@@ -40,7 +40,7 @@ pub fn leave_constraints_out(
         let (out, others): (Vec<usize>, Vec<usize>) =
             (0..prepared.constraints.len()).partition(|&k| prepared.constraints[k].as_ref() == Some(label));
         let learnt = fit(&only(prepared, &others), options, progress)?;
-        let evaluation = evaluate(learnt.learnt.policy(), &in_units_of(&learnt, only(prepared, &out))?, None)?;
+        let evaluation = evaluate(&learnt, &in_units_of(&learnt, only(prepared, &out))?, None)?;
         Ok(ConstraintLeftOut { constraint: label.clone(), learnt_from: others.len(), evaluation })
     };
     labels.into_iter().map(without).collect()

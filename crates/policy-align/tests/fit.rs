@@ -191,15 +191,15 @@ fn other_movements_and_the_truth() {
         actions: columns(others.iter().map(|recording| recording.truth.actions.clone()).collect()),
         projectors: Some(projectors.collect()),
     };
-    let found = evaluate(learnt.learnt.policy(), &prepared, Some(&truth)).unwrap();
+    let found = evaluate(&learnt, &prepared, Some(&truth)).unwrap();
     assert!(found.slope_error < 1e-9 && found.policy_error < 1e-9, "{found:?}");
     assert!(found.nupe.unwrap() < 1e-9 && found.ncpe.unwrap() <= found.nupe.unwrap());
     assert_eq!((found.episodes.len(), found.residuals.len()), (20, 800));
     assert_eq!(found.supported, 1.0);
-    let without = evaluate(learnt.learnt.policy(), &prepared, None).unwrap();
+    let without = evaluate(&learnt, &prepared, None).unwrap();
     assert_eq!((without.nupe, without.slope_error), (None, found.slope_error));
     // A policy that stands still explains nothing.
     let wrong = Truth { projectors: Some(Vec::new()), ..truth };
-    let error = evaluate(learnt.learnt.policy(), &prepared, Some(&wrong)).unwrap_err();
+    let error = evaluate(&learnt, &prepared, Some(&wrong)).unwrap_err();
     assert_eq!(error, EvaluateError::Projectors { found: 0, expected: 800 });
 }

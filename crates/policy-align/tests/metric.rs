@@ -63,7 +63,11 @@ fn recordings(metric: impl Fn(&Vector2<f64>) -> Matrix2<f64>) -> Recordings {
 fn learnt(recordings: &Recordings, robot: Option<String>) -> Result<Model, FitError> {
     let prepared = prepare(recordings, &PrepareOptions::default()).unwrap();
     let never = AtomicBool::new(false);
-    fit(&prepared, &FitOptions { robot, ..FitOptions::default() }, &mut Progress { cancelled: &never, report: &mut |_| () })
+    fit(
+        &prepared,
+        &FitOptions { robot, ..FitOptions::default() },
+        &mut Progress { cancelled: &never, report: &mut |_| () },
+    )
 }
 
 fn error(model: &Model) -> f64 {

@@ -63,6 +63,77 @@ fn episodes_that_are_left_out_are_named_everywhere() {
     assert!(fs::read_to_string(folder.path().join("again.csv")).unwrap().contains("single,"));
 }
 
+/// toy.csv with a missing number in every fifth sample, and with samples at rest at the end of episode 3.
+fn gaps() -> String {
+    let text = fs::read_to_string(examples().join("toy.csv")).unwrap();
+    let lines = text.lines().enumerate().map(|(number, line)| match line.rsplit_once(',') {
+        Some((before, _)) if number > 0 && number % 5 == 0 => format!("{before},nan"),
+        _ => line.to_owned(),
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn samples_that_are_left_out_are_counted() {
+    let folder = folder("gaps.csv", gaps());
+    let ran = run_in(folder.path(), "fit gaps.csv --nan drop -o gaps.json");
+    assert!(ran.err.contains("320 of 1600 samples were not finite and were left out"), "{}", ran.err);
+    let findings = |file: &str| json(&folder.path().join(file))["trust"]["findings"].to_string();
+    assert!(findings("gaps.json").contains("320 of 1600") && findings("gaps.trust.json").contains("320 of 1600"));
+    let checked = run_in(folder.path(), "check gaps.csv --nan drop");
+    assert!(checked.out.contains("policy-align fit gaps.csv --nan drop -o model.json"), "{}", checked.out);
+}
+
+#[test]
+fn samples_at_rest_that_are_removed_are_counted() {
+    let mut text = String::from("episode,t,x,y\n");
+    for (k, i) in (0..6).flat_map(|k| (0..60).map(move |i| (k, i))) {
+        let moved = f64::from(i.min(39)) * 0.05;
+        writeln!(text, "{k},{},{},{}", f64::from(i) * 0.1, f64::from(k) + moved.sin(), moved * f64::from(k - 3))
+            .unwrap();
+    }
+    let folder = folder("rest.csv", text);
+    let checked: Value =
+        serde_json::from_str(&run_in(folder.path(), "check rest.csv --trim-still --json").out).unwrap();
+    let findings = checked["findings"].to_string();
+    assert!(findings.contains("of 360 samples were at rest"), "{findings}");
+}
+
+/// A copy of a held-out episode would be learnt from.
+#[test]
+fn copies_of_held_out_episodes_are_not_learnt_from() {
+    let folder = folder("odd.csv", odd());
+    let ran = run_in(folder.path(), "fit odd.csv --hold-out 3 -o odd.json");
+    assert_eq!(ran.code, Some(0), "{}", ran.err);
+    let model = json(&folder.path().join("odd.json"));
+    assert_eq!(model["data"]["episodes"], 39);
+    let findings = model["trust"]["findings"].to_string();
+    assert!(findings.contains("copies of held-out episodes were left out: copy"), "{findings}");
+}
+
+/// Recordings in another unit lie outside the data, whatever a linear policy says there.
+#[test]
+fn recordings_far_outside_the_data_are_not_supported() {
+    let folder = folder("far.csv", far());
+    fs::copy(examples().join("toy.csv"), folder.path().join("toy.csv")).unwrap();
+    run_in(folder.path(), "fit toy.csv -o toy.json");
+    let ran = run_in(folder.path(), "evaluate toy.json far.csv");
+    assert!(ran.out.contains("0 % of the samples within the data"), "{}", ran.out);
+    assert!(ran.out.contains("most samples are outside the data"), "{}", ran.out);
+}
+
+/// toy.csv with all numbers but episode and time multiplied by 1000.
+fn far() -> String {
+    let text = fs::read_to_string(examples().join("toy.csv")).unwrap();
+    let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    let times = |(field, name): (&str, &&str)| match field.parse::<f64>() {
+        Ok(number) if !["episode", "t", "time"].contains(name) => (1000.0 * number).to_string(),
+        _ => field.to_owned(),
+    };
+    let line = |line: &str| line.split(',').zip(&header).map(times).collect::<Vec<_>>().join(",");
+    text.lines().map(line).collect::<Vec<_>>().join("\n")
+}
+
 /// A NumPy array (K, N, 2) of half precision: movements towards (1, 1).
 fn half_precision() -> Vec<u8> {
     let (episodes, samples) = (10, 30);

@@ -163,8 +163,13 @@ fn errors_have_three_lines_and_a_code() {
         ("export toy.json --to mcap -o toy.csv", 2, "end in .mcap"),
         ("export toy.json --to mcap --from 99,99", 1, "outside the data"),
         ("export toy.json --to c --from 1,1", 2, "--to mcap"),
-        ("convert toy.csv -o slow.csv --resample 0", 2, "a rate of 0 Hz"),
+        ("convert toy.csv -o slow.csv --resample 0", 2, "0 Hz is not a rate"),
         ("convert toy.csv -o slow.csv --resample 0.1", 2, "a higher rate"),
+        ("fit toy.csv -o toy.csv", 2, "would write over it"),
+        ("check toy.csv --html ./toy.csv", 2, "would write over it"),
+        ("convert toy.csv -o toy.csv", 2, "would write over it"),
+        ("export toy.json --to c -o toy.json", 2, "would write over it"),
+        ("fit toy.csv --scale x=0", 2, "--scale z=10"),
         ("check toy.csv --html none/page.html", 3, "cannot be written"),
     ] {
         let ran = run(line);

@@ -6,10 +6,11 @@ use crate::{Fault, Nan, ReadError};
 /// At most this many samples in a row are interpolated.
 const LONGEST_FILL: usize = 3;
 
-pub(super) fn make_finite(draft: &mut RawEpisode, names: &[String], word: &str, nan: Nan) -> Result<(), ReadError> {
+/// Returns how many samples were not finite.
+pub(super) fn make_finite(draft: &mut RawEpisode, names: &[String], word: &str, nan: Nan) -> Result<usize, ReadError> {
     let n = names.len();
     let bad: Vec<usize> = (0..draft.len()).filter(|&sample| !is_finite(draft, sample, n)).collect();
-    let Some(&first) = bad.first() else { return Ok(()) };
+    let (Some(&first), count) = (bad.first(), bad.len()) else { return Ok(0) };
     match nan {
         Nan::Refuse => Err(not_finite(draft, first, names, word)),
         Nan::Drop => {
@@ -27,7 +28,8 @@ pub(super) fn make_finite(draft: &mut RawEpisode, names: &[String], word: &str, 
             interpolate(draft, run, before, after, n);
             Ok(())
         }),
-    }
+    }?;
+    Ok(count)
 }
 
 fn is_finite(draft: &RawEpisode, sample: usize, n: usize) -> bool {

@@ -131,7 +131,8 @@ impl AutoFit {
     /// GPs' errors, at most those of predicting nothing, as shares of what there is to predict. Both are of the same trajectories.
     pub fn gain_t(&self, other: &AutoFit) -> f64 {
         let share = |of: &TrajectoryErrors| (of.slope / of.seen).min(1.0);
-        let gains: Vec<f64> = self.left_out.iter().zip(&other.left_out).map(|(own, of)| share(own) - share(of)).collect();
+        let gains: Vec<f64> =
+            self.left_out.iter().zip(&other.left_out).map(|(own, of)| share(own) - share(of)).collect();
         t_of_mean(&gains)
     }
 

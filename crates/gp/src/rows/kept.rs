@@ -6,8 +6,8 @@ use rand::Rng;
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
-use crate::rows::{MOST_ROWS, parts_along};
 use crate::rows::thinning::thinned;
+use crate::rows::{MOST_ROWS, parts_along};
 use crate::{GpError, Rows};
 
 /// Which rows a fit keeps.

@@ -95,8 +95,7 @@ fn places(branches: &[Branch]) -> Vec<LinkId> {
 /// Inertia with its links in the order of the tree.
 fn placed_inertials(inertials: Vec<UrdfInertial>, branches: &[Branch]) -> Vec<Inertial> {
     let places = places(branches);
-    let placed =
-        |UrdfInertial { link, origin, mass, tensor }| Inertial { link: places[link], origin, mass, tensor };
+    let placed = |UrdfInertial { link, origin, mass, tensor }| Inertial { link: places[link], origin, mass, tensor };
     inertials.into_iter().map(placed).collect()
 }
 

@@ -78,7 +78,11 @@ impl Failure {
             | PrepareError::Smoothing { .. } => Exit::Usage,
             _ => Exit::Refused,
         };
-        Failure::of_text(exit, &error.to_string(), place, "other recordings")
+        let otherwise = match error {
+            PrepareError::Scale { .. } => "a positive number, as --scale z=10",
+            _ => "other recordings",
+        };
+        Failure::of_text(exit, &error.to_string(), place, otherwise)
     }
 
     pub(crate) fn fit(error: &FitError, place: String) -> Self {

@@ -3,6 +3,7 @@
 mod clock;
 mod describe;
 pub(crate) mod failure;
+mod given;
 mod lines;
 pub(crate) mod options;
 mod pages;

@@ -68,9 +68,8 @@ fn momenta(
             q[joint] = state[place] / scales[place];
         }
         let mass = robot.forward_kinematics(q.as_view(), &mut workspace)?.mass_matrix()?;
-        let scaled = DMatrix::from_fn(joints.len(), joints.len(), |i, j| {
-            mass[(joints[i], joints[j])] / (scales[i] * scales[j])
-        });
+        let scaled =
+            DMatrix::from_fn(joints.len(), joints.len(), |i, j| mass[(joints[i], joints[j])] / (scales[i] * scales[j]));
         let product = scaled * &momentum;
         momentum.copy_from(&product);
     }

@@ -66,7 +66,8 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
         _ => None,
     };
     let numbers = numbers(prepared, options, &readings, aligned.as_ref(), &rows);
-    let findings: Vec<Finding> = prepared.findings.iter().cloned().chain(pushed(&readings, options.learner)).collect();
+    let own = prepared.findings.iter().cloned();
+    let findings: Vec<Finding> = pushed(&readings, options.learner).into_iter().chain(own).collect();
     let trust =
         judge(VerdictInput { numbers, findings: &findings, state: &prepared.state, episodes: &prepared.episodes });
     let learnt = match (options.learner, aligned) {

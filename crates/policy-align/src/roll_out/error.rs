@@ -44,7 +44,7 @@ pub enum RollOutError {
         joint: String,
     },
     /// A duration or a step that cannot be.
-    #[error("{name} is {value}: it must be positive and finite")]
+    #[error("{name} is {}: it must be positive and finite", short(*.value))]
     NotPositive {
         /// "seconds".
         name: &'static str,
@@ -52,7 +52,7 @@ pub enum RollOutError {
         value: f64,
     },
     /// More samples than the limit.
-    #[error("{samples} samples exceed the limit of {} million", LONGEST / 1_000_000)]
+    #[error("{samples:.1e} samples exceed the limit of {} million", LONGEST / 1_000_000)]
     TooLong {
         /// How many it would be.
         samples: f64,

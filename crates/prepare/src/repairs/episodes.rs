@@ -15,7 +15,7 @@ pub(crate) fn movements(
 ) -> Result<Vec<Episode>, PrepareError> {
     let longest = recordings.episodes.iter().map(Episode::n_samples).max().ok_or(PrepareError::Empty)?;
     let dim = recordings.state.len();
-    if 2 * longest < dim {
+    if longest > 1 && 2 * longest < dim {
         return Err(PrepareError::LooksTransposed { dim, samples: longest });
     }
     let mut movements: Vec<Episode> = recordings.episodes.iter().map(|episode| episode.scaled(scales)).collect();

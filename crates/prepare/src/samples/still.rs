@@ -1,6 +1,6 @@
 //! Samples at rest, before a movement begins and after it has ended.
 
-use motion::{Demonstrations, Episode, Recordings, Verdict};
+use motion::{Demonstrations, Episode, Finding, Recordings, Verdict};
 use nalgebra::DMatrix;
 
 use crate::notes::{Notes, and_more};
@@ -57,13 +57,22 @@ pub fn trim_still(recordings: &mut Recordings) {
     let moving = recordings.episodes.iter().filter_map(|episode| episode.trajectory().ok());
     let Ok(demonstrations) = Demonstrations::new(moving.collect()) else { return };
     let rest = Rest::of(&demonstrations, noise::of(&demonstrations).positions.as_deref());
+    let (before, mut removed) = (recordings.episodes.iter().map(Episode::n_samples).sum::<usize>(), 0);
     for episode in &mut recordings.episodes {
         let (start, end) = rest.ends(&episode.positions);
+        removed += start + end;
         if start + end > 0 {
             *episode = episode.part(start, episode.n_samples() - end);
             let first = episode.times.stamps()[0];
             episode.times.stamps_mut().iter_mut().for_each(|time| *time -= first);
         }
+    }
+    if removed > 0 {
+        recordings.findings.push(Finding {
+            verdict: Verdict::Good,
+            what: format!("{removed} of {before} samples were at rest at an end of their episode and were removed"),
+            next: "without --trim-still they stay".to_owned(),
+        });
     }
 }
 

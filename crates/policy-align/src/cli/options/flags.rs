@@ -150,7 +150,7 @@ pub(crate) struct FitFlags {
     /// Most samples that a Gaussian process learns from [default: 400]
     #[arg(long, value_name = "NUMBER")]
     max_rows: Option<usize>,
-    /// Robot whose joints are the channels: tries its mass matrix as the metric of constraints
+    /// Robot with these joints: tries its mass matrix as the metric
     #[arg(long, value_name = "FILE.urdf")]
     robot: Option<PathBuf>,
     /// Episodes to evaluate on instead of learning from them

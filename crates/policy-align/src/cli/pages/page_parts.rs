@@ -54,13 +54,18 @@ pub(crate) fn opening(
     }
 }
 
+/// With a full stop, unless it ends in another mark.
+fn ended(sentence: &str) -> String {
+    if sentence.ends_with(['.', '?', '!']) { sentence.to_owned() } else { format!("{sentence}.") }
+}
+
 fn found(finding: &Finding) -> Markup {
     let label = match finding.verdict {
         Verdict::Good => "Remark",
         Verdict::Doubtful => "Doubtful",
         Verdict::DoNotUse => "Do not use",
     };
-    html! { li { b { (label) ": " } (finding.what) ". " span .next { "Next: " (finding.next) "." } } }
+    html! { li { b { (label) ": " } (finding.what) ". " span .next { "Next: " (ended(&finding.next)) } } }
 }
 
 /// A table. In a narrow window each row becomes a block, in which cells name their columns.

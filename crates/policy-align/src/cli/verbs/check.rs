@@ -2,18 +2,21 @@ use std::cmp::Reverse;
 use std::path::PathBuf;
 
 use clap::Args;
-use policy_align::{Finding, Prepared, Verdict};
+use policy_align::{Finding, LeftOut, Prepared, Verdict};
 use prepare::{directions, prepare};
 use serde_json::json;
-use text::quoted;
 
 use crate::cli::failure::{Exit, Failure};
+use crate::cli::given::{again, no_input};
 use crate::cli::lines::{Lines, counted, short};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
 use crate::cli::pages::check_page::check_page;
 use crate::cli::recorded::{named, read, unreported};
 use crate::cli::session::{Output, Session, write};
+
+/// Episodes left out that are named.
+const NAMED: usize = 4;
 
 /// Examine recordings before learning
 #[derive(Debug, Args)]
@@ -41,6 +44,9 @@ impl Check {
         let config = Config::of(session)?;
         let flags = config.under("read", &self.read)?;
         let options = config.under("prepare", &self.prepare)?.options(flags.dt)?;
+        if let Some(path) = &self.html {
+            no_input(path, &self.files)?;
+        }
         let recordings = read(session, &self.files, &flags)?;
         let prepared = prepare(&recordings, &options).map_err(|error| Failure::prepare(&error, named(&self.files)))?;
         let refused = prepared.findings.iter().any(|finding| finding.verdict == Verdict::DoNotUse);
@@ -70,8 +76,7 @@ impl Check {
         if refused {
             return Ok(Output { text: lines.into_text(), exit });
         }
-        let given = self.files.iter().map(|file| quoted(file)).collect::<Vec<_>>().join(" ");
-        Ok(Output { text: lines.next(&format!("policy-align fit {given} -o model.json")), exit })
+        Ok(Output { text: lines.next(&format!("policy-align fit {} -o model.json", again(&["--html"]))), exit })
     }
 }
 
@@ -91,11 +96,8 @@ pub(crate) fn about(prepared: &Prepared, files: &str, lines: &mut Lines) {
             if velocities { " with velocities" } else { "" }
         ),
     );
-    if let Some(first) = prepared.left_out.first() {
-        lines.add(
-            "left out",
-            &format!("{} ({}: {})", counted(prepared.left_out.len(), "episode"), first.episode, first.why),
-        );
+    if let Some(left_out) = left_out(&prepared.left_out) {
+        lines.add("left out", &left_out);
     }
     let range = |channel: &policy_align::StateChannel| {
         let unit = channel.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
@@ -109,6 +111,14 @@ pub(crate) fn about(prepared: &Prepared, files: &str, lines: &mut Lines) {
     for decision in &prepared.decisions {
         lines.add(&decision.what, &format!("{} ({})", decision.value, decision.why));
     }
+}
+
+/// Episodes that were left out, the first with their reasons; none if there are none.
+pub(crate) fn left_out(left_out: &[LeftOut]) -> Option<String> {
+    let reasons = left_out.iter().take(NAMED).map(|one| format!("{}: {}", one.episode, one.why));
+    let more = (left_out.len() > NAMED).then(|| format!("and {} more", left_out.len() - NAMED));
+    let reasons: Vec<String> = reasons.chain(more).collect();
+    (!left_out.is_empty()).then(|| format!("{} ({})", counted(left_out.len(), "episode"), reasons.join("; ")))
 }
 
 /// Every finding that casts doubt, the worst first, and remarks as far as there is room for them, in lines.

@@ -4,6 +4,7 @@ use clap::Args;
 use text::quoted;
 
 use crate::cli::failure::{Exit, Failure};
+use crate::cli::given::no_input;
 use crate::cli::lines::{Lines, amount};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::ReadFlags;
@@ -37,6 +38,7 @@ pub(crate) struct Convert {
 impl Convert {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let reading = Config::of(session)?.under("read", &self.read)?;
+        no_input(&self.output, &self.files)?;
         let mut recordings = read(session, &self.files, &reading)?;
         if let Some(rate) = self.resample {
             recordings = demo_io::resampled(&recordings, rate).map_err(|error| {

@@ -70,7 +70,7 @@ impl Evaluate {
             return Err(Failure::usage(what, named(&self.files), remedy));
         }
         let truth = self.truth(session, &reading, &prepared, &model)?;
-        let judged = evaluate(model.learnt.policy(), &prepared, truth.as_ref()).map_err(|error| {
+        let judged = evaluate(&model, &prepared, truth.as_ref()).map_err(|error| {
             let remedy = "recordings without left-out samples, and a column of the true policy for each channel";
             Failure::new(Exit::Refused, error.to_string(), named(&self.files), remedy)
         })?;
@@ -195,6 +195,10 @@ fn tell(prepared: &Prepared, judged: &Evaluation, lines: &mut Lines) {
         lines.add("worst", &format!("episode {name}: {} relative to the motion", short(error)));
     }
     lines.add("support", &format!("{} % of the samples within the data", short(100.0 * judged.supported)));
+    if judged.supported < 0.5 {
+        let advice = "errors there say nothing of the policy: same units, same channels?";
+        lines.add("warning", &format!("most samples are outside the data that the model was learnt from; {advice}"));
+    }
     if let Some(nupe) = judged.nupe {
         lines.add("truth", &format!("nUPE {} (error of the unconstrained policy)", short(nupe)));
     }

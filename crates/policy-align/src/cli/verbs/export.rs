@@ -6,6 +6,7 @@ use policy_align::{CSource, ExportError, Model, Precision, spread_starts, to_onn
 use text::quoted;
 
 use crate::cli::failure::{Exit, Failure, displayed};
+use crate::cli::given::no_input;
 use crate::cli::lines::{Lines, counted, list, size};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::numbers;
@@ -84,6 +85,7 @@ impl Export {
                 Failure::new(Exit::Refused, error.to_string(), displayed(&self.model), remedy)
             }
         })?;
+        no_input(&output, std::slice::from_ref(&self.model))?;
         write(&output, &bytes)?;
         let mut lines = Lines::default();
         lines.add("written", &format!("{} ({})", output.display(), size(bytes.len())));

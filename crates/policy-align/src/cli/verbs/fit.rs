@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use clap::Args;
 use demo_io::TempFile;
-use motion::Recordings;
+use motion::{Episode, Recordings};
 use policy_align::{
     Decision, Evaluation, Finding, Model, PrepareOptions, Prepared, Progress, Verdict, checksum_of, evaluate, fit,
     prepare,
@@ -15,6 +15,7 @@ use text::quoted;
 use crate::cli::clock::now;
 use crate::cli::describe::verdict;
 use crate::cli::failure::{Exit, Failure};
+use crate::cli::given::no_input;
 use crate::cli::lines::{Lines, amount, counted, size, squared_error};
 use crate::cli::options::config::{Config, printed};
 use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags};
@@ -22,7 +23,7 @@ use crate::cli::pages::trust_page::trust_page;
 use crate::cli::recorded::{base_name, named, read, summaries, unreported};
 use crate::cli::session::{Output, Session};
 use crate::cli::trust_files::{MEMBER, trust_files, warn_of_others};
-use crate::cli::verbs::check::findings;
+use crate::cli::verbs::check::{findings, left_out};
 
 /// Learn a policy and report how far to trust it
 #[derive(Debug, Args)]
@@ -62,6 +63,7 @@ impl Fit {
         if self.print_config {
             return Ok(Output::done(printed(&reading, &preparing, &learning)?));
         }
+        no_input(&self.output, &self.files)?;
         let (prepare_options, fit_options) = (preparing.options(reading.dt)?, learning.options()?);
         let place = || named(&self.files);
         let recordings = read(session, &self.files, &reading)?;
@@ -124,9 +126,10 @@ impl Fit {
         }
         let mut lines = Lines::default();
         let data = &model.data;
-        let left_out =
-            if data.left_out.is_empty() { String::new() } else { format!(", {} left out", data.left_out.len()) };
-        lines.add("learnt from", &format!("{}{left_out}", amount(data.episodes, data.samples)));
+        lines.add("learnt from", &amount(data.episodes, data.samples));
+        if let Some(left_out) = left_out(&data.left_out) {
+            lines.add("left out", &left_out);
+        }
         let is_major = |of: &&Decision| of.what == "learner" || (of.what == "scale" && of.why != "given");
         for Decision { what, value, why, .. } in model.decisions.iter().filter(is_major) {
             lines.add(what, &format!("{value} ({why})"));
@@ -167,16 +170,31 @@ fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Rec
             return Err(Failure::usage(what, format!("--hold-out, {place}"), remedy));
         }
     }
-    let (held, others) = recordings.episodes.into_iter().partition(|episode| names.contains(&episode.name));
+    let (held, mut others): (Vec<Episode>, Vec<Episode>) =
+        recordings.episodes.into_iter().partition(|episode| names.contains(&episode.name));
+    let mut findings = recordings.findings;
+    findings.extend(without_copies(&mut others, &held));
     let of = |episodes, findings| Recordings { state: recordings.state.clone(), episodes, findings };
-    Ok((of(others, recordings.findings), Some(of(held, vec![]))))
+    Ok((of(others, findings), Some(of(held, vec![]))))
+}
+
+/// Leaves out copies of what is held out: they would make the error on it too small.
+fn without_copies(others: &mut Vec<Episode>, held: &[Episode]) -> Option<Finding> {
+    let is_copy = |episode: &Episode| held.iter().any(|held| held.positions == episode.positions);
+    let copies: Vec<String> = others.iter().filter(|episode| is_copy(episode)).map(|copy| copy.name.clone()).collect();
+    others.retain(|episode| !is_copy(episode));
+    (!copies.is_empty()).then(|| Finding {
+        verdict: Verdict::Good,
+        what: format!("copies of held-out episodes were left out: {}", copies.join(", ")),
+        next: "check how the files were made".to_owned(),
+    })
 }
 
 fn judged(held_out: &Recordings, options: &PrepareOptions, model: &Model) -> Result<Evaluation, Failure> {
     // In the units of the model, which may have learnt them.
     let options = PrepareOptions { scale: model.scale(), ..options.clone() };
     let prepared = prepare(held_out, &options).map_err(|error| Failure::prepare(&error, "--hold-out".to_owned()))?;
-    evaluate(model.learnt.policy(), &prepared, None)
+    evaluate(model, &prepared, None)
         .map_err(|error| Failure::new(Exit::Refused, error.to_string(), "--hold-out", "other episodes"))
 }
 

@@ -9,7 +9,7 @@ use crate::cli::failure::{Exit, Failure};
 use crate::cli::lines::{Lines, amount, short};
 use crate::cli::session::{Output, Session};
 use crate::cli::trust_files::load;
-use crate::cli::verbs::check::findings;
+use crate::cli::verbs::check::{findings, left_out};
 
 /// Describe a model
 #[derive(Debug, Args)]
@@ -34,6 +34,9 @@ impl Info {
         let files: Vec<&str> = model.data.files.iter().take(3).map(|file| file.name.as_str()).collect();
         let data = amount(model.data.episodes, model.data.samples);
         lines.add("learnt from", &format!("{data} ({})", files.join(", ")));
+        if let Some(left_out) = left_out(&model.data.left_out) {
+            lines.add("left out", &left_out);
+        }
         lines.add("learner", &learner(&model));
         let channel = |channel: &policy_align::StateChannel| {
             let unit = channel.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));

@@ -6,6 +6,7 @@ use policy_align::Model;
 use text::quoted;
 
 use crate::cli::failure::Failure;
+use crate::cli::given::no_input;
 use crate::cli::lines::{Lines, short};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::{ReadFlags, numbers};
@@ -47,6 +48,7 @@ pub(crate) struct Plot {
 
 impl Plot {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
+        no_input(&self.output, &[&self.files[..], std::slice::from_ref(&self.model)].concat())?;
         let model = load(session, &self.model)?;
         let config = Config::of(session)?;
         let dims = dims(&self.dims, &model)?;

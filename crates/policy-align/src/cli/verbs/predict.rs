@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use crate::cli::failure::{Exit, Failure};
+use crate::cli::given::no_input;
 use crate::cli::lines::{Lines, counted, list, short};
 use crate::cli::options::flags::numbers;
 use crate::cli::session::{Output, Session, write};
@@ -105,6 +106,8 @@ impl Predict {
         }
         let text = csv(&model, &states, &predictions);
         let Some(path) = &self.output else { return Ok(Output::done(text)) };
+        let read: Vec<PathBuf> = [Some(&self.model), self.states.as_ref()].into_iter().flatten().cloned().collect();
+        no_input(path, &read)?;
         write(path, text.as_bytes())?;
         let unsupported = predictions.iter().filter(|prediction| !prediction.supported).count();
         let states = counted(predictions.len(), "state");

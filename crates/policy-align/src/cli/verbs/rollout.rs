@@ -6,9 +6,9 @@ use motion::{Channel, Episode, Recordings, Source, Times};
 use nalgebra::DVector;
 use policy_align::{Model, Path, RollOutError, Stop};
 use serde_json::json;
-use text::quoted;
 
 use crate::cli::failure::{Exit, Failure, displayed};
+use crate::cli::given::{again, no_input};
 use crate::cli::lines::{Lines, counted, list, short};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::numbers;
@@ -64,7 +64,12 @@ impl RollOut {
         let model = load(session, &self.model)?;
         let flags = Config::of(session)?.under("rollout", &self.follow)?;
         let start = DVector::from_vec(numbers(&self.from, "--from")?);
+        for output in [&self.output, &self.plot].into_iter().flatten() {
+            no_input(output, std::slice::from_ref(&self.model))?;
+        }
+        let bar = session.bar(1, "{spinner} following the policy, {elapsed}");
         let followed = followed(&flags, &model, &start, &self.from)?;
+        bar.finish_and_clear();
         if let Some(output) = &self.output {
             write_paths(output, &model, std::slice::from_ref(&followed))?;
         }
@@ -108,8 +113,7 @@ impl RollOut {
         if self.output.is_some() {
             return lines.into_text();
         }
-        let (model, from) = (quoted(&self.model), self.from.replace(char::is_whitespace, ""));
-        lines.next(&format!("policy-align rollout {model} --from {from} -o path.csv"))
+        lines.next(&format!("policy-align rollout {} -o path.csv", again(&[])))
     }
 }
 
@@ -124,7 +128,12 @@ pub(crate) fn followed(flags: &RollOutFlags, model: &Model, start: &DVector<f64>
             | RollOutError::TooManySteps { .. } => Exit::Refused,
             _ => Exit::Usage,
         };
-        Failure::new(exit, error.to_string(), format!("--from {from}"), error.remedy())
+        let place = match error {
+            RollOutError::NotPositive { name, .. } => format!("--{name}"),
+            RollOutError::TooLong { .. } => "--seconds, --step".to_owned(),
+            _ => format!("--from {from}"),
+        };
+        Failure::new(exit, error.to_string(), place, error.remedy())
     })
 }
 
