@@ -1,14 +1,12 @@
 //! Checks of a learnt policy without the truth.
 
 mod between;
-mod direction;
 mod freely;
 mod judge;
 mod numbers;
 mod report;
 
 pub(crate) use between::share_unknown;
-pub use direction::direction_by_channels;
 pub(crate) use freely::share_leaving;
 pub(crate) use judge::{VerdictInput, judge};
 pub use numbers::{AlignedNumbers, TrustNumbers};

@@ -1,5 +1,7 @@
 //! Recordings with their truth, good and bad, as laboratories make them.
 
+mod unseen;
+
 use constraints::{LinearConstraint, PfaffianConstraint, Switching, Unconstrained};
 use demo_gen::beyond::{BeyondSystem, ConstraintKind, PolicyKind as Shown};
 use demo_gen::{Parabola, Recording, RollOut, Sinusoidal, ThreeLinkArm, with_position_noise};
@@ -249,7 +251,7 @@ pub(crate) fn all() -> Vec<Named> {
     };
     let free = |roll_out| Plane { roll_out, under: Under::Nothing, ..Plane::default() };
     let fine = || RollOut { time_step: 0.5, n_samples: 60, sub_steps: 20 };
-    vec![
+    let mut all = vec![
         case("clean parabola", move |s| Case::of(&of_parabola(40, s), 40, Velocities)),
         case("clean sinusoid", move |s| Case::of(&of_sinusoid(40, s), 40, Velocities)),
         case("clean parabola, positions only", move |s| Case::of(&of_parabola(40, s), 40, Positions)),
@@ -539,5 +541,7 @@ pub(crate) fn all() -> Vec<Named> {
             Case::of(&of_parabola(40, s), 40, Positions)
                 .each(|e| e.positions.apply(|x| *x = rng.sample(StandardNormal)))
         }),
-    ]
+    ];
+    all.extend(unseen::all());
+    all
 }

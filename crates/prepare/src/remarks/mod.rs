@@ -1,11 +1,14 @@
 //! Further findings before learning.
 
+mod pressing;
+mod speed_limit;
+
 use motion::{Demonstrations, Finding, Trajectory, Verdict};
 
 use crate::StateChannel;
 use crate::notes::Notes;
 use crate::numbers::{counted, percent, short};
-use crate::samples::noise::resolution;
+use crate::samples::noise::{Noise, resolution};
 
 /// A channel that spreads so many times as much as most others has another unit, it seems.
 const MIXED: f64 = 20.0;
@@ -16,10 +19,12 @@ const LOOP: f64 = 0.05;
 /// Positions have few digits if a step of the last digit is this share of a channel's spread.
 const COARSE: f64 = 0.01;
 
-pub(crate) fn about(demonstrations: &Demonstrations, state: &[StateChannel], notes: &mut Notes) {
+pub(crate) fn about(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise, notes: &mut Notes) {
     let spreads = spreads(demonstrations);
     notes.findings.extend(mixed_units(&spreads, state));
     few(demonstrations, notes);
+    pressing::remark(demonstrations, state, noise, notes);
+    speed_limit::remark(demonstrations, state, noise, notes);
     loops(demonstrations, notes);
     coarse(demonstrations, &spreads, state, notes);
 }

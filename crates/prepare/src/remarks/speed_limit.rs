@@ -1,0 +1,77 @@
+//! Speeds that stop at a limit.
+
+use motion::{Demonstrations, Verdict};
+use nalgebra::DVector;
+
+use crate::StateChannel;
+use crate::notes::Notes;
+use crate::numbers::{percent, short};
+use crate::samples::noise::{Noise, velocities, velocity_variance};
+
+/// Speeds at a limit are equal to this share, where there is no noise: turning shortens steps.
+const EQUAL: f64 = 2e-3;
+/// Half the width of a plateau, in deviations of the noise.
+const DEVIATIONS: f64 = 2.5;
+/// Noise above this share of the limit hides it.
+const LOUD: f64 = 0.1;
+/// Samples at the limit, as a share of all.
+const SHARE: f64 = 0.05;
+/// Faster ones, which noise may cause.
+const FASTER: f64 = 0.01;
+/// So many times the samples of the next slower interval: peaks of equal movements are below 3.
+const CROWDED: f64 = 5.0;
+/// An axis of steady speed is pressed, not limited.
+const STEADY: f64 = 0.9;
+
+/// Says at which speed the robot, or one of its axes, can go no faster.
+pub(super) fn remark(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise, notes: &mut Notes) {
+    let velocities: Vec<DVector<f64>> = velocities(demonstrations).collect();
+    let deviation = velocity_variance(demonstrations, noise).sqrt();
+    let limit_of = |speeds: Vec<f64>| plateau(speeds, deviation);
+    let all = limit_of(velocities.iter().map(nalgebra::Matrix::norm).collect());
+    let axis = |axis: usize| Some((limit_of(velocities.iter().map(|u| u[axis].abs()).collect())?, axis));
+    let axes = (0..if all.is_none() && state.len() > 1 { state.len() } else { 0 }).filter_map(axis);
+    let of_axes: Vec<_> = axes.filter(|(plateau, _)| plateau.share < STEADY).collect();
+    if let Some(plateau) = all {
+        found(&plateau, "the same largest speed", notes);
+    } else if let Some((plateau, _)) = of_axes.first() {
+        let names: Vec<&str> = of_axes.iter().map(|&(_, axis)| state[axis].name.as_str()).collect();
+        found(plateau, &format!("the same largest speed along {}", names.join(", ")), notes);
+    }
+}
+
+fn found(plateau: &Plateau, whose: &str, notes: &mut Notes) {
+    notes.found(
+        Verdict::Doubtful,
+        format!("{} of the samples have {whose}, {}: a speed limit?", percent(plateau.share), short(plateau.speed)),
+        "at the limit only the policy's direction shows: raise it, teach more slowly, or record the velocities that were commanded",
+    );
+}
+
+struct Plateau {
+    speed: f64,
+    /// Of all samples.
+    share: f64,
+}
+
+/// The fastest speed that many samples share.
+fn plateau(mut speeds: Vec<f64>, deviation: f64) -> Option<Plateau> {
+    speeds.sort_by(f64::total_cmp);
+    let samples = speeds.len() as f64;
+    let below = |speed: f64| speeds.partition_point(|&other| other < speed);
+    let within = |low: f64, high: f64| (below(high) - below(low)) as f64;
+    let first = speeds.len().saturating_sub(1 + (samples * (FASTER + SHARE)) as usize);
+    let crowd = |&speed: &f64| {
+        let width = (EQUAL * speed).max(DEVIATIONS * deviation);
+        (within(speed - width, speed + width), speed, width)
+    };
+    let (count, speed, width) = speeds[first..].iter().map(crowd).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let slower = within(speed - 3.0 * width, speed - width);
+    let faster = (speeds.len() - below(speed + width)) as f64;
+    let is_limit = deviation <= LOUD * speed
+        && speed > 0.0
+        && count >= SHARE * samples
+        && faster <= FASTER * samples
+        && count >= CROWDED * slower;
+    is_limit.then_some(Plateau { speed, share: count / samples })
+}
