@@ -20,7 +20,7 @@ use prepare::numbers::squared_error;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::trust::{AlignedNumbers, TrustNumbers, VerdictInput, judge, share_leaving, share_unknown};
+use crate::trust::{AlignedNumbers, TrustNumbers, VerdictInput, differing_goals, judge, share_leaving, share_unknown};
 use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, Prepared, Verdict};
 use aligning::AlignedFit;
 use decision::decision;
@@ -59,7 +59,10 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
         _ => None,
     };
     let numbers = numbers(prepared, options, &readings, aligned.as_ref(), &rows);
-    let findings: Vec<Finding> = prepared.findings.iter().cloned().chain(pushed(&readings, options.learner)).collect();
+    let policy = policy(options, &readings, aligned.as_ref());
+    let findings = prepared.findings.iter().cloned();
+    let findings = findings.chain(pushed(&readings, options.learner));
+    let findings: Vec<Finding> = findings.chain(differing_goals(policy, prepared, &rows, &numbers)).collect();
     let trust =
         judge(VerdictInput { numbers, findings: &findings, state: &prepared.state, episodes: &prepared.episodes });
     let learnt = match (options.learner, aligned) {
@@ -150,6 +153,16 @@ fn found(reading: Hypothesis) -> &'static str {
     }
 }
 
+/// The policy handed out.
+fn policy<'a>(options: &FitOptions, readings: &'a AutoFit, aligned: Option<&'a AlignedFit>) -> &'a dyn Policy {
+    match aligned {
+        Some(aligned) => &aligned.policy,
+        None if options.learner == LearnerChoice::Auto => readings,
+        None if takes_slope(readings, options.learner) => readings.slope(),
+        None => readings.direct(),
+    }
+}
+
 fn numbers(
     prepared: &Prepared,
     options: &FitOptions,
@@ -159,12 +172,6 @@ fn numbers(
 ) -> TrustNumbers {
     let (of, report) = (readings.numbers(), readings.slope().report());
     let takes_slope = takes_slope(readings, options.learner);
-    let policy: &dyn Policy = match aligned {
-        Some(aligned) => &aligned.policy,
-        None if options.learner == LearnerChoice::Auto => readings,
-        None if takes_slope => readings.slope(),
-        None => readings.direct(),
-    };
     let slope_error = of.a_s * (1.0 - of.hidden);
     let held_out_error = match aligned {
         Some(aligned) => aligned.held_out.to_judge(),
@@ -214,7 +221,7 @@ fn numbers(
             halves::of_direct(readings, rows, limits)
         },
         unknown: unknown(readings, prepared, rows),
-        leaving: share_leaving(policy, &prepared.demonstrations),
+        leaving: share_leaving(policy(options, readings, aligned), &prepared.demonstrations),
         step_noise: prepared.noise.step_share,
         grouping: of.grouping,
         aligned: aligned_numbers,

@@ -215,8 +215,7 @@ fn positions_only(case: Case) -> Case {
 
 /// All of them.
 pub(crate) fn all() -> Vec<Named> {
-    const LIMIT: f64 = 0.8 * USUAL;
-    let saturated = |n: &Vector, u: &Vector| limited(pressed(n, 0.0, u), LIMIT);
+    let saturated = |share: f64| move |n: &Vector, u: &Vector| limited(pressed(n, 0.0, u), share * USUAL);
     let each_limited = |n: &Vector, u: &Vector| pressed(n, 0.0, u).map(|u| u.clamp(-0.5 * USUAL, 0.5 * USUAL));
     let plain = |n: &Vector, u: &Vector| pressed(n, 0.0, u);
     let rubbing = |n: &Vector, u: &Vector| {
@@ -232,10 +231,11 @@ pub(crate) fn all() -> Vec<Named> {
         case("pressed along one normal, 3-D, positions only", |s| positions_only(wiping(3, 0.0, s))),
         case("pressed, normals within 10 degrees, 2-D", |s| wiping(2, 10f64.to_radians(), s)),
         case("pressed, normals within 10 degrees, 3-D", |s| wiping(3, 10f64.to_radians(), s)),
-        case("speed limit, 2-D", move |s| executed(2, s, saturated)),
-        case("speed limit, 3-D", move |s| executed(3, s, saturated)),
-        case("speed limit, 3-D, positions only", move |s| positions_only(executed(3, s, saturated))),
-        case("speed limit, 3-D, 5 % noise", move |s| executed(3, s, saturated).velocity_noise(0.05, s)),
+        case("speed limit, 2-D", move |s| executed(2, s, saturated(0.5))),
+        case("speed limit, 3-D", move |s| executed(3, s, saturated(0.8))),
+        case("low speed limit, 3-D", move |s| executed(3, s, saturated(0.5))),
+        case("speed limit, 3-D, positions only", move |s| positions_only(executed(3, s, saturated(0.7)))),
+        case("speed limit, 3-D, 5 % noise", move |s| executed(3, s, saturated(0.6)).velocity_noise(0.05, s)),
         case("speed limit of each axis, 3-D", move |s| executed(3, s, each_limited)),
         case("velocities 100 ms late, 2-D", move |s| late(executed(2, s, plain), 2)),
         case("velocities 100 ms late, 3-D", move |s| late(executed(3, s, plain), 2)),

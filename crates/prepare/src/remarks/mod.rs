@@ -1,8 +1,10 @@
 //! Further findings before learning.
 
+mod end_places;
 mod pressing;
 mod speed_limit;
 
+pub use end_places::end_places;
 use motion::{Demonstrations, Finding, Trajectory, Verdict};
 
 use crate::StateChannel;

@@ -61,14 +61,18 @@ fn lag(episodes: &[Episode]) -> Option<Lag> {
         .collect();
     let every = compared.len().div_ceil(STEPS).max(1);
     let compared: Vec<_> = compared.into_iter().step_by(every).collect();
-    let left = |shift: isize| compared.iter().map(|(episode, step)| mismatch(episode, *step, shift)).sum::<Option<f64>>();
+    let mismatches = |shift| compared.iter().map(|(episode, step)| mismatch(episode, *step, shift)).collect::<Option<Vec<f64>>>();
+    let lefts = (-halves..=halves).map(|shift| Some((shift, mismatches(shift)?))).collect::<Option<Vec<_>>>()?;
+    // Lengths, not squares: where a constraint gives way, a few steps lie between two velocities.
+    let lengths = |mismatches: &[f64]| mismatches.iter().map(|squared| squared.sqrt()).sum::<f64>();
+    let (best, shifted) = lefts.iter().min_by(|a, b| lengths(&a.1).total_cmp(&lengths(&b.1)))?;
+    let near = lefts.iter().filter(|(shift, _)| shift.abs() <= 1);
+    let sum = |mismatches: &Vec<f64>| mismatches.iter().sum::<f64>();
+    let (least, recorded) = (sum(shifted), near.map(|(_, left)| sum(left)).fold(f64::INFINITY, f64::min));
     let power = compared.iter().map(|(episode, step)| rate(episode, *step).norm_squared()).sum::<f64>();
-    let lefts = (-halves..=halves).map(|shift| Some((shift, left(shift)?))).collect::<Option<Vec<_>>>()?;
-    let &(best, least) = lefts.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let recorded = lefts.iter().filter(|(shift, _)| shift.abs() <= 1).map(|&(_, left)| left).fold(f64::INFINITY, f64::min);
     let step = episodes.iter().find_map(|episode| episode.times.median_step())?;
     let is_lag = best.abs() >= LEAST && best.abs() < halves && least <= BETTER * recorded;
-    is_lag.then(|| Lag { seconds: best as f64 / 2.0 * step, changed: (recorded - least) / power })
+    is_lag.then(|| Lag { seconds: *best as f64 / 2.0 * step, changed: (recorded - least) / power })
 }
 
 /// The step's velocity.
