@@ -66,7 +66,7 @@ pub use directions::directions;
 pub use error::PrepareError;
 pub use options::{PrepareOptions, Repair, Smoothing, VelocityUse};
 pub use prepared::Prepared;
-pub use remarks::end_places;
+pub use remarks::{end_places, pressing};
 pub use samples::noise::Noise;
 pub use samples::smooth::with_slopes;
 pub use samples::still::trim_still;

@@ -20,8 +20,8 @@ use prepare::numbers::squared_error;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::trust::{AlignedNumbers, TrustNumbers, VerdictInput, differing_goals, judge, share_leaving, share_unknown};
-use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, Prepared, Verdict};
+use crate::trust::{AlignedNumbers, TrustNumbers, VerdictInput, differing_goals, friction, judge, pushed, share_leaving, share_unknown};
+use crate::{DataSummary, Decision, FitError, Learnt, MadeBy, Model, Prepared};
 use aligning::AlignedFit;
 use decision::decision;
 
@@ -60,9 +60,14 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
     };
     let numbers = numbers(prepared, options, &readings, aligned.as_ref(), &rows);
     let policy = policy(options, &readings, aligned.as_ref());
-    let findings = prepared.findings.iter().cloned();
-    let findings = findings.chain(pushed(&readings, options.learner));
-    let findings: Vec<Finding> = findings.chain(differing_goals(policy, prepared, &rows, &numbers)).collect();
+    if std::env::var_os("DBG").is_some() { println!("  DBG push {:?} {:?}", readings.slope().report().push, crate::trust::own_share(policy,&rows)); }
+    let mut findings = prepared.findings.clone();
+    if let Some(push) = readings.slope().report().push {
+        let learnt = options.learner != LearnerChoice::PolicyAlign && takes_slope(&readings, options.learner);
+        pushed(push, learnt, prepared, &mut findings);
+    }
+    findings.extend(differing_goals(policy, prepared, &rows, &numbers));
+    findings.extend(friction(policy, &rows));
     let trust =
         judge(VerdictInput { numbers, findings: &findings, state: &prepared.state, episodes: &prepared.episodes });
     let learnt = match (options.learner, aligned) {
@@ -105,18 +110,6 @@ fn takes_slope(readings: &AutoFit, learner: LearnerChoice) -> bool {
         LearnerChoice::Direct => false,
         LearnerChoice::Auto | LearnerChoice::PolicyAlign => readings.takes_slope(),
     }
-}
-
-/// Constraints that pushed: a remark where the policy was learnt in spite of them, a doubt elsewhere.
-fn pushed(readings: &AutoFit, learner: LearnerChoice) -> Option<Finding> {
-    let push = readings.slope().report().push?;
-    let (verdict, next) = if learner != LearnerChoice::PolicyAlign && takes_slope(readings, learner) {
-        (Verdict::Good, "the policy was learnt from the directions in which velocities differ: nothing to do")
-    } else {
-        (Verdict::Doubtful, "--learner slope, which learns from the directions in which velocities differ")
-    };
-    let what = format!("constraints pushed, on average with {:.0} % of the policy's speed", 100.0 * push);
-    Some(Finding { verdict, what, next: next.to_owned() })
 }
 
 fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {

@@ -10,8 +10,8 @@ use crate::{Finding, Verdict};
 
 /// Share of what the policy does not explain that a constant velocity of each movement explains.
 const OWN: f64 = 0.5;
-/// So many rows of a movement for each dimension, or they explain themselves.
-const ROWS: usize = 4;
+/// Ridge of that velocity, as a share of the rows that it is learnt from.
+const RIDGE: f64 = 0.05;
 const NEXT: &str = "if the goal, an object or a load differs, record it and name its columns with --context, or learn each goal from its own movements";
 
 /// Says what makes movements differ where the policy does not predict them. It accuses no policy that does, with however many goals.
@@ -42,25 +42,32 @@ fn predicts(numbers: &TrustNumbers) -> bool {
         && numbers.halves.is_none_or(|halves| halves <= TrustNumbers::GOOD_HALVES)
 }
 
-/// Share of Σ(r − nᵀπ̂)² that nᵀc explains with one c (n) a movement.
-fn own_share(policy: &dyn Policy, rows: &gp::Rows) -> Option<f64> {
-    let (dim, movements) = (policy.dim(), rows.indices().iter().map(|index| index.trajectory).max()? + 1);
-    let mut normal = vec![(DMatrix::<f64>::zeros(dim, dim), DVector::<f64>::zeros(dim), 0); movements];
-    let mut all = 0.0;
+/// Share of Σ(r − nᵀπ̂)² that nᵀc explains with one c (n) a movement, learnt from the other half of the movement.
+pub(crate) fn own_share(policy: &dyn Policy, rows: &gp::Rows) -> Option<f64> {
+    let movements = rows.indices().iter().map(|index| index.trajectory).max()? + 1;
+    let mut errors = vec![Vec::new(); movements];
     for ((x, u), index) in rows.states().column_iter().zip(rows.velocities().column_iter()).zip(rows.indices()) {
         let Some(n) = u.try_normalize(0.0) else { continue };
         let error = n.dot(&(u - policy.action(x)));
-        let (matrix, vector, count) = &mut normal[index.trajectory];
-        matrix.ger(1.0, &n, &n, 1.0);
-        vector.axpy(error, &n, 1.0);
-        *count += 1;
-        all += error * error;
+        errors[index.trajectory].push((n, error));
     }
-    let enough = normal.iter().filter(|(_, _, count)| *count > 0).all(|(_, _, count)| *count >= ROWS * dim);
-    let explained = |(matrix, vector, _): (DMatrix<f64>, DVector<f64>, usize)| {
-        let floor = 1e-6 * matrix.trace();
-        let inverse = (matrix + DMatrix::identity(dim, dim) * floor).try_inverse();
-        inverse.map_or(0.0, |inverse| vector.dot(&(inverse * &vector)))
+    let all = errors.iter().flatten().map(|(_, error)| error * error).sum::<f64>();
+    let left = |errors: &Vec<(DVector<f64>, f64)>| {
+        let (first, second) = errors.split_at(errors.len() / 2);
+        left_by(first, second) + left_by(second, first)
     };
-    (enough && all > 0.0).then(|| normal.into_iter().map(explained).sum::<f64>() / all)
+    (all > 0.0).then(|| 1.0 - errors.iter().map(left).sum::<f64>() / all)
+}
+
+/// Σ(e − nᵀc)² over some rows, c the ridge estimate from others.
+fn left_by(rows: &[(DVector<f64>, f64)], others: &[(DVector<f64>, f64)]) -> f64 {
+    let Some(dim) = rows.first().map(|(n, _)| n.len()) else { return 0.0 };
+    let mut matrix = DMatrix::identity(dim, dim) * (RIDGE * others.len().max(1) as f64);
+    let mut vector = DVector::zeros(dim);
+    for (n, error) in others {
+        matrix.ger(1.0, n, n, 1.0);
+        vector.axpy(*error, n, 1.0);
+    }
+    let own = matrix.cholesky().map_or_else(|| DVector::zeros(dim), |factor| factor.solve(&vector));
+    rows.iter().map(|(n, error)| (error - n.dot(&own)).powi(2)).sum()
 }

@@ -5,6 +5,7 @@ mod pressing;
 mod speed_limit;
 
 pub use end_places::end_places;
+pub use pressing::pressing;
 use motion::{Demonstrations, Finding, Trajectory, Verdict};
 
 use crate::StateChannel;
@@ -25,7 +26,7 @@ pub(crate) fn about(demonstrations: &Demonstrations, state: &[StateChannel], noi
     let spreads = spreads(demonstrations);
     notes.findings.extend(mixed_units(&spreads, state));
     few(demonstrations, notes);
-    pressing::remark(demonstrations, state, noise, notes);
+    notes.findings.extend(pressing(demonstrations, state));
     speed_limit::remark(demonstrations, state, noise, notes);
     loops(demonstrations, notes);
     coarse(demonstrations, &spreads, state, notes);

@@ -19,7 +19,7 @@ const SHARE: f64 = 0.05;
 /// Faster ones, which noise may cause.
 const FASTER: f64 = 0.01;
 /// So many times the samples of the next slower interval: peaks of equal movements are below 3.
-const CROWDED: f64 = 5.0;
+const CROWDED: f64 = 3.0;
 /// An axis of steady speed is pressed, not limited.
 const STEADY: f64 = 0.9;
 

@@ -1,6 +1,6 @@
 //! Velocities that were recorded later, or earlier, than the positions.
 
-use motion::{Episode, Verdict};
+use motion::{Episode, Verdict, upper_median};
 
 use crate::notes::Notes;
 use crate::numbers::{percent, short};
@@ -15,7 +15,7 @@ const LEAST: isize = 3;
 /// What the shifted velocities leave of the steps, as a share of what they leave as recorded.
 const BETTER: f64 = 0.3;
 /// Share of the squared velocities that a lag may change before the policy is in doubt.
-const HARMLESS: f64 = 0.02;
+const HARMLESS: f64 = 0.15;
 
 /// Says by how much velocities should be shifted to agree with the steps.
 pub(crate) fn remark(episodes: &[Episode], notes: &mut Notes) {
@@ -63,9 +63,9 @@ fn lag(episodes: &[Episode]) -> Option<Lag> {
     let compared: Vec<_> = compared.into_iter().step_by(every).collect();
     let mismatches = |shift| compared.iter().map(|(episode, step)| mismatch(episode, *step, shift)).collect::<Option<Vec<f64>>>();
     let lefts = (-halves..=halves).map(|shift| Some((shift, mismatches(shift)?))).collect::<Option<Vec<_>>>()?;
-    // Lengths, not squares: where a constraint gives way, a few steps lie between two velocities.
-    let lengths = |mismatches: &[f64]| mismatches.iter().map(|squared| squared.sqrt()).sum::<f64>();
-    let (best, shifted) = lefts.iter().min_by(|a, b| lengths(&a.1).total_cmp(&lengths(&b.1)))?;
+    // Medians: where a constraint gives way, a few steps lie between two velocities.
+    let usual = |mismatches: &[f64]| upper_median(mismatches.to_vec()).unwrap_or(0.0);
+    let (best, shifted) = lefts.iter().min_by(|a, b| usual(&a.1).total_cmp(&usual(&b.1)))?;
     let near = lefts.iter().filter(|(shift, _)| shift.abs() <= 1);
     let sum = |mismatches: &Vec<f64>| mismatches.iter().sum::<f64>();
     let (least, recorded) = (sum(shifted), near.map(|(_, left)| sum(left)).fold(f64::INFINITY, f64::min));
