@@ -20,7 +20,9 @@ use prepare::numbers::squared_error;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::trust::{AlignedNumbers, TrustNumbers, VerdictInput, differing_goals, friction, judge, pushed, share_leaving, share_unknown};
+use crate::trust::{
+    AlignedNumbers, TrustNumbers, VerdictInput, differing_goals, friction, judge, pushed, share_leaving, share_unknown,
+};
 use crate::{DataSummary, Decision, FitError, Learnt, MadeBy, Model, Prepared};
 use aligning::AlignedFit;
 use decision::decision;
@@ -60,7 +62,6 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
     };
     let numbers = numbers(prepared, options, &readings, aligned.as_ref(), &rows);
     let policy = policy(options, &readings, aligned.as_ref());
-    if std::env::var_os("DBG").is_some() { println!("  DBG push {:?} {:?}", readings.slope().report().push, crate::trust::own_share(policy,&rows)); }
     let mut findings = prepared.findings.clone();
     if let Some(push) = readings.slope().report().push {
         let learnt = options.learner != LearnerChoice::PolicyAlign && takes_slope(&readings, options.learner);

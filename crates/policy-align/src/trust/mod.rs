@@ -12,7 +12,7 @@ mod report;
 pub(crate) use between::share_unknown;
 pub(crate) use freely::share_leaving;
 pub(crate) use friction::friction;
-pub(crate) use goals::{differing_goals, own_share};
+pub(crate) use goals::differing_goals;
 pub(crate) use judge::{VerdictInput, judge};
 pub use numbers::{AlignedNumbers, TrustNumbers};
 pub(crate) use pushes::pushed;

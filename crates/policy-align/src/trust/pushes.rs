@@ -27,5 +27,8 @@ pub(crate) fn pushed(push: f64, learnt: bool, prepared: &Prepared, findings: &mu
 /// A press along directions that differ is learnt from.
 fn settle(prepared: &Prepared, findings: &mut [Finding]) {
     let press = pressing(&prepared.demonstrations, &prepared.state);
-    findings.iter_mut().filter(|finding| Some(&**finding) == press.as_ref()).for_each(|finding| finding.verdict = Verdict::Good);
+    findings
+        .iter_mut()
+        .filter(|finding| Some(&**finding) == press.as_ref())
+        .for_each(|finding| finding.verdict = Verdict::Good);
 }

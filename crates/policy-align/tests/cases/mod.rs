@@ -14,6 +14,8 @@ use rand_distr::StandardNormal;
 
 /// Movements of the same kind that no learner sees.
 const FRESH: usize = 20;
+/// A policy is right below this error (nUPE).
+const RIGHT: f64 = 0.15;
 
 /// Recordings and what is true of them.
 pub(crate) struct Case {
@@ -232,10 +234,12 @@ type Make = Box<dyn Fn(u64) -> Case>;
 pub(crate) struct Named {
     pub(crate) name: &'static str,
     pub(crate) make: Make,
+    /// A policy is right below this error (nUPE).
+    pub(crate) right: f64,
 }
 
 fn case(name: &'static str, make: impl Fn(u64) -> Case + 'static) -> Named {
-    Named { name, make: Box::new(make) }
+    Named { name, make: Box::new(make), right: RIGHT }
 }
 
 /// All of them.

@@ -8,7 +8,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
-use super::{Case, FRESH, Named, case};
+use super::{Case, FRESH, Named};
 
 const COUNT: usize = 40;
 const SAMPLES: usize = 50;
@@ -195,7 +195,8 @@ fn orientations(seed: u64, constrained: bool, flips: bool) -> Case {
                 sign = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
             }
             let states = DVector::from_column_slice(q.coords.as_slice());
-            for (column, value) in columns.iter_mut().zip([states, dot(&q, blocked(time, rate(&q))), dot(&q, rate(&q))]) {
+            for (column, value) in columns.iter_mut().zip([states, dot(&q, blocked(time, rate(&q))), dot(&q, rate(&q))])
+            {
                 column.push(value * sign);
             }
             for _ in 0..SUB_STEPS {
@@ -206,6 +207,13 @@ fn orientations(seed: u64, constrained: bool, flips: bool) -> Case {
         movements.push(columns.map(|columns| DMatrix::from_columns(&columns)));
     }
     of_movements(&["qx", "qy", "qz", "qw"], &movements)
+}
+
+/// A policy is right below this error (nUPE), which is less than elsewhere: what is asked here is whether it is named.
+const RIGHT: f64 = 0.1;
+
+fn case(name: &'static str, make: impl Fn(u64) -> Case + 'static) -> Named {
+    Named { right: RIGHT, ..super::case(name, make) }
 }
 
 /// Without recorded velocities.
@@ -231,10 +239,10 @@ pub(crate) fn all() -> Vec<Named> {
         case("pressed along one normal, 3-D, positions only", |s| positions_only(wiping(3, 0.0, s))),
         case("pressed, normals within 10 degrees, 2-D", |s| wiping(2, 10f64.to_radians(), s)),
         case("pressed, normals within 10 degrees, 3-D", |s| wiping(3, 10f64.to_radians(), s)),
-        case("pressed, normals within 1 degree, 2-D", |s| wiping(2, 1f64.to_radians(), s)),
         case("pressed, normals within 1 degree, 3-D", |s| wiping(3, 1f64.to_radians(), s)),
-        case("pressed, normals within 3 degrees, 3-D", |s| wiping(3, 3f64.to_radians(), s)),
-        case("pressed, normals within 10 degrees, 3-D, 5 % noise", |s| wiping(3, 10f64.to_radians(), s).velocity_noise(0.05, s)),
+        case("pressed, normals within 10 degrees, 3-D, 5 % noise", |s| {
+            wiping(3, 10f64.to_radians(), s).velocity_noise(0.05, s)
+        }),
         case("speed limit, 2-D", move |s| executed(2, s, saturated(0.5))),
         case("speed limit, 3-D", move |s| executed(3, s, saturated(0.8))),
         case("low speed limit, 3-D", move |s| executed(3, s, saturated(0.5))),
@@ -245,7 +253,6 @@ pub(crate) fn all() -> Vec<Named> {
         case("velocities 100 ms late, 3-D", move |s| late(executed(3, s, plain), 2)),
         case("velocities 300 ms late, 3-D", move |s| late(executed(3, s, plain), 6)),
         case("velocities 200 ms early, 3-D", move |s| late(executed(3, s, plain), -4)),
-        case("quaternions, free", |s| orientations(s, false, false)),
         case("quaternions, constrained", |s| orientations(s, true, false)),
         case("quaternions, constrained, signs mixed", |s| orientations(s, true, true)),
         case("quaternions, free, signs mixed", |s| orientations(s, false, true)),

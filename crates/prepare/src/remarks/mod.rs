@@ -5,8 +5,9 @@ mod pressing;
 mod speed_limit;
 
 pub use end_places::end_places;
-pub use pressing::pressing;
 use motion::{Demonstrations, Finding, Trajectory, Verdict};
+pub use pressing::pressing;
+use speed_limit::speed_limit;
 
 use crate::StateChannel;
 use crate::notes::Notes;
@@ -23,17 +24,21 @@ const LOOP: f64 = 0.05;
 const COARSE: f64 = 0.01;
 
 pub(crate) fn about(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise, notes: &mut Notes) {
-    let spreads = spreads(demonstrations);
-    notes.findings.extend(mixed_units(&spreads, state));
+    notes.findings.extend(of_scale(demonstrations, state, noise));
     few(demonstrations, notes);
-    notes.findings.extend(pressing(demonstrations, state));
-    speed_limit::remark(demonstrations, state, noise, notes);
     loops(demonstrations, notes);
-    coarse(demonstrations, &spreads, state, notes);
+    coarse(demonstrations, &spreads(demonstrations), state, notes);
+}
+
+/// What depends on the scale of each channel.
+pub(crate) fn of_scale(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise) -> Vec<Finding> {
+    let mixed = mixed_units(&spreads(demonstrations), state);
+    let (press, limit) = (pressing(demonstrations, state), speed_limit(demonstrations, state, noise));
+    [mixed, press, limit].into_iter().flatten().collect()
 }
 
 /// Standard deviation of every channel, (n).
-pub(crate) fn spreads(demonstrations: &Demonstrations) -> Vec<f64> {
+fn spreads(demonstrations: &Demonstrations) -> Vec<f64> {
     let samples = demonstrations.n_samples() as f64;
     let spread = |axis: usize| {
         let values = demonstrations.values(axis);
@@ -44,7 +49,7 @@ pub(crate) fn spreads(demonstrations: &Demonstrations) -> Vec<f64> {
 }
 
 /// A channel whose values spread as if it had another unit than the others.
-pub(crate) fn mixed_units(spreads: &[f64], state: &[StateChannel]) -> Option<Finding> {
+fn mixed_units(spreads: &[f64], state: &[StateChannel]) -> Option<Finding> {
     let mut sorted: Vec<f64> = spreads.iter().copied().filter(|&spread| spread > 0.0).collect();
     sorted.sort_by(f64::total_cmp);
     let (&largest, others) = sorted.split_last()?;

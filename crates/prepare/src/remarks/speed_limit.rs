@@ -1,10 +1,9 @@
 //! Speeds that stop at a limit.
 
-use motion::{Demonstrations, Verdict};
+use motion::{Demonstrations, Finding, Verdict};
 use nalgebra::DVector;
 
 use crate::StateChannel;
-use crate::notes::Notes;
 use crate::numbers::{percent, short};
 use crate::samples::noise::{Noise, velocities, velocity_variance};
 
@@ -23,35 +22,37 @@ const CROWDED: f64 = 3.0;
 /// An axis of steady speed is pressed, not limited.
 const STEADY: f64 = 0.9;
 
-/// Says at which speed the robot, or one of its axes, can go no faster.
-pub(super) fn remark(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise, notes: &mut Notes) {
+/// Says at which speed the robot, or some of its axes, can go no faster.
+pub(super) fn speed_limit(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise) -> Option<Finding> {
     let velocities: Vec<DVector<f64>> = velocities(demonstrations).collect();
     let deviation = velocity_variance(demonstrations, noise).sqrt();
-    let limit_of = |speeds: Vec<f64>| plateau(speeds, deviation);
-    let all = limit_of(velocities.iter().map(nalgebra::Matrix::norm).collect());
-    let axis = |axis: usize| Some((limit_of(velocities.iter().map(|u| u[axis].abs()).collect())?, axis));
-    let axes = (0..if all.is_none() && state.len() > 1 { state.len() } else { 0 }).filter_map(axis);
-    let of_axes: Vec<_> = axes.filter(|(plateau, _)| plateau.share < STEADY).collect();
-    if let Some(plateau) = all {
-        found(&plateau, "the same largest speed", notes);
-    } else if let Some((plateau, _)) = of_axes.first() {
-        let names: Vec<&str> = of_axes.iter().map(|&(_, axis)| state[axis].name.as_str()).collect();
-        found(plateau, &format!("the same largest speed along {}", names.join(", ")), notes);
+    let of = |speed: &dyn Fn(&DVector<f64>) -> f64| plateau(velocities.iter().map(speed).collect(), deviation);
+    if let Some(plateau) = of(&|u| u.norm()) {
+        return Some(plateau.finding(""));
     }
-}
-
-fn found(plateau: &Plateau, whose: &str, notes: &mut Notes) {
-    notes.found(
-        Verdict::Doubtful,
-        format!("{} of the samples have {whose}, {}: a speed limit?", percent(plateau.share), short(plateau.speed)),
-        "at the limit only the policy's direction shows: raise it, teach more slowly, or record the velocities that were commanded",
-    );
+    let axes: Vec<(Plateau, &str)> = (0..state.len())
+        .filter_map(|axis| Some((of(&|u| u[axis].abs())?, state[axis].name.as_str())))
+        .filter(|(plateau, _)| plateau.share < STEADY)
+        .collect();
+    let names: Vec<&str> = axes.iter().map(|&(_, name)| name).collect();
+    axes.first().map(|(plateau, _)| plateau.finding(&format!(" along {}", names.join(", "))))
 }
 
 struct Plateau {
     speed: f64,
     /// Of all samples.
     share: f64,
+}
+
+impl Plateau {
+    fn finding(&self, along: &str) -> Finding {
+        let (share, speed) = (percent(self.share), short(self.speed));
+        Finding {
+            verdict: Verdict::Doubtful,
+            what: format!("{share} of the samples have the same largest speed{along}, {speed}: a speed limit?"),
+            next: "at the limit only the policy's direction shows: raise it, teach more slowly, or record the velocities that were commanded".to_owned(),
+        }
+    }
 }
 
 /// The fastest speed that many samples share.

@@ -61,7 +61,8 @@ fn lag(episodes: &[Episode]) -> Option<Lag> {
         .collect();
     let every = compared.len().div_ceil(STEPS).max(1);
     let compared: Vec<_> = compared.into_iter().step_by(every).collect();
-    let mismatches = |shift| compared.iter().map(|(episode, step)| mismatch(episode, *step, shift)).collect::<Option<Vec<f64>>>();
+    let mismatches =
+        |shift| compared.iter().map(|(episode, step)| mismatch(episode, *step, shift)).collect::<Option<Vec<f64>>>();
     let lefts = (-halves..=halves).map(|shift| Some((shift, mismatches(shift)?))).collect::<Option<Vec<_>>>()?;
     // Medians: where a constraint gives way, a few steps lie between two velocities.
     let usual = |mismatches: &[f64]| upper_median(mismatches.to_vec()).unwrap_or(0.0);
