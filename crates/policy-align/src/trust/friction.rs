@@ -49,3 +49,55 @@ fn missing_speed(policy: &dyn Policy, rows: &gp::Rows) -> Option<(f64, f64)> {
     let counted = samples.iter().filter(|samples| !samples.is_empty()).count();
     (counted >= FEW).then(|| (fit.x / (power / rows.len() as f64).sqrt(), fit.x / deviation))
 }
+
+#[cfg(test)]
+mod tests {
+    use motion::SampleIndex;
+    use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// π(x) = −x.
+    struct Bowl;
+
+    impl Policy for Bowl {
+        fn dim(&self) -> usize {
+            2
+        }
+
+        fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
+            action.copy_from(&-state);
+        }
+    }
+
+    /// Velocities (1 + ε) nᵀπ n, slower by what `slower` makes of the sample, in 12 movements.
+    fn rows(gain: f64, seed: u32, slower: impl Fn(usize) -> f64) -> gp::Rows {
+        let angle = |i: usize| f64::from(seed) + 2.4 * i as f64;
+        let x = |i: usize| DVector::from_vec(vec![2.0 + angle(i).sin(), (1.7 * angle(i)).cos()]);
+        let u = |i: usize| {
+            let n = DVector::from_vec(vec![(3.1 * angle(i)).cos(), (3.1 * angle(i)).sin()]);
+            let along = -n.dot(&x(i));
+            n * along.signum() * (gain * along.abs() - slower(i)).max(0.0)
+        };
+        let columns = |of: &dyn Fn(usize) -> DVector<f64>| DMatrix::from_columns(&(0..240).map(of).collect::<Vec<_>>());
+        let indices = (0..240).map(|i| SampleIndex { trajectory: i / 20, sample: i % 20 });
+        gp::Rows::new(columns(&x), columns(&u), indices.collect()).unwrap()
+    }
+
+    proptest! {
+        /// Friction is found by its size, whatever the policy's size is wrong by; noise that slows as often as not is none.
+        #[test]
+        fn friction_is_what_is_missing(gain in 0.8..1.2f64, friction in 0.05..0.4f64, seed in 0..1000u32) {
+            let rows = super::tests::rows(gain, seed, |i| friction * (1.0 + 0.1 * (5.3 * i as f64).sin()));
+            let (missing, t) = missing_speed(&Bowl, &rows).unwrap();
+            let usual = (rows.velocities().norm_squared() / rows.len() as f64).sqrt();
+            prop_assert!((missing * usual / friction - 1.0).abs() < 0.1, "{} {}", missing * usual, friction);
+            prop_assert!(t > LEAST_T);
+            let found = super::friction(&Bowl, &rows).unwrap();
+            prop_assert!(found.what.contains("too slow"));
+            let noise = super::tests::rows(gain, seed, |i| 0.05 * (7.7 * i as f64).sin());
+            prop_assert!(super::friction(&Bowl, &noise).is_none());
+        }
+    }
+}

@@ -14,6 +14,8 @@ const OWN: f64 = 0.35;
 const UNPREDICTED: f64 = 0.1;
 /// Ridge of that velocity, as a share of the rows that it is learnt from.
 const RIDGE: f64 = 0.05;
+/// Noise above this share of the squared steps explains enough.
+const NOISY: f64 = 0.1;
 const NEXT: &str = "if the goal, an object or a load differs, record it and name its columns with --context, or learn each goal from its own movements";
 
 /// Says what makes movements differ where the policy does not predict them. It accuses no policy that does, with however many goals.
@@ -23,7 +25,7 @@ pub(crate) fn differing_goals(
     rows: &gp::Rows,
     numbers: &TrustNumbers,
 ) -> Option<Finding> {
-    if predicts(numbers) {
+    if predicts(numbers) || numbers.step_noise > NOISY {
         return None;
     }
     let places = end_places(&prepared.demonstrations).filter(|&places| places > 1);
@@ -82,4 +84,42 @@ fn left_by(rows: &[Row], others: &[Row]) -> f64 {
     }
     let own = matrix.cholesky().map_or_else(|| DVector::zeros(dim), |factor| factor.solve(&vector));
     rows.iter().map(|(n, error)| (error - n.dot(&own)).powi(2)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use motion::SampleIndex;
+    use nalgebra::{DVectorView, DVectorViewMut};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// π = 0.
+    struct Nothing;
+
+    impl Policy for Nothing {
+        fn dim(&self) -> usize {
+            2
+        }
+
+        fn action_into(&self, _: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
+            action.fill(0.0);
+        }
+    }
+
+    proptest! {
+        /// A velocity of its own in each movement explains all of a policy that knows none, one that changes from sample to sample nothing.
+        #[test]
+        fn what_each_movement_has_of_its_own(seed in 0..1000u32, size in 0.1..10.0f64) {
+            let rows = |every: usize| {
+                let at = |axis: usize, i: usize| size * (f64::from(seed) + 1.3 * (i / every) as f64 + 1.6 * axis as f64).sin();
+                let indices = (0..240).map(|i| SampleIndex { trajectory: i / 20, sample: i % 20 }).collect();
+                gp::Rows::new(DMatrix::zeros(2, 240), DMatrix::from_fn(2, 240, at), indices).unwrap()
+            };
+            let own = own_share(&Nothing, &rows(20)).unwrap();
+            prop_assert!(own > 0.99, "{}", own);
+            let others = own_share(&Nothing, &rows(1)).unwrap();
+            prop_assert!(others < OWN, "{}", others);
+        }
+    }
 }

@@ -62,7 +62,9 @@ fn steady(demonstrations: &Demonstrations) -> Option<Steady> {
     let variance = |at: usize| eigen.eigenvalues[at].max(0.0);
     let next = (0..dim).filter(|&at| at != least).map(variance).fold(f64::INFINITY, f64::min);
     let direction = eigen.eigenvectors.column(least).into_owned();
-    let (mean, deviation) = (direction.dot(&mean), variance(least).sqrt());
+    let mean = direction.dot(&mean);
+    // What rounding leaves is no deviation.
+    let deviation = (variance(least).sqrt() / mean.abs() * 1e3).round() * mean.abs() / 1e3;
     let is_steady = deviation <= STEADY * mean.abs()
         && variance(least) <= UNLIKE_OTHERS * next
         && mean.powi(2) > MOVES * MOVES * power;

@@ -19,7 +19,7 @@ const SHARE: f64 = 0.05;
 const FASTER: f64 = 0.01;
 /// So many times the samples of the next slower interval: peaks of equal movements are below 3.
 const CROWDED: f64 = 3.0;
-/// An axis of steady speed is pressed, not limited.
+/// An axis with a mean velocity of this share of the plateau is pressed, not limited.
 const STEADY: f64 = 0.9;
 
 /// Says at which speed the robot, or some of its axes, can go no faster.
@@ -31,8 +31,11 @@ pub(super) fn speed_limit(demonstrations: &Demonstrations, state: &[StateChannel
         return Some(plateau.finding(""));
     }
     let axes: Vec<(Plateau, &str)> = (0..state.len())
-        .filter_map(|axis| Some((of(&|u| u[axis].abs())?, state[axis].name.as_str())))
-        .filter(|(plateau, _)| plateau.share < STEADY)
+        .filter_map(|axis| {
+            let plateau = of(&|u| u[axis].abs())?;
+            let mean = velocities.iter().map(|u| u[axis]).sum::<f64>() / velocities.len() as f64;
+            (mean.abs() < STEADY * plateau.speed).then(|| (plateau, state[axis].name.as_str()))
+        })
         .collect();
     let names: Vec<&str> = axes.iter().map(|&(_, name)| name).collect();
     axes.first().map(|(plateau, _)| plateau.finding(&format!(" along {}", names.join(", "))))
