@@ -239,7 +239,6 @@ pub(crate) fn all() -> Vec<Named> {
         case("pressed along one normal, 3-D, positions only", |s| positions_only(wiping(3, 0.0, s))),
         case("pressed, normals within 10 degrees, 2-D", |s| wiping(2, 10f64.to_radians(), s)),
         case("pressed, normals within 10 degrees, 3-D", |s| wiping(3, 10f64.to_radians(), s)),
-        case("pressed, normals within 1 degree, 3-D", |s| wiping(3, 1f64.to_radians(), s)),
         case("pressed, normals within 10 degrees, 3-D, 5 % noise", |s| {
             wiping(3, 10f64.to_radians(), s).velocity_noise(0.05, s)
         }),

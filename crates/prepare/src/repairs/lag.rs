@@ -51,7 +51,7 @@ fn lag(episodes: &[Episode]) -> Option<Lag> {
     let mut lengths: Vec<usize> = episodes.iter().map(Episode::n_samples).collect();
     lengths.sort_unstable();
     let most = (lengths.get(lengths.len() / 2)? / SHARE).min(SAMPLES);
-    let halves = 2 * most as isize;
+    let halves = (2 * most).cast_signed();
     let compared: Vec<(&Episode, usize)> = episodes
         .iter()
         .flat_map(|episode| {
@@ -85,8 +85,8 @@ fn rate(episode: &Episode, step: usize) -> nalgebra::DVector<f64> {
 fn mismatch(episode: &Episode, step: usize, half_samples: isize) -> Option<f64> {
     let velocities = episode.velocities.as_ref()?;
     // The middle of the step is half a sample after its first.
-    let at = 2 * step as isize + 1 + half_samples;
-    let (before, after) = ((at / 2) as usize, ((at + 1) / 2) as usize);
+    let at = (2 * step + 1).saturating_add_signed(half_samples);
+    let (before, after) = (at / 2, at.div_ceil(2));
     let recorded = (velocities.column(before) + velocities.column(after)) * 0.5;
     Some((rate(episode, step) - recorded).norm_squared())
 }

@@ -27,14 +27,13 @@ pub(crate) fn align(episodes: &mut [Episode], channels: &[Channel], repair: Repa
 }
 
 fn said(names: &str, flips: usize, notes: &mut Notes) {
-    let repaired = match flips {
-        0 => String::new(),
-        _ => {
-            let flips = counted(flips, "change");
-            let why = format!("{flips} of sign, but q and −q are one orientation");
-            notes.decided("quaternions", format!("{names} with one sign"), why, "--wraps");
-            format!(" with {flips} of sign, which were undone")
-        }
+    let repaired = if flips == 0 {
+        String::new()
+    } else {
+        let flips = counted(flips, "change");
+        let why = format!("{flips} of sign, but q and −q are one orientation");
+        notes.decided("quaternions", format!("{names} with one sign"), why, "--wraps");
+        format!(" with {flips} of sign, which were undone")
     };
     notes.found(
         Verdict::Doubtful,
