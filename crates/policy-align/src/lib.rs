@@ -33,7 +33,7 @@
 //! | evaluate | [`evaluate()`] on other recordings, [`leave_constraints_out`] across constraints |
 //!
 //! Guides in `docs`: `your-own-data.md` (the program step by step), `which-learner.md`, `model-file.md`, `slope-gp.md`
-//! (equations). `docs/your-own-data.md` says what is found in recordings, and links the verdicts on 120 kinds of them.
+//! (equations). `docs/your-own-data.md` says what is found in recordings, and links the verdicts on 119 kinds of them.
 //!
 //! # Exit codes of the program
 //!

@@ -482,6 +482,8 @@ fn says(prepared: &Prepared, words: &str) -> bool {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
     /// A decaying movement across, and along n the same velocity everywhere, up to `sway` of it from one movement to the next.
     #[test]
     fn a_press_is_found(angle in 0.1..1.4f64, push in 0.1..2.0f64, sway in 0.0..0.3f64, recorded in any::<bool>()) {
@@ -537,7 +539,7 @@ proptest! {
 
     /// Velocities written down later or earlier than positions: by how much is said.
     #[test]
-    fn a_lag_is_found(samples in prop_oneof![-6..-1i32, 2..7i32], rate in 1.0..3.0f64) {
+    fn a_lag_is_found(samples in prop_oneof![-6..-1isize, 2..7isize], rate in 1.0..3.0f64) {
         let recordings = moving(&["x", "y"], |k, t| {
             let at = |t: f64| [(rate * t + k as f64).sin(), (0.7 * rate * t - k as f64).cos()];
             let u = [rate * (rate * t + k as f64).cos(), -0.7 * rate * (0.7 * rate * t - k as f64).sin()];
@@ -547,10 +549,10 @@ proptest! {
         let mut late = recordings.clone();
         for episode in &mut late.episodes {
             let u = episode.velocities.clone().unwrap();
-            let at = |i: usize| (i as i32 - samples).clamp(0, SAMPLES as i32 - 1) as usize;
+            let at = |i: usize| i.saturating_add_signed(-samples).min(SAMPLES - 1);
             episode.velocities = Some(DMatrix::from_fn(2, SAMPLES, |axis, i| u[(axis, at(i))]));
         }
-        let words = format!("{} s {}", prepare_numbers(STEP * f64::from(samples.abs())), if samples > 0 { "later" } else { "earlier" });
+        let words = format!("{} s {}", prepare_numbers(STEP * samples.unsigned_abs() as f64), if samples > 0 { "later" } else { "earlier" });
         prop_assert!(says(&self::prepared(&late), &words), "{} not said", words);
     }
 
