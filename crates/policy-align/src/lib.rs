@@ -33,7 +33,7 @@
 //! | evaluate | [`evaluate()`] on other recordings, [`leave_constraints_out`] across constraints |
 //!
 //! Guides in `docs`: `your-own-data.md` (the program step by step), `which-learner.md`, `model-file.md`, `slope-gp.md`
-//! (equations). `docs/your-own-data-cases.md` lists the verdict on some ninety kinds of recordings.
+//! (equations). `docs/your-own-data.md` says what is found in recordings, and links the verdicts on 119 kinds of them.
 //!
 //! # Exit codes of the program
 //!
@@ -89,11 +89,11 @@ pub use model_policy::{ModelPolicy, ModelPotential};
 pub use motion::{Decision, Finding, LeftOut, Verdict};
 pub use prepare::{
     Noise, PrepareError, PrepareOptions, Prepared, Repair, Smoothing, StateChannel, VelocitySource, VelocityUse,
-    prepare, trim_still,
+    direction_by_channels, prepare, trim_still,
 };
 pub use roll_out::{ConstraintFileError, ConstraintSet, JointLimits, Path, RollOut, RollOutError, Stop, spread_starts};
 pub use stored::{ModelError, checksum_of, sha256, sha256_of_file, write_whole};
-pub use trust::{AlignedNumbers, Trust, TrustNumbers, direction_by_channels};
+pub use trust::{AlignedNumbers, Trust, TrustNumbers};
 
 /// The program of the README, compiled.
 #[cfg(doctest)]

@@ -16,8 +16,6 @@ use std::sync::atomic::AtomicBool;
 use cases::{Case, Named};
 use policy_align::{FitOptions, LearnerChoice, PrepareOptions, Progress, TrustNumbers, Verdict, fit, prepare};
 
-/// A policy is right below this error (nUPE).
-const RIGHT: f64 = 0.15;
 /// Errors below this are all alike.
 const NEGLIGIBLE: f64 = 1e-3;
 /// The seed of the table.
@@ -31,8 +29,12 @@ struct Said {
     /// None: refused.
     verdict: Option<Verdict>,
     words: String,
+    /// The other findings.
+    others: Vec<String>,
     /// True error; none where nothing was learnt.
     error: Option<f64>,
+    /// The policy is right below it.
+    right: f64,
     /// What the verdict rests on.
     numbers: Option<TrustNumbers>,
 }
@@ -40,7 +42,15 @@ struct Said {
 fn said(named: &Named, seed: u64, learner: LearnerChoice) -> Said {
     let case = (named.make)(seed);
     let name = named.name.to_owned();
-    let refused = |words: String| Said { name: name.clone(), verdict: None, words, error: None, numbers: None };
+    let refused = |words: String| Said {
+        name: name.clone(),
+        verdict: None,
+        words,
+        others: vec![],
+        error: None,
+        right: named.right,
+        numbers: None,
+    };
     let prepared = match prepare(&case.recordings, &PrepareOptions::default()) {
         Ok(prepared) => prepared,
         Err(error) => return refused(error.to_string()),
@@ -51,9 +61,19 @@ fn said(named: &Named, seed: u64, learner: LearnerChoice) -> Said {
         Ok(fit) => fit,
         Err(error) => return refused(error.to_string()),
     };
-    let words = fit.trust.findings.first().map_or_else(String::new, |finding| finding.what.clone());
+    let mut findings = fit.trust.findings.iter().map(|finding| finding.what.clone());
+    let words = findings.next().unwrap_or_default();
+    let others = findings.collect();
     let error = Some(error(&case, &fit));
-    Said { name, verdict: Some(fit.trust.verdict), words, error, numbers: Some(fit.trust.numbers) }
+    Said {
+        name,
+        verdict: Some(fit.trust.verdict),
+        words,
+        others,
+        error,
+        right: named.right,
+        numbers: Some(fit.trust.numbers),
+    }
 }
 
 fn error(case: &Case, fit: &policy_align::Model) -> f64 {
@@ -64,8 +84,8 @@ impl Said {
     /// Good though it is wrong, or not to be used though it is right.
     fn is_lie(&self) -> bool {
         match (self.verdict, self.error) {
-            (Some(Verdict::Good), Some(error)) => error >= RIGHT,
-            (Some(Verdict::DoNotUse), Some(error)) => error < RIGHT,
+            (Some(Verdict::Good), Some(error)) => error >= self.right,
+            (Some(Verdict::DoNotUse), Some(error)) => error < self.right,
             _ => false,
         }
     }
@@ -146,13 +166,16 @@ fn confusion() {
     };
     let mut counts = std::collections::BTreeMap::<(&str, bool), usize>::new();
     for seed in seeds.split(',').map(|seed| seed.parse().unwrap()) {
-        for named in cases::all() {
+        let only = std::env::var("ONLY").unwrap_or_default();
+        let from = std::env::var("FROM").map_or(0, |from| from.parse().unwrap());
+        for named in cases::all().into_iter().filter(|named| named.name.contains(&only)).skip(from) {
             let said = said(&named, seed, learner);
             println!("{}{seed} {}", if said.is_lie() { "LIE " } else { "" }, said.line());
             if std::env::var_os("NUMBERS").is_some() {
+                said.others.iter().for_each(|words| println!("  {words}"));
                 println!("  {}", serde_json::to_string(&said.numbers).unwrap());
             }
-            *counts.entry((said.verdict(), said.error.is_some_and(|error| error < RIGHT))).or_default() += 1;
+            *counts.entry((said.verdict(), said.error.is_some_and(|error| error < said.right))).or_default() += 1;
         }
     }
     for ((verdict, right), count) in counts {

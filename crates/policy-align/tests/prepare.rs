@@ -464,3 +464,144 @@ fn what_cannot_be_learnt_from() {
         assert_eq!(with(options), PrepareError::TimeStep { time_step: factor });
     }
 }
+
+/// Twelve movements of these channels: positions and velocities of a movement at a time.
+fn moving(names: &[&str], at: impl Fn(usize, f64) -> (DVector<f64>, DVector<f64>)) -> Recordings {
+    let mut recordings = recordings();
+    recordings.state = names.iter().map(|&name| Channel { name: name.to_owned(), unit: None }).collect();
+    for (k, episode) in recordings.episodes.iter_mut().enumerate() {
+        let samples: Vec<_> = (0..SAMPLES).map(|i| at(k, STEP * i as f64)).collect();
+        episode.positions = DMatrix::from_columns(&samples.iter().map(|(x, _)| x.clone()).collect::<Vec<_>>());
+        episode.velocities = Some(DMatrix::from_columns(&samples.iter().map(|(_, u)| u.clone()).collect::<Vec<_>>()));
+    }
+    recordings
+}
+
+fn says(prepared: &Prepared, words: &str) -> bool {
+    prepared.findings.iter().any(|finding| finding.what.contains(words))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// A decaying movement across, and along n the same velocity everywhere, up to `sway` of it from one movement to the next.
+    #[test]
+    fn a_press_is_found(angle in 0.1..1.4f64, push in 0.1..2.0f64, sway in 0.0..0.3f64, recorded in any::<bool>()) {
+        let (n, across) = (DVector::from_vec(vec![angle.cos(), angle.sin()]), DVector::from_vec(vec![-angle.sin(), angle.cos()]));
+        let of = |sway: f64, push: f64| {
+            let mut recordings = moving(&["x", "y"], |k, t| {
+                let (start, push) = (3.0 * (2.1 * k as f64).cos(), push * (1.0 + sway * (1.3 * k as f64).sin()));
+                let decay = start * (-t).exp();
+                (&across * decay + &n * (push * t), &across * -decay + &n * push)
+            });
+            if !recorded {
+                recordings.episodes.iter_mut().for_each(|episode| episode.velocities = None);
+            }
+            self::prepared(&recordings)
+        };
+        let words = "is the same wherever the hand is";
+        prop_assert_eq!(verdict(&of(sway, push), words), Verdict::Doubtful);
+        // Pushed to either side, and not at all.
+        prop_assert!(!says(&of(4.0, push), words));
+        prop_assert!(!says(&of(0.0, 0.0), words));
+        prop_assert!(!says(&self::prepared(&recordings()), words));
+    }
+
+    /// x' = −2x, but not above the limit.
+    #[test]
+    fn a_speed_limit_is_found(limit in 0.3..0.9f64, noise in prop::sample::select(vec![0.0, 0.01]), recorded in any::<bool>()) {
+        let of = |limit: f64| {
+            let mut seed = 0.5_f64;
+            let mut noisy = || { seed = (997.0 * seed + 0.3).fract(); if recorded { noise * (seed - 0.5) } else { 0.0 } };
+            let mut at = move |k: usize, t: f64| {
+                let start = (1.0 + 0.05 * k as f64) * [1.0, -1.0][k % 2];
+                // At the limit until |x| = limit/2, then an exponential.
+                let until = ((start.abs() - limit / 2.0) / limit).max(0.0);
+                let x = if t < until { start.abs() - limit * t } else { (start.abs() - limit * until) * (-2.0 * (t - until)).exp() };
+                let u = if t < until { -limit } else { -2.0 * x };
+                let y = 0.3 * (0.9 * k as f64).cos() * (-0.5 * t).exp();
+                (DVector::from_vec(vec![x * start.signum(), y]), DVector::from_vec(vec![u * start.signum() + noisy(), -0.5 * y + noisy()]))
+            };
+            let at = std::cell::RefCell::new(&mut at);
+            let mut recordings = moving(&["x", "y"], |k, t| (*at.borrow_mut())(k, t));
+            if !recorded {
+                recordings.episodes.iter_mut().for_each(|episode| episode.velocities = None);
+            }
+            self::prepared(&recordings)
+        };
+        let limited = of(limit);
+        prop_assert_eq!(verdict(&limited, "same largest speed along x"), Verdict::Doubtful);
+        let what = limited.findings.iter().map(|finding| &finding.what).find(|what| what.contains("speed along")).unwrap();
+        let named: f64 = what.split("along x, ").nth(1).and_then(|rest| rest.split(':').next()).unwrap().parse().unwrap();
+        prop_assert!((named / limit - 1.0).abs() < 0.03, "{}", what);
+        prop_assert!(!says(&of(10.0), "largest speed"));
+    }
+
+    /// Velocities written down later or earlier than positions: by how much is said.
+    #[test]
+    fn a_lag_is_found(samples in prop_oneof![-6..-1isize, 2..7isize], rate in 1.0..3.0f64) {
+        let recordings = moving(&["x", "y"], |k, t| {
+            let at = |t: f64| [(rate * t + k as f64).sin(), (0.7 * rate * t - k as f64).cos()];
+            let u = [rate * (rate * t + k as f64).cos(), -0.7 * rate * (0.7 * rate * t - k as f64).sin()];
+            (DVector::from_column_slice(&at(t)), DVector::from_column_slice(&u))
+        });
+        prop_assert!(!says(&self::prepared(&recordings), "than the steps"));
+        let mut late = recordings.clone();
+        for episode in &mut late.episodes {
+            let u = episode.velocities.clone().unwrap();
+            let at = |i: usize| i.saturating_add_signed(-samples).min(SAMPLES - 1);
+            episode.velocities = Some(DMatrix::from_fn(2, SAMPLES, |axis, i| u[(axis, at(i))]));
+        }
+        let words = format!("{} s {}", prepare_numbers(STEP * samples.unsigned_abs() as f64), if samples > 0 { "later" } else { "earlier" });
+        prop_assert!(says(&self::prepared(&late), &words), "{} not said", words);
+    }
+
+    /// q and −q are one orientation: recordings with changes of sign are those without.
+    #[test]
+    fn signs_of_quaternions(flips in prop::collection::vec((1..12usize, 0..SAMPLES), 1..6)) {
+        let plain = moving(&["x", "qx", "qy", "qz", "qw"], |k, t| {
+            let (angle, rate) = (0.3 * k as f64 + 0.8 * (-t).exp(), -0.4 * (-t).exp());
+            let (s, c) = (angle / 2.0).sin_cos();
+            let axis = [0.6, 0.8 * (k as f64).cos(), 0.8 * (k as f64).sin()];
+            let q = DVector::from_vec(vec![t.sin(), axis[0] * s, axis[1] * s, axis[2] * s, c]);
+            let u = DVector::from_vec(vec![t.cos(), axis[0] * c * rate, axis[1] * c * rate, axis[2] * c * rate, -s * rate]);
+            (q, u)
+        });
+        let mut flipped = plain.clone();
+        for (episode, from) in flips {
+            let episode = &mut flipped.episodes[episode];
+            for i in from..SAMPLES {
+                episode.positions.fixed_view_mut::<4, 1>(1, i).scale_mut(-1.0);
+                episode.velocities.as_mut().unwrap().fixed_view_mut::<4, 1>(1, i).scale_mut(-1.0);
+            }
+        }
+        let (found, expected) = (self::prepared(&flipped), self::prepared(&plain));
+        prop_assert_eq!(verdict(&found, "qx, qy, qz, qw are a unit quaternion"), Verdict::Doubtful);
+        prop_assert_eq!(&found.demonstrations, &expected.demonstrations);
+        if flipped != plain {
+            let keep = PrepareOptions { wraps: Repair::Keep, ..PrepareOptions::default() };
+            let kept = prepare(&flipped, &keep).unwrap();
+            prop_assert!(says(&kept, "unit quaternion"));
+            prop_assert!(kept.decisions.iter().all(|decision| decision.what != "quaternions"));
+        }
+    }
+
+    /// Movements that end at so many places, however many of them there are.
+    #[test]
+    fn ends_are_counted(places in 1..6usize, near in 0.0..0.01f64) {
+        let mut recordings = moving(&["x", "y"], |k, t| {
+            let end = k % places;
+            let away = (-4.0 * t).exp() * (1.0 + k as f64) + near * (k as f64).sin();
+            let x = [2.0 * (end as f64 * 1.1).cos() + away, 2.0 * (end as f64 * 1.1).sin() - 0.5 * away];
+            (DVector::from_column_slice(&x), DVector::zeros(2))
+        });
+        recordings.episodes.iter_mut().for_each(|episode| episode.velocities = None);
+        let demonstrations = self::prepared(&recordings).demonstrations;
+        prop_assert_eq!(policy_align::prepare::end_places(&demonstrations), Some(places));
+    }
+}
+
+/// As findings write numbers.
+fn prepare_numbers(value: f64) -> String {
+    policy_align::prepare::numbers::short(value)
+}

@@ -1,20 +1,15 @@
 use motion::{Demonstrations, upper_median};
 use nalgebra::{DMatrix, DVector};
 
+use crate::samples::noise::velocities;
+
 /// Samples slower than this share of the median are left out: their direction is noise.
 const STILL: f64 = 0.01;
 
 /// Coverage of the directions of motion: n times the least eigenvalue of the mean of d dᵀ, d = u/‖u‖, 1 if all directions
 /// occur alike and 0 if one never does, and that direction, (n).
 pub fn directions(demonstrations: &Demonstrations) -> (f64, DVector<f64>) {
-    let velocities: Vec<DVector<f64>> = demonstrations
-        .trajectories()
-        .iter()
-        .flat_map(|movement| {
-            let velocities = movement.velocities().cloned().unwrap_or_else(|| movement.step_velocities());
-            velocities.column_iter().map(nalgebra::Matrix::into_owned).collect::<Vec<_>>()
-        })
-        .collect();
+    let velocities: Vec<DVector<f64>> = velocities(demonstrations).collect();
     let usual = upper_median(velocities.iter().map(nalgebra::Matrix::norm).collect());
     let least = STILL * usual.expect("demonstrations have samples");
     let n = demonstrations.dim();

@@ -47,6 +47,7 @@
 
 mod channel;
 mod degrees;
+mod direction;
 mod directions;
 mod error;
 mod notes;
@@ -60,10 +61,12 @@ mod scale;
 mod velocity_source;
 
 pub use channel::StateChannel;
+pub use direction::direction_by_channels;
 pub use directions::directions;
 pub use error::PrepareError;
 pub use options::{PrepareOptions, Repair, Smoothing, VelocityUse};
 pub use prepared::Prepared;
+pub use remarks::{end_places, pressing};
 pub use samples::noise::Noise;
 pub use samples::smooth::with_slopes;
 pub use samples::still::trim_still;
@@ -85,6 +88,7 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
     let mut episodes = repairs::episodes::movements(recordings, &scales, &mut notes)?;
     repairs::duplicates::leave_out(&mut episodes, &mut notes);
     repairs::stamps::decide(&mut episodes, options, &mut notes)?;
+    repairs::quaternions::align(&mut episodes, &recordings.state, options.wraps, &mut notes);
     if options.wraps == Repair::Auto {
         repairs::wraps::unwrap(&mut episodes, &recordings.state, &mut notes);
     }
@@ -112,7 +116,7 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
     };
     let state = scale::channels(recordings, &scales, &demonstrations);
     repairs::stamps::doubt(&demonstrations, &mut notes);
-    remarks::about(&demonstrations, &state, &mut notes);
+    remarks::about(&demonstrations, &state, &noise, &mut notes);
     degrees::remark(&state, &mut notes);
     samples::still::remark(&demonstrations, noise.positions.as_deref(), &episodes, &mut notes);
     let time_steps = demonstrations.trajectories().iter().map(Trajectory::time_step);

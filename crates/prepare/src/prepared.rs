@@ -44,8 +44,8 @@ impl Prepared {
         let demonstrations = Demonstrations::new(movements.collect::<Result<_, _>>()?)?;
         let scaled = |(of, factor): (&StateChannel, &f64)| StateChannel { scale: of.scale * factor, ..of.clone() };
         let state: Vec<StateChannel> = self.state.iter().zip(factors).map(scaled).collect();
-        let mixed_before = remarks::mixed_units(&remarks::spreads(&self.demonstrations), &self.state);
-        let others = self.findings.iter().filter(|&finding| Some(finding) != mixed_before.as_ref()).cloned();
+        let before = remarks::of_scale(&self.demonstrations, &self.state, &self.noise);
+        let others = self.findings.iter().filter(|finding| !before.contains(finding)).cloned();
         let anew = noise::of(&demonstrations);
         let noise = match self.smoothing {
             Smoothing::Auto | Smoothing::Off => {
@@ -71,9 +71,9 @@ impl Prepared {
             other => other,
         };
         Ok(Prepared {
-            noise,
             velocities,
-            findings: others.chain(remarks::mixed_units(&remarks::spreads(&demonstrations), &state)).collect(),
+            findings: others.chain(remarks::of_scale(&demonstrations, &state, &noise)).collect(),
+            noise,
             state,
             demonstrations,
             ..self.clone()

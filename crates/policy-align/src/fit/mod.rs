@@ -21,8 +21,10 @@ use prepare::numbers::squared_error;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::trust::{AlignedNumbers, TrustNumbers, VerdictInput, judge, share_leaving, share_unknown};
-use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, Prepared, Verdict};
+use crate::trust::{
+    AlignedNumbers, TrustNumbers, VerdictInput, differing_goals, friction, judge, pushed, share_leaving, share_unknown,
+};
+use crate::{DataSummary, Decision, FitError, Learnt, MadeBy, Model, Prepared};
 use aligning::AlignedFit;
 use decision::decision;
 
@@ -66,8 +68,17 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
         _ => None,
     };
     let numbers = numbers(prepared, options, &readings, aligned.as_ref(), &rows);
-    let own = prepared.findings.iter().cloned();
-    let findings: Vec<Finding> = pushed(&readings, options.learner).into_iter().chain(own).collect();
+    let policy = policy(options, &readings, aligned.as_ref());
+    let mut findings = prepared.findings.clone();
+    if let Some(push) = readings.slope().report().push {
+        let learnt = options.learner != LearnerChoice::PolicyAlign && takes_slope(&readings, options.learner);
+        pushed(push, learnt, prepared, &mut findings);
+    }
+    // Both compare velocities with the policy's part along them, which another metric turns.
+    if rows.momenta().is_none() {
+        findings.extend(differing_goals(policy, prepared, &rows, &numbers));
+        findings.extend(friction(policy, &rows));
+    }
     let trust =
         judge(VerdictInput { numbers, findings: &findings, state: &prepared.state, episodes: &prepared.episodes });
     let learnt = match (options.learner, aligned) {
@@ -112,18 +123,6 @@ fn takes_slope(readings: &AutoFit, learner: LearnerChoice) -> bool {
     }
 }
 
-/// Constraints that pushed: a remark where the policy was learnt in spite of them, a doubt elsewhere.
-fn pushed(readings: &AutoFit, learner: LearnerChoice) -> Option<Finding> {
-    let push = readings.slope().report().push?;
-    let (verdict, next) = if learner != LearnerChoice::PolicyAlign && takes_slope(readings, learner) {
-        (Verdict::Good, "the policy was learnt from the directions in which velocities differ: nothing to do")
-    } else {
-        (Verdict::Doubtful, "--learner slope, which learns from the directions in which velocities differ")
-    };
-    let what = format!("constraints pushed, on average with {:.0} % of the policy's speed", 100.0 * push);
-    Some(Finding { verdict, what, next: next.to_owned() })
-}
-
 fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {
     let given = |learner| decision("learner", learner, "given", "--learner");
     match options.learner {
@@ -158,6 +157,16 @@ fn found(reading: Hypothesis) -> &'static str {
     }
 }
 
+/// The policy handed out.
+fn policy<'a>(options: &FitOptions, readings: &'a AutoFit, aligned: Option<&'a AlignedFit>) -> &'a dyn Policy {
+    match aligned {
+        Some(aligned) => &aligned.policy,
+        None if options.learner == LearnerChoice::Auto => readings,
+        None if takes_slope(readings, options.learner) => readings.slope(),
+        None => readings.direct(),
+    }
+}
+
 fn numbers(
     prepared: &Prepared,
     options: &FitOptions,
@@ -167,12 +176,6 @@ fn numbers(
 ) -> TrustNumbers {
     let (of, report) = (readings.numbers(), readings.slope().report());
     let takes_slope = takes_slope(readings, options.learner);
-    let policy: &dyn Policy = match aligned {
-        Some(aligned) => &aligned.policy,
-        None if options.learner == LearnerChoice::Auto => readings,
-        None if takes_slope => readings.slope(),
-        None => readings.direct(),
-    };
     let slope_error = of.a_s * (1.0 - of.hidden);
     let held_out_error = match aligned {
         Some(aligned) => aligned.held_out.to_judge(),
@@ -222,7 +225,7 @@ fn numbers(
             halves::of_direct(readings, rows, limits)
         },
         unknown: unknown(readings, prepared, rows),
-        leaving: share_leaving(policy, &prepared.demonstrations),
+        leaving: share_leaving(policy(options, readings, aligned), &prepared.demonstrations),
         step_noise: prepared.noise.step_share,
         grouping: of.grouping,
         aligned: aligned_numbers,

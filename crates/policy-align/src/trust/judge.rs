@@ -2,9 +2,9 @@ use std::cmp::Reverse;
 
 use gp::{Grouping, Hypothesis};
 use motion::upper_median;
+use prepare::direction_by_channels;
 use prepare::numbers::{percent, short};
 
-use super::direction::direction_by_channels;
 use super::numbers::TrustNumbers;
 use crate::{Finding, StateChannel, Trust, Verdict};
 

@@ -1,15 +1,19 @@
 //! Checks of a learnt policy without the truth.
 
 mod between;
-mod direction;
 mod freely;
+mod friction;
+mod goals;
 mod judge;
 mod numbers;
+mod pushes;
 mod report;
 
 pub(crate) use between::share_unknown;
-pub use direction::direction_by_channels;
 pub(crate) use freely::share_leaving;
+pub(crate) use friction::friction;
+pub(crate) use goals::differing_goals;
 pub(crate) use judge::{VerdictInput, judge};
 pub use numbers::{AlignedNumbers, TrustNumbers};
+pub(crate) use pushes::pushed;
 pub use report::Trust;

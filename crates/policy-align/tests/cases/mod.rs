@@ -1,5 +1,7 @@
 //! Recordings with their truth, good and bad, as laboratories make them.
 
+mod unseen;
+
 use constraints::{LinearConstraint, PfaffianConstraint, Switching, Unconstrained};
 use demo_gen::beyond::{BeyondSystem, ConstraintKind, PolicyKind as Shown};
 use demo_gen::{Parabola, Recording, RollOut, Sinusoidal, ThreeLinkArm, with_position_noise};
@@ -12,6 +14,8 @@ use rand_distr::StandardNormal;
 
 /// Movements of the same kind that no learner sees.
 const FRESH: usize = 20;
+/// A policy is right below this error (nUPE).
+const RIGHT: f64 = 0.15;
 
 /// Recordings and what is true of them.
 pub(crate) struct Case {
@@ -230,10 +234,12 @@ type Make = Box<dyn Fn(u64) -> Case>;
 pub(crate) struct Named {
     pub(crate) name: &'static str,
     pub(crate) make: Make,
+    /// A policy is right below this error (nUPE).
+    pub(crate) right: f64,
 }
 
 fn case(name: &'static str, make: impl Fn(u64) -> Case + 'static) -> Named {
-    Named { name, make: Box::new(make) }
+    Named { name, make: Box::new(make), right: RIGHT }
 }
 
 /// All of them.
@@ -249,7 +255,7 @@ pub(crate) fn all() -> Vec<Named> {
     };
     let free = |roll_out| Plane { roll_out, under: Under::Nothing, ..Plane::default() };
     let fine = || RollOut { time_step: 0.5, n_samples: 60, sub_steps: 20 };
-    vec![
+    let mut all = vec![
         case("clean parabola", move |s| Case::of(&of_parabola(40, s), 40, Velocities)),
         case("clean sinusoid", move |s| Case::of(&of_sinusoid(40, s), 40, Velocities)),
         case("clean parabola, positions only", move |s| Case::of(&of_parabola(40, s), 40, Positions)),
@@ -539,5 +545,7 @@ pub(crate) fn all() -> Vec<Named> {
             Case::of(&of_parabola(40, s), 40, Positions)
                 .each(|e| e.positions.apply(|x| *x = rng.sample(StandardNormal)))
         }),
-    ]
+    ];
+    all.extend(unseen::all());
+    all
 }

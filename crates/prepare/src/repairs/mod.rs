@@ -4,6 +4,8 @@ pub(crate) mod agreement;
 pub(crate) mod duplicates;
 pub(crate) mod episodes;
 pub(crate) mod jumps;
+pub(crate) mod lag;
+pub(crate) mod quaternions;
 pub(crate) mod stamps;
 pub(crate) mod velocities;
 pub(crate) mod wraps;

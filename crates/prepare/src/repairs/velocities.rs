@@ -5,6 +5,7 @@ use crate::notes::Notes;
 use crate::numbers::{percent, short};
 use crate::options::{PrepareOptions, VelocityUse};
 use crate::repairs::agreement::Agreement;
+use crate::repairs::lag;
 use crate::samples::noise::Noise;
 
 use crate::repairs::stamps::SLOW;
@@ -47,6 +48,7 @@ pub(crate) fn decide(
         notes.decided("velocities", "recorded", "used as requested", "--integration");
         return Agreement::Own;
     }
+    lag::remark(episodes, notes);
     let fit = Steps::of(episodes, noise);
     if fit.explained < UNRELATED {
         for episode in episodes.iter_mut() {

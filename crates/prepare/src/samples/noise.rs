@@ -91,6 +91,25 @@ fn velocity_noise(demonstrations: &Demonstrations) -> Option<(f64, f64)> {
     Some((noise.deviations.norm_squared(), power / count as f64))
 }
 
+/// Recorded velocities, or those of the steps where there are none, (n) each.
+pub(crate) fn velocities(demonstrations: &Demonstrations) -> impl Iterator<Item = DVector<f64>> {
+    demonstrations.trajectories().iter().flat_map(|movement| {
+        let velocities = movement.velocities().cloned().unwrap_or_else(|| movement.step_velocities());
+        velocities.column_iter().map(nalgebra::Matrix::into_owned).collect::<Vec<_>>()
+    })
+}
+
+/// Variance of the noise in each axis of [`velocities`], the mean of all axes; 0 where it cannot be estimated.
+pub(crate) fn velocity_variance(demonstrations: &Demonstrations, noise: &Noise) -> f64 {
+    let dim = demonstrations.dim() as f64;
+    let positions = noise.positions.iter().flatten().map(|deviation| deviation.powi(2)).sum::<f64>() / dim;
+    let step = demonstrations.trajectories()[0].time_step();
+    match velocity_noise(demonstrations) {
+        Some((variance, _)) => variance / dim,
+        None => 2.0 * positions / step.powi(2),
+    }
+}
+
 /// The kind of recording where the user requested a smoothing.
 pub(crate) fn as_requested(demonstrations: &Demonstrations, noise: &Noise, agreement: Agreement) -> VelocitySource {
     if agreement == Agreement::None {

@@ -1,11 +1,18 @@
 //! Further findings before learning.
 
+mod end_places;
+mod pressing;
+mod speed_limit;
+
+pub use end_places::end_places;
 use motion::{Demonstrations, Finding, Trajectory, Verdict};
+pub use pressing::pressing;
+use speed_limit::speed_limit;
 
 use crate::StateChannel;
 use crate::notes::Notes;
 use crate::numbers::{counted, percent, short};
-use crate::samples::noise::resolution;
+use crate::samples::noise::{Noise, resolution};
 
 /// A channel that spreads so many times as much as most others has another unit, it seems.
 const MIXED: f64 = 20.0;
@@ -16,16 +23,22 @@ const LOOP: f64 = 0.05;
 /// Positions have few digits if a step of the last digit is this share of a channel's spread.
 const COARSE: f64 = 0.01;
 
-pub(crate) fn about(demonstrations: &Demonstrations, state: &[StateChannel], notes: &mut Notes) {
-    let spreads = spreads(demonstrations);
-    notes.findings.extend(mixed_units(&spreads, state));
+pub(crate) fn about(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise, notes: &mut Notes) {
+    notes.findings.extend(of_scale(demonstrations, state, noise));
     few(demonstrations, notes);
     loops(demonstrations, notes);
-    coarse(demonstrations, &spreads, state, notes);
+    coarse(demonstrations, &spreads(demonstrations), state, notes);
+}
+
+/// What depends on the scale of each channel.
+pub(crate) fn of_scale(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise) -> Vec<Finding> {
+    let mixed = mixed_units(&spreads(demonstrations), state);
+    let (press, limit) = (pressing(demonstrations, state), speed_limit(demonstrations, state, noise));
+    [mixed, press, limit].into_iter().flatten().collect()
 }
 
 /// Standard deviation of every channel, (n).
-pub(crate) fn spreads(demonstrations: &Demonstrations) -> Vec<f64> {
+fn spreads(demonstrations: &Demonstrations) -> Vec<f64> {
     let samples = demonstrations.n_samples() as f64;
     let spread = |axis: usize| {
         let values = demonstrations.values(axis);
@@ -36,7 +49,7 @@ pub(crate) fn spreads(demonstrations: &Demonstrations) -> Vec<f64> {
 }
 
 /// A channel whose values spread as if it had another unit than the others.
-pub(crate) fn mixed_units(spreads: &[f64], state: &[StateChannel]) -> Option<Finding> {
+fn mixed_units(spreads: &[f64], state: &[StateChannel]) -> Option<Finding> {
     let mut sorted: Vec<f64> = spreads.iter().copied().filter(|&spread| spread > 0.0).collect();
     sorted.sort_by(f64::total_cmp);
     let (&largest, others) = sorted.split_last()?;

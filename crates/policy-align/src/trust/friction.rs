@@ -1,0 +1,103 @@
+//! Movements that are slower than the policy's component along them.
+
+use motion::Policy;
+use nalgebra::{Matrix2, Vector2};
+use prepare::numbers::percent;
+
+use crate::{Finding, Verdict};
+
+/// Least missing speed, as a share of the root mean square, and its t over movements: friction has a t of 5 and more, all else below 3.5. The policy
+/// absorbs some of it, so that the share is too low.
+const MISSING: f64 = 0.01;
+const LEAST_T: f64 = 4.0;
+/// Fewer movements determine no t.
+const FEW: usize = 5;
+
+/// Says that what constraints turn aside is slower than r = nᵀπ, by about the same everywhere.
+pub(crate) fn friction(policy: &dyn Policy, rows: &gp::Rows) -> Option<Finding> {
+    let (missing, t) = missing_speed(policy, rows)?;
+    (missing > MISSING && t > LEAST_T).then(|| Finding {
+        verdict: Verdict::Doubtful,
+        what: format!(
+            "movements that constraints turn aside are too slow, by at least {} of the speed: friction, or constraints that give way",
+            percent(missing)
+        ),
+        next: "reduce friction and hold constraints firmly, or record the velocities that were commanded".to_owned(),
+    })
+}
+
+/// Least squares of r − nᵀπ̂ = −f + ε nᵀπ̂ over rows: f in root mean squares of the speed, and its t with movements as units.
+fn missing_speed(policy: &dyn Policy, rows: &gp::Rows) -> Option<(f64, f64)> {
+    let movements = rows.indices().iter().map(|index| index.trajectory).max()? + 1;
+    let mut samples = vec![Vec::new(); movements];
+    let (mut matrix, mut vector, mut power) = (Matrix2::zeros(), Vector2::zeros(), 0.0);
+    for ((x, u), index) in rows.states().column_iter().zip(rows.velocities().column_iter()).zip(rows.indices()) {
+        let Some(n) = u.try_normalize(0.0) else { continue };
+        let along = n.dot(&policy.action(x));
+        let (factors, error) = (Vector2::new(-1.0, along), u.norm() - along);
+        matrix += factors * factors.transpose();
+        vector += factors * error;
+        power += u.norm_squared();
+        samples[index.trajectory].push((factors, error));
+    }
+    let inverse = matrix.try_inverse()?;
+    let fit = inverse * vector;
+    let influence = |samples: &Vec<(Vector2<f64>, f64)>| {
+        samples.iter().map(|(factors, error)| (inverse * factors).x * (error - factors.dot(&fit))).sum::<f64>()
+    };
+    let deviation = samples.iter().map(|samples| influence(samples).powi(2)).sum::<f64>().sqrt();
+    let counted = samples.iter().filter(|samples| !samples.is_empty()).count();
+    (counted >= FEW).then(|| (fit.x / (power / rows.len() as f64).sqrt(), fit.x / deviation))
+}
+
+#[cfg(test)]
+mod tests {
+    use motion::SampleIndex;
+    use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// π(x) = −x.
+    struct Bowl;
+
+    impl Policy for Bowl {
+        fn dim(&self) -> usize {
+            2
+        }
+
+        fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
+            action.copy_from(&-state);
+        }
+    }
+
+    /// Velocities (1 + ε) nᵀπ n, slower by what `slower` makes of the sample, in 12 movements.
+    fn rows(gain: f64, seed: u32, slower: impl Fn(usize) -> f64) -> gp::Rows {
+        let angle = |i: usize| f64::from(seed) + 2.4 * i as f64;
+        let x = |i: usize| DVector::from_vec(vec![2.0 + angle(i).sin(), (1.7 * angle(i)).cos()]);
+        let u = |i: usize| {
+            let n = DVector::from_vec(vec![(3.1 * angle(i)).cos(), (3.1 * angle(i)).sin()]);
+            let along = -n.dot(&x(i));
+            n * along.signum() * (gain * along.abs() - slower(i)).max(0.0)
+        };
+        let columns = |of: &dyn Fn(usize) -> DVector<f64>| DMatrix::from_columns(&(0..240).map(of).collect::<Vec<_>>());
+        let indices = (0..240).map(|i| SampleIndex { trajectory: i / 20, sample: i % 20 });
+        gp::Rows::new(columns(&x), columns(&u), indices.collect()).unwrap()
+    }
+
+    proptest! {
+        /// Friction is found by its size, whatever the policy's size is wrong by; noise that slows as often as not is none.
+        #[test]
+        fn friction_is_what_is_missing(gain in 0.8..1.2f64, friction in 0.05..0.4f64, seed in 0..1000u32) {
+            let rows = super::tests::rows(gain, seed, |i| friction * (1.0 + 0.1 * (5.3 * i as f64).sin()));
+            let (missing, t) = missing_speed(&Bowl, &rows).unwrap();
+            let usual = (rows.velocities().norm_squared() / rows.len() as f64).sqrt();
+            prop_assert!((missing * usual / friction - 1.0).abs() < 0.1, "{} {}", missing * usual, friction);
+            prop_assert!(t > LEAST_T);
+            let found = super::friction(&Bowl, &rows).unwrap();
+            prop_assert!(found.what.contains("too slow"));
+            let noise = super::tests::rows(gain, seed, |i| 0.05 * (7.7 * i as f64).sin());
+            prop_assert!(super::friction(&Bowl, &noise).is_none());
+        }
+    }
+}

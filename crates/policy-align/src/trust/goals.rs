@@ -1,0 +1,125 @@
+//! Goals that differ from one movement to the next.
+
+use motion::Policy;
+use nalgebra::{DMatrix, DVector};
+use prepare::numbers::percent;
+use prepare::{Prepared, end_places};
+
+use super::numbers::TrustNumbers;
+use crate::{Finding, Verdict};
+
+/// Share of what the policy does not explain that a constant velocity of each movement explains.
+const OWN: f64 = 0.35;
+/// Held-out error below which that has other reasons: limits, friction and gains that change leave less.
+const UNPREDICTED: f64 = 0.1;
+/// Ridge of that velocity, as a share of the rows that it is learnt from.
+const RIDGE: f64 = 0.05;
+/// Noise above this share of the squared steps explains enough.
+const NOISY: f64 = 0.1;
+const NEXT: &str = "if the goal, an object or a load differs, record it and name its columns with --context, or learn each goal from its own movements";
+
+/// Says what makes movements differ where the policy does not predict them. It accuses no policy that does, with however many goals.
+pub(crate) fn differing_goals(
+    policy: &dyn Policy,
+    prepared: &Prepared,
+    rows: &gp::Rows,
+    numbers: &TrustNumbers,
+) -> Option<Finding> {
+    if predicts(numbers) || numbers.step_noise > NOISY {
+        return None;
+    }
+    let places = end_places(&prepared.demonstrations).filter(|&places| places > 1);
+    let what = match (places, own_share(policy, rows)) {
+        (Some(places), _) => format!("movements are not predicted well and end at {places} places"),
+        (None, Some(share)) if share > OWN && numbers.held_out_error > UNPREDICTED => format!(
+            "something that is constant in a movement and differs between them explains {} of the error",
+            percent(share)
+        ),
+        _ => return None,
+    };
+    Some(Finding { verdict: Verdict::Doubtful, what, next: NEXT.to_owned() })
+}
+
+/// Direction n of a velocity, and r − nᵀπ̂.
+type Row = (DVector<f64>, f64);
+
+fn predicts(numbers: &TrustNumbers) -> bool {
+    numbers.held_out_error <= TrustNumbers::GOOD_HELD_OUT_ERROR
+        && numbers.expected_error <= TrustNumbers::GOOD_EXPECTED_ERROR
+        && numbers.halves.is_none_or(|halves| halves <= TrustNumbers::GOOD_HALVES)
+}
+
+/// Share of Σ(r − nᵀπ̂)² that nᵀc explains with one c (n) a movement, learnt from every other quarter of it.
+fn own_share(policy: &dyn Policy, rows: &gp::Rows) -> Option<f64> {
+    let movements = rows.indices().iter().map(|index| index.trajectory).max()? + 1;
+    let mut errors = vec![Vec::new(); movements];
+    for ((x, u), index) in rows.states().column_iter().zip(rows.velocities().column_iter()).zip(rows.indices()) {
+        let Some(n) = u.try_normalize(0.0) else { continue };
+        let error = n.dot(&(u - policy.action(x)));
+        errors[index.trajectory].push((n, error));
+    }
+    let all = errors.iter().flatten().map(|(_, error)| error * error).sum::<f64>();
+    let left = |errors: &Vec<Row>| {
+        let (odd, even) = quarters(errors);
+        left_by(&odd, &even) + left_by(&even, &odd)
+    };
+    (all > 0.0).then(|| 1.0 - errors.iter().map(left).sum::<f64>() / all)
+}
+
+/// The first and third quarter of some rows, and the others.
+fn quarters(rows: &[Row]) -> (Vec<Row>, Vec<Row>) {
+    let quarter = rows.len().div_ceil(4).max(1);
+    let of = |part: usize| rows.chunks(quarter).skip(part).step_by(2).flatten().cloned().collect();
+    (of(0), of(1))
+}
+
+/// Σ(e − nᵀc)² over some rows, c the ridge estimate from others.
+fn left_by(rows: &[Row], others: &[Row]) -> f64 {
+    let Some(dim) = rows.first().map(|(n, _)| n.len()) else { return 0.0 };
+    let mut matrix = DMatrix::identity(dim, dim) * (RIDGE * others.len().max(1) as f64);
+    let mut vector = DVector::zeros(dim);
+    for (n, error) in others {
+        matrix.ger(1.0, n, n, 1.0);
+        vector.axpy(*error, n, 1.0);
+    }
+    let own = matrix.cholesky().map_or_else(|| DVector::zeros(dim), |factor| factor.solve(&vector));
+    rows.iter().map(|(n, error)| (error - n.dot(&own)).powi(2)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use motion::SampleIndex;
+    use nalgebra::{DVectorView, DVectorViewMut};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// π = 0.
+    struct Nothing;
+
+    impl Policy for Nothing {
+        fn dim(&self) -> usize {
+            2
+        }
+
+        fn action_into(&self, _: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
+            action.fill(0.0);
+        }
+    }
+
+    proptest! {
+        /// A velocity of its own in each movement explains all of a policy that knows none, one that changes from sample to sample nothing.
+        #[test]
+        fn what_each_movement_has_of_its_own(seed in 0..1000u32, size in 0.1..10.0f64) {
+            let rows = |every: usize| {
+                let at = |axis: usize, i: usize| size * (f64::from(seed) + 1.3 * (i / every) as f64 + 1.6 * axis as f64).sin();
+                let indices = (0..240).map(|i| SampleIndex { trajectory: i / 20, sample: i % 20 }).collect();
+                gp::Rows::new(DMatrix::zeros(2, 240), DMatrix::from_fn(2, 240, at), indices).unwrap()
+            };
+            let own = own_share(&Nothing, &rows(20)).unwrap();
+            prop_assert!(own > 0.99, "{}", own);
+            let others = own_share(&Nothing, &rows(1)).unwrap();
+            prop_assert!(others < OWN, "{}", others);
+        }
+    }
+}

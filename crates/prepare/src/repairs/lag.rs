@@ -1,0 +1,92 @@
+//! Velocities that were recorded later, or earlier, than the positions.
+
+use motion::{Episode, Verdict, upper_median};
+
+use crate::notes::Notes;
+use crate::numbers::{percent, short};
+
+/// Steps compared, at most, evenly spaced.
+const STEPS: usize = 20_000;
+/// Longest lag, in samples and as a share of a movement.
+const SAMPLES: usize = 20;
+const SHARE: usize = 4;
+/// Rules of integration put a velocity up to half a sample beside the middle of its step; this many half samples are a lag.
+const LEAST: isize = 3;
+/// What the shifted velocities leave of the steps, as a share of what they leave as recorded.
+const BETTER: f64 = 0.3;
+/// Share of the squared velocities that a lag may change before the policy is in doubt.
+const HARMLESS: f64 = 0.15;
+
+/// Says by how much velocities should be shifted to agree with the steps.
+pub(crate) fn remark(episodes: &[Episode], notes: &mut Notes) {
+    let Some(lag) = lag(episodes) else { return };
+    let (when, next) = if lag.seconds > 0.0 {
+        ("later", "shift these columns, or --integration displacement takes velocities from the positions")
+    } else {
+        (
+            "earlier",
+            "right if they are commands that the robot follows so late; otherwise shift them, or --integration displacement takes velocities from the positions",
+        )
+    };
+    notes.found(
+        if lag.changed > HARMLESS { Verdict::Doubtful } else { Verdict::Good },
+        format!(
+            "velocities were recorded {} s {when} than the steps that they match (this changes {} of them)",
+            short(lag.seconds.abs()),
+            percent(lag.changed)
+        ),
+        next,
+    );
+}
+
+struct Lag {
+    /// Positive: velocities are late.
+    seconds: f64,
+    /// Σ|difference|²/Σ|step|² that the shift removes.
+    changed: f64,
+}
+
+/// The shift with which velocities explain the steps best, if it matters.
+fn lag(episodes: &[Episode]) -> Option<Lag> {
+    let mut lengths: Vec<usize> = episodes.iter().map(Episode::n_samples).collect();
+    lengths.sort_unstable();
+    let most = (lengths.get(lengths.len() / 2)? / SHARE).min(SAMPLES);
+    let halves = (2 * most).cast_signed();
+    let compared: Vec<(&Episode, usize)> = episodes
+        .iter()
+        .flat_map(|episode| {
+            let last = episode.n_samples().saturating_sub(1 + most);
+            (most..last).map(move |step| (episode, step))
+        })
+        .collect();
+    let every = compared.len().div_ceil(STEPS).max(1);
+    let compared: Vec<_> = compared.into_iter().step_by(every).collect();
+    let mismatches =
+        |shift| compared.iter().map(|(episode, step)| mismatch(episode, *step, shift)).collect::<Option<Vec<f64>>>();
+    let lefts = (-halves..=halves).map(|shift| Some((shift, mismatches(shift)?))).collect::<Option<Vec<_>>>()?;
+    // Medians: where a constraint gives way, a few steps lie between two velocities.
+    let usual = |mismatches: &[f64]| upper_median(mismatches.to_vec()).unwrap_or(0.0);
+    let (best, shifted) = lefts.iter().min_by(|a, b| usual(&a.1).total_cmp(&usual(&b.1)))?;
+    let near = lefts.iter().filter(|(shift, _)| shift.abs() <= 1);
+    let sum = |mismatches: &Vec<f64>| mismatches.iter().sum::<f64>();
+    let (least, recorded) = (sum(shifted), near.map(|(_, left)| sum(left)).fold(f64::INFINITY, f64::min));
+    let power = compared.iter().map(|(episode, step)| rate(episode, *step).norm_squared()).sum::<f64>();
+    let step = episodes.iter().find_map(|episode| episode.times.median_step())?;
+    let is_lag = best.abs() >= LEAST && best.abs() < halves && least <= BETTER * recorded;
+    is_lag.then(|| Lag { seconds: *best as f64 / 2.0 * step, changed: (recorded - least) / power })
+}
+
+/// The step's velocity.
+fn rate(episode: &Episode, step: usize) -> nalgebra::DVector<f64> {
+    episode.step(step) / episode.times.seconds(step, step + 1)
+}
+
+/// Squared difference between a step's velocity and that recorded so many half samples after its middle.
+fn mismatch(episode: &Episode, step: usize, half_samples: isize) -> Option<f64> {
+    let velocities = episode.velocities.as_ref()?;
+    // The middle of the step is half a sample after its first.
+    let at = (2 * step + 1).saturating_add_signed(half_samples);
+    let (before, after) = (at / 2, at.div_ceil(2));
+    let recorded = (velocities.column(before) + velocities.column(after)) * 0.5;
+    Some((rate(episode, step) - recorded).norm_squared())
+}

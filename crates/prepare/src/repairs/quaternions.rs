@@ -1,0 +1,92 @@
+//! Orientations as unit quaternions, of which q and −q are one.
+
+use motion::{Channel, Episode, Verdict};
+
+use crate::notes::Notes;
+use crate::numbers::counted;
+use crate::options::Repair;
+
+/// Norms of unit quaternions are this near to 1.
+const UNIT: f64 = 1e-3;
+/// A step over this length is a change of sign: opposite quaternions are 2 apart.
+const FLIP: f64 = 1.0;
+
+/// Names the channels that are unit quaternions, and gives those of one orientation one sign.
+pub(crate) fn align(episodes: &mut [Episode], channels: &[Channel], repair: Repair, notes: &mut Notes) {
+    let mut first = 0;
+    while first + 4 <= channels.len() {
+        if !is_quaternion(episodes, first) {
+            first += 1;
+            continue;
+        }
+        let flips = if repair == Repair::Auto { same_signs(episodes, first) } else { 0 };
+        let names: Vec<&str> = channels[first..first + 4].iter().map(|channel| channel.name.as_str()).collect();
+        said(&names.join(", "), flips, notes);
+        first += 4;
+    }
+}
+
+fn said(names: &str, flips: usize, notes: &mut Notes) {
+    let repaired = if flips == 0 {
+        String::new()
+    } else {
+        let flips = counted(flips, "change");
+        let why = format!("{flips} of sign, but q and −q are one orientation");
+        notes.decided("quaternions", format!("{names} with one sign"), why, "--wraps");
+        format!(" with {flips} of sign, which were undone")
+    };
+    notes.found(
+        Verdict::Doubtful,
+        format!("channels {names} are a unit quaternion{repaired}"),
+        "a policy of four free numbers leaves the sphere of orientations: record a rotation vector from the goal's orientation (three channels), or leave them out with --ignore",
+    );
+}
+
+/// Whether four channels have norm 1 throughout, and move.
+fn is_quaternion(episodes: &[Episode], first: usize) -> bool {
+    let mut columns = episodes.iter().flat_map(|episode| episode.positions.column_iter());
+    let moves = episodes.iter().any(|episode| {
+        let part = episode.positions.rows(first, 4);
+        part.column_iter().any(|q| q != part.column(0))
+    });
+    moves && columns.all(|x| (x.rows(first, 4).norm() - 1.0).abs() <= UNIT)
+}
+
+/// Number of samples after which the sign changed, within a movement and from one to the next.
+fn same_signs(episodes: &mut [Episode], first: usize) -> usize {
+    let reference = episodes[0].positions.fixed_view::<4, 1>(first, 0).into_owned();
+    let mut flips = 0;
+    for episode in episodes {
+        let (mut before, mut sign) = (reference, 1.0);
+        for i in 0..episode.n_samples() {
+            let q = episode.positions.fixed_view::<4, 1>(first, i).into_owned();
+            let now = if before.dot(&q) < 0.0 { -1.0 } else { 1.0 };
+            if now != sign {
+                flips += 1;
+                sign = now;
+            }
+            before = q * sign;
+            episode.positions.fixed_view_mut::<4, 1>(first, i).copy_from(&before);
+            if let Some(velocities) = &mut episode.velocities {
+                velocities.fixed_view_mut::<4, 1>(first, i).scale_mut(sign);
+            }
+        }
+        made_of_positions(episode, first);
+    }
+    flips
+}
+
+/// Velocities that were made of the positions jump with them: those are made anew.
+fn made_of_positions(episode: &mut Episode, first: usize) {
+    let Some(velocities) = &mut episode.velocities else { return };
+    for i in 1..episode.positions.ncols() {
+        let seconds = episode.times.seconds(i - 1, i);
+        let q = |at: usize| episode.positions.fixed_view::<4, 1>(first, at).into_owned();
+        for sample in [i - 1, i] {
+            let mut velocity = velocities.fixed_view_mut::<4, 1>(first, sample);
+            if velocity.norm() * seconds > FLIP {
+                velocity.copy_from(&((q(i) - q(i - 1)) / seconds));
+            }
+        }
+    }
+}
