@@ -57,6 +57,7 @@
 //! - **More than 1,500 rows** are thinned, since time grows with their cube ([`SlopeGp::max_rows`]).
 //! - [`GpError`]: no motion, fewer than three usable trajectories, or too few rows.
 
+mod constraint_estimate;
 mod dimension;
 mod direct;
 #[cfg(doc)]
@@ -75,6 +76,7 @@ mod stored;
 mod stretches;
 mod support;
 
+pub use constraint_estimate::{Acting, ConstraintEstimates, StretchEstimate, TaskSpace};
 pub use direct::data::DirectData;
 pub use direct::direct_gp::{DirectFit, DirectGp};
 pub use direct::learner::DirectLearner;
