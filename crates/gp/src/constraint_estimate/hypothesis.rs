@@ -34,13 +34,21 @@ impl Movement {
                     continue;
                 }
                 let change = view.change((begin, end), &directions, rank, &self.disagreement);
-                let cost = none + change + price(dim, rank) + SEGMENT;
+                let cost = none + change + self.price((begin, end), dim, rank) + SEGMENT;
                 if cost < best.0 {
                     best = (cost, Hypothesis::Constrained { space, rank });
                 }
             }
         }
         best
+    }
+
+    /// What A of so many rows and b cost: less where velocities are known better than the policy, since one that does not vary is
+    /// then no accident.
+    fn price(&self, (begin, end): (usize, usize), dim: usize, rank: usize) -> f64 {
+        let parameters = PARAMETER * (rank * (dim - rank + 1)) as f64;
+        let accident = self.disagreement.accident(begin, end);
+        rank as f64 * (parameters / rank as f64 + DIMENSION - accident).max(ROW)
     }
 
     /// The view and the directions of a part with a constraint, and its rank.
@@ -66,7 +74,5 @@ impl Movement {
     }
 }
 
-/// What A of so many rows and b cost.
-fn price(dim: usize, rank: usize) -> f64 {
-    PARAMETER * (rank * (dim - rank + 1)) as f64 + DIMENSION * rank as f64
-}
+/// Least price of a row of A: three standard deviations of what the policy wants in vain.
+const ROW: f64 = 4.0;

@@ -22,10 +22,8 @@ use crate::stretches::{MOST_DIMENSIONS, MOST_SAMPLES, evenly, movements};
 use crate::{GpError, Rows};
 use hypothesis::{Hypothesis, Movement};
 use stretch_estimate::canonical;
-use view::{Disagreement, View};
+use view::{Disagreement, SHARED, View};
 
-/// Samples that share one error of the policy: it is smooth.
-const SHARED: f64 = 10.0;
 /// Standard deviation of the policy in the first round, as a share of its root mean square; in the second it is what the
 /// first leaves.
 const FIRST: f64 = 0.05;

@@ -4,6 +4,9 @@ use nalgebra::{DMatrix, DVector, DVectorView};
 
 use super::task_space::TaskSpace;
 
+/// Samples that share one error of the policy: it is smooth.
+pub(super) const SHARED: f64 = 4.0;
+
 /// What of two policies a movement shows: disagreement d = π̂ − u, weighted by its variance.
 pub(super) struct Disagreement {
     /// (n, N).
@@ -14,20 +17,29 @@ pub(super) struct Disagreement {
     pub(super) noise: f64,
     /// Σ w |d|² over the first samples, (N + 1).
     squares: Vec<f64>,
+    /// Σ log 1/(w s²), likewise: how much better velocities are known than the policy.
+    accidents: Vec<f64>,
 }
 
 impl Disagreement {
     pub(super) fn new(of: DMatrix<f64>, weights: Vec<f64>, noise: f64) -> Self {
-        let mut squares = vec![0.0];
-        for (d, weight) in of.column_iter().zip(&weights) {
-            squares.push(squares[squares.len() - 1] + weight * d.norm_squared());
+        let (mut squares, mut accidents) = (vec![0.0], vec![0.0]);
+        for (at, (d, weight)) in of.column_iter().zip(&weights).enumerate() {
+            squares.push(squares[at] + weight * d.norm_squared());
+            accidents.push(accidents[at] - (weight * noise).ln());
         }
-        Disagreement { of, weights, noise, squares }
+        Disagreement { of, weights, noise, squares, accidents }
     }
 
     /// Σ w |d|² over `begin..end`: minus twice the log likelihood of no constraint.
     pub(super) fn square(&self, begin: usize, end: usize) -> f64 {
         self.squares[end] - self.squares[begin]
+    }
+
+    /// Twice the log likelihood ratio that a velocity which does not vary has by being so exact, as often as the policy's error
+    /// is another.
+    pub(super) fn accident(&self, begin: usize, end: usize) -> f64 {
+        (self.accidents[end] - self.accidents[begin]) / SHARED
     }
 }
 
