@@ -101,6 +101,14 @@ fn measured() {
                 let free = FrontEnd::Velocities.rows(&system.free().movements(0.0, noise, 500 + seed)).unwrap();
                 let of_free = ConstraintEstimates::of(&free, fit.slope(), &[TaskSpace::recorded()]).unwrap();
                 for stretch in &of_free.stretches {
+                    if std::env::var("SHOW").is_ok() && stretch.acting == Acting::Constraint {
+                        let at = |sample| stretch.trajectory * 40 + sample;
+                        let (a, b) = (at(stretch.samples.0), at(stretch.samples.1));
+                        let (ua, ub) = (free.velocities().column(a), free.velocities().column(b));
+                        let p = motion::Policy::action(fit.slope(), free.states().column(a));
+                        let pb = motion::Policy::action(fit.slope(), free.states().column(b));
+                        println!("{:?} rank {} angle {:.2} evidence {:.1} |u| {:.1e} {:.1e} d {:.1e} {:.1e} b {:.1e}", stretch.samples, stretch.matrix.nrows(), stretch.angle.to_degrees(), stretch.evidence, ua.norm(), ub.norm(), (p-ua).norm(), (pb-ub).norm(), stretch.bound.norm());
+                    }
                     *found.free.entry(format!("{:?}", stretch.acting)).or_default() += 1;
                 }
                 if seed == 1 {

@@ -30,7 +30,7 @@ impl Movement {
                 if directions.values[rank - 1] >= 0.0 {
                     break;
                 }
-                if end - begin < dim - rank + SPARE {
+                if end - begin < dim - rank + SPARE || directions.angle(rank) > MOST_ANGLE {
                     continue;
                 }
                 let change = view.change((begin, end), &directions, rank, &self.disagreement);
@@ -75,4 +75,6 @@ impl Movement {
 }
 
 /// Least price of a row of A: three standard deviations of what the policy wants in vain.
-const ROW: f64 = 4.0;
+const ROW: f64 = 9.0;
+/// Radians by which a row may be uncertain, at most: a direction that merely was not used has any angle.
+const MOST_ANGLE: f64 = 0.25;
