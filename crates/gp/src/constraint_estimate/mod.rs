@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use crate::stretches::noise::velocity_noise;
 use crate::stretches::segmentation::{PARAMETER, Part, SPARE, cheapest_parts};
-use crate::stretches::{MOST_DIMENSIONS, MOST_SAMPLES, evenly, movements};
+use crate::stretches::{MOST_DIMENSIONS, MOST_SAMPLES, centred, evenly, movements};
 use crate::{GpError, Rows};
 use hypothesis::{Hypothesis, Movement};
 use stretch_estimate::canonical;
@@ -29,6 +29,9 @@ use view::{Disagreement, SHARED, View};
 const FIRST: f64 = 0.05;
 /// Squared standard deviations from which something is seen.
 const SEEN: f64 = 9.0;
+
+/// What a direction varies by that is known, in units of all variation: more than any other.
+const VARIES: f64 = 4.0;
 
 /// The constraints of all movements.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,7 +70,7 @@ impl ConstraintEstimates {
         let first = FIRST.powi(2) * search.wanted.mean_square();
         let policy_variance = search.left(&search.parts(first)).unwrap_or(first);
         let parts = search.parts(policy_variance);
-        let stretches = search.stretches(&parts);
+        let stretches = search.stretches(&parts, policy_variance);
         Ok(ConstraintEstimates { stretches, noise, policy_variance })
     }
 }
@@ -145,6 +148,20 @@ impl Search<'_> {
         self.movements.par_iter().map(of).collect()
     }
 
+    /// The row at which the part after a switch begins: the best of all that lie between the two rows that were searched.
+    fn switch(&self, parts: &Parts, (left, right): (&Part<Hypothesis>, &Part<Hypothesis>), least: f64) -> usize {
+        let (last, first) = (parts.rows[left.end - 1], parts.rows[right.begin]);
+        let between = last + 1..first;
+        let mut rows = parts.rows[left.begin..left.end].to_vec();
+        rows.extend(between.clone());
+        rows.extend(&parts.rows[right.begin..right.end]);
+        let movement = self.movement(&rows, least);
+        let cost = |cut: usize| movement.cheapest(0, cut).0 + movement.cheapest(cut, rows.len()).0;
+        let cuts = left.end - left.begin..=left.end - left.begin + between.len();
+        let best = cuts.map(|cut| (cost(cut), cut)).min_by(|a, b| a.0.total_cmp(&b.0));
+        best.map_or(first, |(_, cut)| rows[cut])
+    }
+
     fn movement(&self, rows: &[usize], least: f64) -> Movement {
         let velocities = self.rows.velocities().select_columns(rows);
         let disagreement = self.wanted.actions.select_columns(rows) - &velocities;
@@ -165,8 +182,23 @@ impl Search<'_> {
         upper_median(parts.iter().flat_map(of).collect()).map(|square| (square - self.noise).max(0.0))
     }
 
-    fn stretches(&self, parts: &[Parts]) -> Vec<StretchEstimate> {
-        parts.iter().flat_map(|of| of.with_gaps().map(|(part, found)| self.stretch(of, &part, found))).collect()
+    fn stretches(&self, parts: &[Parts], least: f64) -> Vec<StretchEstimate> {
+        parts.par_iter().flat_map_iter(|of| self.of_movement(of, least)).collect()
+    }
+
+    fn of_movement(&self, of: &Parts, least: f64) -> Vec<StretchEstimate> {
+        let with_gaps = of.with_gaps();
+        let mut stretches: Vec<StretchEstimate> =
+            with_gaps.iter().map(|(part, found)| self.stretch(of, part, *found)).collect();
+        for (at, pair) in with_gaps.windows(2).enumerate() {
+            let (left, right) = (&pair[0].0, &pair[1].0);
+            if left.end == right.begin && of.rows[left.end - 1] + 1 < of.rows[right.begin] {
+                let begin = self.switch(of, (left, right), least);
+                stretches[at].samples.1 = self.rows.indices()[begin - 1].sample;
+                stretches[at + 1].samples.0 = self.rows.indices()[begin].sample;
+            }
+        }
+        stretches
     }
 
     fn stretch(&self, parts: &Parts, part: &Part<Hypothesis>, found: bool) -> StretchEstimate {
@@ -185,6 +217,7 @@ impl Search<'_> {
             evidence: 0.0,
             hidden: DMatrix::zeros(dim, 0),
         };
+        let inside = &rows[part.begin..part.end];
         if let (Some((view, directions, rank)), Hypothesis::Constrained { space, .. }) =
             (movement.constraint(part), part.kind)
         {
@@ -192,11 +225,25 @@ impl Search<'_> {
             stretch.acting = Acting::Constraint;
             stretch.space = space;
             stretch.matrix = canonical(&(&view.basis * directions.first(rank)));
-            (stretch.bound, stretch.bound_deviation) = self.bound(&stretch, &rows[part.begin..part.end]);
+            (stretch.bound, stretch.bound_deviation) = self.bound(&stretch, inside);
             stretch.angle = directions.angle(rank);
             stretch.evidence = -0.5 * change;
         }
+        if found && self.spaces[stretch.space].jacobians.is_none() {
+            stretch.hidden = self.hidden(&stretch.matrix, inside);
+        }
         stretch
+    }
+
+    /// Directions (n, r) other than the rows of A (k, n) along which velocities do not vary.
+    fn hidden(&self, matrix: &DMatrix<f64>, rows: &[usize]) -> DMatrix<f64> {
+        let (_, centred) = centred(&self.rows.velocities().select_columns(rows));
+        let scatter = &centred * centred.transpose() / self.noise;
+        let varies = VARIES * (scatter.trace() + rows.len() as f64);
+        let eigen = (scatter + matrix.tr_mul(matrix) * varies).symmetric_eigen();
+        let least = 2.0 * rows.len() as f64 + SEEN;
+        let hidden: Vec<usize> = (0..self.rows.dim()).filter(|&k| eigen.eigenvalues[k] < least).collect();
+        eigen.eigenvectors.select_columns(&hidden)
     }
 
     /// What a stretch without a constraint is: one that follows the policy, or one where the policy does not want to move.
@@ -227,13 +274,13 @@ impl Search<'_> {
 
 impl Parts {
     /// The parts found, and what lies between them if it is long enough to say that it is in none; whether it was found.
-    fn with_gaps(&self) -> impl Iterator<Item = (Part<Hypothesis>, bool)> {
+    fn with_gaps(&self) -> Vec<(Part<Hypothesis>, bool)> {
         let ends = self.found.iter().map(|part| part.end);
         let begins = self.found.iter().map(|part| part.begin).chain([self.rows.len()]);
         let gaps = std::iter::once(0).chain(ends).zip(begins).filter(|(end, begin)| end + SPARE <= *begin);
         let gaps = gaps.map(|(begin, end)| (Part { begin, end, kind: Hypothesis::Free }, false));
         let mut all: Vec<_> = self.found.iter().map(|&part| (part, true)).chain(gaps).collect();
         all.sort_by_key(|(part, _)| part.begin);
-        all.into_iter()
+        all
     }
 }

@@ -73,7 +73,7 @@ pub(crate) fn movements<'a>(rows: &Rows, at: &'a [usize]) -> Vec<&'a [usize]> {
 }
 
 /// The mean of the columns, and the columns about it.
-fn centred(columns: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
+pub(crate) fn centred(columns: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
     let mean = columns.column_mean();
     let mut centred = columns.clone();
     centred.column_iter_mut().for_each(|mut column| column -= &mean);
