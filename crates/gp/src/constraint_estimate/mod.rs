@@ -213,6 +213,7 @@ impl Search<'_> {
             matrix: DMatrix::zeros(0, dim),
             bound: DVector::zeros(0),
             bound_deviation: 0.0,
+            speed: 0.0,
             angle: 0.0,
             evidence: 0.0,
             hidden: DMatrix::zeros(dim, 0),
@@ -225,7 +226,7 @@ impl Search<'_> {
             stretch.acting = Acting::Constraint;
             stretch.space = space;
             stretch.matrix = canonical(&(&view.basis * directions.first(rank)));
-            (stretch.bound, stretch.bound_deviation) = self.bound(&stretch, inside);
+            self.find_bound(&mut stretch, inside);
             stretch.angle = directions.angle(rank);
             stretch.evidence = -0.5 * change;
         }
@@ -256,19 +257,21 @@ impl Search<'_> {
         if 2 * count >= part.end - part.begin { Acting::Nothing } else { Acting::Unseen }
     }
 
-    /// b, and the standard deviation of its components.
-    fn bound(&self, stretch: &StretchEstimate, rows: &[usize]) -> (DVector<f64>, f64) {
-        let jacobian = |row: usize| self.spaces[stretch.space].jacobians.as_ref().map(|jacobians| &jacobians[row]);
-        let (mut sum, mut gain) = (DVector::zeros(stretch.matrix.nrows()), 0.0);
+    /// b, the standard deviation of its components, and the speed.
+    fn find_bound(&self, stretch: &mut StretchEstimate, rows: &[usize]) {
+        let (rank, count) = (stretch.matrix.nrows(), rows.len() as f64);
+        let (mut sum, mut gain, mut square) = (DVector::zeros(rank), 0.0, 0.0);
         for &row in rows {
             let velocity = self.rows.velocities().column(row);
-            let through = jacobian(row).map(|jacobian| &stretch.matrix * jacobian);
-            sum += through.as_ref().unwrap_or(&stretch.matrix) * velocity;
-            gain += through.as_ref().unwrap_or(&stretch.matrix).norm_squared();
+            let jacobian = self.spaces[stretch.space].jacobians.as_ref().map(|jacobians| &jacobians[row]);
+            square += jacobian.map_or(velocity.norm_squared(), |jacobian| (jacobian * velocity).norm_squared());
+            let through = jacobian.map_or_else(|| stretch.matrix.clone(), |jacobian| &stretch.matrix * jacobian);
+            gain += through.norm_squared();
+            sum += through * velocity;
         }
-        let count = rows.len() as f64;
-        let variance = self.noise * gain / stretch.matrix.nrows() as f64 / count.powi(2);
-        (sum / count, variance.sqrt())
+        stretch.bound = sum / count;
+        stretch.bound_deviation = (self.noise * gain / rank as f64).sqrt() / count;
+        stretch.speed = (square / count).sqrt();
     }
 }
 

@@ -1,7 +1,13 @@
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+/// Standard deviations, and share of the speed, by which b must differ from 0.
+const DEVIATIONS: f64 = 3.0;
+const SHARE: f64 = 0.01;
 
 /// What acted on a stretch of a movement.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Acting {
     /// A constraint A u = b, constant in its space.
     Constraint,
@@ -31,6 +37,8 @@ pub struct StretchEstimate {
     pub bound: DVector<f64>,
     /// Standard deviation of every component of b.
     pub bound_deviation: f64,
+    /// Root mean square speed in the space.
+    pub speed: f64,
     /// Expected angle between a row and the true rows' span, in radians.
     pub angle: f64,
     /// Logarithm of the likelihood of this constraint over that of none.
@@ -38,6 +46,13 @@ pub struct StretchEstimate {
     /// Directions of the recorded coordinates, (n, r), along which a further constraint would not show: the velocity does not
     /// vary along them, and the policy does not want to move along them.
     pub hidden: DMatrix<f64>,
+}
+
+impl StretchEstimate {
+    /// Whether b of a row differs from 0: the constraint pushes.
+    pub fn pushes(&self, row: usize) -> bool {
+        self.bound[row].abs() > (DEVIATIONS * self.bound_deviation).max(SHARE * self.speed)
+    }
 }
 
 /// The same span in orthonormal rows (k, m) that lie along axes as far as possible, each with its largest entry positive.

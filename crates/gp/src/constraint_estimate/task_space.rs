@@ -19,6 +19,15 @@ impl TaskSpace {
         TaskSpace { jacobians: Some(jacobians) }
     }
 
+    /// The same space where velocities are multiplied by these factors (n) first, as those learnt from are.
+    #[must_use]
+    pub fn scaled(mut self, factors: &DVector<f64>) -> Self {
+        for jacobian in self.jacobians.iter_mut().flatten() {
+            jacobian.column_iter_mut().zip(factors).for_each(|(mut column, factor)| column /= *factor);
+        }
+        self
+    }
+
     /// Whether there is a Jacobian of the right shape for each of `rows` states (n).
     pub(super) fn fits(&self, rows: usize, dim: usize) -> bool {
         self.jacobians.as_ref().is_none_or(|jacobians| {

@@ -9,6 +9,7 @@ mod report;
 
 pub(crate) use between::share_unknown;
 pub use direction::direction_by_channels;
+pub(crate) use direction::sum_of_parts;
 pub(crate) use freely::share_leaving;
 pub(crate) use judge::{VerdictInput, judge};
 pub use numbers::{AlignedNumbers, TrustNumbers};
