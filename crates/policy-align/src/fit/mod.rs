@@ -20,7 +20,7 @@ use prepare::numbers::squared_error;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::trust::{AlignedNumbers, TrustNumbers, VerdictInput, judge, share_leaving, share_unknown};
+use crate::trust::{AlignedNumbers, CommonPlane, TrustNumbers, VerdictInput, judge, share_leaving, share_unknown};
 use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, Prepared, Verdict};
 use aligning::AlignedFit;
 use decision::decision;
@@ -59,7 +59,8 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
         _ => None,
     };
     let numbers = numbers(prepared, options, &readings, aligned.as_ref(), &rows);
-    let findings: Vec<Finding> = prepared.findings.iter().cloned().chain(pushed(&readings, options.learner)).collect();
+    let remarks = pushed(&readings, options.learner).into_iter().chain(plane(prepared, &numbers));
+    let findings: Vec<Finding> = prepared.findings.iter().cloned().chain(remarks).collect();
     let trust =
         judge(VerdictInput { numbers, findings: &findings, state: &prepared.state, episodes: &prepared.episodes });
     let learnt = match (options.learner, aligned) {
@@ -102,6 +103,13 @@ fn takes_slope(readings: &AutoFit, learner: LearnerChoice) -> bool {
         LearnerChoice::Direct => false,
         LearnerChoice::Auto | LearnerChoice::PolicyAlign => readings.takes_slope(),
     }
+}
+
+/// The plane that no movement leaves, where one direction is not seen.
+fn plane(prepared: &Prepared, numbers: &TrustNumbers) -> Option<Finding> {
+    let unseen = numbers.direction_coverage < TrustNumbers::UNSEEN;
+    let plane = unseen.then(|| CommonPlane::of(&prepared.demonstrations, &prepared.state)).flatten()?;
+    Some(plane.finding(&prepared.state))
 }
 
 /// Constraints that pushed: a remark where the policy was learnt in spite of them, a doubt elsewhere.

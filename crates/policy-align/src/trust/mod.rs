@@ -1,6 +1,7 @@
 //! Checks of a learnt policy without the truth.
 
 mod between;
+mod common_plane;
 mod direction;
 mod freely;
 mod judge;
@@ -8,6 +9,7 @@ mod numbers;
 mod report;
 
 pub(crate) use between::share_unknown;
+pub(crate) use common_plane::CommonPlane;
 pub use direction::direction_by_channels;
 pub(crate) use direction::sum_of_parts;
 pub(crate) use freely::share_leaving;

@@ -7,7 +7,7 @@ use serde_json::json;
 use text::quoted;
 
 use crate::cli::failure::{Exit, Failure, displayed};
-use crate::cli::lines::{Lines, counted, short};
+use crate::cli::lines::{Lines, short};
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
 use crate::cli::recorded::{named, prepared_for};
 use crate::cli::session::{Output, Session, write};
@@ -105,10 +105,10 @@ impl Constraints {
             (count(Acting::Unseen), "in which none would show"),
         ];
         let others = others.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!(", {count} {what}"));
-        lines.add("found", &format!("{} with a constraint{}", counted(constraints, "stretch"), others.collect::<String>()));
+        lines.add("stretches", &format!("{constraints} with a constraint{}", others.collect::<String>()));
         for stretch in found.iter().take(LISTED) {
             let (from, until) = stretch.seconds;
-            let when = format!("{:.2}–{:.2} s", from, until);
+            let when = format!("{from:.2}–{until:.2} s");
             lines.add(&format!("{:.12}", stretch.episode), &format!("{when}  {}", line(stretch, &model.state)));
         }
         if found.len() > LISTED {
