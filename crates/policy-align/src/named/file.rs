@@ -12,8 +12,11 @@ use crate::StateChannel;
 /// a comment.
 pub fn constraint_file(stretches: &[&ConstraintStretch], state: &[StateChannel], robot: Option<&str>) -> String {
     let mut text = String::new();
-    for stretch in stretches {
-        let (from, until) = stretch.seconds;
+    for (at, stretch) in stretches.iter().enumerate() {
+        let from = stretch.seconds.0;
+        // It holds until the next begins.
+        let next = stretches.get(at + 1).filter(|next| next.samples.0 == stretch.samples.1 + 1);
+        let until = next.map_or(stretch.seconds.1, |next| next.seconds.0);
         let kept: Vec<&Vec<f64>> =
             stretch.normals.iter().zip(&stretch.speeds).filter(|(_, speed)| **speed == 0.0).map(|(row, _)| row).collect();
         let words = stretch.in_words(state).replace(|c: char| c.is_control(), " ");
