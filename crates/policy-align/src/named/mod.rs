@@ -13,9 +13,10 @@ use motion::Demonstrations;
 use nalgebra::{DMatrix, DVector, DVectorView};
 
 use crate::fit::{averaged, rows};
+use crate::leave_out::in_units_of;
 use crate::{EvaluateError, Model, Prepared};
 
-/// The constraints on movements that were prepared in the units of a model, found by what the model's policy wanted to do
+/// The constraints on movements of a model's channels, found by what the model's policy wanted to do
 /// (S26). `links` of a robot, if there is one, are candidates for what a constraint is on, beside the channels.
 ///
 /// The same movements may be those that the model was learnt from.
@@ -32,6 +33,7 @@ pub fn estimate_constraints(
     if policy.dim() != dim {
         return Err(EvaluateError::Dimension { policy: policy.dim(), movements: dim });
     }
+    let prepared = &in_units_of(model, prepared.clone())?;
     let rows = rows(prepared)?;
     let scales = DVector::from_iterator(dim, prepared.state.iter().map(|channel| channel.scale));
     let states = unscaled(rows.states(), &scales);

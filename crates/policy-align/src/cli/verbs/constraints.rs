@@ -15,6 +15,8 @@ use crate::cli::trust_files::load;
 
 /// Stretches that are listed, at most.
 const LISTED: usize = 60;
+/// Degrees below which it does not matter how sure a normal is.
+const LEAST_ANGLE: f64 = 0.01;
 
 /// Name the constraints that acted on recordings
 #[derive(Debug, Args)]
@@ -127,5 +129,10 @@ impl Constraints {
 /// A stretch in words, and how sure it is.
 fn line(stretch: &ConstraintStretch, state: &[StateChannel]) -> String {
     let words = stretch.in_words(state);
-    if stretch.acting == Acting::Constraint { format!("{words} (± {}°)", short(stretch.angle)) } else { words }
+    if stretch.acting == Acting::Constraint { format!("{words} ({})", sureness(stretch)) } else { words }
+}
+
+/// The expected error of a normal.
+pub(crate) fn sureness(stretch: &ConstraintStretch) -> String {
+    if stretch.angle < LEAST_ANGLE { format!("± < {LEAST_ANGLE}°") } else { format!("± {}°", short(stretch.angle)) }
 }
