@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 use crate::StateChannel;
 use crate::trust::sum_of_parts;
 
+/// Degrees below which it does not matter how sure a normal is.
+const LEAST_ANGLE: f64 = 0.01;
+
 /// What a constraint is on.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -55,6 +58,11 @@ impl ConstraintStretch {
             Acting::Nothing => "no constraint seen".to_owned(),
             Acting::Unseen => "not seen: the policy does not want to move".to_owned(),
         }
+    }
+
+    /// The expected error of its normals: "± 0.3°".
+    pub fn angle_in_words(&self) -> String {
+        if self.angle < LEAST_ANGLE { format!("± < {LEAST_ANGLE}°") } else { format!("± {}°", short(self.angle)) }
     }
 
     fn constraint_in_words(&self, state: &[StateChannel]) -> String {

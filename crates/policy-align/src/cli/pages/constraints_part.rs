@@ -9,7 +9,6 @@ use policy_align::{ConstraintStretch, Model, Prepared, estimate_constraints};
 
 use crate::cli::lines::short;
 use crate::cli::pages::page_parts::{constraints, part};
-use crate::cli::verbs::constraints::sureness;
 
 /// Constraints that are listed, at most.
 const LISTED: usize = 12;
@@ -31,7 +30,7 @@ pub(crate) fn constraints_part(model: &Model, prepared: &Prepared) -> Option<Par
     let mut alike: Vec<(String, Vec<&ConstraintStretch>)> = alike.into_iter().collect();
     alike.sort_by(|(_, a), (_, b)| b.len().cmp(&a.len()).then(seconds(b).total_cmp(&seconds(a))));
     let row = |(words, of): &(String, Vec<&ConstraintStretch>)| {
-        let worst = of.iter().max_by(|a, b| a.angle.total_cmp(&b.angle)).map_or_else(String::new, |of| sureness(of));
+        let worst = of.iter().max_by(|a, b| a.angle.total_cmp(&b.angle)).map_or_else(String::new, |of| of.angle_in_words());
         [words.clone(), of.len().to_string(), short(seconds(of)), worst]
     };
     let rows: Vec<[String; 4]> = alike.iter().take(LISTED).map(row).collect();

@@ -14,9 +14,7 @@ use crate::cli::session::{Output, Session, write};
 use crate::cli::trust_files::load;
 
 /// Stretches that are listed, at most.
-const LISTED: usize = 60;
-/// Degrees below which it does not matter how sure a normal is.
-const LEAST_ANGLE: f64 = 0.01;
+const LISTED: usize = 10;
 
 /// Name the constraints that acted on recordings
 #[derive(Debug, Args)]
@@ -29,15 +27,14 @@ All flags of reading files: policy-align check --help
 
 Examples:
   policy-align constraints toy.json toy.csv
-  policy-align constraints toy.json toy.csv --of 3 --constraints-out rail.toml
-  policy-align rollout toy.json --from 1.5,1 --constraint rail.toml")]
+  policy-align constraints toy.json toy.csv --of 3 --constraints-out rail.toml")]
 pub(crate) struct Constraints {
     /// A model that `fit` has written
     model: PathBuf,
     /// Recordings, which may be those learnt from
     #[arg(required = true)]
     files: Vec<PathBuf>,
-    /// Robot whose joints the channels are, by name: what its links keep is looked for, too
+    /// Robot whose joints are named like the channels: also try its links
     #[arg(long, value_name = "FILE.urdf")]
     robot: Option<PathBuf>,
     /// Links that may be constrained [default: the last of each chain]
@@ -46,7 +43,7 @@ pub(crate) struct Constraints {
     /// Only this episode
     #[arg(long, value_name = "NAME")]
     of: Option<String>,
-    /// File to write, as `rollout --constraint` reads it: constraints of the episode, or of the first
+    /// File of the (first) episode's constraints, for `rollout --constraint`
     #[arg(long, value_name = "FILE.toml")]
     constraints_out: Option<PathBuf>,
     #[command(flatten)]
@@ -129,10 +126,5 @@ impl Constraints {
 /// A stretch in words, and how sure it is.
 fn line(stretch: &ConstraintStretch, state: &[StateChannel]) -> String {
     let words = stretch.in_words(state);
-    if stretch.acting == Acting::Constraint { format!("{words} ({})", sureness(stretch)) } else { words }
-}
-
-/// The expected error of a normal.
-pub(crate) fn sureness(stretch: &ConstraintStretch) -> String {
-    if stretch.angle < LEAST_ANGLE { format!("± < {LEAST_ANGLE}°") } else { format!("± {}°", short(stretch.angle)) }
+    if stretch.acting == Acting::Constraint { format!("{words} ({})", stretch.angle_in_words()) } else { words }
 }
