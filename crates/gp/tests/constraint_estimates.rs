@@ -5,9 +5,13 @@
 
 mod systems;
 
-use gp::{Acting, AutoFit, AutoGp, ConstraintEstimates, DirectGp, FrontEnd, PushTest, SlopeGp, StretchEstimate, TaskSpace};
-use nalgebra::DMatrix;
-use rand::SeedableRng;
+use gp::{
+    Acting, AutoFit, AutoGp, ConstraintEstimates, DirectGp, FrontEnd, GpError, PushTest, Rows, SlopeGp, StretchEstimate,
+    TaskSpace,
+};
+use motion::{LearntPolicy, Policy, SampleIndex};
+use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut};
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use systems::{ANGLES, HIMMELBLAU, Switched, System, WELLS};
 
@@ -88,6 +92,152 @@ fn count(estimates: &ConstraintEstimates, truth: &[Switched], samples: usize, fo
     }
 }
 
+/// A policy that is known, with error bars of 0; turned by Q.
+struct Known<F> {
+    dim: usize,
+    policy: F,
+    turn: DMatrix<f64>,
+}
+
+impl<F> std::fmt::Debug for Known<F> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("known")
+    }
+}
+
+impl<F: Fn(&DVector<f64>) -> DVector<f64> + Sync + Send> Policy for Known<F> {
+    fn dim(&self) -> usize {
+        self.dim
+    }
+
+    fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
+        action.copy_from(&(&self.turn * (self.policy)(&self.turn.tr_mul(&state))));
+    }
+}
+
+impl<F: Fn(&DVector<f64>) -> DVector<f64> + Sync + Send> LearntPolicy for Known<F> {
+    fn support(&self, _: DVectorView<'_, f64>) -> f64 {
+        1.0
+    }
+}
+
+fn known(system: &System) -> Known<impl Fn(&DVector<f64>) -> DVector<f64> + Sync + Send> {
+    let system = *system;
+    let turn = DMatrix::identity(system.dim, system.dim);
+    Known { dim: system.dim, policy: move |x: &DVector<f64>| system.policy(x), turn }
+}
+
+fn estimated(rows: &Rows, policy: &dyn LearntPolicy) -> ConstraintEstimates {
+    ConstraintEstimates::of(rows, policy, &[TaskSpace::recorded()]).unwrap()
+}
+
+/// With the policy known every constraint is found, with its push, and every switch to the sample.
+#[test]
+fn constraints_of_a_known_policy_are_found() {
+    for (system, push) in [(HIMMELBLAU, 0.0), (HIMMELBLAU, 0.3), (ANGLES, 0.3), (WELLS, 0.3)] {
+        let (movements, truth) = system.with_truth(push, 0.0, 7);
+        let estimates = estimated(&FrontEnd::Velocities.rows(&movements).unwrap(), &known(&system));
+        let mut found = Found::default();
+        count(&estimates, &truth, 40, &mut found);
+        assert_eq!((found.covered, found.within[0], found.switches.1), (120, 120, 60), "{} dimensions", system.dim);
+        let constraints = estimates.stretches.iter().filter(|stretch| stretch.acting == Acting::Constraint);
+        for stretch in constraints.filter(|stretch| stretch.matrix.nrows() == system.dim.div_ceil(3)) {
+            let (size, expected) = (stretch.bound.norm(), push * system.rms());
+            assert!((size - expected).abs() < 1e-6 * system.rms(), "{size} for {expected}");
+            assert_eq!((0..stretch.bound.len()).any(|row| stretch.pushes(row)), push > 0.0);
+        }
+    }
+}
+
+/// Free movement has no constraint, a turn of the coordinates turns the rows, and a Jacobian of 1 changes nothing.
+#[test]
+fn free_turned_and_the_same() {
+    let (movements, _) = ANGLES.with_truth(0.3, 0.02, 3);
+    let rows = FrontEnd::Velocities.rows(&movements).unwrap();
+    let plain = estimated(&rows, &known(&ANGLES));
+    let free = FrontEnd::Velocities.rows(&ANGLES.free().movements(0.0, 0.0, 4)).unwrap();
+    assert!(estimated(&free, &known(&ANGLES)).stretches.iter().all(|stretch| stretch.acting != Acting::Constraint));
+
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let turn = DMatrix::from_fn(3, 3, |_, _| rng.random_range(-1.0..1.0)).qr().q();
+    let turned_rows = Rows::new(&turn * rows.states(), &turn * rows.velocities(), rows.indices().to_vec()).unwrap();
+    let turned = estimated(&turned_rows, &Known { turn: turn.clone(), ..known(&ANGLES) });
+    let same_space = TaskSpace::of_jacobians(vec![DMatrix::identity(3, 3); rows.len()]);
+    let same = ConstraintEstimates::of(&rows, &known(&ANGLES), &[same_space]).unwrap();
+    assert_eq!((plain.stretches.len(), plain.stretches.len()), (turned.stretches.len(), same.stretches.len()));
+    for ((plain, turned), same) in plain.stretches.iter().zip(&turned.stretches).zip(&same.stretches) {
+        assert_eq!((plain.samples, plain.acting), (turned.samples, turned.acting));
+        assert_eq!((plain.samples, plain.acting), (same.samples, same.acting));
+        let projector = |of: &StretchEstimate| of.matrix.tr_mul(&of.matrix);
+        assert!((&turn * projector(plain) * turn.transpose() - projector(turned)).amax() < 1e-6);
+        assert!((projector(plain) - projector(same)).amax() < 1e-6);
+        assert!((plain.evidence - same.evidence).abs() < 1e-6 * (1.0 + plain.evidence));
+        assert!((plain.angle - turned.angle).abs() < 1e-6 * plain.angle.max(1e-9));
+    }
+}
+
+/// Movements of the velocity u(x) from starts, 30 samples each.
+fn moved(starts: usize, start: impl Fn(usize) -> DVector<f64>, velocity: impl Fn(&DVector<f64>) -> DVector<f64>) -> Rows {
+    let (mut states, mut velocities, mut indices) = (Vec::new(), Vec::new(), Vec::new());
+    for trajectory in 0..starts {
+        let mut x = start(trajectory);
+        for sample in 0..30 {
+            let u = velocity(&x);
+            let next = &x + &u * 0.05;
+            states.push(std::mem::replace(&mut x, next));
+            velocities.push(u);
+            indices.push(SampleIndex { trajectory, sample });
+        }
+    }
+    Rows::new(DMatrix::from_columns(&states), DMatrix::from_columns(&velocities), indices).unwrap()
+}
+
+/// A circle has no single normal; a policy that stands still shows nothing; along a straight path what lies across is hidden.
+#[test]
+fn what_cannot_be_named_is_not() {
+    let known = |policy: fn(&DVector<f64>) -> DVector<f64>| Known { dim: 2, policy, turn: DMatrix::identity(2, 2) };
+    let start = |k: usize| {
+        let angle = 0.3 + 0.5 * k as f64;
+        DVector::from_vec(vec![angle.cos(), angle.sin()])
+    };
+    let policy = |x: &DVector<f64>| DVector::from_vec(vec![2.0 - x[1], 1.0 + x[0]]);
+    let on_circle = |x: &DVector<f64>| policy(x) - x * (x.dot(&policy(x)) / x.norm_squared());
+    let round = estimated(&moved(8, start, on_circle), &known(policy));
+    let bends = round.stretches.iter().filter(|stretch| stretch.acting == Acting::Changing);
+    assert!(bends.map(|stretch| stretch.samples.1 - stretch.samples.0).sum::<usize>() > 160, "{round:?}");
+
+    let home = |x: &DVector<f64>| -x;
+    let straight = estimated(&moved(8, start, home), &known(home));
+    for stretch in &straight.stretches {
+        assert_eq!((stretch.acting, stretch.samples, stretch.hidden.ncols()), (Acting::Nothing, (0, 29), 1));
+        let across = start(stretch.trajectory).dot(&stretch.hidden.column(0));
+        assert!(across.abs() < 1e-6, "{across}");
+    }
+
+    let rest = |x: &DVector<f64>| x * 0.0;
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let still = moved(8, start, rest);
+    let noise = still.velocities().map(|_| rng.random_range(-0.01..0.01));
+    let still = Rows::new(still.states().clone(), noise, still.indices().to_vec()).unwrap();
+    let still = estimated(&still, &known(rest));
+    assert!(still.stretches.iter().all(|stretch| stretch.acting == Acting::Unseen), "{still:?}");
+}
+
+/// What does not fit is refused.
+#[test]
+fn wrong_input_is_refused() {
+    let rows = FrontEnd::Velocities.rows(&HIMMELBLAU.movements(0.0, 0.0, 1)).unwrap();
+    let policy = known(&HIMMELBLAU);
+    let refused = |policy: &dyn LearntPolicy, space| ConstraintEstimates::of(&rows, policy, &[space]).unwrap_err();
+    assert!(matches!(refused(&known(&ANGLES), TaskSpace::recorded()), GpError::Lengths { found: 3, expected: 2, .. }));
+    let few = TaskSpace::of_jacobians(vec![DMatrix::identity(2, 2)]);
+    assert!(matches!(refused(&policy, few), GpError::Lengths { found: 1, .. }));
+    let wide = TaskSpace::of_jacobians(vec![DMatrix::identity(3, 3); rows.len()]);
+    assert!(matches!(refused(&policy, wide), GpError::Lengths { .. }));
+    let nan = TaskSpace::of_jacobians(vec![DMatrix::from_element(2, 2, f64::NAN); rows.len()]);
+    assert!(matches!(refused(&policy, nan), GpError::Lengths { .. }));
+}
+
 /// Prints what is found of what there is.
 #[test]
 #[ignore = "a measurement of minutes; prints"]
@@ -101,14 +251,6 @@ fn measured() {
                 let free = FrontEnd::Velocities.rows(&system.free().movements(0.0, noise, 500 + seed)).unwrap();
                 let of_free = ConstraintEstimates::of(&free, fit.slope(), &[TaskSpace::recorded()]).unwrap();
                 for stretch in &of_free.stretches {
-                    if std::env::var("SHOW").is_ok() && stretch.acting == Acting::Constraint {
-                        let at = |sample| stretch.trajectory * 40 + sample;
-                        let (a, b) = (at(stretch.samples.0), at(stretch.samples.1));
-                        let (ua, ub) = (free.velocities().column(a), free.velocities().column(b));
-                        let p = motion::Policy::action(fit.slope(), free.states().column(a));
-                        let pb = motion::Policy::action(fit.slope(), free.states().column(b));
-                        println!("{:?} rank {} angle {:.2} evidence {:.1} |u| {:.1e} {:.1e} d {:.1e} {:.1e} b {:.1e}", stretch.samples, stretch.matrix.nrows(), stretch.angle.to_degrees(), stretch.evidence, ua.norm(), ub.norm(), (p-ua).norm(), (pb-ub).norm(), stretch.bound.norm());
-                    }
                     *found.free.entry(format!("{:?}", stretch.acting)).or_default() += 1;
                 }
                 if seed == 1 {
