@@ -6,8 +6,8 @@
 mod systems;
 
 use gp::{
-    Acting, AutoFit, AutoGp, ConstraintEstimates, DirectGp, FrontEnd, GpError, PushTest, Rows, SlopeGp, StretchEstimate,
-    TaskSpace,
+    Acting, AutoFit, AutoGp, ConstraintEstimates, DirectGp, FrontEnd, GpError, PushTest, Rows, SlopeGp,
+    StretchEstimate, TaskSpace,
 };
 use motion::{LearntPolicy, Policy, SampleIndex};
 use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut};
@@ -177,7 +177,11 @@ fn free_turned_and_the_same() {
 }
 
 /// Movements of the velocity u(x) from starts, 30 samples each.
-fn moved(starts: usize, start: impl Fn(usize) -> DVector<f64>, velocity: impl Fn(&DVector<f64>) -> DVector<f64>) -> Rows {
+fn moved(
+    starts: usize,
+    start: impl Fn(usize) -> DVector<f64>,
+    velocity: impl Fn(&DVector<f64>) -> DVector<f64>,
+) -> Rows {
     let (mut states, mut velocities, mut indices) = (Vec::new(), Vec::new(), Vec::new());
     for trajectory in 0..starts {
         let mut x = start(trajectory);
@@ -204,7 +208,10 @@ fn what_cannot_be_named_is_not() {
     let on_circle = |x: &DVector<f64>| policy(x) - x * (x.dot(&policy(x)) / x.norm_squared());
     let round = estimated(&moved(8, start, on_circle), &known(policy));
     let bends = round.stretches.iter().filter(|stretch| stretch.acting == Acting::Changing);
-    assert!(bends.map(|stretch| stretch.samples.1 - stretch.samples.0).sum::<usize>() > 160, "{round:?}");
+    assert!(bends.map(|stretch| stretch.samples.1 - stretch.samples.0).sum::<usize>() > 120);
+    let long =
+        |stretch: &&StretchEstimate| stretch.acting == Acting::Constraint && stretch.samples.1 - stretch.samples.0 > 17;
+    assert_eq!(round.stretches.iter().find(long), None, "only where it comes to rest is its normal constant");
 
     let home = |x: &DVector<f64>| -x;
     let straight = estimated(&moved(8, start, home), &known(home));
@@ -242,7 +249,10 @@ fn wrong_input_is_refused() {
 #[test]
 #[ignore = "a measurement of minutes; prints"]
 fn measured() {
-    for (name, system) in [("2-D", HIMMELBLAU), ("3-D", ANGLES), ("6-D", WELLS)].into_iter().skip(std::env::var("SKIP").map_or(0, |skip| skip.parse().unwrap())) {
+    for (name, system) in [("2-D", HIMMELBLAU), ("3-D", ANGLES), ("6-D", WELLS)]
+        .into_iter()
+        .skip(std::env::var("SKIP").map_or(0, |skip| skip.parse().unwrap()))
+    {
         for (push, noise) in [(0.0, 0.0), (0.3, 0.0), (0.0, 0.05), (0.3, 0.05)] {
             let mut found = Found::default();
             for seed in 1..=std::env::var("SEEDS").map_or(5, |seeds| seeds.parse().unwrap()) {

@@ -5,8 +5,8 @@ use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::{DMatrix, DVectorView};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use policy_align::{
-    Evaluation, Model, ModelError, ModelPolicy, PrepareOptions, Progress, TaskLinks, estimate_constraints, evaluate, fit,
-    prepare,
+    Evaluation, Model, ModelError, ModelPolicy, PrepareOptions, Progress, TaskLinks, estimate_constraints, evaluate,
+    fit, prepare,
 };
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
@@ -194,7 +194,8 @@ impl Fitted {
         let place = robot.map_or_else(String::new, |path| path.display().to_string());
         let found = interruptible(py, move |_: &_| {
             let links = text.map(|text| TaskLinks::from_urdf(&text, &links, &model.channels())).transpose();
-            let links = links.map_err(|reason| Refusal::new(reason, &place, "links=[…]; joints named like the channels"))?;
+            let links =
+                links.map_err(|reason| Refusal::new(reason, &place, "links=[…]; joints named like the channels"))?;
             let Recorded { recordings, place, .. } = &*inner;
             let prepared = prepare(recordings, &options)
                 .map_err(|error| Refusal::prepare(&error, place, &names_of(recordings)))?;

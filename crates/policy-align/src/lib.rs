@@ -87,8 +87,8 @@ pub use learnt::Learnt;
 pub use leave_out::{ConstraintLeftOut, leave_constraints_out};
 pub use model::{DataSummary, FileSummary, MadeBy, Model};
 pub use model_policy::{ModelPolicy, ModelPotential};
-pub use named::{ConstraintOn, ConstraintStretch, TaskLinks, constraint_file, estimate_constraints};
 pub use motion::{Decision, Finding, LeftOut, Verdict};
+pub use named::{ConstraintOn, ConstraintStretch, TaskLinks, constraint_file, estimate_constraints};
 pub use prepare::{
     Noise, PrepareError, PrepareOptions, Prepared, Repair, Smoothing, StateChannel, VelocitySource, VelocityUse,
     prepare, trim_still,

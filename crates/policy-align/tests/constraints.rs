@@ -80,7 +80,10 @@ fn recorded(urdf: &str, link: &str, movements: usize, noise: f64, seed: u64) -> 
         }
     };
     let episodes = (0..movements).map(episode).collect();
-    let channel = |joint: &policy_align::kinematics::Joint| Channel { name: joint.name().to_owned(), unit: Some("rad".to_owned()) };
+    let channel = |joint: &policy_align::kinematics::Joint| Channel {
+        name: joint.name().to_owned(),
+        unit: Some("rad".to_owned()),
+    };
     let state = robot.joints().iter().map(channel).collect();
     (Recordings { state, episodes, findings: vec![] }, normals)
 }
@@ -175,7 +178,8 @@ fn channels_have_their_own_units() {
 #[test]
 fn wrong_robots_are_refused() {
     let channels = ["q0", "q1", "q2", "q3"].map(str::to_owned);
-    let refused = |urdf: &str, links: &[String], channels: &[String]| TaskLinks::from_urdf(urdf, links, channels).unwrap_err();
+    let refused =
+        |urdf: &str, links: &[String], channels: &[String]| TaskLinks::from_urdf(urdf, links, channels).unwrap_err();
     assert!(refused("<robot", &[], &channels).len() > 10);
     assert!(refused(&arm(&FOUR), &["claw".to_owned()], &channels).contains("claw"));
     assert!(refused(&arm(&FOUR), &[], &channels[..3]).contains("q3"));
@@ -186,9 +190,11 @@ fn wrong_robots_are_refused() {
 #[ignore = "a measurement of minutes; prints"]
 fn measured() {
     let three = std::fs::read_to_string("../../robots/planar_three_link.urdf").unwrap();
-    for (name, urdf, link, movements) in
-        [("7 joints", arm(&SEVEN), "tip", 40), ("4 joints", arm(&FOUR), "tip", 40), ("planar, 3 joints", three, "hand", 40)]
-    {
+    for (name, urdf, link, movements) in [
+        ("7 joints", arm(&SEVEN), "tip", 40),
+        ("4 joints", arm(&FOUR), "tip", 40),
+        ("planar, 3 joints", three, "hand", 40),
+    ] {
         for noise in [0.0, 0.05] {
             let (mut all, mut sum, mut error) = (0, [0; 4], 0.0_f64);
             for seed in 1..=std::env::var("SEEDS").map_or(5, |seeds| seeds.parse().unwrap()) {
@@ -209,7 +215,10 @@ fn measured() {
             let percent = |part: usize, of: usize| 100.0 * part as f64 / of as f64;
             println!(
                 "{name}, noise {noise}: on the link {:.0} %, within 1° {:.0} %, 5° {:.0} %, switches {:.0} % (expected error {error:.1e})",
-                percent(sum[0], all), percent(sum[1], all), percent(sum[2], all), percent(sum[3], all / 2)
+                percent(sum[0], all),
+                percent(sum[1], all),
+                percent(sum[2], all),
+                percent(sum[3], all / 2)
             );
         }
     }

@@ -32,8 +32,7 @@ impl TaskSpace {
     pub(super) fn fits(&self, rows: usize, dim: usize) -> bool {
         self.jacobians.as_ref().is_none_or(|jacobians| {
             let first = jacobians.first().map_or(0, DMatrix::nrows);
-            let right =
-                |j: &DMatrix<f64>| j.shape() == (first, dim) && j.iter().all(|value| value.is_finite());
+            let right = |j: &DMatrix<f64>| j.shape() == (first, dim) && j.iter().all(|value| value.is_finite());
             jacobians.len() == rows && first > 0 && jacobians.iter().all(right)
         })
     }

@@ -63,6 +63,8 @@ struct Sums {
     second: DMatrix<f64>,
     multipliers: DMatrix<f64>,
     gain: f64,
+    /// What noise makes of `second` in units of s², and of `multipliers`, beyond the same in all directions.
+    noise: (DMatrix<f64>, DMatrix<f64>),
 }
 
 /// The directions (m, m) of a task space by how much they look like rows of A over some samples, and by how much: (S26).
@@ -80,7 +82,8 @@ impl Directions {
     /// Standard deviation of the angle between a row among the first `rank` and their true span (S29): by how much the cost bends
     /// as the row turns towards each of the others.
     pub(super) fn angle(&self, rank: usize) -> f64 {
-        let of_row = |row: &f64| self.values[rank..].iter().map(|other| 1.0 / (other - row).max(f64::MIN_POSITIVE)).sum();
+        let of_row =
+            |row: &f64| self.values[rank..].iter().map(|other| 1.0 / (other - row).max(f64::MIN_POSITIVE)).sum();
         self.values[..rank].iter().map(of_row).fold(0.0, f64::max).sqrt()
     }
 }
@@ -122,16 +125,26 @@ impl View {
     ) -> View {
         let m = basis.ncols();
         let zero = DMatrix::zeros(m, m);
-        let mut sums =
-            vec![Sums { first: DVector::zeros(m), second: zero.clone(), multipliers: zero, gain: 0.0 }];
+        let mut sums = vec![Sums {
+            first: DVector::zeros(m),
+            second: zero.clone(),
+            multipliers: zero.clone(),
+            gain: 0.0,
+            noise: (zero.clone(), zero),
+        }];
         for (at, velocity) in velocities.column_iter().enumerate() {
-            let Sums { mut first, mut second, mut multipliers, mut gain } = sums[at].clone();
-            let (multiplier, own) = multiplier(grams.as_ref().map(|grams| &grams[at]), disagreements.column(at));
+            let Sums { mut first, mut second, mut multipliers, mut gain, mut noise } = sums[at].clone();
+            let gram = grams.as_ref().map(|grams| &grams[at]);
+            let (multiplier, inverse) = multiplier(gram, disagreements.column(at));
+            if let (Some(gram), Some(inverse)) = (gram, inverse) {
+                noise.0 += gram;
+                noise.1 += inverse * (disagreement.weights[at] * disagreement.noise);
+            }
             first += velocity;
             second.ger(1.0, &velocity, &velocity, 1.0);
             multipliers.ger(disagreement.weights[at], &multiplier, &multiplier, 1.0);
-            gain += own;
-            sums.push(Sums { first, second, multipliers, gain });
+            gain += gram.map_or(1.0, |gram| gram.trace() / m as f64);
+            sums.push(Sums { first, second, multipliers, gain, noise });
         }
         View { basis, velocities, disagreements, grams, sums }
     }
@@ -145,7 +158,11 @@ impl View {
         let sum = &to.first - &from.first;
         let mut scatter = &to.second - &from.second;
         scatter.ger(-1.0 / count, &sum, &sum, 1.0);
-        let matrix = scatter / (gain * noise) - (&to.multipliers - &from.multipliers) * gain;
+        let mut matrix = scatter / (gain * noise) - (&to.multipliers - &from.multipliers) * gain;
+        if self.grams.is_some() {
+            matrix -= (&to.noise.0 - &from.noise.0) * ((count - 1.0) / (count * gain));
+            matrix += (&to.noise.1 - &from.noise.1) * gain;
+        }
         let eigen = matrix.symmetric_eigen();
         let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
         order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
@@ -193,11 +210,11 @@ impl View {
     }
 }
 
-/// y of JJᵀ y = Jd, of least length, and tr JJᵀ / m.
-fn multiplier(gram: Option<&DMatrix<f64>>, wanted: DVectorView<'_, f64>) -> (DVector<f64>, f64) {
-    let Some(gram) = gram else { return (wanted.into_owned(), 1.0) };
-    let inverse = gram.clone().pseudo_inverse(SINGULAR * gram.trace().max(f64::MIN_POSITIVE));
-    (inverse.map_or_else(|_| wanted.into_owned(), |inverse| inverse * wanted), gram.trace() / gram.nrows() as f64)
+/// y of JJᵀ y = Jd, of least length, and (JJᵀ)⁺.
+fn multiplier(gram: Option<&DMatrix<f64>>, wanted: DVectorView<'_, f64>) -> (DVector<f64>, Option<DMatrix<f64>>) {
+    let inverse =
+        gram.and_then(|gram| gram.clone().pseudo_inverse(SINGULAR * gram.trace().max(f64::MIN_POSITIVE)).ok());
+    (inverse.as_ref().map_or_else(|| wanted.into_owned(), |inverse| inverse * wanted), inverse)
 }
 
 /// Share of the trace of JJᵀ below which an eigenvalue is 0.

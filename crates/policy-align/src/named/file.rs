@@ -17,8 +17,13 @@ pub fn constraint_file(stretches: &[&ConstraintStretch], state: &[StateChannel],
         // It holds until the next begins.
         let next = stretches.get(at + 1).filter(|next| next.samples.0 == stretch.samples.1 + 1);
         let until = next.map_or(stretch.seconds.1, |next| next.seconds.0);
-        let kept: Vec<&Vec<f64>> =
-            stretch.normals.iter().zip(&stretch.speeds).filter(|(_, speed)| **speed == 0.0).map(|(row, _)| row).collect();
+        let kept: Vec<&Vec<f64>> = stretch
+            .normals
+            .iter()
+            .zip(&stretch.speeds)
+            .filter(|(_, speed)| **speed == 0.0)
+            .map(|(row, _)| row)
+            .collect();
         let words = stretch.in_words(state).replace(|c: char| c.is_control(), " ");
         let _ = writeln!(text, "# {}: {words}", stretch.episode.replace(|c: char| c.is_control(), " "));
         let members = match (&stretch.on, robot) {

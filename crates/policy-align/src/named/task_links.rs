@@ -56,7 +56,10 @@ fn last_links(robot: &RobotModel) -> Result<Vec<String>, String> {
     let last = robot.links().filter(|link| !carries(link) && moves(link));
     let names: Vec<String> = last.map(|link| robot.link_name(link).to_owned()).collect();
     if names.is_empty() || names.len() > MOST_LINKS {
-        return Err(format!("the robot has {} links at ends of its chains; name those that touch something", names.len()));
+        return Err(format!(
+            "the robot has {} links at ends of its chains; name those that touch something",
+            names.len()
+        ));
     }
     Ok(names)
 }

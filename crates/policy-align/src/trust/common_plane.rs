@@ -75,7 +75,8 @@ impl CommonPlane {
         } else {
             format!("every movement keeps its own value of {plane} (normal ± {angle}°)")
         };
-        let next = "a constraint common to all, or a policy that never moves across: record movements that do".to_owned();
+        let next =
+            "a constraint common to all, or a policy that never moves across: record movements that do".to_owned();
         Finding { verdict: Verdict::Good, what, next }
     }
 }
@@ -111,7 +112,8 @@ mod tests {
                 &(0..60)
                     .map(|at| {
                         let angle = phase + 0.1 * f64::from(at);
-                        let inside = basis.column(1) * (radius * angle.cos()) + basis.column(2) * (radius * angle.sin());
+                        let inside =
+                            basis.column(1) * (radius * angle.cos()) + basis.column(2) * (radius * angle.sin());
                         let off = DVector::from_fn(3, |_, _| noise * rng.random_range(-1.7..1.7));
                         normal * level + inside + off
                     })

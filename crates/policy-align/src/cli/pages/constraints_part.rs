@@ -30,7 +30,8 @@ pub(crate) fn constraints_part(model: &Model, prepared: &Prepared) -> Option<Par
     let mut alike: Vec<(String, Vec<&ConstraintStretch>)> = alike.into_iter().collect();
     alike.sort_by(|(_, a), (_, b)| b.len().cmp(&a.len()).then(seconds(b).total_cmp(&seconds(a))));
     let row = |(words, of): &(String, Vec<&ConstraintStretch>)| {
-        let worst = of.iter().max_by(|a, b| a.angle.total_cmp(&b.angle)).map_or_else(String::new, |of| of.angle_in_words());
+        let worst =
+            of.iter().max_by(|a, b| a.angle.total_cmp(&b.angle)).map_or_else(String::new, |of| of.angle_in_words());
         [words.clone(), of.len().to_string(), short(seconds(of)), worst]
     };
     let rows: Vec<[String; 4]> = alike.iter().take(LISTED).map(row).collect();

@@ -8,8 +8,8 @@ use policy_align::{AlignedNumbers, Model, Prepared, TrustNumbers, direction_by_c
 
 use crate::cli::describe::learner;
 use crate::cli::lines::{counted, short};
-use crate::cli::pages::page_parts::{self, COVERAGE, NOISE, channels, decisions, left_out, opening, page, part};
 use crate::cli::pages::constraints_part::constraints_part;
+use crate::cli::pages::page_parts::{self, COVERAGE, NOISE, channels, decisions, left_out, opening, page, part};
 use crate::cli::pages::picture::Picture;
 use crate::cli::trust_files::{DIGITS, NAMED};
 

@@ -2,7 +2,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use policy_align::gp::Acting;
-use policy_align::{ConstraintStretch, Model, Prepared, StateChannel, TaskLinks, constraint_file, estimate_constraints};
+use policy_align::{
+    ConstraintStretch, Model, Prepared, StateChannel, TaskLinks, constraint_file, estimate_constraints,
+};
 use serde_json::json;
 use text::quoted;
 

@@ -5,8 +5,8 @@ use std::sync::atomic::AtomicBool;
 use clap::Args;
 use nalgebra::{DMatrix, DVector};
 use policy_align::{
-    ConstraintLeftOut, EvaluateError, Evaluation, FileSummary, FitOptions, LearnerChoice, Learnt, Model,
-    Prepared, Progress, Truth, evaluate, leave_constraints_out,
+    ConstraintLeftOut, EvaluateError, Evaluation, FileSummary, FitOptions, LearnerChoice, Learnt, Model, Prepared,
+    Progress, Truth, evaluate, leave_constraints_out,
 };
 use serde_json::json;
 
