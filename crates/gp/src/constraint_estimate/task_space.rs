@@ -38,7 +38,7 @@ impl TaskSpace {
     }
 
     /// Orthonormal directions (m, m') in which anything ever moves, and the mean square of what unit velocities do along
-    /// each: a planar arm moves in a plane of space only. None if there is none.
+    /// the least of them: a planar arm moves in a plane of space only. None if there is none.
     pub(super) fn moved(&self, dim: usize) -> Option<(DMatrix<f64>, f64)> {
         let Some(jacobians) = &self.jacobians else { return Some((DMatrix::identity(dim, dim), 1.0)) };
         let m = jacobians.first()?.nrows();
@@ -47,7 +47,7 @@ impl TaskSpace {
         let largest = eigen.eigenvalues.max();
         let moved: Vec<usize> = (0..m).filter(|&k| eigen.eigenvalues[k] > NEVER * largest).collect();
         let of: DVector<f64> = eigen.eigenvalues.select_rows(&moved);
-        (largest > 0.0).then(|| (eigen.eigenvectors.select_columns(&moved), of.mean()))
+        (largest > 0.0).then(|| (eigen.eigenvectors.select_columns(&moved), of.min()))
     }
 }
 

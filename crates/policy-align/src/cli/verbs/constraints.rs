@@ -21,9 +21,9 @@ const LISTED: usize = 10;
 /// Name the constraints that acted on recordings
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Compares what the policy wants with what was recorded. A line is a stretch of an
-episode during which one constraint A v = b acted, with the expected error of its
-normal. With a robot, v may be the velocity of a link, or its angular velocity.
+Compares what the policy wants with what was recorded. A line is a stretch of
+an episode during which one constraint A v = b acted, with the expected error
+of its normal. With a robot, v may be a link's velocity or angular velocity.
 A constraint along which the policy does not want to move does not show.
 All flags of reading files: policy-align check --help
 
