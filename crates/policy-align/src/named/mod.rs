@@ -68,11 +68,11 @@ impl Naming<'_> {
         let units = if on == ConstraintOn::Channels { Some(self.scales) } else { None };
         let normals: Vec<DVector<f64>> =
             stretch.matrix.row_iter().map(|row| in_units(&row.transpose(), units)).collect();
-        let lengths: Vec<f64> = normals.iter().map(|normal| normal.norm()).collect();
+        let lengths: Vec<f64> = normals.iter().map(nalgebra::Matrix::norm).collect();
         let normals: Vec<DVector<f64>> = normals.into_iter().map(|normal| normal.normalize()).collect();
         let pushed = |row: usize| if stretch.pushes(row) { stretch.bound[row] / lengths[row] } else { 0.0 };
         let speeds: Vec<f64> = (0..normals.len()).map(pushed).collect();
-        let places = self.places(stretch, movement.states().columns(first, last + 1 - first).into_owned())?;
+        let places = self.places(stretch, &movement.states().columns(first, last + 1 - first).into_owned())?;
         let level = |(normal, speed): (&DVector<f64>, &f64)| {
             let places = places.as_ref().filter(|_| *speed == 0.0)?;
             Some(normal.dot(&places.column_mean()))
@@ -103,8 +103,8 @@ impl Naming<'_> {
     }
 
     /// Where the constrained point is at each of these states (n, N): none for orientations, or where nothing is constrained.
-    fn places(&self, stretch: &StretchEstimate, states: DMatrix<f64>) -> Result<Option<DMatrix<f64>>, String> {
-        let states = unscaled(&states, self.scales);
+    fn places(&self, stretch: &StretchEstimate, states: &DMatrix<f64>) -> Result<Option<DMatrix<f64>>, String> {
+        let states = unscaled(states, self.scales);
         match (stretch.acting, stretch.space.checked_sub(1), self.links) {
             (Acting::Constraint, None, _) => Ok(Some(states)),
             (Acting::Constraint, Some(at), Some(links)) if at % 2 == 0 => {

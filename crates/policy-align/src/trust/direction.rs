@@ -12,9 +12,10 @@ pub fn direction_by_channels(direction: &[f64], state: &[StateChannel]) -> Strin
 }
 
 /// A direction as a sum of named parts, with so many decimals: what rounds to nothing beside the largest is left out.
-pub(crate) fn sum_of_parts(direction: &[f64], names: &[&str], decimals: usize) -> String {
+pub(crate) fn sum_of_parts(direction: &[f64], names: &[&str], decimals: u8) -> String {
     let largest = direction.iter().fold(0.0_f64, |largest, part| largest.max(part.abs()));
-    let least = 0.1_f64.powi(decimals as i32);
+    let least = 0.1_f64.powi(i32::from(decimals));
+    let decimals = usize::from(decimals);
     let parts = direction.iter().zip(names).filter(|(part, _)| **part != 0.0 && part.abs() >= least * largest);
     let term = |(at, (&part, name)): (usize, (&f64, &&str))| match (at, part < 0.0) {
         (0, false) if part > 1.0 - 0.1 * least => (*name).to_owned(),
