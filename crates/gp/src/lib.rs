@@ -6,6 +6,7 @@
 //! | [`DirectGp`] | learns the velocities: for unconstrained motion |
 //! | [`AutoGp`] | fits both and hands out the one that the data support |
 //! | [`FrontEnd`] | turns demonstrations into [`Rows`] of states and velocities |
+//! | [`ConstraintEstimates`] | the constraints that acted, once the policy is known |
 //! | [`TrustReport`] | warnings and numbers about a [`SlopeFit`] |
 //!
 //! ```
@@ -40,7 +41,7 @@
 //!
 //! # Equations
 //!
-//! Comments cite (S1)–(S25) and (R1)–(R9). [`equations`] defines them and lists the steps of the search; it is
+//! Comments cite (S1)–(S31) and (R1)–(R9). [`equations`] defines them and lists the steps of the search; it is
 //! `docs/slope-gp.md` of the repository. `docs/which-learner.md` compares the learners, `docs/decisions/gp.md` gives
 //! the reasons.
 //!
@@ -57,6 +58,7 @@
 //! - **More than 1,500 rows** are thinned, since time grows with their cube ([`SlopeGp::max_rows`]).
 //! - [`GpError`]: no motion, fewer than three usable trajectories, or too few rows.
 
+mod constraint_estimate;
 mod dimension;
 mod direct;
 #[cfg(doc)]
@@ -75,6 +77,7 @@ mod stored;
 mod stretches;
 mod support;
 
+pub use constraint_estimate::{Acting, ConstraintEstimates, StretchEstimate, TaskSpace};
 pub use direct::data::DirectData;
 pub use direct::direct_gp::{DirectFit, DirectGp};
 pub use direct::learner::DirectLearner;

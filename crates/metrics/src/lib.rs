@@ -1,10 +1,11 @@
 //! Errors of learnt policies and potentials against the truth, (A1)–(A4), and their summary over data sets.
 //!
-//! All four are mean squared errors divided by the variance of the truth: 0 is perfect, 1 is as good as the best
+//! All are mean squared errors divided by the variance of the truth: 0 is perfect, 1 is as good as the best
 //! constant. Samples are columns: a policy at N test states is an (n, N) matrix, a potential a vector (N).
 //!
 //! - [`nupe`]: error of the unconstrained policy (A1).
 //! - [`ncpe`]: error of the policy projected through given constraints (A2).
+//! - [`nppe`], [`npoe`]: errors of estimated constraints, by the policy and by the velocities they leave.
 //! - [`potential_nmse`], [`alignment_nmse`]: errors of a potential, up to a constant (A3), (A4).
 //! - [`Summary`]: mean, standard deviation and median over data sets.
 //!
@@ -33,7 +34,7 @@ mod spread;
 mod summary;
 
 pub use error::{MetricsError, Series};
-pub use policy::{ncpe, nupe};
+pub use policy::{ncpe, npoe, nppe, nupe};
 pub use potential::{alignment_nmse, potential_nmse};
 pub use summary::Summary;
 

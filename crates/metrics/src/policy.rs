@@ -31,6 +31,41 @@ pub fn ncpe(
     projected_error(truth, learnt, &mut project)
 }
 
+/// Normalised projected policy error: `Σ_n ‖N_n π_n − N̂_n π_n‖² / (N σ²_π)`, the error of estimated projectors N̂ of
+/// constraints (Lin, Howard, Vijayakumar, "Learning null space projections", ICRA 2015).
+///
+/// `policy` is the true policy at N samples, (n, N); `truth` and `learnt` replace a vector (n) by its projection through the
+/// true and the estimated constraint at a sample, as `project` of [`ncpe`] does.
+///
+/// # Errors
+/// As [`ncpe`].
+pub fn nppe(
+    policy: &DMatrix<f64>,
+    mut truth: impl FnMut(usize, DVectorViewMut<'_, f64>),
+    mut learnt: impl FnMut(usize, DVectorViewMut<'_, f64>),
+) -> Result<f64, MetricsError> {
+    let mut other = DVector::zeros(policy.nrows());
+    ncpe(policy, &DMatrix::zeros(policy.nrows(), policy.ncols()), |sample, mut action| {
+        other.copy_from(&action);
+        learnt(sample, other.as_view_mut());
+        truth(sample, action.as_view_mut());
+        action -= &other;
+    })
+}
+
+/// Normalised projected observation error: `Σ_n ‖u_n − N̂_n u_n‖² / (N σ²_u)`, what estimated projectors N̂ of constraints take
+/// from observed velocities u, (n, N), which the true ones leave as they are (Lin, Howard, Vijayakumar, ICRA 2015). Needs no
+/// truth. `learnt` is as in [`nppe`], σ² as in [`nupe`].
+///
+/// # Errors
+/// As [`ncpe`].
+pub fn npoe(
+    velocities: &DMatrix<f64>,
+    learnt: impl FnMut(usize, DVectorViewMut<'_, f64>),
+) -> Result<f64, MetricsError> {
+    nppe(velocities, |_sample, _velocity| {}, learnt)
+}
+
 /// [`ncpe`], compiled here for every projection.
 fn projected_error(
     truth: &DMatrix<f64>,

@@ -1,6 +1,6 @@
 //! (A1)–(A4) beside their literal loops, and what must not change them.
 
-use metrics::{alignment_nmse, ncpe, nupe, potential_nmse};
+use metrics::{alignment_nmse, ncpe, npoe, nppe, nupe, potential_nmse};
 use nalgebra::{DMatrix, DVector, DVectorViewMut};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -59,6 +59,30 @@ fn assert_close(found: f64, expected: f64) -> Result<(), TestCaseError> {
 }
 
 proptest! {
+    /// nPPE and nPOE beside their sums, with other constraints as the estimated ones.
+    #[test]
+    fn errors_of_constraints_are_the_literal_sums(case in case()) {
+        let forbidden = case.forbidden.iter().rev().copied().collect();
+        let rotation = case.rotation.transpose();
+        let estimated = Case { truth: case.truth.clone(), learnt: case.learnt.clone(), rotation, forbidden };
+        let policy = &case.truth;
+        prop_assume!(variance(policy) > 1e-6);
+        let (mut projected, mut observed) = (0.0, 0.0);
+        for sample in 0..policy.ncols() {
+            let (mut right, mut wrong) = (policy.column(sample).into_owned(), policy.column(sample).into_owned());
+            case.project(sample, right.as_view_mut());
+            estimated.project(sample, wrong.as_view_mut());
+            projected += (right - &wrong).norm_squared();
+            observed += (policy.column(sample) - wrong).norm_squared();
+        }
+        let scale = policy.ncols() as f64 * variance(policy);
+        let by = |of: &Case, sample, vector: DVectorViewMut<'_, f64>| of.project(sample, vector);
+        let nppe_of = |learnt| nppe(policy, |i, v| by(&case, i, v), |i, v| by(learnt, i, v)).unwrap();
+        prop_assert!((nppe_of(&estimated) - projected / scale).abs() <= 1e-10 * (1.0 + projected / scale));
+        prop_assert!((npoe(policy, |i, v| by(&estimated, i, v)).unwrap() - observed / scale).abs() <= 1e-10 * (1.0 + observed / scale));
+        prop_assert_eq!(nppe_of(&case), 0.0);
+    }
+
     #[test]
     fn policy_errors_are_the_literal_sums(case in case()) {
         let (truth, learnt) = (&case.truth, &case.learnt);

@@ -4,7 +4,10 @@ use std::sync::Arc;
 use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::{DMatrix, DVectorView};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
-use policy_align::{Evaluation, Model, ModelError, ModelPolicy, PrepareOptions, Progress, evaluate, fit, prepare};
+use policy_align::{
+    Evaluation, Model, ModelError, ModelPolicy, PrepareOptions, Progress, TaskLinks, estimate_constraints, evaluate,
+    fit, prepare,
+};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -170,10 +173,39 @@ impl Fitted {
             let Recorded { recordings, place, .. } = &*inner;
             let prepared = prepare(recordings, &options)
                 .map_err(|error| Refusal::prepare(&error, place, &names_of(recordings)))?;
-            evaluate(&model, &prepared, None).map_err(|error| Refusal::evaluate(&error))
+            evaluate(&model, &prepared, None).map_err(|error| Refusal::evaluate(&error, "score()"))
         })?;
         let judged: Result<Evaluation, Refusal> = judged;
         Ok(serde_json::json!(judged?).to_string())
+    }
+
+    /// The constraints on movements; as JSON. `robot` is a URDF, `links` those of its links that may be constrained.
+    fn constraints(
+        &self,
+        py: Python<'_>,
+        recordings: &Recordings,
+        preparing: Preparing,
+        robot: Option<PathBuf>,
+        links: Vec<String>,
+    ) -> PyResult<String> {
+        let options = PrepareOptions { scale: self.model.scale(), ..preparing.options()? };
+        let (inner, model) = (Arc::clone(&recordings.inner), Arc::clone(&self.model));
+        let text = robot.as_ref().map(|path| py.detach(|| demo_io::read_text(path))).transpose()?;
+        let place = robot.map_or_else(String::new, |path| path.display().to_string());
+        let found = interruptible(py, move |_: &_| {
+            let links = text.map(|text| TaskLinks::from_urdf(&text, &links, &model.channels())).transpose();
+            let links =
+                links.map_err(|reason| Refusal::new(reason, &place, "links=[…]; joints named like the channels"))?;
+            let Recorded { recordings, place, .. } = &*inner;
+            let prepared = prepare(recordings, &options)
+                .map_err(|error| Refusal::prepare(&error, place, &names_of(recordings)))?;
+            let found = estimate_constraints(&model, &prepared, links.as_ref());
+            let found = found.map_err(|error| Refusal::evaluate(&error, "constraints()"))?;
+            let words: Vec<String> = found.iter().map(|stretch| stretch.in_words(&model.state)).collect();
+            Ok(serde_json::json!({ "constraints": found, "in_words": words }).to_string())
+        })?;
+        let found: Result<String, Refusal> = found;
+        Ok(found?)
     }
 
     /// Follows the policy from a start (n).

@@ -90,8 +90,8 @@ impl Refusal {
         Refusal::new(error.to_string(), place, hint)
     }
 
-    pub(crate) fn evaluate(error: &EvaluateError) -> Self {
-        Refusal::of_text(&error.to_string(), "score()", "other recordings")
+    pub(crate) fn evaluate(error: &EvaluateError, place: &str) -> Self {
+        Refusal::of_text(&error.to_string(), place, "other recordings")
     }
 
     pub(crate) fn roll_out(error: &RollOutError) -> Self {

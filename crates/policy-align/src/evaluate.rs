@@ -138,6 +138,12 @@ pub enum EvaluateError {
         /// Labels.
         found: usize,
     },
+    /// The robot refuses a state of the movements.
+    #[error("the robot cannot be where a movement is: {reason}")]
+    Robot {
+        /// What it says.
+        reason: String,
+    },
     /// The remaining movements cannot be learnt from.
     #[error(transparent)]
     Fit(#[from] FitError),

@@ -47,7 +47,7 @@ pub fn leave_constraints_out(
 }
 
 /// Movements in the units of a model, which may have learnt them.
-fn in_units_of(model: &Model, prepared: Prepared) -> Result<Prepared, FitError> {
+pub(crate) fn in_units_of(model: &Model, prepared: Prepared) -> Result<Prepared, FitError> {
     let factors = model.state.iter().zip(&prepared.state).map(|(learnt, own)| learnt.scale / own.scale);
     let factors = DVector::from_iterator(prepared.state.len(), factors);
     if factors.iter().all(|&factor| factor == 1.0) {

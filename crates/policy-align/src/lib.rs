@@ -71,6 +71,7 @@ mod learnt;
 mod leave_out;
 mod model;
 mod model_policy;
+mod named;
 mod roll_out;
 mod stored;
 mod trust;
@@ -87,6 +88,7 @@ pub use leave_out::{ConstraintLeftOut, leave_constraints_out};
 pub use model::{DataSummary, FileSummary, MadeBy, Model};
 pub use model_policy::{ModelPolicy, ModelPotential};
 pub use motion::{Decision, Finding, LeftOut, Verdict};
+pub use named::{ConstraintOn, ConstraintStretch, TaskLinks, constraint_file, estimate_constraints};
 pub use prepare::{
     Noise, PrepareError, PrepareOptions, Prepared, Repair, Smoothing, StateChannel, VelocitySource, VelocityUse,
     direction_by_channels, prepare, trim_still,

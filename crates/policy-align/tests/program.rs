@@ -11,8 +11,20 @@ use std::process::{Command, Stdio};
 use running::{command, folder, run, run_in};
 use serde_json::Value;
 
-const VERBS: [&str; 11] =
-    ["check", "fit", "info", "predict", "rollout", "evaluate", "plot", "convert", "export", "completions", "man"];
+const VERBS: [&str; 12] = [
+    "check",
+    "fit",
+    "info",
+    "predict",
+    "rollout",
+    "evaluate",
+    "constraints",
+    "plot",
+    "convert",
+    "export",
+    "completions",
+    "man",
+];
 
 #[test]
 fn every_help_ends_with_an_example_that_runs() {

@@ -3,17 +3,26 @@ use crate::StateChannel;
 /// A direction of the state (n) by its channels: "x", "0.7 x − 0.7 y". Small parts are left out, and it has no sign: the
 /// first part is positive.
 pub fn direction_by_channels(direction: &[f64], state: &[StateChannel]) -> String {
+    let names: Vec<&str> = state.iter().map(|channel| channel.name.as_str()).collect();
     let largest = direction.iter().fold(0.0_f64, |largest, part| largest.max(part.abs()));
-    let parts = direction.iter().zip(state).filter(|(part, _)| **part != 0.0 && part.abs() >= 0.1 * largest);
-    let sign = parts.clone().next().map_or(1.0, |(part, _)| part.signum());
-    let term = |(at, (part, channel)): (usize, (&f64, &StateChannel))| {
-        let (part, name) = (sign * part, &channel.name);
-        match (at, part < 0.0) {
-            (0, _) if part > 0.99 => name.clone(),
-            (0, _) => format!("{part:.1} {name}"),
-            (_, true) => format!(" − {:.1} {name}", -part),
-            (_, false) => format!(" + {part:.1} {name}"),
-        }
+    let first = direction.iter().find(|part| **part != 0.0 && part.abs() >= 0.1 * largest);
+    let sign = first.map_or(1.0, |part| part.signum());
+    let direction: Vec<f64> = direction.iter().map(|part| sign * part).collect();
+    sum_of_parts(&direction, &names, 1)
+}
+
+/// A direction as a sum of named parts, with so many decimals: what rounds to nothing beside the largest is left out.
+pub fn sum_of_parts(direction: &[f64], names: &[&str], decimals: u8) -> String {
+    let largest = direction.iter().fold(0.0_f64, |largest, part| largest.max(part.abs()));
+    let least = 0.1_f64.powi(i32::from(decimals));
+    let decimals = usize::from(decimals);
+    let parts = direction.iter().zip(names).filter(|(part, _)| **part != 0.0 && part.abs() >= least * largest);
+    let term = |(at, (&part, name)): (usize, (&f64, &&str))| match (at, part < 0.0) {
+        (0, false) if part > 1.0 - 0.1 * least => (*name).to_owned(),
+        (0, false) => format!("{part:.decimals$} {name}"),
+        (0, true) => format!("−{:.decimals$} {name}", -part),
+        (_, true) => format!(" − {:.decimals$} {name}", -part),
+        (_, false) => format!(" + {part:.decimals$} {name}"),
     };
     parts.enumerate().map(term).collect()
 }

@@ -61,7 +61,7 @@ mod scale;
 mod velocity_source;
 
 pub use channel::StateChannel;
-pub use direction::direction_by_channels;
+pub use direction::{direction_by_channels, sum_of_parts};
 pub use directions::directions;
 pub use error::PrepareError;
 pub use options::{PrepareOptions, Repair, Smoothing, VelocityUse};

@@ -78,7 +78,7 @@ impl Rows {
     }
 
     /// Constraints are at right angles in the metric M(x): u = π − M⁻¹Aᵀ(AM⁻¹Aᵀ)⁻¹(Aπ), as where a robot's mass matrix weighs its joints.
-    /// `momenta` (n, M) holds M(x)u of each row, from which (S30) follows in place of (S1).
+    /// `momenta` (n, M) holds M(x)u of each row, from which (S31) follows in place of (S1).
     ///
     /// # Errors
     /// [`GpError::Lengths`], or [`GpError::Value`] for what is not finite or where uᵀMu is not positive though u ≠ 0.
@@ -141,7 +141,7 @@ impl Rows {
         self.momenta.as_ref()
     }
 
-    /// The part of each velocity along the direction of its equation, (n, M): along M(x)u (S30), or all of it (S1).
+    /// The part of each velocity along the direction of its equation, (n, M): along M(x)u (S31), or all of it (S1).
     pub(crate) fn parts(&self) -> Cow<'_, DMatrix<f64>> {
         match &self.momenta {
             Some(momenta) => Cow::Owned(parts_along(&self.velocities, momenta)),

@@ -4,9 +4,9 @@
 //! the null space of A. Every direction v in which they lie gives a linear equation vᵀπ(x_i) = vᵀu_i for all samples of the
 //! stretch: rows like those of (S1), but free of the push.
 
-mod noise;
+pub(crate) mod noise;
 pub(crate) mod rows;
-mod segmentation;
+pub(crate) mod segmentation;
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -16,9 +16,9 @@ use noise::velocity_noise;
 use segmentation::{Segment, segments};
 
 /// Most samples of a movement among which switches are looked for; of longer ones, evenly many.
-const MOST_SAMPLES: usize = 60;
+pub(crate) const MOST_SAMPLES: usize = 60;
 /// Most dimensions; the search takes time with the cube of them.
-const MOST_DIMENSIONS: usize = 12;
+pub(crate) const MOST_DIMENSIONS: usize = 12;
 /// Standard deviations of the noise that a direction must stand out by, for a stretch of one sample.
 const STANDS_OUT: f64 = 8.0;
 
@@ -55,9 +55,8 @@ impl Stretches {
             return None;
         }
         let at: Vec<usize> = (0..rows.len()).collect();
-        let trajectory = |row: usize| rows.indices()[row].trajectory;
-        let movements: Vec<&[usize]> = at.chunk_by(|&a, &b| trajectory(a) == trajectory(b)).collect();
-        let noise = velocity_noise(rows, &movements)?;
+        let movements = movements(rows, &at);
+        let noise = velocity_noise(rows.velocities(), rows.variances(), &movements)?;
         let of_movement = |movement: &&[usize]| {
             let few = evenly(movement, MOST_SAMPLES);
             let found = segments(&rows.velocities().select_columns(&few), noise);
@@ -68,8 +67,14 @@ impl Stretches {
     }
 }
 
+/// `at`, all rows in their order, by movement.
+pub(crate) fn movements<'a>(rows: &Rows, at: &'a [usize]) -> Vec<&'a [usize]> {
+    let trajectory = |row: usize| rows.indices()[row].trajectory;
+    at.chunk_by(|&a, &b| trajectory(a) == trajectory(b)).collect()
+}
+
 /// The mean of the columns, and the columns about it.
-fn centred(columns: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
+pub(crate) fn centred(columns: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
     let mean = columns.column_mean();
     let mut centred = columns.clone();
     centred.column_iter_mut().for_each(|mut column| column -= &mean);
@@ -77,7 +82,7 @@ fn centred(columns: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
 }
 
 /// At most so many of the rows, evenly far from each other, with the first and the last.
-fn evenly(rows: &[usize], most: usize) -> Vec<usize> {
+pub(crate) fn evenly(rows: &[usize], most: usize) -> Vec<usize> {
     if rows.len() <= most {
         return rows.to_vec();
     }

@@ -2,7 +2,6 @@
 
 use nalgebra::DMatrix;
 
-use crate::Rows;
 use crate::stretches::centred;
 use motion::upper_median;
 
@@ -20,22 +19,26 @@ const ROUNDING: f64 = 1e-14;
 /// s², the variance of a velocity along an axis: the smaller of two upper bounds. Third differences also hold the curvature
 /// of the motion, the least extent of windows also holds switches and free movement. At least the median of variances that
 /// are known; none without three samples next to each other.
-pub(super) fn velocity_noise(rows: &Rows, movements: &[&[usize]]) -> Option<f64> {
-    let dim = rows.dim();
-    let velocity = |row: usize| rows.velocities().column(row);
+pub(crate) fn velocity_noise(
+    velocities: &DMatrix<f64>,
+    variances: Option<&[f64]>,
+    movements: &[&[usize]],
+) -> Option<f64> {
+    let dim = velocities.nrows();
+    let velocity = |row: usize| velocities.column(row);
     let third =
         |at: &[usize]| (velocity(at[3]) - velocity(at[0]) + 3.0 * (velocity(at[1]) - velocity(at[2]))).norm_squared();
     let thirds: Vec<f64> = movements.iter().flat_map(|movement| movement.windows(4).map(third)).collect();
     // The median of χ² with n degrees of freedom is about n (1 − 2/9n)³.
     let median_of_chi_squared = dim as f64 * (1.0 - 2.0 / (9.0 * dim as f64)).powi(3);
     let from_differences = upper_median(thirds)? / (THIRD_DIFFERENCE * median_of_chi_squared);
-    let extent = |at: &[usize]| least_extent(&rows.velocities().select_columns(at));
+    let extent = |at: &[usize]| least_extent(&velocities.select_columns(at));
     let windows = movements.iter().flat_map(|movement| movement.chunks_exact(dim + WINDOW).map(extent));
     let mut extents: Vec<f64> = windows.collect();
     extents.sort_by(f64::total_cmp);
     let from_windows = extents.get((QUANTILE * extents.len() as f64) as usize).copied().unwrap_or(f64::INFINITY);
-    let mean_square = rows.velocities().norm_squared() / rows.len() as f64;
-    let known = rows.variances().and_then(|variances| upper_median(variances.to_vec())).unwrap_or(0.0);
+    let mean_square = velocities.norm_squared() / velocities.ncols() as f64;
+    let known = variances.and_then(|variances| upper_median(variances.to_vec())).unwrap_or(0.0);
     Some(from_differences.min(TIMES * from_windows).max(ROUNDING * mean_square).max(known))
 }
 

@@ -3,14 +3,14 @@
 use nalgebra::{DMatrix, DVector};
 
 /// Half the logarithm of the number of samples, about: what a parameter costs in half squared standard deviations.
-const PARAMETER: f64 = 2.5;
+pub(crate) const PARAMETER: f64 = 2.5;
 /// What one more dimension of the plane costs. Without it a plane takes in a foreign sample by one dimension more, since a
 /// plane of q + 1 dimensions goes through it exactly.
-const DIMENSION: f64 = 10.0;
+pub(crate) const DIMENSION: f64 = 10.0;
 /// What one more segment costs.
-const SEGMENT: f64 = 6.0;
+pub(crate) const SEGMENT: f64 = 6.0;
 /// Samples beyond the dimension of the plane that a segment needs.
-const SPARE: usize = 4;
+pub(crate) const SPARE: usize = 4;
 
 /// Samples `begin..end` whose velocities lie in a plane of `rank` dimensions, 0 < rank < n.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,28 +25,47 @@ pub(super) struct Segment {
 pub(super) fn segments(velocities: &DMatrix<f64>, noise: f64) -> Vec<Segment> {
     let (dim, count) = velocities.shape();
     let sums = PrefixSums::of(velocities);
-    // The least cost of the samples before each, and the segment that ends there, if any.
+    let parts = cheapest_parts(count, PARAMETER * dim as f64, |begin, end| plane_cost(&sums, (begin, end), noise));
+    let segment = |Part { begin, end, kind: rank }| Segment { begin, end, rank };
+    parts.into_iter().map(segment).filter(|segment| segment.rank > 0).collect()
+}
+
+/// Samples `begin..end` of a movement, and what they are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Part<K> {
+    pub(crate) begin: usize,
+    pub(crate) end: usize,
+    pub(crate) kind: K,
+}
+
+/// The parts of `count` samples whose costs, with `alone` for each sample in none, have the least sum. `cost` of a part
+/// begin..end of at least [`SPARE`] samples also says of which kind it is. Asks for all pairs.
+pub(crate) fn cheapest_parts<K: Copy>(
+    count: usize,
+    alone: f64,
+    cost: impl Fn(usize, usize) -> (f64, K),
+) -> Vec<Part<K>> {
+    // The least cost of the samples before each, and the part that ends there, if any.
     let mut costs = vec![0.0; count + 1];
-    let mut ending: Vec<Option<Segment>> = vec![None; count + 1];
+    let mut ending: Vec<Option<Part<K>>> = vec![None; count + 1];
     for end in 1..=count {
-        costs[end] = costs[end - 1] + PARAMETER * dim as f64;
+        costs[end] = costs[end - 1] + alone;
         for begin in 0..(end + 1).saturating_sub(SPARE) {
-            let (cost, rank) = plane_cost(&sums, (begin, end), noise);
-            if costs[begin] + cost < costs[end] {
-                costs[end] = costs[begin] + cost;
-                ending[end] = Some(Segment { begin, end, rank });
+            let (own, kind) = cost(begin, end);
+            if costs[begin] + own < costs[end] {
+                costs[end] = costs[begin] + own;
+                ending[end] = Some(Part { begin, end, kind });
             }
         }
     }
     let mut found = Vec::new();
     let mut at = count;
     while at > 0 {
-        at = ending[at].map_or(at - 1, |segment| {
-            found.push(segment);
-            segment.begin
+        at = ending[at].map_or(at - 1, |part| {
+            found.push(part);
+            part.begin
         });
     }
-    found.retain(|segment| segment.rank > 0);
     found.reverse();
     found
 }

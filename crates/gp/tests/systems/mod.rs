@@ -1,4 +1,5 @@
 //! Potentials to descend under constraints A u = b, new for each movement and once within it.
+#![allow(dead_code, reason = "every test takes what it needs")]
 
 use motion::{Demonstrations, Trajectory};
 use nalgebra::{DMatrix, DVector};
@@ -16,6 +17,12 @@ pub(crate) struct System {
     /// Rows of A.
     rank: usize,
     potential: fn(&[f64]) -> f64,
+}
+
+/// The constraints of a movement.
+pub(crate) struct Switched {
+    pub(crate) switch: usize,
+    pub(crate) bases: Vec<DMatrix<f64>>,
 }
 
 fn himmelblau(x: &[f64]) -> f64 {
@@ -40,6 +47,11 @@ pub(crate) const ANGLES: System = System { dim: 3, span: 2.0, rank: 1, potential
 pub(crate) const WELLS: System = System { dim: 6, span: 1.0, rank: 2, potential: wells };
 
 impl System {
+    /// The same potential, without constraints.
+    pub(crate) fn free(self) -> System {
+        System { rank: 0, ..self }
+    }
+
     /// −∇φ by central differences of order four.
     pub(crate) fn policy(&self, x: &DVector<f64>) -> DVector<f64> {
         let step = 1e-3 * self.span;
@@ -66,6 +78,13 @@ impl System {
 
     /// Movements under A u = b, A new for each and once within it, |A⁺b| = `push` of the root mean square of the policy.
     pub(crate) fn movements(&self, push: f64, noise: f64, seed: u64) -> Demonstrations {
+        self.with_truth(push, noise, seed).0
+    }
+
+    /// The same, with the constraints: of each movement the sample from which the second held, and the rows of both as
+    /// orthonormal columns.
+    pub(crate) fn with_truth(&self, push: f64, noise: f64, seed: u64) -> (Demonstrations, Vec<Switched>) {
+        let mut truth = Vec::new();
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let rms = self.rms();
         let step = 2.0 * self.span / (40.0 * rms);
@@ -74,13 +93,14 @@ impl System {
             let switch = 10 + (20.0 * rng.random::<f64>()) as usize;
             let mut basis = DMatrix::zeros(self.dim, self.rank);
             let mut pushed = DVector::zeros(self.dim);
-            let (mut states, mut velocities) = (Vec::new(), Vec::new());
+            let (mut states, mut velocities, mut bases) = (Vec::new(), Vec::new(), Vec::new());
             for sample in 0..SAMPLES {
-                if sample == 0 || sample == switch {
+                if self.rank > 0 && (sample == 0 || sample == switch) {
                     let draw = DMatrix::from_fn(self.dim, self.rank, |_, _| normal(&mut rng));
                     basis = draw.qr().q();
                     let b = DVector::from_fn(self.rank, |_, _| normal(&mut rng)).normalize() * push * rms;
                     pushed = &basis * b;
+                    bases.push(basis.clone());
                 }
                 let policy = self.policy(&x);
                 let u = &policy - &basis * basis.tr_mul(&policy) + &pushed;
@@ -88,10 +108,11 @@ impl System {
                 velocities.extend(u.iter().map(|u| u + noise * rms / (self.dim as f64).sqrt() * normal(&mut rng)));
                 x += step * u;
             }
+            truth.push(Switched { switch, bases });
             let matrix = |numbers| DMatrix::from_vec(self.dim, SAMPLES, numbers);
             Trajectory::new(matrix(states), step).unwrap().with_velocities(matrix(velocities)).unwrap()
         });
-        Demonstrations::new(movements.collect()).unwrap()
+        (Demonstrations::new(movements.collect()).unwrap(), truth)
     }
 }
 

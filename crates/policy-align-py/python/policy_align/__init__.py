@@ -9,6 +9,7 @@ support; ``Demonstrations`` holds recordings, of files or of memory; ``load`` re
 Rows are samples everywhere.
 """
 
+from ._constraints import ConstraintStretch
 from ._demonstrations import Check, Demonstrations
 from ._errors import NotFittedError, PolicyAlignError, PolicyAlignWarning
 from ._learners import AutoGp, DirectGp, PolicyAlign, SlopeGp, load
@@ -19,6 +20,7 @@ from ._trust import Decision, Finding, Trust
 __all__ = [
     "AutoGp",
     "Check",
+    "ConstraintStretch",
     "Decision",
     "Demonstrations",
     "DirectGp",

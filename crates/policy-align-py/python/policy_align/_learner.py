@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from . import _native
 from ._arrays import Floats, samples
+from ._constraints import ConstraintStretch, stretches
 from ._demonstrations import Demonstrations, preparing
 from ._errors import NotFittedError, PolicyAlignError, PolicyAlignWarning
 from ._estimator import Estimator
@@ -28,6 +29,8 @@ class Learner(Estimator):
     #: The name of the learner in a model file.
     _learner: ClassVar[str]
     _fitted: _native.Fitted | None = None
+    #: What ``fit`` was given: not part of the model.
+    _learnt_from: Demonstrations | None = None
 
     # Parameters that every learner has.
     integration: str
@@ -83,6 +86,7 @@ class Learner(Estimator):
         made_at = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
         fitted = _native.Fitted.fit(demonstrations._native, self._preparing(), self._learning(), threads, made_at)
         self._take(fitted)
+        self._learnt_from = demonstrations
         trust = self.trust_
         if trust.verdict != "good":
             more = len([finding for finding in trust.findings if finding.verdict != "good"]) - 1
@@ -168,6 +172,38 @@ class Learner(Estimator):
         judged: dict[str, float] = json.loads(fitted.evaluate(held_out._native, self._preparing()))
         return 1.0 - judged["slope_error"]
 
+    def constraints(
+        self,
+        X: Any,
+        *,
+        dt: float | None = None,
+        times: Iterable[Any] | None = None,
+        velocities: Any = None,
+        lengths: Sequence[int] | None = None,
+        robot: str | os.PathLike[str] | None = None,
+        links: Sequence[str] = (),
+    ) -> tuple[ConstraintStretch, ...]:
+        """The constraints that acted on movements, which may be those learnt from: stretch by stretch.
+
+        Arguments as of ``score``. ``robot``: a URDF whose joints are the channels, by name; what its ``links`` keep, or if
+        none is named the last of each chain, is looked for beside the channels.
+        """
+        fitted = self._needed()
+        if dt is None and times is None and not isinstance(X, Demonstrations):
+            dt = self.time_step_
+        movements = _demonstrations(X, dt, times, velocities, lengths)
+        found = fitted.constraints(movements._native, self._preparing(), robot, list(links))
+        return stretches(found, fitted.dim)
+
+    @property
+    def constraints_(self) -> tuple[ConstraintStretch, ...]:
+        """The constraints that acted on the movements of ``fit``, in the channels. A model file does not hold these movements."""
+        self._needed()
+        if self._learnt_from is None:
+            hint = "constraints(X), with the movements"
+            raise PolicyAlignError("a model that was read does not hold its movements", "constraints_", hint)
+        return self.constraints(self._learnt_from)
+
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a model file, the same as the program's, wholly or not at all."""
         self._needed().save(path)
@@ -220,7 +256,7 @@ class Learner(Estimator):
         return self._fitted is not None
 
     def __getstate__(self) -> dict[str, Any]:
-        state = {name: value for name, value in self.__dict__.items() if name not in ("_fitted", "_document")}
+        state = {name: value for name, value in self.__dict__.items() if name not in ("_fitted", "_document", "_learnt_from")}
         return state if self._fitted is None else {**state, "_fitted": self._fitted.to_json()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -231,6 +267,7 @@ class Learner(Estimator):
 
     def _take(self, fitted: _native.Fitted) -> None:
         self.__dict__.pop("_document", None)
+        self.__dict__.pop("_learnt_from", None)
         self._fitted = fitted
 
     def _needed(self) -> _native.Fitted:

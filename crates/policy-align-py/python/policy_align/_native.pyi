@@ -63,6 +63,13 @@ class Fitted:
     def support(self, states: _Floats) -> _Floats: ...
     def supports(self, states: _Floats) -> npt.NDArray[np.bool_]: ...
     def evaluate(self, recordings: Recordings, preparing: dict[str, Any]) -> str: ...
+    def constraints(
+        self,
+        recordings: Recordings,
+        preparing: dict[str, Any],
+        robot: str | os.PathLike[str] | None,
+        links: Sequence[str],
+    ) -> str: ...
     def roll_out(
         self,
         start: _Floats,

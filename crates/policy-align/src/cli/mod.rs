@@ -41,6 +41,7 @@ enum Verb {
     #[command(name = "rollout")]
     RollOut(verbs::rollout::RollOut),
     Evaluate(verbs::evaluate::Evaluate),
+    Constraints(verbs::constraints::Constraints),
     Plot(verbs::plot::Plot),
     Convert(verbs::convert::Convert),
     Export(verbs::export::Export),
@@ -70,7 +71,7 @@ fn command() -> Command {
         })
     };
     let brief = |cli: Command, verb| cli.mut_subcommand(verb, brief);
-    ["fit", "evaluate", "plot", "convert"].into_iter().fold(Cli::command(), brief)
+    ["fit", "evaluate", "constraints", "plot", "convert"].into_iter().fold(Cli::command(), brief)
 }
 
 /// Runs the command line.
@@ -98,6 +99,7 @@ impl Verb {
             Verb::Predict(predict) => predict.run(session),
             Verb::RollOut(rollout) => rollout.run(session),
             Verb::Evaluate(evaluate) => evaluate.run(session),
+            Verb::Constraints(constraints) => constraints.run(session),
             Verb::Plot(plot) => plot.run(session),
             Verb::Convert(convert) => convert.run(session),
             Verb::Export(export) => export.run(session),

@@ -3,11 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use motion::{Finding, Recordings};
-use policy_align::FileSummary;
+use policy_align::{FileSummary, Model, Prepared, prepare};
+use text::quoted;
 
 use crate::cli::failure::{Failure, displayed};
 use crate::cli::lines::counted;
-use crate::cli::options::flags::ReadFlags;
+use crate::cli::options::config::Config;
+use crate::cli::options::flags::{PrepareFlags, ReadFlags};
 use crate::cli::session::Session;
 
 /// Warnings that are printed: a recorder that repeats itself would fill the screen.
@@ -25,6 +27,30 @@ pub(crate) fn read(session: &Session, files: &[PathBuf], flags: &ReadFlags) -> R
         prepare::trim_still(&mut recordings);
     }
     Ok(recordings)
+}
+
+/// Reads and prepares recordings in the channels and units of a model; also with which flags they were read.
+pub(crate) fn prepared_for(
+    session: &Session,
+    model: &Model,
+    files: &[PathBuf],
+    (reading, preparing): (&ReadFlags, &PrepareFlags),
+) -> Result<(ReadFlags, Prepared), Failure> {
+    let config = Config::of(session)?;
+    let reading = config.under("read", reading)?.with_channels_of(model);
+    let mut options = config.under("prepare", preparing)?.options(reading.dt)?;
+    // The learner's states were multiplied by these, whatever the flags are.
+    options.scale = model.scale();
+    let recordings = read(session, files, &reading)?;
+    let prepared = prepare(&recordings, &options).map_err(|error| Failure::prepare(&error, named(files)))?;
+    let found: Vec<String> = prepared.state.iter().map(|channel| channel.name.clone()).collect();
+    let expected = model.channels();
+    if found != expected {
+        let what = format!("the channels are {}, the model's {}", found.join(", "), expected.join(", "));
+        let remedy = format!("--state {}", quoted(Path::new(&expected.join(","))));
+        return Err(Failure::usage(what, named(files), remedy));
+    }
+    Ok((reading, prepared))
 }
 
 fn warn(session: &Session, findings: &[Finding]) {

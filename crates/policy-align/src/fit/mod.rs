@@ -13,7 +13,7 @@ mod units;
 pub(crate) use aligning::held_out;
 pub use options::{FitOptions, LearnerChoice};
 pub use progress::{Progress, Step};
-pub(crate) use recorded_rows::{cleaning, rows};
+pub(crate) use recorded_rows::{averaged, cleaning, rows};
 
 use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, PushTest, SlopeGp, TrajectoryErrors};
 use motion::{LearntPolicy, Policy, upper_median};
@@ -22,9 +22,10 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::trust::{
-    AlignedNumbers, TrustNumbers, VerdictInput, differing_goals, friction, judge, pushed, share_leaving, share_unknown,
+    AlignedNumbers, CommonPlane, TrustNumbers, VerdictInput, differing_goals, friction, judge, pushed, share_leaving,
+    share_unknown,
 };
-use crate::{DataSummary, Decision, FitError, Learnt, MadeBy, Model, Prepared};
+use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, Prepared};
 use aligning::AlignedFit;
 use decision::decision;
 
@@ -79,6 +80,7 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
         findings.extend(differing_goals(policy, prepared, &rows, &numbers));
         findings.extend(friction(policy, &rows));
     }
+    findings.extend(plane(prepared, &numbers));
     let trust =
         judge(VerdictInput { numbers, findings: &findings, state: &prepared.state, episodes: &prepared.episodes });
     let learnt = match (options.learner, aligned) {
@@ -121,6 +123,13 @@ fn takes_slope(readings: &AutoFit, learner: LearnerChoice) -> bool {
         LearnerChoice::Direct => false,
         LearnerChoice::Auto | LearnerChoice::PolicyAlign => readings.takes_slope(),
     }
+}
+
+/// The plane that no movement leaves, where one direction is not seen.
+fn plane(prepared: &Prepared, numbers: &TrustNumbers) -> Option<Finding> {
+    let unseen = numbers.direction_coverage < TrustNumbers::UNSEEN;
+    let plane = unseen.then(|| CommonPlane::of(&prepared.demonstrations, &prepared.state)).flatten()?;
+    Some(plane.finding(&prepared.state))
 }
 
 fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {

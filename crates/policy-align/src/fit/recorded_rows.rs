@@ -25,7 +25,7 @@ fn front_end(velocities: VelocitySource) -> FrontEnd {
 }
 
 /// The movements with samples averaged as decided.
-pub(super) fn averaged(prepared: &Prepared) -> Result<Demonstrations, GpError> {
+pub(crate) fn averaged(prepared: &Prepared) -> Result<Demonstrations, GpError> {
     thinned(&prepared.demonstrations, prepared.averaged).map_err(|error| cleaning(&error))
 }
 

@@ -1,5 +1,5 @@
 use kinematics::{Chain, RobotModel, Workspace};
-use nalgebra::{DMatrix, DVector, DVectorView, Matrix3xX, Point3};
+use nalgebra::{DMatrix, DVector, DVectorView, Matrix3xX, Matrix6xX, Point3};
 
 /// The origin of a robot's link as the state moves it. Channels of the state are joints of the same name.
 #[derive(Debug, Clone)]
@@ -35,13 +35,31 @@ impl LinkPoint {
     /// # Errors
     /// What the robot says of the configuration.
     pub(crate) fn at(&self, state: DVectorView<'_, f64>) -> Result<(Point3<f64>, DMatrix<f64>), String> {
-        let mut q = DVector::zeros(self.n_joints);
-        for (&place, &x) in self.places.iter().zip(state.iter()) {
-            q[place] = x;
-        }
+        let q = self.configuration(state);
         let mut jacobian = Matrix3xX::zeros(self.n_joints);
         let origin = self.chain.position_jacobian(q.as_view(), &mut Workspace::new(), &mut jacobian);
         let origin = origin.map_err(|error| error.to_string())?;
         Ok((origin, DMatrix::from_fn(3, self.places.len(), |row, channel| jacobian[(row, self.places[channel])])))
+    }
+
+    /// The derivative of the link's orientation by the state, (3, n): what velocities of the state make of its angular velocity,
+    /// in the root link's axes.
+    ///
+    /// # Errors
+    /// What the robot says of the configuration.
+    pub(crate) fn turning(&self, state: DVectorView<'_, f64>) -> Result<DMatrix<f64>, String> {
+        let q = self.configuration(state);
+        let mut jacobian = Matrix6xX::zeros(self.n_joints);
+        let pose = self.chain.jacobian(q.as_view(), &mut Workspace::new(), &mut jacobian);
+        pose.map_err(|error| error.to_string())?;
+        Ok(DMatrix::from_fn(3, self.places.len(), |row, channel| jacobian[(3 + row, self.places[channel])]))
+    }
+
+    fn configuration(&self, state: DVectorView<'_, f64>) -> DVector<f64> {
+        let mut q = DVector::zeros(self.n_joints);
+        for (&place, &x) in self.places.iter().zip(state.iter()) {
+            q[place] = x;
+        }
+        q
     }
 }

@@ -6,7 +6,7 @@ mod constraint_set;
 mod error;
 mod holding;
 mod joint_limits;
-mod link_point;
+pub(crate) mod link_point;
 mod runge_kutta;
 mod starts;
 

@@ -17,8 +17,6 @@ const FAR: f64 = 0.8;
 const ODD: f64 = 10.0;
 /// Unconstrained motion covers all directions; less coverage than this may be a constraint.
 const SPREAD: f64 = 0.25;
-/// Less coverage than this and one direction is a guess.
-const UNSEEN: f64 = 0.1;
 /// Share of uncertain states between the demonstrations from which other movements will meet them.
 const UNKNOWN: f64 = 0.1;
 /// Share of starts whose roll-outs leave the data from which the goal lies outside it.
@@ -82,7 +80,7 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
             found(Verdict::Doubtful, "too few movements to detect constraints".to_owned(), "record at least five");
         }
     }
-    if numbers.direction_coverage < UNSEEN {
+    if numbers.direction_coverage < TrustNumbers::UNSEEN {
         found(
             Verdict::Doubtful,
             format!("almost no movement along {direction} (coverage {coverage})"),

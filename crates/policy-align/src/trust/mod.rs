@@ -1,6 +1,7 @@
 //! Checks of a learnt policy without the truth.
 
 mod between;
+mod common_plane;
 mod freely;
 mod friction;
 mod goals;
@@ -10,6 +11,7 @@ mod pushes;
 mod report;
 
 pub(crate) use between::share_unknown;
+pub(crate) use common_plane::CommonPlane;
 pub(crate) use freely::share_leaving;
 pub(crate) use friction::friction;
 pub(crate) use goals::differing_goals;

@@ -62,6 +62,8 @@ impl TrustNumbers {
     pub const GOOD_HELD_OUT_ERROR: f64 = 0.035;
     /// Above this `expected_error` a Gaussian process's policy is doubtful: it has been too low by a factor of 3.
     pub const GOOD_EXPECTED_ERROR: f64 = 0.06;
+    /// Below this `direction_coverage` one direction is a guess.
+    pub(crate) const UNSEEN: f64 = 0.1;
     /// Above this difference of `halves` a policy is doubtful.
     pub const GOOD_HALVES: f64 = 0.12;
 }

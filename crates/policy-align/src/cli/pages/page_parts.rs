@@ -21,6 +21,8 @@ pub(crate) const NOISE: (&str, &str) = ("Share of noise in the squared steps", "
 
 const NUMBERS: [Column; 3] = [("What", ""), ("Value", "value"), ("Good is", "")];
 const DECISIONS: [Column; 4] = [("What", ""), ("Decided", ""), ("Why", ""), ("Flag", "")];
+const CONSTRAINTS: [Column; 4] =
+    [("Constraint", ""), ("Stretches", "value"), ("Seconds", "value"), ("Error of the normal", "value")];
 const CHANNELS: [Column; 4] = [("Channel", ""), ("Unit", ""), ("Least, median, largest", "value"), ("Scale", "value")];
 
 pub(crate) fn part(id: &str, title: &str, body: &Markup) -> Part {
@@ -99,6 +101,12 @@ pub(crate) fn decisions(decisions: &[Decision]) -> Markup {
         p { "Each automatic decision, its reason, and the flag that overrides it." }
         (table(&DECISIONS, &decisions.iter().map(row).collect::<Vec<_>>()))
     }
+}
+
+/// Constraints that were found: each in words, in how many stretches, for how long, and how sure.
+pub(crate) fn constraints(rows: &[[String; 4]]) -> Markup {
+    let row = |row: &[String; 4]| row.iter().map(|cell| html! { (cell) }).collect();
+    table(&CONSTRAINTS, &rows.iter().map(row).collect::<Vec<_>>())
 }
 
 /// Names, units and ranges.

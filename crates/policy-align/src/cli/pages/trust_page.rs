@@ -8,6 +8,7 @@ use policy_align::{AlignedNumbers, Model, Prepared, TrustNumbers, direction_by_c
 
 use crate::cli::describe::learner;
 use crate::cli::lines::{counted, short};
+use crate::cli::pages::constraints_part::constraints_part;
 use crate::cli::pages::page_parts::{self, COVERAGE, NOISE, channels, decisions, left_out, opening, page, part};
 use crate::cli::pages::picture::Picture;
 use crate::cli::trust_files::{DIGITS, NAMED};
@@ -37,6 +38,7 @@ pub(crate) fn trust_page(model: &Model, name: &str, checksum: &str, prepared: &P
         parts.push(part("field", FIELD, &field(model, prepared)));
     }
     parts.push(part("numbers", "Numbers", &numbers(model)));
+    parts.extend(constraints_part(model, prepared));
     parts.push(part("decisions", "Decisions", &decisions(&model.decisions)));
     parts.push(part("data", "Data", &data(model, checksum)));
     page(&title, name, opening, parts)

@@ -1,21 +1,19 @@
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use clap::Args;
 use nalgebra::{DMatrix, DVector};
 use policy_align::{
-    ConstraintLeftOut, EvaluateError, Evaluation, FileSummary, FitOptions, LearnerChoice, Learnt, Model,
-    PrepareOptions, Prepared, Progress, Truth, evaluate, leave_constraints_out, prepare,
+    ConstraintLeftOut, EvaluateError, Evaluation, FileSummary, FitOptions, LearnerChoice, Learnt, Model, Prepared,
+    Progress, Truth, evaluate, leave_constraints_out,
 };
 use serde_json::json;
-use text::quoted;
 
 use crate::cli::failure::{Exit, Failure};
 use crate::cli::lines::{Lines, amount, counted, short, squared_error};
-use crate::cli::options::config::Config;
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
-use crate::cli::recorded::{named, read, summaries};
+use crate::cli::recorded::{named, prepared_for, read, summaries};
 use crate::cli::session::{Output, Session};
 use crate::cli::trust_files::load;
 
@@ -56,19 +54,7 @@ pub(crate) struct Evaluate {
 impl Evaluate {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let model = load(session, &self.model)?;
-        let config = Config::of(session)?;
-        let reading = config.under("read", &self.read)?.with_channels_of(&model);
-        let mut options = config.under("prepare", &self.prepare)?.options(reading.dt)?;
-        // The learner's states were multiplied by these, whatever the flags are.
-        options.scale = model.scale();
-        let prepared = self.prepared(session, &reading, &options)?;
-        let found: Vec<String> = prepared.state.iter().map(|channel| channel.name.clone()).collect();
-        let expected = model.channels();
-        if found != expected {
-            let what = format!("the channels are {}, the model's {}", found.join(", "), expected.join(", "));
-            let remedy = format!("--state {}", quoted(Path::new(&expected.join(","))));
-            return Err(Failure::usage(what, named(&self.files), remedy));
-        }
+        let (reading, prepared) = prepared_for(session, &model, &self.files, (&self.read, &self.prepare))?;
         let truth = self.truth(session, &reading, &prepared, &model)?;
         let judged = evaluate(&model, &prepared, truth.as_ref()).map_err(|error| {
             let remedy = "recordings without left-out samples, and a column of the true policy for each channel";
@@ -128,11 +114,6 @@ impl Evaluate {
             EvaluateError::Fit(error) => Failure::fit(&error, named(&self.files)),
             error => Failure::of_text(Exit::Refused, &error.to_string(), named(&self.files), "other recordings"),
         })
-    }
-
-    fn prepared(&self, session: &Session, reading: &ReadFlags, options: &PrepareOptions) -> Result<Prepared, Failure> {
-        let recordings = read(session, &self.files, reading)?;
-        prepare(&recordings, options).map_err(|error| Failure::prepare(&error, named(&self.files)))
     }
 
     /// The columns of the true policy, read as if they were the state.

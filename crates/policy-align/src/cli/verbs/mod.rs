@@ -1,6 +1,7 @@
 //! The commands, one a file.
 
 pub(crate) mod check;
+pub(crate) mod constraints;
 pub(crate) mod convert;
 pub(crate) mod evaluate;
 pub(crate) mod export;

@@ -1,0 +1,80 @@
+//! What acted on a part of a movement: nothing, or a constraint of some rank in some space.
+
+use super::view::{Directions, Disagreement, View};
+use crate::stretches::segmentation::{DIMENSION, PARAMETER, Part, SEGMENT, SPARE};
+
+/// Nothing, or a constraint that is constant in a space.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Hypothesis {
+    Free,
+    Constrained { space: usize, rank: usize },
+}
+
+/// One movement in all spaces.
+pub(super) struct Movement {
+    pub(super) disagreement: Disagreement,
+    /// None where a space is not looked at.
+    pub(super) views: Vec<Option<View>>,
+}
+
+impl Movement {
+    /// (S28): the least cost of samples `begin..end` and what it is of.
+    pub(super) fn cheapest(&self, begin: usize, end: usize) -> (f64, Hypothesis) {
+        let none = self.disagreement.square(begin, end);
+        let mut best = (none + SEGMENT, Hypothesis::Free);
+        for (space, view) in self.views.iter().enumerate() {
+            let Some(view) = view else { continue };
+            let directions = view.directions(begin, end, self.disagreement.noise);
+            let dim = directions.values.len();
+            for rank in 1..=dim {
+                if directions.values[rank - 1] >= 0.0 {
+                    break;
+                }
+                if end - begin < dim - rank + SPARE || directions.angle(rank) > MOST_ANGLE {
+                    continue;
+                }
+                let change = view.change((begin, end), &directions, rank, &self.disagreement);
+                let cost = none + change + self.price((begin, end), dim, rank) + SEGMENT;
+                if cost < best.0 {
+                    best = (cost, Hypothesis::Constrained { space, rank });
+                }
+            }
+        }
+        best
+    }
+
+    /// What A of so many rows and b cost: less where velocities are known better than the policy, since one that does not vary is
+    /// then no accident.
+    fn price(&self, (begin, end): (usize, usize), dim: usize, rank: usize) -> f64 {
+        let parameters = PARAMETER * (rank * (dim - rank + 1)) as f64;
+        let accident = self.disagreement.accident(begin, end);
+        rank as f64 * (parameters / rank as f64 + DIMENSION - accident).max(ROW)
+    }
+
+    /// The view and the directions of a part with a constraint, and its rank.
+    pub(super) fn constraint(&self, part: &Part<Hypothesis>) -> Option<(&View, Directions, usize)> {
+        let Hypothesis::Constrained { space, rank } = part.kind else { return None };
+        let view = self.views[space].as_ref()?;
+        Some((view, view.directions(part.begin, part.end, self.disagreement.noise), rank))
+    }
+
+    /// |Nd|² of a part's samples, each over the dimensions that its constraint leaves.
+    pub(super) fn left(&self, part: &Part<Hypothesis>) -> Vec<f64> {
+        let of = &self.disagreement.of;
+        let squares = |at: usize| of.column(at).norm_squared();
+        let (rank, squares): (usize, Vec<f64>) = match self.constraint(part) {
+            None => (0, (part.begin..part.end).map(squares).collect()),
+            Some((view, directions, rank)) => {
+                let rows = directions.first(rank);
+                (rank, (part.begin..part.end).map(|at| view.left(at, &rows, &self.disagreement)).collect())
+            }
+        };
+        let freedom = of.nrows() - rank;
+        if freedom == 0 { Vec::new() } else { squares.into_iter().map(|square| square / freedom as f64).collect() }
+    }
+}
+
+/// Least price of a row of A: three standard deviations of what the policy wants in vain.
+const ROW: f64 = 9.0;
+/// Radians by which a row may be uncertain, at most: a direction that merely was not used has any angle.
+const MOST_ANGLE: f64 = 0.25;

@@ -1,0 +1,289 @@
+//! The constraints of movements, once the policy is known: (S26) to (S29).
+//!
+//! Where u = Nπ + A⁺b, the disagreement π̂ − u lies in the span of Aᵀ, and the velocity along the rows of A stays constant while
+//! A and b do. Both together tell the rows of A: a velocity that does not vary may never have been wanted, and what the policy
+//! wants in vain may be its error.
+
+mod hypothesis;
+mod stretch_estimate;
+mod task_space;
+mod view;
+
+pub use stretch_estimate::{Acting, StretchEstimate};
+pub use task_space::TaskSpace;
+
+use motion::{LearntPolicy, upper_median};
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use crate::stretches::noise::velocity_noise;
+use crate::stretches::segmentation::{PARAMETER, Part, SPARE, cheapest_parts};
+use crate::stretches::{MOST_DIMENSIONS, MOST_SAMPLES, centred, evenly, movements};
+use crate::{GpError, Rows};
+use hypothesis::{Hypothesis, Movement};
+use stretch_estimate::canonical;
+use view::{Disagreement, SHARED, View};
+
+/// Standard deviation of the policy in the first round, as a share of its root mean square; in the second it is what the
+/// first leaves.
+const FIRST: f64 = 0.05;
+/// Squared standard deviations from which something is seen.
+const SEEN: f64 = 9.0;
+
+/// What a direction varies by that is known, in units of all variation: more than any other.
+const VARIES: f64 = 4.0;
+
+/// The constraints of all movements.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConstraintEstimates {
+    /// In the order of movements and time. Samples that are in none are too few to say.
+    pub stretches: Vec<StretchEstimate>,
+    /// s², the variance of a velocity along an axis.
+    pub noise: f64,
+    /// Variance of a component of the policy where movements tell it.
+    pub policy_variance: f64,
+}
+
+impl ConstraintEstimates {
+    /// Of movements in given rows, from a policy that was learnt from these or others. Takes time with the number of
+    /// movements, the square of their samples (up to 60) and the cube of a space's dimensions. Spaces of more than twelve
+    /// dimensions are not searched.
+    ///
+    /// # Errors
+    /// [`GpError::Lengths`] for a policy or Jacobians that do not fit the rows, or movements of fewer than four samples.
+    pub fn of(rows: &Rows, policy: &dyn LearntPolicy, spaces: &[TaskSpace]) -> Result<Self, GpError> {
+        let lengths = |what, found, expected| Err(GpError::Lengths { what, found, expected });
+        if policy.dim() != rows.dim() {
+            return lengths("dimensions of the policy", policy.dim(), rows.dim());
+        }
+        if let Some(at) = spaces.iter().position(|space| !space.fits(rows.len(), rows.dim())) {
+            return lengths("Jacobians of a task space", spaces[at].jacobians.as_ref().map_or(0, Vec::len), rows.len());
+        }
+        let at: Vec<usize> = (0..rows.len()).collect();
+        let movements = movements(rows, &at);
+        let bases: Vec<Option<DMatrix<f64>>> = spaces.iter().map(|space| basis(space, rows.dim())).collect();
+        let Some(noise) = noise(rows, &movements, spaces) else {
+            return lengths("samples next to each other", 0, 4);
+        };
+        let wanted = Wanted::of(rows, policy);
+        let search = Search { rows, movements, spaces, bases, noise, wanted };
+        let first = FIRST.powi(2) * search.wanted.mean_square();
+        let policy_variance = search.left(&search.parts(first)).unwrap_or(first);
+        let parts = search.parts(policy_variance);
+        let stretches = search.stretches(&parts, policy_variance);
+        Ok(ConstraintEstimates { stretches, noise, policy_variance })
+    }
+}
+
+/// Where a space moves; none if it is not searched.
+fn basis(space: &TaskSpace, dim: usize) -> Option<DMatrix<f64>> {
+    space.moved(dim).map(|(basis, _)| basis).filter(|basis| basis.ncols() <= MOST_DIMENSIONS)
+}
+
+/// The least of the upper bounds (S20) in all spaces.
+fn noise(rows: &Rows, movements: &[&[usize]], spaces: &[TaskSpace]) -> Option<f64> {
+    let in_space = |space: &TaskSpace| {
+        let (basis, gain) = space.moved(rows.dim())?;
+        let jacobians = space.jacobians.as_ref()?;
+        let columns = jacobians.iter().zip(rows.velocities().column_iter());
+        let velocities: Vec<DVector<f64>> = columns.map(|(j, u)| basis.tr_mul(&(j * u)) / gain.sqrt()).collect();
+        velocity_noise(&DMatrix::from_columns(&velocities), rows.variances(), movements)
+    };
+    let recorded = velocity_noise(rows.velocities(), rows.variances(), movements);
+    recorded.into_iter().chain(spaces.iter().filter_map(in_space)).reduce(f64::min)
+}
+
+/// The policy at every row.
+struct Wanted {
+    actions: DMatrix<f64>,
+    /// Mean variance of a component.
+    variances: Vec<f64>,
+}
+
+impl Wanted {
+    fn of(rows: &Rows, policy: &dyn LearntPolicy) -> Self {
+        let dim = rows.dim();
+        let at = |row: usize| {
+            let (mut action, mut deviation) = (DVector::zeros(dim), DVector::zeros(dim));
+            policy.action_into(rows.states().column(row), action.as_view_mut());
+            policy.action_sd_into(rows.states().column(row), deviation.as_view_mut());
+            (action, deviation.norm_squared() / dim as f64)
+        };
+        let (actions, variances): (Vec<DVector<f64>>, Vec<f64>) = (0..rows.len()).into_par_iter().map(at).unzip();
+        Wanted { actions: DMatrix::from_columns(&actions), variances }
+    }
+
+    /// Of a component.
+    fn mean_square(&self) -> f64 {
+        self.actions.norm_squared() / self.actions.len() as f64
+    }
+}
+
+/// Parts of a movement: the rows searched, and what was found, begin and end counted among them.
+struct Parts {
+    rows: Vec<usize>,
+    movement: Movement,
+    found: Vec<Part<Hypothesis>>,
+}
+
+struct Search<'a> {
+    rows: &'a Rows,
+    movements: Vec<&'a [usize]>,
+    spaces: &'a [TaskSpace],
+    bases: Vec<Option<DMatrix<f64>>>,
+    noise: f64,
+    wanted: Wanted,
+}
+
+impl Search<'_> {
+    /// Of every movement; `least` is the least variance of the policy.
+    fn parts(&self, least: f64) -> Vec<Parts> {
+        let of = |movement: &&[usize]| {
+            let rows = evenly(movement, MOST_SAMPLES);
+            let movement = self.movement(&rows, least);
+            let alone = PARAMETER * self.rows.dim() as f64;
+            let found = cheapest_parts(rows.len(), alone, |begin, end| movement.cheapest(begin, end));
+            Parts { rows, movement, found }
+        };
+        self.movements.par_iter().map(of).collect()
+    }
+
+    /// The row at which the part after a switch begins: the best of all that lie between the two rows that were searched.
+    fn switch(&self, parts: &Parts, (left, right): (&Part<Hypothesis>, &Part<Hypothesis>), least: f64) -> usize {
+        let (last, first) = (parts.rows[left.end - 1], parts.rows[right.begin]);
+        let between = last + 1..first;
+        let mut rows = parts.rows[left.begin..left.end].to_vec();
+        rows.extend(between.clone());
+        rows.extend(&parts.rows[right.begin..right.end]);
+        let movement = self.movement(&rows, least);
+        let cost = |cut: usize| movement.cheapest(0, cut).0 + movement.cheapest(cut, rows.len()).0;
+        let cuts = left.end - left.begin..=left.end - left.begin + between.len();
+        let best = cuts.map(|cut| (cost(cut), cut)).min_by(|a, b| a.0.total_cmp(&b.0));
+        best.map_or(first, |(_, cut)| rows[cut])
+    }
+
+    fn movement(&self, rows: &[usize], least: f64) -> Movement {
+        let velocities = self.rows.velocities().select_columns(rows);
+        let disagreement = self.wanted.actions.select_columns(rows) - &velocities;
+        let weight = |&row: &usize| 1.0 / (self.noise + SHARED * self.wanted.variances[row].max(least));
+        let disagreement = Disagreement::new(disagreement, rows.iter().map(weight).collect(), self.noise);
+        let view = |(space, basis): (&TaskSpace, &Option<DMatrix<f64>>)| {
+            basis.as_ref().map(|basis| View::of(space, basis, rows, &velocities, &disagreement))
+        };
+        let views = self.spaces.iter().zip(&self.bases).map(view).collect();
+        Movement { disagreement, views }
+    }
+
+    /// The variance of the policy that all parts leave, the median over them; none if there are none.
+    fn left(&self, parts: &[Parts]) -> Option<f64> {
+        let of = |of: &Parts| -> Vec<f64> {
+            of.found.iter().filter_map(|part| upper_median(of.movement.left(part))).collect()
+        };
+        upper_median(parts.iter().flat_map(of).collect()).map(|square| (square - self.noise).max(0.0))
+    }
+
+    fn stretches(&self, parts: &[Parts], least: f64) -> Vec<StretchEstimate> {
+        parts.par_iter().flat_map_iter(|of| self.of_movement(of, least)).collect()
+    }
+
+    fn of_movement(&self, of: &Parts, least: f64) -> Vec<StretchEstimate> {
+        let with_gaps = of.with_gaps();
+        let mut stretches: Vec<StretchEstimate> =
+            with_gaps.iter().map(|(part, found)| self.stretch(of, part, *found)).collect();
+        for (at, pair) in with_gaps.windows(2).enumerate() {
+            let (left, right) = (&pair[0].0, &pair[1].0);
+            if left.end == right.begin && of.rows[left.end - 1] + 1 < of.rows[right.begin] {
+                let begin = self.switch(of, (left, right), least);
+                stretches[at].samples.1 = self.rows.indices()[begin - 1].sample;
+                stretches[at + 1].samples.0 = self.rows.indices()[begin].sample;
+            }
+        }
+        stretches
+    }
+
+    fn stretch(&self, parts: &Parts, part: &Part<Hypothesis>, found: bool) -> StretchEstimate {
+        let Parts { rows, movement, .. } = parts;
+        let index = |at: usize| self.rows.indices()[rows[at]];
+        let dim = self.rows.dim();
+        let mut stretch = StretchEstimate {
+            trajectory: index(part.begin).trajectory,
+            samples: (index(part.begin).sample, index(part.end - 1).sample),
+            acting: if found { self.without(parts, part) } else { Acting::Changing },
+            space: 0,
+            matrix: DMatrix::zeros(0, dim),
+            bound: DVector::zeros(0),
+            bound_deviation: 0.0,
+            speed: 0.0,
+            angle: 0.0,
+            evidence: 0.0,
+            hidden: DMatrix::zeros(dim, 0),
+        };
+        let inside = &rows[part.begin..part.end];
+        if let (Some((view, directions, rank)), Hypothesis::Constrained { space, .. }) =
+            (movement.constraint(part), part.kind)
+        {
+            let change = view.change((part.begin, part.end), &directions, rank, &movement.disagreement);
+            stretch.acting = Acting::Constraint;
+            stretch.space = space;
+            stretch.matrix = canonical(&(&view.basis * directions.first(rank)));
+            self.find_bound(&mut stretch, inside);
+            stretch.angle = directions.angle(rank);
+            stretch.evidence = -0.5 * change;
+        }
+        if found && self.spaces[stretch.space].jacobians.is_none() {
+            stretch.hidden = self.hidden(&stretch.matrix, inside);
+        }
+        stretch
+    }
+
+    /// Directions (n, r) other than the rows of A (k, n) along which velocities do not vary.
+    fn hidden(&self, matrix: &DMatrix<f64>, rows: &[usize]) -> DMatrix<f64> {
+        let (_, centred) = centred(&self.rows.velocities().select_columns(rows));
+        let scatter = &centred * centred.transpose() / self.noise;
+        let varies = VARIES * (scatter.trace() + rows.len() as f64);
+        let eigen = (scatter + matrix.tr_mul(matrix) * varies).symmetric_eigen();
+        let least = 2.0 * rows.len() as f64 + SEEN;
+        let hidden: Vec<usize> = (0..self.rows.dim()).filter(|&k| eigen.eigenvalues[k] < least).collect();
+        eigen.eigenvectors.select_columns(&hidden)
+    }
+
+    /// What a stretch without a constraint is: one that follows the policy, or one where the policy does not want to move.
+    fn without(&self, parts: &Parts, part: &Part<Hypothesis>) -> Acting {
+        let seen = |at: usize| {
+            let wanted = self.wanted.actions.column(parts.rows[at]).norm_squared();
+            wanted * parts.movement.disagreement.weights[at] > SEEN * self.rows.dim() as f64
+        };
+        let count = (part.begin..part.end).filter(|&at| seen(at)).count();
+        if 2 * count >= part.end - part.begin { Acting::Nothing } else { Acting::Unseen }
+    }
+
+    /// b, the standard deviation of its components, and the speed.
+    fn find_bound(&self, stretch: &mut StretchEstimate, rows: &[usize]) {
+        let (rank, count) = (stretch.matrix.nrows(), rows.len() as f64);
+        let (mut sum, mut gain, mut square) = (DVector::zeros(rank), 0.0, 0.0);
+        for &row in rows {
+            let velocity = self.rows.velocities().column(row);
+            let jacobian = self.spaces[stretch.space].jacobians.as_ref().map(|jacobians| &jacobians[row]);
+            square += jacobian.map_or(velocity.norm_squared(), |jacobian| (jacobian * velocity).norm_squared());
+            let through = jacobian.map_or_else(|| stretch.matrix.clone(), |jacobian| &stretch.matrix * jacobian);
+            gain += through.norm_squared();
+            sum += through * velocity;
+        }
+        stretch.bound = sum / count;
+        stretch.bound_deviation = (self.noise * gain / rank as f64).sqrt() / count;
+        stretch.speed = (square / count).sqrt();
+    }
+}
+
+impl Parts {
+    /// The parts found, and what lies between them if it is long enough to say that it is in none; whether it was found.
+    fn with_gaps(&self) -> Vec<(Part<Hypothesis>, bool)> {
+        let ends = self.found.iter().map(|part| part.end);
+        let begins = self.found.iter().map(|part| part.begin).chain([self.rows.len()]);
+        let gaps = std::iter::once(0).chain(ends).zip(begins).filter(|(end, begin)| end + SPARE <= *begin);
+        let gaps = gaps.map(|(begin, end)| (Part { begin, end, kind: Hypothesis::Free }, false));
+        let mut all: Vec<_> = self.found.iter().map(|&part| (part, true)).chain(gaps).collect();
+        all.sort_by_key(|(part, _)| part.begin);
+        all
+    }
+}

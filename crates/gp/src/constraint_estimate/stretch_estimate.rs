@@ -1,0 +1,103 @@
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+/// Standard deviations, and share of the speed, by which b must differ from 0.
+const DEVIATIONS: f64 = 3.0;
+const SHARE: f64 = 0.01;
+
+/// What acted on a stretch of a movement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Acting {
+    /// A constraint A u = b, constant in its space.
+    Constraint,
+    /// Something that turns the movement aside, but with no A and b that stay constant: a surface that bends, or too many
+    /// switches.
+    Changing,
+    /// Nothing that can be seen: the movement follows the policy.
+    Nothing,
+    /// The policy does not want to move either, so that nothing can be seen.
+    Unseen,
+}
+
+/// A stretch of a movement, and the constraint that acted on it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StretchEstimate {
+    /// Which movement.
+    pub trajectory: usize,
+    /// First and last sample.
+    pub samples: (usize, usize),
+    /// What acted.
+    pub acting: Acting,
+    /// Place of the task space whose velocities v the constraint A v = b is on.
+    pub space: usize,
+    /// A, (k, m): orthonormal rows, the largest entry of each positive. No rows unless it is a constraint.
+    pub matrix: DMatrix<f64>,
+    /// b, (k): mean velocity along each row, in units of the space per second.
+    pub bound: DVector<f64>,
+    /// Standard deviation of every component of b.
+    pub bound_deviation: f64,
+    /// Root mean square speed in the space.
+    pub speed: f64,
+    /// Expected angle between a row and the true rows' span, in radians.
+    pub angle: f64,
+    /// Logarithm of the likelihood of this constraint over that of none.
+    pub evidence: f64,
+    /// Directions of the recorded coordinates, (n, r), along which a further constraint would not show: the velocity does not
+    /// vary along them, and the policy does not want to move along them.
+    pub hidden: DMatrix<f64>,
+}
+
+impl StretchEstimate {
+    /// Whether b of a row differs from 0: the constraint pushes.
+    pub fn pushes(&self, row: usize) -> bool {
+        self.bound[row].abs() > (DEVIATIONS * self.bound_deviation).max(SHARE * self.speed)
+    }
+}
+
+/// The same span in orthonormal rows (k, m) that lie along axes as far as possible, each with its largest entry positive.
+pub(super) fn canonical(columns: &DMatrix<f64>) -> DMatrix<f64> {
+    let (dim, rank) = columns.shape();
+    let mut span = columns * columns.transpose();
+    let mut rows = DMatrix::zeros(rank, dim);
+    for at in 0..rank {
+        let diagonal = span.diagonal();
+        let row = span.column(diagonal.imax()).normalize();
+        let row = if row[row.iamax()] < 0.0 { -row } else { row };
+        span -= &row * row.transpose();
+        rows.set_row(at, &row.transpose());
+    }
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+
+    proptest! {
+        /// Rows are orthonormal, span the same, and their largest entries are positive.
+        #[test]
+        fn rows_span_the_same(dim in 1usize..7, seed in any::<u64>()) {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let rank = rng.random_range(1..=dim);
+            let drawn = DMatrix::from_fn(dim, rank, |_, _| 2.0 * rng.random::<f64>() - 1.0).qr().q();
+            let rows = canonical(&drawn);
+            prop_assert!((&rows * rows.transpose() - DMatrix::identity(rank, rank)).amax() < 1e-8);
+            prop_assert!((rows.tr_mul(&rows) - &drawn * drawn.transpose()).amax() < 1e-8);
+            prop_assert!(rows.row_iter().all(|row| row.amax() == row.max()));
+        }
+    }
+
+    /// Axes are found whatever their basis.
+    #[test]
+    fn axes_are_axes() {
+        let turned = DMatrix::from_row_slice(3, 2, &[0.6, -0.8, 0.0, 0.0, -0.8, -0.6]);
+        let rows = canonical(&turned);
+        let axes = DMatrix::from_row_slice(2, 3, &[1.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+        assert!((rows - axes).amax() < 1e-12);
+    }
+}

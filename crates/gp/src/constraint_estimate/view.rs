@@ -1,0 +1,221 @@
+//! The samples of one movement, as a task space shows them.
+
+use nalgebra::{DMatrix, DVector, DVectorView};
+
+use super::task_space::TaskSpace;
+
+/// Samples that share one error of the policy: it is smooth.
+pub(super) const SHARED: f64 = 4.0;
+
+/// What of two policies a movement shows: disagreement d = π̂ − u, weighted by its variance.
+pub(super) struct Disagreement {
+    /// (n, N).
+    pub(super) of: DMatrix<f64>,
+    /// One over the variance of a component, (N).
+    pub(super) weights: Vec<f64>,
+    /// s², the variance of a component of u.
+    pub(super) noise: f64,
+    /// Σ w |d|² over the first samples, (N + 1).
+    squares: Vec<f64>,
+    /// Σ log 1/(w s²), likewise: how much better velocities are known than the policy.
+    accidents: Vec<f64>,
+}
+
+impl Disagreement {
+    pub(super) fn new(of: DMatrix<f64>, weights: Vec<f64>, noise: f64) -> Self {
+        let (mut squares, mut accidents) = (vec![0.0], vec![0.0]);
+        for (at, (d, weight)) in of.column_iter().zip(&weights).enumerate() {
+            squares.push(squares[at] + weight * d.norm_squared());
+            accidents.push(accidents[at] - (weight * noise).ln());
+        }
+        Disagreement { of, weights, noise, squares, accidents }
+    }
+
+    /// Σ w |d|² over `begin..end`: minus twice the log likelihood of no constraint.
+    pub(super) fn square(&self, begin: usize, end: usize) -> f64 {
+        self.squares[end] - self.squares[begin]
+    }
+
+    /// Twice the log likelihood ratio that a velocity which does not vary has by being so exact, as often as the policy's error
+    /// is another.
+    pub(super) fn accident(&self, begin: usize, end: usize) -> f64 {
+        (self.accidents[end] - self.accidents[begin]) / SHARED
+    }
+}
+
+/// Velocities v = Ju and the multipliers y that Jᵀy = d has, in the directions that the space moves in.
+pub(super) struct View {
+    /// Directions of the space that move, (M, m).
+    pub(super) basis: DMatrix<f64>,
+    /// v, (m, N).
+    velocities: DMatrix<f64>,
+    /// Jd, (m, N).
+    disagreements: DMatrix<f64>,
+    /// JJᵀ of each sample, (m, m); none if it is I.
+    grams: Option<Vec<DMatrix<f64>>>,
+    /// Σ v, Σ v vᵀ, Σ w y yᵀ and Σ tr JJᵀ / m over the first samples.
+    sums: Vec<Sums>,
+}
+
+#[derive(Clone)]
+struct Sums {
+    first: DVector<f64>,
+    second: DMatrix<f64>,
+    multipliers: DMatrix<f64>,
+    gain: f64,
+    /// What noise makes of `second` in units of s², and of `multipliers`, beyond the same in all directions.
+    noise: (DMatrix<f64>, DMatrix<f64>),
+}
+
+/// The directions (m, m) of a task space by how much they look like rows of A over some samples, and by how much: (S26).
+pub(super) struct Directions {
+    pub(super) values: Vec<f64>,
+    pub(super) vectors: DMatrix<f64>,
+}
+
+impl Directions {
+    /// The first of them, (m, k).
+    pub(super) fn first(&self, rank: usize) -> DMatrix<f64> {
+        self.vectors.columns(0, rank).into_owned()
+    }
+
+    /// Standard deviation of the angle between a row among the first `rank` and their true span (S29): by how much the cost bends
+    /// as the row turns towards each of the others.
+    pub(super) fn angle(&self, rank: usize) -> f64 {
+        let of_row =
+            |row: &f64| self.values[rank..].iter().map(|other| 1.0 / (other - row).max(f64::MIN_POSITIVE)).sum();
+        self.values[..rank].iter().map(of_row).fold(0.0, f64::max).sqrt()
+    }
+}
+
+impl View {
+    /// Of some rows of a space. `velocities` (n, N) are theirs.
+    pub(super) fn of(
+        space: &TaskSpace,
+        basis: &DMatrix<f64>,
+        rows: &[usize],
+        velocities: &DMatrix<f64>,
+        disagreement: &Disagreement,
+    ) -> View {
+        let mean = velocities.column_mean();
+        let centred = DMatrix::from_fn(velocities.nrows(), rows.len(), |k, at| velocities[(k, at)] - mean[k]);
+        match &space.jacobians {
+            // Centred, for the sake of rounding: only differences matter.
+            None => View::summed(basis.clone(), centred, disagreement.of.clone(), None, disagreement),
+            Some(jacobians) => {
+                let own: Vec<DMatrix<f64>> = rows.iter().map(|&row| basis.tr_mul(&jacobians[row])).collect();
+                let through = |of: &DMatrix<f64>| {
+                    let columns: Vec<DVector<f64>> =
+                        own.iter().zip(of.column_iter()).map(|(j, column)| j * column).collect();
+                    DMatrix::from_columns(&columns)
+                };
+                let grams = own.iter().map(|j| j * j.transpose()).collect();
+                let (velocities, disagreements) = (through(velocities), through(&disagreement.of));
+                View::summed(basis.clone(), velocities, disagreements, Some(grams), disagreement)
+            }
+        }
+    }
+
+    fn summed(
+        basis: DMatrix<f64>,
+        velocities: DMatrix<f64>,
+        disagreements: DMatrix<f64>,
+        grams: Option<Vec<DMatrix<f64>>>,
+        disagreement: &Disagreement,
+    ) -> View {
+        let m = basis.ncols();
+        let zero = DMatrix::zeros(m, m);
+        let mut sums = vec![Sums {
+            first: DVector::zeros(m),
+            second: zero.clone(),
+            multipliers: zero.clone(),
+            gain: 0.0,
+            noise: (zero.clone(), zero),
+        }];
+        for (at, velocity) in velocities.column_iter().enumerate() {
+            let Sums { mut first, mut second, mut multipliers, mut gain, mut noise } = sums[at].clone();
+            let gram = grams.as_ref().map(|grams| &grams[at]);
+            let (multiplier, inverse) = multiplier(gram, disagreements.column(at));
+            if let (Some(gram), Some(inverse)) = (gram, inverse) {
+                noise.0 += gram;
+                noise.1 += inverse * (disagreement.weights[at] * disagreement.noise);
+            }
+            first += velocity;
+            second.ger(1.0, &velocity, &velocity, 1.0);
+            multipliers.ger(disagreement.weights[at], &multiplier, &multiplier, 1.0);
+            gain += gram.map_or(1.0, |gram| gram.trace() / m as f64);
+            sums.push(Sums { first, second, multipliers, gain, noise });
+        }
+        View { basis, velocities, disagreements, grams, sums }
+    }
+
+    /// Eigenvectors of C/gs² − gY (S26) over `begin..end`, the least eigenvalue first: a row of A has a velocity that does not
+    /// vary, and takes away much of what the policy wants.
+    pub(super) fn directions(&self, begin: usize, end: usize, noise: f64) -> Directions {
+        let (from, to) = (&self.sums[begin], &self.sums[end]);
+        let count = (end - begin) as f64;
+        let gain = (to.gain - from.gain) / count;
+        let sum = &to.first - &from.first;
+        let mut scatter = &to.second - &from.second;
+        scatter.ger(-1.0 / count, &sum, &sum, 1.0);
+        let mut matrix = scatter / (gain * noise) - (&to.multipliers - &from.multipliers) * gain;
+        if self.grams.is_some() {
+            matrix -= (&to.noise.0 - &from.noise.0) * ((count - 1.0) / (count * gain));
+            matrix += (&to.noise.1 - &from.noise.1) * gain;
+        }
+        let eigen = matrix.symmetric_eigen();
+        let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
+        order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+        Directions {
+            values: order.iter().map(|&k| eigen.eigenvalues[k]).collect(),
+            vectors: eigen.eigenvectors.select_columns(&order),
+        }
+    }
+
+    /// (S27): by how much minus twice the log likelihood changes from no constraint to one of this rank along
+    /// the first directions.
+    pub(super) fn change(
+        &self,
+        (begin, end): (usize, usize),
+        directions: &Directions,
+        rank: usize,
+        disagreement: &Disagreement,
+    ) -> f64 {
+        let Some(grams) = &self.grams else { return directions.values[..rank].iter().sum() };
+        let rows = &directions.first(rank);
+        let along = |of: &DMatrix<f64>| rows.tr_mul(&of.columns(begin, end - begin));
+        let (velocities, wanted) = (along(&self.velocities), along(&self.disagreements));
+        let mean = velocities.column_mean();
+        let of_sample = |at: usize| {
+            let gram = rows.tr_mul(&(&grams[begin + at] * rows));
+            let Some(inverse) = gram.try_inverse() else { return 0.0 };
+            let (varies, wants) = (velocities.column(at) - &mean, wanted.column(at));
+            let noise = varies.dot(&(&inverse * &varies)) / disagreement.noise;
+            noise - disagreement.weights[begin + at] * wants.dot(&(&inverse * wants))
+        };
+        (0..end - begin).map(of_sample).sum()
+    }
+
+    /// |Nd|² of a sample: what a constraint with these rows, columns (m, k), leaves of the disagreement.
+    pub(super) fn left(&self, at: usize, rows: &DMatrix<f64>, disagreement: &Disagreement) -> f64 {
+        let wants = rows.tr_mul(&self.disagreements.column(at));
+        let taken = match &self.grams {
+            None => wants.norm_squared(),
+            Some(grams) => {
+                let gram = rows.tr_mul(&(&grams[at] * rows));
+                gram.try_inverse().map_or(0.0, |inverse| wants.dot(&(inverse * &wants)))
+            }
+        };
+        (disagreement.of.column(at).norm_squared() - taken).max(0.0)
+    }
+}
+
+/// y of JJᵀ y = Jd, of least length, and (JJᵀ)⁺.
+fn multiplier(gram: Option<&DMatrix<f64>>, wanted: DVectorView<'_, f64>) -> (DVector<f64>, Option<DMatrix<f64>>) {
+    let inverse =
+        gram.and_then(|gram| gram.clone().pseudo_inverse(SINGULAR * gram.trace().max(f64::MIN_POSITIVE)).ok());
+    (inverse.as_ref().map_or_else(|| wanted.into_owned(), |inverse| inverse * wanted), inverse)
+}
+
+/// Share of the trace of JJᵀ below which an eigenvalue is 0.
+const SINGULAR: f64 = 1e-9;

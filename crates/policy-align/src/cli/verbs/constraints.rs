@@ -1,0 +1,132 @@
+use std::path::PathBuf;
+
+use clap::Args;
+use policy_align::gp::Acting;
+use policy_align::{
+    ConstraintStretch, Model, Prepared, StateChannel, TaskLinks, constraint_file, estimate_constraints,
+};
+use serde_json::json;
+use text::quoted;
+
+use crate::cli::failure::{Exit, Failure, displayed};
+use crate::cli::lines::{Lines, short};
+use crate::cli::options::flags::{PrepareFlags, ReadFlags};
+use crate::cli::recorded::{named, prepared_for};
+use crate::cli::session::{Output, Session, write};
+use crate::cli::trust_files::load;
+
+/// Stretches that are listed, at most.
+const LISTED: usize = 10;
+
+/// Name the constraints that acted on recordings
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Compares what the policy wants with what was recorded. A line is a stretch of
+an episode during which one constraint A v = b acted, with the expected error
+of its normal. With a robot, v may be a link's velocity or angular velocity.
+A constraint along which the policy does not want to move does not show.
+All flags of reading files: policy-align check --help
+
+Examples:
+  policy-align constraints toy.json toy.csv
+  policy-align constraints toy.json toy.csv --of 3 --constraints-out rail.toml")]
+pub(crate) struct Constraints {
+    /// A model that `fit` has written
+    model: PathBuf,
+    /// Recordings, which may be those learnt from
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// Robot whose joints are named like the channels: also try its links
+    #[arg(long, value_name = "FILE.urdf")]
+    robot: Option<PathBuf>,
+    /// Links that may be constrained [default: the last of each chain]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "robot")]
+    link: Vec<String>,
+    /// Only this episode
+    #[arg(long, value_name = "NAME")]
+    of: Option<String>,
+    /// File of the (first) episode's constraints, for `rollout --constraint`
+    #[arg(long, value_name = "FILE.toml")]
+    constraints_out: Option<PathBuf>,
+    #[command(flatten)]
+    read: ReadFlags,
+    #[command(flatten)]
+    prepare: PrepareFlags,
+}
+
+impl Constraints {
+    pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
+        let model = load(session, &self.model)?;
+        let (_, prepared) = prepared_for(session, &model, &self.files, (&self.read, &self.prepare))?;
+        let links = self.links(&model)?;
+        let found = estimate_constraints(&model, &prepared, links.as_ref()).map_err(|error| {
+            Failure::of_text(Exit::Refused, &error.to_string(), named(&self.files), "recordings of this model's state")
+        })?;
+        let found = self.chosen(found, &prepared)?;
+        if let Some(path) = &self.constraints_out {
+            let first = found.first().map(|stretch| stretch.episode.clone());
+            let own: Vec<&ConstraintStretch> =
+                found.iter().filter(|stretch| Some(&stretch.episode) == first.as_ref()).collect();
+            let robot = self.robot.as_ref().map(|robot| std::path::absolute(robot).unwrap_or_else(|_| robot.clone()));
+            let robot = robot.map(|robot| displayed(&robot));
+            write(path, constraint_file(&own, &model.state, robot.as_deref()).as_bytes())?;
+        }
+        if session.json {
+            let words: Vec<String> = found.iter().map(|stretch| stretch.in_words(&model.state)).collect();
+            return Ok(Output::json(&json!({ "constraints": found, "in_words": words }), Exit::Done));
+        }
+        Ok(Output::done(self.told(&model, &found)))
+    }
+
+    fn links(&self, model: &Model) -> Result<Option<TaskLinks>, Failure> {
+        let Some(path) = &self.robot else { return Ok(None) };
+        let text = demo_io::read_text(path).map_err(|error| Failure::reading(path, error))?;
+        let links = TaskLinks::from_urdf(&text, &self.link, &model.channels());
+        let remedy = "--link NAME; a URDF with joints named like the channels";
+        links.map(Some).map_err(|reason| Failure::usage(reason, displayed(path), remedy))
+    }
+
+    fn chosen(&self, found: Vec<ConstraintStretch>, prepared: &Prepared) -> Result<Vec<ConstraintStretch>, Failure> {
+        let Some(name) = &self.of else { return Ok(found) };
+        if !prepared.episodes.contains(name) {
+            let known = prepared.episodes.iter().take(5).cloned().collect::<Vec<_>>().join(", ");
+            let what = format!("there is no episode '{name}'");
+            return Err(Failure::usage(what, format!("--of, {}", named(&self.files)), format!("one of {known}, …")));
+        }
+        Ok(found.into_iter().filter(|stretch| stretch.episode == *name).collect())
+    }
+
+    fn told(&self, model: &Model, found: &[ConstraintStretch]) -> String {
+        let mut lines = Lines::default();
+        let count = |acting| found.iter().filter(|stretch| stretch.acting == acting).count();
+        let constraints = count(Acting::Constraint);
+        let others = [
+            (count(Acting::Changing), "that bend or change"),
+            (count(Acting::Nothing), "without any"),
+            (count(Acting::Unseen), "in which none would show"),
+        ];
+        let others = others.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!(", {count} {what}"));
+        lines.add("stretches", &format!("{constraints} with a constraint{}", others.collect::<String>()));
+        for stretch in found.iter().take(LISTED) {
+            let (from, until) = stretch.seconds;
+            let when = format!("{from:.2}–{until:.2} s");
+            lines.add(&format!("{:.12}", stretch.episode), &format!("{when}  {}", line(stretch, &model.state)));
+        }
+        if found.len() > LISTED {
+            lines.add("", &format!("and {} more: --json shows all, --of NAME one episode", found.len() - LISTED));
+        }
+        if let Some(path) = &self.constraints_out {
+            lines.written(path, "constraints of an episode");
+            let start = model.state.iter().map(|channel| short(channel.median)).collect::<Vec<_>>().join(",");
+            let (model, path) = (quoted(&self.model), quoted(path));
+            return lines.next(&format!("policy-align rollout {model} --from {start} --constraint {path}"));
+        }
+        lines.into_text()
+    }
+}
+
+/// A stretch in words, and how sure it is.
+fn line(stretch: &ConstraintStretch, state: &[StateChannel]) -> String {
+    let words = stretch.in_words(state);
+    if stretch.acting == Acting::Constraint { format!("{words} ({})", stretch.angle_in_words()) } else { words }
+}

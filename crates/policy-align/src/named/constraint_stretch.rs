@@ -1,0 +1,104 @@
+use gp::Acting;
+use prepare::numbers::short;
+use serde::{Deserialize, Serialize};
+
+use crate::StateChannel;
+use prepare::sum_of_parts;
+
+/// Degrees below which it does not matter how sure a normal is.
+const LEAST_ANGLE: f64 = 0.01;
+
+/// What a constraint is on.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ConstraintOn {
+    /// The recorded channels.
+    Channels,
+    /// The position of a link's origin, metres in the root link's frame.
+    Position(String),
+    /// The orientation of a link, in the root link's axes.
+    Orientation(String),
+}
+
+/// A stretch of an episode, and the constraint A v = b that was found on it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ConstraintStretch {
+    /// Name of the episode.
+    pub episode: String,
+    /// First and last sample of the recording.
+    pub samples: (usize, usize),
+    /// Seconds from the beginning of the episode, of the first sample and of the last.
+    pub seconds: (f64, f64),
+    /// What acted.
+    pub acting: Acting,
+    /// What v is the velocity of.
+    pub on: ConstraintOn,
+    /// Rows of A, of unit length each, their largest entry positive: (k, n) in units of the recording, or (k, 3). Empty unless
+    /// it is a constraint.
+    pub normals: Vec<Vec<f64>>,
+    /// b, (k): velocity along each row; exactly 0 where it cannot be told from 0.
+    pub speeds: Vec<f64>,
+    /// What is kept along each row, (k), in the unit of the row: none for an orientation, or where b is not 0.
+    pub levels: Vec<Option<f64>>,
+    /// Expected angle between the rows and the true ones, in degrees.
+    pub angle: f64,
+    /// Logarithm of the likelihood of this constraint over that of none.
+    pub evidence: f64,
+    /// Directions of the channels along which a further constraint would not show.
+    pub hidden: Vec<Vec<f64>>,
+}
+
+impl ConstraintStretch {
+    /// In words: "z = 0.42 m", "gripper: 0.71 x + 0.71 y = 0.2 m", "no constraint".
+    pub fn in_words(&self, state: &[StateChannel]) -> String {
+        match self.acting {
+            Acting::Constraint => self.constraint_in_words(state),
+            Acting::Changing => "a constraint without one normal: it bends or changes".to_owned(),
+            Acting::Nothing => "no constraint seen".to_owned(),
+            Acting::Unseen => "not seen: the policy does not want to move".to_owned(),
+        }
+    }
+
+    /// The expected error of its normals: "± 0.3°".
+    pub fn angle_in_words(&self) -> String {
+        if self.angle < LEAST_ANGLE { format!("± < {LEAST_ANGLE}°") } else { format!("± {}°", short(self.angle)) }
+    }
+
+    fn constraint_in_words(&self, state: &[StateChannel]) -> String {
+        let (names, units): (Vec<&str>, Vec<Option<&str>>) = match self.on {
+            ConstraintOn::Channels => {
+                state.iter().map(|channel| (channel.name.as_str(), channel.unit.as_deref())).unzip()
+            }
+            ConstraintOn::Position(_) => ["x", "y", "z"].map(|name| (name, Some("m"))).into_iter().unzip(),
+            ConstraintOn::Orientation(_) => ["x", "y", "z"].map(|name| (name, Some("rad"))).into_iter().unzip(),
+        };
+        let row = |at: usize| {
+            let normal = &self.normals[at];
+            let unit = unit_of(normal, &units);
+            let direction = sum_of_parts(normal, &names, 2);
+            match (&self.on, self.levels[at]) {
+                (_, Some(level)) => format!("{direction} = {}{unit}", short(level)),
+                (ConstraintOn::Orientation(_), None) if self.speeds[at] == 0.0 => {
+                    format!("does not turn about {direction}")
+                }
+                (_, None) => format!("{direction} moves at {}{unit}/s", short(self.speeds[at])),
+            }
+        };
+        let rows: Vec<String> = (0..self.normals.len()).map(row).collect();
+        match &self.on {
+            ConstraintOn::Channels => rows.join(", "),
+            ConstraintOn::Position(link) | ConstraintOn::Orientation(link) => format!("{link}: {}", rows.join(", ")),
+        }
+    }
+}
+
+/// " m", if all channels that count have it.
+fn unit_of(normal: &[f64], units: &[Option<&str>]) -> String {
+    let mut own = normal.iter().zip(units).filter(|(part, _)| part.abs() >= 0.01).map(|(_, unit)| *unit);
+    let first = own.next().flatten();
+    match first {
+        Some(unit) if own.all(|other| other == Some(unit)) => format!(" {unit}"),
+        _ => String::new(),
+    }
+}

@@ -1,0 +1,129 @@
+//! The constraints of recordings, by name: what acted on which stretch of an episode.
+
+mod constraint_stretch;
+mod file;
+mod task_links;
+
+pub use constraint_stretch::{ConstraintOn, ConstraintStretch};
+pub use file::constraint_file;
+pub use task_links::TaskLinks;
+
+use gp::{Acting, ConstraintEstimates, StretchEstimate, TaskSpace};
+use motion::Demonstrations;
+use nalgebra::{DMatrix, DVector, DVectorView};
+
+use crate::fit::{averaged, rows};
+use crate::leave_out::in_units_of;
+use crate::{EvaluateError, Model, Prepared};
+
+/// The constraints on movements of a model's channels, found by what the model's policy wanted to do
+/// (S26). `links` of a robot, if there is one, are candidates for what a constraint is on, beside the channels.
+///
+/// The same movements may be those that the model was learnt from.
+///
+/// # Errors
+/// [`EvaluateError::Dimension`] or [`EvaluateError::Gp`] if the movements do not fit, [`EvaluateError::Robot`] for a state that the
+/// robot refuses.
+pub fn estimate_constraints(
+    model: &Model,
+    prepared: &Prepared,
+    links: Option<&TaskLinks>,
+) -> Result<Vec<ConstraintStretch>, EvaluateError> {
+    let (policy, dim) = (model.learnt.policy(), prepared.demonstrations.dim());
+    if policy.dim() != dim {
+        return Err(EvaluateError::Dimension { policy: policy.dim(), movements: dim });
+    }
+    let prepared = &in_units_of(model, prepared.clone())?;
+    let rows = rows(prepared)?;
+    let scales = DVector::from_iterator(dim, prepared.state.iter().map(|channel| channel.scale));
+    let states = unscaled(rows.states(), &scales);
+    let robot = |reason| EvaluateError::Robot { reason };
+    let of_links = links.map(|links| links.spaces(&states)).transpose().map_err(robot)?.unwrap_or_default();
+    let in_units = |space: TaskSpace| space.scaled(&scales);
+    let spaces: Vec<TaskSpace> =
+        std::iter::once(TaskSpace::recorded()).chain(of_links.into_iter().map(in_units)).collect();
+    let estimates = ConstraintEstimates::of(&rows, policy, &spaces)?;
+    let movements = averaged(prepared)?;
+    let naming = Naming { prepared, movements: &movements, links, scales: &scales };
+    estimates.stretches.iter().map(|stretch| naming.name(stretch).map_err(robot)).collect()
+}
+
+fn unscaled(states: &DMatrix<f64>, scales: &DVector<f64>) -> DMatrix<f64> {
+    DMatrix::from_fn(states.nrows(), states.ncols(), |row, column| states[(row, column)] / scales[row])
+}
+
+/// What is needed to name a stretch.
+struct Naming<'a> {
+    prepared: &'a Prepared,
+    movements: &'a Demonstrations,
+    links: Option<&'a TaskLinks>,
+    scales: &'a DVector<f64>,
+}
+
+impl Naming<'_> {
+    fn name(&self, stretch: &StretchEstimate) -> Result<ConstraintStretch, String> {
+        let movement = &self.movements.trajectories()[stretch.trajectory];
+        let (first, last) = stretch.samples;
+        let on = self.on(stretch.space);
+        let units = if on == ConstraintOn::Channels { Some(self.scales) } else { None };
+        let normals: Vec<DVector<f64>> =
+            stretch.matrix.row_iter().map(|row| in_units(&row.transpose(), units)).collect();
+        let lengths: Vec<f64> = normals.iter().map(nalgebra::Matrix::norm).collect();
+        let normals: Vec<DVector<f64>> = normals.into_iter().map(|normal| normal.normalize()).collect();
+        let pushed = |row: usize| if stretch.pushes(row) { stretch.bound[row] / lengths[row] } else { 0.0 };
+        let speeds: Vec<f64> = (0..normals.len()).map(pushed).collect();
+        let places = self.places(stretch, &movement.states().columns(first, last + 1 - first).into_owned())?;
+        let level = |(normal, speed): (&DVector<f64>, &f64)| {
+            let places = places.as_ref().filter(|_| *speed == 0.0)?;
+            Some(normal.dot(&places.column_mean()))
+        };
+        let every = self.prepared.averaged;
+        Ok(ConstraintStretch {
+            episode: self.prepared.episodes[stretch.trajectory].clone(),
+            samples: (first * every, last * every + every - 1),
+            seconds: (movement.seconds(0, first), movement.seconds(0, last)),
+            acting: stretch.acting,
+            on,
+            levels: normals.iter().zip(&speeds).map(level).collect(),
+            speeds,
+            normals: normals.iter().map(|normal| normal.as_slice().to_vec()).collect(),
+            angle: stretch.angle.to_degrees(),
+            evidence: stretch.evidence,
+            hidden: stretch.hidden.column_iter().map(|column| self.hidden(column)).collect(),
+        })
+    }
+
+    fn on(&self, space: usize) -> ConstraintOn {
+        let link = |at: usize| self.links.map_or_else(String::new, |links| links.links[at].0.clone());
+        match space.checked_sub(1) {
+            None => ConstraintOn::Channels,
+            Some(at) if at % 2 == 0 => ConstraintOn::Position(link(at / 2)),
+            Some(at) => ConstraintOn::Orientation(link(at / 2)),
+        }
+    }
+
+    /// Where the constrained point is at each of these states (n, N): none for orientations, or where nothing is constrained.
+    fn places(&self, stretch: &StretchEstimate, states: &DMatrix<f64>) -> Result<Option<DMatrix<f64>>, String> {
+        let states = unscaled(states, self.scales);
+        match (stretch.acting, stretch.space.checked_sub(1), self.links) {
+            (Acting::Constraint, None, _) => Ok(Some(states)),
+            (Acting::Constraint, Some(at), Some(links)) if at % 2 == 0 => {
+                let place = |state: DVectorView<'_, f64>| {
+                    Ok(DVector::from_column_slice(links.links[at / 2].1.at(state)?.0.coords.as_slice()))
+                };
+                let places = states.column_iter().map(place).collect::<Result<Vec<_>, String>>()?;
+                Ok(Some(DMatrix::from_columns(&places)))
+            }
+            _ => Ok(None),
+        }
+    }
+
+    fn hidden(&self, direction: DVectorView<'_, f64>) -> Vec<f64> {
+        in_units(&direction.into_owned(), Some(self.scales)).normalize().as_slice().to_vec()
+    }
+}
+
+/// A row of A in the units of the recording: A S u, where S u is what was learnt from.
+fn in_units(row: &DVector<f64>, scales: Option<&DVector<f64>>) -> DVector<f64> {
+    scales.map_or_else(|| row.clone(), |scales| row.component_mul(scales))
+}
