@@ -54,8 +54,8 @@ class Learner(Estimator):
         """``integration``: "auto", "velocity" (recorded ones are believed) or "displacement" (they are ignored). ``scale``:
         factors of channels' units. ``smooth``, of positions: "auto", "off", a window of samples (9) or of seconds ("0.2s").
         ``jumps``: "auto" cuts movements where one step is far too long, "keep" does not. ``wraps``: with "auto" angles that
-        jump by a whole turn go on instead and quaternions keep one sign, with "keep" they stay. ``max_rows``: samples learnt from,
-        at most.
+        jump by a whole turn go on instead and quaternions keep one sign, with "keep" they stay. ``max_rows``: samples
+        learnt from, at most.
         ``random_state``: the seed, a whole number. ``n_jobs``: threads, None or -1 for all; results do not depend on it.
         """
         self._store(locals())
