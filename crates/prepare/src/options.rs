@@ -13,7 +13,7 @@ pub struct PrepareOptions {
     pub smoothing: Smoothing,
     /// Whether episodes are cut where a single step is far too long (`--jumps`).
     pub jumps: Repair,
-    /// Whether angles that jump by a whole turn are unwrapped (`--wraps`).
+    /// Whether angles that jump by a whole turn are unwrapped, and quaternions that change sign have one (`--wraps`).
     pub wraps: Repair,
 }
 

@@ -59,9 +59,10 @@ class Learner(Estimator):
         """``integration``: "auto", "velocity" (recorded ones are believed) or "displacement" (they are ignored). ``scale``:
         factors of channels' units. ``smooth``, of positions: "auto", "off", a window of samples (9) or of seconds ("0.2s").
         ``jumps``: "auto" cuts movements where one step is far too long, "keep" does not. ``wraps``: with "auto" angles that
-        jump by a whole turn go on instead, with "keep" they jump. ``max_rows``: samples learnt from, at most.
-        ``robot``: a URDF whose joints are named like the channels; its mass matrix is tried as the metric in which constraints are
-        at right angles. ``random_state``: the seed, a whole number. ``n_jobs``: threads, None or -1 for all; results do not depend on it.
+        jump by a whole turn go on instead and quaternions keep one sign, with "keep" they stay. ``max_rows``: samples
+        learnt from, at most. ``robot``: a URDF whose joints are named like the channels; its mass matrix is tried as the
+        metric in which constraints are at right angles. ``random_state``: the seed, a whole number. ``n_jobs``: threads,
+        None or -1 for all; results do not depend on it.
         """
         self._store(locals())
 

@@ -119,7 +119,7 @@ pub(crate) struct PrepareFlags {
     /// Jumps: auto (split episodes there) or keep
     #[arg(long, value_name = "REPAIR", hide_possible_values = true, value_parser = words::<Repair>())]
     jumps: Option<String>,
-    /// Wraps found before learning, and signs of quaternions: auto (undo them) or keep
+    /// Wraps and signs of quaternions found: auto (undo them) or keep
     #[arg(long, value_name = "REPAIR", hide_possible_values = true, value_parser = words::<Repair>())]
     wraps: Option<String>,
 }
