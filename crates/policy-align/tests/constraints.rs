@@ -24,7 +24,7 @@ const HALF: usize = 30;
 
 /// A chain of joints about alternating axes, 0.3 m apart; the last link is the hand.
 fn arm(axes: &[&str]) -> String {
-    let links: String = (0..axes.len()).map(|at| format!(r#"<link name="link{at}"/>"#)).collect();
+    let links = (0..axes.len()).map(|at| format!(r#"<link name="link{at}"/>"#)).collect::<Vec<_>>().concat();
     let name = |at: usize| if at == axes.len() { "hand".to_owned() } else { format!("link{at}") };
     let joint = |(at, axis): (usize, &&str)| {
         format!(
@@ -34,7 +34,7 @@ fn arm(axes: &[&str]) -> String {
             name(at + 1)
         )
     };
-    let joints: String = axes.iter().enumerate().map(joint).collect();
+    let joints = axes.iter().enumerate().map(joint).collect::<Vec<_>>().concat();
     format!(
         r#"<robot name="arm">{links}<link name="hand"/><link name="tip"/>{joints}
            <joint name="tip" type="fixed"><parent link="hand"/><child link="tip"/><origin xyz="0.2 0 0"/></joint></robot>"#

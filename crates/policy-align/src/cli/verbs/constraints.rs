@@ -46,8 +46,8 @@ pub(crate) struct Constraints {
     #[arg(long, value_name = "NAME")]
     of: Option<String>,
     /// File of the (first) episode's constraints, for `rollout --constraint`
-    #[arg(long, value_name = "FILE.toml")]
-    constraints_out: Option<PathBuf>,
+    #[arg(long = "constraints-out", value_name = "FILE.toml")]
+    output: Option<PathBuf>,
     #[command(flatten)]
     read: ReadFlags,
     #[command(flatten)]
@@ -63,7 +63,7 @@ impl Constraints {
             Failure::of_text(Exit::Refused, &error.to_string(), named(&self.files), "recordings of this model's state")
         })?;
         let found = self.chosen(found, &prepared)?;
-        if let Some(path) = &self.constraints_out {
+        if let Some(path) = &self.output {
             let first = found.first().map(|stretch| stretch.episode.clone());
             let own: Vec<&ConstraintStretch> =
                 found.iter().filter(|stretch| Some(&stretch.episode) == first.as_ref()).collect();
@@ -115,7 +115,7 @@ impl Constraints {
         if found.len() > LISTED {
             lines.add("", &format!("and {} more: --json shows all, --of NAME one episode", found.len() - LISTED));
         }
-        if let Some(path) = &self.constraints_out {
+        if let Some(path) = &self.output {
             lines.written(path, "constraints of an episode");
             let start = model.state.iter().map(|channel| short(channel.median)).collect::<Vec<_>>().join(",");
             let (model, path) = (quoted(&self.model), quoted(path));
