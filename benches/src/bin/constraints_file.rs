@@ -17,13 +17,9 @@ use nalgebra::{DMatrix, DVectorView, Matrix6xX, Vector3};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Map, Value, json};
-use smoothing::VelocityNoise;
 
 /// Movements at the end that nobody learns from.
 const FRESH: usize = 20;
-
-/// The program's rule: velocities count as exact below this share of noise.
-const EXACT: f64 = 1e-3;
 
 #[allow(clippy::print_stdout)] // Its output is what it is for.
 fn main() {
@@ -46,7 +42,10 @@ fn main() {
     written.insert("samples".into(), json!(shown[0].truth.states.ncols()));
     written.insert("dim".into(), json!(states.nrows()));
     written.insert("states".into(), list(&columns(shown.iter().map(|recording| &recording.truth.states))));
-    written.insert("velocities".into(), list(&columns(demonstrations.trajectories().iter().filter_map(|of| of.velocities()))));
+    written.insert(
+        "velocities".into(),
+        list(&columns(demonstrations.trajectories().iter().filter_map(|of| of.velocities()))),
+    );
     written.insert("test_actions".into(), list(&columns(fresh.iter().map(|recording| &recording.truth.actions))));
     written.extend(ours(&demonstrations, &states, max_rows));
     written.insert("test_states".into(), list(&states));
@@ -63,7 +62,8 @@ fn record(generator: &str, rng: &mut ChaCha8Rng) -> (Vec<Recording>, Option<Wipi
         CyclesWithTask { largest_task, n_trajectories, ..system }
     };
     let wiping = |contact| {
-        let mut system = Wiping::new(include_str!("../../../robots/seven_joint_arm.urdf"), contact).expect("a sound URDF");
+        let mut system =
+            Wiping::new(include_str!("../../../robots/seven_joint_arm.urdf"), contact).expect("a sound URDF");
         system.n_trajectories += FRESH;
         system
     };
@@ -80,17 +80,13 @@ fn record(generator: &str, rng: &mut ChaCha8Rng) -> (Vec<Recording>, Option<Wipi
 
 /// What the program would learn from the velocities: slope GP or direct GP, with the noise that it estimates, and constraints that may push.
 fn ours(demonstrations: &Demonstrations, states: &DMatrix<f64>, max_rows: usize) -> Map<String, Value> {
-    let noise = VelocityNoise::of(demonstrations).filter(|noise| noise.share > EXACT);
-    let front_end = noise.map_or(FrontEnd::Velocities, |noise| FrontEnd::NoisyVelocities {
-        variance: noise.variance / demonstrations.dim() as f64,
-    });
     let hyper_rows = max_rows / 2;
     let learner = AutoGp {
         slope: SlopeGp { max_rows, hyper_rows, push_test: PushTest::Fit, ..SlopeGp::default() },
         direct: DirectGp { max_rows, hyper_rows, ..DirectGp::default() },
         ..AutoGp::default()
     };
-    let rows = front_end.rows(demonstrations).expect("velocities were recorded");
+    let rows = FrontEnd::of_velocities(demonstrations).rows(demonstrations).expect("velocities were recorded");
     let fit = learner.fit(&rows, &mut ChaCha8Rng::seed_from_u64(1)).expect("enough movements");
     let actions = DMatrix::from_columns(&states.column_iter().map(|state| fit.action(state)).collect::<Vec<_>>());
     let facts = json!({
