@@ -4,8 +4,9 @@
 usage: compare_constraints.py [--sets 5] [--generators cycle,cycle-task,wiping,wiping-flat] [--decibels none,50,40,30,20,10] [--rows 400]
                               [--jobs 2] [--program PATH]
 
-Errors are nUPE at the states of 20 fresh movements: medians over the data sets. The estimators are told the rank of A and, of the arm, once its
-Jacobian and pose and once not; whichever has the lower true error counts. The slope GP is told neither. Builds the program if no path is given.
+Errors are nUPE at the states of 20 fresh movements: medians over the data sets. The estimators are told the rank of A; with "J" also the arm's
+Jacobian, and GSVD its pose, of which b is a linear function, or not, whichever has the lower true error. The slope GP is told none of it. Builds the
+program if no path is given.
 """
 import argparse, json, os, pathlib, subprocess, sys
 from concurrent.futures import ProcessPoolExecutor
@@ -18,7 +19,7 @@ import constraints
 
 RANKS = {"cycle": 1, "cycle-task": 1, "wiping": 1, "wiping-flat": 3}
 NOISE = ("none", "50", "40", "30", "20", "10")
-PEERS = tuple(constraints.ESTIMATORS)
+PEERS = ("DPL", "CCL", "SVD", "GSVD", "SVD, J", "GSVD, J")
 
 
 def read(program, generator, number, decibels, rows):
@@ -30,18 +31,19 @@ def read(program, generator, number, decibels, rows):
     return {name: np.reshape(value, shapes[name]) if name in shapes else value for name, value in found.items()}
 
 
-def variants(found, generator):
-    """What estimators may be told: nothing of the arm, its Jacobian, and in flat contact its pose, of which b is a linear function."""
+def movements_for(peer, found, generator):
+    """The movements with what the peer is told of the arm; a list for each way of telling it."""
     plain = [{"x": x, "u": u} for x, u in zip(found["states"], found["velocities"])]
-    yield plain
+    if not peer.endswith("J"):
+        return [plain]
     if "jacobians" not in found:
-        return
+        return []
     rows = slice(0, 3) if generator == "wiping" else slice(0, 6)
     with_jacobian = [{**movement, "J": jacobian[:, rows]} for movement, jacobian in zip(plain, found["jacobians"])]
-    yield with_jacobian
-    if generator == "wiping-flat":
-        poses = zip(with_jacobian, found["positions"], found["tool_axes"])
-        yield [{**movement, "z": np.c_[position, axis]} for movement, position, axis in poses]
+    if generator == "wiping" or peer.startswith("SVD"):
+        return [with_jacobian]
+    poses = zip(with_jacobian, found["positions"], found["tool_axes"])
+    return [with_jacobian, [{**movement, "z": np.c_[position, axis]} for movement, position, axis in poses]]
 
 
 def errors(task):
@@ -51,12 +53,9 @@ def errors(task):
     error = lambda policy: constraints.nupe(policy, found["test_states"], found["test_actions"])
 
     def peer(name):
-        told = list(variants(found, generator))
-        if name in ("DPL", "CCL"):  # they do not ask for A
-            told = told[:1]
-        elif name == "SVD":  # it does not ask for b
-            told = told[:2]
-        return min(error(constraints.ESTIMATORS[name](movements, RANKS[generator])) for movements in told)
+        estimate = constraints.ESTIMATORS[name.split(",")[0]]
+        told = movements_for(name, found, generator)
+        return min((error(estimate(movements, RANKS[generator])) for movements in told), default=np.nan)
     return [peer(name) for name in PEERS] + [error(lambda _: found["ours"])], found["reading"], found["pushed"]
 
 
@@ -69,9 +68,11 @@ def build():
 def line(generator, decibels, outcomes):
     values = np.array([outcome[0] for outcome in outcomes])
     medians = np.median(values, 0)
-    best, ours = values[:, :-1].min(1), values[:, -1]
+    best, ours = np.nanmin(values[:, :-1], 1), values[:, -1]
+    untold = medians[:4].min()
     pushed = sum(outcome[2] is not None for outcome in outcomes)
-    cells = [generator, decibels, *(f"{value:.2g}" for value in medians), f"{medians[-1] / medians[:-1].min():.2g}",
+    cells = [generator, decibels, *("–" if np.isnan(value) else f"{value:.2g}" for value in medians),
+             f"{medians[-1] / untold:.2g}", f"{medians[-1] / np.nanmin(medians[:-1]):.2g}",
              f"{np.sum(ours <= best)} of {len(outcomes)}", f"{pushed} of {len(outcomes)}"]
     return "| " + " | ".join(cells) + " |"
 
@@ -86,7 +87,7 @@ def main():
     parser.add_argument("--program")
     options = parser.parse_args()
     program = str(options.program or build())
-    header = ["generator", "SNR, dB", *PEERS, "ours", "ours / best peer", "ours is best", "stretches used"]
+    header = ["generator", "SNR, dB", *PEERS, "ours", "ours / best without J", "ours / best", "ours is best", "stretches used"]
     print("| " + " | ".join(header) + " |\n|" + " --- |" * len(header), flush=True)
     with ProcessPoolExecutor(options.jobs) as pool:
         for generator in options.generators.split(","):

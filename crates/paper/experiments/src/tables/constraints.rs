@@ -99,7 +99,7 @@ pub(crate) fn constraints() -> anyhow::Result<Experiment> {
         remark: "Constraints A u = b, constant in a movement on the plane, turning with the state on an arm of seven joints that wipes surfaces of random tilt: of its tool's \
                  height alone (b = 0), or of height and orientation, with a task that brings it back to the surface. 50 movements of 100 samples; white noise on velocities at 40 and 20 dB. \
                  All learners have their default settings; the Gaussian processes learn from 400 rows with the noise that they estimate, and \"automatic\" is what the program fits. \
-                 PolicyAlign has the narrow or the medium bandwidth, whichever has the lower true error in that data set. No policy here has a potential, which PolicyAlign needs.",
+                 PolicyAlign has the medium bandwidth; no policy here has a potential, which it needs.",
         decisions: "beyond.md",
         comparisons: setups.iter().map(|setup| Comparison::of(&setup.id, Measure::Nupe, &WHO)).collect(),
         setups,
@@ -159,20 +159,18 @@ impl ConstraintsTrial {
         Ok([errors(judge, &slope)?, errors(judge, both.slope())?, errors(judge, both.direct())?, either])
     }
 
-    /// The better of two bandwidths; nothing where neither aligns enough to learn from.
+    /// Nothing where it does not align enough to learn from.
     fn policy_align(
         &self,
         demonstrations: &Demonstrations,
         judge: &Judge<'_>,
         rng: &mut ChaCha8Rng,
     ) -> BTreeMap<Measure, f64> {
-        let learnt = |bandwidth| {
-            let algorithm = PolicyAlign { bandwidth, integration: Integration::Velocity, ..PolicyAlign::default() };
-            let policy = algorithm.align(demonstrations).ok()?.learn(&self.lwpr, rng).ok()?;
-            errors(judge, &policy).ok()
-        };
-        let found = [Bandwidth::Narrow, Bandwidth::Medium].into_iter().filter_map(learnt);
-        found.min_by(|a, b| a[&Measure::Nupe].total_cmp(&b[&Measure::Nupe])).unwrap_or_default()
+        let (bandwidth, integration) = (Bandwidth::Medium, Integration::Velocity);
+        let algorithm = PolicyAlign { bandwidth, integration, ..PolicyAlign::default() };
+        let aligned = algorithm.align(demonstrations).ok();
+        let policy = aligned.and_then(|aligned| aligned.learn(&self.lwpr, rng).ok());
+        policy.and_then(|policy| errors(judge, &policy).ok()).unwrap_or_default()
     }
 }
 
