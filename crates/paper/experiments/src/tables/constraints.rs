@@ -110,7 +110,7 @@ pub(crate) fn constraints() -> anyhow::Result<Experiment> {
 fn setup(number: u32, name: &str, generator: Generator, decibels: Option<f64>) -> Setup {
     let row = |method| Row { id: row_id(name, method), of: RowOf::Additional, tested_on: TESTED_ON };
     let trial = ConstraintsTrial { generator, decibels, lwpr: LwprRegressor::default(), max_rows: MAX_ROWS };
-    Setup::new(name, number, 40_000_000, WHO.map(row).into(), trial)
+    Setup::new(name, number, 30_000_000, WHO.map(row).into(), trial)
 }
 
 #[derive(Serialize)]
