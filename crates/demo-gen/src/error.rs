@@ -137,6 +137,40 @@ pub enum DemoGenError {
         /// The share given.
         share: f64,
     },
+    /// The ratio of signal to noise is no number of decibels.
+    #[error(
+        "signal-to-noise ratio {decibels} dB: it must be a finite number; record without noise instead of infinity"
+    )]
+    SignalToNoise {
+        /// The ratio given, in decibels.
+        decibels: f64,
+    },
+    /// Velocities are needed that were not recorded.
+    #[error("trajectory {trajectory} has no velocities; noise on velocities needs them")]
+    NoVelocities {
+        /// Which trajectory.
+        trajectory: usize,
+    },
+    /// The task of a constraint A u = b cannot be drawn.
+    #[error("task {largest}: it must be a finite number, 0 or more (above 0 for a rate)")]
+    Task {
+        /// The largest task given.
+        largest: f64,
+    },
+    /// A surface cannot be tilted so far.
+    #[error("tilt {largest}: it must be an angle from 0 up to a right angle, in radians")]
+    Tilt {
+        /// The largest tilt given, in radians.
+        largest: f64,
+    },
+    /// A robot has not the joints that a posture is for.
+    #[error("the robot has {found} joints, the posture {expected}; take a robot of as many")]
+    Joints {
+        /// Joints of the robot.
+        found: usize,
+        /// Joints of the posture.
+        expected: usize,
+    },
     /// One of several trajectories cannot be made.
     #[error("trajectory {trajectory}: {source}")]
     InTrajectory {

@@ -2,12 +2,15 @@ use constraints::{NullSpaceProjector, PfaffianConstraint};
 use motion::{Policy, Potential, Trajectory};
 use nalgebra::{DMatrix, DVector, DVectorView};
 
+use crate::tasks::task_constraint::TaskConstraint;
 use crate::{DemoGenError, Quantity, Recording, Truth};
 
 /// Who acts, and what constrains it.
 pub(crate) struct System<'a> {
-    pub(crate) actor: Actor<'a>,
-    pub(crate) constraint: &'a dyn PfaffianConstraint,
+    actor: Actor<'a>,
+    constraint: &'a dyn PfaffianConstraint,
+    /// The constraint again, where its right side is not 0.
+    task: Option<&'a dyn TaskConstraint>,
 }
 
 /// A policy, and what is known of its potential.
@@ -51,7 +54,21 @@ pub(crate) struct Instant {
     projector: NullSpaceProjector,
 }
 
-impl System<'_> {
+impl<'a> System<'a> {
+    /// A(x, t) u = 0.
+    pub(crate) fn constrained(actor: Actor<'a>, constraint: &'a dyn PfaffianConstraint) -> Self {
+        System { actor, constraint, task: None }
+    }
+
+    /// A(x) u = b(x).
+    pub(crate) fn with_task(actor: Actor<'a>, task: &'a dyn TaskConstraint) -> Self {
+        System { actor, constraint: task, task: Some(task) }
+    }
+
+    pub(crate) fn dims(&self) -> (usize, usize) {
+        (self.actor.dim(), self.constraint.dim())
+    }
+
     /// The system in `state` at `time`; errors name `sample`.
     pub(crate) fn instant(&self, state: DVector<f64>, time: f64, sample: usize) -> Result<Instant, DemoGenError> {
         finite(state.as_slice(), Quantity::State, sample)?;
@@ -60,7 +77,11 @@ impl System<'_> {
             .constraint
             .null_space_projector(state.as_view(), time)
             .map_err(|source| DemoGenError::Constraint { sample, source })?;
-        let velocity = projector.project(action.as_view());
+        let mut velocity = projector.project(action.as_view());
+        if let Some(task) = self.task {
+            let demanded = task.task_velocity(state.as_view(), time);
+            velocity += demanded.map_err(|source| DemoGenError::Constraint { sample, source })?;
+        }
         finite(velocity.as_slice(), Quantity::Velocity, sample)?;
         Ok(Instant { state, velocity, potential, action, projector })
     }

@@ -12,7 +12,8 @@
 //! - [`hand_jacobian`]: a robot's hand for a constraint; [`n_leaving_limits`]: movements that a real one would not make.
 //! - [`Grasp`]: reaching for a ball through a wall with a gap, in a [`GraspScene`].
 //! - [`beyond`]: policies of other shapes, with and without a potential, in 2 to 22 dimensions.
-//! - [`with_position_noise`]: the same recordings through noisy eyes.
+//! - [`tasks`]: constraints A(x) u = b(x) with a task b: a limit cycle, and an arm that wipes.
+//! - [`with_position_noise`], [`with_velocity_noise`]: the same recordings through noisy eyes.
 //!
 //! ```
 //! use constraints::LinearConstraint;
@@ -44,13 +45,14 @@ mod recording;
 mod redraw;
 mod robots;
 mod roll_out;
+pub mod tasks;
 mod toy;
 mod toy_potential;
 
 pub use error::{DemoGenError, Part, Quantity};
 pub use grasp::{Grasp, GraspStart};
 pub use grasp_scene::GraspScene;
-pub use noise::with_position_noise;
+pub use noise::{with_position_noise, with_velocity_noise};
 pub use potentials::{Parabola, Sinusoidal};
 pub use recording::{Recording, Truth, demonstrations};
 pub use redraw::Redraw;

@@ -38,6 +38,41 @@ pub fn with_position_noise<R: Rng + ?Sized>(
     noisy.collect()
 }
 
+/// The same movements with white noise on the observed velocities, of equal variance in all dimensions: the mean of |u|² over all samples is
+/// `decibels` above that of the noise. States stay as they were observed, and the truth stays true.
+///
+/// The generator is asked once for each number, trajectory after trajectory and sample after sample, whatever the ratio.
+///
+/// # Errors
+/// [`DemoGenError::SignalToNoise`], [`DemoGenError::NoTrajectory`], or [`DemoGenError::NoVelocities`].
+pub fn with_velocity_noise<R: Rng + ?Sized>(
+    recordings: &[Recording],
+    decibels: f64,
+    rng: &mut R,
+) -> Result<Vec<Recording>, DemoGenError> {
+    if !decibels.is_finite() {
+        return Err(DemoGenError::SignalToNoise { decibels });
+    }
+    let velocities = observed_velocities(recordings)?;
+    let power: f64 = velocities.iter().map(|u| u.norm_squared()).sum();
+    let count: usize = velocities.iter().map(|u| u.len()).sum();
+    let deviation = (power / count as f64 * 10f64.powf(-decibels / 10.0)).sqrt();
+    let noisy = recordings.iter().zip(velocities).map(|(recording, u)| {
+        let noisy = u.map(|value| value + deviation * rng.sample::<f64, _>(StandardNormal));
+        Ok(Recording { observed: recording.observed.clone().with_velocities(noisy)?, truth: recording.truth.clone() })
+    });
+    noisy.collect()
+}
+
+fn observed_velocities(recordings: &[Recording]) -> Result<Vec<&DMatrix<f64>>, DemoGenError> {
+    if recordings.is_empty() {
+        return Err(DemoGenError::NoTrajectory);
+    }
+    let each = recordings.iter().enumerate();
+    each.map(|(trajectory, recording)| recording.observed.velocities().ok_or(DemoGenError::NoVelocities { trajectory }))
+        .collect()
+}
+
 /// The standard deviation of each dimension over all true states of a data set, (n).
 fn standard_deviation(recordings: &[Recording]) -> Result<DVector<f64>, DemoGenError> {
     let expected = recordings.first().ok_or(DemoGenError::NoTrajectory)?.truth.states.nrows();

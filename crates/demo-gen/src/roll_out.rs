@@ -42,7 +42,7 @@ impl RollOut {
         P: Potential + ?Sized,
         C: PfaffianConstraint + ?Sized,
     {
-        self.recording(&System { actor: Actor::OfPotential(&potential), constraint: &constraint }, start)
+        self.recording(&System::constrained(Actor::OfPotential(&potential), &constraint), start)
     }
 
     /// The movement of any policy from `start` (n), as [`RollOut::record`] makes that of a potential: N states with their
@@ -85,7 +85,7 @@ impl RollOut {
         P: Policy + ?Sized,
         C: PfaffianConstraint + ?Sized,
     {
-        let system = System { actor: Actor::OfPolicy(&policy), constraint: &constraint };
+        let system = System::constrained(Actor::OfPolicy(&policy), &constraint);
         observed(&self.instants(&system, start)?, self.time_step)
     }
 
@@ -101,8 +101,8 @@ impl RollOut {
     /// All samples of a movement.
     fn instants(&self, system: &System<'_>, start: DVectorView<'_, f64>) -> Result<Vec<Instant>, DemoGenError> {
         self.check()?;
-        let expected = system.actor.dim();
-        for (part, found) in [(Part::Start, start.len()), (Part::Constraint, system.constraint.dim())] {
+        let (expected, of_constraint) = system.dims();
+        for (part, found) in [(Part::Start, start.len()), (Part::Constraint, of_constraint)] {
             if found != expected {
                 return Err(DemoGenError::Dimensions { part, found, expected });
             }

@@ -54,7 +54,7 @@ mod savitzky_golay;
 pub use error::SmoothingError;
 pub use fusion::{Fused, FusedMovement, Fusion};
 pub use increments::StepRule;
-pub use noise::PositionNoise;
+pub use noise::{PositionNoise, VelocityNoise};
 pub use piecewise::scaled::AxisScale;
 pub use piecewise::smoothed::{Smoothed, SmoothedMovement};
 pub use piecewise::smoother::{NoiseVariance, Smoother};

@@ -1,6 +1,6 @@
-//! Noise of recorded positions, without smoothing.
+//! Noise of recorded positions and velocities, without smoothing.
 
-use motion::Demonstrations;
+use motion::{Demonstrations, Trajectory};
 use nalgebra::DVector;
 
 use crate::SmoothingError;
@@ -59,6 +59,29 @@ impl PositionNoise {
         } else {
             Err(SmoothingError::Overflow)
         }
+    }
+}
+
+/// How noisy recorded velocities are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VelocityNoise {
+    /// Variance of the noise of a velocity, summed over the axes, in squared units of the state per second.
+    pub variance: f64,
+    /// Share of the mean |u|² that is noise.
+    pub share: f64,
+}
+
+impl VelocityNoise {
+    /// By third differences of the velocities, as [`PositionNoise::of`] those of positions; none where some movement has no velocities, or
+    /// where they are too few, all the same or too large for an estimate.
+    pub fn of(demonstrations: &Demonstrations) -> Option<Self> {
+        let as_positions = |trajectory: &Trajectory| trajectory.with_states(trajectory.velocities()?.clone()).ok();
+        let velocities: Option<Vec<_>> = demonstrations.trajectories().iter().map(as_positions).collect();
+        let noise = PositionNoise::of(&Demonstrations::new(velocities?).ok()?).ok()?;
+        let each = demonstrations.trajectories().iter().filter_map(Trajectory::velocities);
+        let (power, count) = each.fold((0.0, 0), |(power, count), u| (power + u.norm_squared(), count + u.ncols()));
+        let variance = noise.deviations.norm_squared();
+        Some(VelocityNoise { variance, share: variance / (power / count as f64) })
     }
 }
 

@@ -121,6 +121,6 @@ impl Scene {
             Field::OfPotential(potential) => Actor::OfPotential(&**potential),
             Field::OfPolicy(policy) => Actor::OfPolicy(&**policy),
         };
-        roll_out.recording(&System { actor, constraint }, start.as_view())
+        roll_out.recording(&System::constrained(actor, constraint), start.as_view())
     }
 }

@@ -1,7 +1,7 @@
 use motion::{Demonstrations, SampleIndex, SampleSet, Trajectory};
 use nalgebra::DMatrix;
 use serde::Serialize;
-use smoothing::{Fusion, Smoother, SmoothingError};
+use smoothing::{Fusion, Smoother, SmoothingError, VelocityNoise};
 
 use crate::{GpError, Rows};
 
@@ -27,10 +27,20 @@ pub enum FrontEnd {
     Fused(Fusion),
 }
 
+/// Velocities count as exact if noise makes less than this share of their squares.
+const EXACT_VELOCITIES: f64 = 1e-3;
+
 /// States and velocities of a movement, (n, N) each; the states may have one sample more.
 type Movement = (DMatrix<f64>, DMatrix<f64>);
 
 impl FrontEnd {
+    /// Recorded velocities, with their noise (third differences) where that makes a thousandth of their squares or more.
+    pub fn of_velocities(demonstrations: &Demonstrations) -> FrontEnd {
+        let noise = VelocityNoise::of(demonstrations).filter(|noise| noise.share > EXACT_VELOCITIES);
+        let variance = noise.map(|noise| noise.variance / demonstrations.dim() as f64);
+        variance.map_or(FrontEnd::Velocities, |variance| FrontEnd::NoisyVelocities { variance })
+    }
+
     /// The rows of all trajectories, in order.
     ///
     /// # Errors

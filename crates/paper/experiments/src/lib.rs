@@ -203,6 +203,7 @@ pub fn registry() -> anyhow::Result<Vec<Experiment>> {
         tables::figure9::figure9()?,
         tables::beyond::beyond(),
         tables::readings::readings(),
+        tables::constraints::constraints()?,
     ];
     experiments.into_iter().map(Experiment::checked).collect()
 }

@@ -2,6 +2,7 @@
 
 use anyhow::Context as _;
 use demo_gen::UpperBody;
+use demo_gen::tasks::{Contact, Wiping};
 
 /// The upper body of Sections 4.2 and 4.3.
 ///
@@ -11,4 +12,10 @@ pub fn upper_body() -> anyhow::Result<UpperBody> {
     let urdf = include_str!("../../../../robots/asimo_upper_body.urdf");
     let srdf = include_str!("../../../../robots/asimo_upper_body.srdf");
     UpperBody::new(urdf, srdf).context("robots/asimo_upper_body cannot be used")
+}
+
+/// The arm of seven joints that wipes.
+pub(crate) fn seven_joint_arm(contact: Contact) -> anyhow::Result<Wiping> {
+    let urdf = include_str!("../../../../robots/seven_joint_arm.urdf");
+    Wiping::new(urdf, contact).context("robots/seven_joint_arm.urdf cannot be used")
 }

@@ -29,7 +29,7 @@ pub fn color_of(learner: Method) -> Option<&'static str> {
         Method::PolicyAlign => Who::PolicyAlign,
         Method::SlopeGp => Who::SlopeGp,
         Method::DirectGp => Who::DirectGp,
-        Method::ConstraintConsistent | Method::SlopeGpNoTrend | Method::AutoGp => return None,
+        Method::ConstraintConsistent | Method::SlopeGpNoTrend | Method::SlopeGpPushed | Method::AutoGp => return None,
     };
     Some(who.color())
 }

@@ -16,15 +16,15 @@ const WORTH_A_FORECAST: f64 = 1e-3;
 /// Cases of policies that have no potential begin with one of these.
 const ROTATIONAL: [&str; 2] = ["swirl", "limit-cycle"];
 
-/// The experiment whose table of learners is shown whole: the harder movements.
-const SHOWN_WHOLE: &str = "beyond";
+/// The experiments whose tables of learners are shown whole: harder movements, and harder constraints.
+const SHOWN_WHOLE: [&str; 2] = ["beyond", "constraints"];
 
 /// What a reader needs in order to choose, as Markdown; every table is in the report.
 pub fn learners(experiments: &[Experiment], results: &Results) -> String {
     let compared = |(experiment, result)| Some((experiment, Comparisons::of(experiment, result)?));
     let all: Vec<_> = results.of(experiments).filter_map(compared).collect();
     let mut text = format!("### Who has the least mean error\n\n{}\n", wins(&all));
-    if let Some((experiment, comparisons)) = all.iter().find(|(experiment, _)| experiment.id == SHOWN_WHOLE) {
+    for (experiment, comparisons) in all.iter().filter(|(experiment, _)| SHOWN_WHOLE.contains(&experiment.id)) {
         let _ = write!(text, "### {}\n\n{}\n", experiment.title, comparisons.markdown());
     }
     if let Some(readings) = results.experiment("readings") {

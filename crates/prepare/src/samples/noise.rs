@@ -1,7 +1,7 @@
-use motion::{Demonstrations, Trajectory, Verdict};
+use motion::{Demonstrations, Verdict};
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
-use smoothing::PositionNoise;
+use smoothing::{PositionNoise, VelocityNoise};
 
 use crate::notes::Notes;
 use crate::repairs::agreement::Agreement;
@@ -36,7 +36,7 @@ pub struct Noise {
 /// Of positions, and of velocities where they were recorded.
 pub(crate) fn of(demonstrations: &Demonstrations) -> Noise {
     let positions = PositionNoise::of(demonstrations).ok().map(|noise| with_resolution(demonstrations, noise));
-    let velocity_share = velocity_noise(demonstrations).map(|(variance, power)| variance / power);
+    let velocity_share = VelocityNoise::of(demonstrations).map(|noise| noise.share);
     Noise {
         step_share: positions.as_ref().map_or(0.0, |noise| noise.step_share),
         positions: positions.map(|noise| noise.deviations.iter().copied().collect()),
@@ -81,16 +81,6 @@ pub(crate) fn resolution(demonstrations: &Demonstrations, axis: usize) -> Option
     (few && values.windows(2).all(|pair| whole(pair[1] - pair[0]))).then_some(least)
 }
 
-/// Variance of noise in recorded velocities, summed over axes, and their mean square.
-fn velocity_noise(demonstrations: &Demonstrations) -> Option<(f64, f64)> {
-    let as_positions = |trajectory: &Trajectory| trajectory.with_states(trajectory.velocities()?.clone()).ok();
-    let velocities: Option<Vec<_>> = demonstrations.trajectories().iter().map(as_positions).collect();
-    let noise = PositionNoise::of(&Demonstrations::new(velocities?).ok()?).ok()?;
-    let each = demonstrations.trajectories().iter().filter_map(Trajectory::velocities);
-    let (power, count) = each.fold((0.0, 0), |(power, count), u| (power + u.norm_squared(), count + u.ncols()));
-    Some((noise.deviations.norm_squared(), power / count as f64))
-}
-
 /// Recorded velocities, or those of the steps where there are none, (n) each.
 pub(crate) fn velocities(demonstrations: &Demonstrations) -> impl Iterator<Item = DVector<f64>> {
     demonstrations.trajectories().iter().flat_map(|movement| {
@@ -104,10 +94,7 @@ pub(crate) fn velocity_variance(demonstrations: &Demonstrations, noise: &Noise) 
     let dim = demonstrations.dim() as f64;
     let positions = noise.positions.iter().flatten().map(|deviation| deviation.powi(2)).sum::<f64>() / dim;
     let step = demonstrations.trajectories()[0].time_step();
-    match velocity_noise(demonstrations) {
-        Some((variance, _)) => variance / dim,
-        None => 2.0 * positions / step.powi(2),
-    }
+    VelocityNoise::of(demonstrations).map_or(2.0 * positions / step.powi(2), |noise| noise.variance / dim)
 }
 
 /// The kind of recording where the user requested a smoothing.
@@ -121,8 +108,8 @@ pub(crate) fn as_requested(demonstrations: &Demonstrations, noise: &Noise, agree
 /// Recorded velocities, with their noise if that is more than negligible.
 pub(crate) fn of_recorded(demonstrations: &Demonstrations, noise: &Noise) -> VelocitySource {
     let noisy = noise.velocity_share.filter(|&share| share > EXACT_VELOCITIES);
-    match noisy.and_then(|_| velocity_noise(demonstrations)) {
-        Some((variance, _)) => VelocitySource::Noisy(variance / demonstrations.dim() as f64),
+    match noisy.and_then(|_| VelocityNoise::of(demonstrations)) {
+        Some(noise) => VelocitySource::Noisy(noise.variance / demonstrations.dim() as f64),
         None => VelocitySource::Recorded,
     }
 }

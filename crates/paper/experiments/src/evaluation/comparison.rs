@@ -15,6 +15,8 @@ pub enum Method {
     SlopeGp,
     /// The slope GP whose families hold no quadratic potential.
     SlopeGpNoTrend,
+    /// The slope GP that may learn from stretches, where constraints push.
+    SlopeGpPushed,
     /// A Gaussian process on the velocities.
     DirectGp,
     /// The slope GP or the direct GP, whichever the data support.
@@ -23,12 +25,13 @@ pub enum Method {
 
 impl Method {
     /// In the order of the columns.
-    pub const ALL: [Method; 7] = [
+    pub const ALL: [Method; 8] = [
         Method::Naive,
         Method::PolicyAlign,
         Method::ConstraintConsistent,
         Method::SlopeGp,
         Method::SlopeGpNoTrend,
+        Method::SlopeGpPushed,
         Method::DirectGp,
         Method::AutoGp,
     ];
@@ -41,6 +44,7 @@ impl Method {
             Method::ConstraintConsistent => "radial_basis",
             Method::SlopeGp => "slope_gp",
             Method::SlopeGpNoTrend => "slope_gp_no_trend",
+            Method::SlopeGpPushed => "slope_gp_pushed",
             Method::DirectGp => "direct_gp",
             Method::AutoGp => "reading",
         }
@@ -54,6 +58,7 @@ impl Method {
             Method::ConstraintConsistent => "radial basis",
             Method::SlopeGp => "slope GP",
             Method::SlopeGpNoTrend => "slope GP, no trend",
+            Method::SlopeGpPushed => "slope GP, pushes",
             Method::DirectGp => "direct GP",
             Method::AutoGp => "automatic",
         }
@@ -78,6 +83,9 @@ impl Method {
             }
             Method::SlopeGpNoTrend => {
                 "the same without quadratic potentials among the forms it chooses from: what is left where they do not contain the truth"
+            }
+            Method::SlopeGpPushed => {
+                "the same where constraints may push, A u = b: it learns from differences of velocities while A and b stay constant, if that predicts left-out movements better"
             }
             Method::DirectGp => "a Gaussian process on the velocities as they were seen: a stronger direct learner",
             Method::AutoGp => {

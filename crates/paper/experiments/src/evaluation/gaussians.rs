@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, ModelKind, SlopeFit, SlopeGp, Trend};
+use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, ModelKind, PushTest, SlopeFit, SlopeGp, Trend};
 use motion::{Demonstrations, LearntPolicy, SampleIndex, SampleSet};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
@@ -20,6 +20,14 @@ pub struct Gaussians {
     pub(crate) max_rows: usize,
     /// Rows that amplitudes are chosen on.
     pub(crate) hyper_rows: usize,
+    /// Whether constraints may push.
+    #[serde(skip_serializing_if = "is_none")]
+    pub(crate) push_test: PushTest,
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // serde wants it
+fn is_none(push_test: &PushTest) -> bool {
+    *push_test == PushTest::AssumeNone
 }
 
 /// Rows that amplitudes are chosen on, in experiments: evidence of more costs most of a fit and changes little.
@@ -27,7 +35,7 @@ const HYPER_ROWS: usize = 250;
 
 impl Gaussians {
     pub(crate) fn new(front_end: FrontEnd, max_rows: usize) -> Self {
-        Gaussians { front_end, max_rows, hyper_rows: HYPER_ROWS.min(max_rows) }
+        Gaussians { front_end, max_rows, hyper_rows: HYPER_ROWS.min(max_rows), push_test: PushTest::AssumeNone }
     }
 
     /// Both, and which of them the data support: the slope GP's and the direct GP's fits are what each alone would be.
@@ -61,7 +69,8 @@ impl Gaussians {
     }
 
     fn slope_gp(&self, trend: Trend) -> SlopeGp {
-        SlopeGp { trend, max_rows: self.max_rows, hyper_rows: self.hyper_rows, ..SlopeGp::default() }
+        let &Gaussians { max_rows, hyper_rows, push_test, .. } = self;
+        SlopeGp { trend, max_rows, hyper_rows, push_test, ..SlopeGp::default() }
     }
 
     fn rows(&self, demonstrations: &Demonstrations, held_out: &[SampleIndex]) -> anyhow::Result<gp::Rows> {

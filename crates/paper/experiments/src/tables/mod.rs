@@ -2,6 +2,7 @@
 
 pub(crate) mod asimo22;
 pub(crate) mod beyond;
+pub(crate) mod constraints;
 pub(crate) mod figure6;
 pub(crate) mod figure9;
 pub(crate) mod readings;

@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""Policies learnt under constraints A u = b: the slope GP beside the estimators of constraints.py, on the same data.
+
+usage: compare_constraints.py [--sets 5] [--generators cycle,cycle-task,wiping,wiping-flat] [--decibels none,50,40,30,20,10] [--rows 400]
+                              [--jobs 2] [--program PATH]
+
+Errors are nUPE at the states of 20 fresh movements: medians over the data sets. The estimators are told the rank of A; with "J" also the arm's
+Jacobian, and GSVD its pose, of which b is a linear function, or not, whichever has the lower true error. The slope GP is told none of it. Builds the
+program if no path is given.
+"""
+import argparse, json, os, pathlib, subprocess, sys
+from concurrent.futures import ProcessPoolExecutor
+for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "RAYON_NUM_THREADS"):
+    os.environ[name] = "1"  # one process a data set
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import constraints
+
+RANKS = {"cycle": 1, "cycle-task": 1, "wiping": 1, "wiping-flat": 3}
+NOISE = ("none", "50", "40", "30", "20", "10")
+PEERS = ("DPL", "CCL", "SVD", "GSVD", "SVD, J", "GSVD, J")
+
+
+def read(program, generator, number, decibels, rows):
+    words = [program, generator, str(number), decibels, str(rows)]
+    found = json.loads(subprocess.run(words, check=True, capture_output=True, text=True).stdout)
+    n, samples = found["dim"], found["samples"]
+    shapes = {"states": (-1, samples, n), "velocities": (-1, samples, n), "jacobians": (-1, samples, 6, n), "positions": (-1, samples, 3),
+              "tool_axes": (-1, samples, 3), "test_states": (-1, n), "test_actions": (-1, n), "ours": (-1, n)}
+    return {name: np.reshape(value, shapes[name]) if name in shapes else value for name, value in found.items()}
+
+
+def movements_for(peer, found, generator):
+    """The movements with what the peer is told of the arm; a list for each way of telling it."""
+    plain = [{"x": x, "u": u} for x, u in zip(found["states"], found["velocities"])]
+    if not peer.endswith("J"):
+        return [plain]
+    if "jacobians" not in found:
+        return []
+    rows = slice(0, 3) if generator == "wiping" else slice(0, 6)
+    with_jacobian = [{**movement, "J": jacobian[:, rows]} for movement, jacobian in zip(plain, found["jacobians"])]
+    if generator == "wiping" or peer.startswith("SVD"):
+        return [with_jacobian]
+    poses = zip(with_jacobian, found["positions"], found["tool_axes"])
+    return [with_jacobian, [{**movement, "z": np.c_[position, axis]} for movement, position, axis in poses]]
+
+
+def errors(task):
+    """nUPE of each peer and of ours on one data set."""
+    program, generator, number, decibels, rows = task
+    found = read(program, generator, number, decibels, rows)
+    error = lambda policy: constraints.nupe(policy, found["test_states"], found["test_actions"])
+
+    def peer(name):
+        estimate = constraints.ESTIMATORS[name.split(",")[0]]
+        told = movements_for(name, found, generator)
+        return min((error(estimate(movements, RANKS[generator])) for movements in told), default=np.nan)
+    return [peer(name) for name in PEERS] + [error(lambda _: found["ours"])], found["reading"], found["pushed"]
+
+
+def build():
+    root = pathlib.Path(__file__).parents[2]
+    subprocess.run(["cargo", "build", "--release", "-p", "benches", "--bin", "constraints_file"], cwd=root, check=True)
+    return pathlib.Path(os.environ.get("CARGO_TARGET_DIR", root / "target")) / "release" / "constraints_file"
+
+
+def line(generator, decibels, outcomes):
+    values = np.array([outcome[0] for outcome in outcomes])
+    medians = np.median(values, 0)
+    best, ours = np.nanmin(values[:, :-1], 1), values[:, -1]
+    untold = medians[:4].min()
+    pushed = sum(outcome[2] is not None for outcome in outcomes)
+    cells = [generator, decibels, *("–" if np.isnan(value) else f"{value:.2g}" for value in medians),
+             f"{medians[-1] / untold:.2g}", f"{medians[-1] / np.nanmin(medians[:-1]):.2g}",
+             f"{np.sum(ours <= best)} of {len(outcomes)}", f"{pushed} of {len(outcomes)}"]
+    return "| " + " | ".join(cells) + " |"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--sets", type=int, default=5)
+    parser.add_argument("--generators", default=",".join(RANKS))
+    parser.add_argument("--decibels", default=",".join(NOISE))
+    parser.add_argument("--rows", type=int, default=400, help="rows that the slope GP learns from")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--program")
+    options = parser.parse_args()
+    program = str(options.program or build())
+    header = ["generator", "SNR, dB", *PEERS, "ours", "ours / best without J", "ours / best", "ours is best", "stretches used"]
+    print("| " + " | ".join(header) + " |\n|" + " --- |" * len(header), flush=True)
+    with ProcessPoolExecutor(options.jobs) as pool:
+        for generator in options.generators.split(","):
+            for decibels in options.decibels.split(","):
+                tasks = [(program, generator, number, decibels, options.rows) for number in range(1, options.sets + 1)]
+                print(line(generator, decibels, list(pool.map(errors, tasks))), flush=True)
+
+
+if __name__ == "__main__":
+    main()

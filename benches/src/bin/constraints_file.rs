@@ -1,0 +1,127 @@
+//! Writes one data set of a generator of `demo_gen::tasks` and what the slope GP makes of it, as JSON: the other side of
+//! `benches/peers/compare_constraints.py`.
+//!
+//! usage: constraints_file GENERATOR SET DECIBELS [ROWS], with GENERATOR one of cycle, cycle-task, wiping, wiping-flat; DECIBELS the ratio of signal
+//! to noise of the velocities, or `none`; ROWS those that the slope GP learns from, by default the program's 400.
+//!
+//! A list holds samples one after the other. `states`, `velocities` and, of an arm, `jacobians` (6 rows of n), `positions` and `tool_axes` are of the
+//! movements, all of them `samples` long. `test_states` and `test_actions` are true states of movements that nobody learns from, and the policy
+//! there; `ours` is the policy of the slope GP.
+
+use demo_gen::tasks::{Contact, CyclesWithTask, Wiping};
+use demo_gen::{Recording, demonstrations, with_velocity_noise};
+use gp::{AutoGp, DirectGp, FrontEnd, PushTest, SlopeGp};
+use kinematics::Workspace;
+use motion::{Demonstrations, Policy};
+use nalgebra::{DMatrix, DVectorView, Matrix6xX, Vector3};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use serde_json::{Map, Value, json};
+
+/// Movements at the end that nobody learns from.
+const FRESH: usize = 20;
+
+#[allow(clippy::print_stdout)] // Its output is what it is for.
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let [generator, set, decibels, rest @ ..] = &words[..] else {
+        panic!("usage: constraints_file GENERATOR SET DECIBELS [ROWS]")
+    };
+    let max_rows = rest.first().map_or(400, |rows| rows.parse().expect("ROWS is a whole number"));
+    let mut rng = ChaCha8Rng::seed_from_u64(set.parse().expect("SET is a whole number"));
+    let (recordings, arm) = record(generator, &mut rng);
+    let (shown, fresh) = recordings.split_at(recordings.len() - FRESH);
+    let shown = match decibels.as_str() {
+        "none" => shown.to_vec(),
+        decibels => with_velocity_noise(shown, decibels.parse().expect("DECIBELS is a number"), &mut rng)
+            .expect("velocities were recorded"),
+    };
+    let states = columns(fresh.iter().map(|recording| &recording.truth.states));
+    let demonstrations = demonstrations(&shown).expect("one state space");
+    let mut written = Map::new();
+    written.insert("samples".into(), json!(shown[0].truth.states.ncols()));
+    written.insert("dim".into(), json!(states.nrows()));
+    written.insert("states".into(), list(&columns(shown.iter().map(|recording| &recording.truth.states))));
+    written.insert(
+        "velocities".into(),
+        list(&columns(demonstrations.trajectories().iter().filter_map(|of| of.velocities()))),
+    );
+    written.insert("test_actions".into(), list(&columns(fresh.iter().map(|recording| &recording.truth.actions))));
+    written.extend(ours(&demonstrations, &states, max_rows));
+    written.insert("test_states".into(), list(&states));
+    if let Some(arm) = arm {
+        written.extend(kinematics_of(&arm, &shown));
+    }
+    println!("{}", Value::Object(written));
+}
+
+fn record(generator: &str, rng: &mut ChaCha8Rng) -> (Vec<Recording>, Option<Wiping>) {
+    let cycles = |largest_task| {
+        let system = CyclesWithTask::default();
+        let n_trajectories = system.n_trajectories + FRESH;
+        CyclesWithTask { largest_task, n_trajectories, ..system }
+    };
+    let wiping = |contact| {
+        let mut system =
+            Wiping::new(include_str!("../../../robots/seven_joint_arm.urdf"), contact).expect("a sound URDF");
+        system.n_trajectories += FRESH;
+        system
+    };
+    match generator {
+        "cycle" => (cycles(0.0).record(rng).expect("sound settings"), None),
+        "cycle-task" => (cycles(0.3).record(rng).expect("sound settings"), None),
+        "wiping" | "wiping-flat" => {
+            let arm = wiping(if generator == "wiping" { Contact::Height } else { Contact::Flat });
+            (arm.record(rng).expect("sound settings"), Some(arm))
+        }
+        _ => panic!("no such generator: {generator}"),
+    }
+}
+
+/// What the program would learn from the velocities: slope GP or direct GP, with the noise that it estimates, and constraints that may push.
+fn ours(demonstrations: &Demonstrations, states: &DMatrix<f64>, max_rows: usize) -> Map<String, Value> {
+    let hyper_rows = max_rows / 2;
+    let learner = AutoGp {
+        slope: SlopeGp { max_rows, hyper_rows, push_test: PushTest::Fit, ..SlopeGp::default() },
+        direct: DirectGp { max_rows, hyper_rows, ..DirectGp::default() },
+        ..AutoGp::default()
+    };
+    let rows = FrontEnd::of_velocities(demonstrations).rows(demonstrations).expect("velocities were recorded");
+    let fit = learner.fit(&rows, &mut ChaCha8Rng::seed_from_u64(1)).expect("enough movements");
+    let actions = DMatrix::from_columns(&states.column_iter().map(|state| fit.action(state)).collect::<Vec<_>>());
+    let facts = json!({
+        "ours": list(&actions),
+        "reading": format!("{:?}", fit.reading()),
+        "pushed": fit.slope().report().push,
+        "expected": fit.expected_nupe(),
+    });
+    let Value::Object(facts) = facts else { unreachable!("it was written as an object") };
+    facts
+}
+
+/// What somebody who knows the arm can add to its recordings.
+fn kinematics_of(arm: &Wiping, shown: &[Recording]) -> Map<String, Value> {
+    let (mut jacobians, mut positions, mut axes) = (Vec::new(), Vec::new(), Vec::new());
+    let mut workspace = Workspace::new();
+    for state in shown.iter().flat_map(|recording| recording.truth.states.column_iter()) {
+        let mut jacobian = Matrix6xX::zeros(state.len());
+        let pose = arm.tool().jacobian(state.as_view(), &mut workspace, &mut jacobian).expect("a state of the arm");
+        jacobians.extend_from_slice(jacobian.transpose().as_slice());
+        positions.extend_from_slice(pose.translation.vector.as_slice());
+        axes.extend_from_slice((pose.rotation * Vector3::z()).as_slice());
+    }
+    [("jacobians", jacobians), ("positions", positions), ("tool_axes", axes)]
+        .map(|(name, values)| (name.to_owned(), json!(values)))
+        .into_iter()
+        .collect()
+}
+
+fn columns<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>>) -> DMatrix<f64> {
+    let parts: Vec<_> = parts.collect();
+    let all: Vec<DVectorView<'_, f64>> = parts.iter().flat_map(|part| part.column_iter()).collect();
+    DMatrix::from_columns(&all)
+}
+
+fn list(matrix: &DMatrix<f64>) -> Value {
+    json!(matrix.as_slice())
+}
