@@ -6,10 +6,9 @@ use policy_align::{
     ConstraintStretch, Model, Prepared, StateChannel, TaskLinks, constraint_file, estimate_constraints,
 };
 use serde_json::json;
-use text::quoted;
 
 use crate::cli::failure::{Exit, Failure, displayed};
-use crate::cli::lines::{Lines, short};
+use crate::cli::lines::Lines;
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
 use crate::cli::recorded::{named, prepared_for};
 use crate::cli::session::{Output, Session, write};
@@ -116,10 +115,7 @@ impl Constraints {
             lines.add("", &format!("and {} more: --json shows all, --of NAME one episode", found.len() - LISTED));
         }
         if let Some(path) = &self.output {
-            lines.written(path, "constraints of an episode");
-            let start = model.state.iter().map(|channel| short(channel.median)).collect::<Vec<_>>().join(",");
-            let (model, path) = (quoted(&self.model), quoted(path));
-            return lines.next(&format!("policy-align rollout {model} --from {start} --constraint {path}"));
+            lines.written(path, "for policy-align rollout --constraint");
         }
         lines.into_text()
     }
