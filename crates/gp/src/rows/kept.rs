@@ -51,7 +51,7 @@ pub(crate) struct OfStretches {
 /// Rows kept, in the order of trajectories and samples.
 #[derive(Debug, Clone)]
 pub(crate) struct Kept {
-    /// (n, M).
+    /// States with their contexts, (n + p, M).
     pub(crate) states: DMatrix<f64>,
     /// (n, M).
     pub(crate) velocities: DMatrix<f64>,
@@ -158,7 +158,7 @@ fn grouped(rows: &Rows, usable: &[usize]) -> Result<Grouped, GpError> {
     if recorded > 2 && with_rows < 3 {
         return Err(GpError::TooFewTrajectories { found: with_rows });
     }
-    let needed = rows.dim() + 2;
+    let needed = rows.states().nrows() + 2;
     if usable.len() < needed {
         return Err(GpError::TooFewRows { found: usable.len(), needed });
     }

@@ -3,6 +3,7 @@
 //! With z = Cx the right coordinates, C diagonal, and m = C², the policy is −M⁻¹∇φ: (S1) becomes −uᵀ∇φ(x) = uᵀMu, linear in m
 //! and φ together. Left-out errors are linear in targets, so those of each axis alone give the left-out error of every m.
 
+mod context;
 mod quotient;
 
 use motion::{scaled, upper_median};
@@ -60,7 +61,7 @@ impl Round {
     fn new(kept: &Kept, blocks: Vec<Block>, factors: DVector<f64>) -> Option<Round> {
         let velocities = scaled(&kept.velocities, &factors);
         let speeds: Vec<f64> = velocities.column_iter().map(|velocity| velocity.norm()).collect();
-        let states = scaled(&kept.states, &factors);
+        let states = rescaled(&kept.states, &factors);
         let kept = Kept { states, velocities, speeds, variances: None, ..kept.clone() };
         let data = SlopeData::from_kept(&kept, vec![1.0; kept.speeds.len()]).ok()?;
         let fit = data.fit(&blocks, &kept.hyper, None)?;
@@ -91,7 +92,7 @@ impl Round {
 
     /// π̂ at the rows, in units of the recording.
     fn actions(self, kept: &Kept) -> DMatrix<f64> {
-        let states = scaled(&kept.states, &self.factors);
+        let states = rescaled(&kept.states, &self.factors);
         let actions = self.data.model(self.blocks, self.fit).actions(&states);
         scaled(&actions, &self.factors.map(f64::recip))
     }
@@ -112,8 +113,8 @@ impl SlopeGp {
         };
         let kept = few.keep(rows, rng)?;
         let round = |factors| Round::new(&kept, self.families[0].blocks(self.trend), factors);
-        let dim = kept.states.nrows();
-        let spread = DVector::from_iterator(dim, kept.states.row_iter().map(|axis| axis.variance().sqrt()));
+        let dim = rows.dim();
+        let spread = spreads(&kept.states).rows(0, dim).into_owned();
         if dim == 1 || spread.min() <= 0.0 {
             return Ok(None);
         }
@@ -140,6 +141,19 @@ impl SlopeGp {
         };
         Ok(best.filter(sound).and_then(|best| accepted(recorded, best, &kept)))
     }
+}
+
+/// Standard deviation of every axis.
+fn spreads(states: &DMatrix<f64>) -> DVector<f64> {
+    DVector::from_iterator(states.nrows(), states.row_iter().map(|axis| axis.variance().sqrt()))
+}
+
+/// States (n + p, M) with a factor on every axis that moves, (n), and one on their context that keeps its share of the spread.
+fn rescaled(states: &DMatrix<f64>, factors: &DVector<f64>) -> DMatrix<f64> {
+    let (dim, context_dim) = (factors.len(), states.nrows() - factors.len());
+    let spread = spreads(&states.rows(0, dim).into_owned());
+    let context = spread.component_mul(factors).norm() / spread.norm();
+    scaled(states, &factors.clone().resize_vertically(dim + context_dim, context))
 }
 
 /// Factors relative to their median, with a power of ten, times 1 or a degree in radians, in place of what is close to it: most
