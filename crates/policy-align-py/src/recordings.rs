@@ -84,7 +84,7 @@ impl Recordings {
             let velocities = velocities.as_ref().and_then(|velocities| velocities[k].as_ref().map(matrix));
             let source = Source::default();
             let constraint = constraints.get(k).cloned().flatten();
-            episodes.push(Episode { name, source, times, positions, velocities, constraint });
+            episodes.push(Episode { name, source, times, positions, velocities, constraint, context: nalgebra::DVector::zeros(0) });
         }
         let state = channels.into_iter().zip(units).map(|(name, unit)| Channel { name, unit }).collect();
         let recordings = motion::Recordings { state, episodes, findings: vec![] };

@@ -10,7 +10,7 @@ fn recordings(times: Vec<f64>, value: impl Fn(f64) -> f64) -> Recordings {
     let source = Source { file: "made".to_owned(), rows: None };
     let velocities = Some(positions.clone());
     let episode =
-        Episode { name: "a".to_owned(), source, times: Times::Stamped(times), positions, velocities, constraint: None };
+        Episode { name: "a".to_owned(), source, times: Times::Stamped(times), positions, velocities, constraint: None, context: nalgebra::DVector::zeros(0) };
     let state = vec![Channel { name: "x".to_owned(), unit: None }];
     Recordings { state, episodes: vec![episode], findings: vec![] }
 }

@@ -149,6 +149,7 @@ pub(crate) fn write_paths(output: &path::Path, model: &Model, paths: &[Path]) ->
         positions: followed.states.clone(),
         velocities: Some(followed.velocities.clone()),
         constraint: None,
+        context: nalgebra::DVector::zeros(0),
     };
     let recordings = Recordings {
         state: model.state.iter().map(channel).collect(),
