@@ -4,16 +4,22 @@ mod finite;
 
 use self::finite::make_finite;
 use crate::names::selection::flags;
-use crate::raw::{RawEpisode, RawRecordings, positive, remark};
+use crate::raw::{RawEpisode, RawRecordings, positive, remark, unused};
 use crate::rows::roles;
 use crate::{Fault, ReadError, ReadOptions};
-use motion::Finding;
+use motion::{Channel, Finding};
+
+/// What LeRobot calls the places of objects.
+pub(crate) const ENVIRONMENT: &str = "observation.environment_state";
 
 /// Checks and repairs every episode, as the options say.
 pub(crate) fn clean(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<(), ReadError> {
     positive(options.split_gap, "--split-gap")?;
     if drafts.drop_constant {
         leave_out_constant(drafts);
+    }
+    if options.context.is_empty() {
+        leave_out_moving_environment(drafts);
     }
     name_units(drafts, options)?;
     degrees_to_radians(drafts, options)?;
@@ -67,6 +73,36 @@ fn leave_out_constant(drafts: &mut RawRecordings) {
     for draft in &mut drafts.episodes {
         let mut column = changes.iter().cycle();
         draft.positions.retain(|_| *column.next().unwrap_or(&true));
+    }
+}
+
+/// The environment of LeRobot is context if it stays as it is in every episode and differs between them; else it is not used.
+fn leave_out_moving_environment(drafts: &mut RawRecordings) {
+    let n = drafts.channels.len();
+    let is_environment = |channel: &Channel| channel.name.starts_with(ENVIRONMENT);
+    let stays: Vec<bool> = drafts.channels.iter().map(|channel| !is_environment(channel)).collect();
+    let part = |sample: &[f64]| -> Vec<f64> {
+        sample.iter().zip(&stays).filter(|(_, stays)| !**stays).map(|(value, _)| *value).collect()
+    };
+    let mut firsts = drafts.episodes.iter().filter_map(|draft| draft.positions.chunks_exact(n).next()).map(part);
+    let first = firsts.next();
+    let differs = firsts.any(|other| Some(&other) != first.as_ref());
+    let moves = |draft: &RawEpisode| {
+        let mut samples = draft.positions.chunks_exact(n).map(part);
+        let first = samples.next();
+        samples.any(|sample| Some(&sample) != first.as_ref())
+    };
+    if stays.iter().all(|&stays| stays) || (differs && !drafts.episodes.iter().any(moves)) {
+        return;
+    }
+    let names: Vec<&str> =
+        drafts.channels.iter().filter(|channel| is_environment(channel)).map(|channel| &channel.name[..]).collect();
+    drafts.findings.extend(unused("columns", &names));
+    let mut column = stays.iter();
+    drafts.channels.retain(|_| *column.next().unwrap_or(&true));
+    for numbers in drafts.episodes.iter_mut().flat_map(|draft| [&mut draft.positions, &mut draft.velocities]) {
+        let mut column = stays.iter().cycle();
+        numbers.retain(|_| *column.next().unwrap_or(&true));
     }
 }
 

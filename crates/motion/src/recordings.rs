@@ -66,19 +66,13 @@ pub struct Rows {
 }
 
 /// Words in the names of what movements depend on and what does not move.
-const CONTEXTS: [&str; 9] =
-    ["goal", "target", "object", "obj", "load", "payload", "mass", "context", "environment_state"];
+const CONTEXTS: [&str; 8] = ["goal", "target", "object", "obj", "load", "payload", "mass", "context"];
 
-impl Channel {
-    /// Whether it is called like a context: goal, target, object, load and their like.
-    pub fn is_called_context(&self) -> bool {
-        let name = self.name.to_lowercase();
-        let is_word = |word: &str| {
-            let stem = word.trim_end_matches(|c: char| c.is_ascii_digit());
-            CONTEXTS.contains(&stem)
-        };
-        name.contains("environment_state") || name.split(|c: char| !c.is_alphanumeric()).any(is_word)
-    }
+/// Whether a name is one of a context: goal, target, object, load and their like.
+pub fn is_called_context(name: &str) -> bool {
+    let name = name.to_lowercase();
+    let is_word = |word: &str| CONTEXTS.contains(&word.trim_end_matches(|c: char| c.is_ascii_digit()));
+    name.contains("environment_state") || name.split(|c: char| !c.is_alphanumeric()).any(is_word)
 }
 
 impl Recordings {

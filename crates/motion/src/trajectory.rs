@@ -165,6 +165,12 @@ impl Trajectory {
         self.states.column(sample)
     }
 
+    /// State x_i with its context c, (n + p).
+    pub fn state_in_context(&self, sample: usize) -> DVector<f64> {
+        let both = self.state(sample).into_owned().data.as_vec().iter().chain(&self.context).copied().collect();
+        DVector::from_vec(both)
+    }
+
     /// Dimension n of the state.
     pub fn dim(&self) -> usize {
         self.states.nrows()

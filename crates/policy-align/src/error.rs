@@ -19,6 +19,12 @@ pub enum FitError {
         /// What it must satisfy.
         requirement: &'static str,
     },
+    /// The learner has no use for a context.
+    #[error("PolicyAlign cannot learn what depends on a context ({context})")]
+    Context {
+        /// Its channels.
+        context: String,
+    },
     /// A Gaussian process refuses.
     #[error(transparent)]
     Gp(#[from] GpError),

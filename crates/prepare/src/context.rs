@@ -1,6 +1,6 @@
 //! Tells the context from the state.
 
-use motion::{Channel, Demonstrations, Episode, Verdict};
+use motion::{Channel, Demonstrations, Episode, Verdict, is_called_context};
 use nalgebra::DVector;
 
 use crate::notes::Notes;
@@ -66,7 +66,7 @@ fn found(channels: &[Channel], episodes: &[Episode], notes: &mut Notes) -> Vec<u
         differs && episodes.iter().all(|episode| is_constant(episode, at))
     };
     let (context, unsure): (Vec<usize>, Vec<usize>) =
-        (0..channels.len()).filter(behaves).partition(|&at| channels[at].is_called_context());
+        (0..channels.len()).filter(behaves).partition(|&at| is_called_context(&channels[at].name));
     let moves = |at: usize| !context.contains(&at) && episodes.iter().any(|episode| !is_constant(episode, at));
     if !(0..channels.len()).any(moves) {
         return Vec::new();

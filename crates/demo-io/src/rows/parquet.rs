@@ -17,6 +17,7 @@ use crate::raw::{RawRecordings, remark};
 use crate::rows::roles::{Column, Content};
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use crate::rows::table::{Row, Table};
+use crate::clean::ENVIRONMENT;
 use crate::{Fault, ReadError, ReadOptions};
 use motion::Finding;
 
@@ -123,9 +124,13 @@ impl Columns {
         mine.dt = options.dt.or(described.period);
         mine.state = self.elements(&options.state, described, file)?;
         mine.velocity = self.elements(&options.velocity, described, file)?;
+        mine.context = self.elements(&options.context, described, file)?;
         mine.ignore = options.ignore.iter().flat_map(|pattern| self.elements_of(pattern)).collect();
         if mine.state.is_empty() {
             mine.state = self.elements_of(STATE).into_iter().filter(|name| name != STATE || self.has(STATE)).collect();
+            if !mine.state.is_empty() && mine.context.is_empty() && self.has(ENVIRONMENT) {
+                mine.context = self.elements_of(ENVIRONMENT);
+            }
         }
         if mine.state.is_empty() {
             // Goals are no positions.

@@ -18,6 +18,7 @@ use crate::cli::options::flags::{PrepareFlags, ReadFlags};
 use crate::cli::recorded::{named, read, summaries};
 use crate::cli::session::{Output, Session};
 use crate::cli::trust_files::load;
+use crate::cli::verbs::fit::context_of;
 
 /// Constraints that are listed, at most.
 const LISTED: usize = 5;
@@ -61,6 +62,7 @@ impl Evaluate {
         let mut options = config.under("prepare", &self.prepare)?.options(reading.dt)?;
         // The learner's states were multiplied by these, whatever the flags are.
         options.scale = model.scale();
+        options.context = context_of(&model);
         let prepared = self.prepared(session, &reading, &options)?;
         let found: Vec<String> = prepared.state.iter().map(|channel| channel.name.clone()).collect();
         let expected = model.channels();
@@ -149,6 +151,7 @@ impl Evaluate {
         let mut columns = reading.clone();
         columns.state.clone_from(&self.truth);
         columns.velocity.clear();
+        columns.context = vec![];
         let quiet = Session { quiet: true, ..session.clone() };
         let recordings = read(&quiet, &self.files, &columns)?;
         let scale = model.scales();

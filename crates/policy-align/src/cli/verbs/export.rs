@@ -8,7 +8,7 @@ use text::quoted;
 use crate::cli::failure::{Exit, Failure, displayed};
 use crate::cli::lines::{Lines, counted, list, size};
 use crate::cli::options::config::Config;
-use crate::cli::options::flags::numbers;
+use crate::cli::options::flags::{in_context, numbers};
 use crate::cli::options::rollout_flags::RollOutFlags;
 use crate::cli::session::{Output, Session, write};
 use crate::cli::trust_files::load;
@@ -95,6 +95,7 @@ impl Export {
             return Err(Failure::usage("MCAP files end in .mcap", displayed(output), "`rollout -o` for other formats"));
         }
         let flags = Config::of(session)?.under("rollout", &self.follow)?;
+        let model = &in_context(model.clone(), &flags.context)?;
         let given = self.from.iter().map(|from| Ok(DVector::from_vec(numbers(from, "--from")?)));
         let mut starts = given.collect::<Result<Vec<_>, Failure>>()?;
         if starts.is_empty() {

@@ -6,7 +6,7 @@ use clap::Args;
 use demo_io::TempFile;
 use motion::Recordings;
 use policy_align::{
-    Decision, Evaluation, Finding, Model, PrepareOptions, Prepared, Progress, Verdict, checksum_of, evaluate, fit,
+    ContextUse, Decision, Evaluation, Finding, Model, PrepareOptions, Prepared, Progress, Verdict, checksum_of, evaluate, fit,
     prepare,
 };
 use serde_json::json;
@@ -62,9 +62,10 @@ impl Fit {
         if self.print_config {
             return Ok(Output::done(printed(&reading, &preparing, &learning)?));
         }
-        let (prepare_options, fit_options) = (preparing.options(reading.dt)?, learning.options()?);
+        let (mut prepare_options, fit_options) = (preparing.options(reading.dt)?, learning.options()?);
         let place = || named(&self.files);
         let recordings = read(session, &self.files, &reading)?;
+        prepare_options.context = reading.context_of(&recordings)?;
         let (recordings, held_out) = divided(recordings, &learning.hold_out, &place())?;
         let prepared = prepare(&recordings, &prepare_options).map_err(|error| Failure::prepare(&error, place()))?;
         let bar = session.bar(4, "{msg}  {bar:30} step {pos} of {len}, {elapsed} elapsed");
@@ -174,10 +175,15 @@ fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Rec
 
 fn judged(held_out: &Recordings, options: &PrepareOptions, model: &Model) -> Result<Evaluation, Failure> {
     // In the units of the model, which may have learnt them.
-    let options = PrepareOptions { scale: model.scale(), ..options.clone() };
+    let options = PrepareOptions { scale: model.scale(), context: context_of(model), ..options.clone() };
     let prepared = prepare(held_out, &options).map_err(|error| Failure::prepare(&error, "--hold-out".to_owned()))?;
     evaluate(model.learnt.policy(), &prepared, None)
         .map_err(|error| Failure::new(Exit::Refused, error.to_string(), "--hold-out", "other episodes"))
+}
+
+/// The channels that are context to a model.
+pub(crate) fn context_of(model: &Model) -> ContextUse {
+    if model.context.is_empty() { ContextUse::Ignored } else { ContextUse::Named(model.context_names()) }
 }
 
 /// Writes files that belong together: none is replaced before all are on the disk.

@@ -8,7 +8,7 @@ use text::quoted;
 use crate::cli::failure::Failure;
 use crate::cli::lines::{Lines, short};
 use crate::cli::options::config::Config;
-use crate::cli::options::flags::{ReadFlags, numbers};
+use crate::cli::options::flags::{ReadFlags, in_context, numbers};
 use crate::cli::options::rollout_flags::RollOutFlags;
 use crate::cli::pages::picture::{Picture, draw};
 use crate::cli::recorded::{base_name, read};
@@ -19,7 +19,8 @@ use crate::cli::verbs::rollout::followed;
 /// Plot a policy, its potential and recordings
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Plots two channels; all others are at their median. Outside the data it is grey.
+Plots two channels; all others, and the context, are at their median unless
+--context says otherwise. Outside the data it is grey.
 All flags of reading files: policy-align check --help
 
 Example:
@@ -47,8 +48,9 @@ pub(crate) struct Plot {
 
 impl Plot {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
-        let model = load(session, &self.model)?;
         let config = Config::of(session)?;
+        let flags = config.under("rollout", &self.follow)?;
+        let model = in_context(load(session, &self.model)?, &flags.context)?.in_usual_context();
         let dims = dims(&self.dims, &model)?;
         let reading = config.under("read", &self.read)?.with_channels_of(&model);
         let demonstrated = if self.files.is_empty() {
@@ -57,7 +59,6 @@ impl Plot {
             let recordings = read(session, &self.files, &reading)?;
             recordings.episodes.into_iter().map(|episode| episode.positions).collect()
         };
-        let flags = config.under("rollout", &self.follow)?;
         let paths = self.rollout.iter().map(|from| {
             let start = DVector::from_vec(numbers(from, "--rollout")?);
             Ok(followed(&flags, &model, &start, from)?.states)

@@ -11,7 +11,7 @@ use text::quoted;
 use crate::cli::failure::{Exit, Failure, displayed};
 use crate::cli::lines::{Lines, counted, list, short};
 use crate::cli::options::config::Config;
-use crate::cli::options::flags::numbers;
+use crate::cli::options::flags::{in_context, numbers};
 use crate::cli::options::rollout_flags::RollOutFlags;
 use crate::cli::pages::picture::{Picture, draw};
 use crate::cli::recorded::base_name;
@@ -61,8 +61,8 @@ pub(crate) struct RollOut {
 
 impl RollOut {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
-        let model = load(session, &self.model)?;
         let flags = Config::of(session)?.under("rollout", &self.follow)?;
+        let model = in_context(load(session, &self.model)?, &flags.context)?;
         let start = DVector::from_vec(numbers(&self.from, "--from")?);
         let followed = followed(&flags, &model, &start, &self.from)?;
         if let Some(output) = &self.output {
