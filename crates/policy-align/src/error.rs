@@ -20,7 +20,7 @@ pub enum FitError {
         requirement: &'static str,
     },
     /// The learner has no use for a context.
-    #[error("PolicyAlign cannot learn what depends on a context ({context})")]
+    #[error("PolicyAlign cannot learn what depends on a context ({context}); --learner auto, or --context none")]
     Context {
         /// Its channels.
         context: String,

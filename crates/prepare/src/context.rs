@@ -29,7 +29,7 @@ pub(crate) fn split(
     }
     let names: Vec<&str> = context.iter().map(|&at| channels[at].name.as_str()).collect();
     if state.is_empty() {
-        return Err(PrepareError::Context { name: names[0].to_owned(), why: "no channel is left that moves".to_owned() });
+        return Err(PrepareError::Context { name: names[0].to_owned(), why: "no channel is left that moves; --context with fewer names".to_owned() });
     }
     notes.decided("context", names.join(", "), why, "--context");
     for episode in episodes {
@@ -50,7 +50,7 @@ fn named(names: &[String], channels: &[Channel], episodes: &[Episode]) -> Result
         match episodes.iter().find(|episode| !is_constant(episode, at)) {
             None => Ok(at),
             Some(episode) => Err(refused(format!(
-                "it changes within episode '{}'; what changes during a movement belongs to the state",
+                "it changes within episode '{}', so that it belongs to the state; --context with channels that stay as they are, or none",
                 episode.name
             ))),
         }

@@ -25,6 +25,7 @@ const LOAD_ONNX: &str = "python -c \"import onnxruntime as o, sys; o.InferenceSe
 C: one file of ISO C99 that needs math.h only. int policy(const double *x,
 double *u, double *phi) returns 1 within the data, 0 outside: then stop.
 ONNX: opset 17 in doubles, x (states, n) to u, phi and support.
+Of a model with a context c (p), both take it after x: policy(x, c, u, phi).
 MCAP: roll-outs as joint states of ROS 2, for Rerun, Foxglove and PlotJuggler.
 
 Examples:\n  policy-align export toy.json --to c -o toy.c\n  policy-align export toy.json --to mcap -o toy.mcap")]
