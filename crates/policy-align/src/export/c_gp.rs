@@ -83,17 +83,23 @@ int {name}({inputs}, real *u, real *phi) {{
         all = layout.all,
         x = if layout.has_context { "x[D], " } else { "" },
         moving = if layout.has_context { " && k < N" } else { "" },
-        rest = if layout.has_context {
-            "        real w = s;
-        for (k = N; k < D; k++) {
+        rest = rest(&layout, slope.terms.iter().any(|term| term.fall == Fall::DivergenceFree)),
+    );
+}
+
+/// The context's part of a distance; rotation knows the state's part, `w`, alone.
+fn rest(layout: &Layout, rotates: bool) -> String {
+    if !layout.has_context {
+        return String::new();
+    }
+    let kept = if rotates { "        real w = s;\n" } else { "" };
+    format!(
+        "{kept}        for (k = N; k < D; k++) {{
             a[k] = z[k] - Z[m][k];
             s += a[k] * a[k];
-        }
+        }}
 "
-        } else {
-            ""
-        },
-    );
+    )
 }
 
 /// û = unit Σ k(z, z') A.

@@ -85,10 +85,10 @@ impl RollOut {
             });
             return Ok(Output::json(&document, Exit::Done));
         }
-        Ok(Output::done(self.summary(&followed)))
+        Ok(Output::done(self.summary(&followed, &flags.context)))
     }
 
-    fn summary(&self, followed: &Path) -> String {
+    fn summary(&self, followed: &Path, context: &[String]) -> String {
         let mut lines = Lines::default();
         let (count, last) = (followed.times.len(), followed.times.len() - 1);
         let [start, end] = [0, last].map(|at| list(followed.states.column(at).iter().copied()));
@@ -109,7 +109,8 @@ impl RollOut {
             return lines.into_text();
         }
         let (model, from) = (quoted(&self.model), self.from.replace(char::is_whitespace, ""));
-        lines.next(&format!("policy-align rollout {model} --from {from} -o path.csv"))
+        let context = if context.is_empty() { String::new() } else { format!(" --context {}", context.join(",")) };
+        lines.next(&format!("policy-align rollout {model} --from {from}{context} -o path.csv"))
     }
 }
 
