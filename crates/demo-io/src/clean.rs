@@ -119,7 +119,8 @@ fn refuse_moving_context(drafts: &RawRecordings) -> Result<(), ReadError> {
         let Some(moving) = drafts.episodes.iter().find(moves) else { continue };
         if drafts.episodes.iter().all(without) {
             let what = format!("'{}' changes within an episode and has no velocity", described.name);
-            let remedy = format!("--ignore '{}', or --state and --velocity with the columns of the state", described.name);
+            let remedy =
+                format!("--ignore '{}', or --state and --velocity with the columns of the state", described.name);
             return Err(ReadError::NoRoles(Fault::new(what, moving.place(0, drafts.word), remedy)));
         }
     }

@@ -105,7 +105,10 @@ fn new_goals_are_reached() {
             let error = error_at_new_goals(&fit, &goals, &factors, seed);
             let without = error_without_context(&goals, &demonstrations, 400, seed);
             let (expected, r2) = (fit.expected_nupe(), fit.slope().report().r_squared);
-            eprintln!("{dim}-D {attraction:?}, {count} goals: {error:.1e}, expected {expected:.1e}, without context {without:.2}, 1 − R² {:.1e}", 1.0 - r2);
+            eprintln!(
+                "{dim}-D {attraction:?}, {count} goals: {error:.1e}, expected {expected:.1e}, without context {without:.2}, 1 − R² {:.1e}",
+                1.0 - r2
+            );
             assert!(error < most && without > 0.1 && expected > error / 10.0);
         }
     }

@@ -99,7 +99,9 @@ pub enum MotionError {
         expected: usize,
     },
     /// Two trajectories differ in the dimension of their context.
-    #[error("the context of trajectory {trajectory} has {found} numbers, that of trajectory 0 {expected}; give all the same")]
+    #[error(
+        "the context of trajectory {trajectory} has {found} numbers, that of trajectory 0 {expected}; give all the same"
+    )]
     ContextDimensions {
         /// The first trajectory that differs.
         trajectory: usize,

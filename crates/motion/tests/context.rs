@@ -11,7 +11,8 @@ fn movement() -> Trajectory {
 
 #[test]
 fn it_stays_when_states_change() {
-    let with = movement().with_velocities(DMatrix::repeat(2, 4, 1.0)).unwrap().with_context(dvector![3.0, -1.0, 2.0]).unwrap();
+    let with =
+        movement().with_velocities(DMatrix::repeat(2, 4, 1.0)).unwrap().with_context(dvector![3.0, -1.0, 2.0]).unwrap();
     assert_eq!(with.state_in_context(1), dvector![1.0, 2.0, 3.0, -1.0, 2.0]);
     assert_eq!(with.dim(), 2);
     assert_eq!(with.with_states(DMatrix::zeros(2, 4)).unwrap().context(), with.context());
@@ -32,7 +33,16 @@ fn it_is_finite_and_all_movements_have_one_alike() {
 
 #[test]
 fn names_of_goals_and_loads_are_known() {
-    for name in ["goal_x", "Goal[0]", "target.position.x", "goal1", "observation.environment_state_1", "load (kg)", "object y", "mass"] {
+    for name in [
+        "goal_x",
+        "Goal[0]",
+        "target.position.x",
+        "goal1",
+        "observation.environment_state_1",
+        "load (kg)",
+        "object y",
+        "mass",
+    ] {
         assert!(is_called_context(name), "{name}");
     }
     for name in ["x", "q1", "joint_goalie", "observation.state_0", "loaded", "z", "subject"] {

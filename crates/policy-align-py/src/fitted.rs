@@ -4,7 +4,9 @@ use std::sync::Arc;
 use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::{DMatrix, DVectorView};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
-use policy_align::{ContextUse, Evaluation, Model, ModelError, ModelPolicy, PrepareOptions, Progress, evaluate, fit, prepare};
+use policy_align::{
+    ContextUse, Evaluation, Model, ModelError, ModelPolicy, PrepareOptions, Progress, evaluate, fit, prepare,
+};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;

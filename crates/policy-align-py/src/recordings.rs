@@ -53,7 +53,8 @@ impl Recordings {
             if trim_still {
                 policy_align::trim_still(&mut recordings);
             }
-            let context = demo_io::channels_named(&options.context, &recordings).map_err(|error| Refusal::read(&error))?;
+            let context =
+                demo_io::channels_named(&options.context, &recordings).map_err(|error| Refusal::read(&error))?;
             let plain = paths.iter().filter(|path| path.is_file());
             let files: Result<Vec<_>, _> = plain.map(|path| FileSummary::of(path)).collect();
             let unread =
@@ -87,7 +88,15 @@ impl Recordings {
             let velocities = velocities.as_ref().and_then(|velocities| velocities[k].as_ref().map(matrix));
             let source = Source::default();
             let constraint = constraints.get(k).cloned().flatten();
-            episodes.push(Episode { name, source, times, positions, velocities, constraint, context: nalgebra::DVector::zeros(0) });
+            episodes.push(Episode {
+                name,
+                source,
+                times,
+                positions,
+                velocities,
+                constraint,
+                context: nalgebra::DVector::zeros(0),
+            });
         }
         let state = channels.into_iter().zip(units).map(|(name, unit)| Channel { name, unit }).collect();
         let recordings = motion::Recordings { state, episodes, findings: vec![] };

@@ -91,8 +91,8 @@ pub use model::{DataSummary, FileSummary, MadeBy, Model};
 pub use model_policy::{ModelPolicy, ModelPotential};
 pub use motion::{Decision, Finding, LeftOut, Verdict};
 pub use prepare::{
-    ContextUse, Noise, PrepareError, PrepareOptions, Prepared, Repair, Smoothing, StateChannel, VelocitySource, VelocityUse,
-    prepare, trim_still,
+    ContextUse, Noise, PrepareError, PrepareOptions, Prepared, Repair, Smoothing, StateChannel, VelocitySource,
+    VelocityUse, prepare, trim_still,
 };
 pub use roll_out::{ConstraintFileError, ConstraintSet, JointLimits, Path, RollOut, RollOutError, Stop, spread_starts};
 pub use stored::{ModelError, checksum_of, sha256, sha256_of_file, write_whole};

@@ -186,9 +186,8 @@ impl Inputs {
         WHOLE.with_borrow_mut(|whole| {
             whole.clear();
             whole.resize(self.scale.len(), 0.0);
-            let found = self.scaled(state, |state| {
-                evaluate(state, DVectorViewMut::from_slice(whole, self.scale.len()))
-            });
+            let found =
+                self.scaled(state, |state| evaluate(state, DVectorViewMut::from_slice(whole, self.scale.len())));
             vector.copy_from_slice(&whole[..vector.len()]);
             found
         })

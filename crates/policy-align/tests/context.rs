@@ -10,7 +10,9 @@ use std::sync::OnceLock;
 
 use motion::{Channel, Episode, Policy as _, Recordings, Source, Times, Verdict};
 use nalgebra::{DMatrix, DVector, dvector};
-use policy_align::{ContextError, ContextUse, Model, PrepareError, PrepareOptions, RollOut, RollOutError, prepare, to_onnx};
+use policy_align::{
+    ContextError, ContextUse, Model, PrepareError, PrepareOptions, RollOut, RollOutError, prepare, to_onnx,
+};
 use running::{examples, run_in};
 
 /// A folder with `goals.csv` and, learnt once, `goals.json`.
@@ -70,14 +72,20 @@ fn the_program_takes_a_context() {
     let ran = run_in(folder(), "predict goals.json --at 1.0,0.2");
     assert_eq!(ran.code, Some(2));
     assert!(ran.err.contains("depends on goal_x, goal_y") && ran.err.contains("--context"), "{}", ran.err);
-    for (context, what) in [("goal_x=1", "goal_y"), ("goal_x=1,goal_y=2,z=1", "no 'z'"), ("goal_x=nan,goal_y=1", "finite")] {
+    for (context, what) in
+        [("goal_x=1", "goal_y"), ("goal_x=1,goal_y=2,z=1", "no 'z'"), ("goal_x=nan,goal_y=1", "finite")]
+    {
         let ran = run_in(folder(), &format!("predict goals.json --at 1.0,0.2 --context {context}"));
         assert_eq!(ran.code, Some(2), "{}", ran.out);
         assert!(ran.err.contains(what), "{}", ran.err);
     }
     std::fs::write(folder().join("states.csv"), "goal_y,x,y,goal_x\n-0.5,1.0,0.2,0.5\n").unwrap();
     let ran = run_in(folder(), "predict goals.json states.csv");
-    assert!(ran.out.starts_with("x,y,goal_x,goal_y,u_x,u_y,potential,sd_x,sd_y,support,known\n1,0.2,0.5,-0.5,"), "{}", ran.out);
+    assert!(
+        ran.out.starts_with("x,y,goal_x,goal_y,u_x,u_y,potential,sd_x,sd_y,support,known\n1,0.2,0.5,-0.5,"),
+        "{}",
+        ran.out
+    );
     let ran = run_in(folder(), "rollout goals.json --from 1.2,-1 --context goal_x=-0.6,goal_y=0.6 -o path.csv");
     assert!(ran.out.contains("at rest"), "{} {}", ran.out, ran.err);
     let ran = run_in(folder(), "rollout goals.json --from 1.2,-1");

@@ -29,7 +29,10 @@ pub(crate) fn split(
     }
     let names: Vec<&str> = context.iter().map(|&at| channels[at].name.as_str()).collect();
     if state.is_empty() {
-        return Err(PrepareError::Context { name: names[0].to_owned(), why: "no channel is left that moves; --context with fewer names".to_owned() });
+        return Err(PrepareError::Context {
+            name: names[0].to_owned(),
+            why: "no channel is left that moves; --context with fewer names".to_owned(),
+        });
     }
     notes.decided("context", names.join(", "), why, "--context");
     for episode in episodes {
@@ -105,7 +108,9 @@ pub(crate) fn remark(demonstrations: &Demonstrations, context: &[StateChannel], 
     } else if different < movements.len() {
         notes.found(
             Verdict::Good,
-            format!("{shown} in {episodes}: errors on left-out movements are those at contexts that other movements had"),
+            format!(
+                "{shown} in {episodes}: errors on left-out movements are those at contexts that other movements had"
+            ),
             "hold out all movements of some contexts: --hold-out",
         );
     } else {

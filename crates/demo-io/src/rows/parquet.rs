@@ -11,13 +11,13 @@ use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 
 use self::failure::failed;
 use self::leaf::Leaf;
+use crate::clean::ENVIRONMENT;
 use crate::input::Input;
 use crate::names::selection::select;
 use crate::raw::{RawRecordings, remark};
 use crate::rows::roles::{Column, Content};
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use crate::rows::table::{Row, Table};
-use crate::clean::ENVIRONMENT;
 use crate::{Fault, ReadError, ReadOptions};
 use motion::Finding;
 

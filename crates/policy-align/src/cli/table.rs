@@ -43,7 +43,8 @@ fn parsed(text: &str, model: &Model, place: &str) -> Result<DMatrix<f64>, Failur
         let line = record.position().map_or(1, csv::Position::line);
         let Some(columns) = &columns else {
             let found = columns_of(&record, model).ok_or_else(|| {
-                let what = format!("the first row does not name all of {}", inputs(model).collect::<Vec<_>>().join(", "));
+                let what =
+                    format!("the first row does not name all of {}", inputs(model).collect::<Vec<_>>().join(", "));
                 fault(what, line, "a header with these names, or only these columns")
             })?;
             let is_header = record.iter().any(|field| field.parse::<f64>().is_err());

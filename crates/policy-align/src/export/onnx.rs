@@ -76,7 +76,6 @@ fn described(model: &Model, graph: &Message) -> Vec<u8> {
         .message(14, &entry("time_step", &model.time_step.to_string()))
         .message(14, &entry("trust", verdict));
     let context = model.context_names().join(",");
-    let described =
-        if context.is_empty() { described } else { described.message(14, &entry("context", &context)) };
+    let described = if context.is_empty() { described } else { described.message(14, &entry("context", &context)) };
     described.into_bytes()
 }

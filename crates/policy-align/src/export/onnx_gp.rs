@@ -89,12 +89,7 @@ pub(super) fn write_direct(
 }
 
 /// g and h of (S3), summed over the terms, (B, M) each.
-fn slopes(
-    graph: &Graph,
-    slope: &SlopeFormula<'_>,
-    dim: usize,
-    (squared, moving): (&str, &str),
-) -> [String; 2] {
+fn slopes(graph: &Graph, slope: &SlopeFormula<'_>, dim: usize, (squared, moving): (&str, &str)) -> [String; 2] {
     // Without any term: zeros of the right shape.
     let mut sums = [graph.times(squared, 0.0), graph.times(squared, 0.0)];
     for &term in &slope.terms {

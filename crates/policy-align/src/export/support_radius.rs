@@ -22,8 +22,7 @@ pub(super) fn squared_radius(model: &Model, scaled: &ScaledStates<'_>) -> f64 {
     let (policy, bounds) = (model.policy(), model.bounds());
     let evaluated = (1..=STATES).into_par_iter().map(|index| {
         let state = between(&bounds, index);
-        let z =
-            DVector::from_fn(state.len(), |k, _| (state[k] * scale[k] - scaled.mean[k]) / scaled.spread);
+        let z = DVector::from_fn(state.len(), |k, _| (state[k] * scale[k] - scaled.mean[k]) / scaled.spread);
         let nearest = scaled.z.column_iter().map(|row| (row - &z).norm_squared()).fold(f64::INFINITY, f64::min);
         (nearest, policy.is_supported(state.as_view()))
     });

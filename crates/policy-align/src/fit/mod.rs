@@ -38,8 +38,7 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
     options.check()?;
     let steps = if options.learner == LearnerChoice::PolicyAlign { 4 } else { 2 };
     progress.begin(0, steps, "cleaning the recordings")?;
-    let comparable =
-        if prepared.context.is_empty() { None } else { Some(context::comparable(prepared, options)?) };
+    let comparable = if prepared.context.is_empty() { None } else { Some(context::comparable(prepared, options)?) };
     let prepared = comparable.as_ref().unwrap_or(prepared);
     let rows = rows(prepared)?;
     progress.begin(1, steps, "learning with and without constraints")?;

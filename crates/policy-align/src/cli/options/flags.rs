@@ -281,7 +281,8 @@ pub(crate) fn in_context(model: Model, pairs: &[String]) -> Result<Model, Failur
     let context = model.in_named_context(&named_numbers(pairs, "--context")?);
     context.map_err(|error| {
         let names: Vec<String> = model.context_names().iter().map(|name| format!("{name}=…")).collect();
-        let remedy = if names.is_empty() { "no --context".to_owned() } else { format!("--context {}", names.join(",")) };
+        let remedy =
+            if names.is_empty() { "no --context".to_owned() } else { format!("--context {}", names.join(",")) };
         Failure::usage(error.to_string(), "--context", remedy)
     })
 }

@@ -6,8 +6,8 @@ use clap::Args;
 use demo_io::TempFile;
 use motion::Recordings;
 use policy_align::{
-    ContextUse, Decision, Evaluation, Finding, Model, PrepareOptions, Prepared, Progress, Verdict, checksum_of, evaluate, fit,
-    prepare,
+    ContextUse, Decision, Evaluation, Finding, Model, PrepareOptions, Prepared, Progress, Verdict, checksum_of,
+    evaluate, fit, prepare,
 };
 use serde_json::json;
 use text::quoted;

@@ -8,9 +8,9 @@ use policy_align::{Model, ModelPolicy, StateChannel};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
+use crate::cli::describe::context_flag;
 use crate::cli::failure::{Exit, Failure};
 use crate::cli::lines::{Lines, counted, list, short};
-use crate::cli::describe::context_flag;
 use crate::cli::options::flags::{in_context, numbers};
 use crate::cli::session::{Output, Session, write};
 use crate::cli::table::states;
