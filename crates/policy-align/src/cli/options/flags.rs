@@ -266,11 +266,11 @@ fn number(text: &str, flag: &str) -> Result<f64, Failure> {
 
 /// Numbers by name, as a context is given.
 pub(crate) fn named_numbers(pairs: &[String], flag: &str) -> Result<Vec<(String, f64)>, Failure> {
-    let pair = |text: &String| {
+    let pair = |text: &str| {
         let pair = text.split_once('=').and_then(|(name, number)| Some((name.to_owned(), number.trim().parse().ok()?)));
         pair.ok_or_else(|| Failure::usage(format!("'{text}' is not NAME=NUMBER"), flag, format!("{flag} goal_x=0.4")))
     };
-    pairs.iter().map(pair).collect()
+    pairs.iter().flat_map(|text| text.split(',')).map(pair).collect()
 }
 
 /// A model in the context that was given, if any.

@@ -14,9 +14,6 @@ pub(crate) struct RollOutFlags {
     /// Constraints of the roll-out
     #[arg(long, value_name = "FILE.toml")]
     constraint: Option<PathBuf>,
-    /// Context of a model that has one, as goal_x=0.4,goal_y=0.1
-    #[arg(long, value_name = "NAME=NUMBER", value_delimiter = ',', allow_hyphen_values = true)]
-    pub(crate) context: Vec<String>,
     /// Longest duration [default: 3 times the longest episode]
     #[arg(long, value_name = "SECONDS")]
     seconds: Option<f64>,

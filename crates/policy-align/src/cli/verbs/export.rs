@@ -47,6 +47,9 @@ pub(crate) struct Export {
     /// Start of a roll-out for MCAP; may be repeated [default: twelve]
     #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
     from: Vec<String>,
+    /// For MCAP: context of a model that has one, as goal_x=0.4,goal_y=0.1
+    #[arg(long, value_name = "NAME=NUMBER", value_delimiter = ',', allow_hyphen_values = true)]
+    context: Vec<String>,
     #[command(flatten)]
     follow: RollOutFlags,
 }
@@ -66,7 +69,9 @@ impl Export {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let model = load(session, &self.model)?;
         let output = |extension| self.output.clone().unwrap_or_else(|| self.model.with_extension(extension));
-        if self.to != Target::Mcap && (!self.from.is_empty() || self.follow != RollOutFlags::default()) {
+        if self.to != Target::Mcap
+            && (!self.from.is_empty() || !self.context.is_empty() || self.follow != RollOutFlags::default())
+        {
             return Err(Failure::usage("only MCAP holds roll-outs", "roll-out flags", "--to mcap"));
         }
         let precision = if self.float { Precision::Single } else { Precision::Double };
@@ -96,7 +101,7 @@ impl Export {
             return Err(Failure::usage("MCAP files end in .mcap", displayed(output), "`rollout -o` for other formats"));
         }
         let flags = Config::of(session)?.under("rollout", &self.follow)?;
-        let model = &in_context(model.clone(), &flags.context)?;
+        let model = &in_context(model.clone(), &self.context)?;
         let given = self.from.iter().map(|from| Ok(DVector::from_vec(numbers(from, "--from")?)));
         let mut starts = given.collect::<Result<Vec<_>, Failure>>()?;
         if starts.is_empty() {

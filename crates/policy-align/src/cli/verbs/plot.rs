@@ -19,8 +19,8 @@ use crate::cli::verbs::rollout::followed;
 /// Plot a policy, its potential and recordings
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Plots two channels; all others, and the context, are at their median unless
---context says otherwise. Outside the data it is grey.
+Plots two channels; all others are at their median, and so is the context, unless
+--context goal_x=0.4,goal_y=0.1 chooses one. Outside the data it is grey.
 All flags of reading files: policy-align check --help
 
 Example:
@@ -50,9 +50,11 @@ impl Plot {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let config = Config::of(session)?;
         let flags = config.under("rollout", &self.follow)?;
-        let model = in_context(load(session, &self.model)?, &flags.context)?.in_usual_context();
+        let model = in_context(load(session, &self.model)?, &self.read.context)?.in_usual_context();
         let dims = dims(&self.dims, &model)?;
-        let reading = config.under("read", &self.read)?.with_channels_of(&model);
+        let mut reading = config.under("read", &self.read)?;
+        reading.context.clear();
+        let reading = reading.with_channels_of(&model);
         let demonstrated = if self.files.is_empty() {
             vec![]
         } else {

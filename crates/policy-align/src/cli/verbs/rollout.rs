@@ -49,6 +49,9 @@ pub(crate) struct RollOut {
     /// Start state
     #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
     from: String,
+    /// Context of a model that has one, as goal_x=0.4,goal_y=0.1
+    #[arg(long, value_name = "NAME=NUMBER", value_delimiter = ',', allow_hyphen_values = true)]
+    context: Vec<String>,
     /// Path to write: CSV or any other format of `convert`
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -62,7 +65,7 @@ pub(crate) struct RollOut {
 impl RollOut {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let flags = Config::of(session)?.under("rollout", &self.follow)?;
-        let model = in_context(load(session, &self.model)?, &flags.context)?;
+        let model = in_context(load(session, &self.model)?, &self.context)?;
         let start = DVector::from_vec(numbers(&self.from, "--from")?);
         let followed = followed(&flags, &model, &start, &self.from)?;
         if let Some(output) = &self.output {
@@ -85,10 +88,10 @@ impl RollOut {
             });
             return Ok(Output::json(&document, Exit::Done));
         }
-        Ok(Output::done(self.summary(&followed, &flags.context)))
+        Ok(Output::done(self.summary(&followed)))
     }
 
-    fn summary(&self, followed: &Path, context: &[String]) -> String {
+    fn summary(&self, followed: &Path) -> String {
         let mut lines = Lines::default();
         let (count, last) = (followed.times.len(), followed.times.len() - 1);
         let [start, end] = [0, last].map(|at| list(followed.states.column(at).iter().copied()));
@@ -109,7 +112,8 @@ impl RollOut {
             return lines.into_text();
         }
         let (model, from) = (quoted(&self.model), self.from.replace(char::is_whitespace, ""));
-        let context = if context.is_empty() { String::new() } else { format!(" --context {}", context.join(",")) };
+        let given = self.context.join(",");
+        let context = if given.is_empty() { String::new() } else { format!(" --context {given}") };
         lines.next(&format!("policy-align rollout {model} --from {from}{context} -o path.csv"))
     }
 }
