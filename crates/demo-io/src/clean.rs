@@ -4,16 +4,23 @@ mod finite;
 
 use self::finite::make_finite;
 use crate::names::selection::flags;
-use crate::raw::{RawEpisode, RawRecordings, positive, remark};
+use crate::raw::{RawEpisode, RawRecordings, positive, remark, unused};
 use crate::rows::roles;
 use crate::{Fault, Nan, ReadError, ReadOptions};
-use motion::Finding;
+use motion::{Channel, Finding, is_called_context};
+
+/// What LeRobot calls the places of objects.
+pub(crate) const ENVIRONMENT: &str = "observation.environment_state";
 
 /// Checks and repairs every episode, as the options say.
 pub(crate) fn clean(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<(), ReadError> {
     positive(options.split_gap, "--split-gap")?;
     if drafts.drop_constant {
         leave_out_constant(drafts);
+    }
+    if options.context.is_empty() {
+        leave_out_moving_environment(drafts);
+        refuse_moving_context(drafts)?;
     }
     name_units(drafts, options)?;
     degrees_to_radians(drafts, options)?;
@@ -81,6 +88,56 @@ fn not_recorded(missing: usize, samples: usize, nan: Nan) -> Option<Finding> {
     };
     let what = format!("{missing} of {samples} samples were not finite and {what}");
     (missing > 0).then(|| remark(what, "check the recorder: what is missing is often missing where it matters"))
+}
+
+/// The environment of LeRobot is context if it stays as it is in every episode and differs between them; else it is not used.
+fn leave_out_moving_environment(drafts: &mut RawRecordings) {
+    let n = drafts.channels.len();
+    let is_environment = |channel: &Channel| channel.name.starts_with(ENVIRONMENT);
+    let stays: Vec<bool> = drafts.channels.iter().map(|channel| !is_environment(channel)).collect();
+    let part = |sample: &[f64]| -> Vec<f64> {
+        sample.iter().zip(&stays).filter(|(_, stays)| !**stays).map(|(value, _)| *value).collect()
+    };
+    let mut firsts = drafts.episodes.iter().filter_map(|draft| draft.positions.chunks_exact(n).next()).map(part);
+    let first = firsts.next();
+    let differs = firsts.any(|other| Some(&other) != first.as_ref());
+    let moves = |draft: &RawEpisode| {
+        let mut samples = draft.positions.chunks_exact(n).map(part);
+        let first = samples.next();
+        samples.any(|sample| Some(&sample) != first.as_ref())
+    };
+    if stays.iter().all(|&stays| stays) || (differs && !drafts.episodes.iter().any(moves)) {
+        return;
+    }
+    let names: Vec<&str> =
+        drafts.channels.iter().filter(|channel| is_environment(channel)).map(|channel| &channel.name[..]).collect();
+    drafts.findings.extend(unused("columns", &names));
+    let mut column = stays.iter();
+    drafts.channels.retain(|_| *column.next().unwrap_or(&true));
+    for numbers in drafts.episodes.iter_mut().flat_map(|draft| [&mut draft.positions, &mut draft.velocities]) {
+        let mut column = stays.iter().cycle();
+        numbers.retain(|_| *column.next().unwrap_or(&true));
+    }
+}
+
+/// What is called a context and has no velocity of its own has to stay as it is.
+fn refuse_moving_context(drafts: &RawRecordings) -> Result<(), ReadError> {
+    let n = drafts.channels.len();
+    let of = |numbers: &[f64], channel: usize| numbers.iter().skip(channel).step_by(n).copied().collect::<Vec<_>>();
+    for (channel, described) in drafts.channels.iter().enumerate().filter(|(_, of)| is_called_context(&of.name)) {
+        let without = |draft: &RawEpisode| {
+            !draft.velocities.is_empty() && of(&draft.velocities, channel).iter().all(|&velocity| velocity == 0.0)
+        };
+        let moves = |draft: &&RawEpisode| of(&draft.positions, channel).windows(2).any(|pair| pair[0] != pair[1]);
+        let Some(moving) = drafts.episodes.iter().find(moves) else { continue };
+        if drafts.episodes.iter().all(without) {
+            let what = format!("'{}' changes within an episode and has no velocity", described.name);
+            let remedy =
+                format!("--ignore '{}', or --state and --velocity with the columns of the state", described.name);
+            return Err(ReadError::NoRoles(Fault::new(what, moving.place(0, drafts.word), remedy)));
+        }
+    }
+    Ok(())
 }
 
 /// `--units m`, `--units x=mm`.
@@ -190,4 +247,55 @@ fn unwrap_angles(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<()
 pub(crate) fn rounded(value: f64) -> String {
     let digits = format!("{value:.3e}");
     digits.parse::<f64>().map_or(digits, |value| format!("{value}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::raw::Rows;
+
+    /// Two episodes of a state and an environment, with velocities.
+    fn drafts(environment: [[f64; 2]; 2]) -> RawRecordings {
+        let channel = |name: &str| Channel { name: name.to_owned(), unit: None };
+        let episode = |(k, values): (usize, &[f64; 2])| RawEpisode {
+            name: k.to_string(),
+            file: String::new(),
+            rows: Rows::consecutive(0, 2),
+            times: vec![0.0, 0.1],
+            positions: vec![1.0, values[0], 2.0, values[1]],
+            velocities: vec![10.0, 0.0, 10.0, 0.0],
+            constraint: None,
+        };
+        RawRecordings {
+            channels: vec![channel("observation.state_0"), channel("observation.environment_state_0")],
+            episodes: environment.iter().enumerate().map(episode).collect(),
+            findings: vec![],
+            word: "row",
+            drop_constant: false,
+        }
+    }
+
+    #[test]
+    fn a_context_that_moves_without_velocity_is_refused() {
+        let called = |environment| {
+            let mut drafts = drafts(environment);
+            drafts.channels[1].name = "target_x".to_owned();
+            refuse_moving_context(&drafts).is_err()
+        };
+        assert!(called([[3.0, 3.5], [4.0, 4.0]]) && !called([[3.0, 3.0], [4.0, 4.0]]));
+    }
+
+    #[test]
+    fn an_environment_stays_if_it_is_a_context() {
+        let mut context = drafts([[3.0, 3.0], [4.0, 4.0]]);
+        leave_out_moving_environment(&mut context);
+        assert_eq!((context.channels.len(), context.findings.len()), (2, 0));
+        for moving_or_same in [[[3.0, 3.5], [4.0, 4.0]], [[3.0, 3.0], [3.0, 3.0]]] {
+            let mut other = drafts(moving_or_same);
+            leave_out_moving_environment(&mut other);
+            assert_eq!((other.channels.len(), other.findings.len()), (1, 1));
+            assert_eq!(other.episodes[0].positions, [1.0, 2.0]);
+            assert_eq!(other.episodes[1].velocities, [10.0, 10.0]);
+        }
+    }
 }

@@ -14,6 +14,9 @@ pub struct ReadOptions {
     pub state: Vec<String>,
     /// `--velocity`: patterns of the state's velocities, in the order of the state.
     pub velocity: Vec<String>,
+    /// `--context`: patterns of what movements depend on and what stays as it is in each, such as a goal. These channels come after the
+    /// state, and where velocities are recorded, theirs are 0.
+    pub context: Vec<String>,
     /// `--time`: the column or array of stamps.
     pub time: Option<String>,
     /// `--episode`: the column or array that tells episodes apart.

@@ -57,6 +57,7 @@ impl RawRecordings {
             velocities: (!raw.velocities.is_empty()).then(|| matrix(raw.velocities)),
             positions: matrix(raw.positions),
             constraint: raw.constraint,
+            context: nalgebra::DVector::zeros(0),
         });
         Recordings { state: channels, episodes: episodes.collect(), findings }
     }

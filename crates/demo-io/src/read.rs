@@ -9,7 +9,7 @@ use crate::input::{Input, name_of, unreadable};
 use crate::joined::joined;
 use crate::names::natural;
 use crate::raw::RawRecordings;
-use crate::rows::{delimited, json_lines};
+use crate::rows::{delimited, json_lines, roles};
 use crate::sniff::{self, Folder};
 use crate::{Fault, Format, ReadError, ReadOptions};
 use motion::Recordings;
@@ -51,6 +51,27 @@ pub fn read_all(
         return Err(nothing("there is no episode of two samples or more"));
     }
     Ok(drafts.checked())
+}
+
+/// Names of the channels that patterns name; a list of a Parquet file names its elements.
+///
+/// # Errors
+///
+/// [`ReadError::NoColumn`].
+pub fn channels_named(patterns: &[String], recordings: &Recordings) -> Result<Vec<String>, ReadError> {
+    let names: Vec<&str> = recordings.state.iter().map(|channel| channel.name.as_str()).collect();
+    let mut found = Vec::new();
+    for pattern in patterns.iter().flat_map(|pattern| pattern.split(',')).map(str::trim) {
+        let element = |name: &&str| name.strip_prefix(pattern).is_some_and(|rest| rest.starts_with('_'));
+        let elements: Vec<&str> = names.iter().copied().filter(element).collect();
+        if names.contains(&pattern) || elements.is_empty() {
+            let own = roles::named(&[pattern.to_owned()], &names, "--context, among the channels that were read")?;
+            found.extend(own.into_iter().map(|at| names[at].to_owned()));
+        } else {
+            found.extend(elements.into_iter().map(str::to_owned));
+        }
+    }
+    Ok(found)
 }
 
 /// Reads with a library that a feature brings, and that may panic at damaged files.

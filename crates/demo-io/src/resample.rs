@@ -80,6 +80,7 @@ fn along(episode: &Episode, rate: f64) -> Result<Episode, ResampleError> {
         velocities: episode.velocities.as_ref().map(at_times),
         times: Times::Stamped(times),
         constraint: episode.constraint.clone(),
+        context: episode.context.clone(),
     })
 }
 

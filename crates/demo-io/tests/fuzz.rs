@@ -41,6 +41,7 @@ fn recordings() -> Recordings {
         positions: numbers(k, 0.0),
         velocities: Some(numbers(k, 1.0)),
         constraint: Some(format!("rail {k}")),
+        context: nalgebra::DVector::zeros(0),
     };
     let channel = |name: &str| Channel { name: name.to_owned(), unit: Some("m".to_owned()) };
     Recordings { state: vec![channel("x"), channel("y")], episodes: (0..3).map(episode).collect(), findings: vec![] }

@@ -52,7 +52,8 @@
 //!   direction that never moved.
 //! - **Constraints that push** (A u = b, b ≠ 0) with A or b changing from sample to sample, or that project obliquely.
 //!   While A and b are constant, directions in which velocities differ are learnt from ([`TrustReport::push`]).
-//! - **Motion that depends on more than the state** (time, load, a moving target) is [`Hypothesis::Unexplained`].
+//! - **Motion that depends on more than the state** (time, a moving target) is [`Hypothesis::Unexplained`]. What stays as it is during
+//!   a movement, a goal or a load, can be context ([`Rows::with_context`]).
 //! - **Corridors**: where all movements follow one narrow path, nothing tests the policy across it.
 //! - **Kinks in many dimensions** are learnt slowly; the held-out R² is then low and [`TrustReport::warnings`] says so.
 //! - **More than 1,500 rows** are thinned, since time grows with their cube ([`SlopeGp::max_rows`]).

@@ -2,7 +2,7 @@ use nalgebra::DMatrix;
 
 use crate::{MotionError, Trajectory};
 
-/// K observed movements of one system, all with the same state dimension; lengths may differ.
+/// K observed movements of one system, all with the same dimensions of state and context; lengths may differ.
 ///
 /// They hold no constraint, so that a learner given `Demonstrations` cannot know it.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,15 +14,19 @@ impl Demonstrations {
     /// Movements of one system.
     ///
     /// # Errors
-    /// [`MotionError::Empty`] or [`MotionError::Dimensions`].
+    /// [`MotionError::Empty`], [`MotionError::Dimensions`] or [`MotionError::ContextDimensions`].
     pub fn new(trajectories: Vec<Trajectory>) -> Result<Self, MotionError> {
-        let expected = trajectories.first().ok_or(MotionError::Empty)?.dim();
-        match trajectories.iter().position(|trajectory| trajectory.dim() != expected) {
-            None => Ok(Demonstrations { trajectories }),
-            Some(trajectory) => {
-                Err(MotionError::Dimensions { trajectory, found: trajectories[trajectory].dim(), expected })
-            }
+        let first = trajectories.first().ok_or(MotionError::Empty)?;
+        let (dim, context_dim) = (first.dim(), first.context().len());
+        if let Some(trajectory) = trajectories.iter().position(|trajectory| trajectory.dim() != dim) {
+            let found = trajectories[trajectory].dim();
+            return Err(MotionError::Dimensions { trajectory, found, expected: dim });
         }
+        if let Some(trajectory) = trajectories.iter().position(|of| of.context().len() != context_dim) {
+            let found = trajectories[trajectory].context().len();
+            return Err(MotionError::ContextDimensions { trajectory, found, expected: context_dim });
+        }
+        Ok(Demonstrations { trajectories })
     }
 
     /// Movements without recorded velocities: each matrix (n, N_k), one column a sample, all `time_step`
@@ -51,6 +55,11 @@ impl Demonstrations {
     /// Dimension n of the state.
     pub fn dim(&self) -> usize {
         self.trajectories[0].dim()
+    }
+
+    /// Dimension p of the context; 0 without one.
+    pub fn context_dim(&self) -> usize {
+        self.trajectories[0].context().len()
     }
 
     /// Coordinate `axis` of every sample, movement after movement.

@@ -1,12 +1,14 @@
 use thiserror::Error;
 
-/// Which of a trajectory's two series a value belongs to.
+/// What of a trajectory a value belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Series {
     /// The states x.
     States,
     /// The recorded velocities or commands u.
     Velocities,
+    /// The context c.
+    Context,
 }
 
 impl std::fmt::Display for Series {
@@ -14,6 +16,7 @@ impl std::fmt::Display for Series {
         f.write_str(match self {
             Series::States => "states",
             Series::Velocities => "velocities",
+            Series::Context => "context",
         })
     }
 }
@@ -88,6 +91,18 @@ pub enum MotionError {
         "trajectory {trajectory} has {found} dimensions, trajectory 0 has {expected}; all must share one state space"
     )]
     Dimensions {
+        /// The first trajectory that differs.
+        trajectory: usize,
+        /// Its number of dimensions.
+        found: usize,
+        /// The number of dimensions of trajectory 0.
+        expected: usize,
+    },
+    /// Two trajectories differ in the dimension of their context.
+    #[error(
+        "the context of trajectory {trajectory} has {found} numbers, that of trajectory 0 {expected}; give all the same"
+    )]
+    ContextDimensions {
         /// The first trajectory that differs.
         trajectory: usize,
         /// Its number of dimensions.

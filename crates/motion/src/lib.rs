@@ -86,7 +86,7 @@ pub use finding::{Decision, Finding, LeftOut, Verdict};
 pub use learner::{LearnError, Learner, LearntPolicy};
 pub use median::upper_median;
 pub use policy::{NegativeGradient, Policy, Potential};
-pub use recordings::{Channel, Episode, Recordings, Rows, Source};
+pub use recordings::{Channel, Episode, Recordings, Rows, Source, is_called_context};
 pub use sample_index::SampleIndex;
 pub use sample_set::SampleSet;
 pub use scaled::scaled;

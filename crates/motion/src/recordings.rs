@@ -41,6 +41,8 @@ pub struct Episode {
     pub velocities: Option<DMatrix<f64>>,
     /// Label of the constraint or task it was recorded under.
     pub constraint: Option<String>,
+    /// What it depended on and what stayed as it was, (p); empty as it is read, since preparation tells context from state.
+    pub context: DVector<f64>,
 }
 
 /// Where an episode comes from.
@@ -61,6 +63,16 @@ pub struct Rows {
     pub first: u64,
     /// Of the last.
     pub last: u64,
+}
+
+/// Words in the names of what movements depend on and what does not move.
+const CONTEXTS: [&str; 8] = ["goal", "target", "object", "obj", "load", "payload", "mass", "context"];
+
+/// Whether a name is one of a context: goal, target, object, load and their like.
+pub fn is_called_context(name: &str) -> bool {
+    let name = name.to_lowercase();
+    let is_word = |word: &str| CONTEXTS.contains(&word.trim_end_matches(|c: char| c.is_ascii_digit()));
+    name.contains("environment_state") || name.split(|c: char| !c.is_alphanumeric()).any(is_word)
 }
 
 impl Recordings {
@@ -132,6 +144,7 @@ impl Episode {
             positions: of(&self.positions),
             velocities: self.velocities.as_ref().map(of),
             constraint: self.constraint.clone(),
+            context: self.context.clone(),
         }
     }
 
@@ -145,6 +158,7 @@ impl Episode {
             Times::Even { step, .. } => Trajectory::new(states, *step)?,
             Times::Stamped(stamps) => Trajectory::stamped(stamps.clone(), states)?,
         };
+        let trajectory = trajectory.with_context(self.context.clone())?;
         match &self.velocities {
             None => Ok(trajectory),
             Some(velocities) => trajectory.with_velocities(velocities.clone()),
@@ -180,6 +194,7 @@ mod tests {
             positions: DMatrix::zeros(1, stamps.len()),
             velocities: None,
             constraint: None,
+            context: DVector::zeros(0),
         };
         Recordings { state: vec![], episodes: vec![episode], findings: vec![] }.time_step()
     }

@@ -11,6 +11,7 @@ pub struct Trajectory {
     states: DMatrix<f64>,
     velocities: Option<DMatrix<f64>>,
     times: Times,
+    context: DVector<f64>,
 }
 
 impl Trajectory {
@@ -32,7 +33,7 @@ impl Trajectory {
         }
         require_finite(&states, Series::States)?;
         let times = Times::Even { step: time_step, len: states.ncols() };
-        Ok(Trajectory { states, velocities: None, times })
+        Ok(Trajectory { states, velocities: None, times, context: DVector::zeros(0) })
     }
 
     /// A movement through `states` (n, N), one column a sample, at `times` (N) in seconds, strictly ascending.
@@ -58,7 +59,17 @@ impl Trajectory {
         Ok(Trajectory { velocities: Some(velocities), ..self })
     }
 
-    /// The same movement with every dimension multiplied by its factor, (n).
+    /// The same movement with its context c, (p): what it depended on besides the state and what stayed as it was, such as a goal,
+    /// the place of an object, or a load.
+    ///
+    /// # Errors
+    /// [`MotionError::NotFinite`].
+    pub fn with_context(self, context: DVector<f64>) -> Result<Self, MotionError> {
+        require_finite(&DMatrix::from_column_slice(context.len(), 1, context.as_slice()), Series::Context)?;
+        Ok(Trajectory { context, ..self })
+    }
+
+    /// The same movement with every dimension of the state multiplied by its factor, (n).
     ///
     /// # Errors
     /// [`MotionError::NotFinite`] if a product is not.
@@ -70,12 +81,12 @@ impl Trajectory {
         }
     }
 
-    /// A movement through other states, (n, N), at the same times, without velocities.
+    /// A movement through other states, (n, N), at the same times and in the same context, without velocities.
     ///
     /// # Errors
     /// As [`Trajectory::new`] and [`Trajectory::with_times`].
     pub fn with_states(&self, states: DMatrix<f64>) -> Result<Self, MotionError> {
-        let anew = Trajectory::new(states, self.time_step())?;
+        let anew = Trajectory::new(states, self.time_step())?.with_context(self.context.clone())?;
         match self.times() {
             Some(times) => anew.with_times(times.to_vec()),
             None => Ok(anew),
@@ -116,6 +127,11 @@ impl Trajectory {
         self.velocities.as_ref()
     }
 
+    /// The context c, (p); of length 0 without one.
+    pub fn context(&self) -> &DVector<f64> {
+        &self.context
+    }
+
     /// Velocities of the steps, (x_{i+1} − x_i) / δt_i, (n, N − 1), in units of the state per second.
     pub fn step_velocities(&self) -> DMatrix<f64> {
         let steps = self.n_samples() - 1;
@@ -147,6 +163,12 @@ impl Trajectory {
     /// State x_i, (n).
     pub fn state(&self, sample: usize) -> DVectorView<'_, f64> {
         self.states.column(sample)
+    }
+
+    /// State x_i with its context c, (n + p).
+    pub fn state_in_context(&self, sample: usize) -> DVector<f64> {
+        let both = self.state(sample).into_owned().data.as_vec().iter().chain(&self.context).copied().collect();
+        DVector::from_vec(both)
     }
 
     /// Dimension n of the state.

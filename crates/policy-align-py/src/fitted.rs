@@ -5,8 +5,8 @@ use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::{DMatrix, DVectorView};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use policy_align::{
-    Evaluation, Model, ModelError, ModelPolicy, PrepareOptions, Progress, TaskLinks, estimate_constraints, evaluate,
-    fit, prepare,
+    ContextUse, Evaluation, Model, ModelError, ModelPolicy, PrepareOptions, Progress, TaskLinks, estimate_constraints,
+    evaluate, fit, prepare,
 };
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
@@ -38,10 +38,11 @@ impl Fitted {
         threads: usize,
         made_at: String,
     ) -> PyResult<Self> {
-        let (inner, preparing, learning) = (Arc::clone(&recordings.inner), preparing.options()?, learning.options()?);
+        let inner = Arc::clone(&recordings.inner);
+        let (preparing, learning) = (preparing.options(&inner.context)?, learning.options()?);
         let model = interruptible(py, move |cancelled| {
             pool::on(threads, || {
-                let Recorded { recordings, files, place } = &*inner;
+                let Recorded { recordings, files, place, .. } = &*inner;
                 let prepared = prepare(recordings, &preparing)
                     .map_err(|error| Refusal::prepare(&error, place, &names_of(recordings)))?;
                 let mut progress = Progress { cancelled, report: &mut |_| () };
@@ -96,6 +97,23 @@ impl Fitted {
     #[getter]
     fn dim(&self) -> usize {
         self.model.state.len()
+    }
+
+    /// Names of the context's channels that have no value yet.
+    #[getter]
+    fn context(&self) -> Vec<String> {
+        self.model.open_context().iter().map(|channel| channel.name.clone()).collect()
+    }
+
+    /// The same in one context.
+    fn in_context(&self, values: Vec<(String, f64)>) -> PyResult<Self> {
+        let hint = || match self.model.context_names() {
+            names if names.is_empty() => "no context".to_owned(),
+            names => format!("a number for each of {}", names.join(", ")),
+        };
+        let model = self.model.in_named_context(&values);
+        let model = model.map_err(|error| Refusal::new(error.to_string(), "context", hint()))?;
+        Ok(Fitted { model: Arc::new(model) })
     }
 
     /// π at each state, (N, n).
@@ -167,7 +185,11 @@ impl Fitted {
 
     /// Evaluates the policy on movements; as JSON.
     fn evaluate(&self, py: Python<'_>, recordings: &Recordings, preparing: Preparing) -> PyResult<String> {
-        let options = PrepareOptions { scale: self.model.scale(), ..preparing.options()? };
+        let context = match self.model.context_names() {
+            names if names.is_empty() => ContextUse::Ignored,
+            names => ContextUse::Named(names),
+        };
+        let options = PrepareOptions { scale: self.model.scale(), context, ..preparing.options(&[])? };
         let (inner, model) = (Arc::clone(&recordings.inner), Arc::clone(&self.model));
         let judged = interruptible(py, move |_: &_| {
             let Recorded { recordings, place, .. } = &*inner;

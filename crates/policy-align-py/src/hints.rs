@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 /// Flags that are arguments here; those of other programs (`rosbags-convert --src`) stay as they are.
-const ARGUMENTS: &str = "as bandwidth constraint-column decimal degrees dt episode filter folds ignore init-d integration \
+const ARGUMENTS: &str = "as bandwidth constraint-column context decimal degrees dt episode filter folds ignore init-d integration \
                          jumps learner max-rows nan reading samples-are scale seed separator smooth sort split-gap state \
                          time topic trim-still trust units unwrap velocity wraps";
 

@@ -8,7 +8,7 @@ use crate::hints::document_in_python;
 pub(crate) fn about(model: &Model) -> String {
     let policy = model.policy();
     let mut document = json!({
-        "made_by": model.made_by, "state": model.state, "time_step": model.time_step, "data": model.data,
+        "made_by": model.made_by, "state": model.state, "context": model.context, "time_step": model.time_step, "data": model.data,
         "decisions": model.decisions, "seed": model.seed, "trust": model.trust, "kept": policy.kept(),
         "warnings": policy.warnings(),
     });

@@ -1,7 +1,7 @@
 //! What the estimators' parameters mean to the library.
 
 use align::Bandwidth;
-use policy_align::{Choice, FitOptions, PrepareOptions};
+use policy_align::{Choice, ContextUse, FitOptions, PrepareOptions};
 use pyo3::prelude::*;
 
 use crate::refusal::Refusal;
@@ -13,6 +13,13 @@ pub(crate) enum NumberOrWord {
     Word(String),
 }
 
+/// Names, or a word in their place.
+#[derive(Debug, FromPyObject)]
+pub(crate) enum NamesOrWord {
+    Word(String),
+    Names(Vec<String>),
+}
+
 /// How recordings are prepared: items of a dictionary.
 #[derive(Debug, FromPyObject)]
 #[pyo3(from_item_all)]
@@ -22,6 +29,7 @@ pub(crate) struct Preparing {
     smooth: String,
     jumps: String,
     wraps: String,
+    context: NamesOrWord,
 }
 
 /// How a policy is learnt: items of a dictionary.
@@ -39,14 +47,22 @@ pub(crate) struct Learning {
 }
 
 impl Preparing {
-    pub(crate) fn options(self) -> Result<PrepareOptions, Refusal> {
+    /// `context`: what was named while reading.
+    pub(crate) fn options(self, context: &[String]) -> Result<PrepareOptions, Refusal> {
+        let context = match self.context {
+            NamesOrWord::Names(names) => ContextUse::Named(names),
+            NamesOrWord::Word(word) if word == "none" => ContextUse::Ignored,
+            NamesOrWord::Word(word) if word != "auto" => ContextUse::Named(vec![word]),
+            NamesOrWord::Word(_) if context.is_empty() => ContextUse::Auto,
+            NamesOrWord::Word(_) => ContextUse::Named(context.to_vec()),
+        };
         let velocities = chosen(&self.integration, "integration", "")?;
         let smoothing = self.smooth.parse();
         let smoothing = smoothing.map_err(|what: String| {
             Refusal::new(what, "smooth", "smooth=\"auto\", \"off\", 9 (samples) or \"0.2s\"")
         })?;
         let (jumps, wraps) = (chosen(&self.jumps, "jumps", "")?, chosen(&self.wraps, "wraps", "")?);
-        Ok(PrepareOptions { scale: self.scale, time_step: None, velocities, smoothing, jumps, wraps })
+        Ok(PrepareOptions { scale: self.scale, time_step: None, velocities, smoothing, jumps, wraps, context })
     }
 }
 

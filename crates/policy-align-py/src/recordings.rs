@@ -28,6 +28,8 @@ pub(crate) struct Recorded {
     pub(crate) files: Vec<FileSummary>,
     /// For messages: the file, or the argument.
     pub(crate) place: String,
+    /// Channels that were read as context.
+    pub(crate) context: Vec<String>,
 }
 
 /// Of a movement: times (N), positions (N, n), velocities (N, n) or none.
@@ -51,11 +53,13 @@ impl Recordings {
             if trim_still {
                 policy_align::trim_still(&mut recordings);
             }
+            let context =
+                demo_io::channels_named(&options.context, &recordings).map_err(|error| Refusal::read(&error))?;
             let plain = paths.iter().filter(|path| path.is_file());
             let files: Result<Vec<_>, _> = plain.map(|path| FileSummary::of(path)).collect();
             let unread =
                 |error: std::io::Error| Refusal::new(format!("cannot be read: {error}"), &place, "another file");
-            Ok(Recorded { recordings, files: files.map_err(unread)?, place })
+            Ok(Recorded { recordings, files: files.map_err(unread)?, place, context })
         };
         let inner: Result<Recorded, Refusal> = interruptible(py, read)?;
         Ok(Recordings { inner: Arc::new(inner?) })
@@ -84,13 +88,21 @@ impl Recordings {
             let velocities = velocities.as_ref().and_then(|velocities| velocities[k].as_ref().map(matrix));
             let source = Source::default();
             let constraint = constraints.get(k).cloned().flatten();
-            episodes.push(Episode { name, source, times, positions, velocities, constraint });
+            episodes.push(Episode {
+                name,
+                source,
+                times,
+                positions,
+                velocities,
+                constraint,
+                context: nalgebra::DVector::zeros(0),
+            });
         }
         let state = channels.into_iter().zip(units).map(|(name, unit)| Channel { name, unit }).collect();
         let recordings = motion::Recordings { state, episodes, findings: vec![] };
         let place = "trajectories".to_owned();
         check(&recordings, dt).map_err(|error| Refusal::prepare(&error, &place, &names_of(&recordings)))?;
-        Ok(Recordings { inner: Arc::new(Recorded { recordings, files: vec![], place }) })
+        Ok(Recordings { inner: Arc::new(Recorded { recordings, files: vec![], place, context: vec![] }) })
     }
 
     fn __len__(&self) -> usize {
@@ -129,21 +141,23 @@ impl Recordings {
         self.inner.recordings.findings.iter().map(text).collect()
     }
 
-    /// Where they come from: files and findings as JSON, and the name of all that in messages.
+    /// Where they come from: files and findings as JSON, the name of all that in messages, and the channels of the context as JSON.
     #[getter]
-    fn origin(&self) -> (String, String, String) {
-        let Recorded { files, recordings, place } = &*self.inner;
-        (json!(files).to_string(), json!(recordings.findings).to_string(), place.clone())
+    fn origin(&self) -> (String, String, String, String) {
+        let Recorded { files, recordings, place, context } = &*self.inner;
+        let [files, findings, context] = [json!(files), json!(recordings.findings), json!(context)];
+        (files.to_string(), findings.to_string(), place.clone(), context.to_string())
     }
 
     /// The same movements as if they came from elsewhere.
-    fn with_origin(&self, origin: (String, String, String)) -> PyResult<Self> {
-        let (files, findings, place) = origin;
+    fn with_origin(&self, origin: (String, String, String, String)) -> PyResult<Self> {
+        let (files, findings, place, context) = origin;
         let wrong = |error: serde_json::Error| PyValueError::new_err(error.to_string());
         let files = serde_json::from_str(&files).map_err(wrong)?;
         let findings = serde_json::from_str(&findings).map_err(wrong)?;
+        let context = serde_json::from_str(&context).map_err(wrong)?;
         let recordings = motion::Recordings { findings, ..self.inner.recordings.clone() };
-        Ok(Recordings { inner: Arc::new(Recorded { recordings, files, place }) })
+        Ok(Recordings { inner: Arc::new(Recorded { recordings, files, place, context }) })
     }
 
     /// The usual time between samples, in seconds.
@@ -154,14 +168,14 @@ impl Recordings {
 
     /// What would be learnt from, and what gives reason for doubt, as JSON.
     fn check(&self, py: Python<'_>, preparing: Preparing) -> PyResult<String> {
-        let (inner, options) = (Arc::clone(&self.inner), preparing.options()?);
+        let (inner, options) = (Arc::clone(&self.inner), preparing.options(&self.inner.context)?);
         let prepared = interruptible(py, move |_: &_| {
             prepare(&inner.recordings, &options)
                 .map_err(|error| Refusal::prepare(&error, &inner.place, &names_of(&inner.recordings)))
         })??;
         let mut document = json!({
             "episodes": prepared.episodes, "samples": prepared.demonstrations.n_samples(),
-            "state": prepared.state, "time_step": prepared.time_step, "left_out": prepared.left_out,
+            "state": prepared.state, "context": prepared.context, "time_step": prepared.time_step, "left_out": prepared.left_out,
             "decisions": prepared.decisions, "findings": prepared.findings,
         });
         document_in_python(&mut document);

@@ -25,6 +25,12 @@ pub enum FitError {
         /// Why.
         reason: String,
     },
+    /// The learner has no use for a context.
+    #[error("PolicyAlign cannot learn what depends on a context ({context}); --learner auto, or --context none")]
+    Context {
+        /// Its channels.
+        context: String,
+    },
     /// A Gaussian process refuses.
     #[error(transparent)]
     Gp(#[from] GpError),

@@ -1,6 +1,6 @@
 use gp::GpError;
 use metrics::{MetricsError, ncpe, nupe};
-use motion::LearntPolicy;
+use motion::{LearntPolicy, Policy};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
@@ -43,7 +43,7 @@ pub struct Truth {
 /// truth does not fit the movements.
 pub fn evaluate(model: &Model, prepared: &Prepared, truth: Option<&Truth>) -> Result<Evaluation, EvaluateError> {
     let policy = model.learnt.policy();
-    let dim = prepared.demonstrations.dim();
+    let dim = prepared.demonstrations.dim() + prepared.demonstrations.context_dim();
     if policy.dim() != dim {
         return Err(EvaluateError::Dimension { policy: policy.dim(), movements: dim });
     }
@@ -72,18 +72,19 @@ pub fn evaluate(model: &Model, prepared: &Prepared, truth: Option<&Truth>) -> Re
 
 /// Share of the rows' states at which the model supports its policy.
 fn supported(model: &Model, rows: &gp::Rows) -> f64 {
-    let (policy, scales) = (model.policy(), model.scales());
+    let policy = model.policy();
+    let scales = DVector::from_iterator(policy.dim(), model.inputs().map(|channel| channel.scale));
     let within =
         rows.states().column_iter().filter(|state| policy.is_supported(state.component_div(&scales).as_view()));
     within.count() as f64 / rows.len() as f64
 }
 
 fn residuals(policy: &dyn LearntPolicy, rows: &gp::Rows) -> Vec<f64> {
-    let mut action = DVector::zeros(rows.dim());
+    let mut action = DVector::zeros(policy.dim());
     let residual = |(x, u): (nalgebra::DVectorView<'_, f64>, nalgebra::DVectorView<'_, f64>)| {
         let r = u.norm();
         policy.action_into(x, action.as_view_mut());
-        (r > 0.0).then(|| u.dot(&action) / r - r)
+        (r > 0.0).then(|| u.dot(&action.rows(0, u.len())) / r - r)
     };
     rows.states().column_iter().zip(rows.velocities().column_iter()).filter_map(residual).collect()
 }
@@ -96,9 +97,12 @@ fn against(
     let demonstrations = &prepared.demonstrations;
     let (n, m) = (demonstrations.dim(), demonstrations.n_samples());
     let mut learnt = DMatrix::zeros(n, m);
-    let states = demonstrations.trajectories().iter().flat_map(|trajectory| trajectory.states().column_iter());
+    let states = demonstrations
+        .trajectories()
+        .iter()
+        .flat_map(|movement| (0..movement.n_samples()).map(|sample| movement.state_in_context(sample)));
     for (state, mut action) in states.zip(learnt.column_iter_mut()) {
-        policy.action_into(state, action.as_view_mut());
+        action.copy_from(&policy.action(state.as_view()).rows(0, n));
     }
     let unconstrained = nupe(&truth.actions, &learnt)?;
     let constrained = match &truth.projectors {

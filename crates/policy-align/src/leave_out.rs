@@ -50,6 +50,10 @@ pub fn leave_constraints_out(
 pub(crate) fn in_units_of(model: &Model, prepared: Prepared) -> Result<Prepared, FitError> {
     let factors = model.state.iter().zip(&prepared.state).map(|(learnt, own)| learnt.scale / own.scale);
     let factors = DVector::from_iterator(prepared.state.len(), factors);
+    let of_context = model.context.iter().zip(&prepared.context).map(|(learnt, own)| learnt.scale / own.scale);
+    let prepared = prepared
+        .with_context_scaled(&DVector::from_iterator(prepared.context.len(), of_context))
+        .map_err(|error| cleaning(&error))?;
     if factors.iter().all(|&factor| factor == 1.0) {
         return Ok(prepared);
     }

@@ -54,7 +54,8 @@
 //!   then doubtful.
 //! - **Constraints that push** (A u = b with b ≠ 0) are recovered only while A and b stay constant for some twenty
 //!   samples, and oblique projections not at all.
-//! - **Motion that depends on more than the recorded state** (time, load, a moving target): "do not use".
+//! - **Motion that depends on more than the recorded state** (time, a moving target): "do not use". What stays as it is during a
+//!   movement, such as a goal or a load, can be context: [`Model::in_context`].
 //! - **Mixed units**: constraints act at right angles in some unit. [`fit()`] learns it where the data tell;
 //!   [`PrepareOptions::scale`] chooses it.
 //! - **Outside the demonstrated region** a policy extrapolates: [`ModelPolicy::is_supported`] is false there.
@@ -62,6 +63,7 @@
 //!   to do.
 
 mod choice;
+mod context;
 mod error;
 mod evaluate;
 mod export;
@@ -79,6 +81,7 @@ mod trust;
 /// What a program needs besides, so that it depends on this crate alone.
 pub use ::{align, constraints, demo_io, gp, kinematics, lwpr, motion, nalgebra, prepare, rand, smoothing};
 pub use choice::Choice;
+pub use context::ContextError;
 pub use error::FitError;
 pub use evaluate::{EvaluateError, Evaluation, Truth, evaluate};
 pub use export::{CSource, ExportError, Precision, to_onnx};
@@ -90,8 +93,8 @@ pub use model_policy::{ModelPolicy, ModelPotential};
 pub use motion::{Decision, Finding, LeftOut, Verdict};
 pub use named::{ConstraintOn, ConstraintStretch, TaskLinks, constraint_file, estimate_constraints};
 pub use prepare::{
-    Noise, PrepareError, PrepareOptions, Prepared, Repair, Smoothing, StateChannel, VelocitySource, VelocityUse,
-    direction_by_channels, prepare, trim_still,
+    ContextUse, Noise, PrepareError, PrepareOptions, Prepared, Repair, Smoothing, StateChannel, VelocitySource,
+    VelocityUse, direction_by_channels, prepare, trim_still,
 };
 pub use roll_out::{ConstraintFileError, ConstraintSet, JointLimits, Path, RollOut, RollOutError, Stop, spread_starts};
 pub use stored::{ModelError, checksum_of, sha256, sha256_of_file, write_whole};

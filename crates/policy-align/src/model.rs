@@ -14,6 +14,12 @@ pub struct Model {
     pub made_by: MadeBy,
     /// Dimensions of the state, n of them.
     pub state: Vec<StateChannel>,
+    /// Dimensions of the context, p of them; none where movements depend on the state alone.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub context: Vec<StateChannel>,
+    /// The context that was chosen, (p) in the units of the recording, of no length without one. It is not stored.
+    #[serde(skip, default = "nowhere")]
+    pub(crate) chosen_context: DVector<f64>,
     /// Seconds; the median over trajectories.
     pub time_step: f64,
     /// The training data.
@@ -24,8 +30,13 @@ pub struct Model {
     pub seed: u64,
     /// How far to trust it.
     pub trust: Trust,
-    /// The policy, of states that were multiplied by [`StateChannel::scale`].
+    /// The policy, of states and contexts that were multiplied by [`StateChannel::scale`].
     pub learnt: Learnt,
+}
+
+/// No context.
+pub(crate) fn nowhere() -> DVector<f64> {
+    DVector::zeros(0)
 }
 
 /// The program that made a model, and when.
@@ -83,7 +94,7 @@ impl Model {
     /// Factors by which recordings are multiplied as those learnt from were, as
     /// [`PrepareOptions::scale`](crate::PrepareOptions::scale) takes them: of channels that have one.
     pub fn scale(&self) -> Vec<(String, f64)> {
-        let scaled = self.state.iter().filter(|channel| channel.scale != 1.0);
+        let scaled = self.inputs().filter(|channel| channel.scale != 1.0);
         scaled.map(|channel| (channel.name.clone(), channel.scale)).collect()
     }
 }

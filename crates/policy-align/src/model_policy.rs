@@ -13,10 +13,13 @@ pub(crate) const BEYOND: f64 = 0.25;
 
 /// A model's policy in the units of the recording: π(x) = S⁻¹ π'(S x), where S multiplies every channel by its
 /// [`scale`](crate::StateChannel::scale) and π' is the policy that was learnt.
+///
+/// Its state is that of the model, (n), in the context that was chosen. Of a model with a context in which none was chosen, the
+/// context follows the state, (n + p), and the action along it is 0.
 #[derive(Debug)]
 pub struct ModelPolicy<'a> {
     learnt: &'a dyn LearntPolicy,
-    scale: DVector<f64>,
+    inputs: Inputs,
     potential: Option<ModelPotential<'a>>,
     least_support: f64,
     bounds: Vec<[f64; 2]>,
@@ -29,30 +32,39 @@ pub struct ModelPolicy<'a> {
 #[derive(Debug)]
 pub struct ModelPotential<'a> {
     learnt: &'a dyn LearntPolicy,
-    scale: DVector<f64>,
+    inputs: Inputs,
     per_unit: f64,
 }
 
+/// What the learner's policy takes beside a state: the context that was chosen, (p) or none, and the scales of all, (n + p).
+#[derive(Debug, Clone)]
+struct Inputs {
+    scale: DVector<f64>,
+    context: DVector<f64>,
+}
+
 impl Model {
-    /// The policy, in the units of the recording.
+    /// The policy, in the units of the recording, in the context that was chosen.
     pub fn policy(&self) -> ModelPolicy<'_> {
-        let learnt = self.learnt.policy();
-        let (scale, per_unit) = (self.scales(), self.potential_factor());
-        let potential = learnt.potential().map(|_| ModelPotential { learnt, scale: scale.clone(), per_unit });
+        let (learnt, per_unit) = (self.learnt.policy(), self.potential_factor());
+        let scale = DVector::from_iterator(learnt.dim(), self.inputs().map(|channel| channel.scale));
+        let inputs = Inputs { scale, context: self.chosen_context.clone() };
+        let potential = learnt.potential().map(|_| ModelPotential { learnt, inputs: inputs.clone(), per_unit });
         let least_support = match self.learnt {
             Learnt::PolicyAlign(_) => f64::MIN_POSITIVE,
             Learnt::Auto(_) | Learnt::Slope(_) | Learnt::Direct(_) => LEAST_KNOWN,
         };
-        ModelPolicy { learnt, scale, potential, least_support, bounds: self.bounds() }
+        ModelPolicy { learnt, inputs, potential, least_support, bounds: self.bounds() }
     }
 
-    /// Range of every channel that counts as known: the demonstrated range, a quarter wider on either side, (n).
+    /// Range of every channel that counts as known: the demonstrated range, a quarter wider on either side; of the state, then of the
+    /// context, (n + p).
     pub fn bounds(&self) -> Vec<[f64; 2]> {
         let bound = |channel: &StateChannel| {
             let beyond = BEYOND * (channel.high - channel.low);
             [channel.low - beyond, channel.high + beyond]
         };
-        self.state.iter().map(bound).collect()
+        self.inputs().map(bound).collect()
     }
 }
 
@@ -72,12 +84,12 @@ impl ModelPolicy<'_> {
 
 impl Policy for ModelPolicy<'_> {
     fn dim(&self) -> usize {
-        self.scale.len()
+        self.inputs.dim()
     }
 
     fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
-        scaled(state, &self.scale, |state| self.learnt.action_into(state, action.as_view_mut()));
-        action.component_div_assign(&self.scale);
+        self.inputs.vector_into(state, action.as_view_mut(), |state, action| self.learnt.action_into(state, action));
+        action.component_div_assign(&self.inputs.scale.rows(0, action.len()));
     }
 }
 
@@ -88,14 +100,18 @@ impl LearntPolicy for ModelPolicy<'_> {
 
     /// As of the policy that was learnt; 0 beyond [`Model::bounds`].
     fn support(&self, state: DVectorView<'_, f64>) -> f64 {
-        let within = self.bounds.iter().zip(&state).all(|([low, high], x)| (low..=high).contains(&x));
-        if within { scaled(state, &self.scale, |state| self.learnt.support(state)) } else { 0.0 }
+        let inputs = state.iter().chain(&self.inputs.context);
+        let within = self.bounds.iter().zip(inputs).all(|([low, high], x)| (low..=high).contains(&x));
+        if within { self.inputs.scaled(state, |state| self.learnt.support(state)) } else { 0.0 }
     }
 
     fn action_sd_into(&self, state: DVectorView<'_, f64>, mut deviation: DVectorViewMut<'_, f64>) -> bool {
-        let known = scaled(state, &self.scale, |state| self.learnt.action_sd_into(state, deviation.as_view_mut()));
+        let of_learnt = |state: DVectorView<'_, f64>, deviation: DVectorViewMut<'_, f64>| {
+            self.learnt.action_sd_into(state, deviation)
+        };
+        let known = self.inputs.vector_into(state, deviation.as_view_mut(), of_learnt);
         if known {
-            deviation.component_div_assign(&self.scale);
+            deviation.component_div_assign(&self.inputs.scale.rows(0, deviation.len()));
         }
         known
     }
@@ -117,31 +133,63 @@ impl ModelPotential<'_> {
 
 impl Potential for ModelPotential<'_> {
     fn dim(&self) -> usize {
-        self.scale.len()
+        self.inputs.dim()
     }
 
     fn value(&self, state: DVectorView<'_, f64>) -> f64 {
-        self.per_unit * scaled(state, &self.scale, |state| self.beneath().value(state))
+        self.per_unit * self.inputs.scaled(state, |state| self.beneath().value(state))
     }
 
     fn gradient_into(&self, state: DVectorView<'_, f64>, mut gradient: DVectorViewMut<'_, f64>) {
-        scaled(state, &self.scale, |state| self.beneath().gradient_into(state, gradient.as_view_mut()));
-        gradient.component_mul_assign(&self.scale);
+        let of_learnt = |state: DVectorView<'_, f64>, gradient: DVectorViewMut<'_, f64>| {
+            self.beneath().gradient_into(state, gradient);
+        };
+        self.inputs.vector_into(state, gradient.as_view_mut(), of_learnt);
+        gradient.component_mul_assign(&self.inputs.scale.rows(0, gradient.len()));
         gradient *= self.per_unit;
     }
 }
 
 thread_local! {
-    /// S x. Each thread has one, so that none allocates more than once.
+    /// S x, and what the learner's policy says of it, of state and context. Each thread has one, so that none allocates more than
+    /// once.
     static SCALED: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+    static WHOLE: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Evaluates at S x.
-fn scaled<T>(state: DVectorView<'_, f64>, scale: &DVector<f64>, evaluate: impl FnOnce(DVectorView<'_, f64>) -> T) -> T {
-    assert_eq!(state.len(), scale.len(), "a state has as many dimensions as the policy");
-    SCALED.with_borrow_mut(|place| {
-        place.clear();
-        place.extend(state.iter().zip(scale).map(|(x, s)| x * s));
-        evaluate(DVectorView::from_slice(place, scale.len()))
-    })
+impl Inputs {
+    /// Dimension of a state.
+    fn dim(&self) -> usize {
+        self.scale.len() - self.context.len()
+    }
+
+    /// Evaluates at S x.
+    fn scaled<T>(&self, state: DVectorView<'_, f64>, evaluate: impl FnOnce(DVectorView<'_, f64>) -> T) -> T {
+        assert_eq!(state.len(), self.dim(), "a state has as many dimensions as the policy");
+        SCALED.with_borrow_mut(|place| {
+            place.clear();
+            place.extend(state.iter().chain(&self.context).zip(&self.scale).map(|(x, s)| x * s));
+            evaluate(DVectorView::from_slice(place, self.scale.len()))
+        })
+    }
+
+    /// The part along the state of a vector at S x.
+    fn vector_into<T>(
+        &self,
+        state: DVectorView<'_, f64>,
+        mut vector: DVectorViewMut<'_, f64>,
+        evaluate: impl FnOnce(DVectorView<'_, f64>, DVectorViewMut<'_, f64>) -> T,
+    ) -> T {
+        if self.context.is_empty() {
+            return self.scaled(state, |state| evaluate(state, vector));
+        }
+        WHOLE.with_borrow_mut(|whole| {
+            whole.clear();
+            whole.resize(self.scale.len(), 0.0);
+            let found =
+                self.scaled(state, |state| evaluate(state, DVectorViewMut::from_slice(whole, self.scale.len())));
+            vector.copy_from_slice(&whole[..vector.len()]);
+            found
+        })
+    }
 }

@@ -53,9 +53,43 @@ fn rails() -> String {
     text
 }
 
+/// Towards a goal that every movement has for itself, and away from a hill that stays where it is, per second.
+fn to_goal(x: [f64; 2], goal: [f64; 2]) -> [f64; 2] {
+    let from = [x[0] - 0.2, x[1] + 0.3];
+    let hill = 0.8 / 0.7 * (-(from[0] * from[0] + from[1] * from[1]) / 0.98).exp();
+    [0, 1].map(|axis| goal[axis] - x[axis] + from[axis] * hill)
+}
+
+/// 32 movements along rails that change half way, each to its own goal, in fine Euler steps.
+fn goals() -> String {
+    let mut text = "episode,t,x,y,vx,vy,goal_x,goal_y\n".to_owned();
+    for episode in 0..32 {
+        let k = f64::from(episode);
+        let mut x = [1.5 * (1.7 * k).cos(), 1.5 * (2.3 * k + 0.5).sin()];
+        let goal = [0.9 * (3.1 * k + 0.2).sin(), 0.9 * (1.3 * k + 1.0).cos()].map(|c| (c * 1000.0).round() / 1000.0);
+        for sample in 0..30 {
+            let angle = 0.9 * k + if sample < 15 { 0.0 } else { 1.1 };
+            let along = [angle.cos(), angle.sin()];
+            let velocity = |x: [f64; 2]| {
+                let policy = to_goal(x, goal);
+                let speed = along[0] * policy[0] + along[1] * policy[1];
+                along.map(|n| speed * n)
+            };
+            let (t, [u, v]) = (0.1 * f64::from(sample), velocity(x));
+            let [goal_x, goal_y] = goal;
+            let _ = writeln!(text, "{episode},{t:.2},{:.6},{:.6},{u:.6},{v:.6},{goal_x:.3},{goal_y:.3}", x[0], x[1]);
+            for _ in 0..50 {
+                let v = velocity(x);
+                x = [0, 1].map(|axis| x[axis] + 0.002 * v[axis]);
+            }
+        }
+    }
+    text
+}
+
 #[test]
 fn the_recordings_are_made_by_seeds() {
-    for (name, made) in [("toy.csv", toy()), ("rails.csv", rails())] {
+    for (name, made) in [("toy.csv", toy()), ("rails.csv", rails()), ("goals.csv", goals())] {
         let stored = std::fs::read_to_string(examples().join(name)).unwrap();
         assert!(stored.len() <= 150_000);
         assert!(stored == made, "write {name} again: cargo test -p policy-align --test examples -- --ignored");
@@ -63,10 +97,11 @@ fn the_recordings_are_made_by_seeds() {
 }
 
 #[test]
-#[ignore = "writes docs/examples/toy.csv and rails.csv"]
+#[ignore = "writes docs/examples/toy.csv, rails.csv and goals.csv"]
 fn write_the_recordings() {
     std::fs::write(examples().join("toy.csv"), toy()).unwrap();
     std::fs::write(examples().join("rails.csv"), rails()).unwrap();
+    std::fs::write(examples().join("goals.csv"), goals()).unwrap();
 }
 
 /// The page that shows a session with the program.

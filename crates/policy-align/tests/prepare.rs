@@ -27,6 +27,7 @@ fn recordings() -> Recordings {
             positions: DMatrix::from_fn(2, SAMPLES, value),
             velocities: Some(DMatrix::from_fn(2, SAMPLES, |axis, i| -rate[axis] * value(axis, i))),
             constraint: Some("table".to_owned()),
+            context: nalgebra::DVector::zeros(0),
         }
     });
     Recordings { state: state.to_vec(), episodes: episodes.collect(), findings: Vec::new() }

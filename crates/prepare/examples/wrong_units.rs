@@ -16,6 +16,7 @@ fn movement(k: u8) -> Episode {
         positions: DMatrix::from_fn(2, 40, position),
         velocities: Some(DMatrix::from_fn(2, 40, |axis, i| -500.0 * position(axis, i))),
         constraint: None,
+        context: nalgebra::DVector::zeros(0),
     }
 }
 

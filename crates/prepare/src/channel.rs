@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-/// A dimension of the state, in the user's units.
+/// A dimension of the state or of the context, in the user's units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StateChannel {

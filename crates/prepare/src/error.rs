@@ -58,6 +58,14 @@ pub enum PrepareError {
         /// Seconds between them.
         step: f64,
     },
+    /// A context that is none.
+    #[error("--context names '{name}', but {why}")]
+    Context {
+        /// The name given.
+        name: String,
+        /// Why it cannot be one, and what can.
+        why: String,
+    },
     /// Nothing moves.
     #[error("no channel changes in any episode; recordings that move")]
     NoMotion,

@@ -16,6 +16,7 @@
 //!         positions: DMatrix::from_fn(2, 40, position),
 //!         velocities: Some(DMatrix::from_fn(2, 40, |axis, i| -500.0 * position(axis, i))),
 //!         constraint: None,
+//!         context: nalgebra::DVector::zeros(0),
 //!     }
 //! });
 //! let state = ["x", "y"].map(|name| Channel { name: name.to_owned(), unit: Some("m".to_owned()) });
@@ -48,6 +49,7 @@
 //!   one ([`Prepared::rescaled`]).
 
 mod channel;
+mod context;
 mod degrees;
 mod direction;
 mod directions;
@@ -66,7 +68,7 @@ pub use channel::StateChannel;
 pub use direction::{direction_by_channels, sum_of_parts};
 pub use directions::directions;
 pub use error::PrepareError;
-pub use options::{PrepareOptions, Repair, Smoothing, VelocityUse};
+pub use options::{ContextUse, PrepareOptions, Repair, Smoothing, VelocityUse};
 pub use prepared::Prepared;
 pub use remarks::{end_places, pressing};
 pub use samples::noise::Noise;
@@ -89,13 +91,17 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
     let scales = scale::scales(recordings, options, &mut notes)?;
     let mut episodes = repairs::episodes::movements(recordings, &scales, &mut notes)?;
     repairs::duplicates::leave_out(&mut episodes, &mut notes);
+    let (of_state, of_context) = context::split(&mut episodes, &recordings.state, &options.context, &mut notes)?;
+    let described = |channels: &[usize]| channels.iter().map(|&at| recordings.state[at].clone()).collect::<Vec<_>>();
+    let (state_channels, context_channels) = (described(&of_state), described(&of_context));
+    let scales_of = |channels: &[usize]| scales.select_rows(channels);
     repairs::stamps::decide(&mut episodes, options, &mut notes)?;
     repairs::quaternions::align(&mut episodes, &recordings.state, options.wraps, &mut notes);
     if options.wraps == Repair::Auto {
-        repairs::wraps::unwrap(&mut episodes, &recordings.state, &mut notes);
+        repairs::wraps::unwrap(&mut episodes, &state_channels, &mut notes);
     }
     if options.jumps == Repair::Auto {
-        repairs::jumps::cut(&mut episodes, &recordings.state, &mut notes);
+        repairs::jumps::cut(&mut episodes, &state_channels, &mut notes);
     }
     repairs::episodes::leave_out_still(&mut episodes, &mut notes);
     if episodes.is_empty() {
@@ -103,7 +109,7 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
         return Err(PrepareError::NothingLeft { of: recordings.episodes.len(), why });
     }
     let noise = samples::noise::of(&repairs::episodes::demonstrations(&episodes)?);
-    let agreement = repairs::velocities::decide(&mut episodes, options, &recordings.state, &noise, &mut notes);
+    let agreement = repairs::velocities::decide(&mut episodes, options, &state_channels, &noise, &mut notes);
     let demonstrations = repairs::episodes::demonstrations(&episodes)?;
     let smoothed = samples::smooth::as_requested(&demonstrations, options.smoothing, &mut notes)?;
     let (demonstrations, velocities) = if let Some(smoothed) = smoothed {
@@ -116,7 +122,10 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
         VelocitySource::Positions => samples::thinning::decide(&demonstrations, &noise, &mut notes),
         _ => 1,
     };
-    let state = scale::channels(recordings, &scales, &demonstrations);
+    let state = scale::channels(&state_channels, &scales_of(&of_state), |at| demonstrations.values(at).collect());
+    let contexts = |at| demonstrations.trajectories().iter().map(|movement| movement.context()[at]).collect();
+    let context = scale::channels(&context_channels, &scales_of(&of_context), contexts);
+    context::remark(&demonstrations, &context, &mut notes);
     repairs::stamps::doubt(&demonstrations, &mut notes);
     remarks::about(&demonstrations, &state, &noise, &mut notes);
     degrees::remark(&state, &mut notes);
@@ -128,6 +137,7 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
         constraints: episodes.into_iter().map(|episode| episode.constraint).collect(),
         demonstrations,
         state,
+        context,
         noise,
         velocities,
         smoothing: options.smoothing,

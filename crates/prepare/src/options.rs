@@ -15,6 +15,21 @@ pub struct PrepareOptions {
     pub jumps: Repair,
     /// Whether angles that jump by a whole turn are unwrapped, and quaternions that change sign have one (`--wraps`).
     pub wraps: Repair,
+    /// Which channels are context (`--context`).
+    pub context: ContextUse,
+}
+
+/// Which channels are context: what a movement depends on and what stays as it is meanwhile, such as a goal, the place of an
+/// object, or a load. All others are state.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum ContextUse {
+    /// Those that are constant in every episode, differ between episodes, and are called like one: goal, target, object, load.
+    #[default]
+    Auto,
+    /// Those of these names, which must be constant in every episode.
+    Named(Vec<String>),
+    /// None.
+    Ignored,
 }
 
 /// The use of recorded velocities.

@@ -1,4 +1,4 @@
-use motion::{Decision, Demonstrations, Finding, LeftOut, MotionError};
+use motion::{Decision, Demonstrations, Finding, LeftOut, MotionError, Trajectory};
 use nalgebra::DVector;
 
 use crate::options::Smoothing;
@@ -16,6 +16,8 @@ pub struct Prepared {
     pub constraints: Vec<Option<String>>,
     /// Dimensions of the state, n of them.
     pub state: Vec<StateChannel>,
+    /// Dimensions of the context, p of them; empty where movements depend on the state alone.
+    pub context: Vec<StateChannel>,
     /// Median time step in seconds.
     pub time_step: f64,
     /// Noise of positions and velocities.
@@ -35,7 +37,23 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// The same movements with every channel times a further factor, (n), with the noise and the findings on units that follow.
+    /// The same movements with every channel of the context times a further factor, (p).
+    ///
+    /// # Errors
+    /// [`MotionError`] where a product is not finite.
+    pub fn with_context_scaled(&self, factors: &DVector<f64>) -> Result<Self, MotionError> {
+        let scaled = |movement: &Trajectory| movement.clone().with_context(movement.context().component_mul(factors));
+        let movements = self.demonstrations.trajectories().iter().map(scaled);
+        let channel = |(of, factor): (&StateChannel, &f64)| StateChannel { scale: of.scale * factor, ..of.clone() };
+        Ok(Prepared {
+            demonstrations: Demonstrations::new(movements.collect::<Result<_, _>>()?)?,
+            context: self.context.iter().zip(factors).map(channel).collect(),
+            ..self.clone()
+        })
+    }
+
+    /// The same movements with every channel of the state times a further factor, (n), with the noise and the findings on units that
+    /// follow. The context stays as it is.
     ///
     /// # Errors
     /// [`MotionError`] where a product is not finite.

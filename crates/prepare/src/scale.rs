@@ -1,4 +1,4 @@
-use motion::{Demonstrations, Recordings, upper_median};
+use motion::{Channel, Recordings, upper_median};
 use nalgebra::DVector;
 
 use crate::notes::Notes;
@@ -32,17 +32,17 @@ pub(crate) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
 }
 
-/// Names, units and ranges, in the user's units.
+/// Names, units and ranges, in the user's units, of channels whose scaled values are given.
 pub(crate) fn channels(
-    recordings: &Recordings,
+    channels: &[Channel],
     scales: &DVector<f64>,
-    demonstrations: &Demonstrations,
+    values: impl Fn(usize) -> Vec<f64>,
 ) -> Vec<StateChannel> {
-    let of = |(at, channel): (usize, &motion::Channel)| {
-        let values = demonstrations.values(at).map(|x| x / scales[at]);
-        let (low, high) = range(values.clone());
-        let median = upper_median(values.collect()).expect("demonstrations have samples");
+    let of = |(at, channel): (usize, &Channel)| {
+        let values: Vec<f64> = values(at).into_iter().map(|x| x / scales[at]).collect();
+        let (low, high) = range(values.iter().copied());
+        let median = upper_median(values).expect("demonstrations have samples");
         StateChannel { name: channel.name.clone(), unit: channel.unit.clone(), scale: scales[at], low, high, median }
     };
-    recordings.state.iter().enumerate().map(of).collect()
+    channels.iter().enumerate().map(of).collect()
 }

@@ -9,8 +9,15 @@ fn recordings(times: Vec<f64>, value: impl Fn(f64) -> f64) -> Recordings {
     let positions = DMatrix::from_iterator(1, times.len(), times.iter().map(|&t| value(t)));
     let source = Source { file: "made".to_owned(), rows: None };
     let velocities = Some(positions.clone());
-    let episode =
-        Episode { name: "a".to_owned(), source, times: Times::Stamped(times), positions, velocities, constraint: None };
+    let episode = Episode {
+        name: "a".to_owned(),
+        source,
+        times: Times::Stamped(times),
+        positions,
+        velocities,
+        constraint: None,
+        context: nalgebra::DVector::zeros(0),
+    };
     let state = vec![Channel { name: "x".to_owned(), unit: None }];
     Recordings { state, episodes: vec![episode], findings: vec![] }
 }

@@ -11,6 +11,7 @@ use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 
 use self::failure::failed;
 use self::leaf::Leaf;
+use crate::clean::ENVIRONMENT;
 use crate::input::Input;
 use crate::names::selection::select;
 use crate::raw::{RawRecordings, remark};
@@ -123,9 +124,13 @@ impl Columns {
         mine.dt = options.dt.or(described.period);
         mine.state = self.elements(&options.state, described, file)?;
         mine.velocity = self.elements(&options.velocity, described, file)?;
+        mine.context = self.elements(&options.context, described, file)?;
         mine.ignore = options.ignore.iter().flat_map(|pattern| self.elements_of(pattern)).collect();
         if mine.state.is_empty() {
             mine.state = self.elements_of(STATE).into_iter().filter(|name| name != STATE || self.has(STATE)).collect();
+            if !mine.state.is_empty() && mine.context.is_empty() && self.has(ENVIRONMENT) {
+                mine.context = self.elements_of(ENVIRONMENT);
+            }
         }
         if mine.state.is_empty() {
             // Goals are no positions.

@@ -8,6 +8,7 @@ use self::names::{base, is_one_of};
 pub(crate) use self::names::{is_time, unit, velocity_names};
 use crate::names::selection::{flags, glob, select};
 use crate::{Fault, ReadError, ReadOptions};
+use motion::is_called_context;
 
 /// A column before its role is known.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,6 +37,8 @@ pub(crate) struct Roles {
     pub(crate) state: Vec<usize>,
     /// As many as the state, or none.
     pub(crate) velocity: Vec<usize>,
+    /// What follows the state and has no velocity.
+    pub(crate) context: Vec<usize>,
     /// Not used, and not named by `--ignore` either.
     pub(crate) ignored: Vec<usize>,
     /// Whether the state was found here rather than named by the user.
@@ -74,8 +77,11 @@ pub(crate) fn assign(columns: &[Column], options: &ReadOptions, place: &str) -> 
         constraint: one(options.constraint_column.as_deref(), "--constraint-column", &names, place)?,
         state: named(&options.state, &names, place)?,
         velocity: named(&options.velocity, &names, place)?,
+        context: named(&options.context, &names, place)?,
         ..Roles::default()
     };
+    let Roles { state, context, .. } = &mut roles;
+    state.retain(|index| !context.contains(index));
     let mut free: Vec<usize> = (0..names.len())
         .filter(|&index| !ignored_by_user[index] && !roles.holds(index))
         .filter(|&index| !(is_one_of(&ROW_NUMBERS, names[index]) && columns[index].content == Content::Counting))
@@ -111,6 +117,7 @@ impl Roles {
         [self.time, self.episode, self.constraint].contains(&Some(index))
             || self.state.contains(&index)
             || self.velocity.contains(&index)
+            || self.context.contains(&index)
     }
 
     /// State is what is left, without what is the velocity of something left.
@@ -160,14 +167,20 @@ impl Roles {
         if found.iter().all(Option::is_none) {
             return Ok(());
         }
+        let is_context = |(&index, found): (&usize, &Option<usize>)| found.is_none() && is_called_context(names[index]);
+        self.context.extend(self.state.iter().zip(&found).filter(|of| is_context(*of)).map(|(index, _)| *index));
+        let found: Vec<Option<usize>> =
+            self.state.iter().zip(&found).filter(|of| !is_context(*of)).map(|(_, found)| *found).collect();
+        self.state.retain(|index| !self.context.contains(index));
         let states = self.state.iter().zip(&found);
         let lacking: Vec<&str> = states.filter(|(_, found)| found.is_none()).map(|(&index, _)| names[index]).collect();
         if !lacking.is_empty() {
             let known: Vec<&str> = found.iter().flatten().map(|&index| names[index]).collect();
             let what = format!("some states have a velocity ({}), but {} lack one", known.join(", "), quoted(&lacking));
             let remedy = format!(
-                "--state with the names of the state, --ignore {} or --velocity with a column for each state",
-                known.join(",")
+                "--state with the names of the state, --ignore {} or --velocity with a column for each state, or --context {} for a goal or the like",
+                known.join(","),
+                lacking.join(",")
             );
             return Err(ReadError::NoRoles(Fault::new(what, place, remedy)));
         }

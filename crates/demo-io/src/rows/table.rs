@@ -77,8 +77,9 @@ impl Table {
     /// The columns that have a role.
     #[cfg(feature = "parquet")]
     pub(crate) fn used(&self) -> std::collections::HashSet<usize> {
-        let Roles { time, episode, constraint, state, velocity, .. } = &self.roles;
-        [*time, *episode, *constraint].into_iter().flatten().chain(state.iter().chain(velocity).copied()).collect()
+        let Roles { time, episode, constraint, state, velocity, context, .. } = &self.roles;
+        let columns = state.iter().chain(velocity).chain(context).copied();
+        [*time, *episode, *constraint].into_iter().flatten().chain(columns).collect()
     }
 
     /// Adds the row at `place`.
@@ -97,10 +98,14 @@ impl Table {
         }
         let raw = &mut self.episodes[episode];
         raw.rows.push(place);
-        let state = fill(row, &self.roles.state, &mut raw.positions);
-        state
-            .and_then(|()| fill(row, &self.roles.velocity, &mut raw.velocities))
-            .map_err(|(column, text)| self.not_a_number(&text, column, place))
+        let Roles { state, velocity, context, .. } = &self.roles;
+        let filled = fill(row, state, &mut raw.positions)
+            .and_then(|()| fill(row, context, &mut raw.positions))
+            .and_then(|()| fill(row, velocity, &mut raw.velocities));
+        if !velocity.is_empty() {
+            raw.velocities.extend(context.iter().map(|_| 0.0));
+        }
+        filled.map_err(|(column, text)| self.not_a_number(&text, column, place))
     }
 
     fn episode_of(&mut self, row: &impl Row) -> Result<usize, ReadError> {
@@ -175,7 +180,7 @@ impl Table {
     pub(crate) fn finish(mut self) -> RawRecordings {
         let ticks = self.ticks.unwrap_or(TicksPerSecond(1.0));
         let name = |&index: &usize| self.names[index].as_str();
-        let channels = self.roles.state.iter().map(name);
+        let channels = self.roles.state.iter().chain(&self.roles.context).map(name);
         let channels =
             channels.map(|name| Channel { name: name.to_owned(), unit: unit(name).map(str::to_owned) }).collect();
         let ignored: Vec<&str> = self.roles.ignored.iter().map(name).collect();

@@ -12,6 +12,7 @@ fn recordings(names: &[&str]) -> Recordings {
         positions: numbers(number as f64),
         velocities: Some(numbers(number as f64 + 0.5)),
         constraint: (number == 1).then(|| "rail, \"left\"".to_owned()),
+        context: nalgebra::DVector::zeros(0),
     };
     let channel = |name: &&str| motion::Channel { name: (*name).to_owned(), unit: None };
     Recordings { state: names.iter().map(channel).collect(), episodes: vec![episode(0), episode(1)], findings: vec![] }

@@ -53,8 +53,8 @@ impl ConstraintEstimates {
     /// [`GpError::Lengths`] for a policy or Jacobians that do not fit the rows, or movements of fewer than four samples.
     pub fn of(rows: &Rows, policy: &dyn LearntPolicy, spaces: &[TaskSpace]) -> Result<Self, GpError> {
         let lengths = |what, found, expected| Err(GpError::Lengths { what, found, expected });
-        if policy.dim() != rows.dim() {
-            return lengths("dimensions of the policy", policy.dim(), rows.dim());
+        if policy.dim() != rows.states().nrows() {
+            return lengths("dimensions of the policy", policy.dim(), rows.states().nrows());
         }
         if let Some(at) = spaces.iter().position(|space| !space.fits(rows.len(), rows.dim())) {
             return lengths("Jacobians of a task space", spaces[at].jacobians.as_ref().map_or(0, Vec::len), rows.len());
@@ -104,10 +104,10 @@ impl Wanted {
     fn of(rows: &Rows, policy: &dyn LearntPolicy) -> Self {
         let dim = rows.dim();
         let at = |row: usize| {
-            let (mut action, mut deviation) = (DVector::zeros(dim), DVector::zeros(dim));
+            let (mut action, mut deviation) = (DVector::zeros(policy.dim()), DVector::zeros(policy.dim()));
             policy.action_into(rows.states().column(row), action.as_view_mut());
             policy.action_sd_into(rows.states().column(row), deviation.as_view_mut());
-            (action, deviation.norm_squared() / dim as f64)
+            (action.resize_vertically(dim, 0.0), deviation.rows(0, dim).norm_squared() / dim as f64)
         };
         let (actions, variances): (Vec<DVector<f64>>, Vec<f64>) = (0..rows.len()).into_par_iter().map(at).unzip();
         Wanted { actions: DMatrix::from_columns(&actions), variances }

@@ -19,7 +19,7 @@ pub struct DirectData {
     pub(crate) scaling: Scaling,
     /// ū² = (1/M) Σ|u|²/n.
     pub(crate) unit: f64,
-    /// Scaled states z, (n, M).
+    /// Scaled states and contexts z, (n + p, M).
     pub(crate) z: DMatrix<f64>,
     /// Y = u/ū, (M, n).
     targets: DMatrix<f64>,

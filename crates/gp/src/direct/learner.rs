@@ -45,7 +45,9 @@ impl LearntPolicy for DirectFit {
     }
 
     fn action_sd_into(&self, state: DVectorView<'_, f64>, mut deviation: DVectorViewMut<'_, f64>) -> bool {
-        deviation.fill((self.z_squared.max(1.0) * self.model.variance(state).max(0.0)).sqrt());
+        deviation.fill(0.0);
+        let mut moving = deviation.rows_mut(0, self.model.weights.nrows());
+        moving.fill((self.z_squared.max(1.0) * self.model.variance(state).max(0.0)).sqrt());
         true
     }
 

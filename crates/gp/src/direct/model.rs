@@ -82,10 +82,10 @@ impl DirectModel {
         self.unit.powi(2) * scaled
     }
 
-    /// û at each of the states (n, M), (n, M).
+    /// û at each of the states with their contexts (n + p, M), (n, M).
     pub(crate) fn actions(&self, states: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut actions = DMatrix::zeros(states.nrows(), states.ncols());
-        let places = actions.as_mut_slice().par_chunks_mut(states.nrows());
+        let mut actions = DMatrix::zeros(self.weights.nrows(), states.ncols());
+        let places = actions.as_mut_slice().par_chunks_mut(self.weights.nrows());
         places
             .zip(states.as_slice().par_chunks(states.nrows()))
             .for_each(|(action, state)| Arch::new().dispatch(Action { model: self, state, place: action }));
@@ -131,6 +131,8 @@ impl Policy for DirectModel {
 
     fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
         require(self.dim(), &[state.len(), action.len()]);
-        Arch::new().dispatch(Action { model: self, state: state.as_slice(), place: action.as_mut_slice() });
+        let (moving, still) = action.as_mut_slice().split_at_mut(self.weights.nrows());
+        Arch::new().dispatch(Action { model: self, state: state.as_slice(), place: moving });
+        still.fill(0.0);
     }
 }

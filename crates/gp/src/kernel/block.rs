@@ -5,7 +5,8 @@ use crate::kernel::shape::{Radial, Shape, divergence_free_at};
 
 /// One term of the slope GP's prior with its amplitude: a covariance of slopes nᵀπ, and of the potential.
 ///
-/// Distances are in scaled coordinates z; a scale s stands for the length ℓ = s √(2n), n the dimension of the state.
+/// Distances are in scaled coordinates z of state and context, (n + p), directions (n) of the state alone: no context moves. A
+/// scale s stands for the length ℓ = s √(2(n + p)).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Block {
@@ -27,7 +28,7 @@ impl Block {
         !matches!(self, Block::Skew | Block::DivergenceFree(_))
     }
 
-    /// (S3): covariance of the slopes along `n` at `z` and along `n2` at `z2`, all (n).
+    /// (S3): covariance of the slopes along `n` at `z` and along `n2` at `z2`.
     pub fn slope_slope(
         self,
         z: DVectorView<'_, f64>,
@@ -36,33 +37,33 @@ impl Block {
         n2: DVectorView<'_, f64>,
     ) -> f64 {
         let nu = n.dot(&n2);
-        let along = || n.dot(&z2) * n2.dot(&z);
-        let dim = z.len();
+        let (x, x2) = (z.rows(0, n.len()), z2.rows(0, n.len()));
+        let along = || n.dot(&x2) * n2.dot(&x);
         match self {
             Block::Linear => nu,
-            Block::Quadratic => (nu * z.dot(&z2) + along()) / (dim as f64 + 1.0),
-            Block::Skew => (nu * z.dot(&z2) - along()) / (dim as f64 - 1.0).max(1.0),
+            Block::Quadratic => (nu * z.dot(&z2) + along()) / (z.len() as f64 + 1.0),
+            Block::Skew => (nu * x.dot(&x2) - along()) / (n.len() as f64 - 1.0).max(1.0),
             Block::Potential(..) | Block::DivergenceFree(_) => {
-                let (apart, g, h) = self.falling(z, z2);
+                let (apart, g, h) = self.falling(z, z2, n.len());
                 g * nu - h * n.dot(&apart) * n2.dot(&apart)
             }
         }
     }
 
-    /// Covariance of the policy at `z` and the slope along `n2` at `z2`, (n): (S3) with `n` each unit vector in turn.
+    /// Covariance of the policy at `z` and the slope along `n2` at `z2`: (S3) with `n` each unit vector in turn, (n).
     pub fn policy_slope(
         self,
         z: DVectorView<'_, f64>,
         z2: DVectorView<'_, f64>,
         n2: DVectorView<'_, f64>,
     ) -> DVector<f64> {
-        let dim = z.len() as f64;
+        let (x, x2) = (z.rows(0, n2.len()), z2.rows(0, n2.len()));
         match self {
             Block::Linear => n2.clone_owned(),
-            Block::Quadratic => (n2 * z.dot(&z2) + z2 * n2.dot(&z)) / (dim + 1.0),
-            Block::Skew => (n2 * z.dot(&z2) - z2 * n2.dot(&z)) / (dim - 1.0).max(1.0),
+            Block::Quadratic => (n2 * z.dot(&z2) + x2 * n2.dot(&x)) / (z.len() as f64 + 1.0),
+            Block::Skew => (n2 * x.dot(&x2) - x2 * n2.dot(&x)) / (n2.len() as f64 - 1.0).max(1.0),
             Block::Potential(..) | Block::DivergenceFree(_) => {
-                let (apart, g, h) = self.falling(z, z2);
+                let (apart, g, h) = self.falling(z, z2, n2.len());
                 let beta = n2.dot(&apart);
                 n2 * g - apart * (h * beta)
             }
@@ -77,11 +78,12 @@ impl Block {
         z2: DVectorView<'_, f64>,
         n2: DVectorView<'_, f64>,
     ) -> Option<f64> {
+        let along = || n2.dot(&z.rows(0, n2.len()));
         match self {
-            Block::Linear => Some(-n2.dot(&z)),
-            Block::Quadratic => Some(-n2.dot(&z) * z.dot(&z2) / (z.len() as f64 + 1.0)),
+            Block::Linear => Some(-along()),
+            Block::Quadratic => Some(-along() * z.dot(&z2) / (z.len() as f64 + 1.0)),
             Block::Potential(..) => {
-                let (apart, g, _) = self.falling(z, z2);
+                let (apart, g, _) = self.falling(z, z2, n2.len());
                 Some(-g * n2.dot(&apart))
             }
             Block::Skew | Block::DivergenceFree(_) => None,
@@ -101,13 +103,15 @@ impl Block {
         }
     }
 
-    /// z − z2, g and h of a block that falls with distance.
-    fn falling(self, z: DVectorView<'_, f64>, z2: DVectorView<'_, f64>) -> (DVector<f64>, f64, f64) {
-        let apart = z - z2;
-        let squared = apart.norm_squared();
+    /// x − x2, (n), g and h of a block that falls with distance.
+    fn falling(self, z: DVectorView<'_, f64>, z2: DVectorView<'_, f64>, dim: usize) -> (DVector<f64>, f64, f64) {
+        let squared = (z - z2).norm_squared();
+        let apart = z.rows(0, dim) - z2.rows(0, dim);
         let (g, h) = match self {
             Block::Potential(shape, scale) => Radial { shape, length: length(scale, z.len()) }.slopes_at(squared),
-            Block::DivergenceFree(scale) => divergence_free_at(length(scale, z.len()), z.len(), squared),
+            Block::DivergenceFree(scale) => {
+                divergence_free_at((length(scale, z.len()), dim), squared, apart.norm_squared())
+            }
             Block::Linear | Block::Quadratic | Block::Skew => (0.0, 0.0),
         };
         (apart, g, h)

@@ -68,14 +68,14 @@ impl Slopes for Matern32 {
     }
 }
 
-impl Slopes for DivergenceFree {
+impl DivergenceFree {
+    /// g and h at one squared distance, of which `moving` lies along the state and the rest along the context.
     #[inline(always)]
-    fn at(self, squared_distance: f64) -> (f64, f64) {
+    fn at(self, squared_distance: f64, moving: f64) -> (f64, f64) {
         let DivergenceFree(length, dim) = self;
         let inverse = 1.0 / (length * length);
-        let ratio = squared_distance * inverse;
-        let e = exp(-0.5 * ratio) / (dim - 1.0).max(1.0);
-        (e * ((dim - 1.0) - ratio), -e * inverse)
+        let e = exp(-0.5 * (squared_distance * inverse)) / (dim - 1.0).max(1.0);
+        (e * ((dim - 1.0) - moving * inverse), -e * inverse)
     }
 }
 
@@ -158,18 +158,23 @@ fn add_each(amplitude: f64, squared_distances: &Chunk, values: &mut Chunk, value
     }
 }
 
-/// g and h of the divergence-free block in `dim` dimensions.
-pub(crate) fn divergence_free_at(length: f64, dim: usize, squared_distance: f64) -> (f64, f64) {
-    DivergenceFree(length, dim as f64).at(squared_distance)
+/// g and h of the divergence-free block in `dim` dimensions, at a squared distance of which `moving` lies along them.
+pub(crate) fn divergence_free_at((length, dim): (f64, usize), squared_distance: f64, moving: f64) -> (f64, f64) {
+    DivergenceFree(length, dim as f64).at(squared_distance, moving)
 }
 
 #[inline(always)]
 pub(crate) fn add_divergence_free(
     (length, dim): (f64, usize),
     amplitude: f64,
-    squared_distances: &Chunk,
+    (squared_distances, moving): (&Chunk, &Chunk),
     g: &mut Chunk,
     h: &mut Chunk,
 ) {
-    add(DivergenceFree(length, dim as f64), amplitude, squared_distances, g, h);
+    let slopes = DivergenceFree(length, dim as f64);
+    for lane in 0..CHUNK {
+        let (own_g, own_h) = slopes.at(squared_distances[lane], moving[lane]);
+        g[lane] += amplitude * own_g;
+        h[lane] += amplitude * own_h;
+    }
 }

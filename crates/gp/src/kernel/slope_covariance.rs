@@ -8,7 +8,7 @@ use crate::kernel::chunks::{CHUNK, Chunk, Chunks};
 use crate::kernel::covariance::Covariance;
 use crate::kernel::shape::{Radial, Shape, add_divergence_free};
 
-/// Covariances (S3) of slopes: of directions `n`, (n, M), at scaled states `z`, (n, M).
+/// Covariances (S3) of slopes: of directions `n`, (n, M), at scaled states and contexts `z`, (n + p, M).
 #[derive(Debug)]
 pub(crate) struct SlopeCovariance<'a> {
     pub(crate) blocks: &'a [Block],
@@ -110,21 +110,38 @@ impl WithSimd for SlopesWith<'_> {
                 zn[lane] += z * n2;
             }
         }
-        let (g, h) = falling(self.blocks, self.amplitudes, self.z.len(), &squared);
-        let [linear, quadratic, skew] = trend(self.blocks, self.amplitudes, self.z.len());
+        // Rotation is of the state alone.
+        let (moving, xx) = (squared, zz);
+        let dim = self.n.len();
+        for (&z, states) in self.z[dim..].iter().zip(&self.states[dim..]) {
+            for lane in 0..CHUNK {
+                let apart = z - states[lane];
+                squared[lane] += apart * apart;
+                zz[lane] += z * states[lane];
+            }
+        }
+        let sizes = (dim, self.z.len());
+        let (g, h) = falling(self.blocks, self.amplitudes, sizes, (&squared, &moving));
+        let [linear, quadratic, skew] = trend(self.blocks, self.amplitudes, sizes);
         let mut values = [0.0; CHUNK];
         for lane in 0..CHUNK {
             let (turned, along) = (nu[lane] * zz[lane], nz[lane] * zn[lane]);
+            let rotated = nu[lane] * xx[lane] - along;
             values[lane] = (g[lane] * nu[lane] - h[lane] * alpha[lane] * beta[lane])
-                + (linear * nu[lane] + quadratic * (turned + along) + skew * (turned - along));
+                + (linear * nu[lane] + quadratic * (turned + along) + skew * rotated);
         }
         values
     }
 }
 
-/// Σ a_b g_b and Σ a_b h_b over the blocks that fall with distance.
+/// Σ a_b g_b and Σ a_b h_b over the blocks that fall with distance: of state and context, and of the state alone, (n) of (n + p).
 #[inline(always)]
-pub(crate) fn falling(blocks: &[Block], amplitudes: &[f64], dim: usize, squared_distances: &Chunk) -> (Chunk, Chunk) {
+pub(crate) fn falling(
+    blocks: &[Block],
+    amplitudes: &[f64],
+    (moving_dim, dim): (usize, usize),
+    (squared_distances, moving): (&Chunk, &Chunk),
+) -> (Chunk, Chunk) {
     let [mut g, mut h] = [[0.0; CHUNK]; 2];
     for (&block, &amplitude) in blocks.iter().zip(amplitudes) {
         if amplitude == 0.0 {
@@ -136,7 +153,8 @@ pub(crate) fn falling(blocks: &[Block], amplitudes: &[f64], dim: usize, squared_
                 radial.add_slopes(amplitude, squared_distances, &mut g, &mut h);
             }
             Block::DivergenceFree(scale) => {
-                add_divergence_free((length(scale, dim), dim), amplitude, squared_distances, &mut g, &mut h);
+                let sizes = (length(scale, dim), moving_dim);
+                add_divergence_free(sizes, amplitude, (squared_distances, moving), &mut g, &mut h);
             }
             Block::Linear | Block::Quadratic | Block::Skew => {}
         }
@@ -144,16 +162,16 @@ pub(crate) fn falling(blocks: &[Block], amplitudes: &[f64], dim: usize, squared_
     (g, h)
 }
 
-/// The factors of ν, of ν zᵀz' + (nᵀz')(n'ᵀz) and of their difference.
+/// The factors of ν, of ν zᵀz' + (nᵀz')(n'ᵀz), and of their difference in the state alone.
 #[inline(always)]
-pub(crate) fn trend(blocks: &[Block], amplitudes: &[f64], dim: usize) -> [f64; 3] {
-    let dim = dim as f64;
+pub(crate) fn trend(blocks: &[Block], amplitudes: &[f64], (moving_dim, dim): (usize, usize)) -> [f64; 3] {
+    let (moving_dim, dim) = (moving_dim as f64, dim as f64);
     let mut factors = [0.0; 3];
     for (&block, &amplitude) in blocks.iter().zip(amplitudes) {
         match block {
             Block::Linear => factors[0] += amplitude,
             Block::Quadratic => factors[1] += amplitude / (dim + 1.0),
-            Block::Skew => factors[2] += amplitude / (dim - 1.0).max(1.0),
+            Block::Skew => factors[2] += amplitude / (moving_dim - 1.0).max(1.0),
             Block::Potential(..) | Block::DivergenceFree(_) => {}
         }
     }

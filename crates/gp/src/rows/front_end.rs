@@ -1,5 +1,5 @@
 use motion::{Demonstrations, SampleIndex, SampleSet, Trajectory};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 use smoothing::{Fusion, Smoother, SmoothingError, VelocityNoise};
 
@@ -41,16 +41,26 @@ impl FrontEnd {
         variance.map_or(FrontEnd::Velocities, |variance| FrontEnd::NoisyVelocities { variance })
     }
 
-    /// The rows of all trajectories, in order.
+    /// The rows of all trajectories, in order, each with its trajectory's context.
     ///
     /// # Errors
     /// [`GpError::NoVelocities`] if they are needed, [`GpError::Value`] for a variance that is negative or not finite,
     /// [`GpError::Cleaning`] if the smoother refuses, [`GpError::Overflow`] if squares of speeds are not finite.
     pub fn rows(&self, demonstrations: &Demonstrations) -> Result<Rows, GpError> {
+        let rows = self.without_context(demonstrations)?;
+        if demonstrations.context_dim() == 0 {
+            return Ok(rows);
+        }
+        let context = |row: &SampleIndex| demonstrations.trajectories()[row.trajectory].context().clone();
+        let contexts: Vec<DVector<f64>> = rows.indices().iter().map(context).collect();
+        rows.with_context(&DMatrix::from_columns(&contexts))
+    }
+
+    fn without_context(&self, demonstrations: &Demonstrations) -> Result<Rows, GpError> {
         match self {
             FrontEnd::Velocities => rows_of(recorded(demonstrations, |trajectory| trajectory.states().clone())?),
             &FrontEnd::NoisyVelocities { variance } => {
-                let rows = FrontEnd::Velocities.rows(demonstrations)?;
+                let rows = FrontEnd::Velocities.without_context(demonstrations)?;
                 let count = rows.len();
                 rows.with_variances(vec![variance; count])
             }

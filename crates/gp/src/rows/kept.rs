@@ -52,7 +52,7 @@ pub(crate) struct OfStretches {
 /// Rows kept, in the order of trajectories and samples.
 #[derive(Debug, Clone)]
 pub(crate) struct Kept {
-    /// (n, M).
+    /// States with their contexts, (n + p, M).
     pub(crate) states: DMatrix<f64>,
     /// The part of the velocity along the direction of each row, (n, M): the whole but in rows of stretches and of momenta.
     pub(crate) velocities: DMatrix<f64>,
@@ -85,8 +85,21 @@ impl Kept {
         let along = scaled(&self.velocities, factors);
         let velocities = whole.as_ref().map_or_else(|| along.clone(), |whole| parts_along(whole, &along));
         let speeds = velocities.column_iter().map(|velocity| velocity.norm()).collect();
-        Kept { states: scaled(&self.states, factors), velocities, speeds, whole, variances: None, ..self.clone() }
+        Kept { states: rescaled(&self.states, factors), velocities, speeds, whole, variances: None, ..self.clone() }
     }
+}
+
+/// Standard deviation of every axis.
+pub(crate) fn spreads(states: &DMatrix<f64>) -> DVector<f64> {
+    DVector::from_iterator(states.nrows(), states.row_iter().map(|axis| axis.variance().sqrt()))
+}
+
+/// States (n + p, M) with a factor on every axis that moves, (n), and one on their context that keeps its share of the spread.
+pub(crate) fn rescaled(states: &DMatrix<f64>, factors: &DVector<f64>) -> DMatrix<f64> {
+    let (dim, context_dim) = (factors.len(), states.nrows() - factors.len());
+    let spread = spreads(&states.rows(0, dim).into_owned());
+    let context = spread.component_mul(factors).norm() / spread.norm();
+    scaled(states, &factors.clone().resize_vertically(dim + context_dim, context))
 }
 
 impl Selection {
@@ -179,7 +192,7 @@ fn grouped(rows: &Rows, usable: &[usize]) -> Result<Grouped, GpError> {
     if recorded > 2 && with_rows < 3 {
         return Err(GpError::TooFewTrajectories { found: with_rows });
     }
-    let needed = rows.dim() + 2;
+    let needed = rows.states().nrows() + 2;
     if usable.len() < needed {
         return Err(GpError::TooFewRows { found: usable.len(), needed });
     }

@@ -16,7 +16,7 @@ use crate::GpError;
 /// Most rows of a model, fitted or read: the Cholesky factor of so many, which its error bars need, takes 0.8 GB.
 pub const MOST_ROWS: usize = 10_000;
 
-/// Observed motion, one row a sample: state, velocity, and the variance of the velocity.
+/// Observed motion, one row a sample: state with its context, velocity, and the variance of the velocity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rows {
     states: DMatrix<f64>,
@@ -60,6 +60,29 @@ impl Rows {
             }
         }
         Ok(Rows { states, velocities, variances: None, indices, momenta: None, noise: None, switches: None })
+    }
+
+    /// Adds the context c of every row, (p, M): what the motion depends on and what stays as it is during a movement, such as a
+    /// goal. It counts as further coordinates of the state along which nothing moves, so that it should spread about as much as the
+    /// state ([`SlopeGp::context_factors`](crate::SlopeGp::context_factors)).
+    ///
+    /// # Errors
+    /// [`GpError::Lengths`], [`GpError::Value`] for what is not finite, or [`GpError::Overflow`].
+    pub fn with_context(self, context: &DMatrix<f64>) -> Result<Self, GpError> {
+        let (found, expected) = (context.ncols(), self.len());
+        if found != expected {
+            return Err(GpError::Lengths { what: "contexts", found, expected });
+        }
+        if let Some(at) = context.iter().position(|value| !value.is_finite()) {
+            return Err(GpError::Value { what: "context", row: at / context.nrows(), value: context[at] });
+        }
+        if !(0.0..1e300).contains(&context.norm_squared()) {
+            return Err(GpError::Overflow { what: "distance" });
+        }
+        let dim = self.dim();
+        let mut states = self.states.resize_vertically(dim + context.nrows(), 0.0);
+        states.rows_mut(dim, context.nrows()).copy_from(context);
+        Ok(Rows { states, ..self })
     }
 
     /// Adds uncertainty of the velocities: `variances` (M), of each row's velocity along every axis.
@@ -121,7 +144,7 @@ impl Rows {
         }
     }
 
-    /// States x, (n, M).
+    /// States x, each followed by its context c, (n + p, M).
     pub fn states(&self) -> &DMatrix<f64> {
         &self.states
     }
@@ -192,9 +215,14 @@ impl Rows {
         self.indices.is_empty()
     }
 
+    /// Dimension p of the context; 0 without one.
+    pub fn context_dim(&self) -> usize {
+        self.states.nrows() - self.dim()
+    }
+
     /// Dimension n of the state.
     pub fn dim(&self) -> usize {
-        self.states.nrows()
+        self.velocities.nrows()
     }
 }
 

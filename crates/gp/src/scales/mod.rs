@@ -3,6 +3,7 @@
 //! With z = Cx the right coordinates, C diagonal, and m = C², the policy is −M⁻¹∇φ: (S1) becomes −uᵀ∇φ(x) = uᵀMu, linear in m
 //! and φ together. Left-out errors are linear in targets, so those of each axis alone give the left-out error of every m.
 
+mod context;
 mod quotient;
 
 use motion::{scaled, upper_median};
@@ -13,7 +14,7 @@ use crate::evidence::family_fit::FamilyFit;
 use crate::kernel::block::Block;
 use crate::left_out::LeftOut;
 use crate::left_out::comparison::{difference, t_of_mean};
-use crate::rows::kept::{Kept, Selection};
+use crate::rows::kept::{Kept, Selection, rescaled, spreads};
 use crate::slope::data::SlopeData;
 use crate::slope::push_test::PushTest;
 use crate::slope::slope_gp::SlopeGp;
@@ -98,7 +99,7 @@ impl Round {
 
     /// π̂ at the rows, in units of the recording.
     fn actions(self, kept: &Kept) -> DMatrix<f64> {
-        let states = scaled(&kept.states, &self.factors);
+        let states = rescaled(&kept.states, &self.factors);
         let actions = self.data.model(self.blocks, self.fit).actions(&states);
         scaled(&actions, &self.factors.map(f64::recip))
     }
@@ -118,8 +119,8 @@ impl SlopeGp {
             ..selection
         };
         let kept = few.keep(rows, rng)?;
-        let dim = kept.states.nrows();
-        let spread = DVector::from_iterator(dim, kept.states.row_iter().map(|axis| axis.variance().sqrt()));
+        let dim = rows.dim();
+        let spread = spreads(&kept.states).rows(0, dim).into_owned();
         if dim == 1 || spread.min() <= 0.0 || rows.momenta().is_some() {
             return Ok(None);
         }
@@ -137,8 +138,11 @@ impl SlopeGp {
 
 /// Rows of stretches, found with every axis divided by its `spread`, in the recorded units; none where nothing pushes.
 fn stretches(rows: &Rows, kept: &Kept, selection: &Selection, spread: &DVector<f64>) -> Option<Kept> {
-    let [states, velocities] = [rows.states(), rows.velocities()].map(|of| scaled(of, &spread.map(f64::recip)));
-    let alike = Rows::new(states, velocities, rows.indices().to_vec()).ok()?;
+    let (dim, factors) = (rows.dim(), spread.map(f64::recip));
+    let states = rescaled(rows.states(), &factors);
+    let velocities = scaled(rows.velocities(), &factors);
+    let alike = Rows::new(states.rows(0, dim).into_owned(), velocities, rows.indices().to_vec()).ok()?;
+    let alike = alike.with_context(&states.rows(dim, states.nrows() - dim).into_owned()).ok()?;
     let stretches = Stretches::of(&alike).filter(Stretches::push_is_significant)?;
     Some(stretches.rows(&alike, kept, selection)?.scaled(spread))
 }

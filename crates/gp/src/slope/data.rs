@@ -21,7 +21,7 @@ pub struct SlopeData {
     pub(crate) scaling: Scaling,
     /// r̄² = Σ(r²/D)/Σ(1/D).
     pub(crate) speed: f64,
-    /// Scaled states z, (n, M).
+    /// Scaled states and contexts z, (n + p, M).
     pub(crate) z: DMatrix<f64>,
     /// Directions of motion n = u/r, (n, M).
     pub(crate) n: DMatrix<f64>,

@@ -17,14 +17,16 @@ pub(crate) struct Expansion {
     pub(crate) speed: f64,
     pub(crate) blocks: Vec<Block>,
     pub(crate) amplitudes: Vec<f64>,
+    /// Scaled states and contexts, (n + p, M).
     pub(crate) z: DMatrix<f64>,
+    /// Directions, (n, M).
     pub(crate) n: DMatrix<f64>,
     /// α, (M).
     pub(crate) weights: Vec<f64>,
     states: Chunks,
     directions: Chunks,
     weight_chunks: Vec<Chunk>,
-    /// c, (n), and Q, (n, n).
+    /// c, (n + p), 0 along the context, and Q, (n + p, n + p), symmetric but for the rotation of the state.
     pub(crate) constant: DVector<f64>,
     pub(crate) matrix: DMatrix<f64>,
 }
@@ -36,13 +38,16 @@ impl Expansion {
         (z, n): (DMatrix<f64>, DMatrix<f64>),
         weights: Vec<f64>,
     ) -> Self {
-        let dim = z.nrows();
-        let [linear, quadratic, skew] = trend(&blocks, &amplitudes, dim);
-        let weighted = weighted(&n, &weights);
+        let (moving, dim) = (n.nrows(), z.nrows());
+        let [linear, quadratic, skew] = trend(&blocks, &amplitudes, (moving, dim));
+        let weighted = weighted(&n, &weights).resize_vertically(dim, 0.0);
         // Σ α n zᵀ: its symmetric part is the quadratic block's, its skew part the skew block's.
         let outer = &weighted * z.transpose();
         let constant = weighted.column_sum() * linear;
-        let matrix = (&outer + outer.transpose()) * quadratic + (&outer - outer.transpose()) * skew;
+        let mut rotation = &outer - outer.transpose();
+        rotation.columns_mut(moving, dim - moving).fill(0.0);
+        rotation.rows_mut(moving, dim - moving).fill(0.0);
+        let matrix = (&outer + outer.transpose()) * quadratic + rotation * skew;
         let weight_row = DMatrix::from_row_slice(1, weights.len(), &weights);
         let weight_chunks = Chunks::new(&weight_row);
         Expansion {
@@ -74,11 +79,17 @@ impl Expansion {
         weighted(&self.n, &self.weights)
     }
 
+    /// Dimension n of the state, without its context.
+    pub(crate) fn moving(&self) -> usize {
+        self.n.nrows()
+    }
+
+    /// Dimension n + p of state and context.
     pub(crate) fn dim(&self) -> usize {
         self.z.nrows()
     }
 
-    /// π̂(x), (n), in units of the state per second. Allocates nothing.
+    /// π̂ at a state with its context, (n + p), into (n), in units of the state per second. Allocates nothing.
     pub(crate) fn action_into(&self, state: &[f64], action: &mut [f64]) {
         Arch::new().dispatch(Action { expansion: self, state, place: action });
         let z = |k: usize| self.scaling.coordinate(k, state[k]);
@@ -88,10 +99,10 @@ impl Expansion {
         }
     }
 
-    /// π̂ at each of the states (n, M), (n, M).
+    /// π̂ at each of the states with their contexts (n + p, M), (n, M).
     pub(crate) fn actions(&self, states: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut actions = DMatrix::zeros(states.nrows(), states.ncols());
-        let places = actions.as_mut_slice().par_chunks_mut(self.dim());
+        let mut actions = DMatrix::zeros(self.moving(), states.ncols());
+        let places = actions.as_mut_slice().par_chunks_mut(self.moving());
         places
             .zip(states.as_slice().par_chunks(self.dim()))
             .for_each(|(action, state)| self.action_into(state, action));
@@ -110,8 +121,8 @@ impl Expansion {
     /// C_x of (S13): covariances of the policy at x, one column an axis, with every row's slope, (M, n).
     pub(crate) fn policy_with_rows(&self, state: DVectorView<'_, f64>) -> DMatrix<f64> {
         let z = self.scaling.of_state(state);
-        let axes = DMatrix::<f64>::identity(z.len(), z.len());
-        let mut covariances = DMatrix::zeros(self.weights.len(), z.len());
+        let axes = DMatrix::<f64>::identity(self.moving(), self.moving());
+        let mut covariances = DMatrix::zeros(self.weights.len(), self.moving());
         for (axis, mut column) in axes.column_iter().zip(covariances.column_iter_mut()) {
             for (chunk, place) in column.as_mut_slice().chunks_mut(CHUNK).enumerate() {
                 let rows = (self.states.get(chunk), self.directions.get(chunk));
@@ -122,7 +133,7 @@ impl Expansion {
         covariances
     }
 
-    /// c of (S14): covariances (S4) of the potential at `z`, (n), with every row's slope, (M, 1).
+    /// c of (S14): covariances (S4) of the potential at `z`, (n + p), with every row's slope, (M, 1).
     pub(crate) fn potential_with_rows(&self, z: &DVector<f64>) -> DMatrix<f64> {
         let with_row = |row: usize| {
             let each = self.blocks.iter().zip(&self.amplitudes);
@@ -139,7 +150,8 @@ impl Expansion {
     fn chunk(&self, chunk: usize, state: &[f64]) -> (Chunk, Chunk, Chunk) {
         let (states, directions) = (self.states.get(chunk), self.directions.get(chunk));
         let [mut squared, mut beta] = [[0.0; CHUNK]; 2];
-        for (k, &x) in state.iter().enumerate() {
+        let moving_dim = self.moving();
+        for (k, &x) in state[..moving_dim].iter().enumerate() {
             let z = self.scaling.coordinate(k, x);
             for lane in 0..CHUNK {
                 let apart = z - states[k][lane];
@@ -147,7 +159,16 @@ impl Expansion {
                 beta[lane] += directions[k][lane] * apart;
             }
         }
-        let (g, h) = falling(&self.blocks, &self.amplitudes, state.len(), &squared);
+        let moving = squared;
+        for (k, &x) in state.iter().enumerate().skip(moving_dim) {
+            let z = self.scaling.coordinate(k, x);
+            for lane in 0..CHUNK {
+                let apart = z - states[k][lane];
+                squared[lane] += apart * apart;
+            }
+        }
+        let sizes = (moving_dim, state.len());
+        let (g, h) = falling(&self.blocks, &self.amplitudes, sizes, (&squared, &moving));
         (beta, g, h)
     }
 }

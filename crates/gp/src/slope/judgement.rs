@@ -133,7 +133,8 @@ fn mean_covariances(model: &SlopeModel, states: &DMatrix<f64>) -> (DMatrix<f64>,
         (posterior, prior)
     };
     let parts: Vec<_> = at.par_chunks(TOGETHER).map(sums).collect();
-    let zero = DMatrix::zeros(states.nrows(), states.nrows());
+    let moving = model.expansion().moving();
+    let zero = DMatrix::zeros(moving, moving);
     let (posterior, prior) =
         parts.into_iter().fold((zero.clone(), zero), |(posterior, prior), part| (posterior + part.0, prior + part.1));
     (posterior / at.len() as f64, prior / at.len() as f64)

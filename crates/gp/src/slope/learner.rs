@@ -52,7 +52,9 @@ impl LearntPolicy for SlopeFit {
     fn action_sd_into(&self, state: DVectorView<'_, f64>, mut deviation: DVectorViewMut<'_, f64>) -> bool {
         let factor = self.report.variance_factor();
         let variances = self.model.covariance(state).diagonal();
-        deviation.copy_from(&variances.map(|variance| (factor * variance.max(0.0)).sqrt()));
+        deviation.fill(0.0);
+        let mut moving = deviation.rows_mut(0, variances.len());
+        moving.copy_from(&variances.map(|variance| (factor * variance.max(0.0)).sqrt()));
         true
     }
 

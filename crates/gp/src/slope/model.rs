@@ -56,18 +56,19 @@ impl SlopeModel {
     /// Prior covariance of π(x), (n, n), in the same units.
     pub fn prior_covariance(&self, state: DVectorView<'_, f64>) -> DMatrix<f64> {
         let (expansion, z) = (self.expansion(), self.expansion().scaling.of_state(state));
-        let basis = DMatrix::<f64>::identity(z.len(), z.len());
+        let moving = expansion.moving();
+        let basis = DMatrix::<f64>::identity(moving, moving);
         let z = z.as_view();
         let entry = |i: usize, j: usize| {
             let each = expansion.blocks.iter().zip(&expansion.amplitudes);
             each.map(|(block, a)| a * block.slope_slope(z, basis.column(i), z, basis.column(j))).sum::<f64>()
         };
-        DMatrix::from_fn(z.len(), z.len(), entry) * expansion.speed.powi(2)
+        DMatrix::from_fn(moving, moving, entry) * expansion.speed.powi(2)
     }
 
     /// (S13) at several states: one solution of triangular systems for all.
     pub(crate) fn covariances(&self, states: &[DVectorView<'_, f64>]) -> Vec<DMatrix<f64>> {
-        let (expansion, dim) = (self.expansion(), self.expansion().dim());
+        let (expansion, dim) = (self.expansion(), self.expansion().moving());
         let mut whitened = DMatrix::zeros(expansion.z.ncols(), dim * states.len());
         for (at, state) in states.iter().enumerate() {
             whitened.columns_mut(at * dim, dim).copy_from(&expansion.policy_with_rows(*state));
@@ -99,7 +100,7 @@ impl SlopeModel {
         Some((value, (expansion.speed * expansion.scaling.scale).powi(2) * scaled))
     }
 
-    /// π̂ at each of the states (n, M), (n, M).
+    /// π̂ at each of the states with their contexts (n + p, M), (n, M).
     pub(crate) fn actions(&self, states: &DMatrix<f64>) -> DMatrix<f64> {
         self.expansion().actions(states)
     }

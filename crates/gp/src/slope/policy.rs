@@ -6,13 +6,14 @@ use nalgebra::{DVectorView, DVectorViewMut};
 use crate::dimension::require;
 use crate::slope::expansion::Expansion;
 
-/// π̂ of (S7). Cheap to clone.
+/// π̂ of (S7), of a state followed by its context, along which it is 0. Cheap to clone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SlopePolicy {
     pub(crate) expansion: Arc<Expansion>,
 }
 
-/// φ̂ of (S7), whose negative gradient is π̂. Only differences of it have a meaning. Cheap to clone.
+/// φ̂ of (S7), whose negative gradient is π̂. Only differences of it within one context have a meaning, and along the context its
+/// gradient counts as 0. Cheap to clone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SlopePotential {
     pub(crate) expansion: Arc<Expansion>,
@@ -25,7 +26,9 @@ impl Policy for SlopePolicy {
 
     fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
         require(self.dim(), &[state.len(), action.len()]);
-        self.expansion.action_into(state.as_slice(), action.as_mut_slice());
+        let (moving, still) = action.as_mut_slice().split_at_mut(self.expansion.moving());
+        self.expansion.action_into(state.as_slice(), moving);
+        still.fill(0.0);
     }
 }
 
@@ -41,7 +44,9 @@ impl Potential for SlopePotential {
 
     fn gradient_into(&self, state: DVectorView<'_, f64>, mut gradient: DVectorViewMut<'_, f64>) {
         require(self.dim(), &[state.len(), gradient.len()]);
-        self.expansion.action_into(state.as_slice(), gradient.as_mut_slice());
+        let (moving, still) = gradient.as_mut_slice().split_at_mut(self.expansion.moving());
+        self.expansion.action_into(state.as_slice(), moving);
+        still.fill(0.0);
         gradient.neg_mut();
     }
 }

@@ -136,7 +136,7 @@ fn rotation(
     best: &Candidate,
     families: &mut Vec<FamilyReport>,
 ) -> Option<Candidate> {
-    if gp.curl_test == CurlTest::AssumePotential || kept.states.nrows() == 1 {
+    if gp.curl_test == CurlTest::AssumePotential || kept.velocities.nrows() == 1 {
         return None;
     }
     let with = |family| candidate(gp, data, kept, family, ModelKind::Helmholtz);

@@ -47,18 +47,17 @@ impl TryFrom<DirectRecord> for DirectFit {
 
     fn try_from(record: DirectRecord) -> Result<Self, GpError> {
         let DirectRecord { direct_gp, family, r_squared, z_squared } = record;
-        let rows = direct_gp.check(direct_gp.dim)?;
+        let (rows, moving) = direct_gp.check(&direct_gp.weights, |moving| moving)?;
         let dim = direct_gp.dim;
         check_scales(direct_gp.blocks.iter().map(|(block, _)| match block {
             DirectBlock::Shape(_, scale) => *scale,
             DirectBlock::Constant | DirectBlock::Linear | DirectBlock::Quadratic => 1.0,
         }))?;
-        let matrix = |numbers| DMatrix::from_vec(dim, rows, numbers);
         let model = DirectModel::new(
             (direct_gp.scaling, direct_gp.unit),
             direct_gp.blocks.into_iter().unzip(),
-            matrix(direct_gp.states),
-            matrix(direct_gp.weights),
+            DMatrix::from_vec(dim, rows, direct_gp.states),
+            DMatrix::from_vec(moving, rows, direct_gp.weights),
             (direct_gp.noise, direct_gp.noise_weights),
             LazyFactor::default(),
         );

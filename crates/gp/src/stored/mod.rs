@@ -27,7 +27,7 @@ struct Stored<B> {
     unit: f64,
     blocks: Vec<(B, f64)>,
     noise: f64,
-    /// z, (n, M).
+    /// z, (n + p, M): states with their contexts.
     states: Vec<f64>,
     noise_weights: Vec<f64>,
     /// (M) for slopes, (n, M) for velocities.
@@ -35,9 +35,11 @@ struct Stored<B> {
 }
 
 impl<B> Stored<B> {
-    /// The number of rows; `weights_a_row` numbers of `weights` belong to each.
-    fn check(&self, weights_a_row: usize) -> Result<usize, GpError> {
+    /// The number of rows M, and the dimension n of what moves, which `vectors` has numbers of, (n, M); the rest of `dim` is context.
+    fn check(&self, vectors: &[f64], weights_a_row: impl FnOnce(usize) -> usize) -> Result<(usize, usize), GpError> {
         let rows = self.noise_weights.len();
+        let moving = vectors.len().checked_div(rows).unwrap_or(0);
+        let weights_a_row = weights_a_row(moving);
         let finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
         let positive = |number: f64| number > 0.0 && number.is_finite();
         let amplitudes = || self.blocks.iter().map(|(_, amplitude)| *amplitude);
@@ -48,6 +50,8 @@ impl<B> Stored<B> {
             (self.dim <= MOST_DIMENSIONS, "its states have more than 2000 dimensions"),
             (self.scaling.mean.len() == self.dim, "the mean has not one number a dimension"),
             (self.states.len() == rows.saturating_mul(self.dim), "there is not one state a row"),
+            (vectors.len() == rows.saturating_mul(moving), "there is not one vector a row"),
+            ((1..=self.dim).contains(&moving), "vectors and states do not fit"),
             (self.weights.len() == rows.saturating_mul(weights_a_row), "there is not one weight a row"),
             (finite(&self.states) && finite(&self.weights) && finite(&self.scaling.mean), "a number is not finite"),
             (positive(self.scaling.scale) && positive(self.unit), "a unit is not positive"),
@@ -56,7 +60,7 @@ impl<B> Stored<B> {
             (self.noise_weights.iter().all(|&weight| positive(weight)), "a noise weight is not positive"),
         ];
         match checks.into_iter().find(|(fine, _)| !fine) {
-            None => Ok(rows),
+            None => Ok((rows, moving)),
             Some((_, reason)) => Err(stored(reason)),
         }
     }

@@ -47,9 +47,9 @@ impl TryFrom<SlopeRecord> for SlopeFit {
 
     fn try_from(record: SlopeRecord) -> Result<Self, GpError> {
         let SlopeRecord { slope_gp, directions, report } = record;
-        let rows = slope_gp.check(1)?;
+        let (rows, moving) = slope_gp.check(&directions, |_| 1)?;
         let dim = slope_gp.dim;
-        if directions.len() != slope_gp.states.len() || !directions.iter().all(|n| n.abs() <= 1.0 + 1e-9) {
+        if !directions.iter().all(|n| n.abs() <= 1.0 + 1e-9) {
             return Err(stored("there is not one direction of length 1 a row"));
         }
         let scales = slope_gp.blocks.iter().map(|(block, _)| match block {
@@ -57,11 +57,10 @@ impl TryFrom<SlopeRecord> for SlopeFit {
             Block::Linear | Block::Quadratic | Block::Skew => 1.0,
         });
         check_scales(scales)?;
-        let matrix = |numbers| DMatrix::from_vec(dim, rows, numbers);
         let expansion = Expansion::new(
             (slope_gp.scaling, slope_gp.unit),
             slope_gp.blocks.into_iter().unzip(),
-            (matrix(slope_gp.states), matrix(directions)),
+            (DMatrix::from_vec(dim, rows, slope_gp.states), DMatrix::from_vec(moving, rows, directions)),
             slope_gp.weights,
         );
         let model = SlopeModel::new(expansion, slope_gp.noise_weights, slope_gp.noise, LazyFactor::default());

@@ -15,7 +15,7 @@ from ._arrays import Floats, episodes, floats, samples
 from ._errors import PolicyAlignError, PolicyAlignWarning
 from ._trust import Decision, Finding, decisions, findings
 
-_LISTS = {"state", "velocity", "ignore", "units", "degrees", "unwrap"}
+_LISTS = {"state", "velocity", "context", "ignore", "units", "degrees", "unwrap"}
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class Demonstrations:
     def read(cls, *paths: str | os.PathLike[str], **options: Any) -> Demonstrations:
         """Reads files as one set: CSV, NPZ, JSON lines, LeRobot, HDF5, MCAP, MAT.
 
-        Options are the program's flags: ``state``, ``velocity``, ``time``, ``episode``, ``constraint_column``,
+        Options are the program's flags: ``state``, ``velocity``, ``context``, ``time``, ``episode``, ``constraint_column``,
         ``ignore``, ``dt``, ``units``, ``degrees``, ``unwrap``, ``nan``, ``sort``, ``split_gap``, ``trim_still``,
         ``filter``, ``samples_are``, ``separator``, ``decimal``, ``topic``, ``format`` and ``trust``. What was noticed is
         warned of, and stays in ``notes``.
@@ -123,7 +123,7 @@ class Demonstrations:
             else:
                 raise TypeError(f"a DataFrame is needed, not {type(frame).__name__}")
             read = cls.read(path, **options)
-        return cls._of(read._native.with_origin(("[]", read._native.origin[1], "the DataFrame")))
+        return cls._of(read._native.with_origin(("[]", read._native.origin[1], "the DataFrame", read._native.origin[3])))
 
     def check(
         self,
@@ -133,9 +133,10 @@ class Demonstrations:
         smooth: str | int = "auto",
         jumps: str = "auto",
         wraps: str = "auto",
+        context: str | Sequence[str] = "auto",
     ) -> Check:
         """All findings and decisions before learning; parameters as of the learners."""
-        found = json.loads(self._native.check(preparing(integration, scale, smooth, jumps, wraps)))
+        found = json.loads(self._native.check(preparing(integration, scale, smooth, jumps, wraps, context)))
         return Check(
             len(found["episodes"]),
             found["samples"],
@@ -213,18 +214,30 @@ class Demonstrations:
 
 
 def preparing(
-    integration: str, scale: dict[str, float] | None, smooth: str | int, jumps: str, wraps: str
+    integration: str,
+    scale: dict[str, float] | None,
+    smooth: str | int,
+    jumps: str,
+    wraps: str,
+    context: str | Sequence[str],
 ) -> dict[str, Any]:
     """The native half's options of preparation."""
     factors = list((scale or {}).items())
-    return {"integration": integration, "scale": factors, "smooth": str(smooth), "jumps": jumps, "wraps": wraps}
+    return {
+        "integration": integration,
+        "scale": factors,
+        "smooth": str(smooth),
+        "jumps": jumps,
+        "wraps": wraps,
+        "context": context if isinstance(context, str) else [str(name) for name in context],
+    }
 
 
 def _counted(count: int, what: str) -> str:
     return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 
-def _restored(movements: tuple[Any, ...], origin: tuple[str, str, str]) -> Demonstrations:
+def _restored(movements: tuple[Any, ...], origin: tuple[str, ...]) -> Demonstrations:
     positions, velocities, (step, times), *rest = movements
     native = _native.Recordings.of(_aligned(positions), _aligned(velocities), (step, _aligned(times)), *rest)
     return Demonstrations._of(native.with_origin(origin))

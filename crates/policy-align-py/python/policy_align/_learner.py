@@ -6,7 +6,7 @@ import json
 import os
 import time
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Any, ClassVar, Literal, Self, overload
 
@@ -14,13 +14,16 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from ._arrays import Floats, samples
+from ._arrays import Floats, floats, samples
 from ._constraints import ConstraintStretch, stretches
 from ._demonstrations import Demonstrations, preparing
 from ._errors import NotFittedError, PolicyAlignError, PolicyAlignWarning
 from ._estimator import Estimator
 from ._rollout import Constraint, Path, follow
 from ._trust import Decision, Trust, decisions, findings
+
+#: Values of a context by name, or in the order of ``context_names_``; none for a policy of the state alone.
+Context = Mapping[str, float] | Sequence[float] | Floats | None
 
 
 class Learner(Estimator):
@@ -38,6 +41,7 @@ class Learner(Estimator):
     smooth: str | int
     jumps: str
     wraps: str
+    context: str | Sequence[str]
     max_rows: int
     robot: str | os.PathLike[str] | None
     random_state: int
@@ -51,6 +55,7 @@ class Learner(Estimator):
         smooth: str | int = "auto",
         jumps: str = "auto",
         wraps: str = "auto",
+        context: str | Sequence[str] = "auto",
         max_rows: int = 400,
         robot: str | os.PathLike[str] | None = None,
         random_state: int = 1,
@@ -59,10 +64,11 @@ class Learner(Estimator):
         """``integration``: "auto", "velocity" (recorded ones are believed) or "displacement" (they are ignored). ``scale``:
         factors of channels' units. ``smooth``, of positions: "auto", "off", a window of samples (9) or of seconds ("0.2s").
         ``jumps``: "auto" cuts movements where one step is far too long, "keep" does not. ``wraps``: with "auto" angles that
-        jump by a whole turn go on instead and quaternions keep one sign, with "keep" they stay. ``max_rows``: samples
-        learnt from, at most. ``robot``: a URDF whose joints are named like the channels; its mass matrix is tried as the
-        metric in which constraints are at right angles. ``random_state``: the seed, a whole number. ``n_jobs``: threads,
-        None or -1 for all; results do not depend on it.
+        jump by a whole turn go on instead and quaternions keep one sign, with "keep" they stay. ``context``: names of the
+        channels that a movement depends on and that stay as they are meanwhile, such as a goal; "auto" finds them by their
+        names, "none" takes none. ``max_rows``: samples learnt from, at most. ``robot``: a URDF whose joints are named like the
+        channels; its mass matrix is tried as the metric in which constraints are at right angles. ``random_state``: the seed,
+        a whole number. ``n_jobs``: threads, None or -1 for all; results do not depend on it.
         """
         self._store(locals())
 
@@ -97,17 +103,19 @@ class Learner(Estimator):
         return self
 
     @overload
-    def predict(self, X: Any, return_std: Literal[False] = False) -> Floats: ...
+    def predict(self, X: Any, return_std: Literal[False] = False, *, context: Context = None) -> Floats: ...
     @overload
-    def predict(self, X: Any, return_std: Literal[True]) -> tuple[Floats, Floats]: ...
+    def predict(self, X: Any, return_std: Literal[True], *, context: Context = None) -> tuple[Floats, Floats]: ...
     @overload
-    def predict(self, X: Any, return_std: bool) -> Floats | tuple[Floats, Floats]: ...
-    def predict(self, X: Any, return_std: bool = False) -> Floats | tuple[Floats, Floats]:
+    def predict(
+        self, X: Any, return_std: bool, *, context: Context = None
+    ) -> Floats | tuple[Floats, Floats]: ...
+    def predict(
+        self, X: Any, return_std: bool = False, *, context: Context = None
+    ) -> Floats | tuple[Floats, Floats]:
         """The action at each state, (N, n), in units of the state per second; with ``return_std`` also the standard
-        deviation of every component, (N, n)."""
-        fitted = self._fitted
-        if fitted is None:
-            fitted = self._needed()
+        deviation of every component, (N, n). ``context``: where the policy depends on one, its values by name or in order."""
+        fitted = self._in(context)
         states = samples(X, "X", fitted.dim, type(self).__name__)
         if not return_std:
             return fitted.predict(states)
@@ -117,22 +125,22 @@ class Learner(Estimator):
             raise PolicyAlignError(f"{type(self).__name__} estimates no standard deviation", "return_std=True", hint)
         return fitted.predict(states), deviation
 
-    def potential(self, X: Any) -> Floats:
+    def potential(self, X: Any, *, context: Context = None) -> Floats:
         """The potential at each state, (N), in units of the state squared per second; the policy is downhill."""
-        fitted = self._needed()
+        fitted = self._in(context)
         found = fitted.potential(samples(X, "X", fitted.dim, type(self).__name__))
         if found is None:
             raise PolicyAlignError("this policy has no potential", "potential(X)", "PolicyAlign or SlopeGp")
         return found
 
-    def support(self, X: Any) -> Floats:
+    def support(self, X: Any, *, context: Context = None) -> Floats:
         """How much the demonstrations support each state, from 0 to 1, (N)."""
-        fitted = self._needed()
+        fitted = self._in(context)
         return fitted.support(samples(X, "X", fitted.dim, type(self).__name__))
 
-    def supports(self, X: Any) -> npt.NDArray[np.bool_]:
+    def supports(self, X: Any, *, context: Context = None) -> npt.NDArray[np.bool_]:
         """Whether that is enough to act on, (N)."""
-        fitted = self._needed()
+        fitted = self._in(context)
         return fitted.supports(samples(X, "X", fitted.dim, type(self).__name__))
 
     def rollout(
@@ -143,14 +151,16 @@ class Learner(Estimator):
         step: float | None = None,
         constraint: Constraint = None,
         limits: str | os.PathLike[str] | None = None,
+        context: Context = None,
     ) -> Path:
         """Follows the policy from a state (n), under constraints that need not have been demonstrated.
 
         ``constraint``: A with A u = 0, rows (k, n) or one row (n); a function A(x, t); or the name of a file of
         constraints, as the program reads it. ``limits``: a robot's URDF, whose joints have the channels' names.
         ``seconds``: three times the longest demonstration if not given; ``step``: between two samples of the path.
+        ``context``: as of ``predict``.
         """
-        return follow(self._needed(), x0, seconds, step, constraint, limits)
+        return follow(self._in(context), x0, seconds, step, constraint, limits)
 
     def score(
         self,
@@ -249,6 +259,11 @@ class Learner(Estimator):
         return np.array([channel["name"] for channel in self._about["state"]], dtype=object)
 
     @property
+    def context_names_(self) -> list[str]:
+        """Names of what the policy depends on besides the state; empty without a context."""
+        return self._needed().context
+
+    @property
     def time_step_(self) -> float:
         """The median time between samples, in seconds."""
         return float(self._about["time_step"])
@@ -280,6 +295,25 @@ class Learner(Estimator):
             )
         return self._fitted
 
+    def _in(self, context: Context) -> _native.Fitted:
+        """What was learnt, in a context where it depends on one."""
+        fitted = self._needed()
+        names = fitted.context
+        if context is None:
+            if names:
+                hint = "context={" + ", ".join(f"{name!r}: …" for name in names) + "}"
+                raise PolicyAlignError(f"the policy depends on {', '.join(names)}", "context", hint)
+            return fitted
+        if isinstance(context, Mapping):
+            values = [(str(name), float(value)) for name, value in context.items()]
+        else:
+            given = floats(context, "context").ravel()
+            if len(given) != len(names):
+                hint = f"a number for each of {', '.join(names) or 'no channel'}"
+                raise PolicyAlignError(f"there are {len(given)} numbers", "context", hint)
+            values = list(zip(names, given.tolist(), strict=True))
+        return fitted.in_context(values)
+
     @property
     def _about(self) -> dict[str, Any]:
         self._needed()
@@ -291,7 +325,7 @@ class Learner(Estimator):
         return document
 
     def _preparing(self) -> dict[str, Any]:
-        return preparing(self.integration, self.scale, self.smooth, self.jumps, self.wraps)
+        return preparing(self.integration, self.scale, self.smooth, self.jumps, self.wraps, self.context)
 
     def _learning(self) -> dict[str, Any]:
         return {

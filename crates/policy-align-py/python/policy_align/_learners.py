@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,7 @@ class PolicyAlign(Learner):
         smooth: str | int = "auto",
         jumps: str = "auto",
         wraps: str = "auto",
+        context: str | Sequence[str] = "auto",
         folds: int = 5,
         max_rows: int = 400,
         random_state: int = 1,
@@ -94,6 +96,7 @@ class AutoGp(Learner):
         smooth: str | int = "auto",
         jumps: str = "auto",
         wraps: str = "auto",
+        context: str | Sequence[str] = "auto",
         max_rows: int = 400,
         robot: str | os.PathLike[str] | None = None,
         random_state: int = 1,

@@ -1,8 +1,11 @@
 //! Descriptions of a model.
 
-use policy_align::{Learnt, Model, Verdict};
+use std::path::Path;
 
-use crate::cli::lines::counted;
+use policy_align::{Learnt, Model, Verdict};
+use text::quoted;
+
+use crate::cli::lines::{counted, short};
 
 /// Its verdict.
 pub(crate) fn verdict(model: &Model) -> &'static str {
@@ -11,6 +14,13 @@ pub(crate) fn verdict(model: &Model) -> &'static str {
         Verdict::Doubtful => "doubtful: read the findings before using it",
         Verdict::DoNotUse => "do not use",
     }
+}
+
+/// A flag with the usual context of a model that has one.
+pub(crate) fn context_flag(model: &Model) -> String {
+    let values = model.context.iter().map(|channel| format!("{}={}", channel.name, short(channel.median)));
+    let values: Vec<String> = values.collect();
+    if values.is_empty() { String::new() } else { format!(" --context {}", quoted(Path::new(&values.join(",")))) }
 }
 
 /// What learnt it.

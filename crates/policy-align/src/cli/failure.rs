@@ -75,6 +75,7 @@ impl Failure {
             PrepareError::UnknownChannel { .. }
             | PrepareError::Scale { .. }
             | PrepareError::TimeStep { .. }
+            | PrepareError::Context { .. }
             | PrepareError::Smoothing { .. } => Exit::Usage,
             _ => Exit::Refused,
         };

@@ -10,7 +10,7 @@ use crate::cli::failure::{Exit, Failure, displayed};
 /// Bytes of states, at most.
 const LARGEST: u64 = 1 << 30;
 
-/// States (n, N) of a text with separators; `-` is standard input.
+/// States (n, N), each followed by its context where none was chosen, (n + p, N), of a text with separators; `-` is standard input.
 pub(crate) fn states(path: &Path, model: &Model) -> Result<DMatrix<f64>, Failure> {
     let bytes = if path == Path::new("-") {
         demo_io::read_bounded(std::io::stdin(), LARGEST)
@@ -23,7 +23,7 @@ pub(crate) fn states(path: &Path, model: &Model) -> Result<DMatrix<f64>, Failure
 }
 
 fn parsed(text: &str, model: &Model, place: &str) -> Result<DMatrix<f64>, Failure> {
-    let n = model.state.len();
+    let n = inputs(model).count();
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let first = text.lines().next().unwrap_or_default();
     let separator = [b'\t', b';', b','].into_iter().find(|&s| first.contains(char::from(s))).unwrap_or(b',');
@@ -43,7 +43,8 @@ fn parsed(text: &str, model: &Model, place: &str) -> Result<DMatrix<f64>, Failur
         let line = record.position().map_or(1, csv::Position::line);
         let Some(columns) = &columns else {
             let found = columns_of(&record, model).ok_or_else(|| {
-                let what = format!("the first row does not name all of {}", model.channels().join(", "));
+                let what =
+                    format!("the first row does not name all of {}", inputs(model).collect::<Vec<_>>().join(", "));
                 fault(what, line, "a header with these names, or only these columns")
             })?;
             let is_header = record.iter().any(|field| field.parse::<f64>().is_err());
@@ -65,9 +66,14 @@ fn parsed(text: &str, model: &Model, place: &str) -> Result<DMatrix<f64>, Failur
 /// Where the channels are, by a header or by their number.
 fn columns_of(record: &csv::StringRecord, model: &Model) -> Option<Vec<usize>> {
     if record.iter().all(|field| field.parse::<f64>().is_ok()) {
-        return (record.len() == model.state.len()).then(|| (0..record.len()).collect());
+        return (record.len() == inputs(model).count()).then(|| (0..record.len()).collect());
     }
-    model.state.iter().map(|channel| record.iter().position(|field| field == channel.name)).collect()
+    inputs(model).map(|name| record.iter().position(|field| field == name)).collect()
+}
+
+/// Names of what the policy takes.
+fn inputs(model: &Model) -> impl Iterator<Item = &str> {
+    model.state.iter().chain(model.open_context()).map(|channel| channel.name.as_str())
 }
 
 fn take(record: &csv::StringRecord, columns: &[usize], numbers: &mut Vec<f64>) -> Result<(), String> {

@@ -7,19 +7,20 @@ use super::error::ExportError;
 use crate::{Model, Verdict};
 
 /// Names that a function cannot have.
-const TAKEN: [&str; 56] = [
+const TAKEN: [&str; 57] = [
     "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum", "extern", "float",
     "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return", "short", "signed", "sizeof",
     "static", "struct", "switch", "typedef", "union", "unsigned", "void", "volatile", "while", "main", "exp", "sqrt",
     "isfinite", "NAN", "expf", "sqrtf", "real", "N", "M", "A", "BOUNDS", "C", "Q", "V", "Z", "SCALE", "NORM", "MEAN",
-    "CENTRE", "METRIC", "SLOPE",
+    "CENTRE", "METRIC", "SLOPE", "D",
 ];
 
 /// A model in C: one file of ISO C99 that needs only `math.h`.
 ///
 /// It defines `int policy(const double *x, double *u, double *phi)`: from a state (n) in the units of the recording it
 /// writes the action (n), per second, and the potential (NaN where the policy has none), either of which may be `NULL`,
-/// and returns 1 within the data. Outside, where a [`ModelPolicy`](crate::ModelPolicy) has no support, it returns 0, with
+/// and returns 1 within the data. Of a model with a context it is `int policy(const double *x, const double *c, double *u,
+/// double *phi)`, c the context (p) in the order of the file's comment. Outside, where a [`ModelPolicy`](crate::ModelPolicy) has no support, it returns 0, with
 /// an action of 0 and a potential of NaN: the caller stops.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CSource {
@@ -84,9 +85,17 @@ impl CSource {
                 channel.high
             );
         }
+        if !model.context.is_empty() {
+            let _ = writeln!(text, " *\n * Context c, which stays as it is during a movement, in this order:");
+        }
+        for (at, channel) in model.context.iter().enumerate() {
+            let name = comment(&channel.name);
+            let _ = writeln!(text, " *   [{at}] {name}, learnt from {} to {}", channel.low, channel.high);
+        }
+        let context = if model.context.is_empty() { "" } else { "c, " };
         let _ = writeln!(
             text,
-            " *\n * int {}(x, u, phi) writes the action u and the potential phi (NaN if the\n \
+            " *\n * int {}(x, {context}u, phi) writes the action u and the potential phi (NaN if the\n \
              * policy has none); u and phi may be NULL. It returns 1 within the data.\n \
              * Outside it returns 0, with u = 0 and phi = NaN: then stop. Limits of speed\n \
              * are up to the caller. */\n\
@@ -112,13 +121,13 @@ impl CSource {
         }
     }
 
-    /// The end of the function: 1 within bounds, where `known` holds; else no action, no potential, and 0. What is not finite
+    /// The end of the function: 1 within the bounds of `all` inputs, where `known` holds; else no action, no potential, and 0. What is not finite
     /// is in no bounds.
-    pub(super) fn ending(&self, known: &str) -> String {
+    pub(super) fn ending(&self, all: &str, known: &str) -> String {
         let zero = self.number(0.0);
         format!(
-            "    for (k = 0; k < N && x[k] >= BOUNDS[k][0] && x[k] <= BOUNDS[k][1];) k++;
-    if (k == N && {known}) return 1;
+            "    for (k = 0; k < {all} && x[k] >= BOUNDS[k][0] && x[k] <= BOUNDS[k][1];) k++;
+    if (k == {all} && {known}) return 1;
     if (phi) *phi = NAN;
     if (u) for (k = 0; k < N; k++) u[k] = {zero};
     return 0;

@@ -4,18 +4,42 @@ use gp::{DirectFormula, Fall, ScaledStates, Shape, SlopeFormula, Term};
 
 use super::c::CSource;
 
+/// What differs where a context follows the state.
+struct Layout {
+    /// Number of all inputs.
+    all: &'static str,
+    /// The parameters before `u`.
+    inputs: &'static str,
+    /// Joins state and context to the array `x`.
+    joined: &'static str,
+    has_context: bool,
+}
+
+impl Layout {
+    fn of(dim: usize, all: usize) -> Layout {
+        let has_context = all > dim;
+        if !has_context {
+            return Layout { all: "N", inputs: "const real *x", joined: "", has_context };
+        }
+        let joined = "    for (k = 0; k < D; k++) x[k] = k < N ? state[k] : context[k - N];\n";
+        Layout { all: "D", inputs: "const real *state, const real *context", joined, has_context }
+    }
+}
+
 /// π = speed (Σ g v − h (vᵀa) a + c + Q z), a = z − z', and φ, whose negative gradient it is.
 pub(super) fn write_slope(
     c: &CSource,
     slope: &SlopeFormula<'_>,
     (squared_radius, per_unit): (f64, f64),
+    dim: usize,
     text: &mut String,
 ) {
+    let layout = Layout::of(dim, slope.scaled.mean.len());
     write_scaled(c, &slope.scaled, text);
     c.columns("V", &slope.directions, text);
     c.vector("C", slope.constant.as_slice(), text);
     c.columns("Q", &slope.matrix.transpose(), text);
-    let terms: String = slope.terms.iter().map(|&term| slope_term(c, term, slope.scaled.mean.len())).collect();
+    let terms: String = slope.terms.iter().map(|&term| slope_term(c, term, dim, &layout)).collect();
     let potential = if slope.has_potential {
         let number = c.number(-slope.scaled.speed * slope.scaled.spread * per_unit);
         format!("if (phi) *phi = {number} * f;")
@@ -25,25 +49,25 @@ pub(super) fn write_slope(
     let _ = write!(
         text,
         "
-int {name}(const real *x, real *u, real *phi) {{
-    real z[N], sum[N], f = {zero}, nearest = {far};
+int {name}({inputs}, real *u, real *phi) {{
+    real {x}z[{all}], sum[{all}], f = {zero}, nearest = {far};
     int k, j, m;
-{entry}    for (m = 0; m < M; m++) {{
-        real a[N], s = {zero}, b = {zero}, g = {zero}, h = {zero};
+{joined}{entry}    for (m = 0; m < M; m++) {{
+        real a[{all}], s = {zero}, b = {zero}, g = {zero}, h = {zero};
         for (k = 0; k < N; k++) {{
             a[k] = z[k] - Z[m][k];
             s += a[k] * a[k];
             b += V[m][k] * a[k];
         }}
-        if (s < nearest) nearest = s;
+{rest}        if (s < nearest) nearest = s;
 {terms}        f += g * b;
         for (k = 0; k < N; k++) sum[k] += g * V[m][k] - h * b * a[k];
     }}
-    for (k = 0; k < N; k++) {{
+    for (k = 0; k < {all}; k++) {{
         real t = {zero};
-        for (j = 0; j < N; j++) t += Q[k][j] * z[j];
+        for (j = 0; j < {all}; j++) t += Q[k][j] * z[j];
         f += z[k] * (C[k] + {half} * t);
-        if (u) u[k] = {speed} * (sum[k] + (C[k] + t)) / SCALE[k];
+        if (u{moving}) u[k] = {speed} * (sum[k] + (C[k] + t)) / SCALE[k];
     }}
     {potential}
 {ending}",
@@ -52,13 +76,41 @@ int {name}(const real *x, real *u, real *phi) {{
         half = c.number(0.5),
         far = c.number(f64::from(f32::MAX)),
         speed = c.number(slope.scaled.speed),
-        ending = ending(c, squared_radius),
-        entry = entry(c, &slope.scaled),
+        ending = ending(c, layout.all, squared_radius),
+        entry = entry(c, &slope.scaled, layout.all),
+        inputs = layout.inputs,
+        joined = layout.joined,
+        all = layout.all,
+        x = if layout.has_context { "x[D], " } else { "" },
+        moving = if layout.has_context { " && k < N" } else { "" },
+        rest = rest(&layout, slope.terms.iter().any(|term| term.fall == Fall::DivergenceFree)),
     );
 }
 
+/// The context's part of a distance; rotation knows the state's part, `w`, alone.
+fn rest(layout: &Layout, rotates: bool) -> String {
+    if !layout.has_context {
+        return String::new();
+    }
+    let kept = if rotates { "        real w = s;\n" } else { "" };
+    format!(
+        "{kept}        for (k = N; k < D; k++) {{
+            a[k] = z[k] - Z[m][k];
+            s += a[k] * a[k];
+        }}
+"
+    )
+}
+
 /// û = unit Σ k(z, z') A.
-pub(super) fn write_direct(c: &CSource, direct: &DirectFormula<'_>, squared_radius: f64, text: &mut String) {
+pub(super) fn write_direct(
+    c: &CSource,
+    direct: &DirectFormula<'_>,
+    squared_radius: f64,
+    dim: usize,
+    text: &mut String,
+) {
+    let layout = Layout::of(dim, direct.scaled.mean.len());
     write_scaled(c, &direct.scaled, text);
     c.columns("A", direct.weights, text);
     let terms: String = direct.terms.iter().map(|&term| direct_term(c, term)).collect();
@@ -66,13 +118,13 @@ pub(super) fn write_direct(c: &CSource, direct: &DirectFormula<'_>, squared_radi
     let _ = write!(
         text,
         "
-int {name}(const real *x, real *u, real *phi) {{
-    real z[N], sum[N], nearest = {far};
+int {name}({inputs}, real *u, real *phi) {{
+    real {x}z[{all}], sum[{all}], nearest = {far};
     int k, m;
-{entry}    if (phi) *phi = NAN;
+{joined}{entry}    if (phi) *phi = NAN;
     for (m = 0; m < M; m++) {{
         real s = {zero}, p = {zero}, c;
-        for (k = 0; k < N; k++) {{
+        for (k = 0; k < {all}; k++) {{
             real a = z[k] - Z[m][k];
             s += a * a;
             p += z[k] * Z[m][k];
@@ -87,8 +139,12 @@ int {name}(const real *x, real *u, real *phi) {{
         zero = c.number(0.0),
         far = c.number(f64::from(f32::MAX)),
         unit = c.number(direct.scaled.speed),
-        ending = ending(c, squared_radius),
-        entry = entry(c, &direct.scaled),
+        ending = ending(c, layout.all, squared_radius),
+        entry = entry(c, &direct.scaled, layout.all),
+        inputs = layout.inputs,
+        joined = layout.joined,
+        all = layout.all,
+        x = if layout.has_context { "x[D], " } else { "" },
     );
 }
 
@@ -99,10 +155,10 @@ fn write_scaled(c: &CSource, scaled: &ScaledStates<'_>, text: &mut String) {
 }
 
 /// Scaled coordinates.
-fn entry(c: &CSource, scaled: &ScaledStates<'_>) -> String {
+fn entry(c: &CSource, scaled: &ScaledStates<'_>, all: &str) -> String {
     let (spread, zero) = (c.number(scaled.spread), c.number(0.0));
     format!(
-        "    for (k = 0; k < N; k++) {{
+        "    for (k = 0; k < {all}; k++) {{
         z[k] = (x[k] * SCALE[k] - MEAN[k]) / {spread};
         sum[k] = {zero};
     }}
@@ -110,12 +166,12 @@ fn entry(c: &CSource, scaled: &ScaledStates<'_>) -> String {
     )
 }
 
-fn ending(c: &CSource, squared_radius: f64) -> String {
-    c.ending(&format!("nearest <= {}", c.number(squared_radius)))
+fn ending(c: &CSource, all: &str, squared_radius: f64) -> String {
+    c.ending(all, &format!("nearest <= {}", c.number(squared_radius)))
 }
 
 /// Adds a term's g and h (S3).
-fn slope_term(c: &CSource, term: Term, dim: usize) -> String {
+fn slope_term(c: &CSource, term: Term, dim: usize, layout: &Layout) -> String {
     let Term { fall, length, amplitude } = term;
     let (exp, sqrt) = (c.function("exp"), c.function("sqrt"));
     let squared = length * length;
@@ -140,7 +196,9 @@ fn slope_term(c: &CSource, term: Term, dim: usize) -> String {
             let amplitude = amplitude / others.max(1.0);
             let [squared, amplitude, rate, others, bend] = c.numbers([squared, amplitude, -0.5, others, 1.0 / squared]);
             let distance = format!("r = s / {squared}, e = {amplitude} * {exp}({rate} * r)");
-            format!("        {{ real {distance}; g += e * ({others} - r); h -= {bend} * e; }}\n")
+            // Rotation is of the state alone.
+            let moving = if layout.has_context { format!("w / {squared}") } else { "r".to_owned() };
+            format!("        {{ real {distance}; g += e * ({others} - {moving}); h -= {bend} * e; }}\n")
         }
     }
 }

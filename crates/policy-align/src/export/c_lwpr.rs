@@ -80,6 +80,6 @@ int {name}(const real *x, real *u, real *phi) {{
         mean = number(lwpr.mean),
         per_unit = number(per_unit),
         norm_out = number(lwpr.norm_out),
-        ending = c.ending(&format!("sum > {}", number(0.0))),
+        ending = c.ending("N", &format!("sum > {}", number(0.0))),
     );
 }

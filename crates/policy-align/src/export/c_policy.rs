@@ -17,17 +17,20 @@ impl CSource {
         self.check_name()?;
         let tables = Tables::of(model)?;
         let mut text = self.head(model);
-        let n = tables.dim();
-        let _ = writeln!(text, "enum {{ N = {n} }};\n");
+        let (n, all) = (tables.dim, tables.scale.len());
+        let _ = match tables.context_dim() {
+            0 => writeln!(text, "enum {{ N = {n} }};\n"),
+            _ => writeln!(text, "enum {{ N = {n}, D = {all} }}; /* of the state, and with the context */\n"),
+        };
         self.vector("SCALE", tables.scale.as_slice(), &mut text);
-        let bounds = DMatrix::from_fn(2, n, |end, k| tables.bounds[k][end]);
+        let bounds = DMatrix::from_fn(2, all, |end, k| tables.bounds[k][end]);
         self.columns("BOUNDS", &bounds, &mut text);
         match &tables.learner {
             LearnerTables::Lwpr(lwpr) => c_lwpr::write(self, lwpr, tables.per_unit, &mut text),
             LearnerTables::Slope(slope, radius) => {
-                c_gp::write_slope(self, slope, (*radius, tables.per_unit), &mut text);
+                c_gp::write_slope(self, slope, (*radius, tables.per_unit), n, &mut text);
             }
-            LearnerTables::Direct(direct, radius) => c_gp::write_direct(self, direct, *radius, &mut text),
+            LearnerTables::Direct(direct, radius) => c_gp::write_direct(self, direct, *radius, n, &mut text),
         }
         Ok(text)
     }

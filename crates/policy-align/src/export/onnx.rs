@@ -11,7 +11,7 @@ const FORMAT: u64 = 8;
 
 /// A model as ONNX: operators of version 17 on doubles.
 ///
-/// Its input is `x`, (B, n), states in the units of the recording; its outputs are `u`, (B, n), actions per second, `phi`,
+/// Its input is `x`, (B, n), states in the units of the recording, and of a model with a context `c`, (B, p); its outputs are `u`, (B, n), actions per second, `phi`,
 /// (B), potentials, unless the policy has none, and `support`, (B), whether a state is within the data. Where it is not, `u`
 /// is 0 and `phi` is NaN, as in [`CSource`](crate::CSource).
 ///
@@ -19,16 +19,18 @@ const FORMAT: u64 = 8;
 /// [`ExportError`].
 pub fn to_onnx(model: &Model) -> Result<Vec<u8>, ExportError> {
     let tables = Tables::of(model)?;
-    let n = tables.dim();
+    let (n, all) = (tables.dim, tables.scale.len());
     let graph = Graph::default();
-    let scale = graph.constant(&[n], tables.scale.iter().copied());
-    let scaled = graph.node("Mul", &["x", &scale]);
+    let inputs = if all > n { graph.beside("x", "c") } else { "x".to_owned() };
+    let scale = graph.constant(&[all], tables.scale.iter().copied());
+    let scaled = graph.node("Mul", &[&inputs, &scale]);
     let learner = match &tables.learner {
         LearnerTables::Lwpr(lwpr) => onnx_lwpr::write(&graph, lwpr, &scaled),
-        LearnerTables::Slope(slope, radius) => onnx_gp::write_slope(&graph, slope, *radius, &scaled),
+        LearnerTables::Slope(slope, radius) => onnx_gp::write_slope(&graph, slope, *radius, (&scaled, n)),
         LearnerTables::Direct(direct, radius) => onnx_gp::write_direct(&graph, direct, *radius, &scaled),
     };
-    let support = within(&graph, &tables.bounds, &learner.support);
+    let support = within(&graph, &inputs, &tables.bounds, &learner.support);
+    let scale = if all > n { graph.constant(&[n], tables.scale.iter().take(n).copied()) } else { scale };
     let action = graph.node("Div", &[&learner.action, &scale]);
     let action = graph.node("Where", &[&graph.unsqueezed(&support, 1), &action, &graph.number(0.0)]);
     graph.output(&action, "u");
@@ -41,15 +43,15 @@ pub fn to_onnx(model: &Model) -> Result<Vec<u8>, ExportError> {
     }
     graph.output(&support, "support");
     outputs.push(("support", Output::Truths));
-    Ok(described(model, &graph.finished(n, &outputs)))
+    Ok(described(model, &graph.finished((n, all - n), &outputs)))
 }
 
 /// Support, within bounds.
-fn within(graph: &Graph, bounds: &[[f64; 2]], support: &str) -> String {
+fn within(graph: &Graph, inputs: &str, bounds: &[[f64; 2]], support: &str) -> String {
     let low = graph.constant(&[bounds.len()], bounds.iter().map(|[low, _]| *low));
     let high = graph.constant(&[bounds.len()], bounds.iter().map(|[_, high]| *high));
     // How far beyond, summed over channels: 0 within.
-    let sides = [[&*low, "x"], ["x", &high]].map(|difference| graph.node("Sub", &difference));
+    let sides = [[&*low, inputs], [inputs, &high]].map(|difference| graph.node("Sub", &difference));
     let [below, above] = sides.map(|side| graph.node("Relu", &[&side]));
     let beyond = graph.sum(&graph.node("Add", &[&below, &above]), 1);
     let within = graph.node("LessOrEqual", &[&beyond, &graph.number(0.0)]);
@@ -64,7 +66,7 @@ fn described(model: &Model, graph: &Message) -> Vec<u8> {
         Verdict::Doubtful => "doubtful",
         Verdict::DoNotUse => "do not use",
     };
-    Message::default()
+    let described = Message::default()
         .integer(1, FORMAT)
         .text(2, "policy-align")
         .text(3, env!("CARGO_PKG_VERSION"))
@@ -72,6 +74,8 @@ fn described(model: &Model, graph: &Message) -> Vec<u8> {
         .message(8, &Message::default().text(1, "").integer(2, OPERATORS))
         .message(14, &entry("state", &model.channels().join(",")))
         .message(14, &entry("time_step", &model.time_step.to_string()))
-        .message(14, &entry("trust", verdict))
-        .into_bytes()
+        .message(14, &entry("trust", verdict));
+    let context = model.context_names().join(",");
+    let described = if context.is_empty() { described } else { described.message(14, &entry("context", &context)) };
+    described.into_bytes()
 }

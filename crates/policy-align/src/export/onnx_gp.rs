@@ -25,12 +25,27 @@ fn rows(graph: &Graph, matrix: &DMatrix<f64>) -> String {
 }
 
 /// π = speed (Σ g v − h (vᵀa) a + c + Q z), and φ.
-pub(super) fn write_slope(graph: &Graph, slope: &SlopeFormula<'_>, squared_radius: f64, state: &str) -> LearnerOutputs {
-    let [z, apart, squared] = differences(graph, &slope.scaled, state);
-    let n = slope.scaled.mean.len();
+pub(super) fn write_slope(
+    graph: &Graph,
+    slope: &SlopeFormula<'_>,
+    squared_radius: f64,
+    (inputs, moving_dim): (&str, usize),
+) -> LearnerOutputs {
+    let [z, apart, squared] = differences(graph, &slope.scaled, inputs);
+    let (n, m) = slope.scaled.z.shape();
+    // Of the state alone, without its context.
+    let (apart, moving) = if n > moving_dim {
+        let learnt = slope.scaled.z.rows(0, moving_dim).into_owned();
+        let learnt = graph.constant(&[1, m, moving_dim], learnt.iter().copied());
+        let apart = graph.node("Sub", &[&graph.unsqueezed(&graph.first_columns(&z, moving_dim), 1), &learnt]);
+        let squared = graph.sum(&graph.node("Mul", &[&apart, &apart]), 2);
+        (apart, squared)
+    } else {
+        (apart, squared.clone())
+    };
     let directions = rows(graph, &slope.directions);
     let along = graph.sum(&graph.node("Mul", &[&apart, &directions]), 2);
-    let [g, h] = slopes(graph, slope, &squared);
+    let [g, h] = slopes(graph, slope, moving_dim, (&squared, &moving));
     let straight = graph.product(&g, &directions);
     let bent = graph.unsqueezed(&graph.node("Mul", &[&h, &along]), 2);
     let bent = graph.sum(&graph.node("Mul", &[&bent, &apart]), 1);
@@ -38,7 +53,8 @@ pub(super) fn write_slope(graph: &Graph, slope: &SlopeFormula<'_>, squared_radiu
     // Columns of Q are rows of its transpose, which multiplies from the right.
     let sloped = graph.product(&z, &rows(graph, &slope.matrix));
     let trend = graph.node("Add", &[&sloped, &constant]);
-    let action = graph.node("Add", &[&graph.node("Sub", &[&straight, &bent]), &trend]);
+    let along_state = if n > moving_dim { graph.first_columns(&trend, moving_dim) } else { trend };
+    let action = graph.node("Add", &[&graph.node("Sub", &[&straight, &bent]), &along_state]);
     let potential = slope.has_potential.then(|| {
         let falling = graph.sum(&graph.node("Mul", &[&g, &along]), 1);
         let half = graph.node("Add", &[&graph.times(&sloped, 0.5), &constant]);
@@ -73,11 +89,11 @@ pub(super) fn write_direct(
 }
 
 /// g and h of (S3), summed over the terms, (B, M) each.
-fn slopes(graph: &Graph, slope: &SlopeFormula<'_>, squared: &str) -> [String; 2] {
+fn slopes(graph: &Graph, slope: &SlopeFormula<'_>, dim: usize, (squared, moving): (&str, &str)) -> [String; 2] {
     // Without any term: zeros of the right shape.
     let mut sums = [graph.times(squared, 0.0), graph.times(squared, 0.0)];
     for &term in &slope.terms {
-        let terms = slope_term(graph, term, slope.scaled.mean.len(), squared);
+        let terms = slope_term(graph, term, dim, (squared, moving));
         for (sum, term) in sums.iter_mut().zip(terms) {
             *sum = graph.node("Add", &[sum, &term]);
         }
@@ -95,7 +111,7 @@ fn root(graph: &Graph, factor: f64, squared: &str) -> String {
     graph.node("Sqrt", &[&graph.times(squared, factor)])
 }
 
-fn slope_term(graph: &Graph, term: Term, dim: usize, squared: &str) -> [String; 2] {
+fn slope_term(graph: &Graph, term: Term, dim: usize, (squared, moving): (&str, &str)) -> [String; 2] {
     let Term { fall, length, amplitude } = term;
     let per_square = 1.0 / (length * length);
     match fall {
@@ -121,7 +137,7 @@ fn slope_term(graph: &Graph, term: Term, dim: usize, squared: &str) -> [String; 
         Fall::DivergenceFree => {
             let others = dim as f64 - 1.0;
             let e = exponential(graph, amplitude / others.max(1.0), -0.5 * per_square, squared);
-            let (ratio, others) = (graph.times(squared, per_square), graph.number(others));
+            let (ratio, others) = (graph.times(moving, per_square), graph.number(others));
             let factor = graph.node("Sub", &[&others, &ratio]);
             [graph.node("Mul", &[&factor, &e]), graph.times(&e, -per_square)]
         }

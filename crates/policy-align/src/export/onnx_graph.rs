@@ -118,10 +118,24 @@ impl Graph {
         self.node("Mul", &[tensor, &self.number(factor)])
     }
 
-    /// The graph of an input `x`, (B, n).
-    pub(super) fn finished(self, n: usize, outputs: &[(&str, Output)]) -> Message {
+    /// Matrices (B, n) and (B, p) beside each other.
+    pub(super) fn beside(&self, left: &str, right: &str) -> Tensor {
+        let name = self.name("t");
+        self.add("Concat", &[left, right], &name, &[integer("axis", 1)]);
+        name
+    }
+
+    /// The first `count` columns of a matrix.
+    pub(super) fn first_columns(&self, tensor: &str, count: usize) -> Tensor {
+        let [from, to, axis] = [0, count as u64, 1].map(|number| self.axis(number));
+        self.node("Slice", &[tensor, &from, &to, &axis])
+    }
+
+    /// The graph of inputs: `x`, (B, n), and `c`, (B, p), where there is a context.
+    pub(super) fn finished(self, (n, p): (usize, usize), outputs: &[(&str, Output)]) -> Message {
         let graph = self.nodes.into_inner().text(2, "policy").joined(&self.constants.into_inner());
         let graph = graph.message(11, &value("x", DOUBLE, Some(n)));
+        let graph = if p > 0 { graph.message(11, &value("c", DOUBLE, Some(p))) } else { graph };
         outputs.iter().fold(graph, |graph, (name, output)| {
             let value = match output {
                 Output::Vectors(n) => value(name, DOUBLE, Some(*n)),

@@ -17,11 +17,12 @@ const UNKNOWN: f64 = 0.05;
 /// the distance to the nearest learnt state instead: the radius goes as far as 95 % of the states within it, evenly spread over the
 /// model's bounds, are known to the model.
 pub(super) fn squared_radius(model: &Model, scaled: &ScaledStates<'_>) -> f64 {
+    let model = Model { chosen_context: crate::model::nowhere(), ..model.clone() };
+    let scale: Vec<f64> = model.inputs().map(|channel| channel.scale).collect();
     let (policy, bounds) = (model.policy(), model.bounds());
     let evaluated = (1..=STATES).into_par_iter().map(|index| {
         let state = between(&bounds, index);
-        let z =
-            DVector::from_fn(state.len(), |k, _| (state[k] * model.state[k].scale - scaled.mean[k]) / scaled.spread);
+        let z = DVector::from_fn(state.len(), |k, _| (state[k] * scale[k] - scaled.mean[k]) / scaled.spread);
         let nearest = scaled.z.column_iter().map(|row| (row - &z).norm_squared()).fold(f64::INFINITY, f64::min);
         (nearest, policy.is_supported(state.as_view()))
     });

@@ -8,10 +8,12 @@ use crate::{Learnt, Model};
 
 /// A policy as tables of numbers, with what every learner's has in common.
 pub(super) struct Tables<'a> {
-    /// The state is multiplied by this before the learner's policy is evaluated, the action divided, (n).
+    /// State and context are multiplied by this before the learner's policy is evaluated, the action divided, (n + p).
     pub(super) scale: DVector<f64>,
-    /// What counts as known lies between, (n).
+    /// What counts as known lies between, (n + p).
     pub(super) bounds: Vec<[f64; 2]>,
+    /// n.
+    pub(super) dim: usize,
     /// Of the potential, by this.
     pub(super) per_unit: f64,
     pub(super) learner: LearnerTables<'a>,
@@ -36,11 +38,14 @@ impl Tables<'_> {
             Learnt::Auto(both) if both.takes_slope() => LearnerTables::slope(model, both.slope()),
             Learnt::Auto(both) => LearnerTables::direct(model, both.direct()),
         };
-        Ok(Tables { scale: model.scales(), bounds: model.bounds(), per_unit: model.potential_factor(), learner })
+        let scale = DVector::from_vec(model.inputs().map(|channel| channel.scale).collect());
+        let (bounds, per_unit) = (model.bounds(), model.potential_factor());
+        Ok(Tables { scale, bounds, dim: model.state.len(), per_unit, learner })
     }
 
-    pub(super) fn dim(&self) -> usize {
-        self.scale.len()
+    /// p.
+    pub(super) fn context_dim(&self) -> usize {
+        self.scale.len() - self.dim
     }
 }
 

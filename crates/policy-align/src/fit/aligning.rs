@@ -253,7 +253,7 @@ pub(crate) fn held_out(
     reference: Option<&DMatrix<f64>>,
 ) -> HeldOut {
     let mut sums = HeldOut::default();
-    let mut action = DVector::zeros(rows.dim());
+    let mut action = DVector::zeros(policy.dim());
     for &row in test {
         let (x, u) = (rows.states().column(row), rows.velocities().column(row));
         let variance = rows.variances().map_or(0.0, |variances| variances[row]);
@@ -262,7 +262,7 @@ pub(crate) fn held_out(
             continue;
         }
         policy.action_into(x, action.as_view_mut());
-        sums.squares += (u.dot(&action) / r - r).powi(2);
+        sums.squares += (u.dot(&action.rows(0, u.len())) / r - r).powi(2);
         sums.observed += r * r;
         sums.predicted += action.norm_squared();
         sums.differences += reference.map_or(0.0, |reference| (&action - reference.column(row)).norm_squared());

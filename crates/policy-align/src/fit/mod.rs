@@ -2,6 +2,7 @@
 
 mod actions;
 mod aligning;
+mod context;
 mod decision;
 mod halves;
 mod inertia;
@@ -41,6 +42,8 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
     options.check()?;
     let steps = if options.learner == LearnerChoice::PolicyAlign { 4 } else { 2 };
     progress.begin(0, steps, "cleaning the recordings")?;
+    let comparable = if prepared.context.is_empty() { None } else { Some(context::comparable(prepared, options)?) };
+    let prepared = comparable.as_ref().unwrap_or(prepared);
     let rows = rows(prepared)?;
     progress.begin(1, steps, "learning with and without constraints")?;
     let readings = learn(&rows, options)?;
@@ -101,8 +104,10 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
         speed: upper_median(rows.velocities().column_iter().map(|velocity| velocity.norm()).collect()).unwrap_or(0.0),
         left_out: prepared.left_out.clone(),
     };
-    let (state, time_step) = (prepared.state.clone(), prepared.time_step);
-    Ok(Model { made_by: MadeBy::this(), state, time_step, data, decisions, seed: options.seed, trust, learnt })
+    let (state, context, time_step) = (prepared.state.clone(), prepared.context.clone(), prepared.time_step);
+    let chosen_context = crate::model::nowhere();
+    let made_by = MadeBy::this();
+    Ok(Model { made_by, state, context, chosen_context, time_step, data, decisions, seed: options.seed, trust, learnt })
 }
 
 fn learn(rows: &gp::Rows, options: &FitOptions) -> Result<AutoFit, FitError> {

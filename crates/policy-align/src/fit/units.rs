@@ -31,6 +31,9 @@ pub(super) fn learnt(
     let Some(scales) = gp.learn_scales(rows, &mut ChaCha8Rng::seed_from_u64(options.seed))? else { return Ok(None) };
     let factors = DVector::from_iterator(scales.factors.len(), scales.factors.iter().map(|&factor| in_short(factor)));
     let mut rescaled = prepared.rescaled(&factors).map_err(|error| super::recorded_rows::cleaning(&error))?;
+    if !rescaled.context.is_empty() {
+        rescaled = super::context::comparable(&rescaled, options)?;
+    }
     rescaled.decisions.extend(decisions(prepared, &scales, &factors));
     Ok(Some(rescaled))
 }

@@ -5,6 +5,12 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RollOutError {
+    /// The policy depends on a context, and none was chosen.
+    #[error("the policy depends on {}", .names.join(", "))]
+    Context {
+        /// Channels of the context.
+        names: Vec<String>,
+    },
     /// The start has another length than the state.
     #[error("the start has {}, the state {expected}: {}", counted(*found, "number"), .names.join(", "))]
     Start {
@@ -99,6 +105,7 @@ impl RollOutError {
     /// The next step.
     pub fn remedy(&self) -> &'static str {
         match self {
+            RollOutError::Context { .. } => "--context with NAME=VALUE for each",
             RollOutError::Start { .. } => "give one number for each channel, in this order",
             RollOutError::StartNotFinite { .. } => "give finite numbers",
             RollOutError::Unsupported { .. } => "start within the range that `policy-align info` lists",

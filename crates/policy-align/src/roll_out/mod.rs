@@ -92,6 +92,10 @@ impl RollOut {
     /// # Errors
     /// [`RollOutError`].
     pub fn follow(&self, model: &Model, start: &DVector<f64>) -> Result<Path, RollOutError> {
+        let open = model.open_context();
+        if !open.is_empty() {
+            return Err(RollOutError::Context { names: open.iter().map(|channel| channel.name.clone()).collect() });
+        }
         let policy = model.policy();
         self.check_start(model, &policy, start)?;
         let step = positive("step", self.step.unwrap_or(model.time_step))?;

@@ -13,8 +13,8 @@ use crate::{Model, StateChannel, Trust, Verdict};
 
 const FORMAT: &str = "policy-align model";
 
-/// The version that is written; this and all before it are read.
-const VERSION: u64 = 1;
+/// The latest version; this and all before it are read. Models without context are written as the first.
+const VERSION: u64 = 2;
 
 /// Header of a model file.
 #[derive(Serialize)]
@@ -45,7 +45,8 @@ impl Model {
     /// [`ModelError::Unwritable`] if it could not be read again, as with a number that is not finite.
     pub fn to_json(&self) -> Result<String, ModelError> {
         let unwritable = |path: &str, reason: String| ModelError::Unwritable { path: path.to_owned(), reason };
-        let stored = |checksum| Stored { format: FORMAT, version: VERSION, checksum, model: self };
+        let version = if self.context.is_empty() { 1 } else { VERSION };
+        let stored = |checksum| Stored { format: FORMAT, version, checksum, model: self };
         let value = serde_json::to_value(stored(String::new())).map_err(|e| unwritable("model", e.to_string()))?;
         let checksum = checksum(&without_checksum(value.as_object().cloned().unwrap_or_default()));
         let text = serde_json::to_string(&stored(checksum)).map_err(|e| unwritable("model", e.to_string()))? + "\n";
@@ -107,8 +108,8 @@ impl Model {
     fn fault(&self) -> Option<(String, String)> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         let n = self.learnt.policy().dim();
-        if self.state.len() != n {
-            return Some(("state".to_owned(), format!("{} channels for a policy of {n}", self.state.len())));
+        if self.state.is_empty() || self.inputs().count() != n {
+            return Some(("state".to_owned(), format!("{} channels for a policy of {n}", self.inputs().count())));
         }
         if !positive(self.time_step) {
             return Some(("time_step".to_owned(), format!("{} is not a positive time", self.time_step)));
@@ -129,9 +130,10 @@ impl Model {
                 && channel.low <= channel.median
                 && channel.median <= channel.high
         };
-        let at = self.state.iter().position(|channel| !sound(channel))?;
+        let at = self.inputs().position(|channel| !sound(channel))?;
+        let n = self.state.len();
         Some((
-            format!("state[{at}]"),
+            if at < n { format!("state[{at}]") } else { format!("context[{}]", at - n) },
             "the scale must be positive, and low, median and high finite and in order".to_owned(),
         ))
     }

@@ -23,11 +23,11 @@ pub(crate) fn share_unknown(policy: &dyn LearntPolicy, demonstrations: &Demonstr
     let seconds: Vec<f64> = movements.iter().map(|movement| movement.seconds(0, movement.n_samples() - 1)).collect();
     let usual = upper_median(seconds).expect("there is a demonstration");
     let step = usual / (STATES * STEPS) as f64;
-    let mut deviation = DVector::zeros(demonstrations.dim());
+    let mut deviation = DVector::zeros(policy.dim());
     let mut unknown = 0;
     for _ in 0..STARTS {
-        let [from, to] = [0, 1].map(|_| movements[rng.random_range(0..movements.len())].state(0));
-        let mut state = from + (to - from) * rng.random_range(-BEYOND..1.0 + BEYOND);
+        let [from, to] = [0, 1].map(|_| movements[rng.random_range(0..movements.len())].state_in_context(0));
+        let mut state = &from + (to - &from) * rng.random_range(-BEYOND..1.0 + BEYOND);
         for _ in 0..STATES {
             if !policy.action_sd_into(state.as_view(), deviation.as_view_mut()) {
                 return None;

@@ -27,9 +27,9 @@ pub(crate) fn share_leaving(policy: &dyn Policy, demonstrations: &Demonstrations
     let usual = upper_median(seconds).expect("there is a demonstration");
     let step = TIMES * usual / STEPS as f64;
     let every = movements.len().div_ceil(STARTS);
-    let starts: Vec<_> = movements.iter().step_by(every).map(|movement| movement.state(0)).collect();
-    let leaves = |start: &nalgebra::DVectorView<'_, f64>| {
-        let mut state = start.into_owned();
+    let starts: Vec<_> = movements.iter().step_by(every).map(|movement| movement.state_in_context(0)).collect();
+    let leaves = |start: &DVector<f64>| {
+        let mut state = start.clone();
         (0..STEPS).any(|_| {
             // The midpoint rule: a whirl does not spiral out by its steps alone.
             let middle = &state + policy.action(state.as_view()) * (step / 2.0);

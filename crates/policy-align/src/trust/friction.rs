@@ -33,7 +33,7 @@ fn missing_speed(policy: &dyn Policy, rows: &gp::Rows) -> Option<(f64, f64)> {
     let (mut matrix, mut vector, mut power) = (Matrix2::zeros(), Vector2::zeros(), 0.0);
     for ((x, u), index) in rows.states().column_iter().zip(rows.velocities().column_iter()).zip(rows.indices()) {
         let Some(n) = u.try_normalize(0.0) else { continue };
-        let along = n.dot(&policy.action(x));
+        let along = n.dot(&policy.action(x).rows(0, n.len()));
         let (factors, error) = (Vector2::new(-1.0, along), u.norm() - along);
         matrix += factors * factors.transpose();
         vector += factors * error;

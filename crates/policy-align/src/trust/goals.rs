@@ -55,7 +55,7 @@ fn own_share(policy: &dyn Policy, rows: &gp::Rows) -> Option<f64> {
     let mut errors = vec![Vec::new(); movements];
     for ((x, u), index) in rows.states().column_iter().zip(rows.velocities().column_iter()).zip(rows.indices()) {
         let Some(n) = u.try_normalize(0.0) else { continue };
-        let error = n.dot(&(u - policy.action(x)));
+        let error = n.dot(&(u - policy.action(x).rows(0, u.len())));
         errors[index.trajectory].push((n, error));
     }
     let all = errors.iter().flatten().map(|(_, error)| error * error).sum::<f64>();

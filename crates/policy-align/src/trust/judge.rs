@@ -74,7 +74,7 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
                 percent(numbers.direct_error),
                 percent(numbers.held_out_error)
             ),
-            "record more movements or reduce noise, or add what else the motion depends on (time, load, target) to the state",
+            "record more movements or reduce noise, or record what else the motion depends on (time, load, target); what stays as it is during a movement is --context",
         ),
         Hypothesis::TooFew => {
             found(Verdict::Doubtful, "too few movements to detect constraints".to_owned(), "record at least five");

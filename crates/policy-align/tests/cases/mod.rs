@@ -48,6 +48,7 @@ impl Case {
             positions: recording.observed.states().clone(),
             velocities: recording.observed.velocities().filter(|_| has == Has::Velocities).cloned(),
             constraint: None,
+            context: nalgebra::DVector::zeros(0),
         };
         let names = if dim <= 3 { vec!["x", "y", "z"] } else { Vec::new() };
         let name = |axis: usize| names.get(axis).map_or_else(|| format!("q{}", axis + 1), ToString::to_string);

@@ -11,12 +11,12 @@ pub(crate) fn examples() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/examples")
 }
 
-/// A folder with `toy.csv`, `rails.csv`, `wall.toml` and, learnt once, `toy.json`.
+/// A folder with `toy.csv`, `rails.csv`, `goals.csv`, `wall.toml` and, learnt once, `toy.json`.
 pub(crate) fn folder() -> &'static Path {
     static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
     let folder = FOLDER.get_or_init(|| {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["toy.csv", "rails.csv", "wall.toml"] {
+        for name in ["toy.csv", "rails.csv", "goals.csv", "wall.toml"] {
             std::fs::copy(examples().join(name), folder.path().join(name)).unwrap();
         }
         let output = command(folder.path()).args(["fit", "toy.csv", "-o", "toy.json"]).output().unwrap();

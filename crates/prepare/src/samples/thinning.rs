@@ -57,7 +57,8 @@ fn means(movement: &Trajectory, taken: usize) -> Result<Trajectory, MotionError>
         let means: Vec<_> = (0..count).map(|at| values.columns(at * taken, taken).column_mean()).collect();
         DMatrix::from_columns(&means)
     };
-    let thinned = Trajectory::new(of(movement.states()), movement.time_step() * taken as f64)?;
+    let thinned = Trajectory::new(of(movement.states()), movement.time_step() * taken as f64)?
+        .with_context(movement.context().clone())?;
     let thinned = match movement.times() {
         None => thinned,
         Some(times) => {

@@ -8,7 +8,10 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, Args, Command, Id};
 use demo_io::ReadOptions;
 use gp::Hypothesis;
-use policy_align::{Choice, FitOptions, LearnerChoice, Model, PrepareOptions, Repair, Smoothing, VelocityUse};
+use motion::Recordings;
+use policy_align::{
+    Choice, ContextUse, FitOptions, LearnerChoice, Model, PrepareOptions, Repair, Smoothing, VelocityUse,
+};
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
@@ -20,7 +23,7 @@ fn words<C: Choice>() -> PossibleValuesParser {
 }
 
 /// Flags of reading that the help of every command lists; `check --help` lists the others, too.
-const USUAL: [&str; 6] = ["state", "velocity", "time", "episode", "ignore", "dt"];
+const USUAL: [&str; 7] = ["state", "velocity", "context", "time", "episode", "ignore", "dt"];
 
 /// Flags of reading that only `check --help` lists.
 pub(crate) fn rare() -> HashSet<Id> {
@@ -28,6 +31,9 @@ pub(crate) fn rare() -> HashSet<Id> {
     let is_rare = |flag: &&Arg| flag.get_long().is_some_and(|long| !USUAL.contains(&long));
     reading.get_arguments().filter(is_rare).map(|flag| flag.get_id().clone()).collect()
 }
+
+/// The word for movements that depend on the state alone.
+const NO_CONTEXT: &str = "none";
 
 /// How files are read: table `[read]`.
 #[derive(Debug, Clone, Default, PartialEq, Args, Serialize, Deserialize)]
@@ -40,6 +46,9 @@ pub(crate) struct ReadFlags {
     /// Velocity columns, in the order of the state
     #[arg(long, value_name = "PATTERNS")]
     pub(crate) velocity: Vec<String>,
+    /// What each movement depends on and what stays as it is meanwhile: a goal, a load; or none [default: by name]
+    #[arg(long, value_name = "PATTERNS")]
+    pub(crate) context: Vec<String>,
     /// Time column
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
@@ -175,7 +184,19 @@ impl ReadFlags {
         if self.state.is_empty() {
             self.state = model.channels();
         }
+        if self.context.is_empty() {
+            self.context = model.context_names();
+        }
         self
+    }
+
+    /// Which of the channels that were read are context.
+    pub(crate) fn context_of(&self, recordings: &Recordings) -> Result<ContextUse, Failure> {
+        match &self.context[..] {
+            [] => Ok(ContextUse::Auto),
+            [word] if word == NO_CONTEXT => Ok(ContextUse::Ignored),
+            patterns => Ok(ContextUse::Named(demo_io::channels_named(patterns, recordings)?)),
+        }
     }
 
     /// Flags have the names of the options, and of a configuration file.
@@ -184,11 +205,15 @@ impl ReadFlags {
         let mut table = given(self).map_err(|error| wrong(&error))?;
         // What was read is trimmed afterwards.
         table.remove("trim_still");
+        if self.context == [NO_CONTEXT] {
+            table.remove("context");
+        }
         table.try_into().map_err(|error: toml::de::Error| wrong(&error.message()))
     }
 }
 
 impl PrepareFlags {
+    /// With everything but the context, which what was read decides.
     pub(crate) fn options(&self, dt: Option<f64>) -> Result<PrepareOptions, Failure> {
         let scale = self.scale.iter().map(|text| {
             let pair = text.split_once('=').and_then(|(name, factor)| Some((name.to_owned(), factor.parse().ok()?)));
@@ -201,6 +226,7 @@ impl PrepareFlags {
             smoothing: self.smooth.as_deref().map_or(Ok(Smoothing::Auto), smoothing)?,
             jumps: chosen(self.jumps.as_deref(), "--jumps")?.unwrap_or_default(),
             wraps: chosen(self.wraps.as_deref(), "--wraps")?.unwrap_or_default(),
+            context: ContextUse::Auto,
         })
     }
 }
@@ -246,6 +272,29 @@ fn smoothing(text: &str) -> Result<Smoothing, Failure> {
 fn number(text: &str, flag: &str) -> Result<f64, Failure> {
     let number = text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
     number.ok_or_else(|| Failure::usage(format!("'{text}' is not a positive number"), flag, format!("{flag} auto")))
+}
+
+/// Numbers by name, as a context is given.
+pub(crate) fn named_numbers(pairs: &[String], flag: &str) -> Result<Vec<(String, f64)>, Failure> {
+    let pair = |text: &str| {
+        let pair = text.split_once('=').and_then(|(name, number)| Some((name.to_owned(), number.trim().parse().ok()?)));
+        pair.ok_or_else(|| Failure::usage(format!("'{text}' is not NAME=NUMBER"), flag, format!("{flag} goal_x=0.4")))
+    };
+    pairs.iter().flat_map(|text| text.split(',')).map(pair).collect()
+}
+
+/// A model in the context that was given, if any.
+pub(crate) fn in_context(model: Model, pairs: &[String]) -> Result<Model, Failure> {
+    if pairs.is_empty() {
+        return Ok(model);
+    }
+    let context = model.in_named_context(&named_numbers(pairs, "--context")?);
+    context.map_err(|error| {
+        let names: Vec<String> = model.context_names().iter().map(|name| format!("{name}=…")).collect();
+        let remedy =
+            if names.is_empty() { "no --context".to_owned() } else { format!("--context {}", names.join(",")) };
+        Failure::usage(error.to_string(), "--context", remedy)
+    })
 }
 
 /// Numbers with commas between, as a state is given.

@@ -45,6 +45,7 @@ pub(crate) fn trust_page(model: &Model, name: &str, checksum: &str, prepared: &P
 }
 
 fn field(model: &Model, prepared: &Prepared) -> Markup {
+    let model = &model.in_usual_context();
     // Not the model's scales, which it may have learnt.
     let unscaled = |movement: &Trajectory| {
         let states = movement.states();
@@ -58,7 +59,11 @@ fn field(model: &Model, prepared: &Prepared) -> Markup {
     } else {
         ""
     };
-    let rest = if model.state.len() > 2 { " All other channels are at their median." } else { "" };
+    let rest = if model.state.len() > 2 || !model.context.is_empty() {
+        " All other channels are at their median."
+    } else {
+        ""
+    };
     let caption = format!(
         "Arrows: the learnt policy. Blue: the demonstrations.{potential} Grey: outside the range of the demonstrations, or too \
          far from all of them to predict an action.{rest}"
@@ -115,6 +120,7 @@ fn data(model: &Model, checksum: &str) -> Markup {
         model.data.files.iter().map(|file| format!("{}, SHA-256 {:.16}", file.name, file.sha256)).collect();
     html! {
         (channels(&model.state))
+        @if !model.context.is_empty() { p { "Context, which stays as it is during a movement:" } (channels(&model.context)) }
         (left_out(&model.data.left_out))
         p .where { "Files: "
         (files.join("; ")) ". " (model.made_by.program) ", " (model.made_by.time) ", seed " (model.seed) ". "

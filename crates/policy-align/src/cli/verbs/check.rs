@@ -43,11 +43,12 @@ impl Check {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let config = Config::of(session)?;
         let flags = config.under("read", &self.read)?;
-        let options = config.under("prepare", &self.prepare)?.options(flags.dt)?;
+        let mut options = config.under("prepare", &self.prepare)?.options(flags.dt)?;
         if let Some(path) = &self.html {
             no_input(path, &self.files)?;
         }
         let recordings = read(session, &self.files, &flags)?;
+        options.context = flags.context_of(&recordings)?;
         let prepared = prepare(&recordings, &options).map_err(|error| Failure::prepare(&error, named(&self.files)))?;
         let refused = prepared.findings.iter().any(|finding| finding.verdict == Verdict::DoNotUse);
         let exit = if refused { Exit::Refused } else { Exit::Done };
@@ -59,6 +60,7 @@ impl Check {
         if session.json {
             let document = json!({
                 "episodes": prepared.episodes, "left_out": prepared.left_out, "state": prepared.state,
+                "context": prepared.context,
                 "samples": prepared.demonstrations.n_samples(), "time_step": prepared.time_step,
                 "noise": prepared.noise, "direction_coverage": coverage,
                 "least_seen": direction.as_slice(), "decisions": prepared.decisions, "findings": prepared.findings,

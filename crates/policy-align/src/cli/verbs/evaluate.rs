@@ -130,6 +130,7 @@ impl Evaluate {
         let mut columns = reading.clone();
         columns.state.clone_from(&self.truth);
         columns.velocity.clear();
+        columns.context = vec![];
         let quiet = Session { quiet: true, ..session.clone() };
         let recordings = read(&quiet, &self.files, &columns)?;
         let scale = model.scales();

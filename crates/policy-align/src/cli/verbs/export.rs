@@ -9,7 +9,7 @@ use crate::cli::failure::{Exit, Failure, displayed};
 use crate::cli::given::no_input;
 use crate::cli::lines::{Lines, counted, list, size};
 use crate::cli::options::config::Config;
-use crate::cli::options::flags::numbers;
+use crate::cli::options::flags::{in_context, numbers};
 use crate::cli::options::rollout_flags::RollOutFlags;
 use crate::cli::session::{Output, Session, write};
 use crate::cli::trust_files::load;
@@ -26,6 +26,7 @@ const LOAD_ONNX: &str = "python -c \"import onnxruntime as o, sys; o.InferenceSe
 C: one file of ISO C99 that needs math.h only. int policy(const double *x,
 double *u, double *phi) returns 1 within the data, 0 outside: then stop.
 ONNX: opset 17 in doubles, x (states, n) to u, phi and support.
+Of a model with a context c (p), both take it after x: policy(x, c, u, phi).
 MCAP: roll-outs as joint states of ROS 2, for Rerun, Foxglove and PlotJuggler.
 
 Examples:\n  policy-align export toy.json --to c -o toy.c\n  policy-align export toy.json --to mcap -o toy.mcap")]
@@ -47,6 +48,9 @@ pub(crate) struct Export {
     /// Start of a roll-out for MCAP; may be repeated [default: twelve]
     #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
     from: Vec<String>,
+    /// For MCAP: context of a model that has one, as goal_x=0.4,goal_y=0.1
+    #[arg(long, value_name = "NAME=NUMBER", value_delimiter = ',', allow_hyphen_values = true)]
+    context: Vec<String>,
     #[command(flatten)]
     follow: RollOutFlags,
 }
@@ -66,7 +70,9 @@ impl Export {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let model = load(session, &self.model)?;
         let output = |extension| self.output.clone().unwrap_or_else(|| self.model.with_extension(extension));
-        if self.to != Target::Mcap && (!self.from.is_empty() || self.follow != RollOutFlags::default()) {
+        if self.to != Target::Mcap
+            && (!self.from.is_empty() || !self.context.is_empty() || self.follow != RollOutFlags::default())
+        {
             return Err(Failure::usage("only MCAP holds roll-outs", "roll-out flags", "--to mcap"));
         }
         let precision = if self.float { Precision::Single } else { Precision::Double };
@@ -97,6 +103,7 @@ impl Export {
             return Err(Failure::usage("MCAP files end in .mcap", displayed(output), "`rollout -o` for other formats"));
         }
         let flags = Config::of(session)?.under("rollout", &self.follow)?;
+        let model = &in_context(model.clone(), &self.context)?;
         let given = self.from.iter().map(|from| Ok(DVector::from_vec(numbers(from, "--from")?)));
         let mut starts = given.collect::<Result<Vec<_>, Failure>>()?;
         if starts.is_empty() {

@@ -4,7 +4,7 @@ use clap::Args;
 use serde_json::json;
 use text::quoted;
 
-use crate::cli::describe::{learner, verdict};
+use crate::cli::describe::{context_flag, learner, verdict};
 use crate::cli::failure::{Exit, Failure};
 use crate::cli::lines::{Lines, amount, short};
 use crate::cli::session::{Output, Session};
@@ -24,7 +24,7 @@ impl Info {
         let model = load(session, &self.model)?;
         if session.json {
             let document = json!({
-                "made_by": model.made_by, "state": model.state, "time_step": model.time_step, "data": model.data,
+                "made_by": model.made_by, "state": model.state, "context": model.context, "time_step": model.time_step, "data": model.data,
                 "learner": learner(&model), "decisions": model.decisions, "seed": model.seed, "trust": model.trust,
             });
             return Ok(Output::json(&document, Exit::Done));
@@ -48,11 +48,16 @@ impl Info {
             channels.push("…".to_owned());
         }
         lines.add("state", &channels.join(", "));
+        if !model.context.is_empty() {
+            lines.add("context", &model.context.iter().map(channel).collect::<Vec<_>>().join(", "));
+        }
         let [step, longest] = [model.time_step, model.data.longest].map(short);
         lines.add("time", &format!("dt {step} s, the longest episode {longest} s"));
         lines.add("trust", verdict(&model));
         findings(&model.trust.findings, 4, &mut lines);
         let middle: Vec<String> = model.state.iter().map(|channel| short(channel.median)).collect();
-        Ok(Output::done(lines.next(&format!("policy-align predict {} --at {}", quoted(&self.model), middle.join(",")))))
+        let context = context_flag(&model);
+        let next = format!("policy-align predict {} --at {}{context}", quoted(&self.model), middle.join(","));
+        Ok(Output::done(lines.next(&next)))
     }
 }

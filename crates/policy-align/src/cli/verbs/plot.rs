@@ -9,7 +9,7 @@ use crate::cli::failure::Failure;
 use crate::cli::given::no_input;
 use crate::cli::lines::{Lines, short};
 use crate::cli::options::config::Config;
-use crate::cli::options::flags::{ReadFlags, numbers};
+use crate::cli::options::flags::{ReadFlags, in_context, numbers};
 use crate::cli::options::rollout_flags::RollOutFlags;
 use crate::cli::pages::picture::{Picture, draw};
 use crate::cli::recorded::{base_name, read};
@@ -20,7 +20,8 @@ use crate::cli::verbs::rollout::followed;
 /// Plot a policy, its potential and recordings
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Plots two channels; all others are at their median. Outside the data it is grey.
+Plots two channels; all others are at their median, and so is the context, unless
+--context goal_x=0.4,goal_y=0.1 chooses one. Outside the data it is grey.
 All flags of reading files: policy-align check --help
 
 Example:
@@ -49,17 +50,19 @@ pub(crate) struct Plot {
 impl Plot {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         no_input(&self.output, &[&self.files[..], std::slice::from_ref(&self.model)].concat())?;
-        let model = load(session, &self.model)?;
         let config = Config::of(session)?;
+        let flags = config.under("rollout", &self.follow)?;
+        let model = in_context(load(session, &self.model)?, &self.read.context)?.in_usual_context();
         let dims = dims(&self.dims, &model)?;
-        let reading = config.under("read", &self.read)?.with_channels_of(&model);
+        let mut reading = config.under("read", &self.read)?;
+        reading.context.clear();
+        let reading = reading.with_channels_of(&model);
         let demonstrated = if self.files.is_empty() {
             vec![]
         } else {
             let recordings = read(session, &self.files, &reading)?;
             recordings.episodes.into_iter().map(|episode| episode.positions).collect()
         };
-        let flags = config.under("rollout", &self.follow)?;
         let paths = self.rollout.iter().map(|from| {
             let start = DVector::from_vec(numbers(from, "--rollout")?);
             Ok(followed(&flags, &model, &start, from)?.states)

@@ -8,10 +8,11 @@ use policy_align::{Model, ModelPolicy, StateChannel};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
+use crate::cli::describe::context_flag;
 use crate::cli::failure::{Exit, Failure};
 use crate::cli::given::no_input;
 use crate::cli::lines::{Lines, counted, list, short};
-use crate::cli::options::flags::numbers;
+use crate::cli::options::flags::{in_context, numbers};
 use crate::cli::session::{Output, Session, write};
 use crate::cli::table::states;
 use crate::cli::trust_files::load;
@@ -34,6 +35,9 @@ pub(crate) struct Predict {
     /// One state
     #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true, conflicts_with = "states")]
     at: Option<String>,
+    /// Context of a model that has one, as goal_x=0.4,goal_y=0.1; without it, the file of states has its columns, too
+    #[arg(long, value_name = "NAME=NUMBER", value_delimiter = ',', allow_hyphen_values = true)]
+    context: Vec<String>,
     /// CSV file to write
     #[arg(long, short, value_name = "FILE.csv")]
     output: Option<PathBuf>,
@@ -80,7 +84,7 @@ impl Prediction {
 
 impl Predict {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
-        let model = load(session, &self.model)?;
+        let model = in_context(load(session, &self.model)?, &self.context)?;
         let states = match (&self.at, &self.states) {
             (Some(at), _) => Self::one(at, &model)?,
             (None, Some(path)) => states(path, &model)?,
@@ -118,6 +122,10 @@ impl Predict {
 
     fn one(at: &str, model: &Model) -> Result<DMatrix<f64>, Failure> {
         let numbers = numbers(at, "--at")?;
+        if !model.open_context().is_empty() {
+            let what = format!("the policy depends on {}", model.context_names().join(", "));
+            return Err(Failure::usage(what, format!("--at {at}"), context_flag(model).trim().to_owned()));
+        }
         if numbers.len() != model.state.len() || !numbers.iter().all(|number| number.is_finite()) {
             let what = format!("{} finite numbers are needed", model.state.len());
             let remedy = format!("one for each of {}", model.channels().join(", "));
@@ -162,17 +170,19 @@ fn csv(model: &Model, states: &DMatrix<f64>, predictions: &[Prediction]) -> Stri
     let quoted = |name: String| {
         if name.contains([',', '"', '\n']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name }
     };
-    let names = |prefix: &str| {
-        let name = |channel: &StateChannel| quoted(format!("{prefix}{}", channel.name));
-        model.state.iter().map(name).collect::<Vec<_>>().join(",")
+    let names = |prefix: &str, channels: &[StateChannel]| {
+        let name = |channel: &StateChannel| quoted(format!("{prefix}{}", channel.name)) + ",";
+        channels.iter().map(name).collect::<String>()
     };
-    let mut text = format!("{},{},potential,{},support,known\n", names(""), names("u_"), names("sd_"));
+    let (n, inputs) = (model.state.len(), names("", &model.state) + &names("", model.open_context()));
+    let (actions, deviations) = (names("u_", &model.state), names("sd_", &model.state));
+    let mut text = format!("{inputs}{actions}potential,{deviations}support,known\n");
     for (state, prediction) in states.column_iter().zip(predictions) {
-        for number in state.iter().chain(&prediction.action) {
+        for number in state.iter().chain(prediction.action.iter().take(n)) {
             let _ = write!(text, "{number},");
         }
         let _ = write!(text, "{},", prediction.potential.map_or_else(String::new, |value| value.to_string()));
-        for k in 0..state.len() {
+        for k in 0..n {
             let deviation = prediction.deviation.as_ref().map_or_else(String::new, |sd| sd[k].to_string());
             let _ = write!(text, "{deviation},");
         }
@@ -182,12 +192,15 @@ fn csv(model: &Model, states: &DMatrix<f64>, predictions: &[Prediction]) -> Stri
 }
 
 fn document(model: &Model, states: &DMatrix<f64>, predictions: &[Prediction]) -> Value {
+    let n = model.state.len();
+    let context = |state: DVectorView<'_, f64>| (state.len() > n).then(|| state.as_slice()[n..].to_vec());
     let one = |(state, prediction): (DVectorView<'_, f64>, &Prediction)| {
         json!({
-            "state": state.iter().collect::<Vec<_>>(),
-            "action": prediction.action.as_slice(),
+            "state": &state.as_slice()[..n],
+            "context": context(state),
+            "action": &prediction.action.as_slice()[..n],
             "potential": prediction.potential,
-            "deviation": prediction.deviation.as_ref().map(|deviation| deviation.as_slice().to_vec()),
+            "deviation": prediction.deviation.as_ref().map(|deviation| deviation.as_slice()[..n].to_vec()),
             "support": prediction.support,
             "known": prediction.supported,
         })

@@ -11,7 +11,7 @@ use crate::cli::failure::{Exit, Failure, displayed};
 use crate::cli::given::{again, no_input};
 use crate::cli::lines::{Lines, counted, list, short};
 use crate::cli::options::config::Config;
-use crate::cli::options::flags::numbers;
+use crate::cli::options::flags::{in_context, numbers};
 use crate::cli::options::rollout_flags::RollOutFlags;
 use crate::cli::pages::picture::{Picture, draw};
 use crate::cli::recorded::base_name;
@@ -49,6 +49,9 @@ pub(crate) struct RollOut {
     /// Start state
     #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
     from: String,
+    /// Context of a model that has one, as goal_x=0.4,goal_y=0.1
+    #[arg(long, value_name = "NAME=NUMBER", value_delimiter = ',', allow_hyphen_values = true)]
+    context: Vec<String>,
     /// Path to write: CSV or any other format of `convert`
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -61,8 +64,8 @@ pub(crate) struct RollOut {
 
 impl RollOut {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
-        let model = load(session, &self.model)?;
         let flags = Config::of(session)?.under("rollout", &self.follow)?;
+        let model = in_context(load(session, &self.model)?, &self.context)?;
         let start = DVector::from_vec(numbers(&self.from, "--from")?);
         for output in [&self.output, &self.plot].into_iter().flatten() {
             no_input(output, std::slice::from_ref(&self.model))?;
@@ -158,6 +161,7 @@ pub(crate) fn write_paths(output: &path::Path, model: &Model, paths: &[Path]) ->
         positions: followed.states.clone(),
         velocities: Some(followed.velocities.clone()),
         constraint: None,
+        context: nalgebra::DVector::zeros(0),
     };
     let recordings = Recordings {
         state: model.state.iter().map(channel).collect(),

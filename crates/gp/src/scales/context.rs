@@ -1,0 +1,62 @@
+//! How much a context counts beside the state.
+
+use nalgebra::DVector;
+use rand::Rng;
+
+use super::spreads;
+use crate::kernel::family::Family;
+use crate::rows::kept::{Kept, Selection};
+use crate::slope::data::SlopeData;
+use crate::slope::slope_gp::SlopeGp;
+use crate::{GpError, Rows};
+
+/// Rows at most, and those of them that set the amplitudes.
+const ROWS: usize = 300;
+const HYPER_ROWS: usize = 150;
+/// What the spread of a context is worth, in that of the state: tried one after the other.
+const WORTH: [f64; 4] = [1.0, 0.5, 0.25, 2.0];
+
+impl SlopeGp {
+    /// A factor for every context, (p): each spreads like the state then, times one factor for all that predicts left-out movements
+    /// best. Contexts that are the same everywhere keep their unit. At most four fits to 300 rows.
+    ///
+    /// # Errors
+    /// As [`SlopeGp::fit`].
+    pub fn context_factors<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<DVector<f64>, GpError> {
+        let (dim, context_dim) = (rows.dim(), rows.context_dim());
+        let spread = spreads(rows.states());
+        let of_state = spread.rows(0, dim).norm() / (dim as f64).sqrt();
+        let alike = |spread: f64| if spread > 0.0 && of_state > 0.0 { of_state / spread } else { 1.0 };
+        let alike = spread.rows(dim, context_dim).map(alike);
+        if context_dim == 0 {
+            return Ok(alike);
+        }
+        let selection = self.selection()?;
+        let few = Selection {
+            max_rows: selection.max_rows.min(ROWS),
+            hyper_rows: selection.hyper_rows.min(HYPER_ROWS),
+            ..selection
+        };
+        let kept = few.keep(rows, rng)?;
+        let mut best = (1.0, f64::NEG_INFINITY);
+        for worth in WORTH {
+            let r_squared = self.left_out_in(&kept, &(&alike * worth)).unwrap_or(f64::NEG_INFINITY);
+            if r_squared > best.1 {
+                best = (worth, r_squared);
+            }
+        }
+        Ok(alike * best.0)
+    }
+
+    /// R² with contexts times their factors; none without Cholesky factor.
+    fn left_out_in(&self, kept: &Kept, factors: &DVector<f64>) -> Option<f64> {
+        let mut kept = Kept { variances: None, ..kept.clone() };
+        let dim = kept.velocities.nrows();
+        for mut state in kept.states.column_iter_mut() {
+            state.rows_mut(dim, factors.len()).component_mul_assign(factors);
+        }
+        let data = SlopeData::from_kept(&kept, vec![1.0; kept.speeds.len()]).ok()?;
+        let fit = data.fit(&Family::Smooth.blocks(self.trend), &kept.hyper, None)?;
+        Some(fit.level.left_out.r_squared)
+    }
+}

@@ -1,0 +1,95 @@
+//! A model in one of its contexts.
+
+use nalgebra::DVector;
+use thiserror::Error;
+
+use crate::{Model, StateChannel};
+
+/// Why a model cannot be put into a context.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ContextError {
+    /// The model has no such channel.
+    #[error("the model's context has no '{name}'; it has {}", listed(.known))]
+    Unknown {
+        /// The name given.
+        name: String,
+        /// The names there are.
+        known: Vec<String>,
+    },
+    /// A channel has no value.
+    #[error("the context needs a number for each of {}", listed(.names))]
+    Missing {
+        /// All channels of the context.
+        names: Vec<String>,
+    },
+    /// A value is NaN or infinite.
+    #[error("{name} is {value}: a context has finite numbers")]
+    NotFinite {
+        /// The channel.
+        name: String,
+        /// Its value.
+        value: f64,
+    },
+}
+
+fn listed(names: &[String]) -> String {
+    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
+
+impl Model {
+    /// The same model in one context c, (p) in the order of [`Model::context`] and in the units of the recording: its policy is one
+    /// of the state alone, wherever a model is taken.
+    ///
+    /// # Errors
+    /// [`ContextError`].
+    pub fn in_context(&self, context: &DVector<f64>) -> Result<Model, ContextError> {
+        let names = self.context_names();
+        if context.len() != names.len() {
+            return Err(ContextError::Missing { names });
+        }
+        match names.into_iter().zip(context).find(|(_, value)| !value.is_finite()) {
+            Some((name, &value)) => Err(ContextError::NotFinite { name, value }),
+            None => Ok(Model { chosen_context: context.clone(), ..self.clone() }),
+        }
+    }
+
+    /// The same with the values by name.
+    ///
+    /// # Errors
+    /// [`ContextError`].
+    pub fn in_named_context(&self, values: &[(String, f64)]) -> Result<Model, ContextError> {
+        let known = self.context_names();
+        if let Some((name, _)) = values.iter().find(|(name, _)| !known.contains(name)) {
+            return Err(ContextError::Unknown { name: name.clone(), known });
+        }
+        let value = |name: &String| values.iter().find(|(given, _)| given == name).map(|(_, value)| *value);
+        let context: Option<Vec<f64>> = known.iter().map(value).collect();
+        self.in_context(&DVector::from_vec(context.ok_or(ContextError::Missing { names: known })?))
+    }
+
+    /// The same in the context that was chosen, or else in the one in the middle of those learnt from.
+    #[must_use]
+    pub fn in_usual_context(&self) -> Model {
+        if self.open_context().is_empty() {
+            return self.clone();
+        }
+        let middle = self.context.iter().map(|channel| channel.median);
+        Model { chosen_context: DVector::from_iterator(self.context.len(), middle), ..self.clone() }
+    }
+
+    /// Names of the context's channels, (p).
+    pub fn context_names(&self) -> Vec<String> {
+        self.context.iter().map(|channel| channel.name.clone()).collect()
+    }
+
+    /// The channels of the context unless one was chosen: [`Model::policy`] takes their values after those of the state.
+    pub fn open_context(&self) -> &[StateChannel] {
+        if self.chosen_context.is_empty() { &self.context } else { &[] }
+    }
+
+    /// The channels of all that the learner's policy takes: of the state, then of the context.
+    pub(crate) fn inputs(&self) -> impl Iterator<Item = &StateChannel> {
+        self.state.iter().chain(&self.context)
+    }
+}

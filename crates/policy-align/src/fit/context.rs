@@ -1,0 +1,27 @@
+//! The unit of each context, which has none in common with the state.
+
+use gp::SlopeGp;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use super::options::{FitOptions, LearnerChoice};
+use super::recorded_rows::{cleaning, rows};
+use crate::{FitError, Prepared};
+
+/// The movements with their contexts times factors that make them count as much as predicts left-out movements best. Contexts that
+/// the user scaled stay.
+pub(super) fn comparable(prepared: &Prepared, options: &FitOptions) -> Result<Prepared, FitError> {
+    if options.learner == LearnerChoice::PolicyAlign {
+        let names: Vec<&str> = prepared.context.iter().map(|channel| channel.name.as_str()).collect();
+        return Err(FitError::Context { context: names.join(", ") });
+    }
+    let gp = SlopeGp { max_rows: options.max_rows, ..SlopeGp::default() };
+    let mut factors = gp.context_factors(&rows(prepared)?, &mut ChaCha8Rng::seed_from_u64(options.seed))?;
+    for (factor, channel) in factors.iter_mut().zip(&prepared.context) {
+        let given = format!("{} times ", channel.name);
+        if prepared.decisions.iter().any(|of| of.flag == "--scale" && of.value.starts_with(&given)) {
+            *factor = 1.0;
+        }
+    }
+    Ok(prepared.with_context_scaled(&factors).map_err(|error| cleaning(&error))?)
+}
