@@ -7,7 +7,7 @@ mod goals;
 
 use drawn::{matrix, rng, vector};
 use goals::{Attraction, Goals};
-use gp::{AutoFit, AutoGp, Block, FrontEnd, GpError, Hypothesis, Rows, Shape, SlopeData, SlopeGp};
+use gp::{AutoFit, AutoGp, Block, FrontEnd, GpError, Hypothesis, Shape, SlopeData, SlopeGp};
 use motion::{Demonstrations, LearntPolicy as _, Policy as _, Potential as _, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -203,7 +203,7 @@ proptest! {
         if let Some(potential) = model.potential() {
             let gradient = potential.gradient(state.as_view());
             for axis in 0..dim {
-                let mut at = |by: f64| { let mut x = state.clone(); x[axis] += by; potential.value(x.as_view()) };
+                let at = |by: f64| { let mut x = state.clone(); x[axis] += by; potential.value(x.as_view()) };
                 let slope = (at(1e-5) - at(-1e-5)) / 2e-5;
                 prop_assert!((slope - gradient[axis]).abs() <= 1e-4 * (1.0 + slope.abs()), "{slope} {}", gradient[axis]);
             }

@@ -17,9 +17,9 @@ pub struct Model {
     /// Dimensions of the context, p of them; none where movements depend on the state alone.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub context: Vec<StateChannel>,
-    /// The context that was chosen, (p) in the units of the recording, of no length without one. It is not stored.
+    /// The context that [`Model::in_context`] chose, (p) in the units of the recording, of no length without one. It is not stored.
     #[serde(skip, default = "nowhere")]
-    pub(crate) chosen_context: DVector<f64>,
+    pub chosen_context: DVector<f64>,
     /// Seconds; the median over trajectories.
     pub time_step: f64,
     /// The training data.
