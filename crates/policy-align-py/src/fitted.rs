@@ -5,8 +5,8 @@ use motion::{LearntPolicy as _, Policy as _};
 use nalgebra::{DMatrix, DVectorView};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use policy_align::{
-    ContextUse, Evaluation, Model, ModelError, ModelPolicy, PrepareOptions, Progress, TaskLinks, estimate_constraints,
-    evaluate, fit, prepare,
+    Evaluation, Model, ModelError, ModelPolicy, PrepareOptions, Progress, TaskLinks, estimate_constraints, evaluate,
+    fit, prepare,
 };
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
@@ -185,11 +185,7 @@ impl Fitted {
 
     /// Evaluates the policy on movements; as JSON.
     fn evaluate(&self, py: Python<'_>, recordings: &Recordings, preparing: Preparing) -> PyResult<String> {
-        let context = match self.model.context_names() {
-            names if names.is_empty() => ContextUse::Ignored,
-            names => ContextUse::Named(names),
-        };
-        let options = PrepareOptions { scale: self.model.scale(), context, ..preparing.options(&[])? };
+        let options = self.prepared_alike(preparing)?;
         let (inner, model) = (Arc::clone(&recordings.inner), Arc::clone(&self.model));
         let judged = interruptible(py, move |_: &_| {
             let Recorded { recordings, place, .. } = &*inner;
@@ -210,7 +206,7 @@ impl Fitted {
         robot: Option<PathBuf>,
         links: Vec<String>,
     ) -> PyResult<String> {
-        let options = PrepareOptions { scale: self.model.scale(), ..preparing.options()? };
+        let options = self.prepared_alike(preparing)?;
         let (inner, model) = (Arc::clone(&recordings.inner), Arc::clone(&self.model));
         let text = robot.as_ref().map(|path| py.detach(|| demo_io::read_text(path))).transpose()?;
         let place = robot.map_or_else(String::new, |path| path.display().to_string());
@@ -246,6 +242,12 @@ impl Fitted {
 }
 
 impl Fitted {
+    /// Options to prepare movements as those that were learnt from.
+    fn prepared_alike(&self, preparing: Preparing) -> Result<PrepareOptions, Refusal> {
+        let (scale, context) = (self.model.scale(), self.model.context_use());
+        Ok(PrepareOptions { scale, context, ..preparing.options(&[])? })
+    }
+
     /// States as columns, checked.
     fn states(&self, states: &PyReadonlyArray2<'_, f64>) -> PyResult<DMatrix<f64>> {
         let states = matrix(states);

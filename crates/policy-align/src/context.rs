@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 use thiserror::Error;
 
-use crate::{Model, StateChannel};
+use crate::{ContextUse, Model, StateChannel};
 
 /// Why a model cannot be put into a context.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -76,6 +76,11 @@ impl Model {
         }
         let middle = self.context.iter().map(|channel| channel.median);
         Model { chosen_context: DVector::from_iterator(self.context.len(), middle), ..self.clone() }
+    }
+
+    /// To prepare other recordings as those that were learnt from.
+    pub fn context_use(&self) -> ContextUse {
+        if self.context.is_empty() { ContextUse::Ignored } else { ContextUse::Named(self.context_names()) }
     }
 
     /// Names of the context's channels, (p).

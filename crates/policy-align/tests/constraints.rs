@@ -77,6 +77,7 @@ fn recorded(urdf: &str, link: &str, movements: usize, noise: f64, seed: u64) -> 
             positions: states,
             velocities: Some(velocities),
             constraint: None,
+            context: DVector::zeros(0),
         }
     };
     let episodes = (0..movements).map(episode).collect();

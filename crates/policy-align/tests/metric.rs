@@ -54,6 +54,7 @@ fn recordings(metric: impl Fn(&Vector2<f64>) -> Matrix2<f64>) -> Recordings {
             positions: matrix(states),
             velocities: Some(matrix(velocities)),
             constraint: None,
+            context: DVector::zeros(0),
         }
     });
     let state = ["shoulder", "elbow"].map(|name| Channel { name: name.to_owned(), unit: None }).to_vec();

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use motion::{Finding, Recordings};
-use policy_align::{ContextUse, FileSummary, Model, Prepared, prepare};
+use policy_align::{FileSummary, Model, Prepared, prepare};
 use text::quoted;
 
 use crate::cli::failure::{Failure, displayed};
@@ -41,7 +41,7 @@ pub(crate) fn prepared_for(
     let mut options = config.under("prepare", preparing)?.options(reading.dt)?;
     // The learner's states were multiplied by these, whatever the flags are.
     options.scale = model.scale();
-    options.context = context_of(model);
+    options.context = model.context_use();
     let recordings = read(session, files, &reading)?;
     let prepared = prepare(&recordings, &options).map_err(|error| Failure::prepare(&error, named(files)))?;
     let found: Vec<String> = prepared.state.iter().map(|channel| channel.name.clone()).collect();
@@ -52,11 +52,6 @@ pub(crate) fn prepared_for(
         return Err(Failure::usage(what, named(files), remedy));
     }
     Ok((reading, prepared))
-}
-
-/// The channels that are context to a model.
-pub(crate) fn context_of(model: &Model) -> ContextUse {
-    if model.context.is_empty() { ContextUse::Ignored } else { ContextUse::Named(model.context_names()) }
 }
 
 fn warn(session: &Session, findings: &[Finding]) {

@@ -96,6 +96,7 @@ fn of_movements(names: &[&str], movements: &[[DMatrix<f64>; 3]]) -> Case {
         positions: states.clone(),
         velocities: Some(velocities.clone()),
         constraint: None,
+        context: DVector::zeros(0),
     };
     let all = |of: usize| DMatrix::from_columns(&fresh.iter().flat_map(|m| m[of].column_iter()).collect::<Vec<_>>());
     let state = names.iter().map(|&name| Channel { name: name.to_owned(), unit: None }).collect();

@@ -1,7 +1,7 @@
 //! Flags that several commands share. Each group is a table of a configuration file, with the same names.
 
 use std::collections::HashSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use align::Bandwidth;
 use clap::builder::PossibleValuesParser;
@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use crate::cli::failure::Failure;
+use crate::cli::options::values::urdf;
 
 /// What the flag of a choice takes.
 fn words<C: Choice>() -> PossibleValuesParser {
@@ -251,11 +252,6 @@ impl FitFlags {
     }
 }
 
-/// The text of a robot.
-pub(crate) fn urdf(path: &Path) -> Result<String, Failure> {
-    demo_io::read_text(path).map_err(|error| Failure::reading(path, error))
-}
-
 fn chosen<C: Choice>(word: Option<&str>, flag: &str) -> Result<Option<C>, Failure> {
     let refused = |word| Failure::usage(format!("'{word}' is none of the choices"), flag, C::listed(""));
     word.map(|word| C::of(word).ok_or_else(|| refused(word))).transpose()
@@ -272,35 +268,4 @@ fn smoothing(text: &str) -> Result<Smoothing, Failure> {
 fn number(text: &str, flag: &str) -> Result<f64, Failure> {
     let number = text.parse().ok().filter(|number: &f64| *number > 0.0 && number.is_finite());
     number.ok_or_else(|| Failure::usage(format!("'{text}' is not a positive number"), flag, format!("{flag} auto")))
-}
-
-/// Numbers by name, as a context is given.
-pub(crate) fn named_numbers(pairs: &[String], flag: &str) -> Result<Vec<(String, f64)>, Failure> {
-    let pair = |text: &str| {
-        let pair = text.split_once('=').and_then(|(name, number)| Some((name.to_owned(), number.trim().parse().ok()?)));
-        pair.ok_or_else(|| Failure::usage(format!("'{text}' is not NAME=NUMBER"), flag, format!("{flag} goal_x=0.4")))
-    };
-    pairs.iter().flat_map(|text| text.split(',')).map(pair).collect()
-}
-
-/// A model in the context that was given, if any.
-pub(crate) fn in_context(model: Model, pairs: &[String]) -> Result<Model, Failure> {
-    if pairs.is_empty() {
-        return Ok(model);
-    }
-    let context = model.in_named_context(&named_numbers(pairs, "--context")?);
-    context.map_err(|error| {
-        let names: Vec<String> = model.context_names().iter().map(|name| format!("{name}=…")).collect();
-        let remedy =
-            if names.is_empty() { "no --context".to_owned() } else { format!("--context {}", names.join(",")) };
-        Failure::usage(error.to_string(), "--context", remedy)
-    })
-}
-
-/// Numbers with commas between, as a state is given.
-pub(crate) fn numbers(text: &str, flag: &str) -> Result<Vec<f64>, Failure> {
-    let numbers = text.split(',').map(|number| number.trim().parse());
-    let numbers: Result<Vec<f64>, _> = numbers.collect();
-    let what = || format!("'{text}' is not a list of numbers, separated by commas");
-    numbers.map_err(|_| Failure::usage(what(), flag, format!("{flag} 0.3,1.2")))
 }

@@ -5,7 +5,7 @@ use policy_align::{ConstraintSet, JointLimits, Model, RollOut};
 use serde::{Deserialize, Serialize};
 
 use crate::cli::failure::{Failure, displayed};
-use crate::cli::options::flags::urdf;
+use crate::cli::options::values::urdf;
 
 /// How a policy is followed: table `[rollout]`.
 #[derive(Debug, Clone, Default, PartialEq, Args, Serialize, Deserialize)]

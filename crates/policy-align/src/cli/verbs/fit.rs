@@ -6,8 +6,8 @@ use clap::Args;
 use demo_io::TempFile;
 use motion::{Episode, Recordings};
 use policy_align::{
-    ContextUse, Decision, Evaluation, Finding, Model, PrepareOptions, Prepared, Progress, Verdict, checksum_of,
-    evaluate, fit, prepare,
+    Decision, Evaluation, Finding, Model, PrepareOptions, Prepared, Progress, Verdict, checksum_of, evaluate, fit,
+    prepare,
 };
 use serde_json::json;
 use text::quoted;
@@ -20,7 +20,7 @@ use crate::cli::lines::{Lines, amount, counted, size, squared_error};
 use crate::cli::options::config::{Config, printed};
 use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags};
 use crate::cli::pages::trust_page::trust_page;
-use crate::cli::recorded::{base_name, context_of, named, read, summaries, unreported};
+use crate::cli::recorded::{base_name, named, read, summaries, unreported};
 use crate::cli::session::{Output, Session};
 use crate::cli::trust_files::{MEMBER, trust_files, warn_of_others};
 use crate::cli::verbs::check::{findings, left_out};
@@ -193,7 +193,7 @@ fn without_copies(others: &mut Vec<Episode>, held: &[Episode]) -> Option<Finding
 
 fn judged(held_out: &Recordings, options: &PrepareOptions, model: &Model) -> Result<Evaluation, Failure> {
     // In the units of the model, which may have learnt them.
-    let options = PrepareOptions { scale: model.scale(), context: context_of(model), ..options.clone() };
+    let options = PrepareOptions { scale: model.scale(), context: model.context_use(), ..options.clone() };
     let prepared = prepare(held_out, &options).map_err(|error| Failure::prepare(&error, "--hold-out".to_owned()))?;
     evaluate(model, &prepared, None)
         .map_err(|error| Failure::new(Exit::Refused, error.to_string(), "--hold-out", "other episodes"))

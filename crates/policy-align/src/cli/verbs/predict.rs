@@ -12,7 +12,7 @@ use crate::cli::describe::context_flag;
 use crate::cli::failure::{Exit, Failure};
 use crate::cli::given::no_input;
 use crate::cli::lines::{Lines, counted, list, short};
-use crate::cli::options::flags::{in_context, numbers};
+use crate::cli::options::values::{in_context, numbers};
 use crate::cli::session::{Output, Session, write};
 use crate::cli::table::states;
 use crate::cli::trust_files::load;
