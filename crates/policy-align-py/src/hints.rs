@@ -8,8 +8,9 @@ const ARGUMENTS: &str = "as bandwidth constraint-column context decimal degrees 
                          time topic trim-still trust units unwrap velocity wraps";
 
 /// Values that are words: `--nan drop` is `nan="drop"`.
-const WORDS: [(&str, &[&str]); 10] = [
+const WORDS: [(&str, &[&str]); 11] = [
     ("bandwidth", &["auto"]),
+    ("context", &["auto", "none"]),
     ("decimal", &[".", ","]),
     ("init-d", &["auto"]),
     ("integration", &["velocity", "displacement"]),

@@ -40,14 +40,14 @@ pub fn leave_constraints_out(
         let (out, others): (Vec<usize>, Vec<usize>) =
             (0..prepared.constraints.len()).partition(|&k| prepared.constraints[k].as_ref() == Some(label));
         let learnt = fit(&only(prepared, &others), options, progress)?;
-        let evaluation = evaluate(&learnt, &in_units_of(&learnt, only(prepared, &out))?, None)?;
+        let evaluation = evaluate(&learnt, &in_units_of(&learnt, &only(prepared, &out))?, None)?;
         Ok(ConstraintLeftOut { constraint: label.clone(), learnt_from: others.len(), evaluation })
     };
     labels.into_iter().map(without).collect()
 }
 
 /// Movements in the units of a model, which may have learnt them.
-pub(crate) fn in_units_of(model: &Model, prepared: Prepared) -> Result<Prepared, FitError> {
+pub(crate) fn in_units_of(model: &Model, prepared: &Prepared) -> Result<Prepared, FitError> {
     let factors = model.state.iter().zip(&prepared.state).map(|(learnt, own)| learnt.scale / own.scale);
     let factors = DVector::from_iterator(prepared.state.len(), factors);
     let of_context = model.context.iter().zip(&prepared.context).map(|(learnt, own)| learnt.scale / own.scale);

@@ -69,8 +69,8 @@ fn what_is_wrong_is_said_in_one_line_with_its_place() {
         (said(Model::from_json(b"{")), "damaged or cut off: not JSON (EOF"),
         (said(Model::from_json(br#"{"format":"urdf"}"#)), r#"not a policy-align model: `format` is "urdf""#),
         (
-            said(with(&text, "", |v| v["version"] = json!(2))),
-            "made by a newer policy-align: model version 2, this one reads up to 1",
+            said(with(&text, "", |v| v["version"] = json!(3))),
+            "made by a newer policy-align: model version 3, this one reads up to 2",
         ),
         (said(with(&text, "", |v| v["version"] = json!("1"))), "version: missing"),
         (said(with(&text, "", |v| remove(v, "state"))), "missing field `state`"),

@@ -96,7 +96,7 @@ fn samples_at_rest_that_are_removed_are_counted() {
     let checked: Value =
         serde_json::from_str(&run_in(folder.path(), "check rest.csv --trim-still --json").out).unwrap();
     let findings = checked["findings"].to_string();
-    assert!(findings.contains("of 360 samples were at rest"), "{findings}");
+    assert!(findings.contains("of 360 samples, in which"), "{findings}");
 }
 
 /// A copy of a held-out episode would be learnt from.

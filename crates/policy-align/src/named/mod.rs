@@ -33,7 +33,7 @@ pub fn estimate_constraints(
     if policy.dim() != dim {
         return Err(EvaluateError::Dimension { policy: policy.dim(), movements: dim });
     }
-    let prepared = &in_units_of(model, prepared.clone())?;
+    let prepared = &in_units_of(model, prepared)?;
     let rows = rows(prepared)?;
     let scales = DVector::from_iterator(dim, prepared.state.iter().map(|channel| channel.scale));
     let states = unscaled(rows.states(), &scales);

@@ -47,7 +47,7 @@ pub(crate) struct ReadFlags {
     /// Velocity columns, in the order of the state
     #[arg(long, value_name = "PATTERNS")]
     pub(crate) velocity: Vec<String>,
-    /// What each movement depends on and what stays as it is meanwhile: a goal, a load; or none [default: by name]
+    /// What is constant in an episode, as a goal; or none [default: by name]
     #[arg(long, value_name = "PATTERNS")]
     pub(crate) context: Vec<String>,
     /// Time column

@@ -21,8 +21,8 @@ use crate::cli::verbs::rollout::followed;
 /// Plot a policy, its potential and recordings
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Plots two channels; all others are at their median, and so is the context, unless
---context goal_x=0.4,goal_y=0.1 chooses one. Outside the data it is grey.
+Plots two channels; all others are at their median, and so is the context
+unless --context goal_x=0.4,goal_y=0.1 chooses one. It is grey outside the data.
 All flags of reading files: policy-align check --help
 
 Example:

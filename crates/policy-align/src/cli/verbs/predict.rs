@@ -35,7 +35,7 @@ pub(crate) struct Predict {
     /// One state
     #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true, conflicts_with = "states")]
     at: Option<String>,
-    /// Context of a model that has one, as goal_x=0.4,goal_y=0.1; without it, the file of states has its columns, too
+    /// Context, as goal_x=0.4,goal_y=0.1, if no columns of the states
     #[arg(long, value_name = "NAME=NUMBER", value_delimiter = ',', allow_hyphen_values = true)]
     context: Vec<String>,
     /// CSV file to write
