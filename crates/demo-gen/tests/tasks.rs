@@ -128,7 +128,7 @@ proptest! {
         let mut arm = arm(Contact::Flat, 2, 30);
         (arm.task_rate, arm.off_surface) = (rate, 0.05);
         for recording in arm.record(&mut generator(seed)).unwrap() {
-            let ranks: Vec<usize> = recording.truth.projectors.iter().map(|projector| projector.rank()).collect();
+            let ranks: Vec<usize> = recording.truth.projectors.iter().map(constraints::NullSpaceProjector::rank).collect();
             prop_assert_eq!(ranks, vec![3; 30]);
             let size = |sample: usize| {
                 let (_, _, jacobian) = tool(&arm, &recording, sample);

@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use gp::Rows;
-use motion::SampleIndex;
+use gp::{FrontEnd, Rows};
+use motion::{Demonstrations, SampleIndex, Trajectory};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 
@@ -28,4 +28,25 @@ proptest! {
         let change = rows.with_findings(0.1, Some(vec![vec![0.0; samples]; trajectories])).step_change().unwrap();
         prop_assert!((change - w * w / 4.0).abs() < 1e-12 * (1.0 + w), "{change} {w}");
     }
+}
+
+/// Smooth velocities are exact, alternating ones have the variance that third differences show, and positions alone are exact too: their
+/// absence is an error of [`FrontEnd::rows`].
+#[test]
+fn recorded_velocities_come_with_their_noise() {
+    let of = |ripple: f64| {
+        let velocities = DMatrix::from_fn(2, 100, |axis, at| {
+            (0.01 * at as f64 + axis as f64).cos() + if at % 2 == 0 { ripple } else { -ripple }
+        });
+        let movement = Trajectory::new(DMatrix::zeros(2, 100), 0.1).unwrap().with_velocities(velocities).unwrap();
+        FrontEnd::of_velocities(&Demonstrations::new(vec![movement]).unwrap())
+    };
+    assert_eq!(of(0.0), FrontEnd::Velocities);
+    let FrontEnd::NoisyVelocities { variance } = of(0.1) else { panic!("noise was not seen") };
+    // Third differences of a ripple are 8 times it.
+    let deviation = 1.4826 * 0.8 / 20f64.sqrt();
+    assert!((variance / (deviation * deviation) - 1.0).abs() < 1e-3, "{variance}");
+    let bare = Demonstrations::new(vec![Trajectory::new(DMatrix::zeros(2, 100), 0.1).unwrap()]).unwrap();
+    assert_eq!(FrontEnd::of_velocities(&bare), FrontEnd::Velocities);
+    assert!(FrontEnd::Velocities.rows(&bare).is_err());
 }

@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
-use smoothing::PositionNoise;
+use smoothing::{PositionNoise, VelocityNoise};
 
 /// Every formula in turn: all differences, sorted, the middle one; all steps.
 fn literal(demonstrations: &Demonstrations) -> (Vec<f64>, f64) {
@@ -122,4 +122,24 @@ fn uneven_stamps_are_no_noise() {
     assert!(of(&mut || 0.0) < 1e-9);
     let seen = of(&mut || 0.01 * draw());
     assert!((seen / 0.01 - 1.0).abs() < 0.05, "{seen}");
+}
+
+proptest! {
+    /// White noise of a known size on velocities that hardly turn is found, and without velocities there is nothing to find.
+    #[test]
+    fn noise_of_velocities_is_found(seed in any::<u64>(), deviation in 0.01..1.0f64, dim in 1..4usize) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let states = DMatrix::zeros(dim, 800);
+        let bare = Trajectory::new(states, 0.1).unwrap();
+        let velocities = DMatrix::from_fn(dim, 800, |axis, at| {
+            let noise: f64 = StandardNormal.sample(&mut rng);
+            (0.001 * at as f64 + axis as f64).sin() + deviation * noise
+        });
+        let power = velocities.norm_squared() / 800.0;
+        prop_assert_eq!(VelocityNoise::of(&Demonstrations::new(vec![bare.clone()]).unwrap()), None);
+        let found = VelocityNoise::of(&Demonstrations::new(vec![bare.with_velocities(velocities).unwrap()]).unwrap()).unwrap();
+        let expected = dim as f64 * deviation * deviation;
+        prop_assert!((0.7..1.4).contains(&(found.variance / expected)), "{} for {expected}", found.variance);
+        prop_assert!((found.share - found.variance / power).abs() < 1e-12 * found.share);
+    }
 }
