@@ -13,7 +13,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use policy_align::{Model, sha256, write_whole};
+use policy_align::{Model, write_whole};
 use running::{command, examples, folder};
 
 /// Of the file that the child writes over and over.

@@ -96,7 +96,7 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
     let (state_channels, context_channels) = (described(&of_state), described(&of_context));
     let scales_of = |channels: &[usize]| scales.select_rows(channels);
     repairs::stamps::decide(&mut episodes, options, &mut notes)?;
-    repairs::quaternions::align(&mut episodes, &recordings.state, options.wraps, &mut notes);
+    repairs::quaternions::align(&mut episodes, &state_channels, options.wraps, &mut notes);
     if options.wraps == Repair::Auto {
         repairs::wraps::unwrap(&mut episodes, &state_channels, &mut notes);
     }
