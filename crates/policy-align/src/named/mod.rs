@@ -30,13 +30,14 @@ pub fn estimate_constraints(
     links: Option<&TaskLinks>,
 ) -> Result<Vec<ConstraintStretch>, EvaluateError> {
     let (policy, dim) = (model.learnt.policy(), prepared.demonstrations.dim());
-    if policy.dim() != dim {
-        return Err(EvaluateError::Dimension { policy: policy.dim(), movements: dim });
+    let movements = dim + prepared.demonstrations.context_dim();
+    if policy.dim() != movements {
+        return Err(EvaluateError::Dimension { policy: policy.dim(), movements });
     }
     let prepared = &in_units_of(model, prepared)?;
     let rows = rows(prepared)?;
     let scales = DVector::from_iterator(dim, prepared.state.iter().map(|channel| channel.scale));
-    let states = unscaled(rows.states(), &scales);
+    let states = unscaled(&rows.states().rows(0, dim).into_owned(), &scales);
     let robot = |reason| EvaluateError::Robot { reason };
     let of_links = links.map(|links| links.spaces(&states)).transpose().map_err(robot)?.unwrap_or_default();
     let in_units = |space: TaskSpace| space.scaled(&scales);
