@@ -241,3 +241,10 @@ fn a_context_that_is_none_is_refused() {
     assert!(refused("z", |k, _| k as f64).contains("x, y"));
     assert!(refused("y", |k, i| (k + i) as f64).contains("episode '0'"));
 }
+
+/// Nothing constrained these movements, whatever their goals.
+#[test]
+fn no_constraint_is_found_where_only_goals_differ() {
+    let ran = run_in(folder(), "constraints goals.json goals.csv --json");
+    assert_eq!(ran.code, Some(0), "{} {}", ran.out, ran.err);
+}
