@@ -1,7 +1,7 @@
 //! Writes one data set of a generator of `demo_gen::tasks` and what the slope GP makes of it, as JSON: the other side of
 //! `benches/peers/compare_constraints.py`.
 //!
-//! usage: constraints_file GENERATOR SET DECIBELS [ROWS], with GENERATOR one of cycle, cycle-task, wiping, wiping-flat; DECIBELS the ratio of signal
+//! usage: constraints_file GENERATOR SET DECIBELS \[ROWS\], with GENERATOR one of cycle, cycle-task, wiping, wiping-flat; DECIBELS the ratio of signal
 //! to noise of the velocities, or `none`; ROWS those that the slope GP learns from, by default the program's 400.
 //!
 //! A list holds samples one after the other. `states`, `velocities` and, of an arm, `jacobians` (6 rows of n), `positions` and `tool_axes` are of the

@@ -70,8 +70,8 @@ mod tests {
         let file = folder.join(format!("policy-align-given-{}", std::process::id()));
         std::fs::write(&file, "1").expect("a writable folder");
         let other = folder.join(".").join(file.file_name().expect("a name"));
-        assert!(no_input(&other, &[file.clone()]).is_err());
-        assert!(no_input(&folder.join("not there"), &[file.clone()]).is_ok());
+        assert!(no_input(&other, std::slice::from_ref(&file)).is_err());
+        assert!(no_input(&folder.join("not there"), std::slice::from_ref(&file)).is_ok());
         std::fs::remove_file(&file).expect("the file");
     }
 }
