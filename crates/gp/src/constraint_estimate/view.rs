@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector, DVectorView};
 
 use super::task_space::TaskSpace;
+use crate::stretches::segmentation::PrefixSums;
 
 /// Samples that share one error of the policy: it is smooth.
 pub(super) const SHARED: f64 = 4.0;
@@ -53,17 +54,18 @@ pub(super) struct View {
     disagreements: DMatrix<f64>,
     /// JJᵀ of each sample, (m, m); none if it is I.
     grams: Option<Vec<DMatrix<f64>>>,
-    /// Σ v, Σ v vᵀ, Σ w y yᵀ and Σ tr JJᵀ / m over the first samples.
+    scatters: PrefixSums,
+    /// Over the first samples.
     sums: Vec<Sums>,
 }
 
 #[derive(Clone)]
 struct Sums {
-    first: DVector<f64>,
-    second: DMatrix<f64>,
+    /// Σ w y yᵀ.
     multipliers: DMatrix<f64>,
+    /// Σ tr JJᵀ / m.
     gain: f64,
-    /// What noise makes of `second` in units of s², and of `multipliers`, beyond the same in all directions.
+    /// What noise makes of Σ v vᵀ in units of s², and of `multipliers`, beyond the same in all directions.
     noise: (DMatrix<f64>, DMatrix<f64>),
 }
 
@@ -97,11 +99,8 @@ impl View {
         velocities: &DMatrix<f64>,
         disagreement: &Disagreement,
     ) -> View {
-        let mean = velocities.column_mean();
-        let centred = DMatrix::from_fn(velocities.nrows(), rows.len(), |k, at| velocities[(k, at)] - mean[k]);
         match &space.jacobians {
-            // Centred, for the sake of rounding: only differences matter.
-            None => View::summed(basis.clone(), centred, disagreement.of.clone(), None, disagreement),
+            None => View::summed(basis.clone(), velocities.clone(), disagreement.of.clone(), None, disagreement),
             Some(jacobians) => {
                 let own: Vec<DMatrix<f64>> = rows.iter().map(|&row| basis.tr_mul(&jacobians[row])).collect();
                 let through = |of: &DMatrix<f64>| {
@@ -125,28 +124,20 @@ impl View {
     ) -> View {
         let m = basis.ncols();
         let zero = DMatrix::zeros(m, m);
-        let mut sums = vec![Sums {
-            first: DVector::zeros(m),
-            second: zero.clone(),
-            multipliers: zero.clone(),
-            gain: 0.0,
-            noise: (zero.clone(), zero),
-        }];
-        for (at, velocity) in velocities.column_iter().enumerate() {
-            let Sums { mut first, mut second, mut multipliers, mut gain, mut noise } = sums[at].clone();
+        let mut sums = vec![Sums { multipliers: zero.clone(), gain: 0.0, noise: (zero.clone(), zero) }];
+        for at in 0..velocities.ncols() {
+            let Sums { mut multipliers, mut gain, mut noise } = sums[at].clone();
             let gram = grams.as_ref().map(|grams| &grams[at]);
             let (multiplier, inverse) = multiplier(gram, disagreements.column(at));
             if let (Some(gram), Some(inverse)) = (gram, inverse) {
                 noise.0 += gram;
                 noise.1 += inverse * (disagreement.weights[at] * disagreement.noise);
             }
-            first += velocity;
-            second.ger(1.0, &velocity, &velocity, 1.0);
             multipliers.ger(disagreement.weights[at], &multiplier, &multiplier, 1.0);
             gain += gram.map_or(1.0, |gram| gram.trace() / m as f64);
-            sums.push(Sums { first, second, multipliers, gain, noise });
+            sums.push(Sums { multipliers, gain, noise });
         }
-        View { basis, velocities, disagreements, grams, sums }
+        View { basis, scatters: PrefixSums::of(&velocities), velocities, disagreements, grams, sums }
     }
 
     /// Eigenvectors of C/gs² − gY (S26) over `begin..end`, the least eigenvalue first: a row of A has a velocity that does not
@@ -155,10 +146,8 @@ impl View {
         let (from, to) = (&self.sums[begin], &self.sums[end]);
         let count = (end - begin) as f64;
         let gain = (to.gain - from.gain) / count;
-        let sum = &to.first - &from.first;
-        let mut scatter = &to.second - &from.second;
-        scatter.ger(-1.0 / count, &sum, &sum, 1.0);
-        let mut matrix = scatter / (gain * noise) - (&to.multipliers - &from.multipliers) * gain;
+        let mut matrix =
+            self.scatters.scatter(begin, end) / (gain * noise) - (&to.multipliers - &from.multipliers) * gain;
         if self.grams.is_some() {
             matrix -= (&to.noise.0 - &from.noise.0) * ((count - 1.0) / (count * gain));
             matrix += (&to.noise.1 - &from.noise.1) * gain;

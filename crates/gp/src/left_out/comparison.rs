@@ -11,6 +11,26 @@ pub(crate) fn t_of_mean(values: &[f64]) -> f64 {
     if t.is_finite() { t } else { 0.0 }
 }
 
+/// ε of (R7) and (S18): errors below this share count as none.
+pub(crate) const NEGLIGIBLE: f64 = 1e-4;
+/// t of the mean gain per trajectory from which one model of others' rows is better by more than chance.
+const LEAST_T: f64 = 2.5;
+/// Share of the left-out error that it may leave.
+const LEFT: f64 = 0.5;
+
+/// log((E + εR)/(E' + εR)) of one movement: by how much the error E' is below E, both out of R.
+pub(crate) fn log_ratio(before: f64, after: f64, all: f64) -> f64 {
+    let least = NEGLIGIBLE * all;
+    ((before + least) / (after + least)).ln()
+}
+
+/// t of the mean gain per trajectory, if that is more than chance and at most half of the left-out error 1 − R² remains: what units
+/// or a metric other than the recorded ones need to be taken.
+pub(crate) fn much_better(gains: &[f64], (before, after): (f64, f64)) -> Option<f64> {
+    let t = t_of_mean(gains);
+    (t >= LEAST_T && after <= LEFT * before).then_some(t)
+}
+
 /// Σ|a − b|²/Σ|a − mean a|² over columns.
 pub(crate) fn difference(a: &DMatrix<f64>, b: &DMatrix<f64>) -> f64 {
     (a - b).norm_squared() / spread(a)

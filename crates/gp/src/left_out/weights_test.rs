@@ -1,9 +1,7 @@
 //! Do noise weights of certain velocities pay? (S18).
 
-use crate::left_out::comparison::t_of_mean;
+use crate::left_out::comparison::{log_ratio, t_of_mean};
 
-/// ε of (S18), as in (R7): errors below this share count as none.
-const NEGLIGIBLE: f64 = 1e-4;
 /// t of λ from which weights pay.
 const LEAST_T: f64 = 2.0;
 /// t of λ under which a pilot shows that weights will not pay.
@@ -20,12 +18,11 @@ pub(crate) fn weights_t(
     noise_weights: &[f64],
     groups: &[Vec<usize>],
 ) -> f64 {
-    let log_ratio = |rows: &Vec<usize>| {
+    let of_movement = |rows: &Vec<usize>| {
         let sum = |of: &[f64]| rows.iter().map(|&row| of[row].powi(2) / noise_weights[row]).sum::<f64>();
-        let least = NEGLIGIBLE * sum(speeds);
-        ((sum(alike) + least) / (sum(weighted) + least)).ln()
+        log_ratio(sum(alike), sum(weighted), sum(speeds))
     };
-    t_of_mean(&groups.iter().map(log_ratio).collect::<Vec<_>>())
+    t_of_mean(&groups.iter().map(of_movement).collect::<Vec<_>>())
 }
 
 /// Whether movements left out are predicted better with weights, by more than chance.

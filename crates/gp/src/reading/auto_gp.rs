@@ -4,7 +4,7 @@ use rand::Rng;
 use serde::{Deserialize, Serialize};
 
 use crate::direct::direct_gp::{DirectFit, DirectGp};
-use crate::left_out::comparison::{difference, t_of_mean};
+use crate::left_out::comparison::{difference, much_better};
 use crate::reading::Hypothesis;
 use crate::reading::numbers::{Compared, ReadingNumbers, TrajectoryErrors};
 use crate::slope::fit::SlopeFit;
@@ -127,13 +127,14 @@ impl AutoFit {
         &self.left_out
     }
 
-    /// t of the mean, over trajectories, of how much better `other` predicts them left out than this: the difference of the slope
-    /// GPs' errors, at most those of predicting nothing, as shares of what there is to predict. Both are of the same trajectories.
-    pub fn gain_t(&self, other: &AutoFit) -> f64 {
+    /// Whether `other`, of the same trajectories in another metric, predicts them left out so much better that it is right: as learnt
+    /// scales have to (S25), by the slope GPs' errors as shares of what there is to predict, at most those of predicting nothing.
+    pub fn is_much_worse_than(&self, other: &AutoFit) -> bool {
         let share = |of: &TrajectoryErrors| (of.slope / of.seen).min(1.0);
         let gains: Vec<f64> =
             self.left_out.iter().zip(&other.left_out).map(|(own, of)| share(own) - share(of)).collect();
-        t_of_mean(&gains)
+        let unexplained = |of: &AutoFit| 1.0 - of.slope.report.r_squared;
+        much_better(&gains, (unexplained(self), unexplained(other))).is_some()
     }
 
     /// The policy for constrained movement.

@@ -4,14 +4,11 @@ use serde::{Deserialize, Serialize};
 use crate::Rows;
 use crate::direct::model::DirectModel;
 use crate::left_out::LeftOut;
-use crate::left_out::comparison::{difference, t_of_mean};
+use crate::left_out::comparison::{NEGLIGIBLE, difference, log_ratio, t_of_mean};
 use crate::report::identifiability::LeastSeen;
 use crate::rows::kept::Grouping;
 use crate::slope::data::SlopeData;
 use crate::slope::model::SlopeModel;
-
-/// ε of (R7): errors below this share count as none.
-const NEGLIGIBLE: f64 = 1e-4;
 
 /// The numbers that select a reading (R7). Both learners predict the speed along the direction in which a held-out
 /// movement went; only the slope GP uses that direction as an input.
@@ -131,8 +128,7 @@ impl ReadingNumbers {
         let total = |values: &[f64]| values.iter().sum::<f64>();
         let (a_s, a_d) = (total(&e_s) / total(&r), total(&e_d) / total(&r));
         let gains: Vec<f64> = e_d.iter().zip(&e_s).map(|(d, s)| d - s).collect();
-        let log_ratio = |k: usize| ((e_d[k] + NEGLIGIBLE * r[k]) / (e_s[k] + NEGLIGIBLE * r[k])).ln();
-        let log_ratios: Vec<f64> = (0..r.len()).map(log_ratio).collect();
+        let log_ratios: Vec<f64> = (0..r.len()).map(|k| log_ratio(e_d[k], e_s[k], r[k])).collect();
         let seen: f64 = speeds.iter().map(|r| r * r).sum();
         ReadingNumbers {
             a_s,

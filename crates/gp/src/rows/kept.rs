@@ -83,7 +83,10 @@ impl Kept {
     pub(crate) fn scaled(&self, factors: &DVector<f64>) -> Kept {
         let whole = self.whole.as_ref().map(|whole| scaled(whole, factors));
         let along = scaled(&self.velocities, factors);
-        let velocities = whole.as_ref().map_or_else(|| along.clone(), |whole| parts_along(whole, &along));
+        let velocities = match &whole {
+            Some(whole) => parts_along(whole, &along),
+            None => along,
+        };
         let speeds = velocities.column_iter().map(|velocity| velocity.norm()).collect();
         Kept { states: rescaled(&self.states, factors), velocities, speeds, whole, variances: None, ..self.clone() }
     }
@@ -103,6 +106,11 @@ pub(crate) fn rescaled(states: &DMatrix<f64>, factors: &DVector<f64>) -> DMatrix
 }
 
 impl Selection {
+    /// The same with fewer rows at most, for a choice that needs no more.
+    pub(crate) fn at_most(self, max_rows: usize, hyper_rows: usize) -> Selection {
+        Selection { max_rows: self.max_rows.min(max_rows), hyper_rows: self.hyper_rows.min(hyper_rows), ..self }
+    }
+
     pub(crate) fn check(&self) -> Result<(), GpError> {
         let wrong = |name, value, requirement| Err(GpError::Parameter { name, value, requirement });
         if self.max_rows == 0 {

@@ -3,9 +3,8 @@
 use nalgebra::DVector;
 use rand::Rng;
 
-use super::spreads;
 use crate::kernel::family::Family;
-use crate::rows::kept::{Kept, Selection};
+use crate::rows::kept::{Kept, spreads};
 use crate::slope::data::SlopeData;
 use crate::slope::slope_gp::SlopeGp;
 use crate::{GpError, Rows};
@@ -31,13 +30,7 @@ impl SlopeGp {
         if context_dim == 0 {
             return Ok(alike);
         }
-        let selection = self.selection()?;
-        let few = Selection {
-            max_rows: selection.max_rows.min(ROWS),
-            hyper_rows: selection.hyper_rows.min(HYPER_ROWS),
-            ..selection
-        };
-        let kept = few.keep(rows, rng)?;
+        let kept = self.selection()?.at_most(ROWS, HYPER_ROWS).keep(rows, rng)?;
         let mut best = (1.0, f64::NEG_INFINITY);
         for worth in WORTH {
             let r_squared = self.left_out_in(&kept, &(&alike * worth)).unwrap_or(f64::NEG_INFINITY);

@@ -13,7 +13,7 @@ use rand::Rng;
 use crate::evidence::family_fit::FamilyFit;
 use crate::kernel::block::Block;
 use crate::left_out::LeftOut;
-use crate::left_out::comparison::{difference, t_of_mean};
+use crate::left_out::comparison::{difference, much_better};
 use crate::rows::kept::{Kept, Selection, rescaled, spreads};
 use crate::slope::data::SlopeData;
 use crate::slope::push_test::PushTest;
@@ -27,10 +27,6 @@ const ROWS: usize = 600;
 const HYPER_ROWS: usize = 300;
 /// Fits one after the other, each in the units that the one before found.
 const ROUNDS: usize = 6;
-/// t of the mean gain per trajectory from which learnt units are better by more than chance.
-const LEAST_T: f64 = 2.5;
-/// Share of the left-out error that learnt units may leave.
-const LEFT: f64 = 0.5;
 /// Policies in both units differ by more than this share.
 const DIFFERS: f64 = 0.05;
 /// Scales that differ by less than this share are one.
@@ -112,12 +108,7 @@ impl SlopeGp {
     /// # Errors
     /// As [`SlopeGp::fit`].
     pub fn learn_scales<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<Option<LearntScales>, GpError> {
-        let selection = self.selection()?;
-        let few = Selection {
-            max_rows: selection.max_rows.min(ROWS),
-            hyper_rows: selection.hyper_rows.min(HYPER_ROWS),
-            ..selection
-        };
+        let few = self.selection()?.at_most(ROWS, HYPER_ROWS);
         let kept = few.keep(rows, rng)?;
         let dim = rows.dim();
         let spread = spreads(&kept.states).rows(0, dim).into_owned();
@@ -188,10 +179,9 @@ fn accepted(recorded: Round, learnt: Round, kept: &Kept) -> Option<LearntScales>
     let factors: Vec<f64> = learnt.factors.iter().map(|factor| factor / learnt.factors[0]).collect();
     let (least, most) = factors.iter().fold((1.0_f64, 1.0_f64), |(least, most), &f| (least.min(f), most.max(f)));
     let gains: Vec<f64> = recorded.shares().iter().zip(learnt.shares()).map(|(before, after)| before - after).collect();
-    let t = t_of_mean(&gains);
     let left_out = (recorded.unexplained(), learnt.unexplained());
-    let better = t >= LEAST_T && left_out.1 <= LEFT * left_out.0 && most / least > 1.0 + SAME;
-    let differs = better && difference(&recorded.actions(kept), &learnt.actions(kept)) > DIFFERS;
+    let t = much_better(&gains, left_out).filter(|_| most / least > 1.0 + SAME)?;
+    let differs = difference(&recorded.actions(kept), &learnt.actions(kept)) > DIFFERS;
     differs.then_some(LearntScales { factors, left_out, t })
 }
 

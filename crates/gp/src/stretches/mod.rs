@@ -97,12 +97,12 @@ fn stretch(rows: &Rows, movement: &[usize], few: &[usize], segment: &Segment, no
     let least = STANDS_OUT * noise.sqrt() * (inside.len() as f64).powf(0.25);
     let svd = centred.svd(true, false);
     let standing_out = |&k: &usize| svd.singular_values[k] >= least && svd.singular_values[k] > 0.0;
-    let taken: Vec<usize> = (0..svd.singular_values.len()).filter(standing_out).take(segment.rank).collect();
+    let taken: Vec<usize> = (0..svd.singular_values.len()).filter(standing_out).take(segment.kind).collect();
     if taken.is_empty() {
         return None;
     }
     let directions = svd.u.as_ref()?.select_columns(&taken);
-    let plane = svd.u.as_ref()?.columns(0, segment.rank).into_owned();
+    let plane = svd.u.as_ref()?.columns(0, segment.kind).into_owned();
     let along = plane.tr_mul(&mean);
     let push = &mean - &plane * &along;
     // Noise moves the mean, and it tilts the plane.
@@ -112,7 +112,7 @@ fn stretch(rows: &Rows, movement: &[usize], few: &[usize], segment: &Segment, no
     Some(Stretch {
         trajectory: index(first).trajectory,
         samples: (index(first).sample, index(last).sample),
-        significance: (push.norm_squared() / variance, rows.dim() - segment.rank),
+        significance: (push.norm_squared() / variance, rows.dim() - segment.kind),
         push,
         lengths: taken.iter().map(|&k| svd.singular_values[k]).collect(),
         directions,

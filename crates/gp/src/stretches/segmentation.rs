@@ -12,22 +12,17 @@ pub(crate) const SEGMENT: f64 = 6.0;
 /// Samples beyond the dimension of the plane that a segment needs.
 pub(crate) const SPARE: usize = 4;
 
-/// Samples `begin..end` whose velocities lie in a plane of `rank` dimensions, 0 < rank < n.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Segment {
-    pub(super) begin: usize,
-    pub(super) end: usize,
-    pub(super) rank: usize,
-}
+/// Samples whose velocities lie in a plane; the kind is its rank, 0 < rank < n.
+pub(super) type Segment = Part<usize>;
 
 /// Cuts a movement into segments whose velocities, (n, N), lie in planes, or in none. `noise` is the variance of a velocity
 /// along an axis. A dynamic programme over all pairs: time with N² n³.
 pub(super) fn segments(velocities: &DMatrix<f64>, noise: f64) -> Vec<Segment> {
     let (dim, count) = velocities.shape();
     let sums = PrefixSums::of(velocities);
-    let parts = cheapest_parts(count, PARAMETER * dim as f64, |begin, end| plane_cost(&sums, (begin, end), noise));
-    let segment = |Part { begin, end, kind: rank }| Segment { begin, end, rank };
-    parts.into_iter().map(segment).filter(|segment| segment.rank > 0).collect()
+    let mut parts = cheapest_parts(count, PARAMETER * dim as f64, |begin, end| plane_cost(&sums, (begin, end), noise));
+    parts.retain(|part| part.kind > 0);
+    parts
 }
 
 /// Samples `begin..end` of a movement, and what they are.
@@ -94,14 +89,14 @@ fn plane_cost(sums: &PrefixSums, (begin, end): (usize, usize), noise: f64) -> (f
 }
 
 /// Sums of u and u uᵀ over the first samples, of velocities about their mean.
-struct PrefixSums {
+pub(crate) struct PrefixSums {
     dim: usize,
     first: Vec<DVector<f64>>,
     second: Vec<DMatrix<f64>>,
 }
 
 impl PrefixSums {
-    fn of(velocities: &DMatrix<f64>) -> Self {
+    pub(crate) fn of(velocities: &DMatrix<f64>) -> Self {
         let dim = velocities.nrows();
         let mean = velocities.column_mean();
         let (mut first, mut second) = (vec![DVector::zeros(dim)], vec![DMatrix::zeros(dim, dim)]);
@@ -114,7 +109,7 @@ impl PrefixSums {
     }
 
     /// Σ (u − ū)(u − ū)ᵀ over `begin..end`.
-    fn scatter(&self, begin: usize, end: usize) -> DMatrix<f64> {
+    pub(crate) fn scatter(&self, begin: usize, end: usize) -> DMatrix<f64> {
         let sum = &self.first[end] - &self.first[begin];
         let mut scatter = &self.second[end] - &self.second[begin];
         scatter.ger(-1.0 / (end - begin) as f64, &sum, &sum, 1.0);
@@ -153,7 +148,7 @@ mod tests {
             let found = segments(&velocities, 1e-10);
             let rank = dim - 1;
             let expected =
-                [Segment { begin: 0, end: before, rank }, Segment { begin: before, end: before + after, rank }];
+                [Segment { begin: 0, end: before, kind: rank }, Segment { begin: before, end: before + after, kind: rank }];
             prop_assert_eq!(found, expected);
         }
 
