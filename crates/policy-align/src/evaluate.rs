@@ -4,6 +4,7 @@ use motion::{LearntPolicy, Policy};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
+use crate::along::along;
 use crate::fit::{held_out, rows};
 use crate::{FitError, Model, Prepared};
 
@@ -63,7 +64,7 @@ pub fn evaluate(model: &Model, prepared: &Prepared, truth: Option<&Truth>) -> Re
         slope_error: total.to_choose(),
         policy_error: total.to_judge(),
         episodes: (0..prepared.demonstrations.n_trajectories()).map(of_trajectory).collect(),
-        residuals: residuals(policy, &rows),
+        residuals: along(policy, &rows).map(|row| row.wanted - row.speed).collect(),
         supported: supported(model, &rows),
         nupe,
         ncpe,
@@ -77,16 +78,6 @@ fn supported(model: &Model, rows: &gp::Rows) -> f64 {
     let within =
         rows.states().column_iter().filter(|state| policy.is_supported(state.component_div(&scales).as_view()));
     within.count() as f64 / rows.len() as f64
-}
-
-fn residuals(policy: &dyn LearntPolicy, rows: &gp::Rows) -> Vec<f64> {
-    let mut action = DVector::zeros(policy.dim());
-    let residual = |(x, u): (nalgebra::DVectorView<'_, f64>, nalgebra::DVectorView<'_, f64>)| {
-        let r = u.norm();
-        policy.action_into(x, action.as_view_mut());
-        (r > 0.0).then(|| u.dot(&action.rows(0, u.len())) / r - r)
-    };
-    rows.states().column_iter().zip(rows.velocities().column_iter()).filter_map(residual).collect()
 }
 
 fn against(

@@ -62,6 +62,8 @@
 //! - [`PrepareError`], [`FitError`], [`ModelError`], [`RollOutError`] and [`ExportError`] say what was refused and what
 //!   to do.
 
+mod along;
+mod channel_joints;
 mod choice;
 mod context;
 mod error;

@@ -18,17 +18,20 @@ pub(crate) fn no_input(output: &Path, inputs: &[PathBuf]) -> Result<(), Failure>
     Ok(())
 }
 
-/// The flags and files of this command for another one, but for `dropped` flags and their values.
-pub(crate) fn again(dropped: &[&str]) -> String {
-    others(std::env::args_os().skip(2), dropped)
+/// The flags and files of the command `verb` for another one, but for `dropped` flags and their values.
+pub(crate) fn again(verb: &str, dropped: &[&str]) -> String {
+    others(std::env::args_os().skip(1), verb, dropped)
 }
 
-/// What of the arguments stays; those of all commands that only concern the output go.
-fn others(arguments: impl Iterator<Item = OsString>, dropped: &[&str]) -> String {
-    let mut words = Vec::new();
-    let mut arguments = arguments.peekable();
+/// What of the arguments stays; the verb, and flags of all commands that only concern the output, go.
+fn others(mut arguments: impl Iterator<Item = OsString>, verb: &str, dropped: &[&str]) -> String {
+    let (mut words, mut begun) = (Vec::new(), false);
     while let Some(argument) = arguments.next() {
         let text = argument.to_string_lossy().into_owned();
+        if !begun && text == verb {
+            begun = true;
+            continue;
+        }
         let flag = text.split_once('=').map_or(&text[..], |(flag, _)| flag);
         if ["--json", "--quiet", "-q"].contains(&flag) {
             continue;
@@ -60,8 +63,10 @@ mod tests {
     #[test]
     fn flags_stay_but_for_those_of_the_output() {
         let given = ["a b.csv", "--nan", "drop", "--html", "x.html", "--json", "--scale=z=2", "--html=y.html", "-q"];
-        let others = others(given.iter().map(OsString::from), &["--html"]);
-        assert_eq!(others, "'a b.csv' --nan drop --scale='z=2'");
+        let others = |given: &[&str]| others(given.iter().map(OsString::from), "check", &["--html"]);
+        assert_eq!(others(&[&["check"], &given[..]].concat()), "'a b.csv' --nan drop --scale='z=2'");
+        let flags_first = ["--quiet", "--config", "c.toml", "check", "check"];
+        assert_eq!(others(&flags_first), "--config c.toml check");
     }
 
     #[test]

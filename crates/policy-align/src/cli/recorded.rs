@@ -54,6 +54,20 @@ pub(crate) fn prepared_for(
     Ok((reading, prepared))
 }
 
+/// Refuses a name that no episode has; `flag` and `place` tell where it was given.
+pub(crate) fn known_episode<S: AsRef<str>>(
+    name: &str,
+    known: &[S],
+    (flag, place): (&str, &str),
+) -> Result<(), Failure> {
+    if known.iter().any(|known| known.as_ref() == name) {
+        return Ok(());
+    }
+    let some: Vec<&str> = known.iter().take(5).map(AsRef::as_ref).collect();
+    let remedy = format!("one of {}, …", some.join(", "));
+    Err(Failure::usage(format!("there is no episode '{name}'"), format!("{flag}, {place}"), remedy))
+}
+
 fn warn(session: &Session, findings: &[Finding]) {
     for finding in findings.iter().take(PRINTED) {
         session.warn(&format!("{}: {}", finding.what, finding.next));

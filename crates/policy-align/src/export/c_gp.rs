@@ -10,7 +10,8 @@ struct Layout {
     all: &'static str,
     /// The parameters before `u`.
     inputs: &'static str,
-    /// Joins state and context to the array `x`.
+    /// Declares the array `x`, to which `joined` joins state and context.
+    declared: &'static str,
     joined: &'static str,
     has_context: bool,
 }
@@ -19,10 +20,11 @@ impl Layout {
     fn of(dim: usize, all: usize) -> Layout {
         let has_context = all > dim;
         if !has_context {
-            return Layout { all: "N", inputs: "const real *x", joined: "", has_context };
+            return Layout { all: "N", inputs: "const real *x", declared: "", joined: "", has_context };
         }
         let joined = "    for (k = 0; k < D; k++) x[k] = k < N ? state[k] : context[k - N];\n";
-        Layout { all: "D", inputs: "const real *state, const real *context", joined, has_context }
+        let inputs = "const real *state, const real *context";
+        Layout { all: "D", inputs, declared: "x[D], ", joined, has_context }
     }
 }
 
@@ -81,7 +83,7 @@ int {name}({inputs}, real *u, real *phi) {{
         inputs = layout.inputs,
         joined = layout.joined,
         all = layout.all,
-        x = if layout.has_context { "x[D], " } else { "" },
+        x = layout.declared,
         moving = if layout.has_context { " && k < N" } else { "" },
         rest = rest(&layout, slope.terms.iter().any(|term| term.fall == Fall::DivergenceFree)),
     );
@@ -144,7 +146,7 @@ int {name}({inputs}, real *u, real *phi) {{
         inputs = layout.inputs,
         joined = layout.joined,
         all = layout.all,
-        x = if layout.has_context { "x[D], " } else { "" },
+        x = layout.declared,
     );
 }
 

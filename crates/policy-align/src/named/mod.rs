@@ -40,12 +40,14 @@ pub fn estimate_constraints(
     let states = unscaled(&rows.states().rows(0, dim).into_owned(), &scales);
     let robot = |reason| EvaluateError::Robot { reason };
     let of_links = links.map(|links| links.spaces(&states)).transpose().map_err(robot)?.unwrap_or_default();
-    let in_units = |space: TaskSpace| space.scaled(&scales);
-    let spaces: Vec<TaskSpace> =
-        std::iter::once(TaskSpace::recorded()).chain(of_links.into_iter().map(in_units)).collect();
+    let (mut on, mut spaces) = (vec![ConstraintOn::Channels], vec![TaskSpace::recorded()]);
+    for (of_link, space) in of_links {
+        on.push(of_link);
+        spaces.push(space.scaled(&scales));
+    }
     let estimates = ConstraintEstimates::of(&rows, policy, &spaces)?;
     let movements = averaged(prepared)?;
-    let naming = Naming { prepared, movements: &movements, links, scales: &scales };
+    let naming = Naming { prepared, movements: &movements, links, on: &on, scales: &scales };
     estimates.stretches.iter().map(|stretch| naming.name(stretch).map_err(robot)).collect()
 }
 
@@ -58,6 +60,8 @@ struct Naming<'a> {
     prepared: &'a Prepared,
     movements: &'a Demonstrations,
     links: Option<&'a TaskLinks>,
+    /// What each task space is.
+    on: &'a [ConstraintOn],
     scales: &'a DVector<f64>,
 }
 
@@ -65,7 +69,7 @@ impl Naming<'_> {
     fn name(&self, stretch: &StretchEstimate) -> Result<ConstraintStretch, String> {
         let movement = &self.movements.trajectories()[stretch.trajectory];
         let (first, last) = stretch.samples;
-        let on = self.on(stretch.space);
+        let on = self.on[stretch.space].clone();
         let units = if on == ConstraintOn::Channels { Some(self.scales) } else { None };
         let normals: Vec<DVector<f64>> =
             stretch.matrix.row_iter().map(|row| in_units(&row.transpose(), units)).collect();
@@ -73,7 +77,8 @@ impl Naming<'_> {
         let normals: Vec<DVector<f64>> = normals.into_iter().map(|normal| normal.normalize()).collect();
         let pushed = |row: usize| if stretch.pushes(row) { stretch.bound[row] / lengths[row] } else { 0.0 };
         let speeds: Vec<f64> = (0..normals.len()).map(pushed).collect();
-        let places = self.places(stretch, &movement.states().columns(first, last + 1 - first).into_owned())?;
+        let places =
+            self.places(stretch.acting, &on, &movement.states().columns(first, last + 1 - first).into_owned())?;
         let level = |(normal, speed): (&DVector<f64>, &f64)| {
             let places = places.as_ref().filter(|_| *speed == 0.0)?;
             Some(normal.dot(&places.column_mean()))
@@ -94,27 +99,12 @@ impl Naming<'_> {
         })
     }
 
-    fn on(&self, space: usize) -> ConstraintOn {
-        let link = |at: usize| self.links.map_or_else(String::new, |links| links.links[at].0.clone());
-        match space.checked_sub(1) {
-            None => ConstraintOn::Channels,
-            Some(at) if at % 2 == 0 => ConstraintOn::Position(link(at / 2)),
-            Some(at) => ConstraintOn::Orientation(link(at / 2)),
-        }
-    }
-
     /// Where the constrained point is at each of these states (n, N): none for orientations, or where nothing is constrained.
-    fn places(&self, stretch: &StretchEstimate, states: &DMatrix<f64>) -> Result<Option<DMatrix<f64>>, String> {
+    fn places(&self, acting: Acting, on: &ConstraintOn, states: &DMatrix<f64>) -> Result<Option<DMatrix<f64>>, String> {
         let states = unscaled(states, self.scales);
-        match (stretch.acting, stretch.space.checked_sub(1), self.links) {
-            (Acting::Constraint, None, _) => Ok(Some(states)),
-            (Acting::Constraint, Some(at), Some(links)) if at % 2 == 0 => {
-                let place = |state: DVectorView<'_, f64>| {
-                    Ok(DVector::from_column_slice(links.links[at / 2].1.at(state)?.0.coords.as_slice()))
-                };
-                let places = states.column_iter().map(place).collect::<Result<Vec<_>, String>>()?;
-                Ok(Some(DMatrix::from_columns(&places)))
-            }
+        match (acting, on, self.links) {
+            (Acting::Constraint, ConstraintOn::Channels, _) => Ok(Some(states)),
+            (Acting::Constraint, ConstraintOn::Position(link), Some(links)) => links.places(link, &states),
             _ => Ok(None),
         }
     }

@@ -1,7 +1,8 @@
 use gp::TaskSpace;
 use kinematics::{LinkId, RobotModel};
-use nalgebra::{DMatrix, DVectorView};
+use nalgebra::{DMatrix, DVector, DVectorView};
 
+use super::constraint_stretch::ConstraintOn;
 use crate::roll_out::link_point::LinkPoint;
 
 /// Links that are looked at if none is named, at most.
@@ -11,7 +12,7 @@ const MOST_LINKS: usize = 6;
 #[derive(Debug, Clone)]
 pub struct TaskLinks {
     /// By name.
-    pub(super) links: Vec<(String, LinkPoint)>,
+    links: Vec<(String, LinkPoint)>,
 }
 
 impl TaskLinks {
@@ -26,15 +27,23 @@ impl TaskLinks {
         Ok(TaskLinks { links: named.into_iter().map(link).collect::<Result<_, String>>()? })
     }
 
-    /// Position and orientation of every link as task spaces, for states (n) times `scale` in columns.
-    pub(super) fn spaces(&self, states: &DMatrix<f64>) -> Result<Vec<TaskSpace>, String> {
+    /// Position and orientation of every link as task spaces, for states (n) in columns.
+    pub(super) fn spaces(&self, states: &DMatrix<f64>) -> Result<Vec<(ConstraintOn, TaskSpace)>, String> {
         let mut spaces = Vec::new();
-        for (_, link) in &self.links {
+        for (name, link) in &self.links {
             let position = |state: DVectorView<'_, f64>| Ok(link.at(state)?.1);
-            spaces.push(space(states, position)?);
-            spaces.push(space(states, |state| link.turning(state))?);
+            spaces.push((ConstraintOn::Position(name.clone()), space(states, position)?));
+            spaces.push((ConstraintOn::Orientation(name.clone()), space(states, |state| link.turning(state))?));
         }
         Ok(spaces)
+    }
+
+    /// Where a link is in each of these states (n, N), (3, N), in metres; none for one that is not among them.
+    pub(super) fn places(&self, link: &str, states: &DMatrix<f64>) -> Result<Option<DMatrix<f64>>, String> {
+        let Some((_, point)) = self.links.iter().find(|(name, _)| name == link) else { return Ok(None) };
+        let place = |state: DVectorView<'_, f64>| Ok(DVector::from_column_slice(point.at(state)?.0.coords.as_slice()));
+        let places = states.column_iter().map(place).collect::<Result<Vec<_>, String>>()?;
+        Ok(Some(DMatrix::from_columns(&places)))
     }
 }
 

@@ -4,6 +4,7 @@ use motion::Policy;
 use nalgebra::{Matrix2, Vector2};
 use prepare::numbers::percent;
 
+use crate::along::{Along, along};
 use crate::{Finding, Verdict};
 
 /// Least missing speed, as a share of the root mean square, and its t over movements: friction has a t of 5 and more, all else below 3.5. The policy
@@ -31,14 +32,12 @@ fn missing_speed(policy: &dyn Policy, rows: &gp::Rows) -> Option<(f64, f64)> {
     let movements = rows.indices().iter().map(|index| index.trajectory).max()? + 1;
     let mut samples = vec![Vec::new(); movements];
     let (mut matrix, mut vector, mut power) = (Matrix2::zeros(), Vector2::zeros(), 0.0);
-    for ((x, u), index) in rows.states().column_iter().zip(rows.velocities().column_iter()).zip(rows.indices()) {
-        let Some(n) = u.try_normalize(0.0) else { continue };
-        let along = n.dot(&policy.action(x).rows(0, n.len()));
-        let (factors, error) = (Vector2::new(-1.0, along), u.norm() - along);
+    for Along { trajectory, speed, wanted, .. } in along(policy, rows) {
+        let (factors, error) = (Vector2::new(-1.0, wanted), speed - wanted);
         matrix += factors * factors.transpose();
         vector += factors * error;
-        power += u.norm_squared();
-        samples[index.trajectory].push((factors, error));
+        power += speed * speed;
+        samples[trajectory].push((factors, error));
     }
     let inverse = matrix.try_inverse()?;
     let fit = inverse * vector;

@@ -6,6 +6,7 @@ use prepare::numbers::percent;
 use prepare::{Prepared, end_places};
 
 use super::numbers::TrustNumbers;
+use crate::along::{Along, along};
 use crate::{Finding, Verdict};
 
 /// Share of what the policy does not explain that a constant velocity of each movement explains.
@@ -53,10 +54,8 @@ fn predicts(numbers: &TrustNumbers) -> bool {
 fn own_share(policy: &dyn Policy, rows: &gp::Rows) -> Option<f64> {
     let movements = rows.indices().iter().map(|index| index.trajectory).max()? + 1;
     let mut errors = vec![Vec::new(); movements];
-    for ((x, u), index) in rows.states().column_iter().zip(rows.velocities().column_iter()).zip(rows.indices()) {
-        let Some(n) = u.try_normalize(0.0) else { continue };
-        let error = n.dot(&(u - policy.action(x).rows(0, u.len())));
-        errors[index.trajectory].push((n, error));
+    for Along { trajectory, direction, speed, wanted } in along(policy, rows) {
+        errors[trajectory].push((direction, speed - wanted));
     }
     let all = errors.iter().flatten().map(|(_, error)| error * error).sum::<f64>();
     let left = |errors: &Vec<Row>| {

@@ -78,7 +78,10 @@ impl Check {
         if refused {
             return Ok(Output { text: lines.into_text(), exit });
         }
-        Ok(Output { text: lines.next(&format!("policy-align fit {} -o model.json", again(&["--html"]))), exit })
+        Ok(Output {
+            text: lines.next(&format!("policy-align fit {} -o model.json", again("check", &["--html"]))),
+            exit,
+        })
     }
 }
 

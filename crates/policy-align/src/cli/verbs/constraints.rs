@@ -8,9 +8,11 @@ use policy_align::{
 use serde_json::json;
 
 use crate::cli::failure::{Exit, Failure, displayed};
+use crate::cli::given::no_input;
 use crate::cli::lines::Lines;
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
-use crate::cli::recorded::{named, prepared_for};
+use crate::cli::options::values::urdf;
+use crate::cli::recorded::{known_episode, named, prepared_for};
 use crate::cli::session::{Output, Session, write};
 use crate::cli::trust_files::load;
 
@@ -55,6 +57,10 @@ pub(crate) struct Constraints {
 
 impl Constraints {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
+        if let Some(path) = &self.output {
+            let read = [&self.files[..], std::slice::from_ref(&self.model), self.robot.as_slice()].concat();
+            no_input(path, &read)?;
+        }
         let model = load(session, &self.model)?;
         let (_, prepared) = prepared_for(session, &model, &self.files, (&self.read, &self.prepare))?;
         let links = self.links(&model)?;
@@ -79,19 +85,14 @@ impl Constraints {
 
     fn links(&self, model: &Model) -> Result<Option<TaskLinks>, Failure> {
         let Some(path) = &self.robot else { return Ok(None) };
-        let text = demo_io::read_text(path).map_err(|error| Failure::reading(path, error))?;
-        let links = TaskLinks::from_urdf(&text, &self.link, &model.channels());
+        let links = TaskLinks::from_urdf(&urdf(path)?, &self.link, &model.channels());
         let remedy = "--link NAME; a URDF with joints named like the channels";
         links.map(Some).map_err(|reason| Failure::usage(reason, displayed(path), remedy))
     }
 
     fn chosen(&self, found: Vec<ConstraintStretch>, prepared: &Prepared) -> Result<Vec<ConstraintStretch>, Failure> {
         let Some(name) = &self.of else { return Ok(found) };
-        if !prepared.episodes.contains(name) {
-            let known = prepared.episodes.iter().take(5).cloned().collect::<Vec<_>>().join(", ");
-            let what = format!("there is no episode '{name}'");
-            return Err(Failure::usage(what, format!("--of, {}", named(&self.files)), format!("one of {known}, …")));
-        }
+        known_episode(name, &prepared.episodes, ("--of", &named(&self.files)))?;
         Ok(found.into_iter().filter(|stretch| stretch.episode == *name).collect())
     }
 

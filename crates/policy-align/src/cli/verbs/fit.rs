@@ -4,6 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use clap::Args;
 use demo_io::TempFile;
+use motion::anomalies::duplicates;
 use motion::{Episode, Recordings};
 use policy_align::{
     Decision, Evaluation, Finding, Model, PrepareOptions, Prepared, Progress, Verdict, checksum_of, evaluate, fit,
@@ -20,7 +21,7 @@ use crate::cli::lines::{Lines, amount, counted, size, squared_error};
 use crate::cli::options::config::{Config, printed};
 use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags};
 use crate::cli::pages::trust_page::trust_page;
-use crate::cli::recorded::{base_name, named, read, summaries, unreported};
+use crate::cli::recorded::{base_name, known_episode, named, read, summaries, unreported};
 use crate::cli::session::{Output, Session};
 use crate::cli::trust_files::{MEMBER, trust_files, warn_of_others};
 use crate::cli::verbs::check::{findings, left_out};
@@ -164,12 +165,9 @@ fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Rec
     if names.is_empty() {
         return Ok((recordings, None));
     }
+    let known: Vec<&str> = recordings.episodes.iter().map(|episode| episode.name.as_str()).collect();
     for name in names {
-        if !recordings.episodes.iter().any(|episode| episode.name == *name) {
-            let known: Vec<&str> = recordings.episodes.iter().take(5).map(|episode| episode.name.as_str()).collect();
-            let (what, remedy) = (format!("there is no episode '{name}'"), format!("one of {}, …", known.join(", ")));
-            return Err(Failure::usage(what, format!("--hold-out, {place}"), remedy));
-        }
+        known_episode(name, &known, ("--hold-out", place))?;
     }
     let (held, mut others): (Vec<Episode>, Vec<Episode>) =
         recordings.episodes.into_iter().partition(|episode| names.contains(&episode.name));
@@ -181,9 +179,16 @@ fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Rec
 
 /// Leaves out copies of what is held out: they would make the error on it too small.
 fn without_copies(others: &mut Vec<Episode>, held: &[Episode]) -> Option<Finding> {
-    let is_copy = |episode: &Episode| held.iter().any(|held| held.positions == episode.positions);
-    let copies: Vec<String> = others.iter().filter(|episode| is_copy(episode)).map(|copy| copy.name.clone()).collect();
-    others.retain(|episode| !is_copy(episode));
+    let firsts = duplicates(held.iter().chain(&*others).map(|episode| &episode.positions));
+    let mut of_held = firsts[held.len()..].iter().map(|first| first.is_some_and(|first| first < held.len()));
+    let mut copies = vec![];
+    others.retain(|episode| {
+        let is_copy = of_held.next().is_some_and(|is_copy| is_copy);
+        if is_copy {
+            copies.push(episode.name.clone());
+        }
+        !is_copy
+    });
     (!copies.is_empty()).then(|| Finding {
         verdict: Verdict::Good,
         what: format!("copies of held-out episodes were left out: {}", copies.join(", ")),

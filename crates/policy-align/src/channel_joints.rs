@@ -1,0 +1,33 @@
+use kinematics::{KinematicsError, RobotModel};
+use nalgebra::{DVector, DVectorView};
+
+/// The joints of a robot that the channels of a state are, by name.
+#[derive(Debug, Clone)]
+pub(crate) struct ChannelJoints {
+    n_joints: usize,
+    /// For each channel, its joint's place in a configuration.
+    pub(crate) places: Vec<usize>,
+}
+
+impl ChannelJoints {
+    /// # Errors
+    /// [`KinematicsError::UnknownJoint`] for a channel that is no joint.
+    pub(crate) fn of<'a>(robot: &RobotModel, channels: impl Iterator<Item = &'a str>) -> Result<Self, KinematicsError> {
+        let places = channels.map(|channel| robot.joint(channel)).collect::<Result<_, _>>()?;
+        Ok(ChannelJoints { n_joints: robot.n_joints(), places })
+    }
+
+    /// Number of the robot's joints.
+    pub(crate) fn n_joints(&self) -> usize {
+        self.n_joints
+    }
+
+    /// The configuration in a state (n) in units of the recording; joints that are no channels are at 0.
+    pub(crate) fn configuration(&self, state: DVectorView<'_, f64>) -> DVector<f64> {
+        let mut q = DVector::zeros(self.n_joints);
+        for (&place, &x) in self.places.iter().zip(state.iter()) {
+            q[place] = x;
+        }
+        q
+    }
+}
