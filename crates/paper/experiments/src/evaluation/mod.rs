@@ -7,6 +7,7 @@ pub(crate) mod constraint_consistent;
 pub(crate) mod fresh;
 pub(crate) mod gaussians;
 pub(crate) mod judge;
+pub(crate) mod lwpr_learners;
 pub(crate) mod observation_model;
 pub(crate) mod protocol;
 pub(crate) mod recipe;

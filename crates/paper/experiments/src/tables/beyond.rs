@@ -2,18 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use align::{Bandwidth, DirectPolicyLearning, LwprRegressor, PolicyAlign};
+use align::{Bandwidth, LwprRegressor, PolicyAlign};
 use demo_gen::beyond::{BeyondSystem, ConstraintKind, PolicyKind};
 use demo_gen::demonstrations;
 use gp::Trend;
 use lwpr::LwprParams;
-use motion::{Demonstrations, Learner as _};
+use motion::Demonstrations;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
 use crate::evaluation::comparison::{Comparison, Method, row_id};
 use crate::evaluation::gaussians::{Gaussians, own_expectations, rows};
 use crate::evaluation::judge::Judge;
+use crate::evaluation::lwpr_learners::{aligned, naive};
 use crate::evaluation::observation_model::{ObservationModel, samples_of};
 use crate::evaluation::protocol::errors;
 use crate::measure::{Measure, RowOf};
@@ -142,9 +143,7 @@ impl Trial for BeyondTrial {
         let recordings = self.observation.of(recordings, rng)?;
         let demonstrations = demonstrations(&recordings)?;
         let judge = Judge::new(&recordings, &samples_of(&recordings, 0..recordings.len()));
-        let LwprRegressor { params, passes, cutoff } = self.lwpr.clone();
-        let naive = DirectPolicyLearning { params, passes, cutoff };
-        let naive = naive.learn(&demonstrations, &[], rng).map_err(anyhow::Error::from_boxed)?;
+        let naive = naive(&self.lwpr, &demonstrations, rng)?;
         let both = self.gaussians.both(&demonstrations, &[], &mut separate_stream(rng))?;
         let no_trend = self.gaussians.slope(Trend::None, &demonstrations, &[], &mut separate_stream(rng))?;
         let [slope, direct, either] = rows(&judge, &both)?;
@@ -166,8 +165,7 @@ impl BeyondTrial {
         let learnt = |bandwidth| {
             let algorithm =
                 PolicyAlign { bandwidth, integration: self.observation.integration(), ..PolicyAlign::default() };
-            let policy = algorithm.align(demonstrations).ok()?.learn(&self.lwpr, rng).ok()?;
-            errors(judge, &policy).ok()
+            aligned(&algorithm, &self.lwpr, demonstrations, judge, rng)
         };
         let found = [Bandwidth::Narrow, Bandwidth::Medium].into_iter().filter_map(learnt);
         found.min_by(|a, b| a[&Measure::Nupe].total_cmp(&b[&Measure::Nupe])).unwrap_or_default()

@@ -2,17 +2,18 @@
 
 use std::collections::BTreeMap;
 
-use align::{Bandwidth, DirectPolicyLearning, Integration, LwprRegressor, PolicyAlign};
+use align::{Bandwidth, Integration, LwprRegressor, PolicyAlign};
 use demo_gen::tasks::{Contact, CyclesWithTask, Wiping};
 use demo_gen::{Recording, demonstrations, with_velocity_noise};
 use gp::{FrontEnd, PushTest, Trend};
-use motion::{Demonstrations, Learner as _};
+use motion::Demonstrations;
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
 use crate::evaluation::comparison::{Comparison, Method, row_id};
 use crate::evaluation::gaussians::{Gaussians, reading_of};
 use crate::evaluation::judge::Judge;
+use crate::evaluation::lwpr_learners::{aligned, naive};
 use crate::evaluation::observation_model::samples_of;
 use crate::evaluation::protocol::errors;
 use crate::measure::{Measure, RowOf};
@@ -137,10 +138,10 @@ impl Trial for ConstraintsTrial {
             None => recordings,
         };
         let demonstrations = demonstrations(&recordings)?;
-        let LwprRegressor { params, passes, cutoff } = self.lwpr.clone();
-        let naive = DirectPolicyLearning { params, passes, cutoff };
-        let naive = naive.learn(&demonstrations, &[], rng).map_err(anyhow::Error::from_boxed)?;
-        let policy_align = self.policy_align(&demonstrations, &judge, rng);
+        let naive = naive(&self.lwpr, &demonstrations, rng)?;
+        let (bandwidth, integration) = (Bandwidth::Medium, Integration::Velocity);
+        let algorithm = PolicyAlign { bandwidth, integration, ..PolicyAlign::default() };
+        let policy_align = aligned(&algorithm, &self.lwpr, &demonstrations, &judge, rng).unwrap_or_default();
         let [slope, pushed, direct, either] = self.gaussians(&demonstrations, &judge, rng)?;
         Ok(vec![errors(&judge, &*naive)?, policy_align, slope, pushed, direct, either])
     }
@@ -162,20 +163,6 @@ impl ConstraintsTrial {
         either.insert(Measure::ExpectedNupe, both.expected_nupe());
         either.extend(reading_of(&both));
         Ok([errors(judge, &slope)?, errors(judge, both.slope())?, errors(judge, both.direct())?, either])
-    }
-
-    /// Nothing where it does not align enough to learn from.
-    fn policy_align(
-        &self,
-        demonstrations: &Demonstrations,
-        judge: &Judge<'_>,
-        rng: &mut ChaCha8Rng,
-    ) -> BTreeMap<Measure, f64> {
-        let (bandwidth, integration) = (Bandwidth::Medium, Integration::Velocity);
-        let algorithm = PolicyAlign { bandwidth, integration, ..PolicyAlign::default() };
-        let aligned = algorithm.align(demonstrations).ok();
-        let policy = aligned.and_then(|aligned| aligned.learn(&self.lwpr, rng).ok());
-        policy.and_then(|policy| errors(judge, &policy).ok()).unwrap_or_default()
     }
 }
 
