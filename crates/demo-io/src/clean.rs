@@ -72,11 +72,16 @@ fn leave_out_constant(drafts: &mut RawRecordings) {
     let names: Vec<&str> = constant.map(|(channel, _)| &channel.name[..]).collect();
     let what = format!("constant columns are not taken as state: {}", roles::shortened(&names));
     drafts.findings.push(remark(what, "--state with their names takes them"));
-    let mut column = changes.iter();
+    retain_channels(drafts, &changes);
+}
+
+/// Leaves out the channels that do not stay, with their numbers.
+fn retain_channels(drafts: &mut RawRecordings, stays: &[bool]) {
+    let mut column = stays.iter();
     drafts.channels.retain(|_| *column.next().unwrap_or(&true));
-    for draft in &mut drafts.episodes {
-        let mut column = changes.iter().cycle();
-        draft.positions.retain(|_| *column.next().unwrap_or(&true));
+    for numbers in drafts.episodes.iter_mut().flat_map(|draft| [&mut draft.positions, &mut draft.velocities]) {
+        let mut column = stays.iter().cycle();
+        numbers.retain(|_| *column.next().unwrap_or(&true));
     }
 }
 
@@ -112,12 +117,7 @@ fn leave_out_moving_environment(drafts: &mut RawRecordings) {
     let names: Vec<&str> =
         drafts.channels.iter().filter(|channel| is_environment(channel)).map(|channel| &channel.name[..]).collect();
     drafts.findings.extend(unused("columns", &names));
-    let mut column = stays.iter();
-    drafts.channels.retain(|_| *column.next().unwrap_or(&true));
-    for numbers in drafts.episodes.iter_mut().flat_map(|draft| [&mut draft.positions, &mut draft.velocities]) {
-        let mut column = stays.iter().cycle();
-        numbers.retain(|_| *column.next().unwrap_or(&true));
-    }
+    retain_channels(drafts, &stays);
 }
 
 /// What is called a context and has no velocity of its own has to stay as it is.

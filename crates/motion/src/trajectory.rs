@@ -167,8 +167,8 @@ impl Trajectory {
 
     /// State x_i with its context c, (n + p).
     pub fn state_in_context(&self, sample: usize) -> DVector<f64> {
-        let both = self.state(sample).into_owned().data.as_vec().iter().chain(&self.context).copied().collect();
-        DVector::from_vec(both)
+        let both = self.state(sample);
+        DVector::from_iterator(both.len() + self.context.len(), both.iter().chain(&self.context).copied())
     }
 
     /// Dimension n of the state.

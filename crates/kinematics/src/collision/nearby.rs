@@ -26,7 +26,7 @@ impl Nearby {
     /// How the distance changes with each coordinate, (n), in metres per unit of that joint: nᵀ(J₂ − J₁) with the
     /// Jacobians of the two points. `poses` are those in which the two were found.
     pub fn gradient(&self, poses: &LinkPoses<'_>) -> DVector<f64> {
-        let n = poses.n_joints();
+        let n = poses.robot().n_joints();
         let [mut first, mut second] = [Matrix3xX::zeros(n), Matrix3xX::zeros(n)];
         poses.fill_at::<3>(self.links.0, &self.points.0, first.as_mut_slice());
         poses.fill_at::<3>(self.links.1, &self.points.1, second.as_mut_slice());

@@ -78,11 +78,6 @@ impl LinkPoses<'_> {
         self.robot
     }
 
-    #[cfg(feature = "collision")]
-    pub(crate) fn n_joints(&self) -> usize {
-        self.robot.n_joints()
-    }
-
     fn fill<const ROWS: usize>(&self, link: LinkId, jacobian: &mut [f64]) {
         self.fill_at::<ROWS>(link, &self.position(link), jacobian);
     }
