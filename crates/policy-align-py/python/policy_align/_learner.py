@@ -177,9 +177,7 @@ class Learner(Estimator):
         Arguments as of ``fit``; without ``dt`` and ``times`` the time step is that of what was learnt from.
         """
         fitted = self._needed()
-        if dt is None and times is None and not isinstance(X, Demonstrations):
-            dt = self.time_step_
-        held_out = _demonstrations(X, dt, times, velocities, lengths)
+        held_out = self._others(X, dt, times, velocities, lengths)
         judged: dict[str, float] = json.loads(fitted.evaluate(held_out._native, self._preparing()))
         return 1.0 - judged["slope_error"]
 
@@ -200,9 +198,7 @@ class Learner(Estimator):
         none is named the last of each chain, is looked for beside the channels.
         """
         fitted = self._needed()
-        if dt is None and times is None and not isinstance(X, Demonstrations):
-            dt = self.time_step_
-        movements = _demonstrations(X, dt, times, velocities, lengths)
+        movements = self._others(X, dt, times, velocities, lengths)
         found = fitted.constraints(movements._native, self._preparing(), robot, list(links))
         return stretches(found, fitted.dim)
 
@@ -323,6 +319,14 @@ class Learner(Estimator):
     def _document(self) -> dict[str, Any]:
         document: dict[str, Any] = json.loads(self._needed().about())
         return document
+
+    def _others(
+        self, X: Any, dt: float | None, times: Iterable[Any] | None, velocities: Any, lengths: Sequence[int] | None
+    ) -> Demonstrations:
+        """Other movements, in the time step of those learnt from unless theirs is given."""
+        if dt is None and times is None and not isinstance(X, Demonstrations):
+            dt = self.time_step_
+        return _demonstrations(X, dt, times, velocities, lengths)
 
     def _preparing(self) -> dict[str, Any]:
         return preparing(self.integration, self.scale, self.smooth, self.jumps, self.wraps, self.context)
