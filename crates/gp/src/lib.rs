@@ -67,6 +67,7 @@ pub mod equations;
 mod error;
 mod evidence;
 mod formula;
+mod inducing;
 mod kernel;
 mod left_out;
 mod reading;

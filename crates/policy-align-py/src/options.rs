@@ -42,6 +42,7 @@ pub(crate) struct Learning {
     init_d: NumberOrWord,
     folds: usize,
     max_rows: usize,
+    inducing: usize,
     robot: Option<String>,
     seed: u64,
 }
@@ -84,6 +85,7 @@ impl Learning {
             folds: self.folds,
             seed: self.seed,
             max_rows: self.max_rows,
+            inducing: self.inducing,
             robot: self.robot,
         })
     }

@@ -3,7 +3,9 @@ use nalgebra::{DMatrix, DVector};
 use crate::direct::model::DirectModel;
 use crate::evidence::family_fit::{FamilyFit, fit_family};
 use crate::evidence::{Evidence, Task};
+use crate::inducing::Induced;
 use crate::kernel::direct_block::{DirectBlock, DirectCovariance};
+use crate::kernel::whitening::Whitening;
 use crate::left_out::LeftOut;
 use crate::left_out::level::Conditions;
 use crate::rows::kept::Kept;
@@ -58,6 +60,16 @@ impl DirectData {
         Self::of(&kept.states, kept.observed(), weights, kept.groups.clone())
     }
 
+    /// Other rows in the units of these.
+    pub(crate) fn of_others(&self, kept: &Kept) -> Self {
+        let noise_weights = match &kept.variances {
+            None => vec![1.0; kept.speeds.len()],
+            Some(variances) => direct_weights(variances, self.unit.powi(2)),
+        };
+        let units = (self.scaling.clone(), self.unit);
+        Self::in_units(units, &kept.states, kept.observed(), noise_weights, kept.groups.clone())
+    }
+
     fn of(
         states: &DMatrix<f64>,
         velocities: &DMatrix<f64>,
@@ -69,8 +81,17 @@ impl DirectData {
         if unit_squared == 0.0 {
             return Err(GpError::NoMotion);
         }
-        let noise_weights = noise_weights(unit_squared);
-        let unit = unit_squared.sqrt();
+        let units = (scaling, unit_squared.sqrt());
+        Ok(Self::in_units(units, states, velocities, noise_weights(unit_squared), groups))
+    }
+
+    fn in_units(
+        (scaling, unit): (Scaling, f64),
+        states: &DMatrix<f64>,
+        velocities: &DMatrix<f64>,
+        noise_weights: Vec<f64>,
+        groups: Vec<Vec<usize>>,
+    ) -> Self {
         let targets = velocities.transpose() / unit;
         let total: f64 = noise_weights.iter().map(|d| 1.0 / d).sum();
         let mut mean = DVector::zeros(targets.ncols());
@@ -79,7 +100,7 @@ impl DirectData {
         }
         let each = targets.row_iter().zip(&noise_weights);
         let spread = each.map(|(target, d)| (target.transpose() - &mean).norm_squared() / d).sum();
-        Ok(DirectData { z: scaling.apply(states), scaling, unit, targets, noise_weights, spread, groups })
+        DirectData { z: scaling.apply(states), scaling, unit, targets, noise_weights, spread, groups }
     }
 
     /// μ and S: z = (x − μ)/S.
@@ -122,8 +143,23 @@ impl DirectData {
         let FamilyFit { amplitudes, level } = fit;
         let scaled = (self.scaling.clone(), self.unit);
         let weights = level.weights.transpose();
-        let noise = (level.noise, self.noise_weights.clone());
-        DirectModel::new(scaled, (blocks, amplitudes), self.z.clone(), weights, noise, level.factor.into())
+        let whitening = Whitening::Rows { noise_weights: self.noise_weights.clone(), factor: level.factor.into() };
+        DirectModel::new(scaled, (blocks, amplitudes), self.z.clone(), weights, (level.noise, whitening))
+    }
+
+    /// The model of these amplitudes and σ² found, conditioned on all rows through at most so many of them; none without factor.
+    pub(crate) fn induced(
+        &self,
+        (blocks, amplitudes): (&[DirectBlock], &[f64]),
+        found: f64,
+        most: usize,
+    ) -> Option<(DirectModel, LeftOut)> {
+        let Induced { rows, noise, weights, factor, shrinkage, left_out, .. } =
+            Induced::new(&self.covariance(blocks), amplitudes, found, &self.conditions(), most)?;
+        let scaled = (self.scaling.clone(), self.unit);
+        let (prior, z) = ((blocks.to_vec(), amplitudes.to_vec()), self.z.select_columns(&rows));
+        let whitening = Whitening::Inducing { shrinkage, factor: factor.into() };
+        Some((DirectModel::new(scaled, prior, z, weights.transpose(), (noise, whitening)), left_out))
     }
 
     fn covariance<'a>(&'a self, blocks: &'a [DirectBlock]) -> DirectCovariance<'a> {

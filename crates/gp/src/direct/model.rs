@@ -7,9 +7,8 @@ use rayon::prelude::*;
 
 use crate::dimension::require;
 use crate::kernel::chunks::{CHUNK, Chunks, sum};
-use crate::kernel::covariance::{Covariance, add_noise};
 use crate::kernel::direct_block::{DirectBlock, DirectCovariance, combined, covariances_with};
-use crate::kernel::factor::LazyFactor;
+use crate::kernel::whitening::Whitening;
 use crate::rows::scaling::Scaling;
 
 /// The direct GP conditioned on rows: û and its variance (R4).
@@ -23,8 +22,7 @@ pub struct DirectModel {
     /// A, (n, M).
     pub(crate) weights: DMatrix<f64>,
     pub(crate) noise: f64,
-    pub(crate) noise_weights: Vec<f64>,
-    factor: LazyFactor,
+    pub(crate) whitening: Whitening,
     states: Chunks,
     weight_chunks: Chunks,
 }
@@ -35,23 +33,10 @@ impl DirectModel {
         (blocks, amplitudes): (Vec<DirectBlock>, Vec<f64>),
         z: DMatrix<f64>,
         weights: DMatrix<f64>,
-        (noise, noise_weights): (f64, Vec<f64>),
-        factor: LazyFactor,
+        (noise, whitening): (f64, Whitening),
     ) -> Self {
         let (states, weight_chunks) = (Chunks::new(&z), Chunks::new(&weights));
-        DirectModel {
-            scaling,
-            unit,
-            blocks,
-            amplitudes,
-            z,
-            weights,
-            noise,
-            noise_weights,
-            factor,
-            states,
-            weight_chunks,
-        }
+        DirectModel { scaling, unit, blocks, amplitudes, z, weights, noise, whitening, states, weight_chunks }
     }
 
     /// (R4): variance of every component at a state, in squared units of the state per second. Costs M².
@@ -63,15 +48,9 @@ impl DirectModel {
             let values = covariances_with(z.as_slice(), self.states.get(chunk), &self.blocks, &self.amplitudes);
             place.copy_from_slice(&values[..place.len()]);
         }
-        self.factor.whiten(&mut known, || self.covariance());
+        let covariance = DirectCovariance { blocks: &self.blocks, z: &self.z };
+        self.whitening.apply(&mut known, &covariance, &self.amplitudes, self.noise);
         self.prior_variance(state) - self.unit.powi(2) * known.norm_squared()
-    }
-
-    /// Of the rows with their noise.
-    fn covariance(&self) -> DMatrix<f64> {
-        let mut matrix = DirectCovariance { blocks: &self.blocks, z: &self.z }.sum(&self.amplitudes);
-        add_noise(&mut matrix, self.noise, self.noise_weights.iter().copied());
-        matrix
     }
 
     /// Prior variance of every component at a state, in the same units.

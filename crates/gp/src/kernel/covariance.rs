@@ -10,6 +10,12 @@ pub(crate) trait Covariance: Sync {
 
     /// Σ a_b K_b among all rows; lower triangle.
     fn sum(&self, amplitudes: &[f64]) -> DMatrix<f64>;
+
+    /// Fills in Σ a_b K_b of a row with each of some rows, (m).
+    fn with<'a>(&'a self, rows: &[usize], amplitudes: &'a [f64]) -> impl Fn(usize, &mut [f64]) + Sync + 'a;
+
+    /// Σ a_b K_b of a row with itself.
+    fn variance(&self, row: usize, amplitudes: &[f64]) -> f64;
 }
 
 /// Least noise variance: σ² + this is what (S6) adds.
@@ -25,4 +31,24 @@ pub(crate) fn add_noise(matrix: &mut DMatrix<f64>, noise: f64, noise_weights: im
     for i in 0..count {
         matrix[(i, i)] += jitter;
     }
+}
+
+/// Σ a_b K_b among some rows, by [`Covariance::with`].
+pub(crate) fn among(covariance: &impl Covariance, rows: &[usize], amplitudes: &[f64]) -> DMatrix<f64> {
+    let with = covariance.with(rows, amplitudes);
+    let mut matrix = DMatrix::zeros(rows.len(), rows.len());
+    matrix.column_iter_mut().zip(rows).for_each(|(mut column, &row)| with(row, column.as_mut_slice()));
+    matrix
+}
+
+/// Share of its mean diagonal that is added to a covariance among inducing rows, so that it has a Cholesky factor.
+const JITTER: f64 = 1e-12;
+
+/// K_mm of (S34).
+pub(crate) fn jittered(mut among: DMatrix<f64>) -> DMatrix<f64> {
+    let jitter = JITTER * among.diagonal().mean();
+    for i in 0..among.nrows() {
+        among[(i, i)] += jitter;
+    }
+    among
 }

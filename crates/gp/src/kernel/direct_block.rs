@@ -85,6 +85,22 @@ impl Covariance for DirectCovariance<'_> {
         }
         matrix
     }
+
+    fn with<'a>(&'a self, rows: &[usize], amplitudes: &'a [f64]) -> impl Fn(usize, &mut [f64]) + Sync + 'a {
+        let states = Chunks::new(&self.z.select_columns(rows));
+        move |row, covariances| {
+            let z = self.z.column(row);
+            for (chunk, place) in covariances.chunks_mut(CHUNK).enumerate() {
+                let values = covariances_with(z.as_slice(), states.get(chunk), self.blocks, amplitudes);
+                place.copy_from_slice(&values[..place.len()]);
+            }
+        }
+    }
+
+    fn variance(&self, row: usize, amplitudes: &[f64]) -> f64 {
+        let z = self.z.column(row);
+        self.blocks.iter().zip(amplitudes).map(|(block, amplitude)| amplitude * block.covariance(z, z)).sum()
+    }
 }
 
 /// Σ a_b k_b(z, z') for a chunk of rows z'.

@@ -51,10 +51,15 @@ impl Factor {
         solve_lower_triangular_in_place(view(&self.lower), view_mut(b), Par::Seq);
     }
 
+    /// Replaces B by L⁻ᵀB.
+    pub(crate) fn whiten_transposed(&self, b: &mut DMatrix<f64>) {
+        solve_upper_triangular_in_place(view(&self.lower).transpose(), view_mut(b), Par::Seq);
+    }
+
     /// Replaces B by K⁻¹B.
     pub(crate) fn solve(&self, b: &mut DMatrix<f64>) {
         self.whiten(b);
-        solve_upper_triangular_in_place(view(&self.lower).transpose(), view_mut(b), Par::Seq);
+        self.whiten_transposed(b);
     }
 
     /// X = L⁻¹, zero above the diagonal.

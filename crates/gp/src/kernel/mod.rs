@@ -8,3 +8,4 @@ pub(crate) mod factor;
 pub(crate) mod family;
 pub(crate) mod shape;
 pub(crate) mod slope_covariance;
+pub(crate) mod whitening;

@@ -48,6 +48,23 @@ impl Covariance for SlopeCovariance<'_> {
         }
         matrix
     }
+
+    fn with<'a>(&'a self, rows: &[usize], amplitudes: &'a [f64]) -> impl Fn(usize, &mut [f64]) + Sync + 'a {
+        let (states, directions) =
+            (Chunks::new(&self.z.select_columns(rows)), Chunks::new(&self.n.select_columns(rows)));
+        move |row, covariances| {
+            let point = (self.z.column(row), self.n.column(row));
+            for (chunk, place) in covariances.chunks_mut(CHUNK).enumerate() {
+                let values = slopes_with(point, (states.get(chunk), directions.get(chunk)), self.blocks, amplitudes);
+                place.copy_from_slice(&values[..place.len()]);
+            }
+        }
+    }
+
+    fn variance(&self, row: usize, amplitudes: &[f64]) -> f64 {
+        let (z, n) = (self.z.column(row), self.n.column(row));
+        self.blocks.iter().zip(amplitudes).map(|(block, amplitude)| amplitude * block.slope_slope(z, n, z, n)).sum()
+    }
 }
 
 /// Loss of a Matérn 3/2 block on the diagonal by a squared distance |z|² − 2zᵀz + |z|² that rounding leaves a little

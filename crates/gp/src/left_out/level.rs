@@ -58,26 +58,31 @@ impl Level {
         Some(Level { kappa, found, noise, factor, weights, left_out })
     }
 
-    /// The best of κ = 1, 4, 16 .. 4¹⁰ by R², given up after two in a row that are not better, or where there is nothing
-    /// to gain.
-    pub(crate) fn best(covariance: &DMatrix<f64>, noise: f64, conditions: &Conditions<'_>) -> Option<Self> {
-        let mut best = Level::at(covariance, noise, 1.0, conditions)?;
-        if best.left_out.is_exact() {
-            return Some(best);
-        }
-        let mut worse = 0;
-        for kappa in kappas().skip(1) {
-            let Some(level) = Level::at(covariance, noise, kappa, conditions) else { break };
-            if level.left_out.r_squared > best.left_out.r_squared {
-                best = level;
-                worse = 0;
-            } else {
-                worse += 1;
-                if worse == 2 {
-                    break;
-                }
+    /// The best κ, given Σ a_b K_b and σ² found.
+    pub(crate) fn best(covariance: &DMatrix<f64>, found: f64, conditions: &Conditions<'_>) -> Option<Self> {
+        climb(kappas().map(|kappa| Level::at(covariance, found, kappa, conditions)), |level| &level.left_out)
+    }
+}
+
+/// The best of levels of rising noise by R², given up after two in a row that are not better, at one that is none, or where there
+/// is nothing to gain. None if already the first is none.
+pub(crate) fn climb<T>(mut levels: impl Iterator<Item = Option<T>>, left_out: impl Fn(&T) -> &LeftOut) -> Option<T> {
+    let mut best = levels.next()??;
+    if left_out(&best).is_exact() {
+        return Some(best);
+    }
+    let mut worse = 0;
+    for next in levels {
+        let Some(next) = next else { break };
+        if left_out(&next).r_squared > left_out(&best).r_squared {
+            best = next;
+            worse = 0;
+        } else {
+            worse += 1;
+            if worse == 2 {
+                break;
             }
         }
-        Some(best)
     }
+    Some(best)
 }

@@ -31,6 +31,32 @@ const EXACT: f64 = 1e-8;
 const NEARLY_EXACT: f64 = 1e-3;
 
 impl LeftOut {
+    /// (S11) of residuals (M, c) and their variances (M); none if they are not finite.
+    pub(crate) fn of(
+        residuals: DMatrix<f64>,
+        variances: Vec<f64>,
+        noise_weights: &[f64],
+        spread: f64,
+    ) -> Option<LeftOut> {
+        let squares: Vec<f64> = residuals.row_iter().map(|row| row.norm_squared()).collect();
+        let weighted: f64 = squares.iter().zip(noise_weights).map(|(square, weight)| square / weight).sum();
+        let standardised: f64 = squares.iter().zip(&variances).map(|(square, variance)| square / variance).sum();
+        let r_squared = 1.0 - weighted / spread;
+        let z_squared = standardised / residuals.len() as f64;
+        let finite = r_squared.is_finite() && z_squared.is_finite();
+        finite.then_some(LeftOut { residuals, variances, r_squared, z_squared })
+    }
+
+    /// The same with each row at its place among all: `rows` says which one stands where, (M).
+    pub(crate) fn at(self, rows: &[usize]) -> LeftOut {
+        let mut placed = self.clone();
+        for (at, &row) in rows.iter().enumerate() {
+            placed.residuals.row_mut(row).copy_from(&self.residuals.row(at));
+            placed.variances[row] = self.variances[at];
+        }
+        placed
+    }
+
     /// Whether prediction is so good that more noise and other families need not be tried.
     pub(crate) fn is_exact(&self) -> bool {
         1.0 - self.r_squared < EXACT
@@ -69,12 +95,7 @@ pub(crate) fn left_out(
             variances[row] = block_variances[at];
         }
     }
-    let squares: Vec<f64> = residuals.row_iter().map(|row| row.norm_squared()).collect();
-    let weighted: f64 = squares.iter().zip(noise_weights).map(|(square, weight)| square / weight).sum();
-    let standardised: f64 = squares.iter().zip(&variances).map(|(square, variance)| square / variance).sum();
-    let r_squared = 1.0 - weighted / spread;
-    let z_squared = standardised / residuals.len() as f64;
-    (r_squared.is_finite() && z_squared.is_finite()).then_some(LeftOut { residuals, variances, r_squared, z_squared })
+    LeftOut::of(residuals, variances, noise_weights, spread)
 }
 
 /// e_T and the diagonal of V_T.

@@ -3,14 +3,16 @@ use nalgebra::{DVectorView, DVectorViewMut};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 
-use crate::direct::direct_gp::{DirectFit, DirectGp};
+use crate::direct::direct_gp::{DirectFit, DirectGp, DirectOutcome};
 use crate::left_out::comparison::{difference, much_better};
 use crate::reading::Hypothesis;
 use crate::reading::numbers::{Compared, ReadingNumbers, TrajectoryErrors};
+use crate::rows::kept::Kept;
+use crate::slope::all_rows::{OnAllRows, on_all_rows};
 use crate::slope::fit::SlopeFit;
 use crate::slope::judgement::{CrossPathEvidence, NOTHING_KNOWN, ReportInput, report};
 use crate::slope::pushed::pushed;
-use crate::slope::search::outcome;
+use crate::slope::search::{Outcome, outcome};
 use crate::slope::slope_gp::SlopeGp;
 use crate::{FrontEnd, GpError, Rows};
 
@@ -53,6 +55,7 @@ impl AutoGp {
         let kept = self.slope.selection()?.keep(rows, rng)?;
         let (slope, direct) = rayon::join(|| outcome(&self.slope, &kept), || self.direct.outcome(&kept));
         let (slope, direct) = (slope?, direct?);
+        let (kept, slope, direct) = self.on_all_rows(rows, kept, slope, direct);
         let compared = Compared {
             speeds: &kept.speeds,
             grouping: kept.grouping,
@@ -92,6 +95,24 @@ impl AutoGp {
         }
         let slope = SlopeFit { model: slope.taken.model, report };
         Ok(AutoFit { slope, direct: direct.fit, numbers, reading: Some(reading), overridden: self.reading, left_out })
+    }
+}
+
+impl AutoGp {
+    /// Both models on all rows, where that pays for slopes; as they are otherwise.
+    fn on_all_rows(
+        &self,
+        rows: &Rows,
+        kept: Kept,
+        slope: Outcome,
+        direct: DirectOutcome,
+    ) -> (Kept, Outcome, DirectOutcome) {
+        let all = on_all_rows(&self.slope, rows, &kept, &slope);
+        let both = all.and_then(|all| Some((direct.on_all_rows(&all.kept, self.slope.inducing_rows)?, all)));
+        match both {
+            Some((direct, OnAllRows { kept, outcome })) => (kept, outcome, direct),
+            None => (kept, slope, direct),
+        }
     }
 }
 

@@ -40,6 +40,9 @@ pub struct TrustReport {
     pub families: Vec<FamilyReport>,
     /// Rows learnt from.
     pub rows: usize,
+    /// Inducing rows (S34) that the policy is a sum over; none where it is one over all rows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inducing: Option<usize>,
     /// Rows not learnt from.
     pub rows_dropped: RowsDropped,
     /// The unit of leave-one-out.

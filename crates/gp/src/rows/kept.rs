@@ -32,12 +32,20 @@ pub enum Grouping {
 /// Rows that were not used, and why.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct RowsDropped {
+    /// In means (S33) with others, which count as one row.
+    #[serde(default, skip_serializing_if = "none")]
+    pub averaged: usize,
     /// Practically at rest.
     pub still: usize,
     /// Slower than their noise.
     pub noisy: usize,
     /// Beyond `max_rows`: kept are the first of every movement, and of the others evenly many of every stretch of time.
     pub thinned: usize,
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // serde wants it
+fn none(count: &usize) -> bool {
+    *count == 0
 }
 
 /// What rows of stretches (S22) come with.
@@ -52,6 +60,8 @@ pub(crate) struct OfStretches {
 /// Rows kept, in the order of trajectories and samples.
 #[derive(Debug, Clone)]
 pub(crate) struct Kept {
+    /// Which of the rows each is, (M).
+    pub(crate) rows: Vec<usize>,
     /// States with their contexts, (n + p, M).
     pub(crate) states: DMatrix<f64>,
     /// The part of the velocity along the direction of each row, (n, M): the whole but in rows of stretches and of momenta.
@@ -135,6 +145,42 @@ impl Selection {
     /// what [`thinned`] does.
     pub(crate) fn keep<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<Kept, GpError> {
         self.check()?;
+        let samples = rows.len();
+        let rows = &*rows.averaged();
+        let (mut usable, mut dropped) = self.usable(rows)?;
+        let enough = grouped(rows, &usable)?;
+        dropped.averaged = samples - rows.len();
+        dropped.thinned = usable.len().saturating_sub(self.max_rows);
+        let trajectory = |row: usize| rows.indices()[row].trajectory;
+        usable = thinned(usable.chunk_by(|&a, &b| trajectory(a) == trajectory(b)), self.max_rows, rng);
+        usable.shuffle(rng);
+        let mut hyper = usable[..usable.len().min(self.hyper_rows)].to_vec();
+        let in_time = |&row: &usize| (rows.indices()[row], row);
+        usable.sort_by_key(in_time);
+        hyper.sort_by_key(in_time);
+        let hyper = positions(&usable, &hyper);
+        let kept = kept(rows, usable, &enough);
+        if kept.groups.len() < 3 {
+            return Err(GpError::TooFewTrajectories { found: kept.groups.len() });
+        }
+        Ok(Kept { hyper, dropped, ..kept })
+    }
+
+    /// The same rows with those that [`Selection::keep`] thinned; none if it kept all.
+    pub(crate) fn keep_all(&self, rows: &Rows, some: &Kept) -> Option<Kept> {
+        if some.dropped.thinned == 0 || some.of_stretches.is_some() {
+            return None;
+        }
+        let rows = &*rows.averaged();
+        let (mut usable, dropped) = self.usable(rows).ok()?;
+        let dropped = RowsDropped { averaged: some.dropped.averaged, ..dropped };
+        usable.sort_by_key(|&row| (rows.indices()[row], row));
+        let enough = grouped(rows, &usable).ok()?;
+        Some(Kept { dropped, ..kept(rows, usable, &enough) })
+    }
+
+    /// Rows that move more than their noise, in the order of trajectories and samples, and those that do not.
+    fn usable(&self, rows: &Rows) -> Result<(Vec<usize>, RowsDropped), GpError> {
         let speeds: Vec<f64> = rows.velocities().column_iter().map(|velocity| velocity.norm()).collect();
         let fastest = speeds.iter().copied().fold(0.0, f64::max);
         // Squares of what moves may vanish, so that not the speeds are asked.
@@ -147,40 +193,34 @@ impl Selection {
         let moving: Vec<usize> = (0..rows.len()).filter(|&row| speeds[row] > self.least_speed * fastest).collect();
         let least = |row: usize| rows.variances().map_or(0.0, |variances| variances[row]);
         let power = self.least_snr.powi(2) * rows.dim() as f64;
-        let mut usable: Vec<usize> =
+        let usable: Vec<usize> =
             moving.iter().copied().filter(|&row| speeds[row].powi(2) > power * least(row)).collect();
-        let mut dropped = RowsDropped {
+        let dropped = RowsDropped {
             still: rows.len() - moving.len(),
             noisy: moving.len() - usable.len(),
-            thinned: usable.len().saturating_sub(self.max_rows),
+            ..RowsDropped::default()
         };
-        let enough = grouped(rows, &usable)?;
-        let trajectory = |row: usize| rows.indices()[row].trajectory;
-        usable = thinned(usable.chunk_by(|&a, &b| trajectory(a) == trajectory(b)), self.max_rows, rng);
-        usable.shuffle(rng);
-        let mut hyper = usable[..usable.len().min(self.hyper_rows)].to_vec();
-        let in_time = |&row: &usize| (rows.indices()[row], row);
-        usable.sort_by_key(in_time);
-        hyper.sort_by_key(in_time);
-        let groups = enough.among(rows, &usable);
-        if groups.len() < 3 {
-            return Err(GpError::TooFewTrajectories { found: groups.len() });
-        }
-        dropped.thinned = dropped.thinned.min(rows.len());
-        let velocities = rows.parts().select_columns(&usable);
-        Ok(Kept {
-            states: rows.states().select_columns(&usable),
-            speeds: velocities.column_iter().map(|part| part.norm()).collect(),
-            velocities,
-            whole: rows.momenta().map(|_| rows.velocities().select_columns(&usable)),
-            variances: rows.variances().map(|variances| usable.iter().map(|&row| variances[row]).collect()),
-            of_stretches: None,
-            hyper: positions(&usable, &hyper),
-            trajectories: groups.iter().map(|rows_of| rows.indices()[usable[rows_of[0]]].trajectory).collect(),
-            groups,
-            grouping: enough.grouping,
-            dropped,
-        })
+        Ok((usable, dropped))
+    }
+}
+
+/// These rows, in the order of trajectories and samples, without hyper rows.
+fn kept(rows: &Rows, usable: Vec<usize>, grouped: &Grouped) -> Kept {
+    let groups = grouped.among(rows, &usable);
+    let velocities = rows.parts().select_columns(&usable);
+    Kept {
+        states: rows.states().select_columns(&usable),
+        speeds: velocities.column_iter().map(|part| part.norm()).collect(),
+        velocities,
+        whole: rows.momenta().map(|_| rows.velocities().select_columns(&usable)),
+        variances: rows.variances().map(|variances| usable.iter().map(|&row| variances[row]).collect()),
+        of_stretches: None,
+        hyper: Vec::new(),
+        trajectories: groups.iter().map(|rows_of| rows.indices()[usable[rows_of[0]]].trajectory).collect(),
+        groups,
+        grouping: grouped.grouping,
+        dropped: RowsDropped::default(),
+        rows: usable,
     }
 }
 
@@ -222,7 +262,7 @@ impl Grouped {
 }
 
 /// Where in `all` each of `some` stands.
-fn positions(all: &[usize], some: &[usize]) -> Vec<usize> {
+pub(crate) fn positions(all: &[usize], some: &[usize]) -> Vec<usize> {
     let place: std::collections::HashMap<usize, usize> = all.iter().enumerate().map(|(at, &row)| (row, at)).collect();
     some.iter().map(|row| place[row]).collect()
 }

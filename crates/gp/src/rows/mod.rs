@@ -1,5 +1,6 @@
 //! Training data: states, velocities, their variances, and the selection of rows.
 
+pub(crate) mod averages;
 pub(crate) mod front_end;
 pub(crate) mod kept;
 pub(crate) mod noise_weights;

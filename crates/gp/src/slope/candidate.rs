@@ -43,6 +43,14 @@ impl Candidate {
         Candidate { family, kind, model, left_out, actions, found, kappa }
     }
 
+    /// The same family and amplitudes on all rows, through at most so many of them; none without factor.
+    pub(super) fn induced(&self, data: &SlopeData, all: &Kept, most: usize) -> Option<Candidate> {
+        let Expansion { blocks, amplitudes, .. } = self.model.expansion();
+        let (model, left_out, kappa) = data.induced((blocks, amplitudes), self.found, most)?;
+        let actions = model.actions(&all.states);
+        Some(Candidate { model, left_out, actions, kappa, ..*self })
+    }
+
     /// The same model at those higher levels of noise that predict nearly exactly, one after the other.
     pub(crate) fn raised<'a>(&'a self, data: &'a SlopeData, kept: &'a Kept) -> impl Iterator<Item = Candidate> + 'a {
         let Expansion { blocks, amplitudes, .. } = self.model.expansion();

@@ -2,9 +2,11 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::evidence::family_fit::{FamilyFit, fit_family};
 use crate::evidence::{Evidence, Task};
+use crate::inducing::Induced;
 use crate::kernel::block::Block;
 use crate::kernel::covariance::Covariance;
 use crate::kernel::slope_covariance::SlopeCovariance;
+use crate::kernel::whitening::Whitening;
 use crate::left_out::LeftOut;
 use crate::left_out::level::{Conditions, Level, kappas};
 use crate::rows::kept::Kept;
@@ -71,6 +73,12 @@ impl SlopeData {
         Self::of(&kept.states, &kept.velocities, &kept.speeds, noise_weights, kept.groups.clone())
     }
 
+    /// Other rows in the units of these.
+    pub(crate) fn of_others(&self, kept: &Kept, noise_weights: Vec<f64>) -> Self {
+        let units = (self.scaling.clone(), self.speed);
+        Self::in_units(units, &kept.states, &kept.velocities, &kept.speeds, noise_weights, kept.groups.clone())
+    }
+
     fn of(
         states: &DMatrix<f64>,
         velocities: &DMatrix<f64>,
@@ -78,16 +86,26 @@ impl SlopeData {
         noise_weights: Vec<f64>,
         groups: Vec<Vec<usize>>,
     ) -> Result<Self, GpError> {
-        let scaling = Scaling::of(states)?;
         let power: f64 = speeds.iter().zip(&noise_weights).map(|(r, d)| r * r / d).sum();
         let speed = (power / noise_weights.iter().map(|d| 1.0 / d).sum::<f64>()).sqrt();
+        Ok(Self::in_units((Scaling::of(states)?, speed), states, velocities, speeds, noise_weights, groups))
+    }
+
+    fn in_units(
+        (scaling, speed): (Scaling, f64),
+        states: &DMatrix<f64>,
+        velocities: &DMatrix<f64>,
+        speeds: &[f64],
+        noise_weights: Vec<f64>,
+        groups: Vec<Vec<usize>>,
+    ) -> Self {
         let targets = DMatrix::from_iterator(speeds.len(), 1, speeds.iter().map(|r| r / speed));
         let spread = targets.iter().zip(&noise_weights).map(|(y, d)| y * y / d).sum();
         let mut n = velocities.clone();
         for (mut direction, r) in n.column_iter_mut().zip(speeds) {
             direction /= *r;
         }
-        Ok(SlopeData { z: scaling.apply(states), scaling, speed, n, targets, noise_weights, spread, groups })
+        SlopeData { z: scaling.apply(states), scaling, speed, n, targets, noise_weights, spread, groups }
     }
 
     /// μ and S: z = (x − μ)/S.
@@ -167,7 +185,25 @@ impl SlopeData {
         let scaled = (self.scaling.clone(), self.speed);
         let weights = level.weights.as_slice().to_vec();
         let expansion = Expansion::new(scaled, (blocks, amplitudes), (self.z.clone(), self.n.clone()), weights);
-        SlopeModel::new(expansion, self.noise_weights.clone(), level.noise, level.factor.into())
+        let whitening = Whitening::Rows { noise_weights: self.noise_weights.clone(), factor: level.factor.into() };
+        SlopeModel::new(expansion, level.noise, whitening)
+    }
+
+    /// The model of these amplitudes and σ² found, conditioned on all rows through at most so many of them; none without factor.
+    pub(crate) fn induced(
+        &self,
+        (blocks, amplitudes): (&[Block], &[f64]),
+        found: f64,
+        most: usize,
+    ) -> Option<(SlopeModel, LeftOut, f64)> {
+        let Induced { rows, kappa, noise, weights, factor, shrinkage, left_out } =
+            Induced::new(&self.covariance(blocks), amplitudes, found, &self.conditions(), most)?;
+        let scaled = (self.scaling.clone(), self.speed);
+        let of_rows = (self.z.select_columns(&rows), self.n.select_columns(&rows));
+        let prior = (blocks.to_vec(), amplitudes.to_vec());
+        let expansion = Expansion::new(scaled, prior, of_rows, weights.as_slice().to_vec());
+        let whitening = Whitening::Inducing { shrinkage, factor: factor.into() };
+        Some((SlopeModel::new(expansion, noise, whitening), left_out, kappa))
     }
 
     fn covariance<'a>(&'a self, blocks: &'a [Block]) -> SlopeCovariance<'a> {

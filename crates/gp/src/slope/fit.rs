@@ -2,6 +2,7 @@ use nalgebra::{DMatrix, DVectorView};
 use rand::Rng;
 
 use crate::report::trust_report::TrustReport;
+use crate::slope::all_rows::{OnAllRows, on_all_rows};
 use crate::slope::judgement::{CrossPathEvidence, ReportInput, report};
 use crate::slope::model::SlopeModel;
 use crate::slope::policy::{SlopePolicy, SlopePotential};
@@ -29,7 +30,10 @@ impl SlopeGp {
         let plain = outcome(self, &kept)?;
         let (outcome, kept) = match pushed(self, rows, &kept, &plain) {
             Some(pushed) => (pushed.outcome, pushed.kept),
-            None => (plain, kept),
+            None => match on_all_rows(self, rows, &kept, &plain) {
+                Some(OnAllRows { kept, outcome }) => (outcome, kept),
+                None => (plain, kept),
+            },
         };
         let across = CrossPathEvidence::Untested;
         let report = report(&ReportInput { outcome: &outcome, kept: &kept, rows, across });

@@ -48,10 +48,10 @@ pub(crate) enum CrossPathEvidence {
 
 pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
     let ReportInput { outcome, kept, rows, across } = chosen;
-    let Outcome { data, taken, other, curl_t, families } = outcome;
+    let Outcome { data, taken, other, curl_t, families, .. } = outcome;
     let (posterior, prior) = mean_covariances(&taken.model, &kept.states);
     let ambiguity = other.as_ref().map_or(0.0, |other| ambiguity(taken, other));
-    let calibration = calibration(taken.left_out.z_squared, noise_share(taken), *across);
+    let calibration = calibration(taken.left_out.z_squared, noise_share(data, taken), *across);
     let variance = spread(&taken.actions) / kept.speeds.len() as f64;
     let error = calibration * posterior.trace().max(on_new_movements(data, taken)) / variance;
     // Before its first sample every movement begins.
@@ -71,6 +71,7 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
         family: taken.family,
         families: families.clone(),
         rows: kept.speeds.len(),
+        inducing: taken.model.inducing(),
         rows_dropped: kept.dropped,
         grouping: kept.grouping,
         noise: rows.noise(),
@@ -90,10 +91,10 @@ fn on_new_movements(data: &SlopeData, taken: &Candidate) -> f64 {
 }
 
 /// Share of noise in the variance predicted of left-out movements, by the weights of (S11).
-fn noise_share(taken: &Candidate) -> f64 {
-    let SlopeModel { noise, noise_weights, .. } = &taken.model;
-    let predicted = taken.left_out.variances.iter().zip(noise_weights).map(|(variance, weight)| variance / weight);
-    noise * noise_weights.len() as f64 / predicted.sum::<f64>()
+fn noise_share(data: &SlopeData, taken: &Candidate) -> f64 {
+    let each = taken.left_out.variances.iter().zip(&data.noise_weights);
+    let predicted: f64 = each.map(|(variance, weight)| variance / weight).sum();
+    taken.model.noise * data.noise_weights.len() as f64 / predicted
 }
 
 /// γ of (S19): factor on the posterior's variance, from how left-out movements were predicted: z² (S11) where that is over 1, since

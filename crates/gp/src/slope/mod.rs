@@ -1,5 +1,6 @@
 //! The slope GP.
 
+pub(crate) mod all_rows;
 pub(crate) mod candidate;
 pub(crate) mod data;
 pub(crate) mod expansion;

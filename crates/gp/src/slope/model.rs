@@ -2,9 +2,8 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector, DVectorView};
 
-use crate::kernel::covariance::{Covariance, add_noise};
-use crate::kernel::factor::LazyFactor;
 use crate::kernel::slope_covariance::SlopeCovariance;
+use crate::kernel::whitening::Whitening;
 use crate::slope::expansion::Expansion;
 use crate::slope::policy::{SlopePolicy, SlopePotential};
 
@@ -13,19 +12,17 @@ use crate::slope::policy::{SlopePolicy, SlopePotential};
 pub struct SlopeModel {
     pub(crate) policy: SlopePolicy,
     potential: Option<SlopePotential>,
-    /// D, (M).
-    pub(crate) noise_weights: Vec<f64>,
     /// σ² without the floor.
     pub(crate) noise: f64,
-    factor: LazyFactor,
+    pub(crate) whitening: Whitening,
 }
 
 impl SlopeModel {
-    pub(crate) fn new(expansion: Expansion, noise_weights: Vec<f64>, noise: f64, factor: LazyFactor) -> Self {
+    pub(crate) fn new(expansion: Expansion, noise: f64, whitening: Whitening) -> Self {
         let has_potential = expansion.blocks.iter().all(|block| block.has_potential());
         let expansion = Arc::new(expansion);
         let potential = has_potential.then(|| SlopePotential { expansion: Arc::clone(&expansion) });
-        SlopeModel { policy: SlopePolicy { expansion }, potential, noise_weights, noise, factor }
+        SlopeModel { policy: SlopePolicy { expansion }, potential, noise, whitening }
     }
 
     /// π̂.
@@ -41,6 +38,11 @@ impl SlopeModel {
     /// α = K⁻¹y, (M).
     pub fn weights(&self) -> &[f64] {
         &self.expansion().weights
+    }
+
+    /// Number of inducing rows; none where every row is in the model.
+    pub(crate) fn inducing(&self) -> Option<usize> {
+        matches!(self.whitening, Whitening::Inducing { .. }).then_some(self.weights().len())
     }
 
     /// The part of π̂ that has no potential.
@@ -106,12 +108,8 @@ impl SlopeModel {
     }
 
     fn whiten(&self, b: &mut DMatrix<f64>) {
-        self.factor.whiten(b, || {
-            let Expansion { blocks, z, n, amplitudes, .. } = self.expansion();
-            let mut matrix = SlopeCovariance { blocks, z, n }.sum(amplitudes);
-            add_noise(&mut matrix, self.noise, self.noise_weights.iter().copied());
-            matrix
-        });
+        let Expansion { blocks, z, n, amplitudes, .. } = self.expansion();
+        self.whitening.apply(b, &SlopeCovariance { blocks, z, n }, amplitudes, self.noise);
     }
 
     pub(crate) fn expansion(&self) -> &Expansion {

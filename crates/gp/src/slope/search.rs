@@ -25,6 +25,8 @@ pub(crate) struct Outcome {
     pub(crate) other: Option<Candidate>,
     pub(crate) curl_t: Option<f64>,
     pub(crate) families: Vec<FamilyReport>,
+    /// Whether the model taken is that of step 8.
+    pub(crate) least_hidden: bool,
 }
 
 /// The search: steps 3 to 8, and step 9, which weighs certain velocities where they are not predicted nearly exactly.
@@ -46,19 +48,20 @@ fn searched(gp: &SlopeGp, kept: &Kept, data: SlopeData) -> Result<Outcome, GpErr
     );
     let potential = best_of(tried.into_iter(), ModelKind::Potential, &mut families).ok_or(GpError::NoFactor)?;
     let Some(rotation) = rotation(gp, &data, kept, &potential, &mut families) else {
-        return Ok(Outcome { data, taken: potential, other: None, curl_t: None, families });
+        return Ok(Outcome { data, taken: potential, other: None, curl_t: None, families, least_hidden: false });
     };
     let t = curl_t(&potential.left_out, &rotation.left_out, &data.noise_weights, &data.groups);
     let rotates = takes_rotation(t, &potential.contender(), &rotation.contender());
     let (data, rotation) = if rotates { reweighted(gp, kept, data, rotation)? } else { (data, rotation) };
-    let least_hidden = least_hidden(&data, kept, &potential, &rotation);
-    families.extend(least_hidden.as_ref().map(Candidate::report));
-    let (taken, other) = match least_hidden {
-        Some(least_hidden) => (least_hidden, potential),
+    let hides_least = least_hidden(&data, kept, &potential, &rotation);
+    families.extend(hides_least.as_ref().map(Candidate::report));
+    let least_hidden = hides_least.is_some();
+    let (taken, other) = match hides_least {
+        Some(hides_least) => (hides_least, potential),
         None if rotates => (rotation, potential),
         None => (potential, rotation),
     };
-    Ok(Outcome { data, taken, other: Some(other), curl_t: Some(t), families })
+    Ok(Outcome { data, taken, other: Some(other), curl_t: Some(t), families, least_hidden })
 }
 
 /// Step 9: the search again with the weights (S18) of a pilot policy, which was itself fitted with those of the model taken;

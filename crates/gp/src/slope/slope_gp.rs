@@ -26,6 +26,11 @@ pub struct SlopeGp {
     /// Largest number of rows; more are thinned evenly in time. Time grows with its cube, memory with its square; at
     /// most [`MOST_ROWS`](crate::MOST_ROWS).
     pub max_rows: usize,
+    /// Number of rows that stand for all where rows are thinned (S34): the model found on `max_rows` is conditioned on all rows through
+    /// them, if held-out movements are then predicted no worse. Time grows with its square times the number of rows. 0: thinned rows
+    /// alone.
+    #[serde(default)]
+    pub inducing_rows: usize,
     /// Number of random rows whose marginal likelihood sets the amplitudes.
     pub hyper_rows: usize,
     /// Rows of uncertain velocity are used if |u|² exceeds this squared times the variance of u.
@@ -45,6 +50,7 @@ impl Default for SlopeGp {
             families: Family::ALL.to_vec(),
             trend: Trend::Quadratic,
             max_rows: 1500,
+            inducing_rows: 0,
             hyper_rows: 400,
             least_snr: 1.5,
             least_speed: 1e-6,

@@ -2,12 +2,11 @@ use nalgebra::DMatrix;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::{Stored, VERSION, check_scales};
+use super::{Stored, check_scales, of_whitening, whitening};
 use crate::GpError;
 use crate::direct::direct_gp::DirectFit;
 use crate::direct::model::DirectModel;
 use crate::kernel::direct_block::DirectBlock;
-use crate::kernel::factor::LazyFactor;
 use crate::kernel::family::Family;
 
 /// A [`DirectFit`].
@@ -23,16 +22,18 @@ struct DirectRecord {
 impl From<&DirectFit> for DirectRecord {
     fn from(fit: &DirectFit) -> Self {
         let &DirectFit { ref model, family, r_squared, z_squared } = fit;
+        let (version, noise_weights, shrinkage) = of_whitening(&model.whitening);
         DirectRecord {
             direct_gp: Stored {
-                version: VERSION,
+                version,
                 dim: model.z.nrows(),
                 scaling: model.scaling.clone(),
                 unit: model.unit,
                 blocks: model.blocks.iter().copied().zip(model.amplitudes.iter().copied()).collect(),
                 noise: model.noise,
                 states: model.z.as_slice().to_vec(),
-                noise_weights: model.noise_weights.clone(),
+                noise_weights,
+                shrinkage,
                 weights: model.weights.as_slice().to_vec(),
             },
             family,
@@ -58,8 +59,7 @@ impl TryFrom<DirectRecord> for DirectFit {
             direct_gp.blocks.into_iter().unzip(),
             DMatrix::from_vec(dim, rows, direct_gp.states),
             DMatrix::from_vec(moving, rows, direct_gp.weights),
-            (direct_gp.noise, direct_gp.noise_weights),
-            LazyFactor::default(),
+            (direct_gp.noise, whitening(rows, direct_gp.noise_weights, &direct_gp.shrinkage)),
         );
         Ok(DirectFit { model, family, r_squared, z_squared })
     }

@@ -4,14 +4,18 @@
 mod direct;
 mod slope;
 
+use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use crate::GpError;
+use crate::kernel::factor::LazyFactor;
+use crate::kernel::whitening::Whitening;
 use crate::rows::MOST_ROWS;
 use crate::rows::scaling::Scaling;
 
-/// The form below. A later one reads this too.
-const VERSION: u32 = 1;
+/// The forms below: models of rows, and models of inducing rows.
+const ROWS: u32 = 1;
+const INDUCING: u32 = 2;
 
 /// Largest dimension of a state: a policy has matrices of its square.
 const MOST_DIMENSIONS: usize = 2_000;
@@ -29,7 +33,11 @@ struct Stored<B> {
     noise: f64,
     /// z, (n + p, M): states with their contexts.
     states: Vec<f64>,
+    /// D, (M); none of inducing rows.
     noise_weights: Vec<f64>,
+    /// Of (S37), column by column down to the diagonal; none where all rows are in the model.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    shrinkage: Vec<f64>,
     /// (M) for slopes, (n, M) for velocities.
     weights: Vec<f64>,
 }
@@ -37,23 +45,31 @@ struct Stored<B> {
 impl<B> Stored<B> {
     /// The number of rows M, and the dimension n of what moves, which `vectors` has numbers of, (n, M); the rest of `dim` is context.
     fn check(&self, vectors: &[f64], weights_a_row: impl FnOnce(usize) -> usize) -> Result<(usize, usize), GpError> {
-        let rows = self.noise_weights.len();
+        let inducing = self.version == INDUCING;
+        let of_states = self.states.len().checked_div(self.dim).unwrap_or(0);
+        let rows = if inducing { of_states } else { self.noise_weights.len() };
+        let said = if inducing { (0, rows.saturating_mul(rows + 1) / 2) } else { (rows, 0) };
         let moving = vectors.len().checked_div(rows).unwrap_or(0);
         let weights_a_row = weights_a_row(moving);
         let finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
         let positive = |number: f64| number > 0.0 && number.is_finite();
         let amplitudes = || self.blocks.iter().map(|(_, amplitude)| *amplitude);
         let checks = [
-            (self.version == VERSION, "it has another version than 1; use a newer program"),
+            (inducing || self.version == ROWS, "it has another version than 1 or 2; use a newer program"),
             (self.dim > 0 && rows > 0 && !self.blocks.is_empty(), "it is empty"),
             (rows <= MOST_ROWS, "it has more than 10000 rows, whose error bars would need over 0.8 GB; fit with fewer"),
             (self.dim <= MOST_DIMENSIONS, "its states have more than 2000 dimensions"),
             (self.scaling.mean.len() == self.dim, "the mean has not one number a dimension"),
             (self.states.len() == rows.saturating_mul(self.dim), "there is not one state a row"),
+            (self.noise_weights.len() == said.0, "there is not one noise weight a row"),
+            (self.shrinkage.len() == said.1, "there is not one triangle of what the rows say"),
             (vectors.len() == rows.saturating_mul(moving), "there is not one vector a row"),
             ((1..=self.dim).contains(&moving), "vectors and states do not fit"),
             (self.weights.len() == rows.saturating_mul(weights_a_row), "there is not one weight a row"),
-            (finite(&self.states) && finite(&self.weights) && finite(&self.scaling.mean), "a number is not finite"),
+            (
+                finite(&self.states) && finite(&self.weights) && finite(&self.shrinkage) && finite(&self.scaling.mean),
+                "a number is not finite",
+            ),
             (positive(self.scaling.scale) && positive(self.unit), "a unit is not positive"),
             (amplitudes().all(|a| a >= 0.0 && a.is_finite()), "an amplitude is negative or not finite"),
             (self.noise >= 0.0 && self.noise.is_finite(), "the noise is negative or not finite"),
@@ -64,6 +80,27 @@ impl<B> Stored<B> {
             Some((_, reason)) => Err(stored(reason)),
         }
     }
+}
+
+/// Version, noise weights and triangle of a model.
+fn of_whitening(whitening: &Whitening) -> (u32, Vec<f64>, Vec<f64>) {
+    match whitening {
+        Whitening::Rows { noise_weights, .. } => (ROWS, noise_weights.clone(), Vec::new()),
+        Whitening::Inducing { shrinkage, .. } => {
+            let column = |k: usize| (0..=k).map(move |row| shrinkage[(row, k)]);
+            (INDUCING, Vec::new(), (0..shrinkage.ncols()).flat_map(column).collect())
+        }
+    }
+}
+
+/// From what [`Stored::check`] found to fit.
+fn whitening(rows: usize, noise_weights: Vec<f64>, shrinkage: &[f64]) -> Whitening {
+    let factor = LazyFactor::default();
+    if shrinkage.is_empty() {
+        return Whitening::Rows { noise_weights, factor };
+    }
+    let entry = |row: usize, k: usize| if row <= k { shrinkage[k * (k + 1) / 2 + row] } else { 0.0 };
+    Whitening::Inducing { shrinkage: DMatrix::from_fn(rows, rows, entry), factor }
 }
 
 fn stored(reason: &str) -> GpError {

@@ -2,10 +2,9 @@ use nalgebra::DMatrix;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::{Stored, VERSION, check_scales, stored};
+use super::{Stored, check_scales, of_whitening, stored, whitening};
 use crate::GpError;
 use crate::kernel::block::Block;
-use crate::kernel::factor::LazyFactor;
 use crate::report::trust_report::TrustReport;
 use crate::slope::expansion::Expansion;
 use crate::slope::fit::SlopeFit;
@@ -24,16 +23,18 @@ struct SlopeRecord {
 impl From<&SlopeFit> for SlopeRecord {
     fn from(fit: &SlopeFit) -> Self {
         let expansion = fit.model.expansion();
+        let (version, noise_weights, shrinkage) = of_whitening(&fit.model.whitening);
         SlopeRecord {
             slope_gp: Stored {
-                version: VERSION,
+                version,
                 dim: expansion.dim(),
                 scaling: expansion.scaling.clone(),
                 unit: expansion.speed,
                 blocks: expansion.blocks.iter().copied().zip(expansion.amplitudes.iter().copied()).collect(),
                 noise: fit.model.noise,
                 states: expansion.z.as_slice().to_vec(),
-                noise_weights: fit.model.noise_weights.clone(),
+                noise_weights,
+                shrinkage,
                 weights: expansion.weights.clone(),
             },
             directions: expansion.n.as_slice().to_vec(),
@@ -57,13 +58,14 @@ impl TryFrom<SlopeRecord> for SlopeFit {
             Block::Linear | Block::Quadratic | Block::Skew => 1.0,
         });
         check_scales(scales)?;
+        let whitening = whitening(rows, slope_gp.noise_weights, &slope_gp.shrinkage);
         let expansion = Expansion::new(
             (slope_gp.scaling, slope_gp.unit),
             slope_gp.blocks.into_iter().unzip(),
             (DMatrix::from_vec(dim, rows, slope_gp.states), DMatrix::from_vec(moving, rows, directions)),
             slope_gp.weights,
         );
-        let model = SlopeModel::new(expansion, slope_gp.noise_weights, slope_gp.noise, LazyFactor::default());
+        let model = SlopeModel::new(expansion, slope_gp.noise, whitening);
         Ok(SlopeFit { model, report })
     }
 }

@@ -64,6 +64,7 @@ impl Stretches {
             hyper: all.iter().copied().step_by(all.len().div_ceil(selection.hyper_rows).max(1)).collect(),
             grouping: kept.grouping,
             dropped: RowsDropped { thinned: found - equations.len(), ..RowsDropped::default() },
+            rows: used,
         })
     }
 

@@ -43,6 +43,7 @@ class Learner(Estimator):
     wraps: str
     context: str | Sequence[str]
     max_rows: int
+    inducing: int
     robot: str | os.PathLike[str] | None
     random_state: int
     n_jobs: int | None
@@ -57,6 +58,7 @@ class Learner(Estimator):
         wraps: str = "auto",
         context: str | Sequence[str] = "auto",
         max_rows: int = 400,
+        inducing: int = 500,
         robot: str | os.PathLike[str] | None = None,
         random_state: int = 1,
         n_jobs: int | None = None,
@@ -66,7 +68,8 @@ class Learner(Estimator):
         ``jumps``: "auto" cuts movements where one step is far too long, "keep" does not. ``wraps``: with "auto" angles that
         jump by a whole turn go on instead and quaternions keep one sign, with "keep" they stay. ``context``: names of the
         channels that a movement depends on and that stay as they are meanwhile, such as a goal; "auto" finds them by their
-        names, "none" takes none. ``max_rows``: samples learnt from, at most. ``robot``: a URDF whose joints are named like the
+        names, "none" takes none. ``max_rows``: samples that a policy is searched on, at most.
+        ``inducing``: samples that stand for all where more are recorded; 0 drops these. ``robot``: a URDF whose joints are named like the
         channels; its mass matrix is tried as the metric in which constraints are at right angles. ``random_state``: the seed,
         a whole number. ``n_jobs``: threads, None or -1 for all; results do not depend on it.
         """
@@ -339,6 +342,7 @@ class Learner(Estimator):
             "init_d": getattr(self, "init_d", "auto"),
             "folds": getattr(self, "folds", 5),
             "max_rows": self.max_rows,
+            "inducing": self.inducing,
             "robot": _text(getattr(self, "robot", None)),
             "seed": self.random_state,
         }

@@ -39,6 +39,7 @@ class PolicyAlign(Learner):
         context: str | Sequence[str] = "auto",
         folds: int = 5,
         max_rows: int = 400,
+        inducing: int = 500,
         random_state: int = 1,
         n_jobs: int | None = None,
     ) -> None:
@@ -98,6 +99,7 @@ class AutoGp(Learner):
         wraps: str = "auto",
         context: str | Sequence[str] = "auto",
         max_rows: int = 400,
+        inducing: int = 500,
         robot: str | os.PathLike[str] | None = None,
         random_state: int = 1,
         n_jobs: int | None = None,

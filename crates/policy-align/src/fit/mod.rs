@@ -16,7 +16,7 @@ pub use options::{FitOptions, LearnerChoice};
 pub use progress::{Progress, Step};
 pub(crate) use recorded_rows::{averaged, cleaning, rows};
 
-use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, PushTest, SlopeGp, TrajectoryErrors};
+use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, PushTest, RowsDropped, SlopeGp, TrajectoryErrors};
 use motion::{LearntPolicy, Policy, upper_median};
 use prepare::numbers::squared_error;
 use rand::SeedableRng;
@@ -64,6 +64,7 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
     };
     let mut decisions: Vec<Decision> = prepared.decisions.iter().cloned().chain(metric).collect();
     decisions.push(learner_decision(options, &readings));
+    decisions.extend(rows_decision(&readings));
     let aligned = match options.learner {
         LearnerChoice::PolicyAlign => {
             let reference = actions::actions(&readings, rows.states());
@@ -114,7 +115,13 @@ fn learn(rows: &gp::Rows, options: &FitOptions) -> Result<AutoFit, FitError> {
     let (max_rows, hyper_rows) = (options.max_rows, (options.max_rows as f64 * HYPER_SHARE) as usize);
     let learner = AutoGp {
         front_end: FrontEnd::Velocities, // the rows are made already
-        slope: SlopeGp { max_rows, hyper_rows, push_test: PushTest::Fit, ..SlopeGp::default() },
+        slope: SlopeGp {
+            max_rows,
+            hyper_rows,
+            inducing_rows: options.inducing,
+            push_test: PushTest::Fit,
+            ..SlopeGp::default()
+        },
         direct: DirectGp { max_rows, hyper_rows, ..DirectGp::default() },
         reading: options.reading,
     };
@@ -135,6 +142,25 @@ fn plane(prepared: &Prepared, numbers: &TrustNumbers) -> Option<Finding> {
     let unseen = numbers.direction_coverage < TrustNumbers::UNSEEN;
     let plane = unseen.then(|| CommonPlane::of(&prepared.demonstrations, &prepared.state)).flatten()?;
     Some(plane.finding(&prepared.state))
+}
+
+/// What was made of samples before a Gaussian process learnt from them; none if each is a row.
+fn rows_decision(readings: &AutoFit) -> Option<Decision> {
+    let gp::TrustReport { rows, inducing, rows_dropped, .. } = readings.slope().report();
+    let RowsDropped { averaged, thinned, still, noisy } = *rows_dropped;
+    if averaged == 0 && thinned == 0 && inducing.is_none() {
+        return None;
+    }
+    let found = rows + still + noisy + thinned;
+    let mut why = Vec::new();
+    if averaged > 0 {
+        why.push(format!("means of {} samples where velocities differ by noise alone", found + averaged));
+    }
+    why.extend(inducing.map(|inducing| format!("{inducing} of them stand for all")));
+    if thinned > 0 {
+        why.push(format!("{thinned} others, evenly spread, are not learnt from"));
+    }
+    Some(decision("rows", rows.to_string(), why.join("; "), "--max-rows, --inducing"))
 }
 
 fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {

@@ -21,6 +21,8 @@ pub struct FitOptions {
     pub seed: u64,
     /// Rows that Gaussian processes learn from, at most, spread in time along the movements (`--max-rows`).
     pub max_rows: usize,
+    /// Rows that stand for all where more than `max_rows` are recorded; 0: only `max_rows` are learnt from (`--inducing`).
+    pub inducing: usize,
     /// Text of a URDF whose joints are the channels (`--robot`): its mass matrix is tried as the metric of constraints.
     pub robot: Option<String>,
 }
@@ -50,6 +52,7 @@ impl Default for FitOptions {
             folds: 5,
             seed: 1,
             max_rows: 400,
+            inducing: 500,
             robot: None,
         }
     }
@@ -66,6 +69,9 @@ impl FitOptions {
         }
         if self.max_rows > gp::MOST_ROWS {
             return wrong("--max-rows", self.max_rows as f64, "be at most 10000");
+        }
+        if self.inducing > gp::MOST_ROWS {
+            return wrong("--inducing", self.inducing as f64, "be at most 10000");
         }
         match self.init_d {
             Some(init_d) if !(init_d > 0.0 && init_d.is_finite()) => {

@@ -157,9 +157,12 @@ pub(crate) struct FitFlags {
     /// Random seed [default: 1]
     #[arg(long, value_name = "NUMBER")]
     seed: Option<u64>,
-    /// Most samples that a Gaussian process learns from [default: 400]
+    /// Most samples that a Gaussian process is searched on [default: 400]
     #[arg(long, value_name = "NUMBER")]
     max_rows: Option<usize>,
+    /// Samples that stand for all others; 0 drops these [default: 500]
+    #[arg(long, value_name = "NUMBER")]
+    inducing: Option<usize>,
     /// Robot with these joints: tries its mass matrix as the metric
     #[arg(long, value_name = "FILE.urdf")]
     robot: Option<PathBuf>,
@@ -247,6 +250,7 @@ impl FitFlags {
             folds: self.folds.unwrap_or(default.folds),
             seed: self.seed.unwrap_or(default.seed),
             max_rows: self.max_rows.unwrap_or(default.max_rows),
+            inducing: self.inducing.unwrap_or(default.inducing),
             robot: self.robot.as_ref().map(|path| urdf(path)).transpose()?,
         })
     }

@@ -1,0 +1,66 @@
+//! Covariances of rows with the inducing ones, each divided by the root of its noise weight.
+
+use std::ops::Range;
+
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Par};
+use nalgebra::DMatrix;
+
+use crate::kernel::covariance::Covariance;
+use crate::kernel::factor::{view, view_mut};
+use crate::left_out::level::Conditions;
+
+/// A prior, the rows that stand for all, and what all are to be conditioned on.
+#[derive(Debug)]
+pub(crate) struct Features<'a, C> {
+    pub(crate) covariance: &'a C,
+    pub(crate) amplitudes: &'a [f64],
+    /// Of the rows, (m).
+    pub(crate) inducing: Vec<usize>,
+    pub(crate) conditions: &'a Conditions<'a>,
+}
+
+impl<C: Covariance> Features<'_, C> {
+    /// [D^{-1/2} K_nm | D^{-1/2} Y] of these rows, (n, m + c).
+    pub(crate) fn with_targets(&self, rows: Range<usize>) -> DMatrix<f64> {
+        let (count, targets) = (self.inducing.len(), self.conditions.targets);
+        let rows: Vec<usize> = rows.collect();
+        let mut both = DMatrix::zeros(rows.len(), count + targets.ncols());
+        both.columns_mut(0, count).tr_copy_from(&self.transposed(&rows, |row| self.weight(row)));
+        both.columns_mut(count, targets.ncols()).copy_from(&self.targets(&rows));
+        both
+    }
+
+    /// D^{-1/2} Y of these rows, (n, c).
+    pub(crate) fn targets(&self, rows: &[usize]) -> DMatrix<f64> {
+        let mut targets = self.conditions.targets.select_rows(rows);
+        for (mut target, &row) in targets.row_iter_mut().zip(rows) {
+            target *= self.weight(row);
+        }
+        targets
+    }
+
+    /// D^{-1/2} K_nm W of these rows, (n, k), with W, (m, k).
+    pub(crate) fn times(&self, rows: &[usize], w: &DMatrix<f64>) -> DMatrix<f64> {
+        let transposed = self.transposed(rows, |row| self.weight(row));
+        let mut product = DMatrix::zeros(rows.len(), w.ncols());
+        matmul(view_mut(&mut product), Accum::Replace, view(&transposed).transpose(), view(w), 1.0, Par::Seq);
+        product
+    }
+
+    /// D^{-1/2}.
+    fn weight(&self, row: usize) -> f64 {
+        1.0 / self.conditions.noise_weights[row].sqrt()
+    }
+
+    /// (m, n).
+    fn transposed(&self, rows: &[usize], weight: impl Fn(usize) -> f64) -> DMatrix<f64> {
+        let with = self.covariance.with(&self.inducing, self.amplitudes);
+        let mut covariances = DMatrix::zeros(self.inducing.len(), rows.len());
+        for (mut column, &row) in covariances.column_iter_mut().zip(rows) {
+            with(row, column.as_mut_slice());
+            column *= weight(row);
+        }
+        covariances
+    }
+}

@@ -1,0 +1,112 @@
+//! Leave-one-trajectory-out prediction of a model that was conditioned on all rows through some of them: closed form (S36).
+
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+use crate::inducing::features::Features;
+use crate::inducing::spectrum::Spectrum;
+use crate::kernel::covariance::Covariance;
+use crate::kernel::factor::{Factor, add_product_below, view};
+use crate::left_out::LeftOut;
+
+/// Rows whose features are at hand together.
+const TOGETHER: usize = 2048;
+
+/// A spectrum at a level of noise σ², the floor included.
+pub(crate) struct Leaving<'a, C> {
+    pub(crate) features: &'a Features<'a, C>,
+    pub(crate) spectrum: &'a Spectrum,
+    pub(crate) noise: f64,
+    /// Of [`Spectrum::coefficients`].
+    pub(crate) coefficients: &'a DMatrix<f64>,
+}
+
+/// Residuals and variances of one group, in the units of its rows.
+type Group = (DMatrix<f64>, Vec<f64>);
+
+impl<C: Covariance> Leaving<'_, C> {
+    /// Each of these groups predicted without itself; the numbers are of their rows, in this order. `spread` is Σ w|y|² of them, or
+    /// about whatever is predicted without a model. Costs min(m, n_t) n_t m for each, with all features computed once or, of long
+    /// groups, twice.
+    pub(crate) fn each(&self, groups: &[&[usize]], spread: f64) -> Option<LeftOut> {
+        let each: Vec<Option<Group>> = groups.par_iter().map(|rows| self.group(rows)).collect();
+        let rows: Vec<usize> = groups.concat();
+        let targets = self.features.conditions.targets.ncols();
+        let (mut residuals, mut variances) = (DMatrix::zeros(rows.len(), targets), Vec::with_capacity(rows.len()));
+        for group in each {
+            let (errors, of) = group?;
+            residuals.rows_mut(variances.len(), of.len()).copy_from(&errors);
+            variances.extend(of);
+        }
+        let weights: Vec<f64> = rows.iter().map(|&row| self.features.conditions.noise_weights[row]).collect();
+        LeftOut::of(residuals, variances, &weights, spread)
+    }
+
+    fn group(&self, rows: &[usize]) -> Option<Group> {
+        let (mut residuals, mut variances) =
+            if rows.len() <= self.spectrum.singular.len().min(TOGETHER) { self.few(rows)? } else { self.many(rows)? };
+        for (at, &row) in rows.iter().enumerate() {
+            let weight = self.features.conditions.noise_weights[row];
+            residuals.row_mut(at).scale_mut(weight.sqrt());
+            variances[at] *= weight;
+        }
+        Some((residuals, variances))
+    }
+
+    /// Through I − H_tt, (n_t, n_t).
+    fn few(&self, rows: &[usize]) -> Option<Group> {
+        let (mut errors, known, b) = self.own(rows);
+        let mut rest = DMatrix::identity(rows.len(), rows.len());
+        add_product_below(&mut rest, -1.0, view(&b), view(&b).transpose());
+        let factor = Factor::new(rest)?;
+        factor.solve(&mut errors);
+        let inverse = factor.inverse_triangle();
+        let variance = |(at, column): (usize, f64)| self.noise * column + self.unknown(rows[at], known[at]);
+        let squares = inverse.column_iter().map(|column| column.norm_squared());
+        let variances = squares.enumerate().map(variance).collect();
+        Some((errors, variances))
+    }
+
+    /// Through I − BᵀB, (m, m), by Woodbury: (I − BBᵀ)⁻¹ = I + B (I − BᵀB)⁻¹ Bᵀ.
+    fn many(&self, rows: &[usize]) -> Option<Group> {
+        let count = self.spectrum.singular.len();
+        let mut rest = DMatrix::identity(count, count);
+        let mut along = DMatrix::zeros(count, self.coefficients.ncols());
+        for part in rows.chunks(TOGETHER) {
+            let (errors, _, b) = self.own(part);
+            add_product_below(&mut rest, -1.0, view(&b).transpose(), view(&b));
+            along += b.tr_mul(&errors);
+        }
+        let factor = Factor::new(rest)?;
+        factor.solve(&mut along);
+        let mut residuals = DMatrix::zeros(rows.len(), self.coefficients.ncols());
+        let mut variances = Vec::with_capacity(rows.len());
+        for part in rows.chunks(TOGETHER) {
+            let (errors, known, b) = self.own(part);
+            residuals.rows_mut(variances.len(), part.len()).copy_from(&(errors + &b * &along));
+            let mut whitened = b.transpose();
+            factor.whiten(&mut whitened);
+            let squares = whitened.column_iter().map(|column| 1.0 + column.norm_squared());
+            let variance = |(at, square): (usize, f64)| self.noise * square + self.unknown(part[at], known[at]);
+            variances.extend(squares.enumerate().map(variance));
+        }
+        Some((residuals, variances))
+    }
+
+    /// z − Φŵ, the squares of the rows of Φ, and B with H = BBᵀ.
+    fn own(&self, rows: &[usize]) -> (DMatrix<f64>, Vec<f64>, DMatrix<f64>) {
+        let mut b = self.features.times(rows, &self.spectrum.w);
+        let errors = self.features.targets(rows) - &b * self.coefficients;
+        let known = b.row_iter().map(|row| row.norm_squared()).collect();
+        for (mut column, s) in b.column_iter_mut().zip(&self.spectrum.singular) {
+            column /= (s * s + self.noise).sqrt();
+        }
+        (errors, known, b)
+    }
+
+    /// Prior variance that no inducing row says anything of, as D^{-1/2} K_nm is scaled.
+    fn unknown(&self, row: usize, known: f64) -> f64 {
+        let Features { covariance, amplitudes, conditions, .. } = self.features;
+        (covariance.variance(row, amplitudes) / conditions.noise_weights[row] - known).max(0.0)
+    }
+}

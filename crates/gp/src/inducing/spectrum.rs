@@ -1,0 +1,74 @@
+//! All rows as seen through the inducing ones: singular values of their features (S35), and from these the model at any level of noise.
+
+use faer::diag::Diag;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::svd::{ComputeSvdVectors, svd, svd_scratch};
+use faer::{Par, Spec};
+use nalgebra::DMatrix;
+
+use crate::inducing::features::Features;
+use crate::inducing::tree::{triangle, upper};
+use crate::kernel::covariance::Covariance;
+use crate::kernel::factor::{Factor, view, view_mut};
+
+/// Φ = D^{-1/2} K_nm L⁻ᵀ = U diag(s) Vᵀ of all rows, K_mm = LLᵀ among the inducing ones.
+#[derive(Debug)]
+pub(crate) struct Spectrum {
+    /// s, (m).
+    pub(crate) singular: Vec<f64>,
+    /// V, (m, m).
+    v: DMatrix<f64>,
+    /// W = L⁻ᵀV, (m, m): ΦV = D^{-1/2} K_nm W.
+    pub(crate) w: DMatrix<f64>,
+    /// UᵀD^{-1/2}Y, (m, c).
+    targets: DMatrix<f64>,
+}
+
+impl Spectrum {
+    /// Costs 2 n m² operations. None if there is no singular value decomposition.
+    pub(crate) fn of<C: Covariance>(features: &Features<'_, C>, lower: &Factor) -> Option<Spectrum> {
+        let (count, targets) = (features.inducing.len(), features.conditions.targets);
+        let columns = count + targets.ncols();
+        let all = triangle(targets.nrows(), columns, &|rows| features.with_targets(rows));
+        // R of Φ is that of K_nm times L⁻ᵀ: its transpose solves L Xᵀ = Rᵀ.
+        let mut transposed = all.view((0, 0), (count, count)).transpose();
+        lower.whiten(&mut transposed);
+        let (u, singular, v) = decomposed(&transposed.transpose())?;
+        let mut w = v.clone();
+        lower.whiten_transposed(&mut w);
+        let targets = u.tr_mul(&all.view((0, count), (count, targets.ncols())));
+        Some(Spectrum { singular, v, w, targets })
+    }
+
+    /// V^T of the posterior's mean of w at a level of noise: s/(s² + σ²) UᵀD^{-1/2}Y, (m, c).
+    pub(crate) fn coefficients(&self, noise: f64) -> DMatrix<f64> {
+        let mut coefficients = self.targets.clone();
+        for (mut row, s) in coefficients.row_iter_mut().zip(&self.singular) {
+            row *= s / (s * s + noise);
+        }
+        coefficients
+    }
+
+    /// T, (m, m), upper triangle: rows say TL⁻¹k of a function with covariances k, in place of L⁻¹k if they were free of noise (S37).
+    pub(crate) fn shrinkage(&self, noise: f64) -> DMatrix<f64> {
+        let mut shrunk = self.v.transpose();
+        for (mut row, s) in shrunk.row_iter_mut().zip(&self.singular) {
+            row *= s / (s * s + noise).sqrt();
+        }
+        upper(shrunk)
+    }
+}
+
+/// U, s and V of a square matrix.
+fn decomposed(matrix: &DMatrix<f64>) -> Option<(DMatrix<f64>, Vec<f64>, DMatrix<f64>)> {
+    let count = matrix.nrows();
+    let vectors = ComputeSvdVectors::Full;
+    let mut memory = MemBuffer::new(svd_scratch::<f64>(count, count, vectors, vectors, Par::Seq, Spec::default()));
+    let [mut u, mut v] = [(); 2].map(|()| DMatrix::zeros(count, count));
+    let mut singular = Diag::<f64>::zeros(count);
+    let stack = MemStack::new(&mut memory);
+    let (u_view, v_view) = (Some(view_mut(&mut u)), Some(view_mut(&mut v)));
+    svd(view(matrix), singular.as_mut(), u_view, v_view, Par::Seq, stack, Spec::default()).ok()?;
+    let singular: Vec<f64> = singular.column_vector().iter().copied().collect();
+    singular.iter().all(|s| s.is_finite()).then_some((u, singular, v))
+}

@@ -1,0 +1,171 @@
+//! Means of neighbouring samples in place of samples, where velocities are noisy (S33).
+
+use std::borrow::Cow;
+
+use motion::SampleIndex;
+use nalgebra::{DMatrix, DVector};
+
+use crate::Rows;
+
+/// How many standard deviations of noise alone two neighbouring means may differ beyond the mean of such differences.
+const DEVIATIONS: f64 = 7.0;
+
+/// Means of samples that follow each other.
+#[derive(Debug, Clone)]
+struct Block {
+    /// Where its first sample stands in its trajectory, and how many it has: a power of two.
+    begin: usize,
+    count: usize,
+    state: DVector<f64>,
+    velocity: DVector<f64>,
+    momentum: Option<DVector<f64>>,
+    /// Of the velocity along an axis.
+    variance: f64,
+    index: SampleIndex,
+}
+
+impl Rows {
+    /// (S33): neighbouring rows of a trajectory as one, again and again, while their velocities differ by little more than their
+    /// noise. Costs M n. The same rows where velocities are certain, or where they were found from positions: then noise is not
+    /// independent from row to row, and was averaged already.
+    ///
+    /// The direction of (S1) is that of the velocity, so that noise of it enters squared and does not go down with the number of
+    /// rows: of a velocity's noise, its mean over as many samples does.
+    pub(crate) fn averaged(&self) -> Cow<'_, Rows> {
+        let Some(variances) = self.variances().filter(|_| self.switches().is_none()) else {
+            return Cow::Borrowed(self);
+        };
+        let all: Vec<usize> = (0..self.len()).collect();
+        let same = |&a: &usize, &b: &usize| self.indices()[a].trajectory == self.indices()[b].trajectory;
+        let blocks: Vec<Block> = all.chunk_by(same).flat_map(|rows| self.blocks(rows, variances)).collect();
+        Cow::Owned(Rows {
+            states: columns(&blocks, |block| &block.state),
+            velocities: columns(&blocks, |block| &block.velocity),
+            momenta: blocks
+                .iter()
+                .map(|block| block.momentum.clone())
+                .collect::<Option<Vec<_>>>()
+                .map(|momenta| DMatrix::from_columns(&momenta)),
+            variances: Some(blocks.iter().map(|block| block.variance).collect()),
+            indices: blocks.iter().map(|block| block.index).collect(),
+            noise: self.noise,
+            switches: None,
+        })
+    }
+
+    /// Of one trajectory. Blocks begin at multiples of their length.
+    fn blocks(&self, rows: &[usize], variances: &[f64]) -> Vec<Block> {
+        let dim = self.dim() as f64;
+        let most = dim + DEVIATIONS * (2.0 * dim).sqrt();
+        let mut blocks: Vec<Block> = Vec::new();
+        for (begin, &row) in rows.iter().enumerate() {
+            let mut last = Block {
+                begin,
+                count: 1,
+                state: self.states().column(row).into_owned(),
+                velocity: self.velocities().column(row).into_owned(),
+                momentum: self.momenta().map(|momenta| momenta.column(row).into_owned()),
+                variance: variances[row],
+                index: self.indices()[row],
+            };
+            while let Some(before) = blocks.pop_if(|before| before.joins(&last, most)) {
+                last = before.with(&last);
+            }
+            blocks.push(last);
+        }
+        blocks
+    }
+}
+
+impl Block {
+    fn joins(&self, next: &Block, most: f64) -> bool {
+        let aligned = self.count == next.count && self.begin.is_multiple_of(2 * self.count);
+        aligned && (&self.velocity - &next.velocity).norm_squared() <= most * (self.variance + next.variance)
+    }
+
+    fn with(self, next: &Block) -> Block {
+        let mean = |a: DVector<f64>, b: &DVector<f64>| (a + b) * 0.5;
+        Block {
+            count: 2 * self.count,
+            state: mean(self.state, &next.state),
+            velocity: mean(self.velocity, &next.velocity),
+            momentum: self.momentum.zip(next.momentum.as_ref()).map(|(a, b)| mean(a, b)),
+            variance: 0.25 * (self.variance + next.variance),
+            ..self
+        }
+    }
+}
+
+fn columns(blocks: &[Block], of: impl Fn(&Block) -> &DVector<f64>) -> DMatrix<f64> {
+    DMatrix::from_columns(&blocks.iter().map(|block| of(block).clone()).collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use rand::SeedableRng as _;
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+
+    fn rows(velocities: &DMatrix<f64>, lengths: &[usize]) -> Rows {
+        let indices = lengths
+            .iter()
+            .enumerate()
+            .flat_map(|(trajectory, &length)| (0..length).map(move |sample| SampleIndex { trajectory, sample }));
+        let states = DMatrix::from_fn(velocities.nrows(), velocities.ncols(), |k, row| (row + 3 * k) as f64);
+        Rows::new(states, velocities.clone(), indices.collect()).expect("finite rows")
+    }
+
+    proptest! {
+        /// A velocity that stays: each trajectory as the powers of two that make up its length, with the mean state and velocity and
+        /// the variance of so many samples. No mean is of two trajectories. Units do not matter.
+        #[test]
+        fn what_stays_is_one_row(
+            lengths in prop::collection::vec(1usize..70, 1..6),
+            dim in 1usize..5,
+            (noise, unit) in (0.01..1.0f64, 0.1..100.0f64),
+            seed in any::<u64>(),
+        ) {
+            let rng = &mut ChaCha8Rng::seed_from_u64(seed);
+            let count = lengths.iter().sum();
+            let mean: Vec<f64> = (0..dim).map(|_| rng.random_range(-1.0..1.0)).collect();
+            let sway = DMatrix::from_fn(dim, count, |k, _| mean[k] + noise * rng.random_range(-1.0..1.0));
+            let averaged_in = |unit: f64| {
+                let rows = rows(&(&sway * unit), &lengths).with_variances(vec![(unit * noise).powi(2); count]).unwrap();
+                rows.averaged().into_owned()
+            };
+            let (averaged, elsewhere) = (averaged_in(1.0), averaged_in(unit));
+            let bits: usize = lengths.iter().map(|length| length.count_ones() as usize).sum();
+            prop_assert_eq!(averaged.len(), bits);
+            prop_assert_eq!(elsewhere.indices(), averaged.indices());
+            let variances = averaged.variances().unwrap();
+            let sizes: Vec<f64> = variances.iter().map(|variance| (noise * noise / variance).round()).collect();
+            prop_assert_eq!(sizes.iter().sum::<f64>(), count as f64);
+            let mut begin = 0;
+            for (row, size) in sizes.iter().enumerate() {
+                let own = sway.columns(begin, *size as usize).column_mean();
+                prop_assert!((averaged.velocities().column(row) - own).amax() < 1e-12);
+                let state = begin as f64 + 0.5 * (size - 1.0);
+                prop_assert!((averaged.states()[(0, row)] - state).abs() < 1e-9);
+                prop_assert_eq!(variances[row], noise * noise / size);
+                begin += *size as usize;
+            }
+        }
+
+        /// A jump of many deviations is in no mean, wherever it is; what is certain, or found from positions, stays.
+        #[test]
+        fn no_mean_crosses_a_jump(length in 2usize..200, at in 0.0..1.0f64, dim in 1usize..4, noise in 0.001..0.1f64) {
+            let jump = 1 + (at * (length - 1) as f64) as usize;
+            let velocities = DMatrix::from_fn(dim, length, |_, row| if row < jump { 1.0 } else { -1.0 });
+            let certain = rows(&velocities, &[length]);
+            prop_assert_eq!(&*certain.averaged(), &certain);
+            let noisy = certain.with_variances(vec![noise * noise; length]).unwrap();
+            let averaged = noisy.averaged();
+            prop_assert!(averaged.velocities().iter().all(|velocity| velocity.abs() == 1.0));
+            prop_assert!(averaged.len() < length.max(3));
+            let smoothed = noisy.clone().with_findings(noise, Some(vec![vec![0.0; length]]));
+            prop_assert_eq!(&*smoothed.averaged(), &smoothed);
+        }
+    }
+}

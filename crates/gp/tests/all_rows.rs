@@ -1,0 +1,149 @@
+//! Models of all rows through inducing rows (S34)–(S37): what more data bring.
+
+mod drawn;
+
+use gp::{AutoGp, Rows, SlopeFit, SlopeGp};
+use motion::{LearntPolicy as _, Policy, SampleIndex};
+use nalgebra::{DMatrix, DVector};
+use rand::{Rng, RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+
+/// A gradient of a potential on [−1, 1]ⁿ.
+type Gradient = fn(&[f64]) -> Vec<f64>;
+
+fn wells(x: &[f64]) -> Vec<f64> {
+    let centres =
+        [[0.5, 0.3, -0.4, 0.2, 0.1, -0.5], [-0.6, 0.2, 0.3, -0.3, 0.4, 0.2], [0.1, -0.6, 0.2, 0.5, -0.4, 0.3]];
+    let mut gradient: Vec<f64> = x.iter().map(|x| 0.6 * x).collect();
+    for centre in centres {
+        let well = (-x.iter().zip(&centre).map(|(x, c)| (x - c).powi(2)).sum::<f64>() * 2.0).exp();
+        for (k, gradient) in gradient.iter_mut().enumerate() {
+            *gradient += 4.0 * (x[k] - centre[k]) * well;
+        }
+    }
+    gradient
+}
+
+fn sinusoid(x: &[f64]) -> Vec<f64> {
+    vec![2.0 * (2.0 * x[0]).cos() * (x[1]).cos(), -(2.0 * x[0]).sin() * x[1].sin()]
+}
+
+/// Rows, and states of other movements with the policy there, (n, Q) each.
+struct Set {
+    rows: Rows,
+    fresh: (DMatrix<f64>, DMatrix<f64>),
+}
+
+fn normal(rng: &mut impl Rng) -> f64 {
+    rng.sample(rand_distr::StandardNormal)
+}
+
+/// Movements under a plane that changes once in each, with noise on velocities as a share of their root mean square.
+fn set(gradient: Gradient, dim: usize, (movements, samples): (usize, usize), noise: f64, seed: u64) -> Set {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let step = 2.0 / samples as f64;
+    let policy = |x: &DVector<f64>| -DVector::from_vec(gradient(x.as_slice()));
+    let mut record = |count: usize| {
+        let (mut states, mut velocities) = (Vec::new(), Vec::new());
+        for _ in 0..count {
+            let mut x = DVector::from_fn(dim, |_, _| rng.random_range(-1.0..1.0));
+            let mut n = DVector::zeros(dim);
+            for sample in 0..samples {
+                if sample == 0 || sample == samples / 2 {
+                    n = DVector::from_fn(dim, |_, _| normal(&mut rng)).normalize();
+                }
+                let pi = policy(&x);
+                let u = &pi - &n * n.dot(&pi);
+                states.push(x.clone());
+                velocities.push(u.clone());
+                x += u * step;
+            }
+        }
+        (states, velocities)
+    };
+    let (fresh, _) = record(20);
+    let (states, mut velocities) = record(movements);
+    let rms = (velocities.iter().map(DVector::norm_squared).sum::<f64>() / velocities.len() as f64).sqrt();
+    for velocity in &mut velocities {
+        velocity.apply(|u| *u += noise * rms * normal(&mut rng));
+    }
+    let count = states.len();
+    let indices = (0..count).map(|row| SampleIndex { trajectory: row / samples, sample: row % samples }).collect();
+    let rows = Rows::new(DMatrix::from_columns(&states), DMatrix::from_columns(&velocities), indices).unwrap();
+    let rows = if noise > 0.0 { rows.with_variances(vec![(noise * rms).powi(2); count]).unwrap() } else { rows };
+    let truth: Vec<_> = fresh.iter().map(policy).collect();
+    Set { rows, fresh: (DMatrix::from_columns(&fresh), DMatrix::from_columns(&truth)) }
+}
+
+fn error(policy: &dyn Policy, (states, truth): &(DMatrix<f64>, DMatrix<f64>)) -> f64 {
+    let mean = truth.column_mean();
+    let errors = states.column_iter().zip(truth.column_iter());
+    let squares: f64 = errors.map(|(x, pi)| (policy.action(x) - pi).norm_squared()).sum();
+    squares / truth.column_iter().map(|pi| (pi - &mean).norm_squared()).sum::<f64>()
+}
+
+fn gp(inducing_rows: usize) -> SlopeGp {
+    SlopeGp { max_rows: 200, hyper_rows: 150, inducing_rows, ..SlopeGp::default() }
+}
+
+/// Without noise a hundred rows say nearly all; with it, more of them say more, and all of them the most.
+#[test]
+fn more_rows_are_never_worse() {
+    let learnt = |samples: usize, inducing: usize| {
+        let errors = (0..3).map(|seed| {
+            let set = set(sinusoid, 2, (40, samples), 0.1, 20 + seed);
+            error(gp(inducing).fit(&set.rows, &mut drawn::rng(3)).unwrap().policy(), &set.fresh)
+        });
+        errors.sum::<f64>() / 3.0
+    };
+    let (few, many, all) = (learnt(20, 0), learnt(320, 0), learnt(320, 150));
+    assert!(many < 0.7 * few, "{many} {few}");
+    assert!(all < 1.1 * many, "{all} {many}");
+}
+
+/// The report says what a policy was learnt from; where nothing is thinned, inducing rows change nothing.
+#[test]
+fn inducing_rows_are_said_and_only_where_rows_are_thinned() {
+    let many = set(wells, 3, (30, 60), 0.0, 5);
+    let fit = gp(300).fit(&many.rows, &mut drawn::rng(1)).unwrap();
+    let report = fit.report();
+    assert_eq!((report.rows, report.inducing, report.rows_dropped.thinned), (1800, Some(300), 0));
+    let thinned = gp(0).fit(&many.rows, &mut drawn::rng(1)).unwrap();
+    assert_eq!((thinned.report().rows, thinned.report().inducing), (200, None));
+    assert_eq!(thinned.report().rows_dropped.thinned, 1600);
+    assert!(error(fit.policy(), &many.fresh) < error(thinned.policy(), &many.fresh));
+    let few = set(wells, 3, (20, 10), 0.0, 5);
+    let [with, without] = [300, 0].map(|inducing| gp(inducing).fit(&few.rows, &mut drawn::rng(1)).unwrap());
+    assert_eq!(with.report(), without.report());
+    assert_eq!(with.action(few.rows.states().column(3)), without.action(few.rows.states().column(3)));
+}
+
+/// Stored and read back: the same policy and uncertainty to the last bit. A triangle of another size is refused.
+#[test]
+fn a_model_of_inducing_rows_is_stored() {
+    let set = set(wells, 3, (30, 60), 0.05, 6);
+    let fit = AutoGp { slope: gp(80), ..AutoGp::default() }.fit(&set.rows, &mut drawn::rng(1)).unwrap();
+    assert!(fit.slope().report().inducing.is_some());
+    let text = serde_json::to_string(&fit).unwrap();
+    let read: gp::AutoFit = serde_json::from_str(&text).unwrap();
+    let x = set.fresh.0.column(7);
+    assert_eq!(fit.action(x), read.action(x));
+    assert_eq!(fit.slope().uncertainty(x), read.slope().uncertainty(x));
+    assert_eq!(fit.direct().support(x), read.direct().support(x));
+    let mut record = serde_json::to_value(fit.slope()).unwrap();
+    let triangle = record["slope_gp"]["shrinkage"].as_array_mut().expect("a triangle");
+    triangle.pop();
+    let refused = serde_json::from_value::<SlopeFit>(record).unwrap_err().to_string();
+    assert!(refused.contains("triangle"), "{refused}");
+}
+
+/// Uncertainty is small where movements were, grows to the prior's away from them, and is never negative.
+#[test]
+fn uncertainty_of_inducing_rows_grows_away_from_them() {
+    let set = set(wells, 3, (30, 60), 0.0, 7);
+    let fit = gp(100).fit(&set.rows, &mut drawn::rng(1)).unwrap();
+    let trace = |x: &DVector<f64>| fit.uncertainty(x.as_view()).trace();
+    let here = set.rows.states().column(40).into_owned();
+    let traces: Vec<f64> = [1.0, 2.0, 4.0, 8.0].iter().map(|by| trace(&(&here * *by))).collect();
+    assert!(traces.is_sorted() && traces[0] >= 0.0 && traces[0] < 0.1 * traces[3], "{traces:?}");
+}
