@@ -280,7 +280,8 @@ fn recorded(goals: &Goals, movements: usize, seed: u64, how: Recorded) -> Record
     };
     let speed = rms(&|of| of.velocities().unwrap().norm_squared());
     let spread = rms(&|of| of.states().norm_squared());
-    let mut noisy = |of: &DMatrix<f64>, deviation: f64| of.map(|x| x + deviation * rng.sample::<f64, _>(StandardNormal));
+    let mut noisy =
+        |of: &DMatrix<f64>, deviation: f64| of.map(|x| x + deviation * rng.sample::<f64, _>(StandardNormal));
     let units = |mut of: DMatrix<f64>| {
         of.row_mut(0).scale_mut(how.unit);
         of
@@ -314,7 +315,9 @@ fn recorded(goals: &Goals, movements: usize, seed: u64, how: Recorded) -> Record
 /// nUPE on movements towards goals that were not shown, without noise, in the units of the truth.
 fn error_at_new_goals(model: &Model, goals: &Goals, unit: f64, seed: u64) -> f64 {
     let (mut learnt, mut truth) = (Vec::new(), Vec::new());
-    let units = |x: &DVector<f64>, unit: f64| DVector::from_fn(x.len(), |axis, _| if axis == 0 { unit * x[0] } else { x[axis] });
+    let units = |x: &DVector<f64>, unit: f64| {
+        DVector::from_fn(x.len(), |axis, _| if axis == 0 { unit * x[0] } else { x[axis] })
+    };
     for movement in goals.movements(20, 1000 + seed).trajectories() {
         let goal = movement.context();
         let there = model.in_context(&units(goal, unit)).unwrap();

@@ -79,7 +79,8 @@ fn learnt(set: &Set, seed: u64) -> Option<AutoFit> {
     let case = if noise > 0.0 { case.velocity_noise(noise, seed) } else { case };
     let prepared = prepare(&case.recordings, &PrepareOptions::default()).ok()?;
     let options = FitOptions { seed, max_rows: MAX_ROWS, ..FitOptions::default() };
-    let model = fit(&prepared, &options, &mut Progress { cancelled: &AtomicBool::new(false), report: &mut |_| () }).ok()?;
+    let model =
+        fit(&prepared, &options, &mut Progress { cancelled: &AtomicBool::new(false), report: &mut |_| () }).ok()?;
     if model.scales().iter().any(|scale| *scale != 1.0) {
         return None;
     }
@@ -146,7 +147,12 @@ fn beyond(seed: u64) -> Vec<Set> {
             Learning::Positions(noise) => format!("positions {noise}"),
         };
         let recordings = system.record(&mut rng(seed)).unwrap();
-        sets.push(Set { name: format!("{name}/{n_trajectories}/{how}"), truth, recordings, learning: learning.clone() });
+        sets.push(Set {
+            name: format!("{name}/{n_trajectories}/{how}"),
+            truth,
+            recordings,
+            learning: learning.clone(),
+        });
     };
     for (name, policy) in policies {
         for constraint in [Free, Varying, HalfFree, OneForAll] {
@@ -162,7 +168,8 @@ fn beyond(seed: u64) -> Vec<Set> {
         add(name, policy, Free, 20, &Learning::Positions(0.01));
         add(name, policy, Varying, 20, &Learning::Positions(0.01));
     }
-    for (name, policy, count) in [("wells12", Wells { dim: 12 }, 20), ("wells22", Wells { dim: 22 }, 40), ("relu6", planes(6, 0.0), 40)]
+    for (name, policy, count) in
+        [("wells12", Wells { dim: 12 }, 20), ("wells22", Wells { dim: 22 }, 40), ("relu6", planes(6, 0.0), 40)]
     {
         for constraint in [Free, Varying, OneForAll] {
             add(name, policy, constraint, count, &exact);
@@ -188,7 +195,8 @@ fn robots(seed: u64) -> Vec<Set> {
     let hand = HandInPlane::new(body()).record(&mut rng(seed)).unwrap();
     let arm = arm.record(&mut rng(seed)).unwrap();
     let learning = Learning::Crate(FrontEnd::FiniteDifferences);
-    let set = |name: &str, truth, recordings| Set { name: name.to_owned(), truth, recordings, learning: learning.clone() };
+    let set =
+        |name: &str, truth, recordings| Set { name: name.to_owned(), truth, recordings, learning: learning.clone() };
     vec![set("grasp", "varying", grasp), set("body", "varying", hand), set("arm", "varying", arm)]
 }
 
@@ -197,7 +205,9 @@ fn robots(seed: u64) -> Vec<Set> {
 fn table() {
     let seeds = std::env::var("SEEDS").unwrap_or_else(|_| "1,2,3".to_owned());
     let only = std::env::var("ONLY").unwrap_or_default();
-    println!("set\ttruth\tseed\treading\tdim\ttrajectories\tpush\ta_s\ta_d\tq\tt\tlambda\tt_lambda\tp_d\tgap\tseen\thidden\tnupe_slope\tnupe_direct\tnupe\texpected\tunexplained");
+    println!(
+        "set\ttruth\tseed\treading\tdim\ttrajectories\tpush\ta_s\ta_d\tq\tt\tlambda\tt_lambda\tp_d\tgap\tseen\thidden\tnupe_slope\tnupe_direct\tnupe\texpected\tunexplained"
+    );
     for seed in seeds.split(',').map(|seed| seed.parse().unwrap()) {
         for set in robots(seed).into_iter().chain(beyond(seed)).filter(|set| set.name.contains(&only)) {
             if let Some(line) = line(&set, seed) {
