@@ -2,17 +2,25 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+#[path = "../../gp/tests/goals/mod.rs"]
+mod goals;
 mod running;
 
 use std::path::Path;
 use std::process::Command;
 use std::sync::OnceLock;
+use std::sync::atomic::AtomicBool;
 
-use motion::{Channel, Episode, Policy as _, Recordings, Source, Times, Verdict};
+use goals::{Attraction, Goals};
+use motion::{Channel, Episode, Policy as _, Recordings, Source, Times, Trajectory, Verdict};
 use nalgebra::{DMatrix, DVector, dvector};
 use policy_align::{
-    ContextError, ContextUse, Model, PrepareError, PrepareOptions, RollOut, RollOutError, prepare, to_onnx,
+    ContextError, ContextUse, FitOptions, Model, PrepareError, PrepareOptions, Progress, RollOut, RollOutError, fit,
+    prepare, to_onnx,
 };
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
 use running::{examples, run_in};
 
 /// A folder with `goals.csv` and, learnt once, `goals.json`.
@@ -247,4 +255,120 @@ fn a_context_that_is_none_is_refused() {
 fn no_constraint_is_found_where_only_goals_differ() {
     let ran = run_in(folder(), "constraints goals.json goals.csv --json");
     assert_eq!(ran.code, Some(0), "{} {}", ran.out, ran.err);
+}
+
+/// How goals are recorded.
+#[derive(Debug, Clone, Copy, Default)]
+struct Recorded {
+    /// Noise of velocities, as a share of their root mean square.
+    speed_noise: f64,
+    /// Noise of positions, as a share of their standard deviation.
+    position_noise: f64,
+    /// Whether there are velocities.
+    positions_only: bool,
+    /// Unit of x, with its velocity and goal.
+    unit: f64,
+}
+
+/// Movements towards goals as recordings, goals the last channels, and what x is to be multiplied with.
+fn recorded(goals: &Goals, movements: usize, seed: u64, how: Recorded) -> Recordings {
+    let shown = goals.movements(movements, seed);
+    let mut rng = ChaCha8Rng::seed_from_u64(seed ^ 0x7e);
+    let rms = |of: &dyn Fn(&Trajectory) -> f64| {
+        let trajectories = shown.trajectories();
+        (trajectories.iter().map(of).sum::<f64>() / (shown.n_samples() * goals.dim) as f64).sqrt()
+    };
+    let speed = rms(&|of| of.velocities().unwrap().norm_squared());
+    let spread = rms(&|of| of.states().norm_squared());
+    let mut noisy =
+        |of: &DMatrix<f64>, deviation: f64| of.map(|x| x + deviation * rng.sample::<f64, _>(StandardNormal));
+    let units = |mut of: DMatrix<f64>| {
+        of.row_mut(0).scale_mut(how.unit);
+        of
+    };
+    let episode = |(at, of): (usize, &Trajectory)| {
+        let states = units(noisy(of.states(), how.position_noise * spread));
+        let velocities = units(noisy(of.velocities().unwrap(), how.speed_noise * speed));
+        let goal = units(DMatrix::from_fn(goals.dim, of.n_samples(), |axis, _| of.context()[axis]));
+        let both = |upper: &DMatrix<f64>, lower: &DMatrix<f64>| {
+            DMatrix::from_fn(2 * goals.dim, of.n_samples(), |row, i| match row.checked_sub(goals.dim) {
+                None => upper[(row, i)],
+                Some(row) => lower[(row, i)],
+            })
+        };
+        Episode {
+            name: at.to_string(),
+            source: Source::default(),
+            times: Times::Even { step: of.time_step(), len: of.n_samples() },
+            positions: both(&states, &goal),
+            velocities: (!how.positions_only).then(|| both(&velocities, &(goal * 0.0))),
+            constraint: None,
+            context: DVector::zeros(0),
+        }
+    };
+    let names = ["x", "y", "z"].iter().take(goals.dim).map(ToString::to_string);
+    let goal_names = ["x", "y", "z"].iter().take(goals.dim).map(|name| format!("goal_{name}"));
+    let state = names.chain(goal_names).map(|name| Channel { name, unit: None }).collect();
+    Recordings { state, episodes: shown.trajectories().iter().enumerate().map(episode).collect(), findings: vec![] }
+}
+
+/// nUPE on movements towards goals that were not shown, without noise, in the units of the truth.
+fn error_at_new_goals(model: &Model, goals: &Goals, unit: f64, seed: u64) -> f64 {
+    let (mut learnt, mut truth) = (Vec::new(), Vec::new());
+    let units = |x: &DVector<f64>, unit: f64| {
+        DVector::from_fn(x.len(), |axis, _| if axis == 0 { unit * x[0] } else { x[axis] })
+    };
+    for movement in goals.movements(20, 1000 + seed).trajectories() {
+        let goal = movement.context();
+        let there = model.in_context(&units(goal, unit)).unwrap();
+        for x in movement.states().column_iter().step_by(5) {
+            let x = x.into_owned();
+            learnt.push(units(&there.policy().action(units(&x, unit).as_view()), 1.0 / unit));
+            truth.push(goals.policy(&x, goal));
+        }
+    }
+    metrics::nupe(&DMatrix::from_columns(&truth), &DMatrix::from_columns(&learnt)).unwrap()
+}
+
+/// What the program learns of goals from recordings with noise, and in units that are not right.
+#[test]
+#[ignore = "a hundred fits: minutes of a release build; prints the table of docs/decisions/gp.md"]
+#[allow(clippy::print_stdout, reason = "it prints a table")]
+fn new_goals_are_reached_through_noise_and_units() {
+    let plain = Recorded { unit: 1.0, ..Recorded::default() };
+    let noisy = Recorded { speed_noise: 0.05, ..plain };
+    let positions = Recorded { positions_only: true, ..plain };
+    for (name, how) in [
+        ("clean", plain),
+        ("5 % noise of velocities", noisy),
+        ("5 % noise of both", Recorded { position_noise: 0.05, ..noisy }),
+        ("positions", positions),
+        ("positions with 1 %", Recorded { position_noise: 0.01, ..positions }),
+        ("positions with 5 %", Recorded { position_noise: 0.05, ..positions }),
+        ("x times 5", Recorded { unit: 5.0, ..plain }),
+        ("x times 57", Recorded { unit: 57.0, ..plain }),
+        ("x times 5, 5 % noise of velocities", Recorded { unit: 5.0, ..noisy }),
+    ] {
+        for (dim, attraction, count) in [
+            (2, Attraction::Quadratic, 20),
+            (2, Attraction::Well, 40),
+            (3, Attraction::Quadratic, 40),
+            (3, Attraction::Well, 40),
+        ] {
+            let goals = Goals { dim, attraction };
+            let mut fitted = |seed| {
+                let prepared = prepare(&recorded(&goals, count, seed, how), &PrepareOptions::default()).unwrap();
+                let options = FitOptions { seed, ..FitOptions::default() };
+                let mut progress = Progress { cancelled: &AtomicBool::new(false), report: &mut |_| () };
+                let model = fit(&prepared, &options, &mut progress).unwrap();
+                let error = error_at_new_goals(&model, &goals, how.unit, seed);
+                let (verdict, numbers, scales) = (model.trust.verdict, &model.trust.numbers, model.scales());
+                assert!(verdict != Verdict::Good || error < 0.06, "{name}: {error}");
+                assert!(numbers.expected_error > error / 10.0 && (dim == 3 || error < 0.1), "{name}: {error}");
+                assert!((scales[1] / scales[0] / how.unit).ln().abs() < 0.25, "{name}: {scales}");
+                format!("{error:.1e} {verdict:?}, expected {:.1e}", numbers.expected_error)
+            };
+            println!("{name}\t{dim}-D {attraction:?}, {count}\t{}", [1, 2, 3].map(&mut fitted).join("\t"));
+        }
+    }
 }

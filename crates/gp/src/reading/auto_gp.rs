@@ -77,7 +77,7 @@ impl AutoGp {
             let compared = Compared { slope, shares: Some(&shares), ..compared };
             let numbers = ReadingNumbers::compared(&compared);
             let left_out = compared.errors();
-            numbers.direction_tells().then_some((pushed, numbers, left_out))
+            numbers.stretches_tell().then_some((pushed, numbers, left_out))
         });
         let (slope, kept, numbers, left_out, reading) = match telling {
             Some((pushed, numbers, left_out)) => {

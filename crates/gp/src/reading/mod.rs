@@ -29,11 +29,13 @@ pub enum Hypothesis {
 }
 
 /// The two policies agree so well that no question is left.
-const SAME: f64 = 0.03;
+const SAME: f64 = 0.01;
 /// They agree well enough where all directions are seen.
 const CLOSE: f64 = 0.1;
 /// Every direction is seen if the least is, by this share of an even one.
 const SEEN: f64 = 0.1;
+/// The same where the policies differ: noise alone shows up to this share of an even one across a constraint that all have.
+const WELL_SEEN: f64 = 0.25;
 /// Demonstrations below which nothing is called constrained.
 const DEMONSTRATIONS: usize = 5;
 /// Left-out error above which nothing is explained.
@@ -60,9 +62,10 @@ impl ReadingNumbers {
         }
     }
 
-    /// Whether there was motion in every direction.
+    /// Whether there was motion in every direction, and more than noise makes if the policies differ.
     pub fn seen(&self) -> bool {
-        self.least_seen.share * self.least_seen.direction.len() as f64 >= SEEN
+        let least = if self.gap > SAME { WELL_SEEN } else { SEEN };
+        self.least_seen.share * self.least_seen.direction.len() as f64 >= least
     }
 
     /// Whether the state has one dimension. Its one direction cannot hide another: a constraint stops the movement or does
@@ -75,8 +78,21 @@ impl ReadingNumbers {
     /// threshold is higher: people's handwriting, which is free, gains up to λ = 0.7 there.
     pub fn direction_tells(&self) -> bool {
         let least_lambda = if self.p_d > UNEXPLAINED { 0.5 } else { 0.75 };
-        let predicts = !self.is_a_line() && self.a_s <= 0.8;
-        predicts && ((self.q <= 0.4 && self.t >= 2.0) || (self.lambda >= least_lambda && self.t_lambda >= 2.0))
+        let gains = self.q <= 0.4 && self.t >= self.least_t();
+        !self.is_a_line() && (gains || (self.lambda >= least_lambda && self.t_lambda >= self.least_t()))
+    }
+
+    /// Whether the directions in which velocities of a stretch differ help, where those of samples do not. Five movements agree on
+    /// that by chance as long as logarithms of errors alone are compared.
+    pub(crate) fn stretches_tell(&self) -> bool {
+        let many = self.trajectories >= DEMONSTRATIONS && self.t >= self.least_t();
+        many && self.gap > SAME && self.direction_tells()
+    }
+
+    /// Two standard deviations of Student's distribution, infinite for three trajectories.
+    fn least_t(&self) -> f64 {
+        let freedom = self.trajectories.saturating_sub(1) as f64;
+        if freedom > 2.0 { 2.0 * (freedom / (freedom - 2.0)).sqrt() } else { f64::INFINITY }
     }
 
     /// Whether the slope policy has a part that was not observed. In many dimensions, and where it has kinks, a potential is
@@ -123,7 +139,7 @@ impl ReadingNumbers {
                 "Constraints hid part of the policy, and they differed: knowing the direction a movement was let go in predicts its speed far better than the place alone (squared error {a_s} against {a_d}). The slope policy is used; about {hidden} of its length was hidden from view. Expected error {expected_nupe:.1e}."
             ),
             Hypothesis::Ambiguous if self.gap <= SAME || self.shows_a_potential() => format!(
-                "Nothing ever moved along {}: either it wants not to, or it is always blocked there.",
+                "Hardly anything ever moved along {}: either the policy does not, or it is always blocked there.",
                 direction(&self.least_seen.direction)
             ),
             Hypothesis::Ambiguous => format!(
