@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use crate::Rows;
 use noise::velocity_noise;
-use segmentation::{Segment, segments};
+use segmentation::{Segment, known_segment, segments};
 
 /// Most samples of a movement among which switches are looked for; of longer ones, evenly many.
 pub(crate) const MOST_SAMPLES: usize = 60;
@@ -55,22 +55,26 @@ impl Stretches {
             return None;
         }
         let at: Vec<usize> = (0..rows.len()).collect();
-        let movements = movements(rows, &at);
-        let noise = velocity_noise(rows.velocities(), rows.variances(), &movements)?;
-        let of_movement = |movement: &&[usize]| {
-            let few = evenly(movement, MOST_SAMPLES);
-            let found = segments(&rows.velocities().select_columns(&few), noise);
-            found.iter().filter_map(|segment| stretch(rows, movement, &few, segment, noise)).collect::<Vec<_>>()
+        let parts = parts(rows, &at);
+        let noise = velocity_noise(rows.velocities(), rows.variances(), &parts)?;
+        let of_part = |part: &&[usize]| {
+            let few = if rows.labels().is_some() { part.to_vec() } else { evenly(part, MOST_SAMPLES) };
+            let velocities = rows.velocities().select_columns(&few);
+            let found = match rows.labels() {
+                Some(_) => known_segment(&velocities, noise).into_iter().collect(),
+                None => segments(&velocities, noise),
+            };
+            found.iter().filter_map(|segment| stretch(rows, part, &few, segment, noise)).collect::<Vec<_>>()
         };
-        let stretches: Vec<Stretch> = movements.par_iter().flat_map_iter(of_movement).collect();
+        let stretches: Vec<Stretch> = parts.par_iter().flat_map_iter(of_part).collect();
         (!stretches.is_empty()).then_some(Stretches { stretches, noise })
     }
 }
 
-/// `at`, all rows in their order, by movement.
-pub(crate) fn movements<'a>(rows: &Rows, at: &'a [usize]) -> Vec<&'a [usize]> {
-    let trajectory = |row: usize| rows.indices()[row].trajectory;
-    at.chunk_by(|&a, &b| trajectory(a) == trajectory(b)).collect()
+/// `at`, all rows in their order, by movement, and where labels tell switches, by the parts between them.
+pub(crate) fn parts<'a>(rows: &Rows, at: &'a [usize]) -> Vec<&'a [usize]> {
+    let of = |row: usize| (rows.indices()[row].trajectory, rows.labels().map(|labels| labels[row]));
+    at.chunk_by(|&a, &b| of(a) == of(b)).collect()
 }
 
 /// The mean of the columns, and the columns about it.
@@ -89,10 +93,10 @@ pub(crate) fn evenly(rows: &[usize], most: usize) -> Vec<usize> {
     (0..most).map(|at| rows[at * (rows.len() - 1) / (most - 1)]).collect()
 }
 
-/// The directions of a segment, over all of its samples; none if no direction stands out from the noise.
-fn stretch(rows: &Rows, movement: &[usize], few: &[usize], segment: &Segment, noise: f64) -> Option<Stretch> {
+/// The directions of a segment of a part, over all of its samples; none if no direction stands out from the noise.
+fn stretch(rows: &Rows, part: &[usize], few: &[usize], segment: &Segment, noise: f64) -> Option<Stretch> {
     let (first, last) = (few[segment.begin], few[segment.end - 1]);
-    let inside: Vec<usize> = movement.iter().copied().filter(|&row| (first..=last).contains(&row)).collect();
+    let inside: Vec<usize> = part.iter().copied().filter(|&row| (first..=last).contains(&row)).collect();
     let (mean, centred) = centred(&rows.velocities().select_columns(&inside));
     let least = STANDS_OUT * noise.sqrt() * (inside.len() as f64).powf(0.25);
     let svd = centred.svd(true, false);
