@@ -49,6 +49,12 @@ impl Labels {
         self.runs.len() - 1
     }
 
+    /// How many of `samples` samples each name holds for until the next, in their order.
+    pub fn lengths(&self, samples: usize) -> impl Iterator<Item = usize> {
+        let ends = self.runs.iter().skip(1).map(|(first, _)| *first).chain([samples]);
+        self.runs.iter().zip(ends).map(|((first, _), end)| end - first)
+    }
+
     /// The one name of all samples.
     pub fn only(&self) -> Option<&str> {
         match &self.runs[..] {
@@ -88,6 +94,7 @@ mod tests {
                 prop_assert_eq!(labels.at(sample), name);
             }
             prop_assert_eq!(labels.switches(), names.windows(2).filter(|pair| pair[0] != pair[1]).count());
+            prop_assert!(labels.lengths(names.len()).eq(names.chunk_by(|a, b| a == b).map(<[String]>::len)));
             prop_assert_eq!(labels.only().is_some(), names.iter().all(|name| *name == names[0]));
             let picked: Vec<&String> = picks.iter().map(|&pick| &names[pick]).collect();
             prop_assert_eq!(labels.chosen(picks), Labels::of_samples(picked));
