@@ -300,8 +300,7 @@ fn names_of_constraints_may_change() {
         (found.episodes.iter().map(of).collect::<Vec<_>>(), said(&found))
     };
     let named = |names: [&str; 6]| Some(names.map(str::to_owned).to_vec());
-    let expected =
-        vec![named(["2", "2", "2", "2", "rail", "rail"]), named(["rail", "rail", "", "", "", ""])];
+    let expected = vec![named(["2", "2", "2", "2", "rail", "rail"]), named(["rail", "rail", "", "", "", ""])];
     let asked = |name: &str| ReadOptions { constraint_column: Some(name.to_owned()), ..plain() };
     for (column, options) in
         [("constraint", plain()), ("Condition", plain()), ("contact", asked("contact")), ("task", asked("task"))]

@@ -65,7 +65,8 @@ impl Table {
             only: only.to_owned(),
             episodes: Vec::new(),
             clocks: Vec::new(),
-            switching: options.constraint_column.is_some() || roles.constraint.is_some_and(|column| says(&columns[column].name)),
+            switching: options.constraint_column.is_some()
+                || roles.constraint.is_some_and(|column| says(&columns[column].name)),
             by_label: HashMap::new(),
             current: None,
             label: String::new(),
@@ -186,7 +187,8 @@ impl Table {
             findings.extend(unused("labels of constraints that change within an episode are", &[column]));
         }
         let differ = |episode: &RawEpisode| episode.constraint != self.episodes[0].constraint;
-        let labels_vary = self.roles.constraint.is_some_and(|column| says(&self.names[column])) || self.episodes.iter().any(differ);
+        let labels_vary =
+            self.roles.constraint.is_some_and(|column| says(&self.names[column])) || self.episodes.iter().any(differ);
         for (raw, clock) in self.episodes.iter_mut().zip(self.clocks) {
             raw.times = clock.seconds(raw.rows.len(), ticks);
             raw.constraint.take_if(|labels| !labels_vary || labels.is_blank());

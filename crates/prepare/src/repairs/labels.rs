@@ -30,7 +30,10 @@ pub(crate) fn decide(episodes: &mut [Episode], dim: usize, notes: &mut Notes) {
         });
         notes.found(
             Verdict::Good,
-            format!("labels of constraints change every {} samples, too often to tell constraints", samples / lengths.len()),
+            format!(
+                "labels of constraints change every {} samples, too often to tell constraints",
+                samples / lengths.len()
+            ),
             "--constraint-column with a column that names the constraint, or --ignore",
         );
         return;
