@@ -122,3 +122,56 @@ fn stretch(rows: &Rows, part: &[usize], few: &[usize], segment: &Segment, noise:
         directions,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use motion::SampleIndex;
+    use proptest::prelude::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+
+    proptest! {
+        /// Under constraints that push, with noise: a stretch between any two switches that are known, whatever they are called, and
+        /// one where none is.
+        #[test]
+        fn stretches_lie_between_known_switches(
+            dim in 2usize..5,
+            lengths in prop::collection::vec(24usize..40, 1..5),
+            names in any::<[u8; 2]>().prop_filter("two names", |names| names[0] != names[1]),
+            seed in any::<u64>(),
+        ) {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let mut draw = |rows, columns| DMatrix::from_fn(rows, columns, |_, _| 2.0 * rng.random::<f64>() - 1.0);
+            let mut columns: Vec<DVector<f64>> = Vec::new();
+            let mut labels = Vec::new();
+            for (at, &length) in lengths.iter().enumerate() {
+                let normal = draw(dim, 1).column(0).normalize();
+                let push = &normal * draw(1, 1)[0];
+                for _ in 0..length {
+                    let velocity = draw(dim, 1).column(0).into_owned();
+                    let along = velocity.dot(&normal);
+                    columns.push(velocity - &normal * along + &push + draw(dim, 1).column(0) * 1e-3);
+                    labels.push(usize::from(names[at % 2]));
+                }
+            }
+            let count = columns.len();
+            let indices = (0..count).map(|sample| SampleIndex { trajectory: 0, sample }).collect();
+            let rows = Rows::new(draw(dim, count), DMatrix::from_columns(&columns), indices).unwrap();
+            // Few windows tell too little of the noise.
+            let rows = rows.with_variances(vec![1e-6 / 3.0; count]).unwrap();
+            let found = |labels: Vec<usize>| Stretches::of(&rows.clone().with_labels(labels).unwrap());
+            let between = found(labels).expect("stretches").stretches;
+            let ends = lengths.iter().scan(0, |end, length| { *end += length; Some((*end - length, *end - 1)) });
+            let near = |(stretch, end): (&Stretch, (usize, usize))| {
+                stretch.samples.0.abs_diff(end.0) <= 2 && stretch.samples.1.abs_diff(end.1) <= 2
+            };
+            prop_assert_eq!(between.len(), lengths.len());
+            prop_assert!(between.iter().zip(ends).all(near));
+            prop_assert!(between.iter().all(|stretch| stretch.directions.ncols() == dim - 1));
+            let one = found(vec![3; count]).map_or(0, |found| found.stretches.len());
+            prop_assert!(one <= 1 && (one == 1 || lengths.len() > 1));
+        }
+    }
+}

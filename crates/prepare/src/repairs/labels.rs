@@ -10,39 +10,34 @@ const SPARE: usize = 4;
 
 /// Retains labels if most samples lie where one label holds for long enough to tell a constraint on a state of so many dimensions.
 pub(crate) fn decide(episodes: &mut [Episode], dim: usize, notes: &mut Notes) {
-    let switching = |of: &Episode| of.constraint.as_ref().is_some_and(|labels| labels.switches() > 0);
-    let (with, samples) = (
-        episodes.iter().filter(|episode| switching(episode)).count(),
-        episodes.iter().map(Episode::n_samples).sum::<usize>(),
-    );
+    let with = episodes.iter().filter(|episode| switches(episode) > 0).count();
     if with == 0 {
         return;
     }
-    let runs = |episode: &Episode| {
-        let labels = episode.constraint.as_ref();
-        labels.map_or_else(Vec::new, |labels| labels.lengths(episode.n_samples()).collect::<Vec<_>>())
-    };
-    let lengths: Vec<usize> = episodes.iter().flat_map(runs).collect();
+    let (samples, lengths) = (episodes.iter().map(Episode::n_samples).sum::<usize>(), lengths(episodes));
     let long: usize = lengths.iter().filter(|&&length| length >= dim + SPARE).sum();
-    if 2 * long < samples {
-        episodes.iter_mut().for_each(|episode| {
-            episode.constraint.take_if(|labels| labels.switches() > 0);
-        });
-        notes.found(
-            Verdict::Good,
-            format!(
-                "labels of constraints change every {} samples, too often to tell constraints",
-                samples / lengths.len()
-            ),
-            "--constraint-column with a column that names the constraint, or --ignore",
-        );
+    if 2 * long >= samples {
+        let value = format!("{}, in {}", episodes.iter().map(switches).sum::<usize>(), counted(with, "episode"));
+        notes.decided("switches", value, "where the label of the constraint changes", "--constraint-column");
         return;
     }
-    let switches: usize = episodes.iter().filter_map(|of| of.constraint.as_ref()).map(motion::Labels::switches).sum();
-    notes.decided(
-        "switches",
-        format!("{switches}, in {}", counted(with, "episode")),
-        "where the label of the constraint changes",
-        "--constraint-column",
+    for episode in episodes {
+        episode.constraint.take_if(|labels| labels.switches() > 0);
+    }
+    let every = samples / lengths.len();
+    notes.found(
+        Verdict::Good,
+        format!("labels of constraints change every {every} samples, too often to tell constraints"),
+        "--constraint-column with a column that names the constraint, or --ignore",
     );
+}
+
+fn switches(episode: &Episode) -> usize {
+    episode.constraint.as_ref().map_or(0, motion::Labels::switches)
+}
+
+/// For how many samples each label holds.
+fn lengths(episodes: &[Episode]) -> Vec<usize> {
+    let labelled = episodes.iter().filter_map(|episode| Some((episode.constraint.as_ref()?, episode.n_samples())));
+    labelled.flat_map(|(labels, samples)| labels.lengths(samples)).collect()
 }
