@@ -137,7 +137,7 @@ mod tests {
         /// one where none is.
         #[test]
         fn stretches_lie_between_known_switches(
-            dim in 2usize..5,
+            dim in 2usize..4,
             lengths in prop::collection::vec(24usize..40, 1..5),
             names in any::<[u8; 2]>().prop_filter("two names", |names| names[0] != names[1]),
             seed in any::<u64>(),

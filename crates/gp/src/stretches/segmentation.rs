@@ -20,8 +20,7 @@ pub(super) type Segment = Part<usize>;
 pub(super) fn segments(velocities: &DMatrix<f64>, noise: f64) -> Vec<Segment> {
     let (dim, count) = velocities.shape();
     let sums = PrefixSums::of(velocities);
-    let mut parts =
-        cheapest_parts(count, PARAMETER * dim as f64, |begin, end| plane_cost(&sums, (begin, end), noise, true));
+    let mut parts = cheapest_parts(count, PARAMETER * dim as f64, |begin, end| plane_cost(&sums, (begin, end), noise));
     parts.retain(|part| part.kind > 0);
     parts
 }
@@ -30,7 +29,7 @@ pub(super) fn segments(velocities: &DMatrix<f64>, noise: f64) -> Vec<Segment> {
 pub(super) fn known_segment(velocities: &DMatrix<f64>, noise: f64) -> Option<Segment> {
     let (dim, count) = velocities.shape();
     let sums = PrefixSums::of(velocities);
-    let part = known_part(count, PARAMETER * dim as f64, |begin, end| plane_cost(&sums, (begin, end), noise, false));
+    let part = known_part(count, PARAMETER * dim as f64, |begin, end| plane_cost(&sums, (begin, end), noise));
     part.filter(|part| part.kind > 0)
 }
 
@@ -100,9 +99,8 @@ pub(crate) fn known_part<K: Copy>(
     best.1
 }
 
-/// The least cost of planes through these samples, and their dimension. Where switches are `searched` for, a part costs more: it is one
-/// of many.
-fn plane_cost(sums: &PrefixSums, (begin, end): (usize, usize), noise: f64, searched: bool) -> (f64, usize) {
+/// The least cost of planes through these samples, and their dimension.
+fn plane_cost(sums: &PrefixSums, (begin, end): (usize, usize), noise: f64) -> (f64, usize) {
     let length = end - begin;
     let dim = sums.dim;
     let eigenvalues = sums.scatter(begin, end).symmetric_eigenvalues();
@@ -115,8 +113,7 @@ fn plane_cost(sums: &PrefixSums, (begin, end): (usize, usize), noise: f64, searc
             break;
         }
         let parameters = (rank * length + (rank + 1) * (dim - rank)) as f64;
-        let search = if searched { DIMENSION * rank as f64 + SEGMENT } else { 0.0 };
-        let cost = residual / noise + PARAMETER * parameters + search;
+        let cost = residual / noise + PARAMETER * parameters + DIMENSION * rank as f64 + SEGMENT;
         if cost < best.0 {
             best = (cost, rank);
         }
