@@ -44,6 +44,7 @@ mod error;
 mod guard;
 mod input;
 mod joined;
+mod label_entry;
 mod names;
 mod options;
 mod raw;

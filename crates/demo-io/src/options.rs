@@ -21,7 +21,7 @@ pub struct ReadOptions {
     pub time: Option<String>,
     /// `--episode`: the column or array that tells episodes apart.
     pub episode: Option<String>,
-    /// `--constraint-column`: the column or array with the label of the constraint.
+    /// `--constraint-column`: the column or array with the name of the constraint, of an episode or of every sample.
     pub constraint_column: Option<String>,
     /// `--ignore`: patterns of what is not looked at.
     pub ignore: Vec<String>,

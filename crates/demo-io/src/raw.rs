@@ -1,7 +1,7 @@
 //! Episodes as a reader finds them, before anything is checked.
 
 use crate::rows::stamps::{Stamp, TicksPerSecond};
-use motion::{Channel, Episode, Finding, Recordings, Source, Times, Verdict};
+use motion::{Channel, Episode, Finding, Labels, Recordings, Source, Times, Verdict};
 use nalgebra::DMatrix;
 
 use crate::error::in_one_line;
@@ -32,7 +32,7 @@ pub(crate) struct RawEpisode {
     pub(crate) positions: Vec<f64>,
     /// As many, or none.
     pub(crate) velocities: Vec<f64>,
-    pub(crate) constraint: Option<String>,
+    pub(crate) constraint: Option<Labels>,
 }
 
 /// At most this many episodes and channels.
@@ -77,8 +77,9 @@ impl RawEpisode {
         };
         let (positions, velocities) = (columns(&self.positions), columns(&self.velocities));
         let rows = samples.clone().map(|sample| self.rows.at(sample)).collect();
+        let constraint = self.constraint.as_ref().and_then(|labels| labels.chosen(samples.clone()));
         let times = samples.map(|sample| self.times[sample]).collect();
-        let (name, file, constraint) = (self.name.clone(), self.file.clone(), self.constraint.clone());
+        let (name, file) = (self.name.clone(), self.file.clone());
         RawEpisode { name, file, rows, times, positions, velocities, constraint }
     }
 

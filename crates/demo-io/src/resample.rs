@@ -73,13 +73,15 @@ fn along(episode: &Episode, rate: f64) -> Result<Episode, ResampleError> {
     let times: Vec<f64> = (0..=steps).map(|step| step as f64 / rate).collect();
     let own: Vec<f64> = (0..episode.n_samples()).map(|sample| episode.times.seconds(0, sample)).collect();
     let at_times = |values: &DMatrix<f64>| interpolated(&own, values.as_view(), &times);
+    // The last sample that is not after a time.
+    let before = |time: &f64| own.partition_point(|stamp| stamp <= time).saturating_sub(1);
     Ok(Episode {
         name: episode.name.clone(),
         source: episode.source.clone(),
         positions: at_times(&episode.positions),
         velocities: episode.velocities.as_ref().map(at_times),
+        constraint: episode.constraint.as_ref().and_then(|labels| labels.chosen(times.iter().map(before))),
         times: Times::Stamped(times),
-        constraint: episode.constraint.clone(),
         context: episode.context.clone(),
     })
 }

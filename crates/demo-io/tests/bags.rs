@@ -25,7 +25,7 @@ fn recordings(samples: usize) -> Recordings {
         times: (0..samples).map(|sample| sample as f64 * 0.02).collect(),
         positions: DMatrix::from_fn(3, samples, |row, column| (row as f64 + (number * column) as f64 * 0.01).sin()),
         velocities: Some(DMatrix::from_fn(3, samples, |row, column| (row as f64 - column as f64 * 0.02).cos())),
-        constraint: (number == 1).then(|| "rail".to_owned()),
+        constraint: (number == 1).then(|| "rail".into()),
         context: nalgebra::DVector::zeros(0),
     };
     let channel = |name: &str| Channel { name: name.to_owned(), unit: Some("rad".to_owned()) };

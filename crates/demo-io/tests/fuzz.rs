@@ -40,7 +40,7 @@ fn recordings() -> Recordings {
         times: (0..8).map(|sample| f64::from(sample) * 0.05).collect(),
         positions: numbers(k, 0.0),
         velocities: Some(numbers(k, 1.0)),
-        constraint: Some(format!("rail {k}")),
+        constraint: Some(format!("rail {k}").into()),
         context: nalgebra::DVector::zeros(0),
     };
     let channel = |name: &str| Channel { name: name.to_owned(), unit: Some("m".to_owned()) };

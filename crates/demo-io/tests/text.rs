@@ -284,3 +284,39 @@ fn names_that_hold_line_ends_leave_messages_their_lines() {
         found.findings[0].what.contains("x y") && found.findings.iter().all(|finding| !finding.what.contains('\n'))
     );
 }
+
+/// A column that names the constraint, by name or by number, may change within an episode; a task says so only if it is asked for.
+#[test]
+fn names_of_constraints_may_change() {
+    let table = |column: &str| {
+        let row = |row: i32| format!("{},{},{},{}\n", row / 6, row % 6, row * row, ["2", "rail", ""][row as usize / 4]);
+        format!("episode,t,x,{column}\n") + &(0..12).map(row).collect::<String>()
+    };
+    let labels = |column: &str, options: &ReadOptions| {
+        let found = parsed("a.csv", table(column), options).unwrap();
+        let of = |episode: &motion::Episode| {
+            episode.constraint.as_ref().map(|labels| (0..6).map(|at| labels.at(at).to_owned()).collect::<Vec<_>>())
+        };
+        (found.episodes.iter().map(of).collect::<Vec<_>>(), said(&found))
+    };
+    let named = |names: [&str; 6]| Some(names.map(str::to_owned).to_vec());
+    let expected = vec![named(["2", "2", "2", "2", "rail", "rail"]), named(["rail", "rail", "", "", "", ""])];
+    let asked = |name: &str| ReadOptions { constraint_column: Some(name.to_owned()), ..plain() };
+    for (column, options) in
+        [("constraint", plain()), ("Condition", plain()), ("contact", asked("contact")), ("task", asked("task"))]
+    {
+        assert_eq!(labels(column, &options).0, expected, "{column}");
+    }
+    let (of_task, said) = labels("task", &plain());
+    assert_eq!(of_task, [None, None]);
+    assert!(said.contains("labels of constraints that change within an episode are not used: task"), "{said}");
+}
+
+#[test]
+fn a_list_of_names_has_one_a_sample() {
+    let line = |names: &str| format!(r#"{{"dt": 0.1, "state": [[1.5], [2], [4]], "constraint": {names}}}"#);
+    let found = parsed("a.jsonl", line(r#"["a", 3, null]"#), &plain()).unwrap();
+    assert_eq!(found.episodes[0].constraint, motion::Labels::of_samples(["a", "3", ""]));
+    assert_eq!(parsed("a.jsonl", line(r#"["", "", null]"#), &plain()).unwrap().episodes[0].constraint, None);
+    refused("a.jsonl", line(r#"["a", "b"]"#), &plain(), "Lengths", &["'constraint'", "2", "3"]);
+}

@@ -5,10 +5,7 @@
 
 mod systems;
 
-use gp::{
-    Acting, AutoFit, AutoGp, ConstraintEstimates, DirectGp, FrontEnd, GpError, PushTest, Rows, SlopeGp,
-    StretchEstimate, TaskSpace,
-};
+use gp::{Acting, AutoFit, ConstraintEstimates, FrontEnd, GpError, Rows, StretchEstimate, TaskSpace};
 use motion::{LearntPolicy, Policy, SampleIndex};
 use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut};
 use rand::{RngExt, SeedableRng};
@@ -45,12 +42,7 @@ fn off(found: &StretchEstimate, basis: &DMatrix<f64>) -> f64 {
 fn learnt(system: &System, (push, noise): (f64, f64), seed: u64) -> (ConstraintEstimates, Vec<Switched>, AutoFit) {
     let (movements, truth) = system.with_truth(push, noise, seed);
     let rows = FrontEnd::Velocities.rows(&movements).unwrap();
-    let learner = AutoGp {
-        slope: SlopeGp { max_rows: 400, hyper_rows: 200, push_test: PushTest::Fit, ..SlopeGp::default() },
-        direct: DirectGp { max_rows: 400, hyper_rows: 200, ..DirectGp::default() },
-        ..AutoGp::default()
-    };
-    let fit = learner.fit(&rows, &mut ChaCha8Rng::seed_from_u64(seed)).unwrap();
+    let fit = systems::learnt(&rows, seed);
     (ConstraintEstimates::of(&rows, fit.slope(), &[TaskSpace::recorded()]).unwrap(), truth, fit)
 }
 

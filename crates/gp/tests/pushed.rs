@@ -4,33 +4,11 @@
 
 mod systems;
 
-use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, PushTest, SlopeGp};
-use motion::Policy;
-use nalgebra::DVector;
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use systems::{ANGLES, HIMMELBLAU, System, WELLS};
+use gp::{AutoFit, FrontEnd, Hypothesis};
+use systems::{ANGLES, HIMMELBLAU, System, WELLS, error};
 
 fn learnt(system: &System, push: f64, noise: f64, seed: u64) -> AutoFit {
-    let rows = FrontEnd::Velocities.rows(&system.movements(push, noise, seed)).unwrap();
-    let learner = AutoGp {
-        slope: SlopeGp { max_rows: 400, hyper_rows: 200, push_test: PushTest::Fit, ..SlopeGp::default() },
-        direct: DirectGp { max_rows: 400, hyper_rows: 200, ..DirectGp::default() },
-        ..AutoGp::default()
-    };
-    learner.fit(&rows, &mut ChaCha8Rng::seed_from_u64(seed)).unwrap()
-}
-
-/// nUPE on states of new movements.
-fn error(system: &System, fit: &dyn Policy, seed: u64) -> f64 {
-    let fresh = system.movements(0.0, 0.0, 1000 + seed);
-    let states = fresh.trajectories().iter().take(30).flat_map(|movement| movement.states().column_iter().step_by(2));
-    let states: Vec<DVector<f64>> = states.map(|x| DVector::from_column_slice(x.as_slice())).collect();
-    let truth: Vec<DVector<f64>> = states.iter().map(|x| system.policy(x)).collect();
-    let mean = truth.iter().fold(DVector::zeros(system.dim), |sum, u| sum + u) / truth.len() as f64;
-    let spread: f64 = truth.iter().map(|u| (u - &mean).norm_squared()).sum();
-    let apart: f64 = states.iter().zip(&truth).map(|(x, u)| (fit.action(x.as_view()) - u).norm_squared()).sum();
-    apart / spread
+    systems::learnt(&FrontEnd::Velocities.rows(&system.movements(push, noise, seed)).unwrap(), seed)
 }
 
 /// Even a push of three hundredths of the policy, or of a third, leaves nothing of the error.

@@ -1,7 +1,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::median::upper_median;
-use crate::{Finding, MotionError, Times, Trajectory, scaled};
+use crate::{Finding, Labels, MotionError, Times, Trajectory, scaled};
 
 /// What was recorded: n channels of state, and episodes of any length.
 ///
@@ -39,8 +39,8 @@ pub struct Episode {
     pub positions: DMatrix<f64>,
     /// Units of the state per second, (n, N).
     pub velocities: Option<DMatrix<f64>>,
-    /// Label of the constraint or task it was recorded under.
-    pub constraint: Option<String>,
+    /// Names of the constraints or tasks that it was recorded under.
+    pub constraint: Option<Labels>,
     /// What it depended on and what stayed as it was, (p); empty as it is read, since preparation tells context from state.
     pub context: DVector<f64>,
 }
@@ -126,7 +126,9 @@ impl Episode {
         let at = |sample: usize| self.row(sample).map(|(_, row)| row);
         let rows = self.source.rows.and_then(|rows| Some(Rows { first: at(from)?, last: at(to.max(1) - 1)?, ..rows }));
         let source = Source { file: self.source.file.clone(), rows };
-        self.with(self.times.part(from..to), source, |values| values.columns(from, to - from).into_owned())
+        let constraint = self.constraint.as_ref().and_then(|labels| labels.chosen(from..to));
+        let part = self.with(self.times.part(from..to), source, |values| values.columns(from, to - from).into_owned());
+        Episode { constraint, ..part }
     }
 
     /// With every channel multiplied by its factor, (n).
@@ -158,7 +160,7 @@ impl Episode {
             Times::Even { step, .. } => Trajectory::new(states, *step)?,
             Times::Stamped(stamps) => Trajectory::stamped(stamps.clone(), states)?,
         };
-        let trajectory = trajectory.with_context(self.context.clone())?;
+        let trajectory = trajectory.with_context(self.context.clone())?.with_labels(self.constraint.clone());
         match &self.velocities {
             None => Ok(trajectory),
             Some(velocities) => trajectory.with_velocities(velocities.clone()),

@@ -1,6 +1,6 @@
 use nalgebra::{DMatrix, DVector, DVectorView};
 
-use crate::{MotionError, Series, Times, scaled};
+use crate::{Labels, MotionError, Series, Times, scaled};
 
 /// One observed movement: states x₁..x_N, evenly spaced in time or each with its stamp, and the velocities u₁..u_N where
 /// they were recorded.
@@ -12,6 +12,7 @@ pub struct Trajectory {
     velocities: Option<DMatrix<f64>>,
     times: Times,
     context: DVector<f64>,
+    labels: Option<Labels>,
 }
 
 impl Trajectory {
@@ -33,7 +34,7 @@ impl Trajectory {
         }
         require_finite(&states, Series::States)?;
         let times = Times::Even { step: time_step, len: states.ncols() };
-        Ok(Trajectory { states, velocities: None, times, context: DVector::zeros(0) })
+        Ok(Trajectory { states, velocities: None, times, context: DVector::zeros(0), labels: None })
     }
 
     /// A movement through `states` (n, N), one column a sample, at `times` (N) in seconds, strictly ascending.
@@ -69,6 +70,12 @@ impl Trajectory {
         Ok(Trajectory { context, ..self })
     }
 
+    /// The same movement with the names of its constraints, which tell where they switched; none if that is not known.
+    #[must_use]
+    pub fn with_labels(self, labels: Option<Labels>) -> Self {
+        Trajectory { labels, ..self }
+    }
+
     /// The same movement with every dimension of the state multiplied by its factor, (n).
     ///
     /// # Errors
@@ -81,12 +88,14 @@ impl Trajectory {
         }
     }
 
-    /// A movement through other states, (n, N), at the same times and in the same context, without velocities.
+    /// A movement through other states, (n, N), at the same times, in the same context and under the same constraints, without
+    /// velocities.
     ///
     /// # Errors
     /// As [`Trajectory::new`] and [`Trajectory::with_times`].
     pub fn with_states(&self, states: DMatrix<f64>) -> Result<Self, MotionError> {
         let anew = Trajectory::new(states, self.time_step())?.with_context(self.context.clone())?;
+        let anew = anew.with_labels(self.labels.clone());
         match self.times() {
             Some(times) => anew.with_times(times.to_vec()),
             None => Ok(anew),
@@ -130,6 +139,11 @@ impl Trajectory {
     /// The context c, (p); of length 0 without one.
     pub fn context(&self) -> &DVector<f64> {
         &self.context
+    }
+
+    /// Names of the constraints that acted, where they are known.
+    pub fn labels(&self) -> Option<&Labels> {
+        self.labels.as_ref()
     }
 
     /// Velocities of the steps, (x_{i+1} − x_i) / δt_i, (n, N − 1), in units of the state per second.

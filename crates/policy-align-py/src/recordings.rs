@@ -2,7 +2,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use demo_io::{ReadOptions, read_all};
-use motion::{Channel, Episode, Finding, MotionError, Source, Times, Trajectory};
+use motion::{Channel, Episode, Finding, Labels, MotionError, Source, Times, Trajectory};
 use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use policy_align::{FileSummary, PrepareError, prepare};
@@ -66,14 +66,14 @@ impl Recordings {
     }
 
     /// Movements in memory: positions (N, n) and velocities of the same shape, each C-ordered; seconds between samples,
-    /// or the stamps of each movement, (N).
+    /// or the stamps of each movement, (N); and the name of the constraint at each sample, (N).
     #[staticmethod]
     fn of(
         positions: Vec<PyReadonlyArray2<'_, f64>>,
         velocities: Option<Vec<Option<PyReadonlyArray2<'_, f64>>>>,
         dt_or_times: (Option<f64>, Option<Vec<PyReadonlyArray1<'_, f64>>>),
         names_and_channels: (Vec<String>, Vec<String>),
-        constraints: Vec<Option<String>>,
+        constraints: Vec<Option<Vec<String>>>,
         units: Vec<Option<String>>,
     ) -> PyResult<Self> {
         let ((dt, times), (names, channels)) = (dt_or_times, names_and_channels);
@@ -87,7 +87,7 @@ impl Recordings {
             let times = Times::Stamped(times);
             let velocities = velocities.as_ref().and_then(|velocities| velocities[k].as_ref().map(matrix));
             let source = Source::default();
-            let constraint = constraints.get(k).cloned().flatten();
+            let constraint = constraints.get(k).and_then(|names| Labels::of_samples(names.as_ref()?));
             episodes.push(Episode {
                 name,
                 source,
@@ -122,10 +122,14 @@ impl Recordings {
         names_of(&self.inner.recordings)
     }
 
-    /// Labels of their constraints.
+    /// Labels of their constraints, one a sample.
     #[getter]
-    fn constraints(&self) -> Vec<Option<String>> {
-        self.inner.recordings.episodes.iter().map(|episode| episode.constraint.clone()).collect()
+    fn constraints(&self) -> Vec<Option<Vec<String>>> {
+        let of = |episode: &Episode| {
+            let labels = episode.constraint.as_ref()?;
+            Some((0..episode.n_samples()).map(|sample| labels.at(sample).to_owned()).collect())
+        };
+        self.inner.recordings.episodes.iter().map(of).collect()
     }
 
     /// Names and units of the state's dimensions.

@@ -27,6 +27,14 @@ def test_constraints_are_found(rails, tmp_path) -> None:
     others = model.constraints(positions[:2], velocities=velocities[:2])
     assert {stretch.episode for stretch in others} <= {"0", "1"}
 
+    half = len(positions[0]) // 2
+    names = [["free"] * half + [2] * (len(samples) - half) for samples in positions]
+    named = SlopeGp(max_rows=60).fit(positions, dt=DT, velocities=velocities, constraints=names).constraints_
+    assert {stretch.label for stretch in named} == {"free", "2"} and "(free)" in str(named[0])
+    assert all(stretch.samples[0 if stretch.label == "2" else 1] in (half, half - 1) for stretch in named)
+    with pytest.raises(PolicyAlignError, match="names of constraints for the"):
+        SlopeGp().fit(positions, dt=DT, velocities=velocities, constraints=[["a"]] * len(positions))
+
     model.save(tmp_path / "model.json")
     again = SlopeGp.load(tmp_path / "model.json")
     with pytest.raises(PolicyAlignError, match="does not hold its movements"):

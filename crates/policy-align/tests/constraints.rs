@@ -175,6 +175,25 @@ fn channels_have_their_own_units() {
     assert!(constraint_file(&[&plain[0]], &model.state, None).contains("normal = [["));
 }
 
+/// A recording that names the constraint of every sample: stretches are those of one name, and have it.
+#[test]
+fn named_constraints_keep_their_names() {
+    let file = Path::new("../../docs/examples/toy.csv");
+    let mut recordings = demo_io::read(file, &demo_io::ReadOptions::default(), &mut |_| ()).unwrap();
+    let name = |episode: usize, sample: usize| ["rail", "", "wall"][(episode + sample / 20) % 3];
+    for (k, episode) in recordings.episodes.iter_mut().enumerate() {
+        episode.constraint = motion::Labels::of_samples((0..40).map(|sample| name(k, sample)));
+    }
+    let (model, prepared) = learnt(&recordings, 100);
+    let found = estimate_constraints(&model, &prepared, None).unwrap();
+    assert_eq!(found.len(), 80);
+    for (at, stretch) in found.iter().enumerate() {
+        let (episode, first) = (at / 2, 20 * (at % 2));
+        assert_eq!((stretch.samples, stretch.acting), ((first, first + 19), Acting::Constraint));
+        assert_eq!(stretch.label.as_deref().unwrap_or_default(), name(episode, first));
+    }
+}
+
 /// What cannot be is refused in a sentence.
 #[test]
 fn wrong_robots_are_refused() {

@@ -104,7 +104,7 @@ fn units_are_learnt_without_each_constraint() {
     let movements = Plane { count: 24, ..Plane::default() }.potential(&parabola(), 5);
     let mut mixed = Case::of(&movements, 24, Has::Velocities).in_units(&[1.0, 1000.0]);
     for (k, episode) in mixed.recordings.episodes.iter_mut().enumerate() {
-        episode.constraint = Some(["wall", "table", "rail"][k % 3].to_owned());
+        episode.constraint = Some(["wall", "table", "rail"][k % 3].into());
     }
     let cancelled = AtomicBool::new(false);
     let mut progress = Progress { cancelled: &cancelled, report: &mut |_| () };

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use motion::{Channel, Episode, Recordings, Source};
+use motion::{Channel, Episode, Labels, Recordings, Source};
 use nalgebra::{DMatrix, DVector};
 use policy_align::{
     Finding, PrepareError, PrepareOptions, Prepared, Repair, Smoothing, VelocitySource, VelocityUse, Verdict, prepare,
@@ -26,7 +26,7 @@ fn recordings() -> Recordings {
             times: (0..SAMPLES).map(|i| 7.0 + STEP * i as f64).collect(),
             positions: DMatrix::from_fn(2, SAMPLES, value),
             velocities: Some(DMatrix::from_fn(2, SAMPLES, |axis, i| -rate[axis] * value(axis, i))),
-            constraint: Some("table".to_owned()),
+            constraint: Some("table".into()),
             context: nalgebra::DVector::zeros(0),
         }
     });
@@ -605,4 +605,26 @@ proptest! {
 /// As findings write numbers.
 fn prepare_numbers(value: f64) -> String {
     policy_align::prepare::numbers::short(value)
+}
+
+/// Names of constraints that change within an episode tell switches, if each holds for a while.
+#[test]
+fn labels_tell_switches() {
+    let labelled = |every: usize| {
+        changed(|episode| episode.constraint = Labels::of_samples((0..SAMPLES).map(|i| (i / every).to_string())))
+    };
+    let switches = |recordings: &Recordings| {
+        let prepared = prepared(recordings);
+        let labels = |movement: &motion::Trajectory| movement.labels().map(Labels::switches);
+        (prepared.demonstrations.trajectories().iter().filter_map(labels).sum::<usize>(), prepared)
+    };
+    let (count, long) = switches(&labelled(10));
+    assert_eq!(count, 12 * (SAMPLES.div_ceil(10) - 1));
+    assert_eq!(decided(&long, "switches"), format!("{count}, in 12 episodes"));
+    assert!(long.constraints.iter().all(Option::is_none) && long.findings.is_empty(), "{:?}", long.findings);
+    let (count, short) = switches(&labelled(2));
+    assert_eq!((count, verdict(&short, "labels of constraints change every 2 samples")), (0, Verdict::Good));
+    assert!(short.decisions.iter().all(|decision| decision.what != "switches"));
+    // Names of whole episodes are no switches.
+    assert!(prepared(&recordings()).decisions.iter().all(|decision| decision.what != "switches"));
 }

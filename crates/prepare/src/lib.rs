@@ -104,6 +104,7 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
         repairs::jumps::cut(&mut episodes, &state_channels, &mut notes);
     }
     repairs::episodes::leave_out_still(&mut episodes, &mut notes);
+    repairs::labels::decide(&mut episodes, of_state.len(), &mut notes);
     if episodes.is_empty() {
         let why = notes.left_out.first().map_or_else(String::new, |left_out| left_out.why.clone());
         return Err(PrepareError::NothingLeft { of: recordings.episodes.len(), why });
@@ -134,7 +135,7 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
     Ok(Prepared {
         time_step: upper_median(time_steps.collect()).expect("there is an episode"),
         episodes: episodes.iter().map(|episode| episode.name.clone()).collect(),
-        constraints: episodes.into_iter().map(|episode| episode.constraint).collect(),
+        constraints: episodes.iter().map(|of| Some(of.constraint.as_ref()?.only()?.to_owned())).collect(),
         demonstrations,
         state,
         context,

@@ -12,7 +12,7 @@ pub struct Prepared {
     pub demonstrations: Demonstrations,
     /// Name of each movement, (K).
     pub episodes: Vec<String>,
-    /// Label of the constraint of each movement, (K), where the file has one.
+    /// Label of the constraint of each movement, (K), where the file has one for all of its samples.
     pub constraints: Vec<Option<String>>,
     /// Dimensions of the state, n of them.
     pub state: Vec<StateChannel>,

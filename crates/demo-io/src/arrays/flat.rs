@@ -48,7 +48,8 @@ impl Columns<'_> {
         let ranges = self.ranges(&state, load)?;
         let times = self.times(&state, step, &ranges, load)?;
         let names = self.0.labels(fields.episode_names, ranges.len(), load)?;
-        let labels = self.0.labels(fields.constraint, ranges.len(), load)?;
+        let rows: Vec<&[usize]> = ranges.iter().map(|samples| &samples.rows[..]).collect();
+        let mut labels = self.0.constraints(&rows, state.episodes * state.samples, load)?;
         let episodes = ranges.into_iter().zip(times).enumerate().map(|(index, (samples, times))| RawEpisode {
             name: names.as_ref().map_or_else(|| samples.name.clone(), |names| names[index].clone()),
             file: input.name.clone(),
@@ -56,7 +57,7 @@ impl Columns<'_> {
             times,
             positions: samples.of(&state.numbers, state.channels),
             velocities: if velocities.is_empty() { Vec::new() } else { samples.of(&velocities, state.channels) },
-            constraint: labels.as_ref().map(|labels| labels[index].clone()).filter(|label| !label.is_empty()),
+            constraint: labels[index].take(),
         });
         let (episodes, findings) = (episodes.collect(), self.0.findings());
         Ok(RawRecordings { channels, episodes, findings, word: "sample", drop_constant: false })

@@ -42,7 +42,8 @@ impl GroupedArrays<'_> {
             let arrays = reader(demo);
             let (state, velocities) = arrays.state(load)?;
             let times = self.times(&arrays, step, state.samples, load)?;
-            let label = arrays.labels(fields.constraint, 1, load)?;
+            let rows: Vec<usize> = (0..state.samples).collect();
+            let label = arrays.constraints(&[&rows], state.samples, load)?.pop().flatten();
             match &channels {
                 None => channels = Some(arrays.channels(state.channels, load)?),
                 Some(channels) if channels.len() != state.channels => {
@@ -60,7 +61,7 @@ impl GroupedArrays<'_> {
                 times,
                 positions: state.numbers,
                 velocities,
-                constraint: label.and_then(|mut label| label.pop()).filter(|label| !label.is_empty()),
+                constraint: label,
             });
         }
         let (channels, findings) = (channels.unwrap_or_default(), reader(first).findings());

@@ -8,7 +8,7 @@ use crate::input::Input;
 use crate::raw::{no_time, unused};
 use crate::rows::roles::no_column;
 use crate::{Fault, ReadError};
-use motion::{Channel, Finding};
+use motion::{Channel, Finding, Labels};
 
 /// The arrays of a file, or those of one demonstration in it.
 pub(crate) struct ArrayReader<'a> {
@@ -134,6 +134,34 @@ impl ArrayReader<'_> {
         let Some(field) = field.filter(labels) else { return Ok(None) };
         let data = self.load(field, load)?;
         Ok((data.len() == count).then(|| (0..count).map(|at| data.label(at)).collect()))
+    }
+
+    /// Names of the constraints of each episode, whose samples are given, `all` in sum: where the array has a name an episode, or one a
+    /// sample. Another number is refused if the user named the array.
+    pub(crate) fn constraints(
+        &self,
+        episodes: &[&[usize]],
+        all: usize,
+        load: &mut Load<'_>,
+    ) -> Result<Vec<Option<Labels>>, ReadError> {
+        let none = vec![None; episodes.len()];
+        let field = self.fields.constraint;
+        if let Some(names) = self.labels(field, episodes.len(), load)? {
+            let label = |name: String| Some(Labels::from(name)).filter(|labels| !labels.is_blank());
+            return Ok(names.into_iter().map(label).collect());
+        }
+        match (self.labels(field, all, load)?, field, &self.input.options.constraint_column) {
+            (Some(names), ..) => {
+                let labels = |rows: &&[usize]| Labels::of_samples(rows.iter().map(|&row| &names[row]));
+                Ok(episodes.iter().map(labels).collect())
+            }
+            (None, Some(field), Some(_)) => {
+                let found = self.load(field, load)?.len();
+                let what = format!("array '{}', which names constraints,", self.arrays[field].name);
+                Err(lengths(&what, all, found, &self.place()))
+            }
+            _ => Ok(none),
+        }
     }
 
     /// The n channels of the state.

@@ -1,12 +1,12 @@
 //! Rows with named columns, of any format, become episodes.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use crate::raw::{Clock, MOST_CHANNELS, MOST_EPISODES, RawEpisode, RawRecordings, Rows, no_time, period, unused};
 use crate::rows::roles::{Column, Content, Roles, assign, unit};
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use crate::{Fault, ReadError, ReadOptions};
-use motion::Channel;
+use motion::{Channel, Labels};
 
 /// One row of a table. A column that holds something else answers with its text.
 pub(crate) trait Row {
@@ -31,8 +31,8 @@ pub(crate) struct Table {
     episodes: Vec<RawEpisode>,
     /// When the samples of each were taken.
     clocks: Vec<Clock>,
-    /// Episodes in which the label of the constraint changes.
-    relabelled: HashSet<usize>,
+    /// Whether a label that changes within an episode tells where constraints switch.
+    switching: bool,
     by_label: HashMap<String, usize>,
     current: Option<usize>,
     label: String,
@@ -60,16 +60,17 @@ impl Table {
             file: file.to_owned(),
             word,
             names: columns.iter().map(|column| column.name.clone()).collect(),
-            roles,
             period,
             ticks: None,
             only: only.to_owned(),
             episodes: Vec::new(),
             clocks: Vec::new(),
-            relabelled: HashSet::new(),
+            switching: options.constraint_column.is_some()
+                || roles.constraint.is_some_and(|column| says(&columns[column].name)),
             by_label: HashMap::new(),
             current: None,
             label: String::new(),
+            roles,
             hint: |_| None,
         })
     }
@@ -149,18 +150,12 @@ impl Table {
         });
     }
 
-    /// An episode has a label if all its rows have the same.
+    /// Of the sample that is about to be added.
     fn label_constraint(&mut self, episode: usize) {
-        let constraint = &mut self.episodes[episode].constraint;
-        match constraint {
-            Some(known) if *known != self.label => {
-                *constraint = None;
-                self.relabelled.insert(episode);
-            }
-            None if !self.label.is_empty() && !self.relabelled.contains(&episode) => {
-                *constraint = Some(self.label.clone());
-            }
-            _ => {}
+        let raw = &mut self.episodes[episode];
+        match &mut raw.constraint {
+            None => raw.constraint = Some(Labels::from(&*self.label)),
+            Some(labels) => labels.switch(raw.rows.len(), &self.label),
         }
     }
 
@@ -185,21 +180,28 @@ impl Table {
             channels.map(|name| Channel { name: name.to_owned(), unit: unit(name).map(str::to_owned) }).collect();
         let ignored: Vec<&str> = self.roles.ignored.iter().map(name).collect();
         let mut findings: Vec<_> = unused("columns", &ignored).into_iter().collect();
-        if !self.relabelled.is_empty() {
+        let switches = |episode: &RawEpisode| episode.constraint.as_ref().is_some_and(|labels| labels.switches() > 0);
+        if !self.switching && self.episodes.iter().any(switches) {
+            self.episodes.iter_mut().filter(|episode| switches(episode)).for_each(|episode| episode.constraint = None);
             let column = self.roles.constraint.map(|column| self.names[column].as_str()).unwrap_or_default();
             findings.extend(unused("labels of constraints that change within an episode are", &[column]));
         }
-        // LeRobot numbers tasks even if there is one only, which says nothing.
-        let says = |column: usize| !self.names[column].to_lowercase().starts_with("task");
         let differ = |episode: &RawEpisode| episode.constraint != self.episodes[0].constraint;
-        let labels_vary = self.roles.constraint.is_some_and(says) || self.episodes.iter().any(differ);
+        let labels_vary =
+            self.roles.constraint.is_some_and(|column| says(&self.names[column])) || self.episodes.iter().any(differ);
         for (raw, clock) in self.episodes.iter_mut().zip(self.clocks) {
             raw.times = clock.seconds(raw.rows.len(), ticks);
-            raw.constraint.take_if(|_| !labels_vary);
+            raw.constraint.take_if(|labels| !labels_vary || labels.is_blank());
         }
         let (episodes, word, drop_constant) = (self.episodes, self.word, self.roles.state_guessed);
         RawRecordings { channels, episodes, findings, word, drop_constant }
     }
+}
+
+/// Whether a column of this name tells of constraints: LeRobot numbers tasks even if there is one only, which says nothing, and a task
+/// may have many constraints.
+fn says(name: &str) -> bool {
+    !name.to_lowercase().starts_with("task")
 }
 
 /// Appends some columns of a row; else the first that is no number, with its text.

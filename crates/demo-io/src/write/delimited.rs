@@ -24,7 +24,7 @@ pub(super) fn write(file: impl Write, recordings: &Recordings, separator: u8) ->
         for (sample, time) in episode.times.stamps().iter().enumerate() {
             let mut field = |text: &str| writer.write_field(text).map_err(std::io::Error::from);
             field(&episode.name)?;
-            let label = episode.constraint.as_deref().unwrap_or_default();
+            let label = episode.constraint.as_ref().map_or("", |labels| labels.at(sample));
             let columns = [Some(&episode.positions), episode.velocities.as_ref()];
             field(shortest(&mut number, *time))?;
             if constraints {

@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 use serde::Serialize;
 
 use super::Failure;
+use crate::label_entry::LabelEntry;
 use motion::{Episode, Recordings, Times};
 
 /// A line an episode, with names, units and labels in each.
@@ -19,7 +20,7 @@ pub(super) fn write(mut file: impl Write, recordings: &Recordings) -> Result<(),
             times: step.is_none().then(|| episode.times.stamps()),
             names: &names,
             unit: units.iter().any(Option::is_some).then_some(&units),
-            constraint: episode.constraint.as_deref(),
+            constraint: episode.constraint.as_ref().map(|labels| LabelEntry::of(labels, episode.times.len())),
             state: samples(&episode.positions),
             velocity: episode.velocities.as_ref().map(samples),
         };
@@ -40,7 +41,7 @@ struct Line<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     unit: Option<&'a Vec<Option<&'a str>>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    constraint: Option<&'a str>,
+    constraint: Option<LabelEntry>,
     state: Vec<&'a [f64]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     velocity: Option<Vec<&'a [f64]>>,

@@ -7,6 +7,7 @@ use std::io::{self, Write};
 use self::bag::Bag;
 use super::{Failure, has_velocities};
 
+use crate::label_entry::LabelEntry;
 use crate::rows::mcap::{EpisodeEntry, METADATA};
 use crate::rows::packed::Writer;
 use motion::Recordings;
@@ -57,7 +58,7 @@ fn metadata(recordings: &Recordings) -> io::Result<BTreeMap<String, String>> {
         .map(|episode| EpisodeEntry {
             name: episode.name.clone(),
             messages: episode.times.len(),
-            constraint: episode.constraint.clone(),
+            constraint: episode.constraint.as_ref().map(|labels| LabelEntry::of(labels, episode.times.len())),
         })
         .collect();
     let mut metadata = BTreeMap::from([("episodes".to_owned(), serde_json::to_string(&entries)?)]);

@@ -9,7 +9,7 @@ use super::{Failure, has_velocities};
 use motion::{Episode, Recordings};
 
 /// `state` and `velocity` (M, n), episodes one after another up to `episode_ends`, `time` (M,) or `dt`, and texts
-/// `names`, `units`, `episode_names`, `constraint`.
+/// `names`, `units`, `episode_names`, `constraint`; the last has a name a sample where it changes within an episode.
 pub(super) fn write(file: impl Write, recordings: &Recordings) -> Result<(), Failure> {
     let episodes = &recordings.episodes;
     let n = recordings.state.len();
@@ -43,7 +43,7 @@ pub(super) fn write(file: impl Write, recordings: &Recordings) -> Result<(), Fai
         ("names", recordings.state.iter().map(|channel| &channel.name[..]).collect()),
         ("units", recordings.state.iter().map(|channel| channel.unit.as_deref().unwrap_or_default()).collect()),
         ("episode_names", episodes.iter().map(|episode| &episode.name[..]).collect()),
-        ("constraint", episodes.iter().map(|episode| episode.constraint.as_deref().unwrap_or_default()).collect()),
+        ("constraint", constraints(episodes)),
     ];
     for (name, texts) in texts {
         let longest = texts.iter().map(|text| text.chars().count()).max().unwrap_or(0);
@@ -53,6 +53,18 @@ pub(super) fn write(file: impl Write, recordings: &Recordings) -> Result<(), Fai
     }
     archive.finish().map_err(io::Error::other)?;
     Ok(())
+}
+
+/// A name an episode, or one a sample where any changes within an episode.
+fn constraints(episodes: &[Episode]) -> Vec<&str> {
+    let switches = |episode: &Episode| episode.constraint.as_ref().is_some_and(|labels| labels.switches() > 0);
+    let each_sample = episodes.iter().any(switches);
+    let mut names = Vec::new();
+    for episode in episodes {
+        let samples = if each_sample { episode.times.len() } else { 1 };
+        names.extend((0..samples).map(|sample| episode.constraint.as_ref().map_or("", |labels| labels.at(sample))));
+    }
+    names
 }
 
 /// An entry of the archive, stored as it is: numbers of sensors hardly compress.

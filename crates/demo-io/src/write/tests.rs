@@ -11,7 +11,7 @@ fn recordings(names: &[&str]) -> Recordings {
         times: (0..5).map(|sample| f64::from(sample) * 0.1).collect(),
         positions: numbers(number as f64),
         velocities: Some(numbers(number as f64 + 0.5)),
-        constraint: (number == 1).then(|| "rail, \"left\"".to_owned()),
+        constraint: (number == 1).then(|| "rail, \"left\"".into()),
         context: nalgebra::DVector::zeros(0),
     };
     let channel = |name: &&str| motion::Channel { name: (*name).to_owned(), unit: None };
@@ -44,4 +44,38 @@ fn names_that_would_be_misread_are_refused() {
     }
     assert!(matches!(write(Path::new("a.xlsx"), &recordings(&["x"])), Err(WriteError::Extension { .. })));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+proptest::proptest! {
+    /// Names that change within an episode are read back from every format, one for each sample.
+    #[test]
+    fn names_of_constraints_read_back(
+        names in proptest::collection::vec(proptest::collection::vec("(|a|b, c|7|-7)", 5), 2),
+        format in proptest::sample::select(vec!["csv", "tsv", "jsonl", "npz", "mcap"]),
+    ) {
+        let mut made = recordings(&["x", "y"]);
+        for (episode, names) in made.episodes.iter_mut().zip(&names) {
+            episode.constraint = motion::Labels::of_samples(names);
+        }
+        let path = tempfile::tempdir().unwrap().keep().join(format!("a.{format}"));
+        if format != "mcap" || cfg!(feature = "mcap") {
+            write(&path, &made).unwrap();
+            let back = read(&path, &ReadOptions::default(), &mut |_| ()).unwrap();
+            for (back, made) in back.episodes.iter().zip(&made.episodes) {
+                proptest::prop_assert_eq!(&back.constraint, &made.constraint);
+            }
+        }
+        std::fs::remove_dir_all(path.parent().unwrap()).unwrap();
+    }
+}
+
+/// An array with names for something else than episodes or samples.
+#[test]
+fn a_wrong_number_of_names_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.npz");
+    write(&path, &recordings(&["x", "y", "z"])).unwrap();
+    let options = ReadOptions { constraint_column: Some("names".to_owned()), ..ReadOptions::default() };
+    let refused = read(&path, &options, &mut |_| ()).unwrap_err().to_string();
+    assert!(refused.contains("'names'") && refused.contains("3 samples where 10 are expected"), "{refused}");
 }

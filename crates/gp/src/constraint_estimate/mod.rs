@@ -17,8 +17,8 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::stretches::noise::velocity_noise;
-use crate::stretches::segmentation::{PARAMETER, Part, SPARE, cheapest_parts};
-use crate::stretches::{MOST_DIMENSIONS, MOST_SAMPLES, centred, evenly, movements};
+use crate::stretches::segmentation::{PARAMETER, Part, SPARE, cheapest_parts, known_part};
+use crate::stretches::{MOST_DIMENSIONS, MOST_SAMPLES, centred, evenly, parts};
 use crate::{GpError, Rows};
 use hypothesis::{Hypothesis, Movement};
 use stretch_estimate::canonical;
@@ -60,7 +60,7 @@ impl ConstraintEstimates {
             return lengths("Jacobians of a task space", spaces[at].jacobians.as_ref().map_or(0, Vec::len), rows.len());
         }
         let at: Vec<usize> = (0..rows.len()).collect();
-        let movements = movements(rows, &at);
+        let movements = parts(rows, &at);
         let bases: Vec<Option<DMatrix<f64>>> = spaces.iter().map(|space| basis(space, rows.dim())).collect();
         let Some(noise) = noise(rows, &movements, spaces) else {
             return lengths("samples next to each other", 0, 4);
@@ -119,7 +119,8 @@ impl Wanted {
     }
 }
 
-/// Parts of a movement: the rows searched, and what was found, begin and end counted among them.
+/// Parts of a movement, or of what lies between two known switches: the rows searched, and what was found, begin and end counted
+/// among them.
 struct Parts {
     rows: Vec<usize>,
     movement: Movement,
@@ -136,13 +137,19 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Of every movement; `least` is the least variance of the policy.
+    /// Of every movement, or every part between known switches; `least` is the least variance of the policy.
     fn parts(&self, least: f64) -> Vec<Parts> {
         let of = |movement: &&[usize]| {
-            let rows = evenly(movement, MOST_SAMPLES);
+            let known = self.rows.labels().is_some();
+            let rows = if known { movement.to_vec() } else { evenly(movement, MOST_SAMPLES) };
             let movement = self.movement(&rows, least);
             let alone = PARAMETER * self.rows.dim() as f64;
-            let found = cheapest_parts(rows.len(), alone, |begin, end| movement.cheapest(begin, end));
+            let cost = |begin, end| movement.cheapest(begin, end);
+            let found = if known {
+                known_part(rows.len(), alone, cost).into_iter().collect()
+            } else {
+                cheapest_parts(rows.len(), alone, cost)
+            };
             Parts { rows, movement, found }
         };
         self.movements.par_iter().map(of).collect()
@@ -204,10 +211,12 @@ impl Search<'_> {
     fn stretch(&self, parts: &Parts, part: &Part<Hypothesis>, found: bool) -> StretchEstimate {
         let Parts { rows, movement, .. } = parts;
         let index = |at: usize| self.rows.indices()[rows[at]];
+        // Known switches are where they are said to be, even if a few samples beside them do not fit.
+        let ends = if self.rows.labels().is_some() { (0, rows.len() - 1) } else { (part.begin, part.end - 1) };
         let dim = self.rows.dim();
         let mut stretch = StretchEstimate {
             trajectory: index(part.begin).trajectory,
-            samples: (index(part.begin).sample, index(part.end - 1).sample),
+            samples: (index(ends.0).sample, index(ends.1).sample),
             acting: if found { self.without(parts, part) } else { Acting::Changing },
             space: 0,
             matrix: DMatrix::zeros(0, dim),

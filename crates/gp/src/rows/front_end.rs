@@ -41,13 +41,14 @@ impl FrontEnd {
         variance.map_or(FrontEnd::Velocities, |variance| FrontEnd::NoisyVelocities { variance })
     }
 
-    /// The rows of all trajectories, in order, each with its trajectory's context.
+    /// The rows of all trajectories, in order, each with its trajectory's context, and with the labels of constraints if these change
+    /// within any trajectory.
     ///
     /// # Errors
     /// [`GpError::NoVelocities`] if they are needed, [`GpError::Value`] for a variance that is negative or not finite,
     /// [`GpError::Cleaning`] if the smoother refuses, [`GpError::Overflow`] if squares of speeds are not finite.
     pub fn rows(&self, demonstrations: &Demonstrations) -> Result<Rows, GpError> {
-        let rows = self.without_context(demonstrations)?;
+        let rows = labelled(self.without_context(demonstrations)?, demonstrations)?;
         if demonstrations.context_dim() == 0 {
             return Ok(rows);
         }
@@ -76,6 +77,17 @@ impl FrontEnd {
         let rows = self.rows(demonstrations)?;
         Ok(rows.without(|trajectory, sample| held_out.contains(SampleIndex { trajectory, sample })))
     }
+}
+
+/// Labels that never change within a movement name constraints, but do not say that these stayed the same.
+fn labelled(rows: Rows, demonstrations: &Demonstrations) -> Result<Rows, GpError> {
+    let labels = |trajectory: usize| demonstrations.trajectories()[trajectory].labels();
+    if !(0..demonstrations.n_trajectories()).any(|at| labels(at).is_some_and(|labels| labels.switches() > 0)) {
+        return Ok(rows);
+    }
+    let label = |row: &SampleIndex| labels(row.trajectory).map_or(0, |labels| labels.run(row.sample));
+    let labels = rows.indices().iter().map(label).collect();
+    rows.with_labels(labels)
 }
 
 /// Recorded velocities at states of one's choice.

@@ -28,6 +28,7 @@ pub struct Rows {
     momenta: Option<DMatrix<f64>>,
     noise: Option<f64>,
     switches: Option<Vec<Vec<f64>>>,
+    labels: Option<Vec<usize>>,
 }
 
 impl Rows {
@@ -60,7 +61,8 @@ impl Rows {
                 return Err(GpError::Overflow { what: if what == "state" { "distance" } else { "speed" } });
             }
         }
-        Ok(Rows { states, velocities, variances: None, indices, momenta: None, noise: None, switches: None })
+        let (noise, switches, labels) = (None, None, None);
+        Ok(Rows { states, velocities, variances: None, indices, momenta: None, noise, switches, labels })
     }
 
     /// Adds the context c of every row, (p, M): what the motion depends on and what stays as it is during a movement, such as a
@@ -130,6 +132,19 @@ impl Rows {
         Rows { noise: Some(noise), switches, ..self }
     }
 
+    /// Adds which constraint acted on each row, as any number for each, (M): constraints switch where the label of one row of a movement
+    /// differs from that of the row before, and nowhere else. Stretches (S22) are then those between switches.
+    ///
+    /// # Errors
+    /// [`GpError::Lengths`].
+    pub fn with_labels(self, labels: Vec<usize>) -> Result<Self, GpError> {
+        let (found, expected) = (labels.len(), self.len());
+        if found != expected {
+            return Err(GpError::Lengths { what: "labels of constraints", found, expected });
+        }
+        Ok(Rows { labels: Some(labels), ..self })
+    }
+
     /// The rows whose sample is not held out: `held_out(trajectory, sample)`.
     #[must_use]
     pub fn without(self, held_out: impl Fn(usize, usize) -> bool) -> Self {
@@ -141,6 +156,7 @@ impl Rows {
             variances: self.variances.map(|variances| rows.iter().map(|&row| variances[row]).collect()),
             indices: rows.iter().map(|&row| self.indices[row]).collect(),
             momenta: self.momenta.map(|momenta| momenta.select_columns(&rows)),
+            labels: self.labels.map(|labels| rows.iter().map(|&row| labels[row]).collect()),
             ..self
         }
     }
@@ -187,6 +203,11 @@ impl Rows {
     /// such.
     pub fn switches(&self) -> Option<&[Vec<f64>]> {
         self.switches.as_deref()
+    }
+
+    /// The label of the constraint on every row, (M); none where switches are not known.
+    pub fn labels(&self) -> Option<&[usize]> {
+        self.labels.as_deref()
     }
 
     /// Share of squares by which a step between two samples differs from the velocity there, where velocities were found

@@ -134,6 +134,10 @@ fn stretches(rows: &Rows, kept: &Kept, selection: &Selection, spread: &DVector<f
     let velocities = scaled(rows.velocities(), &factors);
     let alike = Rows::new(states.rows(0, dim).into_owned(), velocities, rows.indices().to_vec()).ok()?;
     let alike = alike.with_context(&states.rows(dim, states.nrows() - dim).into_owned()).ok()?;
+    let alike = match rows.labels() {
+        Some(labels) => alike.with_labels(labels.to_vec()).ok()?,
+        None => alike,
+    };
     let stretches = Stretches::of(&alike).filter(Stretches::push_is_significant)?;
     Some(stretches.rows(&alike, kept, selection)?.scaled(spread))
 }

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use crate::Rows;
 use noise::velocity_noise;
-use segmentation::{Segment, segments};
+use segmentation::{Segment, known_segment, segments};
 
 /// Most samples of a movement among which switches are looked for; of longer ones, evenly many.
 pub(crate) const MOST_SAMPLES: usize = 60;
@@ -55,22 +55,26 @@ impl Stretches {
             return None;
         }
         let at: Vec<usize> = (0..rows.len()).collect();
-        let movements = movements(rows, &at);
-        let noise = velocity_noise(rows.velocities(), rows.variances(), &movements)?;
-        let of_movement = |movement: &&[usize]| {
-            let few = evenly(movement, MOST_SAMPLES);
-            let found = segments(&rows.velocities().select_columns(&few), noise);
-            found.iter().filter_map(|segment| stretch(rows, movement, &few, segment, noise)).collect::<Vec<_>>()
+        let parts = parts(rows, &at);
+        let noise = velocity_noise(rows.velocities(), rows.variances(), &parts)?;
+        let of_part = |part: &&[usize]| {
+            let few = if rows.labels().is_some() { part.to_vec() } else { evenly(part, MOST_SAMPLES) };
+            let velocities = rows.velocities().select_columns(&few);
+            let found = match rows.labels() {
+                Some(_) => known_segment(&velocities, noise).into_iter().collect(),
+                None => segments(&velocities, noise),
+            };
+            found.iter().filter_map(|segment| stretch(rows, part, &few, segment, noise)).collect::<Vec<_>>()
         };
-        let stretches: Vec<Stretch> = movements.par_iter().flat_map_iter(of_movement).collect();
+        let stretches: Vec<Stretch> = parts.par_iter().flat_map_iter(of_part).collect();
         (!stretches.is_empty()).then_some(Stretches { stretches, noise })
     }
 }
 
-/// `at`, all rows in their order, by movement.
-pub(crate) fn movements<'a>(rows: &Rows, at: &'a [usize]) -> Vec<&'a [usize]> {
-    let trajectory = |row: usize| rows.indices()[row].trajectory;
-    at.chunk_by(|&a, &b| trajectory(a) == trajectory(b)).collect()
+/// `at`, all rows in their order, by movement, and where labels tell switches, by the parts between them.
+pub(crate) fn parts<'a>(rows: &Rows, at: &'a [usize]) -> Vec<&'a [usize]> {
+    let of = |row: usize| (rows.indices()[row].trajectory, rows.labels().map(|labels| labels[row]));
+    at.chunk_by(|&a, &b| of(a) == of(b)).collect()
 }
 
 /// The mean of the columns, and the columns about it.
@@ -89,10 +93,10 @@ pub(crate) fn evenly(rows: &[usize], most: usize) -> Vec<usize> {
     (0..most).map(|at| rows[at * (rows.len() - 1) / (most - 1)]).collect()
 }
 
-/// The directions of a segment, over all of its samples; none if no direction stands out from the noise.
-fn stretch(rows: &Rows, movement: &[usize], few: &[usize], segment: &Segment, noise: f64) -> Option<Stretch> {
+/// The directions of a segment of a part, over all of its samples; none if no direction stands out from the noise.
+fn stretch(rows: &Rows, part: &[usize], few: &[usize], segment: &Segment, noise: f64) -> Option<Stretch> {
     let (first, last) = (few[segment.begin], few[segment.end - 1]);
-    let inside: Vec<usize> = movement.iter().copied().filter(|&row| (first..=last).contains(&row)).collect();
+    let inside: Vec<usize> = part.iter().copied().filter(|&row| (first..=last).contains(&row)).collect();
     let (mean, centred) = centred(&rows.velocities().select_columns(&inside));
     let least = STANDS_OUT * noise.sqrt() * (inside.len() as f64).powf(0.25);
     let svd = centred.svd(true, false);
@@ -117,4 +121,57 @@ fn stretch(rows: &Rows, movement: &[usize], few: &[usize], segment: &Segment, no
         lengths: taken.iter().map(|&k| svd.singular_values[k]).collect(),
         directions,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use motion::SampleIndex;
+    use proptest::prelude::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+
+    proptest! {
+        /// Under constraints that push, with noise: a stretch between any two switches that are known, whatever they are called, and
+        /// one where none is.
+        #[test]
+        fn stretches_lie_between_known_switches(
+            dim in 2usize..4,
+            lengths in prop::collection::vec(24usize..40, 1..5),
+            names in any::<[u8; 2]>().prop_filter("two names", |names| names[0] != names[1]),
+            seed in any::<u64>(),
+        ) {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let mut draw = |rows, columns| DMatrix::from_fn(rows, columns, |_, _| 2.0 * rng.random::<f64>() - 1.0);
+            let mut columns: Vec<DVector<f64>> = Vec::new();
+            let mut labels = Vec::new();
+            for (at, &length) in lengths.iter().enumerate() {
+                let normal = draw(dim, 1).column(0).normalize();
+                let push = &normal * draw(1, 1)[0];
+                for _ in 0..length {
+                    let velocity = draw(dim, 1).column(0).into_owned();
+                    let along = velocity.dot(&normal);
+                    columns.push(velocity - &normal * along + &push + draw(dim, 1).column(0) * 1e-3);
+                    labels.push(usize::from(names[at % 2]));
+                }
+            }
+            let count = columns.len();
+            let indices = (0..count).map(|sample| SampleIndex { trajectory: 0, sample }).collect();
+            let rows = Rows::new(draw(dim, count), DMatrix::from_columns(&columns), indices).unwrap();
+            // Few windows tell too little of the noise.
+            let rows = rows.with_variances(vec![1e-6 / 3.0; count]).unwrap();
+            let found = |labels: Vec<usize>| Stretches::of(&rows.clone().with_labels(labels).unwrap());
+            let between = found(labels).expect("stretches").stretches;
+            let ends = lengths.iter().scan(0, |end, length| { *end += length; Some((*end - length, *end - 1)) });
+            let near = |(stretch, end): (&Stretch, (usize, usize))| {
+                stretch.samples.0.abs_diff(end.0) <= 2 && stretch.samples.1.abs_diff(end.1) <= 2
+            };
+            prop_assert_eq!(between.len(), lengths.len());
+            prop_assert!(between.iter().zip(ends).all(near));
+            prop_assert!(between.iter().all(|stretch| stretch.directions.ncols() == dim - 1));
+            let one = found(vec![3; count]).map_or(0, |found| found.stretches.len());
+            prop_assert!(one <= 1 && (one == 1 || lengths.len() > 1));
+        }
+    }
 }

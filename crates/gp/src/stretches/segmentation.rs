@@ -25,6 +25,14 @@ pub(super) fn segments(velocities: &DMatrix<f64>, noise: f64) -> Vec<Segment> {
     parts
 }
 
+/// The same where no constraint switched among these samples: all of them, but for a few at the ends.
+pub(super) fn known_segment(velocities: &DMatrix<f64>, noise: f64) -> Option<Segment> {
+    let (dim, count) = velocities.shape();
+    let sums = PrefixSums::of(velocities);
+    let part = known_part(count, PARAMETER * dim as f64, |begin, end| plane_cost(&sums, (begin, end), noise));
+    part.filter(|part| part.kind > 0)
+}
+
 /// Samples `begin..end` of a movement, and what they are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Part<K> {
@@ -63,6 +71,32 @@ pub(crate) fn cheapest_parts<K: Copy>(
     }
     found.reverse();
     found
+}
+
+/// Of samples that a label says belong together, at most so many at either end may belong to what was before or comes after: labels
+/// are late, and smoothing reaches across a switch.
+const STRAY: usize = 2;
+
+/// The part of `count` samples among which nothing switched, as [`cheapest_parts`] would cost it; none if samples in no part cost less.
+pub(crate) fn known_part<K: Copy>(
+    count: usize,
+    alone: f64,
+    cost: impl Fn(usize, usize) -> (f64, K),
+) -> Option<Part<K>> {
+    let mut best = (alone * count as f64, None);
+    for end in (count.saturating_sub(STRAY)..=count).rev() {
+        for begin in 0..=STRAY.min(end.saturating_sub(SPARE)) {
+            if end < begin + SPARE {
+                continue;
+            }
+            let (own, kind) = cost(begin, end);
+            let all = own + alone * (count - (end - begin)) as f64;
+            if all < best.0 {
+                best = (all, Some(Part { begin, end, kind }));
+            }
+        }
+    }
+    best.1
 }
 
 /// The least cost of planes through these samples, and their dimension.

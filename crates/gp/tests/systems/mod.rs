@@ -1,7 +1,8 @@
 //! Potentials to descend under constraints A u = b, new for each movement and once within it.
 #![allow(dead_code, reason = "every test takes what it needs")]
 
-use motion::{Demonstrations, Trajectory};
+use gp::{AutoFit, AutoGp, DirectGp, PushTest, Rows, SlopeGp};
+use motion::{Demonstrations, Policy, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -118,4 +119,26 @@ impl System {
 
 fn normal(rng: &mut ChaCha8Rng) -> f64 {
     rng.sample(rand_distr::StandardNormal)
+}
+
+/// What is learnt of 400 rows, where constraints may push.
+pub(crate) fn learnt(rows: &Rows, seed: u64) -> AutoFit {
+    let learner = AutoGp {
+        slope: SlopeGp { max_rows: 400, hyper_rows: 200, push_test: PushTest::Fit, ..SlopeGp::default() },
+        direct: DirectGp { max_rows: 400, hyper_rows: 200, ..DirectGp::default() },
+        ..AutoGp::default()
+    };
+    learner.fit(rows, &mut ChaCha8Rng::seed_from_u64(seed)).unwrap()
+}
+
+/// nUPE on states of new movements.
+pub(crate) fn error(system: &System, fit: &dyn Policy, seed: u64) -> f64 {
+    let fresh = system.movements(0.0, 0.0, 1000 + seed);
+    let states = fresh.trajectories().iter().take(30).flat_map(|movement| movement.states().column_iter().step_by(2));
+    let states: Vec<DVector<f64>> = states.map(|x| DVector::from_column_slice(x.as_slice())).collect();
+    let truth: Vec<DVector<f64>> = states.iter().map(|x| system.policy(x)).collect();
+    let mean = truth.iter().fold(DVector::zeros(system.dim), |sum, u| sum + u) / truth.len() as f64;
+    let spread: f64 = truth.iter().map(|u| (u - &mean).norm_squared()).sum();
+    let apart: f64 = states.iter().zip(&truth).map(|(x, u)| (fit.action(x.as_view()) - u).norm_squared()).sum();
+    apart / spread
 }

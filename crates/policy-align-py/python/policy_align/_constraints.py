@@ -21,6 +21,8 @@ class ConstraintStretch:
     samples: tuple[int, int]
     #: Seconds of both from the beginning of the movement.
     seconds: tuple[float, float]
+    #: What the movements call the constraint, where they do.
+    label: str | None
     #: "constraint", "changing" (it bends), "nothing" or "unseen" (the policy does not want to move).
     acting: str
     #: The link whose position or orientation is constrained, and which of both; None: the channels.
@@ -43,7 +45,8 @@ class ConstraintStretch:
 
     def __str__(self) -> str:
         begin, end = self.seconds
-        return f"{self.episode}, {begin:.2f} to {end:.2f} s: {self.text}"
+        name = "" if self.label is None else f" ({self.label})"
+        return f"{self.episode}, {begin:.2f} to {end:.2f} s{name}: {self.text}"
 
 
 def stretches(document: str, dim: int) -> tuple[ConstraintStretch, ...]:
@@ -62,6 +65,7 @@ def _stretch(entry: dict[str, Any], text: str, dim: int) -> ConstraintStretch:
         episode=str(entry["episode"]),
         samples=(begin, end),
         seconds=(start, stop),
+        label=entry.get("label"),
         acting=str(entry["acting"]),
         link=link,
         quantity=quantity,

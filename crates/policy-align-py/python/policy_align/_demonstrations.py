@@ -54,12 +54,13 @@ class Demonstrations:
         names: Sequence[str] | None = None,
         channels: Sequence[str] | None = None,
         units: Sequence[str | None] | None = None,
-        constraints: Sequence[str | None] | None = None,
+        constraints: Sequence[str | Sequence[object] | None] | None = None,
     ) -> None:
         """Of arrays: a list of (N, n), an array (K, N, n), or a flat (M, n) with ``lengths``.
 
         ``dt``: seconds between samples, or ``times``: the stamps of each movement. ``velocities``: as trajectories.
-        A DataFrame for each movement names the ``channels``.
+        A DataFrame for each movement names the ``channels``. ``constraints``: the name of each movement's constraint, or
+        where it changes within a movement, a list of names or numbers, one a sample: they tell where constraints switch.
         """
         given = episodes(trajectories, lengths, "trajectories")
         if channels is None:
@@ -87,6 +88,7 @@ class Demonstrations:
         for listed_names, expected, what in ((names, count, "names"), (labels, count, "constraints")):
             _same_length(listed_names, expected, what, "trajectories")
         _same_length(unit_names, width, "units", "columns")
+        labels = [_labels(label, len(positions[k]), k) for k, label in enumerate(labels)]
         step = None if stamps is not None else float(dt)  # type: ignore[arg-type]
         self._native = _native.Recordings.of(positions, speeds, (step, stamps), (names, channels), labels, unit_names)
 
@@ -179,9 +181,9 @@ class Demonstrations:
         return [name for name, _ in self._native.channels]
 
     @property
-    def constraints(self) -> list[str | None]:
-        """Label of the constraint of each movement, where there is one."""
-        return self._native.constraints
+    def constraints(self) -> list[str | list[str] | None]:
+        """Label of the constraint of each movement, or of each of its samples where it changes; None without one."""
+        return [each[0] if each is not None and len(set(each)) == 1 else each for each in self._native.constraints]
 
     @property
     def notes(self) -> list[str]:
@@ -268,6 +270,19 @@ def _one(convert: Any, values: Any, name: str, k: int) -> Floats:
         error.trajectory = k
         raise
     return found
+
+
+def _labels(names: Any, count: int, k: int) -> list[str] | None:
+    """The name at each of ``count`` samples of movement k, of one for all or of one each."""
+    if names is None:
+        return None
+    if isinstance(names, str) or not isinstance(names, Iterable):
+        return [str(names)] * count
+    listed = ["" if name is None else str(name) for name in names]
+    if len(listed) != count:
+        what = f"there are {len(listed)} names of constraints for the {count} samples of movement {k}"
+        raise PolicyAlignError(what, "constraints", "one name a sample, or one for the movement", trajectory=k)
+    return listed
 
 
 def _stamps(values: Any) -> Floats:

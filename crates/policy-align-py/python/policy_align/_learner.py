@@ -84,15 +84,17 @@ class Learner(Estimator):
         times: Iterable[Any] | None = None,
         velocities: Any = None,
         lengths: Sequence[int] | None = None,
+        constraints: Sequence[str | Sequence[object] | None] | None = None,
     ) -> Self:
         """Learns from movements: a list of (N, n) arrays or DataFrames, an array (K, N, n), a flat (M, n) with
         ``lengths``, or ``Demonstrations``.
 
         ``dt``: seconds between samples, or ``times``: the stamps of each movement. ``velocities``, as X: recorded ones,
-        better than differences of positions. ``y`` is ignored. Ctrl-C ends it.
+        better than differences of positions. ``constraints``: names as of ``Demonstrations``, which tell where constraints
+        switch. ``y`` is ignored. Ctrl-C ends it.
         """
         threads = _threads(self.n_jobs)
-        demonstrations = _demonstrations(X, dt, times, velocities, lengths)
+        demonstrations = _demonstrations(X, dt, times, velocities, lengths, constraints)
         made_at = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
         fitted = _native.Fitted.fit(demonstrations._native, self._preparing(), self._learning(), threads, made_at)
         self._take(fitted)
@@ -356,12 +358,19 @@ class Learner(Estimator):
 
 
 def _demonstrations(
-    X: Any, dt: float | None, times: Iterable[Any] | None, velocities: Any, lengths: Sequence[int] | None
+    X: Any,
+    dt: float | None,
+    times: Iterable[Any] | None,
+    velocities: Any,
+    lengths: Sequence[int] | None,
+    constraints: Sequence[str | Sequence[object] | None] | None = None,
 ) -> Demonstrations:
     if not isinstance(X, Demonstrations):
-        return Demonstrations(X, dt=dt, times=times, velocities=velocities, lengths=lengths)
-    if any(given is not None for given in (dt, times, velocities, lengths)):
-        raise TypeError("Demonstrations have their own times and velocities")
+        return Demonstrations(
+            X, dt=dt, times=times, velocities=velocities, lengths=lengths, constraints=constraints
+        )
+    if any(given is not None for given in (dt, times, velocities, lengths, constraints)):
+        raise TypeError("Demonstrations have their own times, velocities and constraints")
     return X
 
 

@@ -30,6 +30,9 @@ pub struct ConstraintStretch {
     pub samples: (usize, usize),
     /// Seconds from the beginning of the episode, of the first sample and of the last.
     pub seconds: (f64, f64),
+    /// What the recording calls the constraint, where it does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub label: Option<String>,
     /// What acted.
     pub acting: Acting,
     /// What v is the velocity of.

@@ -17,7 +17,7 @@ use crate::leave_out::in_units_of;
 use crate::{EvaluateError, Model, Prepared};
 
 /// The constraints on movements of a model's channels, found by what the model's policy wanted to do
-/// (S26). `links` of a robot, if there is one, are candidates for what a constraint is on, beside the channels.
+/// (S26). Where labels of the recordings tell switches, these are taken. `links` of a robot, if there is one, are candidates for what a constraint is on, beside the channels.
 ///
 /// The same movements may be those that the model was learnt from.
 ///
@@ -88,6 +88,7 @@ impl Naming<'_> {
             episode: self.prepared.episodes[stretch.trajectory].clone(),
             samples: (first * every, last * every + every - 1),
             seconds: (movement.seconds(0, first), movement.seconds(0, last)),
+            label: movement.labels().map(|labels| labels.at(first).to_owned()).filter(|label| !label.is_empty()),
             acting: stretch.acting,
             on,
             levels: normals.iter().zip(&speeds).map(level).collect(),

@@ -4,6 +4,7 @@ pub(crate) mod agreement;
 pub(crate) mod duplicates;
 pub(crate) mod episodes;
 pub(crate) mod jumps;
+pub(crate) mod labels;
 pub(crate) mod lag;
 pub(crate) mod quaternions;
 pub(crate) mod stamps;

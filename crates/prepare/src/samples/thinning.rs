@@ -58,7 +58,8 @@ fn means(movement: &Trajectory, taken: usize) -> Result<Trajectory, MotionError>
         DMatrix::from_columns(&means)
     };
     let thinned = Trajectory::new(of(movement.states()), movement.time_step() * taken as f64)?
-        .with_context(movement.context().clone())?;
+        .with_context(movement.context().clone())?
+        .with_labels(movement.labels().and_then(|labels| labels.chosen((0..count).map(|at| at * taken + taken / 2))));
     let thinned = match movement.times() {
         None => thinned,
         Some(times) => {

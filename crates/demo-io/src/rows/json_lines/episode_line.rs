@@ -6,10 +6,10 @@ use crate::raw::{
 use crate::rows::json::Json;
 use crate::rows::stamps::Stamp;
 use crate::{Fault, ReadError};
-use motion::Channel;
+use motion::{Channel, Labels};
 
 /// Episodes, a line each: `{"episode": "take 1", "dt": 0.05, "names": ["x"], "unit": ["m"], "state": [[0.1], [0.2]],
-/// "velocity": [[2.0], [2.0]], "constraint": "rail"}`, or `times` instead of `dt`.
+/// "velocity": [[2.0], [2.0]], "constraint": "rail"}`, or `times` instead of `dt`, or a list with the constraint of each sample.
 pub(super) struct EpisodeLines<'a> {
     input: &'a Input<'a>,
     channels: Option<Vec<Channel>>,
@@ -74,7 +74,7 @@ impl<'a> EpisodeLines<'a> {
             times: self.times(line, samples.len(), &place)?,
             positions,
             velocities,
-            constraint: label(&["constraint", "condition"]),
+            constraint: constraints(line, samples.len(), &place)?,
         });
         Ok(())
     }
@@ -103,6 +103,16 @@ impl<'a> EpisodeLines<'a> {
             word: "sample",
             drop_constant: false,
         }
+    }
+}
+
+/// Names of constraints: one for the line, or one a sample.
+fn constraints(line: &Json, samples: usize, place: &str) -> Result<Option<Labels>, ReadError> {
+    match one_of(line, &["constraint", "condition"]) {
+        Some(Json::List(names)) if names.len() != samples => Err(lengths("'constraint'", samples, names.len(), place)),
+        Some(Json::List(names)) => Ok(Labels::of_samples(names.iter().map(Json::to_string))),
+        Some(name) => Ok(Some(Labels::from(name.to_string()))),
+        None => Ok(None),
     }
 }
 

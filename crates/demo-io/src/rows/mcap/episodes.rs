@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::label_entry::LabelEntry;
 use crate::raw::RawEpisode;
 
 /// The episodes that [`crate::write`] listed in the metadata; otherwise all messages are one.
@@ -16,7 +17,8 @@ pub(super) fn episodes(draft: RawEpisode, metadata: &BTreeMap<String, String>) -
     let cut = listed.into_iter().map(|episode| {
         let samples = start..start + episode.messages;
         start = samples.end;
-        RawEpisode { name: episode.name, constraint: episode.constraint, ..draft.chosen(samples) }
+        let constraint = episode.constraint.and_then(|entry| entry.labels(samples.len()));
+        RawEpisode { name: episode.name, constraint, ..draft.chosen(samples) }
     });
     cut.collect()
 }
@@ -27,5 +29,5 @@ pub(crate) struct EpisodeEntry {
     pub(crate) name: String,
     pub(crate) messages: usize,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) constraint: Option<String>,
+    pub(crate) constraint: Option<LabelEntry>,
 }

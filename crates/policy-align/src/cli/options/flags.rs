@@ -56,7 +56,7 @@ pub(crate) struct ReadFlags {
     /// Episode column
     #[arg(long, value_name = "COLUMN")]
     episode: Option<String>,
-    /// Column of constraint labels
+    /// Column that names constraints; where it changes in an episode, they switch
     #[arg(long, value_name = "COLUMN")]
     constraint_column: Option<String>,
     /// Columns to ignore

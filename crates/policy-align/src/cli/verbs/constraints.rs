@@ -26,6 +26,8 @@ Compares what the policy wants with what was recorded. A line is a stretch of
 an episode during which one constraint A v = b acted, with the expected error
 of its normal. With a robot, v may be a link's velocity or angular velocity.
 A constraint along which the policy does not want to move does not show.
+Where a column names the constraint (--constraint-column), stretches are those
+between changes of the name.
 All flags of reading files: policy-align check --help
 
 Examples:
@@ -125,5 +127,8 @@ impl Constraints {
 /// A stretch in words, and how sure it is.
 fn line(stretch: &ConstraintStretch, state: &[StateChannel]) -> String {
     let words = stretch.in_words(state);
-    if stretch.acting == Acting::Constraint { format!("{words} ({})", stretch.angle_in_words()) } else { words }
+    let sure = if stretch.acting == Acting::Constraint { stretch.angle_in_words() } else { String::new() };
+    let label = stretch.label.as_ref().map(|label| format!("'{label}'"));
+    let beside: Vec<String> = [sure].into_iter().filter(|text| !text.is_empty()).chain(label).collect();
+    if beside.is_empty() { words } else { format!("{words} ({})", beside.join(", ")) }
 }

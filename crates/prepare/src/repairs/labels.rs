@@ -1,0 +1,43 @@
+//! Labels that change within an episode: whether they can tell where constraints switch.
+
+use motion::{Episode, Verdict};
+
+use crate::notes::Notes;
+use crate::numbers::counted;
+
+/// Samples beyond the dimension of the state that tell a constraint.
+const SPARE: usize = 4;
+
+/// Retains labels if most samples lie where one label holds for long enough to tell a constraint on a state of so many dimensions.
+pub(crate) fn decide(episodes: &mut [Episode], dim: usize, notes: &mut Notes) {
+    let with = episodes.iter().filter(|episode| switches(episode) > 0).count();
+    if with == 0 {
+        return;
+    }
+    let (samples, lengths) = (episodes.iter().map(Episode::n_samples).sum::<usize>(), lengths(episodes));
+    let long: usize = lengths.iter().filter(|&&length| length >= dim + SPARE).sum();
+    if 2 * long >= samples {
+        let value = format!("{}, in {}", episodes.iter().map(switches).sum::<usize>(), counted(with, "episode"));
+        notes.decided("switches", value, "where the label of the constraint changes", "--constraint-column");
+        return;
+    }
+    for episode in episodes {
+        episode.constraint.take_if(|labels| labels.switches() > 0);
+    }
+    let every = samples / lengths.len();
+    notes.found(
+        Verdict::Good,
+        format!("labels of constraints change every {every} samples, too often to tell constraints"),
+        "--constraint-column with a column that names the constraint, or --ignore",
+    );
+}
+
+fn switches(episode: &Episode) -> usize {
+    episode.constraint.as_ref().map_or(0, motion::Labels::switches)
+}
+
+/// For how many samples each label holds.
+fn lengths(episodes: &[Episode]) -> Vec<usize> {
+    let labelled = episodes.iter().filter_map(|episode| Some((episode.constraint.as_ref()?, episode.n_samples())));
+    labelled.flat_map(|(labels, samples)| labels.lengths(samples)).collect()
+}
