@@ -7,6 +7,7 @@
 pub(crate) mod noise;
 pub(crate) mod rows;
 pub(crate) mod segmentation;
+mod whole;
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -14,6 +15,7 @@ use rayon::prelude::*;
 use crate::Rows;
 use noise::velocity_noise;
 use segmentation::{Segment, segments};
+use whole::{least_length, whole};
 
 /// Most samples of a movement among which switches are looked for; of longer ones, evenly many.
 pub(crate) const MOST_SAMPLES: usize = 60;
@@ -30,7 +32,7 @@ pub(crate) struct Stretch {
     pub(crate) samples: (usize, usize),
     /// Orthonormal directions in the null space of A, (n, m) with m < n.
     pub(crate) directions: DMatrix<f64>,
-    /// Length of the velocities along each direction about their mean: the singular values s_k, (m).
+    /// ℓ_k of (S23), (m): the noise over the standard deviation of each direction's angle.
     pub(crate) lengths: Vec<f64>,
     /// The push A⁺b: the mean velocity along the normals of the plane that the velocities lie in, (n).
     pub(crate) push: DVector<f64>,
@@ -60,7 +62,18 @@ impl Stretches {
         let of_movement = |movement: &&[usize]| {
             let few = evenly(movement, MOST_SAMPLES);
             let found = segments(&rows.velocities().select_columns(&few), noise);
-            found.iter().filter_map(|segment| stretch(rows, movement, &few, segment, noise)).collect::<Vec<_>>()
+            let most = found.iter().map(|segment| segment.kind).max().unwrap_or(0);
+            if let Some(rank) = whole(&rows.velocities().select_columns(*movement), most, noise) {
+                let least = least_length(movement.len(), noise);
+                return stretch(rows, movement, (rank, least), noise).into_iter().collect::<Vec<_>>();
+            }
+            let of_segment = |segment: &Segment| {
+                let span = few[segment.begin]..=few[segment.end - 1];
+                let inside: Vec<usize> = movement.iter().copied().filter(|row| span.contains(row)).collect();
+                let least = STANDS_OUT * noise.sqrt() * (inside.len() as f64).powf(0.25);
+                stretch(rows, &inside, (segment.kind, least), noise)
+            };
+            found.iter().filter_map(of_segment).collect()
         };
         let stretches: Vec<Stretch> = movements.par_iter().flat_map_iter(of_movement).collect();
         (!stretches.is_empty()).then_some(Stretches { stretches, noise })
@@ -89,32 +102,33 @@ pub(crate) fn evenly(rows: &[usize], most: usize) -> Vec<usize> {
     (0..most).map(|at| rows[at * (rows.len() - 1) / (most - 1)]).collect()
 }
 
-/// The directions of a segment, over all of its samples; none if no direction stands out from the noise.
-fn stretch(rows: &Rows, movement: &[usize], few: &[usize], segment: &Segment, noise: f64) -> Option<Stretch> {
-    let (first, last) = (few[segment.begin], few[segment.end - 1]);
-    let inside: Vec<usize> = movement.iter().copied().filter(|&row| (first..=last).contains(&row)).collect();
-    let (mean, centred) = centred(&rows.velocities().select_columns(&inside));
-    let least = STANDS_OUT * noise.sqrt() * (inside.len() as f64).powf(0.25);
+/// The directions of the samples `inside`, whose velocities lie in a plane of this rank, as far as they are at least `least` long;
+/// none if no direction is.
+fn stretch(rows: &Rows, inside: &[usize], (rank, least): (usize, f64), noise: f64) -> Option<Stretch> {
+    let (mean, centred) = centred(&rows.velocities().select_columns(inside));
     let svd = centred.svd(true, false);
     let standing_out = |&k: &usize| svd.singular_values[k] >= least && svd.singular_values[k] > 0.0;
-    let taken: Vec<usize> = (0..svd.singular_values.len()).filter(standing_out).take(segment.kind).collect();
+    let taken: Vec<usize> = (0..svd.singular_values.len()).filter(standing_out).take(rank).collect();
     if taken.is_empty() {
         return None;
     }
+    let count = inside.len() as f64;
     let directions = svd.u.as_ref()?.select_columns(&taken);
-    let plane = svd.u.as_ref()?.columns(0, segment.kind).into_owned();
+    let plane = svd.u.as_ref()?.columns(0, rank).into_owned();
     let along = plane.tr_mul(&mean);
     let push = &mean - &plane * &along;
     // Noise moves the mean, and it tilts the plane.
     let tilt: f64 = along.iter().zip(&svd.singular_values).map(|(u, s)| (u / s).powi(2)).sum();
-    let variance = noise * (1.0 / inside.len() as f64 + tilt);
+    let variance = noise * (1.0 / count + tilt);
+    let length = |&k: &usize| svd.singular_values[k] - count * noise / svd.singular_values[k];
     let index = |row: usize| rows.indices()[row];
+    let (first, last) = (index(inside[0]), index(inside[inside.len() - 1]));
     Some(Stretch {
-        trajectory: index(first).trajectory,
-        samples: (index(first).sample, index(last).sample),
-        significance: (push.norm_squared() / variance, rows.dim() - segment.kind),
+        trajectory: first.trajectory,
+        samples: (first.sample, last.sample),
+        significance: (push.norm_squared() / variance, rows.dim() - rank),
         push,
-        lengths: taken.iter().map(|&k| svd.singular_values[k]).collect(),
+        lengths: taken.iter().map(length).collect(),
         directions,
     })
 }

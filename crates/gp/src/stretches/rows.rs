@@ -23,7 +23,7 @@ struct Equation {
     velocity: DVector<f64>,
     /// |vᵀu|.
     length: f64,
-    /// s_k of its direction.
+    /// ℓ_k of its direction.
     direction_length: f64,
 }
 
