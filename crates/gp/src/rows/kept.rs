@@ -2,7 +2,7 @@
 
 use motion::scaled;
 use nalgebra::{DMatrix, DVector};
-use rand::Rng;
+use rand::{Rng, RngExt};
 use rand::seq::SliceRandom;
 use serde::{Deserialize, Serialize};
 
@@ -156,7 +156,7 @@ impl Selection {
         };
         let enough = grouped(rows, &usable)?;
         let trajectory = |row: usize| rows.indices()[row].trajectory;
-        usable = thinned(usable.chunk_by(|&a, &b| trajectory(a) == trajectory(b)), self.max_rows, rng);
+        usable = thinned(usable.chunk_by(|&a, &b| trajectory(a) == trajectory(b)), self.max_rows, || rng.random());
         usable.shuffle(rng);
         let mut hyper = usable[..usable.len().min(self.hyper_rows)].to_vec();
         let in_time = |&row: &usize| (rows.indices()[row], row);

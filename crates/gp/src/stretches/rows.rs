@@ -1,10 +1,13 @@
 //! (S22), (S23): rows of stretches.
 
+use std::collections::BTreeSet;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::Rows;
 use crate::rows::kept::{Kept, OfStretches, RowsDropped, Selection};
 use crate::rows::noise_weights::relative;
+use crate::rows::thinning::thinned;
 use crate::stretches::{Stretch, Stretches};
 use motion::{SampleIndex, upper_median};
 
@@ -14,6 +17,8 @@ const LEAST: f64 = 1e-12;
 const LEAST_SIGNIFICANCE: f64 = 4.0;
 /// Share of the movements that must have stretches: models of different movements are not compared.
 const COVERED: f64 = 0.5;
+/// Where thinning begins, in distances between the rows that are kept.
+const MIDDLE: f64 = 0.5;
 
 /// One equation vᵀπ(x) = vᵀu.
 struct Equation {
@@ -27,6 +32,15 @@ struct Equation {
     direction_length: f64,
 }
 
+/// At most `most` of the equations, in their order.
+fn few(equations: Vec<Equation>, rows: &Rows, most: usize) -> Vec<Equation> {
+    let trajectory = |&at: &usize| rows.indices()[equations[at].row].trajectory;
+    let all: Vec<usize> = (0..equations.len()).collect();
+    let taken: BTreeSet<usize> =
+        thinned(all.chunk_by(|a, b| trajectory(a) == trajectory(b)), most, || MIDDLE).into_iter().collect();
+    equations.into_iter().enumerate().filter(|(at, _)| taken.contains(at)).map(|(_, equation)| equation).collect()
+}
+
 impl Stretches {
     /// Rows of all samples that lie in stretches, with their noise weights (S23); evenly many of them, where they are more
     /// than `selection` allows. None if they are of far fewer movements than `kept` ones.
@@ -35,8 +49,7 @@ impl Stretches {
         let mean_square = equations.iter().map(|of| of.length.powi(2)).sum::<f64>() / equations.len() as f64;
         equations.retain(|of| of.length.powi(2) > LEAST * mean_square);
         let found = equations.len();
-        let equations: Vec<Equation> =
-            equations.into_iter().step_by(found.div_ceil(selection.max_rows).max(1)).collect();
+        let equations = few(equations, rows, selection.max_rows);
         let lengths: Vec<f64> = equations.iter().map(|of| of.length).collect();
         let policy_squared = 2.0 * upper_median(lengths.clone())?.powi(2);
         let variance = |of: &Equation| self.noise * (1.0 + policy_squared / of.direction_length.powi(2));
