@@ -45,8 +45,8 @@ pub struct RowsDropped {
 pub(crate) struct OfStretches {
     /// D (S23), (M).
     pub(crate) weights: Vec<f64>,
-    /// Root mean square of the pushes A⁺b, in units of the state per second.
-    pub(crate) push: f64,
+    /// Root mean square of the pushes A⁺b, in units of the state per second; none where b = 0.
+    pub(crate) push: Option<f64>,
 }
 
 /// Rows kept, in the order of trajectories and samples.

@@ -9,7 +9,7 @@ pub(crate) mod rows;
 pub(crate) mod segmentation;
 mod whole;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, SVD};
 use rayon::prelude::*;
 
 use crate::Rows;
@@ -38,6 +38,8 @@ pub(crate) struct Stretch {
     pub(crate) push: DVector<f64>,
     /// Its square in units of the variance that noise gives it, and how many normals there are.
     pub(crate) significance: (f64, usize),
+    /// The rank of the plane, of a whole movement.
+    whole: Option<usize>,
 }
 
 /// All stretches of some movements.
@@ -46,6 +48,8 @@ pub(crate) struct Stretches {
     pub(crate) stretches: Vec<Stretch>,
     /// s², the variance of a velocity along an axis.
     pub(crate) noise: f64,
+    /// Whether the constraints may push.
+    pub(crate) pushed: bool,
 }
 
 impl Stretches {
@@ -63,9 +67,11 @@ impl Stretches {
             let few = evenly(movement, MOST_SAMPLES);
             let found = segments(&rows.velocities().select_columns(&few), noise);
             let most = found.iter().map(|segment| segment.kind).max().unwrap_or(0);
-            if let Some(rank) = whole(&rows.velocities().select_columns(*movement), most, noise) {
+            let (_, about_mean) = centred(&rows.velocities().select_columns(*movement));
+            if let Some(rank) = whole(&about_mean, most, noise) {
                 let least = least_length(movement.len(), noise);
-                return stretch(rows, movement, (rank, least), noise).into_iter().collect::<Vec<_>>();
+                let found = stretch(rows, movement, (rank, least), noise);
+                return found.map(|found| Stretch { whole: Some(rank), ..found }).into_iter().collect::<Vec<_>>();
             }
             let of_segment = |segment: &Segment| {
                 let span = few[segment.begin]..=few[segment.end - 1];
@@ -76,7 +82,24 @@ impl Stretches {
             found.iter().filter_map(of_segment).collect()
         };
         let stretches: Vec<Stretch> = movements.par_iter().flat_map_iter(of_movement).collect();
-        (!stretches.is_empty()).then_some(Stretches { stretches, noise })
+        (!stretches.is_empty()).then_some(Stretches { stretches, noise, pushed: true })
+    }
+
+    /// Those that are whole movements, with directions from the velocities themselves, not from their differences: more
+    /// certain, and right where b = 0.
+    pub(crate) fn without_push(&self, rows: &Rows) -> Stretches {
+        let noise = self.noise;
+        let of = |stretch: &Stretch| {
+            let rank = stretch.whole?;
+            let inside: Vec<usize> =
+                (0..rows.len()).filter(|&row| rows.indices()[row].trajectory == stretch.trajectory).collect();
+            let velocities = rows.velocities().select_columns(&inside);
+            whole(&velocities, rank, noise)?;
+            let (_, span) = Span::of(velocities, (rank, least_length(inside.len(), noise)), noise)?;
+            let push = DVector::zeros(rows.dim());
+            Some(Stretch { directions: span.directions, lengths: span.lengths, push, ..stretch.clone() })
+        };
+        Stretches { stretches: self.stretches.iter().filter_map(of).collect(), noise, pushed: false }
     }
 }
 
@@ -102,25 +125,37 @@ pub(crate) fn evenly(rows: &[usize], most: usize) -> Vec<usize> {
     (0..most).map(|at| rows[at * (rows.len() - 1) / (most - 1)]).collect()
 }
 
-/// The directions of the samples `inside`, whose velocities lie in a plane of this rank, as far as they are at least `least` long;
-/// none if no direction is.
+/// Directions in which some velocities lie.
+struct Span {
+    directions: DMatrix<f64>,
+    lengths: Vec<f64>,
+}
+
+impl Span {
+    /// Those of the first `rank` directions whose singular value is at least `least`, none if there is none; and the whole
+    /// decomposition.
+    fn of(velocities: DMatrix<f64>, (rank, least): (usize, f64), noise: f64) -> Option<(SVD<f64, Dyn, Dyn>, Span)> {
+        let count = velocities.ncols() as f64;
+        let svd = velocities.svd(true, false);
+        let long = |&&length: &&f64| length >= least && length > 0.0;
+        let lengths: Vec<f64> = svd.singular_values.iter().take(rank).take_while(long).copied().collect();
+        let directions = svd.u.as_ref()?.columns(0, lengths.len()).into_owned();
+        let lengths: Vec<f64> = lengths.iter().map(|length| length - count * noise / length).collect();
+        (!lengths.is_empty()).then_some((svd, Span { directions, lengths }))
+    }
+}
+
+/// The samples `inside`, whose velocities lie in a plane of this rank, with directions along which these are at least `least`
+/// long; none if no direction is.
 fn stretch(rows: &Rows, inside: &[usize], (rank, least): (usize, f64), noise: f64) -> Option<Stretch> {
     let (mean, centred) = centred(&rows.velocities().select_columns(inside));
-    let svd = centred.svd(true, false);
-    let standing_out = |&k: &usize| svd.singular_values[k] >= least && svd.singular_values[k] > 0.0;
-    let taken: Vec<usize> = (0..svd.singular_values.len()).filter(standing_out).take(rank).collect();
-    if taken.is_empty() {
-        return None;
-    }
-    let count = inside.len() as f64;
-    let directions = svd.u.as_ref()?.select_columns(&taken);
-    let plane = svd.u.as_ref()?.columns(0, rank).into_owned();
+    let (svd, Span { directions, lengths }) = Span::of(centred, (rank, least), noise)?;
+    let plane = svd.u?.columns(0, rank).into_owned();
     let along = plane.tr_mul(&mean);
     let push = &mean - &plane * &along;
     // Noise moves the mean, and it tilts the plane.
     let tilt: f64 = along.iter().zip(&svd.singular_values).map(|(u, s)| (u / s).powi(2)).sum();
-    let variance = noise * (1.0 / count + tilt);
-    let length = |&k: &usize| svd.singular_values[k] - count * noise / svd.singular_values[k];
+    let variance = noise * (1.0 / inside.len() as f64 + tilt);
     let index = |row: usize| rows.indices()[row];
     let (first, last) = (index(inside[0]), index(inside[inside.len() - 1]));
     Some(Stretch {
@@ -128,7 +163,8 @@ fn stretch(rows: &Rows, inside: &[usize], (rank, least): (usize, f64), noise: f6
         samples: (first.sample, last.sample),
         significance: (push.norm_squared() / variance, rows.dim() - rank),
         push,
-        lengths: taken.iter().map(length).collect(),
+        lengths,
         directions,
+        whole: None,
     })
 }

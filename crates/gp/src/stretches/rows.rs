@@ -70,7 +70,7 @@ impl Stretches {
             variances: None,
             of_stretches: Some(OfStretches {
                 weights: relative(equations.iter().map(variance).collect()),
-                push: self.push(),
+                push: self.pushed.then(|| self.push()),
             }),
             trajectories: groups.iter().map(|rows_of| index(rows_of[0]).trajectory).collect(),
             groups,
