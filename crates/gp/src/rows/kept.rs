@@ -2,8 +2,8 @@
 
 use motion::scaled;
 use nalgebra::{DMatrix, DVector};
-use rand::{Rng, RngExt};
 use rand::seq::SliceRandom;
+use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
 use crate::rows::thinning::thinned;

@@ -35,7 +35,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     use proptest::prelude::*;
-    
+
     use super::*;
 
     /// Movements of these lengths, their rows numbered throughout.
