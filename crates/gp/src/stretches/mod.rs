@@ -45,7 +45,7 @@ pub(crate) struct Stretch {
 /// All stretches of some movements.
 #[derive(Debug, Clone)]
 pub(crate) struct Stretches {
-    pub(crate) stretches: Vec<Stretch>,
+    pub(crate) all: Vec<Stretch>,
     /// s², the variance of a velocity along an axis.
     pub(crate) noise: f64,
     /// Whether the constraints may push.
@@ -82,7 +82,7 @@ impl Stretches {
             found.iter().filter_map(of_segment).collect()
         };
         let stretches: Vec<Stretch> = movements.par_iter().flat_map_iter(of_movement).collect();
-        (!stretches.is_empty()).then_some(Stretches { stretches, noise, pushed: true })
+        (!stretches.is_empty()).then_some(Stretches { all: stretches, noise, pushed: true })
     }
 
     /// Those that are whole movements, with directions from the velocities themselves, not from their differences: more
@@ -99,7 +99,7 @@ impl Stretches {
             let push = DVector::zeros(rows.dim());
             Some(Stretch { directions: span.directions, lengths: span.lengths, push, ..stretch.clone() })
         };
-        Stretches { stretches: self.stretches.iter().filter_map(of).collect(), noise, pushed: false }
+        Stretches { all: self.all.iter().filter_map(of).collect(), noise, pushed: false }
     }
 }
 

@@ -94,14 +94,14 @@ impl Stretches {
     /// The stretch that holds a sample.
     fn at(&self, index: SampleIndex) -> Option<&Stretch> {
         let before = |stretch: &Stretch| (stretch.trajectory, stretch.samples.1) < (index.trajectory, index.sample);
-        let next = self.stretches.get(self.stretches.partition_point(before))?;
+        let next = self.all.get(self.all.partition_point(before))?;
         (next.trajectory == index.trajectory && next.samples.0 <= index.sample).then_some(next)
     }
 
     /// Root mean square of the pushes A⁺b, in units of the state per second.
     fn push(&self) -> f64 {
-        let squares: f64 = self.stretches.iter().map(|stretch| stretch.push.norm_squared()).sum();
-        (squares / self.stretches.len() as f64).sqrt()
+        let squares: f64 = self.all.iter().map(|stretch| stretch.push.norm_squared()).sum();
+        (squares / self.all.len() as f64).sqrt()
     }
 
     /// (S24).
@@ -111,7 +111,7 @@ impl Stretches {
 
     /// Mean square of the pushes along normals, in units of what noise would give: about 1 where nothing pushes.
     fn significance(&self) -> f64 {
-        let all = self.stretches.iter().map(|stretch| stretch.significance);
+        let all = self.all.iter().map(|stretch| stretch.significance);
         let (squares, normals) =
             all.fold((0.0, 0), |(squares, normals), (square, count)| (squares + square, normals + count));
         squares / normals as f64
