@@ -22,6 +22,8 @@ struct Block {
     /// Of the velocity along an axis.
     variance: f64,
     index: SampleIndex,
+    /// Which constraint acted, where that is known.
+    label: Option<usize>,
 }
 
 impl Rows {
@@ -50,6 +52,7 @@ impl Rows {
             indices: blocks.iter().map(|block| block.index).collect(),
             noise: self.noise,
             switches: None,
+            labels: blocks.iter().map(|block| block.label).collect(),
         })
     }
 
@@ -67,6 +70,7 @@ impl Rows {
                 momentum: self.momenta().map(|momenta| momenta.column(row).into_owned()),
                 variance: variances[row],
                 index: self.indices()[row],
+                label: self.labels().map(|labels| labels[row]),
             };
             while let Some(before) = blocks.pop_if(|before| before.joins(&last, most)) {
                 last = before.with(&last);
@@ -79,7 +83,7 @@ impl Rows {
 
 impl Block {
     fn joins(&self, next: &Block, most: f64) -> bool {
-        let aligned = self.count == next.count && self.begin.is_multiple_of(2 * self.count);
+        let aligned = self.count == next.count && self.begin.is_multiple_of(2 * self.count) && self.label == next.label;
         aligned && (&self.velocity - &next.velocity).norm_squared() <= most * (self.variance + next.variance)
     }
 

@@ -2,8 +2,8 @@
 
 use motion::scaled;
 use nalgebra::{DMatrix, DVector};
-use rand::Rng;
 use rand::seq::SliceRandom;
+use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
 use crate::rows::thinning::thinned;
@@ -53,8 +53,8 @@ fn none(count: &usize) -> bool {
 pub(crate) struct OfStretches {
     /// D (S23), (M).
     pub(crate) weights: Vec<f64>,
-    /// Root mean square of the pushes A⁺b, in units of the state per second.
-    pub(crate) push: f64,
+    /// Root mean square of the pushes A⁺b, in units of the state per second; none where b = 0.
+    pub(crate) push: Option<f64>,
 }
 
 /// Rows kept, in the order of trajectories and samples.
@@ -152,7 +152,7 @@ impl Selection {
         dropped.averaged = samples - rows.len();
         dropped.thinned = usable.len().saturating_sub(self.max_rows);
         let trajectory = |row: usize| rows.indices()[row].trajectory;
-        usable = thinned(usable.chunk_by(|&a, &b| trajectory(a) == trajectory(b)), self.max_rows, rng);
+        usable = thinned(usable.chunk_by(|&a, &b| trajectory(a) == trajectory(b)), self.max_rows, || rng.random());
         usable.shuffle(rng);
         let mut hyper = usable[..usable.len().min(self.hyper_rows)].to_vec();
         let in_time = |&row: &usize| (rows.indices()[row], row);

@@ -76,7 +76,7 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
         grouping: kept.grouping,
         noise: rows.noise(),
         switches: rows.switches().map(count),
-        push: kept.of_stretches.as_ref().map(|of| of.push / root_mean_square(&taken.actions)),
+        push: kept.of_stretches.as_ref().and_then(|of| of.push).map(|push| push / root_mean_square(&taken.actions)),
     }
 }
 

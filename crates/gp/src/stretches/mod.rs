@@ -7,13 +7,15 @@
 pub(crate) mod noise;
 pub(crate) mod rows;
 pub(crate) mod segmentation;
+mod whole;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, SVD};
 use rayon::prelude::*;
 
 use crate::Rows;
 use noise::velocity_noise;
 use segmentation::{Segment, known_segment, segments};
+use whole::{least_length, whole};
 
 /// Most samples of a movement among which switches are looked for; of longer ones, evenly many.
 pub(crate) const MOST_SAMPLES: usize = 60;
@@ -30,20 +32,24 @@ pub(crate) struct Stretch {
     pub(crate) samples: (usize, usize),
     /// Orthonormal directions in the null space of A, (n, m) with m < n.
     pub(crate) directions: DMatrix<f64>,
-    /// Length of the velocities along each direction about their mean: the singular values s_k, (m).
+    /// ℓ_k of (S23), (m): the noise over the standard deviation of each direction's angle.
     pub(crate) lengths: Vec<f64>,
     /// The push A⁺b: the mean velocity along the normals of the plane that the velocities lie in, (n).
     pub(crate) push: DVector<f64>,
     /// Its square in units of the variance that noise gives it, and how many normals there are.
     pub(crate) significance: (f64, usize),
+    /// The rank of the plane, of a whole movement.
+    whole: Option<usize>,
 }
 
 /// All stretches of some movements.
 #[derive(Debug, Clone)]
 pub(crate) struct Stretches {
-    pub(crate) stretches: Vec<Stretch>,
+    pub(crate) all: Vec<Stretch>,
     /// s², the variance of a velocity along an axis.
     pub(crate) noise: f64,
+    /// Whether the constraints may push.
+    pub(crate) pushed: bool,
 }
 
 impl Stretches {
@@ -58,16 +64,45 @@ impl Stretches {
         let parts = parts(rows, &at);
         let noise = velocity_noise(rows.velocities(), rows.variances(), &parts)?;
         let of_part = |part: &&[usize]| {
-            let few = if rows.labels().is_some() { part.to_vec() } else { evenly(part, MOST_SAMPLES) };
-            let velocities = rows.velocities().select_columns(&few);
-            let found = match rows.labels() {
-                Some(_) => known_segment(&velocities, noise).into_iter().collect(),
-                None => segments(&velocities, noise),
+            let of_segment = |few: &[usize], segment: &Segment| {
+                let span = few[segment.begin]..=few[segment.end - 1];
+                let inside: Vec<usize> = part.iter().copied().filter(|row| span.contains(row)).collect();
+                let least = STANDS_OUT * noise.sqrt() * (inside.len() as f64).powf(0.25);
+                stretch(rows, &inside, (segment.kind, least), noise)
             };
-            found.iter().filter_map(|segment| stretch(rows, part, &few, segment, noise)).collect::<Vec<_>>()
+            if rows.labels().is_some() {
+                let known = known_segment(&rows.velocities().select_columns(*part), noise);
+                return known.iter().filter_map(|segment| of_segment(part, segment)).collect::<Vec<_>>();
+            }
+            let few = evenly(part, MOST_SAMPLES);
+            let found = segments(&rows.velocities().select_columns(&few), noise);
+            let most = found.iter().map(|segment| segment.kind).max().unwrap_or(0);
+            let (_, about_mean) = centred(&rows.velocities().select_columns(*part));
+            if let Some(rank) = whole(&about_mean, most, noise) {
+                let found = stretch(rows, part, (rank, least_length(part.len(), noise)), noise);
+                return found.map(|found| Stretch { whole: Some(rank), ..found }).into_iter().collect();
+            }
+            found.iter().filter_map(|segment| of_segment(&few, segment)).collect()
         };
         let stretches: Vec<Stretch> = parts.par_iter().flat_map_iter(of_part).collect();
-        (!stretches.is_empty()).then_some(Stretches { stretches, noise })
+        (!stretches.is_empty()).then_some(Stretches { all: stretches, noise, pushed: true })
+    }
+
+    /// Those that are whole movements, with directions from the velocities themselves, not from their differences: more
+    /// certain, and right where b = 0.
+    pub(crate) fn without_push(&self, rows: &Rows) -> Stretches {
+        let noise = self.noise;
+        let of = |stretch: &Stretch| {
+            let rank = stretch.whole?;
+            let inside: Vec<usize> =
+                (0..rows.len()).filter(|&row| rows.indices()[row].trajectory == stretch.trajectory).collect();
+            let velocities = rows.velocities().select_columns(&inside);
+            whole(&velocities, rank, noise)?;
+            let (_, span) = Span::of(velocities, (rank, least_length(inside.len(), noise)), noise)?;
+            let push = DVector::zeros(rows.dim());
+            Some(Stretch { directions: span.directions, lengths: span.lengths, push, ..stretch.clone() })
+        };
+        Stretches { all: self.all.iter().filter_map(of).collect(), noise, pushed: false }
     }
 }
 
@@ -93,33 +128,47 @@ pub(crate) fn evenly(rows: &[usize], most: usize) -> Vec<usize> {
     (0..most).map(|at| rows[at * (rows.len() - 1) / (most - 1)]).collect()
 }
 
-/// The directions of a segment of a part, over all of its samples; none if no direction stands out from the noise.
-fn stretch(rows: &Rows, part: &[usize], few: &[usize], segment: &Segment, noise: f64) -> Option<Stretch> {
-    let (first, last) = (few[segment.begin], few[segment.end - 1]);
-    let inside: Vec<usize> = part.iter().copied().filter(|&row| (first..=last).contains(&row)).collect();
-    let (mean, centred) = centred(&rows.velocities().select_columns(&inside));
-    let least = STANDS_OUT * noise.sqrt() * (inside.len() as f64).powf(0.25);
-    let svd = centred.svd(true, false);
-    let standing_out = |&k: &usize| svd.singular_values[k] >= least && svd.singular_values[k] > 0.0;
-    let taken: Vec<usize> = (0..svd.singular_values.len()).filter(standing_out).take(segment.kind).collect();
-    if taken.is_empty() {
-        return None;
+/// Directions in which some velocities lie.
+struct Span {
+    directions: DMatrix<f64>,
+    lengths: Vec<f64>,
+}
+
+impl Span {
+    /// Those of the first `rank` directions whose singular value is at least `least`, none if there is none; and the whole
+    /// decomposition.
+    fn of(velocities: DMatrix<f64>, (rank, least): (usize, f64), noise: f64) -> Option<(SVD<f64, Dyn, Dyn>, Span)> {
+        let count = velocities.ncols() as f64;
+        let svd = velocities.svd(true, false);
+        let long = |&&length: &&f64| length >= least && length > 0.0;
+        let lengths: Vec<f64> = svd.singular_values.iter().take(rank).take_while(long).copied().collect();
+        let directions = svd.u.as_ref()?.columns(0, lengths.len()).into_owned();
+        let lengths: Vec<f64> = lengths.iter().map(|length| length - count * noise / length).collect();
+        (!lengths.is_empty()).then_some((svd, Span { directions, lengths }))
     }
-    let directions = svd.u.as_ref()?.select_columns(&taken);
-    let plane = svd.u.as_ref()?.columns(0, segment.kind).into_owned();
+}
+
+/// The samples `inside`, whose velocities lie in a plane of this rank, with directions along which these are at least `least`
+/// long; none if no direction is.
+fn stretch(rows: &Rows, inside: &[usize], (rank, least): (usize, f64), noise: f64) -> Option<Stretch> {
+    let (mean, centred) = centred(&rows.velocities().select_columns(inside));
+    let (svd, Span { directions, lengths }) = Span::of(centred, (rank, least), noise)?;
+    let plane = svd.u?.columns(0, rank).into_owned();
     let along = plane.tr_mul(&mean);
     let push = &mean - &plane * &along;
     // Noise moves the mean, and it tilts the plane.
     let tilt: f64 = along.iter().zip(&svd.singular_values).map(|(u, s)| (u / s).powi(2)).sum();
     let variance = noise * (1.0 / inside.len() as f64 + tilt);
     let index = |row: usize| rows.indices()[row];
+    let (first, last) = (index(inside[0]), index(inside[inside.len() - 1]));
     Some(Stretch {
-        trajectory: index(first).trajectory,
-        samples: (index(first).sample, index(last).sample),
-        significance: (push.norm_squared() / variance, rows.dim() - segment.kind),
+        trajectory: first.trajectory,
+        samples: (first.sample, last.sample),
+        significance: (push.norm_squared() / variance, rows.dim() - rank),
         push,
-        lengths: taken.iter().map(|&k| svd.singular_values[k]).collect(),
+        lengths,
         directions,
+        whole: None,
     })
 }
 
@@ -162,7 +211,7 @@ mod tests {
             // Few windows tell too little of the noise.
             let rows = rows.with_variances(vec![1e-6 / 3.0; count]).unwrap();
             let found = |labels: Vec<usize>| Stretches::of(&rows.clone().with_labels(labels).unwrap());
-            let between = found(labels).expect("stretches").stretches;
+            let between = found(labels).expect("stretches").all;
             let ends = lengths.iter().scan(0, |end, length| { *end += length; Some((*end - length, *end - 1)) });
             let near = |(stretch, end): (&Stretch, (usize, usize))| {
                 stretch.samples.0.abs_diff(end.0) <= 2 && stretch.samples.1.abs_diff(end.1) <= 2
@@ -170,7 +219,7 @@ mod tests {
             prop_assert_eq!(between.len(), lengths.len());
             prop_assert!(between.iter().zip(ends).all(near));
             prop_assert!(between.iter().all(|stretch| stretch.directions.ncols() == dim - 1));
-            let one = found(vec![3; count]).map_or(0, |found| found.stretches.len());
+            let one = found(vec![3; count]).map_or(0, |found| found.all.len());
             prop_assert!(one <= 1 && (one == 1 || lengths.len() > 1));
         }
     }

@@ -1,10 +1,13 @@
 //! (S22), (S23): rows of stretches.
 
+use std::collections::BTreeSet;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::Rows;
 use crate::rows::kept::{Kept, OfStretches, RowsDropped, Selection};
 use crate::rows::noise_weights::relative;
+use crate::rows::thinning::thinned;
 use crate::stretches::{Stretch, Stretches};
 use motion::{SampleIndex, upper_median};
 
@@ -14,6 +17,8 @@ const LEAST: f64 = 1e-12;
 const LEAST_SIGNIFICANCE: f64 = 4.0;
 /// Share of the movements that must have stretches: models of different movements are not compared.
 const COVERED: f64 = 0.5;
+/// Where thinning begins, in distances between the rows that are kept.
+const MIDDLE: f64 = 0.5;
 
 /// One equation vᵀπ(x) = vᵀu.
 struct Equation {
@@ -23,8 +28,17 @@ struct Equation {
     velocity: DVector<f64>,
     /// |vᵀu|.
     length: f64,
-    /// s_k of its direction.
+    /// ℓ_k of its direction.
     direction_length: f64,
+}
+
+/// At most `most` of the equations, in their order.
+fn few(equations: Vec<Equation>, rows: &Rows, most: usize) -> Vec<Equation> {
+    let trajectory = |&at: &usize| rows.indices()[equations[at].row].trajectory;
+    let all: Vec<usize> = (0..equations.len()).collect();
+    let taken: BTreeSet<usize> =
+        thinned(all.chunk_by(|a, b| trajectory(a) == trajectory(b)), most, || MIDDLE).into_iter().collect();
+    equations.into_iter().enumerate().filter(|(at, _)| taken.contains(at)).map(|(_, equation)| equation).collect()
 }
 
 impl Stretches {
@@ -35,8 +49,7 @@ impl Stretches {
         let mean_square = equations.iter().map(|of| of.length.powi(2)).sum::<f64>() / equations.len() as f64;
         equations.retain(|of| of.length.powi(2) > LEAST * mean_square);
         let found = equations.len();
-        let equations: Vec<Equation> =
-            equations.into_iter().step_by(found.div_ceil(selection.max_rows).max(1)).collect();
+        let equations = few(equations, rows, selection.max_rows);
         let lengths: Vec<f64> = equations.iter().map(|of| of.length).collect();
         let policy_squared = 2.0 * upper_median(lengths.clone())?.powi(2);
         let variance = |of: &Equation| self.noise * (1.0 + policy_squared / of.direction_length.powi(2));
@@ -57,7 +70,7 @@ impl Stretches {
             variances: None,
             of_stretches: Some(OfStretches {
                 weights: relative(equations.iter().map(variance).collect()),
-                push: self.push(),
+                push: self.pushed.then(|| self.push()),
             }),
             trajectories: groups.iter().map(|rows_of| index(rows_of[0]).trajectory).collect(),
             groups,
@@ -82,14 +95,14 @@ impl Stretches {
     /// The stretch that holds a sample.
     fn at(&self, index: SampleIndex) -> Option<&Stretch> {
         let before = |stretch: &Stretch| (stretch.trajectory, stretch.samples.1) < (index.trajectory, index.sample);
-        let next = self.stretches.get(self.stretches.partition_point(before))?;
+        let next = self.all.get(self.all.partition_point(before))?;
         (next.trajectory == index.trajectory && next.samples.0 <= index.sample).then_some(next)
     }
 
     /// Root mean square of the pushes A⁺b, in units of the state per second.
     fn push(&self) -> f64 {
-        let squares: f64 = self.stretches.iter().map(|stretch| stretch.push.norm_squared()).sum();
-        (squares / self.stretches.len() as f64).sqrt()
+        let squares: f64 = self.all.iter().map(|stretch| stretch.push.norm_squared()).sum();
+        (squares / self.all.len() as f64).sqrt()
     }
 
     /// (S24).
@@ -99,7 +112,7 @@ impl Stretches {
 
     /// Mean square of the pushes along normals, in units of what noise would give: about 1 where nothing pushes.
     fn significance(&self) -> f64 {
-        let all = self.stretches.iter().map(|stretch| stretch.significance);
+        let all = self.all.iter().map(|stretch| stretch.significance);
         let (squares, normals) =
             all.fold((0.0, 0), |(squares, normals), (square, count)| (squares + square, normals + count));
         squares / normals as f64

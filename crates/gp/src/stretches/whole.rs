@@ -1,0 +1,82 @@
+//! (S32): movements whose constraint never switched.
+
+use nalgebra::DMatrix;
+
+use crate::stretches::segmentation::SPARE;
+
+/// Largest standard deviation of a direction's angle.
+const ANGLE: f64 = 0.25;
+/// By how many standard deviations of χ² the velocities may leave the plane.
+const LEAVES: f64 = 3.0;
+
+/// The least rank of a plane that through 0 that holds all velocities, (n, N), of a movement up to noise, but no more than `most`, the largest of its
+/// segments, or 1; none if there is no such plane. A plane of more dimensions would hold two stretches of fewer.
+pub(super) fn whole(velocities: &DMatrix<f64>, most: usize, noise: f64) -> Option<usize> {
+    let (dim, count) = velocities.shape();
+    let mut eigenvalues = (velocities * velocities.transpose()).symmetric_eigenvalues().as_slice().to_vec();
+    eigenvalues.sort_by(f64::total_cmp);
+    let outside = |rank: usize| eigenvalues[..dim - rank].iter().map(|value| value.max(0.0)).sum::<f64>() / noise;
+    let allowed = |rank: usize| {
+        let freedom = ((dim - rank) * (count - 1)) as f64;
+        freedom + LEAVES * (2.0 * freedom).sqrt()
+    };
+    (1..=most.max(1)).filter(|rank| count >= rank + SPARE).find(|&rank| outside(rank) <= allowed(rank))
+}
+
+/// The least singular value of `count` velocities along a direction whose angle is certain enough: s√N of it is noise.
+pub(super) fn least_length(count: usize, noise: f64) -> f64 {
+    let half = 0.5 / ANGLE;
+    noise.sqrt() * (half + (half * half + count as f64).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+    use proptest::prelude::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+    use crate::stretches::centred;
+
+    /// Velocities on a random plane of this rank, some way from 0, with uniform noise of a variance of 1e-4.
+    fn in_plane(dim: usize, rank: usize, count: usize, rng: &mut ChaCha8Rng) -> DMatrix<f64> {
+        let mut draw = |rows, columns| DMatrix::from_fn(rows, columns, |_, _| 2.0 * rng.random::<f64>() - 1.0);
+        let (basis, push) = (draw(dim, rank).qr().q(), DVector::from_column_slice(draw(dim, 1).as_slice()));
+        let mut velocities = &basis * draw(rank, count) + draw(dim, count) * 1e-2 * 3.0_f64.sqrt();
+        velocities.column_iter_mut().for_each(|mut velocity| velocity += &push);
+        velocities
+    }
+
+    proptest! {
+        /// One plane, pushed, is found with its rank, of which no segment of rank 1 need be.
+        #[test]
+        fn a_movement_without_switch_is_whole(dim in 2usize..6, count in 30usize..100, seed in any::<u64>()) {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let (_, line) = centred(&in_plane(dim, 1, count, &mut rng));
+            prop_assert_eq!(whole(&line, 0, 1e-4), Some(1));
+            let (_, plane) = centred(&in_plane(dim, dim - 1, count, &mut rng));
+            prop_assert_eq!(whole(&plane, dim - 1, 1e-4), Some(dim - 1));
+        }
+
+        /// Two lines lie in one plane, which is not taken; nor are two planes in two dimensions.
+        #[test]
+        fn a_movement_with_a_switch_is_not(count in 20usize..60, seed in any::<u64>()) {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let mut both = DMatrix::zeros(3, 2 * count);
+            for (part, axis) in [(0, 0), (count, 1)] {
+                (part..part + count).for_each(|at| both[(axis, at)] = 2.0 * rng.random::<f64>() - 1.0);
+            }
+            prop_assert_eq!(whole(&both, 1, 1e-4), None);
+            prop_assert_eq!(whole(&both.rows(0, 2).into_owned(), 1, 1e-4), None);
+        }
+
+        /// (S23): at the least length the angle's standard deviation s/ℓ is the largest allowed.
+        #[test]
+        fn the_least_length_is_that_of_the_largest_angle(count in 1usize..1000, deviation in 0.01f64..10.0) {
+            let least = least_length(count, deviation * deviation);
+            let length = least - count as f64 * deviation * deviation / least;
+            prop_assert!((deviation / length / ANGLE - 1.0).abs() < 1e-9);
+        }
+    }
+}
