@@ -142,7 +142,9 @@ impl Expect {
             &state.iter().map(|channel| channel.unit.clone().unwrap_or_default()).collect(),
         )?;
         same("episode names", self.episode_names.as_ref(), &of(|episode| episode.name.clone()))?;
-        same("constraints", self.constraints.as_ref(), &of(|episode| episode.constraint.clone().unwrap_or_default()))?;
+        let constraint =
+            |episode: &Episode| episode.constraint.as_ref().and_then(|of| of.only()).unwrap_or_default().to_owned();
+        same("constraints", self.constraints.as_ref(), &of(constraint))?;
         if let Some(expected) = self.dt {
             let found = recordings.time_step();
             ensure!((found / expected - 1.0).abs() < 1e-9, "dt is {found} instead of {expected}");
