@@ -10,6 +10,9 @@ use crate::slope::candidate::Candidate;
 use crate::slope::search::Outcome;
 use crate::slope::slope_gp::SlopeGp;
 
+/// Rows, for each that was kept, up to which the others say nearly the same as those kept.
+const MANY: usize = 4;
+
 /// All rows, and the outcome on them.
 pub(crate) struct OnAllRows {
     pub(crate) kept: Kept,
@@ -17,12 +20,15 @@ pub(crate) struct OnAllRows {
 }
 
 /// The families, amplitudes and kinds of model of `thinned`, a search on the rows `kept`, on all rows through inducing ones. None where
-/// no row was thinned, where what hides least was chosen, or where held-out movements are predicted worse.
+/// not many rows were thinned, where what hides least was chosen, or where held-out movements are predicted worse.
 pub(crate) fn on_all_rows(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outcome) -> Option<OnAllRows> {
     if gp.inducing_rows == 0 || thinned.least_hidden {
         return None;
     }
     let all = gp.selection().ok()?.keep_all(rows, kept)?;
+    if all.rows.len() <= MANY * kept.rows.len() {
+        return None;
+    }
     let data = thinned.data.of_others(&all, noise_weights(&all, thinned));
     let induced = |candidate: &Candidate| candidate.induced(&data, &all, gp.inducing_rows);
     let taken = induced(&thinned.taken)?;

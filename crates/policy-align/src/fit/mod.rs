@@ -160,7 +160,8 @@ fn rows_decision(readings: &AutoFit) -> Option<Decision> {
     if thinned > 0 {
         why.push(format!("{thinned} others, evenly spread, are not learnt from"));
     }
-    Some(decision("rows", rows.to_string(), why.join("; "), "--max-rows, --inducing"))
+    let flag = if averaged > 0 && thinned == 0 && inducing.is_none() { "--max-rows" } else { "--inducing" };
+    Some(decision("rows", rows.to_string(), why.join("; "), flag))
 }
 
 fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {
