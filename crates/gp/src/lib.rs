@@ -41,7 +41,7 @@
 //!
 //! # Equations
 //!
-//! Comments cite (S1)–(S31) and (R1)–(R9). [`equations`] defines them and lists the steps of the search; it is
+//! Comments cite (S1)–(S37) and (R1)–(R9). [`equations`] defines them and lists the steps of the search; it is
 //! `docs/slope-gp.md` of the repository. `docs/which-learner.md` compares the learners, `docs/decisions/gp.md` gives
 //! the reasons.
 //!
@@ -56,7 +56,8 @@
 //!   a movement, a goal or a load, can be context ([`Rows::with_context`]).
 //! - **Corridors**: where all movements follow one narrow path, nothing tests the policy across it.
 //! - **Kinks in many dimensions** are learnt slowly; the held-out R² is then low and [`TrustReport::warnings`] says so.
-//! - **More than 1,500 rows** are thinned, since time grows with their cube ([`SlopeGp::max_rows`]).
+//! - **More than 1,500 rows** are thinned, since time grows with their cube ([`SlopeGp::max_rows`]). With [`SlopeGp::inducing_rows`] the
+//!   model is conditioned on all of them.
 //! - [`GpError`]: no motion, fewer than three usable trajectories, or too few rows.
 
 mod constraint_estimate;

@@ -149,3 +149,34 @@ fn uncertainty_of_inducing_rows_grows_away_from_them() {
     let traces: Vec<f64> = [1.0, 2.0, 4.0, 8.0].iter().map(|by| trace(&(&here * *by))).collect();
     assert!(traces.is_sorted() && traces[0] >= 0.0 && traces[0] < 0.1 * traces[3], "{traces:?}");
 }
+
+#[test]
+#[ignore = "a measurement of minutes; prints"]
+fn measured() {
+    let systems: [(&str, Gradient, usize); 3] = [("sinusoid", sinusoid, 2), ("wells", wells, 3), ("wells", wells, 6)];
+    for (name, gradient, dim) in systems {
+        for noise in [0.0, 0.05, 0.2] {
+            for size in [(40, 40), (40, 500), (200, 500)] {
+                let errors = (0..5).map(|seed| {
+                    let set = set(gradient, dim, size, noise, 11 + seed);
+                    [0, 500].map(|inducing_rows| {
+                        let gp = SlopeGp { max_rows: 400, inducing_rows, ..SlopeGp::default() };
+                        let fit = gp.fit(&set.rows, &mut drawn::rng(3)).expect("a fit");
+                        (error(fit.policy(), &set.fresh), fit.report().expected_nupe)
+                    })
+                });
+                let errors: Vec<_> = errors.collect();
+                let middle = |of: usize| {
+                    let mut sorted: Vec<f64> = errors.iter().map(|errors| errors[of].0).collect();
+                    sorted.sort_by(f64::total_cmp);
+                    sorted[2]
+                };
+                let within = errors.iter().filter(|[_, (error, expected)]| (0.1..10.0).contains(&(expected / error)));
+                let (thinned, all, within) = (middle(0), middle(1), within.count());
+                println!(
+                    "{name} {dim}-D noise {noise} {size:?}: 400 rows {thinned:.1e}, all {all:.1e}, expected within ten times {within} of 5"
+                );
+            }
+        }
+    }
+}

@@ -69,6 +69,7 @@ fn every_decision_names_a_flag_that_fit_has() {
         "integration",
         "jumps",
         "learner",
+        "rows",
         "scale",
         "smoothing",
         "time step",
