@@ -29,12 +29,11 @@ impl<C: Covariance> Leaving<'_, C> {
     /// about whatever is predicted without a model. Costs min(m, n_t) n_t m for each, with all features computed once or, of long
     /// groups, twice.
     pub(crate) fn each(&self, groups: &[&[usize]], spread: f64) -> Option<LeftOut> {
-        let each: Vec<Option<Group>> = groups.par_iter().map(|rows| self.group(rows)).collect();
+        let each: Vec<Group> = groups.par_iter().map(|rows| self.group(rows)).collect::<Option<_>>()?;
         let rows: Vec<usize> = groups.concat();
         let targets = self.features.conditions.targets.ncols();
         let (mut residuals, mut variances) = (DMatrix::zeros(rows.len(), targets), Vec::with_capacity(rows.len()));
-        for group in each {
-            let (errors, of) = group?;
+        for (errors, of) in each {
             residuals.rows_mut(variances.len(), of.len()).copy_from(&errors);
             variances.extend(of);
         }

@@ -1,12 +1,14 @@
 //! The rows that a fit learns from: steps 1 and 2 of it.
 
+use std::collections::HashSet;
+
 use motion::scaled;
 use nalgebra::{DMatrix, DVector};
 use rand::seq::SliceRandom;
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
-use crate::rows::thinning::thinned;
+use crate::rows::thinning::{MIDDLE, thinned};
 use crate::rows::{MOST_ROWS, parts_along};
 use crate::{GpError, Rows};
 
@@ -166,16 +168,22 @@ impl Selection {
         Ok(Kept { hyper, dropped, ..kept })
     }
 
-    /// The same rows with those that [`Selection::keep`] thinned; none if it kept all.
-    pub(crate) fn keep_all(&self, rows: &Rows, some: &Kept) -> Option<Kept> {
+    /// The same rows and those that [`Selection::keep`] thinned, about `most` of these; none if it kept all.
+    pub(crate) fn keep_all(&self, rows: &Rows, some: &Kept, most: usize) -> Option<Kept> {
         if some.dropped.thinned == 0 || some.of_stretches.is_some() {
             return None;
         }
         let rows = &*rows.averaged();
         let (mut usable, dropped) = self.usable(rows).ok()?;
-        let dropped = RowsDropped { averaged: some.dropped.averaged, ..dropped };
         usable.sort_by_key(|&row| (rows.indices()[row], row));
         let enough = grouped(rows, &usable).ok()?;
+        let found = usable.len();
+        let trajectory = |row: usize| rows.indices()[row].trajectory;
+        let many = thinned(usable.chunk_by(|&a, &b| trajectory(a) == trajectory(b)), most, || MIDDLE);
+        let taken: HashSet<usize> = many.into_iter().chain(some.rows.iter().copied()).collect();
+        usable.retain(|row| taken.contains(row));
+        let thinned = found - usable.len();
+        let dropped = RowsDropped { averaged: some.dropped.averaged, thinned, ..dropped };
         Some(Kept { dropped, ..kept(rows, usable, &enough) })
     }
 

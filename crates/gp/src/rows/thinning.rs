@@ -1,5 +1,8 @@
 //! Which rows to learn from where there are more than a fit can take.
 
+/// Of [`thinned`], where nothing is drawn.
+pub(crate) const MIDDLE: f64 = 0.5;
+
 /// At most `most` rows of these movements; all if they are no more.
 ///
 /// The first row of every movement, and of the others evenly many of every stretch of time. Drawn at random, rows leave gaps,

@@ -12,6 +12,8 @@ use crate::slope::slope_gp::SlopeGp;
 
 /// Rows, for each that was kept, up to which the others say nearly the same as those kept.
 const MANY: usize = 4;
+/// Rows, for each inducing one, beyond which they are thinned.
+const MOST: usize = 64;
 
 /// All rows, and the outcome on them.
 pub(crate) struct OnAllRows {
@@ -25,7 +27,7 @@ pub(crate) fn on_all_rows(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outc
     if gp.inducing_rows == 0 || thinned.least_hidden {
         return None;
     }
-    let all = gp.selection().ok()?.keep_all(rows, kept)?;
+    let all = gp.selection().ok()?.keep_all(rows, kept, MOST * gp.inducing_rows)?;
     if all.rows.len() <= MANY * kept.rows.len() {
         return None;
     }

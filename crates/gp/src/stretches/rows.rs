@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::Rows;
 use crate::rows::kept::{Kept, OfStretches, RowsDropped, Selection};
 use crate::rows::noise_weights::relative;
-use crate::rows::thinning::thinned;
+use crate::rows::thinning::{MIDDLE, thinned};
 use crate::stretches::{Stretch, Stretches};
 use motion::{SampleIndex, upper_median};
 
@@ -17,8 +17,6 @@ const LEAST: f64 = 1e-12;
 const LEAST_SIGNIFICANCE: f64 = 4.0;
 /// Share of the movements that must have stretches: models of different movements are not compared.
 const COVERED: f64 = 0.5;
-/// Where thinning begins, in distances between the rows that are kept.
-const MIDDLE: f64 = 0.5;
 
 /// One equation vᵀπ(x) = vᵀu.
 struct Equation {
