@@ -88,9 +88,9 @@ class Demonstrations:
         for listed_names, expected, what in ((names, count, "names"), (labels, count, "constraints")):
             _same_length(listed_names, expected, what, "trajectories")
         _same_length(unit_names, width, "units", "columns")
-        labels = [_labels(label, len(positions[k]), k) for k, label in enumerate(labels)]
+        of_samples = [_labels(label, len(positions[k]), k) for k, label in enumerate(labels)]
         step = None if stamps is not None else float(dt)  # type: ignore[arg-type]
-        self._native = _native.Recordings.of(positions, speeds, (step, stamps), (names, channels), labels, unit_names)
+        self._native = _native.Recordings.of(positions, speeds, (step, stamps), (names, channels), of_samples, unit_names)
 
     @classmethod
     def read(cls, *paths: str | os.PathLike[str], **options: Any) -> Demonstrations:
