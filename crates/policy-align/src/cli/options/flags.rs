@@ -56,7 +56,7 @@ pub(crate) struct ReadFlags {
     /// Episode column
     #[arg(long, value_name = "COLUMN")]
     episode: Option<String>,
-    /// Column that names constraints; where it changes in an episode, they switch
+    /// Column that names constraints, which switch where it changes
     #[arg(long, value_name = "COLUMN")]
     constraint_column: Option<String>,
     /// Columns to ignore
