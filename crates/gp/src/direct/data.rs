@@ -53,21 +53,14 @@ impl DirectData {
     }
 
     pub(crate) fn from_kept(kept: &Kept) -> Result<Self, GpError> {
-        let weights = |unit_squared: f64| match &kept.variances {
-            None => vec![1.0; kept.speeds.len()],
-            Some(variances) => direct_weights(variances, unit_squared),
-        };
+        let weights = |unit_squared| noise_weights(kept, unit_squared);
         Self::of(&kept.states, kept.observed(), weights, kept.groups.clone())
     }
 
     /// Other rows in the units of these.
     pub(crate) fn of_others(&self, kept: &Kept) -> Self {
-        let noise_weights = match &kept.variances {
-            None => vec![1.0; kept.speeds.len()],
-            Some(variances) => direct_weights(variances, self.unit.powi(2)),
-        };
-        let units = (self.scaling.clone(), self.unit);
-        Self::in_units(units, &kept.states, kept.observed(), noise_weights, kept.groups.clone())
+        let (units, weights) = ((self.scaling.clone(), self.unit), noise_weights(kept, self.unit.powi(2)));
+        Self::in_units(units, &kept.states, kept.observed(), weights, kept.groups.clone())
     }
 
     fn of(
@@ -169,5 +162,13 @@ impl DirectData {
     fn conditions(&self) -> Conditions<'_> {
         let DirectData { targets, noise_weights, groups, spread, .. } = self;
         Conditions { targets, noise_weights, groups, spread: *spread }
+    }
+}
+
+/// D of rows whose velocities have this mean square a component.
+fn noise_weights(kept: &Kept, unit_squared: f64) -> Vec<f64> {
+    match &kept.variances {
+        None => vec![1.0; kept.speeds.len()],
+        Some(variances) => direct_weights(variances, unit_squared),
     }
 }

@@ -26,7 +26,7 @@ impl<C: Covariance> Features<'_, C> {
         let (count, targets) = (self.inducing.len(), self.conditions.targets);
         let rows: Vec<usize> = rows.collect();
         let mut both = DMatrix::zeros(rows.len(), count + targets.ncols());
-        both.columns_mut(0, count).tr_copy_from(&self.transposed(&rows, |row| self.weight(row)));
+        both.columns_mut(0, count).tr_copy_from(&self.transposed(&rows));
         both.columns_mut(count, targets.ncols()).copy_from(&self.targets(&rows));
         both
     }
@@ -42,7 +42,7 @@ impl<C: Covariance> Features<'_, C> {
 
     /// D^{-1/2} K_nm W of these rows, (n, k), with W, (m, k).
     pub(crate) fn times(&self, rows: &[usize], w: &DMatrix<f64>) -> DMatrix<f64> {
-        let transposed = self.transposed(rows, |row| self.weight(row));
+        let transposed = self.transposed(rows);
         let mut product = DMatrix::zeros(rows.len(), w.ncols());
         matmul(view_mut(&mut product), Accum::Replace, view(&transposed).transpose(), view(w), 1.0, Par::Seq);
         product
@@ -53,13 +53,13 @@ impl<C: Covariance> Features<'_, C> {
         1.0 / self.conditions.noise_weights[row].sqrt()
     }
 
-    /// (m, n).
-    fn transposed(&self, rows: &[usize], weight: impl Fn(usize) -> f64) -> DMatrix<f64> {
+    /// (D^{-1/2} K_nm)ᵀ of these rows, (m, n).
+    fn transposed(&self, rows: &[usize]) -> DMatrix<f64> {
         let with = self.covariance.with(&self.inducing, self.amplitudes);
         let mut covariances = DMatrix::zeros(self.inducing.len(), rows.len());
         for (mut column, &row) in covariances.column_iter_mut().zip(rows) {
             with(row, column.as_mut_slice());
-            column *= weight(row);
+            column *= self.weight(row);
         }
         covariances
     }

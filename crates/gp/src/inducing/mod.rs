@@ -16,6 +16,7 @@ use crate::kernel::covariance::{Covariance, NOISE_FLOOR, among, jittered};
 use crate::kernel::factor::Factor;
 use crate::left_out::LeftOut;
 use crate::left_out::level::{Conditions, climb, kappas, raised};
+use crate::rows::thinning::every_so_many;
 
 /// Rows on which levels of noise are compared; whole groups of them.
 const COMPARED: usize = 20_000;
@@ -86,8 +87,8 @@ impl Induced {
 /// Groups evenly spaced with about so many rows together, at least three; all if they have no more.
 fn evenly<'a>(groups: &[&'a [usize]], rows: usize) -> Vec<&'a [usize]> {
     let count: usize = groups.iter().map(|rows| rows.len()).sum();
-    let taken = if count <= rows { groups.len() } else { (rows * groups.len() / count).max(3).min(groups.len()) };
-    (0..taken).map(|at| groups[at * groups.len() / taken]).collect()
+    let most = if count <= rows { groups.len() } else { (rows * groups.len() / count).max(3) };
+    every_so_many(groups.len(), most).into_iter().map(|at| groups[at]).collect()
 }
 
 #[cfg(test)]

@@ -153,8 +153,7 @@ impl Selection {
         let enough = grouped(rows, &usable)?;
         dropped.averaged = samples - rows.len();
         dropped.thinned = usable.len().saturating_sub(self.max_rows);
-        let trajectory = |row: usize| rows.indices()[row].trajectory;
-        usable = thinned(usable.chunk_by(|&a, &b| trajectory(a) == trajectory(b)), self.max_rows, || rng.random());
+        usable = thinned(movements(rows, &usable), self.max_rows, || rng.random());
         usable.shuffle(rng);
         let mut hyper = usable[..usable.len().min(self.hyper_rows)].to_vec();
         let in_time = |&row: &usize| (rows.indices()[row], row);
@@ -170,7 +169,7 @@ impl Selection {
 
     /// The same rows and those that [`Selection::keep`] thinned, about `most` of these; none if it kept all.
     pub(crate) fn keep_all(&self, rows: &Rows, some: &Kept, most: usize) -> Option<Kept> {
-        if some.dropped.thinned == 0 || some.of_stretches.is_some() {
+        if some.dropped.thinned == 0 {
             return None;
         }
         let rows = &*rows.averaged();
@@ -178,8 +177,7 @@ impl Selection {
         usable.sort_by_key(|&row| (rows.indices()[row], row));
         let enough = grouped(rows, &usable).ok()?;
         let found = usable.len();
-        let trajectory = |row: usize| rows.indices()[row].trajectory;
-        let many = thinned(usable.chunk_by(|&a, &b| trajectory(a) == trajectory(b)), most, || MIDDLE);
+        let many = thinned(movements(rows, &usable), most, || MIDDLE);
         let taken: HashSet<usize> = many.into_iter().chain(some.rows.iter().copied()).collect();
         usable.retain(|row| taken.contains(row));
         let thinned = found - usable.len();
@@ -210,6 +208,11 @@ impl Selection {
         };
         Ok((usable, dropped))
     }
+}
+
+/// These rows by trajectory, of which each stands together.
+fn movements<'a>(rows: &'a Rows, usable: &'a [usize]) -> impl Iterator<Item = &'a [usize]> + Clone {
+    usable.chunk_by(|&a, &b| rows.indices()[a].trajectory == rows.indices()[b].trajectory)
 }
 
 /// These rows, in the order of trajectories and samples, without hyper rows.

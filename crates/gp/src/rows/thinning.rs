@@ -27,6 +27,12 @@ pub(crate) fn thinned<'a>(
     starts.into_iter().chain(evenly(&others, room, offset())).collect()
 }
 
+/// At most `most` of so many places, evenly spaced from the first on.
+pub(crate) fn every_so_many(count: usize, most: usize) -> Vec<usize> {
+    let taken = count.min(most);
+    (0..taken).map(|at| at * count / taken).collect()
+}
+
 /// So many of the rows, equally far from each other, from `offset` of that distance on.
 fn evenly(rows: &[usize], count: usize, offset: f64) -> impl Iterator<Item = usize> {
     let apart = rows.len() as f64 / count as f64;

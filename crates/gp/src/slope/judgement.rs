@@ -9,6 +9,7 @@ use crate::left_out::comparison::{difference, spread};
 use crate::report::identifiability::{Identifiability, LeastSeen};
 use crate::report::trust_report::{ModelKind, TrustReport};
 use crate::rows::kept::Kept;
+use crate::rows::thinning::every_so_many;
 use crate::slope::candidate::Candidate;
 use crate::slope::data::SlopeData;
 use crate::slope::model::SlopeModel;
@@ -118,15 +119,9 @@ fn ambiguity(taken: &Candidate, other: &Candidate) -> f64 {
     if nearly { difference(&taken.actions, &other.actions) } else { 0.0 }
 }
 
-/// At most `STATES` rows, evenly spaced.
-fn every_so_many(count: usize) -> Vec<usize> {
-    let states = count.min(STATES);
-    (0..states).map(|at| at * count / states).collect()
-}
-
 /// Mean of (S13) at some rows' states, and of what it was before anything was observed.
 fn mean_covariances(model: &SlopeModel, states: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
-    let at = every_so_many(states.ncols());
+    let at = every_so_many(states.ncols(), STATES);
     let sums = |rows: &[usize]| {
         let states: Vec<DVectorView<'_, f64>> = rows.iter().map(|&row| states.column(row)).collect();
         let posterior: DMatrix<f64> = model.covariances(&states).iter().sum();

@@ -148,9 +148,6 @@ fn plane(prepared: &Prepared, numbers: &TrustNumbers) -> Option<Finding> {
 fn rows_decision(readings: &AutoFit) -> Option<Decision> {
     let gp::TrustReport { rows, inducing, rows_dropped, .. } = readings.slope().report();
     let RowsDropped { averaged, thinned, still, noisy } = *rows_dropped;
-    if averaged == 0 && thinned == 0 && inducing.is_none() {
-        return None;
-    }
     let found = rows + still + noisy + thinned;
     let mut why = Vec::new();
     if averaged > 0 {
@@ -160,8 +157,8 @@ fn rows_decision(readings: &AutoFit) -> Option<Decision> {
     if thinned > 0 {
         why.push(format!("{thinned} others, evenly spread, are not learnt from"));
     }
-    let flag = if averaged > 0 && thinned == 0 && inducing.is_none() { "--max-rows" } else { "--inducing" };
-    Some(decision("rows", rows.to_string(), why.join("; "), flag))
+    let flag = if thinned == 0 && inducing.is_none() { "--max-rows" } else { "--inducing" };
+    (!why.is_empty()).then(|| decision("rows", rows.to_string(), why.join("; "), flag))
 }
 
 fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {
