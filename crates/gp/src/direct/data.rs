@@ -140,15 +140,14 @@ impl DirectData {
         DirectModel::new(scaled, (blocks, amplitudes), self.z.clone(), weights, (level.noise, whitening))
     }
 
-    /// The model of these amplitudes and σ² found, conditioned on all rows through at most so many of them; none without factor.
+    /// The model of these amplitudes, conditioned on all rows through at most so many of them; none without factor.
     pub(crate) fn induced(
         &self,
         (blocks, amplitudes): (&[DirectBlock], &[f64]),
-        found: f64,
         most: usize,
     ) -> Option<(DirectModel, LeftOut)> {
         let Induced { rows, noise, weights, factor, shrinkage, left_out, .. } =
-            Induced::new(&self.covariance(blocks), amplitudes, found, &self.conditions(), most)?;
+            Induced::new(&self.covariance(blocks), amplitudes, &self.conditions(), most)?;
         let scaled = (self.scaling.clone(), self.unit);
         let (prior, z) = ((blocks.to_vec(), amplitudes.to_vec()), self.z.select_columns(&rows));
         let whitening = Whitening::Inducing { shrinkage, factor: factor.into() };

@@ -98,7 +98,7 @@ impl DirectOutcome {
     pub(crate) fn on_all_rows(&self, all: &Kept, most: usize) -> Option<DirectOutcome> {
         let DirectFit { model, family, .. } = &self.fit;
         let data = self.data.of_others(all);
-        let (model, left_out) = data.induced((&model.blocks, &model.amplitudes), self.found, most)?;
+        let (model, left_out) = data.induced((&model.blocks, &model.amplitudes), most)?;
         let actions = model.actions(&all.states);
         let (r_squared, z_squared) = (left_out.r_squared, left_out.z_squared);
         let fit = DirectFit { model, family: *family, r_squared, z_squared };

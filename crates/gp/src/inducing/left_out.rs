@@ -12,11 +12,14 @@ use crate::left_out::LeftOut;
 /// Rows whose features are at hand together.
 const TOGETHER: usize = 2048;
 
-/// A spectrum at a level of noise σ², the floor included.
+/// A spectrum at a level of noise, floors included.
 pub(crate) struct Leaving<'a, C> {
     pub(crate) features: &'a Features<'a, C>,
     pub(crate) spectrum: &'a Spectrum,
+    /// κσ², which the policy is conditioned with.
     pub(crate) noise: f64,
+    /// σ², which rows have.
+    pub(crate) own: f64,
     /// Of [`Spectrum::coefficients`].
     pub(crate) coefficients: &'a DMatrix<f64>,
 }
@@ -60,9 +63,10 @@ impl<C: Covariance> Leaving<'_, C> {
         let factor = Factor::new(rest)?;
         factor.solve(&mut errors);
         let inverse = factor.inverse_triangle();
-        let variance = |(at, column): (usize, f64)| self.noise * column + self.unknown(rows[at], known[at]);
         let squares = inverse.column_iter().map(|column| column.norm_squared());
-        let variances = squares.enumerate().map(variance).collect();
+        let biases = self.biases(b, |b| factor.solve(b));
+        let each = squares.zip(biases).enumerate();
+        let variances = each.map(|(at, of)| self.variance(of) + self.unknown(rows[at], known[at])).collect();
         Some((errors, variances))
     }
 
@@ -86,10 +90,37 @@ impl<C: Covariance> Leaving<'_, C> {
             let mut whitened = b.transpose();
             factor.whiten(&mut whitened);
             let squares = whitened.column_iter().map(|column| 1.0 + column.norm_squared());
-            let variance = |(at, square): (usize, f64)| self.noise * square + self.unknown(part[at], known[at]);
-            variances.extend(squares.enumerate().map(variance));
+            let biases = self.biases(b, |b| {
+                let mut transposed = b.transpose();
+                factor.solve(&mut transposed);
+                b.tr_copy_from(&transposed);
+            });
+            let each = squares.zip(biases).enumerate();
+            variances.extend(each.map(|(at, of)| self.variance(of) + self.unknown(part[at], known[at])));
         }
         Some((residuals, variances))
+    }
+
+    /// |(I − BBᵀ)⁻¹ B diag(s² + κσ²)^{-1/2}|² of every row of B, with `leave` for the first factor; not computed where κ = 1.
+    fn biases(&self, mut b: DMatrix<f64>, leave: impl Fn(&mut DMatrix<f64>)) -> Vec<f64> {
+        if self.noise == self.own {
+            return vec![0.0; b.nrows()];
+        }
+        leave(&mut b);
+        self.scale(&mut b);
+        b.row_iter().map(|row| row.norm_squared()).collect()
+    }
+
+    /// (V_T)_ii (S36) from the diagonal of (I − BBᵀ)⁻¹ and the bias.
+    fn variance(&self, (square, bias): (f64, f64)) -> f64 {
+        self.own * square + self.noise * (self.noise - self.own) * bias
+    }
+
+    /// Divides the columns by √(s² + κσ²).
+    fn scale(&self, b: &mut DMatrix<f64>) {
+        for (mut column, s) in b.column_iter_mut().zip(&self.spectrum.singular) {
+            column /= (s * s + self.noise).sqrt();
+        }
     }
 
     /// z − Φŵ, the squares of the rows of Φ, and B with H = BBᵀ.
@@ -97,9 +128,7 @@ impl<C: Covariance> Leaving<'_, C> {
         let mut b = self.features.times(rows, &self.spectrum.w);
         let errors = self.features.targets(rows) - &b * self.coefficients;
         let known = b.row_iter().map(|row| row.norm_squared()).collect();
-        for (mut column, s) in b.column_iter_mut().zip(&self.spectrum.singular) {
-            column /= (s * s + self.noise).sqrt();
-        }
+        self.scale(&mut b);
         (errors, known, b)
     }
 

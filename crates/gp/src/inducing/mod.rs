@@ -2,7 +2,7 @@
 
 mod features;
 mod left_out;
-mod pivots;
+pub(crate) mod pivots;
 mod spectrum;
 mod tree;
 
@@ -26,7 +26,7 @@ const COMPARED: usize = 20_000;
 pub(crate) struct Induced {
     /// The inducing rows, (m).
     pub(crate) rows: Vec<usize>,
-    /// κ: by how much σ² was raised, and σ² used, without the floor.
+    /// κ: the factor on σ² that predicts best, and σ² (S38), without the floor.
     pub(crate) kappa: f64,
     pub(crate) noise: f64,
     /// α of the inducing rows, (m, c).
@@ -40,47 +40,44 @@ pub(crate) struct Induced {
 }
 
 impl Induced {
-    /// At these amplitudes, and at the κ on the σ² `found` that predicts left-out groups best. None if there is no factor.
+    /// At these amplitudes, σ² of the highest marginal likelihood, and the κ that predicts left-out groups best. None if there is no
+    /// factor.
     ///
     /// Costs 4 n m² operations and n m covariances for n rows and m inducing ones, and the memory of a few rows at a time.
     pub(crate) fn new(
         covariance: &impl Covariance,
         amplitudes: &[f64],
-        found: f64,
         conditions: &Conditions<'_>,
         most: usize,
     ) -> Option<Induced> {
-        let inducing = pivots(covariance, amplitudes, conditions.groups, most);
+        let inducing = pivots(covariance, amplitudes, conditions.groups, most).rows;
         let features = Features { covariance, amplitudes, inducing, conditions };
         let factor = Factor::new(jittered(among(covariance, &features.inducing, amplitudes)))?;
         let spectrum = Spectrum::of(&features, &factor)?;
-        let level = |kappa, groups: &[&[usize]], spread| {
-            let noise = raised(found, kappa);
-            let coefficients = spectrum.coefficients(noise + NOISE_FLOOR);
-            let leaving = Leaving {
-                features: &features,
-                spectrum: &spectrum,
-                noise: noise + NOISE_FLOOR,
-                coefficients: &coefficients,
-            };
-            leaving.each(groups, spread)
+        let found = spectrum.noise();
+        let own = found + NOISE_FLOOR;
+        let level = |noise, own, groups: &[&[usize]], spread| {
+            let coefficients = &spectrum.coefficients(noise);
+            Leaving { features: &features, spectrum: &spectrum, noise, own, coefficients }.each(groups, spread)
         };
+        let with_kappa = |kappa| raised(found, kappa) + NOISE_FLOOR;
         let all: Vec<&[usize]> = conditions.groups.iter().map(Vec::as_slice).collect();
         let some = evenly(&all, COMPARED);
         let share = some.concat().len() as f64 / conditions.noise_weights.len() as f64;
-        let levels = kappas().map(|kappa| Some((kappa, level(kappa, &some, share * conditions.spread)?)));
+        let at = |kappa| {
+            let noise = with_kappa(kappa);
+            Some((kappa, level(noise, noise, &some, share * conditions.spread)?))
+        };
         // Of a group that alone says something nearly exactly, rounding leaves no prediction without itself.
-        let mut levels = levels.skip_while(Option::is_none).peekable();
+        let mut levels = kappas().map(at).skip_while(Option::is_none).peekable();
         let least = levels.peek()?.as_ref()?.0;
-        let (best, some_left_out) = climb(levels, |(_, left_out)| left_out)?;
-        let left_out = if some.len() == all.len() { some_left_out } else { level(best, &all, conditions.spread)? };
+        let (best, _) = climb(levels, |(_, left_out)| left_out)?;
+        let left_out = level(with_kappa(best), own, &all, conditions.spread)?.at(&all.concat());
         // Where the least noise at which groups can be left out is the best, so would less be.
         let kappa = if best == least { 1.0 } else { best };
-        let noise = raised(found, kappa);
-        let weights = &spectrum.w * spectrum.coefficients(noise + NOISE_FLOOR);
-        let shrinkage = spectrum.shrinkage(noise + NOISE_FLOOR);
-        let left_out = left_out.at(&all.concat());
-        Some(Induced { rows: features.inducing, kappa, noise, weights, factor, shrinkage, left_out })
+        let weights = &spectrum.w * spectrum.coefficients(with_kappa(kappa));
+        let shrinkage = spectrum.shrinkage(with_kappa(kappa), own);
+        Some(Induced { rows: features.inducing, kappa, noise: found, weights, factor, shrinkage, left_out })
     }
 }
 
@@ -105,6 +102,8 @@ mod tests {
     use crate::kernel::slope_covariance::SlopeCovariance;
     use crate::left_out::level::Level;
 
+    /// σ² below which few rows may say everything exactly, which nothing is compared with to 1e-6.
+    const NOISY: f64 = 1e-3;
     const BLOCKS: [Block; 3] = [Block::Linear, Block::Quadratic, Block::Potential(Shape::SquaredExponential, 0.5)];
 
     /// Rows of groups, as a fit has them.
@@ -141,6 +140,12 @@ mod tests {
             SlopeCovariance { blocks: &BLOCKS, z: &self.z, n: &self.n }
         }
 
+        /// κσ² and σ² of every row.
+        fn noises(&self, induced: &Induced) -> (Vec<f64>, Vec<f64>) {
+            let of = |noise: f64| self.noise_weights.iter().map(|weight| weight * (noise + NOISE_FLOOR)).collect();
+            (of(raised(induced.noise, induced.kappa)), of(induced.noise))
+        }
+
         fn conditions(&self) -> Conditions<'_> {
             let Drawn { targets, noise_weights, groups, .. } = self;
             Conditions { targets, noise_weights, groups, spread: 1.0 }
@@ -155,6 +160,20 @@ mod tests {
         matrix.select_rows(rows).select_columns(columns)
     }
 
+    /// Mean, and covariance of its error, of rows with this prior and these covariances with others, whose targets are conditioned on with
+    /// other noise than they have.
+    fn predicted(
+        prior: &DMatrix<f64>,
+        across: &DMatrix<f64>,
+        others: &DMatrix<f64>,
+        (targets, noise, own): (&DMatrix<f64>, &[f64], &[f64]),
+    ) -> (DMatrix<f64>, DMatrix<f64>) {
+        let with = |noise: &[f64]| others + DMatrix::from_diagonal(&DVector::from_column_slice(noise));
+        let gain = across * with(noise).try_inverse().expect("an inverse");
+        let taken = &gain * across.transpose();
+        (&gain * targets, prior - &taken - taken.transpose() + &gain * with(own) * gain.transpose())
+    }
+
     fn differ(a: &DMatrix<f64>, b: &DMatrix<f64>) -> f64 {
         (a - b).amax() / b.amax()
     }
@@ -165,69 +184,99 @@ mod tests {
         /// Where every row is an inducing row, the model is the one of all rows: mean, left-out predictions, what is explained.
         #[test]
         fn all_rows_as_inducing_rows_change_nothing(
-            groups in prop::collection::vec(1usize..6, 3..7),
+            groups in prop::collection::vec(2usize..6, 4..7),
             amplitudes in prop::array::uniform3(0.05..3.0f64),
-            found in 1e-3..0.5f64,
             seed in any::<u64>(),
         ) {
             let drawn = Drawn::new(&groups, seed);
             let (covariance, conditions) = (drawn.covariance(), drawn.conditions());
             let count = drawn.noise_weights.len();
-            let induced = Induced::new(&covariance, &amplitudes, found, &conditions, count).expect("a factor");
+            let induced = Induced::new(&covariance, &amplitudes, &conditions, count).expect("a factor");
+            prop_assume!(induced.noise > NOISY);
             let matrix = covariance.sum(&amplitudes);
-            let exact = Level::at(&matrix, found, induced.kappa, &conditions).expect("a factor");
-            prop_assert!((induced.noise - exact.noise).abs() <= 1e-12 * exact.noise);
+            let exact = Level::at(&matrix, induced.noise, induced.kappa, &conditions).expect("a factor");
             let with_all = select(&full(&matrix), &(0..count).collect::<Vec<_>>(), &induced.rows);
             let (mean, literal) = (&with_all * &induced.weights, full(&matrix) * &exact.weights);
             prop_assert!(differ(&mean, &literal) < 1e-6, "{}", differ(&mean, &literal));
             prop_assert!(differ(&induced.left_out.residuals, &exact.left_out.residuals) < 1e-6);
-            for (own, literal) in induced.left_out.variances.iter().zip(&exact.left_out.variances) {
-                prop_assert!((own - literal).abs() <= 1e-6 * literal, "{own} {literal}");
-            }
             let mut explained = with_all.transpose();
             induced.factor.whiten(&mut explained);
             let explained = &induced.shrinkage * explained;
-            let mut known = full(&matrix);
-            exact.factor.whiten(&mut known);
-            prop_assert!(differ(&explained.tr_mul(&explained), &known.tr_mul(&known)) < 1e-6);
+            let prior = full(&matrix);
+            let (noise, own) = drawn.noises(&induced);
+            let (_, error) = predicted(&prior, &prior, &prior, (&drawn.targets, &noise, &own));
+            prop_assert!(differ(&explained.tr_mul(&explained), &(&prior - error)) < 1e-6);
         }
 
         /// With few inducing rows: the formulas (S34), (S36) as they are written, one model of the other groups for each group,
         /// whether a group has fewer rows than there are inducing ones or more.
         #[test]
         fn left_out_groups_are_those_of_a_model_without_them(
-            groups in prop::collection::vec(1usize..14, 3..6),
+            groups in prop::collection::vec(1usize..14, 4..6),
             amplitudes in prop::array::uniform3(0.05..3.0f64),
-            found in 1e-2..0.5f64,
             most in 2usize..8,
             seed in any::<u64>(),
         ) {
             let drawn = Drawn::new(&groups, seed);
             let (covariance, conditions) = (drawn.covariance(), drawn.conditions());
             let count = drawn.noise_weights.len();
-            let induced = Induced::new(&covariance, &amplitudes, found, &conditions, most).expect("a factor");
+            let induced = Induced::new(&covariance, &amplitudes, &conditions, most).expect("a factor");
+            prop_assume!(induced.noise > NOISY);
             let all: Vec<usize> = (0..count).collect();
             let prior = full(&covariance.sum(&amplitudes));
             let with = select(&prior, &all, &induced.rows);
             let inverse = jittered(select(&prior, &induced.rows, &induced.rows)).try_inverse().expect("an inverse");
             let approximate = &with * inverse * with.transpose();
-            let mut noisy = approximate.clone();
-            add_noise(&mut noisy, induced.noise, drawn.noise_weights.iter().copied());
+            let (noise, own) = drawn.noises(&induced);
             for rows in &drawn.groups {
                 let others: Vec<usize> = all.iter().copied().filter(|row| !rows.contains(row)).collect();
-                let gain = select(&approximate, rows, &others)
-                    * select(&noisy, &others, &others).try_inverse().expect("an inverse");
-                let errors = drawn.targets.select_rows(rows) - &gain * drawn.targets.select_rows(&others);
-                prop_assert!((errors - induced.left_out.residuals.select_rows(rows)).amax() < 1e-6);
-                let variance = DVector::from_fn(rows.len(), |at, _| {
-                    let row = rows[at];
-                    prior[(row, row)] + (induced.noise + NOISE_FLOOR) * drawn.noise_weights[row]
-                        - (&gain * select(&approximate, &others, rows))[(at, at)]
-                });
+                let (across, of_others) = (select(&approximate, rows, &others), select(&approximate, &others, &others));
+                let of = |of: &[f64]| others.iter().map(|&row| of[row]).collect::<Vec<_>>();
+                let conditions = (&drawn.targets.select_rows(&others), &*of(&noise), &*of(&own));
+                let (mean, error) = predicted(&select(&approximate, rows, rows), &across, &of_others, conditions);
+                let residuals = drawn.targets.select_rows(rows) - mean;
+                prop_assert!((residuals - induced.left_out.residuals.select_rows(rows)).amax() < 1e-6);
                 for (at, &row) in rows.iter().enumerate() {
-                    prop_assert!((variance[at] - induced.left_out.variances[row]).abs() <= 1e-6 * variance[at]);
+                    let unknown = prior[(row, row)] - approximate[(row, row)];
+                    let variance = error[(at, at)] + own[row] + unknown;
+                    let found = induced.left_out.variances[row];
+                    prop_assert!((variance - found).abs() <= 1e-6 * variance, "{variance} {found}");
                 }
             }
+        }
+
+        /// (S38): the determinant and the quadratic form as they are written, but for what does not depend on σ².
+        #[test]
+        fn the_marginal_likelihood_is_that_of_all_rows(
+            groups in prop::collection::vec(1usize..9, 3..6),
+            amplitudes in prop::array::uniform3(0.05..3.0f64),
+            most in 2usize..8,
+            noises in prop::array::uniform2(1e-2..1.0f64),
+            seed in any::<u64>(),
+        ) {
+            let drawn = Drawn::new(&groups, seed);
+            let (covariance, conditions) = (drawn.covariance(), drawn.conditions());
+            let inducing = pivots(&covariance, &amplitudes, &drawn.groups, most).rows;
+            let features = Features { covariance: &covariance, amplitudes: &amplitudes, inducing, conditions: &conditions };
+            let factor = Factor::new(jittered(among(&covariance, &features.inducing, &amplitudes))).expect("a factor");
+            let spectrum = Spectrum::of(&features, &factor).expect("a decomposition");
+            let prior = full(&covariance.sum(&amplitudes));
+            let all: Vec<usize> = (0..prior.nrows()).collect();
+            let with = select(&prior, &all, &features.inducing);
+            let among = jittered(select(&prior, &features.inducing, &features.inducing));
+            let approximate = &with * among.try_inverse().expect("an inverse") * with.transpose();
+            let literal = |noise: f64| {
+                let weights = DVector::from_column_slice(&drawn.noise_weights) * noise;
+                let matrix = &approximate + DMatrix::from_diagonal(&weights);
+                let inverse = matrix.clone().try_inverse().expect("an inverse");
+                let outputs = drawn.targets.ncols() as f64;
+                outputs * matrix.determinant().ln() + (drawn.targets.tr_mul(&(inverse * &drawn.targets))).trace()
+            };
+            let (own, expected) = (noises.map(|noise| spectrum.evidence(noise)), noises.map(literal));
+            let (own, expected) = (own[0] - own[1], expected[0] - expected[1]);
+            prop_assert!((own - expected).abs() <= 1e-6 * (1.0 + expected.abs()), "{own} {expected}");
+            let best = spectrum.noise();
+            prop_assert!(noises.iter().all(|&noise| spectrum.evidence(best) <= spectrum.evidence(noise) + 1e-2));
         }
     }
 }

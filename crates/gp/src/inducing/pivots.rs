@@ -11,17 +11,20 @@ const DEPENDENT: f64 = 1e-13;
 /// (√5 − 1)/2: its multiples meet no period of a recording.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// At most `most` rows, the one with the largest variance given those before it first, ties to the earlier one. Their order is
-/// that of the choice.
+/// Rows that stand for others.
+#[derive(Debug)]
+pub(crate) struct Pivots {
+    /// In the order of the choice.
+    pub(crate) rows: Vec<usize>,
+    /// Largest prior variance that is left, given them.
+    pub(crate) remaining: f64,
+}
+
+/// At most `most` rows, the one with the largest variance given those before it first, ties to the earlier one.
 ///
 /// Candidates are the first rows of trajectories, which are at the rim of what was recorded, as far as they are not more than
 /// half of all candidates, and one row of each of equally many stretches of the others. Costs most² times as many candidates.
-pub(crate) fn pivots(
-    covariance: &impl Covariance,
-    amplitudes: &[f64],
-    groups: &[Vec<usize>],
-    most: usize,
-) -> Vec<usize> {
+pub(crate) fn pivots(covariance: &impl Covariance, amplitudes: &[f64], groups: &[Vec<usize>], most: usize) -> Pivots {
     let candidates = candidates(groups, CANDIDATES * most);
     let with = covariance.with(&candidates, amplitudes);
     let mut remaining: Vec<f64> = candidates.iter().map(|&row| covariance.variance(row, amplitudes)).collect();
@@ -45,7 +48,7 @@ pub(crate) fn pivots(
         remaining[pivot] = f64::NEG_INFINITY;
         chosen.push(candidates[pivot]);
     }
-    chosen
+    Pivots { rows: chosen, remaining: remaining.into_iter().fold(0.0, f64::max) }
 }
 
 /// At most so many rows, in their order.

@@ -11,6 +11,10 @@ use crate::inducing::tree::{triangle, upper};
 use crate::kernel::covariance::Covariance;
 use crate::kernel::factor::{Factor, view, view_mut};
 
+/// log σ² that are compared, in equal steps.
+const NOISE: (f64, f64) = (-28.0, 2.0);
+const STEPS: usize = 600;
+
 /// Φ = D^{-1/2} K_nm L⁻ᵀ = U diag(s) Vᵀ of all rows, K_mm = LLᵀ among the inducing ones.
 #[derive(Debug)]
 pub(crate) struct Spectrum {
@@ -22,6 +26,9 @@ pub(crate) struct Spectrum {
     pub(crate) w: DMatrix<f64>,
     /// UᵀD^{-1/2}Y, (m, c).
     targets: DMatrix<f64>,
+    /// Σ|y|²/D of what no feature says, and the number of rows.
+    rest: f64,
+    rows: usize,
 }
 
 impl Spectrum {
@@ -36,8 +43,29 @@ impl Spectrum {
         let (u, singular, v) = decomposed(&transposed.transpose())?;
         let mut w = v.clone();
         lower.whiten_transposed(&mut w);
+        let rest = all.view((count, count), (targets.ncols(), targets.ncols())).norm_squared();
+        let rows = targets.nrows();
         let targets = u.tr_mul(&all.view((0, count), (count, targets.ncols())));
-        Some(Spectrum { singular, v, w, targets })
+        Some(Spectrum { singular, v, w, targets, rest, rows })
+    }
+
+    /// σ² with the highest marginal likelihood of all rows at these amplitudes (S38). Costs m operations for each σ² tried.
+    pub(crate) fn noise(&self) -> f64 {
+        let (least, most) = NOISE;
+        let level = |step: usize| (least + (most - least) * step as f64 / STEPS as f64).exp();
+        let evidence = |step: &usize| self.evidence(level(*step));
+        (0..=STEPS).min_by(|a, b| evidence(a).total_cmp(&evidence(b))).map_or(least.exp(), level)
+    }
+
+    /// -2 log p(Y) but for constants: Σ_j [c log(s² + σ²) + |q_j|²/(s² + σ²)] + (n − m) c log σ² + rest/σ².
+    pub(super) fn evidence(&self, noise: f64) -> f64 {
+        let outputs = self.targets.ncols() as f64;
+        let of_features = self.singular.iter().zip(self.targets.row_iter()).map(|(s, targets)| {
+            let variance = s * s + noise;
+            outputs * variance.ln() + targets.norm_squared() / variance
+        });
+        let others = self.rows.saturating_sub(self.singular.len()) as f64;
+        of_features.sum::<f64>() + others * outputs * noise.ln() + self.rest / noise
     }
 
     /// V^T of the posterior's mean of w at a level of noise: s/(s² + σ²) UᵀD^{-1/2}Y, (m, c).
@@ -50,10 +78,12 @@ impl Spectrum {
     }
 
     /// T, (m, m), upper triangle: rows say TL⁻¹k of a function with covariances k, in place of L⁻¹k if they were free of noise (S37).
-    pub(crate) fn shrinkage(&self, noise: f64) -> DMatrix<f64> {
+    /// The policy is conditioned with the noise κσ², rows have `own` = σ².
+    pub(crate) fn shrinkage(&self, noise: f64, own: f64) -> DMatrix<f64> {
         let mut shrunk = self.v.transpose();
         for (mut row, s) in shrunk.row_iter_mut().zip(&self.singular) {
-            row *= s / (s * s + noise).sqrt();
+            let variance = s * s + noise;
+            row *= s * (variance + noise - own).sqrt() / variance;
         }
         upper(shrunk)
     }

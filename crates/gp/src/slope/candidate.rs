@@ -43,12 +43,18 @@ impl Candidate {
         Candidate { family, kind, model, left_out, actions, found, kappa }
     }
 
-    /// The same family and amplitudes on all rows, through at most so many of them; none without factor.
-    pub(super) fn induced(&self, data: &SlopeData, all: &Kept, most: usize) -> Option<Candidate> {
-        let Expansion { blocks, amplitudes, .. } = self.model.expansion();
-        let (model, left_out, kappa) = data.induced((blocks, amplitudes), self.found, most)?;
+    /// Blocks with these amplitudes on all rows, through at most so many of them; none without factor.
+    pub(super) fn induced(
+        data: &SlopeData,
+        all: &Kept,
+        (family, kind): (Family, ModelKind),
+        prior: &[(Block, f64)],
+        most: usize,
+    ) -> Option<Candidate> {
+        let (blocks, amplitudes): (Vec<Block>, Vec<f64>) = prior.iter().copied().unzip();
+        let (model, left_out, kappa) = data.induced((&blocks, &amplitudes), most)?;
         let actions = model.actions(&all.states);
-        Some(Candidate { model, left_out, actions, kappa, ..*self })
+        Some(Candidate { family, kind, left_out, actions, found: model.noise, model, kappa })
     }
 
     /// The same model at those higher levels of noise that predict nearly exactly, one after the other.

@@ -3,6 +3,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::evidence::family_fit::{FamilyFit, fit_family};
 use crate::evidence::{Evidence, Task};
 use crate::inducing::Induced;
+use crate::inducing::pivots::{Pivots, pivots};
 use crate::kernel::block::Block;
 use crate::kernel::covariance::Covariance;
 use crate::kernel::slope_covariance::SlopeCovariance;
@@ -189,15 +190,19 @@ impl SlopeData {
         SlopeModel::new(expansion, level.noise, whitening)
     }
 
-    /// The model of these amplitudes and σ² found, conditioned on all rows through at most so many of them; none without factor.
+    /// Rows that stand for others at these amplitudes.
+    pub(crate) fn pivots(&self, blocks: &[Block], amplitudes: &[f64], most: usize) -> Pivots {
+        pivots(&self.covariance(blocks), amplitudes, &self.groups, most)
+    }
+
+    /// The model of these amplitudes, conditioned on all rows through at most so many of them; none without factor.
     pub(crate) fn induced(
         &self,
         (blocks, amplitudes): (&[Block], &[f64]),
-        found: f64,
         most: usize,
     ) -> Option<(SlopeModel, LeftOut, f64)> {
         let Induced { rows, kappa, noise, weights, factor, shrinkage, left_out } =
-            Induced::new(&self.covariance(blocks), amplitudes, found, &self.conditions(), most)?;
+            Induced::new(&self.covariance(blocks), amplitudes, &self.conditions(), most)?;
         let scaled = (self.scaling.clone(), self.speed);
         let of_rows = (self.z.select_columns(&rows), self.n.select_columns(&rows));
         let prior = (blocks.to_vec(), amplitudes.to_vec());

@@ -104,7 +104,13 @@ fn weighted(gp: &SlopeGp, kept: &Kept) -> Result<SlopeData, GpError> {
 }
 
 /// Step 5 for one family; none if its covariance has no Cholesky factor.
-fn candidate(gp: &SlopeGp, data: &SlopeData, kept: &Kept, family: Family, kind: ModelKind) -> Option<Candidate> {
+pub(super) fn candidate(
+    gp: &SlopeGp,
+    data: &SlopeData,
+    kept: &Kept,
+    family: Family,
+    kind: ModelKind,
+) -> Option<Candidate> {
     let blocks = match kind {
         ModelKind::Potential => family.blocks(gp.trend),
         ModelKind::Helmholtz => family.helmholtz_blocks(gp.trend),
@@ -114,7 +120,7 @@ fn candidate(gp: &SlopeGp, data: &SlopeData, kept: &Kept, family: Family, kind: 
 }
 
 /// Step 6: the highest R², ties to the first; notes all of them.
-fn best_of(
+pub(super) fn best_of(
     tried: impl Iterator<Item = (Family, Option<Candidate>)>,
     model: ModelKind,
     families: &mut Vec<FamilyReport>,
