@@ -97,7 +97,6 @@ mod tests {
 
     use super::*;
     use crate::kernel::block::Block;
-    use crate::kernel::covariance::add_noise;
     use crate::kernel::shape::Shape;
     use crate::kernel::slope_covariance::SlopeCovariance;
     use crate::left_out::level::Level;
