@@ -13,6 +13,12 @@ impl CompensatedSum {
         self.sum = sum;
     }
 
+    /// Adds another sum with what it kept.
+    pub(crate) fn add_sum(&mut self, other: Self) {
+        self.add(other.sum);
+        self.dropped += other.dropped;
+    }
+
     /// The sum; infinite once it has overflowed.
     pub(crate) fn value(&self) -> f64 {
         if self.sum.is_finite() { self.sum + self.dropped } else { self.sum }
@@ -35,5 +41,10 @@ mod tests {
         assert_eq!(sum(&[1.0, 1e-20, -1.0]), 1e-20);
         assert_eq!(sum(&[1.0, 1e20, -1e20, -0.5]), 0.5);
         assert_eq!(sum(&[1.0, f64::MAX, f64::MAX, 1.0]), f64::INFINITY);
+        let (mut one, mut other) = (CompensatedSum::default(), CompensatedSum::default());
+        [1.0, 1e-20].iter().for_each(|&term| one.add(term));
+        [1e-18, -1.0].iter().for_each(|&term| other.add(term));
+        one.add_sum(other);
+        assert_eq!(one.value(), 1e-18 + 1e-20);
     }
 }

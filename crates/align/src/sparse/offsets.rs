@@ -1,0 +1,48 @@
+use nalgebra::DVector;
+
+use super::conjugate_gradients::{centre, solve};
+use super::group::Group;
+use super::preconditioner::Preconditioner;
+use super::shared_samples::SharedSamples;
+use crate::AlignError;
+
+/// Each round takes what the last left; what is left after some is rounding.
+const MOST_ROUNDS: usize = 5;
+/// A step this small beside the offsets is the last.
+const LAST: f64 = 1e-14;
+
+/// The offsets b = −H⁺a (17) of a group of trajectories, in the order of the group and with sum 0, by the mutual
+/// weights of its members.
+///
+/// The right-hand side a is evaluated anew from the raised values, f + b, after each solution, as in the dense
+/// alignment.
+pub(crate) fn offsets(
+    samples: &SharedSamples,
+    members: &[usize],
+    preconditioner: Option<Preconditioner>,
+) -> Result<DVector<f64>, AlignError> {
+    if members.len() == 1 {
+        return Ok(DVector::zeros(1));
+    }
+    let group = Group::new(samples, members);
+    let preconditioner = preconditioner.map_or_else(|| Preconditioner::new(&group), Ok)?;
+    let mut offsets = vec![0.0; samples.n_trajectories];
+    for _ in 0..MOST_ROUNDS {
+        let right: Vec<f64> = group.linear_term(&offsets).into_iter().map(|term| -term).collect();
+        let finite = |&&k: &&usize| !right[k].is_finite();
+        if let Some(&trajectory) = members.iter().find(finite) {
+            return Err(AlignError::OffsetOverflow { trajectory });
+        }
+        let step = solve(&group, &preconditioner, right)?;
+        offsets.iter_mut().zip(&step).for_each(|(offset, step)| *offset += step);
+        if largest(&step) <= LAST * largest(&offsets) {
+            break;
+        }
+    }
+    centre(&group, &mut offsets);
+    Ok(DVector::from_iterator(members.len(), members.iter().map(|&k| offsets[k])))
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest, value| largest.max(value.abs()))
+}
