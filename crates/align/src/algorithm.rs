@@ -232,6 +232,28 @@ mod tests {
     }
 
     #[test]
+    fn many_movements_are_aligned_alike_without_h() {
+        let toy = ToySystem { n_trajectories: 500, n_samples: 60, ..ToySystem::default() };
+        let recordings = toy.record(&mut ChaCha8Rng::seed_from_u64(3)).unwrap();
+        both(&PolicyAlign::default(), &demonstrations(&recordings).unwrap());
+    }
+
+    #[test]
+    fn a_long_chain_comes_apart_without_h() {
+        // Neighbours are linked by 1e4 thresholds and more, but λ₂ is smaller by (π / 760)².
+        let mut x = 0.0;
+        let movements = (0..760).map(|k| {
+            x += 1.0 + 0.01 * (f64::from(k) * 0.7).sin();
+            DMatrix::from_row_slice(1, 2, &[x, x])
+        });
+        let demonstrations = Demonstrations::from_states(movements.collect::<Vec<_>>(), 1.0).unwrap();
+        let bandwidth = Bandwidth::Fixed(0.1);
+        let learner = PolicyAlign { bandwidth, eigenvalue_threshold: 6e-7, ..PolicyAlign::default() };
+        both(&learner, &demonstrations);
+        assert_eq!(learner.align(&demonstrations).unwrap().kept().len(), 380);
+    }
+
+    #[test]
     fn no_number_of_threads_changes_a_bit() {
         let toy = ToySystem { n_trajectories: 400, n_samples: 50, ..ToySystem::default() };
         let demonstrations = demonstrations(&toy.record(&mut ChaCha8Rng::seed_from_u64(7)).unwrap()).unwrap();

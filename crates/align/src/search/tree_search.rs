@@ -193,3 +193,83 @@ impl WithSimd for Within<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use motion::Demonstrations;
+    use nalgebra::DMatrix;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    /// Any number of movements in a few dimensions; few different coordinates, so that many samples are equally near.
+    fn movements() -> impl Strategy<Value = Vec<DMatrix<f64>>> {
+        (1usize..5).prop_flat_map(|dim| {
+            let coordinate = prop_oneof![(-2..3).prop_map(f64::from), -1.0..1.0];
+            let movement = (2usize..60).prop_flat_map(move |n| vec(coordinate.clone(), n * dim));
+            vec(movement.prop_map(move |x| DMatrix::from_vec(dim, x.len() / dim, x)), 1..12)
+        })
+    }
+
+    fn squared(one: &DMatrix<f64>, m: usize, other: &DMatrix<f64>, i: usize) -> f64 {
+        one.column(m).iter().zip(other.column(i).iter()).map(|(x, y)| (x - y) * (x - y)).sum()
+    }
+
+    proptest! {
+        #[test]
+        fn the_tree_has_every_sample_once(movements in movements()) {
+            let tree = SampleTree::new(&Demonstrations::from_states(movements.clone(), 1.0).unwrap());
+            let mut places: Vec<(u32, u32)> = tree.places.iter().map(|p| (p.trajectory, p.sample)).collect();
+            places.sort_unstable();
+            let all = movements.iter().enumerate().flat_map(|(k, x)| (0..x.ncols()).map(move |i| (k as u32, i as u32)));
+            prop_assert_eq!(places, all.collect::<Vec<_>>());
+        }
+
+        #[test]
+        fn finds_the_nearest_of_other_trajectories(movements in movements()) {
+            let tree = SampleTree::new(&Demonstrations::from_states(movements.clone(), 1.0).unwrap());
+            let distance = |k: usize, j: usize| {
+                let (one, other) = (&movements[k], &movements[j]);
+                let all = (0..one.ncols()).flat_map(|m| (0..other.ncols()).map(move |i| (m, i)));
+                all.map(|(m, i)| squared(one, m, other, i)).fold(f64::INFINITY, f64::min)
+            };
+            let count = movements.len();
+            let pairs = (0..count).flat_map(|k| (k + 1..count).map(move |j| (k, j)));
+            let touching: Vec<_> = pairs.filter(|&(k, j)| distance(k, j) == 0.0).collect();
+            prop_assert_eq!(tree.touching(), touching.clone());
+            for excluded in [&[][..], &touching] {
+                let expected: Vec<f64> = (0..count).map(|k| {
+                    let others = (0..count).filter(|&j| j != k && !excluded.contains(&(k.min(j), k.max(j))));
+                    others.map(|j| distance(k, j)).fold(f64::INFINITY, f64::min)
+                }).collect();
+                prop_assert_eq!(tree.distances_to_nearest(count, excluded), expected);
+            }
+        }
+
+        #[test]
+        fn finds_all_within_the_radius(movements in movements(), squared_radius in prop_oneof![Just(0.0), 0.0..20.0]) {
+            let tree = SampleTree::new(&Demonstrations::from_states(movements.clone(), 1.0).unwrap());
+            let (mut samples, mut total) = (0, 0);
+            for leaf in 0..tree.n_leaves() {
+                let mut found = Vec::new();
+                tree.neighbours(leaf, squared_radius, &mut Vec::new(), |place, near| found.push((place, near.to_vec())));
+                for (place, near) in found {
+                    let (owner, m) = (place.trajectory as usize, place.sample as usize);
+                    let others = (0..movements.len()).filter(|&k| k != owner);
+                    let nearest = others.map(|k| {
+                        let to = |i| squared(&movements[owner], m, &movements[k], i);
+                        // The first of equally near ones.
+                        let i = (1..movements[k].ncols()).fold(0, |best, i| if to(i) < to(best) { i } else { best });
+                        let place = Place { trajectory: k as u32, sample: i as u32 };
+                        Neighbour { place, squared_distance: to(i) }
+                    });
+                    let expected: Vec<_> = nearest.filter(|near| near.squared_distance <= squared_radius).collect();
+                    (samples, total) = (samples + 1, total + expected.len());
+                    prop_assert_eq!(near, expected);
+                }
+            }
+            prop_assert_eq!(samples, tree.places.len());
+            prop_assert_eq!(tree.mean_neighbours(usize::MAX, squared_radius), total as f64 / samples as f64);
+        }
+    }
+}

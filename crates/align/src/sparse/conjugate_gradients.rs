@@ -2,16 +2,16 @@ use super::group::Group;
 use super::preconditioner::Preconditioner;
 use crate::AlignError;
 
-/// The residual falls by this factor, in the norm of the preconditioner.
-const REDUCTION: f64 = 1e-9;
 /// A few dozen steps are usual.
 const MOST_STEPS: usize = 1000;
 
-/// x with Lx = r and sum 0, (K), by conjugate gradients: to `REDUCTION` of r, which sums to 0 over the group.
+/// x with Lx = r and sum 0, (K), by conjugate gradients, until the residual, in the norm of the
+/// preconditioner, is `reduction` of r, which sums to 0 over the group.
 pub(crate) fn solve(
     group: &Group<'_>,
     preconditioner: &Preconditioner,
     mut residual: Vec<f64>,
+    reduction: f64,
 ) -> Result<Vec<f64>, AlignError> {
     let mut scratch = Vec::new();
     let mut x = vec![0.0; residual.len()];
@@ -21,7 +21,7 @@ pub(crate) fn solve(
     centre(group, &mut step);
     let mut direction = step.clone();
     let mut size = dot(&residual, &step);
-    let enough = REDUCTION * REDUCTION * size;
+    let enough = reduction * reduction * size;
     for _ in 0..MOST_STEPS {
         if size <= enough || size == 0.0 {
             centre(group, &mut x);

@@ -175,3 +175,81 @@ impl<'a> Group<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::conjugate_gradients::{centre, solve};
+    use super::super::preconditioner::Preconditioner;
+    use super::super::sparsifier::sparsifier;
+    use super::*;
+    use crate::AlignmentObjective;
+    use crate::offsets::laplacian::{Elimination, of_group};
+    use crate::offsets::linear_term::linear_term;
+    use crate::offsets::responsibilities::{Responsibilities, squared_radius};
+    use crate::search::{SampleTree, SearchSpace};
+    use motion::Demonstrations;
+    use nalgebra::DVector;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    /// Movements with any values of the potential: at least two, so that some may be members and others not.
+    fn movements() -> impl Strategy<Value = (Vec<DMatrix<f64>>, Vec<Vec<f64>>)> {
+        let movement = (2usize..20).prop_flat_map(|n| {
+            (vec(-1.0..1.0, 2 * n).prop_map(move |x| DMatrix::from_vec(2, n, x)), vec(-5.0..5.0, n))
+        });
+        vec(movement, 2..20).prop_map(|movements| movements.into_iter().unzip())
+    }
+
+    proptest! {
+        #[test]
+        fn rows_give_what_h_and_a_give(
+            (positions, potentials) in movements(), member in vec(any::<bool>(), 20), raises in vec(-3.0..3.0, 20),
+            exponent in -3.0..0.0_f64,
+        ) {
+            let count = potentials.len();
+            let sigma_squared = 10.0_f64.powf(exponent);
+            let squared_radius = squared_radius(sigma_squared, 1e-20);
+            let demonstrations = Demonstrations::from_states(positions, 1.0).unwrap();
+            let nearest = SearchSpace::new(&demonstrations).nearest(squared_radius, u64::MAX).unwrap();
+            let responsibilities = Responsibilities::new(&nearest, &potentials, sigma_squared);
+            let h = AlignmentObjective::new(&responsibilities).laplacian;
+
+            let tree = SampleTree::new(&demonstrations);
+            let samples = SharedSamples::new(&tree, &potentials, sigma_squared, squared_radius);
+            let members: Vec<usize> = (0..count).filter(|&k| k == 0 || member[k]).collect();
+            let group = Group::new(&samples, &members);
+            let of_h = h.select_rows(&members).select_columns(&members);
+            let size = 1.0 + h.amax();
+            prop_assert!((group.matrix() - &of_h).amax() <= 1e-14 * size);
+
+            let masked: Vec<f64> = (0..count).map(|k| if group.contains[k] { raises[k] } else { 0.0 }).collect();
+            let of_members = |all: &[f64]| DVector::from_iterator(members.len(), members.iter().map(|&k| all[k]));
+            let laplacian = of_group(&h, &members);
+            let image = group.laplacian_times(&masked);
+            prop_assert!((&laplacian * of_members(&masked) - of_members(&image)).amax() <= 1e-13 * size);
+            prop_assert!((0..count).all(|k| group.contains[k] || image[k] == 0.0));
+
+            let options: Vec<Option<f64>> = (0..count).map(|k| group.contains[k].then_some(raises[k])).collect();
+            let (expected, _) = linear_term(&responsibilities, &options);
+            let found = group.linear_term(&masked);
+            prop_assert!(expected.iter().zip(&found).all(|(a, b)| (a - b).abs() <= 1e-13 * size), "{expected:?} {found:?}");
+
+            // What strong links connect is solved for; what only weak links do has large solutions.
+            let elimination = Elimination::new(&laplacian);
+            if members.len() > 1 && laplacian.symmetric_eigenvalues().iter().filter(|&&value| value < 1e-6).count() == 1 {
+                let mut right = masked;
+                centre(&group, &mut right);
+                let solved = solve(&group, &Preconditioner::new(&group).unwrap(), right.clone(), 1e-9).unwrap();
+                let expected = DVector::from_vec(elimination.solve(of_members(&right).as_slice()));
+                prop_assert!((of_members(&solved) - &expected).amax() <= 1e-6 * expected.amax());
+                // Few trajectories keep all their links but for those between two who share another's sample.
+                let links = sparsifier(&group);
+                prop_assert!(links.iter().all(|&(k, j, weight)| k < j && weight > 0.0));
+                let mut ends: Vec<usize> = links.iter().flat_map(|&(k, j, _)| [k as usize, j as usize]).collect();
+                ends.sort_unstable();
+                ends.dedup();
+                prop_assert_eq!(ends, members);
+            }
+        }
+    }
+}

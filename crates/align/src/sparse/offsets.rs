@@ -6,10 +6,10 @@ use super::preconditioner::Preconditioner;
 use super::shared_samples::SharedSamples;
 use crate::AlignError;
 
-/// Each round takes what the last left; what is left after some is rounding.
-const MOST_ROUNDS: usize = 5;
-/// A step this small beside the offsets is the last.
-const LAST: f64 = 1e-14;
+/// The residuals that rounds leave: the first two solve, the others take away what rounding left.
+const REDUCTIONS: [f64; 5] = [1e-9, 1e-9, 1e-5, 1e-5, 1e-5];
+/// A step this small beside the offsets is the last; it leaves 1e-16 of them.
+const LAST: f64 = 1e-11;
 
 /// The offsets b = −H⁺a (17) of a group of trajectories, in the order of the group and with sum 0, by the mutual
 /// weights of its members.
@@ -27,13 +27,13 @@ pub(crate) fn offsets(
     let group = Group::new(samples, members);
     let preconditioner = preconditioner.map_or_else(|| Preconditioner::new(&group), Ok)?;
     let mut offsets = vec![0.0; samples.n_trajectories];
-    for _ in 0..MOST_ROUNDS {
+    for reduction in REDUCTIONS {
         let right: Vec<f64> = group.linear_term(&offsets).into_iter().map(|term| -term).collect();
         let finite = |&&k: &&usize| !right[k].is_finite();
         if let Some(&trajectory) = members.iter().find(finite) {
             return Err(AlignError::OffsetOverflow { trajectory });
         }
-        let step = solve(&group, &preconditioner, right)?;
+        let step = solve(&group, &preconditioner, right, reduction)?;
         offsets.iter_mut().zip(&step).for_each(|(offset, step)| *offset += step);
         if largest(&step) <= LAST * largest(&offsets) {
             break;
