@@ -62,7 +62,8 @@ impl PolicyAlign {
     /// Aligns the local potentials of all trajectories, and leaves out those whose level the data do not determine.
     ///
     /// Time and memory grow with the number of pairs of samples within the bandwidth's search radius: with K
-    /// trajectories of N samples, up to 28 bytes for each of K²N. Coordinates are compared as they are: unwrap continuous
+    /// trajectories of N samples, up to 28 bytes for each of K²N, and K³ operations on H. From 256 trajectories on with
+    /// few neighbours, H is not formed: M samples then take O(M log M), and some 36 bytes each beside the states. Coordinates are compared as they are: unwrap continuous
     /// angles beforehand.
     ///
     /// # Errors

@@ -42,8 +42,10 @@ mod tests {
         assert_eq!(sum(&[1.0, 1e20, -1e20, -0.5]), 0.5);
         assert_eq!(sum(&[1.0, f64::MAX, f64::MAX, 1.0]), f64::INFINITY);
         let (mut one, mut other) = (CompensatedSum::default(), CompensatedSum::default());
-        [1.0, 1e-20].iter().for_each(|&term| one.add(term));
-        [1e-18, -1.0].iter().for_each(|&term| other.add(term));
+        for (of_one, of_other) in [(1.0, 1e-18), (1e-20, -1.0)] {
+            one.add(of_one);
+            other.add(of_other);
+        }
         one.add_sum(other);
         assert_eq!(one.value(), 1e-18 + 1e-20);
     }

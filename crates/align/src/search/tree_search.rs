@@ -62,7 +62,7 @@ impl SampleTree {
     /// evenly spaced leaves.
     pub(crate) fn mean_neighbours(&self, leaves: usize, squared_radius: f64) -> f64 {
         let of_leaf = |leaf: usize| {
-            let (mut samples, mut found) = (0, 0);
+            let (mut samples, mut found) = (0_usize, 0_usize);
             self.neighbours(leaf, squared_radius, &mut Vec::new(), |_, neighbours| {
                 (samples, found) = (samples + 1, found + neighbours.len());
             });

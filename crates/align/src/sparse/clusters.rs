@@ -19,7 +19,7 @@ impl Clusters {
     /// No other pair of a sample has a larger product than one with its own trajectory o.
     pub(crate) fn new(samples: &SharedSamples, strong: f64) -> Self {
         let mut forest = Forest::new(samples.n_trajectories);
-        for row in samples.blocks.iter().flat_map(|block| block.rows()) {
+        for row in samples.rows() {
             for (&k, &q) in row.models.iter().zip(row.shares) {
                 if row.own_share * q > strong {
                     forest.join(row.owner, k as usize);
@@ -34,7 +34,9 @@ impl Clusters {
     /// The clusters that links connect, without passing through those excluded; each part ascending.
     pub(crate) fn parts(&self, among: &[usize], excluded: Option<usize>) -> Vec<Vec<usize>> {
         let mut open: Vec<bool> = vec![false; self.members.len()];
-        among.iter().for_each(|&cluster| open[cluster] = Some(cluster) != excluded);
+        for &cluster in among {
+            open[cluster] = Some(cluster) != excluded;
+        }
         let mut parts = Vec::new();
         for &first in among {
             if !std::mem::take(&mut open[first]) {
@@ -77,7 +79,7 @@ impl Clusters {
 fn links(samples: &SharedSamples, of: &[usize], count: usize) -> Vec<Vec<(usize, f64)>> {
     let mut found: Vec<(usize, usize, f64)> = Vec::new();
     let mut shares: Vec<(usize, f64)> = Vec::new();
-    for row in samples.blocks.iter().flat_map(|block| block.rows()) {
+    for row in samples.rows() {
         let own = of[row.owner];
         if row.models.iter().all(|&k| of[k as usize] == own) {
             continue;
@@ -100,11 +102,15 @@ fn links(samples: &SharedSamples, of: &[usize], count: usize) -> Vec<Vec<(usize,
     let mut links = vec![Vec::new(); count];
     for pair in found.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
         let mut weight = CompensatedSum::default();
-        pair.iter().for_each(|&(.., term)| weight.add(term));
+        for &(.., term) in pair {
+            weight.add(term);
+        }
         let (s, t, weight) = (pair[0].0, pair[0].1, weight.value());
         links[s].push((t, weight));
         links[t].push((s, weight));
     }
-    links.iter_mut().for_each(|links: &mut Vec<(usize, f64)>| links.sort_by_key(|&(other, _)| other));
+    for links in &mut links {
+        links.sort_by_key(|&(other, _): &(usize, f64)| other);
+    }
     links
 }

@@ -1,4 +1,4 @@
-use super::group::Group;
+use super::group::{Group, Parts};
 use super::preconditioner::Preconditioner;
 use crate::AlignError;
 
@@ -13,7 +13,7 @@ pub(crate) fn solve(
     mut residual: Vec<f64>,
     reduction: f64,
 ) -> Result<Vec<f64>, AlignError> {
-    let mut scratch = Vec::new();
+    let (mut scratch, mut parts, mut image) = (Vec::new(), Parts::default(), vec![0.0; residual.len()]);
     let mut x = vec![0.0; residual.len()];
     centre(group, &mut residual);
     let mut step = residual.clone();
@@ -27,7 +27,7 @@ pub(crate) fn solve(
             centre(group, &mut x);
             return Ok(x);
         }
-        let image = group.laplacian_times(&direction);
+        group.laplacian_times(&direction, &mut parts, &mut image);
         let length = size / dot(&direction, &image);
         add(&mut x, length, &direction);
         add(&mut residual, -length, &image);

@@ -1,7 +1,7 @@
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::shared_samples::{Row, SharedSamples};
+use super::shared_samples::{Block, Row, SharedSamples};
 use crate::offsets::compensated::CompensatedSum;
 
 /// Sums over rows are formed in this many parts, each in the order of its rows, so that no number of threads changes a
@@ -24,10 +24,16 @@ pub(crate) struct Group<'a> {
     pub(crate) outside: Vec<f64>,
 }
 
+/// Room for the parts of a sum over rows.
+#[derive(Debug, Default)]
+pub(crate) struct Parts(Vec<Vec<f64>>);
+
 impl<'a> Group<'a> {
     pub(crate) fn new(samples: &'a SharedSamples, members: &'a [usize]) -> Self {
         let mut contains = vec![false; samples.n_trajectories];
-        members.iter().for_each(|&k| contains[k] = true);
+        for &k in members {
+            contains[k] = true;
+        }
         let mut group = Group { samples, members, contains, outside: Vec::new() };
         if members.len() == samples.n_trajectories {
             group.outside = vec![0.0; members.len()];
@@ -46,19 +52,27 @@ impl<'a> Group<'a> {
 
     /// Σ over all rows of what `add` adds to one number for each trajectory.
     fn sum(&self, add: impl Fn(Row<'_>, &mut [f64]) + Sync) -> Vec<f64> {
+        let mut total = vec![0.0; self.samples.n_trajectories];
+        self.sum_into(&mut Parts::default(), &mut total, add);
+        total
+    }
+
+    /// The same into `total`; `parts` are allocated once.
+    fn sum_into(&self, parts: &mut Parts, total: &mut [f64], add: impl Fn(Row<'_>, &mut [f64]) + Sync) {
         let blocks = &self.samples.blocks;
-        let parts = blocks.par_chunks(blocks.len().div_ceil(PARTS)).map(|blocks| {
-            let mut sum = vec![0.0; self.samples.n_trajectories];
-            blocks.iter().for_each(|block| block.rows().for_each(|row| add(row, &mut sum)));
-            sum
+        let chunks = blocks.par_chunks(blocks.len().div_ceil(PARTS));
+        parts.0.resize(chunks.len(), Vec::new());
+        parts.0.par_iter_mut().zip(chunks).for_each(|(sum, blocks)| {
+            sum.clear();
+            sum.resize(total.len(), 0.0);
+            for row in blocks.iter().flat_map(Block::rows) {
+                add(row, sum);
+            }
         });
-        let parts: Vec<Vec<f64>> = parts.collect();
-        let mut parts = parts.into_iter();
-        let mut total = parts.next().unwrap_or_default();
-        for part in parts {
+        total.fill(0.0);
+        for part in &parts.0 {
             total.iter_mut().zip(part).for_each(|(total, part)| *total += part);
         }
-        total
     }
 
     /// The member that the values of a row are relative to: its own trajectory if that is a member, else the first.
@@ -71,8 +85,8 @@ impl<'a> Group<'a> {
     }
 
     /// Lv for values of all trajectories, (K); 0 for those outside. O(nnz).
-    pub(crate) fn laplacian_times(&self, values: &[f64]) -> Vec<f64> {
-        self.sum(|row, sum| {
+    pub(crate) fn laplacian_times(&self, values: &[f64], parts: &mut Parts, image: &mut [f64]) {
+        self.sum_into(parts, image, |row, sum| {
             let Some((reference, own_share)) = self.reference(row) else { return };
             let own = values[reference];
             let (mut share, mut mean) = (own_share, 0.0);
@@ -90,7 +104,7 @@ impl<'a> Group<'a> {
                 }
             }
             sum[reference] -= flows;
-        })
+        });
     }
 
     /// Σ of the weights of a trajectory's links, as `links_of` gives them.
@@ -122,7 +136,7 @@ impl<'a> Group<'a> {
         let blocks = &self.samples.blocks;
         let parts = blocks.par_chunks(blocks.len().div_ceil(PARTS)).map(|blocks| {
             let mut sum = vec![CompensatedSum::default(); offsets.len()];
-            for row in blocks.iter().flat_map(|block| block.rows()) {
+            for row in blocks.iter().flat_map(Block::rows) {
                 self.add_flows(row, offsets, &mut sum);
             }
             sum
@@ -140,7 +154,7 @@ impl<'a> Group<'a> {
     pub(crate) fn matrix(&self) -> DMatrix<f64> {
         let position = |k: usize| self.members.binary_search(&k).expect("links are between members");
         let mut matrix = DMatrix::zeros(self.members.len(), self.members.len());
-        for row in self.samples.blocks.iter().flat_map(|block| block.rows()) {
+        for row in self.samples.rows() {
             self.links_of(row, usize::MAX, |k, j, weight| {
                 matrix[(position(k), position(j))] -= weight;
                 matrix[(position(j), position(k))] -= weight;
@@ -225,7 +239,8 @@ mod tests {
             let masked: Vec<f64> = (0..count).map(|k| if group.contains[k] { raises[k] } else { 0.0 }).collect();
             let of_members = |all: &[f64]| DVector::from_iterator(members.len(), members.iter().map(|&k| all[k]));
             let laplacian = of_group(&h, &members);
-            let image = group.laplacian_times(&masked);
+            let mut image = vec![f64::NAN; count];
+            group.laplacian_times(&masked, &mut Parts::default(), &mut image);
             prop_assert!((&laplacian * of_members(&masked) - of_members(&image)).amax() <= 1e-13 * size);
             prop_assert!((0..count).all(|k| group.contains[k] || image[k] == 0.0));
 

@@ -33,13 +33,24 @@ pub(crate) fn offsets(
         if let Some(&trajectory) = members.iter().find(finite) {
             return Err(AlignError::OffsetOverflow { trajectory });
         }
-        let step = solve(&group, &preconditioner, right, reduction)?;
-        offsets.iter_mut().zip(&step).for_each(|(offset, step)| *offset += step);
+        // In units in which no square overflows or vanishes.
+        let unit = largest(&right);
+        if unit == 0.0 {
+            break;
+        }
+        let mut step = solve(&group, &preconditioner, right.iter().map(|term| term / unit).collect(), reduction)?;
+        for (offset, step) in offsets.iter_mut().zip(&mut step) {
+            *step *= unit;
+            *offset += *step;
+        }
         if largest(&step) <= LAST * largest(&offsets) {
             break;
         }
     }
     centre(&group, &mut offsets);
+    if let Some(&trajectory) = members.iter().find(|&&k| !offsets[k].is_finite()) {
+        return Err(AlignError::OffsetOverflow { trajectory });
+    }
     Ok(DVector::from_iterator(members.len(), members.iter().map(|&k| offsets[k])))
 }
 

@@ -67,6 +67,10 @@ impl SharedSamples {
         SharedSamples { blocks: blocks.collect(), n_trajectories: potentials.len() }
     }
 
+    pub(crate) fn rows(&self) -> impl Iterator<Item = Row<'_>> {
+        self.blocks.iter().flat_map(Block::rows)
+    }
+
     /// Bytes that so many samples take, each with so many other trajectories.
     pub(crate) fn bytes(samples: u64, others: f64) -> u64 {
         samples * PER_ROW + (samples as f64 * others * PER_ENTRY as f64) as u64

@@ -1,7 +1,7 @@
 use nalgebra::DMatrix;
 
 use super::conjugate_gradients::{add, dot};
-use super::group::Group;
+use super::group::{Group, Parts};
 use super::preconditioner::Preconditioner;
 use crate::AlignError;
 use crate::offsets::eigen::symmetric_eigen;
@@ -68,7 +68,8 @@ struct Ritz {
 }
 
 fn ritz(group: &Group<'_>, basis: &[Vec<f64>], wanted: usize) -> Result<Ritz, AlignError> {
-    let images: Vec<Vec<f64>> = basis.iter().map(|vector| image(group, vector)).collect();
+    let mut parts = Parts::default();
+    let images: Vec<Vec<f64>> = basis.iter().map(|vector| image(group, vector, &mut parts)).collect();
     let projected = DMatrix::from_fn(basis.len(), basis.len(), |i, j| dot(&basis[i.max(j)], &images[i.min(j)]));
     let (values, coordinates) = symmetric_eigen(&projected)?;
     let wanted = wanted.min(basis.len());
@@ -83,8 +84,9 @@ fn ritz(group: &Group<'_>, basis: &[Vec<f64>], wanted: usize) -> Result<Ritz, Al
 }
 
 /// The sub-matrix of H times a vector: L and what goes outside.
-fn image(group: &Group<'_>, vector: &[f64]) -> Vec<f64> {
-    let mut image = group.laplacian_times(vector);
+fn image(group: &Group<'_>, vector: &[f64], parts: &mut Parts) -> Vec<f64> {
+    let mut image = vec![0.0; vector.len()];
+    group.laplacian_times(vector, parts, &mut image);
     image.iter_mut().zip(&group.outside).zip(vector).for_each(|((image, outside), value)| *image += outside * value);
     image
 }
@@ -108,7 +110,9 @@ fn extend(basis: &mut Vec<Vec<f64>>, vectors: impl Iterator<Item = Vec<f64>>) {
         }
         let length = dot(&vector, &vector).sqrt();
         if length > DEPENDENT * before {
-            vector.iter_mut().for_each(|value| *value /= length);
+            for value in &mut vector {
+                *value /= length;
+            }
             basis.push(vector);
         }
     }
