@@ -92,3 +92,28 @@ fn hash(shape: (usize, usize), bits: impl Iterator<Item = u64>) -> u64 {
     bits.for_each(|bits| bits.hash(&mut hasher));
     hasher.finish()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn finds_the_first_that_is_alike(
+            movements in vec((1usize..3, 1usize..4, vec(prop_oneof![Just(0.0), Just(-0.0), Just(1.0)], 6)), 1..20),
+        ) {
+            let movements = movements.into_iter().map(|(dim, n, x)| DMatrix::from_column_slice(dim, n, &x[..dim * n]));
+            let movements: Vec<DMatrix<f64>> = movements.collect();
+            let first = |alike: &dyn Fn(&DMatrix<f64>, &DMatrix<f64>) -> bool| -> Vec<Option<usize>> {
+                (0..movements.len()).map(|j| (0..j).find(|&k| alike(&movements[k], &movements[j]))).collect()
+            };
+            prop_assert_eq!(duplicates(&movements), first(&|a, b| a == b));
+            let backwards = |a: &DMatrix<f64>, b: &DMatrix<f64>| {
+                a.shape() == b.shape() && a.column_iter().rev().zip(b.column_iter()).all(|(a, b)| a == b)
+            };
+            prop_assert_eq!(mirror_images(&movements), first(&backwards));
+        }
+    }
+}
