@@ -8,6 +8,7 @@ use std::fs;
 use std::time::Instant;
 
 use align::{Aligned, Bandwidth, PolicyAlign};
+use benches::cpu_seconds;
 use motion::Demonstrations;
 use nalgebra::DMatrix;
 
@@ -47,13 +48,6 @@ fn read(path: &str) -> (Demonstrations, Bandwidth, usize) {
     (demonstrations, bandwidth, number(3))
 }
 
-/// CPU time of all threads of this process so far; 0 where the system does not tell.
-fn cpu_seconds() -> f64 {
-    let Ok(tasks) = fs::read_dir("/proc/self/task") else { return 0.0 };
-    let schedules = tasks.flatten().filter_map(|task| fs::read_to_string(task.path().join("schedstat")).ok());
-    schedules.filter_map(|line| line.split(' ').next()?.parse::<f64>().ok()).sum::<f64>() * 1e-9
-}
-
 #[allow(clippy::print_stdout)] // Its output is what it is for.
 fn print_json(aligned: &Aligned, wall: f64, cpu: f64) {
     println!(
@@ -62,7 +56,7 @@ fn print_json(aligned: &Aligned, wall: f64, cpu: f64) {
         aligned.lambda_2().unwrap_or(0.0),
         aligned.kept(),
         aligned.offsets().as_slice(),
-        aligned.objective().linear.as_slice(),
-        aligned.objective().laplacian.as_slice(),
+        aligned.objective().map_or(&[][..], |objective| objective.linear.as_slice()),
+        aligned.objective().map_or(&[][..], |objective| objective.laplacian.as_slice()),
     );
 }

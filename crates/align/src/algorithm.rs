@@ -1,12 +1,32 @@
 use motion::Demonstrations;
+use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
 use crate::checks::check;
-use crate::offsets::bipartition::bipartition;
+use crate::offsets::bipartition::{Partition, bipartition};
 use crate::offsets::group_offsets::group_offsets;
 use crate::offsets::responsibilities::{Responsibilities, squared_radius};
-use crate::search::{NearestSamples, SearchSpace};
+use crate::search::{NearestSamples, SampleTree, SearchSpace, check_span};
+use crate::sparse::{self, SharedSamples};
 use crate::{AlignError, Aligned, AlignmentObjective, Bandwidth, Integration, Warning};
+
+/// So many trajectories and more are aligned without the matrix H, if they have few neighbours.
+const MANY: usize = 256;
+/// A sample is near few trajectories if they are less than this share of all.
+const FEW: f64 = 0.1;
+/// So many leaves of the tree of samples show how many trajectories are near a sample.
+const PROBED: usize = 64;
+
+/// Whether so many trajectories, so many of which are near a sample, are aligned without H.
+type Choice<'a> = &'a (dyn Fn(usize, f64) -> bool + Sync);
+
+/// What steps 3 to 5 find.
+struct Levels {
+    sigma_squared: f64,
+    objective: Option<AlignmentObjective>,
+    partition: Partition,
+    offsets: DVector<f64>,
+}
 
 /// Algorithm 1 of the paper, up to the regression: brings the potentials along single trajectories to one level.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -42,23 +62,29 @@ impl PolicyAlign {
     /// Aligns the local potentials of all trajectories, and leaves out those whose level the data do not determine.
     ///
     /// Time and memory grow with the number of pairs of samples within the bandwidth's search radius: with K
-    /// trajectories of N samples, up to 28 bytes for each of K²N. Coordinates are compared as they are: unwrap continuous
+    /// trajectories of N samples, up to 28 bytes for each of K²N, and K³ operations on H. From 256 trajectories on with
+    /// few neighbours, H is not formed: M samples then take O(M log M), and some 36 bytes each beside the states. Coordinates are compared as they are: unwrap continuous
     /// angles beforehand.
     ///
     /// # Errors
     /// [`AlignError`] for parameters out of range, missing velocities, an undefined bandwidth, overflow, underflow or
     /// too many samples for the memory.
     pub fn align(&self, demonstrations: &Demonstrations) -> Result<Aligned, AlignError> {
+        self.align_with(&|count, neighbours| count >= MANY && neighbours <= FEW * count as f64, demonstrations)
+    }
+
+    /// The same; `sparse` decides by the number of trajectories, and of those near a sample, whether H is not formed.
+    fn align_with(&self, sparse: Choice<'_>, demonstrations: &Demonstrations) -> Result<Aligned, AlignError> {
         // One visit to the thread pool for all steps.
         rayon::scope(|_| {
             self.check()?;
             let potentials = self.integration.potentials(demonstrations)?;
-            let space = SearchSpace::new(demonstrations)?;
-            let (sigma_squared, nearest) = self.search(&space)?;
-            let responsibilities = Responsibilities::new(&nearest, &potentials, sigma_squared);
-            let objective = AlignmentObjective::new(&responsibilities);
-            let partition = bipartition(&objective.laplacian, self.eigenvalue_threshold)?;
-            let offsets = group_offsets(&responsibilities, &objective, &partition.groups[0])?;
+            check_span(demonstrations)?;
+            let levels = match self.few_neighbours(sparse, demonstrations)? {
+                Some((tree, sigma_squared)) => self.level_sparse(tree, &potentials, sigma_squared)?,
+                None => self.level(&SearchSpace::new(demonstrations), &potentials)?,
+            };
+            let Levels { sigma_squared, objective, partition, offsets } = levels;
             let mut warnings = Warning::about(&partition, self.eigenvalue_threshold);
             warnings.extend(check(demonstrations));
             let mut discarded = partition.groups[1..].concat();
@@ -75,6 +101,60 @@ impl PolicyAlign {
                 warnings,
             })
         })
+    }
+
+    /// Steps 3 to 5 with H as a matrix.
+    fn level(&self, space: &SearchSpace, potentials: &[Vec<f64>]) -> Result<Levels, AlignError> {
+        let (sigma_squared, nearest) = self.search(space)?;
+        let responsibilities = Responsibilities::new(&nearest, potentials, sigma_squared);
+        let objective = AlignmentObjective::new(&responsibilities);
+        let masses = vec![1.0; potentials.len()];
+        let partition = bipartition(&objective.laplacian, &masses, self.eigenvalue_threshold)?;
+        let offsets = group_offsets(&responsibilities, &objective, &partition.groups[0])?;
+        Ok(Levels { sigma_squared, objective: Some(objective), partition, offsets })
+    }
+
+    /// The same without H, whose entries are as many as the pairs of trajectories that meet.
+    fn level_sparse(
+        &self,
+        tree: SampleTree,
+        potentials: &[Vec<f64>],
+        sigma_squared: f64,
+    ) -> Result<Levels, AlignError> {
+        let squared_radius = squared_radius(sigma_squared, self.responsibility_floor);
+        let samples = SharedSamples::new(&tree, potentials, sigma_squared, squared_radius);
+        drop(tree);
+        let (partition, preconditioner) = sparse::partition(&samples, self.eigenvalue_threshold)?;
+        let offsets = sparse::offsets(&samples, &partition.groups[0], preconditioner)?;
+        Ok(Levels { sigma_squared, objective: None, partition, offsets })
+    }
+
+    /// The bandwidth, if trajectories are many and each sample is near few of them.
+    fn few_neighbours(
+        &self,
+        sparse: Choice<'_>,
+        demonstrations: &Demonstrations,
+    ) -> Result<Option<(SampleTree, f64)>, AlignError> {
+        let (count, samples) = (demonstrations.n_trajectories(), demonstrations.n_samples());
+        if !sparse(count, 0.0)
+            || self.bandwidth.needs_all_pairs()
+            || self.responsibility_floor == 0.0
+            || samples > u32::MAX as usize
+        {
+            return Ok(None);
+        }
+        let tree = SampleTree::new(demonstrations);
+        let sigma_squared = self.bandwidth.among_many(count, &tree)?;
+        let squared_radius = squared_radius(sigma_squared, self.responsibility_floor);
+        let neighbours = tree.mean_neighbours(PROBED, squared_radius);
+        if !sparse(count, neighbours) {
+            return Ok(None);
+        }
+        let needed = tree.bytes() + SharedSamples::bytes(samples as u64, neighbours);
+        if needed > self.memory_limit {
+            return Err(AlignError::Memory { needed, limit: self.memory_limit });
+        }
+        Ok(Some((tree, sigma_squared)))
     }
 
     /// The bandwidth, and the nearest samples within its search radius.
@@ -103,5 +183,128 @@ impl PolicyAlign {
             return Err(AlignError::Parameter { name: "responsibility_floor", value: floor, requirement });
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use demo_gen::{Redraw, ToyPotential, ToySystem, demonstrations};
+    use nalgebra::DMatrix;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+
+    /// Aligns with H and without, and compares: all bits of σ², groups, λ₂, and offsets to the error that λ₂ allows.
+    fn both(learner: &PolicyAlign, demonstrations: &Demonstrations) {
+        let dense = learner.align_with(&|_, _| false, demonstrations).unwrap();
+        let sparse = learner.align_with(&|_, _| true, demonstrations).unwrap();
+        assert!(dense.objective().is_some() && sparse.objective().is_none());
+        assert_eq!(dense.sigma_squared().to_bits(), sparse.sigma_squared().to_bits());
+        assert_eq!(dense.kept(), sparse.kept());
+        assert_eq!(dense.groups(), sparse.groups());
+        let (Some(lambda_2), Some(found)) = (dense.lambda_2(), sparse.lambda_2()) else {
+            return assert_eq!(dense.lambda_2(), sparse.lambda_2());
+        };
+        assert!((found - lambda_2).abs() <= 1e-4 * lambda_2, "{found:e} {lambda_2:e}");
+        let size = dense.potentials.iter().flatten().fold(0.0_f64, |size, value| size.max(value.abs()));
+        let miss = (dense.offsets() - sparse.offsets()).amax();
+        assert!(miss <= 1e-13 * (size + dense.offsets().amax()), "{miss:e} at {lambda_2:e}");
+    }
+
+    #[test]
+    fn toy_systems_are_aligned_alike_without_h() {
+        for (n_trajectories, n_samples) in [(40, 40), (100, 100)] {
+            for potential in [ToyPotential::parabola(), ToyPotential::sinusoidal()] {
+                for seed in 0..50 {
+                    let toy = ToySystem {
+                        n_trajectories,
+                        n_samples,
+                        potential: potential.clone(),
+                        redraw: Redraw::Every(20),
+                        ..ToySystem::default()
+                    };
+                    let recordings = toy.record(&mut ChaCha8Rng::seed_from_u64(seed)).unwrap();
+                    both(&PolicyAlign::default(), &demonstrations(&recordings).unwrap());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn many_movements_are_aligned_alike_without_h() {
+        let toy = ToySystem { n_trajectories: 500, n_samples: 60, ..ToySystem::default() };
+        let recordings = toy.record(&mut ChaCha8Rng::seed_from_u64(3)).unwrap();
+        both(&PolicyAlign::default(), &demonstrations(&recordings).unwrap());
+    }
+
+    #[test]
+    fn a_long_chain_comes_apart_without_h() {
+        // Neighbours are linked by 1e4 thresholds and more, but λ₂ is smaller by (π / 760)².
+        let mut x = 0.0;
+        let movements = (0..760).map(|k| {
+            x += 1.0 + 0.01 * (f64::from(k) * 0.7).sin();
+            DMatrix::from_row_slice(1, 2, &[x, x])
+        });
+        let demonstrations = Demonstrations::from_states(movements.collect::<Vec<_>>(), 1.0).unwrap();
+        let bandwidth = Bandwidth::Fixed(0.1);
+        let learner = PolicyAlign { bandwidth, eigenvalue_threshold: 6e-7, ..PolicyAlign::default() };
+        both(&learner, &demonstrations);
+        assert_eq!(learner.align(&demonstrations).unwrap().kept().len(), 380);
+    }
+
+    #[test]
+    fn no_number_of_threads_changes_a_bit() {
+        let toy = ToySystem { n_trajectories: 400, n_samples: 50, ..ToySystem::default() };
+        let demonstrations = demonstrations(&toy.record(&mut ChaCha8Rng::seed_from_u64(7)).unwrap()).unwrap();
+        let aligned = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| PolicyAlign::default().align(&demonstrations).unwrap())
+        };
+        let one = aligned(1);
+        assert!(one.objective().is_none() && one.kept().len() > 300);
+        assert_eq!(one, aligned(2));
+        assert_eq!(one, aligned(5));
+    }
+
+    #[test]
+    fn what_touches_is_named_without_all_distances() {
+        // Two of three movements cross at a sample, and so do two others.
+        let at = |x: f64| DMatrix::from_row_slice(2, 3, &[x, x + 1.0, x + 2.0, 0.0, x, 0.5]);
+        let movements = [at(0.0), at(0.0), at(3.0), at(7.0), at(7.0)];
+        let demonstrations = Demonstrations::from_states(movements, 1.0).unwrap();
+        let error = |sparse| PolicyAlign::default().align_with(&|_, _| sparse, &demonstrations).unwrap_err();
+        let AlignError::ZeroBandwidth { pairs, usable: Some(_) } = error(true) else { panic!("{}", error(true)) };
+        assert_eq!(pairs, [(0, 1), (3, 4)]);
+        assert_eq!(error(true), error(false));
+        let single = Demonstrations::from_states([at(0.0)], 1.0).unwrap();
+        assert_eq!(PolicyAlign::default().align_with(&|_, _| true, &single), Err(AlignError::SingleTrajectory));
+    }
+
+    #[test]
+    fn too_many_samples_for_the_memory_are_refused() {
+        let toy = ToySystem { n_trajectories: MANY, n_samples: 20, ..ToySystem::default() };
+        let demonstrations = demonstrations(&toy.record(&mut ChaCha8Rng::seed_from_u64(1)).unwrap()).unwrap();
+        let error = PolicyAlign { memory_limit: 10_000, ..PolicyAlign::default() }.align(&demonstrations).unwrap_err();
+        let AlignError::Memory { needed, limit: 10_000 } = error else { panic!("{error}") };
+        // States, places and boxes alone are 16 + 8 + 4 bytes a sample.
+        assert!((28 * 20 * MANY as u64..1_000_000).contains(&needed), "{needed}");
+    }
+
+    proptest! {
+        #[test]
+        fn any_movements_are_aligned_alike_without_h(
+            dim in 1usize..5, lengths in vec(2usize..30, 2..40), seed in any::<u64>(), exponent in -3.0..0.5_f64, narrow in any::<bool>(),
+        ) {
+            use rand::RngExt as _;
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let movements: Vec<DMatrix<f64>> = lengths.iter().map(|&n| {
+                DMatrix::from_fn(dim, n, |_, _| rng.random_range(-1.0..1.0))
+            }).collect();
+            let bandwidth = if narrow { Bandwidth::Narrow } else { Bandwidth::Fixed(10.0_f64.powf(exponent)) };
+            let learner = PolicyAlign { bandwidth, ..PolicyAlign::default() };
+            both(&learner, &Demonstrations::from_states(movements, 1.0).unwrap());
+        }
     }
 }

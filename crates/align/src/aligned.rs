@@ -10,7 +10,7 @@ pub struct Aligned {
     pub(crate) demonstrations: Demonstrations,
     pub(crate) potentials: Vec<Vec<f64>>,
     pub(crate) sigma_squared: f64,
-    pub(crate) objective: AlignmentObjective,
+    pub(crate) objective: Option<AlignmentObjective>,
     pub(crate) partition: Partition,
     /// All of `partition` but the first group, ascending.
     pub(crate) discarded: Vec<usize>,
@@ -66,9 +66,10 @@ impl Aligned {
         &self.warnings
     }
 
-    /// The objective of all trajectories, kept and discarded.
-    pub fn objective(&self) -> &AlignmentObjective {
-        &self.objective
+    /// The objective of all trajectories, kept and discarded; none if H was not formed, because trajectories are many
+    /// and each meets few others.
+    pub fn objective(&self) -> Option<&AlignmentObjective> {
+        self.objective.as_ref()
     }
 
     /// The demonstrations that were aligned.

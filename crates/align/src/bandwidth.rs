@@ -2,7 +2,7 @@ use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use crate::AlignError;
-use crate::search::SearchSpace;
+use crate::search::{SampleTree, SearchSpace};
 
 /// The rule for the bandwidth σ² in (11), from the squared distances
 /// d_kj = min over samples ‖x_kn − x_jm‖² of trajectories (18).
@@ -66,6 +66,29 @@ impl Bandwidth {
             _ => {}
         }
         self.sigma_squared(&space.distances())
+    }
+
+    /// Whether σ² takes the distances of all pairs of trajectories.
+    pub(crate) fn needs_all_pairs(self) -> bool {
+        !matches!(self, Bandwidth::Narrow | Bandwidth::Fixed(_))
+    }
+
+    /// σ² among many trajectories, for rules that do not take the distances of all pairs.
+    pub(crate) fn among_many(self, n_trajectories: usize, tree: &SampleTree) -> Result<f64, AlignError> {
+        if let Bandwidth::Fixed(sigma_squared) = self {
+            return Ok(sigma_squared);
+        }
+        if n_trajectories < 2 {
+            return Err(AlignError::SingleTrajectory);
+        }
+        let sigma_squared = median(tree.distances_to_nearest(n_trajectories, &[]));
+        if sigma_squared > 0.0 {
+            return Ok(sigma_squared);
+        }
+        // As if those that touch had not met.
+        let pairs = tree.touching();
+        let usable = Some(median(tree.distances_to_nearest(n_trajectories, &pairs)));
+        Err(AlignError::ZeroBandwidth { pairs, usable: usable.filter(|usable| usable.is_finite()) })
     }
 
     pub(crate) fn check(self) -> Result<(), AlignError> {

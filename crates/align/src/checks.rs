@@ -1,6 +1,6 @@
 //! Checks of the demonstrations for faults that no alignment mends.
 
-use motion::anomalies::{duplicates, long_steps, mirrored, stands_still};
+use motion::anomalies::{duplicates, long_steps, mirror_images, stands_still};
 use motion::{Demonstrations, Trajectory};
 
 use crate::Warning;
@@ -24,13 +24,10 @@ pub(crate) fn check(demonstrations: &Demonstrations) -> Vec<Warning> {
 fn alike(trajectories: &[Trajectory]) -> Vec<Warning> {
     let moving = |k: &usize| !stands_still(trajectories[*k].states());
     let duplicates = duplicates(trajectories.iter().map(Trajectory::states));
+    let mirror_images = mirror_images(trajectories.iter().map(Trajectory::states));
     let warning = |j: usize| {
-        if let Some(k) = duplicates[j] {
-            return Some(Warning::Duplicated { trajectories: [k, j] });
-        }
-        let backwards = |k: &usize| mirrored(trajectories[*k].states(), trajectories[j].states());
-        let k = (0..j).filter(moving).find(backwards)?;
-        Some(Warning::Mirrored { trajectories: [k, j] })
+        let duplicated = duplicates[j].map(|k| Warning::Duplicated { trajectories: [k, j] });
+        duplicated.or_else(|| mirror_images[j].map(|k| Warning::Mirrored { trajectories: [k, j] }))
     };
     (0..trajectories.len()).filter(moving).filter_map(warning).collect()
 }

@@ -80,6 +80,7 @@ mod local_potential;
 mod offsets;
 mod samples;
 mod search;
+mod sparse;
 mod warning;
 
 pub use algorithm::PolicyAlign;

@@ -1,6 +1,7 @@
 //! Anomalies of movements: steps that stand out, movements that stand still or occur twice.
 
 use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 use nalgebra::DMatrix;
 
@@ -51,17 +52,68 @@ pub fn long_steps(states: &DMatrix<f64>) -> Vec<LongStep> {
 
 /// For each movement (n, N_k) the first before it that has the same states, if there is one. O(M) for M samples.
 pub fn duplicates<'a>(movements: impl IntoIterator<Item = &'a DMatrix<f64>>) -> Vec<Option<usize>> {
-    let mut first = HashMap::<(usize, Vec<u64>), usize>::new();
-    let duplicate = |(index, states): (usize, &DMatrix<f64>)| {
-        // Adding 0 makes −0 a 0.
-        let bits = states.iter().map(|x| (x + 0.0).to_bits()).collect();
-        let found = *first.entry((states.nrows(), bits)).or_insert(index);
-        (found < index).then_some(found)
-    };
-    movements.into_iter().enumerate().map(duplicate).collect()
+    first_before(&movements.into_iter().collect::<Vec<_>>(), |states| states.as_slice().chunks(states.nrows().max(1)))
 }
 
-/// Whether one movement (n, N) is the other, run backwards.
-pub fn mirrored(a: &DMatrix<f64>, b: &DMatrix<f64>) -> bool {
-    a.shape() == b.shape() && a.column_iter().rev().zip(b.column_iter()).all(|(a, b)| a == b)
+/// For each movement (n, N_k) the first before it that is the same, run backwards, if there is one. O(M) for M samples.
+pub fn mirror_images<'a>(movements: impl IntoIterator<Item = &'a DMatrix<f64>>) -> Vec<Option<usize>> {
+    let movements: Vec<_> = movements.into_iter().collect();
+    first_before(&movements, |states| states.as_slice().chunks(states.nrows().max(1)).rev())
+}
+
+/// For each movement the first before it whose states in order are those of this one in that order. Hashes say where to
+/// look, the states decide.
+fn first_before<'a, S: Iterator<Item = &'a [f64]>>(
+    movements: &[&'a DMatrix<f64>],
+    order: impl Fn(&'a DMatrix<f64>) -> S,
+) -> Vec<Option<usize>> {
+    let forwards = |states: &'a DMatrix<f64>| states.as_slice().chunks(states.nrows().max(1));
+    let mut known = HashMap::<u64, Vec<usize>>::new();
+    let find = |(index, &states): (usize, &&'a DMatrix<f64>)| {
+        let shape = states.shape();
+        let candidates = known.get(&hash(shape, bits(order(states)))).map_or(&[][..], Vec::as_slice);
+        let same = |&k: &usize| movements[k].shape() == shape && bits(forwards(movements[k])).eq(bits(order(states)));
+        let found = candidates.iter().copied().find(same);
+        known.entry(hash(shape, bits(forwards(states)))).or_default().push(index);
+        found
+    };
+    movements.iter().enumerate().map(find).collect()
+}
+
+/// The numbers of states one after the other.
+fn bits<'a>(states: impl Iterator<Item = &'a [f64]>) -> impl Iterator<Item = u64> {
+    // Adding 0 makes −0 a 0.
+    states.flatten().map(|x| (x + 0.0).to_bits())
+}
+
+fn hash(shape: (usize, usize), bits: impl Iterator<Item = u64>) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    shape.hash(&mut hasher);
+    bits.for_each(|bits| bits.hash(&mut hasher));
+    hasher.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn finds_the_first_that_is_alike(
+            movements in vec((1usize..3, 1usize..4, vec(prop_oneof![Just(0.0), Just(-0.0), Just(1.0)], 6)), 1..20),
+        ) {
+            let movements = movements.into_iter().map(|(dim, n, x)| DMatrix::from_column_slice(dim, n, &x[..dim * n]));
+            let movements: Vec<DMatrix<f64>> = movements.collect();
+            let first = |alike: &dyn Fn(&DMatrix<f64>, &DMatrix<f64>) -> bool| -> Vec<Option<usize>> {
+                (0..movements.len()).map(|j| (0..j).find(|&k| alike(&movements[k], &movements[j]))).collect()
+            };
+            prop_assert_eq!(duplicates(&movements), first(&|a, b| a == b));
+            let backwards = |a: &DMatrix<f64>, b: &DMatrix<f64>| {
+                a.shape() == b.shape() && a.column_iter().rev().zip(b.column_iter()).all(|(a, b)| a == b)
+            };
+            prop_assert_eq!(mirror_images(&movements), first(&backwards));
+        }
+    }
 }

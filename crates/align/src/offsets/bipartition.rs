@@ -23,7 +23,10 @@ pub(crate) struct Partition {
 /// its trajectories fall in two clusters by their entries in those eigenvectors.
 ///
 /// Parts without any link between them come apart beforehand, by exact zeros of H.
-pub(crate) fn bipartition(laplacian: &DMatrix<f64>, threshold: f64) -> Result<Partition, AlignError> {
+///
+/// A node may stand for several trajectories that move together: `masses` says how many, and the entry of `laplacian`
+/// for nodes s and t is then that of H, summed over their trajectories, over √(mass of s · mass of t).
+pub(crate) fn bipartition(laplacian: &DMatrix<f64>, masses: &[f64], threshold: f64) -> Result<Partition, AlignError> {
     let mut splits = Vec::new();
     let mut open = linked_parts(laplacian, (0..laplacian.ncols()).collect(), &mut splits);
     let mut closed = Vec::new();
@@ -35,7 +38,7 @@ pub(crate) fn bipartition(laplacian: &DMatrix<f64>, threshold: f64) -> Result<Pa
         }
         let matrix = laplacian.select_rows(&group).select_columns(&group);
         let (lambda_2, weak_vectors) = weak_part(&matrix, threshold, &mut decompositions)?;
-        let Some(parts) = cut(&group, &weak_vectors) else {
+        let Some(parts) = cut(&group, weak_vectors.clone(), masses) else {
             closed.push((group, Some(lambda_2)));
             continue;
         };
@@ -103,14 +106,17 @@ fn components(laplacian: &DMatrix<f64>, group: Vec<usize>) -> Vec<Vec<usize>> {
 /// The two sides of a group by the rows of its weak eigenvectors; none if it holds together.
 ///
 /// Where all eigenvalues are weak, so are those of every part (they interlace): its members are alone at once.
-fn cut(group: &[usize], weak_vectors: &DMatrix<f64>) -> Option<Vec<Vec<usize>>> {
+fn cut(group: &[usize], mut weak_vectors: DMatrix<f64>, masses: &[f64]) -> Option<Vec<Vec<usize>>> {
     if weak_vectors.ncols() <= 1 {
         return None;
     }
     if weak_vectors.ncols() == group.len() {
         return Some(group.iter().map(|&k| vec![k]).collect());
     }
-    let in_second = two_means(weak_vectors);
+    // What each of a node's trajectories has in an eigenvector.
+    let masses: Vec<f64> = group.iter().map(|&k| masses[k]).collect();
+    weak_vectors.row_iter_mut().zip(&masses).for_each(|(mut row, mass)| row /= mass.sqrt());
+    let in_second = two_means(&weak_vectors, &masses);
     let side = |second| group.iter().zip(&in_second).filter(move |&(_, &at)| at == second).map(|(&k, _)| k).collect();
     let sides: Vec<Vec<usize>> = vec![side(false), side(true)];
     sides.iter().all(|side| !side.is_empty()).then_some(sides)
@@ -121,6 +127,10 @@ mod tests {
     use super::*;
     use proptest::collection::vec;
     use proptest::prelude::*;
+
+    fn level(laplacian: &DMatrix<f64>) -> Result<Partition, AlignError> {
+        bipartition(laplacian, &vec![1.0; laplacian.ncols()], 1e-8)
+    }
 
     /// The Laplacian of the graph with these links (k, j, weight).
     fn graph(count: usize, links: &[(usize, usize, f64)]) -> DMatrix<f64> {
@@ -137,7 +147,7 @@ mod tests {
     #[test]
     fn connected_graphs_stay_whole() {
         let path = graph(4, &[(0, 1, 1.0), (1, 2, 1.0), (2, 3, 1.0)]);
-        let partition = bipartition(&path, 1e-8).unwrap();
+        let partition = level(&path).unwrap();
         assert_eq!(partition.groups, [[0, 1, 2, 3]]);
         assert!((partition.lambda_2.unwrap() - (2.0 - 2.0_f64.sqrt())).abs() < 1e-14);
     }
@@ -145,7 +155,7 @@ mod tests {
     #[test]
     fn parts_come_apart_and_the_largest_is_first() {
         let parts = graph(8, &[(1, 4, 2.0), (4, 6, 0.5), (0, 3, 1.0), (2, 7, 1.0)]);
-        let partition = bipartition(&parts, 1e-8).unwrap();
+        let partition = level(&parts).unwrap();
         assert_eq!(partition.groups, [vec![1, 4, 6], vec![0, 3], vec![2, 7], vec![5]]);
     }
 
@@ -153,7 +163,7 @@ mod tests {
     fn splits_tell_how_groups_came_about() {
         // Two trios, of which one hangs together by a link that is too weak, and one without any.
         let links = [(0, 1, 1.0), (1, 4, 1e-12), (2, 3, 1.0), (3, 5, 1.0)];
-        let partition = bipartition(&graph(6, &links), 1e-8).unwrap();
+        let partition = level(&graph(6, &links)).unwrap();
         assert_eq!(partition.groups, [vec![2, 3, 5], vec![0, 1], vec![4]]);
         let [apart, cut] = &partition.splits[..] else { panic!("{:?}", partition.splits) };
         assert_eq!((&apart.group, apart.cause), (&vec![0, 1, 2, 3, 4, 5], SplitCause::NoLink));
@@ -168,20 +178,20 @@ mod tests {
     fn weak_links_do_not_hold() {
         // Two pairs joined by w have λ₂ ≈ w.
         let pairs = |weight| graph(4, &[(0, 2, 1.0), (1, 3, 1.0), (2, 3, weight)]);
-        assert_eq!(bipartition(&pairs(0.9e-8), 1e-8).unwrap().groups, [[0, 2], [1, 3]]);
-        assert_eq!(bipartition(&pairs(1.1e-8), 1e-8).unwrap().groups, [[0, 1, 2, 3]]);
+        assert_eq!(level(&pairs(0.9e-8)).unwrap().groups, [[0, 2], [1, 3]]);
+        assert_eq!(level(&pairs(1.1e-8)).unwrap().groups, [[0, 1, 2, 3]]);
     }
 
     #[test]
     fn a_single_trajectory_is_a_group() {
-        let partition = bipartition(&DMatrix::zeros(1, 1), 1e-8).unwrap();
+        let partition = level(&DMatrix::zeros(1, 1)).unwrap();
         let alone = Partition { groups: vec![vec![0]], splits: vec![], lambda_2: None, decompositions: 0 };
         assert_eq!(partition, alone);
     }
 
     #[test]
     fn trajectories_without_links_are_all_alone() {
-        let partition = bipartition(&DMatrix::zeros(4, 4), 1e-8).unwrap();
+        let partition = level(&DMatrix::zeros(4, 4)).unwrap();
         assert_eq!(partition.groups, [[0], [1], [2], [3]]);
     }
 
@@ -191,7 +201,7 @@ mod tests {
         let alone: Vec<Vec<usize>> = (0..300).map(|k| vec![k]).collect();
         let links: Vec<_> = (1..300).map(|k| (k - 1, k, 1e-12)).collect();
         for (links, decompositions) in [(&[][..], 0), (&links, 1)] {
-            let partition = bipartition(&graph(300, links), 1e-8).unwrap();
+            let partition = level(&graph(300, links)).unwrap();
             assert_eq!((partition.groups, partition.lambda_2), (alone.clone(), None));
             assert_eq!((partition.splits.len(), partition.decompositions), (1, decompositions));
         }
@@ -213,13 +223,15 @@ mod tests {
         let matrix = laplacian.select_rows(&split.group).select_columns(&split.group);
         let (values, vectors) = symmetric_eigen(&matrix).unwrap();
         let found = values.iter().filter(|&&value| value < 1e-8).count();
-        found == weak && cut(&split.group, &vectors.columns(0, weak).into_owned()).as_ref() == Some(&split.parts)
+        found == weak
+            && cut(&split.group, vectors.columns(0, weak).into_owned(), &vec![1.0; laplacian.ncols()]).as_ref()
+                == Some(&split.parts)
     }
 
     proptest! {
         #[test]
         fn the_leaves_of_all_splits_are_the_groups(laplacian in weak_graphs()) {
-            let Partition { groups, splits, .. } = bipartition(&laplacian, 1e-8).unwrap();
+            let Partition { groups, splits, .. } = level(&laplacian).unwrap();
             let mut leaves = vec![(0..laplacian.ncols()).collect::<Vec<_>>()];
             for split in &splits {
                 // A group is split once, after the split that it is a part of.
@@ -237,7 +249,7 @@ mod tests {
 
         #[test]
         fn links_hold_every_group_together(laplacian in weak_graphs()) {
-            let groups = bipartition(&laplacian, 1e-8).unwrap().groups;
+            let groups = level(&laplacian).unwrap().groups;
             let mut members = groups.concat();
             members.sort_unstable();
             prop_assert_eq!(members, (0..laplacian.ncols()).collect::<Vec<_>>());
@@ -264,7 +276,7 @@ mod tests {
                 first += size;
             }
             expected.sort_by_key(|group| (Reverse(group.len()), group[0]));
-            prop_assert_eq!(bipartition(&graph(count, &links), 1e-8).unwrap().groups, expected);
+            prop_assert_eq!(level(&graph(count, &links)).unwrap().groups, expected);
         }
     }
 }

@@ -13,6 +13,12 @@ impl CompensatedSum {
         self.sum = sum;
     }
 
+    /// Adds another sum with what it kept.
+    pub(crate) fn add_sum(&mut self, other: Self) {
+        self.add(other.sum);
+        self.dropped += other.dropped;
+    }
+
     /// The sum; infinite once it has overflowed.
     pub(crate) fn value(&self) -> f64 {
         if self.sum.is_finite() { self.sum + self.dropped } else { self.sum }
@@ -35,5 +41,12 @@ mod tests {
         assert_eq!(sum(&[1.0, 1e-20, -1.0]), 1e-20);
         assert_eq!(sum(&[1.0, 1e20, -1e20, -0.5]), 0.5);
         assert_eq!(sum(&[1.0, f64::MAX, f64::MAX, 1.0]), f64::INFINITY);
+        let (mut one, mut other) = (CompensatedSum::default(), CompensatedSum::default());
+        for (of_one, of_other) in [(1.0, 1e-18), (1e-20, -1.0)] {
+            one.add(of_one);
+            other.add(of_other);
+        }
+        one.add_sum(other);
+        assert_eq!(one.value(), 1e-18 + 1e-20);
     }
 }

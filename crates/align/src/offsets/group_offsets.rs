@@ -64,10 +64,10 @@ mod tests {
     ) -> (Vec<usize>, DVector<f64>, f64) {
         let demonstrations = Demonstrations::from_states(positions.to_vec(), 1.0).unwrap();
         let nearest =
-            SearchSpace::new(&demonstrations).unwrap().nearest(squared_radius(sigma_squared, 1e-20), u64::MAX).unwrap();
+            SearchSpace::new(&demonstrations).nearest(squared_radius(sigma_squared, 1e-20), u64::MAX).unwrap();
         let responsibilities = Responsibilities::new(&nearest, potentials, sigma_squared);
         let objective = AlignmentObjective::new(&responsibilities);
-        let partition = bipartition(&objective.laplacian, 1e-8).unwrap();
+        let partition = bipartition(&objective.laplacian, &vec![1.0; potentials.len()], 1e-8).unwrap();
         let offsets = group_offsets(&responsibilities, &objective, &partition.groups[0]).unwrap();
         (partition.groups[0].clone(), offsets, partition.lambda_2.unwrap_or(1.0))
     }

@@ -15,6 +15,7 @@ pub enum SplitCause {
     /// No link connects the parts: their entries of H are exactly zero.
     NoLink,
     /// So many eigenvalues of the group's part of H are below the threshold. The group is cut in two by their
-    /// eigenvectors; if all are, every trajectory becomes a separate part.
+    /// eigenvectors; if all are, every trajectory becomes a separate part. Without H, all parts that eigenvectors
+    /// below the threshold lead to are found at once, and this is their number.
     WeakEigenvalues(usize),
 }

@@ -9,12 +9,12 @@ const MOST_ROUNDS: usize = 100;
 /// a margin, rounding would cut right through a third one that lies in the middle between two starts.
 const MARGIN: f64 = 1e-6;
 
-/// Splits rows into two clusters: true for the rows of the second.
+/// Splits rows into two clusters: true for the rows of the second. Each row counts as often as its mass says.
 ///
 /// Deterministic: the first cluster starts at the row farthest from the mean, the second at the row farthest from
 /// that; ties go to the lowest index and to the first cluster.
-pub(crate) fn two_means(rows: &DMatrix<f64>) -> Vec<bool> {
-    let first = farthest_from(rows, &mean(rows, |_| true));
+pub(crate) fn two_means(rows: &DMatrix<f64>, masses: &[f64]) -> Vec<bool> {
+    let first = farthest_from(rows, &mean(rows, masses, |_| true));
     let second = farthest_from(rows, &row(rows, first));
     let margin = MARGIN * squared_distance(rows, first, &row(rows, second));
     let mut centres = [row(rows, first), row(rows, second)];
@@ -26,7 +26,7 @@ pub(crate) fn two_means(rows: &DMatrix<f64>) -> Vec<bool> {
         if assigned == in_second {
             break;
         }
-        centres = [mean(rows, |i| !assigned[i]), mean(rows, |i| assigned[i])];
+        centres = [mean(rows, masses, |i| !assigned[i]), mean(rows, masses, |i| assigned[i])];
         in_second = assigned;
     }
     in_second
@@ -36,9 +36,10 @@ fn row(rows: &DMatrix<f64>, i: usize) -> Vec<f64> {
     rows.row(i).iter().copied().collect()
 }
 
-fn mean(rows: &DMatrix<f64>, member: impl Fn(usize) -> bool) -> Vec<f64> {
+fn mean(rows: &DMatrix<f64>, masses: &[f64], member: impl Fn(usize) -> bool) -> Vec<f64> {
     let members: Vec<usize> = (0..rows.nrows()).filter(|&i| member(i)).collect();
-    rows.column_iter().map(|column| members.iter().map(|&i| column[i]).sum::<f64>() / members.len() as f64).collect()
+    let mass: f64 = members.iter().map(|&i| masses[i]).sum();
+    rows.column_iter().map(|column| members.iter().map(|&i| masses[i] * column[i]).sum::<f64>() / mass).collect()
 }
 
 fn squared_distance(rows: &DMatrix<f64>, i: usize, centre: &[f64]) -> f64 {
@@ -59,7 +60,7 @@ mod tests {
     fn finds_two_clusters_whatever_the_order() {
         let rows = DMatrix::from_row_slice(5, 2, &[0.0, 0.1, 5.0, 5.0, 0.1, 0.0, 5.1, 5.0, 0.0, 0.0]);
         // The row farthest from the mean is 3, so that the first cluster is about it.
-        assert_eq!(two_means(&rows), [true, false, true, false, true]);
+        assert_eq!(two_means(&rows, &[1.0; 5]), [true, false, true, false, true]);
     }
 
     #[test]
@@ -68,11 +69,19 @@ mod tests {
         let hair = 1e-15;
         let x = [-1.0, 1.0, hair, -hair, 0.0, 2.0 * hair];
         let rows = DMatrix::from_fn(6, 2, |i, column| if column == 0 { x[i] } else { f64::from(i > 1) });
-        assert_eq!(two_means(&rows)[2..], [false; 4]);
+        assert_eq!(two_means(&rows, &[1.0; 6])[2..], [false; 4]);
+    }
+
+    #[test]
+    fn a_mass_is_so_many_rows() {
+        let repeated = DMatrix::from_row_slice(6, 1, &[0.0, 0.0, 0.0, 0.9, 2.0, 2.1]);
+        let massive = DMatrix::from_row_slice(4, 1, &[0.0, 0.9, 2.0, 2.1]);
+        let [of_repeated, of_massive] = [two_means(&repeated, &[1.0; 6]), two_means(&massive, &[3.0, 1.0, 1.0, 1.0])];
+        assert_eq!(of_repeated[2..], of_massive);
     }
 
     #[test]
     fn equal_rows_are_one_cluster() {
-        assert_eq!(two_means(&DMatrix::from_element(4, 3, 0.5)), [false; 4]);
+        assert_eq!(two_means(&DMatrix::from_element(4, 3, 0.5), &[1.0; 4]), [false; 4]);
     }
 }

@@ -56,7 +56,7 @@ impl Boxes {
 }
 
 /// Makes a box so large that it holds two corners.
-fn extend(bounds: &mut [[f64; 2]], lowest: &[f64], highest: &[f64]) {
+pub(super) fn extend(bounds: &mut [[f64; 2]], lowest: &[f64], highest: &[f64]) {
     for ([low, high], (&below, &above)) in bounds.iter_mut().zip(lowest.iter().zip(highest)) {
         *low = if below < *low { below } else { *low };
         *high = if above > *high { above } else { *high };
@@ -65,7 +65,7 @@ fn extend(bounds: &mut [[f64; 2]], lowest: &[f64], highest: &[f64]) {
 
 /// Rounding is monotone: differences, squares and sums are formed as those of samples are, in the same order, and none
 /// of them is larger.
-fn squared_gap(these: &[[f64; 2]], those: &[[f64; 2]]) -> f64 {
+pub(super) fn squared_gap(these: &[[f64; 2]], those: &[[f64; 2]]) -> f64 {
     let gaps = these.iter().zip(those).map(|(&[low, high], &[other_low, other_high])| {
         let gap = (low - other_high).max(other_low - high).max(0.0);
         gap * gap

@@ -23,13 +23,10 @@ pub(crate) struct SearchSpace {
 }
 
 impl SearchSpace {
-    /// # Errors
-    /// [`AlignError::SpanOverflow`] when squared distances could overflow.
-    pub(crate) fn new(demonstrations: &Demonstrations) -> Result<Self, AlignError> {
-        check_span(demonstrations)?;
+    pub(crate) fn new(demonstrations: &Demonstrations) -> Self {
         let arch = Arch::new();
         let tiles = demonstrations.trajectories().iter().map(|t| Tiles::new(t.states(), arch));
-        Ok(SearchSpace { trajectories: tiles.collect() })
+        SearchSpace { trajectories: tiles.collect() }
     }
 
     /// Number K of trajectories.
@@ -94,20 +91,4 @@ impl SearchSpace {
         };
         (0..self.n_trajectories()).into_par_iter().map(of).collect()
     }
-}
-
-/// Squared distances are finite if the diagonal of the data's bounding box is.
-fn check_span(demonstrations: &Demonstrations) -> Result<(), AlignError> {
-    let span = |dimension: usize| {
-        let states = demonstrations.trajectories().iter().flat_map(|t| t.states().column_iter());
-        let extend = |(low, high): (f64, f64), x: f64| (low.min(x), high.max(x));
-        let (low, high) = states.map(|state| state[dimension]).fold((f64::INFINITY, f64::NEG_INFINITY), extend);
-        high - low
-    };
-    let spans: Vec<f64> = (0..demonstrations.dim()).map(span).collect();
-    if spans.iter().map(|span| span * span).sum::<f64>().is_finite() {
-        return Ok(());
-    }
-    let widest = (0..spans.len()).max_by(|&a, &b| spans[a].total_cmp(&spans[b])).expect("a state has a dimension");
-    Err(AlignError::SpanOverflow { dimension: widest, span: spans[widest] })
 }
