@@ -87,7 +87,7 @@ impl DirectGp {
         let blocks = family.direct_blocks();
         let (left_out, found) = (fit.level.left_out.clone(), fit.level.found);
         let model = data.model(blocks, fit);
-        let actions = model.actions(&kept.states);
+        let actions = model.moving_actions(kept.states.as_view());
         let fit = DirectFit { model, family, r_squared: left_out.r_squared, z_squared: left_out.z_squared };
         Ok(DirectOutcome { data, found, fit, left_out, actions })
     }
@@ -99,7 +99,7 @@ impl DirectOutcome {
         let DirectFit { model, family, .. } = &self.fit;
         let data = self.data.of_others(all);
         let (model, left_out) = data.induced((&model.blocks, &model.amplitudes), self.found, most)?;
-        let actions = model.actions(&all.states);
+        let actions = model.moving_actions(all.states.as_view());
         let (r_squared, z_squared) = (left_out.r_squared, left_out.z_squared);
         let fit = DirectFit { model, family: *family, r_squared, z_squared };
         Some(DirectOutcome { data, found: self.found, fit, left_out, actions })

@@ -1,15 +1,17 @@
-#![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
-
 use motion::Policy;
-use nalgebra::{DMatrix, DVectorView, DVectorViewMut};
-use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
+use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
+use pulp::Arch;
 
 use crate::dimension::require;
-use crate::kernel::chunks::{CHUNK, Chunks, sum};
-use crate::kernel::direct_block::{DirectBlock, DirectCovariance, combined, covariances_with};
+use crate::direct::sums::{Action, CovariancesWithRows};
+use crate::kernel::direct_block::{DirectBlock, DirectCovariance, trend};
+use crate::kernel::falling::Falling;
+use crate::kernel::panel::Panel;
+use crate::kernel::row_table::{RowTable, TOGETHER};
+use crate::kernel::term::Term;
 use crate::kernel::whitening::Whitening;
 use crate::rows::scaling::Scaling;
+use crate::support::{Variances, each_action};
 
 /// The direct GP conditioned on rows: û and its variance (R4).
 #[derive(Debug, Clone)]
@@ -23,8 +25,11 @@ pub struct DirectModel {
     pub(crate) weights: DMatrix<f64>,
     pub(crate) noise: f64,
     pub(crate) whitening: Whitening,
-    states: Chunks,
-    weight_chunks: Chunks,
+    /// z' and A of every row.
+    pub(super) table: RowTable,
+    pub(crate) falling: Falling,
+    /// Of [`trend`].
+    pub(super) trend: [f64; 3],
 }
 
 impl DirectModel {
@@ -35,22 +40,16 @@ impl DirectModel {
         weights: DMatrix<f64>,
         (noise, whitening): (f64, Whitening),
     ) -> Self {
-        let (states, weight_chunks) = (Chunks::new(&z), Chunks::new(&weights));
-        DirectModel { scaling, unit, blocks, amplitudes, z, weights, noise, whitening, states, weight_chunks }
+        let table = RowTable::new(&[&z, &weights]);
+        let falling = Falling::of_values(&Term::of_velocities(&blocks, &amplitudes, z.nrows()));
+        let trend = trend(&blocks, &amplitudes, z.nrows());
+        DirectModel { scaling, unit, blocks, amplitudes, z, weights, noise, whitening, table, falling, trend }
     }
 
     /// (R4): variance of every component at a state, in squared units of the state per second. Costs M².
     pub fn variance(&self, state: DVectorView<'_, f64>) -> f64 {
         require(self.dim(), &[state.len()]);
-        let z = self.scaling.of_state(state);
-        let mut known = DMatrix::zeros(self.z.ncols(), 1);
-        for (chunk, place) in known.as_mut_slice().chunks_mut(CHUNK).enumerate() {
-            let values = covariances_with(z.as_slice(), self.states.get(chunk), &self.blocks, &self.amplitudes);
-            place.copy_from_slice(&values[..place.len()]);
-        }
-        let covariance = DirectCovariance { blocks: &self.blocks, z: &self.z };
-        self.whitening.apply(&mut known, &covariance, &self.amplitudes, self.noise);
-        self.prior_variance(state) - self.unit.powi(2) * known.norm_squared()
+        self.variances(state.as_view()).posterior[0]
     }
 
     /// Prior variance of every component at a state, in the same units.
@@ -61,44 +60,36 @@ impl DirectModel {
         self.unit.powi(2) * scaled
     }
 
-    /// û at each of the states with their contexts (n + p, M), (n, M).
-    pub(crate) fn actions(&self, states: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut actions = DMatrix::zeros(self.weights.nrows(), states.ncols());
-        let places = actions.as_mut_slice().par_chunks_mut(self.weights.nrows());
-        places
-            .zip(states.as_slice().par_chunks(states.nrows()))
-            .for_each(|(action, state)| Arch::new().dispatch(Action { model: self, state, place: action }));
-        actions
-    }
-}
-
-/// û(x) = ū k(x)ᵀA.
-struct Action<'a> {
-    model: &'a DirectModel,
-    state: &'a [f64],
-    place: &'a mut [f64],
-}
-
-impl WithSimd for Action<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) {
-        let Action { model, state, place: action } = self;
-        action.fill(0.0);
-        let z = |k: usize| model.scaling.coordinate(k, state[k]);
-        for chunk in 0..model.states.len() {
-            let covariances = combined(z, model.states.get(chunk), &model.blocks, &model.amplitudes);
-            for (action, weights) in action.iter_mut().zip(model.weight_chunks.get(chunk)) {
-                let mut terms = [0.0; CHUNK];
-                for lane in 0..CHUNK {
-                    terms[lane] = covariances[lane] * weights[lane];
-                }
-                *action += sum(&terms);
+    /// Posterior (R4) and prior variance, the same of every component, at states with their contexts (n + p, N), both (1, N), in
+    /// parallel. A state alone gets the same bits as among others. Costs M² a state.
+    pub(crate) fn variances(&self, states: DMatrixView<'_, f64>) -> Variances {
+        Variances::of(states, 1, |states, prior, posterior| {
+            let mut known = Panel::zeros(self.z.ncols(), states.ncols());
+            let mut covariances = vec![0.0; self.z.ncols().next_multiple_of(TOGETHER)];
+            for (at, state) in states.column_iter().enumerate() {
+                self.scaling.with_coordinates(state.as_slice(), |z| {
+                    Arch::new().dispatch(CovariancesWithRows { model: self, z, covariances: &mut covariances });
+                });
+                known.set_column(at, &covariances[..self.z.ncols()]);
             }
-        }
+            let covariance = DirectCovariance { blocks: &self.blocks, z: &self.z };
+            self.whitening.apply(&mut known, &covariance, &self.amplitudes, self.noise);
+            for (at, known) in known.squared_norms().into_iter().enumerate() {
+                prior[at] = self.prior_variance(states.column(at));
+                posterior[at] = prior[at] - self.unit.powi(2) * known;
+            }
+        })
+    }
+
+    /// û at each of the states with their contexts (n + p, N), (n, N), in parallel: the same bits as one by one.
+    pub(crate) fn moving_actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
+        each_action(self.weights.nrows(), states, |state, action| self.moving_action_into(state, action))
+    }
+
+    fn moving_action_into(&self, state: &[f64], action: &mut [f64]) {
+        self.scaling.with_coordinates(state, |z| Arch::new().dispatch(Action { model: self, z, place: action }));
         for action in action {
-            *action *= model.unit;
+            *action *= self.unit;
         }
     }
 }
@@ -111,7 +102,12 @@ impl Policy for DirectModel {
     fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
         require(self.dim(), &[state.len(), action.len()]);
         let (moving, still) = action.as_mut_slice().split_at_mut(self.weights.nrows());
-        Arch::new().dispatch(Action { model: self, state: state.as_slice(), place: moving });
+        self.moving_action_into(state.as_slice(), moving);
         still.fill(0.0);
+    }
+
+    fn actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
+        require(self.dim(), &[states.nrows()]);
+        self.moving_actions(states).resize_vertically(self.dim(), 0.0)
     }
 }

@@ -1,13 +1,18 @@
-#![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
+//! (S7), and how it is evaluated.
 
-use nalgebra::{DMatrix, DVector, DVectorView};
-use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
+mod sums;
+
+use nalgebra::{DMatrix, DMatrixView, DVector};
+use pulp::Arch;
 
 use crate::kernel::block::Block;
-use crate::kernel::chunks::{CHUNK, Chunk, Chunks, sum};
-use crate::kernel::slope_covariance::{falling, slopes_with, trend};
+use crate::kernel::falling::Falling;
+use crate::kernel::row_table::{RowTable, TOGETHER};
+use crate::kernel::slope_covariance::trend;
+use crate::kernel::term::Term;
 use crate::rows::scaling::Scaling;
+use crate::support::each_action;
+use sums::{Action, PolicyWithRows, PotentialSum};
 
 /// (S7): the posterior mean as a sum over rows, in the form in which it is evaluated fast. The trend's sums are taken
 /// once: they make a policy c + Qz.
@@ -23,9 +28,11 @@ pub(crate) struct Expansion {
     pub(crate) n: DMatrix<f64>,
     /// α, (M).
     pub(crate) weights: Vec<f64>,
-    states: Chunks,
-    directions: Chunks,
-    weight_chunks: Vec<Chunk>,
+    /// z', n' and α of every row.
+    table: RowTable,
+    pub(crate) falling: Falling,
+    /// Of [`trend`].
+    trend: [f64; 3],
     /// c, (n + p), 0 along the context, and Q, (n + p, n + p), symmetric but for the rotation of the state.
     pub(crate) constant: DVector<f64>,
     pub(crate) matrix: DMatrix<f64>,
@@ -49,11 +56,10 @@ impl Expansion {
         rotation.rows_mut(moving, dim - moving).fill(0.0);
         let matrix = (&outer + outer.transpose()) * quadratic + rotation * skew;
         let weight_row = DMatrix::from_row_slice(1, weights.len(), &weights);
-        let weight_chunks = Chunks::new(&weight_row);
         Expansion {
-            weight_chunks: (0..weight_chunks.len()).map(|chunk| weight_chunks.get(chunk)[0]).collect(),
-            states: Chunks::new(&z),
-            directions: Chunks::new(&n),
+            table: RowTable::new(&[&z, &n, &weight_row]),
+            falling: Falling::of_slopes(&Term::of_slopes(&blocks, &amplitudes, dim), moving),
+            trend: [linear, quadratic, skew],
             scaling,
             speed,
             blocks,
@@ -91,46 +97,51 @@ impl Expansion {
 
     /// π̂ at a state with its context, (n + p), into (n), in units of the state per second. Allocates nothing.
     pub(crate) fn action_into(&self, state: &[f64], action: &mut [f64]) {
-        Arch::new().dispatch(Action { expansion: self, state, place: action });
-        let z = |k: usize| self.scaling.coordinate(k, state[k]);
-        for (k, action) in action.iter_mut().enumerate() {
-            let sloped: f64 = (0..state.len()).map(|l| self.matrix[(k, l)] * z(l)).sum();
-            *action = self.speed * (*action + (self.constant[k] + sloped));
-        }
+        self.scaling.with_coordinates(state, |z| {
+            Arch::new().dispatch(Action { expansion: self, z, place: action });
+            for (k, action) in action.iter_mut().enumerate() {
+                *action = self.speed * (*action + (self.constant[k] + self.sloped(k, z)));
+            }
+        });
     }
 
-    /// π̂ at each of the states with their contexts (n + p, M), (n, M).
-    pub(crate) fn actions(&self, states: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut actions = DMatrix::zeros(self.moving(), states.ncols());
-        let places = actions.as_mut_slice().par_chunks_mut(self.moving());
-        places
-            .zip(states.as_slice().par_chunks(self.dim()))
-            .for_each(|(action, state)| self.action_into(state, action));
-        actions
+    /// π̂ at each of the states with their contexts (n + p, N), (n, N), in parallel: the same bits as one by one.
+    pub(crate) fn actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
+        each_action(self.moving(), states, |state, action| self.action_into(state, action))
     }
 
     /// φ̂(x), in units of the state squared per second; meaningful without rotational blocks only. Allocates nothing.
     pub(crate) fn potential(&self, state: &[f64]) -> f64 {
-        let falling = Arch::new().dispatch(Potential { expansion: self, state });
-        let z = |k: usize| self.scaling.coordinate(k, state[k]);
-        let sloped = |k: usize| (0..state.len()).map(|l| self.matrix[(k, l)] * z(l)).sum::<f64>();
-        let trend: f64 = (0..state.len()).map(|k| z(k) * (self.constant[k] + 0.5 * sloped(k))).sum();
-        -self.speed * self.scaling.scale * (falling + trend)
+        self.scaling.with_coordinates(state, |z| {
+            let falling = Arch::new().dispatch(PotentialSum { expansion: self, z });
+            let each = z.iter().enumerate();
+            let trend: f64 = each.map(|(k, z_k)| z_k * (self.constant[k] + 0.5 * self.sloped(k, z))).sum();
+            -self.speed * self.scaling.scale * (falling + trend)
+        })
     }
 
-    /// C_x of (S13): covariances of the policy at x, one column an axis, with every row's slope, (M, n).
-    pub(crate) fn policy_with_rows(&self, state: DVectorView<'_, f64>) -> DMatrix<f64> {
-        let z = self.scaling.of_state(state);
-        let axes = DMatrix::<f64>::identity(self.moving(), self.moving());
-        let mut covariances = DMatrix::zeros(self.weights.len(), self.moving());
-        for (axis, mut column) in axes.column_iter().zip(covariances.column_iter_mut()) {
-            for (chunk, place) in column.as_mut_slice().chunks_mut(CHUNK).enumerate() {
-                let rows = (self.states.get(chunk), self.directions.get(chunk));
-                let values = slopes_with((z.as_view(), axis), rows, &self.blocks, &self.amplitudes);
-                place.copy_from_slice(&values[..place.len()]);
-            }
-        }
+    /// C_x of (S13): covariances of the policy at x, one column an axis, with every row's slope, (M, n), followed by rows without a
+    /// meaning.
+    pub(crate) fn policy_with_rows(&self, state: &[f64]) -> DMatrix<f64> {
+        let mut covariances = DMatrix::zeros(self.weights.len().next_multiple_of(TOGETHER), self.moving());
+        self.scaling.with_coordinates(state, |z| {
+            Arch::new().dispatch(PolicyWithRows { expansion: self, z, covariances: &mut covariances });
+        });
         covariances
+    }
+
+    /// Element k of Qz.
+    fn sloped(&self, k: usize, z: &[f64]) -> f64 {
+        z.iter().enumerate().map(|(l, z)| self.matrix[(k, l)] * z).sum()
+    }
+
+    /// Prior covariance of the policy at `z`, (n + p), in scaled units, as a and b of a I + b xxᵀ, where x is the state in z: (S3)
+    /// with z' = z.
+    pub(crate) fn prior(&self, z: &[f64]) -> (f64, f64) {
+        let squared_norm = |z: &[f64]| z.iter().map(|z| z * z).sum::<f64>();
+        let ([g], _) = self.falling.slopes([0.0], [0.0]);
+        let [linear, quadratic, skew] = self.trend;
+        (g + linear + quadratic * squared_norm(z) + skew * squared_norm(&z[..self.moving()]), quadratic - skew)
     }
 
     /// c of (S14): covariances (S4) of the potential at `z`, (n + p), with every row's slope, (M, 1).
@@ -144,95 +155,8 @@ impl Expansion {
         };
         DMatrix::from_iterator(self.weights.len(), 1, (0..self.weights.len()).map(with_row))
     }
-
-    /// Of one chunk of rows: n'ᵀ(z − z'), g and h.
-    #[inline(always)]
-    fn chunk(&self, chunk: usize, state: &[f64]) -> (Chunk, Chunk, Chunk) {
-        let (states, directions) = (self.states.get(chunk), self.directions.get(chunk));
-        let [mut squared, mut beta] = [[0.0; CHUNK]; 2];
-        let moving_dim = self.moving();
-        for (k, &x) in state[..moving_dim].iter().enumerate() {
-            let z = self.scaling.coordinate(k, x);
-            for lane in 0..CHUNK {
-                let apart = z - states[k][lane];
-                squared[lane] += apart * apart;
-                beta[lane] += directions[k][lane] * apart;
-            }
-        }
-        let moving = squared;
-        for (k, &x) in state.iter().enumerate().skip(moving_dim) {
-            let z = self.scaling.coordinate(k, x);
-            for lane in 0..CHUNK {
-                let apart = z - states[k][lane];
-                squared[lane] += apart * apart;
-            }
-        }
-        let sizes = (moving_dim, state.len());
-        let (g, h) = falling(&self.blocks, &self.amplitudes, sizes, (&squared, &moving));
-        (beta, g, h)
-    }
 }
 
 fn weighted(n: &DMatrix<f64>, weights: &[f64]) -> DMatrix<f64> {
     DMatrix::from_fn(n.nrows(), n.ncols(), |k, row| weights[row] * n[(k, row)])
-}
-
-/// Σ α (g n' − h β (z − z')) over all rows.
-struct Action<'a> {
-    expansion: &'a Expansion,
-    state: &'a [f64],
-    place: &'a mut [f64],
-}
-
-impl WithSimd for Action<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) {
-        let Action { expansion, state, place: action } = self;
-        action.fill(0.0);
-        for chunk in 0..expansion.states.len() {
-            let (beta, g, h) = expansion.chunk(chunk, state);
-            let weights = &expansion.weight_chunks[chunk];
-            let [mut along, mut apart] = [[0.0; CHUNK]; 2];
-            for lane in 0..CHUNK {
-                along[lane] = weights[lane] * g[lane];
-                apart[lane] = weights[lane] * h[lane] * beta[lane];
-            }
-            let (states, directions) = (expansion.states.get(chunk), expansion.directions.get(chunk));
-            for (k, action) in action.iter_mut().enumerate() {
-                let z = expansion.scaling.coordinate(k, state[k]);
-                let mut terms = [0.0; CHUNK];
-                for lane in 0..CHUNK {
-                    terms[lane] = along[lane] * directions[k][lane] - apart[lane] * (z - states[k][lane]);
-                }
-                *action += sum(&terms);
-            }
-        }
-    }
-}
-
-/// Σ α g β over all rows.
-struct Potential<'a> {
-    expansion: &'a Expansion,
-    state: &'a [f64],
-}
-
-impl WithSimd for Potential<'_> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) -> f64 {
-        let mut total = 0.0;
-        for chunk in 0..self.expansion.states.len() {
-            let (beta, g, _) = self.expansion.chunk(chunk, self.state);
-            let weights = &self.expansion.weight_chunks[chunk];
-            let mut terms = [0.0; CHUNK];
-            for lane in 0..CHUNK {
-                terms[lane] = weights[lane] * g[lane] * beta[lane];
-            }
-            total += sum(&terms);
-        }
-        total
-    }
 }
