@@ -167,7 +167,7 @@ impl Series {
         if self.exponential == Exponential::Gaussian {
             return (squared, moving);
         }
-        let distance = squared.map(|squared| squared.sqrt());
+        let distance = squared.map(T::sqrt);
         (distance, distance)
     }
 }

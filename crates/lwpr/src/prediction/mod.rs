@@ -10,6 +10,7 @@ mod predictor;
 mod query;
 mod record;
 mod sweep;
+mod threads;
 
 use nalgebra::{DMatrix, DVector, DVectorView};
 

@@ -7,6 +7,7 @@ use super::local_model::{LocalModel, LocalPrediction};
 use super::query::{Query, Scale};
 use super::record::PredictorRecord;
 use super::sweep::{Wanted, sweep};
+use super::threads::worth_a_thread;
 use super::{Prediction, are_finite, is_query};
 use crate::error::Side;
 use crate::{Kernel, Lwpr, LwprError};
@@ -32,9 +33,6 @@ struct OutputFields {
     models: Vec<LocalModel>,
     table: FieldTable,
 }
-
-/// Numbers to compare, of queries with centres of fields, that are worth handing to a thread: some 200 µs of work.
-const WORTH_A_THREAD: usize = 1 << 18;
 
 impl Lwpr {
     /// An immutable snapshot that predicts. Fields whose activation is at most `cutoff` do not take part: 0.001 is a
@@ -102,16 +100,12 @@ impl Predictor {
     /// The answers to so many queries, in parallel where that pays: handing out work to threads, and answers that one thread
     /// allocates and another frees, cost more than a small batch.
     fn each<T: Send>(&self, queries: usize, answer: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
-        let together = self.worth_a_thread(self.outputs.iter().map(|output| output.models.len()).sum());
+        let fields: usize = self.outputs.iter().map(|output| output.models.len()).sum();
+        let together = worth_a_thread(fields, self.n_in());
         if queries < together {
             return (0..queries).map(answer).collect();
         }
         (0..queries).into_par_iter().with_min_len(together).map(answer).collect()
-    }
-
-    /// How many queries of so many fields are worth handing to a thread.
-    fn worth_a_thread(&self, fields: usize) -> usize {
-        WORTH_A_THREAD.div_ceil((fields * self.n_in()).max(1))
     }
 
     /// Value, gradient, confidence and activation at `x`; `None` if some output has no trustworthy field activated above
@@ -167,7 +161,7 @@ impl Predictor {
     ) -> Result<usize, LwprError> {
         assert_eq!(xs.shape(), gradients.shape(), "there is one gradient for each query");
         self.check_queries(xs)?;
-        let together = self.worth_a_thread(self.outputs[output].models.len());
+        let together = worth_a_thread(self.outputs[output].models.len(), self.n_in());
         let unsupported = |(part, gradients): (usize, &mut [f64])| -> usize {
             let each = gradients.chunks_exact_mut(self.n_in()).enumerate();
             each.map(|(k, gradient)| {
@@ -294,10 +288,7 @@ impl Predictor {
         if xs.nrows() != self.n_in() {
             return Err(LwprError::Dimension { side: Side::Input, found: xs.nrows(), expected: self.n_in() });
         }
-        for (sample, x) in xs.column_iter().enumerate() {
-            if are_finite(x.as_slice()) {
-                continue;
-            }
+        for (sample, x) in xs.column_iter().enumerate().filter(|(_, x)| !are_finite(x.as_slice())) {
             if let Some(dimension) = x.iter().position(|x| !x.is_finite()) {
                 return Err(LwprError::BadValue { side: Side::Input, sample, dimension, value: x[dimension] });
             }

@@ -1,9 +1,12 @@
+//! The conditioned model, and how it is evaluated.
+
+mod sums;
+
 use motion::Policy;
 use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
 use pulp::Arch;
 
 use crate::dimension::require;
-use crate::direct::sums::{Action, CovariancesWithRows};
 use crate::kernel::direct_block::{DirectBlock, DirectCovariance, trend};
 use crate::kernel::falling::Falling;
 use crate::kernel::panel::Panel;
@@ -12,6 +15,7 @@ use crate::kernel::term::Term;
 use crate::kernel::whitening::Whitening;
 use crate::rows::scaling::Scaling;
 use crate::support::{Variances, each_action};
+use sums::{Action, CovariancesWithRows};
 
 /// The direct GP conditioned on rows: û and its variance (R4).
 #[derive(Debug, Clone)]
@@ -26,10 +30,10 @@ pub struct DirectModel {
     pub(crate) noise: f64,
     pub(crate) whitening: Whitening,
     /// z' and A of every row.
-    pub(super) table: RowTable,
+    table: RowTable,
     pub(crate) falling: Falling,
     /// Of [`trend`].
-    pub(super) trend: [f64; 3],
+    trend: [f64; 3],
 }
 
 impl DirectModel {

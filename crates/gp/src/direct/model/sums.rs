@@ -5,7 +5,7 @@
 use lanes::{LANES, Lanes, Number, Register, total};
 use pulp::{Simd, WithSimd};
 
-use crate::direct::model::DirectModel;
+use super::DirectModel;
 use crate::kernel::row_table::{Abreast, GROUPS, firsts};
 use crate::rows::scaling::FEW;
 
