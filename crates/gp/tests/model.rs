@@ -104,7 +104,7 @@ proptest! {
         }
     }
 
-    /// (S13) read literally, and (R4)'s counterpart for many states.
+    /// (S13) read literally.
     #[test]
     fn uncertainty_is_the_conditional_covariance(family in families(), dim in 2_usize..5, seed in any::<u64>()) {
         let rng = &mut rng(seed);
@@ -120,7 +120,9 @@ proptest! {
         let scale = prior.amax();
         prop_assert!((model.prior_covariance(x.as_view()) - &prior).amax() <= 1e-13 * scale);
         let found = model.covariance(x.as_view());
-        prop_assert!((&found - &posterior).amax() <= 1e-9 * scale, "{found} {posterior}");
+        // A Matérn 3/2 turns a rounding of 1e-16 in a squared distance into 1e-8, on the diagonal of the rows' covariance.
+        let tolerance = if family == Family::Rough { 1e-6 } else { 1e-9 };
+        prop_assert!((&found - &posterior).amax() <= tolerance * scale, "{found} {posterior}");
     }
 
     /// (S13) is the covariance of what is drawn from the prior, given the rows: never above the prior, and nearly 0
