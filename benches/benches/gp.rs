@@ -1,5 +1,5 @@
-//! Gaussian processes: fits as in Table 1, and predictions of the slope GP in 2 and 22 dimensions, one by one and in
-//! parallel. About three minutes.
+//! Gaussian processes: fits as in Table 1, and predictions of the slope GP in 2 and 22 dimensions, one by one and many
+//! at once. About three minutes.
 #![allow(missing_docs, reason = "a benchmark")]
 
 use std::hint::black_box;
@@ -10,10 +10,9 @@ use demo_gen::beyond::{BeyondSystem, PolicyKind};
 use demo_gen::{ToyPotential, ToySystem, demonstrations};
 use gp::{CurlTest, DirectGp, Family, FrontEnd, Rows, SlopeFit, SlopeGp};
 use motion::{LearntPolicy, Policy, Potential};
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
 
 fn rng() -> ChaCha8Rng {
     ChaCha8Rng::seed_from_u64(1)
@@ -71,9 +70,11 @@ fn predictions(criterion: &mut Criterion) {
         group.bench_function("error bars", |bencher| {
             bencher.iter(|| fit.action_sd_into(black_box(states[7].as_view()), deviation.as_view_mut()));
         });
-        group.throughput(Throughput::Elements(states.len() as u64));
-        group.bench_function("policy, 256 states in parallel", |bencher| {
-            bencher.iter(|| states.par_iter().map(|state| fit.action(state.as_view())).collect::<Vec<_>>());
+        let states = DMatrix::from_columns(&states);
+        group.throughput(Throughput::Elements(states.ncols() as u64));
+        group.bench_function("policy, 256 states", |bencher| bencher.iter(|| fit.actions(black_box(states.as_view()))));
+        group.bench_function("error bars and support, 256 states", |bencher| {
+            bencher.iter(|| fit.certainty(black_box(states.as_view())));
         });
     }
 }

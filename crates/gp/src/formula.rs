@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::kernel::block::{Block, length};
-use crate::kernel::direct_block::{self, DirectBlock};
-use crate::kernel::shape::Shape;
+use crate::kernel::direct_block;
+use crate::kernel::falling::Falling;
+use crate::kernel::term::Term;
 use crate::rows::scaling::Scaling;
 use crate::{DirectFit, SlopeFit};
 
@@ -21,26 +21,6 @@ pub struct ScaledStates<'a> {
     pub z: &'a DMatrix<f64>,
 }
 
-/// A term that falls with distance.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Term {
-    /// How it falls.
-    pub fall: Fall,
-    /// ℓ, in scaled coordinates.
-    pub length: f64,
-    /// Of the block.
-    pub amplitude: f64,
-}
-
-/// How a term falls with distance.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Fall {
-    /// As a potential or velocity of this shape.
-    Shape(Shape),
-    /// As [`Block::DivergenceFree`].
-    DivergenceFree,
-}
-
 /// (S7): π̂ = speed (Σ g v − h (vᵀa) a + c + Qz) with a = z − z', and g and h of (S3) summed over terms.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SlopeFormula<'a> {
@@ -50,6 +30,8 @@ pub struct SlopeFormula<'a> {
     pub directions: DMatrix<f64>,
     /// Terms with an amplitude above 0.
     pub terms: Vec<Term>,
+    /// g and h, the same terms with few exponentials.
+    pub falling: &'a Falling,
     /// c, (n).
     pub constant: DVector<f64>,
     /// Q, (n, n).
@@ -67,6 +49,8 @@ pub struct DirectFormula<'a> {
     pub weights: &'a DMatrix<f64>,
     /// Terms with an amplitude above 0.
     pub terms: Vec<Term>,
+    /// Their sum with few exponentials.
+    pub falling: &'a Falling,
     /// Factors of 1, of zᵀz' and of its square.
     pub trend: [f64; 3],
 }
@@ -75,15 +59,11 @@ impl SlopeFit {
     /// The policy, written out.
     pub fn formula(&self) -> SlopeFormula<'_> {
         let expansion = self.model.expansion();
-        let fall = |block| match block {
-            Block::Potential(shape, scale) => Some((Fall::Shape(shape), scale)),
-            Block::DivergenceFree(scale) => Some((Fall::DivergenceFree, scale)),
-            Block::Linear | Block::Quadratic | Block::Skew => None,
-        };
         SlopeFormula {
             scaled: ScaledStates::of(&expansion.scaling, expansion.speed, &expansion.z),
             directions: expansion.weighted(),
-            terms: terms(&expansion.blocks, &expansion.amplitudes, expansion.dim(), fall),
+            terms: Term::of_slopes(&expansion.blocks, &expansion.amplitudes, expansion.dim()),
+            falling: &expansion.falling,
             // −0 becomes 0: without a trend nothing is added.
             constant: expansion.constant.add_scalar(0.0),
             matrix: expansion.matrix.add_scalar(0.0),
@@ -96,14 +76,11 @@ impl DirectFit {
     /// The policy, written out.
     pub fn formula(&self) -> DirectFormula<'_> {
         let (model, dim) = (&self.model, self.model.z.nrows());
-        let fall = |block| match block {
-            DirectBlock::Shape(shape, scale) => Some((Fall::Shape(shape), scale)),
-            DirectBlock::Constant | DirectBlock::Linear | DirectBlock::Quadratic => None,
-        };
         DirectFormula {
             scaled: ScaledStates::of(&model.scaling, model.unit, &model.z),
             weights: &model.weights,
-            terms: terms(&model.blocks, &model.amplitudes, dim, fall),
+            terms: Term::of_velocities(&model.blocks, &model.amplitudes, dim),
+            falling: &model.falling,
             trend: direct_block::trend(&model.blocks, &model.amplitudes, dim),
         }
     }
@@ -113,11 +90,4 @@ impl<'a> ScaledStates<'a> {
     fn of(scaling: &'a Scaling, speed: f64, z: &'a DMatrix<f64>) -> Self {
         ScaledStates { mean: &scaling.mean, spread: scaling.scale, speed, z }
     }
-}
-
-fn terms<B: Copy>(blocks: &[B], amplitudes: &[f64], dim: usize, fall: impl Fn(B) -> Option<(Fall, f64)>) -> Vec<Term> {
-    let each = blocks.iter().zip(amplitudes).filter(|(_, amplitude)| **amplitude > 0.0);
-    let term =
-        |(&block, &amplitude)| fall(block).map(|(fall, scale)| Term { fall, length: length(scale, dim), amplitude });
-    each.filter_map(term).collect()
 }

@@ -1,6 +1,89 @@
+use motion::Certainty;
+use nalgebra::{DMatrix, DMatrixView, DVectorViewMut};
+use rayon::prelude::*;
+
 /// Share of a prior variance that the rows have taken away, from 0 to 1; 0 where numbers overflow, so far from the rows
 /// that they say nothing.
-pub(crate) fn support(posterior: f64, prior: f64) -> f64 {
+fn support(posterior: f64, prior: f64) -> f64 {
     let left = posterior / prior;
     if left.is_nan() { 0.0 } else { 1.0 - left.clamp(0.0, 1.0) }
+}
+
+/// States whose actions are worth handing to a thread.
+const STATES_A_TASK: usize = 32;
+
+/// Actions (n, N) at states with their contexts (n + p, N), which `action_into` writes one by one, in parallel.
+pub(crate) fn each_action(
+    moving: usize,
+    states: DMatrixView<'_, f64>,
+    action_into: impl Fn(&[f64], &mut [f64]) + Sync,
+) -> DMatrix<f64> {
+    let mut actions = DMatrix::zeros(moving, states.ncols());
+    let part = |(part, actions): (usize, &mut [f64])| {
+        for (at, action) in actions.chunks_exact_mut(moving).enumerate() {
+            action_into(states.column(part * STATES_A_TASK + at).as_slice(), action);
+        }
+    };
+    if states.ncols() <= STATES_A_TASK {
+        part((0, actions.as_mut_slice()));
+    } else {
+        actions.as_mut_slice().par_chunks_mut(STATES_A_TASK * moving).enumerate().for_each(part);
+    }
+    actions
+}
+
+/// Columns of covariances that are whitened together: a panel of 1,500 rows then stays in the processor's second cache.
+const COLUMNS: usize = 64;
+
+/// Variances of an action at some states, in squared units of the state per second.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Variances {
+    /// Before anything is known, (c, N).
+    pub(crate) prior: DMatrix<f64>,
+    /// Given the rows, (c, N); rounding may leave it below 0.
+    pub(crate) posterior: DMatrix<f64>,
+}
+
+impl Variances {
+    /// Of `components` at states (n + p, N), in blocks in parallel. `fill` writes prior and posterior of a block of states, for
+    /// which it whitens as many columns a state.
+    pub(crate) fn of(
+        states: DMatrixView<'_, f64>,
+        components: usize,
+        fill: impl Fn(DMatrixView<'_, f64>, &mut [f64], &mut [f64]) + Sync,
+    ) -> Self {
+        let count = states.ncols();
+        let [mut prior, mut posterior] = [(); 2].map(|()| DMatrix::zeros(components, count));
+        let together = (COLUMNS / components).max(1);
+        let size = together * components;
+        if count <= together {
+            // Without a trip to another thread.
+            fill(states, prior.as_mut_slice(), posterior.as_mut_slice());
+            return Variances { prior, posterior };
+        }
+        let parts = prior.as_mut_slice().par_chunks_mut(size).zip(posterior.as_mut_slice().par_chunks_mut(size));
+        parts.enumerate().for_each(|(part, (prior, posterior))| {
+            fill(states.columns(part * together, prior.len() / components), prior, posterior);
+        });
+        Variances { prior, posterior }
+    }
+
+    /// What [`LearntPolicy::certainty`](motion::LearntPolicy::certainty) says, deviations being `factor` times as wide, squared;
+    /// of `moving` of `dim` components.
+    pub(crate) fn certainty(&self, factor: f64, moving: usize, dim: usize) -> Certainty {
+        let columns = self.posterior.column_iter().zip(self.prior.column_iter());
+        let support = columns.map(|(posterior, prior)| support(posterior.sum(), prior.sum())).collect();
+        let deviation = |axis: usize, state: usize| {
+            let variance = self.posterior[(axis.min(self.posterior.nrows() - 1), state)];
+            if axis < moving { (factor * variance.max(0.0)).sqrt() } else { 0.0 }
+        };
+        Certainty { support, deviations: Some(DMatrix::from_fn(dim, self.posterior.ncols(), deviation)) }
+    }
+}
+
+/// The deviations at the one state that was asked for.
+pub(crate) fn only_deviation_into(certainty: &Certainty, mut deviation: DVectorViewMut<'_, f64>) -> bool {
+    let Some(deviations) = &certainty.deviations else { return false };
+    deviation.copy_from(&deviations.column(0));
+    true
 }

@@ -104,6 +104,27 @@ proptest! {
         }
     }
 
+    /// (S13) read literally.
+    #[test]
+    fn uncertainty_is_the_conditional_covariance(family in families(), dim in 2_usize..5, seed in any::<u64>()) {
+        let rng = &mut rng(seed);
+        let rows = rows(dim, (4, 9), descent, rng);
+        let blocks = family.helmholtz_blocks(Trend::Quadratic);
+        let theta = theta(blocks.len(), rng);
+        let weights = noise_weights(36, rng);
+        let data = SlopeData::new(&rows, weights.clone()).expect("rows");
+        let (model, _) = data.condition(&blocks, &theta, 1.0).expect("a factor");
+        let literal = Literal::new(&rows, &data, &blocks, &theta, &weights);
+        let x = vector(dim, rng);
+        let (prior, posterior) = literal.covariances(&rows, &data, &blocks, &theta, &x);
+        let scale = prior.amax();
+        prop_assert!((model.prior_covariance(x.as_view()) - &prior).amax() <= 1e-13 * scale);
+        let found = model.covariance(x.as_view());
+        // A Matérn 3/2 turns a rounding of 1e-16 in a squared distance into 1e-8, on the diagonal of the rows' covariance.
+        let tolerance = if family == Family::Rough { 1e-6 } else { 1e-9 };
+        prop_assert!((&found - &posterior).amax() <= tolerance * scale, "{found} {posterior}");
+    }
+
     /// (S13) is the covariance of what is drawn from the prior, given the rows: never above the prior, and nearly 0
     /// at a row along its direction when there is no noise.
     #[test]
@@ -147,6 +168,33 @@ impl Literal {
         }
         let targets = rows.velocities().column_iter().map(|u| u.norm() / data.speed());
         Literal { k, targets: DVector::from_iterator(rows.len(), targets) }
+    }
+
+    /// Prior and posterior covariance of the policy at `x`.
+    fn covariances(
+        &self,
+        rows: &Rows,
+        data: &SlopeData,
+        blocks: &[gp::Block],
+        theta: &[f64],
+        x: &DVector<f64>,
+    ) -> (DMatrix<f64>, DMatrix<f64>) {
+        let (mean, scale) = data.scaling();
+        let scaled = |x: DVector<f64>| (x - DVector::from_column_slice(mean)) / scale;
+        let (z, dim) = (scaled(x.clone()), x.len());
+        let axis = |k: usize| DVector::from_fn(dim, |i, _| f64::from(u8::from(i == k)));
+        let among = |z2: &DVector<f64>, n: &DVector<f64>, n2: &DVector<f64>| -> f64 {
+            let each = blocks.iter().zip(theta);
+            each.map(|(b, t)| t.exp() * b.slope_slope(z.as_view(), n.as_view(), z2.as_view(), n2.as_view())).sum()
+        };
+        let prior = DMatrix::from_fn(dim, dim, |i, j| among(&z, &axis(i), &axis(j)));
+        let with_rows = DMatrix::from_fn(rows.len(), dim, |row, k| {
+            let (state, velocity) = (rows.states().column(row), rows.velocities().column(row));
+            among(&scaled(state.into_owned()), &axis(k), &velocity.normalize())
+        });
+        let solved = self.k.clone().cholesky().expect("positive definite").solve(&with_rows);
+        let posterior = &prior - with_rows.tr_mul(&solved);
+        (prior * data.speed().powi(2), posterior * data.speed().powi(2))
     }
 
     /// Prediction of some rows from the others, and its variance with noise.

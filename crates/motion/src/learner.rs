@@ -1,6 +1,6 @@
 use std::fmt::Debug;
 
-use nalgebra::{DVectorView, DVectorViewMut};
+use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView, DVectorViewMut};
 use rand::Rng;
 
 use crate::{Demonstrations, Policy, Potential, SampleIndex};
@@ -25,6 +25,16 @@ pub trait Learner: Debug + Send + Sync {
     ) -> Result<Box<dyn LearntPolicy>, LearnError>;
 }
 
+/// How certain a policy is of its actions at N states.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Certainty {
+    /// [`LearntPolicy::support`], (N).
+    pub support: Vec<f64>,
+    /// Standard deviations of every component of the action, (n, N), in units of the state per second; none if the learner has no
+    /// estimate.
+    pub deviations: Option<DMatrix<f64>>,
+}
+
 /// A learnt policy, with its potential, support, uncertainty and warnings.
 pub trait LearntPolicy: Policy + Debug {
     /// The potential that the policy descends; none if the learner assumes none.
@@ -42,6 +52,19 @@ pub trait LearntPolicy: Policy + Debug {
     /// second, and returns true; returns false and writes nothing if the learner has no estimate.
     fn action_sd_into(&self, _state: DVectorView<'_, f64>, _deviation: DVectorViewMut<'_, f64>) -> bool {
         false
+    }
+
+    /// [`support`](Self::support) and [`action_sd_into`](Self::action_sd_into) at many states, (n, N): the same numbers as one by one.
+    /// A Gaussian process is several times faster so.
+    fn certainty(&self, states: DMatrixView<'_, f64>) -> Certainty {
+        let support = states.column_iter().map(|state| self.support(state)).collect();
+        let (mut deviations, mut deviation) = (DMatrix::zeros(self.dim(), states.ncols()), DVector::zeros(self.dim()));
+        let mut known = states.ncols() > 0;
+        for (state, mut place) in states.column_iter().zip(deviations.column_iter_mut()) {
+            known = known && self.action_sd_into(state, deviation.as_view_mut());
+            place.copy_from(&deviation);
+        }
+        Certainty { support, deviations: known.then_some(deviations) }
     }
 
     /// The trajectories used for learning, ascending; none if all were.

@@ -82,7 +82,7 @@ mod trajectory;
 pub use demonstrations::Demonstrations;
 pub use error::{MotionError, Series};
 pub use finding::{Decision, Finding, LeftOut, Verdict};
-pub use learner::{LearnError, Learner, LearntPolicy};
+pub use learner::{Certainty, LearnError, Learner, LearntPolicy};
 pub use median::upper_median;
 pub use policy::{NegativeGradient, Policy, Potential};
 pub use recordings::{Channel, Episode, Recordings, Rows, Source, is_called_context};

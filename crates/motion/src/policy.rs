@@ -1,4 +1,4 @@
-use nalgebra::{DVector, DVectorView, DVectorViewMut};
+use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView, DVectorViewMut};
 
 /// An autonomous movement policy u = π(x) (1): the desired velocity at a state.
 ///
@@ -15,6 +15,16 @@ pub trait Policy: Send + Sync {
         let mut action = DVector::zeros(self.dim());
         self.action_into(state, action.as_view_mut());
         action
+    }
+
+    /// π(x) at many states, (n, N), each a column, in units of the state per second: the same numbers as one by one.
+    fn actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
+        let (mut actions, mut action) = (DMatrix::zeros(self.dim(), states.ncols()), DVector::zeros(self.dim()));
+        for (state, mut place) in states.column_iter().zip(actions.column_iter_mut()) {
+            self.action_into(state, action.as_view_mut());
+            place.copy_from(&action);
+        }
+        actions
     }
 }
 
@@ -61,6 +71,10 @@ impl<P: Policy + ?Sized> Policy for &P {
 
     fn action_into(&self, state: DVectorView<'_, f64>, action: DVectorViewMut<'_, f64>) {
         (**self).action_into(state, action);
+    }
+
+    fn actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
+        (**self).actions(states)
     }
 }
 

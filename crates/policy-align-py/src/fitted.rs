@@ -1,12 +1,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use motion::{LearntPolicy as _, Policy as _};
-use nalgebra::{DMatrix, DVectorView};
+use motion::{Certainty, LearntPolicy as _, Policy as _};
+use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use policy_align::{
-    Evaluation, Model, ModelError, ModelPolicy, PrepareOptions, Progress, TaskLinks, estimate_constraints, evaluate,
-    fit, prepare,
+    Evaluation, Model, ModelError, PrepareOptions, Progress, TaskLinks, estimate_constraints, evaluate, fit, prepare,
 };
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
@@ -118,16 +117,9 @@ impl Fitted {
 
     /// π at each state, (N, n).
     fn predict<'py>(&self, py: Python<'py>, states: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let mut states = self.states(&states)?;
-        py.detach(|| {
-            let policy = self.model.policy();
-            let mut action = nalgebra::DVector::zeros(states.nrows());
-            for mut column in states.column_iter_mut() {
-                policy.action_into(column.as_view(), action.as_view_mut());
-                column.copy_from(&action);
-            }
-        });
-        Ok(array(py, states))
+        let states = self.states(&states)?;
+        let actions = Self::for_states(py, &states, || self.model.policy().actions(states.as_view()))?;
+        Ok(array(py, actions))
     }
 
     /// Standard deviation of every component of π at each state, (N, n); none if the learner does not know it.
@@ -136,18 +128,7 @@ impl Fitted {
         py: Python<'py>,
         states: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
-        let mut states = self.states(&states)?;
-        let known = py.detach(|| {
-            let policy = self.model.policy();
-            let mut deviation = nalgebra::DVector::zeros(states.nrows());
-            let mut known = !matches!(self.model.learnt, policy_align::Learnt::PolicyAlign(_));
-            for mut column in states.column_iter_mut() {
-                known &= policy.action_sd_into(column.as_view(), deviation.as_view_mut());
-                column.copy_from(&deviation);
-            }
-            known
-        });
-        Ok(known.then(|| array(py, states)))
+        Ok(self.certainty(py, &states)?.deviations.map(|deviations| array(py, deviations)))
     }
 
     /// φ at each state, (N); none if the policy has no potential.
@@ -159,14 +140,18 @@ impl Fitted {
         if self.model.policy().potential().is_none() {
             return Ok(None);
         }
-        let values = self.of_states(py, &states, |policy, state| policy.potential().map(|phi| phi.value(state)))?;
-        Ok(Some(PyArray1::from_iter(py, values.into_iter().flatten())))
+        let states = self.states(&states)?;
+        let values: Vec<f64> = py.detach(|| {
+            let policy = self.model.policy();
+            let value = |state| policy.potential().map(|phi| phi.value(state));
+            states.column_iter().filter_map(value).collect()
+        });
+        Ok(Some(PyArray1::from_vec(py, values)))
     }
 
     /// How much the demonstrations support each state, from 0 to 1, (N).
     fn support<'py>(&self, py: Python<'py>, states: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let values = self.of_states(py, &states, |policy, state| policy.support(state))?;
-        Ok(PyArray1::from_vec(py, values))
+        Ok(PyArray1::from_vec(py, self.certainty(py, &states)?.support))
     }
 
     /// Whether that is enough to act on, (N).
@@ -175,12 +160,9 @@ impl Fitted {
         py: Python<'py>,
         states: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        #[allow(
-            clippy::redundant_closure_for_method_calls,
-            reason = "the method is not general enough in its lifetime"
-        )]
-        let values = self.of_states(py, &states, |policy, state| policy.is_supported(state))?;
-        Ok(PyArray1::from_vec(py, values))
+        let least = self.model.policy().least_support();
+        let support = self.certainty(py, &states)?.support;
+        Ok(PyArray1::from_iter(py, support.into_iter().map(|support| support >= least)))
     }
 
     /// Evaluates the policy on movements; as JSON.
@@ -259,17 +241,15 @@ impl Fitted {
         Ok(states)
     }
 
-    fn of_states<T: Send>(
-        &self,
-        py: Python<'_>,
-        states: &PyReadonlyArray2<'_, f64>,
-        of: impl Fn(&ModelPolicy<'_>, DVectorView<'_, f64>) -> T + Sync,
-    ) -> PyResult<Vec<T>> {
+    /// Support and standard deviations at states, (N, n).
+    fn certainty(&self, py: Python<'_>, states: &PyReadonlyArray2<'_, f64>) -> PyResult<Certainty> {
         let states = self.states(states)?;
-        Ok(py.detach(|| {
-            let policy = self.model.policy();
-            states.column_iter().map(|state| of(&policy, state)).collect()
-        }))
+        Self::for_states(py, &states, || self.model.policy().certainty(states.as_view()))
+    }
+
+    /// Works on threads of our own; one state is not worth the way there.
+    fn for_states<T: Send>(py: Python<'_>, states: &DMatrix<f64>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+        py.detach(|| if states.ncols() > 1 { pool::on(0, work) } else { Ok(work()) })
     }
 }
 

@@ -75,8 +75,9 @@ pub fn evaluate(model: &Model, prepared: &Prepared, truth: Option<&Truth>) -> Re
 fn supported(model: &Model, rows: &gp::Rows) -> f64 {
     let policy = model.policy();
     let scales = DVector::from_iterator(policy.dim(), model.inputs().map(|channel| channel.scale));
-    let within =
-        rows.states().column_iter().filter(|state| policy.is_supported(state.component_div(&scales).as_view()));
+    let states = DMatrix::from_fn(policy.dim(), rows.len(), |k, row| rows.states()[(k, row)] / scales[k]);
+    let supports = policy.certainty(states.as_view()).support;
+    let within = supports.iter().filter(|&&support| support >= policy.least_support());
     within.count() as f64 / rows.len() as f64
 }
 

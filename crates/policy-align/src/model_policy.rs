@@ -1,7 +1,7 @@
 use std::cell::RefCell;
 
-use motion::{LearntPolicy, Policy, Potential};
-use nalgebra::{DVector, DVectorView, DVectorViewMut};
+use motion::{Certainty, LearntPolicy, Policy, Potential};
+use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView, DVectorViewMut};
 
 use crate::{Learnt, Model, StateChannel};
 
@@ -76,6 +76,12 @@ impl ModelPolicy<'_> {
         self.support(state) >= self.least_support
     }
 
+    /// Whether no channel of a state (n) is beyond [`Model::bounds`].
+    fn is_within(&self, state: DVectorView<'_, f64>) -> bool {
+        let inputs = state.iter().chain(&self.inputs.context);
+        self.bounds.iter().zip(inputs).all(|([low, high], x)| (low..=high).contains(&x))
+    }
+
     /// The smallest support of a known state.
     pub fn least_support(&self) -> f64 {
         self.least_support
@@ -91,6 +97,10 @@ impl Policy for ModelPolicy<'_> {
         self.inputs.vector_into(state, action.as_view_mut(), |state, action| self.learnt.action_into(state, action));
         action.component_div_assign(&self.inputs.scale.rows(0, action.len()));
     }
+
+    fn actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
+        self.inputs.unscaled(self.learnt.actions(self.inputs.scaled_columns(states).as_view()))
+    }
 }
 
 impl LearntPolicy for ModelPolicy<'_> {
@@ -100,9 +110,7 @@ impl LearntPolicy for ModelPolicy<'_> {
 
     /// As of the policy that was learnt; 0 beyond [`Model::bounds`].
     fn support(&self, state: DVectorView<'_, f64>) -> f64 {
-        let inputs = state.iter().chain(&self.inputs.context);
-        let within = self.bounds.iter().zip(inputs).all(|([low, high], x)| (low..=high).contains(&x));
-        if within { self.inputs.scaled(state, |state| self.learnt.support(state)) } else { 0.0 }
+        if self.is_within(state) { self.inputs.scaled(state, |state| self.learnt.support(state)) } else { 0.0 }
     }
 
     fn action_sd_into(&self, state: DVectorView<'_, f64>, mut deviation: DVectorViewMut<'_, f64>) -> bool {
@@ -114,6 +122,17 @@ impl LearntPolicy for ModelPolicy<'_> {
             deviation.component_div_assign(&self.inputs.scale.rows(0, deviation.len()));
         }
         known
+    }
+
+    fn certainty(&self, states: DMatrixView<'_, f64>) -> Certainty {
+        let mut certainty = self.learnt.certainty(self.inputs.scaled_columns(states).as_view());
+        for (support, state) in certainty.support.iter_mut().zip(states.column_iter()) {
+            if !self.is_within(state) {
+                *support = 0.0;
+            }
+        }
+        certainty.deviations = certainty.deviations.map(|deviations| self.inputs.unscaled(deviations));
+        certainty
     }
 
     fn kept(&self) -> Option<&[usize]> {
@@ -171,6 +190,23 @@ impl Inputs {
             place.extend(state.iter().chain(&self.context).zip(&self.scale).map(|(x, s)| x * s));
             evaluate(DVectorView::from_slice(place, self.scale.len()))
         })
+    }
+
+    /// S x with the context that was chosen, of each state (n, N): (n + p, N).
+    fn scaled_columns(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
+        let n = self.dim();
+        assert_eq!(states.nrows(), n, "a state has as many dimensions as the policy");
+        let input = |k: usize, at: usize| if k < n { states[(k, at)] } else { self.context[k - n] };
+        DMatrix::from_fn(self.scale.len(), states.ncols(), |k, at| input(k, at) * self.scale[k])
+    }
+
+    /// The part along the state of vectors in the learner's units, (n + p, N), in those of the recording, (n, N).
+    fn unscaled(&self, vectors: DMatrix<f64>) -> DMatrix<f64> {
+        let mut vectors = vectors.resize_vertically(self.dim(), 0.0);
+        for mut vector in vectors.column_iter_mut() {
+            vector.component_div_assign(&self.scale.rows(0, self.dim()));
+        }
+        vectors
     }
 
     /// The part along the state of a vector at S x.

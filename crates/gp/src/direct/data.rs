@@ -5,6 +5,7 @@ use crate::evidence::family_fit::{FamilyFit, fit_family};
 use crate::evidence::{Evidence, Task};
 use crate::inducing::Induced;
 use crate::kernel::direct_block::{DirectBlock, DirectCovariance};
+use crate::kernel::triangle::Upper;
 use crate::kernel::whitening::Whitening;
 use crate::left_out::LeftOut;
 use crate::left_out::level::Conditions;
@@ -150,7 +151,7 @@ impl DirectData {
             Induced::new(&self.covariance(blocks), amplitudes, &self.conditions(), most)?;
         let scaled = (self.scaling.clone(), self.unit);
         let (prior, z) = ((blocks.to_vec(), amplitudes.to_vec()), self.z.select_columns(&rows));
-        let whitening = Whitening::Inducing { shrinkage, factor: factor.into() };
+        let whitening = Whitening::Inducing { shrinkage: Upper::new(&shrinkage), factor: factor.into() };
         Some((DirectModel::new(scaled, prior, z, weights.transpose(), (noise, whitening)), left_out))
     }
 

@@ -48,8 +48,6 @@ pub struct DirectFit {
 /// The model taken, and its held-out predictions.
 pub(crate) struct DirectOutcome {
     data: DirectData,
-    /// σ² by evidence.
-    found: f64,
     pub(crate) fit: DirectFit,
     pub(crate) left_out: LeftOut,
     /// û at the rows, (n, M).
@@ -85,11 +83,11 @@ impl DirectGp {
         };
         let (family, fit) = tried.reduce(better).ok_or(GpError::NoFactor)?;
         let blocks = family.direct_blocks();
-        let (left_out, found) = (fit.level.left_out.clone(), fit.level.found);
+        let left_out = fit.level.left_out.clone();
         let model = data.model(blocks, fit);
-        let actions = model.actions(&kept.states);
+        let actions = model.moving_actions(kept.states.as_view());
         let fit = DirectFit { model, family, r_squared: left_out.r_squared, z_squared: left_out.z_squared };
-        Ok(DirectOutcome { data, found, fit, left_out, actions })
+        Ok(DirectOutcome { data, fit, left_out, actions })
     }
 }
 
@@ -99,10 +97,10 @@ impl DirectOutcome {
         let DirectFit { model, family, .. } = &self.fit;
         let data = self.data.of_others(all);
         let (model, left_out) = data.induced((&model.blocks, &model.amplitudes), most)?;
-        let actions = model.actions(&all.states);
+        let actions = model.moving_actions(all.states.as_view());
         let (r_squared, z_squared) = (left_out.r_squared, left_out.z_squared);
         let fit = DirectFit { model, family: *family, r_squared, z_squared };
-        Some(DirectOutcome { data, found: self.found, fit, left_out, actions })
+        Some(DirectOutcome { data, fit, left_out, actions })
     }
 }
 

@@ -1,13 +1,14 @@
 //! The direct GP behind the traits of all learners.
 
-use motion::{Demonstrations, LearnError, Learner, LearntPolicy, Policy, SampleIndex};
-use nalgebra::{DVectorView, DVectorViewMut};
+use motion::{Certainty, Demonstrations, LearnError, Learner, LearntPolicy, Policy, SampleIndex};
+use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
 use rand::Rng;
 use serde::Serialize;
 
 use crate::FrontEnd;
+use crate::dimension::require;
 use crate::direct::direct_gp::{DirectFit, DirectGp};
-use crate::support::support;
+use crate::support::only_deviation_into;
 
 /// The direct GP as a learner.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -37,18 +38,24 @@ impl Policy for DirectFit {
     fn action_into(&self, state: DVectorView<'_, f64>, action: DVectorViewMut<'_, f64>) {
         self.model.action_into(state, action);
     }
+
+    fn actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
+        self.model.actions(states)
+    }
 }
 
 impl LearntPolicy for DirectFit {
     fn support(&self, state: DVectorView<'_, f64>) -> f64 {
-        support(self.model.variance(state), self.model.prior_variance(state))
+        self.certainty(state.as_view()).support[0]
     }
 
-    fn action_sd_into(&self, state: DVectorView<'_, f64>, mut deviation: DVectorViewMut<'_, f64>) -> bool {
-        deviation.fill(0.0);
-        let mut moving = deviation.rows_mut(0, self.model.weights.nrows());
-        moving.fill((self.z_squared.max(1.0) * self.model.variance(state).max(0.0)).sqrt());
-        true
+    fn action_sd_into(&self, state: DVectorView<'_, f64>, deviation: DVectorViewMut<'_, f64>) -> bool {
+        only_deviation_into(&self.certainty(state.as_view()), deviation)
+    }
+
+    fn certainty(&self, states: DMatrixView<'_, f64>) -> Certainty {
+        require(self.dim(), &[states.nrows()]);
+        self.model.variances(states).certainty(self.z_squared.max(1.0), self.model.weights.nrows(), self.dim())
     }
 
     fn warnings(&self) -> Vec<String> {

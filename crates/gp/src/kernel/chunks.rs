@@ -1,6 +1,5 @@
 //! Rows side by side, so that one row meets many in vector registers.
 
-use lanes::{LANES, Lanes, total};
 use nalgebra::DMatrix;
 
 /// Rows that share a place on the stack.
@@ -37,17 +36,4 @@ impl Chunks {
     pub(crate) fn get(&self, chunk: usize) -> &[Chunk] {
         &self.numbers[chunk * self.dim..(chunk + 1) * self.dim]
     }
-}
-
-/// The sum over a chunk, in one order on every machine.
-#[inline(always)]
-#[allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
-pub(crate) fn sum(chunk: &Chunk) -> f64 {
-    let mut sums: Lanes = [0.0; LANES];
-    for group in chunk.as_chunks::<LANES>().0 {
-        for lane in 0..LANES {
-            sums[lane] += group[lane];
-        }
-    }
-    total(sums)
 }

@@ -10,6 +10,9 @@ use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_uppe
 use faer::{Accum, MatMut, MatRef, Par, Spec};
 use nalgebra::DMatrix;
 
+use crate::kernel::panel::Panel;
+use crate::kernel::triangle::InverseOfLower;
+
 /// L with K = LLᵀ, in the lower triangle; above it stands nothing of meaning.
 #[derive(Debug, Clone)]
 pub(crate) struct Factor {
@@ -89,23 +92,24 @@ impl Factor {
 }
 
 /// The factor of a model's covariance: at hand after a fit; of a stored model computed when an error bar first needs it,
-/// which costs M² numbers of memory and M³ of time.
+/// which costs M² numbers of memory for a moment, half of them for good, and M³ of time.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct LazyFactor(OnceLock<Option<Factor>>);
+pub(crate) struct LazyFactor(OnceLock<Option<InverseOfLower>>);
 
 impl From<Factor> for LazyFactor {
     fn from(factor: Factor) -> Self {
-        LazyFactor(OnceLock::from(Some(factor)))
+        LazyFactor(OnceLock::from(Some(InverseOfLower::new(&factor.lower))))
     }
 }
 
 impl LazyFactor {
     /// Replaces B by L⁻¹B. If the covariance has no factor, B becomes 0: rows that cannot be told apart say nothing, and
     /// the prior remains.
-    pub(crate) fn whiten(&self, b: &mut DMatrix<f64>, covariance: impl FnOnce() -> DMatrix<f64>) {
-        match self.0.get_or_init(|| Factor::new(covariance())) {
-            Some(factor) => factor.whiten(b),
-            None => b.fill(0.0),
+    pub(crate) fn whiten(&self, b: &mut Panel, covariance: impl FnOnce() -> DMatrix<f64>) {
+        let factor = || Factor::new(covariance()).map(|factor| InverseOfLower::new(&factor.lower));
+        match self.0.get_or_init(factor) {
+            Some(factor) => factor.apply(b),
+            None => b.clear(),
         }
     }
 }

@@ -1,9 +1,9 @@
 //! What the rows of a model say of a function: the part of its prior variance that they explain.
 
-use nalgebra::DMatrix;
-
 use crate::kernel::covariance::{Covariance, add_noise, among, jittered};
 use crate::kernel::factor::LazyFactor;
+use crate::kernel::panel::Panel;
+use crate::kernel::triangle::Upper;
 
 /// Turns covariances B of a function with a model's rows into numbers whose squares the rows explain of its variance.
 #[derive(Debug, Clone)]
@@ -11,12 +11,12 @@ pub(crate) enum Whitening {
     /// L⁻¹B with LLᵀ the covariance of the rows with their noise (S6), D being `noise_weights`, (M).
     Rows { noise_weights: Vec<f64>, factor: LazyFactor },
     /// TL⁻¹B with LLᵀ that among inducing rows (S34), and T, (m, m), an upper triangle, of (S37).
-    Inducing { shrinkage: DMatrix<f64>, factor: LazyFactor },
+    Inducing { shrinkage: Upper, factor: LazyFactor },
 }
 
 impl Whitening {
-    /// Replaces B, (M, k). `covariance` is of the model's rows, σ² its `noise` without the floor.
-    pub(crate) fn apply(&self, b: &mut DMatrix<f64>, covariance: &impl Covariance, amplitudes: &[f64], noise: f64) {
+    /// Replaces B, (M, k), in M² operations a column. `covariance` is of the model's rows, σ² its `noise` without the floor.
+    pub(crate) fn apply(&self, b: &mut Panel, covariance: &impl Covariance, amplitudes: &[f64], noise: f64) {
         match self {
             Whitening::Rows { noise_weights, factor } => factor.whiten(b, || {
                 let mut matrix = covariance.sum(amplitudes);
@@ -24,9 +24,9 @@ impl Whitening {
                 matrix
             }),
             Whitening::Inducing { shrinkage, factor } => {
-                let rows: Vec<usize> = (0..b.nrows()).collect();
+                let rows: Vec<usize> = (0..b.rows()).collect();
                 factor.whiten(b, || jittered(among(covariance, &rows, amplitudes)));
-                *b = shrinkage * &*b;
+                shrinkage.apply(b);
             }
         }
     }

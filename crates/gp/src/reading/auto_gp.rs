@@ -1,5 +1,5 @@
-use motion::{Demonstrations, LearnError, Learner, LearntPolicy, Policy, Potential, SampleIndex};
-use nalgebra::{DVectorView, DVectorViewMut};
+use motion::{Certainty, Demonstrations, LearnError, Learner, LearntPolicy, Policy, Potential, SampleIndex};
+use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 
@@ -209,6 +209,10 @@ impl Policy for AutoFit {
     fn action_into(&self, state: DVectorView<'_, f64>, action: DVectorViewMut<'_, f64>) {
         self.handed_out().action_into(state, action);
     }
+
+    fn actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
+        self.handed_out().actions(states)
+    }
 }
 
 impl LearntPolicy for AutoFit {
@@ -222,6 +226,10 @@ impl LearntPolicy for AutoFit {
 
     fn action_sd_into(&self, state: DVectorView<'_, f64>, deviation: DVectorViewMut<'_, f64>) -> bool {
         self.handed_out().action_sd_into(state, deviation)
+    }
+
+    fn certainty(&self, states: DMatrixView<'_, f64>) -> Certainty {
+        self.handed_out().certainty(states)
     }
 
     fn warnings(&self) -> Vec<String> {

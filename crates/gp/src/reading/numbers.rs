@@ -114,7 +114,7 @@ impl ReadingNumbers {
             trajectories: &trajectories,
             data,
             slope: (slope_left_out, &slope.actions(rows.states())),
-            direct: (direct_left_out, &direct.actions(rows.states())),
+            direct: (direct_left_out, &direct.moving_actions(rows.states().as_view())),
             direct_unit: direct.unit,
             shares: None,
         })

@@ -1,7 +1,16 @@
+use std::cell::RefCell;
+
 use nalgebra::{DMatrix, DVector, DVectorView};
 use serde::{Deserialize, Serialize};
 
 use crate::GpError;
+
+/// Dimensions of a state that stand on the stack.
+pub(crate) const FEW: usize = 32;
+
+thread_local! {
+    static MANY: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+}
 
 /// Scaled coordinates z = (x − μ)/S. One S for all axes: a gradient field stays one only under a common scale.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -42,6 +51,25 @@ impl Scaling {
     /// z of one state, (n).
     pub(crate) fn of_state(&self, state: DVectorView<'_, f64>) -> DVector<f64> {
         DVector::from_fn(state.len(), |k, _| self.coordinate(k, state[k]))
+    }
+
+    /// Evaluates at z of one state, (n). Allocates nothing up to [`FEW`] dimensions, and beyond once a thread.
+    pub(crate) fn with_coordinates<T>(&self, state: &[f64], evaluate: impl FnOnce(&[f64]) -> T) -> T {
+        let into = |z: &mut [f64]| {
+            for (k, (z, &x)) in z.iter_mut().zip(state).enumerate() {
+                *z = self.coordinate(k, x);
+            }
+        };
+        if state.len() <= FEW {
+            let mut few = [0.0; FEW];
+            into(&mut few[..state.len()]);
+            return evaluate(&few[..state.len()]);
+        }
+        MANY.with_borrow_mut(|many| {
+            many.resize(state.len(), 0.0);
+            into(many);
+            evaluate(many)
+        })
     }
 
     /// z_k.

@@ -7,6 +7,7 @@ use crate::inducing::pivots::{Pivots, pivots};
 use crate::kernel::block::Block;
 use crate::kernel::covariance::Covariance;
 use crate::kernel::slope_covariance::SlopeCovariance;
+use crate::kernel::triangle::Upper;
 use crate::kernel::whitening::Whitening;
 use crate::left_out::LeftOut;
 use crate::left_out::level::{Conditions, Level, kappas};
@@ -207,7 +208,7 @@ impl SlopeData {
         let of_rows = (self.z.select_columns(&rows), self.n.select_columns(&rows));
         let prior = (blocks.to_vec(), amplitudes.to_vec());
         let expansion = Expansion::new(scaled, prior, of_rows, weights.as_slice().to_vec());
-        let whitening = Whitening::Inducing { shrinkage, factor: factor.into() };
+        let whitening = Whitening::Inducing { shrinkage: Upper::new(&shrinkage), factor: factor.into() };
         Some((SlopeModel::new(expansion, noise, whitening), left_out, kappa))
     }
 

@@ -140,7 +140,7 @@ fn rotational_share(taken: &Candidate, states: &DMatrix<f64>) -> f64 {
     match taken.kind {
         ModelKind::Potential => 0.0,
         ModelKind::Helmholtz => {
-            let rotation = taken.model.rotational_part().expansion.actions(states);
+            let rotation = taken.model.rotational_part().expansion.actions(states.as_view());
             rotation.norm_squared() / taken.actions.norm_squared()
         }
     }

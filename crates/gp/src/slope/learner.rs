@@ -1,14 +1,15 @@
 //! The slope GP behind the traits of all learners.
 
-use motion::{Demonstrations, LearnError, Learner, LearntPolicy, Policy, Potential, SampleIndex};
-use nalgebra::{DVectorView, DVectorViewMut};
+use motion::{Certainty, Demonstrations, LearnError, Learner, LearntPolicy, Policy, Potential, SampleIndex};
+use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
 use rand::Rng;
 use serde::Serialize;
 
 use crate::FrontEnd;
+use crate::dimension::require;
 use crate::slope::fit::SlopeFit;
 use crate::slope::slope_gp::SlopeGp;
-use crate::support::support;
+use crate::support::only_deviation_into;
 
 /// The slope GP as a learner, with the front end that makes its rows.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -38,6 +39,10 @@ impl Policy for SlopeFit {
     fn action_into(&self, state: DVectorView<'_, f64>, action: DVectorViewMut<'_, f64>) {
         self.model.policy().action_into(state, action);
     }
+
+    fn actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
+        self.model.policy().actions(states)
+    }
 }
 
 impl LearntPolicy for SlopeFit {
@@ -46,16 +51,17 @@ impl LearntPolicy for SlopeFit {
     }
 
     fn support(&self, state: DVectorView<'_, f64>) -> f64 {
-        support(self.model.covariance(state).trace(), self.model.prior_covariance(state).trace())
+        self.certainty(state.as_view()).support[0]
     }
 
-    fn action_sd_into(&self, state: DVectorView<'_, f64>, mut deviation: DVectorViewMut<'_, f64>) -> bool {
-        let factor = self.report.variance_factor();
-        let variances = self.model.covariance(state).diagonal();
-        deviation.fill(0.0);
-        let mut moving = deviation.rows_mut(0, variances.len());
-        moving.copy_from(&variances.map(|variance| (factor * variance.max(0.0)).sqrt()));
-        true
+    fn action_sd_into(&self, state: DVectorView<'_, f64>, deviation: DVectorViewMut<'_, f64>) -> bool {
+        only_deviation_into(&self.certainty(state.as_view()), deviation)
+    }
+
+    fn certainty(&self, states: DMatrixView<'_, f64>) -> Certainty {
+        require(self.dim(), &[states.nrows()]);
+        let moving = self.model.expansion().moving();
+        self.model.variances(states).certainty(self.report.variance_factor(), moving, self.dim())
     }
 
     fn warnings(&self) -> Vec<String> {

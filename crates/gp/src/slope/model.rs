@@ -1,11 +1,13 @@
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, DVector, DVectorView};
+use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView};
 
+use crate::kernel::panel::Panel;
 use crate::kernel::slope_covariance::SlopeCovariance;
 use crate::kernel::whitening::Whitening;
 use crate::slope::expansion::Expansion;
 use crate::slope::policy::{SlopePolicy, SlopePotential};
+use crate::support::Variances;
 
 /// The slope GP conditioned on rows: mean (S7) and uncertainty (S13), (S14).
 #[derive(Debug, Clone)]
@@ -57,30 +59,61 @@ impl SlopeModel {
 
     /// Prior covariance of π(x), (n, n), in the same units.
     pub fn prior_covariance(&self, state: DVectorView<'_, f64>) -> DMatrix<f64> {
-        let (expansion, z) = (self.expansion(), self.expansion().scaling.of_state(state));
-        let moving = expansion.moving();
-        let basis = DMatrix::<f64>::identity(moving, moving);
-        let z = z.as_view();
-        let entry = |i: usize, j: usize| {
-            let each = expansion.blocks.iter().zip(&expansion.amplitudes);
-            each.map(|(block, a)| a * block.slope_slope(z, basis.column(i), z, basis.column(j))).sum::<f64>()
-        };
-        DMatrix::from_fn(moving, moving, entry) * expansion.speed.powi(2)
+        let expansion = self.expansion();
+        let z = expansion.scaling.of_state(state);
+        let (along, beside) = expansion.prior(z.as_slice());
+        let x = z.rows(0, expansion.moving());
+        let isotropic = DMatrix::from_diagonal_element(x.len(), x.len(), along);
+        (x * x.transpose() * beside + isotropic) * expansion.speed.powi(2)
     }
 
-    /// (S13) at several states: one solution of triangular systems for all.
+    /// (S13) at several states: one solution of triangular systems for all. A state alone gets the same bits as among others.
     pub(crate) fn covariances(&self, states: &[DVectorView<'_, f64>]) -> Vec<DMatrix<f64>> {
-        let (expansion, dim) = (self.expansion(), self.expansion().moving());
-        let mut whitened = DMatrix::zeros(expansion.z.ncols(), dim * states.len());
-        for (at, state) in states.iter().enumerate() {
-            whitened.columns_mut(at * dim, dim).copy_from(&expansion.policy_with_rows(*state));
-        }
-        self.whiten(&mut whitened);
+        let (dim, speed) = (self.expansion().moving(), self.expansion().speed);
+        let whitened = self.whitened(states);
+        let (norms, whitened) = (whitened.squared_norms(), whitened.into_matrix());
         let posterior = |(at, state): (usize, &DVectorView<'_, f64>)| {
             let known = whitened.columns(at * dim, dim);
-            self.prior_covariance(*state) - known.tr_mul(&known) * expansion.speed.powi(2)
+            let mut explained = known.tr_mul(&known);
+            // The bits of `variances`.
+            explained.set_diagonal(&DVectorView::from_slice(&norms[at * dim..], dim));
+            self.prior_covariance(*state) - explained * speed.powi(2)
         };
         states.iter().enumerate().map(posterior).collect()
+    }
+
+    /// C_x of (S13) at several states, what the rows explain of it: n columns a state.
+    fn whitened(&self, states: &[DVectorView<'_, f64>]) -> Panel {
+        let (expansion, dim) = (self.expansion(), self.expansion().moving());
+        let mut panel = Panel::zeros(self.weights().len(), dim * states.len());
+        for (at, state) in states.iter().enumerate() {
+            let covariances = expansion.policy_with_rows(state.as_slice());
+            for (axis, column) in covariances.as_slice().chunks_exact(covariances.nrows()).enumerate() {
+                panel.set_column(at * dim + axis, &column[..self.weights().len()]);
+            }
+        }
+        self.whiten(&mut panel);
+        panel
+    }
+
+    /// Posterior and prior variances of every component at states with their contexts (n + p, N), both (n, N), in squared units of the
+    /// state per second, in parallel: the diagonal of (S13). A state alone gets the same bits as among others. Costs n M² a state.
+    pub(crate) fn variances(&self, states: DMatrixView<'_, f64>) -> Variances {
+        let (dim, speed) = (self.expansion().moving(), self.expansion().speed);
+        Variances::of(states, dim, |states, prior, posterior| {
+            let known = self.whitened(&states.column_iter().collect::<Vec<_>>()).squared_norms();
+            for (state, prior) in states.column_iter().zip(prior.chunks_exact_mut(dim)) {
+                self.expansion().scaling.with_coordinates(state.as_slice(), |z| {
+                    let (along, beside) = self.expansion().prior(z);
+                    for (prior, z) in prior.iter_mut().zip(z) {
+                        *prior = (z * z * beside + along) * speed.powi(2);
+                    }
+                });
+            }
+            for ((posterior, prior), known) in posterior.iter_mut().zip(prior).zip(known) {
+                *posterior = *prior - known * speed.powi(2);
+            }
+        })
     }
 
     /// φ̂(x) − φ̂(x₀) and its variance (S14), in units of the state squared per second, and their square; none if there
@@ -89,7 +122,7 @@ impl SlopeModel {
         let (expansion, _) = (self.expansion(), self.potential.as_ref()?);
         let value = expansion.potential(x.as_slice()) - expansion.potential(from.as_slice());
         let (z, z0) = (expansion.scaling.of_state(x), expansion.scaling.of_state(from));
-        let mut known = expansion.potential_with_rows(&z) - expansion.potential_with_rows(&z0);
+        let mut known = Panel::of(&(expansion.potential_with_rows(&z) - expansion.potential_with_rows(&z0)));
         self.whiten(&mut known);
         let prior = |a: &DVector<f64>, b: &DVector<f64>| {
             let each = expansion.blocks.iter().zip(&expansion.amplitudes);
@@ -98,16 +131,16 @@ impl SlopeModel {
             })
             .sum::<f64>()
         };
-        let scaled = prior(&z, &z) + prior(&z0, &z0) - 2.0 * prior(&z, &z0) - known.norm_squared();
+        let scaled = prior(&z, &z) + prior(&z0, &z0) - 2.0 * prior(&z, &z0) - known.squared_norms()[0];
         Some((value, (expansion.speed * expansion.scaling.scale).powi(2) * scaled))
     }
 
     /// π̂ at each of the states with their contexts (n + p, M), (n, M).
     pub(crate) fn actions(&self, states: &DMatrix<f64>) -> DMatrix<f64> {
-        self.expansion().actions(states)
+        self.expansion().actions(states.as_view())
     }
 
-    fn whiten(&self, b: &mut DMatrix<f64>) {
+    fn whiten(&self, b: &mut Panel) {
         let Expansion { blocks, z, n, amplitudes, .. } = self.expansion();
         self.whitening.apply(b, &SlopeCovariance { blocks, z, n }, amplitudes, self.noise);
     }

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use motion::{Policy, Potential};
-use nalgebra::{DVectorView, DVectorViewMut};
+use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
 
 use crate::dimension::require;
 use crate::slope::expansion::Expansion;
@@ -29,6 +29,11 @@ impl Policy for SlopePolicy {
         let (moving, still) = action.as_mut_slice().split_at_mut(self.expansion.moving());
         self.expansion.action_into(state.as_slice(), moving);
         still.fill(0.0);
+    }
+
+    fn actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
+        require(self.dim(), &[states.nrows()]);
+        self.expansion.actions(states).resize_vertically(self.dim(), 0.0)
     }
 }
 

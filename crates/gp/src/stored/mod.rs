@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::GpError;
 use crate::kernel::factor::LazyFactor;
+use crate::kernel::triangle::Upper;
 use crate::kernel::whitening::Whitening;
 use crate::rows::MOST_ROWS;
 use crate::rows::scaling::Scaling;
@@ -86,10 +87,7 @@ impl<B> Stored<B> {
 fn of_whitening(whitening: &Whitening) -> (u32, Vec<f64>, Vec<f64>) {
     match whitening {
         Whitening::Rows { noise_weights, .. } => (ROWS, noise_weights.clone(), Vec::new()),
-        Whitening::Inducing { shrinkage, .. } => {
-            let column = |k: usize| (0..=k).map(move |row| shrinkage[(row, k)]);
-            (INDUCING, Vec::new(), (0..shrinkage.ncols()).flat_map(column).collect())
-        }
+        Whitening::Inducing { shrinkage, .. } => (INDUCING, Vec::new(), shrinkage.entries().collect()),
     }
 }
 
@@ -100,7 +98,7 @@ fn whitening(rows: usize, noise_weights: Vec<f64>, shrinkage: &[f64]) -> Whiteni
         return Whitening::Rows { noise_weights, factor };
     }
     let entry = |row: usize, k: usize| if row <= k { shrinkage[k * (k + 1) / 2 + row] } else { 0.0 };
-    Whitening::Inducing { shrinkage: DMatrix::from_fn(rows, rows, entry), factor }
+    Whitening::Inducing { shrinkage: Upper::new(&DMatrix::from_fn(rows, rows, entry)), factor }
 }
 
 fn stored(reason: &str) -> GpError {

@@ -121,20 +121,21 @@ impl pulp::WithSimd for Ask<'_> {
         let fields = (&self.sub_model.fields[..], &self.sub_model.table);
         activated.find(simd, self.settings, fields, (x, squared_radius), rest, None);
         terms.clear();
-        if S::F64_LANES > 1 && width.is_multiple_of(S::F64_LANES) {
-            self.answer::<Register<S>>(simd)
-        } else {
-            self.answer::<f64>(())
+        match width {
+            // Rows so short that their arithmetic is shorter than loops around it.
+            2 => self.answer::<f64>((), 2),
+            _ if S::F64_LANES > 1 && width.is_multiple_of(S::F64_LANES) => self.answer::<Register<S>>(simd, width),
+            _ => self.answer::<f64>((), width),
         }
     }
 }
 
 impl Ask<'_> {
+    /// `width` is that of the settings, passed so that it can be a constant.
     #[inline(always)]
-    fn answer<E: Element<f64>>(self, token: E::Token) -> Option<f64> {
+    fn answer<E: Element<f64>>(self, token: E::Token, width: usize) -> Option<f64> {
         let Ask { settings, sub_model, norm_out, cutoff, wanted, scratch, .. } = self;
         let Scratch { rows, activated, terms, vectors } = scratch;
-        let width = settings.width;
         let (x, rest) = rows.split_at_mut(width);
         let (mut nearest, mut sum_w, mut sum_wy) = (0.0, 0.0, 0.0);
         for ActivatedField { field, activation, .. } in activated.iter() {

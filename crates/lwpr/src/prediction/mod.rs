@@ -10,6 +10,7 @@ mod predictor;
 mod query;
 mod record;
 mod sweep;
+mod threads;
 
 use nalgebra::{DMatrix, DVector, DVectorView};
 
@@ -64,5 +65,10 @@ impl Prediction {
 
 /// Whether `x` is something to be asked: `n_in` finite numbers.
 fn is_query(x: DVectorView<'_, f64>, n_in: usize) -> bool {
-    x.len() == n_in && x.as_slice().iter().all(|x| x.is_finite())
+    x.len() == n_in && are_finite(x.as_slice())
+}
+
+/// Whether all numbers are finite, found without a branch for each.
+fn are_finite(numbers: &[f64]) -> bool {
+    numbers.iter().fold(true, |finite, number| finite & number.is_finite())
 }

@@ -7,7 +7,8 @@ use super::local_model::{LocalModel, LocalPrediction};
 use super::query::{Query, Scale};
 use super::record::PredictorRecord;
 use super::sweep::{Wanted, sweep};
-use super::{Prediction, is_query};
+use super::threads::worth_a_thread;
+use super::{Prediction, are_finite, is_query};
 use crate::error::Side;
 use crate::{Kernel, Lwpr, LwprError};
 
@@ -32,9 +33,6 @@ struct OutputFields {
     models: Vec<LocalModel>,
     table: FieldTable,
 }
-
-/// Numbers to compare, of queries with centres of fields, from which threads are worth their cost: some 200 µs of work.
-const WORTH_THREADS: usize = 1 << 18;
 
 impl Lwpr {
     /// An immutable snapshot that predicts. Fields whose activation is at most `cutoff` do not take part: 0.001 is a
@@ -103,10 +101,11 @@ impl Predictor {
     /// allocates and another frees, cost more than a small batch.
     fn each<T: Send>(&self, queries: usize, answer: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
         let fields: usize = self.outputs.iter().map(|output| output.models.len()).sum();
-        if queries * fields * self.n_in() < WORTH_THREADS {
+        let together = worth_a_thread(fields, self.n_in());
+        if queries < together {
             return (0..queries).map(answer).collect();
         }
-        (0..queries).into_par_iter().map(answer).collect()
+        (0..queries).into_par_iter().with_min_len(together).map(answer).collect()
     }
 
     /// Value, gradient, confidence and activation at `x`; `None` if some output has no trustworthy field activated above
@@ -162,16 +161,24 @@ impl Predictor {
     ) -> Result<usize, LwprError> {
         assert_eq!(xs.shape(), gradients.shape(), "there is one gradient for each query");
         self.check_queries(xs)?;
-        let columns = gradients.as_mut_slice().par_chunks_exact_mut(self.n_in()).enumerate();
-        let unsupported = columns.map(|(sample, gradient)| {
-            let mut column = DVectorViewMut::from_slice(gradient, self.n_in());
-            if self.value_and_gradient_into(xs.column(sample), output, column.as_view_mut()).is_some() {
-                return 0;
-            }
-            column.fill(f64::NAN);
-            1
-        });
-        Ok(unsupported.sum())
+        let together = worth_a_thread(self.outputs[output].models.len(), self.n_in());
+        let unsupported = |(part, gradients): (usize, &mut [f64])| -> usize {
+            let each = gradients.chunks_exact_mut(self.n_in()).enumerate();
+            each.map(|(k, gradient)| {
+                let wanted = Wanted { gradient: Some((&mut *gradient, 1)), ..Wanted::default() };
+                if self.ask_checked(xs.column(part * together + k), output, wanted).is_some() {
+                    return 0;
+                }
+                gradient.fill(f64::NAN);
+                1
+            })
+            .sum()
+        };
+        let gradients = gradients.as_mut_slice();
+        if xs.ncols() <= together {
+            return Ok(unsupported((0, gradients)));
+        }
+        Ok(gradients.par_chunks_mut(together * self.n_in()).enumerate().map(unsupported).sum())
     }
 
     /// Prediction of one output; `None` without support.
@@ -266,11 +273,14 @@ impl Predictor {
         self.norm_out.len()
     }
 
-    fn ask(&self, x: DVectorView<'_, f64>, output: usize, mut wanted: Wanted<'_>) -> Option<f64> {
+    fn ask(&self, x: DVectorView<'_, f64>, output: usize, wanted: Wanted<'_>) -> Option<f64> {
+        assert!(output < self.n_out(), "there is no such output");
+        if is_query(x, self.n_in()) { self.ask_checked(x, output, wanted) } else { None }
+    }
+
+    /// [`ask`](Self::ask) where `x` is known to be a query.
+    fn ask_checked(&self, x: DVectorView<'_, f64>, output: usize, mut wanted: Wanted<'_>) -> Option<f64> {
         let (table, norm_out) = (&self.outputs[output].table, self.norm_out[output]);
-        if !is_query(x, self.n_in()) {
-            return None;
-        }
         sweep(&Query { table, scale: &self.scale, x: x.as_slice(), norm_out }, &mut wanted)
     }
 
@@ -278,7 +288,7 @@ impl Predictor {
         if xs.nrows() != self.n_in() {
             return Err(LwprError::Dimension { side: Side::Input, found: xs.nrows(), expected: self.n_in() });
         }
-        for (sample, x) in xs.column_iter().enumerate() {
+        for (sample, x) in xs.column_iter().enumerate().filter(|(_, x)| !are_finite(x.as_slice())) {
             if let Some(dimension) = x.iter().position(|x| !x.is_finite()) {
                 return Err(LwprError::BadValue { side: Side::Input, sample, dimension, value: x[dimension] });
             }

@@ -1,6 +1,6 @@
 use std::fmt::Write as _;
 
-use gp::{DirectFormula, Fall, ScaledStates, Shape, SlopeFormula, Term};
+use gp::{DirectFormula, Exponential, Fall, Falling, ScaledStates, Series, SlopeFormula, Summand};
 
 use super::c::CSource;
 
@@ -41,7 +41,7 @@ pub(super) fn write_slope(
     c.columns("V", &slope.directions, text);
     c.vector("C", slope.constant.as_slice(), text);
     c.columns("Q", &slope.matrix.transpose(), text);
-    let terms: String = slope.terms.iter().map(|&term| slope_term(c, term, dim, &layout)).collect();
+    let terms = slope_terms(c, slope.falling, &layout);
     let potential = if slope.has_potential {
         let number = c.number(-slope.scaled.speed * slope.scaled.spread * per_unit);
         format!("if (phi) *phi = {number} * f;")
@@ -115,7 +115,7 @@ pub(super) fn write_direct(
     let layout = Layout::of(dim, direct.scaled.mean.len());
     write_scaled(c, &direct.scaled, text);
     c.columns("A", direct.weights, text);
-    let terms: String = direct.terms.iter().map(|&term| direct_term(c, term)).collect();
+    let terms = direct_terms(c, direct.falling);
     let [constant, linear, quadratic] = direct.trend.map(|factor| c.number(factor));
     let _ = write!(
         text,
@@ -172,52 +172,67 @@ fn ending(c: &CSource, all: &str, squared_radius: f64) -> String {
     c.ending(all, &format!("nearest <= {}", c.number(squared_radius)))
 }
 
-/// Adds a term's g and h (S3).
-fn slope_term(c: &CSource, term: Term, dim: usize, layout: &Layout) -> String {
-    let Term { fall, length, amplitude } = term;
-    let (exp, sqrt) = (c.function("exp"), c.function("sqrt"));
-    let squared = length * length;
-    match fall {
-        Fall::Shape(Shape::SquaredExponential) => {
-            let [amplitude, rate, bend] = c.numbers([amplitude, -0.5 / squared, 1.0 / squared]);
-            format!("        {{ real e = {amplitude} * {exp}({rate} * s); g += e; h += {bend} * e; }}\n")
-        }
-        Fall::Shape(Shape::Matern52) => {
-            let [five, length, amplitude, one, bend] = c.numbers([5.0, length, amplitude, 1.0, 5.0 / squared]);
-            let distance = format!("r = {sqrt}({five} * s) / {length}, e = {amplitude} * {exp}(-r)");
-            format!("        {{ real {distance}; g += ({one} + r) * e; h += {bend} * e; }}\n")
-        }
-        Fall::Shape(Shape::Matern32) => {
-            let rate = 3.0_f64.sqrt() / length;
-            let [amplitude, falling, rate, tiny] = c.numbers([amplitude, -rate, rate, 1e-12]);
-            let distance = format!("r = {sqrt}(s), e = {amplitude} * {exp}({falling} * r)");
-            format!("        {{ real {distance}; g += e; h += {rate} * e / (r > {tiny} ? r : {tiny}); }}\n")
-        }
-        Fall::DivergenceFree => {
-            let others = dim as f64 - 1.0;
-            let amplitude = amplitude / others.max(1.0);
-            let [squared, amplitude, rate, others, bend] = c.numbers([squared, amplitude, -0.5, others, 1.0 / squared]);
-            let distance = format!("r = s / {squared}, e = {amplitude} * {exp}({rate} * r)");
-            // Rotation is of the state alone.
-            let moving = if layout.has_context { format!("w / {squared}") } else { "r".to_owned() };
-            format!("        {{ real {distance}; g += e * ({others} - {moving}); h -= {bend} * e; }}\n")
-        }
-    }
+/// Adds the terms' g and h (S3) at the squared distance `s`, of which `w` lies along the state.
+fn slope_terms(c: &CSource, falling: &Falling, layout: &Layout) -> String {
+    let moving = if layout.has_context { "w" } else { "s" };
+    falling.series().iter().map(|series| slope_series(c, series, moving)).collect()
 }
 
-/// Adds a term's covariance.
-fn direct_term(c: &CSource, term: Term) -> String {
-    let Term { fall, length, amplitude } = term;
-    let (exp, sqrt) = (c.function("exp"), c.function("sqrt"));
-    let rate = c.number(-0.5 / (length * length));
-    let [amplitude, length, one, three, five] = c.numbers([amplitude, length, 1.0, 3.0, 5.0]);
-    let (square, polynomial) = match fall {
-        Fall::Shape(Shape::Matern52) => (five, format!("({one} + r + r * r / {three})")),
-        Fall::Shape(Shape::Matern32) => (three, format!("({one} + r)")),
-        Fall::Shape(Shape::SquaredExponential) | Fall::DivergenceFree => {
-            return format!("        c += {amplitude} * {exp}({rate} * s);\n");
+fn slope_series(c: &CSource, series: &Series, moving: &str) -> String {
+    let rough = series.exponential == Exponential::Matern32;
+    let (x, t) = arguments(series, moving);
+    let beside = if rough { format!(", b = {}", c.number(0.0)) } else { String::new() };
+    let mut text = opening(c, series, &beside);
+    for summand in &series.summands {
+        let [one, linear, bend] = c.numbers([summand.one, summand.linear, summand.bend]);
+        let factor = if summand.linear == 0.0 { one } else { format!("({one} + {linear} * {t})") };
+        let h = if rough { "b" } else { "h" };
+        let _ = writeln!(text, "            {}g += {factor} * e; {h} += {bend} * e;", exponential(c, summand, x));
+    }
+    if rough {
+        let tiny = c.number(1e-12);
+        let _ = writeln!(text, "            h += b / (r > {tiny} ? r : {tiny});");
+    }
+    text + "        }\n"
+}
+
+/// Adds the terms' covariances at the squared distance `s`.
+fn direct_terms(c: &CSource, falling: &Falling) -> String {
+    let written = |series: &Series| {
+        let (x, t) = arguments(series, "s");
+        let mut text = opening(c, series, "");
+        for summand in &series.summands {
+            let [one, linear, quadratic] = c.numbers([summand.one, summand.linear, summand.quadratic]);
+            let factor = match (summand.linear, summand.quadratic) {
+                (0.0, 0.0) => one,
+                (_, 0.0) => format!("({one} + {linear} * {t})"),
+                _ => format!("({one} + {t} * ({linear} + {quadratic} * {t}))"),
+            };
+            let _ = writeln!(text, "            {}c += {factor} * e;", exponential(c, summand, x));
         }
+        text + "        }\n"
     };
-    let distance = format!("r = {sqrt}({square} * s) / {length}");
-    format!("        {{ real {distance}; c += {amplitude} * {polynomial} * {exp}(-r); }}\n")
+    falling.series().iter().map(written).collect()
+}
+
+/// What a series' exponentials fall with, and what its terms are polynomials of.
+fn arguments<'a>(series: &Series, moving: &'a str) -> (&'static str, &'a str) {
+    if series.exponential == Exponential::Gaussian { ("s", moving) } else { ("r", "r") }
+}
+
+/// Opens a block of a series and declares what it needs.
+fn opening(c: &CSource, series: &Series, beside: &str) -> String {
+    let distance = match series.exponential {
+        Exponential::Gaussian => String::new(),
+        Exponential::Matern52 | Exponential::Matern32 => format!(", r = {}(s)", c.function("sqrt")),
+    };
+    format!("        {{\n            real e{distance}{beside};\n")
+}
+
+/// Makes `e` a term's exponential, from that of the term before where it can.
+fn exponential(c: &CSource, summand: &Summand, x: &str) -> String {
+    match summand.rate {
+        Some(rate) => format!("e = {}({} * {x}); ", c.function("exp"), c.number(rate)),
+        None => "e *= e; ".repeat(summand.squarings as usize),
+    }
 }

@@ -1,5 +1,6 @@
 use gp::ScaledStates;
-use nalgebra::DVector;
+use motion::LearntPolicy as _;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::Model;
@@ -20,11 +21,12 @@ pub(super) fn squared_radius(model: &Model, scaled: &ScaledStates<'_>) -> f64 {
     let model = Model { chosen_context: crate::model::nowhere(), ..model.clone() };
     let scale: Vec<f64> = model.inputs().map(|channel| channel.scale).collect();
     let (policy, bounds) = (model.policy(), model.bounds());
-    let evaluated = (1..=STATES).into_par_iter().map(|index| {
-        let state = between(&bounds, index);
+    let states: Vec<DVector<f64>> = (1..=STATES).map(|index| between(&bounds, index)).collect();
+    let supports = policy.certainty(DMatrix::from_columns(&states).as_view()).support;
+    let evaluated = states.par_iter().zip(supports).map(|(state, support)| {
         let z = DVector::from_fn(state.len(), |k, _| (state[k] * scale[k] - scaled.mean[k]) / scaled.spread);
         let nearest = scaled.z.column_iter().map(|row| (row - &z).norm_squared()).fold(f64::INFINITY, f64::min);
-        (nearest, policy.is_supported(state.as_view()))
+        (nearest, support >= policy.least_support())
     });
     let mut evaluated: Vec<_> = evaluated.collect();
     evaluated.sort_by(|a, b| a.0.total_cmp(&b.0));

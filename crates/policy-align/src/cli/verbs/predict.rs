@@ -2,8 +2,8 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use motion::{LearntPolicy as _, Policy as _};
-use nalgebra::{DMatrix, DVector, DVectorView};
+use motion::{Certainty, LearntPolicy as _, Policy as _};
+use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView};
 use policy_align::{Model, ModelPolicy, StateChannel};
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -67,18 +67,25 @@ struct Prediction {
     supported: bool,
 }
 
+/// States predicted together.
+const TOGETHER: usize = 64;
+
 impl Prediction {
-    fn of(policy: &ModelPolicy<'_>, state: DVectorView<'_, f64>) -> Self {
-        let supported = policy.is_supported(state);
-        let mut deviation = DVector::zeros(state.len());
-        let known = supported && policy.action_sd_into(state, deviation.as_view_mut());
-        Prediction {
-            action: policy.action(state),
-            potential: policy.potential().filter(|_| supported).map(|potential| potential.value(state)),
-            deviation: known.then_some(deviation),
-            support: policy.support(state),
-            supported,
-        }
+    /// Of some states (n, N).
+    fn of(policy: &ModelPolicy<'_>, states: DMatrixView<'_, f64>) -> Vec<Self> {
+        let (actions, Certainty { support, deviations }) = (policy.actions(states), policy.certainty(states));
+        let one = |(at, support): (usize, f64)| {
+            let supported = support >= policy.least_support();
+            let deviation = deviations.as_ref().map(|deviations| deviations.column(at).into_owned());
+            Prediction {
+                action: actions.column(at).into_owned(),
+                potential: policy.potential().filter(|_| supported).map(|phi| phi.value(states.column(at))),
+                deviation: deviation.filter(|_| supported),
+                support,
+                supported,
+            }
+        };
+        support.into_iter().enumerate().map(one).collect()
     }
 }
 
@@ -91,15 +98,15 @@ impl Predict {
             (None, None) => return Err(Failure::usage("no state was given", "predict", "--at 0.3,1.2")),
         };
         let policy = model.policy();
-        let columns: Vec<usize> = (0..states.ncols()).collect();
-        let bar = session.bar(columns.len() as u64, "predicting  {bar:30} {pos} of {len}, {eta} left");
-        let predictions: Vec<Prediction> = columns
-            .par_iter()
-            .map(|&column| {
-                bar.inc(1);
-                Prediction::of(&policy, states.column(column))
-            })
-            .collect();
+        let bar = session.bar(states.ncols() as u64, "predicting  {bar:30} {pos} of {len}, {eta} left");
+        let blocks: Vec<usize> = (0..states.ncols()).step_by(TOGETHER).collect();
+        let predict = |&first: &usize| {
+            let block = states.columns(first, TOGETHER.min(states.ncols() - first));
+            let predictions = Prediction::of(&policy, block);
+            bar.inc(block.ncols() as u64);
+            predictions
+        };
+        let predictions: Vec<Prediction> = blocks.par_iter().flat_map_iter(predict).collect();
         bar.finish_and_clear();
         let predictions = self.with_outside(predictions)?;
         if session.json {

@@ -1,0 +1,117 @@
+//! The conditioned model, and how it is evaluated.
+
+mod sums;
+
+use motion::Policy;
+use nalgebra::{DMatrix, DMatrixView, DVectorView, DVectorViewMut};
+use pulp::Arch;
+
+use crate::dimension::require;
+use crate::kernel::direct_block::{DirectBlock, DirectCovariance, trend};
+use crate::kernel::falling::Falling;
+use crate::kernel::panel::Panel;
+use crate::kernel::row_table::{RowTable, TOGETHER};
+use crate::kernel::term::Term;
+use crate::kernel::whitening::Whitening;
+use crate::rows::scaling::Scaling;
+use crate::support::{Variances, each_action};
+use sums::{Action, CovariancesWithRows};
+
+/// The direct GP conditioned on rows: û and its variance (R4).
+#[derive(Debug, Clone)]
+pub struct DirectModel {
+    pub(crate) scaling: Scaling,
+    pub(crate) unit: f64,
+    pub(crate) blocks: Vec<DirectBlock>,
+    pub(crate) amplitudes: Vec<f64>,
+    pub(crate) z: DMatrix<f64>,
+    /// A, (n, M).
+    pub(crate) weights: DMatrix<f64>,
+    pub(crate) noise: f64,
+    pub(crate) whitening: Whitening,
+    /// z' and A of every row.
+    table: RowTable,
+    pub(crate) falling: Falling,
+    /// Of [`trend`].
+    trend: [f64; 3],
+}
+
+impl DirectModel {
+    pub(crate) fn new(
+        (scaling, unit): (Scaling, f64),
+        (blocks, amplitudes): (Vec<DirectBlock>, Vec<f64>),
+        z: DMatrix<f64>,
+        weights: DMatrix<f64>,
+        (noise, whitening): (f64, Whitening),
+    ) -> Self {
+        let table = RowTable::new(&[&z, &weights]);
+        let falling = Falling::of_values(&Term::of_velocities(&blocks, &amplitudes, z.nrows()));
+        let trend = trend(&blocks, &amplitudes, z.nrows());
+        DirectModel { scaling, unit, blocks, amplitudes, z, weights, noise, whitening, table, falling, trend }
+    }
+
+    /// (R4): variance of every component at a state, in squared units of the state per second. Costs M².
+    pub fn variance(&self, state: DVectorView<'_, f64>) -> f64 {
+        require(self.dim(), &[state.len()]);
+        self.variances(state.as_view()).posterior[0]
+    }
+
+    /// Prior variance of every component at a state, in the same units.
+    pub fn prior_variance(&self, state: DVectorView<'_, f64>) -> f64 {
+        let z = self.scaling.of_state(state);
+        let each = self.blocks.iter().zip(&self.amplitudes);
+        let scaled: f64 = each.map(|(block, amplitude)| amplitude * block.covariance(z.as_view(), z.as_view())).sum();
+        self.unit.powi(2) * scaled
+    }
+
+    /// Posterior (R4) and prior variance, the same of every component, at states with their contexts (n + p, N), both (1, N), in
+    /// parallel. A state alone gets the same bits as among others. Costs M² a state.
+    pub(crate) fn variances(&self, states: DMatrixView<'_, f64>) -> Variances {
+        Variances::of(states, 1, |states, prior, posterior| {
+            let mut known = Panel::zeros(self.z.ncols(), states.ncols());
+            let mut covariances = vec![0.0; self.z.ncols().next_multiple_of(TOGETHER)];
+            for (at, state) in states.column_iter().enumerate() {
+                self.scaling.with_coordinates(state.as_slice(), |z| {
+                    Arch::new().dispatch(CovariancesWithRows { model: self, z, covariances: &mut covariances });
+                });
+                known.set_column(at, &covariances[..self.z.ncols()]);
+            }
+            let covariance = DirectCovariance { blocks: &self.blocks, z: &self.z };
+            self.whitening.apply(&mut known, &covariance, &self.amplitudes, self.noise);
+            for (at, known) in known.squared_norms().into_iter().enumerate() {
+                prior[at] = self.prior_variance(states.column(at));
+                posterior[at] = prior[at] - self.unit.powi(2) * known;
+            }
+        })
+    }
+
+    /// û at each of the states with their contexts (n + p, N), (n, N), in parallel: the same bits as one by one.
+    pub(crate) fn moving_actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
+        each_action(self.weights.nrows(), states, |state, action| self.moving_action_into(state, action))
+    }
+
+    fn moving_action_into(&self, state: &[f64], action: &mut [f64]) {
+        self.scaling.with_coordinates(state, |z| Arch::new().dispatch(Action { model: self, z, place: action }));
+        for action in action {
+            *action *= self.unit;
+        }
+    }
+}
+
+impl Policy for DirectModel {
+    fn dim(&self) -> usize {
+        self.z.nrows()
+    }
+
+    fn action_into(&self, state: DVectorView<'_, f64>, mut action: DVectorViewMut<'_, f64>) {
+        require(self.dim(), &[state.len(), action.len()]);
+        let (moving, still) = action.as_mut_slice().split_at_mut(self.weights.nrows());
+        self.moving_action_into(state.as_slice(), moving);
+        still.fill(0.0);
+    }
+
+    fn actions(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
+        require(self.dim(), &[states.nrows()]);
+        self.moving_actions(states).resize_vertically(self.dim(), 0.0)
+    }
+}

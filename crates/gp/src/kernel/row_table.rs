@@ -1,0 +1,60 @@
+#![allow(clippy::inline_always, reason = "vector instructions reach only what is inlined")]
+
+use lanes::{LANES, Lanes, Register};
+use nalgebra::DMatrix;
+use pulp::Simd;
+
+/// Groups of rows that stand together.
+pub(crate) const GROUPS: usize = 4;
+/// Rows that stand together.
+pub(crate) const TOGETHER: usize = GROUPS * LANES;
+
+/// One number of each of [`TOGETHER`] rows, at cache lines: a register loaded across the end of one takes twice as long.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C, align(64))]
+pub(crate) struct Abreast([Lanes; GROUPS]);
+
+/// What a prediction needs of the rows, in its order: for [`TOGETHER`] rows all their numbers, then for the next. What is missing
+/// at the end is 0.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct RowTable {
+    numbers: Vec<Abreast>,
+    /// Numbers of a row.
+    width: usize,
+}
+
+impl RowTable {
+    /// A row has the numbers of a column of each part, (n, M).
+    pub(crate) fn new(parts: &[&DMatrix<f64>]) -> Self {
+        let (count, width) = (parts[0].ncols(), parts.iter().map(|part| part.nrows()).sum());
+        let mut numbers = vec![Abreast([[0.0; LANES]; GROUPS]); count.div_ceil(TOGETHER) * width];
+        for row in 0..count {
+            let numbers = &mut numbers[row / TOGETHER * width..][..width];
+            let values = parts.iter().flat_map(|part| part.column(row).into_iter());
+            for (numbers, value) in numbers.iter_mut().zip(values) {
+                numbers.0[row % TOGETHER / LANES][row % LANES] = *value;
+            }
+        }
+        RowTable { numbers, width }
+    }
+
+    /// All rows, [`TOGETHER`] at a time.
+    #[inline(always)]
+    pub(crate) fn together(&self) -> impl Iterator<Item = &[Abreast]> {
+        self.numbers.chunks_exact(self.width)
+    }
+}
+
+impl Abreast {
+    /// Register `part` of U groups from `first` on.
+    #[inline(always)]
+    pub(crate) fn load<S: Simd, const U: usize>(&self, simd: S, first: usize, part: usize) -> [Register<S>; U] {
+        std::array::from_fn(|u| Register::load(simd, &self.0[first + u], part))
+    }
+}
+
+/// Where registers of U groups begin that hold [`TOGETHER`] rows.
+#[inline(always)]
+pub(crate) fn firsts<const U: usize>() -> impl Iterator<Item = usize> {
+    (0..GROUPS).step_by(U)
+}
