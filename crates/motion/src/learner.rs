@@ -1,6 +1,6 @@
 use std::fmt::Debug;
 
-use nalgebra::{DVectorView, DVectorViewMut};
+use nalgebra::{DMatrix, DVectorView, DVectorViewMut};
 use rand::Rng;
 
 use crate::{Demonstrations, Policy, Potential, SampleIndex};
@@ -38,10 +38,25 @@ pub trait LearntPolicy: Policy + Debug {
     /// process 1 − posterior / prior variance.
     fn support(&self, state: DVectorView<'_, f64>) -> f64;
 
+    /// The support of each of some states, (n, N), in their order: to rounding that of one after the other. A learner for which many
+    /// cost less together than alone says how.
+    fn supports(&self, states: &DMatrix<f64>) -> Vec<f64> {
+        states.column_iter().map(|state| self.support(state)).collect()
+    }
+
     /// Writes the standard deviation of every component of the action, (n), into `deviation`, in units of the state per
     /// second, and returns true; returns false and writes nothing if the learner has no estimate.
     fn action_sd_into(&self, _state: DVectorView<'_, f64>, _deviation: DVectorViewMut<'_, f64>) -> bool {
         false
+    }
+
+    /// The standard deviations of every component of the action, (n, N), at each of some states, (n, N), likewise; none if the learner
+    /// has no estimate.
+    fn action_sds(&self, states: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+        let mut deviations = DMatrix::zeros(states.nrows(), states.ncols());
+        let each = states.column_iter().zip(deviations.column_iter_mut());
+        let known = each.fold(true, |known, (state, deviation)| self.action_sd_into(state, deviation) && known);
+        known.then_some(deviations)
     }
 
     /// The trajectories used for learning, ascending; none if all were.

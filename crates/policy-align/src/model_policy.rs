@@ -1,7 +1,7 @@
 use std::cell::RefCell;
 
 use motion::{LearntPolicy, Policy, Potential};
-use nalgebra::{DVector, DVectorView, DVectorViewMut};
+use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut};
 
 use crate::{Learnt, Model, StateChannel};
 
@@ -76,6 +76,17 @@ impl ModelPolicy<'_> {
         self.support(state) >= self.least_support
     }
 
+    /// Whether each of some states (n, N) is, by [`LearntPolicy::supports`].
+    pub fn are_supported(&self, states: &DMatrix<f64>) -> Vec<bool> {
+        self.supports(states).into_iter().map(|support| support >= self.least_support).collect()
+    }
+
+    /// Whether no channel of a state, nor of the context, is beyond [`Model::bounds`].
+    fn is_within(&self, state: DVectorView<'_, f64>) -> bool {
+        let inputs = state.iter().chain(&self.inputs.context);
+        self.bounds.iter().zip(inputs).all(|([low, high], x)| (low..=high).contains(&x))
+    }
+
     /// The smallest support of a known state.
     pub fn least_support(&self) -> f64 {
         self.least_support
@@ -100,9 +111,21 @@ impl LearntPolicy for ModelPolicy<'_> {
 
     /// As of the policy that was learnt; 0 beyond [`Model::bounds`].
     fn support(&self, state: DVectorView<'_, f64>) -> f64 {
-        let inputs = state.iter().chain(&self.inputs.context);
-        let within = self.bounds.iter().zip(inputs).all(|([low, high], x)| (low..=high).contains(&x));
-        if within { self.inputs.scaled(state, |state| self.learnt.support(state)) } else { 0.0 }
+        if self.is_within(state) { self.inputs.scaled(state, |state| self.learnt.support(state)) } else { 0.0 }
+    }
+
+    fn supports(&self, states: &DMatrix<f64>) -> Vec<f64> {
+        let within: Vec<usize> = (0..states.ncols()).filter(|&at| self.is_within(states.column(at))).collect();
+        let mut supports = vec![0.0; states.ncols()];
+        if !within.is_empty() {
+            let scaled = |&at: &usize| {
+                self.inputs.scaled(states.column(at), |state| DVector::from_column_slice(state.as_slice()))
+            };
+            let scaled = DMatrix::from_columns(&within.iter().map(scaled).collect::<Vec<_>>());
+            let of_learnt = self.learnt.supports(&scaled);
+            within.iter().zip(of_learnt).for_each(|(&at, support)| supports[at] = support);
+        }
+        supports
     }
 
     fn action_sd_into(&self, state: DVectorView<'_, f64>, mut deviation: DVectorViewMut<'_, f64>) -> bool {

@@ -1,7 +1,8 @@
 //! What acted on a part of a movement: nothing, or a constraint of some rank in some space.
 
 use super::view::{Directions, Disagreement, View};
-use crate::stretches::segmentation::{DIMENSION, PARAMETER, Part, SEGMENT, SPARE};
+use crate::stretches::partition::{Costs, Growing, Part, SPARE};
+use crate::stretches::segmentation::{DIMENSION, PARAMETER, SEGMENT};
 
 /// Nothing, or a constraint that is constant in a space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,14 +19,23 @@ pub(super) struct Movement {
 }
 
 impl Movement {
-    /// (S28): the least cost of samples `begin..end` and what it is of.
-    pub(super) fn cheapest(&self, begin: usize, end: usize) -> (f64, Hypothesis) {
+    /// (S28): the least cost of samples `begin..end` and what it is of; and, of the recorded coordinates, minus twice the log likelihood
+    /// of each rank from 1 on.
+    pub(super) fn cheapest(&self, begin: usize, end: usize) -> ((f64, Hypothesis), Vec<f64>) {
         let none = self.disagreement.square(begin, end);
         let mut best = (none + SEGMENT, Hypothesis::Free);
+        let mut of_ranks = Vec::new();
         for (space, view) in self.views.iter().enumerate() {
             let Some(view) = view else { continue };
             let directions = view.directions(begin, end, self.disagreement.noise);
             let dim = directions.values.len();
+            if view.is_recorded() {
+                let sums = directions.values.iter().scan(none, |sum, value| {
+                    *sum += value;
+                    Some(*sum)
+                });
+                of_ranks = sums.collect();
+            }
             for rank in 1..=dim {
                 if directions.values[rank - 1] >= 0.0 {
                     break;
@@ -40,7 +50,16 @@ impl Movement {
                 }
             }
         }
-        best
+        (best, of_ranks)
+    }
+
+    /// Of all parts, for one search.
+    pub(super) fn costs(&self) -> MovementCosts<'_> {
+        let recorded = self.views.iter().flatten().filter(|view| view.is_recorded());
+        let varies = recorded.map(View::variation).sum::<f64>() / self.disagreement.noise;
+        let left = Growing::new(self.disagreement.weights.len(), self.disagreement.total() + varies);
+        let bounded = self.views.iter().flatten().all(View::is_recorded);
+        MovementCosts { movement: self, left, bounded }
     }
 
     /// What A of so many rows and b cost: less where velocities are known better than the policy, since one that does not vary is
@@ -71,6 +90,35 @@ impl Movement {
         };
         let freedom = of.nrows() - rank;
         if freedom == 0 { Vec::new() } else { squares.into_iter().map(|square| square / freedom as f64).collect() }
+    }
+}
+
+/// (S28) of all parts of a movement.
+pub(super) struct MovementCosts<'a> {
+    movement: &'a Movement,
+    /// Minus twice the log likelihood of each rank in the recorded coordinates: each is the least of a sum of squares.
+    left: Growing,
+    /// Whether no other space is looked at.
+    bounded: bool,
+}
+
+impl Costs for MovementCosts<'_> {
+    type Kind = Hypothesis;
+
+    fn cost(&mut self, begin: usize, end: usize) -> (f64, Hypothesis) {
+        let (cheapest, of_ranks) = self.movement.cheapest(begin, end);
+        self.left.see(begin, &of_ranks);
+        cheapest
+    }
+
+    fn at_least(&self, begin: usize, end: usize) -> f64 {
+        if !self.bounded {
+            return 0.0;
+        }
+        let dim = self.movement.disagreement.of.nrows();
+        let of = |rank| self.left.at_least(begin, rank - 1) + self.movement.price((begin, end), dim, rank) + SEGMENT;
+        let possible = (1..=dim).filter(|rank| end - begin + rank >= dim + SPARE);
+        possible.map(of).fold(self.movement.disagreement.square(begin, end) + SEGMENT, f64::min)
     }
 }
 

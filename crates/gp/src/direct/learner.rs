@@ -1,7 +1,7 @@
 //! The direct GP behind the traits of all learners.
 
 use motion::{Demonstrations, LearnError, Learner, LearntPolicy, Policy, SampleIndex};
-use nalgebra::{DVectorView, DVectorViewMut};
+use nalgebra::{DMatrix, DVectorView, DVectorViewMut};
 use rand::Rng;
 use serde::Serialize;
 
@@ -44,14 +44,33 @@ impl LearntPolicy for DirectFit {
         support(self.model.variance(state), self.model.prior_variance(state))
     }
 
-    fn action_sd_into(&self, state: DVectorView<'_, f64>, mut deviation: DVectorViewMut<'_, f64>) -> bool {
-        deviation.fill(0.0);
-        let mut moving = deviation.rows_mut(0, self.model.weights.nrows());
-        moving.fill((self.z_squared.max(1.0) * self.model.variance(state).max(0.0)).sqrt());
+    fn supports(&self, states: &DMatrix<f64>) -> Vec<f64> {
+        let each = states.column_iter().zip(self.model.variances(states));
+        each.map(|(state, variance)| support(variance, self.model.prior_variance(state))).collect()
+    }
+
+    fn action_sd_into(&self, state: DVectorView<'_, f64>, deviation: DVectorViewMut<'_, f64>) -> bool {
+        self.deviation_into(self.model.variance(state), deviation);
         true
+    }
+
+    fn action_sds(&self, states: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+        let mut deviations = DMatrix::zeros(states.nrows(), states.ncols());
+        let each = deviations.column_iter_mut().zip(self.model.variances(states));
+        each.for_each(|(deviation, variance)| self.deviation_into(variance, deviation));
+        Some(deviations)
     }
 
     fn warnings(&self) -> Vec<String> {
         self.doubts()
+    }
+}
+
+impl DirectFit {
+    /// Of a variance (R4), with 0 along the context.
+    fn deviation_into(&self, variance: f64, mut deviation: DVectorViewMut<'_, f64>) {
+        deviation.fill(0.0);
+        let mut moving = deviation.rows_mut(0, self.model.weights.nrows());
+        moving.fill((self.z_squared.max(1.0) * variance.max(0.0)).sqrt());
     }
 }

@@ -11,6 +11,9 @@ use crate::kernel::direct_block::{DirectBlock, DirectCovariance, combined, covar
 use crate::kernel::whitening::Whitening;
 use crate::rows::scaling::Scaling;
 
+/// States whose triangular systems are solved together.
+const TOGETHER: usize = 32;
+
 /// The direct GP conditioned on rows: û and its variance (R4).
 #[derive(Debug, Clone)]
 pub struct DirectModel {
@@ -41,16 +44,30 @@ impl DirectModel {
 
     /// (R4): variance of every component at a state, in squared units of the state per second. Costs M².
     pub fn variance(&self, state: DVectorView<'_, f64>) -> f64 {
-        require(self.dim(), &[state.len()]);
-        let z = self.scaling.of_state(state);
-        let mut known = DMatrix::zeros(self.z.ncols(), 1);
-        for (chunk, place) in known.as_mut_slice().chunks_mut(CHUNK).enumerate() {
-            let values = covariances_with(z.as_slice(), self.states.get(chunk), &self.blocks, &self.amplitudes);
-            place.copy_from_slice(&values[..place.len()]);
+        self.variances_of(&[state]).remove(0)
+    }
+
+    /// The same at each of some states, (n + p, N).
+    pub(crate) fn variances(&self, states: &DMatrix<f64>) -> Vec<f64> {
+        let states: Vec<DVectorView<'_, f64>> = states.column_iter().collect();
+        states.chunks(TOGETHER).flat_map(|states| self.variances_of(states)).collect()
+    }
+
+    /// One solution of triangular systems for all.
+    fn variances_of(&self, states: &[DVectorView<'_, f64>]) -> Vec<f64> {
+        let mut known = DMatrix::zeros(self.z.ncols(), states.len());
+        for (state, mut known) in states.iter().zip(known.column_iter_mut()) {
+            require(self.dim(), &[state.len()]);
+            let z = self.scaling.of_state(*state);
+            for (chunk, place) in known.as_mut_slice().chunks_mut(CHUNK).enumerate() {
+                let values = covariances_with(z.as_slice(), self.states.get(chunk), &self.blocks, &self.amplitudes);
+                place.copy_from_slice(&values[..place.len()]);
+            }
         }
         let covariance = DirectCovariance { blocks: &self.blocks, z: &self.z };
         self.whitening.apply(&mut known, &covariance, &self.amplitudes, self.noise);
-        self.prior_variance(state) - self.unit.powi(2) * known.norm_squared()
+        let each = states.iter().zip(known.column_iter());
+        each.map(|(state, known)| self.prior_variance(*state) - self.unit.powi(2) * known.norm_squared()).collect()
     }
 
     /// Prior variance of every component at a state, in the same units.

@@ -28,6 +28,11 @@ impl Block {
         !matches!(self, Block::Skew | Block::DivergenceFree(_))
     }
 
+    /// Whether covariances fall with distance: those of the trend do not.
+    pub(crate) fn falls(self) -> bool {
+        matches!(self, Block::Potential(..) | Block::DivergenceFree(_))
+    }
+
     /// (S3): covariance of the slopes along `n` at `z` and along `n2` at `z2`.
     pub fn slope_slope(
         self,

@@ -151,6 +151,69 @@ impl WithSimd for SlopesWith<'_> {
     }
 }
 
+/// Covariances of the policy at z with the slopes of a chunk of rows, one chunk for each of its components (n): those along the unit
+/// vectors, at the cost of one.
+pub(crate) fn policy_with(
+    z: &[f64],
+    rows: (&[Chunk], &[Chunk]),
+    blocks: &[Block],
+    amplitudes: &[f64],
+    components: &mut [Chunk],
+) {
+    Arch::new().dispatch(PolicyWith { z, states: rows.0, directions: rows.1, blocks, amplitudes, components });
+}
+
+struct PolicyWith<'a> {
+    z: &'a [f64],
+    states: &'a [Chunk],
+    directions: &'a [Chunk],
+    blocks: &'a [Block],
+    amplitudes: &'a [f64],
+    components: &'a mut [Chunk],
+}
+
+impl WithSimd for PolicyWith<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let [mut squared, mut beta, mut zz, mut zn] = [[0.0; CHUNK]; 4];
+        for (k, &z) in self.z[..self.directions.len()].iter().enumerate() {
+            let (states, directions) = (&self.states[k], &self.directions[k]);
+            for lane in 0..CHUNK {
+                let (z2, n2) = (states[lane], directions[lane]);
+                let apart = z - z2;
+                squared[lane] += apart * apart;
+                beta[lane] += n2 * apart;
+                zz[lane] += z * z2;
+                zn[lane] += z * n2;
+            }
+        }
+        let (moving, xx) = (squared, zz);
+        let dim = self.directions.len();
+        for (&z, states) in self.z[dim..].iter().zip(&self.states[dim..]) {
+            for lane in 0..CHUNK {
+                let apart = z - states[lane];
+                squared[lane] += apart * apart;
+                zz[lane] += z * states[lane];
+            }
+        }
+        let sizes = (dim, self.z.len());
+        let (g, h) = falling(self.blocks, self.amplitudes, sizes, (&squared, &moving));
+        let [linear, quadratic, skew] = trend(self.blocks, self.amplitudes, sizes);
+        for (k, component) in self.components.iter_mut().enumerate() {
+            let (states, directions) = (&self.states[k], &self.directions[k]);
+            for lane in 0..CHUNK {
+                let (z2, n2) = (states[lane], directions[lane]);
+                let (turned, along) = (n2 * zz[lane], z2 * zn[lane]);
+                let rotated = n2 * xx[lane] - along;
+                component[lane] = (g[lane] * n2 - h[lane] * (self.z[k] - z2) * beta[lane])
+                    + (linear * n2 + quadratic * (turned + along) + skew * rotated);
+            }
+        }
+    }
+}
+
 /// Σ a_b g_b and Σ a_b h_b over the blocks that fall with distance: of state and context, and of the state alone, (n) of (n + p).
 #[inline(always)]
 pub(crate) fn falling(
@@ -193,4 +256,43 @@ pub(crate) fn trend(blocks: &[Block], amplitudes: &[f64], (moving_dim, dim): (us
         }
     }
     factors
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+    use proptest::prelude::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+    use crate::kernel::family::{Family, Trend};
+
+    proptest! {
+        /// The policy's components are its slopes along the unit vectors, bit for bit, with and without a context.
+        #[test]
+        fn components_are_slopes_along_axes(
+            family in 0usize..3,
+            moving in 1usize..5,
+            context in 0usize..3,
+            count in 1usize..150,
+            seed in any::<u64>(),
+        ) {
+            let rng = &mut ChaCha8Rng::seed_from_u64(seed);
+            let mut drawn = |rows, columns| DMatrix::from_fn(rows, columns, |_, _| rng.random_range(-1.5..1.5));
+            let (z, n, at) = (drawn(moving + context, count), drawn(moving, count), drawn(moving + context, 1));
+            let blocks = Family::ALL[family].helmholtz_blocks(Trend::Quadratic);
+            let amplitudes: Vec<f64> = drawn(blocks.len(), 1).iter().map(|a: &f64| a.abs()).collect();
+            let (states, directions, axes) = (Chunks::new(&z), Chunks::new(&n), DMatrix::<f64>::identity(moving, moving));
+            for chunk in 0..states.len() {
+                let rows = (states.get(chunk), directions.get(chunk));
+                let mut components = vec![[0.0; CHUNK]; moving];
+                policy_with(at.as_slice(), rows, &blocks, &amplitudes, &mut components);
+                for (axis, component) in axes.column_iter().zip(&components) {
+                    let slopes = slopes_with((at.column(0), axis), rows, &blocks, &amplitudes);
+                    prop_assert_eq!(&slopes, component);
+                }
+            }
+        }
+    }
 }

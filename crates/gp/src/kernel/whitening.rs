@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use crate::kernel::covariance::{Covariance, add_noise, among, jittered};
-use crate::kernel::factor::LazyFactor;
+use crate::kernel::factor::{LazyFactor, upper_product};
 
 /// Turns covariances B of a function with a model's rows into numbers whose squares the rows explain of its variance.
 #[derive(Debug, Clone)]
@@ -26,7 +26,7 @@ impl Whitening {
             Whitening::Inducing { shrinkage, factor } => {
                 let rows: Vec<usize> = (0..b.nrows()).collect();
                 factor.whiten(b, || jittered(among(covariance, &rows, amplitudes)));
-                *b = shrinkage * &*b;
+                *b = upper_product(shrinkage, b);
             }
         }
     }

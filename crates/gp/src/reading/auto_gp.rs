@@ -1,5 +1,5 @@
 use motion::{Demonstrations, LearnError, Learner, LearntPolicy, Policy, Potential, SampleIndex};
-use nalgebra::{DVectorView, DVectorViewMut};
+use nalgebra::{DMatrix, DVectorView, DVectorViewMut};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 
@@ -218,6 +218,14 @@ impl LearntPolicy for AutoFit {
 
     fn support(&self, state: DVectorView<'_, f64>) -> f64 {
         self.handed_out().support(state)
+    }
+
+    fn supports(&self, states: &DMatrix<f64>) -> Vec<f64> {
+        self.handed_out().supports(states)
+    }
+
+    fn action_sds(&self, states: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+        self.handed_out().action_sds(states)
     }
 
     fn action_sd_into(&self, state: DVectorView<'_, f64>, deviation: DVectorViewMut<'_, f64>) -> bool {

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::kernel::block::Block;
 use crate::kernel::chunks::{CHUNK, Chunk, Chunks, sum};
-use crate::kernel::slope_covariance::{falling, slopes_with, trend};
+use crate::kernel::slope_covariance::{falling, policy_with, trend};
 use crate::rows::scaling::Scaling;
 
 /// (S7): the posterior mean as a sum over rows, in the form in which it is evaluated fast. The trend's sums are taken
@@ -121,13 +121,15 @@ impl Expansion {
     /// C_x of (S13): covariances of the policy at x, one column an axis, with every row's slope, (M, n).
     pub(crate) fn policy_with_rows(&self, state: DVectorView<'_, f64>) -> DMatrix<f64> {
         let z = self.scaling.of_state(state);
-        let axes = DMatrix::<f64>::identity(self.moving(), self.moving());
+        let mut components = vec![[0.0; CHUNK]; self.moving()];
         let mut covariances = DMatrix::zeros(self.weights.len(), self.moving());
-        for (axis, mut column) in axes.column_iter().zip(covariances.column_iter_mut()) {
-            for (chunk, place) in column.as_mut_slice().chunks_mut(CHUNK).enumerate() {
-                let rows = (self.states.get(chunk), self.directions.get(chunk));
-                let values = slopes_with((z.as_view(), axis), rows, &self.blocks, &self.amplitudes);
-                place.copy_from_slice(&values[..place.len()]);
+        for chunk in 0..self.states.len() {
+            let rows = (self.states.get(chunk), self.directions.get(chunk));
+            policy_with(z.as_slice(), rows, &self.blocks, &self.amplitudes, &mut components);
+            let first = chunk * CHUNK;
+            for (component, mut column) in components.iter().zip(covariances.column_iter_mut()) {
+                let place = &mut column.as_mut_slice()[first..self.weights.len().min(first + CHUNK)];
+                place.copy_from_slice(&component[..place.len()]);
             }
         }
         covariances

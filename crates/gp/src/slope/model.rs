@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector, DVectorView};
 
+use crate::kernel::block::Block;
 use crate::kernel::slope_covariance::SlopeCovariance;
 use crate::kernel::whitening::Whitening;
 use crate::slope::expansion::Expansion;
@@ -61,9 +62,18 @@ impl SlopeModel {
         let moving = expansion.moving();
         let basis = DMatrix::<f64>::identity(moving, moving);
         let z = z.as_view();
+        let slopes = |block: Block, i: usize, j: usize| block.slope_slope(z, basis.column(i), z, basis.column(j));
+        // Blocks that fall with distance are alike in all directions at one place.
+        let alike: Vec<Option<f64>> =
+            expansion.blocks.iter().map(|&block| block.falls().then(|| slopes(block, 0, 0))).collect();
         let entry = |i: usize, j: usize| {
-            let each = expansion.blocks.iter().zip(&expansion.amplitudes);
-            each.map(|(block, a)| a * block.slope_slope(z, basis.column(i), z, basis.column(j))).sum::<f64>()
+            let each = expansion.blocks.iter().zip(&expansion.amplitudes).zip(&alike);
+            let own = |block, alike: &Option<f64>| match alike {
+                Some(variance) if i == j => *variance,
+                Some(_) => 0.0,
+                None => slopes(block, i, j),
+            };
+            each.map(|((&block, a), alike)| a * own(block, alike)).sum::<f64>()
         };
         DMatrix::from_fn(moving, moving, entry) * expansion.speed.powi(2)
     }
