@@ -11,6 +11,7 @@ use text::plain;
 
 use crate::cli::failure::{Exit, Failure, displayed};
 use crate::cli::lines::short;
+use crate::cli::pages::constraint_marks::{Held, marks};
 
 /// Grid points along each axis: for arrows, and for potential and support.
 const ARROWS: usize = 16;
@@ -32,6 +33,8 @@ pub(crate) struct Picture<'a> {
     pub(crate) dims: [usize; 2],
     /// Demonstrations, (n, N) each.
     pub(crate) demonstrated: Vec<DMatrix<f64>>,
+    /// Constraints that acted on them.
+    pub(crate) held: Vec<Held>,
     /// Movements that the policy makes.
     pub(crate) followed: Vec<DMatrix<f64>>,
 }
@@ -113,6 +116,8 @@ impl Picture<'_> {
             });
         }
         layers.extend(self.arrows());
+        let [width, height] = [0, 1].map(|axis| self.range(axis)[1] - self.range(axis)[0]);
+        layers.extend(marks(&self.held, &self.model.state, self.dims, self.factors(), width.min(height)));
         for (at, movement) in self.followed.iter().enumerate() {
             let points = self.points(movement);
             layers.push(Layer::Dots { points: points[..1].to_vec(), color: FOLLOWED.color, radius: 4.0 });
