@@ -16,6 +16,8 @@ pub(super) struct Movement {
     pub(super) disagreement: Disagreement,
     /// None where a space is not looked at.
     pub(super) views: Vec<Option<View>>,
+    /// What a constraint in each space costs for being rarer than others: (S38).
+    pub(super) rarity: Vec<f64>,
 }
 
 impl Movement {
@@ -28,7 +30,6 @@ impl Movement {
         for (space, view) in self.views.iter().enumerate() {
             let Some(view) = view else { continue };
             let directions = view.directions(begin, end, self.disagreement.noise);
-            let dim = directions.values.len();
             if view.is_recorded() {
                 let sums = directions.values.iter().scan(none, |sum, value| {
                     *sum += value;
@@ -36,15 +37,8 @@ impl Movement {
                 });
                 of_ranks = sums.collect();
             }
-            for rank in 1..=dim {
-                if directions.values[rank - 1] >= 0.0 {
-                    break;
-                }
-                if end - begin < dim - rank + SPARE || directions.angle(rank) > MOST_ANGLE {
-                    continue;
-                }
-                let change = view.change((begin, end), &directions, rank, &self.disagreement);
-                let cost = none + change + self.price((begin, end), dim, rank) + SEGMENT;
+            if let Some((cost, rank)) = self.best_rank(view, &directions, (begin, end)) {
+                let cost = cost + self.rarity[space];
                 if cost < best.0 {
                     best = (cost, Hypothesis::Constrained { space, rank });
                 }
@@ -60,6 +54,36 @@ impl Movement {
         let left = Growing::new(self.disagreement.weights.len(), self.disagreement.total() + varies);
         let bounded = self.views.iter().flatten().all(View::is_recorded);
         MovementCosts { movement: self, left, bounded }
+    }
+
+    /// The least cost of a constraint in one space and its rank; none where no rank is possible.
+    fn best_rank(&self, view: &View, directions: &Directions, (begin, end): (usize, usize)) -> Option<(f64, usize)> {
+        let (none, dim) = (self.disagreement.square(begin, end), directions.values.len());
+        let mut best: Option<(f64, usize)> = None;
+        for rank in 1..=dim {
+            if directions.values[rank - 1] >= 0.0 {
+                break;
+            }
+            if end - begin < dim - rank + SPARE || directions.angle(rank) > MOST_ANGLE {
+                continue;
+            }
+            let change = view.change((begin, end), directions, rank, &self.disagreement);
+            let cost = none + change + self.price((begin, end), dim, rank) + SEGMENT;
+            if best.is_none_or(|(least, _)| cost < least) {
+                best = Some((cost, rank));
+            }
+        }
+        best
+    }
+
+    /// (S28) of a part in each space, however rare; infinite where no rank is possible.
+    pub(super) fn costs_in_spaces(&self, part: &Part<Hypothesis>) -> Vec<f64> {
+        let ends = (part.begin, part.end);
+        let of = |view: &View| {
+            let directions = view.directions(ends.0, ends.1, self.disagreement.noise);
+            self.best_rank(view, &directions, ends).map(|(cost, _)| cost)
+        };
+        self.views.iter().map(|view| view.as_ref().and_then(of).unwrap_or(f64::INFINITY)).collect()
     }
 
     /// What A of so many rows and b cost: less where velocities are known better than the policy, since one that does not vary is

@@ -5,6 +5,7 @@
 //! wants in vain may be its error.
 
 mod hypothesis;
+mod spaces;
 mod stretch_estimate;
 mod task_space;
 mod view;
@@ -23,6 +24,7 @@ use crate::stretches::segmentation::PARAMETER;
 use crate::stretches::{MOST_DIMENSIONS, MOST_SAMPLES, centred, evenly, parts};
 use crate::{GpError, Rows};
 use hypothesis::{Hypothesis, Movement};
+use spaces::rarity;
 use stretch_estimate::canonical;
 use view::{Disagreement, SHARED, View};
 use wanted::Wanted;
@@ -69,10 +71,15 @@ impl ConstraintEstimates {
             return lengths("samples next to each other", 0, 4);
         };
         let wanted = Wanted::of(rows, policy);
-        let search = Search { rows, movements, spaces, bases, noise, wanted };
+        let rarity = vec![0.0; spaces.len()];
+        let mut search = Search { rows, movements, spaces, bases, noise, wanted, rarity };
         let first = FIRST.powi(2) * search.wanted.mean_square();
         let policy_variance = search.left(&search.parts(first)).unwrap_or(first);
-        let parts = search.parts(policy_variance);
+        let mut parts = search.parts(policy_variance);
+        if spaces.len() > 1 {
+            search.rarity = rarity_of(&parts, spaces.len());
+            parts = search.parts(policy_variance);
+        }
         let stretches = search.stretches(&parts, policy_variance);
         Ok(ConstraintEstimates { stretches, noise, policy_variance })
     }
@@ -111,6 +118,8 @@ struct Search<'a> {
     bases: Vec<Option<DMatrix<f64>>>,
     noise: f64,
     wanted: Wanted<'a>,
+    /// Of (S38).
+    rarity: Vec<f64>,
 }
 
 impl Search<'_> {
@@ -155,7 +164,7 @@ impl Search<'_> {
             basis.as_ref().map(|basis| View::of(space, basis, rows, &velocities, &disagreement))
         };
         let views = self.spaces.iter().zip(&self.bases).map(view).collect();
-        Movement { disagreement, views }
+        Movement { disagreement, views, rarity: self.rarity.clone() }
     }
 
     /// The variance of the policy that all parts leave, the median over them; none if there are none.
@@ -259,6 +268,15 @@ impl Search<'_> {
         stretch.bound_deviation = (self.noise * gain / rank as f64).sqrt() / count;
         stretch.speed = (square / count).sqrt();
     }
+}
+
+/// What a constraint in each space costs by the parts that have one.
+fn rarity_of(parts: &[Parts], spaces: usize) -> Vec<f64> {
+    let constrained = |part: &&Part<Hypothesis>| part.kind != Hypothesis::Free;
+    let of = |of: &Parts| -> Vec<Vec<f64>> {
+        of.found.iter().filter(constrained).map(|part| of.movement.costs_in_spaces(part)).collect()
+    };
+    rarity(&parts.par_iter().flat_map_iter(of).collect::<Vec<_>>(), spaces)
 }
 
 impl Parts {
