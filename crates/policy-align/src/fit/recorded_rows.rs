@@ -30,7 +30,7 @@ pub(crate) fn least_noisy_rows(prepared: &Prepared) -> Result<Rows, GpError> {
     let differences = |movement: &Trajectory| -> Vec<f64> {
         let steps = movement.step_velocities();
         let fourth =
-            |of: DMatrixView<'_, f64>| (&of * DVector::from_column_slice(&[1.0, -4.0, 6.0, -4.0, 1.0])).norm_squared();
+            |of: DMatrixView<'_, f64>| (of * DVector::from_column_slice(&[1.0, -4.0, 6.0, -4.0, 1.0])).norm_squared();
         (0..(steps.ncols() + 1).saturating_sub(POINTS)).map(|at| fourth(steps.columns(at, POINTS))).collect()
     };
     let mut squares: Vec<f64> = demonstrations.trajectories().iter().flat_map(differences).collect();
@@ -114,10 +114,10 @@ mod tests {
             let times: Vec<f64> =
                 std::iter::once(0.0).chain(steps.iter().scan(0.0, |t, step| { *t += step; Some(*t) })).collect();
             let degree = times.len().min(POINTS) - 1;
-            let of = |t: f64| (0..=degree).map(|k| coefficients[k] * t.powi(k as i32)).sum::<f64>();
-            let slope = |t: f64| (1..=degree).map(|k| k as f64 * coefficients[k] * t.powi(k as i32 - 1)).sum::<f64>();
+            let of = |t: f64| (0..=degree).map(|k| coefficients[k] * t.powf(k as f64)).sum::<f64>();
+            let slope = |t: f64| (1..=degree).map(|k| k as f64 * coefficients[k] * t.powf(k as f64 - 1.0)).sum::<f64>();
             let states = DMatrix::from_fn(2, times.len(), |axis, i| of(times[i]) * (axis as f64 + 1.0));
-            let movement = Trajectory::with_times(states, times.clone()).expect("a movement");
+            let movement = Trajectory::new(states, 1.0).and_then(|of| of.with_times(times.clone())).expect("a movement");
             for (sample, found) in slopes(&movement).column_iter().enumerate() {
                 for axis in 0..2 {
                     let expected = slope(times[sample]) * (axis as f64 + 1.0);

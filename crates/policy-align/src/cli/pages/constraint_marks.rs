@@ -23,6 +23,9 @@ pub(crate) struct Held {
     moves: Vec<bool>,
 }
 
+/// A line through points, and whether it moves.
+type Line = (Vec<(f64, f64)>, bool);
+
 /// Those of some stretches, at most as many as are drawn.
 pub(crate) fn held(found: &[ConstraintStretch], prepared: &Prepared) -> Vec<Held> {
     let on_channels =
@@ -94,7 +97,7 @@ pub(crate) fn marks(
     let first = |moves: bool| lines.iter().position(|(_, of)| *of == moves);
     let label =
         |at: usize| labels.iter().find(|(moves, _)| first(*moves) == Some(at)).map(|(_, name)| (*name).to_owned());
-    let path = |(at, (points, moves)): (usize, &(Vec<(f64, f64)>, bool))| Layer::Path {
+    let path = |(at, (points, moves)): (usize, &Line)| Layer::Path {
         points: points.clone(),
         stroke: if *moves { MOVING } else { KEPT },
         label: label(at),
