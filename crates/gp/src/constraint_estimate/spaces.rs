@@ -1,7 +1,7 @@
 //! In which spaces constraints are constant: as a rule all of a recording in one, which few samples under noise do not tell (S38).
 
 /// Rounds of expectation and maximisation.
-const ROUNDS: usize = 50;
+const ROUNDS: usize = 500;
 
 /// What a constraint in each space costs, the most frequent one 0, from the costs (S28) in every space of all stretches that have a
 /// constraint.
@@ -30,8 +30,8 @@ mod tests {
     use super::*;
 
     proptest! {
-        /// Stretches that look alike in two spaces count for the one that the others are in; the spaces' order does not matter, and what
-        /// stretches tell for certain is their shares.
+        /// Stretches that look alike in two spaces count for the one that the others are in; the spaces' order does not matter, and the
+        /// shares are those of the stretches that tell for certain.
         #[test]
         fn rare_spaces_cost_more(clear in 1usize..30, rare in 0usize..30, alike in 0usize..30, cost in -50.0..50.0f64) {
             let stretches = |first: f64, second: f64, count: usize| vec![vec![cost + first, cost + second]; count];
@@ -40,10 +40,9 @@ mod tests {
             let swapped = rarity(&all.iter().map(|costs| vec![costs[1], costs[0]]).collect::<Vec<_>>(), 2);
             prop_assert!((found[0] - swapped[1]).abs() < 1e-9 && (found[1] - swapped[0]).abs() < 1e-9);
             let (more, less) = if clear > rare { (found[0], found[1]) } else { (found[1], found[0]) };
-            prop_assert_eq!(more, 0.0);
+            prop_assert!(more.abs() < 1e-6);
             let certain = 2.0 * ((1 + clear.max(rare)) as f64 / (1 + clear.min(rare)) as f64).ln();
-            prop_assert!((clear == rare || less > 0.0) && less >= certain - 1e-6, "{less} {certain}");
-            prop_assert!(alike > 0 || (less - certain).abs() < 1e-9);
+            prop_assert!((less - certain).abs() < 1e-6, "{less} {certain}");
         }
     }
 
