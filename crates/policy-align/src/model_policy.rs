@@ -76,6 +76,11 @@ impl ModelPolicy<'_> {
         self.support(state) >= self.least_support
     }
 
+    /// Whether each of some states (n, N) is, by [`LearntPolicy::certainty`].
+    pub fn are_supported(&self, states: DMatrixView<'_, f64>) -> Vec<bool> {
+        self.certainty(states).support.into_iter().map(|support| support >= self.least_support).collect()
+    }
+
     /// Whether no channel of a state (n) is beyond [`Model::bounds`].
     fn is_within(&self, state: DVectorView<'_, f64>) -> bool {
         let inputs = state.iter().chain(&self.inputs.context);

@@ -1,7 +1,8 @@
 //! What acted on a part of a movement: nothing, or a constraint of some rank in some space.
 
 use super::view::{Directions, Disagreement, View};
-use crate::stretches::segmentation::{DIMENSION, PARAMETER, Part, SEGMENT, SPARE};
+use crate::stretches::partition::{Costs, Growing, Part, SPARE};
+use crate::stretches::segmentation::{DIMENSION, PARAMETER, SEGMENT};
 
 /// Nothing, or a constraint that is constant in a space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,32 +16,74 @@ pub(super) struct Movement {
     pub(super) disagreement: Disagreement,
     /// None where a space is not looked at.
     pub(super) views: Vec<Option<View>>,
+    /// What a constraint in each space costs for being rarer than others: (S38).
+    pub(super) rarity: Vec<f64>,
 }
 
 impl Movement {
-    /// (S28): the least cost of samples `begin..end` and what it is of.
-    pub(super) fn cheapest(&self, begin: usize, end: usize) -> (f64, Hypothesis) {
+    /// (S28): the least cost of samples `begin..end` and what it is of; and, of the recorded coordinates, minus twice the log likelihood
+    /// of each rank from 1 on.
+    pub(super) fn cheapest(&self, begin: usize, end: usize) -> ((f64, Hypothesis), Vec<f64>) {
         let none = self.disagreement.square(begin, end);
         let mut best = (none + SEGMENT, Hypothesis::Free);
+        let mut of_ranks = Vec::new();
         for (space, view) in self.views.iter().enumerate() {
             let Some(view) = view else { continue };
             let directions = view.directions(begin, end, self.disagreement.noise);
-            let dim = directions.values.len();
-            for rank in 1..=dim {
-                if directions.values[rank - 1] >= 0.0 {
-                    break;
-                }
-                if end - begin < dim - rank + SPARE || directions.angle(rank) > MOST_ANGLE {
-                    continue;
-                }
-                let change = view.change((begin, end), &directions, rank, &self.disagreement);
-                let cost = none + change + self.price((begin, end), dim, rank) + SEGMENT;
+            if view.is_recorded() {
+                let sums = directions.values.iter().scan(none, |sum, value| {
+                    *sum += value;
+                    Some(*sum)
+                });
+                of_ranks = sums.collect();
+            }
+            if let Some((cost, rank)) = self.best_rank(view, &directions, (begin, end)) {
+                let cost = cost + self.rarity[space];
                 if cost < best.0 {
                     best = (cost, Hypothesis::Constrained { space, rank });
                 }
             }
         }
+        (best, of_ranks)
+    }
+
+    /// Of all parts, for one search.
+    pub(super) fn costs(&self) -> MovementCosts<'_> {
+        let recorded = self.views.iter().flatten().filter(|view| view.is_recorded());
+        let varies = recorded.map(View::variation).sum::<f64>() / self.disagreement.noise;
+        let left = Growing::new(self.disagreement.weights.len(), self.disagreement.total() + varies);
+        let bounded = self.views.iter().flatten().all(View::is_recorded);
+        MovementCosts { movement: self, left, bounded }
+    }
+
+    /// The least cost of a constraint in one space and its rank; none where no rank is possible.
+    fn best_rank(&self, view: &View, directions: &Directions, (begin, end): (usize, usize)) -> Option<(f64, usize)> {
+        let (none, dim) = (self.disagreement.square(begin, end), directions.values.len());
+        let mut best: Option<(f64, usize)> = None;
+        for rank in 1..=dim {
+            if directions.values[rank - 1] >= 0.0 {
+                break;
+            }
+            if end - begin < dim - rank + SPARE || directions.angle(rank) > MOST_ANGLE {
+                continue;
+            }
+            let change = view.change((begin, end), directions, rank, &self.disagreement);
+            let cost = none + change + self.price((begin, end), dim, rank) + SEGMENT;
+            if best.is_none_or(|(least, _)| cost < least) {
+                best = Some((cost, rank));
+            }
+        }
         best
+    }
+
+    /// (S28) of a part in each space, however rare; infinite where no rank is possible.
+    pub(super) fn costs_in_spaces(&self, part: &Part<Hypothesis>) -> Vec<f64> {
+        let ends = (part.begin, part.end);
+        let of = |view: &View| {
+            let directions = view.directions(ends.0, ends.1, self.disagreement.noise);
+            self.best_rank(view, &directions, ends).map(|(cost, _)| cost)
+        };
+        self.views.iter().map(|view| view.as_ref().and_then(of).unwrap_or(f64::INFINITY)).collect()
     }
 
     /// What A of so many rows and b cost: less where velocities are known better than the policy, since one that does not vary is
@@ -71,6 +114,35 @@ impl Movement {
         };
         let freedom = of.nrows() - rank;
         if freedom == 0 { Vec::new() } else { squares.into_iter().map(|square| square / freedom as f64).collect() }
+    }
+}
+
+/// (S28) of all parts of a movement.
+pub(super) struct MovementCosts<'a> {
+    movement: &'a Movement,
+    /// Minus twice the log likelihood of each rank in the recorded coordinates: each is the least of a sum of squares.
+    left: Growing,
+    /// Whether no other space is looked at.
+    bounded: bool,
+}
+
+impl Costs for MovementCosts<'_> {
+    type Kind = Hypothesis;
+
+    fn cost(&mut self, begin: usize, end: usize) -> (f64, Hypothesis) {
+        let (cheapest, of_ranks) = self.movement.cheapest(begin, end);
+        self.left.see(begin, &of_ranks);
+        cheapest
+    }
+
+    fn at_least(&self, begin: usize, end: usize) -> f64 {
+        if !self.bounded {
+            return 0.0;
+        }
+        let dim = self.movement.disagreement.of.nrows();
+        let of = |rank| self.left.at_least(begin, rank - 1) + self.movement.price((begin, end), dim, rank) + SEGMENT;
+        let possible = (1..=dim).filter(|rank| end - begin + rank >= dim + SPARE);
+        possible.map(of).fold(self.movement.disagreement.square(begin, end) + SEGMENT, f64::min)
     }
 }
 

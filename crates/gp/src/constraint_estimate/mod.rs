@@ -5,9 +5,11 @@
 //! wants in vain may be its error.
 
 mod hypothesis;
+mod spaces;
 mod stretch_estimate;
 mod task_space;
 mod view;
+mod wanted;
 
 pub use stretch_estimate::{Acting, StretchEstimate};
 pub use task_space::TaskSpace;
@@ -17,12 +19,15 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::stretches::noise::velocity_noise;
-use crate::stretches::segmentation::{PARAMETER, Part, SPARE, cheapest_parts, known_part};
+use crate::stretches::partition::{Part, SPARE, cheapest_parts, known_part};
+use crate::stretches::segmentation::PARAMETER;
 use crate::stretches::{MOST_DIMENSIONS, MOST_SAMPLES, centred, evenly, parts};
 use crate::{GpError, Rows};
 use hypothesis::{Hypothesis, Movement};
+use spaces::rarity;
 use stretch_estimate::canonical;
 use view::{Disagreement, SHARED, View};
+use wanted::Wanted;
 
 /// Standard deviation of the policy in the first round, as a share of its root mean square; in the second it is what the
 /// first leaves.
@@ -66,10 +71,15 @@ impl ConstraintEstimates {
             return lengths("samples next to each other", 0, 4);
         };
         let wanted = Wanted::of(rows, policy);
-        let search = Search { rows, movements, spaces, bases, noise, wanted };
+        let rarity = vec![0.0; spaces.len()];
+        let mut search = Search { rows, movements, spaces, bases, noise, wanted, rarity };
         let first = FIRST.powi(2) * search.wanted.mean_square();
         let policy_variance = search.left(&search.parts(first)).unwrap_or(first);
-        let parts = search.parts(policy_variance);
+        let mut parts = search.parts(policy_variance);
+        if spaces.len() > 1 {
+            search.rarity = rarity_of(&parts, spaces.len());
+            parts = search.parts(policy_variance);
+        }
         let stretches = search.stretches(&parts, policy_variance);
         Ok(ConstraintEstimates { stretches, noise, policy_variance })
     }
@@ -93,32 +103,6 @@ fn noise(rows: &Rows, movements: &[&[usize]], spaces: &[TaskSpace]) -> Option<f6
     recorded.into_iter().chain(spaces.iter().filter_map(in_space)).reduce(f64::min)
 }
 
-/// The policy at every row.
-struct Wanted {
-    actions: DMatrix<f64>,
-    /// Mean variance of a component.
-    variances: Vec<f64>,
-}
-
-impl Wanted {
-    fn of(rows: &Rows, policy: &dyn LearntPolicy) -> Self {
-        let dim = rows.dim();
-        let at = |row: usize| {
-            let (mut action, mut deviation) = (DVector::zeros(policy.dim()), DVector::zeros(policy.dim()));
-            policy.action_into(rows.states().column(row), action.as_view_mut());
-            policy.action_sd_into(rows.states().column(row), deviation.as_view_mut());
-            (action.resize_vertically(dim, 0.0), deviation.rows(0, dim).norm_squared() / dim as f64)
-        };
-        let (actions, variances): (Vec<DVector<f64>>, Vec<f64>) = (0..rows.len()).into_par_iter().map(at).unzip();
-        Wanted { actions: DMatrix::from_columns(&actions), variances }
-    }
-
-    /// Of a component.
-    fn mean_square(&self) -> f64 {
-        self.actions.norm_squared() / self.actions.len() as f64
-    }
-}
-
 /// Parts of a movement, or of what lies between two known switches: the rows searched, and what was found, begin and end counted
 /// among them.
 struct Parts {
@@ -133,7 +117,9 @@ struct Search<'a> {
     spaces: &'a [TaskSpace],
     bases: Vec<Option<DMatrix<f64>>>,
     noise: f64,
-    wanted: Wanted,
+    wanted: Wanted<'a>,
+    /// Of (S38).
+    rarity: Vec<f64>,
 }
 
 impl Search<'_> {
@@ -144,11 +130,10 @@ impl Search<'_> {
             let rows = if known { movement.to_vec() } else { evenly(movement, MOST_SAMPLES) };
             let movement = self.movement(&rows, least);
             let alone = PARAMETER * self.rows.dim() as f64;
-            let cost = |begin, end| movement.cheapest(begin, end);
             let found = if known {
-                known_part(rows.len(), alone, cost).into_iter().collect()
+                known_part(rows.len(), alone, movement.costs()).into_iter().collect()
             } else {
-                cheapest_parts(rows.len(), alone, cost)
+                cheapest_parts(rows.len(), alone, movement.costs())
             };
             Parts { rows, movement, found }
         };
@@ -163,7 +148,7 @@ impl Search<'_> {
         rows.extend(between.clone());
         rows.extend(&parts.rows[right.begin..right.end]);
         let movement = self.movement(&rows, least);
-        let cost = |cut: usize| movement.cheapest(0, cut).0 + movement.cheapest(cut, rows.len()).0;
+        let cost = |cut: usize| movement.cheapest(0, cut).0.0 + movement.cheapest(cut, rows.len()).0.0;
         let cuts = left.end - left.begin..=left.end - left.begin + between.len();
         let best = cuts.map(|cut| (cost(cut), cut)).min_by(|a, b| a.0.total_cmp(&b.0));
         best.map_or(first, |(_, cut)| rows[cut])
@@ -172,13 +157,14 @@ impl Search<'_> {
     fn movement(&self, rows: &[usize], least: f64) -> Movement {
         let velocities = self.rows.velocities().select_columns(rows);
         let disagreement = self.wanted.actions.select_columns(rows) - &velocities;
-        let weight = |&row: &usize| 1.0 / (self.noise + SHARED * self.wanted.variances[row].max(least));
-        let disagreement = Disagreement::new(disagreement, rows.iter().map(weight).collect(), self.noise);
+        let weight = |variance: f64| 1.0 / (self.noise + SHARED * variance.max(least));
+        let weights = self.wanted.variances(rows).into_iter().map(weight).collect();
+        let disagreement = Disagreement::new(disagreement, weights, self.noise);
         let view = |(space, basis): (&TaskSpace, &Option<DMatrix<f64>>)| {
             basis.as_ref().map(|basis| View::of(space, basis, rows, &velocities, &disagreement))
         };
         let views = self.spaces.iter().zip(&self.bases).map(view).collect();
-        Movement { disagreement, views }
+        Movement { disagreement, views, rarity: self.rarity.clone() }
     }
 
     /// The variance of the policy that all parts leave, the median over them; none if there are none.
@@ -282,6 +268,15 @@ impl Search<'_> {
         stretch.bound_deviation = (self.noise * gain / rank as f64).sqrt() / count;
         stretch.speed = (square / count).sqrt();
     }
+}
+
+/// What a constraint in each space costs by the parts that have one.
+fn rarity_of(parts: &[Parts], spaces: usize) -> Vec<f64> {
+    let constrained = |part: &&Part<Hypothesis>| part.kind != Hypothesis::Free;
+    let of = |of: &Parts| -> Vec<Vec<f64>> {
+        of.found.iter().filter(constrained).map(|part| of.movement.costs_in_spaces(part)).collect()
+    };
+    rarity(&parts.par_iter().flat_map_iter(of).collect::<Vec<_>>(), spaces)
 }
 
 impl Parts {

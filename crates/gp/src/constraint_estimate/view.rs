@@ -37,6 +37,11 @@ impl Disagreement {
         self.squares[end] - self.squares[begin]
     }
 
+    /// Σ w |d|² of all samples.
+    pub(super) fn total(&self) -> f64 {
+        self.squares.last().copied().unwrap_or(0.0)
+    }
+
     /// Twice the log likelihood ratio that a velocity which does not vary has by being so exact, as often as the policy's error
     /// is another.
     pub(super) fn accident(&self, begin: usize, end: usize) -> f64 {
@@ -138,6 +143,16 @@ impl View {
             sums.push(Sums { multipliers, gain, noise });
         }
         View { basis, scatters: PrefixSums::of(&velocities), velocities, disagreements, grams, sums }
+    }
+
+    /// Whether v = u: what [`View::change`] adds to [`Disagreement::square`] is then the least of a sum of squares.
+    pub(super) fn is_recorded(&self) -> bool {
+        self.grams.is_none()
+    }
+
+    /// Σ |v − mean v|² of all samples.
+    pub(super) fn variation(&self) -> f64 {
+        self.scatters.total()
     }
 
     /// Eigenvectors of C/gs² − gY (S26) over `begin..end`, the least eigenvalue first: a row of A has a velocity that does not

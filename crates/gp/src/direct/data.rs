@@ -2,7 +2,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::direct::model::DirectModel;
 use crate::evidence::family_fit::{FamilyFit, fit_family};
-use crate::evidence::{Evidence, Task};
+use crate::evidence::{Evidence, Task, Workspace};
 use crate::inducing::Induced;
 use crate::kernel::direct_block::{DirectBlock, DirectCovariance};
 use crate::kernel::triangle::Upper;
@@ -114,7 +114,7 @@ impl DirectData {
     pub fn evidence(&self, blocks: &[DirectBlock], theta: &[f64]) -> Option<Evidence> {
         let all: Vec<usize> = (0..self.z.ncols()).collect();
         let task = Task::of(&self.covariance(blocks), &all, &self.conditions());
-        task.evidence(&DVector::from_column_slice(theta))
+        task.evidence(&DVector::from_column_slice(theta), &mut Workspace::default())
     }
 
     /// The model at θ with noise raised by κ, and its leave-one-trajectory-out predictions (R3); none if the

@@ -1,8 +1,8 @@
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-use crate::evidence::Task;
 use crate::evidence::lbfgs::{Bounds, ITERATIONS, minimise};
+use crate::evidence::{Task, Workspace};
 use crate::kernel::covariance::Covariance;
 use crate::kernel::family::Family;
 use crate::left_out::LeftOut;
@@ -92,7 +92,8 @@ impl<'a, C: Covariance> Search<'a, C> {
         let bounds = Bounds { lower: with_noise(-23.0, 1e-12_f64.ln()), upper: with_noise(12.0, 2.0) };
         let start = amplitudes.iter().copied().chain([NOISE]).map(f64::ln);
         let theta = self.tasks.iter().fold(DVector::from_iterator(blocks + 1, start), |theta, (task, iterations)| {
-            minimise(|theta| task.evidence(theta), &theta, &bounds, *iterations)
+            let mut workspace = Workspace::default();
+            minimise(|theta| task.evidence(theta, &mut workspace), &theta, &bounds, *iterations)
         });
         let amplitudes: Vec<f64> = theta.iter().take(blocks).map(|log| log.exp()).collect();
         let level = Level::best(&self.covariance.sum(&amplitudes), theta[blocks].exp(), self.conditions)?;

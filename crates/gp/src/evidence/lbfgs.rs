@@ -43,12 +43,12 @@ impl Bounds {
 
 /// The least point found from `start` in at most so many iterations; a value of none counts as 1e10 with zero gradient.
 pub(crate) fn minimise(
-    objective: impl Fn(&DVector<f64>) -> Option<Evidence>,
+    mut objective: impl FnMut(&DVector<f64>) -> Option<Evidence>,
     start: &DVector<f64>,
     bounds: &Bounds,
     iterations: usize,
 ) -> DVector<f64> {
-    let evaluate = |point: &DVector<f64>| {
+    let mut evaluate = |point: &DVector<f64>| {
         objective(point).unwrap_or_else(|| Evidence { value: WALL, gradient: DVector::zeros(point.len()) })
     };
     let mut point = bounds.project(start);
@@ -64,7 +64,7 @@ pub(crate) fn minimise(
             pairs.clear();
             direction = descent(&free, &pairs);
         }
-        let Some((next, there)) = search(&evaluate, bounds, (&point, &here), &direction) else { break };
+        let Some((next, there)) = search(&mut evaluate, bounds, (&point, &here), &direction) else { break };
         let decrease = (here.value - there.value) / here.value.abs().max(there.value.abs()).max(1.0);
         let pair = (&next - &point, &there.gradient - &here.gradient);
         if pair.0.dot(&pair.1) > f64::EPSILON * pair.1.norm_squared() {
@@ -102,7 +102,7 @@ fn descent(free: &DVector<f64>, pairs: &VecDeque<(DVector<f64>, DVector<f64>)>) 
 
 /// The first of the steps 1, a cubic's least point, then halves, that lowers the value by enough.
 fn search(
-    evaluate: &impl Fn(&DVector<f64>) -> Evidence,
+    evaluate: &mut impl FnMut(&DVector<f64>) -> Evidence,
     bounds: &Bounds,
     (point, here): (&DVector<f64>, &Evidence),
     direction: &DVector<f64>,

@@ -35,6 +35,27 @@ pub(crate) struct Task {
     pub(crate) targets: DMatrix<f64>,
 }
 
+/// What [`Task::evidence`] works on, kept from one θ to the next: square matrices of as many rows as the task has.
+#[derive(Debug, Default)]
+pub(crate) struct Workspace {
+    /// The covariance, then its factor.
+    covariance: DMatrix<f64>,
+    /// L⁻¹.
+    triangle: DMatrix<f64>,
+    /// c K⁻¹ − AAᵀ.
+    slack: DMatrix<f64>,
+}
+
+impl Workspace {
+    fn fit(&mut self, count: usize) {
+        for matrix in [&mut self.covariance, &mut self.triangle, &mut self.slack] {
+            if matrix.nrows() != count {
+                *matrix = DMatrix::zeros(count, count);
+            }
+        }
+    }
+}
+
 impl Task {
     /// These rows of a covariance and of what it is to explain.
     pub(crate) fn of(covariance: &impl Covariance, rows: &[usize], conditions: &Conditions<'_>) -> Task {
@@ -49,21 +70,26 @@ impl Task {
     ///
     /// # Panics
     /// If there is not one θ a block and one more.
-    pub(crate) fn evidence(&self, theta: &DVector<f64>) -> Option<Evidence> {
+    pub(crate) fn evidence(&self, theta: &DVector<f64>, workspace: &mut Workspace) -> Option<Evidence> {
         assert_eq!(theta.len(), self.blocks.len() + 1, "one log amplitude a block, and the noise");
         let columns = self.targets.ncols() as f64;
         let noise = theta[self.blocks.len()].exp();
-        let factor = Factor::new(self.covariance(theta, noise))?;
+        workspace.fit(self.targets.nrows());
+        let Workspace { covariance, triangle, slack } = workspace;
+        self.covariance_into(theta, noise, covariance);
+        let factor = Factor::new(std::mem::take(covariance))?;
         let mut weights = self.targets.clone();
         factor.solve(&mut weights);
+        let half_log_determinant = factor.half_log_determinant();
         let fit = 0.5 * self.targets.dot(&weights);
         let prior = 0.5 * STRENGTH * theta.iter().map(|theta| (theta - CENTRE).powi(2)).sum::<f64>();
-        let value = fit + columns * factor.half_log_determinant() + prior;
+        let value = fit + columns * half_log_determinant + prior;
         // c K⁻¹ − AAᵀ: every derivative is half its inner product with that of K.
-        let mut slack = factor.inverse();
-        slack *= columns;
-        add_product_below(&mut slack, -1.0, view(&weights), view(&weights).transpose());
-        let slacks = Arch::new().dispatch(InnerProducts { matrix: &slack, blocks: &self.blocks });
+        factor.inverse_into(slack, triangle);
+        *covariance = factor.into_matrix();
+        *slack *= columns;
+        add_product_below(slack, -1.0, view(&weights), view(&weights).transpose());
+        let slacks = Arch::new().dispatch(InnerProducts { matrix: slack, blocks: &self.blocks });
         let noise_slack: f64 = self.noise_weights.iter().enumerate().map(|(i, weight)| weight * slack[(i, i)]).sum();
         let gradient = DVector::from_fn(theta.len(), |k, _| {
             let product = slacks.get(k).copied().unwrap_or(noise_slack);
@@ -72,17 +98,14 @@ impl Task {
         value.is_finite().then_some(Evidence { value, gradient })
     }
 
-    fn covariance(&self, theta: &DVector<f64>, noise: f64) -> DMatrix<f64> {
-        let count = self.targets.nrows();
+    fn covariance_into(&self, theta: &DVector<f64>, noise: f64, sum: &mut DMatrix<f64>) {
         let amplitudes: Vec<f64> = theta.iter().take(self.blocks.len()).map(|theta| theta.exp()).collect();
-        let mut sum = DMatrix::zeros(count, count);
-        Arch::new().dispatch(WeightedSum { blocks: &self.blocks, amplitudes: &amplitudes, sum: &mut sum });
-        add_noise(&mut sum, noise, self.noise_weights.iter().copied());
-        sum
+        Arch::new().dispatch(WeightedSum { blocks: &self.blocks, amplitudes: &amplitudes, sum });
+        add_noise(sum, noise, self.noise_weights.iter().copied());
     }
 }
 
-/// Adds Σ a_b K_b to the lower triangle of `sum`: column by column, so that a column stays near while blocks pass by.
+/// Writes Σ a_b K_b into the lower triangle of `sum`: column by column, so that a column stays near while blocks pass by.
 struct WeightedSum<'a> {
     blocks: &'a [DMatrix<f64>],
     amplitudes: &'a [f64],
@@ -98,6 +121,7 @@ impl WithSimd for WeightedSum<'_> {
         for i in 0..sum.ncols() {
             let below = below(sum, i);
             let column = &mut sum.as_mut_slice()[below.clone()];
+            column.fill(0.0);
             for (block, amplitude) in blocks.iter().zip(amplitudes) {
                 let terms = &block.as_slice()[below.clone()];
                 column.iter_mut().zip(terms).for_each(|(sum, term)| *sum += amplitude * term);

@@ -65,6 +65,11 @@ impl Factor {
         self.whiten_transposed(b);
     }
 
+    /// L, for its memory.
+    pub(crate) fn into_matrix(self) -> DMatrix<f64> {
+        self.lower
+    }
+
     /// X = L⁻¹, zero above the diagonal.
     pub(crate) fn inverse_triangle(&self) -> DMatrix<f64> {
         let mut inverse = DMatrix::zeros(self.len(), self.len());
@@ -72,22 +77,20 @@ impl Factor {
         inverse
     }
 
-    /// The lower triangle of K⁻¹.
-    pub(crate) fn inverse(&self) -> DMatrix<f64> {
-        let x = self.inverse_triangle();
-        let mut inverse = DMatrix::zeros(self.len(), self.len());
+    /// Writes the lower triangles of K⁻¹ and, on the way, of X = L⁻¹.
+    pub(crate) fn inverse_into(&self, inverse: &mut DMatrix<f64>, x: &mut DMatrix<f64>) {
+        invert_lower_triangular(view_mut(x), view(&self.lower), Par::Seq);
         matmul(
-            view_mut(&mut inverse),
+            view_mut(inverse),
             BlockStructure::TriangularLower,
             Accum::Replace,
-            view(&x).transpose(),
+            view(x).transpose(),
             BlockStructure::TriangularUpper,
-            view(&x),
+            view(x),
             BlockStructure::TriangularLower,
             1.0,
             Par::Seq,
         );
-        inverse
     }
 }
 

@@ -32,6 +32,8 @@ const DIFFERS: f64 = 0.05;
 /// Scales that differ by less than this share are one.
 const SAME: f64 = 0.05;
 
+/// Share of the left-out error in recorded units above which other units that stay are given up: half of it is needed.
+const HOPELESS: f64 = 0.75;
 /// How many times the spread of an axis may be worth that of another.
 const MOST_WORTH: f64 = 100.0;
 
@@ -151,6 +153,11 @@ fn better_units(kept: &Kept, blocks: &[Block], spread: &DVector<f64>) -> Option<
     for _ in 0..ROUNDS {
         let Some(now) = factors.take().and_then(round) else { break };
         factors = now.improved();
+        // Further rounds find nearly these units again, and they are nowhere near being taken.
+        let stays = factors.as_ref().is_some_and(|next| alike(next, &now.factors));
+        if stays && now.unexplained() > HOPELESS * recorded.unexplained() {
+            return None;
+        }
         if best.as_ref().is_none_or(|best| now.unexplained() < best.unexplained()) {
             best = Some(now);
         }
@@ -164,6 +171,12 @@ fn better_units(kept: &Kept, blocks: &[Block], spread: &DVector<f64>) -> Option<
     let worth = best.factors.component_mul(spread);
     let sound = worth.max() <= MOST_WORTH * worth.min();
     if sound { accepted(recorded, best, kept) } else { None }
+}
+
+/// Whether factors that differ by one for all are the same, nearly.
+fn alike(a: &DVector<f64>, b: &DVector<f64>) -> bool {
+    let ratios = a.component_div(b);
+    ratios.max() <= (1.0 + SAME) * ratios.min()
 }
 
 /// Factors relative to their median, with a power of ten, times 1 or a degree in radians, in place of what is close to it: most

@@ -1,7 +1,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::evidence::family_fit::{FamilyFit, fit_family};
-use crate::evidence::{Evidence, Task};
+use crate::evidence::{Evidence, Task, Workspace};
 use crate::inducing::Induced;
 use crate::inducing::pivots::{Pivots, pivots};
 use crate::kernel::block::Block;
@@ -127,7 +127,7 @@ impl SlopeData {
     pub fn evidence(&self, blocks: &[Block], theta: &[f64]) -> Option<Evidence> {
         let all: Vec<usize> = (0..self.z.ncols()).collect();
         let task = Task::of(&self.covariance(blocks), &all, &self.conditions());
-        task.evidence(&DVector::from_column_slice(theta))
+        task.evidence(&DVector::from_column_slice(theta), &mut Workspace::default())
     }
 
     /// The model at θ with noise raised by κ, and its leave-one-trajectory-out predictions; none if the covariance has no

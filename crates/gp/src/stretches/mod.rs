@@ -5,6 +5,7 @@
 //! stretch: rows like those of (S1), but free of the push.
 
 pub(crate) mod noise;
+pub(crate) mod partition;
 pub(crate) mod rows;
 pub(crate) mod segmentation;
 mod whole;

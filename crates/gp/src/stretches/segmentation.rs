@@ -2,6 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::stretches::partition::{Costs, Growing, Part, SPARE, cheapest_parts, known_part};
+
 /// Half the logarithm of the number of samples, about: what a parameter costs in half squared standard deviations.
 pub(crate) const PARAMETER: f64 = 2.5;
 /// What one more dimension of the plane costs. Without it a plane takes in a foreign sample by one dimension more, since a
@@ -9,8 +11,6 @@ pub(crate) const PARAMETER: f64 = 2.5;
 pub(crate) const DIMENSION: f64 = 10.0;
 /// What one more segment costs.
 pub(crate) const SEGMENT: f64 = 6.0;
-/// Samples beyond the dimension of the plane that a segment needs.
-pub(crate) const SPARE: usize = 4;
 
 /// Samples whose velocities lie in a plane; the kind is its rank, 0 < rank < n.
 pub(super) type Segment = Part<usize>;
@@ -19,8 +19,7 @@ pub(super) type Segment = Part<usize>;
 /// along an axis. A dynamic programme over all pairs: time with N² n³.
 pub(super) fn segments(velocities: &DMatrix<f64>, noise: f64) -> Vec<Segment> {
     let (dim, count) = velocities.shape();
-    let sums = PrefixSums::of(velocities);
-    let mut parts = cheapest_parts(count, PARAMETER * dim as f64, |begin, end| plane_cost(&sums, (begin, end), noise));
+    let mut parts = cheapest_parts(count, PARAMETER * dim as f64, PlaneCosts::of(velocities, noise));
     parts.retain(|part| part.kind > 0);
     parts
 }
@@ -28,101 +27,65 @@ pub(super) fn segments(velocities: &DMatrix<f64>, noise: f64) -> Vec<Segment> {
 /// The same where no constraint switched among these samples: all of them, but for a few at the ends.
 pub(super) fn known_segment(velocities: &DMatrix<f64>, noise: f64) -> Option<Segment> {
     let (dim, count) = velocities.shape();
-    let sums = PrefixSums::of(velocities);
-    let part = known_part(count, PARAMETER * dim as f64, |begin, end| plane_cost(&sums, (begin, end), noise));
+    let part = known_part(count, PARAMETER * dim as f64, PlaneCosts::of(velocities, noise));
     part.filter(|part| part.kind > 0)
 }
 
-/// Samples `begin..end` of a movement, and what they are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Part<K> {
-    pub(crate) begin: usize,
-    pub(crate) end: usize,
-    pub(crate) kind: K,
+/// Costs of planes through samples, and their dimension.
+#[derive(Debug, Clone)]
+pub(crate) struct PlaneCosts {
+    sums: PrefixSums,
+    noise: f64,
+    /// Squares that planes of each rank leave.
+    left: Growing,
 }
 
-/// The parts of `count` samples whose costs, with `alone` for each sample in none, have the least sum. `cost` of a part
-/// begin..end of at least [`SPARE`] samples also says of which kind it is. Asks for all pairs.
-pub(crate) fn cheapest_parts<K: Copy>(
-    count: usize,
-    alone: f64,
-    cost: impl Fn(usize, usize) -> (f64, K),
-) -> Vec<Part<K>> {
-    // The least cost of the samples before each, and the part that ends there, if any.
-    let mut costs = vec![0.0; count + 1];
-    let mut ending: Vec<Option<Part<K>>> = vec![None; count + 1];
-    for end in 1..=count {
-        costs[end] = costs[end - 1] + alone;
-        for begin in 0..(end + 1).saturating_sub(SPARE) {
-            let (own, kind) = cost(begin, end);
-            if costs[begin] + own < costs[end] {
-                costs[end] = costs[begin] + own;
-                ending[end] = Some(Part { begin, end, kind });
-            }
-        }
+impl PlaneCosts {
+    pub(crate) fn of(velocities: &DMatrix<f64>, noise: f64) -> Self {
+        let sums = PrefixSums::of(velocities);
+        let left = Growing::new(velocities.ncols(), sums.total());
+        PlaneCosts { sums, noise, left }
     }
-    let mut found = Vec::new();
-    let mut at = count;
-    while at > 0 {
-        at = ending[at].map_or(at - 1, |part| {
-            found.push(part);
-            part.begin
-        });
-    }
-    found.reverse();
-    found
-}
 
-/// Of samples that a label says belong together, at most so many at either end may belong to what was before or comes after: labels
-/// are late, and smoothing reaches across a switch.
-const STRAY: usize = 2;
-
-/// The part of `count` samples among which nothing switched, as [`cheapest_parts`] would cost it; none if samples in no part cost less.
-pub(crate) fn known_part<K: Copy>(
-    count: usize,
-    alone: f64,
-    cost: impl Fn(usize, usize) -> (f64, K),
-) -> Option<Part<K>> {
-    let mut best = (alone * count as f64, None);
-    for end in (count.saturating_sub(STRAY)..=count).rev() {
-        for begin in 0..=STRAY.min(end.saturating_sub(SPARE)) {
-            if end < begin + SPARE {
-                continue;
-            }
-            let (own, kind) = cost(begin, end);
-            let all = own + alone * (count - (end - begin)) as f64;
-            if all < best.0 {
-                best = (all, Some(Part { begin, end, kind }));
-            }
-        }
-    }
-    best.1
-}
-
-/// The least cost of planes through these samples, and their dimension.
-fn plane_cost(sums: &PrefixSums, (begin, end): (usize, usize), noise: f64) -> (f64, usize) {
-    let length = end - begin;
-    let dim = sums.dim;
-    let eigenvalues = sums.scatter(begin, end).symmetric_eigenvalues();
-    let mut eigenvalues = eigenvalues.as_slice().to_vec();
-    eigenvalues.sort_by(f64::total_cmp);
-    let mut best = (f64::INFINITY, 0);
-    let mut residual: f64 = eigenvalues.iter().map(|value| value.max(0.0)).sum();
-    for rank in 0..dim {
-        if length < rank + SPARE {
-            break;
-        }
+    /// Of a plane of this rank, which leaves these squares, through so many samples; none if they are too few.
+    fn of_rank(&self, rank: usize, length: usize, left: f64) -> Option<f64> {
+        let dim = self.sums.dim;
         let parameters = (rank * length + (rank + 1) * (dim - rank)) as f64;
-        let cost = residual / noise + PARAMETER * parameters + DIMENSION * rank as f64 + SEGMENT;
-        if cost < best.0 {
-            best = (cost, rank);
-        }
-        residual -= eigenvalues[dim - 1 - rank].max(0.0);
+        let cost = left / self.noise + PARAMETER * parameters + DIMENSION * rank as f64 + SEGMENT;
+        (length >= rank + SPARE).then_some(cost)
     }
-    best
+}
+
+impl Costs for PlaneCosts {
+    type Kind = usize;
+
+    fn cost(&mut self, begin: usize, end: usize) -> (f64, usize) {
+        let dim = self.sums.dim;
+        let eigenvalues = self.sums.scatter(begin, end).symmetric_eigenvalues();
+        let mut eigenvalues = eigenvalues.as_slice().to_vec();
+        eigenvalues.sort_by(f64::total_cmp);
+        let mut best = (f64::INFINITY, 0);
+        let mut residual: f64 = eigenvalues.iter().map(|value| value.max(0.0)).sum();
+        let mut residuals = Vec::with_capacity(dim);
+        for rank in 0..dim {
+            residuals.push(residual);
+            if let Some(cost) = self.of_rank(rank, end - begin, residual).filter(|cost| *cost < best.0) {
+                best = (cost, rank);
+            }
+            residual -= eigenvalues[dim - 1 - rank].max(0.0);
+        }
+        self.left.see(begin, &residuals);
+        best
+    }
+
+    fn at_least(&self, begin: usize, end: usize) -> f64 {
+        let of = |rank| self.of_rank(rank, end - begin, self.left.at_least(begin, rank));
+        (0..self.sums.dim).filter_map(of).fold(f64::INFINITY, f64::min)
+    }
 }
 
 /// Sums of u and u uᵀ over the first samples, of velocities about their mean.
+#[derive(Debug, Clone)]
 pub(crate) struct PrefixSums {
     dim: usize,
     first: Vec<DVector<f64>>,
@@ -140,6 +103,11 @@ impl PrefixSums {
             first.push(&first[at] + centred);
         }
         PrefixSums { dim, first, second }
+    }
+
+    /// Σ |u − mean u|² of all samples.
+    pub(crate) fn total(&self) -> f64 {
+        self.second.last().map_or(0.0, DMatrix::trace)
     }
 
     /// Σ (u − ū)(u − ū)ᵀ over `begin..end`.

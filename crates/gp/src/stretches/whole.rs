@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::stretches::segmentation::SPARE;
+use crate::stretches::partition::SPARE;
 
 /// Largest standard deviation of a direction's angle.
 const ANGLE: f64 = 0.25;

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use motion::{Finding, Recordings};
-use policy_align::{FileSummary, Model, Prepared, prepare};
+use policy_align::{ConstraintStretch, FileSummary, Model, Prepared, TaskLinks, estimate_constraints, prepare};
 use text::quoted;
 
-use crate::cli::failure::{Failure, displayed};
+use crate::cli::failure::{Exit, Failure, displayed};
 use crate::cli::lines::counted;
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
@@ -52,6 +52,18 @@ pub(crate) fn prepared_for(
         return Err(Failure::usage(what, named(files), remedy));
     }
     Ok((reading, prepared))
+}
+
+/// The constraints that acted on prepared recordings of `files`.
+pub(crate) fn acted(
+    model: &Model,
+    prepared: &Prepared,
+    links: Option<&TaskLinks>,
+    files: &[PathBuf],
+) -> Result<Vec<ConstraintStretch>, Failure> {
+    estimate_constraints(model, prepared, links).map_err(|error| {
+        Failure::of_text(Exit::Refused, &error.to_string(), named(files), "recordings of this model's state")
+    })
 }
 
 /// Refuses a name that no episode has; `flag` and `place` tell where it was given.

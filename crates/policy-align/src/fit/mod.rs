@@ -14,7 +14,7 @@ mod units;
 pub(crate) use aligning::held_out;
 pub use options::{FitOptions, LearnerChoice};
 pub use progress::{Progress, Step};
-pub(crate) use recorded_rows::{averaged, cleaning, rows};
+pub(crate) use recorded_rows::{averaged, cleaning, least_noisy_rows, rows};
 
 use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, PushTest, RowsDropped, SlopeGp, TrajectoryErrors};
 use motion::{LearntPolicy, Policy, upper_median};

@@ -12,7 +12,7 @@ use gp::{Acting, ConstraintEstimates, StretchEstimate, TaskSpace};
 use motion::Demonstrations;
 use nalgebra::{DMatrix, DVector, DVectorView};
 
-use crate::fit::{averaged, rows};
+use crate::fit::{averaged, least_noisy_rows};
 use crate::leave_out::in_units_of;
 use crate::{EvaluateError, Model, Prepared};
 
@@ -35,7 +35,7 @@ pub fn estimate_constraints(
         return Err(EvaluateError::Dimension { policy: policy.dim(), movements });
     }
     let prepared = &in_units_of(model, prepared)?;
-    let rows = rows(prepared)?;
+    let rows = least_noisy_rows(prepared)?;
     let scales = DVector::from_iterator(dim, prepared.state.iter().map(|channel| channel.scale));
     let states = unscaled(&rows.states().rows(0, dim).into_owned(), &scales);
     let robot = |reason| EvaluateError::Robot { reason };

@@ -1,7 +1,7 @@
 //! Uncertainty of the policy between the demonstrated movements.
 
 use motion::{Demonstrations, LearntPolicy, upper_median};
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -23,23 +23,27 @@ pub(crate) fn share_unknown(policy: &dyn LearntPolicy, demonstrations: &Demonstr
     let seconds: Vec<f64> = movements.iter().map(|movement| movement.seconds(0, movement.n_samples() - 1)).collect();
     let usual = upper_median(seconds).expect("there is a demonstration");
     let step = usual / (STATES * STEPS) as f64;
-    let mut deviation = DVector::zeros(policy.dim());
-    let mut unknown = 0;
+    let mut states: Vec<DVector<f64>> = Vec::with_capacity(STARTS * STATES);
     for _ in 0..STARTS {
         let [from, to] = [0, 1].map(|_| movements[rng.random_range(0..movements.len())].state_in_context(0));
         let mut state = &from + (to - &from) * rng.random_range(-BEYOND..1.0 + BEYOND);
         for _ in 0..STATES {
-            if !policy.action_sd_into(state.as_view(), deviation.as_view_mut()) {
-                return None;
-            }
-            unknown += usize::from(deviation.norm_squared() > SURE * SURE * variance);
+            states.push(state.clone());
             for _ in 0..STEPS {
                 state += policy.action(state.as_view()) * step;
             }
             if state.iter().any(|x| !x.is_finite()) {
-                return Some(1.0);
+                return deviations(policy, &states).map(|_| 1.0);
             }
         }
     }
+    let deviations = deviations(policy, &states)?;
+    let unknown =
+        deviations.column_iter().filter(|deviation| deviation.norm_squared() > SURE * SURE * variance).count();
     Some(unknown as f64 / (STARTS * STATES) as f64)
+}
+
+/// Error bars of the states, (n, N); none if the policy has none.
+fn deviations(policy: &dyn LearntPolicy, states: &[DVector<f64>]) -> Option<DMatrix<f64>> {
+    policy.certainty(DMatrix::from_columns(states).as_view()).deviations
 }

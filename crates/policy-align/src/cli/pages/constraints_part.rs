@@ -15,13 +15,17 @@ const LISTED: usize = 12;
 /// Movements times the cube of the dimension from which the search takes longer than a page may.
 const MOST: usize = 20_000;
 
-/// A table of what acted, the most frequent constraints first: none unless the data show constraints.
-pub(crate) fn constraints_part(model: &Model, prepared: &Prepared) -> Option<Part> {
+/// What acted on the movements, stretch by stretch: none unless the data show constraints.
+pub(crate) fn found(model: &Model, prepared: &Prepared) -> Option<Vec<ConstraintStretch>> {
     let effort = prepared.episodes.len() * model.state.len().pow(3);
     if model.trust.numbers.reading != Hypothesis::Constrained || effort > MOST {
         return None;
     }
-    let found = estimate_constraints(model, prepared, None).ok()?;
+    estimate_constraints(model, prepared, None).ok()
+}
+
+/// A table of what acted, the most frequent constraints first: none if there are no constraints.
+pub(crate) fn constraints_part(found: &[ConstraintStretch], model: &Model) -> Option<Part> {
     let mut alike: BTreeMap<String, Vec<&ConstraintStretch>> = BTreeMap::new();
     for stretch in found.iter().filter(|stretch| stretch.acting == Acting::Constraint) {
         alike.entry(stretch.in_words(&model.state)).or_default().push(stretch);

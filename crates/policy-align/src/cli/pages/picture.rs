@@ -11,6 +11,7 @@ use text::plain;
 
 use crate::cli::failure::{Exit, Failure, displayed};
 use crate::cli::lines::short;
+use crate::cli::pages::constraint_marks::{Held, marks};
 
 /// Grid points along each axis: for arrows, and for potential and support.
 const ARROWS: usize = 16;
@@ -32,6 +33,8 @@ pub(crate) struct Picture<'a> {
     pub(crate) dims: [usize; 2],
     /// Demonstrations, (n, N) each.
     pub(crate) demonstrated: Vec<DMatrix<f64>>,
+    /// Constraints that acted on them.
+    pub(crate) held: Vec<Held>,
     /// Movements that the policy makes.
     pub(crate) followed: Vec<DMatrix<f64>>,
 }
@@ -61,13 +64,21 @@ impl Picture<'_> {
         (0..count).map(|i| from + (to - from) * i as f64 / (count - 1) as f64).collect()
     }
 
-    /// Whether demonstrations support a place: it is in their range, and the policy is supported there.
-    fn is_known(&self, policy: &ModelPolicy<'_>, place: [f64; 2]) -> bool {
+    /// Whether demonstrations support each of some places: it is in their range, and the policy is supported there.
+    fn are_known(&self, policy: &ModelPolicy<'_>, places: &[[f64; 2]]) -> Vec<bool> {
         let within = |(&dim, value): (&usize, f64)| {
             let channel = &self.model.state[dim];
             (channel.low..=channel.high).contains(&value)
         };
-        self.dims.iter().zip(self.values(place)).all(within) && policy.is_supported(self.state(place).as_view())
+        let is_within = |place: &[f64; 2]| self.dims.iter().zip(self.values(*place)).all(within);
+        let mut known: Vec<bool> = places.iter().map(is_within).collect();
+        let states: Vec<DVector<f64>> =
+            places.iter().zip(&known).filter(|(_, known)| **known).map(|(place, _)| self.state(*place)).collect();
+        if !states.is_empty() {
+            let supported = policy.are_supported(DMatrix::from_columns(&states).as_view());
+            known.iter_mut().filter(|known| **known).zip(supported).for_each(|(known, supported)| *known = supported);
+        }
+        known
     }
 
     /// The state at a place; all other channels are at their median.
@@ -84,7 +95,7 @@ impl Picture<'_> {
         let policy = self.model.policy();
         // Row after row.
         let known: Vec<Vec<bool>> =
-            y.par_iter().map(|&y| x.iter().map(|&x| self.is_known(&policy, [x, y])).collect()).collect();
+            y.par_iter().map(|&y| self.are_known(&policy, &x.iter().map(|&x| [x, y]).collect::<Vec<_>>())).collect();
         let mut layers = Vec::new();
         if let Some(potential) = policy.potential() {
             let value = |x: f64, y: f64| potential.value(self.state([x, y]).as_view());
@@ -105,6 +116,8 @@ impl Picture<'_> {
             });
         }
         layers.extend(self.arrows());
+        let [width, height] = [0, 1].map(|axis| self.range(axis)[1] - self.range(axis)[0]);
+        layers.extend(marks(&self.held, &self.model.state, self.dims, self.factors(), width.min(height)));
         for (at, movement) in self.followed.iter().enumerate() {
             let points = self.points(movement);
             layers.push(Layer::Dots { points: points[..1].to_vec(), color: FOLLOWED.color, radius: 4.0 });
@@ -128,12 +141,12 @@ impl Picture<'_> {
         let (xs, ys) = (self.places(0, ARROWS), self.places(1, ARROWS));
         let places: Vec<[f64; 2]> = ys.iter().flat_map(|&y| xs.iter().map(move |&x| [x, y])).collect();
         let arrow = |&place: &[f64; 2]| {
-            self.is_known(&policy, place).then(|| {
-                let action = policy.action(self.state(place).as_view());
-                (place[0], place[1], x * action[self.dims[0]], y * action[self.dims[1]])
-            })
+            let action = policy.action(self.state(place).as_view());
+            (place[0], place[1], x * action[self.dims[0]], y * action[self.dims[1]])
         };
-        let arrows: Vec<_> = places.par_iter().filter_map(arrow).collect();
+        let known = self.are_known(&policy, &places);
+        let arrows: Vec<_> =
+            places.iter().zip(known).filter(|(_, known)| *known).map(|(place, _)| arrow(place)).collect();
         let longest = arrows.iter().map(|(_, _, u, v)| u.hypot(*v)).fold(0.0, f64::max);
         if longest == 0.0 {
             return None;

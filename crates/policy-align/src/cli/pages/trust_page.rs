@@ -1,14 +1,14 @@
 //! The trust report: how far to trust a policy.
 
 use maud::{Markup, html};
-use motion::{LearntPolicy as _, Trajectory};
-use nalgebra::DMatrix;
+use motion::LearntPolicy as _;
 use page::{Card, Part};
-use policy_align::{AlignedNumbers, Model, Prepared, TrustNumbers, direction_by_channels};
+use policy_align::{AlignedNumbers, ConstraintStretch, Model, Prepared, TrustNumbers, direction_by_channels};
 
 use crate::cli::describe::learner;
 use crate::cli::lines::{counted, short};
-use crate::cli::pages::constraints_part::constraints_part;
+use crate::cli::pages::constraint_marks::{held, recorded};
+use crate::cli::pages::constraints_part::{constraints_part, found};
 use crate::cli::pages::page_parts::{self, COVERAGE, NOISE, channels, decisions, left_out, opening, page, part};
 use crate::cli::pages::picture::Picture;
 use crate::cli::trust_files::{DIGITS, NAMED};
@@ -33,26 +33,29 @@ pub(crate) fn trust_page(model: &Model, name: &str, checksum: &str, prepared: &P
     let verdict = (model.trust.verdict, SENTENCES);
     let body = opening(("verdict", &title), verdict, &model.trust.findings, &learnt);
     let opening = Part { id: "verdict".to_owned(), title: "Verdict".to_owned(), body };
+    let found = found(model, prepared).unwrap_or_default();
     let mut parts = Vec::new();
     if model.state.len() >= 2 {
-        parts.push(part("field", FIELD, &field(model, prepared)));
+        parts.push(part("field", FIELD, &field(model, prepared, &found)));
     }
     parts.push(part("numbers", "Numbers", &numbers(model)));
-    parts.extend(constraints_part(model, prepared));
+    parts.extend(constraints_part(&found, model));
     parts.push(part("decisions", "Decisions", &decisions(&model.decisions)));
     parts.push(part("data", "Data", &data(model, checksum)));
     page(&title, name, opening, parts)
 }
 
-fn field(model: &Model, prepared: &Prepared) -> Markup {
+fn field(model: &Model, prepared: &Prepared, found: &[ConstraintStretch]) -> Markup {
     let model = &model.in_usual_context();
-    // Not the model's scales, which it may have learnt.
-    let unscaled = |movement: &Trajectory| {
-        let states = movement.states();
-        DMatrix::from_fn(states.nrows(), states.ncols(), |k, i| states[(k, i)] / prepared.state[k].scale)
+    let held = held(found, prepared);
+    let constraints = if held.is_empty() {
+        ""
+    } else {
+        " Purple: where constraints found below cut this plane, in the middle of the stretch of time on which they acted, and their \
+         normals; dashed where they move."
     };
-    let demonstrated = prepared.demonstrations.trajectories().iter().map(unscaled).collect();
-    let picture = Picture { title: FIELD.to_owned(), model, dims: [0, 1], demonstrated, followed: vec![] };
+    let (title, demonstrated) = (FIELD.to_owned(), recorded(prepared));
+    let picture = Picture { title, model, dims: [0, 1], demonstrated, held, followed: vec![] };
     let svg = plot::Picture::rows(&[&[&picture.plane()]]).svg();
     let potential = if model.policy().potential().is_some() {
         " Thin lines join states of equal potential, with its value; the policy leads downhill."
@@ -65,7 +68,7 @@ fn field(model: &Model, prepared: &Prepared) -> Markup {
         ""
     };
     let caption = format!(
-        "Arrows: the learnt policy. Blue: the demonstrations.{potential} Grey: outside the range of the demonstrations, or too \
+        "Arrows: the learnt policy. Blue: the demonstrations.{constraints}{potential} Grey: outside the range of the demonstrations, or too \
          far from all of them to predict an action.{rest}"
     );
     Card { id: "field", title: FIELD, caption: &caption, remark: None, svg: &svg }.under(FIELD)

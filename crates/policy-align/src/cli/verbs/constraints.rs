@@ -2,9 +2,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use policy_align::gp::Acting;
-use policy_align::{
-    ConstraintStretch, Model, Prepared, StateChannel, TaskLinks, constraint_file, estimate_constraints,
-};
+use policy_align::{ConstraintStretch, Model, Prepared, StateChannel, TaskLinks, constraint_file};
 use serde_json::json;
 
 use crate::cli::failure::{Exit, Failure, displayed};
@@ -12,7 +10,7 @@ use crate::cli::given::no_input;
 use crate::cli::lines::Lines;
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
 use crate::cli::options::values::urdf;
-use crate::cli::recorded::{known_episode, named, prepared_for};
+use crate::cli::recorded::{acted, known_episode, named, prepared_for};
 use crate::cli::session::{Output, Session, write};
 use crate::cli::trust_files::load;
 
@@ -66,9 +64,7 @@ impl Constraints {
         let model = load(session, &self.model)?;
         let (_, prepared) = prepared_for(session, &model, &self.files, (&self.read, &self.prepare))?;
         let links = self.links(&model)?;
-        let found = estimate_constraints(&model, &prepared, links.as_ref()).map_err(|error| {
-            Failure::of_text(Exit::Refused, &error.to_string(), named(&self.files), "recordings of this model's state")
-        })?;
+        let found = acted(&model, &prepared, links.as_ref(), &self.files)?;
         let found = self.chosen(found, &prepared)?;
         if let Some(path) = &self.output {
             let first = found.first().map(|stretch| stretch.episode.clone());

@@ -9,11 +9,12 @@ use crate::cli::failure::Failure;
 use crate::cli::given::no_input;
 use crate::cli::lines::{Lines, short};
 use crate::cli::options::config::Config;
-use crate::cli::options::flags::ReadFlags;
+use crate::cli::options::flags::{PrepareFlags, ReadFlags};
 use crate::cli::options::rollout_flags::RollOutFlags;
 use crate::cli::options::values::{in_context, numbers};
+use crate::cli::pages::constraint_marks::{held, recorded};
 use crate::cli::pages::picture::{Picture, draw};
-use crate::cli::recorded::{base_name, read};
+use crate::cli::recorded::{acted, base_name, prepared_for, read};
 use crate::cli::session::{Output, Session, write};
 use crate::cli::trust_files::load;
 use crate::cli::verbs::rollout::followed;
@@ -39,6 +40,9 @@ pub(crate) struct Plot {
     /// Recordings to plot
     #[arg(long, value_name = "FILES", num_args = 1..)]
     files: Vec<PathBuf>,
+    /// Constraints found on the recordings: what they keep to, and normals
+    #[arg(long, requires = "files")]
+    constraints: bool,
     /// Start of a roll-out; may be repeated
     #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
     rollout: Vec<String>,
@@ -58,11 +62,17 @@ impl Plot {
         let mut reading = config.under("read", &self.read)?;
         reading.context.clear();
         let reading = reading.with_channels_of(&model);
-        let demonstrated = if self.files.is_empty() {
-            vec![]
+        let (demonstrated, held) = if self.constraints {
+            // There it chooses a context, here it names channels.
+            let mut reading = self.read.clone();
+            reading.context.clear();
+            let (_, prepared) = prepared_for(session, &model, &self.files, (&reading, &PrepareFlags::default()))?;
+            (recorded(&prepared), held(&acted(&model, &prepared, None, &self.files)?, &prepared))
+        } else if self.files.is_empty() {
+            (vec![], vec![])
         } else {
             let recordings = read(session, &self.files, &reading)?;
-            recordings.episodes.into_iter().map(|episode| episode.positions).collect()
+            (recordings.episodes.into_iter().map(|episode| episode.positions).collect(), vec![])
         };
         let paths = self.rollout.iter().map(|from| {
             let start = DVector::from_vec(numbers(from, "--rollout")?);
@@ -70,7 +80,7 @@ impl Plot {
         });
         let title = format!("Policy of {} (grey: outside the demonstrations)", base_name(&self.model));
         let followed = paths.collect::<Result<_, Failure>>()?;
-        let picture = Picture { title, model: &model, dims, demonstrated, followed };
+        let picture = Picture { title, model: &model, dims, demonstrated, held, followed };
         write(&self.output, &draw(&self.output, &picture)?)?;
         let mut lines = Lines::default();
         let [across, up] = dims.map(|dim| &model.state[dim].name);

@@ -79,7 +79,7 @@ impl RollOut {
         if let Some(plot) = &self.plot {
             let title = format!("Rollout of {} (grey: outside the demonstrations)", base_name(&self.model));
             let (dims, followed) = ([0, 1.min(model.state.len() - 1)], vec![followed.states.clone()]);
-            let picture = Picture { title, model: &model, dims, demonstrated: vec![], followed };
+            let picture = Picture { title, model: &model, dims, demonstrated: vec![], held: vec![], followed };
             write(plot, &draw(plot, &picture)?)?;
         }
         if session.json {
