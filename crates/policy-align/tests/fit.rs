@@ -11,9 +11,11 @@ use cases::{Case, Has, Plane, parabola};
 use gp::Hypothesis;
 use nalgebra::DMatrix;
 use policy_align::{
-    EvaluateError, FitError, FitOptions, LearnerChoice, Learnt, Model, PrepareOptions, Prepared, Progress, Step, Truth,
+    EvaluateError, FitError, FitOptions, LearnerChoice, Learnt, Model, PrepareOptions, Prepared, Progress, Smoothing, Step, Truth,
     Verdict, evaluate, leave_constraints_out, prepare,
 };
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
 fn few() -> Case {
     Case::of(&Plane { count: 12, ..Plane::default() }.potential(&parabola(), 5), 12, Has::Velocities)
@@ -168,6 +170,20 @@ fn options_out_of_range() {
     ] {
         assert!(matches!(fit(&prepared, &options).unwrap_err(), FitError::Option { .. }), "{options:?}");
     }
+}
+
+/// Half of the movements of one are none.
+#[test]
+fn one_noisy_movement() {
+    let roll_out = demo_gen::RollOut { n_samples: 200, time_step: 0.2, ..demo_gen::RollOut::default() };
+    let all = Plane { count: 1, roll_out, ..Plane::default() }.potential(&parabola(), 5);
+    let mut case = Case::of(&all, 1, Has::Velocities);
+    let rng = &mut ChaCha8Rng::seed_from_u64(1);
+    let velocities = case.recordings.episodes[0].velocities.as_mut().unwrap();
+    velocities.iter_mut().for_each(|velocity| *velocity += rng.random_range(-0.02..0.02));
+    let options = PrepareOptions { smoothing: Smoothing::Off, ..PrepareOptions::default() };
+    let learnt = fit(&prepare(&case.recordings, &options).unwrap(), &small(LearnerChoice::Auto)).unwrap();
+    assert_eq!((learnt.data.episodes, learnt.trust.numbers.halves), (1, None));
 }
 
 #[test]

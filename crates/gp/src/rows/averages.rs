@@ -34,7 +34,8 @@ impl Rows {
     /// The direction of (S1) is that of the velocity, so that noise of it enters squared and does not go down with the number of
     /// rows: of a velocity's noise, its mean over as many samples does.
     pub(crate) fn averaged(&self) -> Cow<'_, Rows> {
-        let Some(variances) = self.variances().filter(|_| self.switches().is_none()) else {
+        let with_noise = self.variances().filter(|_| self.switches().is_none() && !self.is_empty());
+        let Some(variances) = with_noise else {
             return Cow::Borrowed(self);
         };
         let all: Vec<usize> = (0..self.len()).collect();
@@ -171,5 +172,12 @@ mod tests {
             let smoothed = noisy.clone().with_findings(noise, Some(vec![vec![0.0; length]]));
             prop_assert_eq!(&*smoothed.averaged(), &smoothed);
         }
+    }
+
+    /// A half of one movement may have none.
+    #[test]
+    fn no_rows_have_no_means() {
+        let none = rows(&DMatrix::zeros(2, 0), &[]).with_variances(Vec::new()).expect("no variances");
+        assert!(none.averaged().is_empty());
     }
 }
