@@ -27,7 +27,7 @@ pub(crate) fn trust_page(model: &Model, name: &str, checksum: &str, prepared: &P
     let title = format!("How far to trust {name}");
     let learnt = html! {
         "Learnt by " (learner(model)) ", from " (counted(model.data.episodes, "episode")) " with "
-        (counted(model.data.samples, "sample")) ". All checks work without the true policy. They cannot detect a \
+        (counted(model.data.samples, "sample")) (rows(model)) ". All checks work without the true policy. They cannot detect a \
          constraint that is the same in every demonstration."
     };
     let verdict = (model.trust.verdict, SENTENCES);
@@ -43,6 +43,12 @@ pub(crate) fn trust_page(model: &Model, name: &str, checksum: &str, prepared: &P
     parts.push(part("decisions", "Decisions", &decisions(&model.decisions)));
     parts.push(part("data", "Data", &data(model, checksum)));
     page(&title, name, opening, parts)
+}
+
+/// How many rows were made of the samples, where they were thinned or averaged.
+fn rows(model: &Model) -> String {
+    let rows = model.decisions.iter().find(|decision| decision.what == "rows");
+    rows.map_or(String::new(), |rows| format!(" ({} rows: {})", rows.value, rows.why))
 }
 
 fn field(model: &Model, prepared: &Prepared, found: &[ConstraintStretch]) -> Markup {

@@ -128,11 +128,11 @@ impl Fit {
         }
         let mut lines = Lines::default();
         let data = &model.data;
-        lines.add("learnt from", &amount(data.episodes, data.samples));
+        lines.add("recorded", &amount(data.episodes, data.samples));
         if let Some(left_out) = left_out(&data.left_out) {
             lines.add("left out", &left_out);
         }
-        let is_major = |of: &&Decision| of.what == "learner" || (of.what == "scale" && of.why != "given");
+        let is_major = |of: &&Decision| ["rows", "learner"].contains(&of.what.as_str()) || (of.what == "scale" && of.why != "given");
         for Decision { what, value, why, .. } in model.decisions.iter().filter(is_major) {
             lines.add(what, &format!("{value} ({why})"));
         }

@@ -33,7 +33,7 @@ impl Info {
         lines.add("made by", &format!("{}, {}", model.made_by.program, model.made_by.time));
         let files: Vec<&str> = model.data.files.iter().take(3).map(|file| file.name.as_str()).collect();
         let data = amount(model.data.episodes, model.data.samples);
-        lines.add("learnt from", &format!("{data} ({})", files.join(", ")));
+        lines.add("recorded", &format!("{data} ({})", files.join(", ")));
         if let Some(left_out) = left_out(&model.data.left_out) {
             lines.add("left out", &left_out);
         }
