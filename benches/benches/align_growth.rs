@@ -8,7 +8,7 @@
 use std::time::Instant;
 
 use align::PolicyAlign;
-use benches::{cpu_seconds, toy_demonstrations};
+use benches::{cpu_seconds, peak_megabytes, toy_demonstrations};
 
 fn main() {
     let numbers: Vec<usize> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
@@ -34,11 +34,4 @@ fn main() {
         );
         before = Some((count, cpu));
     }
-}
-
-/// The most memory that this process has had so far, movements and all; 0 where the system does not tell.
-fn peak_megabytes() -> f64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-    line.and_then(|line| line.trim().split(' ').next()?.parse::<f64>().ok()).map_or(0.0, |kilobytes| kilobytes / 1024.0)
 }

@@ -11,8 +11,8 @@ use cases::{Case, Has, Plane, parabola};
 use gp::Hypothesis;
 use nalgebra::DMatrix;
 use policy_align::{
-    EvaluateError, FitError, FitOptions, LearnerChoice, Learnt, Model, PrepareOptions, Prepared, Progress, Smoothing, Step, Truth,
-    Verdict, evaluate, leave_constraints_out, prepare,
+    EvaluateError, FitError, FitOptions, LearnerChoice, Learnt, Model, PrepareOptions, Prepared, Progress, Smoothing,
+    Step, Truth, Verdict, evaluate, leave_constraints_out, prepare,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

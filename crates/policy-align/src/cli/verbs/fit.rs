@@ -132,7 +132,9 @@ impl Fit {
         if let Some(left_out) = left_out(&data.left_out) {
             lines.add("left out", &left_out);
         }
-        let is_major = |of: &&Decision| ["rows", "learner"].contains(&of.what.as_str()) || (of.what == "scale" && of.why != "given");
+        let is_major = |of: &&Decision| {
+            ["rows", "learner"].contains(&of.what.as_str()) || (of.what == "scale" && of.why != "given")
+        };
         for Decision { what, value, why, .. } in model.decisions.iter().filter(is_major) {
             lines.add(what, &format!("{value} ({why})"));
         }

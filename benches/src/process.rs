@@ -6,3 +6,10 @@ pub fn cpu_seconds() -> f64 {
     let schedules = tasks.flatten().filter_map(|task| fs::read_to_string(task.path().join("schedstat")).ok());
     schedules.filter_map(|line| line.split(' ').next()?.parse::<f64>().ok()).sum::<f64>() * 1e-9
 }
+
+/// The most memory that this process has had so far, in megabytes; 0 where the system does not tell.
+pub fn peak_megabytes() -> f64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    line.and_then(|line| line.trim().split(' ').next()?.parse::<f64>().ok()).map_or(0.0, |kilobytes| kilobytes / 1024.0)
+}
