@@ -130,12 +130,14 @@ impl Roles {
     ) -> Result<(), ReadError> {
         let mut velocities: Vec<usize> = Vec::new();
         if options.velocity.is_empty() {
-            let lowered: Vec<(usize, String)> = free.iter().map(|&index| (index, base(names[index]))).collect();
+            let lower = |&index: &usize| (index, base(names[index]));
+            let lowered: Vec<(usize, String)> = free.iter().map(lower).collect();
             let mut by_name: HashMap<&str, usize> = HashMap::new();
             for (index, name) in &lowered {
                 by_name.entry(name).or_insert(*index);
             }
-            for (index, name) in &lowered {
+            let context: Vec<(usize, String)> = self.context.iter().map(lower).collect();
+            for (index, name) in context.iter().chain(&lowered) {
                 if !velocities.contains(index) {
                     let velocity = velocity_names(name).find_map(|wanted| by_name.get(wanted.as_str()).copied());
                     velocities.extend(velocity.filter(|velocity| velocity != index));
