@@ -2,8 +2,10 @@ use serde::{Deserialize, Serialize};
 
 /// What a user may say about files; by default everything is found out.
 ///
-/// Columns, arrays and channels are named by **patterns**: a name, a glob (`q*`, `joint?`), or a number or range counted
-/// from 0 (`2`, `2-8`). One text may hold several, with commas between. A name wins over a number.
+/// Columns, arrays and channels are named by **patterns**: a name, a glob (`q*`, `joint?`), numbered names (`q2-8`), or a
+/// number or range counted from 0 (`2`, `2-8`). One text may hold several, with commas between. A name wins over a number. What names
+/// nothing is an error, for `ignore` if it names nothing in any of the files. In formats of arrays, a pattern that names no array names
+/// columns: `x0` as channels are called, or `states_1` of the array `states`; a number counts arrays, and columns of the only one.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ReadOptions {

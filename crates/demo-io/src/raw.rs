@@ -1,5 +1,6 @@
 //! Episodes as a reader finds them, before anything is checked.
 
+use crate::names::selection::unmatched;
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use motion::{Channel, Episode, Finding, Labels, Recordings, Source, Times, Verdict};
 use nalgebra::DMatrix;
@@ -17,6 +18,24 @@ pub(crate) struct RawRecordings {
     pub(crate) word: &'static str,
     /// Whether the state was named, or found among columns, of which those that never change are left out.
     pub(crate) drop_constant: bool,
+    /// What `--ignore` names and is not there.
+    pub(crate) unknown: Unknown,
+}
+
+/// Patterns that name nothing, and the names that there are.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Unknown {
+    pub(crate) patterns: Vec<String>,
+    pub(crate) names: Vec<String>,
+}
+
+impl Unknown {
+    pub(crate) fn of<S: AsRef<str>>(patterns: &[String], names: &[S]) -> Self {
+        let unmatched = unmatched(patterns, names);
+        let names =
+            if unmatched.is_empty() { Vec::new() } else { names.iter().map(|name| name.as_ref().to_owned()).collect() };
+        Unknown { patterns: unmatched, names }
+    }
 }
 
 /// An episode of n channels and N samples.

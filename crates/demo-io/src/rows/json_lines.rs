@@ -25,7 +25,7 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
         }
     }
     match reader {
-        Some(Reader::Episodes(episodes)) => Ok(episodes.finish()),
+        Some(Reader::Episodes(episodes)) => episodes.finish(),
         Some(Reader::Samples(rows)) => rows.finish(),
         None => Err(ReadError::Empty(Fault::new("there is no line", &input.name, "a file that is not empty"))),
     }

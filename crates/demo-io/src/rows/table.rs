@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
-use crate::raw::{Clock, MOST_CHANNELS, MOST_EPISODES, RawEpisode, RawRecordings, Rows, no_time, period, unused};
+use crate::raw::{
+    Clock, MOST_CHANNELS, MOST_EPISODES, RawEpisode, RawRecordings, Rows, Unknown, no_time, period, unused,
+};
 use crate::rows::roles::{Column, Content, Roles, assign, unit};
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use crate::{Fault, ReadError, ReadOptions};
@@ -36,6 +38,7 @@ pub(crate) struct Table {
     by_label: HashMap<String, usize>,
     current: Option<usize>,
     label: String,
+    unknown: Unknown,
     /// Advice on a field that is no number.
     pub(crate) hint: fn(&str) -> Option<String>,
 }
@@ -70,6 +73,7 @@ impl Table {
             by_label: HashMap::new(),
             current: None,
             label: String::new(),
+            unknown: Unknown::of(&options.ignore, &columns.iter().map(|column| &column.name[..]).collect::<Vec<_>>()),
             roles,
             hint: |_| None,
         })
@@ -194,7 +198,7 @@ impl Table {
             raw.constraint.take_if(|labels| !labels_vary || labels.is_blank());
         }
         let (episodes, word, drop_constant) = (self.episodes, self.word, self.roles.state_guessed);
-        RawRecordings { channels, episodes, findings, word, drop_constant }
+        RawRecordings { channels, episodes, findings, word, drop_constant, unknown: self.unknown }
     }
 }
 

@@ -1,11 +1,14 @@
 use crate::arrays::layout::lengths;
 use crate::input::Input;
+use crate::names::columns::{Asked, Chosen};
+use crate::names::selection::flags;
 use crate::raw::{
-    MOST_EPISODES, RawEpisode, RawRecordings, Rows, counted_names, even_times, no_time, period, seconds_since_first,
+    MOST_EPISODES, RawEpisode, RawRecordings, Rows, Unknown, counted_names, even_times, no_time, period,
+    seconds_since_first, unused,
 };
 use crate::rows::json::Json;
 use crate::rows::stamps::Stamp;
-use crate::{Fault, ReadError};
+use crate::{Fault, ReadError, ReadOptions};
 use motion::{Channel, Labels};
 
 /// Episodes, a line each: `{"episode": "take 1", "dt": 0.05, "names": ["x"], "unit": ["m"], "state": [[0.1], [0.2]],
@@ -95,14 +98,33 @@ impl<'a> EpisodeLines<'a> {
         }
     }
 
-    pub(super) fn finish(self) -> RawRecordings {
-        RawRecordings {
-            channels: self.channels.unwrap_or_default(),
-            episodes: self.episodes,
-            findings: Vec::new(),
+    /// The channels that the user chooses, of all.
+    pub(super) fn finish(self) -> Result<RawRecordings, ReadError> {
+        let ReadOptions { state, velocity, context, ignore, .. } = self.input.options.clone();
+        let (channels, mut episodes) = (self.channels.unwrap_or_default(), self.episodes);
+        let names: Vec<String> = channels.iter().map(|channel| channel.name.clone()).collect();
+        let unknown = Unknown::of(&ignore, &names);
+        let asked = Asked { state, velocity, context, ignore, time: None };
+        let drafts = |channels, findings, episodes| RawRecordings {
+            channels,
+            episodes,
+            findings,
             word: "sample",
             drop_constant: false,
+            unknown: unknown.clone(),
+        };
+        if asked.is_empty() {
+            return Ok(drafts(channels, Vec::new(), episodes));
         }
+        let chosen = Chosen::of(&names, &asked, &[], &self.input.name)?;
+        for raw in &mut episodes {
+            raw.velocities = chosen.velocities(&raw.positions, &raw.velocities, &self.input.name)?;
+            raw.positions = chosen.positions(&raw.positions);
+        }
+        let ignored = flags(&asked.ignore, &names);
+        let left: Vec<&str> = chosen.unused().filter(|&column| !ignored[column]).map(|at| &names[at][..]).collect();
+        let channels = chosen.channels().map(|column| channels[column].clone()).collect();
+        Ok(drafts(channels, unused("columns", &left).into_iter().collect(), episodes))
     }
 }
 
