@@ -21,6 +21,8 @@ pub struct ReadOptions {
     pub context: Vec<String>,
     /// `--time`: the column or array of stamps.
     pub time: Option<String>,
+    /// `--time-unit`: of stamps that are numbers; otherwise found by the column's name and the size of the first.
+    pub time_unit: Option<TimeUnit>,
     /// `--episode`: the column or array that tells episodes apart.
     pub episode: Option<String>,
     /// `--constraint-column`: the column or array with the name of the constraint, of an episode or of every sample.
@@ -94,6 +96,23 @@ pub enum Nan {
     Drop,
     /// Up to 3 in a row are interpolated; more are an error.
     Fill,
+}
+
+/// The unit of stamps that are numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum TimeUnit {
+    /// s.
+    #[serde(rename = "s")]
+    Seconds,
+    /// ms.
+    #[serde(rename = "ms")]
+    Milliseconds,
+    /// µs.
+    #[serde(rename = "us")]
+    Microseconds,
+    /// ns.
+    #[serde(rename = "ns")]
+    Nanoseconds,
 }
 
 /// How arrays lie.

@@ -6,7 +6,7 @@ use motion::{Channel, Episode, Finding, Labels, Recordings, Source, Times, Verdi
 use nalgebra::DMatrix;
 
 use crate::error::in_one_line;
-use crate::{Fault, ReadError, ReadOptions};
+use crate::{Fault, ReadError, ReadOptions, TimeUnit};
 
 /// Everything a reader found.
 #[derive(Debug)]
@@ -206,15 +206,17 @@ pub(crate) fn even_times(step: f64, len: usize) -> Vec<f64> {
 }
 
 /// Seconds of stamps since the first of them. Their unit is `ticks` if it is known, else what the first one has with it, else
-/// what `name` and its size suggest.
+/// what the user says, else what `name` and its size suggest.
 pub(crate) fn seconds_since_first(
     stamps: impl Iterator<Item = (Stamp, Option<TicksPerSecond>)>,
     name: &str,
+    asked: Option<TimeUnit>,
     ticks: &mut Option<TicksPerSecond>,
 ) -> Vec<f64> {
+    let asked = TicksPerSecond::asked(asked);
     let mut clock = Clock::new(None);
     for (stamp, unit) in stamps {
-        let guess = || stamp.is_finite().then(|| unit.unwrap_or_else(|| TicksPerSecond::guess(name, stamp)));
+        let guess = || stamp.is_finite().then(|| unit.or(asked).unwrap_or_else(|| TicksPerSecond::guess(name, stamp)));
         *ticks = ticks.or_else(guess);
         clock.push(stamp);
     }

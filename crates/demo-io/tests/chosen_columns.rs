@@ -21,7 +21,7 @@ fn value(sample: usize, column: usize) -> f64 {
 
 /// An array (samples, columns) as NumPy writes it.
 fn npy(shape: &[usize], values: impl Iterator<Item = f64>) -> Vec<u8> {
-    let shape: String = shape.iter().map(|length| format!("{length}, ")).collect();
+    let shape: String = shape.iter().flat_map(|length| [length.to_string(), ", ".to_owned()]).collect();
     let text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({shape}), }}\n");
     let mut file = b"\x93NUMPY\x01\x00".to_vec();
     file.extend_from_slice(&(text.len() as u16).to_le_bytes());
@@ -39,7 +39,8 @@ fn npz(arrays: &[(&str, Vec<u8>)]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut archive = rawzip::ZipArchiveWriter::new(&mut bytes);
     for (name, content) in arrays {
-        let (mut entry, config) = archive.new_file(&format!("{name}.npy")).start().unwrap();
+        let name = format!("{name}.npy");
+        let (mut entry, config) = archive.new_file(&name).start().unwrap();
         let mut writer = config.wrap(&mut entry);
         writer.write_all(content).unwrap();
         let descriptor = writer.finish().unwrap().1;
@@ -170,10 +171,7 @@ fn columns_of_hdf5_and_mat_are_chosen() {
         let all = read_with(&path, &ReadOptions::default()).unwrap();
         for asked in [
             ReadOptions { state: listed(&[name]), ..ReadOptions::default() },
-            ReadOptions {
-                ignore: listed(&[&name.replace('1', "0").replace("robot0_joint_pos_0", "robot0_joint_pos_0")]),
-                ..ReadOptions::default()
-            },
+            ReadOptions { ignore: listed(&[&name.replace('1', "0")]), ..ReadOptions::default() },
         ] {
             let found = read_with(&path, &asked).unwrap();
             assert_eq!(names(&found), [name]);

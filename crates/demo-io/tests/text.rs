@@ -320,3 +320,29 @@ fn a_list_of_names_has_one_a_sample() {
     assert_eq!(parsed("a.jsonl", line(r#"["", "", null]"#), &plain()).unwrap().episodes[0].constraint, None);
     refused("a.jsonl", line(r#"["a", "b"]"#), &plain(), "Lengths", &["'constraint'", "2", "3"]);
 }
+
+/// Stamps as spreadsheets and ROS 1 write them, and units that no name tells.
+#[test]
+fn stamps_of_two_columns_dates_and_units_are_read() {
+    let step = |text: &str, options: &ReadOptions| parsed("a.csv", text, options).unwrap().time_step();
+    let ros = "header.stamp.secs,header.stamp.nsecs,x,y\n1700000000,950000000,1,2\n1700000001,0,1.5,3\n\
+               1700000001,50000000,1.75,4\n";
+    assert_eq!(step(ros, &ReadOptions::default()), 0.05);
+    assert_eq!(names(&parsed("a.csv", ros, &ReadOptions::default()).unwrap()), ["x", "y"]);
+    let ros2 = ros.replace("secs", "sec").replace("nsec", "nanosec");
+    assert_eq!(step(&ros2, &ReadOptions::default()), 0.05);
+    let german = "Uhrzeit;x\n04.03.2026 10:00:00,000;1,5\n04.03.2026 10:00:00,050;2,5\n04.03.2026 10:00:00,100;3\n";
+    let by = ReadOptions { time: Some("Uhrzeit".to_owned()), ..ReadOptions::default() };
+    assert_eq!(step(german, &by), 0.05);
+    let refused_stamp = german.replace("04.03.2026 10", "gestern 10");
+    refused("a.csv", refused_stamp, &by, "NotANumber", &["is not a stamp", "14.11.2023", "--dt"]);
+    for (unit, seconds) in [("s", 20.0), ("ms", 0.02), ("us", 2e-5), ("ns", 2e-8)] {
+        let unit = serde_json::from_str(&format!("\"{unit}\"")).unwrap();
+        let asked = ReadOptions { time_unit: Some(unit), ..ReadOptions::default() };
+        assert_eq!(step("t,x\n0,1\n20,2\n40,4\n", &asked), seconds);
+        // What a text says of itself is known.
+        assert_eq!(step(german, &ReadOptions { time: by.time.clone(), ..asked.clone() }), 0.05);
+        let line = r#"{"times": [0, 20, 40], "state": [[1], [2], [4]]}"#;
+        assert_eq!(parsed("a.jsonl", line, &asked).unwrap().time_step(), seconds);
+    }
+}

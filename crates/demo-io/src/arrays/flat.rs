@@ -52,7 +52,7 @@ impl Columns<'_> {
                 let mut ticks = None;
                 let of = |samples: &Samples| {
                     let stamps = samples.rows.iter().map(|&row| (Stamp::number(stamps[row]), None));
-                    seconds_since_first(stamps, &name, &mut ticks)
+                    seconds_since_first(stamps, &name, input.options.time_unit, &mut ticks)
                 };
                 ranges.iter().map(of).collect()
             }
@@ -134,7 +134,7 @@ impl Columns<'_> {
         let mut ticks = None;
         let times = ranges.iter().map(|samples| {
             let stamps = samples.rows.iter().map(|&row| stamps.stamp(row % stamps.len()));
-            seconds_since_first(stamps, name, &mut ticks)
+            seconds_since_first(stamps, name, self.0.input.options.time_unit, &mut ticks)
         });
         Ok(times.collect())
     }

@@ -47,7 +47,7 @@ impl GroupedArrays<'_> {
             let times = match (step, stamps) {
                 (None, Some((stamps, name))) => {
                     let stamps = stamps.iter().map(|&stamp| (Stamp::number(stamp), None));
-                    seconds_since_first(stamps, &name, &mut None)
+                    seconds_since_first(stamps, &name, input.options.time_unit, &mut None)
                 }
                 _ => self.times(&arrays, step, state.samples, load)?,
             };
@@ -89,7 +89,12 @@ impl GroupedArrays<'_> {
         if let (None, Some(field)) = (step, arrays.fields.time) {
             let stamps = arrays.by_sample(field, &[len], load)?;
             let stamps = (0..len).map(|at| stamps.stamp(at));
-            return Ok(seconds_since_first(stamps, &arrays.arrays[field].name, &mut None));
+            return Ok(seconds_since_first(
+                stamps,
+                &arrays.arrays[field].name,
+                self.input.options.time_unit,
+                &mut None,
+            ));
         }
         let step = match step {
             Some(step) => Some(step),

@@ -4,8 +4,9 @@ mod names;
 
 use std::collections::HashMap;
 
-use self::names::{base, is_one_of};
+use self::names::{base, is_one_of, nanoseconds_of};
 pub(crate) use self::names::{is_time, unit, velocity_names};
+
 use crate::names::selection::{flags, glob, select};
 use crate::{Fault, ReadError, ReadOptions};
 use motion::is_called_context;
@@ -32,6 +33,8 @@ pub(crate) enum Content {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Roles {
     pub(crate) time: Option<usize>,
+    /// Of whole seconds in the column of time.
+    pub(crate) nanoseconds: Option<usize>,
     pub(crate) episode: Option<usize>,
     pub(crate) constraint: Option<usize>,
     pub(crate) state: Vec<usize>,
@@ -97,6 +100,11 @@ pub(crate) fn assign(columns: &[Column], options: &ReadOptions, place: &str) -> 
             (Some(_), Some(at)) => roles.ignored.push(free.remove(at)),
             _ => {}
         }
+    }
+    if let Some(time) = roles.time {
+        let nanoseconds = nanoseconds_of(names[time]);
+        let found = free.iter().position(|&index| nanoseconds.contains(&base(names[index])));
+        roles.nanoseconds = found.map(|at| free.remove(at));
     }
     let pointless = |name: &str| NEVER_STATE.iter().any(|pattern| glob(pattern, &name.to_ascii_lowercase()));
     roles.ignored.extend(free.extract_if(.., |index| pointless(names[*index])));

@@ -28,6 +28,8 @@ pub(crate) struct Table {
     roles: Roles,
     period: Option<f64>,
     ticks: Option<TicksPerSecond>,
+    /// Of stamps that are numbers.
+    asked_ticks: Option<TicksPerSecond>,
     /// The name of the only episode, where no column tells episodes apart.
     only: String,
     episodes: Vec<RawEpisode>,
@@ -65,6 +67,7 @@ impl Table {
             names: columns.iter().map(|column| column.name.clone()).collect(),
             period,
             ticks: None,
+            asked_ticks: TicksPerSecond::asked(options.time_unit),
             only: only.to_owned(),
             episodes: Vec::new(),
             clocks: Vec::new(),
@@ -82,18 +85,24 @@ impl Table {
     /// The columns that have a role.
     #[cfg(feature = "parquet")]
     pub(crate) fn used(&self) -> std::collections::HashSet<usize> {
-        let Roles { time, episode, constraint, state, velocity, context, .. } = &self.roles;
+        let Roles { time, nanoseconds, episode, constraint, state, velocity, context, .. } = &self.roles;
         let columns = state.iter().chain(velocity).chain(context).copied();
-        [*time, *episode, *constraint].into_iter().flatten().chain(columns).collect()
+        [*time, *nanoseconds, *episode, *constraint].into_iter().flatten().chain(columns).collect()
     }
 
     /// Adds the row at `place`.
     pub(crate) fn push(&mut self, place: u64, row: &impl Row) -> Result<(), ReadError> {
         let episode = self.episode_of(row)?;
         if let (Some(column), None) = (self.roles.time, self.period) {
-            let (stamp, ticks) = row.stamp(column).map_err(|text| self.not_a_number(&text, column, place))?;
+            let (mut stamp, mut ticks) = row.stamp(column).map_err(|text| self.not_a_number(&text, column, place))?;
+            if let Some(column) = self.roles.nanoseconds {
+                let more = row.number(column).map_err(|text| self.not_a_number(&text, column, place))?;
+                (stamp, ticks) = (stamp.with_nanoseconds(more), Some(TicksPerSecond(1e9)));
+            }
             if self.ticks.is_none() && stamp.is_finite() {
-                self.ticks = Some(ticks.unwrap_or_else(|| TicksPerSecond::guess(&self.names[column], stamp)));
+                self.ticks = Some(
+                    ticks.or(self.asked_ticks).unwrap_or_else(|| TicksPerSecond::guess(&self.names[column], stamp)),
+                );
             }
             self.clocks[episode].push(stamp);
         }
@@ -169,7 +178,13 @@ impl Table {
         let role = if self.roles.time == Some(column) { "stamp" } else { "number" };
         let what = format!("'{start}' is not a {role}");
         let place = format!("{}, {} {place}, column '{name}'", self.file, self.word);
-        let remedy = (self.hint)(text).unwrap_or_else(|| {
+        let is_stamp = self.roles.time == Some(column);
+        let remedy = (self.hint)(text).filter(|_| !is_stamp).unwrap_or_else(|| {
+            if is_stamp {
+                return "stamps like 0.05, 1700000000.05, 2023-11-14 22:13:20.05 or 14.11.2023 22:13:20.05; or --dt SECONDS instead \
+                        of stamps"
+                    .to_owned();
+            }
             format!("correct the file, or --ignore '{name}' if the column does not belong to the state")
         });
         ReadError::NotANumber(Fault::new(what, place, remedy))

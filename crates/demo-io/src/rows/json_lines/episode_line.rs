@@ -90,7 +90,7 @@ impl<'a> EpisodeLines<'a> {
                 return Err(lengths(&format!("'{name}'"), len, stamps.len(), place));
             }
             let stamps = stamps.iter().map(|stamp| stamp.stamp().unwrap_or((Stamp::MISSING, None)));
-            return Ok(seconds_since_first(stamps, name, &mut None));
+            return Ok(seconds_since_first(stamps, name, self.input.options.time_unit, &mut None));
         }
         match step {
             Some(step) if step.is_finite() && step > 0.0 => Ok(even_times(step, len)),

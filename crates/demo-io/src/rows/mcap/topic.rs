@@ -198,7 +198,7 @@ impl<'a> Topic<'a> {
             even_times(step, len)
         } else {
             let stamps = stamps.iter().map(|&stamp| (Stamp::whole(stamp), None));
-            seconds_since_first(stamps, "", &mut Some(TicksPerSecond(1e9)))
+            seconds_since_first(stamps, "", None, &mut Some(TicksPerSecond(1e9)))
         };
         let draft = RawEpisode {
             name: self.input.stem.clone(),

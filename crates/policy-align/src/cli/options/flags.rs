@@ -53,6 +53,9 @@ pub(crate) struct ReadFlags {
     /// Time column
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
+    /// Unit of stamps that are numbers: s, ms, us or ns [default: found]
+    #[arg(long, value_name = "UNIT", hide_possible_values = true, value_parser = ["s", "ms", "us", "ns"])]
+    time_unit: Option<String>,
     /// Episode column
     #[arg(long, value_name = "COLUMN")]
     episode: Option<String>,
