@@ -346,3 +346,32 @@ fn stamps_of_two_columns_dates_and_units_are_read() {
         assert_eq!(parsed("a.jsonl", line, &asked).unwrap().time_step(), seconds);
     }
 }
+
+/// A list of episodes, of samples or of numbers, in one line or many, whatever the file is called.
+#[test]
+fn json_that_is_one_list_is_read() {
+    let every = ReadOptions { dt: Some(0.5), ..ReadOptions::default() };
+    let samples = r#"[{"t": 0, "x": 1, "y": 2}, {"t": 0.5, "x": 3, "y": 4}]"#;
+    let episodes = r#"[{"state": [[1, 2], [3, 4]]}, {"state": [[5, 6], [7, 8]]}]"#;
+    for name in ["a.json", "a.jsonl", "a.txt", "a.dat", "a"] {
+        for (text, count, expected) in [
+            (samples, 1, ["x", "y"]),
+            (episodes, 2, ["x0", "x1"]),
+            ("[[1, 2], [3, 4]]", 1, ["x0", "x1"]),
+            ("[[[1, 2], [3, 4]], [[5, 6], [7, 8]]]", 2, ["x0", "x1"]),
+        ] {
+            for text in [text.to_owned(), text.replace(", ", ",\n  ")] {
+                let found = parsed(name, &text, &every).unwrap_or_else(|error| panic!("{name}, {text}: {error}"));
+                assert_eq!((names(&found), found.episodes.len()), (expected.to_vec(), count), "{name}: {text}");
+                assert_eq!(found.episodes[0].positions.as_slice(), [1.0, 2.0, 3.0, 4.0]);
+                assert_eq!(found.time_step(), 0.5);
+            }
+        }
+    }
+    refused("a.txt", "[[1, 2], [3, 4]]", &plain(), "NoTime", &["--dt"]);
+    refused("a.json", "[[1, 2], [3]]", &every, "Ragged", &["entry 0"]);
+    refused("a.json", "[[1, 2], [3, 4]", &every, "Json", &["line 1"]);
+    refused("a.json", "[1, 2, 3]", &every, "Json", &["entry 0", "lines like"]);
+    let huge = format!("{{\"a\": [{}]}}", vec!["[1, 2]"; 5000].join(", "));
+    refused("a.txt", huge, &every, "Json", &["10000 values", "one line per movement"]);
+}

@@ -15,6 +15,8 @@ use motion::{Channel, Labels};
 /// "velocity": [[2.0], [2.0]], "constraint": "rail"}`, or `times` instead of `dt`, or a list with the constraint of each sample.
 pub(super) struct EpisodeLines<'a> {
     input: &'a Input<'a>,
+    /// What episodes are: "line".
+    word: &'static str,
     channels: Option<Vec<Channel>>,
     episodes: Vec<RawEpisode>,
 }
@@ -31,12 +33,12 @@ pub(super) fn state(line: &Json) -> Option<&[Json]> {
 }
 
 impl<'a> EpisodeLines<'a> {
-    pub(super) fn new(input: &'a Input<'a>) -> Self {
-        Self { input, channels: None, episodes: Vec::new() }
+    pub(super) fn new(input: &'a Input<'a>, word: &'static str) -> Self {
+        Self { input, word, channels: None, episodes: Vec::new() }
     }
 
     pub(super) fn push(&mut self, number: u64, line: &Json) -> Result<(), ReadError> {
-        let place = format!("{}, line {number}", self.input.name);
+        let place = format!("{}, {} {number}", self.input.name, self.word);
         let other_form = |what: &str| {
             let remedy = "lines like {\"episode\": \"1\", \"dt\": 0.05, \"names\": [\"x\"], \"state\": [[0.1], [0.2]]}";
             ReadError::Json(Fault::new(what, &place, remedy))
