@@ -116,7 +116,7 @@ fn leave_out_moving_environment(drafts: &mut RawRecordings) {
     }
     let names: Vec<&str> =
         drafts.channels.iter().filter(|channel| is_environment(channel)).map(|channel| &channel.name[..]).collect();
-    drafts.findings.extend(unused("columns", &names));
+    drafts.findings.extend(unused("columns", &names, &[]));
     retain_channels(drafts, &stays);
 }
 

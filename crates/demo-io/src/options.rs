@@ -29,6 +29,9 @@ pub struct ReadOptions {
     pub constraint_column: Option<String>,
     /// `--ignore`: patterns of what is not looked at.
     pub ignore: Vec<String>,
+    /// Patterns of what another reading of the file takes: not reported as unused.
+    #[serde(skip)]
+    pub elsewhere: Vec<String>,
     /// `--dt`: seconds between samples; overrides stamps.
     pub dt: Option<f64>,
     /// `--units`: `m` for all channels, or `x=m` for those whose names match `x`. Names units, changes no number.

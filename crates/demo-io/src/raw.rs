@@ -1,6 +1,6 @@
 //! Episodes as a reader finds them, before anything is checked.
 
-use crate::names::selection::unmatched;
+use crate::names::selection::{flags, unmatched};
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use motion::{Channel, Episode, Finding, Labels, Recordings, Source, Times, Verdict};
 use nalgebra::DMatrix;
@@ -250,9 +250,11 @@ pub(crate) fn remark(what: impl Into<String>, next: impl Into<String>) -> Findin
     Finding { verdict: Verdict::Good, what: in_one_line(what.into()), next: in_one_line(next.into()) }
 }
 
-/// A remark on what was not used; none if that is nothing.
-pub(crate) fn unused(what: &str, names: &[&str]) -> Option<Finding> {
-    let what = || format!("{what} not used: {}", crate::rows::roles::shortened(names));
+/// A remark on what was not used, but `elsewhere`; none if that is nothing.
+pub(crate) fn unused(what: &str, names: &[&str], elsewhere: &[String]) -> Option<Finding> {
+    let used = flags(elsewhere, names);
+    let names: Vec<&str> = names.iter().zip(used).filter(|(_, used)| !used).map(|(name, _)| *name).collect();
+    let what = || format!("{what} not used: {}", crate::rows::roles::shortened(&names));
     (!names.is_empty()).then(|| remark(what(), "--state with those that belong to the state, or --ignore"))
 }
 

@@ -283,6 +283,7 @@ impl ArrayReader<'_> {
             .filter(|(field, _)| !self.fields.uses(*field) && !self.fields.ignores(*field));
         let not_used: Vec<&str> = not_used.map(|(_, array)| &array.name[..]).collect();
         let columns: Vec<&str> = unused_columns.iter().map(String::as_str).collect();
-        coarse.chain(unused("arrays", &not_used)).chain(unused("columns", &columns)).collect()
+        let elsewhere = &self.input.options.elsewhere;
+        coarse.chain(unused("arrays", &not_used, elsewhere)).chain(unused("columns", &columns, elsewhere)).collect()
     }
 }

@@ -41,6 +41,8 @@ pub(crate) struct Table {
     current: Option<usize>,
     label: String,
     unknown: Unknown,
+    /// As [`ReadOptions::elsewhere`].
+    elsewhere: Vec<String>,
     /// Advice on a field that is no number.
     pub(crate) hint: fn(&str) -> Option<String>,
 }
@@ -76,6 +78,7 @@ impl Table {
             by_label: HashMap::new(),
             current: None,
             label: String::new(),
+            elsewhere: options.elsewhere.clone(),
             unknown: Unknown::of(&options.ignore, &columns.iter().map(|column| &column.name[..]).collect::<Vec<_>>()),
             roles,
             hint: |_| None,
@@ -198,12 +201,12 @@ impl Table {
         let channels =
             channels.map(|name| Channel { name: name.to_owned(), unit: unit(name).map(str::to_owned) }).collect();
         let ignored: Vec<&str> = self.roles.ignored.iter().map(name).collect();
-        let mut findings: Vec<_> = unused("columns", &ignored).into_iter().collect();
+        let mut findings: Vec<_> = unused("columns", &ignored, &self.elsewhere).into_iter().collect();
         let switches = |episode: &RawEpisode| episode.constraint.as_ref().is_some_and(|labels| labels.switches() > 0);
         if !self.switching && self.episodes.iter().any(switches) {
             self.episodes.iter_mut().filter(|episode| switches(episode)).for_each(|episode| episode.constraint = None);
             let column = self.roles.constraint.map(|column| self.names[column].as_str()).unwrap_or_default();
-            findings.extend(unused("labels of constraints that change within an episode are", &[column]));
+            findings.extend(unused("labels of constraints that change within an episode are", &[column], &[]));
         }
         let differ = |episode: &RawEpisode| episode.constraint != self.episodes[0].constraint;
         let labels_vary =

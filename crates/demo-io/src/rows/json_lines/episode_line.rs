@@ -126,7 +126,7 @@ impl<'a> EpisodeLines<'a> {
         let ignored = flags(&asked.ignore, &names);
         let left: Vec<&str> = chosen.unused().filter(|&column| !ignored[column]).map(|at| &names[at][..]).collect();
         let channels = chosen.channels().map(|column| channels[column].clone()).collect();
-        Ok(drafts(channels, unused("columns", &left).into_iter().collect(), episodes))
+        Ok(drafts(channels, unused("columns", &left, &self.input.options.elsewhere).into_iter().collect(), episodes))
     }
 }
 

@@ -254,7 +254,7 @@ impl<'a> Topic<'a> {
         }
         let names = self.sets[set].names.iter().enumerate();
         let not_used: Vec<&str> = names.filter(|(at, _)| !columns.contains(at)).map(|(_, name)| &name[..]).collect();
-        findings.extend(unused("parts of messages", &not_used));
+        findings.extend(unused("parts of messages", &not_used, &self.input.options.elsewhere));
         findings
     }
 }
