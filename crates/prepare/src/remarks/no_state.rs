@@ -122,31 +122,51 @@ fn stretches(demonstrations: &Demonstrations) -> (DMatrix<f64>, DMatrix<f64>) {
     (steps, integrals)
 }
 
+/// A name, or several that end in numbers which follow each other.
+struct Run {
+    stem: String,
+    /// First and last number, if the name has one.
+    numbers: Option<(usize, usize)>,
+}
+
+impl Run {
+    fn of(name: &str) -> Self {
+        let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
+        // "x07" is another name than "x7".
+        match name[stem.len()..].parse() {
+            Ok(number) if !stem.is_empty() && format!("{stem}{number}") == name => {
+                Run { stem: stem.to_owned(), numbers: Some((number, number)) }
+            }
+            _ => Run { stem: name.to_owned(), numbers: None },
+        }
+    }
+
+    /// Takes up the next name, if it follows.
+    fn continues_with(&mut self, next: &Run) -> bool {
+        match (&mut self.numbers, next.numbers) {
+            (Some((_, last)), Some((number, _))) if self.stem == next.stem && number == *last + 1 => {
+                *last = number;
+                true
+            }
+            _ => false,
+        }
+    }
+}
+
 /// `x0-3` for `x0`, `x1`, `x2`, `x3`; other names with commas between.
 fn listed(names: &[&str]) -> String {
-    let split = |name: &str| -> Option<(String, usize)> {
-        let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
-        let number: usize = name[stem.len()..].parse().ok()?;
-        // Nothing but the number itself: "x07" is another name than "x7".
-        (!stem.is_empty() && format!("{stem}{number}") == name).then(|| (stem.to_owned(), number))
-    };
-    let mut parts: Vec<(String, Option<(String, usize, usize)>)> = Vec::new();
-    for name in names {
-        let own = split(name);
-        if let (Some((stem, number)), Some((_, Some((before, _, last))))) = (&own, parts.last_mut())
-            && stem == before
-            && *number == *last + 1
-        {
-            *last = *number;
-            continue;
+    let mut runs: Vec<Run> = Vec::new();
+    for run in names.iter().map(|name| Run::of(name)) {
+        if !runs.last_mut().is_some_and(|last| last.continues_with(&run)) {
+            runs.push(run);
         }
-        parts.push(((*name).to_owned(), own.map(|(stem, number)| (stem, number, number))));
     }
-    let text = |(name, range): (String, Option<(String, usize, usize)>)| match range {
-        Some((stem, first, last)) if last > first => format!("{stem}{first}-{last}"),
-        _ => name,
+    let text = |Run { stem, numbers }: Run| match numbers {
+        Some((first, last)) if last > first => format!("{stem}{first}-{last}"),
+        Some((number, _)) => format!("{stem}{number}"),
+        None => stem,
     };
-    parts.into_iter().map(text).collect::<Vec<_>>().join(",")
+    runs.into_iter().map(text).collect::<Vec<_>>().join(",")
 }
 
 #[cfg(test)]
