@@ -116,7 +116,7 @@ fn leave_out_moving_environment(drafts: &mut RawRecordings) {
     }
     let names: Vec<&str> =
         drafts.channels.iter().filter(|channel| is_environment(channel)).map(|channel| &channel.name[..]).collect();
-    drafts.findings.extend(unused("columns", &names));
+    drafts.findings.extend(unused("columns", &names, &[]));
     retain_channels(drafts, &stays);
 }
 
@@ -252,7 +252,7 @@ pub(crate) fn rounded(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::raw::Rows;
+    use crate::raw::{Rows, Unknown};
 
     /// Two episodes of a state and an environment, with velocities.
     fn drafts(environment: [[f64; 2]; 2]) -> RawRecordings {
@@ -272,6 +272,7 @@ mod tests {
             findings: vec![],
             word: "row",
             drop_constant: false,
+            unknown: Unknown::default(),
         }
     }
 

@@ -36,6 +36,8 @@ fn join(joined: &mut RawRecordings, more: RawRecordings, file: &str) -> Result<(
         return Err(ReadError::Lengths(Fault::new(what, file, remedy)));
     }
     joined.episodes.extend(more.episodes);
+    // What one file has is not unknown.
+    joined.unknown.patterns.retain(|pattern| more.unknown.patterns.contains(pattern));
     for finding in more.findings {
         // Every file says the same of its columns.
         if !joined.findings.contains(&finding) {

@@ -58,7 +58,7 @@ mod write;
 
 pub use error::{Fault, ReadError};
 pub use guard::catches_panics;
-pub use options::{Format, Nan, ReadOptions, SamplesAre};
+pub use options::{Format, Nan, ReadOptions, SamplesAre, TimeUnit};
 pub use read::{channels_named, read, read_all};
 pub use regular_file::{read_bounded, read_bytes, read_text};
 pub use resample::{ResampleError, resampled};

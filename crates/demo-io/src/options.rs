@@ -2,8 +2,10 @@ use serde::{Deserialize, Serialize};
 
 /// What a user may say about files; by default everything is found out.
 ///
-/// Columns, arrays and channels are named by **patterns**: a name, a glob (`q*`, `joint?`), or a number or range counted
-/// from 0 (`2`, `2-8`). One text may hold several, with commas between. A name wins over a number.
+/// Columns, arrays and channels are named by **patterns**: a name, a glob (`q*`, `joint?`), numbered names (`q2-8`), or a
+/// number or range counted from 0 (`2`, `2-8`). One text may hold several, with commas between. A name wins over a number. What names
+/// nothing is an error, for `ignore` if it names nothing in any of the files. In formats of arrays, a pattern that names no array names
+/// columns: `x0` as channels are called, or `states_1` of the array `states`; a number counts arrays, and columns of the only one.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ReadOptions {
@@ -19,12 +21,17 @@ pub struct ReadOptions {
     pub context: Vec<String>,
     /// `--time`: the column or array of stamps.
     pub time: Option<String>,
+    /// `--time-unit`: of stamps that are numbers; otherwise found by the column's name and the size of the first.
+    pub time_unit: Option<TimeUnit>,
     /// `--episode`: the column or array that tells episodes apart.
     pub episode: Option<String>,
     /// `--constraint-column`: the column or array with the name of the constraint, of an episode or of every sample.
     pub constraint_column: Option<String>,
     /// `--ignore`: patterns of what is not looked at.
     pub ignore: Vec<String>,
+    /// Patterns of what another reading of the file takes: not reported as unused.
+    #[serde(skip)]
+    pub elsewhere: Vec<String>,
     /// `--dt`: seconds between samples; overrides stamps.
     pub dt: Option<f64>,
     /// `--units`: `m` for all channels, or `x=m` for those whose names match `x`. Names units, changes no number.
@@ -92,6 +99,23 @@ pub enum Nan {
     Drop,
     /// Up to 3 in a row are interpolated; more are an error.
     Fill,
+}
+
+/// The unit of stamps that are numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum TimeUnit {
+    /// s.
+    #[serde(rename = "s")]
+    Seconds,
+    /// ms.
+    #[serde(rename = "ms")]
+    Milliseconds,
+    /// µs.
+    #[serde(rename = "us")]
+    Microseconds,
+    /// ns.
+    #[serde(rename = "ns")]
+    Nanoseconds,
 }
 
 /// How arrays lie.

@@ -1,11 +1,12 @@
 //! Episodes as a reader finds them, before anything is checked.
 
+use crate::names::selection::{flags, unmatched};
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use motion::{Channel, Episode, Finding, Labels, Recordings, Source, Times, Verdict};
 use nalgebra::DMatrix;
 
 use crate::error::in_one_line;
-use crate::{Fault, ReadError, ReadOptions};
+use crate::{Fault, ReadError, ReadOptions, TimeUnit};
 
 /// Everything a reader found.
 #[derive(Debug)]
@@ -17,6 +18,24 @@ pub(crate) struct RawRecordings {
     pub(crate) word: &'static str,
     /// Whether the state was named, or found among columns, of which those that never change are left out.
     pub(crate) drop_constant: bool,
+    /// What `--ignore` names and is not there.
+    pub(crate) unknown: Unknown,
+}
+
+/// Patterns that name nothing, and the names that there are.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Unknown {
+    pub(crate) patterns: Vec<String>,
+    pub(crate) names: Vec<String>,
+}
+
+impl Unknown {
+    pub(crate) fn of<S: AsRef<str>>(patterns: &[String], names: &[S]) -> Self {
+        let unmatched = unmatched(patterns, names);
+        let names =
+            if unmatched.is_empty() { Vec::new() } else { names.iter().map(|name| name.as_ref().to_owned()).collect() };
+        Unknown { patterns: unmatched, names }
+    }
 }
 
 /// An episode of n channels and N samples.
@@ -187,15 +206,17 @@ pub(crate) fn even_times(step: f64, len: usize) -> Vec<f64> {
 }
 
 /// Seconds of stamps since the first of them. Their unit is `ticks` if it is known, else what the first one has with it, else
-/// what `name` and its size suggest.
+/// what the user says, else what `name` and its size suggest.
 pub(crate) fn seconds_since_first(
     stamps: impl Iterator<Item = (Stamp, Option<TicksPerSecond>)>,
     name: &str,
+    asked: Option<TimeUnit>,
     ticks: &mut Option<TicksPerSecond>,
 ) -> Vec<f64> {
+    let asked = TicksPerSecond::asked(asked);
     let mut clock = Clock::new(None);
     for (stamp, unit) in stamps {
-        let guess = || stamp.is_finite().then(|| unit.unwrap_or_else(|| TicksPerSecond::guess(name, stamp)));
+        let guess = || stamp.is_finite().then(|| unit.or(asked).unwrap_or_else(|| TicksPerSecond::guess(name, stamp)));
         *ticks = ticks.or_else(guess);
         clock.push(stamp);
     }
@@ -229,9 +250,11 @@ pub(crate) fn remark(what: impl Into<String>, next: impl Into<String>) -> Findin
     Finding { verdict: Verdict::Good, what: in_one_line(what.into()), next: in_one_line(next.into()) }
 }
 
-/// A remark on what was not used; none if that is nothing.
-pub(crate) fn unused(what: &str, names: &[&str]) -> Option<Finding> {
-    let what = || format!("{what} not used: {}", crate::rows::roles::shortened(names));
+/// A remark on what was not used, but `elsewhere`; none if that is nothing.
+pub(crate) fn unused(what: &str, names: &[&str], elsewhere: &[String]) -> Option<Finding> {
+    let used = flags(elsewhere, names);
+    let names: Vec<&str> = names.iter().zip(used).filter(|(_, used)| !used).map(|(name, _)| *name).collect();
+    let what = || format!("{what} not used: {}", crate::rows::roles::shortened(&names));
     (!names.is_empty()).then(|| remark(what(), "--state with those that belong to the state, or --ignore"))
 }
 

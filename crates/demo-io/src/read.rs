@@ -43,6 +43,9 @@ pub fn read_all(
     let place = || paths.first().map(|path| name_of(path)).unwrap_or_default();
     let nothing = |what: &str| ReadError::Empty(Fault::new(what, place(), "recordings with movements"));
     let mut drafts = joined.ok_or_else(|| nothing("no file was given"))?;
+    if let Some(pattern) = drafts.unknown.patterns.first() {
+        return Err(roles::no_column(pattern, &drafts.unknown.names, &format!("--ignore, {}", place())));
+    }
     clean(&mut drafts, options)?;
     if drafts.channels.is_empty() {
         return Err(nothing("there is no state of one number or more"));

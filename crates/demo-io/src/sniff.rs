@@ -93,10 +93,16 @@ fn content(head: &[u8], extension: &str) -> Content {
     match first {
         None => Content::Nothing,
         Some(b'{') => Content::Known(Format::Jsonl),
-        Some(b'[') if extension.starts_with("json") => Content::Known(Format::Jsonl),
+        Some(b'[') if extension.starts_with("json") || is_json_list(text) => Content::Known(Format::Jsonl),
         Some(_) if head.iter().take(4096).any(|&byte| byte == 0) => Content::Other,
         Some(_) => Content::Text,
     }
+}
+
+/// Whether a text begins as a list of lists or of objects, with commas, does.
+fn is_json_list(text: &[u8]) -> bool {
+    let mut letters = text.iter().filter(|byte| !byte.is_ascii_whitespace());
+    letters.next() == Some(&b'[') && matches!(letters.next(), Some(b'[' | b'{')) && text.contains(&b',')
 }
 
 /// Whether a line of a text is mostly numbers, as rows of a table are; what only has numbers in it is something else.

@@ -320,3 +320,58 @@ fn a_list_of_names_has_one_a_sample() {
     assert_eq!(parsed("a.jsonl", line(r#"["", "", null]"#), &plain()).unwrap().episodes[0].constraint, None);
     refused("a.jsonl", line(r#"["a", "b"]"#), &plain(), "Lengths", &["'constraint'", "2", "3"]);
 }
+
+/// Stamps as spreadsheets and ROS 1 write them, and units that no name tells.
+#[test]
+fn stamps_of_two_columns_dates_and_units_are_read() {
+    let step = |text: &str, options: &ReadOptions| parsed("a.csv", text, options).unwrap().time_step();
+    let ros = "header.stamp.secs,header.stamp.nsecs,x,y\n1700000000,950000000,1,2\n1700000001,0,1.5,3\n\
+               1700000001,50000000,1.75,4\n";
+    assert_eq!(step(ros, &ReadOptions::default()), 0.05);
+    assert_eq!(names(&parsed("a.csv", ros, &ReadOptions::default()).unwrap()), ["x", "y"]);
+    let ros2 = ros.replace("secs", "sec").replace("nsec", "nanosec");
+    assert_eq!(step(&ros2, &ReadOptions::default()), 0.05);
+    let german = "Uhrzeit;x\n04.03.2026 10:00:00,000;1,5\n04.03.2026 10:00:00,050;2,5\n04.03.2026 10:00:00,100;3\n";
+    let by = ReadOptions { time: Some("Uhrzeit".to_owned()), ..ReadOptions::default() };
+    assert_eq!(step(german, &by), 0.05);
+    let refused_stamp = german.replace("04.03.2026 10", "gestern 10");
+    refused("a.csv", refused_stamp, &by, "NotANumber", &["is not a stamp", "14.11.2023", "--dt"]);
+    for (unit, seconds) in [("s", 20.0), ("ms", 0.02), ("us", 2e-5), ("ns", 2e-8)] {
+        let unit = serde_json::from_str(&format!("\"{unit}\"")).unwrap();
+        let asked = ReadOptions { time_unit: Some(unit), ..ReadOptions::default() };
+        assert_eq!(step("t,x\n0,1\n20,2\n40,4\n", &asked), seconds);
+        // What a text says of itself is known.
+        assert_eq!(step(german, &ReadOptions { time: by.time.clone(), ..asked.clone() }), 0.05);
+        let line = r#"{"times": [0, 20, 40], "state": [[1], [2], [4]]}"#;
+        assert_eq!(parsed("a.jsonl", line, &asked).unwrap().time_step(), seconds);
+    }
+}
+
+/// A list of episodes, of samples or of numbers, in one line or many, whatever the file is called.
+#[test]
+fn json_that_is_one_list_is_read() {
+    let every = ReadOptions { dt: Some(0.5), ..ReadOptions::default() };
+    let samples = r#"[{"t": 0, "x": 1, "y": 2}, {"t": 0.5, "x": 3, "y": 4}]"#;
+    let episodes = r#"[{"state": [[1, 2], [3, 4]]}, {"state": [[5, 6], [7, 8]]}]"#;
+    for name in ["a.json", "a.jsonl", "a.txt", "a.dat", "a"] {
+        for (text, count, expected) in [
+            (samples, 1, ["x", "y"]),
+            (episodes, 2, ["x0", "x1"]),
+            ("[[1, 2], [3, 4]]", 1, ["x0", "x1"]),
+            ("[[[1, 2], [3, 4]], [[5, 6], [7, 8]]]", 2, ["x0", "x1"]),
+        ] {
+            for text in [text.to_owned(), text.replace(", ", ",\n  ")] {
+                let found = parsed(name, &text, &every).unwrap_or_else(|error| panic!("{name}, {text}: {error}"));
+                assert_eq!((names(&found), found.episodes.len()), (expected.to_vec(), count), "{name}: {text}");
+                assert_eq!(found.episodes[0].positions.as_slice(), [1.0, 2.0, 3.0, 4.0]);
+                assert_eq!(found.time_step(), 0.5);
+            }
+        }
+    }
+    refused("a.txt", "[[1, 2], [3, 4]]", &plain(), "NoTime", &["--dt"]);
+    refused("a.json", "[[1, 2], [3]]", &every, "Ragged", &["entry 0"]);
+    refused("a.json", "[[1, 2], [3, 4]", &every, "Json", &["line 1"]);
+    refused("a.json", "[1, 2, 3]", &every, "Json", &["entry 0", "lines like"]);
+    let huge = format!("{{\"a\": [{}]}}", vec!["[1, 2]"; 5000].join(", "));
+    refused("a.txt", huge, &every, "Json", &["10000 values", "one line per movement"]);
+}

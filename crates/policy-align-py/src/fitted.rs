@@ -19,6 +19,9 @@ use crate::refusal::Refusal;
 use crate::rolling::{self, Constraint};
 use crate::{model_document, pool};
 
+/// Deviations, where they are known, and whether each state is supported.
+type Certain<'py> = (Option<Bound<'py, PyArray2<f64>>>, Bound<'py, PyArray1<bool>>);
+
 /// A learnt policy.
 #[pyclass(frozen, module = "policy_align._native")]
 pub(crate) struct Fitted {
@@ -122,13 +125,18 @@ impl Fitted {
         Ok(array(py, actions))
     }
 
-    /// Standard deviation of every component of π at each state, (N, n); none if the learner does not know it.
-    fn deviation<'py>(
+    /// Standard deviation of every component of π at each state, (N, n), none if the learner does not know it; and whether the state is
+    /// supported enough to act on, (N).
+    #[pyo3(name = "certainty")]
+    fn deviations_and_supports<'py>(
         &self,
         py: Python<'py>,
         states: PyReadonlyArray2<'py, f64>,
-    ) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
-        Ok(self.certainty(py, &states)?.deviations.map(|deviations| array(py, deviations)))
+    ) -> PyResult<Certain<'py>> {
+        let least = self.model.policy().least_support();
+        let Certainty { support, deviations } = self.certainty(py, &states)?;
+        let supported = PyArray1::from_iter(py, support.into_iter().map(|support| support >= least));
+        Ok((deviations.map(|deviations| array(py, deviations)), supported))
     }
 
     /// φ at each state, (N); none if the policy has no potential.

@@ -5,10 +5,10 @@ use serde_json::Value;
 /// Flags that are arguments here; those of other programs (`rosbags-convert --src`) stay as they are.
 const ARGUMENTS: &str = "as bandwidth constraint-column context decimal degrees dt episode filter folds ignore init-d integration \
                          jumps learner max-rows nan reading samples-are scale seed separator smooth sort split-gap state \
-                         time topic trim-still trust units unwrap velocity wraps";
+                         time time-unit topic trim-still trust units unwrap velocity wraps";
 
 /// Values that are words: `--nan drop` is `nan="drop"`.
-const WORDS: [(&str, &[&str]); 11] = [
+const WORDS: [(&str, &[&str]); 12] = [
     ("bandwidth", &["auto"]),
     ("context", &["auto", "none"]),
     ("decimal", &[".", ","]),
@@ -19,6 +19,7 @@ const WORDS: [(&str, &[&str]); 11] = [
     ("reading", &["free", "constrained"]),
     ("samples-are", &["rows", "columns"]),
     ("smooth", &["auto", "off"]),
+    ("time-unit", &["s", "ms", "us", "ns"]),
     ("wraps", &["auto", "keep"]),
 ];
 

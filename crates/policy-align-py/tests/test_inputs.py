@@ -22,7 +22,7 @@ SAME = {
     "unaligned": lambda x: _unaligned(x),
 }
 #: Those that hold fewer digits, and what they hold.
-ROUNDED = {"float32": np.float32, "float16": np.float16, "int64": np.int64, "uint8": np.uint8, "bool": np.bool_}
+ROUNDED = {"float32": np.float32, "float16": np.float16, "int64": np.int64, "uint8": np.uint8}
 
 
 def _unaligned(x: np.ndarray) -> np.ndarray:

@@ -132,7 +132,7 @@ fn a_file_name_is_no_command() {
         &["check", &csv, "--state", "2,3", "--velocity", "4,5"] as &[&str],
         &["info", &json],
         &["plot", &json, "-o", "pasted.svg"],
-        &["convert", &csv, "-o", &format!("{FILE}.tsv")],
+        &["convert", &csv, "--state", "2,3", "--velocity", "4,5", "-o", &format!("{FILE}.tsv")],
         &["rollout", &json, "--from", " 1.5, 1"],
         &["export", &json, "--to", "onnx"],
         &["export", &json, "--to", "c"],

@@ -428,3 +428,29 @@ fn completions_and_manual_pages_are_well_formed() {
         }
     }
 }
+
+/// What `--truth` names is used, what else there is beside it is not.
+#[test]
+fn columns_of_the_truth_are_not_called_unused() {
+    let toy = std::fs::read_to_string(folder().join("toy.csv")).unwrap();
+    let with = |row: (usize, &str)| match row {
+        (0, header) => format!("{header},pi_x,pi_y,reward\n"),
+        (_, line) => {
+            let at = |column: usize| line.split(',').nth(column).unwrap().parse::<f64>().unwrap();
+            format!("{line},{},{},0.5\n", -2.0 * at(2), -2.0 * at(3))
+        }
+    };
+    std::fs::write(folder().join("truth.csv"), toy.lines().enumerate().map(with).collect::<String>()).unwrap();
+    std::fs::write(folder().join("reading.toml"), "[read]\nepisode = 'episode'\n").unwrap();
+    for line in [
+        "evaluate toy.json truth.csv --truth pi_*",
+        "evaluate toy.json truth.csv --truth pi_x,pi_y --config reading.toml",
+    ] {
+        let ran = run(line);
+        assert_eq!(ran.code, Some(0), "{}", ran.err);
+        assert!(ran.out.contains("truth        nUPE"), "{}", ran.out);
+        assert!(ran.err.contains("columns not used: reward:") && !ran.err.contains("pi_"), "{}", ran.err);
+    }
+    let ran = run("evaluate toy.json truth.csv --ignore reward");
+    assert!(ran.err.contains("columns not used: pi_x, pi_y:"), "{}", ran.err);
+}

@@ -112,6 +112,7 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
     let noise = samples::noise::of(&repairs::episodes::demonstrations(&episodes)?);
     let agreement = repairs::velocities::decide(&mut episodes, options, &state_channels, &noise, &mut notes);
     let demonstrations = repairs::episodes::demonstrations(&episodes)?;
+    notes.findings.extend(remarks::no_state(&demonstrations, &state_channels));
     let smoothed = samples::smooth::as_requested(&demonstrations, options.smoothing, &mut notes)?;
     let (demonstrations, velocities) = if let Some(smoothed) = smoothed {
         (smoothed, samples::noise::as_requested(&demonstrations, &noise, agreement))

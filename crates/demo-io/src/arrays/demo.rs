@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use crate::ReadOptions;
 use crate::arrays::array::ArraySpec;
 use crate::names::natural;
-use crate::names::selection::flags;
+use crate::names::selection::{flags, is_number, parts};
 
 /// One demonstration: names of its arrays, and their indices among all.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -40,7 +40,9 @@ pub(crate) fn families(described: &[ArraySpec], options: &ReadOptions) -> Option
         return None;
     }
     // A pattern of the user that names every demonstration names the family.
-    let asked = flags(&options.state, &names);
+    let by_name: Vec<String> =
+        parts(&options.state, &names).filter(|part| !is_number(part)).map(str::to_owned).collect();
+    let asked = flags(&by_name, &names);
     if asked.iter().any(|&asked| asked) && demos.iter().any(|demo| !demo.fields.iter().any(|(_, index)| asked[*index]))
     {
         return None;

@@ -1,9 +1,10 @@
 //! Roles of arrays, from their names.
 
 use crate::arrays::array::{ArraySpec, Kind};
-use crate::names::selection::{flags, glob};
+use crate::arrays::within::{Part, Within, arrays, parts};
+use crate::names::selection::glob;
 use crate::raw::MOST_CHANNELS;
-use crate::rows::roles::{is_time, named, shortened, velocity_names};
+use crate::rows::roles::{is_time, named, no_column, shortened, velocity_names};
 use crate::{Fault, ReadError, ReadOptions};
 
 /// Indices of arrays by role.
@@ -25,6 +26,12 @@ pub(crate) struct Fields {
     pub(crate) names: Option<usize>,
     pub(crate) units: Option<usize>,
     pub(crate) episode_names: Option<usize>,
+    /// Arrays beside the state of which the user names columns.
+    pub(crate) beside: Vec<usize>,
+    /// What the user names within the arrays of the state and those beside it.
+    pub(crate) within: Within,
+    /// Arrays that the user ignores.
+    ignored: Vec<usize>,
 }
 
 /// Best first.
@@ -88,16 +95,21 @@ const NEVER: [&str; 12] = [
 /// Assigns arrays, of which all belong to one movement or to one set of movements.
 pub(crate) fn assign(described: &[ArraySpec], options: &ReadOptions, place: &str) -> Result<Fields, ReadError> {
     let names: Vec<&str> = described.iter().map(|array| &array.name[..]).collect();
-    let ignored = flags(&options.ignore, &names);
+    let within = Within::of(options, described);
+    let mut ignored = vec![false; names.len()];
+    for index in arrays(&parts(&options.ignore, described)) {
+        ignored[index] = true;
+    }
     let first = |fits: &dyn Fn(&str) -> bool| (0..names.len()).find(|&index| !ignored[index] && fits(names[index]));
     let called = |known: &[&str]| first(&|name| known.contains(&&name.to_lowercase()[..]));
     let asked = |pattern: &Option<String>| -> Result<Option<usize>, ReadError> {
         Ok(named(pattern.as_slice(), &names, place)?.first().copied())
     };
+    let time = if within.time.is_some() { None } else { asked(&options.time)? };
     let mut fields = Fields {
-        state: named(&options.state, &names, place)?,
-        velocity: named(&options.velocity, &names, place)?,
-        time: asked(&options.time)?,
+        state: arrays(&within.state),
+        velocity: if within.velocity.is_empty() { arrays(&parts(&options.velocity, described)) } else { Vec::new() },
+        time,
         step: called(&["dt", "time_step", "timestep", "sample_time", "sampling_time", "period"]),
         rate: called(&["fps", "hz", "rate", "frequency", "freq", "control_freq"]),
         episode: asked(&options.episode)?,
@@ -107,8 +119,14 @@ pub(crate) fn assign(described: &[ArraySpec], options: &ReadOptions, place: &str
         names: called(&["names", "columns", "channels", "state_names", "joint_names"]),
         units: called(&["units", "unit"]),
         episode_names: called(&["episode_names"]),
+        beside: Vec::new(),
+        within,
+        ignored: (0..names.len()).filter(|&index| ignored[index]).collect(),
     };
-    fields.time = fields.time.or_else(|| first(&is_time));
+    fields.within.take_arrays(&mut fields.state, described);
+    if fields.within.time.is_none() {
+        fields.time = fields.time.or_else(|| first(&is_time));
+    }
     fields.episode = fields.episode.or_else(|| {
         let known = [
             "episode",
@@ -126,12 +144,15 @@ pub(crate) fn assign(described: &[ArraySpec], options: &ReadOptions, place: &str
         called(&known).filter(|index| !fields.state.contains(index))
     });
     if fields.state.is_empty() {
-        fields.state = guess_state(described, &fields, &ignored, place)?;
+        let unknown = fields.within.state.iter().find_map(Part::columns);
+        fields.state = guess_state(described, &fields, &ignored, place)
+            .map_err(|error| unknown.map_or(error, |pattern| no_column(pattern, &names, place)))?;
     }
-    if fields.velocity.is_empty() {
+    fields.beside = fields.within.beside(&fields.state, described);
+    if options.velocity.is_empty() {
         fields.velocity = fields.guess_velocities(&names, &ignored);
     }
-    for &index in fields.state.iter().chain(&fields.velocity) {
+    for &index in fields.state.iter().chain(&fields.velocity).chain(&fields.beside) {
         refuse_other_kinds(&described[index], place)?;
     }
     Ok(fields)
@@ -154,7 +175,17 @@ impl Fields {
     }
 
     pub(crate) fn uses(&self, index: usize) -> bool {
-        self.has_role(index) || self.state.contains(&index)
+        self.has_role(index) || self.state.contains(&index) || self.beside.contains(&index)
+    }
+
+    /// Whether the user does not want it.
+    pub(crate) fn ignores(&self, index: usize) -> bool {
+        self.ignored.contains(&index)
+    }
+
+    /// The arrays that are joined, channel after channel: the state, and what is beside it.
+    pub(crate) fn block(&self) -> impl Iterator<Item = usize> + '_ {
+        self.state.iter().chain(&self.beside).copied()
     }
 
     /// The velocity of every array of the state, or none.

@@ -8,10 +8,11 @@ use crate::arrays::demo::families;
 use crate::arrays::fields::assign;
 use crate::arrays::grouped::GroupedArrays;
 use crate::arrays::layout::{Stack, lengths};
-use crate::arrays::reader::ArrayReader;
+use crate::arrays::reader::{ArrayReader, ReadState};
 use crate::input::Input;
 use crate::raw::{MOST_EPISODES, RawEpisode, RawRecordings, Rows, even_times, no_time, period, seconds_since_first};
 use crate::rows::roles::shortened;
+use crate::rows::stamps::Stamp;
 use crate::{Fault, ReadError};
 
 pub(crate) fn drafts(
@@ -36,17 +37,27 @@ impl Columns<'_> {
         let step = match (period(input.options)?, fields.time) {
             (Some(step), _) => Some(vec![step]),
             (None, Some(_)) => None,
+            (None, None) if fields.within.time.is_some() => None,
             (None, None) => self.0.steps(|_| true, load)?,
         };
-        if step.is_none() && fields.time.is_none() {
+        if step.is_none() && fields.time.is_none() && fields.within.time.is_none() {
             let listed: Vec<String> = described.iter().map(ArraySpec::with_shape).collect();
             let place = format!("{}, which holds {}", input.name, shortened(&listed));
             return Err(no_time(place, "the array of stamps"));
         }
-        let (state, velocities) = self.0.state(load)?;
-        let channels = self.0.channels(state.channels, load)?;
+        let ReadState { stack: state, velocities, channels, stamps, unused, unknown } = self.0.state(load)?;
         let ranges = self.ranges(&state, load)?;
-        let times = self.times(&state, step, &ranges, load)?;
+        let times = match (&step, stamps) {
+            (None, Some((stamps, name))) => {
+                let mut ticks = None;
+                let of = |samples: &Samples| {
+                    let stamps = samples.rows.iter().map(|&row| (Stamp::number(stamps[row]), None));
+                    seconds_since_first(stamps, &name, input.options.time_unit, &mut ticks)
+                };
+                ranges.iter().map(of).collect()
+            }
+            _ => self.times(&state, step, &ranges, load)?,
+        };
         let names = self.0.labels(fields.episode_names, ranges.len(), load)?;
         let rows: Vec<&[usize]> = ranges.iter().map(|samples| &samples.rows[..]).collect();
         let mut labels = self.0.constraints(&rows, state.episodes * state.samples, load)?;
@@ -59,8 +70,8 @@ impl Columns<'_> {
             velocities: if velocities.is_empty() { Vec::new() } else { samples.of(&velocities, state.channels) },
             constraint: labels[index].take(),
         });
-        let (episodes, findings) = (episodes.collect(), self.0.findings());
-        Ok(RawRecordings { channels, episodes, findings, word: "sample", drop_constant: false })
+        let (episodes, findings) = (episodes.collect(), self.0.findings(&unused));
+        Ok(RawRecordings { channels, episodes, findings, word: "sample", drop_constant: false, unknown })
     }
 
     /// Which samples each episode has.
@@ -123,7 +134,7 @@ impl Columns<'_> {
         let mut ticks = None;
         let times = ranges.iter().map(|samples| {
             let stamps = samples.rows.iter().map(|&row| stamps.stamp(row % stamps.len()));
-            seconds_since_first(stamps, name, &mut ticks)
+            seconds_since_first(stamps, name, self.0.input.options.time_unit, &mut ticks)
         });
         Ok(times.collect())
     }

@@ -3,9 +3,12 @@
 use crate::arrays::array::{ArraySpec, Load};
 use crate::arrays::demo::Demo;
 use crate::arrays::fields::assign;
-use crate::arrays::reader::ArrayReader;
+use crate::arrays::reader::{ArrayReader, ReadState};
 use crate::input::Input;
-use crate::raw::{MOST_EPISODES, RawEpisode, RawRecordings, Rows, even_times, no_time, period, seconds_since_first};
+use crate::raw::{
+    MOST_EPISODES, RawEpisode, RawRecordings, Rows, Unknown, even_times, no_time, period, seconds_since_first,
+};
+use crate::rows::stamps::Stamp;
 use crate::{Fault, ReadError};
 use motion::Channel;
 
@@ -36,17 +39,23 @@ impl GroupedArrays<'_> {
         let fields = &assign(&arrays, input.options, &format!("{file}, {}", first.name))?;
         let reader = |demo| ArrayReader { input, described, demo: Some(demo), arrays: &arrays, fields, named_by_array };
         let step = period(input.options)?;
-        let mut channels: Option<Vec<Channel>> = None;
+        let mut first_state: Option<(Vec<Channel>, Vec<String>, Unknown)> = None;
         let mut episodes = Vec::with_capacity(self.demos.len());
         for demo in &self.demos {
             let arrays = reader(demo);
-            let (state, velocities) = arrays.state(load)?;
-            let times = self.times(&arrays, step, state.samples, load)?;
+            let ReadState { stack: state, velocities, channels, stamps, unused, unknown } = arrays.state(load)?;
+            let times = match (step, stamps) {
+                (None, Some((stamps, name))) => {
+                    let stamps = stamps.iter().map(|&stamp| (Stamp::number(stamp), None));
+                    seconds_since_first(stamps, &name, input.options.time_unit, &mut None)
+                }
+                _ => self.times(&arrays, step, state.samples, load)?,
+            };
             let rows: Vec<usize> = (0..state.samples).collect();
             let label = arrays.constraints(&[&rows], state.samples, load)?.pop().flatten();
-            match &channels {
-                None => channels = Some(arrays.channels(state.channels, load)?),
-                Some(channels) if channels.len() != state.channels => {
+            match &first_state {
+                None => first_state = Some((channels, unused, unknown)),
+                Some((channels, ..)) if channels.len() != state.channels => {
                     let (found, expected) = (state.channels, channels.len());
                     let what = format!("{found} channels where the first demonstration has {expected}");
                     let remedy = "--state with an array of one width";
@@ -64,8 +73,9 @@ impl GroupedArrays<'_> {
                 constraint: label,
             });
         }
-        let (channels, findings) = (channels.unwrap_or_default(), reader(first).findings());
-        Ok(RawRecordings { channels, episodes, findings, word: "sample", drop_constant: false })
+        let (channels, unused, unknown) = first_state.unwrap_or_default();
+        let findings = reader(first).findings(&unused);
+        Ok(RawRecordings { channels, episodes, findings, word: "sample", drop_constant: false, unknown })
     }
 
     /// Seconds of `len` samples: by the step that the user gave, else by stamps, else by a step in the file.
@@ -79,7 +89,12 @@ impl GroupedArrays<'_> {
         if let (None, Some(field)) = (step, arrays.fields.time) {
             let stamps = arrays.by_sample(field, &[len], load)?;
             let stamps = (0..len).map(|at| stamps.stamp(at));
-            return Ok(seconds_since_first(stamps, &arrays.arrays[field].name, &mut None));
+            return Ok(seconds_since_first(
+                stamps,
+                &arrays.arrays[field].name,
+                self.input.options.time_unit,
+                &mut None,
+            ));
         }
         let step = match step {
             Some(step) => Some(step),

@@ -6,7 +6,7 @@ use crate::input::Input;
 use crate::{Fault, ReadError, SamplesAre};
 
 /// The state of some episodes as one array: K episodes of N samples of n channels, sample after sample.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Stack {
     pub(crate) episodes: usize,
     pub(crate) samples: usize,

@@ -13,3 +13,4 @@ pub(crate) mod mat;
 pub(crate) mod npy;
 pub(crate) mod npz;
 mod reader;
+mod within;

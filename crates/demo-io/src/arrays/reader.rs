@@ -1,14 +1,33 @@
 //! Arrays whose roles are known: the state among them, its times and its labels.
 
+use std::ops::Range;
+
 use crate::arrays::array::{ArraySpec, Data, Kind, Load};
 use crate::arrays::demo::Demo;
 use crate::arrays::fields::Fields;
 use crate::arrays::layout::{Stack, dimensions, lengths, stack};
+use crate::arrays::within::{Part, Within};
 use crate::input::Input;
-use crate::raw::{no_time, unused};
+use crate::names::columns::{Asked, Chosen};
+use crate::names::selection::flags;
+use crate::raw::{Unknown, no_time, unused};
 use crate::rows::roles::no_column;
 use crate::{Fault, ReadError};
 use motion::{Channel, Finding, Labels};
+
+/// State and context of some episodes.
+#[derive(Debug, Default)]
+pub(crate) struct ReadState {
+    pub(crate) stack: Stack,
+    /// As many as positions, or none.
+    pub(crate) velocities: Vec<f64>,
+    pub(crate) channels: Vec<Channel>,
+    /// One a sample, with the name of their column, if a column holds them.
+    pub(crate) stamps: Option<(Vec<f64>, String)>,
+    /// Columns without a role.
+    pub(crate) unused: Vec<String>,
+    pub(crate) unknown: Unknown,
+}
 
 /// The arrays of a file, or those of one demonstration in it.
 pub(crate) struct ArrayReader<'a> {
@@ -52,7 +71,62 @@ impl ArrayReader<'_> {
     }
 
     /// The state, and its velocities, sample after sample, or nothing where there are none.
-    pub(crate) fn state(&self, load: &mut Load<'_>) -> Result<(Stack, Vec<f64>), ReadError> {
+    pub(crate) fn state(&self, load: &mut Load<'_>) -> Result<ReadState, ReadError> {
+        let (stack, velocities) = self.state_and_velocities(load)?;
+        let place = self.place();
+        let stack = match &self.fields.beside[..] {
+            [] => stack,
+            beside => stack.join(&self.joined(beside, load)?, &place)?,
+        };
+        let channels = self.channels(stack.channels, load)?;
+        if self.fields.within.is_empty() {
+            return Ok(ReadState { stack, velocities, channels, ..ReadState::default() });
+        }
+        let names: Vec<String> = channels.iter().map(|channel| channel.name.clone()).collect();
+        let arrays: Vec<&str> = self.arrays.iter().map(|array| &array.name[..]).collect();
+        let asked = self.asked(&names)?;
+        let chosen = Chosen::of(&names, &asked, &arrays, &place)?;
+        let ignored = flags(&asked.ignore, &names);
+        let state = ReadState {
+            velocities: chosen.velocities(&stack.numbers, &velocities, &place)?,
+            stamps: chosen.stamps(&stack.numbers).zip(chosen.time.map(|time| names[time].clone())),
+            unused: chosen.unused().filter(|&column| !ignored[column]).map(|column| names[column].clone()).collect(),
+            unknown: Unknown::of(&asked.ignore, &names),
+            channels: chosen.channels().map(|column| channels[column].clone()).collect(),
+            stack: Stack { channels: chosen.channels().count(), numbers: chosen.positions(&stack.numbers), ..stack },
+        };
+        Ok(state)
+    }
+
+    /// What the user names within the block of channels `names`: of arrays all channels.
+    fn asked(&self, names: &[String]) -> Result<Asked, ReadError> {
+        let Within { state, velocity, context, time, ignore } = &self.fields.within;
+        let mut ranges: Vec<(usize, Range<usize>)> = Vec::new();
+        for field in self.fields.block() {
+            let (_, _, n) = dimensions(&self.spec(field)?, self.input, &self.place())?;
+            let first = ranges.last().map_or(0, |(_, range)| range.end);
+            ranges.push((field, first..first + n));
+        }
+        let of = |parts: &[Part]| -> Vec<String> {
+            let names_of = |part: &Part| match part {
+                Part::Columns(pattern) => vec![pattern.clone()],
+                Part::Array(index) => {
+                    let range = ranges.iter().find(|(field, _)| field == index).map(|(_, range)| range.clone());
+                    names[range.unwrap_or_default()].to_vec()
+                }
+            };
+            parts.iter().flat_map(names_of).collect()
+        };
+        Ok(Asked {
+            state: of(state),
+            velocity: of(velocity),
+            context: of(context),
+            time: time.clone(),
+            ignore: ignore.clone(),
+        })
+    }
+
+    fn state_and_velocities(&self, load: &mut Load<'_>) -> Result<(Stack, Vec<f64>), ReadError> {
         let state = self.joined(&self.fields.state, load)?;
         if self.fields.velocity.is_empty() {
             return Ok((state, Vec::new()));
@@ -164,8 +238,8 @@ impl ArrayReader<'_> {
         }
     }
 
-    /// The n channels of the state.
-    pub(crate) fn channels(&self, n: usize, load: &mut Load<'_>) -> Result<Vec<Channel>, ReadError> {
+    /// The n channels of the state and of what is beside it.
+    fn channels(&self, n: usize, load: &mut Load<'_>) -> Result<Vec<Channel>, ReadError> {
         let mut texts = |field: Option<usize>| -> Result<Option<Vec<String>>, ReadError> {
             let Some(field) = field else { return Ok(None) };
             Ok(match self.load(field, load)? {
@@ -185,10 +259,12 @@ impl ArrayReader<'_> {
     /// Array after array, counted through where an earlier one has the same names.
     fn made_names(&self) -> Result<Vec<String>, ReadError> {
         let mut names: Vec<String> = Vec::new();
-        for &field in &self.fields.state {
+        let named_by_array =
+            self.named_by_array || !self.fields.beside.is_empty() || self.fields.within.names_arrays(self.arrays);
+        for field in self.fields.block() {
             let array = self.spec(field)?;
             let (_, _, n) = dimensions(&array, self.input, &self.place())?;
-            let stem = if self.named_by_array { format!("{}_", array.name) } else { "x".to_owned() };
+            let stem = if named_by_array { format!("{}_", array.name) } else { "x".to_owned() };
             let name = |channel: usize| format!("{stem}{channel}");
             let taken = (0..n).any(|channel| names.contains(&name(channel)));
             let first = if taken { names.len() } else { 0 };
@@ -198,10 +274,16 @@ impl ArrayReader<'_> {
     }
 
     /// Arrays that are coarse, and those that were not used.
-    pub(crate) fn findings(&self) -> Vec<Finding> {
+    pub(crate) fn findings(&self, unused_columns: &[String]) -> Vec<Finding> {
         let coarse = self.fields.state.iter().filter_map(|&field| self.arrays[field].coarse(&self.input.name));
-        let not_used = self.arrays.iter().enumerate().filter(|(field, _)| !self.fields.uses(*field));
+        let not_used = self
+            .arrays
+            .iter()
+            .enumerate()
+            .filter(|(field, _)| !self.fields.uses(*field) && !self.fields.ignores(*field));
         let not_used: Vec<&str> = not_used.map(|(_, array)| &array.name[..]).collect();
-        coarse.chain(unused("arrays", &not_used)).collect()
+        let columns: Vec<&str> = unused_columns.iter().map(String::as_str).collect();
+        let elsewhere = &self.input.options.elsewhere;
+        coarse.chain(unused("arrays", &not_used, elsewhere)).chain(unused("columns", &columns, elsewhere)).collect()
     }
 }

@@ -1,4 +1,4 @@
-//! Patterns of names: `x`, `q*`, `2-8`.
+//! Patterns of names: `x`, `q*`, `q2-8`, `2-8`.
 
 /// The indices that patterns name, in the order of the patterns and, within one, of the names; none twice.
 ///
@@ -55,13 +55,46 @@ fn matching<S: AsRef<str>>(pattern: &str, names: &[S]) -> Vec<usize> {
     if let Some((first, last)) = range(pattern) {
         return (first..=last).take_while(|&index| index < names.len()).collect();
     }
-    all_that(&|name| glob(pattern, name))
+    let globbed = all_that(&|name| glob(pattern, name));
+    match numbered_range(pattern).filter(|_| globbed.is_empty()) {
+        None => globbed,
+        Some((stem, numbers)) => all_that(&|name| {
+            let number = name.strip_prefix(stem).filter(|digits| digits.bytes().all(|digit| digit.is_ascii_digit()));
+            number.and_then(|digits| digits.parse().ok()).is_some_and(|number: usize| numbers.contains(&number))
+        }),
+    }
 }
 
 /// `2` or `2-8`.
 fn range(pattern: &str) -> Option<(usize, usize)> {
     let (first, last) = pattern.split_once('-').unwrap_or((pattern, pattern));
     Some((first.trim().parse().ok()?, last.trim().parse().ok()?))
+}
+
+/// `q2-8`: the names `q2` to `q8`.
+fn numbered_range(pattern: &str) -> Option<(&str, std::ops::RangeInclusive<usize>)> {
+    let (first, last) = pattern.rsplit_once('-')?;
+    let stem = first.trim_end_matches(|letter: char| letter.is_ascii_digit());
+    let numbers = first[stem.len()..].parse().ok()?..=last.parse().ok()?;
+    (!stem.is_empty()).then_some((stem, numbers))
+}
+
+/// Whether a pattern is a number or a range of numbers, as `2` or `2-8`.
+pub(crate) fn is_number(pattern: &str) -> bool {
+    range(pattern).is_some()
+}
+
+/// The parts of patterns, between commas.
+pub(crate) fn parts<'a, S: AsRef<str>>(
+    patterns: &'a [String],
+    names: &'a [S],
+) -> impl Iterator<Item = &'a str> + use<'a, S> {
+    patterns.iter().flat_map(move |pattern| split(pattern, names))
+}
+
+/// The parts of patterns that name nothing.
+pub(crate) fn unmatched<S: AsRef<str>>(patterns: &[String], names: &[S]) -> Vec<String> {
+    parts(patterns, names).filter(|part| matching(part, names).is_empty()).map(str::to_owned).collect()
 }
 
 /// `*` stands for any letters, `?` for one; nothing else is special, since names hold brackets.
@@ -107,6 +140,11 @@ mod tests {
         assert_eq!(chosen("q*,z", &names), Err("z".to_owned()));
         assert_eq!(chosen("7", &names), Err("7".to_owned()));
         assert_eq!(chosen("a,b", &["a,b", "a"]), Ok(vec![0]), "a name with a comma");
+        assert_eq!(chosen("q1-2", &names), Ok(vec![1, 2]));
+        assert_eq!(chosen("q2-9", &names), Ok(vec![2]));
+        assert_eq!(chosen("q3-9", &names), Err("q3-9".to_owned()));
+        assert_eq!(chosen("a-1", &["a1", "a-1"]), Ok(vec![1]), "a name with a minus");
+        assert_eq!(chosen("s_9-10", &["s_9", "s_10", "s_1", "s_9a"]), Ok(vec![0, 1]));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::input::Input;
-use crate::raw::RawRecordings;
+use crate::raw::{MOST_CHANNELS, RawRecordings};
 use crate::rows::json::{Json, MOST_LEAVES};
 use crate::rows::roles::Column;
 use crate::rows::table::{HEAD_ROWS, Row as _, Table, content};
@@ -80,6 +80,11 @@ impl<'a> Documents<'a> {
         if !matches!(document, Json::Map(_)) || row.is_empty() {
             let what = "not an object of names and numbers";
             return Err(ReadError::Json(Fault::new(what, place, "lines like {\"t\": 0.05, \"x\": 0.5, \"y\": 1.2}")));
+        }
+        if row.len() > MOST_CHANNELS && self.input.options.state.is_empty() {
+            let what = format!("one JSON object of {} values, not one sample", row.len());
+            let remedy = "one line per movement: {\"state\": [[0.1, 0.2], …], \"dt\": 0.05}, or per sample: {\"t\": 0.05, \"x\": 0.5}";
+            return Err(ReadError::Json(Fault::new(what, place, remedy)));
         }
         if row.len() > MOST_LEAVES {
             let what = format!("more than {MOST_LEAVES} values in one {}", self.word);

@@ -1,4 +1,4 @@
-//! JSON lines: a line an episode, as [`crate::write`] makes them, or a line a sample.
+//! JSON lines: a line an episode, as [`crate::write`] makes them, or a line a sample; or one list of either, over any lines.
 
 mod episode_line;
 
@@ -17,17 +17,44 @@ const LONGEST_LINE: u64 = 1 << 30;
 pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<RawRecordings, ReadError> {
     let mut lines = Lines { file: BufReader::with_capacity(1 << 16, input.open()?), line: 0, text: Vec::new() };
     let mut reader: Option<Reader<'_>> = None;
-    while let Some(document) = lines.next(&input.name, progress)? {
-        let reader = reader.get_or_insert_with(|| Reader::of(&document, input));
+    let mut add = |place: u64, word: &'static str, document: &Json| {
+        let reader = reader.get_or_insert_with(|| Reader::of(document, input, word));
         match reader {
-            Reader::Episodes(episodes) => episodes.push(lines.line, &document)?,
-            Reader::Samples(rows) => rows.push(lines.line, &document)?,
+            Reader::Episodes(episodes) => episodes.push(place, document),
+            Reader::Samples(rows) => rows.push(place, document),
         }
+    };
+    let mut first = true;
+    while let Some(document) = lines.next(&input.name, first, progress)? {
+        match document {
+            Json::List(entries) if first => {
+                let listed = episodes_of(entries).into_iter().enumerate();
+                listed.into_iter().try_for_each(|(at, entry)| add(at as u64, "entry", &entry))?;
+            }
+            document => add(lines.line, "line", &document)?,
+        }
+        first = false;
     }
     match reader {
-        Some(Reader::Episodes(episodes)) => Ok(episodes.finish()),
+        Some(Reader::Episodes(episodes)) => episodes.finish(),
         Some(Reader::Samples(rows)) => rows.finish(),
         None => Err(ReadError::Empty(Fault::new("there is no line", &input.name, "a file that is not empty"))),
+    }
+}
+
+/// The entries of a list that is a whole file: objects as they are, and lists of samples as episodes, one of each or one in all.
+fn episodes_of(entries: Vec<Json>) -> Vec<Json> {
+    let list_of_lists =
+        |value: &Json| value.list().is_some_and(|rows| !rows.is_empty() && rows.iter().all(|row| row.list().is_some()));
+    let episode = |samples: Json| Json::Map(vec![("state".to_owned(), samples)]);
+    if entries.iter().all(list_of_lists) {
+        return entries.into_iter().map(episode).collect();
+    }
+    let samples = Json::List(entries);
+    match samples {
+        samples if list_of_lists(&samples) => vec![episode(samples)],
+        Json::List(entries) => entries,
+        other => vec![other],
     }
 }
 
@@ -38,10 +65,10 @@ enum Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn of(first: &Json, input: &'a Input<'a>) -> Self {
+    fn of(first: &Json, input: &'a Input<'a>, word: &'static str) -> Self {
         match episode_line::state(first) {
-            Some(_) => Reader::Episodes(EpisodeLines::new(input)),
-            None => Reader::Samples(Box::new(Documents::new(input, "line"))),
+            Some(_) => Reader::Episodes(EpisodeLines::new(input, word)),
+            None => Reader::Samples(Box::new(Documents::new(input, word))),
         }
     }
 }
@@ -53,8 +80,8 @@ struct Lines<R> {
 }
 
 impl<R: BufRead> Lines<R> {
-    /// The next line that is not blank.
-    fn next(&mut self, file: &str, progress: &mut dyn FnMut(u64)) -> Result<Option<Json>, ReadError> {
+    /// The next line that is not blank; the `first` document may take all lines.
+    fn next(&mut self, file: &str, first: bool, progress: &mut dyn FnMut(u64)) -> Result<Option<Json>, ReadError> {
         loop {
             self.text.clear();
             let read = (&mut self.file).take(LONGEST_LINE).read_until(b'\n', &mut self.text);
@@ -70,9 +97,22 @@ impl<R: BufRead> Lines<R> {
                 return Err(ReadError::TooLarge(Fault::new("a line of more than 1 GB", place, remedy)));
             }
             let text = self.text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&self.text);
-            if !text.trim_ascii().is_empty() {
-                return serde_json::from_slice(text).map(Some).map_err(|error| self.malformed(&error, file));
+            if text.trim_ascii().is_empty() {
+                continue;
             }
+            let error = match serde_json::from_slice(text) {
+                Ok(document) => return Ok(Some(document)),
+                Err(error) => error,
+            };
+            if first && error.is_eof() {
+                let mut whole = text.to_owned();
+                let rest = (&mut self.file).take(LONGEST_LINE).read_to_end(&mut whole);
+                progress(rest.map_err(|error| crate::input::unreadable(&error, file))? as u64);
+                if let Ok(document) = serde_json::from_slice(&whole) {
+                    return Ok(Some(document));
+                }
+            }
+            return Err(self.malformed(&error, file));
         }
     }
 

@@ -4,8 +4,9 @@ mod names;
 
 use std::collections::HashMap;
 
-use self::names::{base, is_one_of};
+use self::names::{base, is_one_of, nanoseconds_of};
 pub(crate) use self::names::{is_time, unit, velocity_names};
+
 use crate::names::selection::{flags, glob, select};
 use crate::{Fault, ReadError, ReadOptions};
 use motion::is_called_context;
@@ -32,6 +33,8 @@ pub(crate) enum Content {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Roles {
     pub(crate) time: Option<usize>,
+    /// Of whole seconds in the column of time.
+    pub(crate) nanoseconds: Option<usize>,
     pub(crate) episode: Option<usize>,
     pub(crate) constraint: Option<usize>,
     pub(crate) state: Vec<usize>,
@@ -98,6 +101,11 @@ pub(crate) fn assign(columns: &[Column], options: &ReadOptions, place: &str) -> 
             _ => {}
         }
     }
+    if let Some(time) = roles.time {
+        let nanoseconds = nanoseconds_of(names[time]);
+        let found = free.iter().position(|&index| nanoseconds.contains(&base(names[index])));
+        roles.nanoseconds = found.map(|at| free.remove(at));
+    }
     let pointless = |name: &str| NEVER_STATE.iter().any(|pattern| glob(pattern, &name.to_ascii_lowercase()));
     roles.ignored.extend(free.extract_if(.., |index| pointless(names[*index])));
     roles.state_guessed = options.state.is_empty();
@@ -130,12 +138,14 @@ impl Roles {
     ) -> Result<(), ReadError> {
         let mut velocities: Vec<usize> = Vec::new();
         if options.velocity.is_empty() {
-            let lowered: Vec<(usize, String)> = free.iter().map(|&index| (index, base(names[index]))).collect();
+            let lower = |&index: &usize| (index, base(names[index]));
+            let lowered: Vec<(usize, String)> = free.iter().map(lower).collect();
             let mut by_name: HashMap<&str, usize> = HashMap::new();
             for (index, name) in &lowered {
                 by_name.entry(name).or_insert(*index);
             }
-            for (index, name) in &lowered {
+            let context: Vec<(usize, String)> = self.context.iter().map(lower).collect();
+            for (index, name) in context.iter().chain(&lowered) {
                 if !velocities.contains(index) {
                     let velocity = velocity_names(name).find_map(|wanted| by_name.get(wanted.as_str()).copied());
                     velocities.extend(velocity.filter(|velocity| velocity != index));

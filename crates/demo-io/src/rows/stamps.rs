@@ -3,6 +3,8 @@
 //! Seconds since 1970 in f64 resolve 2.4e-7 s, which makes the steps of a 1 kHz recording uneven. So stamps are stored as a
 //! whole number and a fraction, and the first is subtracted before any division.
 
+use crate::TimeUnit;
+
 /// A stamp in some unit, not yet in f64: `whole` + `part`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stamp {
@@ -46,6 +48,17 @@ impl Stamp {
         nanoseconds_of_date(text).map(|whole| (Stamp::whole(whole), Some(TicksPerSecond(1e9))))
     }
 
+    /// With the nanoseconds of another column; the unit of both together is nanoseconds.
+    pub(crate) fn with_nanoseconds(self, nanoseconds: f64) -> Self {
+        let whole = self.whole.saturating_mul(1_000_000_000);
+        let part = self.part * 1e9 + nanoseconds;
+        if part.is_finite() {
+            Stamp { whole: whole.saturating_add(part.trunc() as i64), part: part.fract() }
+        } else {
+            Stamp::MISSING
+        }
+    }
+
     pub(crate) fn is_finite(self) -> bool {
         self.part.is_finite()
     }
@@ -61,6 +74,18 @@ impl Stamp {
 }
 
 impl TicksPerSecond {
+    /// Of `--time-unit`, if it is given.
+    pub(crate) fn asked(unit: Option<TimeUnit>) -> Option<Self> {
+        unit.map(|unit| {
+            TicksPerSecond(match unit {
+                TimeUnit::Seconds => 1.0,
+                TimeUnit::Milliseconds => 1e3,
+                TimeUnit::Microseconds => 1e6,
+                TimeUnit::Nanoseconds => 1e9,
+            })
+        })
+    }
+
     /// From a column's name (`t_ms`, `time [us]`), else from the size of its first stamp: what is far too large to be
     /// seconds since 1970 is milliseconds, microseconds or nanoseconds.
     pub(crate) fn guess(name: &str, first: Stamp) -> Self {
@@ -90,11 +115,13 @@ impl TicksPerSecond {
     }
 }
 
-/// `2023-11-14 22:13:20.05`, with `T` or a blank, with or without a zone; nanoseconds since 1970.
+/// `2023-11-14 22:13:20.05` or `14.11.2023 22:13:20,05`, with `T` or a blank, with or without a zone; nanoseconds since 1970.
 fn nanoseconds_of_date(text: &str) -> Option<i64> {
     let (date, clock) = text.trim().split_once(['T', ' ', 't'])?;
-    let mut date = date.splitn(3, ['-', '/']);
-    let (year, month, day) = (number(date.next()?)?, number(date.next()?)?, number(date.next()?)?);
+    let day_first = date.contains('.');
+    let mut date = date.splitn(3, if day_first { ['.', '.'] } else { ['-', '/'] });
+    let parts = [number(date.next()?)?, number(date.next()?)?, number(date.next()?)?];
+    let [year, month, day] = if day_first { [parts[2], parts[1], parts[0]] } else { parts };
     if !(1..=9999).contains(&year) || !(1..=12).contains(&month) || !(1..=31).contains(&day) {
         return None;
     }
@@ -167,6 +194,9 @@ mod tests {
             ("t", "2023-11-14T22:13:20Z", "2023-11-14T22:13:20,05Z"),
             ("t", "2023-11-14T23:13:20+01:00", "2023-11-14T22:13:20.05Z"),
             ("t", "2023-11-14T17:13:20-0500", "2023-11-14T22:13:20.05+00"),
+            ("t", "14.11.2023 22:13:20.000", "14.11.2023 22:13:20,050"),
+            ("t", "14.11.2023 22:13:20", "2023-11-14 22:13:20.05"),
+            ("t", "4.3.2023 9:00:59,97", "04.03.2023 09:01:00.02"),
         ] {
             assert_eq!(seconds_between(name, first, second), 0.05, "{name}: {first} to {second}");
         }
@@ -186,10 +216,31 @@ mod tests {
 
     #[test]
     fn what_is_no_stamp_is_refused() {
-        for text in ["", "soon", "12:30", "2023-13-01 00:00", "2023-11-14", "2023-11-14 22", "é-1-1 1:1", "1-1-1 1:1+é"]
-        {
+        for text in [
+            "",
+            "soon",
+            "12:30",
+            "2023-13-01 00:00",
+            "2023-11-14",
+            "2023-11-14 22",
+            "é-1-1 1:1",
+            "1-1-1 1:1+é",
+            "14.13.2023 1:00",
+            "32.1.2023 1:00",
+            "2023.11.14 1:00",
+            "14.11.2023",
+        ] {
             assert!(Stamp::text(text).is_none(), "{text}");
         }
+    }
+
+    #[test]
+    fn seconds_and_nanoseconds_are_one_stamp() {
+        let stamp = |seconds: &str, nanoseconds| Stamp::text(seconds).unwrap().0.with_nanoseconds(nanoseconds);
+        let first = stamp("1700000000", 999_999_999.0);
+        assert_eq!(stamp("1700000001", 1.0).since(first), 2.0);
+        assert_eq!(stamp("0.5", 3.0).since(stamp("0", 0.0)), 500_000_003.0);
+        assert!(!stamp("1", f64::NAN).is_finite());
     }
 
     #[test]

@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
-use crate::raw::{Clock, MOST_CHANNELS, MOST_EPISODES, RawEpisode, RawRecordings, Rows, no_time, period, unused};
+use crate::raw::{
+    Clock, MOST_CHANNELS, MOST_EPISODES, RawEpisode, RawRecordings, Rows, Unknown, no_time, period, unused,
+};
 use crate::rows::roles::{Column, Content, Roles, assign, unit};
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use crate::{Fault, ReadError, ReadOptions};
@@ -26,6 +28,8 @@ pub(crate) struct Table {
     roles: Roles,
     period: Option<f64>,
     ticks: Option<TicksPerSecond>,
+    /// Of stamps that are numbers.
+    asked_ticks: Option<TicksPerSecond>,
     /// The name of the only episode, where no column tells episodes apart.
     only: String,
     episodes: Vec<RawEpisode>,
@@ -36,6 +40,9 @@ pub(crate) struct Table {
     by_label: HashMap<String, usize>,
     current: Option<usize>,
     label: String,
+    unknown: Unknown,
+    /// As [`ReadOptions::elsewhere`].
+    elsewhere: Vec<String>,
     /// Advice on a field that is no number.
     pub(crate) hint: fn(&str) -> Option<String>,
 }
@@ -62,6 +69,7 @@ impl Table {
             names: columns.iter().map(|column| column.name.clone()).collect(),
             period,
             ticks: None,
+            asked_ticks: TicksPerSecond::asked(options.time_unit),
             only: only.to_owned(),
             episodes: Vec::new(),
             clocks: Vec::new(),
@@ -70,6 +78,8 @@ impl Table {
             by_label: HashMap::new(),
             current: None,
             label: String::new(),
+            elsewhere: options.elsewhere.clone(),
+            unknown: Unknown::of(&options.ignore, &columns.iter().map(|column| &column.name[..]).collect::<Vec<_>>()),
             roles,
             hint: |_| None,
         })
@@ -78,18 +88,24 @@ impl Table {
     /// The columns that have a role.
     #[cfg(feature = "parquet")]
     pub(crate) fn used(&self) -> std::collections::HashSet<usize> {
-        let Roles { time, episode, constraint, state, velocity, context, .. } = &self.roles;
+        let Roles { time, nanoseconds, episode, constraint, state, velocity, context, .. } = &self.roles;
         let columns = state.iter().chain(velocity).chain(context).copied();
-        [*time, *episode, *constraint].into_iter().flatten().chain(columns).collect()
+        [*time, *nanoseconds, *episode, *constraint].into_iter().flatten().chain(columns).collect()
     }
 
     /// Adds the row at `place`.
     pub(crate) fn push(&mut self, place: u64, row: &impl Row) -> Result<(), ReadError> {
         let episode = self.episode_of(row)?;
         if let (Some(column), None) = (self.roles.time, self.period) {
-            let (stamp, ticks) = row.stamp(column).map_err(|text| self.not_a_number(&text, column, place))?;
+            let (mut stamp, mut ticks) = row.stamp(column).map_err(|text| self.not_a_number(&text, column, place))?;
+            if let Some(column) = self.roles.nanoseconds {
+                let more = row.number(column).map_err(|text| self.not_a_number(&text, column, place))?;
+                (stamp, ticks) = (stamp.with_nanoseconds(more), Some(TicksPerSecond(1e9)));
+            }
             if self.ticks.is_none() && stamp.is_finite() {
-                self.ticks = Some(ticks.unwrap_or_else(|| TicksPerSecond::guess(&self.names[column], stamp)));
+                self.ticks = Some(
+                    ticks.or(self.asked_ticks).unwrap_or_else(|| TicksPerSecond::guess(&self.names[column], stamp)),
+                );
             }
             self.clocks[episode].push(stamp);
         }
@@ -165,7 +181,13 @@ impl Table {
         let role = if self.roles.time == Some(column) { "stamp" } else { "number" };
         let what = format!("'{start}' is not a {role}");
         let place = format!("{}, {} {place}, column '{name}'", self.file, self.word);
-        let remedy = (self.hint)(text).unwrap_or_else(|| {
+        let is_stamp = self.roles.time == Some(column);
+        let remedy = (self.hint)(text).filter(|_| !is_stamp).unwrap_or_else(|| {
+            if is_stamp {
+                return "stamps like 0.05, 1700000000.05, 2023-11-14 22:13:20.05 or 14.11.2023 22:13:20.05; or --dt SECONDS instead \
+                        of stamps"
+                    .to_owned();
+            }
             format!("correct the file, or --ignore '{name}' if the column does not belong to the state")
         });
         ReadError::NotANumber(Fault::new(what, place, remedy))
@@ -179,12 +201,12 @@ impl Table {
         let channels =
             channels.map(|name| Channel { name: name.to_owned(), unit: unit(name).map(str::to_owned) }).collect();
         let ignored: Vec<&str> = self.roles.ignored.iter().map(name).collect();
-        let mut findings: Vec<_> = unused("columns", &ignored).into_iter().collect();
+        let mut findings: Vec<_> = unused("columns", &ignored, &self.elsewhere).into_iter().collect();
         let switches = |episode: &RawEpisode| episode.constraint.as_ref().is_some_and(|labels| labels.switches() > 0);
         if !self.switching && self.episodes.iter().any(switches) {
             self.episodes.iter_mut().filter(|episode| switches(episode)).for_each(|episode| episode.constraint = None);
             let column = self.roles.constraint.map(|column| self.names[column].as_str()).unwrap_or_default();
-            findings.extend(unused("labels of constraints that change within an episode are", &[column]));
+            findings.extend(unused("labels of constraints that change within an episode are", &[column], &[]));
         }
         let differ = |episode: &RawEpisode| episode.constraint != self.episodes[0].constraint;
         let labels_vary =
@@ -194,7 +216,7 @@ impl Table {
             raw.constraint.take_if(|labels| !labels_vary || labels.is_blank());
         }
         let (episodes, word, drop_constant) = (self.episodes, self.word, self.roles.state_guessed);
-        RawRecordings { channels, episodes, findings, word, drop_constant }
+        RawRecordings { channels, episodes, findings, word, drop_constant, unknown: self.unknown }
     }
 }
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -22,11 +22,15 @@ def floats(values: Any, name: str) -> Floats:
         # In C order and aligned.
         if values.flags.carray or (values.flags.c_contiguous and values.flags.aligned):
             return values
+    if np.ma.is_masked(values):
+        raise PolicyAlignError(f"{name} holds masked values", name, "the samples without them, or .filled(…) with numbers")
     try:
         array = np.asarray(values)
     except ValueError as error:
         raise TypeError(f"{name} is no array: {error}") from None
-    if array.dtype.kind not in "fiubO":
+    if array.dtype.kind == "b":
+        raise TypeError(f"{name} is a mask of booleans; numbers are needed, such as those that X[mask] selects")
+    if array.dtype.kind not in "fiuO":
         raise TypeError(f"{name} holds {array.dtype}; numbers are needed")
     try:
         return np.require(array, np.float64, ["C", "A"])
@@ -34,8 +38,16 @@ def floats(values: Any, name: str) -> Floats:
         raise TypeError(f"{name} holds what is not a number: {error}") from None
 
 
-def samples(values: Any, name: str, columns: int | None = None, of: str = "") -> Floats:
-    """An (N, n) array, a row a sample."""
+def samples(
+    values: Any, name: str, columns: int | None = None, of: str = "", channels: Callable[[], Iterable[str]] | None = None
+) -> Floats:
+    """An (N, n) array, a row a sample; the columns of a DataFrame are called like the ``channels``, if these have names."""
+    if channels is not None and hasattr(values, "columns"):
+        found, known = [str(column) for column in values.columns], list(channels())
+        if found != known and known != [f"x{k}" for k in range(len(known))]:
+            hint = f"{name}[{known!r}]" if set(known) <= set(found) else f"the columns {', '.join(known)}"
+            what = f"the columns of {name} are {', '.join(found)}, those learnt from {', '.join(known)}"
+            raise PolicyAlignError(what, name, hint)
     array = floats(values, name)
     if array.ndim != 2:
         hint = "reshape(1, -1) if it holds a single sample, reshape(-1, 1) if a single channel"

@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import json
+import operator
 import os
 import tempfile
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, overload
+
+import numpy as np
+import numpy.typing as npt
 
 from . import _native
 from ._arrays import Floats, episodes, floats, samples
 from ._errors import PolicyAlignError, PolicyAlignWarning
 from ._trust import Decision, Finding, decisions, findings
+
+#: What LeRobot calls the state.
+_LEROBOT_STATE = "observation.state"
 
 _LISTS = {"state", "velocity", "context", "ignore", "units", "degrees", "unwrap"}
 
@@ -40,7 +47,9 @@ class Check:
 class Demonstrations:
     """Movements with names, stamps and units.
 
-    ``len`` is their number; iterating gives (N, n) arrays of positions. Estimators take it in the place of arrays.
+    ``len`` is their number; iterating, or an index, gives (N, n) arrays of positions. Slices, lists of numbers or of names,
+    and masks give some of them as ``Demonstrations``, so that scikit-learn divides movements, not samples. Estimators
+    take it in the place of arrays.
     """
 
     def __init__(
@@ -97,7 +106,7 @@ class Demonstrations:
         """Reads files as one set: CSV, NPZ, JSON lines, LeRobot, HDF5, MCAP, MAT.
 
         Options are the program's flags: ``state``, ``velocity``, ``context``, ``time``, ``episode``, ``constraint_column``,
-        ``ignore``, ``dt``, ``units``, ``degrees``, ``unwrap``, ``nan``, ``sort``, ``split_gap``, ``trim_still``,
+        ``time_unit``, ``ignore``, ``dt``, ``units``, ``degrees``, ``unwrap``, ``nan``, ``sort``, ``split_gap``, ``trim_still``,
         ``filter``, ``samples_are``, ``separator``, ``decimal``, ``topic``, ``format`` and ``trust``. What was noticed is
         warned of, and stays in ``notes``.
         """
@@ -115,7 +124,17 @@ class Demonstrations:
 
     @classmethod
     def from_frame(cls, frame: Any, **options: Any) -> Demonstrations:
-        """Of a pandas or polars DataFrame, read as the CSV file it would make, with the options of ``read``."""
+        """Of a pandas or polars DataFrame, read as the CSV file it would make, with the options of ``read``.
+
+        A column of lists of equal length becomes a column for each element, ``action_0`` of ``action``; options may name
+        either. As in LeRobot's files, ``observation.state`` is the state if it is such a column and ``state`` is not given.
+        """
+        frame, lists = _without_lists(frame)
+        for name in _LISTS & options.keys():
+            given = [options[name]] if isinstance(options[name], str) else options[name]
+            options[name] = given and [one for entry in given for one in lists.get(entry, [entry])]
+        if options.get("state") is None and _LEROBOT_STATE in lists:
+            options["state"] = lists[_LEROBOT_STATE]
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "frame.csv")
             if hasattr(frame, "to_csv"):
@@ -193,6 +212,63 @@ class Demonstrations:
     def __len__(self) -> int:
         return len(self._native)
 
+    @property
+    def shape(self) -> tuple[int]:
+        """The number of movements: what scikit-learn divides."""
+        return (len(self),)
+
+    @overload
+    def __getitem__(self, key: int | np.integer[Any] | str) -> Floats: ...
+    @overload
+    def __getitem__(self, key: slice | list[Any] | npt.NDArray[Any] | tuple[Any, ...]) -> Demonstrations: ...
+    def __getitem__(self, key: Any) -> Floats | Demonstrations:
+        if isinstance(key, tuple) and len(key) == 2 and key[1] is Ellipsis:
+            key = key[0]
+        if isinstance(key, str):
+            return self._native.samples(self._named(key))[1]
+        if isinstance(key, slice):
+            return self._some(list(range(*key.indices(len(self)))))
+        if hasattr(key, "__index__") and not isinstance(key, (bool, np.bool_)) and np.ndim(key) == 0:
+            return self._native.samples(self._counted(key))[1]
+        chosen = np.asarray(key)
+        if chosen.ndim != 1:
+            raise TypeError(f"movements are chosen by a number, a name, a slice or a list of these, not {type(key).__name__}")
+        if chosen.dtype.kind == "b":
+            if len(chosen) != len(self):
+                what = f"a mask of {len(chosen)} booleans for {len(self)} movements"
+                raise PolicyAlignError(what, "Demonstrations[mask]", "one a movement, not one a sample")
+            return self._some(np.flatnonzero(chosen).tolist())
+        if chosen.dtype.kind in "US":
+            return self._some([self._named(str(name)) for name in chosen])
+        if chosen.dtype.kind not in "iu" and chosen.size:
+            raise TypeError(f"movements are chosen by whole numbers, names or booleans, not {chosen.dtype}")
+        return self._some([self._counted(k) for k in chosen])
+
+    def _counted(self, k: Any) -> int:
+        """The place of movement k, which may count from the end."""
+        number = operator.index(k)
+        place = number + len(self) if number < 0 else number
+        if not 0 <= place < len(self):
+            raise IndexError(f"there is no movement {number}, of {len(self)}")
+        return place
+
+    def _named(self, name: str) -> int:
+        try:
+            return self.names.index(name)
+        except ValueError:
+            few = ", ".join(self.names[:5]) + (", …" if len(self) > 5 else "")
+            raise KeyError(f"there is no movement {name!r}; one of: {few}") from None
+
+    def _some(self, places: list[int]) -> Demonstrations:
+        native = self._native
+        if not places:
+            raise PolicyAlignError("no movement is chosen", "Demonstrations[…]", "at least one")
+        times, positions, velocities = (list(each) for each in zip(*map(native.samples, places), strict=True))
+        channels, units = (list(listed) for listed in zip(*native.channels, strict=True))
+        names, labels = native.names, native.constraints
+        of = (positions, velocities, (None, times), ([names[k] for k in places], channels), [labels[k] for k in places])
+        return Demonstrations._of(_native.Recordings.of(*of, units).with_origin(native.origin))
+
     def __iter__(self) -> Iterator[Floats]:
         return (self._native.samples(k)[1] for k in range(len(self)))
 
@@ -233,6 +309,29 @@ def preparing(
         "wraps": wraps,
         "context": context if isinstance(context, str) else [str(name) for name in context],
     }
+
+
+def _without_lists(frame: Any) -> tuple[Any, dict[str, list[str]]]:
+    """The frame with a column for each element of columns of lists, and the names of these."""
+    lists: dict[str, list[str]] = {}
+    if not hasattr(frame, "columns") or not len(frame):
+        return frame, lists
+    flat: dict[str, Any] = {}
+    for place, column in enumerate(frame.columns):
+        values = frame[column]
+        first = values[0] if not hasattr(values, "iloc") else values.iloc[0]
+        if isinstance(first, (str, bytes)) or not hasattr(first, "__len__"):
+            flat[column] = values
+            continue
+        width = len(first)
+        for k, entry in enumerate(values):
+            if not hasattr(entry, "__len__") or len(entry) != width:
+                what = f"column {column!r} has lists of different lengths, the first of {width}"
+                raise PolicyAlignError(what, f"row {k}", "lists of equal length in every row", sample=k, column=place)
+        lists[str(column)] = [f"{column}_{k}" for k in range(width)]
+        array = np.array([list(entry) for entry in values])
+        flat.update({name: array[:, k] for k, name in enumerate(lists[str(column)])})
+    return (type(frame)(flat) if lists else frame), lists
 
 
 def _counted(count: int, what: str) -> str:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import operator
 import os
 import time
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
+from html import escape
 from typing import Any, ClassVar, Literal, Self, overload
 
 import numpy as np
@@ -24,6 +26,9 @@ from ._trust import Decision, Trust, decisions, findings
 
 #: Values of a context by name, or in the order of ``context_names_``; none for a policy of the state alone.
 Context = Mapping[str, float] | Sequence[float] | Floats | None
+
+#: What ``predict`` answers where there are no data.
+Outside = Literal["zero", "nan", "error", "extrapolate"]
 
 
 class Learner(Estimator):
@@ -45,7 +50,7 @@ class Learner(Estimator):
     max_rows: int
     inducing: int
     robot: str | os.PathLike[str] | None
-    random_state: int
+    random_state: Any
     n_jobs: int | None
 
     def __init__(
@@ -60,7 +65,7 @@ class Learner(Estimator):
         max_rows: int = 400,
         inducing: int = 500,
         robot: str | os.PathLike[str] | None = None,
-        random_state: int = 1,
+        random_state: Any = 1,
         n_jobs: int | None = None,
     ) -> None:
         """``integration``: "auto", "velocity" (recorded ones are believed) or "displacement" (they are ignored). ``scale``:
@@ -71,7 +76,7 @@ class Learner(Estimator):
         names, "none" takes none. ``max_rows``: samples that a policy is searched on, at most.
         ``inducing``: samples that stand for all where more are recorded; 0 drops these. ``robot``: a URDF whose joints are named like the
         channels; its mass matrix is tried as the metric in which constraints are at right angles. ``random_state``: the seed,
-        a whole number. ``n_jobs``: threads, None or -1 for all; results do not depend on it.
+        a whole number; None is 1, the program's, and a generator of NumPy is asked for one. ``n_jobs``: threads, None or -1 for all; results do not depend on it.
         """
         self._store(locals())
 
@@ -108,32 +113,60 @@ class Learner(Estimator):
         return self
 
     @overload
-    def predict(self, X: Any, return_std: Literal[False] = False, *, context: Context = None) -> Floats: ...
-    @overload
-    def predict(self, X: Any, return_std: Literal[True], *, context: Context = None) -> tuple[Floats, Floats]: ...
+    def predict(
+        self, X: Any, return_std: Literal[False] = False, *, context: Context = None, outside: Outside = "zero"
+    ) -> Floats: ...
     @overload
     def predict(
-        self, X: Any, return_std: bool, *, context: Context = None
+        self, X: Any, return_std: Literal[True], *, context: Context = None, outside: Outside = "zero"
+    ) -> tuple[Floats, Floats]: ...
+    @overload
+    def predict(
+        self, X: Any, return_std: bool, *, context: Context = None, outside: Outside = "zero"
     ) -> Floats | tuple[Floats, Floats]: ...
     def predict(
-        self, X: Any, return_std: bool = False, *, context: Context = None
+        self, X: Any, return_std: bool = False, *, context: Context = None, outside: Outside = "zero"
     ) -> Floats | tuple[Floats, Floats]:
         """The action at each state, (N, n), in units of the state per second; with ``return_std`` also the standard
-        deviation of every component, (N, n). ``context``: where the policy depends on one, its values by name or in order."""
+        deviation of every component, (N, n). ``context``: where the policy depends on one, its values by name or in order.
+
+        ``outside`` of the data, where ``supports(X)`` is False, the action is "zero", "nan" or an "error", and the standard
+        deviation NaN: the program's ``--outside``. "extrapolate" gives what the learner says there, without asking.
+        """
         fitted = self._in(context)
-        states = samples(X, "X", fitted.dim, type(self).__name__)
-        if not return_std:
+        states = samples(X, "X", fitted.dim, type(self).__name__, lambda: self.feature_names_in_)
+        if outside not in ("zero", "nan", "error", "extrapolate"):
+            hint = 'outside="zero", "nan", "error" or "extrapolate"'
+            raise PolicyAlignError(f"{outside!r} is none of the choices", "outside", hint)
+        if outside == "extrapolate" and not return_std:
             return fitted.predict(states)
-        deviation = fitted.deviation(states)
-        if deviation is None:
+        deviation, known = fitted.certainty(states)
+        if return_std and deviation is None:
             hint = "SlopeGp or AutoGp; supports(X) tells where PolicyAlign has data"
             raise PolicyAlignError(f"{type(self).__name__} estimates no standard deviation", "return_std=True", hint)
-        return fitted.predict(states), deviation
+        actions = fitted.predict(states)
+        if outside != "extrapolate" and not known.all():
+            if outside == "error":
+                sample = int(np.argmin(known))
+                hint = 'outside="zero" or "nan", or states within the data'
+                raise PolicyAlignError(f"state {sample} is outside the data", "X", hint, sample=sample)
+            actions[~known] = 0.0 if outside == "zero" else np.nan
+            if deviation is not None:
+                deviation[~known] = np.nan
+        return actions if not return_std or deviation is None else (actions, deviation)
+
+    def act(self, x: Any, *, context: Context = None, outside: Outside = "zero") -> Floats:
+        """The action (n) at one state (n); arguments as of ``predict``."""
+        state = floats(x, "x")
+        if state.ndim != 1:
+            raise PolicyAlignError(f"Expected 1D array, got {state.ndim}D array instead", "x", "predict(X) for several states")
+        action: Floats = self.predict(state[np.newaxis], context=context, outside=outside)[0]
+        return action
 
     def potential(self, X: Any, *, context: Context = None) -> Floats:
         """The potential at each state, (N), in units of the state squared per second; the policy is downhill."""
         fitted = self._in(context)
-        found = fitted.potential(samples(X, "X", fitted.dim, type(self).__name__))
+        found = fitted.potential(samples(X, "X", fitted.dim, type(self).__name__, lambda: self.feature_names_in_))
         if found is None:
             raise PolicyAlignError("this policy has no potential", "potential(X)", "PolicyAlign or SlopeGp")
         return found
@@ -141,12 +174,12 @@ class Learner(Estimator):
     def support(self, X: Any, *, context: Context = None) -> Floats:
         """How much the demonstrations support each state, from 0 to 1, (N)."""
         fitted = self._in(context)
-        return fitted.support(samples(X, "X", fitted.dim, type(self).__name__))
+        return fitted.support(samples(X, "X", fitted.dim, type(self).__name__, lambda: self.feature_names_in_))
 
     def supports(self, X: Any, *, context: Context = None) -> npt.NDArray[np.bool_]:
         """Whether that is enough to act on, (N)."""
         fitted = self._in(context)
-        return fitted.supports(samples(X, "X", fitted.dim, type(self).__name__))
+        return fitted.supports(samples(X, "X", fitted.dim, type(self).__name__, lambda: self.feature_names_in_))
 
     def rollout(
         self,
@@ -165,7 +198,39 @@ class Learner(Estimator):
         ``seconds``: three times the longest demonstration if not given; ``step``: between two samples of the path.
         ``context``: as of ``predict``.
         """
-        return follow(self._in(context), x0, seconds, step, constraint, limits)
+        channels = tuple(map(str, self.feature_names_in_))
+        return follow(self._in(context), x0, seconds, step, constraint, limits, channels)
+
+    def plot(
+        self, ax: Any = None, *, dims: tuple[int | str, int | str] = (0, 1), arrows: int = 20, context: Context = None
+    ) -> Any:
+        """Draws the policy in two channels with matplotlib, all others at their median; no arrow outside the data.
+
+        ``ax``: axes to draw on, new ones if None; they are returned. ``dims``: channels across and up, by number or name;
+        ``arrows``: so many in each direction. ``context``: as of ``predict``.
+        """
+        names = list(map(str, self.feature_names_in_))
+        across, up = (_channel(dim, names) for dim in dims)
+        if across == up:
+            raise PolicyAlignError(f"{names[across]!r} is named twice", "dims", f"two of {', '.join(names)}")
+        state = self._about["state"]
+        x, y = (np.linspace(state[dim]["low"], state[dim]["high"], arrows) for dim in (across, up))
+        grid = np.tile([float(channel["median"]) for channel in state], (arrows * arrows, 1))
+        grid[:, across], grid[:, up] = np.tile(x, arrows), np.repeat(y, arrows)
+        actions = self.predict(grid, context=context, outside="nan")
+        if ax is None:
+            import matplotlib.pyplot as plt
+
+            ax = plt.figure().add_subplot()
+        inside = ~np.isnan(actions[:, 0])
+        ax.quiver(grid[inside, across], grid[inside, up], actions[inside, across], actions[inside, up])
+        ax.set(xlabel=names[across], ylabel=names[up], title=f"{type(self).__name__}: {self.trust_.verdict.replace('_', ' ')}")
+        return ax
+
+    def _repr_html_(self) -> str:
+        """For notebooks: the parameters, and how far to trust what was learnt."""
+        head = f"<code>{escape(repr(self))}</code>"
+        return head if self._fitted is None else f"{head}<br>{self.trust_._repr_html_()}"
 
     def score(
         self,
@@ -346,7 +411,7 @@ class Learner(Estimator):
             "max_rows": self.max_rows,
             "inducing": self.inducing,
             "robot": _text(getattr(self, "robot", None)),
-            "seed": self.random_state,
+            "seed": _seed(self.random_state),
         }
 
     @classmethod
@@ -379,6 +444,32 @@ def _text(path: str | os.PathLike[str] | None) -> str | None:
         return None
     with open(path, encoding="utf-8") as file:
         return file.read()
+
+
+def _seed(random_state: Any) -> int:
+    """The seed that scikit-learn's ``random_state`` means here, where the same data give the same policy."""
+    if random_state is None:
+        return 1
+    if isinstance(random_state, np.random.Generator):
+        return int(random_state.integers(2**31))
+    if isinstance(random_state, np.random.RandomState):
+        return int(random_state.randint(2**31 - 1))
+    try:
+        seed = operator.index(random_state)
+    except TypeError:
+        raise TypeError(f"random_state is a whole number, None or a generator, not {type(random_state).__name__}") from None
+    if not 0 <= seed < 2**64:
+        raise PolicyAlignError(f"random_state is {seed}", "random_state", "a whole number from 0 to 2**64 - 1, or None")
+    return seed
+
+
+def _channel(dim: int | str, names: list[str]) -> int:
+    """A channel by number or name."""
+    if isinstance(dim, str) and dim in names:
+        return names.index(dim)
+    if isinstance(dim, int) and -len(names) <= dim < len(names):
+        return dim % len(names)
+    raise PolicyAlignError(f"there is no channel {dim!r}", "dims", f"two of {', '.join(names)}")
 
 
 def _threads(n_jobs: int | None) -> int:

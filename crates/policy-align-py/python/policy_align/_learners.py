@@ -40,7 +40,7 @@ class PolicyAlign(Learner):
         folds: int = 5,
         max_rows: int = 400,
         inducing: int = 500,
-        random_state: int = 1,
+        random_state: Any = 1,
         n_jobs: int | None = None,
     ) -> None:
         self._store(locals())
@@ -101,7 +101,7 @@ class AutoGp(Learner):
         max_rows: int = 400,
         inducing: int = 500,
         robot: str | os.PathLike[str] | None = None,
-        random_state: int = 1,
+        random_state: Any = 1,
         n_jobs: int | None = None,
     ) -> None:
         self._store(locals())

@@ -23,7 +23,7 @@ class Path:
 
     ``times`` (N), seconds; ``states`` and ``velocities`` (N, n), the latter what the constraint left of the action;
     ``stop``: "at rest", "left the data", "time" or a joint's limit; ``broken_by``: by how much a constraint was broken
-    at most, None without constraints.
+    at most, None without constraints. ``channels``: names of the state's dimensions.
     """
 
     times: Floats
@@ -31,9 +31,18 @@ class Path:
     velocities: Floats
     stop: str
     broken_by: float | None
+    channels: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.times)
+
+    def to_frame(self) -> Any:
+        """A pandas DataFrame: ``t``, the channels, and ``v`` with each channel's name for its velocity."""
+        import pandas as pd
+
+        states = {name: self.states[:, k] for k, name in enumerate(self.channels)}
+        velocities = {f"v{name}": self.velocities[:, k] for k, name in enumerate(self.channels)}
+        return pd.DataFrame({"t": self.times, **states, **velocities})
 
 
 def follow(
@@ -43,13 +52,14 @@ def follow(
     step: float | None,
     constraint: Constraint,
     limits: str | os.PathLike[str] | None,
+    channels: tuple[str, ...],
 ) -> Path:
     """The native roll-out with a user's arguments."""
     start = floats(start, "x0")
     if start.ndim != 1:
         raise PolicyAlignError(f"Expected 1D array, got {start.ndim}D array instead", "x0", "one state, (n,)")
     path = fitted.roll_out(start, seconds, step, _rows(constraint), limits)
-    return Path(path.times, path.states, path.velocities, path.stop, path.broken_by)
+    return Path(path.times, path.states, path.velocities, path.stop, path.broken_by, channels)
 
 
 def _rows(constraint: Constraint) -> Any:

@@ -3,9 +3,12 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
 use text::quoted;
+use toml::Value;
 
 use crate::cli::failure::{Failure, displayed};
+use crate::cli::options::flags::given;
 
 /// Refuses to write over a file that the command reads.
 pub(crate) fn no_input(output: &Path, inputs: &[PathBuf]) -> Result<(), Failure> {
@@ -18,13 +21,13 @@ pub(crate) fn no_input(output: &Path, inputs: &[PathBuf]) -> Result<(), Failure>
     Ok(())
 }
 
-/// The flags and files of the command `verb` for another one, but for `dropped` flags and their values.
-pub(crate) fn again(verb: &str, dropped: &[&str]) -> String {
-    others(std::env::args_os().skip(1), verb, dropped)
+/// The flags and files of the command `verb` for another one, but for `dropped` flags and their values, and with `added` ones.
+pub(crate) fn again(verb: &str, dropped: &[&str], added: &str) -> String {
+    others(std::env::args_os().skip(1), verb, dropped, added)
 }
 
-/// What of the arguments stays; the verb, and flags of all commands that only concern the output, go.
-fn others(mut arguments: impl Iterator<Item = OsString>, verb: &str, dropped: &[&str]) -> String {
+/// What of the arguments stays; the verb, and flags of all commands that only concern the output, go. Behind `--` are no flags.
+fn others(mut arguments: impl Iterator<Item = OsString>, verb: &str, dropped: &[&str], added: &str) -> String {
     let (mut words, mut begun) = (Vec::new(), false);
     while let Some(argument) = arguments.next() {
         let text = argument.to_string_lossy().into_owned();
@@ -42,31 +45,76 @@ fn others(mut arguments: impl Iterator<Item = OsString>, verb: &str, dropped: &[
             }
             continue;
         }
+        if text == "--" {
+            words.push(added.to_owned());
+            words.push(text);
+            words.extend(arguments.map(|file| word(&file.to_string_lossy())));
+            return words.join(" ");
+        }
         words.push(word(&text));
     }
+    words.push(added.to_owned());
     words.join(" ")
 }
 
 /// An argument as a shell takes it: of a flag the value is quoted.
 fn word(text: &str) -> String {
     match text.split_once('=') {
-        Some((flag, value)) if flag.starts_with('-') => format!("{flag}={}", quoted(Path::new(value))),
-        None if text.starts_with('-') => text.to_owned(),
-        _ => quoted(Path::new(text)),
+        Some((flag, value)) if flag.starts_with('-') => format!("{flag}={}", value_word(value)),
+        _ => value_word(text),
     }
+}
+
+/// The value of a flag as a shell takes it. It may begin with a minus, unlike a path.
+pub(crate) fn value_word(text: &str) -> String {
+    let rest = text.trim_start_matches('-');
+    let minus = &text[..text.len() - rest.len()];
+    if rest.is_empty() && !minus.is_empty() { minus.to_owned() } else { format!("{minus}{}", quoted(Path::new(rest))) }
+}
+
+/// The flags that are given, as words that begin with a blank each.
+pub(crate) fn flag_words(flags: &impl Serialize) -> String {
+    let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), ToOwned::to_owned);
+    let one = |flag: &str, value: &Value| match value {
+        Value::Boolean(_) => format!(" --{flag}"),
+        value => format!(" --{flag} {}", value_word(&text(value))),
+    };
+    let of = |(key, value): (String, Value)| {
+        let flag = key.replace('_', "-");
+        match value {
+            Value::Array(values) => values.iter().map(|value| one(&flag, value)).collect(),
+            value => one(&flag, &value),
+        }
+    };
+    // What no table can hold was refused before.
+    given(flags).map_or_else(|_| String::new(), |table| table.into_iter().map(of).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::options::flags::ReadFlags;
 
     #[test]
     fn flags_stay_but_for_those_of_the_output() {
         let given = ["a b.csv", "--nan", "drop", "--html", "x.html", "--json", "--scale=z=2", "--html=y.html", "-q"];
-        let others = |given: &[&str]| others(given.iter().map(OsString::from), "check", &["--html"]);
-        assert_eq!(others(&[&["check"], &given[..]].concat()), "'a b.csv' --nan drop --scale='z=2'");
+        let others = |given: &[&str]| others(given.iter().map(OsString::from), "check", &["--html"], "-o m.json");
+        assert_eq!(others(&[&["check"], &given[..]].concat()), "'a b.csv' --nan drop --scale='z=2' -o m.json");
         let flags_first = ["--quiet", "--config", "c.toml", "check", "check"];
-        assert_eq!(others(&flags_first), "--config c.toml check");
+        assert_eq!(others(&flags_first), "--config c.toml check -o m.json");
+        assert_eq!(others(&["check", "--sort", "--", "-q", "--html"]), "--sort -o m.json -- -q --html");
+        let values = ["check", "--from", "-1, 2", "--from=-1,2", "--separator", "-"];
+        assert_eq!(others(&values), "--from -'1, 2' --from=-1,2 --separator - -o m.json");
+    }
+
+    #[test]
+    fn given_flags_are_words() {
+        let words = |flags: &str| flag_words(&toml::from_str::<ReadFlags>(flags).unwrap());
+        assert_eq!(words(""), "");
+        assert_eq!(
+            words("sort = true\ntrust = false\ncontext = ['a b', 'c']\ndt = 0.5\nsplit_gap = 2.0"),
+            " --context 'a b' --context c --dt 0.5 --sort --split-gap 2.0"
+        );
     }
 
     #[test]

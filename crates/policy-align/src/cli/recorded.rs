@@ -37,7 +37,9 @@ pub(crate) fn prepared_for(
     (reading, preparing): (&ReadFlags, &PrepareFlags),
 ) -> Result<(ReadFlags, Prepared), Failure> {
     let config = Config::of(session)?;
-    let reading = config.under("read", reading)?.with_channels_of(model);
+    let mut own = config.under("read", reading)?.with_channels_of(model);
+    own.elsewhere.clone_from(&reading.elsewhere);
+    let reading = own;
     let mut options = config.under("prepare", preparing)?.options(reading.dt)?;
     // The learner's states were multiplied by these, whatever the flags are.
     options.scale = model.scale();

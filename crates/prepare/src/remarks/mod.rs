@@ -1,11 +1,13 @@
 //! Further findings before learning.
 
 mod end_places;
+mod no_state;
 mod pressing;
 mod speed_limit;
 
 pub use end_places::end_places;
 use motion::{Demonstrations, Finding, Trajectory, Verdict};
+pub(crate) use no_state::no_state;
 pub use pressing::pressing;
 use speed_limit::speed_limit;
 

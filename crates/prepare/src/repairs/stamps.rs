@@ -91,7 +91,7 @@ pub(crate) fn doubt(demonstrations: &Demonstrations, notes: &mut Notes) {
             short(movement.seconds(0, movement.n_samples() - 1))
         ),
         format!(
-            "if so, name the column's unit or give --dt {}; learnt velocities are per second of the stamps",
+            "if so, --time-unit ms or --dt {}; learnt velocities are per second of the stamps",
             short(usual / 1000.0)
         ),
     );

@@ -160,11 +160,7 @@ fn rescale(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &
         }
         let what = format!("stamps are {step:.0} apart and velocities 1000 times the steps");
         notes.decided("time step", format!("{} s", step / 1000.0), format!("{what}: stamps are milliseconds"), "--dt");
-        notes.found(
-            Verdict::Doubtful,
-            format!("{what}: stamps were read as milliseconds"),
-            "name the column t_ms, or give --dt",
-        );
+        notes.found(Verdict::Doubtful, format!("{what}: stamps were read as milliseconds"), "--time-unit ms, or --dt");
         return;
     }
     let common = low * high > 0.0 && high / low < AGREE && low / high < AGREE;
@@ -201,7 +197,7 @@ fn mistake(times: f64, step: f64) -> Option<(f64, &'static str)> {
     let mistakes = [
         (
             1000.0,
-            "velocity columns in millimetres, or stamps in milliseconds? Name the units in the file, or give --dt",
+            "velocity columns in millimetres, or stamps in milliseconds? Name the units in the file, or give --time-unit ms",
         ),
         (0.001, "positions in millimetres? Name the units in the file"),
         (1f64.to_degrees(), degrees),

@@ -1,17 +1,22 @@
 use crate::arrays::layout::lengths;
 use crate::input::Input;
+use crate::names::columns::{Asked, Chosen};
+use crate::names::selection::flags;
 use crate::raw::{
-    MOST_EPISODES, RawEpisode, RawRecordings, Rows, counted_names, even_times, no_time, period, seconds_since_first,
+    MOST_EPISODES, RawEpisode, RawRecordings, Rows, Unknown, counted_names, even_times, no_time, period,
+    seconds_since_first, unused,
 };
 use crate::rows::json::Json;
 use crate::rows::stamps::Stamp;
-use crate::{Fault, ReadError};
+use crate::{Fault, ReadError, ReadOptions};
 use motion::{Channel, Labels};
 
 /// Episodes, a line each: `{"episode": "take 1", "dt": 0.05, "names": ["x"], "unit": ["m"], "state": [[0.1], [0.2]],
 /// "velocity": [[2.0], [2.0]], "constraint": "rail"}`, or `times` instead of `dt`, or a list with the constraint of each sample.
 pub(super) struct EpisodeLines<'a> {
     input: &'a Input<'a>,
+    /// What episodes are: "line".
+    word: &'static str,
     channels: Option<Vec<Channel>>,
     episodes: Vec<RawEpisode>,
 }
@@ -28,12 +33,12 @@ pub(super) fn state(line: &Json) -> Option<&[Json]> {
 }
 
 impl<'a> EpisodeLines<'a> {
-    pub(super) fn new(input: &'a Input<'a>) -> Self {
-        Self { input, channels: None, episodes: Vec::new() }
+    pub(super) fn new(input: &'a Input<'a>, word: &'static str) -> Self {
+        Self { input, word, channels: None, episodes: Vec::new() }
     }
 
     pub(super) fn push(&mut self, number: u64, line: &Json) -> Result<(), ReadError> {
-        let place = format!("{}, line {number}", self.input.name);
+        let place = format!("{}, {} {number}", self.input.name, self.word);
         let other_form = |what: &str| {
             let remedy = "lines like {\"episode\": \"1\", \"dt\": 0.05, \"names\": [\"x\"], \"state\": [[0.1], [0.2]]}";
             ReadError::Json(Fault::new(what, &place, remedy))
@@ -87,7 +92,7 @@ impl<'a> EpisodeLines<'a> {
                 return Err(lengths(&format!("'{name}'"), len, stamps.len(), place));
             }
             let stamps = stamps.iter().map(|stamp| stamp.stamp().unwrap_or((Stamp::MISSING, None)));
-            return Ok(seconds_since_first(stamps, name, &mut None));
+            return Ok(seconds_since_first(stamps, name, self.input.options.time_unit, &mut None));
         }
         match step {
             Some(step) if step.is_finite() && step > 0.0 => Ok(even_times(step, len)),
@@ -95,14 +100,33 @@ impl<'a> EpisodeLines<'a> {
         }
     }
 
-    pub(super) fn finish(self) -> RawRecordings {
-        RawRecordings {
-            channels: self.channels.unwrap_or_default(),
-            episodes: self.episodes,
-            findings: Vec::new(),
+    /// The channels that the user chooses, of all.
+    pub(super) fn finish(self) -> Result<RawRecordings, ReadError> {
+        let ReadOptions { state, velocity, context, ignore, .. } = self.input.options.clone();
+        let (channels, mut episodes) = (self.channels.unwrap_or_default(), self.episodes);
+        let names: Vec<String> = channels.iter().map(|channel| channel.name.clone()).collect();
+        let unknown = Unknown::of(&ignore, &names);
+        let asked = Asked { state, velocity, context, ignore, time: None };
+        let drafts = |channels, findings, episodes| RawRecordings {
+            channels,
+            episodes,
+            findings,
             word: "sample",
             drop_constant: false,
+            unknown: unknown.clone(),
+        };
+        if asked.is_empty() {
+            return Ok(drafts(channels, Vec::new(), episodes));
         }
+        let chosen = Chosen::of(&names, &asked, &[], &self.input.name)?;
+        for raw in &mut episodes {
+            raw.velocities = chosen.velocities(&raw.positions, &raw.velocities, &self.input.name)?;
+            raw.positions = chosen.positions(&raw.positions);
+        }
+        let ignored = flags(&asked.ignore, &names);
+        let left: Vec<&str> = chosen.unused().filter(|&column| !ignored[column]).map(|at| &names[at][..]).collect();
+        let channels = chosen.channels().map(|column| channels[column].clone()).collect();
+        Ok(drafts(channels, unused("columns", &left, &self.input.options.elsewhere).into_iter().collect(), episodes))
     }
 }
 

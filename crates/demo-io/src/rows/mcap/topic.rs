@@ -7,7 +7,9 @@ use super::messages::{Message, Type};
 use crate::input::Input;
 use crate::names::natural;
 use crate::names::selection::{flags, select};
-use crate::raw::{RawEpisode, RawRecordings, counted_names, even_times, period, remark, seconds_since_first, unused};
+use crate::raw::{
+    RawEpisode, RawRecordings, Unknown, counted_names, even_times, period, remark, seconds_since_first, unused,
+};
 use crate::rows::documents::Documents;
 use crate::rows::json::Json;
 use crate::rows::roles::named;
@@ -169,12 +171,26 @@ impl<'a> Topic<'a> {
             let what = format!("some messages of {self} in {} have no velocities: all were left out", self.input.name);
             findings.push(remark(what, "record velocities in every message"));
         }
-        let unwanted =
-            self.input.options.ignore.iter().any(|pattern| matches!(&pattern[..], "velocity" | "velocities" | "*vel*"));
+        let options = self.input.options;
+        let unwanted = options.ignore.iter().any(|pattern| is_velocity(pattern));
+        let ignore: Vec<String> = options.ignore.iter().filter(|pattern| !is_velocity(pattern)).cloned().collect();
+        let unknown = Unknown::of(&ignore, &set.names);
+        let place = format!("{}, topic {}", self.input.name, self.name);
+        let as_velocity = named(&options.velocity, &set.names, &place)?;
+        if !as_velocity.is_empty() && as_velocity.len() != columns.len() {
+            let what = format!("{} parts of state but {} of velocity", columns.len(), as_velocity.len());
+            let remedy = "--state and --velocity with as many names";
+            return Err(ReadError::NoRoles(Fault::new(what, place, remedy)));
+        }
         let len = set.numbers.len();
-        let pick = |numbers: &[f64]| -> Vec<f64> {
+        let pick = |numbers: &[f64], columns: &[usize]| -> Vec<f64> {
             let samples = numbers.chunks_exact(set.names.len().max(1));
             samples.flat_map(|sample| columns.iter().map(|&column| sample[column])).collect()
+        };
+        let velocities = match &as_velocity[..] {
+            [] if recorded && !unwanted => pick(&set.velocities, &columns),
+            [] => Vec::new(),
+            as_velocity => pick(&set.positions, as_velocity),
         };
         let stamped = set.stamps.iter().all(|&stamp| stamp != 0);
         let stamps = if stamped { &set.stamps } else { &set.log_times };
@@ -182,15 +198,15 @@ impl<'a> Topic<'a> {
             even_times(step, len)
         } else {
             let stamps = stamps.iter().map(|&stamp| (Stamp::whole(stamp), None));
-            seconds_since_first(stamps, "", &mut Some(TicksPerSecond(1e9)))
+            seconds_since_first(stamps, "", None, &mut Some(TicksPerSecond(1e9)))
         };
         let draft = RawEpisode {
             name: self.input.stem.clone(),
             file: self.input.name.clone(),
             rows: set.numbers.iter().copied().collect(),
             times,
-            positions: pick(&set.positions),
-            velocities: if recorded && !unwanted { pick(&set.velocities) } else { Vec::new() },
+            positions: pick(&set.positions, &columns),
+            velocities,
             constraint: None,
         };
         let channel = |&column: &usize| {
@@ -199,7 +215,7 @@ impl<'a> Topic<'a> {
         };
         let channels = columns.iter().map(channel).collect();
         let episodes = episodes(draft, metadata);
-        Ok(RawRecordings { channels, episodes, findings, word: "message", drop_constant: false })
+        Ok(RawRecordings { channels, episodes, findings, word: "message", drop_constant: false, unknown })
     }
 
     /// The set of messages to take, and which of its names are the state.
@@ -215,9 +231,9 @@ impl<'a> Topic<'a> {
         };
         if options.state.is_empty() {
             let names = &self.sets[largest].names;
-            let ignored = flags(&options.ignore, names);
+            let (ignored, velocity) = (flags(&options.ignore, names), flags(&options.velocity, names));
             let turned = |at: usize| self.kind == Some(Type::Pose) && names[at].starts_with("orientation");
-            let place = |at: &usize| !(ignored[*at] || turned(*at));
+            let place = |at: &usize| !(ignored[*at] || velocity[*at] || turned(*at));
             return Ok((largest, self.sets[largest].in_order((0..names.len()).filter(place).collect())));
         }
         let fits = |at: &usize| select(&options.state, &self.sets[*at].names).is_ok();
@@ -238,9 +254,14 @@ impl<'a> Topic<'a> {
         }
         let names = self.sets[set].names.iter().enumerate();
         let not_used: Vec<&str> = names.filter(|(at, _)| !columns.contains(at)).map(|(_, name)| &name[..]).collect();
-        findings.extend(unused("parts of messages", &not_used));
+        findings.extend(unused("parts of messages", &not_used, &self.input.options.elsewhere));
         findings
     }
+}
+
+/// A word of `--ignore` for the velocities of all messages.
+fn is_velocity(pattern: &str) -> bool {
+    matches!(pattern, "velocity" | "velocities" | "*vel*")
 }
 
 impl Set {

@@ -26,8 +26,22 @@ pub(super) fn is_one_of(known: &[&str], name: &str) -> bool {
 
 pub(crate) fn is_time(name: &str) -> bool {
     let name = base(name);
+    let whole_seconds =
+        name.strip_suffix("secs").or_else(|| name.strip_suffix("sec")).and_then(|stem| stem.strip_suffix('.'));
     TIMES.contains(&name.as_str())
+        || whole_seconds.is_some_and(|stem| TIMES.contains(&stem))
         || name.rsplit_once('_').is_some_and(|(stem, unit)| TIMES.contains(&stem) && TIME_UNITS.contains(&unit))
+}
+
+/// Names that the column of nanoseconds beside one of whole seconds may have: `stamp.nsecs` beside `stamp.secs`.
+pub(super) fn nanoseconds_of(seconds: &str) -> Vec<String> {
+    let name = base(seconds);
+    let [secs, sec] =
+        ["secs", "sec"].map(|unit| name.strip_suffix(unit).filter(|stem| !stem.ends_with(char::is_alphabetic)));
+    let of = |stem: Option<&str>, units: [&str; 3]| -> Vec<String> {
+        stem.into_iter().flat_map(|stem| units.map(|unit| format!("{stem}{unit}"))).collect()
+    };
+    [of(secs, ["nsecs", "nanosecs", "nanoseconds"]), of(sec, ["nanosec", "nsec", "nanoseconds"])].concat()
 }
 
 /// Lower case, without a unit in brackets after a blank: `X [m]` is `x`, but `position[0]` stays.

@@ -96,3 +96,12 @@ fn goals_need_no_velocity() {
     let roles = assigned(&["t", "x", "vx", "c", "y"], &named);
     assert_eq!((&roles.state[..], &roles.velocity[..], &roles.context[..]), (&[1][..], &[2][..], &[3][..]));
 }
+
+#[test]
+fn the_velocity_of_a_context_is_no_state() {
+    let names = ["t", "x", "vx", "load", "vload"];
+    let options = ReadOptions { context: vec!["load".to_owned()], ..ReadOptions::default() };
+    let roles = assigned(&names, &options);
+    assert_eq!((&roles.state[..], &roles.velocity[..], &roles.context[..]), (&[1][..], &[2][..], &[3][..]));
+    assert_eq!(roles.ignored, [4]);
+}

@@ -53,6 +53,9 @@ pub(crate) struct ReadFlags {
     /// Time column
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
+    /// Unit of stamps that are numbers: s, ms, us or ns [default: found]
+    #[arg(long, value_name = "UNIT", hide_possible_values = true, value_parser = ["s", "ms", "us", "ns"])]
+    time_unit: Option<String>,
     /// Episode column
     #[arg(long, value_name = "COLUMN")]
     episode: Option<String>,
@@ -110,6 +113,10 @@ pub(crate) struct ReadFlags {
     /// Allow more than 64-fold compression
     #[arg(long)]
     trust: bool,
+    /// Patterns of what the command reads besides: not reported as unused.
+    #[arg(skip)]
+    #[serde(skip)]
+    pub(crate) elsewhere: Vec<String>,
 }
 
 /// How recordings are prepared: table `[prepare]`.
@@ -212,7 +219,8 @@ impl ReadFlags {
         if self.context == [NO_CONTEXT] {
             table.remove("context");
         }
-        table.try_into().map_err(|error: toml::de::Error| wrong(&error.message()))
+        let options = table.try_into().map_err(|error: toml::de::Error| wrong(&error.message()))?;
+        Ok(ReadOptions { elsewhere: self.elsewhere.clone(), ..options })
     }
 }
 

@@ -79,7 +79,7 @@ impl Check {
             return Ok(Output { text: lines.into_text(), exit });
         }
         Ok(Output {
-            text: lines.next(&format!("policy-align fit {} -o model.json", again("check", &["--html"]))),
+            text: lines.next(&format!("policy-align fit {}", again("check", &["--html"], "-o model.json"))),
             exit,
         })
     }

@@ -1,10 +1,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use prepare::ContextUse;
 use text::quoted;
 
 use crate::cli::failure::{Exit, Failure};
-use crate::cli::given::no_input;
+use crate::cli::given::{flag_words, no_input};
 use crate::cli::lines::{Lines, amount};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::ReadFlags;
@@ -49,6 +50,13 @@ impl Convert {
         let samples = recordings.episodes.iter().map(|episode| episode.times.len()).sum();
         let mut lines = Lines::default();
         lines.written(&self.output, &amount(recordings.episodes.len(), samples));
-        Ok(Output::done(lines.next(&format!("policy-align check {}", quoted(&self.output)))))
+        // Which channels are context stands in no file; all else is written as it was read.
+        let mut rest = ReadFlags::default();
+        rest.context = match reading.context_of(&recordings)? {
+            ContextUse::Named(names) => names,
+            _ => reading.context,
+        };
+        let next = format!("policy-align check {}{}", quoted(&self.output), flag_words(&rest));
+        Ok(Output::done(lines.next(&next)))
     }
 }

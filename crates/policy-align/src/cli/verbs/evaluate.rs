@@ -54,7 +54,9 @@ pub(crate) struct Evaluate {
 impl Evaluate {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let model = load(session, &self.model)?;
-        let (reading, prepared) = prepared_for(session, &model, &self.files, (&self.read, &self.prepare))?;
+        let mut read = self.read.clone();
+        read.elsewhere.clone_from(&self.truth);
+        let (reading, prepared) = prepared_for(session, &model, &self.files, (&read, &self.prepare))?;
         let truth = self.truth(session, &reading, &prepared, &model)?;
         let judged = evaluate(&model, &prepared, truth.as_ref()).map_err(|error| {
             let remedy = "recordings without left-out samples, and a column of the true policy for each channel";

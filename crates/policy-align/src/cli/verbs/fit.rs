@@ -150,13 +150,14 @@ impl Fit {
         let bytes = std::fs::metadata(&self.output).map_or(0, |found| found.len() as usize);
         let report = written.iter().map(|path| format!(", {}", path.display())).collect::<Vec<_>>().concat();
         lines.add("written", &format!("{} ({}){report}", self.output.display(), size(bytes)));
-        let model = quoted(&self.output);
         let next = match written.first() {
-            _ if exit == Exit::Done => {
-                format!("policy-align plot {model} -o {}", quoted(&self.output.with_extension("svg")))
+            // A picture needs two channels.
+            _ if exit == Exit::Done && model.state.len() > 1 => {
+                let picture = quoted(&self.output.with_extension("svg"));
+                format!("policy-align plot {} -o {picture}", quoted(&self.output))
             }
-            Some(page) => format!("open {}", quoted(page)),
-            None => format!("policy-align info {model}"),
+            Some(page) if exit != Exit::Done => format!("open {}", quoted(page)),
+            _ => format!("policy-align info {}", quoted(&self.output)),
         };
         Output { text: lines.next(&next), exit }
     }

@@ -2,12 +2,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use nalgebra::DVector;
-use policy_align::Model;
+use policy_align::{Model, spread_starts};
 use text::quoted;
 
+use crate::cli::describe::context_flag;
 use crate::cli::failure::Failure;
-use crate::cli::given::no_input;
-use crate::cli::lines::{Lines, short};
+use crate::cli::given::{flag_words, no_input, value_word};
+use crate::cli::lines::{Lines, list, short};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
 use crate::cli::options::rollout_flags::RollOutFlags;
@@ -18,6 +19,9 @@ use crate::cli::recorded::{acted, base_name, prepared_for, read};
 use crate::cli::session::{Output, Session, write};
 use crate::cli::trust_files::load;
 use crate::cli::verbs::rollout::followed;
+
+/// Starts that are tried for the next command, at most, beside those given.
+const STARTS: usize = 8;
 
 /// Plot a policy, its potential and recordings
 #[derive(Debug, Args)]
@@ -85,10 +89,29 @@ impl Plot {
         let mut lines = Lines::default();
         let [across, up] = dims.map(|dim| &model.state[dim].name);
         lines.written(&self.output, &format!("{across} across, {up} up"));
-        let start: Vec<String> =
-            model.state.iter().map(|channel| short(channel.high * 0.5 + channel.median * 0.5)).collect();
-        let (model, start) = (quoted(&self.model), start.join(","));
-        Ok(Output::done(lines.next(&format!("policy-align rollout {model} --from {start}"))))
+        Ok(Output::done(lines.next(&self.next(session, &model, &flags))))
+    }
+
+    /// A roll-out as this one, from a start that works.
+    fn next(&self, session: &Session, model: &Model, flags: &RollOutFlags) -> String {
+        let middle = model.state.iter().map(|channel| short(channel.high * 0.5 + channel.median * 0.5));
+        let middle = middle.collect::<Vec<_>>().join(",");
+        let spread = spread_starts(model, STARTS).into_iter().map(|start| list(start.iter().copied()).replace(' ', ""));
+        let starts = self.rollout.iter().cloned().chain(std::iter::once(middle)).chain(spread);
+        let works = |from: &String| {
+            let start = numbers(from, "--from").map(DVector::from_vec);
+            start.and_then(|start| followed(flags, model, &start, from)).is_ok()
+        };
+        let Some(from) = starts.into_iter().find(works) else {
+            return format!("policy-align info {}", quoted(&self.model));
+        };
+        let context = match &self.read.context[..] {
+            [] => context_flag(model),
+            given => format!(" --context {}", value_word(&given.join(","))),
+        };
+        let config = session.config.as_ref().map(|path| format!(" --config {}", quoted(path))).unwrap_or_default();
+        let (model, from, others) = (quoted(&self.model), value_word(&from), flag_words(&self.follow));
+        format!("policy-align rollout {model} --from {from}{context}{others}{config}")
     }
 }
 

@@ -116,7 +116,7 @@ impl RollOut {
         if self.output.is_some() {
             return lines.into_text();
         }
-        lines.next(&format!("policy-align rollout {} -o path.csv", again("rollout", &[])))
+        lines.next(&format!("policy-align rollout {}", again("rollout", &[], "-o path.csv")))
     }
 }
 
