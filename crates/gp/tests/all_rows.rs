@@ -2,20 +2,20 @@
 
 mod drawn;
 
+use drawn::movement::{Constraint, Integration, Movement};
+use drawn::{normal, nupe};
 use gp::{AutoGp, Rows, SlopeFit, SlopeGp};
-use motion::{LearntPolicy as _, Policy, SampleIndex};
+use motion::{LearntPolicy as _, Policy as _, SampleIndex};
 use nalgebra::{DMatrix, DVector};
-use rand::{Rng, RngExt as _, SeedableRng as _};
+use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
 /// A gradient of a potential on [−1, 1]ⁿ.
 type Gradient = fn(&[f64]) -> Vec<f64>;
 
 fn wells(x: &[f64]) -> Vec<f64> {
-    let centres =
-        [[0.5, 0.3, -0.4, 0.2, 0.1, -0.5], [-0.6, 0.2, 0.3, -0.3, 0.4, 0.2], [0.1, -0.6, 0.2, 0.5, -0.4, 0.3]];
     let mut gradient: Vec<f64> = x.iter().map(|x| 0.6 * x).collect();
-    for centre in centres {
+    for centre in drawn::WELLS {
         let well = (-x.iter().zip(&centre).map(|(x, c)| (x - c).powi(2)).sum::<f64>() * 2.0).exp();
         for (k, gradient) in gradient.iter_mut().enumerate() {
             *gradient += 4.0 * (x[k] - centre[k]) * well;
@@ -34,10 +34,6 @@ struct Set {
     fresh: (DMatrix<f64>, DMatrix<f64>),
 }
 
-fn normal(rng: &mut impl Rng) -> f64 {
-    rng.sample(rand_distr::StandardNormal)
-}
-
 /// Movements under a plane that changes once in each, with noise on velocities as a share of their root mean square.
 fn set(gradient: Gradient, dim: usize, (movements, samples): (usize, usize), noise: f64, seed: u64) -> Set {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -46,17 +42,21 @@ fn set(gradient: Gradient, dim: usize, (movements, samples): (usize, usize), noi
     let mut record = |count: usize| {
         let (mut states, mut velocities) = (Vec::new(), Vec::new());
         for _ in 0..count {
-            let mut x = DVector::from_fn(dim, |_, _| rng.random_range(-1.0..1.0));
-            let mut n = DVector::zeros(dim);
+            let mut movement = Movement {
+                policy: &policy,
+                integration: Integration::Euler,
+                time_step: step,
+                state: DVector::from_fn(dim, |_, _| rng.random_range(-1.0..1.0)),
+                constraint: Constraint::none(dim),
+            };
             for sample in 0..samples {
                 if sample == 0 || sample == samples / 2 {
-                    n = DVector::from_fn(dim, |_, _| normal(&mut rng)).normalize();
+                    let basis = DMatrix::from_fn(dim, 1, |_, _| normal(&mut rng)).normalize();
+                    movement.constraint = Constraint::Fixed { basis, push: DVector::zeros(dim) };
                 }
-                let pi = policy(&x);
-                let u = &pi - &n * n.dot(&pi);
-                states.push(x.clone());
-                velocities.push(u.clone());
-                x += u * step;
+                let (x, u) = movement.sample();
+                states.push(x);
+                velocities.push(u);
             }
         }
         (states, velocities)
@@ -77,13 +77,6 @@ fn set(gradient: Gradient, dim: usize, (movements, samples): (usize, usize), noi
     Set { rows, fresh: (DMatrix::from_columns(&fresh), DMatrix::from_columns(&truth)) }
 }
 
-fn error(policy: &dyn Policy, (states, truth): &(DMatrix<f64>, DMatrix<f64>)) -> f64 {
-    let mean = truth.column_mean();
-    let errors = states.column_iter().zip(truth.column_iter());
-    let squares: f64 = errors.map(|(x, pi)| (policy.action(x) - pi).norm_squared()).sum();
-    squares / truth.column_iter().map(|pi| (pi - &mean).norm_squared()).sum::<f64>()
-}
-
 fn gp(inducing_rows: usize) -> SlopeGp {
     SlopeGp { max_rows: 200, hyper_rows: 150, inducing_rows, ..SlopeGp::default() }
 }
@@ -94,7 +87,7 @@ fn more_rows_are_never_worse() {
     let learnt = |samples: usize, inducing: usize| {
         let errors = (0..3).map(|seed| {
             let set = set(sinusoid, 2, (40, samples), 0.1, 20 + seed);
-            error(gp(inducing).fit(&set.rows, &mut drawn::rng(3)).unwrap().policy(), &set.fresh)
+            nupe(gp(inducing).fit(&set.rows, &mut drawn::rng(3)).unwrap().policy(), &set.fresh)
         });
         errors.sum::<f64>() / 3.0
     };
@@ -113,7 +106,7 @@ fn inducing_rows_are_said_and_only_where_rows_are_thinned() {
     let thinned = gp(0).fit(&many.rows, &mut drawn::rng(1)).unwrap();
     assert_eq!((thinned.report().rows, thinned.report().inducing), (200, None));
     assert_eq!(thinned.report().rows_dropped.thinned, 1600);
-    assert!(error(fit.policy(), &many.fresh) < error(thinned.policy(), &many.fresh));
+    assert!(nupe(fit.policy(), &many.fresh) < nupe(thinned.policy(), &many.fresh));
     let few = set(wells, 3, (20, 10), 0.0, 5);
     let [with, without] = [300, 0].map(|inducing| gp(inducing).fit(&few.rows, &mut drawn::rng(1)).unwrap());
     assert_eq!(with.report(), without.report());
@@ -162,7 +155,7 @@ fn measured() {
                     [0, 500].map(|inducing_rows| {
                         let gp = SlopeGp { max_rows: 400, inducing_rows, ..SlopeGp::default() };
                         let fit = gp.fit(&set.rows, &mut drawn::rng(3)).expect("a fit");
-                        (error(fit.policy(), &set.fresh), fit.report().expected_nupe)
+                        (nupe(fit.policy(), &set.fresh), fit.report().expected_nupe)
                     })
                 });
                 let errors: Vec<_> = errors.collect();

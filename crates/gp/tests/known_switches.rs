@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)] // A panic is how a test fails.
 #![allow(clippy::print_stdout, reason = "the slow test prints what it measures")]
 
+mod drawn;
 mod systems;
 
 use gp::{Acting, ConstraintEstimates, FrontEnd, GpError, Rows, TaskSpace};

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // A panic is how a test fails.
 
+mod drawn;
 mod systems;
 
 use gp::{Family, FrontEnd, LearntScales, PushTest, Rows, SlopeGp};

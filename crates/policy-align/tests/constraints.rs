@@ -44,7 +44,11 @@ fn arm(axes: &[&str]) -> String {
 const SEVEN: [&str; 7] = ["0 0 1", "0 1 0", "1 0 0", "0 1 0", "0 0 1", "0 1 0", "1 0 0"];
 const FOUR: [&str; 4] = ["0 0 1", "0 1 0", "0 1 0", "0 0 1"];
 
-/// Movements of a robot whose link `tip` keeps to a plane, another from the middle on; and the normals.
+/// Euler steps a sample of a movement in time: the link leaves its plane by a two-hundredth of what it does with one step. With 20
+/// it leaves it by more than the error of slopes.
+const IN_TIME: usize = 200;
+
+/// Movements of a robot whose link keeps to a plane, another from the middle on; and the normals.
 fn recorded(
     (urdf, link): (&str, &str),
     movements: usize,
@@ -210,18 +214,19 @@ fn wrong_robots_are_refused() {
     assert!(refused(&arm(&FOUR), &[], &channels[..3]).contains("q3"));
 }
 
-/// With 5 % of noise on velocities, positions tell the plane: of movements in Euler steps, and of those in time.
+/// With 5 % of noise on velocities, positions tell the plane and where it switches: of movements in Euler steps, of those in time, and
+/// of those that keep to it less well.
 #[test]
 fn noisy_velocities_leave_planes_to_positions() {
     let urdf = arm(&FOUR);
-    for sub_steps in [1, 20] {
+    for sub_steps in [1, 20, IN_TIME] {
         let (recordings, normals) = recorded((&urdf, "tip"), 20, (0.05, sub_steps), 1);
         let (model, prepared) = learnt(&recordings, 200);
         let links = TaskLinks::from_urdf(&urdf, &[], &model.channels()).unwrap();
         let found = estimate_constraints(&model, &prepared, Some(&links)).unwrap();
         let [on_link, _, near, switches] = counted(&found, &normals, "tip");
         assert!(near >= 36 && on_link >= 36 && switches >= 18, "{on_link}, {near} of 40, {switches} of 20");
-        assert!(sub_steps > 1 || found.len() <= 44, "{} stretches for 40", found.len());
+        assert!(found.len() <= 44, "{} stretches for 40, {sub_steps} Euler steps a sample", found.len());
     }
 }
 
@@ -235,7 +240,7 @@ fn measured() {
         ("4 joints", arm(&FOUR), "tip", 40),
         ("planar, 3 joints", three, "hand", 40),
     ] {
-        for (noise, sub_steps) in [(0.0, 1), (0.05, 1), (0.05, 20)] {
+        for (noise, sub_steps) in [(0.0, 1), (0.0, IN_TIME), (0.05, 1), (0.05, 20), (0.05, IN_TIME)] {
             let (mut all, mut sum, mut error, mut stretches) = (0, [0; 4], 0.0_f64, 0);
             for seed in 1..=std::env::var("SEEDS").map_or(5, |seeds| seeds.parse().unwrap()) {
                 let (recordings, normals) = recorded((&urdf, link), movements, (noise, sub_steps), seed);

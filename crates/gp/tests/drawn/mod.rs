@@ -1,8 +1,10 @@
 //! Movements under constraints that are drawn, with their policies.
 #![allow(dead_code, reason = "every test takes what it needs")]
 
+pub(crate) mod movement;
+
 use gp::Rows;
-use motion::SampleIndex;
+use motion::{Policy, SampleIndex};
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -18,6 +20,21 @@ pub(crate) fn vector<R: Rng>(dim: usize, rng: &mut R) -> DVector<f64> {
 pub(crate) fn matrix<R: Rng>(rows: usize, columns: usize, rng: &mut R) -> DMatrix<f64> {
     DMatrix::from_fn(rows, columns, |_, _| rng.random_range(-1.0..1.0))
 }
+
+/// Standard normal.
+pub(crate) fn normal<R: Rng>(rng: &mut R) -> f64 {
+    rng.sample(rand_distr::StandardNormal)
+}
+
+/// nUPE of a policy where the true one is known: states and its actions there, (n, Q) each.
+pub(crate) fn nupe(policy: &dyn Policy, (states, truth): &(DMatrix<f64>, DMatrix<f64>)) -> f64 {
+    let learnt: Vec<DVector<f64>> = states.column_iter().map(|x| policy.action(x)).collect();
+    metrics::nupe(truth, &DMatrix::from_columns(&learnt)).expect("a score")
+}
+
+/// Deepest points of three wells, of which systems of fewer dimensions take the first coordinates.
+pub(crate) const WELLS: [[f64; 6]; 3] =
+    [[0.5, 0.3, -0.4, 0.2, 0.1, -0.5], [-0.6, 0.2, 0.3, -0.3, 0.4, 0.2], [0.1, -0.6, 0.2, 0.5, -0.4, 0.3]];
 
 /// Scattered rows: `per` samples of each trajectory, whose velocities are what one random constraint a sample leaves of
 /// the policy.

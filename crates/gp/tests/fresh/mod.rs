@@ -10,6 +10,8 @@ use nalgebra::{DMatrix, DVector};
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 
+use super::drawn;
+use super::drawn::movement::{Constraint, Integration, Movement};
 pub(crate) use potentials::{SYSTEMS, System};
 
 /// Movements shown, and others for the test; samples of each, their distance in seconds, and Runge-Kutta steps between.
@@ -38,34 +40,15 @@ pub(crate) struct DataSet {
     pub(crate) fresh: (DMatrix<f64>, DMatrix<f64>),
 }
 
-/// A constraint A(x) u = b of one stretch of time, rank k.
-struct Constraint {
-    at_origin: DMatrix<f64>,
-    drifts: Vec<DMatrix<f64>>,
-    press: DVector<f64>,
-}
-
-impl Constraint {
-    fn draw(system: &System, press: f64, rng: &mut ChaCha8Rng) -> Self {
-        let (rank, dim) = (system.rank, system.dim);
-        let drift = 0.25 / (dim as f64).sqrt() / (0.5 * system.half_width);
-        let mut normal = |deviation: f64| DMatrix::from_fn(rank, dim, |_, _| deviation * normal(rng));
-        let at_origin = normal(1.0);
-        let drifts = (0..dim).map(|_| normal(drift)).collect();
-        let direction = DVector::from_fn(rank, |_, _| self::normal(rng)).normalize();
-        Constraint { at_origin, drifts, press: direction * press }
-    }
-
-    /// Nπ + A⁺b with ‖A⁺b‖ = press.
-    fn velocity(&self, x: &DVector<f64>, policy: &DVector<f64>) -> DVector<f64> {
-        let mut a = self.at_origin.clone();
-        for (x, drift) in x.iter().zip(&self.drifts) {
-            a += drift * *x;
-        }
-        // Orthonormal columns that span the rows of A.
-        let q = a.transpose().qr().q();
-        policy - &q * (q.tr_mul(policy)) + &q * &self.press
-    }
+/// A constraint of one stretch of time, whose rows turn with the state.
+fn constraint(system: &System, press: f64, rng: &mut ChaCha8Rng) -> Constraint {
+    let (rank, dim) = (system.rank, system.dim);
+    let drift = 0.25 / (dim as f64).sqrt() / (0.5 * system.half_width);
+    let mut normal = |deviation: f64| DMatrix::from_fn(rank, dim, |_, _| deviation * normal(rng));
+    let at_origin = normal(1.0);
+    let drifts = (0..dim).map(|_| normal(drift)).collect();
+    let direction = DVector::from_fn(rank, |_, _| self::normal(rng)).normalize();
+    Constraint::Turning { at_origin, drifts, press: direction * press }
 }
 
 /// Standard normal, by Box and Muller.
@@ -76,7 +59,7 @@ fn normal(rng: &mut ChaCha8Rng) -> f64 {
 
 /// One data set of a system.
 pub(crate) fn data_set(system: &System, disturbed: Disturbed, seed: u64) -> DataSet {
-    let rng = &mut super::drawn::rng(seed);
+    let rng = &mut drawn::rng(seed);
     let start = |rng: &mut ChaCha8Rng| {
         DVector::from_fn(system.dim, |k, _| system.middle[k] + rng.random_range(-system.half_width..system.half_width))
     };
@@ -88,23 +71,20 @@ pub(crate) fn data_set(system: &System, disturbed: Disturbed, seed: u64) -> Data
     let record = |press: f64, rng: &mut ChaCha8Rng| {
         let (mut states, mut velocities) = (Vec::new(), Vec::new());
         for _ in 0..SHOWN + FRESH {
-            let mut x = start(rng);
-            let mut constraint = Constraint::draw(system, press, rng);
+            let mut movement = Movement {
+                policy: &policy,
+                integration: Integration::RungeKutta(SUB_STEPS),
+                time_step: TIME_STEP,
+                state: start(rng),
+                constraint: constraint(system, press, rng),
+            };
             for sample in 0..SAMPLES {
                 if sample == REDRAW {
-                    constraint = Constraint::draw(system, press, rng);
+                    movement.constraint = constraint(system, press, rng);
                 }
-                let flow = |x: &DVector<f64>| constraint.velocity(x, &policy(x));
-                states.push(x.clone());
-                velocities.push(flow(&x));
-                let h = TIME_STEP / SUB_STEPS as f64;
-                for _ in 0..SUB_STEPS {
-                    let a = flow(&x);
-                    let b = flow(&(&x + &a * (0.5 * h)));
-                    let c = flow(&(&x + &b * (0.5 * h)));
-                    let d = flow(&(&x + &c * h));
-                    x += (a + b * 2.0 + c * 2.0 + d) * (h / 6.0);
-                }
+                let (x, u) = movement.sample();
+                states.push(x);
+                velocities.push(u);
             }
         }
         (states, velocities)
@@ -135,7 +115,7 @@ pub(crate) fn data_set(system: &System, disturbed: Disturbed, seed: u64) -> Data
 /// The same of a system of `demo_gen`: sixty movements shown, twenty not.
 pub(crate) fn beyond(policy: PolicyKind, disturbed: Disturbed, seed: u64) -> DataSet {
     assert_eq!(disturbed.press, 0.0, "these constraints do not press");
-    let rng = &mut super::drawn::rng(seed);
+    let rng = &mut drawn::rng(seed);
     let system = BeyondSystem { policy, n_trajectories: 80, ..BeyondSystem::default() };
     let recordings = system.record(rng).expect("movements");
     let (of_rows, fresh) = recordings.split_at(60);

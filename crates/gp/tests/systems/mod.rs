@@ -7,6 +7,9 @@ use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use super::drawn::movement::{Constraint, Integration, Movement};
+use super::drawn::{self, normal};
+
 const MOVEMENTS: usize = 60;
 const SAMPLES: usize = 40;
 
@@ -36,11 +39,9 @@ fn angles(x: &[f64]) -> f64 {
 }
 
 fn wells(x: &[f64]) -> f64 {
-    let centres =
-        [[0.5, 0.3, -0.4, 0.2, 0.1, -0.5], [-0.6, 0.2, 0.3, -0.3, 0.4, 0.2], [0.1, -0.6, 0.2, 0.5, -0.4, 0.3]];
     let bowl: f64 = x.iter().map(|x| 0.3 * x * x).sum();
     let well = |c: &[f64; 6]| -(-x.iter().zip(c).map(|(x, c)| (x - c).powi(2)).sum::<f64>()).exp();
-    bowl + centres.iter().map(well).sum::<f64>()
+    bowl + drawn::WELLS.iter().map(well).sum::<f64>()
 }
 
 pub(crate) const HIMMELBLAU: System = System { dim: 2, span: 4.0, rank: 1, potential: himmelblau };
@@ -90,24 +91,26 @@ impl System {
         let rms = self.rms();
         let step = 2.0 * self.span / (40.0 * rms);
         let movements = (0..MOVEMENTS).map(|_| {
-            let mut x = self.start(&mut rng);
+            let mut movement = Movement {
+                policy: &|x| self.policy(x),
+                integration: Integration::Euler,
+                time_step: step,
+                state: self.start(&mut rng),
+                constraint: Constraint::none(self.dim),
+            };
             let switch = 10 + (20.0 * rng.random::<f64>()) as usize;
-            let mut basis = DMatrix::zeros(self.dim, self.rank);
-            let mut pushed = DVector::zeros(self.dim);
             let (mut states, mut velocities, mut bases) = (Vec::new(), Vec::new(), Vec::new());
             for sample in 0..SAMPLES {
                 if self.rank > 0 && (sample == 0 || sample == switch) {
                     let draw = DMatrix::from_fn(self.dim, self.rank, |_, _| normal(&mut rng));
-                    basis = draw.qr().q();
+                    let basis = draw.qr().q();
                     let b = DVector::from_fn(self.rank, |_, _| normal(&mut rng)).normalize() * push * rms;
-                    pushed = &basis * b;
                     bases.push(basis.clone());
+                    movement.constraint = Constraint::Fixed { push: &basis * b, basis };
                 }
-                let policy = self.policy(&x);
-                let u = &policy - &basis * basis.tr_mul(&policy) + &pushed;
+                let (x, u) = movement.sample();
                 states.extend_from_slice(x.as_slice());
                 velocities.extend(u.iter().map(|u| u + noise * rms / (self.dim as f64).sqrt() * normal(&mut rng)));
-                x += step * u;
             }
             truth.push(Switched { switch, bases });
             let matrix = |numbers| DMatrix::from_vec(self.dim, SAMPLES, numbers);
@@ -115,10 +118,6 @@ impl System {
         });
         (Demonstrations::new(movements.collect()).unwrap(), truth)
     }
-}
-
-fn normal(rng: &mut ChaCha8Rng) -> f64 {
-    rng.sample(rand_distr::StandardNormal)
 }
 
 /// What is learnt of 400 rows, where constraints may push.
@@ -137,8 +136,5 @@ pub(crate) fn error(system: &System, fit: &dyn Policy, seed: u64) -> f64 {
     let states = fresh.trajectories().iter().take(30).flat_map(|movement| movement.states().column_iter().step_by(2));
     let states: Vec<DVector<f64>> = states.map(|x| DVector::from_column_slice(x.as_slice())).collect();
     let truth: Vec<DVector<f64>> = states.iter().map(|x| system.policy(x)).collect();
-    let mean = truth.iter().fold(DVector::zeros(system.dim), |sum, u| sum + u) / truth.len() as f64;
-    let spread: f64 = truth.iter().map(|u| (u - &mean).norm_squared()).sum();
-    let apart: f64 = states.iter().zip(&truth).map(|(x, u)| (fit.action(x.as_view()) - u).norm_squared()).sum();
-    apart / spread
+    drawn::nupe(fit, &(DMatrix::from_columns(&states), DMatrix::from_columns(&truth)))
 }
