@@ -185,6 +185,8 @@ fn stamps() {
     let slow = prepared(&changed(|episode| episode.times.stamps_mut().iter_mut().for_each(|t| *t *= 1000.0)));
     assert_eq!(verdict(&slow, "read as milliseconds"), Verdict::Doubtful);
     assert!((slow.time_step - STEP).abs() < 1e-12);
+    assert_eq!(slow.decisions.iter().filter(|decision| decision.what == "time step").count(), 1);
+    assert_eq!(slow.findings.len(), 1, "one fault, one finding: {:?}", slow.findings);
     let positions = changed(|episode| {
         episode.times.stamps_mut().iter_mut().for_each(|t| *t *= 1000.0);
         episode.velocities = None;

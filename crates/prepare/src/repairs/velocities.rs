@@ -159,6 +159,8 @@ fn rescale(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &
             episode.times = episode.times.divided_by(1000.0);
         }
         let what = format!("stamps are {step:.0} apart and velocities 1000 times the steps");
+        // Of two time steps only the one that holds.
+        notes.decisions.retain(|decision| decision.what != "time step");
         notes.decided("time step", format!("{} s", step / 1000.0), format!("{what}: stamps are milliseconds"), "--dt");
         notes.found(Verdict::Doubtful, format!("{what}: stamps were read as milliseconds"), "--time-unit ms, or --dt");
         return;
