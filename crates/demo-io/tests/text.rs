@@ -70,6 +70,13 @@ fn blanks_in_front_and_behind_are_no_fields() {
     assert_eq!(lengths(&parsed("a.dat", text, &plain()).unwrap()), [6, 6]);
 }
 
+/// Among quoted fields with commas between them, the stamp is the first.
+#[test]
+fn a_decimal_comma_of_a_stamp_is_named() {
+    let text = "t,x\n\"0,0\",\"0,5\"\n\"0,05\",\"0,4\"\n\"0,1\",\"0,3\"\n";
+    refused("a.csv", text, &plain(), "NotANumber", &["'0,0' is not a stamp", "decimal comma"]);
+}
+
 #[test]
 fn quotes_blank_lines_and_comments_are_understood() {
     let text = "\"t\",\"x, left\",\"y\"\n0,1.5,2\n\n# pause\n0.1,\"1.75\",2.25\n   \n0.2,2.125,2.5\n";

@@ -181,9 +181,8 @@ impl Table {
         let role = if self.roles.time == Some(column) { "stamp" } else { "number" };
         let what = format!("'{start}' is not a {role}");
         let place = format!("{}, {} {place}, column '{name}'", self.file, self.word);
-        let is_stamp = self.roles.time == Some(column);
-        let remedy = (self.hint)(text).filter(|_| !is_stamp).unwrap_or_else(|| {
-            if is_stamp {
+        let remedy = (self.hint)(text).unwrap_or_else(|| {
+            if self.roles.time == Some(column) {
                 return "stamps like 0.05, 1700000000.05, 2023-11-14 22:13:20.05 or 14.11.2023 22:13:20.05; or --dt SECONDS instead \
                         of stamps"
                     .to_owned();
