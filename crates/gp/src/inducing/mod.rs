@@ -1,4 +1,4 @@
-//! A Gaussian process conditioned on all rows through some of them, the inducing rows (S34)–(S37).
+//! A Gaussian process conditioned on all rows through some of them, the inducing rows (S34)–(S37), (S39).
 
 mod features;
 mod left_out;
@@ -26,7 +26,7 @@ const COMPARED: usize = 20_000;
 pub(crate) struct Induced {
     /// The inducing rows, (m).
     pub(crate) rows: Vec<usize>,
-    /// κ: the factor on σ² that predicts best, and σ² (S38), without the floor.
+    /// κ: the factor on σ² that predicts best, and σ² (S39), without the floor.
     pub(crate) kappa: f64,
     pub(crate) noise: f64,
     /// α of the inducing rows, (m, c).
@@ -71,8 +71,10 @@ impl Induced {
         // Of a group that alone says something nearly exactly, rounding leaves no prediction without itself.
         let mut levels = kappas().map(at).skip_while(Option::is_none).peekable();
         let least = levels.peek()?.as_ref()?.0;
-        let (best, _) = climb(levels, |(_, left_out)| left_out)?;
-        let left_out = level(with_kappa(best), own, &all, conditions.spread)?.at(&all.concat());
+        let (best, compared) = climb(levels, |(_, left_out)| left_out)?;
+        let known = with_kappa(best) == own && some.len() == all.len();
+        let left_out = if known { compared } else { level(with_kappa(best), own, &all, conditions.spread)? };
+        let left_out = left_out.at(&all.concat());
         // Where the least noise at which groups can be left out is the best, so would less be.
         let kappa = if best == least { 1.0 } else { best };
         let weights = &spectrum.w * spectrum.coefficients(with_kappa(kappa));
@@ -244,7 +246,7 @@ mod tests {
             }
         }
 
-        /// (S38): the determinant and the quadratic form as they are written, but for what does not depend on σ².
+        /// (S39): the determinant and the quadratic form as they are written, but for what does not depend on σ².
         #[test]
         fn the_marginal_likelihood_is_that_of_all_rows(
             groups in prop::collection::vec(1usize..9, 3..6),

@@ -49,7 +49,7 @@ impl Spectrum {
         Some(Spectrum { singular, v, w, targets, rest, rows })
     }
 
-    /// σ² with the highest marginal likelihood of all rows at these amplitudes (S38). Costs m operations for each σ² tried.
+    /// σ² with the highest marginal likelihood of all rows at these amplitudes (S39). Costs m operations for each σ² tried.
     pub(crate) fn noise(&self) -> f64 {
         let (least, most) = NOISE;
         let level = |step: usize| (least + (most - least) * step as f64 / STEPS as f64).exp();

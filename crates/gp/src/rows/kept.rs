@@ -172,20 +172,13 @@ impl Selection {
         if some.dropped.thinned == 0 {
             return None;
         }
-        let averaged = &*rows.averaged();
-        let (usable, _) = self.usable(averaged).ok()?;
-        let many = thinned(movements(averaged, &usable), most, || MIDDLE);
-        self.keep_these(rows, some, many)
-    }
-
-    /// The same rows and these of those that were thinned.
-    pub(crate) fn keep_these(&self, rows: &Rows, some: &Kept, others: Vec<usize>) -> Option<Kept> {
         let rows = &*rows.averaged();
         let (mut usable, dropped) = self.usable(rows).ok()?;
         usable.sort_by_key(|&row| (rows.indices()[row], row));
         let enough = grouped(rows, &usable).ok()?;
         let found = usable.len();
-        let taken: HashSet<usize> = others.into_iter().chain(some.rows.iter().copied()).collect();
+        let many = thinned(movements(rows, &usable), most, || MIDDLE);
+        let taken: HashSet<usize> = many.into_iter().chain(some.rows.iter().copied()).collect();
         usable.retain(|row| taken.contains(row));
         let thinned = found - usable.len();
         let dropped = RowsDropped { averaged: some.dropped.averaged, thinned, ..dropped };

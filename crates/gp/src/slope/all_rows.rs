@@ -36,8 +36,8 @@ pub(crate) struct OnAllRows {
 }
 
 /// The families and amplitudes of `thinned`, a search on the rows `kept`, compared anew on all rows through inducing ones, or, almost
-/// without noise, on more rows. None where
-/// not many rows were thinned, where what hides least was chosen, or where held-out movements are predicted worse.
+/// without noise, on more rows. None where not many rows were thinned, where what hides least was chosen, or where held-out movements
+/// are predicted worse.
 pub(crate) fn on_all_rows(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outcome) -> Option<OnAllRows> {
     if gp.inducing_rows == 0 || thinned.least_hidden {
         return None;
@@ -93,8 +93,7 @@ pub(crate) fn on_all_rows(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outc
 /// Whether noise is so small that inducing rows leave more open than it does.
 fn unresolved(gp: &SlopeGp, data: &SlopeData, thinned: &Outcome) -> bool {
     let Expansion { blocks, amplitudes, .. } = thinned.taken.model.expansion();
-    let open = data.pivots(blocks, amplitudes, gp.inducing_rows).remaining;
-    open > UNRESOLVED * thinned.taken.model.noise
+    data.open(blocks, amplitudes, gp.inducing_rows) > UNRESOLVED * thinned.taken.model.noise
 }
 
 /// The rows kept and others, few enough for an exact model, most of them for amplitudes.

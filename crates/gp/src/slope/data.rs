@@ -3,7 +3,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::evidence::family_fit::{FamilyFit, fit_family};
 use crate::evidence::{Evidence, Task, Workspace};
 use crate::inducing::Induced;
-use crate::inducing::pivots::{Pivots, pivots};
+use crate::inducing::pivots::pivots;
 use crate::kernel::block::Block;
 use crate::kernel::covariance::Covariance;
 use crate::kernel::slope_covariance::SlopeCovariance;
@@ -191,9 +191,9 @@ impl SlopeData {
         SlopeModel::new(expansion, level.noise, whitening)
     }
 
-    /// Rows that stand for others at these amplitudes.
-    pub(crate) fn pivots(&self, blocks: &[Block], amplitudes: &[f64], most: usize) -> Pivots {
-        pivots(&self.covariance(blocks), amplitudes, &self.groups, most)
+    /// Largest prior variance at these amplitudes that at most so many rows leave open.
+    pub(crate) fn open(&self, blocks: &[Block], amplitudes: &[f64], most: usize) -> f64 {
+        pivots(&self.covariance(blocks), amplitudes, &self.groups, most).remaining
     }
 
     /// The model of these amplitudes, conditioned on all rows through at most so many of them; none without factor.
