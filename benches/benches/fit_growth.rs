@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn learn(file: &std::path::Path) -> Result<Model, Box<dyn Error>> {
     let recordings = demo_io::read(file, &ReadOptions::default(), &mut |_bytes| ())?;
-    let prepared = prepare(&recordings, &PrepareOptions::default())?;
+    let prepared = prepare(recordings, &PrepareOptions::default())?;
     let mut progress = Progress { cancelled: &AtomicBool::new(false), report: &mut |_step| () };
     Ok(fit(&prepared, &FitOptions::default(), &mut progress)?)
 }

@@ -100,6 +100,9 @@ fn leave_out_moving_environment(drafts: &mut RawRecordings) {
     let n = drafts.channels.len();
     let is_environment = |channel: &Channel| channel.name.starts_with(ENVIRONMENT);
     let stays: Vec<bool> = drafts.channels.iter().map(|channel| !is_environment(channel)).collect();
+    if stays.iter().all(|&stays| stays) {
+        return;
+    }
     let part = |sample: &[f64]| -> Vec<f64> {
         sample.iter().zip(&stays).filter(|(_, stays)| !**stays).map(|(value, _)| *value).collect()
     };
@@ -111,7 +114,7 @@ fn leave_out_moving_environment(drafts: &mut RawRecordings) {
         let first = samples.next();
         samples.any(|sample| Some(&sample) != first.as_ref())
     };
-    if stays.iter().all(|&stays| stays) || (differs && !drafts.episodes.iter().any(moves)) {
+    if differs && !drafts.episodes.iter().any(moves) {
         return;
     }
     let names: Vec<&str> =

@@ -47,6 +47,11 @@ impl Demonstrations {
         &self.trajectories
     }
 
+    /// The movements, in the order given.
+    pub fn into_trajectories(self) -> Vec<Trajectory> {
+        self.trajectories
+    }
+
     /// Number of movements K.
     pub fn n_trajectories(&self) -> usize {
         self.trajectories.len()

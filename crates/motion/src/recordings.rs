@@ -1,7 +1,9 @@
+use std::borrow::Cow;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::median::upper_median;
-use crate::{Finding, Labels, MotionError, Times, Trajectory, scaled};
+use crate::{Finding, Labels, MotionError, Times, Trajectory};
 
 /// What was recorded: n channels of state, and episodes of any length.
 ///
@@ -75,6 +77,20 @@ pub fn is_called_context(name: &str) -> bool {
     name.contains("environment_state") || name.split(|c: char| !c.is_alphanumeric()).any(is_word)
 }
 
+/// Lent, to be copied where they are needed.
+impl<'a> From<&'a Recordings> for Cow<'a, Recordings> {
+    fn from(recordings: &'a Recordings) -> Self {
+        Cow::Borrowed(recordings)
+    }
+}
+
+/// Handed over.
+impl From<Recordings> for Cow<'_, Recordings> {
+    fn from(recordings: Recordings) -> Self {
+        Cow::Owned(recordings)
+    }
+}
+
 impl Recordings {
     /// The usual time between samples in seconds: the median over all episodes, put on the nearest whole rate (in Hz) or
     /// whole number of milliseconds if that is within 0.1 %. A step that was given rather than measured (all stamps are
@@ -131,12 +147,6 @@ impl Episode {
         Episode { constraint, ..part }
     }
 
-    /// With every channel multiplied by its factor, (n).
-    #[must_use]
-    pub fn scaled(&self, factors: &DVector<f64>) -> Episode {
-        self.with(self.times.clone(), self.source.clone(), |values| scaled(values, factors))
-    }
-
     /// The same movement with `of` applied to positions and velocities.
     fn with(&self, times: Times, source: Source, of: impl Fn(&DMatrix<f64>) -> DMatrix<f64>) -> Episode {
         Episode {
@@ -154,16 +164,15 @@ impl Episode {
     ///
     /// # Errors
     /// [`MotionError`] if it is no valid [`Trajectory`].
-    pub fn trajectory(&self) -> Result<Trajectory, MotionError> {
-        let states = self.positions.clone();
-        let trajectory = match &self.times {
-            Times::Even { step, .. } => Trajectory::new(states, *step)?,
-            Times::Stamped(stamps) => Trajectory::stamped(stamps.clone(), states)?,
+    pub fn into_trajectory(self) -> Result<Trajectory, MotionError> {
+        let trajectory = match self.times {
+            Times::Even { step, .. } => Trajectory::new(self.positions, step)?,
+            Times::Stamped(stamps) => Trajectory::stamped(stamps, self.positions)?,
         };
-        let trajectory = trajectory.with_context(self.context.clone())?.with_labels(self.constraint.clone());
-        match &self.velocities {
+        let trajectory = trajectory.with_context(self.context)?.with_labels(self.constraint);
+        match self.velocities {
             None => Ok(trajectory),
-            Some(velocities) => trajectory.with_velocities(velocities.clone()),
+            Some(velocities) => trajectory.with_velocities(velocities),
         }
     }
 

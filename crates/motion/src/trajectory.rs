@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, DVector, DVectorView};
 
 use crate::{Labels, MotionError, Series, Times, scaled};
@@ -5,11 +7,11 @@ use crate::{Labels, MotionError, Series, Times, scaled};
 /// One observed movement: states x₁..x_N, evenly spaced in time or each with its stamp, and the velocities u₁..u_N where
 /// they were recorded.
 ///
-/// A checked value: at least two samples, at least one dimension, every number finite, stamps that ascend.
+/// A checked value: at least two samples, at least one dimension, every number finite, stamps that ascend. Clones share the numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
-    states: DMatrix<f64>,
-    velocities: Option<DMatrix<f64>>,
+    states: Arc<DMatrix<f64>>,
+    velocities: Option<Arc<DMatrix<f64>>>,
     times: Times,
     context: DVector<f64>,
     labels: Option<Labels>,
@@ -34,6 +36,7 @@ impl Trajectory {
         }
         require_finite(&states, Series::States)?;
         let times = Times::Even { step: time_step, len: states.ncols() };
+        let states = Arc::new(states);
         Ok(Trajectory { states, velocities: None, times, context: DVector::zeros(0), labels: None })
     }
 
@@ -57,7 +60,7 @@ impl Trajectory {
             return Err(MotionError::VelocityShape { states: self.states.shape(), velocities: velocities.shape() });
         }
         require_finite(&velocities, Series::Velocities)?;
-        Ok(Trajectory { velocities: Some(velocities), ..self })
+        Ok(Trajectory { velocities: Some(Arc::new(velocities)), ..self })
     }
 
     /// The same movement with its context c, (p): what it depended on besides the state and what stayed as it was, such as a goal,
@@ -133,7 +136,12 @@ impl Trajectory {
 
     /// The recorded velocities, (n, N), in units of the state per second.
     pub fn velocities(&self) -> Option<&DMatrix<f64>> {
-        self.velocities.as_ref()
+        self.velocities.as_deref()
+    }
+
+    /// States and velocities, (n, N) each, copied only where a clone of the movement has them too.
+    pub fn into_matrices(self) -> (DMatrix<f64>, Option<DMatrix<f64>>) {
+        (Arc::unwrap_or_clone(self.states), self.velocities.map(Arc::unwrap_or_clone))
     }
 
     /// The context c, (p); of length 0 without one.

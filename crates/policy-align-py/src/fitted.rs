@@ -2,7 +2,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use motion::{Certainty, LearntPolicy as _, Policy as _};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DMatrixView};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use policy_align::{
     Evaluation, Model, ModelError, PrepareOptions, Progress, TaskLinks, estimate_constraints, evaluate, fit, prepare,
@@ -18,6 +18,9 @@ use crate::recordings::{Recorded, Recordings, names_of};
 use crate::refusal::Refusal;
 use crate::rolling::{self, Constraint};
 use crate::{model_document, pool};
+
+/// States between two looks at signals: less than a second.
+const TOGETHER: usize = 8192;
 
 /// Deviations, where they are known, and whether each state is supported.
 type Certain<'py> = (Option<Bound<'py, PyArray2<f64>>>, Bound<'py, PyArray1<bool>>);
@@ -121,7 +124,15 @@ impl Fitted {
     /// π at each state, (N, n).
     fn predict<'py>(&self, py: Python<'py>, states: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let states = self.states(&states)?;
-        let actions = Self::for_states(py, &states, || self.model.policy().actions(states.as_view()))?;
+        let mut actions = DMatrix::zeros(states.nrows(), states.ncols());
+        Self::for_states(
+            py,
+            &states,
+            |states| self.model.policy().actions(states),
+            |first, found| {
+                actions.columns_mut(first, found.ncols()).copy_from(&found);
+            },
+        )?;
         Ok(array(py, actions))
     }
 
@@ -252,12 +263,40 @@ impl Fitted {
     /// Support and standard deviations at states, (N, n).
     fn certainty(&self, py: Python<'_>, states: &PyReadonlyArray2<'_, f64>) -> PyResult<Certainty> {
         let states = self.states(states)?;
-        Self::for_states(py, &states, || self.model.policy().certainty(states.as_view()))
+        let (mut support, mut deviations) = (Vec::with_capacity(states.ncols()), None);
+        Self::for_states(
+            py,
+            &states,
+            |states| self.model.policy().certainty(states),
+            |first, found| {
+                support.extend(found.support);
+                if let Some(found) = found.deviations {
+                    let all = deviations.get_or_insert_with(|| DMatrix::zeros(found.nrows(), states.ncols()));
+                    all.columns_mut(first, found.ncols()).copy_from(&found);
+                }
+            },
+        )?;
+        Ok(Certainty { support, deviations })
     }
 
-    /// Works on threads of our own; one state is not worth the way there.
-    fn for_states<T: Send>(py: Python<'_>, states: &DMatrix<f64>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
-        py.detach(|| if states.ncols() > 1 { pool::on(0, work) } else { Ok(work()) })
+    /// Works on some states after others, on threads of our own, and gives `take` what it finds with the first of these states. Ctrl-C is
+    /// heard in between. One state is not worth the way to other threads.
+    fn for_states<T: Send>(
+        py: Python<'_>,
+        states: &DMatrix<f64>,
+        work: impl Fn(DMatrixView<'_, f64>) -> T + Sync,
+        mut take: impl FnMut(usize, T),
+    ) -> PyResult<()> {
+        // At least once, so that nothing found of no state has its form.
+        for first in (0..states.ncols().max(1)).step_by(TOGETHER) {
+            let some = states.columns(first, TOGETHER.min(states.ncols() - first));
+            let found = py.detach(|| {
+                if some.ncols() > 1 { pool::on(0, || work(some.as_view())) } else { Ok(work(some.as_view())) }
+            })?;
+            take(first, found);
+            py.check_signals()?;
+        }
+        Ok(())
     }
 }
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from conftest import DT, on_rails
 
-from policy_align import PolicyAlignError, SlopeGp
+from policy_align import Demonstrations, PolicyAlignError, SlopeGp
 
 SAME = {
     "fortran": np.asfortranarray,
@@ -137,7 +137,9 @@ def test_movements_that_cannot_be_learnt_from_are_refused() -> None:
     assert "at least 2 are needed" in said([*positions, positions[0][:0]]).what
     assert "13 dimensions" not in said([*positions, np.zeros((9, 3))]).what
     assert said([*positions, np.zeros((9, 3))]).trajectory == len(positions)
-    assert "velocities have shape" in said(positions, velocities=[u[:-1] for u in velocities]).what
+    assert "velocities have shape" in said(positions, velocities=[u[:-2] for u in velocities]).what
+    some = [u[:-1] if k else u for k, u in enumerate(velocities)]
+    assert "velocities have shape" in said(positions, velocities=some).what
     assert "11 velocities for 12" in said(positions, velocities=velocities[1:]).what
     assert said([]).what == "there is no episode"
     assert "time step 0 s" in said(positions, dt=0.0).what
@@ -154,3 +156,14 @@ def test_movements_that_cannot_be_learnt_from_are_refused() -> None:
     for given in ("toy.csv", 3, None):
         with pytest.raises(TypeError):
             learner.fit(given, dt=DT)
+
+
+def test_the_state_after_the_last_action_is_left_out(rails) -> None:
+    positions, velocities = rails
+    stamps = [DT * np.arange(len(x)) for x in positions]
+    fewer = [u[:-1] for u in velocities]
+    given = Demonstrations(positions, times=stamps, velocities=fewer)
+    cut = Demonstrations([x[:-1] for x in positions], times=[t[:-1] for t in stamps], velocities=fewer)
+    assert all(np.array_equal(a, b) for a, b in zip(given, cut, strict=True))
+    assert all(np.array_equal(a, b) for a, b in zip(given.times, cut.times, strict=True))
+    assert len(given[0]) == len(positions[0]) - 1

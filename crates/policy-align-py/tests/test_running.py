@@ -96,6 +96,34 @@ def test_ctrl_c_ends_a_fit_within_a_second(max_rows: int) -> None:
     assert running.returncode == 0
 
 
+LONG_PREDICTION = """
+import warnings, numpy as np
+from policy_align import SlopeGp
+warnings.simplefilter("ignore")
+x = np.random.default_rng(0).normal(size=(60, 20, 3)).cumsum(axis=1)
+model = SlopeGp(max_rows=400).fit(x, dt=0.1)
+print("begins", flush=True)
+try:
+    model.predict(np.zeros((5_000_000, 3)))
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+    print(model.predict(x[0]).shape, flush=True)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_ctrl_c_ends_a_prediction() -> None:
+    with subprocess.Popen([sys.executable, "-c", LONG_PREDICTION], stdout=subprocess.PIPE, text=True) as running:
+        assert running.stdout is not None and running.stdout.readline() == "begins\n"
+        time.sleep(2.0)
+        began = time.monotonic()
+        running.send_signal(signal.SIGINT)
+        assert running.stdout.readline() == "interrupted\n"
+        assert time.monotonic() - began < 2.0
+        assert running.stdout.readline() == "(20, 3)\n"
+    assert running.returncode == 0
+
+
 def _fitted_in_child(out) -> None:
     positions, velocities = on_rails()
     out.send(SlopeGp(max_rows=60).fit(positions, dt=DT, velocities=velocities).predict(STATES[:50]))

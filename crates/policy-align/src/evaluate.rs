@@ -51,11 +51,12 @@ pub fn evaluate(model: &Model, prepared: &Prepared, truth: Option<&Truth>) -> Re
     let rows = rows(prepared)?;
     let all: Vec<usize> = (0..rows.len()).collect();
     let total = held_out(policy, &rows, &all, None);
-    let of_trajectory = |k: usize| {
-        let own: Vec<usize> = all.iter().copied().filter(|&row| rows.indices()[row].trajectory == k).collect();
-        let error = held_out(policy, &rows, &own, None).to_choose();
-        error.is_finite().then_some(error)
-    };
+    let mut episodes = vec![None; prepared.demonstrations.n_trajectories()];
+    let trajectory = |row: usize| rows.indices()[row].trajectory;
+    for own in all.chunk_by(|&a, &b| trajectory(a) == trajectory(b)) {
+        let error = held_out(policy, &rows, own, None).to_choose();
+        episodes[trajectory(own[0])] = error.is_finite().then_some(error);
+    }
     let (nupe, ncpe) = match truth {
         None => (None, None),
         Some(truth) => against(policy, prepared, truth)?,
@@ -63,7 +64,7 @@ pub fn evaluate(model: &Model, prepared: &Prepared, truth: Option<&Truth>) -> Re
     Ok(Evaluation {
         slope_error: total.to_choose(),
         policy_error: total.to_judge(),
-        episodes: (0..prepared.demonstrations.n_trajectories()).map(of_trajectory).collect(),
+        episodes,
         residuals: along(policy, &rows).map(|row| row.wanted - row.speed).collect(),
         supported: supported(model, &rows),
         nupe,

@@ -1,4 +1,4 @@
-//! The policy of a model allocates nothing when asked for an action, after the first call on a thread.
+//! What allocates: no action of a policy, after the first call on a thread, and no preparation of recordings that are handed over.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -9,7 +9,8 @@ use std::sync::atomic::AtomicBool;
 
 use align::Bandwidth;
 use cases::{Case, Has, Plane, parabola};
-use motion::Policy as _;
+use demo_gen::RollOut;
+use motion::{Policy as _, Recordings};
 use nalgebra::{DVector, dvector};
 use policy_align::{FitOptions, LearnerChoice, Model, PrepareOptions, Progress, fit, prepare};
 
@@ -20,6 +21,29 @@ fn model(learner: LearnerChoice) -> Model {
     let options = FitOptions { learner, bandwidth, init_d, max_rows: 100, ..FitOptions::default() };
     let mut progress = Progress { cancelled: &AtomicBool::new(false), report: &mut |_| () };
     fit(&prepared, &options, &mut progress).unwrap()
+}
+
+/// 200 movements of 500 samples with velocities.
+fn recordings() -> Recordings {
+    let roll_out = RollOut { n_samples: 500, ..RollOut::default() };
+    Case::of(&Plane { count: 200, roll_out, ..Plane::default() }.potential(&parabola(), 5), 200, Has::Velocities)
+        .recordings
+}
+
+/// Recordings that are handed over become the demonstrations.
+#[test]
+fn preparing_copies_no_numbers() {
+    let (recordings, options) = (recordings(), PrepareOptions::default());
+    let numbers: usize = recordings.episodes.iter().map(|episode| 2 * episode.positions.len() * size_of::<f64>()).sum();
+    let mut lent = None;
+    let lending = allocation_counter::measure(|| lent = prepare(&recordings, &options).ok());
+    let mut handed = Some(recordings);
+    let mut owned = None;
+    let handing = allocation_counter::measure(|| owned = prepare(handed.take().unwrap(), &options).ok());
+    assert_eq!(lent, owned);
+    assert!(owned.is_some());
+    let spared = lending.bytes_max.saturating_sub(handing.bytes_max);
+    assert!(spared as f64 > 0.9 * numbers as f64, "{spared} of {numbers} bytes");
 }
 
 #[test]

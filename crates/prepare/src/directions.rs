@@ -1,7 +1,7 @@
 use motion::{Demonstrations, upper_median};
 use nalgebra::{DMatrix, DVector};
 
-use crate::samples::noise::velocities;
+use crate::samples::noise::{each_velocity, of_velocities};
 
 /// Samples slower than this share of the median are left out: their direction is noise.
 const STILL: f64 = 0.01;
@@ -9,16 +9,17 @@ const STILL: f64 = 0.01;
 /// Coverage of the directions of motion: n times the least eigenvalue of the mean of d dᵀ, d = u/‖u‖, 1 if all directions
 /// occur alike and 0 if one never does, and that direction, (n).
 pub fn directions(demonstrations: &Demonstrations) -> (f64, DVector<f64>) {
-    let velocities: Vec<DVector<f64>> = velocities(demonstrations).collect();
-    let usual = upper_median(velocities.iter().map(nalgebra::Matrix::norm).collect());
+    let usual = upper_median(of_velocities(demonstrations, |u| u.norm()));
     let least = STILL * usual.expect("demonstrations have samples");
     let n = demonstrations.dim();
     let (mut sum, mut count) = (DMatrix::zeros(n, n), 0.0);
-    for velocity in velocities.iter().filter(|u| u.norm() > least) {
-        let direction = velocity.normalize();
-        sum.ger(1.0, &direction, &direction, 1.0);
-        count += 1.0;
-    }
+    each_velocity(demonstrations, |velocity| {
+        if velocity.norm() > least {
+            let direction = velocity.normalize();
+            sum.ger(1.0, &direction, &direction, 1.0);
+            count += 1.0;
+        }
+    });
     if count == 0.0 {
         return (0.0, DVector::zeros(n));
     }

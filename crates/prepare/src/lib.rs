@@ -77,22 +77,30 @@ pub use samples::still::trim_still;
 pub use samples::thinning::thinned;
 pub use velocity_source::VelocitySource;
 
+use std::borrow::Cow;
+
 use motion::{Recordings, Trajectory, upper_median};
 
 use notes::Notes;
 
-/// Makes demonstrations of recordings: time, units, velocities, noise, and what is wrong with them.
+/// Makes demonstrations of recordings: time, units, velocities, noise, and what is wrong with them. Recordings that are handed over,
+/// not lent, become the demonstrations without a copy.
 ///
 /// # Errors
 /// [`PrepareError`] where nothing can be learnt: no episode, no motion, rows and columns exchanged, or an option that
 /// does not fit.
-pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prepared, PrepareError> {
-    let mut notes = Notes { findings: recordings.findings.clone(), ..Notes::default() };
-    let scales = scale::scales(recordings, options, &mut notes)?;
-    let mut episodes = repairs::episodes::movements(recordings, &scales, &mut notes)?;
+pub fn prepare<'a>(
+    recordings: impl Into<Cow<'a, Recordings>>,
+    options: &PrepareOptions,
+) -> Result<Prepared, PrepareError> {
+    let Recordings { state: channels, episodes, findings } = recordings.into().into_owned();
+    let mut notes = Notes { findings, ..Notes::default() };
+    let scales = scale::scales(&channels, options, &mut notes)?;
+    let found = episodes.len();
+    let mut episodes = repairs::episodes::movements(episodes, &scales, &mut notes)?;
     repairs::duplicates::leave_out(&mut episodes, &mut notes);
-    let (of_state, of_context) = context::split(&mut episodes, &recordings.state, &options.context, &mut notes)?;
-    let described = |channels: &[usize]| channels.iter().map(|&at| recordings.state[at].clone()).collect::<Vec<_>>();
+    let (of_state, of_context) = context::split(&mut episodes, &channels, &options.context, &mut notes)?;
+    let described = |of: &[usize]| of.iter().map(|&at| channels[at].clone()).collect::<Vec<_>>();
     let (state_channels, context_channels) = (described(&of_state), described(&of_context));
     let scales_of = |channels: &[usize]| scales.select_rows(channels);
     repairs::stamps::decide(&mut episodes, options, &mut notes)?;
@@ -107,11 +115,14 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
     repairs::labels::decide(&mut episodes, of_state.len(), &mut notes);
     if episodes.is_empty() {
         let why = notes.left_out.first().map_or_else(String::new, |left_out| left_out.why.clone());
-        return Err(PrepareError::NothingLeft { of: recordings.episodes.len(), why });
+        return Err(PrepareError::NothingLeft { of: found, why });
     }
-    let noise = samples::noise::of(&repairs::episodes::demonstrations(&episodes)?);
+    let noise = repairs::episodes::lent(&mut episodes, samples::noise::of)?;
     let agreement = repairs::velocities::decide(&mut episodes, options, &state_channels, &noise, &mut notes);
-    let demonstrations = repairs::episodes::demonstrations(&episodes)?;
+    let names: Vec<String> = episodes.iter().map(|episode| episode.name.clone()).collect();
+    let constraints = episodes.iter().map(|of| Some(of.constraint.as_ref()?.only()?.to_owned())).collect();
+    let demonstrations = repairs::episodes::demonstrations(episodes)?;
+    let recorded = demonstrations.clone();
     notes.findings.extend(remarks::no_state(&demonstrations, &state_channels));
     let smoothed = samples::smooth::as_requested(&demonstrations, options.smoothing, &mut notes)?;
     let (demonstrations, velocities) = if let Some(smoothed) = smoothed {
@@ -131,12 +142,12 @@ pub fn prepare(recordings: &Recordings, options: &PrepareOptions) -> Result<Prep
     repairs::stamps::doubt(&demonstrations, &mut notes);
     remarks::about(&demonstrations, &state, &noise, &mut notes);
     degrees::remark(&state, &mut notes);
-    samples::still::remark(&demonstrations, noise.positions.as_deref(), &episodes, &mut notes);
+    samples::still::remark(&demonstrations, noise.positions.as_deref(), (&names, &recorded), &mut notes);
     let time_steps = demonstrations.trajectories().iter().map(Trajectory::time_step);
     Ok(Prepared {
         time_step: upper_median(time_steps.collect()).expect("there is an episode"),
-        episodes: episodes.iter().map(|episode| episode.name.clone()).collect(),
-        constraints: episodes.iter().map(|of| Some(of.constraint.as_ref()?.only()?.to_owned())).collect(),
+        episodes: names,
+        constraints,
         demonstrations,
         state,
         context,

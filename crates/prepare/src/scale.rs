@@ -1,4 +1,4 @@
-use motion::{Channel, Recordings, upper_median};
+use motion::{Channel, upper_median};
 use nalgebra::DVector;
 
 use crate::notes::Notes;
@@ -7,19 +7,19 @@ use crate::{PrepareError, StateChannel};
 
 /// Factor of every channel, (n).
 pub(crate) fn scales(
-    recordings: &Recordings,
+    channels: &[Channel],
     options: &PrepareOptions,
     notes: &mut Notes,
 ) -> Result<DVector<f64>, PrepareError> {
-    let mut scales = DVector::repeat(recordings.state.len(), 1.0);
+    let mut scales = DVector::repeat(channels.len(), 1.0);
     for (name, factor) in &options.scale {
         if !(*factor > 0.0 && factor.is_finite()) {
             return Err(PrepareError::Scale { name: name.clone(), factor: *factor });
         }
-        if let Some(channel) = recordings.state.iter().position(|channel| channel.name == *name) {
+        if let Some(channel) = channels.iter().position(|channel| channel.name == *name) {
             scales[channel] = *factor;
         } else {
-            let known: Vec<_> = recordings.state.iter().map(|channel| channel.name.as_str()).collect();
+            let known: Vec<_> = channels.iter().map(|channel| channel.name.as_str()).collect();
             return Err(PrepareError::UnknownChannel { name: name.clone(), known: known.join(", ") });
         }
         notes.decided("scale", format!("{name} times {factor}"), "given", "--scale");

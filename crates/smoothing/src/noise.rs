@@ -1,7 +1,7 @@
 //! Noise of recorded positions and velocities, without smoothing.
 
 use motion::{Demonstrations, Trajectory};
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use crate::SmoothingError;
 
@@ -30,26 +30,39 @@ impl PositionNoise {
     /// [`SmoothingError::TooFewDifferences`] below 50 differences per dimension, [`SmoothingError::NoMotion`] if no
     /// sample differs from the one before, [`SmoothingError::Overflow`].
     pub fn of(demonstrations: &Demonstrations) -> Result<Self, SmoothingError> {
+        Self::of_series(demonstrations, Trajectory::states)
+    }
+
+    /// Of what a trajectory holds for every sample, (n, N).
+    fn of_series(
+        demonstrations: &Demonstrations,
+        series: impl Fn(&Trajectory) -> &DMatrix<f64>,
+    ) -> Result<Self, SmoothingError> {
         let trajectories = demonstrations.trajectories();
         let found = trajectories.iter().map(|trajectory| trajectory.n_samples().saturating_sub(3)).sum();
         if found < NEEDED {
             return Err(SmoothingError::TooFewDifferences { found, needed: NEEDED });
         }
         let dim = demonstrations.dim();
+        let mut differences = Vec::with_capacity(found);
         let deviations = DVector::from_fn(dim, |axis, _| {
-            let mut differences: Vec<f64> = trajectories
-                .iter()
-                .flat_map(|trajectory| third_differences(trajectory.states().as_slice(), dim, axis, trajectory.times()))
-                .collect();
+            differences.clear();
+            for trajectory in trajectories {
+                let values = series(trajectory).as_slice();
+                differences.extend(third_differences(values, dim, axis, trajectory.times()));
+            }
             MEDIAN_TO_DEVIATION * median(&mut differences).unwrap_or(0.0) / 20f64.sqrt()
         });
-        let steps: Vec<f64> = trajectories
-            .iter()
-            .flat_map(|trajectory| {
-                (1..trajectory.n_samples()).map(|i| (trajectory.state(i) - trajectory.state(i - 1)).norm_squared())
-            })
-            .collect();
-        let mean_step = steps.iter().sum::<f64>() / steps.len() as f64;
+        let mut step = DVector::zeros(dim);
+        let (mut sum, mut count) = (0.0, 0);
+        for values in trajectories.iter().map(&series) {
+            for i in 1..values.ncols() {
+                values.column(i).sub_to(&values.column(i - 1), &mut step);
+                sum += step.norm_squared();
+            }
+            count += values.ncols() - 1;
+        }
+        let mean_step = sum / count as f64;
         if mean_step == 0.0 {
             return Err(SmoothingError::NoMotion);
         }
@@ -75,9 +88,10 @@ impl VelocityNoise {
     /// By third differences of the velocities, as [`PositionNoise::of`] those of positions; none where some movement has no velocities, or
     /// where they are too few, all the same or too large for an estimate.
     pub fn of(demonstrations: &Demonstrations) -> Option<Self> {
-        let as_positions = |trajectory: &Trajectory| trajectory.with_states(trajectory.velocities()?.clone()).ok();
-        let velocities: Option<Vec<_>> = demonstrations.trajectories().iter().map(as_positions).collect();
-        let noise = PositionNoise::of(&Demonstrations::new(velocities?).ok()?).ok()?;
+        if demonstrations.trajectories().iter().any(|trajectory| trajectory.velocities().is_none()) {
+            return None;
+        }
+        let noise = PositionNoise::of_series(demonstrations, |of| of.velocities().unwrap_or(of.states())).ok()?;
         let each = demonstrations.trajectories().iter().filter_map(Trajectory::velocities);
         let (power, count) = each.fold((0.0, 0), |(power, count), u| (power + u.norm_squared(), count + u.ncols()));
         let variance = noise.deviations.norm_squared();

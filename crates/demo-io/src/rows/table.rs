@@ -212,6 +212,8 @@ impl Table {
             self.roles.constraint.is_some_and(|column| says(&self.names[column])) || self.episodes.iter().any(differ);
         for (raw, clock) in self.episodes.iter_mut().zip(self.clocks) {
             raw.times = clock.seconds(raw.rows.len(), ticks);
+            // Numbers were appended one by one, and stay for as long as the recordings do.
+            [&mut raw.times, &mut raw.positions, &mut raw.velocities].into_iter().for_each(Vec::shrink_to_fit);
             raw.constraint.take_if(|labels| !labels_vary || labels.is_blank());
         }
         let (episodes, word, drop_constant) = (self.episodes, self.word, self.roles.state_guessed);

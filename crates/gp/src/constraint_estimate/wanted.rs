@@ -1,12 +1,16 @@
 //! What a policy wants at the states of some rows.
 
-use std::sync::OnceLock;
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
 
 use motion::LearntPolicy;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::Rows;
+
+/// Rows whose actions are asked for at once.
+const TOGETHER: usize = 1024;
 
 /// The policy at every row.
 pub(super) struct Wanted<'a> {
@@ -16,29 +20,41 @@ pub(super) struct Wanted<'a> {
     pub(super) actions: DMatrix<f64>,
     /// Mean variance of a component, once it is asked for: it costs far more than the action, and few rows are searched. Those of one
     /// movement are asked for by one thread, so that the same are asked for together at any number of threads.
-    variances: Vec<OnceLock<f64>>,
+    variances: Mutex<HashMap<usize, f64>>,
 }
 
 impl<'a> Wanted<'a> {
     pub(super) fn of(rows: &'a Rows, policy: &'a dyn LearntPolicy) -> Self {
-        let at = |row: usize| policy.action(rows.states().column(row)).resize_vertically(rows.dim(), 0.0);
-        let actions: Vec<DVector<f64>> = (0..rows.len()).into_par_iter().map(at).collect();
-        let variances = vec![OnceLock::new(); rows.len()];
-        Wanted { rows, policy, actions: DMatrix::from_columns(&actions), variances }
+        let dim = rows.dim();
+        let mut actions = DMatrix::zeros(dim, rows.len());
+        let some = |(chunk, actions): (usize, &mut [f64])| {
+            let states = rows.states().columns(chunk * TOGETHER, actions.len() / dim);
+            let found = policy.actions(states.as_view());
+            for (action, found) in actions.chunks_exact_mut(dim).zip(found.column_iter()) {
+                action.copy_from_slice(&found.as_slice()[..dim]);
+            }
+        };
+        actions.as_mut_slice().par_chunks_mut(dim * TOGETHER).enumerate().for_each(some);
+        Wanted { rows, policy, actions, variances: Mutex::default() }
     }
 
     pub(super) fn variances(&self, rows: &[usize]) -> Vec<f64> {
-        let new: Vec<usize> = rows.iter().copied().filter(|&row| self.variances[row].get().is_none()).collect();
+        let known = || self.variances.lock().unwrap_or_else(PoisonError::into_inner);
+        let new: Vec<usize> = {
+            let known = known();
+            rows.iter().copied().filter(|row| !known.contains_key(row)).collect()
+        };
         if !new.is_empty() {
             let deviations = self.policy.certainty(self.rows.states().select_columns(&new).as_view()).deviations;
             let dim = self.rows.dim();
-            for (at, &row) in new.iter().enumerate() {
+            known().extend(new.iter().enumerate().map(|(at, &row)| {
                 let deviation = deviations.as_ref().map(|deviations| deviations.column(at));
                 let square = deviation.map_or(0.0, |deviation| deviation.rows(0, dim).norm_squared());
-                self.variances[row].get_or_init(|| square / dim as f64);
-            }
+                (row, square / dim as f64)
+            }));
         }
-        rows.iter().map(|&row| self.variances[row].get().copied().unwrap_or(0.0)).collect()
+        let known = known();
+        rows.iter().map(|row| known[row]).collect()
     }
 
     /// Of a component.

@@ -33,8 +33,8 @@ impl Rows {
     ///
     /// The direction of (S1) is that of the velocity, so that noise of it enters squared and does not go down with the number of
     /// rows: of a velocity's noise, its mean over as many samples does.
-    pub(crate) fn averaged(&self) -> Cow<'_, Rows> {
-        let with_noise = self.variances().filter(|_| self.switches().is_none() && !self.is_empty());
+    pub fn averaged(&self) -> Cow<'_, Rows> {
+        let with_noise = self.variances().filter(|_| !self.means && self.switches().is_none() && !self.is_empty());
         let Some(variances) = with_noise else {
             return Cow::Borrowed(self);
         };
@@ -54,6 +54,7 @@ impl Rows {
             noise: self.noise,
             switches: None,
             labels: blocks.iter().map(|block| block.label).collect(),
+            means: true,
         })
     }
 

@@ -1,3 +1,5 @@
+use std::borrow::Cow;
+
 use motion::{Demonstrations, SampleIndex, SampleSet, Trajectory};
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
@@ -31,7 +33,7 @@ pub enum FrontEnd {
 const EXACT_VELOCITIES: f64 = 1e-3;
 
 /// States and velocities of a movement, (n, N) each; the states may have one sample more.
-type Movement = (DMatrix<f64>, DMatrix<f64>);
+type Movement<'a> = (Cow<'a, DMatrix<f64>>, Cow<'a, DMatrix<f64>>);
 
 impl FrontEnd {
     /// Recorded velocities, with their noise (third differences) where that makes a thousandth of their squares or more.
@@ -59,7 +61,7 @@ impl FrontEnd {
 
     fn without_context(&self, demonstrations: &Demonstrations) -> Result<Rows, GpError> {
         match self {
-            FrontEnd::Velocities => rows_of(recorded(demonstrations, |trajectory| trajectory.states().clone())?),
+            FrontEnd::Velocities => rows_of(recorded(demonstrations, |trajectory| Cow::Borrowed(trajectory.states()))?),
             &FrontEnd::NoisyVelocities { variance } => {
                 let rows = FrontEnd::Velocities.without_context(demonstrations)?;
                 let count = rows.len();
@@ -91,21 +93,20 @@ fn labelled(rows: Rows, demonstrations: &Demonstrations) -> Result<Rows, GpError
 }
 
 /// Recorded velocities at states of one's choice.
-fn recorded(
-    demonstrations: &Demonstrations,
-    states: impl FnMut(&Trajectory) -> DMatrix<f64>,
-) -> Result<Vec<Movement>, GpError> {
-    let velocities =
-        demonstrations.trajectories().iter().enumerate().map(|(index, trajectory)| {
-            trajectory.velocities().cloned().ok_or(GpError::NoVelocities { trajectory: index })
-        });
-    let velocities = velocities.collect::<Result<Vec<_>, _>>()?;
-    Ok(demonstrations.trajectories().iter().map(states).zip(velocities).collect())
+fn recorded<'a>(
+    demonstrations: &'a Demonstrations,
+    mut states: impl FnMut(&'a Trajectory) -> Cow<'a, DMatrix<f64>>,
+) -> Result<Vec<Movement<'a>>, GpError> {
+    let movement = |(index, trajectory): (usize, &'a Trajectory)| {
+        let velocities = trajectory.velocities().ok_or(GpError::NoVelocities { trajectory: index })?;
+        Ok((states(trajectory), Cow::Borrowed(velocities)))
+    };
+    demonstrations.trajectories().iter().enumerate().map(movement).collect()
 }
 
 /// (x_{i+1} − x_i)/δt.
-fn steps(trajectory: &Trajectory) -> Movement {
-    (trajectory.states().clone(), trajectory.step_velocities())
+fn steps(trajectory: &Trajectory) -> Movement<'_> {
+    (Cow::Borrowed(trajectory.states()), Cow::Owned(trajectory.step_velocities()))
 }
 
 fn smoothed(smoother: &Smoother, demonstrations: &Demonstrations) -> Result<Rows, GpError> {
@@ -113,15 +114,18 @@ fn smoothed(smoother: &Smoother, demonstrations: &Demonstrations) -> Result<Rows
     let variances = smoothed.movements.iter().flat_map(|movement| movement.velocity_variance.iter().copied()).collect();
     let switches = smoothed.movements.iter().map(|movement| movement.window_begins.iter().copied().collect()).collect();
     let noise = smoothed.noise.norm() / (smoothed.noise.len() as f64).sqrt();
-    let movements = smoothed.movements.into_iter().map(|movement| (movement.states, movement.velocities));
+    let movements =
+        smoothed.movements.into_iter().map(|movement| (Cow::Owned(movement.states), Cow::Owned(movement.velocities)));
     Ok(rows_of(movements)?.with_variances(variances)?.with_findings(noise, Some(switches)))
 }
 
 fn fused(fusion: &Fusion, demonstrations: &Demonstrations) -> Result<Rows, GpError> {
     let fused = fusion.fuse(demonstrations).map_err(cleaning)?;
     let mut movements = fused.movements.into_iter();
-    let states = |trajectory: &Trajectory| {
-        movements.next().map_or_else(|| trajectory.states().clone(), |movement| movement.states)
+    let states = |trajectory| {
+        movements
+            .next()
+            .map_or_else(|| Cow::Borrowed(Trajectory::states(trajectory)), |movement| Cow::Owned(movement.states))
     };
     Ok(rows_of(recorded(demonstrations, states)?)?.with_findings(fused.noise_variance.sqrt(), None))
 }
@@ -134,15 +138,17 @@ fn cleaning(error: SmoothingError) -> GpError {
 }
 
 /// One row for every velocity.
-fn rows_of(movements: impl IntoIterator<Item = Movement>) -> Result<Rows, GpError> {
-    let (mut states, mut velocities, mut indices) = (Vec::new(), Vec::new(), Vec::new());
-    let mut dim = 0;
+fn rows_of<'a>(movements: impl IntoIterator<Item = Movement<'a>>) -> Result<Rows, GpError> {
+    let movements: Vec<Movement<'_>> = movements.into_iter().collect();
+    let count = movements.iter().map(|(_, u)| u.ncols()).sum();
+    let dim = movements.first().map_or(0, |(x, _)| x.nrows());
+    let numbers = || Vec::with_capacity(dim * count);
+    let (mut states, mut velocities, mut indices) = (numbers(), numbers(), Vec::with_capacity(count));
     for (trajectory, (x, u)) in movements.into_iter().enumerate() {
-        dim = x.nrows();
         states.extend_from_slice(&x.as_slice()[..u.len()]);
         velocities.extend_from_slice(u.as_slice());
         indices.extend((0..u.ncols()).map(|sample| SampleIndex { trajectory, sample }));
     }
-    let matrix = |numbers| DMatrix::from_vec(dim, indices.len(), numbers);
-    Rows::new(matrix(states), matrix(velocities), indices.clone())
+    let matrix = |numbers| DMatrix::from_vec(dim, count, numbers);
+    Rows::new(matrix(states), matrix(velocities), indices)
 }

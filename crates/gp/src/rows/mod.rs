@@ -29,6 +29,8 @@ pub struct Rows {
     noise: Option<f64>,
     switches: Option<Vec<Vec<f64>>>,
     labels: Option<Vec<usize>>,
+    /// Whether they are means (S33) already.
+    means: bool,
 }
 
 impl Rows {
@@ -62,7 +64,7 @@ impl Rows {
             }
         }
         let (noise, switches, labels) = (None, None, None);
-        Ok(Rows { states, velocities, variances: None, indices, momenta: None, noise, switches, labels })
+        Ok(Rows { states, velocities, variances: None, indices, momenta: None, noise, switches, labels, means: false })
     }
 
     /// Adds the context c of every row, (p, M): what the motion depends on and what stays as it is during a movement, such as a
@@ -147,17 +149,19 @@ impl Rows {
 
     /// The rows whose sample is not held out: `held_out(trajectory, sample)`.
     #[must_use]
-    pub fn without(self, held_out: impl Fn(usize, usize) -> bool) -> Self {
+    pub fn without(&self, held_out: impl Fn(usize, usize) -> bool) -> Self {
         let stays = |&row: &usize| !held_out(self.indices[row].trajectory, self.indices[row].sample);
         let rows: Vec<usize> = (0..self.len()).filter(stays).collect();
         Rows {
             states: self.states.select_columns(&rows),
             velocities: self.velocities.select_columns(&rows),
-            variances: self.variances.map(|variances| rows.iter().map(|&row| variances[row]).collect()),
+            variances: self.variances.as_ref().map(|variances| rows.iter().map(|&row| variances[row]).collect()),
             indices: rows.iter().map(|&row| self.indices[row]).collect(),
-            momenta: self.momenta.map(|momenta| momenta.select_columns(&rows)),
-            labels: self.labels.map(|labels| rows.iter().map(|&row| labels[row]).collect()),
-            ..self
+            momenta: self.momenta.as_ref().map(|momenta| momenta.select_columns(&rows)),
+            noise: self.noise,
+            switches: self.switches.clone(),
+            labels: self.labels.as_ref().map(|labels| rows.iter().map(|&row| labels[row]).collect()),
+            means: self.means,
         }
     }
 

@@ -10,6 +10,8 @@ pub(crate) mod rows;
 pub(crate) mod segmentation;
 mod whole;
 
+use std::collections::HashMap;
+
 use nalgebra::{DMatrix, DVector, Dyn, SVD};
 use rayon::prelude::*;
 
@@ -93,11 +95,14 @@ impl Stretches {
     /// certain, and right where b = 0.
     pub(crate) fn without_push(&self, rows: &Rows) -> Stretches {
         let noise = self.noise;
+        let mut of_trajectories: HashMap<usize, Vec<usize>> = HashMap::new();
+        for (row, index) in rows.indices().iter().enumerate() {
+            of_trajectories.entry(index.trajectory).or_default().push(row);
+        }
         let of = |stretch: &Stretch| {
             let rank = stretch.whole?;
-            let inside: Vec<usize> =
-                (0..rows.len()).filter(|&row| rows.indices()[row].trajectory == stretch.trajectory).collect();
-            let velocities = rows.velocities().select_columns(&inside);
+            let inside = &of_trajectories[&stretch.trajectory];
+            let velocities = rows.velocities().select_columns(inside);
             whole(&velocities, rank, noise)?;
             let (_, span) = Span::of(velocities, (rank, least_length(inside.len(), noise)), noise)?;
             let push = DVector::zeros(rows.dim());

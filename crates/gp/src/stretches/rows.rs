@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, DVectorView};
 
 use crate::Rows;
 use crate::rows::kept::{Kept, OfStretches, RowsDropped, Selection};
@@ -19,38 +19,44 @@ const LEAST_SIGNIFICANCE: f64 = 4.0;
 const COVERED: f64 = 0.5;
 
 /// One equation vᵀπ(x) = vᵀu.
-struct Equation {
+struct Equation<'a> {
     /// The sample's row.
     row: usize,
-    /// v (vᵀu), the part of the velocity along v.
-    velocity: DVector<f64>,
-    /// |vᵀu|.
-    length: f64,
+    /// v, (n).
+    direction: DVectorView<'a, f64>,
+    /// vᵀu.
+    part: f64,
     /// ℓ_k of its direction.
     direction_length: f64,
 }
 
-/// At most `most` of the equations, in their order.
-fn few(equations: Vec<Equation>, rows: &Rows, most: usize) -> Vec<Equation> {
-    let trajectory = |&at: &usize| rows.indices()[equations[at].row].trajectory;
-    let all: Vec<usize> = (0..equations.len()).collect();
-    let taken: BTreeSet<usize> =
-        thinned(all.chunk_by(|a, b| trajectory(a) == trajectory(b)), most, || MIDDLE).into_iter().collect();
-    equations.into_iter().enumerate().filter(|(at, _)| taken.contains(at)).map(|(_, equation)| equation).collect()
+/// At most `most` of the equations that these rows give, by their places.
+fn few(of_rows: &[usize], rows: &Rows, most: usize) -> BTreeSet<usize> {
+    let trajectory = |&at: &usize| rows.indices()[of_rows[at]].trajectory;
+    let all: Vec<usize> = (0..of_rows.len()).collect();
+    thinned(all.chunk_by(|a, b| trajectory(a) == trajectory(b)), most, || MIDDLE).into_iter().collect()
 }
 
 impl Stretches {
     /// Rows of all samples that lie in stretches, with their noise weights (S23); evenly many of them, where they are more
     /// than `selection` allows. None if they are of far fewer movements than `kept` ones.
     pub(crate) fn rows(&self, rows: &Rows, kept: &Kept, selection: &Selection) -> Option<Kept> {
-        let mut equations: Vec<Equation> = (0..rows.len()).flat_map(|row| self.equations(rows, row)).collect();
-        let mean_square = equations.iter().map(|of| of.length.powi(2)).sum::<f64>() / equations.len() as f64;
-        equations.retain(|of| of.length.powi(2) > LEAST * mean_square);
-        let found = equations.len();
-        let equations = few(equations, rows, selection.max_rows);
-        let lengths: Vec<f64> = equations.iter().map(|of| of.length).collect();
+        let all = || (0..rows.len()).flat_map(|row| self.equations(rows, row));
+        let (mut sum, mut count) = (0.0, 0);
+        all().for_each(|equation| {
+            sum += equation.part.powi(2);
+            count += 1;
+        });
+        let mean_square = sum / count as f64;
+        let moving = || all().filter(|equation| equation.part.powi(2) > LEAST * mean_square);
+        let of_rows: Vec<usize> = moving().map(|equation| equation.row).collect();
+        let taken = few(&of_rows, rows, selection.max_rows);
+        let found = of_rows.len();
+        let chosen = moving().enumerate().filter(|(at, _)| taken.contains(at));
+        let equations: Vec<Equation<'_>> = chosen.map(|(_, equation)| equation).collect();
+        let lengths: Vec<f64> = equations.iter().map(|of| of.part.abs()).collect();
         let policy_squared = 2.0 * upper_median(lengths.clone())?.powi(2);
-        let variance = |of: &Equation| self.noise * (1.0 + policy_squared / of.direction_length.powi(2));
+        let variance = |of: &Equation<'_>| self.noise * (1.0 + policy_squared / of.direction_length.powi(2));
         let all: Vec<usize> = (0..equations.len()).collect();
         let index = |at: usize| rows.indices()[equations[at].row];
         let same = |&a: &usize, &b: &usize| index(a).trajectory == index(b).trajectory;
@@ -58,7 +64,7 @@ impl Stretches {
         if groups.len() < 3 || (groups.len() as f64) < COVERED * kept.groups.len() as f64 {
             return None;
         }
-        let columns: Vec<DVector<f64>> = equations.iter().map(|of| of.velocity.clone()).collect();
+        let columns: Vec<DVector<f64>> = equations.iter().map(|of| of.direction * of.part).collect();
         let used: Vec<usize> = equations.iter().map(|of| of.row).collect();
         Some(Kept {
             states: rows.states().select_columns(&used),
@@ -80,14 +86,13 @@ impl Stretches {
     }
 
     /// (S22) of one sample, a direction each.
-    fn equations(&self, rows: &Rows, row: usize) -> Vec<Equation> {
-        let Some(stretch) = self.at(rows.indices()[row]) else { return Vec::new() };
-        let velocity = rows.velocities().column(row);
-        let along = |(direction, &direction_length): (nalgebra::DVectorView<'_, f64>, &f64)| {
-            let part = direction.dot(&velocity);
-            Equation { row, velocity: direction * part, length: part.abs(), direction_length }
+    fn equations<'a>(&'a self, rows: &'a Rows, row: usize) -> impl Iterator<Item = Equation<'a>> {
+        let along = move |(direction, &direction_length): (DVectorView<'a, f64>, &f64)| {
+            let part = direction.dot(&rows.velocities().column(row));
+            Equation { row, direction, part, direction_length }
         };
-        stretch.directions.column_iter().zip(&stretch.lengths).map(along).collect()
+        let of_stretch = |stretch: &'a Stretch| stretch.directions.column_iter().zip(&stretch.lengths);
+        self.at(rows.indices()[row]).into_iter().flat_map(of_stretch).map(along)
     }
 
     /// The stretch that holds a sample.

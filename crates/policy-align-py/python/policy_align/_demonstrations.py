@@ -68,6 +68,7 @@ class Demonstrations:
         """Of arrays: a list of (N, n), an array (K, N, n), or a flat (M, n) with ``lengths``.
 
         ``dt``: seconds between samples, or ``times``: the stamps of each movement. ``velocities``: as trajectories.
+        With one state more than velocities, as where the state after the last action was recorded too, that state is left out.
         A DataFrame for each movement names the ``channels``. ``constraints``: the name of each movement's constraint, or
         where it changes within a movement, a list of names or numbers, one a sample: they tell where constraints switch.
         """
@@ -91,6 +92,9 @@ class Demonstrations:
         elif dt is None:
             hint = "dt=SECONDS (the time between samples), or times=[...] with the stamps of each movement"
             raise PolicyAlignError("neither stamps nor a time step are known", "trajectories", hint, "NoTime")
+        if speeds is not None and count and all(len(x) == len(u) + 1 for x, u in zip(positions, speeds, strict=True)):
+            positions = [x[:-1] for x in positions]
+            stamps = stamps and [of[: len(x)] for of, x in zip(stamps, positions, strict=True)]
         names = [str(k) for k in range(count)] if names is None else [str(name) for name in names]
         labels = [None] * count if constraints is None else list(constraints)
         unit_names = [None] * width if units is None else list(units)

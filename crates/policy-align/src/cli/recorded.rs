@@ -45,7 +45,7 @@ pub(crate) fn prepared_for(
     options.scale = model.scale();
     options.context = model.context_use();
     let recordings = read(session, files, &reading)?;
-    let prepared = prepare(&recordings, &options).map_err(|error| Failure::prepare(&error, named(files)))?;
+    let prepared = prepare(recordings, &options).map_err(|error| Failure::prepare(&error, named(files)))?;
     let found: Vec<String> = prepared.state.iter().map(|channel| channel.name.clone()).collect();
     let expected = model.channels();
     if found != expected {
@@ -92,8 +92,8 @@ fn warn(session: &Session, findings: &[Finding]) {
 }
 
 /// Findings other than those that reading has printed already.
-pub(crate) fn unreported(findings: &[Finding], recordings: &Recordings) -> Vec<Finding> {
-    findings.iter().filter(|finding| !recordings.findings.contains(finding)).cloned().collect()
+pub(crate) fn unreported(findings: &[Finding], reported: &[Finding]) -> Vec<Finding> {
+    findings.iter().filter(|finding| !reported.contains(finding)).cloned().collect()
 }
 
 /// Names and checksums, for the model.

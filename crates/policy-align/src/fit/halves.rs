@@ -1,5 +1,7 @@
 //! Split-half agreement: do halves of the movements give the same policy?
 
+use std::borrow::Cow;
+
 use gp::{AutoFit, CurlTest, DirectGp, GpError, ModelKind, PushTest, Rows, SlopeGp};
 use motion::Policy;
 use rand::SeedableRng;
@@ -31,7 +33,9 @@ pub(super) fn of_slope(readings: &AutoFit, rows: &Rows, limits: Limits) -> Optio
         ..SlopeGp::default()
     };
     let learn = |rows: &Rows| gp.fit(rows, &mut ChaCha8Rng::seed_from_u64(limits.seed));
-    disagreement(readings.slope(), rows, &learn)
+    // Stretches are found on samples, all else on their means.
+    let learnt_from = if report.push.is_some() { Cow::Borrowed(rows) } else { rows.averaged() };
+    disagreement(readings.slope(), (rows, &learnt_from), &learn)
 }
 
 /// The same of direct policies.
@@ -43,15 +47,15 @@ pub(super) fn of_direct(readings: &AutoFit, rows: &Rows, limits: Limits) -> Opti
         ..DirectGp::default()
     };
     let learn = |rows: &Rows| gp.fit(rows, &mut ChaCha8Rng::seed_from_u64(limits.seed));
-    disagreement(readings.direct(), rows, &learn)
+    disagreement(readings.direct(), (rows, &rows.averaged()), &learn)
 }
 
 fn disagreement<P: Policy + Send>(
     whole: &dyn Policy,
-    rows: &Rows,
+    (rows, learnt_from): (&Rows, &Rows),
     learn: &(dyn Fn(&Rows) -> Result<P, GpError> + Sync),
 ) -> Option<f64> {
-    let half = |odd: usize| learn(&rows.clone().without(|trajectory, _| trajectory % 2 == odd));
+    let half = |odd: usize| learn(&learnt_from.without(|trajectory, _| trajectory % 2 == odd));
     let (even, odd) = rayon::join(|| half(1), || half(0));
     let states = states(rows);
     let apart = (actions(&even.ok()?, &states) - actions(&odd.ok()?, &states)).norm_squared();

@@ -37,9 +37,9 @@ pub fn estimate_constraints(
     let prepared = &in_units_of(model, prepared)?;
     let rows = least_noisy_rows(prepared)?;
     let scales = DVector::from_iterator(dim, prepared.state.iter().map(|channel| channel.scale));
-    let states = unscaled(&rows.states().rows(0, dim).into_owned(), &scales);
     let robot = |reason| EvaluateError::Robot { reason };
-    let of_links = links.map(|links| links.spaces(&states)).transpose().map_err(robot)?.unwrap_or_default();
+    let spaces = |links: &TaskLinks| links.spaces(&unscaled(&rows.states().rows(0, dim).into_owned(), &scales));
+    let of_links = links.map(spaces).transpose().map_err(robot)?.unwrap_or_default();
     let (mut on, mut spaces) = (vec![ConstraintOn::Channels], vec![TaskSpace::recorded()]);
     for (of_link, space) in of_links {
         on.push(of_link);

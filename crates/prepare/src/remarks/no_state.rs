@@ -99,14 +99,15 @@ fn velocities(demonstrations: &Demonstrations, clock: Option<usize>) -> Vec<(usi
 
 /// How far channels move in stretches of the movements, and their integrals over time there; both (n, stretches).
 fn stretches(demonstrations: &Demonstrations) -> (DMatrix<f64>, DMatrix<f64>) {
-    let mut places: Vec<(&Trajectory, usize, usize)> = Vec::new();
-    for movement in demonstrations.trajectories() {
-        let last = movement.n_samples() - 1;
-        let length = SAMPLES.min((last / 2).max(1));
-        places.extend((0..last / length).map(|stretch| (movement, stretch * length, (stretch + 1) * length)));
-    }
-    let every = places.len().div_ceil(STRETCHES).max(1);
-    let chosen: Vec<_> = places.into_iter().step_by(every).collect();
+    let places = || {
+        demonstrations.trajectories().iter().flat_map(|movement| {
+            let last = movement.n_samples() - 1;
+            let length = SAMPLES.min((last / 2).max(1));
+            (0..last / length).map(move |stretch| (movement, stretch * length, (stretch + 1) * length))
+        })
+    };
+    let every = places().count().div_ceil(STRETCHES).max(1);
+    let chosen: Vec<(&Trajectory, usize, usize)> = places().step_by(every).collect();
     let n = demonstrations.dim();
     let mut steps = DMatrix::zeros(n, chosen.len());
     let mut integrals = DMatrix::zeros(n, chosen.len());

@@ -1,11 +1,10 @@
 //! Speeds that stop at a limit.
 
 use motion::{Demonstrations, Finding, Verdict};
-use nalgebra::DVector;
 
 use crate::StateChannel;
 use crate::numbers::{percent, short};
-use crate::samples::noise::{Noise, velocities, velocity_variance};
+use crate::samples::noise::{Noise, of_velocities, velocity_variance};
 
 /// Speeds at a limit are equal to this share, where there is no noise: turning shortens steps.
 const EQUAL: f64 = 2e-3;
@@ -24,16 +23,15 @@ const STEADY: f64 = 0.9;
 
 /// Says at which speed the robot, or some of its axes, can go no faster.
 pub(super) fn speed_limit(demonstrations: &Demonstrations, state: &[StateChannel], noise: &Noise) -> Option<Finding> {
-    let velocities: Vec<DVector<f64>> = velocities(demonstrations).collect();
     let deviation = velocity_variance(demonstrations, noise).sqrt();
-    let of = |speed: &dyn Fn(&DVector<f64>) -> f64| plateau(velocities.iter().map(speed).collect(), deviation);
-    if let Some(plateau) = of(&|u| u.norm()) {
+    if let Some(plateau) = plateau(of_velocities(demonstrations, |u| u.norm()), deviation) {
         return Some(plateau.finding(""));
     }
     let axes: Vec<(Plateau, &str)> = (0..state.len())
         .filter_map(|axis| {
-            let plateau = of(&|u| u[axis].abs())?;
-            let mean = velocities.iter().map(|u| u[axis]).sum::<f64>() / velocities.len() as f64;
+            let plateau = plateau(of_velocities(demonstrations, |u| u[axis].abs()), deviation)?;
+            let along = of_velocities(demonstrations, |u| u[axis]);
+            let mean = along.iter().sum::<f64>() / along.len() as f64;
             (mean.abs() < STEADY * plateau.speed).then(|| (plateau, state[axis].name.as_str()))
         })
         .collect();

@@ -1,7 +1,9 @@
 //! Episodes that no learner can use, and the others as it takes them.
 
+use std::{iter, mem};
+
 use motion::anomalies::stands_still;
-use motion::{Demonstrations, Episode, Recordings};
+use motion::{Demonstrations, Episode};
 use nalgebra::DVector;
 
 use crate::PrepareError;
@@ -9,16 +11,18 @@ use crate::notes::Notes;
 
 /// Every episode that is a movement, in scaled units.
 pub(crate) fn movements(
-    recordings: &Recordings,
+    mut movements: Vec<Episode>,
     scales: &DVector<f64>,
     notes: &mut Notes,
 ) -> Result<Vec<Episode>, PrepareError> {
-    let longest = recordings.episodes.iter().map(Episode::n_samples).max().ok_or(PrepareError::Empty)?;
-    let dim = recordings.state.len();
+    let longest = movements.iter().map(Episode::n_samples).max().ok_or(PrepareError::Empty)?;
+    let dim = scales.len();
     if longest > 1 && 2 * longest < dim {
         return Err(PrepareError::LooksTransposed { dim, samples: longest });
     }
-    let mut movements: Vec<Episode> = recordings.episodes.iter().map(|episode| episode.scaled(scales)).collect();
+    for values in movements.iter_mut().flat_map(|of| iter::once(&mut of.positions).chain(&mut of.velocities)) {
+        values.column_iter_mut().for_each(|mut column| column.component_mul_assign(scales));
+    }
     movements.retain(|episode| {
         let samples = match episode.n_samples() {
             0 => "no sample",
@@ -43,11 +47,31 @@ pub(crate) fn leave_out_still(episodes: &mut Vec<Episode>, notes: &mut Notes) {
 }
 
 /// All of them, checked.
-pub(crate) fn demonstrations(episodes: &[Episode]) -> Result<Demonstrations, PrepareError> {
-    let of = |name: &str| {
-        let episode = name.to_owned();
-        |source| PrepareError::Episode { episode, source }
+pub(crate) fn demonstrations(episodes: Vec<Episode>) -> Result<Demonstrations, PrepareError> {
+    let of = |episode: String| |source| PrepareError::Episode { episode, source };
+    let first = episodes[0].name.clone();
+    let trajectory = |mut episode: Episode| {
+        let name = mem::take(&mut episode.name);
+        episode.into_trajectory().map_err(of(name))
     };
-    let trajectories = episodes.iter().map(|episode| episode.trajectory().map_err(of(&episode.name)));
-    Demonstrations::new(trajectories.collect::<Result<_, _>>()?).map_err(of(&episodes[0].name))
+    Demonstrations::new(episodes.into_iter().map(trajectory).collect::<Result<_, _>>()?).map_err(of(first))
+}
+
+/// What `of` finds of them as demonstrations. Their numbers are lent to it, not copied.
+pub(crate) fn lent<T>(episodes: &mut [Episode], of: impl FnOnce(&Demonstrations) -> T) -> Result<T, PrepareError> {
+    let lent = |episode: &mut Episode| Episode {
+        name: episode.name.clone(),
+        source: episode.source.clone(),
+        times: episode.times.clone(),
+        positions: mem::take(&mut episode.positions),
+        velocities: episode.velocities.take(),
+        constraint: None,
+        context: episode.context.clone(),
+    };
+    let demonstrations = demonstrations(episodes.iter_mut().map(lent).collect())?;
+    let found = of(&demonstrations);
+    for (episode, movement) in episodes.iter_mut().zip(demonstrations.into_trajectories()) {
+        (episode.positions, episode.velocities) = movement.into_matrices();
+    }
+    Ok(found)
 }

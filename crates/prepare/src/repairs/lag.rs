@@ -52,15 +52,14 @@ fn lag(episodes: &[Episode]) -> Option<Lag> {
     lengths.sort_unstable();
     let most = (lengths.get(lengths.len() / 2)? / SHARE).min(SAMPLES);
     let halves = (2 * most).cast_signed();
-    let compared: Vec<(&Episode, usize)> = episodes
-        .iter()
-        .flat_map(|episode| {
+    let comparable = || {
+        episodes.iter().flat_map(|episode| {
             let last = episode.n_samples().saturating_sub(1 + most);
             (most..last).map(move |step| (episode, step))
         })
-        .collect();
-    let every = compared.len().div_ceil(STEPS).max(1);
-    let compared: Vec<_> = compared.into_iter().step_by(every).collect();
+    };
+    let every = comparable().count().div_ceil(STEPS).max(1);
+    let compared: Vec<(&Episode, usize)> = comparable().step_by(every).collect();
     let mismatches =
         |shift| compared.iter().map(|(episode, step)| mismatch(episode, *step, shift)).collect::<Option<Vec<f64>>>();
     let lefts = (-halves..=halves).map(|shift| Some((shift, mismatches(shift)?))).collect::<Option<Vec<_>>>()?;

@@ -1,5 +1,7 @@
+use std::borrow::Cow;
+
 use motion::{Demonstrations, Verdict};
-use nalgebra::DVector;
+use nalgebra::{DVector, DVectorView};
 use serde::{Deserialize, Serialize};
 use smoothing::{PositionNoise, VelocityNoise};
 
@@ -81,12 +83,20 @@ pub(crate) fn resolution(demonstrations: &Demonstrations, axis: usize) -> Option
     (few && values.windows(2).all(|pair| whole(pair[1] - pair[0]))).then_some(least)
 }
 
-/// Recorded velocities, or those of the steps where there are none, (n) each.
-pub(crate) fn velocities(demonstrations: &Demonstrations) -> impl Iterator<Item = DVector<f64>> {
-    demonstrations.trajectories().iter().flat_map(|movement| {
-        let velocities = movement.velocities().cloned().unwrap_or_else(|| movement.step_velocities());
-        velocities.column_iter().map(nalgebra::Matrix::into_owned).collect::<Vec<_>>()
-    })
+/// Shows `see` recorded velocities, or those of the steps where there are none, (n) each.
+pub(crate) fn each_velocity(demonstrations: &Demonstrations, mut see: impl FnMut(DVectorView<'_, f64>)) {
+    for movement in demonstrations.trajectories() {
+        let steps = || Cow::Owned(movement.step_velocities());
+        let velocities = movement.velocities().map_or_else(steps, Cow::Borrowed);
+        velocities.column_iter().for_each(&mut see);
+    }
+}
+
+/// What `of` finds of each of these velocities, (M).
+pub(crate) fn of_velocities(demonstrations: &Demonstrations, of: impl Fn(DVectorView<'_, f64>) -> f64) -> Vec<f64> {
+    let mut found = Vec::with_capacity(demonstrations.n_samples());
+    each_velocity(demonstrations, |velocity| found.push(of(velocity)));
+    found
 }
 
 /// Variance of the noise in each axis of [`velocities`], the mean of all axes; 0 where it cannot be estimated.

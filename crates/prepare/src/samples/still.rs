@@ -54,7 +54,7 @@ impl Rest {
 
 /// Removes samples at rest at either end of every episode (`--trim-still`).
 pub fn trim_still(recordings: &mut Recordings) {
-    let moving = recordings.episodes.iter().filter_map(|episode| episode.trajectory().ok());
+    let moving = recordings.episodes.iter().filter_map(|episode| episode.clone().into_trajectory().ok());
     let Ok(demonstrations) = Demonstrations::new(moving.collect()) else { return };
     let rest = Rest::of(&demonstrations, noise::of(&demonstrations).positions.as_deref());
     let (before, mut removed) = (recordings.episodes.iter().map(Episode::n_samples).sum::<usize>(), 0);
@@ -79,13 +79,19 @@ pub fn trim_still(recordings: &mut Recordings) {
 }
 
 /// Says where episodes stand still at an end.
-pub(crate) fn remark(demonstrations: &Demonstrations, noise: Option<&[f64]>, episodes: &[Episode], notes: &mut Notes) {
+pub(crate) fn remark(
+    demonstrations: &Demonstrations,
+    noise: Option<&[f64]>,
+    (episodes, recorded): (&[String], &Demonstrations),
+    notes: &mut Notes,
+) {
     let rest = Rest::of(demonstrations, noise);
     let stretches: Vec<(usize, &str, &str)> = episodes
         .iter()
-        .flat_map(|episode| {
-            let (start, end) = rest.ends(&episode.positions);
-            [(start, "begins", &episode.name[..]), (end, "ends", &episode.name[..])]
+        .zip(recorded.trajectories())
+        .flat_map(|(name, movement)| {
+            let (start, end) = rest.ends(movement.states());
+            [(start, "begins", &name[..]), (end, "ends", &name[..])]
         })
         .filter(|&(samples, ..)| samples > 0)
         .collect();

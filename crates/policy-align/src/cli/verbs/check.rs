@@ -49,7 +49,8 @@ impl Check {
         }
         let recordings = read(session, &self.files, &flags)?;
         options.context = flags.context_of(&recordings)?;
-        let prepared = prepare(&recordings, &options).map_err(|error| Failure::prepare(&error, named(&self.files)))?;
+        let reported = recordings.findings.clone();
+        let prepared = prepare(recordings, &options).map_err(|error| Failure::prepare(&error, named(&self.files)))?;
         let refused = prepared.findings.iter().any(|finding| finding.verdict == Verdict::DoNotUse);
         let exit = if refused { Exit::Refused } else { Exit::Done };
         let (coverage, direction) = directions(&prepared.demonstrations);
@@ -71,7 +72,7 @@ impl Check {
         about(&prepared, &named(&self.files), &mut lines);
         let evenness = if coverage < 0.1 { "one direction hardly occurs" } else { "every direction occurs" };
         lines.add("directions", &format!("coverage {} of 1: {evenness}", short(coverage)));
-        findings(&unreported(&prepared.findings, &recordings), 10_usize.saturating_sub(lines.count()), &mut lines);
+        findings(&unreported(&prepared.findings, &reported), 10_usize.saturating_sub(lines.count()), &mut lines);
         if let Some(path) = &self.html {
             lines.add("written", &path.display().to_string());
         }

@@ -70,7 +70,8 @@ impl Fit {
         let recordings = read(session, &self.files, &reading)?;
         prepare_options.context = reading.context_of(&recordings)?;
         let (recordings, held_out) = divided(recordings, &learning.hold_out, &place())?;
-        let prepared = prepare(&recordings, &prepare_options).map_err(|error| Failure::prepare(&error, place()))?;
+        let reported = recordings.findings.clone();
+        let prepared = prepare(recordings, &prepare_options).map_err(|error| Failure::prepare(&error, place()))?;
         let bar = session.bar(4, "{msg}  {bar:30} step {pos} of {len}, {elapsed} elapsed");
         let never = AtomicBool::new(false);
         let mut report = |step: policy_align::Step| {
@@ -95,7 +96,7 @@ impl Fit {
         replace(&files)?;
         warn_of_others(session, &self.output, &checksum);
         let report: Vec<PathBuf> = files.into_iter().skip(1).map(|(path, _)| path).collect();
-        let unreported = unreported(&model.trust.findings, &recordings);
+        let unreported = unreported(&model.trust.findings, &reported);
         Ok(self.output(session, (&model, &unreported), &report, judged.as_ref()))
     }
 
