@@ -42,7 +42,7 @@ impl Stretches {
     /// than `selection` allows. None if they are of far fewer movements than `kept` ones.
     pub(crate) fn rows(&self, rows: &Rows, kept: &Kept, selection: &Selection) -> Option<Kept> {
         let all = || (0..rows.len()).flat_map(|row| self.equations(rows, row));
-        let (mut sum, mut count) = (0.0, 0);
+        let (mut sum, mut count) = (0.0, 0_usize);
         all().for_each(|equation| {
             sum += equation.part.powi(2);
             count += 1;
