@@ -90,7 +90,7 @@ pub use evaluate::{EvaluateError, Evaluation, Truth, evaluate};
 pub use export::{CSource, ExportError, Precision, to_onnx};
 pub use fit::{FitOptions, LearnerChoice, Progress, Step, fit};
 pub use learnt::Learnt;
-pub use leave_out::{ConstraintLeftOut, leave_constraints_out};
+pub use leave_out::{ConstraintLeftOut, leave_constraints_out, without_movements};
 pub use model::{DataSummary, FileSummary, MadeBy, Model};
 pub use model_policy::{ModelPolicy, ModelPotential};
 pub use motion::{Decision, Finding, LeftOut, Verdict};
