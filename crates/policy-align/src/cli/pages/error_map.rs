@@ -34,7 +34,7 @@ pub(crate) fn error_map(model: &Model, prepared: &Prepared) -> Option<Part> {
     let [x, y] = grid(range);
     let policy = model.policy();
     let places = |y: f64| -> Vec<[f64; 2]> { x.iter().map(|&x| [x, y]).collect() };
-    let known: Vec<Vec<bool>> = y.iter().map(|&y| picture.are_known(&policy, &places(y))).collect();
+    let known = picture.known(&policy, &x, &y);
     let scales = model.scales();
     let shares = |y: f64| {
         let states: Vec<DVector<f64>> = places(y).into_iter().map(|place| picture.state(place)).collect();
@@ -53,7 +53,8 @@ pub(crate) fn error_map(model: &Model, prepared: &Prepared) -> Option<Part> {
     let name = "σ (%)".to_owned();
     let field = Field { x: x.clone(), y: y.clone(), values };
     let mut layers = vec![Layer::Colors { field, name, range: Some([0.0, most]) }];
-    layers.extend(unknown(&x, &y, &known));
+    let [finer_x, finer_y] = [&x, &y].map(|places| finer(places));
+    layers.extend(unknown(&finer_x, &finer_y, &picture.known(&policy, &finer_x, &finer_y)));
     let paths: Vec<Vec<(f64, f64)>> = recorded(prepared).iter().map(|movement| picture.points(movement)).collect();
     let of_missed = |&&(_, error): &&(usize, f64)| error > TrustNumbers::GOOD_HELD_OUT_ERROR;
     let errors = &model.trust.numbers.episode_errors;
@@ -94,6 +95,12 @@ fn grid(range: [[f64; 2]; 2]) -> [Vec<f64>; 2] {
         let start = 0.5 * (from + to - step * count as f64);
         (0..=count).map(|at| start + step * at as f64).collect()
     })
+}
+
+/// The same places with their middles between them.
+fn finer(places: &[f64]) -> Vec<f64> {
+    let pairs = places.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]);
+    pairs.chain(places.last().copied()).collect()
 }
 
 #[cfg(test)]
