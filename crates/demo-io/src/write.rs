@@ -90,12 +90,12 @@ pub fn write(path: &Path, recordings: &Recordings) -> Result<(), WriteError> {
     write_any(path, recordings, None)
 }
 
-/// [`write`] to MCAP with the robot that moves: topics `/robot_description`, its URDF as `std_msgs/msg/String`, and `/tf`, where
+/// [`write()`] to MCAP with the robot that moves: topics `/robot_description`, its URDF as `std_msgs/msg/String`, and `/tf`, where
 /// its links are at every sample as `tf2_msgs/msg/TFMessage`, beside `/joint_states`.
 ///
 /// # Errors
 ///
-/// [`WriteError`]: another format than MCAP, a state in which the robot cannot be, or what [`write`] refuses.
+/// [`WriteError`]: another format than MCAP, a state in which the robot cannot be, or what [`write()`] refuses.
 pub fn write_with_robot(path: &Path, recordings: &Recordings, robot: &dyn LinkFrames) -> Result<(), WriteError> {
     write_any(path, recordings, Some(robot))
 }
