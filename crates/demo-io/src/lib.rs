@@ -63,7 +63,7 @@ pub use read::{channels_named, read, read_all};
 pub use regular_file::{read_bounded, read_bytes, read_text};
 pub use resample::{ResampleError, resampled};
 pub use whole_file::{Sink, TempFile, abandon_drafts, write_whole};
-pub use write::{WriteError, write};
+pub use write::{LinkFrames, WriteError, write, write_with_robot};
 
 /// The program of the README, compiled.
 #[cfg(doctest)]

@@ -9,6 +9,7 @@ mod npz;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use nalgebra::{DVectorView, Isometry3};
 use thiserror::Error;
 
 use crate::whole_file::{Sink, write_whole};
@@ -54,6 +55,20 @@ pub enum WriteError {
         /// The first without.
         episode: String,
     },
+    /// Only MCAP holds a robot.
+    #[error("files ending in '.{extension}' hold no robot; write .mcap")]
+    NoRobot {
+        /// Without its point.
+        extension: String,
+    },
+    /// A robot cannot be where a sample is.
+    #[error("the robot cannot be where {place} is: {reason}")]
+    Robot {
+        /// Episode and sample.
+        place: String,
+        /// What the robot says.
+        reason: String,
+    },
     /// There is no episode or no channel.
     #[error("there is nothing to write: {episodes} episodes of {channels} channels")]
     Nothing {
@@ -72,7 +87,39 @@ pub enum WriteError {
 ///
 /// [`WriteError`]: an unknown extension, names that would be misread, or what the system refuses.
 pub fn write(path: &Path, recordings: &Recordings) -> Result<(), WriteError> {
+    write_any(path, recordings, None)
+}
+
+/// [`write()`] to MCAP with the robot that moves: topics `/robot_description`, its URDF as `std_msgs/msg/String`, and `/tf`, where
+/// its links are at every sample as `tf2_msgs/msg/TFMessage`, beside `/joint_states`.
+///
+/// # Errors
+///
+/// [`WriteError`]: another format than MCAP, a state in which the robot cannot be, or what [`write()`] refuses.
+pub fn write_with_robot(path: &Path, recordings: &Recordings, robot: &dyn LinkFrames) -> Result<(), WriteError> {
+    write_any(path, recordings, Some(robot))
+}
+
+/// A robot as viewers draw it: its description, and the frames of its links in a state.
+pub trait LinkFrames {
+    /// The text of its URDF.
+    fn description(&self) -> &str;
+
+    /// Names of parent and child of every link but the root.
+    fn links(&self) -> &[[String; 2]];
+
+    /// In a state (n), the pose of each of [`LinkFrames::links`] in its parent's frame, metres, in their order.
+    ///
+    /// # Errors
+    /// In a sentence, why the robot cannot be in this state.
+    fn transforms(&self, state: DVectorView<'_, f64>) -> Result<Vec<Isometry3<f64>>, String>;
+}
+
+fn write_any(path: &Path, recordings: &Recordings, robot: Option<&dyn LinkFrames>) -> Result<(), WriteError> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    if robot.is_some() && extension != "mcap" {
+        return Err(WriteError::NoRobot { extension });
+    }
     if recordings.episodes.is_empty() || recordings.state.is_empty() {
         return Err(WriteError::Nothing { episodes: recordings.episodes.len(), channels: recordings.state.len() });
     }
@@ -82,7 +129,7 @@ pub fn write(path: &Path, recordings: &Recordings) -> Result<(), WriteError> {
         "jsonl" | "ndjson" => whole(path, |file| json_lines::write(file, recordings)),
         "npz" => whole(path, |file| npz::write(file, recordings)),
         #[cfg(feature = "mcap")]
-        "mcap" => whole(path, |file| mcap::write(file, recordings)),
+        "mcap" => whole(path, |file| mcap::write(file, recordings, robot)),
         #[cfg(not(feature = "mcap"))]
         "mcap" => Err(WriteError::Feature { extension, feature: "mcap" }),
         _ => Err(WriteError::Extension { extension }),

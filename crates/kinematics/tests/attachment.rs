@@ -55,8 +55,14 @@ proptest! {
         }),
     ) {
         let robot = RobotModel::from_urdf(&tree.urdf()).unwrap();
-        prop_assert!(largest_difference(&robot, &DVector::from_vec(q)) < 1e-12);
+        prop_assert!(largest_difference(&robot, &DVector::from_vec(q.clone())) < 1e-12);
+        let q = DVector::from_vec(q);
+        let mut workspace = Workspace::new();
+        let poses = robot.forward_kinematics(q.as_view(), &mut workspace).unwrap();
         for link in robot.links() {
+            let in_parent = robot.parent(link).map(|parent| poses.pose(parent) * poses.pose_in_parent(link).unwrap());
+            let difference = |pose: IsometryMatrix3<f64>| (pose.to_homogeneous() - poses.pose(link).to_homogeneous()).amax();
+            prop_assert!(in_parent.map_or(link == robot.root(), |pose| difference(pose) < 1e-12));
             let attachment = robot.attachment(link);
             prop_assert_eq!(attachment.as_ref().map(|attachment| attachment.parent), robot.parent(link));
             let Some(joint) = attachment.and_then(|attachment| attachment.joint) else { continue };

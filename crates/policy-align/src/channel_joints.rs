@@ -1,7 +1,7 @@
 use kinematics::{KinematicsError, RobotModel};
 use nalgebra::{DVector, DVectorView};
 
-/// The joints of a robot that the channels of a state are, by name.
+/// The joints of a robot that the channels of a state are.
 #[derive(Debug, Clone)]
 pub(crate) struct ChannelJoints {
     n_joints: usize,
@@ -10,11 +10,18 @@ pub(crate) struct ChannelJoints {
 }
 
 impl ChannelJoints {
+    /// By name.
+    ///
     /// # Errors
     /// [`KinematicsError::UnknownJoint`] for a channel that is no joint.
     pub(crate) fn of<'a>(robot: &RobotModel, channels: impl Iterator<Item = &'a str>) -> Result<Self, KinematicsError> {
         let places = channels.map(|channel| robot.joint(channel)).collect::<Result<_, _>>()?;
         Ok(ChannelJoints { n_joints: robot.n_joints(), places })
+    }
+
+    /// One channel for each joint, in the order of a configuration.
+    pub(crate) fn in_order(robot: &RobotModel) -> Self {
+        ChannelJoints { n_joints: robot.n_joints(), places: (0..robot.n_joints()).collect() }
     }
 
     /// Number of the robot's joints.

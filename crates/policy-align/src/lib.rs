@@ -76,6 +76,7 @@ mod leave_out;
 mod model;
 mod model_policy;
 mod named;
+mod robot_frames;
 mod roll_out;
 mod stored;
 mod trust;
@@ -89,7 +90,7 @@ pub use evaluate::{EvaluateError, Evaluation, Truth, evaluate};
 pub use export::{CSource, ExportError, Precision, to_onnx};
 pub use fit::{FitOptions, LearnerChoice, Progress, Step, fit};
 pub use learnt::Learnt;
-pub use leave_out::{ConstraintLeftOut, leave_constraints_out};
+pub use leave_out::{ConstraintLeftOut, leave_constraints_out, without_movements};
 pub use model::{DataSummary, FileSummary, MadeBy, Model};
 pub use model_policy::{ModelPolicy, ModelPotential};
 pub use motion::{Decision, Finding, LeftOut, Verdict};
@@ -98,6 +99,7 @@ pub use prepare::{
     ContextUse, Noise, PrepareError, PrepareOptions, Prepared, Repair, Smoothing, StateChannel, VelocitySource,
     VelocityUse, direction_by_channels, prepare, trim_still,
 };
+pub use robot_frames::RobotFrames;
 pub use roll_out::{ConstraintFileError, ConstraintSet, JointLimits, Path, RollOut, RollOutError, Stop, spread_starts};
 pub use stored::{ModelError, checksum_of, sha256, sha256_of_file, write_whole};
 pub use trust::{AlignedNumbers, Trust, TrustNumbers};

@@ -131,6 +131,10 @@ impl Writer {
         self.put(&value.to_le_bytes());
     }
 
+    pub(crate) fn f64(&mut self, value: f64) {
+        self.put(&value.to_le_bytes());
+    }
+
     pub(crate) fn text(&mut self, text: &str) {
         self.u32(text.len() as u32 + 1);
         self.bytes.extend_from_slice(text.as_bytes());
@@ -139,7 +143,7 @@ impl Writer {
 
     pub(crate) fn numbers<'a>(&mut self, numbers: impl ExactSizeIterator<Item = &'a f64>) {
         self.u32(numbers.len() as u32);
-        numbers.for_each(|number| self.put(&number.to_le_bytes()));
+        numbers.for_each(|&number| self.f64(number));
     }
 
     /// With the four bytes that say little-endian.

@@ -1,11 +1,15 @@
 mod bag;
 mod record;
+mod topic;
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
+use nalgebra::Isometry3;
+
 use self::bag::Bag;
-use super::{Failure, has_velocities};
+use self::topic::{JOINT_STATES, ROBOT_DESCRIPTION, TRANSFORMS};
+use super::{Failure, LinkFrames, WriteError, has_velocities};
 
 use crate::label_entry::LabelEntry;
 use crate::rows::mcap::{EpisodeEntry, METADATA};
@@ -18,16 +22,31 @@ const START: u64 = 1_000_000_000;
 /// Nanoseconds without a message between two movements, so that programs see them apart.
 const PAUSE: u64 = 5_000_000_000;
 
-/// Messages of `sensor_msgs/msg/JointState`, a message a sample; names of movements and units stand in a metadata record.
-pub(super) fn write(file: impl Write, recordings: &Recordings) -> Result<(), Failure> {
+/// Messages of `sensor_msgs/msg/JointState`, a message a sample; names of movements and units stand in a metadata record. With
+/// a robot also its URDF, once, and a message of `tf2_msgs/msg/TFMessage` a sample with all its links.
+pub(super) fn write(file: impl Write, recordings: &Recordings, robot: Option<&dyn LinkFrames>) -> Result<(), Failure> {
     has_velocities(recordings)?;
-    let mut bag = Bag::create(file)?;
+    let topics = [JOINT_STATES, ROBOT_DESCRIPTION, TRANSFORMS];
+    let mut bag = Bag::create(file, if robot.is_some() { &topics } else { &topics[..1] })?;
+    if let Some(robot) = robot {
+        let mut description = Writer::default();
+        description.text(robot.description());
+        bag.message(1, START, &description.message())?;
+    }
     let mut start = START;
     for episode in &recordings.episodes {
         let mut stamp = start;
         for (sample, time) in episode.times.stamps().iter().enumerate() {
             stamp = start + (time * 1e9).round() as u64;
-            bag.message(stamp, &message(recordings, episode, sample, stamp))?;
+            if let Some(robot) = robot {
+                let transforms = robot.transforms(episode.positions.column(sample));
+                let transforms = transforms.map_err(|reason| {
+                    let place = format!("episode '{}', sample {sample}", episode.name);
+                    WriteError::Robot { place, reason }
+                })?;
+                bag.message(2, stamp, &transform_message(robot, &transforms, stamp))?;
+            }
+            bag.message(0, stamp, &joint_message(recordings, episode, sample, stamp))?;
         }
         start = stamp + PAUSE;
     }
@@ -35,11 +54,9 @@ pub(super) fn write(file: impl Write, recordings: &Recordings) -> Result<(), Fai
     Ok(())
 }
 
-fn message(recordings: &Recordings, episode: &motion::Episode, sample: usize, stamp: u64) -> Vec<u8> {
+fn joint_message(recordings: &Recordings, episode: &motion::Episode, sample: usize, stamp: u64) -> Vec<u8> {
     let mut writer = Writer::default();
-    writer.i32((stamp / 1_000_000_000) as i32);
-    writer.u32((stamp % 1_000_000_000) as u32);
-    writer.text("");
+    header(&mut writer, stamp, "");
     writer.u32(recordings.state.len() as u32);
     recordings.state.iter().for_each(|channel| writer.text(&channel.name));
     writer.numbers(episode.positions.column(sample).iter());
@@ -49,6 +66,25 @@ fn message(recordings: &Recordings, episode: &motion::Episode, sample: usize, st
     }
     writer.numbers([].iter());
     writer.message()
+}
+
+fn transform_message(robot: &dyn LinkFrames, transforms: &[Isometry3<f64>], stamp: u64) -> Vec<u8> {
+    let mut writer = Writer::default();
+    writer.u32(transforms.len() as u32);
+    for ([parent, child], transform) in robot.links().iter().zip(transforms) {
+        header(&mut writer, stamp, parent);
+        writer.text(child);
+        // Quaternions of nalgebra are i, j, k, w, like those of ROS.
+        let numbers = transform.translation.vector.iter().chain(transform.rotation.coords.iter());
+        numbers.for_each(|&number| writer.f64(number));
+    }
+    writer.message()
+}
+
+fn header(writer: &mut Writer, stamp: u64, frame: &str) {
+    writer.i32((stamp / 1_000_000_000) as i32);
+    writer.u32((stamp % 1_000_000_000) as u32);
+    writer.text(frame);
 }
 
 fn metadata(recordings: &Recordings) -> io::Result<BTreeMap<String, String>> {

@@ -41,6 +41,12 @@ impl LinkPoses<'_> {
         self.placements[link.0].isometry()
     }
 
+    /// The link's pose in its parent's frame, metres; `None` for the root.
+    pub fn pose_in_parent(&self, link: LinkId) -> Option<IsometryMatrix3<f64>> {
+        let parent = self.robot.parent(link)?;
+        Some(self.pose(parent).inv_mul(&self.pose(link)))
+    }
+
     /// The origin of the link's frame in the root link's frame, metres.
     pub fn position(&self, link: LinkId) -> Point3<f64> {
         self.placements[link.0].position()

@@ -12,6 +12,7 @@ mod session;
 mod table;
 mod trust_files;
 mod verbs;
+mod written;
 
 pub(crate) use failure::Exit;
 pub(crate) use session::complain;

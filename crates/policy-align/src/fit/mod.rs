@@ -139,7 +139,7 @@ fn takes_slope(readings: &AutoFit, learner: LearnerChoice) -> bool {
 
 /// The plane that no movement leaves, where one direction is not seen.
 fn plane(prepared: &Prepared, numbers: &TrustNumbers) -> Option<Finding> {
-    let unseen = numbers.direction_coverage < TrustNumbers::UNSEEN;
+    let unseen = numbers.direction_coverage < TrustNumbers::GOOD_COVERAGE;
     let plane = unseen.then(|| CommonPlane::of(&prepared.demonstrations, &prepared.state)).flatten()?;
     Some(plane.finding(&prepared.state))
 }

@@ -10,8 +10,7 @@ use crate::{Finding, StateChannel, Trust, Verdict};
 
 /// Left-out error along the path from which a policy is wrong.
 const WRONG: f64 = 0.5;
-/// Expected error of PolicyAlign's policy from which it may be, most of which is a difference that was measured; and from which it is wrong.
-const MEASURED: f64 = 0.1;
+/// Expected error of PolicyAlign's policy from which it is wrong.
 const FAR: f64 = 0.8;
 /// An episode whose error is so many times the usual one is named.
 const ODD: f64 = 10.0;
@@ -19,8 +18,6 @@ const ODD: f64 = 10.0;
 const SPREAD: f64 = 0.25;
 /// Share of uncertain states between the demonstrations from which other movements will meet them.
 const UNKNOWN: f64 = 0.1;
-/// Share of starts whose roll-outs leave the data from which the goal lies outside it.
-const LEAVING: f64 = 0.5;
 
 /// Input of a verdict.
 pub(crate) struct VerdictInput<'a> {
@@ -80,7 +77,7 @@ fn about_reading(numbers: &TrustNumbers, state: &[StateChannel], found: &mut dyn
             found(Verdict::Doubtful, "too few movements to detect constraints".to_owned(), "record at least five");
         }
     }
-    if numbers.direction_coverage < TrustNumbers::UNSEEN {
+    if numbers.direction_coverage < TrustNumbers::GOOD_COVERAGE {
         found(
             Verdict::Doubtful,
             format!("almost no movement along {direction} (coverage {coverage})"),
@@ -98,7 +95,7 @@ fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &s
             format!("the Gaussian process confidently learns another policy: they differ by {}", percent(expected)),
             "use --learner auto",
         );
-    } else if expected > if measured { MEASURED } else { TrustNumbers::GOOD_EXPECTED_ERROR } {
+    } else if expected > numbers.good_expected_error() {
         found(
             Verdict::Doubtful,
             format!("the expected error is {} of the policy's variance", percent(expected)),
@@ -127,7 +124,7 @@ fn about_error(numbers: &TrustNumbers, found: &mut dyn FnMut(Verdict, String, &s
             "record movements from starts in between; a roll-out shows where support ends",
         );
     }
-    if numbers.leaving > LEAVING {
+    if numbers.leaving > TrustNumbers::GOOD_LEAVING {
         found(
             Verdict::Doubtful,
             format!(

@@ -62,10 +62,19 @@ impl TrustNumbers {
     pub const GOOD_HELD_OUT_ERROR: f64 = 0.035;
     /// Above this `expected_error` a Gaussian process's policy is doubtful: it has been too low by a factor of 3.
     pub const GOOD_EXPECTED_ERROR: f64 = 0.06;
-    /// Below this `direction_coverage` one direction is a guess.
-    pub(crate) const UNSEEN: f64 = 0.1;
+    /// The same of PolicyAlign's policy, most of which is a difference that was measured.
+    pub const GOOD_MEASURED_ERROR: f64 = 0.1;
     /// Above this difference of `halves` a policy is doubtful.
     pub const GOOD_HALVES: f64 = 0.12;
+    /// Below this `direction_coverage` one direction is a guess.
+    pub const GOOD_COVERAGE: f64 = 0.1;
+    /// Above this share of starts whose roll-outs leave the data the goal lies outside it.
+    pub const GOOD_LEAVING: f64 = 0.5;
+
+    /// Above this the `expected_error` of the policy handed out makes it doubtful.
+    pub fn good_expected_error(&self) -> f64 {
+        if self.aligned.is_some() { Self::GOOD_MEASURED_ERROR } else { Self::GOOD_EXPECTED_ERROR }
+    }
 }
 
 /// Numbers of PolicyAlign's policy.

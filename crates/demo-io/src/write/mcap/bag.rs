@@ -1,42 +1,27 @@
-//! A bag with one channel, packed in chunks, with the indices by which viewers jump.
+//! A bag packed in chunks, with the indices by which viewers jump.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use super::record::{Out, Record};
+use super::topic::Topic;
 use crate::rows::mcap::format::{MAGIC, opcode};
 
 /// A chunk is closed when its messages have so many bytes.
 const CHUNK: usize = 768 << 10;
 
-const SCHEMA: u16 = 1;
-const CHANNEL: u16 = 1;
-
-const TOPIC: &str = "/joint_states";
-const TYPE: &str = "sensor_msgs/msg/JointState";
-
-/// What viewers need to know to take messages apart.
-const DEFINITION: &str = "\
-std_msgs/Header header
-string[] name
-float64[] position
-float64[] velocity
-float64[] effort
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-";
-
-/// Writes a bag of joint states from its beginning to its end.
+/// Writes a bag from its beginning to its end.
 pub(super) struct Bag<W> {
     out: Out<W>,
+    topics: Vec<Written>,
     chunk: Chunk,
     chunks: Vec<ChunkIndex>,
+}
+
+/// A topic of the bag, whose channel and schema have one number.
+struct Written {
+    number: u16,
+    topic: Topic,
     messages: u64,
 }
 
@@ -44,8 +29,10 @@ pub(super) struct Bag<W> {
 #[derive(Default)]
 struct Chunk {
     records: Vec<u8>,
-    /// Time of each message, and where it begins in `records`.
-    index: Vec<(u64, u64)>,
+    /// Of the first and the last message.
+    times: Option<(u64, u64)>,
+    /// For each channel, time of each message and where it begins in `records`.
+    index: BTreeMap<u16, Vec<(u64, u64)>>,
 }
 
 struct ChunkIndex {
@@ -53,43 +40,52 @@ struct ChunkIndex {
     times: (u64, u64),
     start: u64,
     length: u64,
-    /// Where the index of its messages begins, and its length.
-    index: (u64, u64),
+    /// Where the index of each channel's messages begins.
+    index: Vec<(u16, u64)>,
+    /// Length of these indices.
+    index_length: u64,
     packed: u64,
     unpacked: u64,
 }
 
 impl<W: Write> Bag<W> {
-    pub(super) fn create(inner: W) -> io::Result<Self> {
+    pub(super) fn create(inner: W, topics: &[Topic]) -> io::Result<Self> {
         let mut out = Out::new(inner);
         out.write_all(&MAGIC)?;
         let mut header = Record::new(opcode::HEADER);
         header.text("ros2");
         header.text("demo-io");
         header.write(&mut out)?;
-        schema().write(&mut out)?;
-        channel().write(&mut out)?;
-        Ok(Self { out, chunk: Chunk::default(), chunks: Vec::new(), messages: 0 })
+        let topics: Vec<Written> =
+            topics.iter().zip(1..).map(|(&topic, number)| Written { number, topic, messages: 0 }).collect();
+        for topic in &topics {
+            topic.schema().write(&mut out)?;
+            topic.channel().write(&mut out)?;
+        }
+        Ok(Self { out, topics, chunk: Chunk::default(), chunks: Vec::new() })
     }
 
-    /// Adds a message at `time` nanoseconds; times do not fall.
-    pub(super) fn message(&mut self, time: u64, data: &[u8]) -> io::Result<()> {
+    /// Adds a message to a topic by its place, at `time` nanoseconds; times do not fall.
+    pub(super) fn message(&mut self, topic: usize, time: u64, data: &[u8]) -> io::Result<()> {
+        let topic = &mut self.topics[topic];
         let mut record = Record::new(opcode::MESSAGE);
-        record.u16(CHANNEL);
+        record.u16(topic.number);
         // Programs only look for gaps in it.
-        record.u32(self.messages as u32);
+        record.u32(topic.messages as u32);
         record.u64(time);
         record.u64(time);
         record.bytes(data);
-        self.chunk.index.push((time, self.chunk.records.len() as u64));
-        record.write(&mut self.chunk.records)?;
-        self.messages += 1;
-        if self.chunk.records.len() < CHUNK { Ok(()) } else { self.close_chunk() }
+        topic.messages += 1;
+        let Chunk { records, times, index } = &mut self.chunk;
+        *times = Some((times.map_or(time, |(first, _)| first), time));
+        index.entry(topic.number).or_default().push((time, records.len() as u64));
+        record.write(records)?;
+        if records.len() < CHUNK { Ok(()) } else { self.close_chunk() }
     }
 
     fn close_chunk(&mut self) -> io::Result<()> {
-        let Chunk { records, index } = std::mem::take(&mut self.chunk);
-        let (Some(&(first, _)), Some(&(last, _))) = (index.first(), index.last()) else { return Ok(()) };
+        let Chunk { records, times, index } = std::mem::take(&mut self.chunk);
+        let Some((first, last)) = times else { return Ok(()) };
         let packed = zstd::bulk::compress(&records, zstd::DEFAULT_COMPRESSION_LEVEL)?;
         let start = self.out.position;
         let mut chunk = Record::new(opcode::CHUNK);
@@ -102,20 +98,25 @@ impl<W: Write> Bag<W> {
         chunk.bytes(&packed);
         chunk.write(&mut self.out)?;
         let behind = self.out.position;
-        let mut times = Record::new(opcode::MESSAGE_INDEX);
-        times.u16(CHANNEL);
-        times.block(|block| {
-            for (time, offset) in &index {
-                block.u64(*time);
-                block.u64(*offset);
-            }
-        });
-        times.write(&mut self.out)?;
+        let mut places = Vec::new();
+        for (channel, messages) in &index {
+            places.push((*channel, self.out.position));
+            let mut times = Record::new(opcode::MESSAGE_INDEX);
+            times.u16(*channel);
+            times.block(|block| {
+                for (time, offset) in messages {
+                    block.u64(*time);
+                    block.u64(*offset);
+                }
+            });
+            times.write(&mut self.out)?;
+        }
         self.chunks.push(ChunkIndex {
             times: (first, last),
             start,
             length: behind - start,
-            index: (behind, self.out.position - behind),
+            index: places,
+            index_length: self.out.position - behind,
             packed: packed.len() as u64,
             unpacked: records.len() as u64,
         });
@@ -146,8 +147,8 @@ impl<W: Write> Bag<W> {
         index.u64(length);
         index.text(name);
         let groups = [
-            vec![schema()],
-            vec![channel()],
+            self.topics.iter().map(Written::schema).collect(),
+            self.topics.iter().map(Written::channel).collect(),
             vec![self.statistics()],
             self.chunks.iter().map(ChunkIndex::record).collect(),
             vec![index],
@@ -180,40 +181,45 @@ impl<W: Write> Bag<W> {
 
     fn statistics(&self) -> Record {
         let mut statistics = Record::new(opcode::STATISTICS);
-        statistics.u64(self.messages);
-        statistics.u16(1);
+        let n = self.topics.len() as u16;
+        statistics.u64(self.topics.iter().map(|topic| topic.messages).sum());
+        statistics.u16(n);
         // Channels, attachments, metadata, chunks.
-        for count in [1, 0, 1, self.chunks.len() as u32] {
+        for count in [u32::from(n), 0, 1, self.chunks.len() as u32] {
             statistics.u32(count);
         }
         statistics.u64(self.chunks.first().map_or(0, |chunk| chunk.times.0));
         statistics.u64(self.chunks.last().map_or(0, |chunk| chunk.times.1));
         statistics.block(|counts| {
-            counts.u16(CHANNEL);
-            counts.u64(self.messages);
+            for topic in &self.topics {
+                counts.u16(topic.number);
+                counts.u64(topic.messages);
+            }
         });
         statistics
     }
 }
 
-/// The type of the messages.
-fn schema() -> Record {
-    let mut schema = Record::new(opcode::SCHEMA);
-    schema.u16(SCHEMA);
-    schema.text(TYPE);
-    schema.text("ros2msg");
-    schema.text(DEFINITION);
-    schema
-}
+impl Written {
+    /// The type of the messages.
+    fn schema(&self) -> Record {
+        let mut schema = Record::new(opcode::SCHEMA);
+        schema.u16(self.number);
+        schema.text(self.topic.kind);
+        schema.text("ros2msg");
+        schema.text(self.topic.definition);
+        schema
+    }
 
-fn channel() -> Record {
-    let mut channel = Record::new(opcode::CHANNEL);
-    channel.u16(CHANNEL);
-    channel.u16(SCHEMA);
-    channel.text(TOPIC);
-    channel.text("cdr");
-    channel.map(&BTreeMap::new());
-    channel
+    fn channel(&self) -> Record {
+        let mut channel = Record::new(opcode::CHANNEL);
+        channel.u16(self.number);
+        channel.u16(self.number);
+        channel.text(self.topic.name);
+        channel.text("cdr");
+        channel.map(&BTreeMap::new());
+        channel
+    }
 }
 
 impl ChunkIndex {
@@ -223,10 +229,12 @@ impl ChunkIndex {
             record.u64(value);
         }
         record.block(|offsets| {
-            offsets.u16(CHANNEL);
-            offsets.u64(self.index.0);
+            for (channel, at) in &self.index {
+                offsets.u16(*channel);
+                offsets.u64(*at);
+            }
         });
-        record.u64(self.index.1);
+        record.u64(self.index_length);
         record.text("zstd");
         record.u64(self.packed);
         record.u64(self.unpacked);

@@ -4,12 +4,14 @@ use maud::{Markup, html};
 use motion::Trajectory;
 use nalgebra::{DVector, DVectorView};
 use page::{Card, Part};
-use plot::{Layer, Plane};
+use plot::Plane;
 use policy_align::{Prepared, StateChannel, Verdict, direction_by_channels};
 
-use crate::cli::lines::{counted, short};
-use crate::cli::pages::page_parts::{self, COVERAGE, NOISE, channels, decisions, left_out, opening, page, part};
-use crate::cli::pages::picture::{DEMONSTRATED, with_unit};
+use crate::cli::lines::counted;
+use crate::cli::pages::movements::movements as draw;
+use crate::cli::pages::numbers_table::{COVERAGE, Good, NOISE, numbers as table};
+use crate::cli::pages::page_parts::{channels, decisions, left_out, opening, page, part};
+use crate::cli::pages::picture::{DEMONSTRATED, MARKED, with_unit};
 
 /// Empty space around what is drawn, as a share of its range.
 const MARGIN: f64 = 0.06;
@@ -50,28 +52,28 @@ fn movements(prepared: &Prepared) -> Markup {
     let every = prepared.demonstrations.n_trajectories().div_ceil(DRAWN);
     let drawn = prepared.demonstrations.trajectories().iter().step_by(every);
     let place = |state: DVectorView<'_, f64>| (state[0] / channels[0].scale, state[1] / channels[1].scale);
-    let path = |movement: &Trajectory| {
-        let points = movement.states().column_iter().map(place).collect();
-        Layer::Path { points, stroke: DEMONSTRATED, label: None }
-    };
-    let points = drawn.clone().map(|movement| place(movement.state(0))).collect();
-    let starts = Layer::Dots { points, color: DEMONSTRATED.color, radius: 2.5 };
-    let layers = drawn.map(path).chain([starts]).collect();
+    let path = |movement: &Trajectory| -> Vec<(f64, f64)> { movement.states().column_iter().map(place).collect() };
+    let paths: Vec<_> = drawn.map(path).collect();
     let range = |axis: usize| {
         let width = (channels[axis].high - channels[axis].low).max(f64::MIN_POSITIVE);
         [channels[axis].low - MARGIN * width, channels[axis].high + MARGIN * width]
     };
+    let range = [range(0), range(1)];
+    let layers = draw(&paths, range, DEMONSTRATED, None, MARKED);
     let plane = Plane {
         title: "The recorded movements".to_owned(),
         x_label: with_unit(channels[0], 1.0),
         y_label: with_unit(channels[1], 1.0),
-        x: range(0),
-        y: range(1),
+        x: range[0],
+        y: range[1],
         layers,
         size: Plane::SQUARE,
     };
     let svg = plot::Picture::rows(&[&[&plane]]).svg();
-    let caption = format!("Movements in {} and {}; dots mark where they start.", channels[0].name, channels[1].name);
+    let caption = format!(
+        "Movements in {} and {}; dots mark where they start, arrows which way they go.",
+        channels[0].name, channels[1].name
+    );
     Card { id: "movements", title: "Movements", caption: &caption, remark: None, svg: &svg }.under("Movements")
 }
 
@@ -79,21 +81,20 @@ fn numbers(prepared: &Prepared, (coverage, least): (f64, &DVector<f64>)) -> Mark
     let noise = &prepared.noise;
     let deviation = |(channel, deviation): (&StateChannel, &f64)| {
         let what = format!("Noise of {}, standard deviation", channel.name);
-        (what, Some(short(deviation / channel.scale)), "far below its range")
+        (what, Some(deviation / channel.scale), Good::Words("far below its range"))
     };
     let positions = noise.positions.iter().flatten();
     let deviations: Vec<_> = prepared.state.iter().zip(positions).map(deviation).collect();
-    let velocities = ("Share of noise in the squared velocities", noise.velocity_share.map(short), "below 0.01");
-    let time_step = Some(short(prepared.time_step));
+    let velocities = ("Share of noise in the squared velocities", noise.velocity_share, Good::Below(0.01));
     let rows = [
-        ("Seconds between samples", time_step, "even, and short against the movement"),
-        (NOISE.0, Some(short(noise.step_share)), NOISE.1),
+        ("Seconds between samples", Some(prepared.time_step), Good::Words("even, and short against the movement")),
+        (NOISE.0, Some(noise.step_share), NOISE.1),
         velocities,
     ];
-    let deviations = deviations.iter().map(|(what, value, good)| (what.as_str(), value.clone(), *good));
-    let rows = rows.into_iter().chain(deviations).chain([(COVERAGE.0, Some(short(coverage)), COVERAGE.1)]);
+    let deviations = deviations.iter().map(|(what, value, good)| (what.as_str(), *value, *good));
+    let rows = rows.into_iter().chain(deviations).chain([(COVERAGE.0, Some(coverage), COVERAGE.1)]);
     html! {
-        (page_parts::numbers(rows))
+        (table(rows))
         p { "Least observed direction: motion along " (direction_by_channels(least.as_slice(), &prepared.state)) "." }
     }
 }

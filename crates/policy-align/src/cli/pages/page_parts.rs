@@ -12,14 +12,8 @@ use crate::cli::lines::{list, short};
 const STYLE: &str = include_str!("page_parts.css");
 
 /// A column of a table: its title and the class of its cells, `value` for numbers.
-type Column = (&'static str, &'static str);
+pub(crate) type Column = (&'static str, &'static str);
 
-/// Numbers that both pages have, and which are good.
-pub(crate) const COVERAGE: (&str, &str) =
-    ("Coverage of the least observed direction", "above 0.1; 1 if all directions are alike");
-pub(crate) const NOISE: (&str, &str) = ("Share of noise in the squared steps", "below 0.1");
-
-const NUMBERS: [Column; 3] = [("What", ""), ("Value", "value"), ("Good is", "")];
 const DECISIONS: [Column; 4] = [("What", ""), ("Decided", ""), ("Why", ""), ("Flag", "")];
 const CONSTRAINTS: [Column; 4] =
     [("Constraint", ""), ("Stretches", "value"), ("Seconds", "value"), ("Error of the normal", "value")];
@@ -50,9 +44,11 @@ pub(crate) fn opening(
     findings.sort_by_key(|finding| Reverse(finding.verdict));
     html! {
         h1 id=(id) { (title) }
-        p class=(class) { (sentence) }
-        @if !findings.is_empty() { ul .findings { @for finding in findings { (found(finding)) } } }
-        p { (data) }
+        div .opening {
+            p class=(class) { (sentence) }
+            @if !findings.is_empty() { ul .findings { @for finding in findings { (found(finding)) } } }
+            p { (data) }
+        }
     }
 }
 
@@ -71,7 +67,7 @@ fn found(finding: &Finding) -> Markup {
 }
 
 /// A table. In a narrow window each row becomes a block, in which cells name their columns.
-fn table(columns: &[Column], rows: &[Vec<Markup>]) -> Markup {
+pub(crate) fn table(columns: &[Column], rows: &[Vec<Markup>]) -> Markup {
     html! {
         table .numbers {
             thead { tr { @for (title, class) in columns { th scope="col" class=(class) { (title) } } } }
@@ -82,14 +78,6 @@ fn table(columns: &[Column], rows: &[Vec<Markup>]) -> Markup {
             }
         }
     }
-}
-
-/// A table of numbers, those that there are: what they are, their values, and which would be good.
-pub(crate) fn numbers<'a>(rows: impl IntoIterator<Item = (&'a str, Option<String>, &'a str)>) -> Markup {
-    let row = |(what, value, good): (&str, Option<String>, &str)| {
-        value.map(|value| [what, &value, good].map(|cell| html! { (cell) }).into())
-    };
-    table(&NUMBERS, &rows.into_iter().filter_map(row).collect::<Vec<_>>())
 }
 
 pub(crate) fn decisions(decisions: &[Decision]) -> Markup {

@@ -12,13 +12,22 @@ use text::plain;
 use crate::cli::failure::{Exit, Failure, displayed};
 use crate::cli::lines::short;
 use crate::cli::pages::constraint_marks::{Held, marks};
+use crate::cli::pages::movements::movements;
 
-/// Grid points along each axis: for arrows, and for potential and support.
+/// Grid points along each axis: for arrows, and for support; the potential is drawn from every other of these.
 const ARROWS: usize = 16;
-const FINE: usize = 49;
+const FINER: usize = 97;
+/// The same of one picture of many.
+const FEW_ARROWS: usize = 6;
+const COARSE: usize = 25;
+/// Demonstrations whose direction is marked, at most, and the same of one picture of many.
+pub(crate) const MARKED: usize = 30;
+const FEW_MARKED: usize = 10;
 /// Empty space around the data, as a share of its range.
 const MARGIN: f64 = 0.12;
 const SIZE: (f64, f64) = (640.0, 660.0);
+/// How much neighbouring rectangles overlap, as a share of a cell: a line of paper shows between those that only touch.
+const OVERLAP: f64 = 0.25;
 const UNKNOWN: &str = "#dcdcdc";
 pub(crate) const DEMONSTRATED: Stroke = Stroke { color: "#56a0d3", width: 1.3, dash: Dash::Solid };
 const FOLLOWED: Stroke = Stroke { color: "#d55e00", width: 2.4, dash: Dash::Solid };
@@ -47,7 +56,7 @@ impl Picture<'_> {
     }
 
     /// From and to, as drawn.
-    fn range(&self, axis: usize) -> [f64; 2] {
+    pub(crate) fn range(&self, axis: usize) -> [f64; 2] {
         let (channel, factor) = (&self.model.state[self.dims[axis]], self.factors()[axis]);
         let width = (channel.high - channel.low).max(f64::MIN_POSITIVE);
         [channel.low - MARGIN * width, channel.high + MARGIN * width].map(|value| value * factor)
@@ -59,7 +68,7 @@ impl Picture<'_> {
         [place[0] / factors[0], place[1] / factors[1]]
     }
 
-    fn places(&self, axis: usize, count: usize) -> Vec<f64> {
+    pub(crate) fn places(&self, axis: usize, count: usize) -> Vec<f64> {
         let [from, to] = self.range(axis);
         (0..count).map(|i| from + (to - from) * i as f64 / (count - 1) as f64).collect()
     }
@@ -81,8 +90,13 @@ impl Picture<'_> {
         known
     }
 
+    /// Which places of a grid are known, row after row.
+    pub(crate) fn known(&self, policy: &ModelPolicy<'_>, x: &[f64], y: &[f64]) -> Vec<Vec<bool>> {
+        y.par_iter().map(|&y| self.are_known(policy, &x.iter().map(|&x| [x, y]).collect::<Vec<_>>())).collect()
+    }
+
     /// The state at a place; all other channels are at their median.
-    fn state(&self, place: [f64; 2]) -> DVector<f64> {
+    pub(crate) fn state(&self, place: [f64; 2]) -> DVector<f64> {
         let mut state = DVector::from_iterator(self.model.state.len(), self.model.state.iter().map(|c| c.median));
         for (dim, value) in self.dims.into_iter().zip(self.values(place)) {
             state[dim] = value;
@@ -91,31 +105,22 @@ impl Picture<'_> {
     }
 
     pub(crate) fn plane(&self) -> Plane {
-        let (x, y) = (self.places(0, FINE), self.places(1, FINE));
         let policy = self.model.policy();
-        // Row after row.
-        let known: Vec<Vec<bool>> =
-            y.par_iter().map(|&y| self.are_known(&policy, &x.iter().map(|&x| [x, y]).collect::<Vec<_>>())).collect();
         let mut layers = Vec::new();
+        let (finer_x, finer_y) = (self.places(0, FINER), self.places(1, FINER));
+        let finer = self.known(&policy, &finer_x, &finer_y);
         if let Some(potential) = policy.potential() {
+            // Every other place.
+            let [x, y] = [&finer_x, &finer_y].map(|places| places.iter().step_by(2).copied().collect::<Vec<f64>>());
+            let known = finer.iter().step_by(2).map(|row| row.iter().step_by(2).copied().collect()).collect();
             let value = |x: f64, y: f64| potential.value(self.state([x, y]).as_view());
             let values = y.par_iter().map(|&y| x.iter().map(|&x| value(x, y)).collect()).collect();
-            layers.push(Layer::Levels {
-                field: Field { x: x.clone(), y: y.clone(), values },
-                known: known.clone(),
-                label: "equal potential".to_owned(),
-            });
+            layers.push(Layer::Levels { field: Field { x, y, values }, known, label: "equal potential".to_owned() });
         }
-        layers.extend(unknown(&x, &y, &known));
+        layers.extend(unknown(&finer_x, &finer_y, &finer));
         let named = |at: usize, name: &str| (at == 0).then(|| name.to_owned());
-        for (at, movement) in self.demonstrated.iter().enumerate() {
-            layers.push(Layer::Path {
-                points: self.points(movement),
-                stroke: DEMONSTRATED,
-                label: named(at, "demonstrated"),
-            });
-        }
-        layers.extend(self.arrows());
+        layers.extend(self.movements(DEMONSTRATED, Some("demonstrated"), MARKED));
+        layers.extend(self.arrows(ARROWS));
         let [width, height] = [0, 1].map(|axis| self.range(axis)[1] - self.range(axis)[0]);
         layers.extend(marks(&self.held, &self.model.state, self.dims, self.factors(), width.min(height)));
         for (at, movement) in self.followed.iter().enumerate() {
@@ -123,22 +128,42 @@ impl Picture<'_> {
             layers.push(Layer::Dots { points: points[..1].to_vec(), color: FOLLOWED.color, radius: 4.0 });
             layers.push(Layer::Path { points, stroke: FOLLOWED, label: named(at, "rolled out") });
         }
-        let [x, y] = self.factors();
-        let label = |axis: usize, factor: f64| with_unit(&self.model.state[self.dims[axis]], factor);
-        let (x_label, y_label) = (label(0, x), label(1, y));
-        let title = plain(&self.title).into_owned();
-        Plane { title, x_label, y_label, x: self.range(0), y: self.range(1), layers, size: SIZE }
+        self.with_axes(layers, SIZE)
     }
 
-    fn points(&self, movement: &DMatrix<f64>) -> Vec<(f64, f64)> {
+    /// Grey where nothing is known, movements and the policy, without words among them: one picture of many.
+    pub(crate) fn small_plane(&self, size: (f64, f64)) -> Plane {
+        let (x, y) = (self.places(0, COARSE), self.places(1, COARSE));
+        let policy = self.model.policy();
+        let mut layers = unknown(&x, &y, &self.known(&policy, &x, &y));
+        layers.extend(self.movements(Stroke { width: 0.8, ..DEMONSTRATED }, None, FEW_MARKED));
+        layers.extend(self.arrows(FEW_ARROWS));
+        self.with_axes(layers, size)
+    }
+
+    /// Axes with names and units around layers.
+    pub(crate) fn with_axes(&self, layers: Vec<Layer>, size: (f64, f64)) -> Plane {
+        let label = |axis: usize| with_unit(&self.model.state[self.dims[axis]], self.factors()[axis]);
+        let (x_label, y_label) = (label(0), label(1));
+        let title = plain(&self.title).into_owned();
+        Plane { title, x_label, y_label, x: self.range(0), y: self.range(1), layers, size }
+    }
+
+    /// The demonstrations.
+    pub(crate) fn movements(&self, stroke: Stroke, label: Option<&str>, marked: usize) -> Vec<Layer> {
+        let paths: Vec<_> = self.demonstrated.iter().map(|movement| self.points(movement)).collect();
+        movements(&paths, [self.range(0), self.range(1)], stroke, label, marked)
+    }
+
+    pub(crate) fn points(&self, movement: &DMatrix<f64>) -> Vec<(f64, f64)> {
         let [x, y] = self.factors();
         movement.column_iter().map(|state| (x * state[self.dims[0]], y * state[self.dims[1]])).collect()
     }
 
     /// The policy, where it is known.
-    fn arrows(&self) -> Option<Layer> {
+    fn arrows(&self, count: usize) -> Option<Layer> {
         let (policy, [x, y]) = (self.model.policy(), self.factors());
-        let (xs, ys) = (self.places(0, ARROWS), self.places(1, ARROWS));
+        let (xs, ys) = (self.places(0, count), self.places(1, count));
         let places: Vec<[f64; 2]> = ys.iter().flat_map(|&y| xs.iter().map(move |&x| [x, y])).collect();
         let arrow = |&place: &[f64; 2]| {
             let action = policy.action(self.state(place).as_view());
@@ -157,7 +182,7 @@ impl Picture<'_> {
             color: ARROW,
             scale: 1.2 * spacing / longest,
             width: 1.0,
-            label: Some("learnt policy".to_owned()),
+            label: (count == ARROWS).then(|| "learnt policy".to_owned()),
         })
     }
 }
@@ -165,12 +190,28 @@ impl Picture<'_> {
 /// A channel, drawn times a factor, as an axis is labelled: XML does not allow every character.
 pub(crate) fn with_unit(channel: &StateChannel, factor: f64) -> String {
     let times = if factor == 1.0 { String::new() } else { format!(" times {}", short(factor)) };
-    let label = format!("{}{times} ({})", channel.name, channel.unit.as_deref().unwrap_or("no unit given"));
+    let unit = channel.unit.as_deref().unwrap_or("no unit given");
+    let is_named = [format!("[{unit}]"), format!("({unit})")].iter().any(|unit| channel.name.ends_with(unit));
+    let unit = if is_named { String::new() } else { format!(" ({unit})") };
+    let label = format!("{}{times}{unit}", channel.name);
     plain(&label).into_owned()
 }
 
-/// Grey rectangles over what nothing is known of, as few as rows of equal ends allow.
-fn unknown(x: &[f64], y: &[f64], known: &[Vec<bool>]) -> Vec<Layer> {
+/// Grey over what nothing is known of.
+pub(crate) fn unknown(x: &[f64], y: &[f64], known: &[Vec<bool>]) -> Vec<Layer> {
+    let (left, right, low, high) = (x[0], x[x.len() - 1], y[0], y[y.len() - 1]);
+    let more = [OVERLAP * (x[1] - x[0]), OVERLAP * (y[1] - y[0])];
+    let region = |[from, to, below, above]: [f64; 4]| {
+        let (from, to) = ((from - more[0]).max(left), (to + more[0]).min(right));
+        let (below, above) = ((below - more[1]).max(low), (above + more[1]).min(high));
+        let corners = vec![(from, below), (to, below), (to, above), (from, above)];
+        Layer::Region { corners, color: UNKNOWN, opacity: 1.0 }
+    };
+    rectangles(x, y, known).into_iter().map(region).collect()
+}
+
+/// Rectangles that cover once what nothing is known of, as few as rows of equal ends allow: from and to on either axis.
+fn rectangles(x: &[f64], y: &[f64], known: &[Vec<bool>]) -> Vec<[f64; 4]> {
     let half = [(x[1] - x[0]) / 2.0, (y[1] - y[0]) / 2.0];
     let (left, right, low, high) = (x[0], x[x.len() - 1], y[0], y[y.len() - 1]);
     // First and last column, and first and last row.
@@ -189,13 +230,11 @@ fn unknown(x: &[f64], y: &[f64], known: &[Vec<bool>]) -> Vec<Layer> {
             at += length.max(1);
         }
     }
-    let region = |[first, last, lowest, highest]: [usize; 4]| {
+    let rectangle = |[first, last, lowest, highest]: [usize; 4]| {
         let (from, to) = ((x[first] - half[0]).max(left), (x[last] + half[0]).min(right));
-        let (below, above) = ((y[lowest] - half[1]).max(low), (y[highest] + half[1]).min(high));
-        let corners = vec![(from, below), (to, below), (to, above), (from, above)];
-        Layer::Region { corners, color: UNKNOWN, opacity: 1.0 }
+        [from, to, (y[lowest] - half[1]).max(low), (y[highest] + half[1]).min(high)]
     };
-    areas.into_iter().map(region).collect()
+    areas.into_iter().map(rectangle).collect()
 }
 
 /// As SVG or PNG, by the extension.
@@ -217,11 +256,8 @@ mod tests {
     fn what_is_unknown_is_covered_once() {
         let grid: Vec<f64> = (0..4).map(f64::from).collect();
         let known = [[false; 4], [false, true, true, false], [false, true, true, false], [false; 4]].map(Vec::from);
-        let area = |layer: &Layer| match layer {
-            Layer::Region { corners, .. } => (corners[1].0 - corners[0].0) * (corners[2].1 - corners[1].1),
-            other => panic!("{other:?}"),
-        };
-        let areas: Vec<f64> = unknown(&grid, &grid, &known).iter().map(area).collect();
+        let area = |[from, to, below, above]: &[f64; 4]| (to - from) * (above - below);
+        let areas: Vec<f64> = rectangles(&grid, &grid, &known).iter().map(area).collect();
         // Below, at either side, and above a square of 2 by 2 in one of 3 by 3.
         assert_eq!(areas, [1.5, 1.0, 1.0, 1.5]);
         assert!(unknown(&grid, &grid, &vec![vec![true; 4]; 4]).is_empty());

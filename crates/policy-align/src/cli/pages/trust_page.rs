@@ -6,16 +6,20 @@ use page::{Card, Part};
 use policy_align::{AlignedNumbers, ConstraintStretch, Model, Prepared, TrustNumbers, direction_by_channels};
 
 use crate::cli::describe::learner;
-use crate::cli::lines::{counted, short};
+use crate::cli::lines::counted;
 use crate::cli::pages::constraint_marks::{held, recorded};
 use crate::cli::pages::constraints_part::{constraints_part, found};
-use crate::cli::pages::page_parts::{self, COVERAGE, NOISE, channels, decisions, left_out, opening, page, part};
+use crate::cli::pages::error_map::error_map;
+use crate::cli::pages::left_out_part::left_out_part;
+use crate::cli::pages::numbers_table::{COVERAGE, Good, NOISE, numbers as table};
+use crate::cli::pages::page_parts::{channels, decisions, left_out, opening, page, part};
+use crate::cli::pages::pairs::pairs;
 use crate::cli::pages::picture::Picture;
 use crate::cli::trust_files::{DIGITS, NAMED};
 
-/// Numbers that are good or bad only next to others.
-const COMPARED: &str = "for comparison";
 const FIELD: &str = "The learnt policy";
+/// Of its picture in half of the page, pixels.
+const SIZE: (f64, f64) = (540.0, 570.0);
 const SENTENCES: [&str; 3] = [
     "Good: all checks passed.",
     "Doubtful: read the findings before you use it.",
@@ -39,6 +43,9 @@ pub(crate) fn trust_page(model: &Model, name: &str, checksum: &str, prepared: &P
         parts.push(part("field", FIELD, &field(model, prepared, &found)));
     }
     parts.push(part("numbers", "Numbers", &numbers(model)));
+    parts.extend(error_map(model, prepared));
+    parts.extend(left_out_part(model, prepared));
+    parts.extend(pairs(model, prepared));
     parts.extend(constraints_part(&found, model));
     parts.push(part("decisions", "Decisions", &decisions(&model.decisions)));
     parts.push(part("data", "Data", &data(model, checksum)));
@@ -62,7 +69,8 @@ fn field(model: &Model, prepared: &Prepared, found: &[ConstraintStretch]) -> Mar
     };
     let (title, demonstrated) = (FIELD.to_owned(), recorded(prepared));
     let picture = Picture { title, model, dims: [0, 1], demonstrated, held, followed: vec![] };
-    let svg = plot::Picture::rows(&[&[&picture.plane()]]).svg();
+    let plane = plot::Plane { size: SIZE, ..picture.plane() };
+    let svg = plot::Picture::rows(&[&[&plane]]).svg();
     let potential = if model.policy().potential().is_some() {
         " Thin lines join states of equal potential, with its value; the policy leads downhill."
     } else {
@@ -74,7 +82,7 @@ fn field(model: &Model, prepared: &Prepared, found: &[ConstraintStretch]) -> Mar
         ""
     };
     let caption = format!(
-        "Arrows: the learnt policy. Blue: the demonstrations.{constraints}{potential} Grey: outside the range of the demonstrations, or too \
+        "Arrows: the learnt policy. Blue: the demonstrations; dots mark where they start, arrowheads which way they go.{constraints}{potential} Grey: outside the range of the demonstrations, or too \
          far from all of them to predict an action.{rest}"
     );
     Card { id: "field", title: FIELD, caption: &caption, remark: None, svg: &svg }.under(FIELD)
@@ -82,44 +90,62 @@ fn field(model: &Model, prepared: &Prepared, found: &[ConstraintStretch]) -> Mar
 
 fn numbers(model: &Model) -> Markup {
     let numbers = &model.trust.numbers;
-    let below = |threshold: f64| format!("below {threshold}");
-    let (held_out, expected) = (below(TrustNumbers::GOOD_HELD_OUT_ERROR), below(TrustNumbers::GOOD_EXPECTED_ERROR));
-    let halves = below(TrustNumbers::GOOD_HALVES);
     let worst = numbers.episode_errors.iter().map(|&(_, error)| error).max_by(f64::total_cmp);
     let of_policy = [
-        ("Cross-validated error along the observed motion", Some(numbers.held_out_error), &*held_out),
-        ("The same for the direct learner (plain averaging)", Some(numbers.held_out_error_direct), COMPARED),
-        ("Cross-validated error of the direct learner in all directions", Some(numbers.direct_error), COMPARED),
-        ("Error expected from the posterior variance", Some(numbers.expected_error), &expected),
-        ("Difference between slope and direct policy", Some(numbers.gap), "large where constraints acted"),
-        ("Cross-validated error of the worst episode", worst, "near that of all episodes"),
-        ("Difference between the policies learnt from either half of the episodes", numbers.halves, &halves),
         (
-            "Squared errors divided by the variance that the policy predicts",
+            "Cross-validated error along the observed motion",
+            Some(numbers.held_out_error),
+            Good::Below(TrustNumbers::GOOD_HELD_OUT_ERROR),
+        ),
+        ("The same for the direct learner (plain averaging)", Some(numbers.held_out_error_direct), Good::COMPARED),
+        ("Cross-validated error of the direct learner in all directions", Some(numbers.direct_error), Good::COMPARED),
+        (
+            "Error expected from the posterior variance",
+            Some(numbers.expected_error),
+            Good::Below(numbers.good_expected_error()),
+        ),
+        ("Difference between slope and direct policy", Some(numbers.gap), Good::Words("large where constraints acted")),
+        ("Cross-validated error of the worst episode", worst, Good::Words("near that of all episodes")),
+        (
+            "Difference between the policies learnt from either half of the episodes",
+            numbers.halves,
+            Good::Below(TrustNumbers::GOOD_HALVES),
+        ),
+        (
+            "Squared errors divided by the variance that the policy predicts; 1 where it predicts its errors",
             Some(numbers.z_squared),
-            "about 1, below 4",
+            Good::Below(4.0),
         ),
         (COVERAGE.0, Some(numbers.direction_coverage), COVERAGE.1),
-        ("Rotation: share of the policy that no potential explains", Some(numbers.rotation_share), "0 for a potential"),
-        ("Share of rollouts that leave the demonstrated region", Some(numbers.leaving), "0"),
+        (
+            "Rotation: share of the policy that no potential explains",
+            Some(numbers.rotation_share),
+            Good::Words("0 for a potential"),
+        ),
+        (
+            "Share of rollouts that leave the demonstrated region",
+            Some(numbers.leaving),
+            Good::Below(TrustNumbers::GOOD_LEAVING),
+        ),
         (NOISE.0, Some(numbers.step_noise), NOISE.1),
     ];
     let aligned = numbers.aligned.as_ref();
-    let episodes = |aligned: &AlignedNumbers| format!("{} of {}", aligned.kept, aligned.kept + aligned.discarded);
-    let episodes = ("Episodes aligned", aligned.map(episodes), "nearly all");
-    let unsupported = aligned.map(|aligned| aligned.unsupported);
+    let kept = |aligned: &AlignedNumbers| aligned.kept as f64 / (aligned.kept + aligned.discarded) as f64;
     let of_alignment = [
-        ("Disagreement of the aligned potentials", aligned.map(|aligned| aligned.residual), "below 0.1"),
-        ("Share of held-out samples outside every receptive field", unsupported, "below 0.05"),
-        ("Difference from the Gaussian process", aligned.map(|aligned| aligned.difference), "below 0.1"),
+        ("Share of the episodes that were aligned", aligned.map(kept), Good::Words("near 1")),
+        ("Disagreement of the aligned potentials", aligned.map(|aligned| aligned.residual), Good::Below(0.1)),
+        (
+            "Share of held-out samples outside every receptive field",
+            aligned.map(|aligned| aligned.unsupported),
+            Good::Below(0.05),
+        ),
+        ("Difference from the Gaussian process", aligned.map(|aligned| aligned.difference), Good::Below(0.1)),
     ];
-    let row = |(what, value, good): (_, Option<f64>, _)| (what, value.map(short), good);
-    let rows = of_policy.map(row).into_iter().chain([episodes]).chain(of_alignment.map(row));
     let [unseen, least_known] = [&numbers.unseen_direction, &numbers.least_known_direction]
         .map(|direction| direction_by_channels(direction, &model.state));
     html! {
         p { "Errors are mean squared errors as a share of the mean squared action: 0 is exact, 1 is no better than standing still." }
-        (page_parts::numbers(rows))
+        (table(of_policy.into_iter().chain(of_alignment)))
         p { "Least observed direction: motion along " (unseen) ". The policy is least certain along " (least_known) "." }
     }
 }

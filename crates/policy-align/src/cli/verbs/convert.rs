@@ -11,13 +11,14 @@ use crate::cli::options::config::Config;
 use crate::cli::options::flags::ReadFlags;
 use crate::cli::recorded::read;
 use crate::cli::session::{Output, Session};
-use crate::cli::verbs::rollout::unwritten;
+use crate::cli::written::RobotFlag;
 
 /// Write recordings in another format
 #[derive(Debug, Args)]
 #[command(after_help = "\
-MCAP opens in Rerun, Foxglove and PlotJuggler. Learning needs no even stamps:
-resample for other programs only.
+MCAP opens in Rerun, Foxglove and PlotJuggler; with --robot also
+/robot_description and /tf, so that they draw the robot.
+Learning needs no even stamps: resample for other programs only.
 All flags of reading files: policy-align check --help
 
 Example:
@@ -33,29 +34,34 @@ pub(crate) struct Convert {
     #[arg(long, value_name = "HZ")]
     resample: Option<f64>,
     #[command(flatten)]
+    robot: RobotFlag,
+    #[command(flatten)]
     read: ReadFlags,
 }
 
 impl Convert {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let reading = Config::of(session)?.under("read", &self.read)?;
-        no_input(&self.output, &self.files)?;
+        let robot = self.robot.path().map(Into::into);
+        no_input(&self.output, &self.files.iter().cloned().chain(robot).collect::<Vec<_>>())?;
         let mut recordings = read(session, &self.files, &reading)?;
         if let Some(rate) = self.resample {
             recordings = demo_io::resampled(&recordings, rate).map_err(|error| {
                 Failure::of_text(Exit::Usage, &error.to_string(), format!("--resample {rate}"), "another rate")
             })?;
         }
-        demo_io::write(&self.output, &recordings).map_err(|error| unwritten(&self.output, error))?;
-        let samples = recordings.episodes.iter().map(|episode| episode.times.len()).sum();
-        let mut lines = Lines::default();
-        lines.written(&self.output, &amount(recordings.episodes.len(), samples));
         // Which channels are context stands in no file; all else is written as it was read.
-        let mut rest = ReadFlags::default();
-        rest.context = match reading.context_of(&recordings)? {
+        let context = match reading.context_of(&recordings)? {
             ContextUse::Named(names) => names,
             _ => reading.context,
         };
+        let matching = self.robot.write(&self.output, &recordings, &context)?;
+        let samples = recordings.episodes.iter().map(|episode| episode.times.len()).sum();
+        let mut lines = Lines::default();
+        lines.written(&self.output, &amount(recordings.episodes.len(), samples));
+        lines.robot(matching.as_deref());
+        let mut rest = ReadFlags::default();
+        rest.context = context;
         let next = format!("policy-align check {}{}", quoted(&self.output), flag_words(&rest));
         Ok(Output::done(lines.next(&next)))
     }

@@ -1,3 +1,4 @@
+use std::iter;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -14,6 +15,7 @@ use crate::cli::options::values::{in_context, numbers};
 use crate::cli::session::{Output, Session, write};
 use crate::cli::trust_files::load;
 use crate::cli::verbs::rollout::{followed, write_paths};
+use crate::cli::written::RobotFlag;
 
 /// Roll-outs that are exported unless starts are given.
 const STARTS: usize = 12;
@@ -27,7 +29,8 @@ C: one file of ISO C99 that needs math.h only. int policy(const double *x,
 double *u, double *phi) returns 1 within the data, 0 outside: then stop.
 ONNX: opset 17 in doubles, x (states, n) to u, phi and support.
 Of a model with a context c (p), both take it after x: policy(x, c, u, phi).
-MCAP: roll-outs as joint states of ROS 2, for Rerun, Foxglove and PlotJuggler.
+MCAP: roll-outs as joint states of ROS 2, for Rerun, Foxglove and PlotJuggler;
+with --robot also /robot_description and /tf, so that they draw the robot.
 
 Examples:\n  policy-align export toy.json --to c -o toy.c\n  policy-align export toy.json --to mcap -o toy.mcap")]
 pub(crate) struct Export {
@@ -52,6 +55,8 @@ pub(crate) struct Export {
     #[arg(long, value_name = "NAME=NUMBER", value_delimiter = ',', allow_hyphen_values = true)]
     context: Vec<String>,
     #[command(flatten)]
+    robot: RobotFlag,
+    #[command(flatten)]
     follow: RollOutFlags,
 }
 
@@ -71,7 +76,10 @@ impl Export {
         let model = load(session, &self.model)?;
         let output = |extension| self.output.clone().unwrap_or_else(|| self.model.with_extension(extension));
         if self.to != Target::Mcap
-            && (!self.from.is_empty() || !self.context.is_empty() || self.follow != RollOutFlags::default())
+            && (!self.from.is_empty()
+                || !self.context.is_empty()
+                || self.robot.path().is_some()
+                || self.follow != RollOutFlags::default())
         {
             return Err(Failure::usage("only MCAP holds roll-outs", "roll-out flags", "--to mcap"));
         }
@@ -102,6 +110,8 @@ impl Export {
         if output.extension().is_none_or(|extension| extension != "mcap") {
             return Err(Failure::usage("MCAP files end in .mcap", displayed(output), "`rollout -o` for other formats"));
         }
+        let inputs: Vec<PathBuf> = iter::once(&*self.model).chain(self.robot.path()).map(Into::into).collect();
+        no_input(output, &inputs)?;
         let flags = Config::of(session)?.under("rollout", &self.follow)?;
         let model = &in_context(model.clone(), &self.context)?;
         let given = self.from.iter().map(|from| Ok(DVector::from_vec(numbers(from, "--from")?)));
@@ -115,10 +125,11 @@ impl Export {
         }
         let paths = starts.iter().map(|start| followed(&flags, model, start, &list(start.iter().copied())));
         let paths = paths.collect::<Result<Vec<_>, _>>()?;
-        write_paths(output, model, &paths)?;
+        let matching = write_paths(output, model, &paths, &self.robot)?;
         let samples = paths.iter().map(|path| path.times.len()).sum();
         let mut lines = Lines::default();
         lines.written(output, &format!("{}, {}", counted(paths.len(), "roll-out"), counted(samples, "sample")));
+        lines.robot(matching.as_deref());
         Ok(Output::done(lines.next(&format!("rerun {}", quoted(output)))))
     }
 }

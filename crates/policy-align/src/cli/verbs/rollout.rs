@@ -1,13 +1,13 @@
+use std::iter;
 use std::path::{self, PathBuf};
 
 use clap::Args;
-use demo_io::WriteError;
 use motion::{Channel, Episode, Recordings, Source, Times};
 use nalgebra::DVector;
 use policy_align::{Model, Path, RollOutError, Stop};
 use serde_json::json;
 
-use crate::cli::failure::{Exit, Failure, displayed};
+use crate::cli::failure::{Exit, Failure};
 use crate::cli::given::{again, no_input};
 use crate::cli::lines::{Lines, counted, list, short};
 use crate::cli::options::config::Config;
@@ -17,6 +17,7 @@ use crate::cli::pages::picture::{Picture, draw};
 use crate::cli::recorded::base_name;
 use crate::cli::session::{Output, Session, write};
 use crate::cli::trust_files::load;
+use crate::cli::written::RobotFlag;
 
 /// Roll out a policy from a start, under constraints
 #[derive(Debug, Args)]
@@ -59,6 +60,8 @@ pub(crate) struct RollOut {
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
     #[command(flatten)]
+    robot: RobotFlag,
+    #[command(flatten)]
     follow: RollOutFlags,
 }
 
@@ -67,15 +70,18 @@ impl RollOut {
         let flags = Config::of(session)?.under("rollout", &self.follow)?;
         let model = in_context(load(session, &self.model)?, &self.context)?;
         let start = DVector::from_vec(numbers(&self.from, "--from")?);
+        let inputs: Vec<PathBuf> = iter::once(&*self.model).chain(self.robot.path()).map(Into::into).collect();
         for output in [&self.output, &self.plot].into_iter().flatten() {
-            no_input(output, std::slice::from_ref(&self.model))?;
+            no_input(output, &inputs)?;
+        }
+        if self.robot.path().is_some() && self.output.is_none() {
+            return Err(Failure::usage("a robot is only written to a file", "--robot", "-o path.mcap"));
         }
         let bar = session.bar(1, "{spinner} following the policy, {elapsed}");
         let followed = followed(&flags, &model, &start, &self.from)?;
         bar.finish_and_clear();
-        if let Some(output) = &self.output {
-            write_paths(output, &model, std::slice::from_ref(&followed))?;
-        }
+        let recorded = |output| write_paths(output, &model, std::slice::from_ref(&followed), &self.robot);
+        let matching = self.output.as_deref().map(recorded).transpose()?.flatten();
         if let Some(plot) = &self.plot {
             let title = format!("Rollout of {} (grey: outside the demonstrations)", base_name(&self.model));
             let (dims, followed) = ([0, 1.min(model.state.len() - 1)], vec![followed.states.clone()]);
@@ -93,10 +99,10 @@ impl RollOut {
             });
             return Ok(Output::json(&document, Exit::Done));
         }
-        Ok(Output::done(self.summary(&followed)))
+        Ok(Output::done(self.summary(&followed, matching.as_deref())))
     }
 
-    fn summary(&self, followed: &Path) -> String {
+    fn summary(&self, followed: &Path, matching: Option<&str>) -> String {
         let mut lines = Lines::default();
         let (count, last) = (followed.times.len(), followed.times.len() - 1);
         let [start, end] = [0, last].map(|at| list(followed.states.column(at).iter().copied()));
@@ -113,6 +119,7 @@ impl RollOut {
         if !written.is_empty() {
             lines.add("written", &written.join(", "));
         }
+        lines.robot(matching);
         if self.output.is_some() {
             return lines.into_text();
         }
@@ -149,8 +156,13 @@ fn stop(stop: &Stop) -> String {
     }
 }
 
-/// Writes paths as a recording, an episode each.
-pub(crate) fn write_paths(output: &path::Path, model: &Model, paths: &[Path]) -> Result<(), Failure> {
+/// Writes paths as a recording, an episode each; which joints of the robot, if there is one, the channels are.
+pub(crate) fn write_paths(
+    output: &path::Path,
+    model: &Model,
+    paths: &[Path],
+    robot: &RobotFlag,
+) -> Result<Option<String>, Failure> {
     let channel =
         |channel: &policy_align::StateChannel| Channel { name: channel.name.clone(), unit: channel.unit.clone() };
     let file = output.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
@@ -168,13 +180,5 @@ pub(crate) fn write_paths(output: &path::Path, model: &Model, paths: &[Path]) ->
         episodes: paths.iter().enumerate().map(episode).collect(),
         findings: vec![],
     };
-    demo_io::write(output, &recordings).map_err(|error| unwritten(output, error))
-}
-
-/// Why recordings were not written.
-pub(crate) fn unwritten(output: &path::Path, error: WriteError) -> Failure {
-    match error {
-        WriteError::Io { source, .. } => Failure::writing(output, source),
-        error => Failure::of_text(Exit::Usage, &error.to_string(), displayed(output), "another format"),
-    }
+    robot.write(output, &recordings, &[])
 }

@@ -1,0 +1,69 @@
+//! Topics of a bag, with what viewers need to know to take messages apart.
+
+/// A topic: its name, the type of its messages and the type's definition, with all that it uses.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Topic {
+    pub(super) name: &'static str,
+    pub(super) kind: &'static str,
+    pub(super) definition: &'static str,
+}
+
+pub(super) const JOINT_STATES: Topic = Topic {
+    name: "/joint_states",
+    kind: "sensor_msgs/msg/JointState",
+    definition: "\
+std_msgs/Header header
+string[] name
+float64[] position
+float64[] velocity
+float64[] effort
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+",
+};
+
+/// The text of a URDF.
+pub(super) const ROBOT_DESCRIPTION: Topic =
+    Topic { name: "/robot_description", kind: "std_msgs/msg/String", definition: "string data\n" };
+
+pub(super) const TRANSFORMS: Topic = Topic {
+    name: "/tf",
+    kind: "tf2_msgs/msg/TFMessage",
+    definition: "\
+geometry_msgs/TransformStamped[] transforms
+================================================================================
+MSG: geometry_msgs/TransformStamped
+std_msgs/Header header
+string child_frame_id
+geometry_msgs/Transform transform
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+================================================================================
+MSG: geometry_msgs/Transform
+geometry_msgs/Vector3 translation
+geometry_msgs/Quaternion rotation
+================================================================================
+MSG: geometry_msgs/Vector3
+float64 x
+float64 y
+float64 z
+================================================================================
+MSG: geometry_msgs/Quaternion
+float64 x
+float64 y
+float64 z
+float64 w
+",
+};

@@ -1,0 +1,91 @@
+//! Numbers in a table, and which of them are not good.
+
+use maud::{Markup, html};
+use policy_align::TrustNumbers;
+
+use crate::cli::lines::{counted, short};
+use crate::cli::pages::page_parts::{Column, table};
+
+const COLUMNS: [Column; 3] = [("What", ""), ("Value", "value"), ("Good is", "")];
+
+/// Numbers that both pages have, and which are good.
+pub(crate) const COVERAGE: (&str, Good) =
+    ("Coverage of the least observed direction; 1 if all are alike", Good::Above(TrustNumbers::GOOD_COVERAGE));
+pub(crate) const NOISE: (&str, Good) = ("Share of noise in the squared steps", Good::Below(0.1));
+
+/// Which values of a number are good.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Good {
+    /// Less than this.
+    Below(f64),
+    /// More than this.
+    Above(f64),
+    /// As these words say; no value is bad by itself.
+    Words(&'static str),
+}
+
+impl Good {
+    /// A number that is good or bad only next to others.
+    pub(crate) const COMPARED: Good = Good::Words("for comparison");
+
+    /// Whether a value is not good; one that is no number never is.
+    fn refuses(self, value: f64) -> bool {
+        match self {
+            Good::Below(bound) => value.is_nan() || value >= bound,
+            Good::Above(bound) => value.is_nan() || value <= bound,
+            Good::Words(_) => false,
+        }
+    }
+
+    fn words(self) -> String {
+        match self {
+            Good::Below(bound) => format!("below {bound}"),
+            Good::Above(bound) => format!("above {bound}"),
+            Good::Words(words) => words.to_owned(),
+        }
+    }
+}
+
+/// A table of numbers, those that there are: what they are, their values, and which would be good. What is not good is marked by a
+/// sign, a colour and a word for those who see neither, and counted below the table.
+pub(crate) fn numbers<'a>(rows: impl IntoIterator<Item = (&'a str, Option<f64>, Good)>) -> Markup {
+    let rows: Vec<(&str, f64, Good)> =
+        rows.into_iter().filter_map(|(what, value, good)| Some((what, value?, good))).collect();
+    let bad = rows.iter().filter(|(_, value, good)| good.refuses(*value)).count();
+    let cells = |&(what, value, good): &(&str, f64, Good)| {
+        let value = if good.refuses(value) {
+            html! { span .bad { span aria-hidden="true" { "✗ " } span .unseen { "not good: " } (short(value)) } }
+        } else {
+            html! { (short(value)) }
+        };
+        vec![html! { (what) }, value, html! { (good.words()) }]
+    };
+    html! {
+        (table(&COLUMNS, &rows.iter().map(cells).collect::<Vec<_>>()))
+        @if bad > 0 { p .where { span .bad { "✗" } " marks what is not good: " (counted(bad, "number")) " of " (rows.len()) "." } }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_good_is_marked() {
+        let page = numbers([
+            ("a", Some(14.0), Good::Below(0.12)),
+            ("b", Some(0.1), Good::Below(0.12)),
+            ("c", Some(0.1), Good::Above(0.1)),
+            ("d", Some(f64::NAN), Good::Below(4.0)),
+            ("e", Some(9e9), Good::COMPARED),
+            ("f", None, Good::Below(1.0)),
+        ])
+        .into_string();
+        let marked: Vec<&str> = page.split("<tr>").filter(|row| row.contains("✗ ")).collect();
+        let names: Vec<&str> = marked.iter().map(|row| &row[row.find("</td>").unwrap_or(1) - 1..][..1]).collect();
+        assert_eq!(names, ["a", "c", "d"], "{page}");
+        assert!(page.contains("3 numbers of 5.") && page.contains("below 0.12") && !page.contains(">f<"), "{page}");
+        let good = numbers([("b", Some(0.1), Good::Below(0.12))]).into_string();
+        assert!(!good.contains('✗'), "{good}");
+    }
+}
