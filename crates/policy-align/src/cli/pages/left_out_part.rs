@@ -43,10 +43,11 @@ pub(crate) fn left_out_part(model: &Model, prepared: &Prepared) -> Option<Part> 
     let without = without_movements(model, prepared, &places).ok()?;
     let card = |&(name, (episode, _)): &(&str, (usize, f64))| {
         let movement = &prepared.demonstrations.trajectories()[episode];
-        let title = format!("{name} error: episode {}", prepared.episodes[episode]);
-        let svg = plot::Picture::rows(&[&[&curves(&without, movement, prepared, &plain(&title))]]).svg();
+        // Names may be long: they stand below the picture, where they are broken.
+        let (title, own) = (format!("{name} error"), format!("Episode {}.", prepared.episodes[episode]));
+        let svg = plot::Picture::rows(&[&[&curves(&without, movement, prepared, &title)]]).svg();
         let id = format!("left-out-{}", name.to_lowercase());
-        Card { id: &id, title: &title, caption: "", remark: None, svg: &svg }.under(&title)
+        Card { id: &id, title: &title, caption: &own, remark: None, svg: &svg }.under(&title)
     };
     let which = match model.learnt {
         Learnt::PolicyAlign(_) => "the Gaussian process that PolicyAlign's policy is compared with, learnt from",
