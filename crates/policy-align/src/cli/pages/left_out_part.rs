@@ -57,7 +57,7 @@ pub(crate) fn left_out_part(model: &Model, prepared: &Prepared) -> Option<Part> 
         p {
             "Blue: the speed of three movements along their own direction, as recorded. Orange and dashed: what " (which) " all other \
              movements predicts there. Where both agree, the movement shows nothing that the others do not. All three were left out \
-             together; the numbers above leave out one after another, and are somewhat smaller."
+             together; the numbers above leave out one after another, and are usually smaller."
         }
         div .small-multiples { @for of in &chosen { (card(of)) } }
     };
