@@ -5,7 +5,7 @@
 
 mod running;
 
-use mcap::{Message, MessageStream};
+use mcap::{Message, MessageStream, Summary};
 use motion::{Channel, Episode, Recordings, Source};
 use nalgebra::{DMatrix, DVector, Isometry3, Quaternion, Translation3, UnitQuaternion};
 use policy_align::kinematics::{RobotModel, Workspace};
@@ -92,7 +92,7 @@ impl<'a> Cdr<'a> {
     }
 }
 
-fn written(urdf: &str, made: &Recordings) -> Vec<Message<'static>> {
+fn written(urdf: &str, made: &Recordings) -> &'static [u8] {
     let path = tempfile::tempdir().unwrap().keep().join("a.mcap");
     demo_io::write_with_robot(&path, made, &RobotFrames::from_urdf(urdf, &made.state, &[]).unwrap()).unwrap();
     let bytes: &'static [u8] = std::fs::read(&path).unwrap().leak();
@@ -102,13 +102,13 @@ fn written(urdf: &str, made: &Recordings) -> Vec<Message<'static>> {
     };
     assert_eq!((&back.state, positions(&back)), (&made.state, positions(made)), "the robot is in no one's way");
     std::fs::remove_dir_all(path.parent().unwrap()).unwrap();
-    MessageStream::new(bytes).unwrap().map(Result::unwrap).collect()
+    bytes
 }
 
 /// Compares every transform with forward kinematics at `q(state)`.
 fn compare(urdf: &str, made: &Recordings, q: impl Fn(DVector<f64>) -> DVector<f64>) {
     let robot = RobotModel::from_urdf(urdf).unwrap();
-    let messages = written(urdf, made);
+    let messages: Vec<Message<'_>> = MessageStream::new(written(urdf, made)).unwrap().map(Result::unwrap).collect();
     let of = |topic: &str| -> Vec<_> { messages.iter().filter(|message| message.channel.topic == topic).collect() };
     let described = of("/robot_description");
     assert_eq!(described.len(), 1);
@@ -157,6 +157,7 @@ proptest! {
     }
 }
 
+/// Several chunks, whose index finds every message of every topic.
 #[test]
 fn a_robot_of_the_project_that_fills_chunks() {
     let urdf = std::fs::read_to_string("../../robots/seven_joint_arm.urdf").unwrap();
@@ -164,7 +165,39 @@ fn a_robot_of_the_project_that_fills_chunks() {
         RobotModel::from_urdf(&urdf).unwrap().joints().iter().map(|joint| joint.name().to_owned()).collect();
     let channels: Vec<_> = names.iter().map(|name| (&name[..], None)).collect();
     let positions = DMatrix::from_fn(names.len(), 1500, |row, column| (row as f64 + column as f64 * 0.01).sin());
-    compare(&urdf, &recordings(&channels, &[positions]), |state| state);
+    let made = recordings(&channels, &[positions]);
+    compare(&urdf, &made, |state| state);
+
+    let bytes = written(&urdf, &made);
+    let summary = Summary::read(bytes).unwrap().unwrap();
+    let statistics = summary.stats.as_ref().unwrap();
+    assert_eq!((statistics.channel_count, statistics.schema_count, statistics.message_count), (3, 3, 3001));
+    let mut counts: Vec<u64> = statistics.channel_message_counts.values().copied().collect();
+    counts.sort_unstable();
+    assert_eq!(counts, [1, 1500, 1500]);
+    assert!(summary.chunk_indexes.len() > 1, "several chunks");
+    let mut found = std::collections::BTreeMap::new();
+    for chunk in &summary.chunk_indexes {
+        let index = summary.read_message_indexes(bytes, chunk).unwrap();
+        let streamed: Vec<Message<'_>> = summary.stream_chunk(bytes, chunk).unwrap().map(Result::unwrap).collect();
+        for (channel, entries) in &index {
+            let times = entries.iter().map(|entry| entry.log_time);
+            let of_channel = streamed.iter().filter(|message| message.channel.id == channel.id);
+            assert!(times.eq(of_channel.map(|message| message.log_time)), "{}", channel.topic);
+            for entry in entries {
+                let message = summary.seek_message(bytes, chunk, entry).unwrap();
+                assert_eq!((message.channel.id, message.log_time), (channel.id, entry.log_time));
+            }
+            *found.entry(channel.topic.clone()).or_insert(0) += entries.len();
+        }
+    }
+    let found: Vec<(&str, usize)> = found.iter().map(|(topic, count)| (&topic[..], *count)).collect();
+    assert_eq!(found, [("/joint_states", 1500), ("/robot_description", 1), ("/tf", 1500)]);
+    for topic in ["/joint_states", "/tf"] {
+        let of_topic = MessageStream::new(bytes).unwrap().map(Result::unwrap);
+        let sequences = of_topic.filter(|message| message.channel.topic == topic).map(|message| message.sequence);
+        assert!(sequences.eq(0..1500), "no gap in {topic}");
+    }
 }
 
 #[test]

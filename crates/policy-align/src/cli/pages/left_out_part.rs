@@ -43,10 +43,11 @@ pub(crate) fn left_out_part(model: &Model, prepared: &Prepared) -> Option<Part> 
     let without = without_movements(model, prepared, &places).ok()?;
     let card = |&(name, (episode, _)): &(&str, (usize, f64))| {
         let movement = &prepared.demonstrations.trajectories()[episode];
-        let title = format!("{name} error: episode {}", prepared.episodes[episode]);
-        let svg = plot::Picture::rows(&[&[&curves(&without, movement, prepared, &plain(&title))]]).svg();
+        // Names may be long: they stand below the picture, where they are broken.
+        let (title, own) = (format!("{name} error"), format!("Episode {}.", prepared.episodes[episode]));
+        let svg = plot::Picture::rows(&[&[&curves(&without, movement, prepared, &title)]]).svg();
         let id = format!("left-out-{}", name.to_lowercase());
-        Card { id: &id, title: &title, caption: "", remark: None, svg: &svg }.under(&title)
+        Card { id: &id, title: &title, caption: &own, remark: None, svg: &svg }.under(&title)
     };
     let which = match model.learnt {
         Learnt::PolicyAlign(_) => "the Gaussian process that PolicyAlign's policy is compared with, learnt from",
@@ -56,7 +57,7 @@ pub(crate) fn left_out_part(model: &Model, prepared: &Prepared) -> Option<Part> 
         p {
             "Blue: the speed of three movements along their own direction, as recorded. Orange and dashed: what " (which) " all other \
              movements predicts there. Where both agree, the movement shows nothing that the others do not. All three were left out \
-             together; the numbers above leave out one after another, and are somewhat smaller."
+             together; the numbers above leave out one after another, and are usually smaller."
         }
         div .small-multiples { @for of in &chosen { (card(of)) } }
     };
