@@ -111,6 +111,17 @@ def test_the_model_file_travels_through_save_pretrained(
     assert torch.equal(third.select_action(observed(states)), policy.select_action(observed(states)))
 
 
+def test_the_package_writes_what_the_program_writes(slope: SlopeGp, folder: Path, tmp_path: Path) -> None:
+    slope.save_lerobot(tmp_path / "made" / "anew")
+    names = sorted(file.name for file in folder.iterdir())
+    assert len(names) == 4
+    for name in names:
+        assert (tmp_path / "made" / "anew" / name).read_bytes() == (folder / name).read_bytes()
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OSError, match="file"):
+        slope.save_lerobot(tmp_path / "file")
+
+
 def test_settings(folder: Path, slope: SlopeGp, states: np.ndarray) -> None:
     inside = states[slope.supports(states)]
     actions = slope.predict(inside)
