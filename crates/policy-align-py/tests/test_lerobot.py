@@ -8,6 +8,7 @@ import shutil
 import struct
 import subprocess
 import sys
+import tomllib
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -17,7 +18,7 @@ import numpy as np
 import pytest
 from conftest import ROOT, TOY
 
-from policy_align import Demonstrations, PolicyAlignError, PolicyAlignWarning, SlopeGp, load
+from policy_align import Demonstrations, PolicyAlignError, PolicyAlignWarning, SlopeGp, __version__
 
 PLUGIN = ROOT / "crates/policy-align-py/lerobot"
 GOALS = ROOT / "docs/examples/goals.csv"
@@ -304,5 +305,6 @@ def test_lerobot_finds_the_plug_in(tmp_path: Path) -> None:
         "print(get_policy_class('align').__module__, make_policy_config('align').type)"
     )
     environment = {**os.environ, "PYTHONPATH": str(tmp_path / "site")}
+    assert tomllib.loads((PLUGIN / "pyproject.toml").read_text())["project"]["version"] == __version__
     done = subprocess.run([sys.executable, "-c", asks], capture_output=True, text=True, env=environment, cwd=tmp_path)
     assert done.stdout == "lerobot_policy_align.modeling_align align\n", done.stderr
