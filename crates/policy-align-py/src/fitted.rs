@@ -85,7 +85,7 @@ impl Fitted {
         py.detach(|| self.model.save(&path)).map_err(|error| file_or(error, &path))
     }
 
-    /// Writes the folder that LeRobot reads as a policy; it is made if it is not there.
+    /// Writes the folder that `LeRobot` reads as a policy; it is made if it is not there.
     fn save_lerobot(&self, py: Python<'_>, folder: PathBuf) -> PyResult<()> {
         let files = to_lerobot(&self.model);
         let place = folder.display().to_string();
