@@ -234,6 +234,33 @@ def test_doubts_are_warned_of(export: Export, tmp_path: Path) -> None:
         AlignPolicy.from_pretrained(export(tmp_path / "few.json"))
 
 
+@pytest.mark.filterwarnings("ignore")
+def test_from_a_data_set_of_lerobot_to_its_policy(tmp_path: Path) -> None:
+    """Positions on rails, every time another, at 10 Hz as LeRobot writes them: π = goal − x is learnt and runs there."""
+    from lerobot.datasets.lerobot_dataset import LeRobotDataset
+
+    feature = {"dtype": "float32", "shape": (2,), "names": ["x", "y"]}
+    features = {"observation.state": feature, "action": feature}
+    data = LeRobotDataset.create("local/rails", fps=10, features=features, root=tmp_path / "rails", use_videos=False)
+    numbers, goal = np.random.default_rng(6), np.array([0.3, -0.2])
+    for _ in range(25):
+        x, rail = numbers.uniform(-1.5, 1.5, 2), numbers.normal(size=2)
+        rail /= np.linalg.norm(rail)
+        along = rail * (rail @ (goal - x))
+        for k in range(30):
+            here, there = (x + along * (1 - np.exp(-0.1 * step)) for step in (k, k + 1))
+            data.add_frame({"observation.state": np.float32(here), "action": np.float32(there), "task": "roll"})
+        data.save_episode()
+    if hasattr(data, "finalize"):
+        data.finalize()
+    SlopeGp(max_rows=200).fit(Demonstrations.read(tmp_path / "rails")).save_lerobot(tmp_path / "policy")
+    inside = numbers.uniform(-1, 1, (50, 2))
+    actions = configured(tmp_path / "policy").select_action(observed(inside, torch.float32)).numpy()
+    assert np.abs(actions - (goal - inside)).max() < 0.02
+    targets = configured(tmp_path / "policy", action="position").select_action(observed(inside)).numpy()
+    assert np.abs(targets - inside - 0.1 * (goal - inside)).max() < 0.002
+
+
 class Bowl(gymnasium.Env):
     """The action is a velocity for 0.05 s; done within 0.1 of (0, 0)."""
 
