@@ -44,7 +44,7 @@ def frames(name: str, policy: Policy, x: np.ndarray, normal: Normal | None) -> l
     arm, every, path, arrived = Arm(), round(1 / (PER_SECOND * CONTROL)), [], None
     arm.place(x)
     camera = mujoco.MjvCamera()
-    camera.lookat[:], camera.distance, camera.azimuth, camera.elevation = [0.33, 0.0, 0.22], 1.25, 140, -25
+    camera.lookat[:], camera.distance, camera.azimuth, camera.elevation = [0.33, 0.0, 0.25], 1.3, 140, -25
     pictures = []
     with mujoco.Renderer(arm.model, height=SIZE[1], width=SIZE[0]) as renderer:
         for step in range(round(SECONDS / CONTROL)):
