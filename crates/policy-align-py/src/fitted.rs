@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DMatrixView};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use policy_align::{
     Evaluation, Model, ModelError, PrepareOptions, Progress, TaskLinks, estimate_constraints, evaluate, fit, prepare,
+    to_lerobot, write_whole,
 };
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
@@ -85,6 +86,18 @@ impl Fitted {
     /// Writes a model file, wholly or not at all.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| self.model.save(&path)).map_err(|error| file_or(error, &path))
+    }
+
+    /// Writes the folder that `LeRobot` reads as a policy; it is made if it is not there.
+    fn save_lerobot(&self, py: Python<'_>, folder: PathBuf) -> PyResult<()> {
+        let files = to_lerobot(&self.model);
+        let place = folder.display().to_string();
+        let files = files.map_err(|error| Refusal::new(error.to_string(), place, "another fit"))?;
+        py.detach(|| {
+            std::fs::create_dir_all(&folder)?;
+            files.iter().try_for_each(|(name, bytes)| write_whole(&folder.join(name), bytes))
+        })
+        .map_err(|error| file_or(ModelError::File(error), &folder))
     }
 
     /// Everything in the model but the policy itself, as JSON.

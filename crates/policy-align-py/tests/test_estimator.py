@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import io
 import pickle
 import subprocess
 import sys
@@ -39,6 +40,7 @@ def test_copies_have_the_same_bits(learner: type[SlopeGp], rails, tmp_path) -> N
         copy.deepcopy(model),
         learner.load(tmp_path / "model.json"),
         load(tmp_path / "model.json"),
+        load(io.BytesIO((tmp_path / "model.json").read_bytes())),
     ):
         assert type(again) is learner
         assert np.array_equal(again.predict(STATES), model.predict(STATES))
@@ -50,6 +52,10 @@ def test_copies_have_the_same_bits(learner: type[SlopeGp], rails, tmp_path) -> N
     other = next(one for one in LEARNERS if one is not learner)
     with pytest.raises(PolicyAlignError, match="a model of the learner"):
         other.load(tmp_path / "model.json")
+    with (tmp_path / "model.json").open("rb") as file, pytest.raises(PolicyAlignError, match="no JSON object") as error:
+        file.seek(1)
+        load(file)
+    assert error.value.place == str(tmp_path / "model.json")
 
 
 def test_joblib_keeps_the_same_bits(slope: SlopeGp, tmp_path) -> None:

@@ -29,7 +29,7 @@
 //! | prepare recordings | [`prepare()`]: each automatic choice is a [`Decision`] |
 //! | learn | [`fit()`]: a [`Model`] with its [`Trust`], every doubt a [`Finding`] |
 //! | store | [`Model`]: [`Model::save`], [`Model::load`], [`Model::policy`] in the units of the recording |
-//! | use | [`RollOut`] under constraints; [`CSource`] and [`to_onnx`] export a policy without dependencies |
+//! | use | [`RollOut`] under constraints; [`CSource`] and [`to_onnx`] export a policy without dependencies, [`to_lerobot`] for LeRobot |
 //! | evaluate | [`evaluate()`] on other recordings, [`leave_constraints_out`] across constraints |
 //!
 //! Guides in `docs`: `your-own-data.md` (the program step by step), `which-learner.md`, `model-file.md`, `slope-gp.md`
@@ -87,7 +87,7 @@ pub use choice::Choice;
 pub use context::ContextError;
 pub use error::FitError;
 pub use evaluate::{EvaluateError, Evaluation, Truth, evaluate};
-pub use export::{CSource, ExportError, Precision, to_onnx};
+pub use export::{CSource, ExportError, Precision, to_lerobot, to_onnx};
 pub use fit::{FitOptions, LearnerChoice, Progress, Step, fit};
 pub use learnt::Learnt;
 pub use leave_out::{ConstraintLeftOut, leave_constraints_out, without_movements};

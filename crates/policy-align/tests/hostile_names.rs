@@ -136,6 +136,7 @@ fn a_file_name_is_no_command() {
         &["rollout", &json, "--from", " 1.5, 1"],
         &["export", &json, "--to", "onnx"],
         &["export", &json, "--to", "c"],
+        &["export", &json, "--to", "lerobot"],
     ] {
         let ran = said(words);
         let next = ran.out.lines().find_map(|line| line.strip_prefix("Next:  "));

@@ -175,6 +175,8 @@ fn errors_have_three_lines_and_a_code() {
         ("export toy.json --to mcap -o toy.csv", 2, "end in .mcap"),
         ("export toy.json --to mcap --from 99,99", 1, "outside the data"),
         ("export toy.json --to c --from 1,1", 2, "--to mcap"),
+        ("export toy.json --to lerobot --from 1,1", 2, "--to mcap"),
+        ("export toy.json --to lerobot -o toy.csv", 3, "toy.csv"),
         ("convert toy.csv -o slow.csv --resample 0", 2, "0 Hz is not a rate"),
         ("convert toy.csv -o slow.csv --resample 0.1", 2, "a higher rate"),
         ("fit toy.csv -o toy.csv", 2, "would write over it"),

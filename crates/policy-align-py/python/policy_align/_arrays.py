@@ -53,9 +53,8 @@ def samples(
         hint = "reshape(1, -1) if it holds a single sample, reshape(-1, 1) if a single channel"
         raise PolicyAlignError(f"Expected 2D array, got {array.ndim}D array instead", name, hint)
     if columns is not None and array.shape[1] != columns:
-        found = array.shape[1]
         raise PolicyAlignError(
-            f"{name} has {found} features, but {of} is expecting {columns} features as input",
+            f"{name} has {array.shape[1]} features, but {of} is expecting {columns} features as input",
             name,
             "the channels that were learnt from, in their order",
         )

@@ -285,6 +285,12 @@ class Learner(Estimator):
         """Writes a model file, the same as the program's, wholly or not at all."""
         self._needed().save(path)
 
+    def save_lerobot(self, folder: str | os.PathLike[str]) -> None:
+        """Writes the folder that LeRobot reads as a policy with the plug-in ``lerobot_policy_align``, the same as the program's
+        ``export --to lerobot``; it is made if it is not there.
+        """
+        self._needed().save_lerobot(folder)
+
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Reads a model file that this learner, or the program with it, has written.

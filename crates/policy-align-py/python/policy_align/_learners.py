@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 import numpy.typing as npt
@@ -107,9 +107,15 @@ class AutoGp(Learner):
         self._store(locals())
 
 
-def load(path: str | os.PathLike[str]) -> PolicyAlign | SlopeGp | DirectGp | AutoGp:
-    """Reads any model file, of this package or of the program, as the estimator that learns such models."""
+def load(path: str | os.PathLike[str] | BinaryIO) -> PolicyAlign | SlopeGp | DirectGp | AutoGp:
+    """Reads any model file, of this package or of the program, as the estimator that learns such models.
+
+    ``path`` may also be a file that is open for reading bytes, as ``io.BytesIO``.
+    """
     known: dict[str, Any] = {one._learner: one for one in (PolicyAlign, SlopeGp, DirectGp, AutoGp)}
-    fitted = _native.Fitted.load(path)
+    if isinstance(path, str | os.PathLike):
+        fitted = _native.Fitted.load(path)
+    else:
+        fitted = _native.Fitted.from_json(path.read(), str(getattr(path, "name", "the open file")))
     loaded: PolicyAlign | SlopeGp | DirectGp | AutoGp = known[fitted.learner]._of(fitted)
     return loaded

@@ -13,4 +13,10 @@ pub enum ExportError {
         /// What was given.
         name: String,
     },
+    /// The model cannot be stored.
+    #[error("the model cannot be stored: {reason}")]
+    Unwritable {
+        /// What [`ModelError`](crate::ModelError) says.
+        reason: String,
+    },
 }

@@ -5,6 +5,7 @@ mod c_gp;
 mod c_lwpr;
 mod c_policy;
 mod error;
+mod lerobot;
 mod lwpr_tables;
 mod onnx;
 mod onnx_gp;
@@ -16,4 +17,5 @@ mod tables;
 
 pub use c::{CSource, Precision};
 pub use error::ExportError;
+pub use lerobot::to_lerobot;
 pub use onnx::to_onnx;

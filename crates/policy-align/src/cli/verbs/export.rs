@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use nalgebra::DVector;
-use policy_align::{CSource, ExportError, Model, Precision, spread_starts, to_onnx};
+use policy_align::{CSource, ExportError, Model, Precision, spread_starts, to_lerobot, to_onnx};
 use text::quoted;
 
 use crate::cli::failure::{Exit, Failure, displayed};
@@ -12,7 +12,7 @@ use crate::cli::lines::{Lines, counted, list, size};
 use crate::cli::options::config::Config;
 use crate::cli::options::rollout_flags::RollOutFlags;
 use crate::cli::options::values::{in_context, numbers};
-use crate::cli::session::{Output, Session, write};
+use crate::cli::session::{Output, Session, write_together};
 use crate::cli::trust_files::load;
 use crate::cli::verbs::rollout::{followed, write_paths};
 use crate::cli::written::RobotFlag;
@@ -21,14 +21,18 @@ use crate::cli::written::RobotFlag;
 const STARTS: usize = 12;
 /// What loads the file that is named after it.
 const LOAD_ONNX: &str = "python -c \"import onnxruntime as o, sys; o.InferenceSession(sys.argv[1])\"";
+const LOAD_LEROBOT: &str =
+    "python -c \"import lerobot_policy_align as l, sys; l.AlignPolicy.from_pretrained(sys.argv[1])\"";
 
-/// Export a policy to C or ONNX, or roll-outs to MCAP
+/// Export a policy to C, ONNX or LeRobot, or roll-outs to MCAP
 #[derive(Debug, Args)]
 #[command(after_help = "\
 C: one file of ISO C99 that needs math.h only. int policy(const double *x,
 double *u, double *phi) returns 1 within the data, 0 outside: then stop.
 ONNX: opset 17 in doubles, x (states, n) to u, phi and support.
 Of a model with a context c (p), both take it after x: policy(x, c, u, phi).
+LeRobot: a folder for --policy.path, with the plug-in lerobot_policy_align;
+actions are velocities, and with --policy.action=position the next positions.
 MCAP: roll-outs as joint states of ROS 2, for Rerun, Foxglove and PlotJuggler;
 with --robot also /robot_description and /tf, so that they draw the robot.
 
@@ -39,7 +43,7 @@ pub(crate) struct Export {
     /// Format
     #[arg(long, value_enum)]
     to: Target,
-    /// The file to write [default: the model's name with .c, .onnx or .mcap]
+    /// File or folder to write [default: the model's name, .c and so on]
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Name of the C function
@@ -67,6 +71,9 @@ enum Target {
     C,
     /// ONNX, opset 17
     Onnx,
+    /// A folder for LeRobot
+    #[value(name = "lerobot")]
+    LeRobot,
     /// Roll-outs for viewers
     Mcap,
 }
@@ -84,25 +91,38 @@ impl Export {
             return Err(Failure::usage("only MCAP holds roll-outs", "roll-out flags", "--to mcap"));
         }
         let precision = if self.float { Precision::Single } else { Precision::Double };
-        let (output, bytes, next) = match self.to {
+        let whole = |output: &Path, bytes: Vec<u8>| vec![(output.to_owned(), bytes)];
+        let (output, files, next) = match self.to {
             Target::Mcap => return self.roll_outs(session, &model, &output("mcap")),
-            Target::Onnx => (output("onnx"), to_onnx(&model), LOAD_ONNX),
+            Target::Onnx => (output("onnx"), to_onnx(&model).map(|bytes| whole(&output("onnx"), bytes)), LOAD_ONNX),
+            Target::LeRobot => {
+                let folder = output("lerobot");
+                let inside = |(name, bytes): (&str, Vec<u8>)| (folder.join(name), bytes);
+                let files = to_lerobot(&model).map(|files| files.into_iter().map(inside).collect());
+                (folder, files, LOAD_LEROBOT)
+            }
             Target::C => {
                 let source = CSource { name: self.name.clone(), precision }.of(&model);
-                (output("c"), source.map(String::into_bytes), "cc -std=c99 -O2 -c")
+                (output("c"), source.map(|text| whole(&output("c"), text.into_bytes())), "cc -std=c99 -O2 -c")
             }
         };
-        let bytes = bytes.map_err(|error| match error {
+        let files = files.map_err(|error| match error {
             ExportError::Name { .. } => Failure::usage(error.to_string(), "--name", "--name policy"),
             error => {
                 let remedy = "another learner: `policy-align fit --learner`";
                 Failure::new(Exit::Refused, error.to_string(), displayed(&self.model), remedy)
             }
         })?;
-        no_input(&output, std::slice::from_ref(&self.model))?;
-        write(&output, &bytes)?;
+        for (file, _) in &files {
+            no_input(file, std::slice::from_ref(&self.model))?;
+        }
+        if self.to == Target::LeRobot {
+            std::fs::create_dir_all(&output).map_err(|error| Failure::writing(&output, error))?;
+        }
+        write_together(&files)?;
+        let bytes = files.iter().map(|(_, bytes)| bytes.len()).sum();
         let mut lines = Lines::default();
-        lines.add("written", &format!("{} ({})", output.display(), size(bytes.len())));
+        lines.add("written", &format!("{} ({})", output.display(), size(bytes)));
         Ok(Output::done(lines.next(&format!("{next} {}", quoted(&output)))))
     }
 

@@ -1,9 +1,7 @@
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use clap::Args;
-use demo_io::TempFile;
 use motion::anomalies::duplicates;
 use motion::{Episode, Recordings};
 use policy_align::{
@@ -22,7 +20,7 @@ use crate::cli::options::config::{Config, printed};
 use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags};
 use crate::cli::pages::trust_page::trust_page;
 use crate::cli::recorded::{base_name, known_episode, named, read, summaries, unreported};
-use crate::cli::session::{Output, Session};
+use crate::cli::session::{Output, Session, write_together};
 use crate::cli::trust_files::{MEMBER, trust_files, warn_of_others};
 use crate::cli::verbs::check::{findings, left_out};
 
@@ -93,7 +91,7 @@ impl Fit {
         if !self.no_report {
             files.extend(self.report(&model, &prepared, &checksum));
         }
-        replace(&files)?;
+        write_together(&files)?;
         warn_of_others(session, &self.output, &checksum);
         let report: Vec<PathBuf> = files.into_iter().skip(1).map(|(path, _)| path).collect();
         let unreported = unreported(&model.trust.findings, &reported);
@@ -206,15 +204,4 @@ fn judged(held_out: &Recordings, options: &PrepareOptions, model: &Model) -> Res
     let prepared = prepare(held_out, &options).map_err(|error| Failure::prepare(&error, "--hold-out".to_owned()))?;
     evaluate(model, &prepared, None)
         .map_err(|error| Failure::new(Exit::Refused, error.to_string(), "--hold-out", "other episodes"))
-}
-
-/// Writes files that belong together: none is replaced before all are on the disk.
-fn replace(files: &[(PathBuf, String)]) -> Result<(), Failure> {
-    let failed = |path: &Path, error: io::Error| Failure::writing(path, error);
-    let draft = |(path, text): &(PathBuf, String)| {
-        TempFile::of(path, |file| file.write_all(text.as_bytes())).map_err(|error| failed(path, error))
-    };
-    let drafts = files.iter().map(draft).collect::<Result<Vec<_>, _>>()?;
-    let mut replaced = drafts.into_iter().zip(files);
-    replaced.try_for_each(|(draft, (path, _))| draft.persist().map_err(|error| failed(path, error)))
 }
