@@ -16,17 +16,24 @@ def learnt(learner, demonstrations):
 
 
 def main(scheduler, folder, *files):
-    """Writes FOLDER/FILE-WIDTH.json as they come."""
+    """Writes FOLDER/FILE-WIDTH.json as they come; returns how many could not be learnt."""
     with Client(scheduler) as client:
         names = {}
         for file in files:
             recording = client.submit(Demonstrations.read, file)  # once for all settings; lost with its worker, again
             for width, learner in LEARNERS.items():
                 names[client.submit(learnt, learner, recording)] = f"{Path(file).stem}-{width}.json"
-        for future, model in as_completed(names, with_results=True):
+        failed = 0
+        for future in as_completed(names):
+            if error := future.exception():  # a file that cannot be read, or too little to learn from
+                failed += 1
+                print(names[future], error, file=sys.stderr, flush=True)
+                continue
+            model = future.result()
             model.save(Path(folder) / names[future])
             print(names[future], f"{model.trust_.numbers['held_out_error']:.3f}", flush=True)
+    return failed
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    sys.exit(main(*sys.argv[1:]) > 0)

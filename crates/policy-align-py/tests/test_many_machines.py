@@ -56,6 +56,7 @@ def until(true: Callable[[], object], seconds: float = 60.0) -> None:
 def test_dask_outlives_a_killed_worker(tmp_path: Path) -> None:
     distributed = pytest.importorskip("distributed")
     files = [rails_file(tmp_path, count) for count in (16, 18)]
+    (tmp_path / "damaged.csv").write_text("episode,t,x,y\n0,0.0,1.0,none\n")
     address_file = tmp_path / "scheduler.json"
     common = ("--no-dashboard", "--scheduler-file", str(address_file))
     with ExitStack() as stack:
@@ -67,12 +68,13 @@ def test_dask_outlives_a_killed_worker(tmp_path: Path) -> None:
         client.wait_for_workers(2, timeout=60)
         addresses = {worker["name"]: address for address, worker in client.scheduler_info()["workers"].items()}
         address = client.scheduler.address
-        sweep = stack.enter_context(running(str(SWEEP), address, str(tmp_path), *map(str, files)))
+        sweep = stack.enter_context(running(str(SWEEP), address, str(tmp_path), *map(str, [*files, tmp_path / "damaged.csv"])))
         assert sweep.stdout is not None and sweep.stdout.readline().startswith("rails"), "nothing was learnt"
         until(lambda: client.processing()[addresses["second"]])
         workers["second"].send_signal(signal.SIGKILL)
-        assert sweep.wait(300) == 0
+        assert sweep.wait(300) == 1, "the damaged file was not missed"
         assert len(client.scheduler_info()["workers"]) == 1
+    assert not list(tmp_path.glob("damaged-*"))
     for file in files:
         for width, learner in runpy.run_path(str(SWEEP))["LEARNERS"].items():
             learner.fit(Demonstrations.read(file)).save(tmp_path / "alone.json")
