@@ -1,8 +1,10 @@
-//! (S22), (S23): rows of stretches.
+//! (S22), (S23), (S41): rows of stretches.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, DVectorView};
+use rayon::prelude::*;
 
 use crate::Rows;
 use crate::rows::kept::{Kept, OfStretches, RowsDropped, Selection};
@@ -17,7 +19,6 @@ const LEAST: f64 = 1e-12;
 const LEAST_SIGNIFICANCE: f64 = 4.0;
 /// Share of the movements that must have stretches: models of different movements are not compared.
 const COVERED: f64 = 0.5;
-
 /// One equation vᵀπ(x) = vᵀu.
 struct Equation {
     /// The sample's row.
@@ -26,6 +27,8 @@ struct Equation {
     velocity: DVector<f64>,
     /// |vᵀu|.
     length: f64,
+    /// Variance of vᵀu in units of s².
+    noise: f64,
     /// ℓ_k of its direction.
     direction_length: f64,
 }
@@ -42,15 +45,19 @@ fn few(equations: Vec<Equation>, rows: &Rows, most: usize) -> Vec<Equation> {
 impl Stretches {
     /// Rows of all samples that lie in stretches, with their noise weights (S23); evenly many of them, where they are more
     /// than `selection` allows. None if they are of far fewer movements than `kept` ones.
+    ///
+    /// In a task space there are several for each sample, whose directions do not depend on the velocity: samples are averaged (S33).
     pub(crate) fn rows(&self, rows: &Rows, kept: &Kept, selection: &Selection) -> Option<Kept> {
-        let mut equations: Vec<Equation> = (0..rows.len()).flat_map(|row| self.equations(rows, row)).collect();
+        let rows = &*if self.through.is_some() { rows.averaged() } else { Cow::Borrowed(rows) };
+        let of = |row: usize| self.equations(rows, row);
+        let mut equations: Vec<Equation> = (0..rows.len()).into_par_iter().flat_map_iter(of).collect();
         let mean_square = equations.iter().map(|of| of.length.powi(2)).sum::<f64>() / equations.len() as f64;
         equations.retain(|of| of.length.powi(2) > LEAST * mean_square);
         let found = equations.len();
         let equations = few(equations, rows, selection.max_rows);
         let lengths: Vec<f64> = equations.iter().map(|of| of.length).collect();
         let policy_squared = 2.0 * upper_median(lengths.clone())?.powi(2);
-        let variance = |of: &Equation| self.noise * (1.0 + policy_squared / of.direction_length.powi(2));
+        let variance = |of: &Equation| self.noise * (of.noise + policy_squared / of.direction_length.powi(2));
         let all: Vec<usize> = (0..equations.len()).collect();
         let index = |at: usize| rows.indices()[equations[at].row];
         let same = |&a: &usize, &b: &usize| index(a).trajectory == index(b).trajectory;
@@ -69,6 +76,7 @@ impl Stretches {
             of_stretches: Some(OfStretches {
                 weights: relative(equations.iter().map(variance).collect()),
                 push: self.pushed.then(|| self.push()),
+                space: self.through.as_ref().map(|through| through.space),
             }),
             trajectories: groups.iter().map(|rows_of| index(rows_of[0]).trajectory).collect(),
             groups,
@@ -79,15 +87,26 @@ impl Stretches {
         })
     }
 
-    /// (S22) of one sample, a direction each.
+    /// (S22) or (S41) of one sample, a direction each.
     fn equations(&self, rows: &Rows, row: usize) -> Vec<Equation> {
         let Some(stretch) = self.at(rows.indices()[row]) else { return Vec::new() };
         let velocity = rows.velocities().column(row);
-        let along = |(direction, &direction_length): (nalgebra::DVectorView<'_, f64>, &f64)| {
+        let along = |direction: DVectorView<'_, f64>, noise: f64, direction_length: f64| {
             let part = direction.dot(&velocity);
-            Equation { row, velocity: direction * part, length: part.abs(), direction_length }
+            Equation { row, velocity: direction * part, length: part.abs(), noise, direction_length }
         };
-        stretch.directions.column_iter().zip(&stretch.lengths).map(along).collect()
+        let Stretch { directions, lengths, .. } = stretch;
+        match &self.through {
+            None => {
+                let each = directions.column_iter().zip(lengths);
+                each.map(|(direction, &length)| along(direction, 1.0, length)).collect()
+            }
+            Some(through) => {
+                let noise = rows.variances().map_or(1.0, |variances| variances[row] / self.noise);
+                let free = through.free(rows, row, directions, lengths);
+                free.iter().map(|free| along(free.direction.as_view(), noise, free.length)).collect()
+            }
+        }
     }
 
     /// The stretch that holds a sample.

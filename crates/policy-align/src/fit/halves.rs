@@ -27,11 +27,17 @@ pub(super) fn of_slope(readings: &AutoFit, rows: &Rows, limits: Limits) -> Optio
         max_rows: limits.max_rows / 2,
         hyper_rows: limits.max_rows / 4,
         curl_test,
-        push_test: if report.push.is_some() { PushTest::Fit } else { PushTest::AssumeNone },
+        push_test: if report.push.is_some() || report.task_space.is_some() {
+            PushTest::Fit
+        } else {
+            PushTest::AssumeNone
+        },
         ..SlopeGp::default()
     };
     let learn = |rows: &Rows| gp.fit(rows, &mut ChaCha8Rng::seed_from_u64(limits.seed));
-    disagreement(readings.slope(), rows, &learn)
+    let space = report.task_space.map(|space| rows.task_spaces()[space].clone());
+    let rows = rows.clone().with_task_spaces(space.into_iter().collect()).ok()?;
+    disagreement(readings.slope(), &rows, &learn)
 }
 
 /// The same of direct policies.
