@@ -30,11 +30,12 @@ pub(crate) fn pushed(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) ->
 /// both that are taken, unless more are asked for.
 const TIMES: (usize, usize) = (6, 2);
 const MOST: (usize, usize) = (2400, 400);
+/// Of those that expect least on few rows, so many are fitted to more: few rows do not show a wrong stretch among many.
+const FINALISTS: usize = 2;
 /// Expected error up to which task spaces are not tried.
 const NEARLY_EXACT: f64 = 1e-3;
 
-/// Of stretches in the task space that expects the least error on as many rows as `own`; then with more, if that is less than `outcome`
-/// expects.
+/// Of stretches in the task space that expects the least error, if that is less than `outcome` expects.
 fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome: &Outcome) -> Option<Pushed> {
     if rows.task_spaces().is_empty() || rows.momenta().is_some() {
         return None;
@@ -56,11 +57,17 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
         let tried = Pushed::search(gp, rows, kept, &found)?;
         Some((expected(rows, &tried.outcome, &tried.kept), found))
     });
-    let (_, best) = tried.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    let mut tried: Vec<(f64, Stretches)> = tried.collect();
+    tried.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     let more = |rows: usize, times: usize, most: usize| rows.max((times * rows).min(most));
     let (max_rows, hyper_rows) = (more(gp.max_rows, TIMES.0, MOST.0), more(gp.hyper_rows, TIMES.1, MOST.1));
-    let pushed = Pushed::search(&SlopeGp { max_rows, hyper_rows, ..gp.clone() }, rows, kept, &best)?;
-    (expected(rows, &pushed.outcome, &pushed.kept) < before).then_some(pushed)
+    let larger = SlopeGp { max_rows, hyper_rows, ..gp.clone() };
+    let finals = tried.iter().take(FINALISTS).filter_map(|(_, found)| {
+        let pushed = Pushed::search(&larger, rows, kept, found)?;
+        Some((expected(rows, &pushed.outcome, &pushed.kept), pushed))
+    });
+    let best = finals.min_by(|(a, _), (b, _)| a.total_cmp(b));
+    best.filter(|(error, _)| *error < before).map(|(_, pushed)| pushed)
 }
 
 /// (S19): R² of slow rows that are certain is not that of fast ones alone.
