@@ -5,8 +5,8 @@ usage: compare_constraints.py [--sets 5] [--generators cycle,cycle-task,wiping,w
                               [--jobs 2] [--program PATH]
 
 Errors are nUPE at the states of 20 fresh movements: medians over the data sets. The estimators are told the rank of A; with "J" also the arm's
-Jacobian, and GSVD its pose, of which b is a linear function, or not, whichever has the lower true error. The slope GP is told none of it. Builds the
-program if no path is given.
+Jacobian, and GSVD its pose, of which b is a linear function, or not, whichever has the lower true error. The slope GP is told none of it, and "ours, J"
+the Jacobians of the tool's position, its orientation and both. Builds the program if no path is given.
 """
 import argparse, json, os, pathlib, subprocess, sys
 from concurrent.futures import ProcessPoolExecutor
@@ -27,7 +27,7 @@ def read(program, generator, number, decibels, rows):
     found = json.loads(subprocess.run(words, check=True, capture_output=True, text=True).stdout)
     n, samples = found["dim"], found["samples"]
     shapes = {"states": (-1, samples, n), "velocities": (-1, samples, n), "jacobians": (-1, samples, 6, n), "positions": (-1, samples, 3),
-              "tool_axes": (-1, samples, 3), "test_states": (-1, n), "test_actions": (-1, n), "ours": (-1, n)}
+              "tool_axes": (-1, samples, 3), "test_states": (-1, n), "test_actions": (-1, n), "ours": (-1, n), "ours_with_robot": (-1, n)}
     return {name: np.reshape(value, shapes[name]) if name in shapes else value for name, value in found.items()}
 
 
@@ -47,7 +47,7 @@ def movements_for(peer, found, generator):
 
 
 def errors(task):
-    """nUPE of each peer and of ours on one data set."""
+    """nUPE of each peer, of ours without the arm and with it on one data set, and facts of ours."""
     program, generator, number, decibels, rows = task
     found = read(program, generator, number, decibels, rows)
     error = lambda policy: constraints.nupe(policy, found["test_states"], found["test_actions"])
@@ -56,7 +56,8 @@ def errors(task):
         estimate = constraints.ESTIMATORS[name.split(",")[0]]
         told = movements_for(name, found, generator)
         return min((error(estimate(movements, RANKS[generator])) for movements in told), default=np.nan)
-    return [peer(name) for name in PEERS] + [error(lambda _: found["ours"])], found["reading"], found["pushed"]
+    ours = [error(lambda _: found[name]) if name in found else np.nan for name in ("ours", "ours_with_robot")]
+    return [peer(name) for name in PEERS] + ours, found["ours_facts"], found.get("ours_with_robot_facts")
 
 
 def build():
@@ -68,12 +69,14 @@ def build():
 def line(generator, decibels, outcomes):
     values = np.array([outcome[0] for outcome in outcomes])
     medians = np.median(values, 0)
-    best, ours = np.nanmin(values[:, :-1], 1), values[:, -1]
-    untold = medians[:4].min()
-    pushed = sum(outcome[2] is not None for outcome in outcomes)
+    peers, untold = medians[:-2], medians[:4].min()
+    told = medians[-1] if not np.isnan(medians[-1]) else medians[-2]
+    count = lambda of: f"{sum(of(outcome) for outcome in outcomes)} of {len(outcomes)}"
     cells = [generator, decibels, *("–" if np.isnan(value) else f"{value:.2g}" for value in medians),
-             f"{medians[-1] / untold:.2g}", f"{medians[-1] / np.nanmin(medians[:-1]):.2g}",
-             f"{np.sum(ours <= best)} of {len(outcomes)}", f"{pushed} of {len(outcomes)}"]
+             f"{medians[-2] / untold:.2g}", f"{told / np.nanmin(peers):.2g}",
+             count(lambda outcome: np.nanmin(outcome[0][-2:]) <= np.nanmin(outcome[0][:-2])),
+             count(lambda outcome: outcome[1]["pushed"] is not None),
+             count(lambda outcome: outcome[2] is not None and outcome[2]["space"] is not None)]
     return "| " + " | ".join(cells) + " |"
 
 
@@ -87,7 +90,8 @@ def main():
     parser.add_argument("--program")
     options = parser.parse_args()
     program = str(options.program or build())
-    header = ["generator", "SNR, dB", *PEERS, "ours", "ours / best without J", "ours / best", "ours is best", "stretches used"]
+    header = ["generator", "SNR, dB", *PEERS, "ours", "ours, J", "ours / best without J", "ours (, J) / best", "ours is best",
+              "stretches used", "task space used"]
     print("| " + " | ".join(header) + " |\n|" + " --- |" * len(header), flush=True)
     with ProcessPoolExecutor(options.jobs) as pool:
         for generator in options.generators.split(","):

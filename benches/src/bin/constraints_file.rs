@@ -6,13 +6,13 @@
 //!
 //! A list holds samples one after the other. `states`, `velocities` and, of an arm, `jacobians` (6 rows of n), `positions` and `tool_axes` are of the
 //! movements, all of them `samples` long. `test_states` and `test_actions` are true states of movements that nobody learns from, and the policy
-//! there; `ours` is the policy of the slope GP.
+//! there; `ours` is the policy of the slope GP, `ours_with_robot` the one that it learns where the arm's Jacobians are known; `…_facts` say how.
 
 use demo_gen::tasks::{Contact, CyclesWithTask, Wiping};
 use demo_gen::{Recording, demonstrations, with_velocity_noise};
-use gp::{AutoGp, DirectGp, FrontEnd, PushTest, SlopeGp};
+use gp::{AutoGp, DirectGp, FrontEnd, PushTest, Rows, SlopeGp, TaskSpace};
 use kinematics::Workspace;
-use motion::{Demonstrations, Policy};
+use motion::Policy;
 use nalgebra::{DMatrix, DVectorView, Matrix6xX, Vector3};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -47,10 +47,13 @@ fn main() {
         list(&columns(demonstrations.trajectories().iter().filter_map(|of| of.velocities()))),
     );
     written.insert("test_actions".into(), list(&columns(fresh.iter().map(|recording| &recording.truth.actions))));
-    written.extend(ours(&demonstrations, &states, max_rows));
+    let rows = FrontEnd::of_velocities(&demonstrations).rows(&demonstrations).expect("velocities were recorded");
+    written.extend(ours("ours", &rows, &states, max_rows));
     written.insert("test_states".into(), list(&states));
     if let Some(arm) = arm {
         written.extend(kinematics_of(&arm, &shown));
+        let rows = rows.with_task_spaces(task_spaces(&arm, &shown)).expect("a Jacobian of every sample");
+        written.extend(ours("ours_with_robot", &rows, &states, max_rows));
     }
     println!("{}", Value::Object(written));
 }
@@ -79,24 +82,39 @@ fn record(generator: &str, rng: &mut ChaCha8Rng) -> (Vec<Recording>, Option<Wipi
 }
 
 /// What the program would learn from the velocities: slope GP or direct GP, with the noise that it estimates, and constraints that may push.
-fn ours(demonstrations: &Demonstrations, states: &DMatrix<f64>, max_rows: usize) -> Map<String, Value> {
+fn ours(name: &str, rows: &Rows, states: &DMatrix<f64>, max_rows: usize) -> Map<String, Value> {
     let hyper_rows = max_rows / 2;
     let learner = AutoGp {
         slope: SlopeGp { max_rows, hyper_rows, push_test: PushTest::Fit, ..SlopeGp::default() },
         direct: DirectGp { max_rows, hyper_rows, ..DirectGp::default() },
         ..AutoGp::default()
     };
-    let rows = FrontEnd::of_velocities(demonstrations).rows(demonstrations).expect("velocities were recorded");
-    let fit = learner.fit(&rows, &mut ChaCha8Rng::seed_from_u64(1)).expect("enough movements");
+    let fit = learner.fit(rows, &mut ChaCha8Rng::seed_from_u64(1)).expect("enough movements");
     let actions = DMatrix::from_columns(&states.column_iter().map(|state| fit.action(state)).collect::<Vec<_>>());
     let facts = json!({
-        "ours": list(&actions),
         "reading": format!("{:?}", fit.reading()),
         "pushed": fit.slope().report().push,
+        "space": fit.slope().report().task_space,
         "expected": fit.expected_nupe(),
     });
-    let Value::Object(facts) = facts else { unreachable!("it was written as an object") };
-    facts
+    [(name.to_owned(), list(&actions)), (format!("{name}_facts"), facts)].into_iter().collect()
+}
+
+/// Position, orientation and both of the tool, as the program tries them with `--robot`.
+fn task_spaces(arm: &Wiping, shown: &[Recording]) -> Vec<TaskSpace> {
+    let mut workspace = Workspace::new();
+    let states = shown.iter().flat_map(|recording| recording.truth.states.column_iter());
+    let jacobian = |state: DVectorView<'_, f64>| {
+        let mut jacobian = Matrix6xX::zeros(state.len());
+        arm.tool().jacobian(state, &mut workspace, &mut jacobian).expect("a state of the arm");
+        jacobian
+    };
+    let jacobians: Vec<Matrix6xX<f64>> = states.map(jacobian).collect();
+    let space = |first: usize, count: usize| {
+        let rows = |of: &Matrix6xX<f64>| DMatrix::from_fn(count, of.ncols(), |row, joint| of[(first + row, joint)]);
+        TaskSpace::of_jacobians(jacobians.iter().map(rows).collect())
+    };
+    vec![space(0, 3), space(3, 3), space(0, 6)]
 }
 
 /// What somebody who knows the arm can add to its recordings.

@@ -41,7 +41,7 @@
 //!
 //! # Equations
 //!
-//! Comments cite (S1)–(S37) and (R1)–(R9). [`equations`] defines them and lists the steps of the search; it is
+//! Comments cite (S1)–(S41) and (R1)–(R9). [`equations`] defines them and lists the steps of the search; it is
 //! `docs/slope-gp.md` of the repository. `docs/which-learner.md` compares the learners, `docs/decisions/gp.md` gives
 //! the reasons.
 //!
@@ -51,7 +51,8 @@
 //!   policy. The data cannot tell the two apart: [`Hypothesis::Ambiguous`], and [`TrustReport::least_seen`] names the
 //!   direction that never moved.
 //! - **Constraints that push** (A u = b, b ≠ 0) with A or b changing from sample to sample, or that project obliquely.
-//!   While A and b are constant, directions in which velocities differ are learnt from ([`TrustReport::push`]).
+//!   While A and b are constant, directions in which velocities differ are learnt from ([`TrustReport::push`]); so they may be for a
+//!   robot's hand ([`Rows::with_task_spaces`]).
 //! - **Motion that depends on more than the state** (time, a moving target) is [`Hypothesis::Unexplained`]. What stays as it is during
 //!   a movement, a goal or a load, can be context ([`Rows::with_context`]).
 //! - **Corridors**: where all movements follow one narrow path, nothing tests the policy across it.
@@ -80,7 +81,7 @@ mod stored;
 mod stretches;
 mod support;
 
-pub use constraint_estimate::{Acting, ConstraintEstimates, StretchEstimate, TaskSpace};
+pub use constraint_estimate::{Acting, ConstraintEstimates, StretchEstimate};
 pub use direct::data::DirectData;
 pub use direct::direct_gp::{DirectFit, DirectGp};
 pub use direct::learner::DirectLearner;
@@ -104,6 +105,7 @@ pub use report::identifiability::{Identifiability, LeastSeen};
 pub use report::trust_report::{FamilyNumbers, FamilyReport, ModelKind, TrustReport};
 pub use rows::front_end::FrontEnd;
 pub use rows::kept::{Grouping, RowsDropped};
+pub use rows::task_space::TaskSpace;
 pub use rows::{MOST_ROWS, Rows};
 pub use scales::LearntScales;
 pub use slope::data::SlopeData;

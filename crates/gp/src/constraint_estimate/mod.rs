@@ -7,17 +7,16 @@
 mod hypothesis;
 mod spaces;
 mod stretch_estimate;
-mod task_space;
 mod view;
 mod wanted;
 
 pub use stretch_estimate::{Acting, StretchEstimate};
-pub use task_space::TaskSpace;
 
 use motion::{LearntPolicy, upper_median};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::rows::task_space::TaskSpace;
 use crate::stretches::noise::velocity_noise;
 use crate::stretches::partition::{Part, SPARE, cheapest_parts, known_part};
 use crate::stretches::segmentation::PARAMETER;

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, DVectorView};
 
-use super::task_space::TaskSpace;
+use crate::rows::task_space::TaskSpace;
 use crate::stretches::segmentation::PrefixSums;
 
 /// Samples that share one error of the policy: it is smooth.

@@ -55,6 +55,9 @@ pub struct TrustReport {
     /// directions in which velocities differ.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub push: Option<f64>,
+    /// The task space whose constraints the policy was learnt from (S41), by its place among [`Rows::task_spaces`](crate::Rows::task_spaces).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub task_space: Option<usize>,
 }
 
 /// Whether the policy has a potential.

@@ -13,6 +13,8 @@ const DEVIATIONS: f64 = 7.0;
 /// Means of samples that follow each other.
 #[derive(Debug, Clone)]
 struct Block {
+    /// Its first row.
+    first: usize,
     /// Where its first sample stands in its trajectory, and how many it has: a power of two.
     begin: usize,
     count: usize,
@@ -55,6 +57,7 @@ impl Rows {
             switches: None,
             labels: blocks.iter().map(|block| block.label).collect(),
             means: true,
+            task_spaces: self.task_spaces().iter().map(|space| space.with_rows(|of| means(&blocks, of))).collect(),
         })
     }
 
@@ -65,6 +68,7 @@ impl Rows {
         let mut blocks: Vec<Block> = Vec::new();
         for (begin, &row) in rows.iter().enumerate() {
             let mut last = Block {
+                first: row,
                 begin,
                 count: 1,
                 state: self.states().column(row).into_owned(),
@@ -100,6 +104,15 @@ impl Block {
             ..self
         }
     }
+}
+
+/// Mean Jacobians of the rows in each block.
+fn means(blocks: &[Block], jacobians: &[DMatrix<f64>]) -> Vec<DMatrix<f64>> {
+    let mean = |block: &Block| {
+        let sum: DMatrix<f64> = jacobians[block.first..block.first + block.count].iter().sum();
+        sum / block.count as f64
+    };
+    blocks.iter().map(mean).collect()
 }
 
 fn columns(blocks: &[Block], of: impl Fn(&Block) -> &DVector<f64>) -> DMatrix<f64> {

@@ -57,6 +57,8 @@ pub(crate) struct OfStretches {
     pub(crate) weights: Vec<f64>,
     /// Root mean square of the pushes A⁺b, in units of the state per second; none where b = 0.
     pub(crate) push: Option<f64>,
+    /// The task space that they are of, by its place among those of the rows; none: the recorded coordinates.
+    pub(crate) space: Option<usize>,
 }
 
 /// Rows kept, in the order of trajectories and samples.

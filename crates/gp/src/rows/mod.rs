@@ -5,6 +5,7 @@ pub(crate) mod front_end;
 pub(crate) mod kept;
 pub(crate) mod noise_weights;
 pub(crate) mod scaling;
+pub(crate) mod task_space;
 pub(crate) mod thinning;
 
 use std::borrow::Cow;
@@ -13,6 +14,7 @@ use motion::{SampleIndex, upper_median};
 use nalgebra::DMatrix;
 
 use crate::GpError;
+use task_space::TaskSpace;
 
 /// Most rows of a model, fitted or read: the Cholesky factor of so many, which its error bars need, takes 0.8 GB.
 pub const MOST_ROWS: usize = 10_000;
@@ -31,6 +33,7 @@ pub struct Rows {
     labels: Option<Vec<usize>>,
     /// Whether they are means (S33) already.
     means: bool,
+    task_spaces: Vec<TaskSpace>,
 }
 
 impl Rows {
@@ -63,8 +66,18 @@ impl Rows {
                 return Err(GpError::Overflow { what: if what == "state" { "distance" } else { "speed" } });
             }
         }
-        let (noise, switches, labels) = (None, None, None);
-        Ok(Rows { states, velocities, variances: None, indices, momenta: None, noise, switches, labels, means: false })
+        Ok(Rows {
+            states,
+            velocities,
+            variances: None,
+            indices,
+            momenta: None,
+            noise: None,
+            switches: None,
+            labels: None,
+            means: false,
+            task_spaces: Vec::new(),
+        })
     }
 
     /// Adds the context c of every row, (p, M): what the motion depends on and what stays as it is during a movement, such as a
@@ -147,6 +160,20 @@ impl Rows {
         Ok(Rows { labels: Some(labels), ..self })
     }
 
+    /// Adds spaces in which constraints may be constant beside the recorded coordinates, such as where a robot's links are: stretches are
+    /// looked for in each (S40).
+    ///
+    /// # Errors
+    /// [`GpError::Lengths`] for a space without a finite Jacobian (m, n) of each row; m is the same for all.
+    pub fn with_task_spaces(self, task_spaces: Vec<TaskSpace>) -> Result<Self, GpError> {
+        let wrong = |space: &&TaskSpace| space.jacobians.is_none() || !space.fits(self.len(), self.dim());
+        if let Some(space) = task_spaces.iter().find(wrong) {
+            let found = space.jacobians.as_ref().map_or(0, Vec::len);
+            return Err(GpError::Lengths { what: "Jacobians of a task space", found, expected: self.len() });
+        }
+        Ok(Rows { task_spaces, ..self })
+    }
+
     /// The rows whose sample is not held out: `held_out(trajectory, sample)`.
     #[must_use]
     pub fn without(&self, held_out: impl Fn(usize, usize) -> bool) -> Self {
@@ -162,6 +189,11 @@ impl Rows {
             switches: self.switches.clone(),
             labels: self.labels.as_ref().map(|labels| rows.iter().map(|&row| labels[row]).collect()),
             means: self.means,
+            task_spaces: self
+                .task_spaces
+                .iter()
+                .map(|space| space.with_rows(|of| rows.iter().map(|&row| of[row].clone()).collect()))
+                .collect(),
         }
     }
 
@@ -212,6 +244,11 @@ impl Rows {
     /// The label of the constraint on every row, (M); none where switches are not known.
     pub fn labels(&self) -> Option<&[usize]> {
         self.labels.as_deref()
+    }
+
+    /// Spaces in which constraints may be constant beside the recorded coordinates.
+    pub fn task_spaces(&self) -> &[TaskSpace] {
+        &self.task_spaces
     }
 
     /// Share of squares by which a step between two samples differs from the velocity there, where velocities were found

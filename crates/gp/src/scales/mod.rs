@@ -18,7 +18,8 @@ use crate::rows::kept::{Kept, Selection, rescaled, spreads};
 use crate::slope::data::SlopeData;
 use crate::slope::push_test::PushTest;
 use crate::slope::slope_gp::SlopeGp;
-use crate::stretches::Stretches;
+use crate::stretches::view::View;
+use crate::stretches::{Stretches, Switches};
 use crate::{GpError, Rows};
 use quotient::least_error;
 
@@ -140,7 +141,8 @@ fn stretches(rows: &Rows, kept: &Kept, selection: &Selection, spread: &DVector<f
         Some(labels) => alike.with_labels(labels.to_vec()).ok()?,
         None => alike,
     };
-    let stretches = Stretches::of(&alike).filter(Stretches::push_is_significant)?;
+    let stretches =
+        Stretches::of(&alike, View::recorded(&alike), Switches::Sought).filter(Stretches::push_is_significant)?;
     Some(stretches.rows(&alike, kept, selection)?.scaled(spread))
 }
 

@@ -77,6 +77,7 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
         grouping: kept.grouping,
         noise: rows.noise(),
         switches: rows.switches().map(count),
+        task_space: kept.of_stretches.as_ref().and_then(|of| of.space),
         push: kept.of_stretches.as_ref().and_then(|of| of.push).map(|push| push / root_mean_square(&taken.actions)),
     }
 }

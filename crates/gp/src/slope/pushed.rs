@@ -6,7 +6,8 @@ use crate::slope::judgement::{CrossPathEvidence, ReportInput, report};
 use crate::slope::push_test::PushTest;
 use crate::slope::search::{Outcome, outcome};
 use crate::slope::slope_gp::SlopeGp;
-use crate::stretches::Stretches;
+use crate::stretches::view::View;
+use crate::stretches::{Stretches, Switches};
 
 /// A search on rows of stretches.
 pub(crate) struct Pushed {
@@ -14,15 +15,74 @@ pub(crate) struct Pushed {
     pub(crate) kept: Kept,
 }
 
-/// The search on rows of stretches (S22), if it predicts left-out movements better than `plain`, the one on rows of samples. Not
-/// tried where that predicts nearly exactly. Where nothing pushes, only noise of the directions can be gained, by those of whole
-/// movements (S32).
+/// The search on rows of stretches (S22) that predicts left-out movements better than `plain`, the one on rows of samples: of stretches in
+/// the recorded coordinates, or in the task space that expects the least error.
 pub(crate) fn pushed(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) -> Option<Pushed> {
-    let settled = plain.taken.left_out.is_nearly_exact();
-    if gp.push_test == PushTest::AssumeNone || settled && rows.variances().is_none() {
+    if gp.push_test == PushTest::AssumeNone {
         return None;
     }
-    let stretches = Stretches::of(rows)?;
+    let recorded = recorded(gp, rows, kept, plain);
+    let (outcome, own) = recorded.as_ref().map_or((plain, kept), |of| (&of.outcome, &of.kept));
+    in_task_space(gp, rows, (kept, own), outcome).or(recorded)
+}
+
+/// Rows of stretches in a task space for one row of samples, since every sample has several, and those that set amplitudes; and the most of
+/// both that are taken, unless more are asked for.
+const TIMES: (usize, usize) = (6, 2);
+const MOST: (usize, usize) = (2400, 400);
+/// Of those that expect least on few rows, so many are fitted to more: few rows do not show a wrong stretch among many.
+const FINALISTS: usize = 2;
+/// Expected error up to which task spaces are not tried.
+const NEARLY_EXACT: f64 = 1e-3;
+
+/// Of stretches in the task space that expects the least error, if that is less than `outcome` expects.
+fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome: &Outcome) -> Option<Pushed> {
+    if rows.task_spaces().is_empty() || rows.momenta().is_some() {
+        return None;
+    }
+    let before = expected(rows, outcome, own);
+    if before <= NEARLY_EXACT {
+        return None;
+    }
+    let spaces = 0..rows.task_spaces().len();
+    let in_space = |space: usize, switches: Switches| Stretches::of(rows, View::in_space(rows, space)?, switches);
+    let found = spaces.flat_map(|space| {
+        let sought = in_space(space, Switches::Sought);
+        let same = rows.labels().is_some() || sought.as_ref().is_some_and(Stretches::are_whole);
+        let whole = if same { None } else { in_space(space, Switches::None) };
+        [sought, whole].into_iter().flatten()
+    });
+    let tried = found.filter_map(|found| {
+        let found = if found.push_is_significant() { found } else { found.without_push(rows) };
+        let tried = Pushed::search(gp, rows, kept, &found)?;
+        Some((expected(rows, &tried.outcome, &tried.kept), found))
+    });
+    let mut tried: Vec<(f64, Stretches)> = tried.collect();
+    tried.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let more = |rows: usize, times: usize, most: usize| rows.max((times * rows).min(most));
+    let (max_rows, hyper_rows) = (more(gp.max_rows, TIMES.0, MOST.0), more(gp.hyper_rows, TIMES.1, MOST.1));
+    let larger = SlopeGp { max_rows, hyper_rows, ..gp.clone() };
+    let finals = tried.iter().take(FINALISTS).filter_map(|(_, found)| {
+        let pushed = Pushed::search(&larger, rows, kept, found)?;
+        Some((expected(rows, &pushed.outcome, &pushed.kept), pushed))
+    });
+    let best = finals.min_by(|(a, _), (b, _)| a.total_cmp(b));
+    best.filter(|(error, _)| *error < before).map(|(_, pushed)| pushed)
+}
+
+/// (S19): R² of slow rows that are certain is not that of fast ones alone.
+fn expected(rows: &Rows, outcome: &Outcome, kept: &Kept) -> f64 {
+    report(&ReportInput { outcome, kept, rows, across: CrossPathEvidence::Tested }).expected_nupe
+}
+
+/// Of stretches in the recorded coordinates. Not tried where `plain` predicts nearly exactly. Where nothing pushes, only noise of the
+/// directions can be gained, by those of whole movements (S32).
+fn recorded(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) -> Option<Pushed> {
+    let settled = plain.taken.left_out.is_nearly_exact();
+    if settled && rows.variances().is_none() {
+        return None;
+    }
+    let stretches = Stretches::of(rows, View::recorded(rows), Switches::Sought)?;
     if stretches.push_is_significant() {
         let pushed = if settled { None } else { Pushed::search(gp, rows, kept, &stretches) }?;
         let r_squared = |outcome: &Outcome| outcome.taken.left_out.r_squared;
@@ -30,11 +90,7 @@ pub(crate) fn pushed(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) ->
     }
     rows.variances()?;
     let pushed = Pushed::search(gp, rows, kept, &stretches.without_push(rows))?;
-    // R² of slow rows that are certain is not that of fast ones alone.
-    let expected = |outcome: &Outcome, kept: &Kept| {
-        report(&ReportInput { outcome, kept, rows, across: CrossPathEvidence::Tested }).expected_nupe
-    };
-    (expected(&pushed.outcome, &pushed.kept) < expected(plain, kept)).then_some(pushed)
+    (expected(rows, &pushed.outcome, &pushed.kept) < expected(rows, plain, kept)).then_some(pushed)
 }
 
 impl Pushed {

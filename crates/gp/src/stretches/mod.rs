@@ -8,16 +8,19 @@ pub(crate) mod noise;
 pub(crate) mod partition;
 pub(crate) mod rows;
 pub(crate) mod segmentation;
+pub(crate) mod view;
 mod whole;
 
 use std::collections::HashMap;
 
+use motion::SampleIndex;
 use nalgebra::{DMatrix, DVector, Dyn, SVD};
 use rayon::prelude::*;
 
 use crate::Rows;
 use noise::velocity_noise;
 use segmentation::{Segment, known_segment, segments};
+use view::{Through, View};
 use whole::{least_length, whole};
 
 /// Most samples of a movement among which switches are looked for; of longer ones, evenly many.
@@ -33,16 +36,28 @@ pub(crate) struct Stretch {
     pub(crate) trajectory: usize,
     /// First and last sample.
     pub(crate) samples: (usize, usize),
-    /// Orthonormal directions in the null space of A, (n, m) with m < n.
+    /// Orthonormal directions in the null space of A, (n, m) with m < n; in a task space perhaps none.
     pub(crate) directions: DMatrix<f64>,
     /// ℓ_k of (S23), (m): the noise over the standard deviation of each direction's angle.
     pub(crate) lengths: Vec<f64>,
-    /// The push A⁺b: the mean velocity along the normals of the plane that the velocities lie in, (n).
+    /// The push A⁺b: the mean velocity along the normals of the plane that the velocities lie in, (n); in a task space that at the middle
+    /// of the stretch.
     pub(crate) push: DVector<f64>,
     /// Its square in units of the variance that noise gives it, and how many normals there are.
     pub(crate) significance: (f64, usize),
-    /// The rank of the plane, of a whole movement.
+    /// The rank of the plane that the velocities lie in.
+    rank: usize,
+    /// The same, of a whole movement.
     whole: Option<usize>,
+}
+
+/// Whether constraints may switch within a movement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Switches {
+    /// They are looked for where they are not known.
+    Sought,
+    /// Every movement is one stretch, or none: noise and curvature of a long one look like switches.
+    None,
 }
 
 /// All stretches of some movements.
@@ -53,62 +68,92 @@ pub(crate) struct Stretches {
     pub(crate) noise: f64,
     /// Whether the constraints may push.
     pub(crate) pushed: bool,
+    /// The task space in which A and b are constant; none: the recorded coordinates.
+    pub(crate) through: Option<Through>,
 }
 
 impl Stretches {
     /// Looks for stretches in all movements; none in another metric, in so many dimensions, or in so few samples, that
     /// nothing can be found.
     /// Takes time with the number of movements and the cube of the dimension.
-    pub(crate) fn of(rows: &Rows) -> Option<Stretches> {
-        if rows.dim() < 2 || rows.dim() > MOST_DIMENSIONS || rows.momenta().is_some() {
+    pub(crate) fn of(rows: &Rows, view: View<'_>, switches: Switches) -> Option<Stretches> {
+        if rows.dim() < 2 || view.dim() > MOST_DIMENSIONS || rows.momenta().is_some() {
             return None;
         }
         let at: Vec<usize> = (0..rows.len()).collect();
         let parts = parts(rows, &at);
-        let noise = velocity_noise(rows.velocities(), rows.variances(), &parts)?;
+        let noise = velocity_noise(&view.velocities, rows.variances(), &parts)?;
         let of_part = |part: &&[usize]| {
             let of_segment = |few: &[usize], segment: &Segment| {
                 let span = few[segment.begin]..=few[segment.end - 1];
                 let inside: Vec<usize> = part.iter().copied().filter(|row| span.contains(row)).collect();
                 let least = STANDS_OUT * noise.sqrt() * (inside.len() as f64).powf(0.25);
-                stretch(rows, &inside, (segment.kind, least), noise)
+                stretch(rows, &view, &inside, (segment.kind, least), noise)
             };
+            let velocities = view.velocities.select_columns(*part);
             if rows.labels().is_some() {
-                let known = known_segment(&rows.velocities().select_columns(*part), noise);
+                let known = known_segment(&velocities, noise);
                 return known.iter().filter_map(|segment| of_segment(part, segment)).collect::<Vec<_>>();
             }
             let few = evenly(part, MOST_SAMPLES);
-            let found = segments(&rows.velocities().select_columns(&few), noise);
-            let most = found.iter().map(|segment| segment.kind).max().unwrap_or(0);
-            let (_, about_mean) = centred(&rows.velocities().select_columns(*part));
+            let (found, most) = match switches {
+                Switches::Sought => {
+                    let found = segments(&view.velocities.select_columns(&few), noise);
+                    let most = found.iter().map(|segment| segment.kind).max().unwrap_or(0);
+                    (found, most)
+                }
+                Switches::None => (Vec::new(), view.dim() - 1),
+            };
+            let (_, about_mean) = centred(&velocities);
             if let Some(rank) = whole(&about_mean, most, noise) {
-                let found = stretch(rows, part, (rank, least_length(part.len(), noise)), noise);
+                let found = stretch(rows, &view, part, (rank, least_length(part.len(), noise)), noise);
                 return found.map(|found| Stretch { whole: Some(rank), ..found }).into_iter().collect();
             }
             found.iter().filter_map(|segment| of_segment(&few, segment)).collect()
         };
         let stretches: Vec<Stretch> = parts.par_iter().flat_map_iter(of_part).collect();
-        (!stretches.is_empty()).then_some(Stretches { all: stretches, noise, pushed: true })
+        (!stretches.is_empty()).then_some(Stretches { all: stretches, noise, pushed: true, through: view.through })
+    }
+
+    /// Whether every movement that has one is one.
+    pub(crate) fn are_whole(&self) -> bool {
+        self.all.iter().all(|stretch| stretch.whole.is_some())
     }
 
     /// Those that are whole movements, with directions from the velocities themselves, not from their differences: more
-    /// certain, and right where b = 0.
+    /// certain, and right where b = 0. In a task space also all others, as they are if b is not 0.
     pub(crate) fn without_push(&self, rows: &Rows) -> Stretches {
-        let noise = self.noise;
+        let Stretches { noise, through, .. } = self;
+        let view = through.as_ref().and_then(|through| View::in_space(rows, through.space));
+        let view = view.unwrap_or_else(|| View::recorded(rows));
         let mut of_trajectories: HashMap<usize, Vec<usize>> = HashMap::new();
         for (row, index) in rows.indices().iter().enumerate() {
             of_trajectories.entry(index.trajectory).or_default().push(row);
         }
         let of = |stretch: &Stretch| {
-            let rank = stretch.whole?;
-            let inside = &of_trajectories[&stretch.trajectory];
-            let velocities = rows.velocities().select_columns(inside);
-            whole(&velocities, rank, noise)?;
-            let (_, span) = Span::of(velocities, (rank, least_length(inside.len(), noise)), noise)?;
+            let rank = stretch.whole.or(through.as_ref().map(|_| stretch.rank))?;
+            let own = of_trajectories[&stretch.trajectory].iter().copied();
+            let inside: Vec<usize> = own.filter(|&row| stretch.holds(rows.indices()[row])).collect();
+            let velocities = view.velocities.select_columns(&inside);
+            whole(&velocities, rank, *noise)?;
+            let (_, span) = Span::of(velocities, (rank, least_length(inside.len(), *noise)), *noise)?;
             let push = DVector::zeros(rows.dim());
-            Some(Stretch { directions: span.directions, lengths: span.lengths, push, ..stretch.clone() })
+            span.is_enough(&view).then_some(Stretch {
+                directions: span.directions,
+                lengths: span.lengths,
+                push,
+                ..stretch.clone()
+            })
         };
-        Stretches { all: self.all.iter().filter_map(of).collect(), noise, pushed: false }
+        let other = |stretch: &Stretch| through.as_ref().map(|_| stretch.clone());
+        let all = self.all.iter().filter_map(|stretch| of(stretch).or_else(|| other(stretch))).collect();
+        Stretches { all, noise: *noise, pushed: false, through: through.clone() }
+    }
+}
+
+impl Stretch {
+    pub(crate) fn holds(&self, index: SampleIndex) -> bool {
+        index.trajectory == self.trajectory && (self.samples.0..=self.samples.1).contains(&index.sample)
     }
 }
 
@@ -141,8 +186,7 @@ struct Span {
 }
 
 impl Span {
-    /// Those of the first `rank` directions whose singular value is at least `least`, none if there is none; and the whole
-    /// decomposition.
+    /// Those of the first `rank` directions whose singular value is at least `least`; and the whole decomposition.
     fn of(velocities: DMatrix<f64>, (rank, least): (usize, f64), noise: f64) -> Option<(SVD<f64, Dyn, Dyn>, Span)> {
         let count = velocities.ncols() as f64;
         let svd = velocities.svd(true, false);
@@ -150,15 +194,23 @@ impl Span {
         let lengths: Vec<f64> = svd.singular_values.iter().take(rank).take_while(long).copied().collect();
         let directions = svd.u.as_ref()?.columns(0, lengths.len()).into_owned();
         let lengths: Vec<f64> = lengths.iter().map(|length| length - count * noise / length).collect();
-        (!lengths.is_empty()).then_some((svd, Span { directions, lengths }))
+        Some((svd, Span { directions, lengths }))
+    }
+
+    /// Whether there are rows of such a stretch: without a direction joints move a hand that keeps still, and nothing else.
+    fn is_enough(&self, view: &View<'_>) -> bool {
+        !self.lengths.is_empty() || view.through.is_some()
     }
 }
 
 /// The samples `inside`, whose velocities lie in a plane of this rank, with directions along which these are at least `least`
-/// long; none if no direction is.
-fn stretch(rows: &Rows, inside: &[usize], (rank, least): (usize, f64), noise: f64) -> Option<Stretch> {
-    let (mean, centred) = centred(&rows.velocities().select_columns(inside));
-    let (svd, Span { directions, lengths }) = Span::of(centred, (rank, least), noise)?;
+/// long; none if there are no rows of it.
+fn stretch(rows: &Rows, view: &View<'_>, inside: &[usize], (rank, least): (usize, f64), noise: f64) -> Option<Stretch> {
+    let (mean, centred) = centred(&view.velocities.select_columns(inside));
+    let (svd, span) = Span::of(centred, (rank, least), noise)?;
+    if !span.is_enough(view) {
+        return None;
+    }
     let plane = svd.u?.columns(0, rank).into_owned();
     let along = plane.tr_mul(&mean);
     let push = &mean - &plane * &along;
@@ -170,10 +222,11 @@ fn stretch(rows: &Rows, inside: &[usize], (rank, least): (usize, f64), noise: f6
     Some(Stretch {
         trajectory: first.trajectory,
         samples: (first.sample, last.sample),
-        significance: (push.norm_squared() / variance, rows.dim() - rank),
-        push,
-        lengths,
-        directions,
+        rank,
+        significance: (push.norm_squared() / variance, view.dim() - rank),
+        push: view.recorded_push(rows, inside[inside.len() / 2], &plane, push),
+        lengths: span.lengths,
+        directions: span.directions,
         whole: None,
     })
 }
@@ -216,7 +269,10 @@ mod tests {
             let rows = Rows::new(draw(dim, count), DMatrix::from_columns(&columns), indices).unwrap();
             // Few windows tell too little of the noise.
             let rows = rows.with_variances(vec![1e-6 / 3.0; count]).unwrap();
-            let found = |labels: Vec<usize>| Stretches::of(&rows.clone().with_labels(labels).unwrap());
+            let found = |labels: Vec<usize>| {
+                let rows = rows.clone().with_labels(labels).unwrap();
+                Stretches::of(&rows, View::recorded(&rows), Switches::Sought)
+            };
             let between = found(labels).expect("stretches").all;
             let ends = lengths.iter().scan(0, |end, length| { *end += length; Some((*end - length, *end - 1)) });
             let near = |(stretch, end): (&Stretch, (usize, usize))| {

@@ -1,13 +1,16 @@
-//! (S22), (S23): rows of stretches.
+//! (S22), (S23), (S41): rows of stretches.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use nalgebra::{DMatrix, DVector, DVectorView};
+use rayon::prelude::*;
 
 use crate::Rows;
 use crate::rows::kept::{Kept, OfStretches, RowsDropped, Selection};
 use crate::rows::noise_weights::relative;
 use crate::rows::thinning::{MIDDLE, thinned};
+use crate::stretches::view::{Free, Through};
 use crate::stretches::{Stretch, Stretches};
 use motion::{SampleIndex, upper_median};
 
@@ -26,6 +29,8 @@ struct Equation<'a> {
     direction: DVectorView<'a, f64>,
     /// vᵀu.
     part: f64,
+    /// Variance of vᵀu in units of s².
+    noise: f64,
     /// ℓ_k of its direction.
     direction_length: f64,
 }
@@ -40,8 +45,12 @@ fn few(of_rows: &[usize], rows: &Rows, most: usize) -> BTreeSet<usize> {
 impl Stretches {
     /// Rows of all samples that lie in stretches, with their noise weights (S23); evenly many of them, where they are more
     /// than `selection` allows. None if they are of far fewer movements than `kept` ones.
+    ///
+    /// In a task space there are several for each sample, whose directions do not depend on the velocity: samples are averaged (S33).
     pub(crate) fn rows(&self, rows: &Rows, kept: &Kept, selection: &Selection) -> Option<Kept> {
-        let all = || (0..rows.len()).flat_map(|row| self.equations(rows, row));
+        let rows = &*if self.through.is_some() { rows.averaged() } else { Cow::Borrowed(rows) };
+        let free = self.through.as_ref().map(|through| self.free(through, rows));
+        let all = || (0..rows.len()).flat_map(|row| self.equations(rows, free.as_deref(), row));
         let (mut sum, mut count) = (0.0, 0_usize);
         all().for_each(|equation| {
             sum += equation.part.powi(2);
@@ -56,7 +65,7 @@ impl Stretches {
         let equations: Vec<Equation<'_>> = chosen.map(|(_, equation)| equation).collect();
         let lengths: Vec<f64> = equations.iter().map(|of| of.part.abs()).collect();
         let policy_squared = 2.0 * upper_median(lengths.clone())?.powi(2);
-        let variance = |of: &Equation<'_>| self.noise * (1.0 + policy_squared / of.direction_length.powi(2));
+        let variance = |of: &Equation<'_>| self.noise * (of.noise + policy_squared / of.direction_length.powi(2));
         let all: Vec<usize> = (0..equations.len()).collect();
         let index = |at: usize| rows.indices()[equations[at].row];
         let same = |&a: &usize, &b: &usize| index(a).trajectory == index(b).trajectory;
@@ -75,6 +84,7 @@ impl Stretches {
             of_stretches: Some(OfStretches {
                 weights: relative(equations.iter().map(variance).collect()),
                 push: self.pushed.then(|| self.push()),
+                space: self.through.as_ref().map(|through| through.space),
             }),
             trajectories: groups.iter().map(|rows_of| index(rows_of[0]).trajectory).collect(),
             groups,
@@ -85,14 +95,34 @@ impl Stretches {
         })
     }
 
-    /// (S22) of one sample, a direction each.
-    fn equations<'a>(&'a self, rows: &'a Rows, row: usize) -> impl Iterator<Item = Equation<'a>> {
-        let along = move |(direction, &direction_length): (DVectorView<'a, f64>, &f64)| {
-            let part = direction.dot(&rows.velocities().column(row));
-            Equation { row, direction, part, direction_length }
+    /// The directions of (S41) of every sample.
+    fn free(&self, through: &Through, rows: &Rows) -> Vec<Vec<Free>> {
+        let of = |row: usize| {
+            let stretch = self.at(rows.indices()[row]);
+            stretch.map_or_else(Vec::new, |of| through.free(rows, row, &of.directions, &of.lengths))
         };
-        let of_stretch = |stretch: &'a Stretch| stretch.directions.column_iter().zip(&stretch.lengths);
-        self.at(rows.indices()[row]).into_iter().flat_map(of_stretch).map(along)
+        (0..rows.len()).into_par_iter().map(of).collect()
+    }
+
+    /// (S22) of one sample, or (S41) of its `free` directions, each of them.
+    fn equations<'a>(
+        &'a self,
+        rows: &'a Rows,
+        free: Option<&'a [Vec<Free>]>,
+        row: usize,
+    ) -> impl Iterator<Item = Equation<'a>> {
+        let recorded = if free.is_none() { self.at(rows.indices()[row]) } else { None };
+        let recorded = recorded.into_iter().flat_map(|of| of.directions.column_iter().zip(of.lengths.iter().copied()));
+        let free =
+            free.into_iter().flat_map(move |free| free[row].iter().map(|of| (of.direction.as_view(), of.length)));
+        let noise = match (&self.through, rows.variances()) {
+            (Some(_), Some(variances)) => variances[row] / self.noise,
+            _ => 1.0,
+        };
+        recorded.chain(free).map(move |(direction, direction_length)| {
+            let part = direction.dot(&rows.velocities().column(row));
+            Equation { row, direction, part, noise, direction_length }
+        })
     }
 
     /// The stretch that holds a sample.

@@ -12,23 +12,20 @@ pub(crate) const DIMENSION: f64 = 10.0;
 /// What one more segment costs.
 pub(crate) const SEGMENT: f64 = 6.0;
 
-/// Samples whose velocities lie in a plane; the kind is its rank, 0 < rank < n.
+/// Samples whose velocities lie in a plane; the kind is its rank, below n.
 pub(super) type Segment = Part<usize>;
 
 /// Cuts a movement into segments whose velocities, (n, N), lie in planes, or in none. `noise` is the variance of a velocity
 /// along an axis. A dynamic programme over all pairs: time with N² n³.
 pub(super) fn segments(velocities: &DMatrix<f64>, noise: f64) -> Vec<Segment> {
     let (dim, count) = velocities.shape();
-    let mut parts = cheapest_parts(count, PARAMETER * dim as f64, PlaneCosts::of(velocities, noise));
-    parts.retain(|part| part.kind > 0);
-    parts
+    cheapest_parts(count, PARAMETER * dim as f64, PlaneCosts::of(velocities, noise))
 }
 
 /// The same where no constraint switched among these samples: all of them, but for a few at the ends.
 pub(super) fn known_segment(velocities: &DMatrix<f64>, noise: f64) -> Option<Segment> {
     let (dim, count) = velocities.shape();
-    let part = known_part(count, PARAMETER * dim as f64, PlaneCosts::of(velocities, noise));
-    part.filter(|part| part.kind > 0)
+    known_part(count, PARAMETER * dim as f64, PlaneCosts::of(velocities, noise))
 }
 
 /// Costs of planes through samples, and their dimension.

@@ -75,7 +75,7 @@ class Learner(Estimator):
         channels that a movement depends on and that stay as they are meanwhile, such as a goal; "auto" finds them by their
         names, "none" takes none. ``max_rows``: samples that a policy is searched on, at most.
         ``inducing``: samples that stand for all where more are recorded; 0 drops these. ``robot``: a URDF whose joints are named like the
-        channels; its mass matrix is tried as the metric in which constraints are at right angles. ``random_state``: the seed,
+        channels; constraints of the links at its ends are tried, and its mass matrix as the metric in which constraints are at right angles. ``random_state``: the seed,
         a whole number; None is 1, the program's, and a generator of NumPy is asked for one. ``n_jobs``: threads, None or -1 for all; results do not depend on it.
         """
         self._store(locals())

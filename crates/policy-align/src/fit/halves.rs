@@ -29,12 +29,22 @@ pub(super) fn of_slope(readings: &AutoFit, rows: &Rows, limits: Limits) -> Optio
         max_rows: limits.max_rows / 2,
         hyper_rows: limits.max_rows / 4,
         curl_test,
-        push_test: if report.push.is_some() { PushTest::Fit } else { PushTest::AssumeNone },
+        push_test: if report.push.is_some() || report.task_space.is_some() {
+            PushTest::Fit
+        } else {
+            PushTest::AssumeNone
+        },
         ..SlopeGp::default()
     };
     let learn = |rows: &Rows| gp.fit(rows, &mut ChaCha8Rng::seed_from_u64(limits.seed));
     // Stretches are found on samples, all else on their means.
-    let learnt_from = if report.push.is_some() { Cow::Borrowed(rows) } else { rows.averaged() };
+    let with_spaces = |spaces| rows.clone().with_task_spaces(spaces).map(Cow::Owned);
+    let learnt_from = match report.task_space {
+        Some(space) => with_spaces(vec![rows.task_spaces()[space].clone()]).ok()?,
+        None if report.push.is_none() => rows.averaged(),
+        None if rows.task_spaces().is_empty() => Cow::Borrowed(rows),
+        None => with_spaces(Vec::new()).ok()?,
+    };
     disagreement(readings.slope(), (rows, &learnt_from), &learn)
 }
 

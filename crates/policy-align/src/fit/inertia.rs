@@ -31,8 +31,11 @@ pub(super) fn weighed(
     let joints = ChannelJoints::of(&robot, prepared.state.iter().map(|channel| channel.name.as_str()));
     let scales = DVector::from_iterator(prepared.state.len(), prepared.state.iter().map(|channel| channel.scale));
     let momenta = momenta(&robot, &joints.map_err(refused)?, &scales, rows).map_err(refused)?;
-    let no_mass = "its links have no masses, or so few that some joints move nothing: give each link <inertial>";
-    let rows = rows.clone().with_momenta(momenta).map_err(|_| FitError::Robot { reason: no_mass.to_owned() })?;
+    let Ok(rows) = rows.clone().with_momenta(momenta) else {
+        let no_mass = "its links have no masses, or so few that some joints move nothing, and none at the end of a chain is moved by the channels alone: give each link <inertial>";
+        let of_use = !rows.task_spaces().is_empty();
+        return if of_use { Ok(None) } else { Err(FitError::Robot { reason: no_mass.to_owned() }) };
+    };
     if plain.slope().report().is_nearly_exact() {
         return Ok(None);
     }

@@ -23,7 +23,8 @@ pub struct FitOptions {
     pub max_rows: usize,
     /// Rows that stand for all where more than `max_rows` are recorded; 0: only `max_rows` are learnt from (`--inducing`).
     pub inducing: usize,
-    /// Text of a URDF whose joints are the channels (`--robot`): its mass matrix is tried as the metric of constraints.
+    /// Text of a URDF whose joints are the channels (`--robot`): constraints of its last links are tried (S40), and its mass matrix as their
+    /// metric.
     pub robot: Option<String>,
 }
 

@@ -22,7 +22,13 @@ pub(super) fn learnt(
     let reading = options.reading.unwrap_or(readings.reading());
     let constrained = !matches!(reading, Hypothesis::Free | Hypothesis::TooFew);
     let report = readings.slope().report();
-    if chosen || !constrained || report.is_nearly_exact() || options.learner == LearnerChoice::Direct {
+    // A robot's joints have the units in which its links keep to constraints.
+    if chosen
+        || report.task_space.is_some()
+        || !constrained
+        || report.is_nearly_exact()
+        || options.learner == LearnerChoice::Direct
+    {
         return Ok(None);
     }
     let family = report.family;

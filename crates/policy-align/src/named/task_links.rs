@@ -3,6 +3,7 @@ use kinematics::{LinkId, RobotModel};
 use nalgebra::{DMatrix, DVector, DVectorView};
 
 use super::constraint_stretch::ConstraintOn;
+use crate::channel_joints::ChannelJoints;
 use crate::roll_out::link_point::LinkPoint;
 
 /// Links that are looked at if none is named, at most.
@@ -22,9 +23,45 @@ impl TaskLinks {
     /// In a sentence: what is wrong with the text, a link or a channel, or that there are too many last links.
     pub fn from_urdf(text: &str, links: &[String], channels: &[String]) -> Result<Self, String> {
         let robot = RobotModel::from_urdf(text).map_err(|error| error.to_string())?;
-        let named = if links.is_empty() { last_links(&robot)? } else { links.to_vec() };
+        let named = if links.is_empty() { last_links(&robot) } else { links.to_vec() };
+        if named.is_empty() || links.is_empty() && named.len() > MOST_LINKS {
+            return Err(format!(
+                "the robot has {} links at ends of its chains; name those that touch something",
+                named.len()
+            ));
+        }
         let link = |name: String| Ok((name.clone(), LinkPoint::new(&robot, &name, channels)?));
         Ok(TaskLinks { links: named.into_iter().map(link).collect::<Result<_, String>>()? })
+    }
+
+    /// Of the text of a URDF: the last links of its chains, as far as the channels alone move them; none where they are too many to try
+    /// all.
+    ///
+    /// # Errors
+    /// In a sentence: what is wrong with the text or a channel.
+    pub(crate) fn moved_by(text: &str, channels: &[String]) -> Result<Self, String> {
+        let robot = RobotModel::from_urdf(text).map_err(|error| error.to_string())?;
+        ChannelJoints::of(&robot, channels.iter().map(String::as_str)).map_err(|error| error.to_string())?;
+        let link = |name: String| Some((name.clone(), LinkPoint::new(&robot, &name, channels).ok()?));
+        let links: Vec<_> = last_links(&robot).into_iter().filter_map(link).collect();
+        Ok(TaskLinks { links: if links.len() > MOST_LINKS { Vec::new() } else { links } })
+    }
+
+    /// Position, orientation and both of every link as task spaces, for states (n) in columns, and what they are called.
+    pub(crate) fn poses(&self, states: &DMatrix<f64>) -> Result<Vec<(String, TaskSpace)>, String> {
+        let mut spaces = Vec::new();
+        for (name, link) in &self.links {
+            let position = |state: DVectorView<'_, f64>| Ok(link.at(state)?.1);
+            let both = |state: DVectorView<'_, f64>| {
+                let (position, orientation) = (link.at(state)?.1, link.turning(state)?);
+                let row = |row: usize| if row < 3 { position.row(row) } else { orientation.row(row - 3) };
+                Ok(DMatrix::from_rows(&(0..6).map(row).collect::<Vec<_>>()))
+            };
+            spaces.push((format!("position of {name}"), space(states, position)?));
+            spaces.push((format!("orientation of {name}"), space(states, |state| link.turning(state))?));
+            spaces.push((format!("pose of {name}"), space(states, both)?));
+        }
+        Ok(spaces)
     }
 
     /// Position and orientation of every link as task spaces, for states (n) in columns.
@@ -56,19 +93,12 @@ fn space(
 }
 
 /// Links that move and carry no other.
-fn last_links(robot: &RobotModel) -> Result<Vec<String>, String> {
+fn last_links(robot: &RobotModel) -> Vec<String> {
     let carries = |link: &LinkId| robot.links().any(|other| robot.parent(other) == Some(*link));
     let moves = |link: &LinkId| {
         let above = std::iter::successors(Some(*link), |&link| robot.parent(link));
         above.filter_map(|link| robot.attachment(link)).any(|attachment| attachment.joint.is_some())
     };
     let last = robot.links().filter(|link| !carries(link) && moves(link));
-    let names: Vec<String> = last.map(|link| robot.link_name(link).to_owned()).collect();
-    if names.is_empty() || names.len() > MOST_LINKS {
-        return Err(format!(
-            "the robot has {} links at ends of its chains; name those that touch something",
-            names.len()
-        ));
-    }
-    Ok(names)
+    last.map(|link| robot.link_name(link).to_owned()).collect()
 }

@@ -170,7 +170,7 @@ pub(crate) struct FitFlags {
     /// Samples that stand for all others; 0 drops these [default: 500]
     #[arg(long, value_name = "NUMBER")]
     inducing: Option<usize>,
-    /// Robot with these joints: tries its mass matrix as the metric
+    /// Robot with these joints: tries its links and its masses
     #[arg(long, value_name = "FILE.urdf")]
     robot: Option<PathBuf>,
     /// Episodes to evaluate on instead of learning from them

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 #[derive(Debug, Clone, PartialEq)]
 pub struct TaskSpace {
     /// Of every row, (m, n); none for the recorded coordinates.
-    pub(super) jacobians: Option<Vec<DMatrix<f64>>>,
+    pub(crate) jacobians: Option<Vec<DMatrix<f64>>>,
 }
 
 impl TaskSpace {
@@ -29,7 +29,7 @@ impl TaskSpace {
     }
 
     /// Whether there is a Jacobian of the right shape for each of `rows` states (n).
-    pub(super) fn fits(&self, rows: usize, dim: usize) -> bool {
+    pub(crate) fn fits(&self, rows: usize, dim: usize) -> bool {
         self.jacobians.as_ref().is_none_or(|jacobians| {
             let first = jacobians.first().map_or(0, DMatrix::nrows);
             let right = |j: &DMatrix<f64>| j.shape() == (first, dim) && j.iter().all(|value| value.is_finite());
@@ -37,17 +37,43 @@ impl TaskSpace {
         })
     }
 
+    /// The same of other rows, whose Jacobians `of` makes of these.
+    #[must_use]
+    pub(crate) fn with_rows(&self, of: impl FnOnce(&[DMatrix<f64>]) -> Vec<DMatrix<f64>>) -> Self {
+        TaskSpace { jacobians: self.jacobians.as_deref().map(of) }
+    }
+
     /// Orthonormal directions (m, m') in which anything ever moves, and the mean square of what unit velocities do along
     /// the least of them: a planar arm moves in a plane of space only. None if there is none.
-    pub(super) fn moved(&self, dim: usize) -> Option<(DMatrix<f64>, f64)> {
-        let Some(jacobians) = &self.jacobians else { return Some((DMatrix::identity(dim, dim), 1.0)) };
+    pub(crate) fn moved(&self, dim: usize) -> Option<(DMatrix<f64>, f64)> {
+        if self.jacobians.is_none() {
+            return Some((DMatrix::identity(dim, dim), 1.0));
+        }
+        self.gains().map(|(directions, gains)| (directions, gains.min()))
+    }
+
+    /// W of (S40), (m', m), of some of the rows, for which WJJᵀWᵀ is I in their mean: noise of u is then the same along all directions,
+    /// whatever their units. m' is the same whichever rows these are. None of the recorded coordinates, or where nothing moves.
+    pub(crate) fn evening(&self, rows: &[usize]) -> Option<DMatrix<f64>> {
+        let (directions, _) = self.gains()?;
+        let jacobians = self.jacobians.as_ref()?;
+        let own = |&row: &usize| directions.tr_mul(&jacobians[row]);
+        let sum: DMatrix<f64> = rows.iter().map(own).map(|own| &own * own.transpose()).sum();
+        let eigen = (sum / rows.len() as f64).symmetric_eigen();
+        let least = NEVER * eigen.eigenvalues.max();
+        let evening = eigen.eigenvalues.map(|gain| gain.max(least).sqrt().recip());
+        (least > 0.0).then(|| DMatrix::from_diagonal(&evening) * (directions * eigen.eigenvectors).transpose())
+    }
+
+    /// Directions in which anything moves, and the mean square of what unit velocities do along each.
+    fn gains(&self) -> Option<(DMatrix<f64>, DVector<f64>)> {
+        let jacobians = self.jacobians.as_ref()?;
         let m = jacobians.first()?.nrows();
         let sum = jacobians.iter().fold(DMatrix::zeros(m, m), |sum, j| sum + j * j.transpose());
         let eigen = (sum / jacobians.len() as f64).symmetric_eigen();
         let largest = eigen.eigenvalues.max();
         let moved: Vec<usize> = (0..m).filter(|&k| eigen.eigenvalues[k] > NEVER * largest).collect();
-        let of: DVector<f64> = eigen.eigenvalues.select_rows(&moved);
-        (largest > 0.0).then(|| (eigen.eigenvectors.select_columns(&moved), of.min()))
+        (largest > 0.0).then(|| (eigen.eigenvectors.select_columns(&moved), eigen.eigenvalues.select_rows(&moved)))
     }
 }
 

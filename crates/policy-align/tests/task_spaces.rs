@@ -1,0 +1,63 @@
+//! `fit --robot` where constraints are on a robot's tool: they are learnt from in its task space.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use std::sync::atomic::AtomicBool;
+
+use demo_gen::tasks::{Contact, Wiping};
+use motion::{Channel, Episode, Recordings, Source, Times};
+use nalgebra::DVector;
+use policy_align::{FitOptions, Model, PrepareOptions, Progress, fit, prepare};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+const ARM: &str = include_str!("../../../robots/seven_joint_arm.urdf");
+/// Movements that nobody learns from.
+const FRESH: usize = 10;
+
+#[test]
+fn constraints_of_a_tool_are_learnt_from() {
+    let mut system = Wiping::new(ARM, Contact::Height).unwrap();
+    system.n_trajectories = 40 + FRESH;
+    system.roll_out.n_samples = 60;
+    let mut shown = system.record(&mut ChaCha8Rng::seed_from_u64(4)).unwrap();
+    let fresh = shown.split_off(40);
+    let step = system.roll_out.time_step;
+    let episodes = shown.iter().enumerate().map(|(number, of)| Episode {
+        name: number.to_string(),
+        source: Source::default(),
+        times: Times::Even { step, len: of.truth.states.ncols() },
+        positions: of.truth.states.clone(),
+        velocities: of.observed.velocities().cloned(),
+        constraint: None,
+        context: DVector::zeros(0),
+    });
+    let names = system.robot().joints().iter().map(|joint| Channel { name: joint.name().to_owned(), unit: None });
+    let recordings = Recordings { state: names.collect(), episodes: episodes.collect(), findings: vec![] };
+    let prepared = prepare(&recordings, &PrepareOptions::default()).unwrap();
+    let learnt = |robot: Option<String>| {
+        let never = AtomicBool::new(false);
+        let options = FitOptions { robot, ..FitOptions::default() };
+        fit(&prepared, &options, &mut Progress { cancelled: &never, report: &mut |_| () }).unwrap()
+    };
+    let error = |model: &Model| {
+        let (mut apart, mut all) = (0.0, 0.0);
+        for of in &fresh {
+            for (state, action) in of.truth.states.column_iter().zip(of.truth.actions.column_iter()) {
+                apart += (model.learnt.policy().action(state) - action).norm_squared();
+                all += action.norm_squared();
+            }
+        }
+        apart / all
+    };
+    let space = |model: &Model| {
+        let found = model.decisions.iter().find(|decision| decision.what == "task space");
+        found.map(|decision| decision.value.clone())
+    };
+    let (with, without) = (learnt(Some(ARM.to_owned())), learnt(None));
+    assert!(error(&with) < 0.01 && error(&with) < error(&without) / 5.0, "{} {}", error(&with), error(&without));
+    assert!(space(&with).is_some_and(|space| space.ends_with("of tool")), "{:?}", with.decisions);
+    assert_eq!(space(&without), None);
+    let read = Model::from_json(with.to_json().unwrap().as_bytes()).unwrap();
+    assert_eq!(read.to_json().unwrap(), with.to_json().unwrap());
+}
