@@ -21,7 +21,7 @@ use crate::rolling::{self, Constraint};
 use crate::{model_document, pool};
 
 /// States between two looks at signals: less than a second.
-const TOGETHER: usize = 8192;
+const TOGETHER: usize = 1024;
 
 /// Deviations, where they are known, and whether each state is supported.
 type Certain<'py> = (Option<Bound<'py, PyArray2<f64>>>, Bound<'py, PyArray1<bool>>);
