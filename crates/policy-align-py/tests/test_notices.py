@@ -22,8 +22,8 @@ def notices() -> str:
 
 def test_every_crate_that_the_library_names_has_its_licence(notices: str) -> None:
     """Places of panics in the library are paths of sources, whose folders are crates with their versions."""
-    library = Path(_native.__file__).read_bytes()
-    folders = {name.decode() for name in re.findall(rb"registry/src/[^/\0]+/([\w+.-]+-\d+\.\d+\.\d+[\w+.-]*)/", library)}
+    places = rb"registry/src/[^/\0]+/([\w+.-]+-\d+\.\d+\.\d+[\w+.-]*)/"
+    folders = {name.decode() for name in re.findall(places, Path(_native.__file__).read_bytes())}
     titles = {re.sub(r"-(\d+\.\d+\.\d+.*)$", r" \1", folder) for folder in folders}
     assert len(titles) > 20
     assert {title for title in titles if f"\n{title}: " not in notices} == set()
