@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from importlib import metadata
 from pathlib import Path
 
 import pytest
@@ -27,6 +28,16 @@ def test_every_crate_that_the_library_names_has_its_licence(notices: str) -> Non
     titles = {re.sub(r"-(\d+\.\d+\.\d+.*)$", r" \1", folder) for folder in folders}
     assert len(titles) > 20
     assert {title for title in titles if f"\n{title}: " not in notices} == set()
+
+
+def test_an_installed_package_holds_them() -> None:
+    try:
+        files = metadata.files("policy-align") or []
+    except metadata.PackageNotFoundError:
+        pytest.skip("the package is not installed, only on the path")
+    held = [file for file in files if file.name == NOTICES.name]
+    assert len(held) == 1, "call `cargo xtask notices`, then build the wheel again"
+    assert held[0].read_text() == NOTICES.read_text()
 
 
 def test_every_crate_has_a_text(notices: str) -> None:
