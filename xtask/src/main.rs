@@ -6,6 +6,7 @@ mod equations;
 mod failure;
 mod files;
 mod leverage;
+mod notices;
 mod progress;
 mod publish;
 mod records;
@@ -53,6 +54,8 @@ enum Command {
     Leverage(leverage::Leverage),
     /// Compare with reference cases of other libraries
     Conformance(conformance::Conformance),
+    /// Write the licences of what the Python package links to crates/policy-align-py
+    Notices,
     /// Check manifests and sources against the architecture
     Tidy,
 }
@@ -81,6 +84,7 @@ fn main() -> ExitCode {
         Command::Compare(compare) => compare.execute(),
         Command::Leverage(leverage) => leverage.execute(),
         Command::Conformance(conformance) => conformance.execute(),
+        Command::Notices => notices::execute(),
         Command::Tidy => tidy::execute(),
     };
     match outcome {

@@ -1,27 +1,24 @@
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use motion::{Certainty, LearntPolicy as _, Policy as _};
-use nalgebra::{DMatrix, DMatrixView};
+use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use policy_align::{
     Evaluation, Model, ModelError, PrepareOptions, Progress, TaskLinks, estimate_constraints, evaluate, fit, prepare,
     to_lerobot, write_whole,
 };
-use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::arrays::{array, matrix};
 use crate::interruptible::interruptible;
 use crate::options::{Learning, Preparing};
+use crate::parts::in_parts;
 use crate::recordings::{Recorded, Recordings, names_of};
-use crate::refusal::Refusal;
+use crate::refusal::{Refusal, file_or};
 use crate::rolling::{self, Constraint};
 use crate::{model_document, pool};
-
-/// States between two looks at signals: less than a second.
-const TOGETHER: usize = 1024;
 
 /// Deviations, where they are known, and whether each state is supported.
 type Certain<'py> = (Option<Bound<'py, PyArray2<f64>>>, Bound<'py, PyArray1<bool>>);
@@ -138,7 +135,7 @@ impl Fitted {
     fn predict<'py>(&self, py: Python<'py>, states: PyReadonlyArray2<'py, f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let states = self.states(&states)?;
         let mut actions = DMatrix::zeros(states.nrows(), states.ncols());
-        Self::for_states(
+        in_parts(
             py,
             &states,
             |states| self.model.policy().actions(states),
@@ -277,7 +274,7 @@ impl Fitted {
     fn certainty(&self, py: Python<'_>, states: &PyReadonlyArray2<'_, f64>) -> PyResult<Certainty> {
         let states = self.states(states)?;
         let (mut support, mut deviations) = (Vec::with_capacity(states.ncols()), None);
-        Self::for_states(
+        in_parts(
             py,
             &states,
             |states| self.model.policy().certainty(states),
@@ -290,36 +287,5 @@ impl Fitted {
             },
         )?;
         Ok(Certainty { support, deviations })
-    }
-
-    /// Works on some states after others, on threads of our own, and gives `take` what it finds with the first of these states. Ctrl-C is
-    /// heard in between. One state is not worth the way to other threads.
-    fn for_states<T: Send>(
-        py: Python<'_>,
-        states: &DMatrix<f64>,
-        work: impl Fn(DMatrixView<'_, f64>) -> T + Sync,
-        mut take: impl FnMut(usize, T),
-    ) -> PyResult<()> {
-        // At least once, so that nothing found of no state has its form.
-        for first in (0..states.ncols().max(1)).step_by(TOGETHER) {
-            let some = states.columns(first, TOGETHER.min(states.ncols() - first));
-            let found = py.detach(|| {
-                if some.ncols() > 1 { pool::on(0, || work(some.as_view())) } else { Ok(work(some.as_view())) }
-            })?;
-            take(first, found);
-            py.check_signals()?;
-        }
-        Ok(())
-    }
-}
-
-/// What the system refuses is an `OSError`, as everywhere in Python.
-fn file_or(error: ModelError, path: &Path) -> PyErr {
-    match error {
-        ModelError::File(error) => match error.raw_os_error() {
-            Some(code) => PyOSError::new_err((code, error.to_string(), path.to_owned())),
-            None => error.into(),
-        },
-        error => Refusal::model(&error, &path.display().to_string()).into(),
     }
 }

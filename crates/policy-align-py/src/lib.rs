@@ -10,6 +10,7 @@ mod hints;
 mod interruptible;
 mod model_document;
 mod options;
+mod parts;
 mod pool;
 mod recordings;
 mod refusal;

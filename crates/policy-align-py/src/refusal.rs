@@ -1,10 +1,13 @@
 //! Errors of the Rust crates as `PolicyAlignError`: the program's three lines, what next in Python's words.
 
+use std::path::Path;
+
 use align::AlignError;
 use demo_io::ReadError;
 use motion::MotionError;
 use policy_align::{ConstraintFileError, EvaluateError, FitError, ModelError, PrepareError, RollOutError};
 use pyo3::PyErr;
+use pyo3::exceptions::PyOSError;
 
 use crate::hints::{in_python, named_in_python};
 
@@ -118,5 +121,16 @@ impl From<Refusal> for PyErr {
         let Refusal { what, place, hint, code, trajectory, sample, column } = refusal;
         let hint = hint.as_deref().map(in_python);
         python::PolicyAlignError::new_err((named_in_python(&what), place, hint, code, trajectory, sample, column))
+    }
+}
+
+/// What the system refuses is an `OSError`, as everywhere in Python.
+pub(crate) fn file_or(error: ModelError, path: &Path) -> PyErr {
+    match error {
+        ModelError::File(error) => match error.raw_os_error() {
+            Some(code) => PyOSError::new_err((code, error.to_string(), path.to_owned())),
+            None => error.into(),
+        },
+        error => Refusal::model(&error, &path.display().to_string()).into(),
     }
 }

@@ -12,6 +12,7 @@ Rows are samples everywhere.
 from ._constraints import ConstraintStretch
 from ._demonstrations import Check, Demonstrations
 from ._errors import NotFittedError, PolicyAlignError, PolicyAlignWarning
+from ._examples import example
 from ._learners import AutoGp, DirectGp, PolicyAlign, SlopeGp, load
 from ._native import __version__
 from ._rollout import Path
@@ -33,5 +34,6 @@ __all__ = [
     "SlopeGp",
     "Trust",
     "__version__",
+    "example",
     "load",
 ]
