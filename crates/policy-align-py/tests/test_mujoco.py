@@ -52,7 +52,7 @@ def test_every_demonstration_is_a_projection_of_the_teacher(demonstrations: Demo
 
 def test_it_reaches_where_cloning_does_not(demonstrations: Demonstrations) -> None:
     policies, rng = learnt(demonstrations), np.random.default_rng(5)
-    starts = [start(rng) for _ in range(5)]
+    starts = [start(rng) for _ in range(3)]
     free, sphere = attempts(teacher, starts, LIMIT)
     ours = attempts(policies.pop("policy-align"), starts, LIMIT)
     assert (ours < LIMIT).all(), "free, and under a constraint that no demonstration had"
