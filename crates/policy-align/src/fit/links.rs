@@ -10,16 +10,13 @@ use super::decision::decision;
 use crate::named::TaskLinks;
 use crate::{FitError, Prepared};
 
-/// Rows with the spaces of the robot's links, and what these are called.
-pub(super) struct OfLinks {
-    pub(super) rows: Rows,
-    names: Vec<String>,
-}
+/// What the spaces of a robot's links are called.
+pub(super) struct LinkNames(Vec<String>);
 
-impl OfLinks {
-    /// Those of the robot given, if any.
-    pub(super) fn of(rows: Rows, prepared: &Prepared, options: &FitOptions) -> Result<Self, FitError> {
-        let Some(text) = &options.robot else { return Ok(OfLinks { rows, names: Vec::new() }) };
+impl LinkNames {
+    /// Rows with the spaces of the links of the robot given, if any, and their names.
+    pub(super) fn with_spaces(rows: Rows, prepared: &Prepared, options: &FitOptions) -> Result<(Rows, Self), FitError> {
+        let Some(text) = &options.robot else { return Ok((rows, LinkNames(Vec::new()))) };
         let refused = |reason: String| FitError::Robot { reason };
         let channels: Vec<String> = prepared.state.iter().map(|channel| channel.name.clone()).collect();
         let links = TaskLinks::moved_by(text, &channels).map_err(refused)?;
@@ -28,13 +25,13 @@ impl OfLinks {
         states.column_iter_mut().for_each(|mut state| state.component_div_assign(&scales));
         let (names, spaces): (Vec<_>, Vec<_>) = links.poses(&states).map_err(refused)?.into_iter().unzip();
         let spaces = spaces.into_iter().map(|space| space.scaled(&scales)).collect();
-        Ok(OfLinks { rows: rows.with_task_spaces(spaces)?, names })
+        Ok((rows.with_task_spaces(spaces)?, LinkNames(names)))
     }
 
     /// What was learnt from, where that is the constraints of a link.
     pub(super) fn decision(&self, readings: &AutoFit) -> Option<Decision> {
         let report = readings.slope().report();
-        let name = self.names.get(report.task_space?)?;
+        let name = self.0.get(report.task_space?)?;
         let why = format!(
             "constraints are constant there: expected error {}, learnt from all that they leave free",
             squared_error(report.expected_nupe)

@@ -30,7 +30,7 @@ use crate::trust::{
 use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, Prepared};
 use aligning::AlignedFit;
 use decision::decision;
-use links::OfLinks;
+use links::LinkNames;
 
 /// Rows that amplitudes are chosen on, as a share of those learnt from.
 const HYPER_SHARE: f64 = 0.5;
@@ -46,8 +46,7 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
     progress.begin(0, steps, "cleaning the recordings")?;
     let comparable = if prepared.context.is_empty() { None } else { Some(context::comparable(prepared, options)?) };
     let prepared = comparable.as_ref().unwrap_or(prepared);
-    let of_links = OfLinks::of(rows(prepared)?, prepared, options)?;
-    let rows = of_links.rows.clone();
+    let (rows, links) = LinkNames::with_spaces(rows(prepared)?, prepared, options)?;
     progress.begin(1, steps, "learning with and without constraints")?;
     let readings = learn(&rows, options)?;
     let weighed = inertia::weighed(prepared, &rows, &readings, options)?;
@@ -59,14 +58,14 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
     let (prepared, rows, readings) = match (weighed, &rescaled) {
         (Some(inertia::Weighed { rows, readings, .. }), _) => (prepared, rows, readings),
         (None, Some(rescaled)) => {
-            let rows = OfLinks::of(recorded_rows::rows(rescaled)?, rescaled, options)?.rows;
+            let (rows, _) = LinkNames::with_spaces(recorded_rows::rows(rescaled)?, rescaled, options)?;
             let readings = learn(&rows, options)?;
             (rescaled, rows, readings)
         }
         (None, None) => (prepared, rows, readings),
     };
     let mut decisions: Vec<Decision> = prepared.decisions.iter().cloned().chain(metric).collect();
-    decisions.extend(of_links.decision(&readings));
+    decisions.extend(links.decision(&readings));
     decisions.push(learner_decision(options, &readings));
     decisions.extend(rows_decision(&readings));
     let aligned = match options.learner {
