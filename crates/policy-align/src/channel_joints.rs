@@ -1,4 +1,4 @@
-use kinematics::{KinematicsError, RobotModel};
+use kinematics::{JointKind, KinematicsError, RobotModel};
 use nalgebra::{DVector, DVectorView};
 
 /// The joints of a robot that the channels of a state are.
@@ -36,5 +36,17 @@ impl ChannelJoints {
             q[place] = x;
         }
         q
+    }
+}
+
+/// Radians or metres in a unit of a channel that is a joint; its numbers as they are where nothing is known of it. Of no kind: whatever its
+/// unit says.
+pub(crate) fn unit(unit: Option<&str>, joint: Option<JointKind>) -> f64 {
+    match (unit, joint) {
+        (Some("mm"), None | Some(JointKind::Prismatic)) => 1e-3,
+        (Some("cm"), None | Some(JointKind::Prismatic)) => 1e-2,
+        (_, Some(JointKind::Prismatic)) => 1.0,
+        (Some("deg" | "degree" | "degrees" | "°"), _) => 1f64.to_radians(),
+        _ => 1.0,
     }
 }

@@ -30,6 +30,7 @@
 //! | learn | [`fit()`]: a [`Model`] with its [`Trust`], every doubt a [`Finding`] |
 //! | store | [`Model`]: [`Model::save`], [`Model::load`], [`Model::policy`] in the units of the recording |
 //! | use | [`RollOut`] under constraints; [`CSource`] and [`to_onnx`] export a policy without dependencies, [`to_lerobot`] for LeRobot |
+//! | command | [`VelocityController`]: joint states in, velocities out, zero where it must not move |
 //! | evaluate | [`evaluate()`] on other recordings, [`leave_constraints_out`] across constraints |
 //!
 //! Guides in `docs`: `your-own-data.md` (the program step by step), `which-learner.md`, `model-file.md`, `slope-gp.md`
@@ -78,6 +79,7 @@ mod model_policy;
 mod named;
 mod robot_frames;
 mod roll_out;
+mod serving;
 mod stored;
 mod trust;
 
@@ -101,6 +103,7 @@ pub use prepare::{
 };
 pub use robot_frames::RobotFrames;
 pub use roll_out::{ConstraintFileError, ConstraintSet, JointLimits, Path, RollOut, RollOutError, Stop, spread_starts};
+pub use serving::{ControllerError, Halt, Quantity, VelocityCommand, VelocityController};
 pub use stored::{ModelError, checksum_of, sha256, sha256_of_file, write_whole};
 pub use trust::{AlignedNumbers, Trust, TrustNumbers};
 

@@ -6,17 +6,13 @@ mod cli;
 mod config_file;
 
 use std::panic::{PanicHookInfo, catch_unwind};
-use std::process::{ExitCode, exit};
+use std::process::ExitCode;
 
 use cli::{Exit, complain};
 
 fn main() -> ExitCode {
     std::panic::set_hook(Box::new(report));
-    // An interrupt ends the program at once. Files are written whole or not at all.
-    let _ = ctrlc::set_handler(|| {
-        demo_io::abandon_drafts();
-        exit(Exit::Interrupted as i32)
-    });
+    let _ = ctrlc::set_handler(cli::interrupt::interrupt);
     let exit = catch_unwind(cli::run).unwrap_or(Exit::Bug);
     ExitCode::from(exit as u8)
 }

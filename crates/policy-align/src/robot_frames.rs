@@ -1,9 +1,9 @@
 use demo_io::LinkFrames;
-use kinematics::{Joint, JointKind, LinkId, RobotModel, Workspace};
+use kinematics::{Joint, LinkId, RobotModel, Workspace};
 use motion::Channel;
 use nalgebra::{DVector, DVectorView, Isometry3};
 
-use crate::channel_joints::ChannelJoints;
+use crate::channel_joints::{ChannelJoints, unit};
 
 /// The frames of a robot's links along recordings or roll-outs, for [`demo_io::write_with_robot`].
 ///
@@ -47,7 +47,8 @@ impl RobotFrames {
             let of_state = named(names().collect());
             return Err(format!("the state has {of_state} channels and the robot {of_robot} joints, of other names"));
         };
-        let unit = |(channel, &place): (&&Channel, &usize)| unit(channel.unit.as_deref(), robot.joints()[place].kind());
+        let unit =
+            |(channel, &place): (&&Channel, &usize)| unit(channel.unit.as_deref(), Some(robot.joints()[place].kind()));
         let units = DVector::from_iterator(channels.len(), channels.iter().zip(&joints.places).map(unit));
         let links: Vec<LinkId> = robot.links().filter(|&link| link != robot.root()).collect();
         let name = |link: LinkId| robot.link_name(link).to_owned();
@@ -68,17 +69,6 @@ impl RobotFrames {
             robot.joints().iter().map(Joint::name).filter(|name| !channels.contains(name)).collect();
         let rest = if others.is_empty() { String::new() } else { format!("; at 0: {}", others.join(", ")) };
         format!("{}: channels are joints by name{rest}", robot.name())
-    }
-}
-
-/// Radians or metres in a unit of a channel; its numbers as they are where nothing is known of it.
-fn unit(unit: Option<&str>, joint: JointKind) -> f64 {
-    match (unit, joint) {
-        (Some("mm"), JointKind::Prismatic) => 1e-3,
-        (Some("cm"), JointKind::Prismatic) => 1e-2,
-        (_, JointKind::Prismatic) => 1.0,
-        (Some("deg" | "degree" | "degrees" | "°"), _) => 1f64.to_radians(),
-        _ => 1.0,
     }
 }
 

@@ -4,6 +4,7 @@ mod clock;
 mod describe;
 pub(crate) mod failure;
 mod given;
+pub(crate) mod interrupt;
 mod lines;
 pub(crate) mod options;
 mod pages;
@@ -41,6 +42,7 @@ enum Verb {
     Predict(verbs::predict::Predict),
     #[command(name = "rollout")]
     RollOut(verbs::rollout::RollOut),
+    Serve(verbs::serve::Serve),
     Evaluate(verbs::evaluate::Evaluate),
     Constraints(verbs::constraints::Constraints),
     Plot(verbs::plot::Plot),
@@ -99,6 +101,7 @@ impl Verb {
             Verb::Info(info) => info.run(session),
             Verb::Predict(predict) => predict.run(session),
             Verb::RollOut(rollout) => rollout.run(session),
+            Verb::Serve(serve) => serve.run(session),
             Verb::Evaluate(evaluate) => evaluate.run(session),
             Verb::Constraints(constraints) => constraints.run(session),
             Verb::Plot(plot) => plot.run(session),

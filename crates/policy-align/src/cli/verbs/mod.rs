@@ -11,3 +11,4 @@ pub(crate) mod info;
 pub(crate) mod plot;
 pub(crate) mod predict;
 pub(crate) mod rollout;
+pub(crate) mod serve;

@@ -1,0 +1,23 @@
+use clap::Args;
+
+use crate::cli::failure::Failure;
+use crate::cli::session::{Output, Session};
+
+/// Command a robot of ROS 2 by a policy (not in this build)
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Built with it, and without an installation of ROS 2:
+  cargo install --path crates/policy-align --features ros2")]
+pub(crate) struct Serve {
+    /// Flags of a build that has the command
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
+    given: Vec<String>,
+}
+
+impl Serve {
+    pub(crate) fn run(&self, _session: &Session) -> Result<Output, Failure> {
+        let place = format!("policy-align serve {}", self.given.join(" "));
+        let remedy = "cargo install --path crates/policy-align --features ros2";
+        Err(Failure::usage("this program was built without ROS 2", place.trim_end(), remedy))
+    }
+}
