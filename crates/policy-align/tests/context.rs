@@ -210,28 +210,28 @@ fn with(context: ContextUse) -> PrepareOptions {
 fn only_what_is_called_a_context_is_found_to_be_one() {
     let of_episode = |k: usize, _: usize| k as f64;
     let names = |context: &[policy_align::StateChannel]| context.iter().map(|of| of.name.clone()).collect::<Vec<_>>();
-    let found = prepare(&recordings("load", of_episode), &PrepareOptions::default()).unwrap();
+    let found = prepare(recordings("load", of_episode), &PrepareOptions::default()).unwrap();
     assert_eq!((names(&found.state), names(&found.context)), (vec!["x".to_owned()], vec!["load".to_owned()]));
     assert_eq!((found.context[0].low, found.context[0].high), (0.0, 11.0));
     assert_eq!(found.demonstrations.trajectories()[3].context(), &dvector![3.0]);
     assert_eq!(found.demonstrations.dim(), 1);
     // An axis that every constraint blocked looks the same: it stays state, and a remark names the flag.
-    let kept = prepare(&recordings("y", of_episode), &PrepareOptions::default()).unwrap();
+    let kept = prepare(recordings("y", of_episode), &PrepareOptions::default()).unwrap();
     assert_eq!((kept.demonstrations.dim(), kept.context.len()), (2, 0));
     assert!(kept.findings.iter().any(|of| of.next.contains("--context y") && of.verdict == Verdict::Good));
-    let given = prepare(&recordings("y", of_episode), &with(ContextUse::Named(vec!["y".to_owned()]))).unwrap();
+    let given = prepare(recordings("y", of_episode), &with(ContextUse::Named(vec!["y".to_owned()]))).unwrap();
     assert_eq!(names(&given.context), ["y"]);
     // What moves, or is the same everywhere, is no context, whatever it is called.
     for goals in [(|k, i| (k + i) as f64) as fn(usize, usize) -> f64, |_, _| 1.0] {
-        assert!(prepare(&recordings("goal", goals), &PrepareOptions::default()).unwrap().context.is_empty());
+        assert!(prepare(recordings("goal", goals), &PrepareOptions::default()).unwrap().context.is_empty());
     }
-    assert!(prepare(&recordings("goal", of_episode), &with(ContextUse::Ignored)).unwrap().context.is_empty());
+    assert!(prepare(recordings("goal", of_episode), &with(ContextUse::Ignored)).unwrap().context.is_empty());
 }
 
 #[test]
 fn few_contexts_are_doubted() {
     let doubted = |goals: usize| {
-        let prepared = prepare(&recordings("goal", |k, _| (k % goals) as f64), &PrepareOptions::default()).unwrap();
+        let prepared = prepare(recordings("goal", |k, _| (k % goals) as f64), &PrepareOptions::default()).unwrap();
         let of = prepared.findings.iter().find(|of| of.what.contains("different context")).unwrap();
         (of.verdict, of.what.clone())
     };
@@ -242,7 +242,7 @@ fn few_contexts_are_doubted() {
 #[test]
 fn a_context_that_is_none_is_refused() {
     let refused = |name: &str, goals: fn(usize, usize) -> f64| {
-        let error = prepare(&recordings("y", goals), &with(ContextUse::Named(vec![name.to_owned()]))).unwrap_err();
+        let error = prepare(recordings("y", goals), &with(ContextUse::Named(vec![name.to_owned()]))).unwrap_err();
         assert!(matches!(error, PrepareError::Context { .. }), "{error}");
         error.to_string()
     };
@@ -357,7 +357,7 @@ fn new_goals_are_reached_through_noise_and_units() {
         ] {
             let goals = Goals { dim, attraction };
             let mut fitted = |seed| {
-                let prepared = prepare(&recorded(&goals, count, seed, how), &PrepareOptions::default()).unwrap();
+                let prepared = prepare(recorded(&goals, count, seed, how), &PrepareOptions::default()).unwrap();
                 let options = FitOptions { seed, ..FitOptions::default() };
                 let mut progress = Progress { cancelled: &AtomicBool::new(false), report: &mut |_| () };
                 let model = fit(&prepared, &options, &mut progress).unwrap();

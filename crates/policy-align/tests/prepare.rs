@@ -116,7 +116,7 @@ proptest! {
     #[test]
     fn scale(factor in 0.01..100.0f64) {
         let options = PrepareOptions { scale: vec![("y".to_owned(), factor)], ..PrepareOptions::default() };
-        let prepared = prepare(&recordings(), &options).unwrap();
+        let prepared = prepare(recordings(), &options).unwrap();
         let plain = self::prepared(&recordings());
         prop_assert!((prepared.state[1].high / plain.state[1].high - 1.0).abs() < 1e-12);
         prop_assert_eq!(prepared.state[1].scale, factor);
@@ -174,7 +174,7 @@ fn velocities_that_are_none() {
     let swapped = changed(|episode| episode.velocities.as_mut().unwrap().swap_rows(0, 1));
     assert_eq!(prepare(&swapped, &believed).unwrap().velocities, VelocitySource::Recorded);
     let ignored = PrepareOptions { velocities: VelocityUse::Ignored, ..PrepareOptions::default() };
-    assert_eq!(prepare(&recordings(), &ignored).unwrap().velocities, VelocitySource::Positions);
+    assert_eq!(prepare(recordings(), &ignored).unwrap().velocities, VelocitySource::Positions);
     let mut some = recordings();
     some.episodes[5].velocities = None;
     assert_eq!(prepared(&some).velocities, VelocitySource::Positions);
@@ -456,7 +456,7 @@ fn what_cannot_be_learnt_from() {
     let still = changed(|episode| episode.positions.fill(1.0));
     let why = "the same samples as episode e0".to_owned();
     assert_eq!(refused(&still), PrepareError::NothingLeft { of: 12, why });
-    let with = |options: PrepareOptions| prepare(&recordings(), &options).unwrap_err();
+    let with = |options: PrepareOptions| prepare(recordings(), &options).unwrap_err();
     let scale =
         |name: &str, factor| PrepareOptions { scale: vec![(name.to_owned(), factor)], ..PrepareOptions::default() };
     let unknown = PrepareError::UnknownChannel { name: "z".to_owned(), known: "x, y".to_owned() };
