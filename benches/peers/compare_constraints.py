@@ -5,7 +5,7 @@ usage: compare_constraints.py [--sets 5] [--generators cycle,cycle-task,wiping,w
                               [--jobs 2] [--program PATH]
 
 Errors are nUPE at the states of 20 fresh movements: medians over the data sets. The estimators are told the rank of A; with "J" also the arm's
-Jacobian, and GSVD its pose, of which b is a linear function, or not, whichever has the lower true error. The slope GP is told none of it, and "ours, J"
+Jacobian, and GSVD its pose, of which b is a linear function, or not, whichever has the lower true error. The slope GP knows none of it, and "ours, J"
 the Jacobians of the tool's position, its orientation and both. Builds the program if no path is given.
 """
 import argparse, json, os, pathlib, subprocess, sys
@@ -32,7 +32,7 @@ def read(program, generator, number, decibels, rows):
 
 
 def movements_for(peer, found, generator):
-    """The movements with what the peer is told of the arm; a list for each way of telling it."""
+    """The movements with what the peer knows of the arm, in each form."""
     plain = [{"x": x, "u": u} for x, u in zip(found["states"], found["velocities"])]
     if not peer.endswith("J"):
         return [plain]

@@ -12,7 +12,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 const ARM: &str = include_str!("../../../robots/seven_joint_arm.urdf");
-/// Movements that nobody learns from.
+/// Movements that are not learnt from.
 const FRESH: usize = 20;
 
 /// An arm that wipes surfaces, each movement of another tilt.

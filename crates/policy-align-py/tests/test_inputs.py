@@ -162,8 +162,10 @@ def test_the_state_after_the_last_action_is_left_out(rails) -> None:
     positions, velocities = rails
     stamps = [DT * np.arange(len(x)) for x in positions]
     fewer = [u[:-1] for u in velocities]
-    given = Demonstrations(positions, times=stamps, velocities=fewer)
+    labels = [["a"] * (len(x) - 5) + ["b"] * 5 for x in positions]
+    given = Demonstrations(positions, times=stamps, velocities=fewer, constraints=labels)
     cut = Demonstrations([x[:-1] for x in positions], times=[t[:-1] for t in stamps], velocities=fewer)
     assert all(np.array_equal(a, b) for a, b in zip(given, cut, strict=True))
     assert all(np.array_equal(a, b) for a, b in zip(given.times, cut.times, strict=True))
     assert len(given[0]) == len(positions[0]) - 1
+    assert given.constraints[0] == labels[0][:-1]

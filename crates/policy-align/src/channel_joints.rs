@@ -1,5 +1,6 @@
 use kinematics::{JointKind, KinematicsError, RobotModel};
 use nalgebra::{DVector, DVectorView};
+use prepare::StateChannel;
 
 /// The joints of a robot that the channels of a state are.
 #[derive(Debug, Clone)]
@@ -29,7 +30,7 @@ impl ChannelJoints {
         self.n_joints
     }
 
-    /// The configuration in a state (n) in units of the recording; joints that are no channels are at 0.
+    /// The configuration in a state (n) in radians and metres; joints that are no channels are at 0.
     pub(crate) fn configuration(&self, state: DVectorView<'_, f64>) -> DVector<f64> {
         let mut q = DVector::zeros(self.n_joints);
         for (&place, &x) in self.places.iter().zip(state.iter()) {
@@ -37,6 +38,12 @@ impl ChannelJoints {
         }
         q
     }
+}
+
+/// What divides the numbers that are learnt from, of channels that are joints, into radians and metres, (n).
+pub(crate) fn scales_of_joints(state: &[StateChannel]) -> DVector<f64> {
+    let scale = |channel: &StateChannel| channel.scale / unit(channel.unit.as_deref(), None);
+    DVector::from_iterator(state.len(), state.iter().map(scale))
 }
 
 /// Radians or metres in a unit of a channel that is a joint; its numbers as they are where nothing is known of it. Of no kind: whatever its

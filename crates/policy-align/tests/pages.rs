@@ -98,7 +98,7 @@ fn noise(at: usize) -> f64 {
     ((at as f64 + 1.0) * 12.9898).sin().mul_add(43_758.545_3, 0.0).rem_euclid(1.0)
 }
 
-/// The page of movements to goals of their own in three channels, which no policy of the state makes, and one of a good policy in
+/// The page of movements to different goals in three channels, which no policy of the state makes, and one of a good policy in
 /// three channels; made once.
 fn pages_of_three_channels() -> [PathBuf; 2] {
     static PAGES: OnceLock<[PathBuf; 2]> = OnceLock::new();
@@ -175,7 +175,7 @@ fn numbers_that_are_not_good_have_a_sign_and_a_colour() {
         );
         assert_ne!(colors[0], colors[1], "{scheme}");
     }
-    // PolicyAlign's policy has a bound of its own.
+    // PolicyAlign's policy has another bound.
     let ran = run("fit toy.csv --learner policy-align -o aligned.json");
     assert!(ran.out.contains("good: all checks passed"), "{}", ran.out);
     for good in [good, folder().join("toy.trust.html"), folder().join("aligned.trust.html")] {

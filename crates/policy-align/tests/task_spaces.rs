@@ -6,14 +6,52 @@ use std::sync::atomic::AtomicBool;
 
 use demo_gen::tasks::{Contact, Wiping};
 use motion::{Channel, Episode, Recordings, Source, Times};
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use policy_align::{FitOptions, Model, PrepareOptions, Progress, fit, prepare};
-use rand::SeedableRng;
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 const ARM: &str = include_str!("../../../robots/seven_joint_arm.urdf");
-/// Movements that nobody learns from.
+/// Movements that are not learnt from.
 const FRESH: usize = 10;
+
+/// A fit with an arm in a plane, which turns about one axis, so that no orientation can be held while it moves. Joints are in this unit.
+fn in_a_plane(unit: &str, radians: f64) -> Model {
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let episode = |number: usize| {
+        let mut draw = || rng.random_range(-1.0..1.0);
+        let (start, rail) = (DVector::from_fn(3, |_, _| draw()), DVector::from_fn(3, |_, _| draw()).normalize());
+        let along = &rail * rail.dot(&start);
+        let left = |i: usize| (-0.1 * i as f64).exp();
+        let noise = DMatrix::from_fn(3, 30, |_, _| 0.05 * draw());
+        Episode {
+            name: number.to_string(),
+            source: Source::default(),
+            times: Times::Even { step: 0.1, len: 30 },
+            positions: DMatrix::from_fn(3, 30, |k, i| start[k] - along[k] * (1.0 - left(i))) / radians,
+            velocities: Some((DMatrix::from_fn(3, 30, |k, i| -along[k] * left(i)) + noise) / radians),
+            constraint: None,
+            context: DVector::zeros(0),
+        }
+    };
+    let state = ["shoulder", "elbow", "wrist"]
+        .map(|name| Channel { name: name.to_owned(), unit: Some(unit.to_owned()) })
+        .to_vec();
+    let recordings = Recordings { state, episodes: (0..12).map(episode).collect(), findings: vec![] };
+    let prepared = prepare(recordings, &PrepareOptions::default()).unwrap();
+    let robot = Some(include_str!("../../../robots/planar_three_link.urdf").to_owned());
+    let options = FitOptions { robot, max_rows: 100, ..FitOptions::default() };
+    let never = AtomicBool::new(false);
+    fit(&prepared, &options, &mut Progress { cancelled: &never, report: &mut |_| () }).unwrap()
+}
+
+#[test]
+fn joints_in_degrees_are_those_in_radians() {
+    let [radians, degrees] = [in_a_plane("rad", 1.0), in_a_plane("deg", 1f64.to_radians())];
+    let [a, b] = [&radians, &degrees].map(|model| model.trust.numbers.expected_error);
+    assert!(a > 1e-3, "task spaces were not tried: {:?}", radians.trust.numbers);
+    assert!((a / b - 1.0).abs() < 1e-3, "{a} {b}");
+}
 
 #[test]
 fn constraints_of_a_tool_are_learnt_from() {

@@ -64,7 +64,7 @@ proptest! {
         prop_assert_eq!(command.age, Some(0.0));
     }
 
-    /// Joints are found by name, in any order and among others, and in messages of their own.
+    /// Joints are found by name, in any order and among others, and in separate messages.
     #[test]
     fn the_order_of_a_message_is_free(
         [x, y] in prop::array::uniform2(WITHIN),

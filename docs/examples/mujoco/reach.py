@@ -102,7 +102,7 @@ def bound(velocity: np.ndarray, normal: np.ndarray) -> np.ndarray:
 
 
 def record(path: Path, seed: int, episodes: int = 50, seconds: float = 6.0) -> int:
-    """Demonstrations of the teacher, each with the hand bound to a plane of its own; how many of them reach the goal."""
+    """Demonstrations of the teacher, each with the hand bound to another plane; how many of them reach the goal."""
     rng, arm, reached = np.random.default_rng(seed), Arm(), 0
     with path.open("w", newline="") as file:
         rows = csv.writer(file)

@@ -20,7 +20,8 @@ pub(super) fn whole(velocities: &DMatrix<f64>, most: usize, noise: f64) -> Optio
         let freedom = ((dim - rank) * (count - 1)) as f64;
         freedom + LEAVES * (2.0 * freedom).sqrt()
     };
-    (1..=most.max(1)).filter(|rank| count >= rank + SPARE).find(|&rank| outside(rank) <= allowed(rank))
+    // In one dimension there is no plane.
+    (1..=most.max(1).min(dim - 1)).filter(|rank| count >= rank + SPARE).find(|&rank| outside(rank) <= allowed(rank))
 }
 
 /// The least singular value of `count` velocities along a direction whose angle is certain enough: s√N of it is noise.

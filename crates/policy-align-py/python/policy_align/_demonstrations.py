@@ -95,6 +95,11 @@ class Demonstrations:
         if speeds is not None and count and all(len(x) == len(u) + 1 for x, u in zip(positions, speeds, strict=True)):
             positions = [x[:-1] for x in positions]
             stamps = stamps and [of[: len(x)] for of, x in zip(stamps, positions, strict=True)]
+            if constraints is not None:
+                whole = list(constraints)
+                constraints = [
+                    of if of is None or isinstance(of, str) else of[: len(x)] for of, x in zip(whole, positions, strict=False)
+                ] + whole[count:]
         names = [str(k) for k in range(count)] if names is None else [str(name) for name in names]
         labels = [None] * count if constraints is None else list(constraints)
         unit_names = [None] * width if units is None else list(units)

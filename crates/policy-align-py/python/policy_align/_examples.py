@@ -14,7 +14,7 @@ def example(name: str) -> pathlib.Path:
 
     ``"toy"``: 40 movements of a point that slides down a bowl, along rails that change. ``"rails"``: a column names the
     constraint. ``"goals"``: every movement has another goal, a context. ``"wall"``: a constraint, for ``rollout``.
-    ``"notebook"``: a session of Jupyter. For any other name a ``PolicyAlignError`` lists the names.
+    ``"notebook"``: a Jupyter notebook. For any other name a ``PolicyAlignError`` lists the names.
     """
     files = {path.stem: path for path in _FOLDER.iterdir()}
     if name not in files:

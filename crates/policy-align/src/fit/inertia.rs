@@ -8,7 +8,7 @@ use prepare::numbers::squared_error;
 
 use super::decision::decision;
 use super::{FitOptions, learn};
-use crate::channel_joints::ChannelJoints;
+use crate::channel_joints::{ChannelJoints, scales_of_joints};
 use crate::{FitError, Prepared};
 
 /// What was learnt in the metric of inertia.
@@ -29,7 +29,7 @@ pub(super) fn weighed(
     let refused = |error: KinematicsError| FitError::Robot { reason: error.to_string() };
     let robot = RobotModel::from_urdf(text).map_err(refused)?;
     let joints = ChannelJoints::of(&robot, prepared.state.iter().map(|channel| channel.name.as_str()));
-    let scales = DVector::from_iterator(prepared.state.len(), prepared.state.iter().map(|channel| channel.scale));
+    let scales = scales_of_joints(&prepared.state);
     let momenta = momenta(&robot, &joints.map_err(refused)?, &scales, rows).map_err(refused)?;
     let Ok(rows) = rows.clone().with_momenta(momenta) else {
         let no_mass = "its links have no masses, or so few that some joints move nothing, and none at the end of a chain is moved by the channels alone: give each link <inertial>";

@@ -2,11 +2,11 @@
 
 use gp::{AutoFit, Rows};
 use motion::Decision;
-use nalgebra::DVector;
 use prepare::numbers::squared_error;
 
 use super::FitOptions;
 use super::decision::decision;
+use crate::channel_joints::scales_of_joints;
 use crate::named::TaskLinks;
 use crate::{FitError, Prepared};
 
@@ -20,7 +20,7 @@ impl LinkNames {
         let refused = |reason: String| FitError::Robot { reason };
         let channels: Vec<String> = prepared.state.iter().map(|channel| channel.name.clone()).collect();
         let links = TaskLinks::moved_by(text, &channels).map_err(refused)?;
-        let scales = DVector::from_iterator(channels.len(), prepared.state.iter().map(|channel| channel.scale));
+        let scales = scales_of_joints(&prepared.state);
         let mut states = rows.states().rows(0, channels.len()).into_owned();
         states.column_iter_mut().for_each(|mut state| state.component_div_assign(&scales));
         let (names, spaces): (Vec<_>, Vec<_>) = links.poses(&states).map_err(refused)?.into_iter().unzip();

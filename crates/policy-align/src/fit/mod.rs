@@ -149,7 +149,7 @@ fn plane(prepared: &Prepared, numbers: &TrustNumbers) -> Option<Finding> {
 
 /// What was made of samples before a Gaussian process learnt from them; none if each is a row.
 fn rows_decision(readings: &AutoFit) -> Option<Decision> {
-    let gp::TrustReport { rows, inducing, rows_dropped, .. } = readings.slope().report();
+    let gp::TrustReport { rows, inducing, rows_dropped, task_space, .. } = readings.slope().report();
     let RowsDropped { averaged, thinned, still, noisy } = *rows_dropped;
     let found = rows + still + noisy + thinned;
     let mut why = Vec::new();
@@ -158,7 +158,9 @@ fn rows_decision(readings: &AutoFit) -> Option<Decision> {
     }
     why.extend(inducing.map(|inducing| format!("{inducing} of them stand for all")));
     if thinned > 0 {
-        why.push(format!("{thinned} others, evenly spread, are not learnt from"));
+        // In a task space a sample has several equations.
+        let others = if task_space.is_some() { "other equations" } else { "others" };
+        why.push(format!("{thinned} {others}, evenly spread, are not learnt from"));
     }
     let flag = if thinned == 0 && inducing.is_none() { "--max-rows" } else { "--inducing" };
     (!why.is_empty()).then(|| decision("rows", rows.to_string(), why.join("; "), flag))

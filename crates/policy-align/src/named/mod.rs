@@ -12,6 +12,7 @@ use gp::{Acting, ConstraintEstimates, StretchEstimate, TaskSpace};
 use motion::Demonstrations;
 use nalgebra::{DMatrix, DVector, DVectorView};
 
+use crate::channel_joints::scales_of_joints;
 use crate::fit::{averaged, least_noisy_rows};
 use crate::leave_out::in_units_of;
 use crate::{EvaluateError, Model, Prepared};
@@ -37,17 +38,18 @@ pub fn estimate_constraints(
     let prepared = &in_units_of(model, prepared)?;
     let rows = least_noisy_rows(prepared)?;
     let scales = DVector::from_iterator(dim, prepared.state.iter().map(|channel| channel.scale));
+    let of_joints = scales_of_joints(&prepared.state);
     let robot = |reason| EvaluateError::Robot { reason };
-    let spaces = |links: &TaskLinks| links.spaces(&unscaled(&rows.states().rows(0, dim).into_owned(), &scales));
+    let spaces = |links: &TaskLinks| links.spaces(&unscaled(&rows.states().rows(0, dim).into_owned(), &of_joints));
     let of_links = links.map(spaces).transpose().map_err(robot)?.unwrap_or_default();
     let (mut on, mut spaces) = (vec![ConstraintOn::Channels], vec![TaskSpace::recorded()]);
     for (of_link, space) in of_links {
         on.push(of_link);
-        spaces.push(space.scaled(&scales));
+        spaces.push(space.scaled(&of_joints));
     }
     let estimates = ConstraintEstimates::of(&rows, policy, &spaces)?;
     let movements = averaged(prepared)?;
-    let naming = Naming { prepared, movements: &movements, links, on: &on, scales: &scales };
+    let naming = Naming { prepared, movements: &movements, links, on: &on, scales: &scales, of_joints: &of_joints };
     estimates.stretches.iter().map(|stretch| naming.name(stretch).map_err(robot)).collect()
 }
 
@@ -63,6 +65,7 @@ struct Naming<'a> {
     /// What each task space is.
     on: &'a [ConstraintOn],
     scales: &'a DVector<f64>,
+    of_joints: &'a DVector<f64>,
 }
 
 impl Naming<'_> {
@@ -102,10 +105,11 @@ impl Naming<'_> {
 
     /// Where the constrained point is at each of these states (n, N): none for orientations, or where nothing is constrained.
     fn places(&self, acting: Acting, on: &ConstraintOn, states: &DMatrix<f64>) -> Result<Option<DMatrix<f64>>, String> {
-        let states = unscaled(states, self.scales);
         match (acting, on, self.links) {
-            (Acting::Constraint, ConstraintOn::Channels, _) => Ok(Some(states)),
-            (Acting::Constraint, ConstraintOn::Position(link), Some(links)) => links.places(link, &states),
+            (Acting::Constraint, ConstraintOn::Channels, _) => Ok(Some(unscaled(states, self.scales))),
+            (Acting::Constraint, ConstraintOn::Position(link), Some(links)) => {
+                links.places(link, &unscaled(states, self.of_joints))
+            }
             _ => Ok(None),
         }
     }

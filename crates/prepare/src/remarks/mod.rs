@@ -1,6 +1,7 @@
 //! Further findings before learning.
 
 mod end_places;
+mod integrals;
 mod no_state;
 mod pressing;
 mod speed_limit;

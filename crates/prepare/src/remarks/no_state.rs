@@ -1,15 +1,9 @@
 //! Channels that are no state: velocities of others, and time.
 
 use motion::{Channel, Demonstrations, Finding, Trajectory, Verdict};
-use nalgebra::DMatrix;
 
-/// Share of a channel's steps that its velocity explains, at least.
-const EXPLAINED: f64 = 0.97;
-/// Velocities are in one unit: factors of their steps differ by this share at most.
-const ALIKE: f64 = 0.1;
-/// Stretches that are compared, at most, and samples in one.
-const STRETCHES: usize = 2000;
-const SAMPLES: usize = 10;
+use super::integrals::Integrals;
+
 /// More channels are not compared.
 const MOST: usize = 256;
 /// Steps of a clock differ by this share of a step at most.
@@ -27,7 +21,15 @@ pub(crate) fn no_state(demonstrations: &Demonstrations, channels: &[Channel]) ->
     let names: Vec<&str> = channels.iter().map(|channel| &channel.name[..]).collect();
     let clock = (0..n).find(|&axis| n > 1 && is_counted(names[axis]) && is_clock(demonstrations, axis));
     let recorded = demonstrations.trajectories().iter().any(|movement| movement.velocities().is_some());
-    let pairs = if recorded { Vec::new() } else { velocities(demonstrations, clock) };
+    let (mut pairs, mut steps) = (Vec::new(), "");
+    if !recorded {
+        let integrals = Integrals::of(demonstrations);
+        pairs = integrals.velocities(clock);
+        if pairs.is_empty() {
+            pairs = integrals.velocities_by_movement(clock);
+            steps = ", each movement with a time step of its own";
+        }
+    }
     let of = |pick: &dyn Fn(&(usize, usize)) -> usize| pairs.iter().map(|pair| names[pick(pair)]).collect::<Vec<_>>();
     let (states, rates) = (listed(&of(&|pair| pair.0)), listed(&of(&|pair| pair.1)));
     let (mut what, mut next) = (Vec::new(), Vec::new());
@@ -36,7 +38,7 @@ pub(crate) fn no_state(demonstrations: &Demonstrations, channels: &[Channel]) ->
         next.push(format!("--time {}", names[clock]));
     }
     if !pairs.is_empty() {
-        what.push(format!("{rates} are the velocities of {states}"));
+        what.push(format!("{rates} are the velocities of {states}{steps}"));
         next.push(format!("--state {states} --velocity {rates}"));
     }
     (!what.is_empty()).then(|| Finding {
@@ -65,62 +67,6 @@ fn is_clock(demonstrations: &Demonstrations, axis: usize) -> bool {
             })
     };
     movements.len() > 1 && rate > 0.0 && movements.iter().all(runs)
-}
-
-/// Pairs of a channel and its velocity, in the order of the channels; none but for a block of each.
-fn velocities(demonstrations: &Demonstrations, clock: Option<usize>) -> Vec<(usize, usize)> {
-    let (steps, integrals) = stretches(demonstrations);
-    let n = steps.nrows();
-    let product = &steps * integrals.transpose();
-    let [of_steps, of_integrals] =
-        [&steps, &integrals].map(|of| of.row_iter().map(|row| row.norm_squared()).collect::<Vec<f64>>());
-    // Factor by which steps are the integral of the other, where it explains them.
-    let factor = |i: usize, j: usize| {
-        let explained = product[(i, j)].powi(2) / (of_steps[i] * of_integrals[j]);
-        (product[(i, j)] > 0.0 && explained >= EXPLAINED).then(|| (product[(i, j)] / of_integrals[j], explained))
-    };
-    let candidates: Vec<(usize, usize, f64, f64)> = (0..n)
-        .flat_map(|i| (i + 1..n).map(move |j| (i, j)))
-        .filter(|&(i, j)| clock != Some(i) && clock != Some(j))
-        .filter_map(|(i, j)| factor(i, j).map(|(times, explained)| (i, j, times, explained)))
-        .collect();
-    let block = |&(_, _, unit, _): &(usize, usize, f64, f64)| {
-        let mut pairs: Vec<(usize, usize)> = Vec::new();
-        for i in 0..n {
-            let own = candidates.iter().filter(|of| of.0 == i && (of.2 / unit - 1.0).abs() <= ALIKE);
-            let after = own.filter(|of| pairs.last().is_none_or(|&(_, before)| of.1 > before));
-            pairs.extend(after.max_by(|a, b| a.3.total_cmp(&b.3)).map(|of| (of.0, of.1)));
-        }
-        let apart = pairs.last().zip(pairs.first()).is_some_and(|(last, first)| last.0 < first.1);
-        if apart && pairs.len() > 1 { pairs } else { Vec::new() }
-    };
-    candidates.iter().map(block).max_by_key(Vec::len).unwrap_or_default()
-}
-
-/// How far channels move in stretches of the movements, and their integrals over time there; both (n, stretches).
-fn stretches(demonstrations: &Demonstrations) -> (DMatrix<f64>, DMatrix<f64>) {
-    let places = || {
-        demonstrations.trajectories().iter().flat_map(|movement| {
-            let last = movement.n_samples() - 1;
-            let length = SAMPLES.min((last / 2).max(1));
-            (0..last / length).map(move |stretch| (movement, stretch * length, (stretch + 1) * length))
-        })
-    };
-    let every = places().count().div_ceil(STRETCHES).max(1);
-    let chosen: Vec<(&Trajectory, usize, usize)> = places().step_by(every).collect();
-    let n = demonstrations.dim();
-    let mut steps = DMatrix::zeros(n, chosen.len());
-    let mut integrals = DMatrix::zeros(n, chosen.len());
-    for (at, &(movement, from, to)) in chosen.iter().enumerate() {
-        steps.set_column(at, &(movement.state(to) - movement.state(from)));
-        let mut integral = integrals.column_mut(at);
-        for sample in from..to {
-            let half = 0.5 * movement.seconds(sample, sample + 1);
-            integral.axpy(half, &movement.state(sample), 1.0);
-            integral.axpy(half, &movement.state(sample + 1), 1.0);
-        }
-    }
-    (steps, integrals)
 }
 
 /// A name, or several that end in numbers which follow each other.
@@ -172,7 +118,7 @@ fn listed(names: &[&str]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::DVector;
+    use nalgebra::{DMatrix, DVector};
     use proptest::prelude::*;
 
     use super::*;

@@ -99,7 +99,7 @@ pub(crate) fn of_velocities(demonstrations: &Demonstrations, of: impl Fn(DVector
     found
 }
 
-/// Variance of the noise in each axis of [`velocities`], the mean of all axes; 0 where it cannot be estimated.
+/// Variance of the noise in each axis of [`each_velocity`], the mean of all axes; 0 where it cannot be estimated.
 pub(crate) fn velocity_variance(demonstrations: &Demonstrations, noise: &Noise) -> f64 {
     let dim = demonstrations.dim() as f64;
     let positions = noise.positions.iter().flatten().map(|deviation| deviation.powi(2)).sum::<f64>() / dim;

@@ -59,7 +59,9 @@ pub(crate) fn error_map(model: &Model, prepared: &Prepared) -> Option<Part> {
     let of_missed = |&&(_, error): &&(usize, f64)| error > TrustNumbers::GOOD_HELD_OUT_ERROR;
     let errors = &model.trust.numbers.episode_errors;
     let missed: Vec<usize> = errors.iter().filter(of_missed).map(|&(episode, _)| episode).collect();
-    let seen: Vec<_> = (0..paths.len()).filter(|at| !missed.contains(at)).map(|at| paths[at].clone()).collect();
+    let mut is_seen = vec![true; paths.len()];
+    missed.iter().for_each(|&at| is_seen[at] = false);
+    let seen: Vec<_> = (0..paths.len()).filter(|&at| is_seen[at]).map(|at| paths[at].clone()).collect();
     let seen: Vec<_> = seen.iter().step_by(seen.len().div_ceil(DRAWN).max(1)).cloned().collect();
     layers.extend(movements(&seen, range, SEEN, None, DRAWN / 2));
     let dashed: Vec<_> = missed.iter().take(DRAWN).map(|&at| paths[at].clone()).collect();

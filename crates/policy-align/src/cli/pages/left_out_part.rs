@@ -27,12 +27,12 @@ const SEEN: Stroke = Stroke { color: "#56a0d3", width: 2.0, dash: Dash::Solid };
 const PREDICTED: Stroke = Stroke { color: "#d55e00", width: 1.6, dash: Dash::Dashed };
 
 /// Of the movements with the largest, the median and the least error when left out, the speed that was seen and the one that is
-/// predicted along it from the others; none where there are too few to leave three out, where a context or a mass matrix is learnt
+/// predicted along it from the others; none where there are too few to leave three out, where a context or a robot is learnt
 /// with, or where learning again would take long.
 pub(crate) fn left_out_part(model: &Model, prepared: &Prepared) -> Option<Part> {
     let effort = model.data.samples * model.state.len().pow(2);
-    let in_metric = model.decisions.iter().any(|decision| decision.what == "metric");
-    if prepared.episodes.len() < LEAST || !model.context.is_empty() || in_metric || effort > MOST {
+    let of_robot = model.decisions.iter().any(|decision| ["metric", "task space"].contains(&decision.what.as_str()));
+    if prepared.episodes.len() < LEAST || !model.context.is_empty() || of_robot || effort > MOST {
         return None;
     }
     let mut errors = model.trust.numbers.episode_errors.clone();

@@ -72,9 +72,9 @@ impl Serve {
     pub(crate) fn run(&self, session: &Session) -> Result<Output, Failure> {
         let model = in_context(load(session, &self.model)?, &self.context)?;
         self.refuse_untrusted(&model)?;
-        let period = self.period()?;
         let end = self.seconds.map(|seconds| duration("--seconds", seconds)).transpose()?;
         let mut controller = self.controller(&model)?;
+        let period = self.period()?;
         let command_topic = self.command_topic.as_deref().unwrap_or(self.message.usual_topic());
         await_interrupt();
         let mut node = RobotNode::new(controller.joints(), &self.topic, command_topic, self.message)?;
@@ -86,12 +86,12 @@ impl Serve {
         let mut next = start;
         while !interrupted() && end.is_none_or(|end| start.elapsed() < end) {
             let now = Instant::now();
-            if now < next {
-                // In pieces, so that an interrupt is heard at any rate.
-                let piece = next.min(now + Duration::from_millis(50));
-                node.receive_until(piece, &mut |state, came| {
-                    controller.observe(&state.name, &state.position, came - start);
-                })?;
+            // In pieces, so that an interrupt is heard at any rate. What waits is taken also where a command took longer than a period.
+            let piece = next.clamp(now, now + Duration::from_millis(50));
+            node.receive_until(piece, &mut |state, came| {
+                controller.observe(&state.name, &state.position, came - start);
+            })?;
+            if piece < next {
                 continue;
             }
             let command = controller.command(start.elapsed());
@@ -141,12 +141,13 @@ impl Serve {
     }
 
     fn period(&self) -> Result<Duration, Failure> {
-        let fits = self.rate > 0.0 && self.rate <= 10_000.0;
+        // Between two commands a robot is not stopped.
+        let fits = self.rate <= 10_000.0 && self.rate * self.stale >= 1.0;
         let period = fits.then(|| Duration::try_from_secs_f64(self.rate.recip()).ok()).flatten();
         period.ok_or_else(|| {
             Failure::usage(
-                "more than 0 and at most 10,000 Hz are possible",
-                format!("--rate {}", self.rate),
+                "at most 10,000 Hz are possible, and at least one command within the seconds of --stale",
+                format!("--rate {} --stale {}", self.rate, self.stale),
                 "--rate 50",
             )
         })
