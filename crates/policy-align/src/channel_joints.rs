@@ -57,3 +57,27 @@ pub(crate) fn unit(unit: Option<&str>, joint: Option<JointKind>) -> f64 {
         _ => 1.0,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::dvector;
+
+    use super::*;
+
+    #[test]
+    fn numbers_become_radians_and_metres() {
+        let channel = |(unit, scale): (&str, f64)| StateChannel {
+            name: String::new(),
+            unit: Some(unit.to_owned()),
+            scale,
+            low: 0.0,
+            high: 1.0,
+            median: 0.5,
+        };
+        let state = [("rad", 1.0), ("deg", 2.0), ("mm", 0.5), ("m", 4.0)].map(channel);
+        // What is learnt from is the recorded number times the scale.
+        let learnt = dvector![1.5, 2.0 * 90.0, 0.5 * 250.0, 4.0 * 0.25];
+        let converted = learnt.component_div(&scales_of_joints(&state));
+        assert!((converted - dvector![1.5, std::f64::consts::FRAC_PI_2, 0.25, 0.25]).amax() < 1e-12);
+    }
+}
