@@ -13,7 +13,7 @@ const ALIKE: f64 = 0.1;
 const STRETCHES: usize = 2000;
 const SAMPLES: usize = 10;
 /// Stretches of a movement that tell a factor for it alone.
-const OF_MOVEMENT: usize = 8;
+const OF_MOVEMENT: usize = 5;
 /// More channels are not compared movement by movement.
 const MOST_BY_MOVEMENT: usize = 64;
 

@@ -27,7 +27,7 @@ pub(crate) fn no_state(demonstrations: &Demonstrations, channels: &[Channel]) ->
         pairs = integrals.velocities(clock);
         if pairs.is_empty() {
             pairs = integrals.velocities_by_movement(clock);
-            steps = ", each movement with a time step of its own";
+            steps = ", at another time step in each movement";
         }
     }
     let of = |pick: &dyn Fn(&(usize, usize)) -> usize| pairs.iter().map(|pair| names[pick(pair)]).collect::<Vec<_>>();
@@ -180,6 +180,27 @@ mod tests {
             let places = |k: usize, t: f64| (0..n).map(|axis| place(k, axis, t)).collect();
             let alone = no_state(&movements(8, 0.05, places), &channels(&["x0", "x1", "x2", "x3", "x4", "x5"][..n]));
             prop_assert_eq!(alone, None);
+        }
+    }
+
+    /// Recordings whose time step is another in each movement than is believed: one factor for all would not fit.
+    #[test]
+    fn velocities_at_other_time_steps_are_found() {
+        let sample = |spread: f64| {
+            move |k: usize, t: f64| {
+                let (unit, phase) = (1.0 + spread * k as f64, k as f64);
+                let places = [(2.0 * t + phase).sin(), (1.3 * t - phase).cos()];
+                let rates = [2.0 * (2.0 * t + phase).cos(), -1.3 * (1.3 * t - phase).sin()];
+                // A constant explains what rises evenly, and is no velocity.
+                vec![0.7 * t + phase, places[0], places[1], 1.0, unit * rates[0], unit * rates[1]]
+            }
+        };
+        let channels = channels(&["s_0", "s_1", "s_2", "s_3", "s_4", "s_5"]);
+        for (spread, how) in [(0.0, ""), (0.8, ", at another time step in each movement")] {
+            let long = |k: usize, t: f64| sample(spread)(k, 2.0 * t);
+            let found = no_state(&movements(5, 0.1, long), &channels).unwrap();
+            assert_eq!(found.next, "--state s_1-2 --velocity s_4-5");
+            assert_eq!(found.what, format!("s_4-5 are the velocities of s_1-2{how}: not a part of the state"));
         }
     }
 
