@@ -21,8 +21,8 @@ const MOST_BY_MOVEMENT: usize = 64;
 pub(super) struct Integrals {
     /// (n, stretches).
     steps: DMatrix<f64>,
-    /// Of the channels over time, (n, stretches).
-    integrals: DMatrix<f64>,
+    /// Their integrals, (n, stretches).
+    over_time: DMatrix<f64>,
     /// Seconds of each stretch, and its movement.
     stretches: Vec<(f64, usize)>,
 }
@@ -67,7 +67,7 @@ impl Integrals {
             }
         }
         let stretches = chosen.iter().map(|&(k, movement, from, to)| (movement.seconds(from, to), k)).collect();
-        Integrals { steps, integrals, stretches }
+        Integrals { steps, over_time: integrals, stretches }
     }
 
     /// Pairs of a channel and its velocity, in the order of the channels; none but for a block of each. `clock` is no velocity.
@@ -118,7 +118,7 @@ impl Integrals {
     }
 
     fn sums(&self, group: &Range<usize>) -> Sums {
-        let [steps, integrals] = [&self.steps, &self.integrals].map(|of| of.columns(group.start, group.len()));
+        let [steps, integrals] = [&self.steps, &self.over_time].map(|of| of.columns(group.start, group.len()));
         let seconds: Vec<f64> = self.stretches[group.clone()].iter().map(|stretch| stretch.0).collect();
         let of_time = seconds.iter().map(|s| s * s).sum::<f64>();
         let squares = |i: usize| {

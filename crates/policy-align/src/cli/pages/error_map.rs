@@ -60,7 +60,9 @@ pub(crate) fn error_map(model: &Model, prepared: &Prepared) -> Option<Part> {
     let errors = &model.trust.numbers.episode_errors;
     let missed: Vec<usize> = errors.iter().filter(of_missed).map(|&(episode, _)| episode).collect();
     let mut is_seen = vec![true; paths.len()];
-    missed.iter().for_each(|&at| is_seen[at] = false);
+    for &at in &missed {
+        is_seen[at] = false;
+    }
     let seen: Vec<_> = (0..paths.len()).filter(|&at| is_seen[at]).map(|at| paths[at].clone()).collect();
     let seen: Vec<_> = seen.iter().step_by(seen.len().div_ceil(DRAWN).max(1)).cloned().collect();
     layers.extend(movements(&seen, range, SEEN, None, DRAWN / 2));
