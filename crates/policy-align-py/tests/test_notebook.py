@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from itertools import zip_longest
+from itertools import groupby, zip_longest
 from pathlib import Path
 
 import pytest
@@ -17,7 +17,12 @@ NUMBER = re.compile(r"\d+(?:\.(\d*))?(?:e([-+]\d+))?")
 def outputs(notebook) -> list[list[str]]:
     """What each cell printed, or of what kind its output is."""
     cells = [cell.get("outputs", []) for cell in notebook.cells]
-    return [[output.get("text", output["output_type"]) for output in cell] for cell in cells]
+    # A slow cell's text comes in pieces.
+    def joined(cell):
+        streams = groupby(cell, lambda output: output.get("name", id(output)))
+        return ["".join(output.get("text", output["output_type"]) for output in outputs) for _, outputs in streams]
+
+    return [joined(cell) for cell in cells]
 
 
 def says_the_same(said: str, shown: str) -> bool:

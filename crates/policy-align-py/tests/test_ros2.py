@@ -251,7 +251,8 @@ def test_what_is_wrong_is_said(program: Path, model: Path) -> None:
         "  try: the number that the robot has",
     ]
     assert refused("--topic", "states")[0].startswith("error: 'states' is no full name of a topic")
-    assert refused("--rate", "0")[1] == "  in:  --rate 0"
+    assert refused("--rate", "0")[1] == "  in:  --rate 0 --stale 0.2"
+    assert refused("--rate", "1")[1] == "  in:  --rate 1 --stale 0.2"
     assert refused("--stale", "nan")[0] == "error: stale is NaN"
     assert refused("--seconds", "0")[1] == "  in:  --seconds 0"
     assert refused("--joints", "x=a,y=a")[0] == "error: 'a' is named twice"
