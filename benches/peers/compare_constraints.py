@@ -4,7 +4,7 @@
 usage: compare_constraints.py [--sets 5] [--generators cycle,cycle-task,wiping,wiping-flat] [--decibels none,50,40,30,20,10] [--rows 400]
                               [--jobs 2] [--program PATH]
 
-Errors are nUPE at the states of 20 fresh movements: medians over the data sets. The estimators are told the rank of A; with "J" also the arm's
+Errors are nUPE at the states of 20 fresh movements: medians over the data sets. The estimators know the rank of A; with "J" also the arm's
 Jacobian, and GSVD its pose, of which b is a linear function, or not, whichever has the lower true error. The slope GP knows none of it, and "ours, J"
 the Jacobians of the tool's position, its orientation and both. Builds the program if no path is given.
 """

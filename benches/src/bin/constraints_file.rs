@@ -5,7 +5,7 @@
 //! to noise of the velocities, or `none`; ROWS those that the slope GP learns from, by default the program's 400.
 //!
 //! A list holds samples one after the other. `states`, `velocities` and, of an arm, `jacobians` (6 rows of n), `positions` and `tool_axes` are of the
-//! movements, all of them `samples` long. `test_states` and `test_actions` are true states of movements that nobody learns from, and the policy
+//! movements, all of them `samples` long. `test_states` and `test_actions` are true states of movements that are not learnt from, and the policy
 //! there; `ours` is the policy of the slope GP, `ours_with_robot` the one that it learns where the arm's Jacobians are known; `…_facts` say how.
 
 use demo_gen::tasks::{Contact, CyclesWithTask, Wiping};

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use policy_align::{
     Evaluation, Model, ModelError, PrepareOptions, Progress, TaskLinks, estimate_constraints, evaluate, fit, prepare,
-    to_lerobot, write_whole,
+    to_lerobot, write_together,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -90,9 +90,10 @@ impl Fitted {
         let files = to_lerobot(&self.model);
         let place = folder.display().to_string();
         let files = files.map_err(|error| Refusal::new(error.to_string(), place, "another fit"))?;
+        let files: Vec<_> = files.into_iter().map(|(name, bytes)| (folder.join(name), bytes)).collect();
         py.detach(|| {
             std::fs::create_dir_all(&folder)?;
-            files.iter().try_for_each(|(name, bytes)| write_whole(&folder.join(name), bytes))
+            write_together(&files).map_err(|(_, error)| error)
         })
         .map_err(|error| file_or(ModelError::File(error), &folder))
     }

@@ -1,5 +1,5 @@
 use kinematics::{JointKind, KinematicsError, RobotModel};
-use nalgebra::{DVector, DVectorView};
+use nalgebra::{DMatrix, DVector, DVectorView};
 use prepare::StateChannel;
 
 /// The joints of a robot that the channels of a state are.
@@ -44,6 +44,11 @@ impl ChannelJoints {
 pub(crate) fn scales_of_joints(state: &[StateChannel]) -> DVector<f64> {
     let scale = |channel: &StateChannel| channel.scale / unit(channel.unit.as_deref(), None);
     DVector::from_iterator(state.len(), state.iter().map(scale))
+}
+
+/// States (n, N) over factors (n).
+pub(crate) fn unscaled(states: &DMatrix<f64>, scales: &DVector<f64>) -> DMatrix<f64> {
+    DMatrix::from_fn(states.nrows(), states.ncols(), |row, column| states[(row, column)] / scales[row])
 }
 
 /// Radians or metres in a unit of a channel that is a joint; its numbers as they are where nothing is known of it. Of no kind: whatever its

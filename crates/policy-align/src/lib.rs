@@ -104,7 +104,7 @@ pub use prepare::{
 pub use robot_frames::RobotFrames;
 pub use roll_out::{ConstraintFileError, ConstraintSet, JointLimits, Path, RollOut, RollOutError, Stop, spread_starts};
 pub use serving::{ControllerError, Halt, Quantity, VelocityCommand, VelocityController};
-pub use stored::{ModelError, checksum_of, sha256, sha256_of_file, write_whole};
+pub use stored::{ModelError, checksum_of, sha256, sha256_of_file, write_together, write_whole};
 pub use trust::{AlignedNumbers, Trust, TrustNumbers};
 
 /// The program of the README, compiled.

@@ -52,10 +52,9 @@ impl TaskSpace {
         self.gains().map(|(directions, gains)| (directions, gains.min()))
     }
 
-    /// W of (S40), (m', m), of some of the rows, for which WJJᵀWᵀ is I in their mean: noise of u is then the same along all directions,
-    /// whatever their units. m' is the same whichever rows these are. None of the recorded coordinates, or where nothing moves.
-    pub(crate) fn evening(&self, rows: &[usize]) -> Option<DMatrix<f64>> {
-        let (directions, _) = self.gains()?;
+    /// W of (S40), (m', m), of some of the rows, for which WJJᵀWᵀ is I in their mean: noise of u is then the same along all `directions` in
+    /// which anything moves (m, m'), whatever their units. None of the recorded coordinates, or where nothing moves.
+    pub(crate) fn evening(&self, directions: &DMatrix<f64>, rows: &[usize]) -> Option<DMatrix<f64>> {
         let jacobians = self.jacobians.as_ref()?;
         let own = |&row: &usize| directions.tr_mul(&jacobians[row]);
         let sum: DMatrix<f64> = rows.iter().map(own).map(|own| &own * own.transpose()).sum();
@@ -66,7 +65,7 @@ impl TaskSpace {
     }
 
     /// Directions in which anything moves, and the mean square of what unit velocities do along each.
-    fn gains(&self) -> Option<(DMatrix<f64>, DVector<f64>)> {
+    pub(crate) fn gains(&self) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let jacobians = self.jacobians.as_ref()?;
         let m = jacobians.first()?.nrows();
         let sum = jacobians.iter().fold(DMatrix::zeros(m, m), |sum, j| sum + j * j.transpose());

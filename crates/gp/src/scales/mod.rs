@@ -142,7 +142,7 @@ fn stretches(rows: &Rows, kept: &Kept, selection: &Selection, spread: &DVector<f
         None => alike,
     };
     let stretches =
-        Stretches::of(&alike, View::recorded(&alike), Switches::Sought).filter(Stretches::push_is_significant)?;
+        Stretches::of(&alike, &View::recorded(&alike), Switches::Sought).filter(Stretches::push_is_significant)?;
     Some(stretches.rows(&alike, kept, selection)?.scaled(spread))
 }
 

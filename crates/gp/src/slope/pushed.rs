@@ -44,17 +44,18 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
     if before <= NEARLY_EXACT {
         return None;
     }
-    let spaces = 0..rows.task_spaces().len();
-    let in_space = |space: usize, switches: Switches| Stretches::of(rows, View::in_space(rows, space)?, switches);
-    let found = spaces.flat_map(|space| {
-        let sought = in_space(space, Switches::Sought);
+    let views = (0..rows.task_spaces().len()).filter_map(|space| View::in_space(rows, space));
+    let found = views.flat_map(|view| {
+        let sought = Stretches::of(rows, &view, Switches::Sought);
         let same = rows.labels().is_some() || sought.as_ref().is_some_and(Stretches::are_whole);
-        let whole = if same { None } else { in_space(space, Switches::None) };
-        [sought, whole].into_iter().flatten()
+        let whole = if same { None } else { Stretches::of(rows, &view, Switches::None) };
+        let known =
+            |found: Stretches| if found.push_is_significant() { found } else { found.without_push(rows, &view) };
+        [sought, whole].map(|found| found.map(known)).into_iter().flatten()
     });
+    let means = rows.averaged();
     let tried = found.filter_map(|found| {
-        let found = if found.push_is_significant() { found } else { found.without_push(rows) };
-        let tried = Pushed::search(gp, rows, kept, &found)?;
+        let tried = Pushed::search(gp, &means, kept, &found)?;
         Some((expected(rows, &tried.outcome, &tried.kept), found))
     });
     let mut tried: Vec<(f64, Stretches)> = tried.collect();
@@ -63,7 +64,7 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
     let (max_rows, hyper_rows) = (more(gp.max_rows, TIMES.0, MOST.0), more(gp.hyper_rows, TIMES.1, MOST.1));
     let larger = SlopeGp { max_rows, hyper_rows, ..gp.clone() };
     let finals = tried.iter().take(FINALISTS).filter_map(|(_, found)| {
-        let pushed = Pushed::search(&larger, rows, kept, found)?;
+        let pushed = Pushed::search(&larger, &means, kept, found)?;
         Some((expected(rows, &pushed.outcome, &pushed.kept), pushed))
     });
     let best = finals.min_by(|(a, _), (b, _)| a.total_cmp(b));
@@ -82,14 +83,15 @@ fn recorded(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) -> Option<P
     if settled && rows.variances().is_none() {
         return None;
     }
-    let stretches = Stretches::of(rows, View::recorded(rows), Switches::Sought)?;
+    let view = View::recorded(rows);
+    let stretches = Stretches::of(rows, &view, Switches::Sought)?;
     if stretches.push_is_significant() {
         let pushed = if settled { None } else { Pushed::search(gp, rows, kept, &stretches) }?;
         let r_squared = |outcome: &Outcome| outcome.taken.left_out.r_squared;
         return (r_squared(&pushed.outcome) > r_squared(plain)).then_some(pushed);
     }
     rows.variances()?;
-    let pushed = Pushed::search(gp, rows, kept, &stretches.without_push(rows))?;
+    let pushed = Pushed::search(gp, rows, kept, &stretches.without_push(rows, &view))?;
     (expected(rows, &pushed.outcome, &pushed.kept) < expected(rows, plain, kept)).then_some(pushed)
 }
 

@@ -76,7 +76,7 @@ impl Stretches {
     /// Looks for stretches in all movements; none in another metric, in so many dimensions, or in so few samples, that
     /// nothing can be found.
     /// Takes time with the number of movements and the cube of the dimension.
-    pub(crate) fn of(rows: &Rows, view: View<'_>, switches: Switches) -> Option<Stretches> {
+    pub(crate) fn of(rows: &Rows, view: &View<'_>, switches: Switches) -> Option<Stretches> {
         if rows.dim() < 2 || view.dim() > MOST_DIMENSIONS || rows.momenta().is_some() {
             return None;
         }
@@ -88,7 +88,7 @@ impl Stretches {
                 let span = few[segment.begin]..=few[segment.end - 1];
                 let inside: Vec<usize> = part.iter().copied().filter(|row| span.contains(row)).collect();
                 let least = STANDS_OUT * noise.sqrt() * (inside.len() as f64).powf(0.25);
-                stretch(rows, &view, &inside, (segment.kind, least), noise)
+                stretch(rows, view, &inside, (segment.kind, least), noise)
             };
             let velocities = view.velocities.select_columns(*part);
             if rows.labels().is_some() {
@@ -106,13 +106,14 @@ impl Stretches {
             };
             let (_, about_mean) = centred(&velocities);
             if let Some(rank) = whole(&about_mean, most, noise) {
-                let found = stretch(rows, &view, part, (rank, least_length(part.len(), noise)), noise);
+                let found = stretch(rows, view, part, (rank, least_length(part.len(), noise)), noise);
                 return found.map(|found| Stretch { whole: Some(rank), ..found }).into_iter().collect();
             }
             found.iter().filter_map(|segment| of_segment(&few, segment)).collect()
         };
         let stretches: Vec<Stretch> = parts.par_iter().flat_map_iter(of_part).collect();
-        (!stretches.is_empty()).then_some(Stretches { all: stretches, noise, pushed: true, through: view.through })
+        let through = view.through.clone();
+        (!stretches.is_empty()).then_some(Stretches { all: stretches, noise, pushed: true, through })
     }
 
     /// Whether every movement that has one is one.
@@ -121,11 +122,9 @@ impl Stretches {
     }
 
     /// Those that are whole movements, with directions from the velocities themselves, not from their differences: more
-    /// certain, and right where b = 0. In a task space also all others, as they are if b is not 0.
-    pub(crate) fn without_push(&self, rows: &Rows) -> Stretches {
+    /// certain, and right where b = 0. In a task space also all others, as they are if b is not 0. `view` is the one they were found in.
+    pub(crate) fn without_push(&self, rows: &Rows, view: &View<'_>) -> Stretches {
         let Stretches { noise, through, .. } = self;
-        let view = through.as_ref().and_then(|through| View::in_space(rows, through.space));
-        let view = view.unwrap_or_else(|| View::recorded(rows));
         let mut of_trajectories: HashMap<usize, Vec<usize>> = HashMap::new();
         for (row, index) in rows.indices().iter().enumerate() {
             of_trajectories.entry(index.trajectory).or_default().push(row);
@@ -138,7 +137,7 @@ impl Stretches {
             whole(&velocities, rank, *noise)?;
             let (_, span) = Span::of(velocities, (rank, least_length(inside.len(), *noise)), *noise)?;
             let push = DVector::zeros(rows.dim());
-            span.is_enough(&view).then_some(Stretch {
+            span.is_enough(view).then_some(Stretch {
                 directions: span.directions,
                 lengths: span.lengths,
                 push,
@@ -271,7 +270,7 @@ mod tests {
             let rows = rows.with_variances(vec![1e-6 / 3.0; count]).unwrap();
             let found = |labels: Vec<usize>| {
                 let rows = rows.clone().with_labels(labels).unwrap();
-                Stretches::of(&rows, View::recorded(&rows), Switches::Sought)
+                Stretches::of(&rows, &View::recorded(&rows), Switches::Sought)
             };
             let between = found(labels).expect("stretches").all;
             let ends = lengths.iter().scan(0, |end, length| { *end += length; Some((*end - length, *end - 1)) });

@@ -1,6 +1,5 @@
 //! (S22), (S23), (S41): rows of stretches.
 
-use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use nalgebra::{DMatrix, DVector, DVectorView};
@@ -46,9 +45,8 @@ impl Stretches {
     /// Rows of all samples that lie in stretches, with their noise weights (S23); evenly many of them, where they are more
     /// than `selection` allows. None if they are of far fewer movements than `kept` ones.
     ///
-    /// In a task space there are several for each sample, whose directions do not depend on the velocity: samples are averaged (S33).
+    /// In a task space there are several for each sample, whose directions do not depend on the velocity: `rows` may be means (S33) there.
     pub(crate) fn rows(&self, rows: &Rows, kept: &Kept, selection: &Selection) -> Option<Kept> {
-        let rows = &*if self.through.is_some() { rows.averaged() } else { Cow::Borrowed(rows) };
         let free = self.through.as_ref().map(|through| self.free(through, rows));
         let all = || (0..rows.len()).flat_map(|row| self.equations(rows, free.as_deref(), row));
         let (mut sum, mut count) = (0.0, 0_usize);

@@ -36,7 +36,9 @@ impl<'a> View<'a> {
     pub(crate) fn in_space(rows: &'a Rows, space: usize) -> Option<Self> {
         let all: Vec<usize> = (0..rows.len()).collect();
         let trajectory = |row: &usize| rows.indices()[*row].trajectory;
-        let of = |part: &[usize]| Some((trajectory(&part[0]), rows.task_spaces()[space].evening(part)?));
+        let own = &rows.task_spaces()[space];
+        let (directions, _) = own.gains()?;
+        let of = |part: &[usize]| Some((trajectory(&part[0]), own.evening(&directions, part)?));
         let evening = all.chunk_by(|a, b| trajectory(a) == trajectory(b)).map(of).collect::<Option<_>>()?;
         let through = Through { space, evening };
         let velocities = rows.velocities().column_iter().enumerate();
@@ -189,7 +191,7 @@ mod tests {
             let allowed = (1e-14 * condition * velocities.amax()).max(1e-10);
             let indices = (0..3 * COUNT).map(|at| SampleIndex { trajectory: at / COUNT, sample: at % COUNT }).collect();
             let rows = Rows::new(states, velocities, indices).unwrap().with_task_spaces(vec![space]).unwrap();
-            let found = Stretches::of(&rows, View::in_space(&rows, 0).unwrap(), Switches::None).unwrap();
+            let found = Stretches::of(&rows, &View::in_space(&rows, 0).unwrap(), Switches::None).unwrap();
             prop_assert_eq!(found.all.len(), 3);
             for row in 0..rows.len() {
                 let stretch = &found.all[row / COUNT];

@@ -3,7 +3,6 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
-use demo_io::TempFile;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use policy_align::write_whole;
 use serde_json::Value;
@@ -89,13 +88,7 @@ pub(crate) fn write(path: &Path, contents: &[u8]) -> Result<(), Failure> {
 
 /// Writes files that belong together: none is replaced before all are on the disk.
 pub(crate) fn write_together<T: AsRef<[u8]>>(files: &[(PathBuf, T)]) -> Result<(), Failure> {
-    let failed = |path: &Path, error: io::Error| Failure::writing(path, error);
-    let draft = |(path, contents): &(PathBuf, T)| {
-        TempFile::of(path, |file| file.write_all(contents.as_ref())).map_err(|error| failed(path, error))
-    };
-    let drafts = files.iter().map(draft).collect::<Result<Vec<_>, _>>()?;
-    let mut replaced = drafts.into_iter().zip(files);
-    replaced.try_for_each(|(draft, (path, _))| draft.persist().map_err(|error| failed(path, error)))
+    policy_align::write_together(files).map_err(|(path, error)| Failure::writing(&path, error))
 }
 
 /// Writes a result; a closed pipe is no error. Other programs read data as they are.

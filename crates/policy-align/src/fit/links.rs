@@ -6,7 +6,7 @@ use prepare::numbers::squared_error;
 
 use super::FitOptions;
 use super::decision::decision;
-use crate::channel_joints::scales_of_joints;
+use crate::channel_joints::{scales_of_joints, unscaled};
 use crate::named::TaskLinks;
 use crate::{FitError, Prepared};
 
@@ -21,8 +21,7 @@ impl LinkNames {
         let channels: Vec<String> = prepared.state.iter().map(|channel| channel.name.clone()).collect();
         let links = TaskLinks::moved_by(text, &channels).map_err(refused)?;
         let scales = scales_of_joints(&prepared.state);
-        let mut states = rows.states().rows(0, channels.len()).into_owned();
-        states.column_iter_mut().for_each(|mut state| state.component_div_assign(&scales));
+        let states = unscaled(&rows.states().rows(0, channels.len()).into_owned(), &scales);
         let (names, spaces): (Vec<_>, Vec<_>) = links.poses(&states).map_err(refused)?.into_iter().unzip();
         let spaces = spaces.into_iter().map(|space| space.scaled(&scales)).collect();
         Ok((rows.with_task_spaces(spaces)?, LinkNames(names)))

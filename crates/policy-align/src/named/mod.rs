@@ -12,7 +12,7 @@ use gp::{Acting, ConstraintEstimates, StretchEstimate, TaskSpace};
 use motion::Demonstrations;
 use nalgebra::{DMatrix, DVector, DVectorView};
 
-use crate::channel_joints::scales_of_joints;
+use crate::channel_joints::{scales_of_joints, unscaled};
 use crate::fit::{averaged, least_noisy_rows};
 use crate::leave_out::in_units_of;
 use crate::{EvaluateError, Model, Prepared};
@@ -51,10 +51,6 @@ pub fn estimate_constraints(
     let movements = averaged(prepared)?;
     let naming = Naming { prepared, movements: &movements, links, on: &on, scales: &scales, of_joints: &of_joints };
     estimates.stretches.iter().map(|stretch| naming.name(stretch).map_err(robot)).collect()
-}
-
-fn unscaled(states: &DMatrix<f64>, scales: &DVector<f64>) -> DMatrix<f64> {
-    DMatrix::from_fn(states.nrows(), states.ncols(), |row, column| states[(row, column)] / scales[row])
 }
 
 /// What is needed to name a stretch.

@@ -51,15 +51,15 @@ impl TaskLinks {
     pub(crate) fn poses(&self, states: &DMatrix<f64>) -> Result<Vec<(String, TaskSpace)>, String> {
         let mut spaces = Vec::new();
         for (name, link) in &self.links {
-            let position = |state: DVectorView<'_, f64>| Ok(link.at(state)?.1);
-            let both = |state: DVectorView<'_, f64>| {
-                let (position, orientation) = (link.at(state)?.1, link.turning(state)?);
-                let row = |row: usize| if row < 3 { position.row(row) } else { orientation.row(row - 3) };
-                Ok(DMatrix::from_rows(&(0..6).map(row).collect::<Vec<_>>()))
+            let [positions, orientations] = jacobians(link, states)?;
+            let both = |(position, orientation): (&DMatrix<f64>, &DMatrix<f64>)| {
+                let rows: Vec<_> = position.row_iter().chain(orientation.row_iter()).collect();
+                DMatrix::from_rows(&rows)
             };
-            spaces.push((format!("position of {name}"), space(states, position)?));
-            spaces.push((format!("orientation of {name}"), space(states, |state| link.turning(state))?));
-            spaces.push((format!("pose of {name}"), space(states, both)?));
+            let poses = positions.iter().zip(&orientations).map(both).collect();
+            for (what, of) in [("position", positions), ("orientation", orientations), ("pose", poses)] {
+                spaces.push((format!("{what} of {name}"), TaskSpace::of_jacobians(of)));
+            }
         }
         Ok(spaces)
     }
@@ -68,9 +68,9 @@ impl TaskLinks {
     pub(super) fn spaces(&self, states: &DMatrix<f64>) -> Result<Vec<(ConstraintOn, TaskSpace)>, String> {
         let mut spaces = Vec::new();
         for (name, link) in &self.links {
-            let position = |state: DVectorView<'_, f64>| Ok(link.at(state)?.1);
-            spaces.push((ConstraintOn::Position(name.clone()), space(states, position)?));
-            spaces.push((ConstraintOn::Orientation(name.clone()), space(states, |state| link.turning(state))?));
+            let [positions, orientations] = jacobians(link, states)?.map(TaskSpace::of_jacobians);
+            spaces.push((ConstraintOn::Position(name.clone()), positions));
+            spaces.push((ConstraintOn::Orientation(name.clone()), orientations));
         }
         Ok(spaces)
     }
@@ -84,12 +84,11 @@ impl TaskLinks {
     }
 }
 
-fn space(
-    states: &DMatrix<f64>,
-    jacobian: impl Fn(DVectorView<'_, f64>) -> Result<DMatrix<f64>, String>,
-) -> Result<TaskSpace, String> {
-    let jacobians = states.column_iter().map(jacobian).collect::<Result<_, String>>()?;
-    Ok(TaskSpace::of_jacobians(jacobians))
+/// Of a link's position and of its orientation at each of these states (n) in columns, (3, n) each.
+fn jacobians(link: &LinkPoint, states: &DMatrix<f64>) -> Result<[Vec<DMatrix<f64>>; 2], String> {
+    let positions = states.column_iter().map(|state| Ok(link.at(state)?.1)).collect::<Result<_, String>>()?;
+    let orientations = states.column_iter().map(|state| link.turning(state)).collect::<Result<_, String>>()?;
+    Ok([positions, orientations])
 }
 
 /// Links that move and carry no other.

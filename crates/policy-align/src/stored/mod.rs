@@ -8,4 +8,4 @@ mod whole_file;
 pub use canonical::{sha256, sha256_of_file};
 pub use error::ModelError;
 pub use model_file::checksum_of;
-pub use whole_file::write_whole;
+pub use whole_file::{write_together, write_whole};

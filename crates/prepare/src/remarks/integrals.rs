@@ -76,7 +76,7 @@ impl Integrals {
         self.blocks(std::slice::from_ref(&all), clock)
     }
 
-    /// The same where each movement may have a time step of its own, which one factor for all would not fit: the channels of a block
+    /// The same where each movement may have another time step, which one factor for all would not fit: the channels of a block
     /// then agree on it in every movement.
     pub(super) fn velocities_by_movement(&self, clock: Option<usize>) -> Vec<(usize, usize)> {
         let mut first = 0;

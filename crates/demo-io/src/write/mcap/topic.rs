@@ -8,15 +8,10 @@ pub(super) struct Topic {
     pub(super) definition: &'static str,
 }
 
-pub(super) const JOINT_STATES: Topic = Topic {
-    name: "/joint_states",
-    kind: "sensor_msgs/msg/JointState",
-    definition: "\
-std_msgs/Header header
-string[] name
-float64[] position
-float64[] velocity
-float64[] effort
+/// The definition of what most messages begin with.
+macro_rules! header {
+    () => {
+        "\
 ================================================================================
 MSG: std_msgs/Header
 builtin_interfaces/Time stamp
@@ -25,7 +20,23 @@ string frame_id
 MSG: builtin_interfaces/Time
 int32 sec
 uint32 nanosec
+"
+    };
+}
+
+pub(super) const JOINT_STATES: Topic = Topic {
+    name: "/joint_states",
+    kind: "sensor_msgs/msg/JointState",
+    definition: concat!(
+        "\
+std_msgs/Header header
+string[] name
+float64[] position
+float64[] velocity
+float64[] effort
 ",
+        header!()
+    ),
 };
 
 /// The text of a URDF.
@@ -35,21 +46,17 @@ pub(super) const ROBOT_DESCRIPTION: Topic =
 pub(super) const TRANSFORMS: Topic = Topic {
     name: "/tf",
     kind: "tf2_msgs/msg/TFMessage",
-    definition: "\
+    definition: concat!(
+        "\
 geometry_msgs/TransformStamped[] transforms
 ================================================================================
 MSG: geometry_msgs/TransformStamped
 std_msgs/Header header
 string child_frame_id
 geometry_msgs/Transform transform
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
+",
+        header!(),
+        "\
 ================================================================================
 MSG: geometry_msgs/Transform
 geometry_msgs/Vector3 translation
@@ -65,5 +72,6 @@ float64 x
 float64 y
 float64 z
 float64 w
-",
+"
+    ),
 };

@@ -8,7 +8,7 @@ use plot::Plane;
 use policy_align::{Prepared, StateChannel, Verdict, direction_by_channels};
 
 use crate::cli::lines::counted;
-use crate::cli::pages::movements::movements as draw;
+use crate::cli::pages::movements::{evenly, movements as draw};
 use crate::cli::pages::numbers_table::{COVERAGE, Good, NOISE, numbers as table};
 use crate::cli::pages::page_parts::{channels, decisions, left_out, opening, page, part};
 use crate::cli::pages::picture::{DEMONSTRATED, MARKED, with_unit};
@@ -49,8 +49,7 @@ pub(crate) fn check_page(prepared: &Prepared, name: &str, coverage: (f64, &DVect
 /// The first two channels against each other.
 fn movements(prepared: &Prepared) -> Markup {
     let channels = [&prepared.state[0], &prepared.state[1]];
-    let every = prepared.demonstrations.n_trajectories().div_ceil(DRAWN);
-    let drawn = prepared.demonstrations.trajectories().iter().step_by(every);
+    let drawn = evenly(prepared.demonstrations.trajectories(), DRAWN);
     let place = |state: DVectorView<'_, f64>| (state[0] / channels[0].scale, state[1] / channels[1].scale);
     let path = |movement: &Trajectory| -> Vec<(f64, f64)> { movement.states().column_iter().map(place).collect() };
     let paths: Vec<_> = drawn.map(path).collect();

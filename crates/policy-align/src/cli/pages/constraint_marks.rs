@@ -61,10 +61,14 @@ fn middle(states: &DMatrix<f64>, (first, last): (usize, usize)) -> usize {
 
 /// The movements that were prepared, (n, N) each, in units of the recording.
 pub(crate) fn recorded(prepared: &Prepared) -> Vec<DMatrix<f64>> {
+    let movements = prepared.demonstrations.trajectories().iter();
+    movements.map(|movement| as_recorded(movement.states(), prepared)).collect()
+}
+
+/// States or velocities of a movement that was prepared, (n, N), in units of the recording.
+pub(crate) fn as_recorded(values: &DMatrix<f64>, prepared: &Prepared) -> DMatrix<f64> {
     // Not the model's scales, which it may have learnt.
-    let scale = |k: usize| prepared.state[k].scale;
-    let movements = prepared.demonstrations.trajectories().iter().map(motion::Trajectory::states);
-    movements.map(|of| DMatrix::from_fn(of.nrows(), of.ncols(), |k, i| of[(k, i)] / scale(k))).collect()
+    DMatrix::from_fn(values.nrows(), values.ncols(), |k, i| values[(k, i)] / prepared.state[k].scale)
 }
 
 /// Where the plane of a constraint of one row cuts that of the picture, through the place held, and the parts of all normals in it.

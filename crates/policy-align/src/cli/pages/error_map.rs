@@ -8,7 +8,7 @@ use policy_align::{Model, Prepared, TrustNumbers};
 
 use crate::cli::lines::counted;
 use crate::cli::pages::constraint_marks::recorded;
-use crate::cli::pages::movements::movements;
+use crate::cli::pages::movements::{evenly, movements};
 use crate::cli::pages::page_parts::part;
 use crate::cli::pages::picture::{Picture, unknown};
 
@@ -55,18 +55,19 @@ pub(crate) fn error_map(model: &Model, prepared: &Prepared) -> Option<Part> {
     let mut layers = vec![Layer::Colors { field, name, range: Some([0.0, most]) }];
     let [finer_x, finer_y] = [&x, &y].map(|places| finer(places));
     layers.extend(unknown(&finer_x, &finer_y, &picture.known(&policy, &finer_x, &finer_y)));
-    let paths: Vec<Vec<(f64, f64)>> = recorded(prepared).iter().map(|movement| picture.points(movement)).collect();
     let of_missed = |&&(_, error): &&(usize, f64)| error > TrustNumbers::GOOD_HELD_OUT_ERROR;
     let errors = &model.trust.numbers.episode_errors;
     let missed: Vec<usize> = errors.iter().filter(of_missed).map(|&(episode, _)| episode).collect();
-    let mut is_seen = vec![true; paths.len()];
+    let demonstrated = recorded(prepared);
+    let mut is_seen = vec![true; demonstrated.len()];
     for &at in &missed {
         is_seen[at] = false;
     }
-    let seen: Vec<_> = (0..paths.len()).filter(|&at| is_seen[at]).map(|at| paths[at].clone()).collect();
-    let seen: Vec<_> = seen.iter().step_by(seen.len().div_ceil(DRAWN).max(1)).cloned().collect();
+    let seen: Vec<usize> = (0..demonstrated.len()).filter(|&at| is_seen[at]).collect();
+    let path = |&at: &usize| picture.points(&demonstrated[at]);
+    let seen: Vec<_> = evenly(&seen, DRAWN).map(path).collect();
     layers.extend(movements(&seen, range, SEEN, None, DRAWN / 2));
-    let dashed: Vec<_> = missed.iter().take(DRAWN).map(|&at| paths[at].clone()).collect();
+    let dashed: Vec<_> = missed.iter().take(DRAWN).map(path).collect();
     if !dashed.is_empty() {
         layers.extend(movements(&dashed, range, MISSED, None, DRAWN / 2));
     }

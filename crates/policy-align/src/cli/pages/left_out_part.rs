@@ -2,12 +2,12 @@
 
 use maud::html;
 use motion::{Policy as _, Trajectory};
-use nalgebra::DMatrix;
 use page::{Card, Part};
 use plot::{Axis, Curve, Curves, Dash, Filling, Mark, Sign, Stroke};
 use policy_align::{Learnt, Model, Prepared, StateChannel, without_movements};
 use text::plain;
 
+use crate::cli::pages::constraint_marks::as_recorded;
 use crate::cli::pages::movements::simplified;
 use crate::cli::pages::page_parts::part;
 
@@ -68,9 +68,7 @@ pub(crate) fn left_out_part(model: &Model, prepared: &Prepared) -> Option<Part> 
 fn curves(without: &Model, movement: &Trajectory, prepared: &Prepared, title: &str) -> Curves {
     // Steps have a velocity each, between two samples.
     let velocities = movement.velocities().cloned().unwrap_or_else(|| movement.step_velocities());
-    let own: Vec<f64> = prepared.state.iter().map(|channel| channel.scale).collect();
-    let unscaled = |of: &DMatrix<f64>| DMatrix::from_fn(of.nrows(), of.ncols(), |k, i| of[(k, i)] / own[k]);
-    let (states, velocities) = (unscaled(movement.states()), unscaled(&velocities));
+    let (states, velocities) = (as_recorded(movement.states(), prepared), as_recorded(&velocities, prepared));
     let (policy, scales) = (without.policy(), without.scales());
     let n = velocities.ncols();
     let at = |sample: usize| {

@@ -25,19 +25,23 @@ pub(crate) fn movements(
         label: label.filter(|_| at == 0).map(str::to_owned),
     };
     let mut layers: Vec<Layer> = paths.iter().enumerate().map(line).collect();
-    let marked = paths.iter().step_by(paths.len().div_ceil(marked).max(1));
     let arrow = |path: &Vec<(f64, f64)>| {
         let ((x, y), (u, v)) = half_way(path)?;
         let length = LENGTH * side;
         Some((x - 0.5 * length * u, y - 0.5 * length * v, length * u, length * v))
     };
-    let arrows: Vec<_> = marked.filter_map(arrow).collect();
+    let arrows: Vec<_> = evenly(paths, marked).filter_map(arrow).collect();
     if !arrows.is_empty() {
         layers.push(Layer::Arrows { arrows, color: stroke.color, scale: 1.0, width: stroke.width, label: None });
     }
     let starts = paths.iter().filter_map(|path| path.first().copied()).collect();
     layers.push(Layer::Dots { points: starts, color: stroke.color, radius: START });
     layers
+}
+
+/// At most `most` of these, equally far from each other.
+pub(crate) fn evenly<T>(all: &[T], most: usize) -> impl Iterator<Item = &T> + Clone {
+    all.iter().step_by(all.len().div_ceil(most).max(1))
 }
 
 /// The place half way along a path, and its direction there, of length 1; none of a path without length.

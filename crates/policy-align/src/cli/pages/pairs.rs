@@ -9,6 +9,7 @@ use plot::{Camera, Frame, Item, Space};
 use policy_align::{Model, Prepared, StateChannel};
 
 use crate::cli::pages::constraint_marks::recorded;
+use crate::cli::pages::movements::evenly;
 use crate::cli::pages::page_parts::part;
 use crate::cli::pages::picture::{DEMONSTRATED, Picture, with_unit};
 
@@ -29,7 +30,7 @@ pub(crate) fn pairs(model: &Model, prepared: &Prepared) -> Option<Part> {
     let model = &model.in_usual_context();
     let chosen = most_varying(model);
     let movements = recorded(prepared);
-    let drawn: Vec<_> = movements.iter().step_by(movements.len().div_ceil(DRAWN).max(1)).cloned().collect();
+    let drawn: Vec<_> = evenly(&movements, DRAWN).cloned().collect();
     let card = |(across, up): (usize, usize)| {
         let (title, dims) = (String::new(), [across, up]);
         let picture = Picture { title, model, dims, demonstrated: drawn.clone(), held: vec![], followed: vec![] };

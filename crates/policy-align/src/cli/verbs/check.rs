@@ -2,7 +2,7 @@ use std::cmp::Reverse;
 use std::path::PathBuf;
 
 use clap::Args;
-use policy_align::{Finding, LeftOut, Prepared, Verdict};
+use policy_align::{Finding, LeftOut, Prepared, TrustNumbers, Verdict};
 use prepare::{directions, prepare};
 use serde_json::json;
 
@@ -70,7 +70,11 @@ impl Check {
         }
         let mut lines = Lines::default();
         about(&prepared, &named(&self.files), &mut lines);
-        let evenness = if coverage < 0.1 { "one direction hardly occurs" } else { "every direction occurs" };
+        let evenness = if coverage < TrustNumbers::GOOD_COVERAGE {
+            "one direction hardly occurs"
+        } else {
+            "every direction occurs"
+        };
         lines.add("directions", &format!("coverage {} of 1: {evenness}", short(coverage)));
         findings(&unreported(&prepared.findings, &reported), 10_usize.saturating_sub(lines.count()), &mut lines);
         if let Some(path) = &self.html {
