@@ -12,7 +12,7 @@ use crate::{Labels, MotionError, Series, Times, scaled};
 pub struct Trajectory {
     states: Arc<DMatrix<f64>>,
     velocities: Option<Arc<DMatrix<f64>>>,
-    times: Times,
+    times: Arc<Times>,
     context: DVector<f64>,
     labels: Option<Labels>,
 }
@@ -35,7 +35,7 @@ impl Trajectory {
             return Err(MotionError::TooShort { samples: states.ncols() });
         }
         require_finite(&states, Series::States)?;
-        let times = Times::Even { step: time_step, len: states.ncols() };
+        let times = Arc::new(Times::Even { step: time_step, len: states.ncols() });
         let states = Arc::new(states);
         Ok(Trajectory { states, velocities: None, times, context: DVector::zeros(0), labels: None })
     }
@@ -126,7 +126,7 @@ impl Trajectory {
         } else {
             Times::Stamped(times)
         };
-        Ok(Trajectory { times, ..self })
+        Ok(Trajectory { times: Arc::new(times), ..self })
     }
 
     /// The states, (n, N).
@@ -171,7 +171,7 @@ impl Trajectory {
 
     /// Time stamps of the samples, (N), in seconds; none if they are evenly spaced.
     pub fn times(&self) -> Option<&[f64]> {
-        match &self.times {
+        match &*self.times {
             Times::Even { .. } => None,
             Times::Stamped(stamps) => Some(stamps),
         }

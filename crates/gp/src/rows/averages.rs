@@ -1,6 +1,7 @@
 //! Means of neighbouring samples in place of samples, where velocities are noisy (S33).
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use motion::SampleIndex;
 use nalgebra::{DMatrix, DVector};
@@ -40,36 +41,40 @@ impl Rows {
         let Some(variances) = with_noise else {
             return Cow::Borrowed(self);
         };
-        let all: Vec<usize> = (0..self.len()).collect();
-        let same = |&a: &usize, &b: &usize| self.indices()[a].trajectory == self.indices()[b].trajectory;
-        let blocks: Vec<Block> = all.chunk_by(same).flat_map(|rows| self.blocks(rows, variances)).collect();
+        let mut means = Means::default();
+        let mut first = 0;
+        for trajectory in self.indices.chunk_by(|a, b| a.trajectory == b.trajectory) {
+            let rows = first..first + trajectory.len();
+            first = rows.end;
+            self.blocks(rows, variances).into_iter().for_each(|block| means.push(block));
+        }
+        let count = means.indices.len();
+        let matrix = |numbers: Vec<f64>| DMatrix::from_vec(numbers.len() / count, count, numbers);
+        let Means { states, velocities, momenta, variances, indices, labels, spans } = means;
         Cow::Owned(Rows {
-            states: columns(&blocks, |block| &block.state),
-            velocities: columns(&blocks, |block| &block.velocity),
-            momenta: blocks
-                .iter()
-                .map(|block| block.momentum.clone())
-                .collect::<Option<Vec<_>>>()
-                .map(|momenta| DMatrix::from_columns(&momenta)),
-            variances: Some(blocks.iter().map(|block| block.variance).collect()),
-            indices: blocks.iter().map(|block| block.index).collect(),
+            states: matrix(states),
+            velocities: matrix(velocities),
+            momenta: self.momenta.as_ref().map(|_| matrix(momenta)),
+            variances: Some(variances),
+            indices,
             noise: self.noise,
             switches: None,
-            labels: blocks.iter().map(|block| block.label).collect(),
+            labels: self.labels.as_ref().map(|_| labels),
             means: true,
-            task_spaces: self.task_spaces().iter().map(|space| space.with_rows(|of| means(&blocks, of))).collect(),
+            task_spaces: self.task_spaces().iter().map(|space| space.with_rows(|of| of_spans(&spans, of))).collect(),
         })
     }
 
     /// Of one trajectory. Blocks begin at multiples of their length.
-    fn blocks(&self, rows: &[usize], variances: &[f64]) -> Vec<Block> {
+    fn blocks(&self, rows: Range<usize>, variances: &[f64]) -> Vec<Block> {
         let dim = self.dim() as f64;
         let most = dim + DEVIATIONS * (2.0 * dim).sqrt();
         let mut blocks: Vec<Block> = Vec::new();
-        for (begin, &row) in rows.iter().enumerate() {
+        let first = rows.start;
+        for row in rows {
             let mut last = Block {
                 first: row,
-                begin,
+                begin: row - first,
                 count: 1,
                 state: self.states().column(row).into_owned(),
                 velocity: self.velocities().column(row).into_owned(),
@@ -106,17 +111,38 @@ impl Block {
     }
 }
 
-/// Mean Jacobians of the rows in each block.
-fn means(blocks: &[Block], jacobians: &[DMatrix<f64>]) -> Vec<DMatrix<f64>> {
-    let mean = |block: &Block| {
-        let sum: DMatrix<f64> = jacobians[block.first..block.first + block.count].iter().sum();
-        sum / block.count as f64
-    };
-    blocks.iter().map(mean).collect()
+/// Blocks of all trajectories, number after number.
+#[derive(Default)]
+struct Means {
+    states: Vec<f64>,
+    velocities: Vec<f64>,
+    momenta: Vec<f64>,
+    variances: Vec<f64>,
+    indices: Vec<SampleIndex>,
+    labels: Vec<usize>,
+    /// The rows of each.
+    spans: Vec<Range<usize>>,
 }
 
-fn columns(blocks: &[Block], of: impl Fn(&Block) -> &DVector<f64>) -> DMatrix<f64> {
-    DMatrix::from_columns(&blocks.iter().map(|block| of(block).clone()).collect::<Vec<_>>())
+impl Means {
+    fn push(&mut self, block: Block) {
+        self.states.extend(&block.state);
+        self.velocities.extend(&block.velocity);
+        self.momenta.extend(block.momentum.iter().flatten());
+        self.variances.push(block.variance);
+        self.indices.push(block.index);
+        self.labels.extend(block.label);
+        self.spans.push(block.first..block.first + block.count);
+    }
+}
+
+/// Mean Jacobians of the rows in each span.
+fn of_spans(spans: &[Range<usize>], jacobians: &[DMatrix<f64>]) -> Vec<DMatrix<f64>> {
+    let mean = |span: &Range<usize>| {
+        let sum: DMatrix<f64> = jacobians[span.clone()].iter().sum();
+        sum / span.len() as f64
+    };
+    spans.iter().map(mean).collect()
 }
 
 #[cfg(test)]
