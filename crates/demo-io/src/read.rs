@@ -131,16 +131,34 @@ fn folder(
     options: &ReadOptions,
     progress: &mut dyn FnMut(u64),
 ) -> Result<RawRecordings, ReadError> {
-    let entries = fs::read_dir(path).and_then(Iterator::collect::<Result<Vec<_>, _>>);
-    let entries = entries.map_err(|error| unreadable(&error, name))?;
-    let mut files: Vec<PathBuf> = entries.iter().map(fs::DirEntry::path).filter(|path| path.is_file()).collect();
-    files.retain(|file| sniff::is_recording(file));
-    files.sort_by(|a, b| natural::compare(&name_of(a), &name_of(b)));
+    let files = listed(path, name)?;
     let joined = joined(&files, |file| Ok(named_by_file(drafts(file, options, progress)?, file)))?;
     joined.ok_or_else(|| {
         let what = "there is no file of a known format in the folder";
         ReadError::Empty(Fault::new(what, name, "a folder with .csv, .npz, .jsonl, .mcap … files, a movement each"))
     })
+}
+
+fn listed(folder: &Path, name: &str) -> Result<Vec<PathBuf>, ReadError> {
+    let entries = fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
+    let entries = entries.map_err(|error| unreadable(&error, name))?;
+    let mut files: Vec<PathBuf> = entries.iter().map(fs::DirEntry::path).filter(|path| path.is_file()).collect();
+    files.retain(|file| sniff::is_recording(file));
+    files.sort_by(|a, b| natural::compare(&name_of(a), &name_of(b)));
+    Ok(files)
+}
+
+/// The files that a folder with a movement each is read as, in their order; a file, or a folder that is one data set, as it is.
+///
+/// # Errors
+///
+/// [`ReadError`] of a folder that cannot be read.
+pub fn files_of(path: &Path) -> Result<Vec<PathBuf>, ReadError> {
+    let name = name_of(path);
+    if path.is_dir() && matches!(sniff::folder(path, &name)?, Folder::Files) {
+        return listed(path, &name);
+    }
+    Ok(vec![path.to_owned()])
 }
 
 /// Episodes of one file among several carry its name, since they are numbered in each.

@@ -5,14 +5,15 @@ use motion::{Certainty, LearntPolicy as _, Policy as _};
 use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use policy_align::{
-    Evaluation, Model, ModelError, PrepareOptions, Progress, TaskLinks, estimate_constraints, evaluate, fit, prepare,
-    to_lerobot, write_together,
+    Evaluation, Model, ModelError, PrepareOptions, Progress, TaskLinks, estimate_constraints, evaluate, fit_with,
+    prepare, to_lerobot, write_together,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::arrays::{array, matrix};
 use crate::interruptible::interruptible;
+use crate::large::digests;
 use crate::options::{Learning, Preparing};
 use crate::parts::in_parts;
 use crate::recordings::{Recorded, Recordings, names_of};
@@ -31,16 +32,17 @@ pub(crate) struct Fitted {
 
 #[pymethods]
 impl Fitted {
-    /// Learns; `made_at` is the time in UTC, ISO 8601.
+    /// Learns, from digests of further files as well; `made_at` is the time in UTC, ISO 8601.
     #[staticmethod]
     fn fit(
         py: Python<'_>,
         recordings: &Recordings,
         preparing: Preparing,
         learning: Learning,
-        threads: usize,
-        made_at: String,
+        threads_made_at: (usize, String),
+        further: Vec<Vec<u8>>,
     ) -> PyResult<Self> {
+        let (threads, made_at) = threads_made_at;
         let inner = Arc::clone(&recordings.inner);
         let (preparing, learning) = (preparing.options(&inner.context)?, learning.options()?);
         let model = interruptible(py, move |cancelled| {
@@ -49,10 +51,10 @@ impl Fitted {
                 let prepared = prepare(recordings, &preparing)
                     .map_err(|error| Refusal::prepare(&error, place, &names_of(recordings)))?;
                 let mut progress = Progress { cancelled, report: &mut |_| () };
-                let mut model =
-                    fit(&prepared, &learning, &mut progress).map_err(|error| Refusal::fit(&error, place))?;
+                let mut model = fit_with(&prepared, &digests(&further)?, &learning, &mut progress)
+                    .map_err(|error| Refusal::fit(&error, place))?;
                 model.made_by.time = made_at;
-                model.data.files.clone_from(files);
+                model.data.files = files.iter().chain(&model.data.files).cloned().collect();
                 Ok(model)
             })
         })?;

@@ -8,6 +8,7 @@ mod arrays;
 mod fitted;
 mod hints;
 mod interruptible;
+mod large;
 mod model_document;
 mod options;
 mod parts;
@@ -25,6 +26,8 @@ mod _native {
 
     #[pymodule_export]
     use crate::fitted::Fitted;
+    #[pymodule_export]
+    use crate::large::{digest, divide};
     #[pymodule_export]
     use crate::recordings::Recordings;
     #[pymodule_export]

@@ -5,7 +5,7 @@ use demo_io::{ReadOptions, read_all};
 use motion::{Channel, Episode, Finding, Labels, MotionError, Source, Times, Trajectory};
 use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
-use policy_align::{FileSummary, PrepareError, prepare};
+use policy_align::{Digester, FileSummary, PrepareError, prepare};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use serde_json::json;
@@ -168,6 +168,18 @@ impl Recordings {
     #[getter]
     fn time_step(&self) -> f64 {
         self.inner.recordings.time_step()
+    }
+
+    /// What makes digests of files like these, as JSON.
+    fn digester(&self, py: Python<'_>, preparing: Preparing) -> PyResult<String> {
+        let (inner, options) = (Arc::clone(&self.inner), preparing.options(&self.inner.context)?);
+        let prepared = interruptible(py, move |_: &_| {
+            let prepared = prepare(&inner.recordings, &options)
+                .map_err(|error| Refusal::prepare(&error, &inner.place, &names_of(&inner.recordings)))?;
+            Ok(json!(Digester::new(&prepared, &options)).to_string())
+        })?;
+        let text: Result<String, Refusal> = prepared;
+        Ok(text?)
     }
 
     /// What would be learnt from, and what gives reason for doubt, as JSON.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import json
 import os
 import runpy
 import signal
@@ -10,13 +12,15 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from multiprocessing.pool import ThreadPool
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from conftest import DT, ROOT, on_rails, without_time
 
-from policy_align import Demonstrations, PolicyAlign
+from policy_align import AutoGp, Demonstrations, PolicyAlign, PolicyAlignError, dask
 
 SWEEP = ROOT / "docs/examples/sweep.py"
 
@@ -52,12 +56,11 @@ def until(true: Callable[[], object], seconds: float = 60.0) -> None:
         time.sleep(0.02)
 
 
-@pytest.mark.filterwarnings("ignore")
-def test_dask_outlives_a_killed_worker(tmp_path: Path) -> None:
+@contextmanager
+def cluster(folder: Path) -> Iterator[tuple[Any, dict[str, subprocess.Popen[str]], dict[str, str]]]:
+    """A client of two workers, their processes and their addresses by name."""
     distributed = pytest.importorskip("distributed")
-    files = [rails_file(tmp_path, count) for count in (16, 18)]
-    (tmp_path / "damaged.csv").write_text("episode,t,x,y\n0,0.0,1.0,none\n")
-    address_file = tmp_path / "scheduler.json"
+    address_file = folder / "scheduler.json"
     common = ("--no-dashboard", "--scheduler-file", str(address_file))
     with ExitStack() as stack:
         stack.enter_context(running("-m", "dask", "scheduler", *common, "--host", "127.0.0.1", "--port", "0"))
@@ -67,6 +70,15 @@ def test_dask_outlives_a_killed_worker(tmp_path: Path) -> None:
         client = stack.enter_context(distributed.Client(scheduler_file=str(address_file)))
         client.wait_for_workers(2, timeout=60)
         addresses = {worker["name"]: address for address, worker in client.scheduler_info()["workers"].items()}
+        yield client, workers, addresses
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_dask_outlives_a_killed_worker(tmp_path: Path) -> None:
+    files = [rails_file(tmp_path, count) for count in (16, 18)]
+    (tmp_path / "damaged.csv").write_text("episode,t,x,y\n0,0.0,1.0,none\n")
+    with ExitStack() as stack:
+        client, workers, addresses = stack.enter_context(cluster(tmp_path))
         address = client.scheduler.address
         sweep = stack.enter_context(running(str(SWEEP), address, str(tmp_path), *map(str, [*files, tmp_path / "damaged.csv"])))
         assert sweep.stdout is not None and sweep.stdout.readline().startswith("rails"), "nothing was learnt"
@@ -97,3 +109,54 @@ def test_a_search_in_processes_finds_the_same() -> None:
 
     for one, two in zip(found(1), found(2), strict=True):
         assert np.array_equal(one, two) and np.all(np.isfinite(one))
+
+
+class Dying:
+    """A client whose first task takes its worker with it, once."""
+
+    def __init__(self, client: Any, marker: Path) -> None:
+        self.client, self.marker = client, marker
+
+    def map(self, function: Callable[[Any], bytes], items: list[Any]) -> Any:
+        return self.client.map(functools.partial(die_once, str(self.marker), function), items)
+
+    def gather(self, futures: Any) -> Any:
+        return self.client.gather(futures)
+
+
+def die_once(marker: str, function: Callable[[Any], bytes], item: Any) -> bytes:
+    if not os.path.exists(marker):
+        open(marker, "w").close()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return function(item)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_one_fit_is_shared_out(tmp_path: Path) -> None:
+    files = [rails_file(tmp_path, 10 + k) for k in range(6)]
+    at_once = f"{2.1 * files[-1].stat().st_size / 1e3}kB"
+    learner = AutoGp(max_rows=60, n_jobs=1)
+
+    def model(learnt: AutoGp) -> str:
+        learnt.save(tmp_path / "model.json")
+        return without_time((tmp_path / "model.json").read_text())
+
+    alone = model(learner.fit_files(*files, at_once=at_once))
+    about = json.loads(alone)
+    assert about["data"]["episodes"] == sum(10 + k for k in range(6))
+    assert [file["name"] for file in about["data"]["files"]] != sorted(str(file.name) for file in files)
+    assert any(decision["what"] == "at once" for decision in about["decisions"])
+    with ThreadPool(2) as pool:
+        assert model(learner.fit_files(*files, at_once=at_once, map=pool.map)) == alone
+    assert model(learner.fit_files(*files, at_once="all")) != alone
+    with pytest.raises(PolicyAlignError, match="no size"):
+        learner.fit_files(*files, at_once="much")
+    (tmp_path / "damaged.csv").write_text("episode,t,x,y\n0,0.0,1.0,none\n" * 2)
+    with pytest.raises(PolicyAlignError, match="none"):
+        learner.fit_files(files[0], tmp_path / "damaged.csv", *files[1:], at_once=at_once)
+    cloudpickle = pytest.importorskip("cloudpickle")
+    with cluster(tmp_path) as (client, _, _):
+        cloudpickle.register_pickle_by_value(sys.modules[__name__])
+        dying: Any = Dying(client, tmp_path / "died")
+        assert model(dask.fit(files, dying, learner, at_once=at_once)) == alone
+        assert len(client.scheduler_info()["workers"]) == 1

@@ -28,6 +28,7 @@
 //! |---|---|
 //! | prepare recordings | [`prepare()`]: each automatic choice is a [`Decision`] |
 //! | learn | [`fit()`]: a [`Model`] with its [`Trust`], every doubt a [`Finding`] |
+//! | learn from files larger than memory | [`Division`]: which are read at once; [`Digester`]: what stays of others; [`fit_with`] |
 //! | store | [`Model`]: [`Model::save`], [`Model::load`], [`Model::policy`] in the units of the recording |
 //! | use | [`RollOut`] under constraints; [`CSource`] and [`to_onnx`] export a policy without dependencies, [`to_lerobot`] for LeRobot |
 //! | command | [`VelocityController`]: joint states in, velocities out, zero where it must not move |
@@ -72,6 +73,7 @@ mod evaluate;
 mod export;
 mod fit;
 mod halton;
+mod large;
 mod learnt;
 mod leave_out;
 mod model;
@@ -87,10 +89,11 @@ mod trust;
 pub use ::{align, constraints, demo_io, gp, kinematics, lwpr, motion, nalgebra, prepare, rand, smoothing};
 pub use choice::Choice;
 pub use context::ContextError;
-pub use error::FitError;
+pub use error::{DigestError, FitError};
 pub use evaluate::{EvaluateError, Evaluation, Truth, evaluate};
 pub use export::{CSource, ExportError, Precision, to_lerobot, to_onnx};
-pub use fit::{FitOptions, LearnerChoice, Progress, Step, fit};
+pub use fit::{Digest, Digester, FitOptions, LearnerChoice, Progress, Step, fit, fit_with};
+pub use large::{Division, FurtherFile, Part, PartError, digest_file};
 pub use learnt::Learnt;
 pub use leave_out::{ConstraintLeftOut, leave_constraints_out, without_movements};
 pub use model::{DataSummary, FileSummary, MadeBy, Model};

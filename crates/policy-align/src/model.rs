@@ -1,10 +1,11 @@
 use std::io;
 use std::path::Path;
 
-use nalgebra::DVector;
+use motion::upper_median;
+use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use crate::{Decision, Learnt, LeftOut, StateChannel, Trust, sha256_of_file};
+use crate::{Decision, Learnt, LeftOut, Prepared, StateChannel, Trust, sha256_of_file};
 
 /// The contents of a model file: the policy, its training data, all decisions and the verdict.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -61,10 +62,36 @@ pub struct DataSummary {
     pub samples: usize,
     /// Duration of the longest episode, in seconds.
     pub longest: f64,
-    /// Median speed over all samples, in scaled units of the state per second: what is fast and what is slow.
+    /// Median speed over all samples that were held at once, in scaled units of the state per second: what is fast and what is slow.
     pub speed: f64,
     /// Episodes not learnt from.
     pub left_out: Vec<LeftOut>,
+}
+
+impl DataSummary {
+    /// Of these movements and their velocities, (n, N), without files.
+    pub(crate) fn of(prepared: &Prepared, velocities: &DMatrix<f64>) -> DataSummary {
+        let movements = prepared.demonstrations.trajectories();
+        let seconds = movements.iter().map(|movement| movement.seconds(0, movement.n_samples() - 1));
+        DataSummary {
+            files: vec![],
+            episodes: movements.len(),
+            samples: prepared.demonstrations.n_samples(),
+            longest: seconds.fold(0.0, f64::max),
+            speed: upper_median(velocities.column_iter().map(|velocity| velocity.norm()).collect()).unwrap_or(0.0),
+            left_out: prepared.left_out.clone(),
+        }
+    }
+
+    /// Of further recordings as well, of whose speeds nothing is known.
+    pub(crate) fn and(mut self, more: &DataSummary) -> DataSummary {
+        self.files.extend(more.files.iter().cloned());
+        self.left_out.extend(more.left_out.iter().cloned());
+        self.episodes += more.episodes;
+        self.samples += more.samples;
+        self.longest = self.longest.max(more.longest);
+        self
+    }
 }
 
 impl MadeBy {

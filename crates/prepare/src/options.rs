@@ -1,7 +1,9 @@
 use std::str::FromStr;
 
+use serde::{Deserialize, Serialize};
+
 /// Options of preparation; by default everything is decided from the data.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct PrepareOptions {
     /// Channels that are scaled before learning: name and factor (`--scale z=10`).
     pub scale: Vec<(String, f64)>,
@@ -21,7 +23,7 @@ pub struct PrepareOptions {
 
 /// Which channels are context: what a movement depends on and what stays as it is meanwhile, such as a goal, the place of an
 /// object, or a load. All others are state.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum ContextUse {
     /// Those that are constant in every episode, differ between episodes, and are called like one: goal, target, object, load.
     #[default]
@@ -33,7 +35,7 @@ pub enum ContextUse {
 }
 
 /// The use of recorded velocities.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum VelocityUse {
     /// They are used if they agree with the steps.
     #[default]
@@ -45,7 +47,7 @@ pub enum VelocityUse {
 }
 
 /// The treatment of apparent faults.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Repair {
     /// Repaired and reported.
     #[default]
@@ -55,7 +57,7 @@ pub enum Repair {
 }
 
 /// How positions are smoothed before learning.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum Smoothing {
     /// According to their noise.
     #[default]

@@ -1,5 +1,7 @@
+use serde::{Deserialize, Serialize};
+
 /// Where velocities come from, for the learners.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum VelocitySource {
     /// Exact velocities as recorded, with exact positions.
     Recorded,

@@ -36,7 +36,17 @@ impl Rows {
     ///
     /// The direction of (S1) is that of the velocity, so that noise of it enters squared and does not go down with the number of
     /// rows: of a velocity's noise, its mean over as many samples does.
+    ///
+    /// Rows of [further trajectories](Rows::with_further) follow.
     pub fn averaged(&self) -> Cow<'_, Rows> {
+        let means = self.own_averaged();
+        match &self.further {
+            Some(further) => Cow::Owned(further.after(&means)),
+            None => means,
+        }
+    }
+
+    fn own_averaged(&self) -> Cow<'_, Rows> {
         let with_noise = self.variances().filter(|_| !self.means && self.switches().is_none() && !self.is_empty());
         let Some(variances) = with_noise else {
             return Cow::Borrowed(self);
@@ -46,7 +56,7 @@ impl Rows {
         for trajectory in self.indices.chunk_by(|a, b| a.trajectory == b.trajectory) {
             let rows = first..first + trajectory.len();
             first = rows.end;
-            self.blocks(rows, variances).into_iter().for_each(|block| means.push(block));
+            self.blocks(rows, variances).iter().for_each(|block| means.push(block));
         }
         let count = means.indices.len();
         let matrix = |numbers: Vec<f64>| DMatrix::from_vec(numbers.len() / count, count, numbers);
@@ -62,6 +72,7 @@ impl Rows {
             labels: self.labels.as_ref().map(|_| labels),
             means: true,
             task_spaces: self.task_spaces().iter().map(|space| space.with_rows(|of| of_spans(&spans, of))).collect(),
+            further: None,
         })
     }
 
@@ -125,7 +136,7 @@ struct Means {
 }
 
 impl Means {
-    fn push(&mut self, block: Block) {
+    fn push(&mut self, block: &Block) {
         self.states.extend(&block.state);
         self.velocities.extend(&block.velocity);
         self.momenta.extend(block.momentum.iter().flatten());

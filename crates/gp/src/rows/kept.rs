@@ -149,12 +149,12 @@ impl Selection {
     /// what [`thinned`] does.
     pub(crate) fn keep<R: Rng + ?Sized>(&self, rows: &Rows, rng: &mut R) -> Result<Kept, GpError> {
         self.check()?;
-        let samples = rows.len();
+        let (samples, before) = (rows.recorded(), rows.thinned_before());
         let rows = &*rows.averaged();
         let (mut usable, mut dropped) = self.usable(rows)?;
         let enough = grouped(rows, &usable)?;
-        dropped.averaged = samples - rows.len();
-        dropped.thinned = usable.len().saturating_sub(self.max_rows);
+        dropped.averaged = samples - rows.len() - before;
+        dropped.thinned = before + usable.len().saturating_sub(self.max_rows);
         usable = thinned(movements(rows, &usable), self.max_rows, || rng.random());
         usable.shuffle(rng);
         let mut hyper = usable[..usable.len().min(self.hyper_rows)].to_vec();
@@ -174,6 +174,7 @@ impl Selection {
         if some.dropped.thinned == 0 {
             return None;
         }
+        let before = rows.thinned_before();
         let rows = &*rows.averaged();
         let (mut usable, dropped) = self.usable(rows).ok()?;
         usable.sort_by_key(|&row| (rows.indices()[row], row));
@@ -182,7 +183,7 @@ impl Selection {
         let many = thinned(movements(rows, &usable), most, || MIDDLE);
         let taken: HashSet<usize> = many.into_iter().chain(some.rows.iter().copied()).collect();
         usable.retain(|row| taken.contains(row));
-        let thinned = found - usable.len();
+        let thinned = before + found - usable.len();
         let dropped = RowsDropped { averaged: some.dropped.averaged, thinned, ..dropped };
         Some(Kept { dropped, ..kept(rows, usable, &enough) })
     }

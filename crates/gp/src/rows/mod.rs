@@ -2,9 +2,11 @@
 
 pub(crate) mod averages;
 pub(crate) mod front_end;
+mod further;
 pub(crate) mod kept;
 pub(crate) mod noise_weights;
 pub(crate) mod scaling;
+mod subset;
 pub(crate) mod task_space;
 pub(crate) mod thinning;
 
@@ -14,6 +16,7 @@ use motion::{SampleIndex, upper_median};
 use nalgebra::DMatrix;
 
 use crate::GpError;
+use further::Further;
 use task_space::TaskSpace;
 
 /// Most rows of a model, fitted or read: the Cholesky factor of so many, which its error bars need, takes 0.8 GB.
@@ -34,6 +37,7 @@ pub struct Rows {
     /// Whether they are means (S33) already.
     means: bool,
     task_spaces: Vec<TaskSpace>,
+    further: Option<Further>,
 }
 
 impl Rows {
@@ -77,6 +81,7 @@ impl Rows {
             labels: None,
             means: false,
             task_spaces: Vec::new(),
+            further: None,
         })
     }
 
@@ -116,6 +121,12 @@ impl Rows {
             Some(row) => Err(GpError::Value { what: "variance", row, value: variances[row] }),
             None => Ok(Rows { variances: Some(variances), ..self }),
         }
+    }
+
+    /// The same rows with velocities that are taken as exact.
+    #[must_use]
+    pub fn with_certain_velocities(self) -> Self {
+        Rows { variances: None, ..self }
     }
 
     /// Constraints are at right angles in the metric M(x): u = π − M⁻¹Aᵀ(AM⁻¹Aᵀ)⁻¹(Aπ), as where a robot's mass matrix weighs its joints.
@@ -172,29 +183,6 @@ impl Rows {
             return Err(GpError::Lengths { what: "Jacobians of a task space", found, expected: self.len() });
         }
         Ok(Rows { task_spaces, ..self })
-    }
-
-    /// The rows whose sample is not held out: `held_out(trajectory, sample)`.
-    #[must_use]
-    pub fn without(&self, held_out: impl Fn(usize, usize) -> bool) -> Self {
-        let stays = |&row: &usize| !held_out(self.indices[row].trajectory, self.indices[row].sample);
-        let rows: Vec<usize> = (0..self.len()).filter(stays).collect();
-        Rows {
-            states: self.states.select_columns(&rows),
-            velocities: self.velocities.select_columns(&rows),
-            variances: self.variances.as_ref().map(|variances| rows.iter().map(|&row| variances[row]).collect()),
-            indices: rows.iter().map(|&row| self.indices[row]).collect(),
-            momenta: self.momenta.as_ref().map(|momenta| momenta.select_columns(&rows)),
-            noise: self.noise,
-            switches: self.switches.clone(),
-            labels: self.labels.as_ref().map(|labels| rows.iter().map(|&row| labels[row]).collect()),
-            means: self.means,
-            task_spaces: self
-                .task_spaces
-                .iter()
-                .map(|space| space.with_rows(|of| rows.iter().map(|&row| of[row].clone()).collect()))
-                .collect(),
-        }
     }
 
     /// States x, each followed by its context c, (n + p, M).

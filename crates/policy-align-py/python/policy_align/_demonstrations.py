@@ -7,7 +7,7 @@ import operator
 import os
 import tempfile
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, overload
 
@@ -119,13 +119,7 @@ class Demonstrations:
         ``filter``, ``samples_are``, ``separator``, ``decimal``, ``topic``, ``format`` and ``trust``. What was noticed is
         warned of, and stays in ``notes``.
         """
-        plain = {name: value for name, value in options.items() if value is not None}
-        if "format" in plain:
-            plain["as"] = plain.pop("format")
-        for name in _LISTS & plain.keys():
-            plain[name] = [plain[name]] if isinstance(plain[name], str) else [str(entry) for entry in plain[name]]
-        trim_still = bool(plain.pop("trim_still", False))
-        native = _native.Recordings.read([os.fspath(path) for path in paths], json.dumps(plain), trim_still)
+        native = _native.Recordings.read([os.fspath(path) for path in paths], *reading(options))
         found = cls._of(native)
         for note in found.notes:
             warnings.warn(note, PolicyAlignWarning, stacklevel=2)
@@ -403,3 +397,14 @@ def _stamps(values: Any) -> Floats:
 def _same_length(given: Sequence[Any], expected: int, name: str, what: str) -> None:
     if len(given) != expected:
         raise PolicyAlignError(f"there are {len(given)} {name} for {expected} {what}", name, "one each")
+
+
+def reading(options: Mapping[str, Any]) -> tuple[str, bool]:
+    """Options of ``Demonstrations.read`` as the native half takes them."""
+    plain = {name: value for name, value in options.items() if value is not None}
+    if "format" in plain:
+        plain["as"] = plain.pop("format")
+    for name in _LISTS & plain.keys():
+        plain[name] = [plain[name]] if isinstance(plain[name], str) else [str(entry) for entry in plain[name]]
+    trim_still = bool(plain.pop("trim_still", False))
+    return json.dumps(plain), trim_still

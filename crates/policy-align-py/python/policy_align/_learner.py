@@ -7,7 +7,7 @@ import operator
 import os
 import time
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from html import escape
 from typing import Any, ClassVar, Literal, Self, overload
@@ -18,7 +18,8 @@ import numpy.typing as npt
 from . import _native
 from ._arrays import Floats, floats, samples
 from ._constraints import ConstraintStretch, stretches
-from ._demonstrations import Demonstrations, preparing
+from ._demonstrations import Demonstrations, preparing, reading
+from ._digesting import Digesting
 from ._errors import NotFittedError, PolicyAlignError, PolicyAlignWarning
 from ._estimator import Estimator
 from ._rollout import Constraint, Path, follow
@@ -98,18 +99,39 @@ class Learner(Estimator):
         better than differences of positions. ``constraints``: names as of ``Demonstrations``, which tell where constraints
         switch. ``y`` is ignored. Ctrl-C ends it.
         """
-        threads = _threads(self.n_jobs)
-        demonstrations = _demonstrations(X, dt, times, velocities, lengths, constraints)
-        made_at = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
-        fitted = _native.Fitted.fit(demonstrations._native, self._preparing(), self._learning(), threads, made_at)
-        self._take(fitted)
+        return self._learn(_demonstrations(X, dt, times, velocities, lengths, constraints), [])
+
+    def fit_files(
+        self,
+        *paths: str | os.PathLike[str],
+        at_once: str = "256MB",
+        map: Callable[[Callable[[Any], bytes], list[Any]], Iterable[bytes]] = map,
+        **options: Any,
+    ) -> Self:
+        """Learns from files that are too large to be held together, or that several machines read.
+
+        Files of ``at_once``, evenly spread, are read together; every other file is read alone, and means of its samples stay. ``map`` does
+        that, as the builtin function: that of a pool of processes, or of an engine (``policy_align.dask.fit``), gives the same model. What
+        it is given can be pickled. ``options`` as of ``Demonstrations.read``; the program's ``fit --at-once`` does the same.
+        """
+        at_hand, further = _native.divide([os.fspath(path) for path in paths], at_once)
+        demonstrations = Demonstrations.read(*at_hand, **options)
+        if not further:
+            return self._learn(demonstrations, [])
+        digester = demonstrations._native.digester(self._preparing())
+        return self._learn(demonstrations, list(map(Digesting(*reading(options), digester), further)))
+
+    def _learn(self, demonstrations: Demonstrations, further: list[bytes]) -> Self:
+        threads_made_at = (_threads(self.n_jobs), time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()))
+        given = (demonstrations._native, self._preparing(), self._learning())
+        self._take(_native.Fitted.fit(*given, threads_made_at, further))
         self._learnt_from = demonstrations
         trust = self.trust_
         if trust.verdict != "good":
             more = len([finding for finding in trust.findings if finding.verdict != "good"]) - 1
             rest = f" (and {more} more: see trust_)" if more else ""
             verdict = trust.verdict.replace("_", " ")
-            warnings.warn(f"{verdict}: {trust.findings[0]}{rest}", PolicyAlignWarning, stacklevel=2)
+            warnings.warn(f"{verdict}: {trust.findings[0]}{rest}", PolicyAlignWarning, stacklevel=3)
         return self
 
     @overload

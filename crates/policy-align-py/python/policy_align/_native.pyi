@@ -8,7 +8,12 @@ import numpy.typing as npt
 _Floats = npt.NDArray[np.float64]
 
 __version__: str
-__all__ = ["Fitted", "Path", "Recordings", "__version__"]
+__all__ = ["Fitted", "Path", "Recordings", "__version__", "digest", "divide"]
+
+def divide(
+    paths: Sequence[str | os.PathLike[str]], at_once: str
+) -> tuple[list[Any], list[tuple[Any, int, int]]]: ...
+def digest(file: tuple[Any, int, int], options: str, trim_still: bool, digester: str) -> bytes: ...
 
 @final
 class Recordings:
@@ -38,13 +43,18 @@ class Recordings:
     @property
     def origin(self) -> tuple[str, str, str, str]: ...
     def with_origin(self, origin: tuple[str, ...]) -> Recordings: ...
+    def digester(self, preparing: dict[str, Any]) -> str: ...
     def check(self, preparing: dict[str, Any]) -> str: ...
 
 @final
 class Fitted:
     @staticmethod
     def fit(
-        recordings: Recordings, preparing: dict[str, Any], learning: dict[str, Any], threads: int, made_at: str
+        recordings: Recordings,
+        preparing: dict[str, Any],
+        learning: dict[str, Any],
+        threads_made_at: tuple[int, str],
+        further: Sequence[bytes],
     ) -> Fitted: ...
     @staticmethod
     def from_json(text: bytes, place: str) -> Fitted: ...

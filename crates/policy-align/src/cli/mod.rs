@@ -1,5 +1,6 @@
 //! The program: a verb a file.
 
+mod at_once;
 mod clock;
 mod describe;
 pub(crate) mod failure;

@@ -1,6 +1,75 @@
-use crate::Decision;
+//! What a fit decided, and why.
+
+use gp::{AutoFit, Hypothesis, RowsDropped};
+use prepare::numbers::squared_error;
+
+use super::digest::Digest;
+use super::options::{FitOptions, LearnerChoice};
+use crate::{Decision, Prepared};
 
 /// A decision, its reason, and the flag that overrides it.
 pub(super) fn decision(what: &str, value: impl Into<String>, why: impl Into<String>, flag: &str) -> Decision {
     Decision { what: what.to_owned(), value: value.into(), why: why.into(), flag: flag.to_owned() }
+}
+
+/// What was made of samples before a Gaussian process learnt from them; none if each is a row.
+pub(super) fn rows_decision(readings: &AutoFit) -> Option<Decision> {
+    let gp::TrustReport { rows, inducing, rows_dropped, task_space, .. } = readings.slope().report();
+    let RowsDropped { averaged, thinned, still, noisy } = *rows_dropped;
+    let found = rows + still + noisy + thinned;
+    let mut why = Vec::new();
+    if averaged > 0 {
+        why.push(format!("means of {} samples where velocities differ by noise alone", found + averaged));
+    }
+    why.extend(inducing.map(|inducing| format!("{inducing} of them stand for all")));
+    if thinned > 0 {
+        // In a task space a sample has several equations.
+        let others = if task_space.is_some() { "other equations" } else { "others" };
+        why.push(format!("{thinned} {others}, evenly spread, are not learnt from"));
+    }
+    let flag = if thinned == 0 && inducing.is_none() { "--max-rows" } else { "--inducing" };
+    (!why.is_empty()).then(|| decision("rows", rows.to_string(), why.join("; "), flag))
+}
+
+/// How many movements were held together; none if all were.
+pub(super) fn digests_decision(prepared: &Prepared, digests: &[Digest]) -> Option<Decision> {
+    let further: usize = digests.iter().map(|digest| digest.data.samples).sum();
+    let rows: usize = digests.iter().map(|digest| digest.indices.len()).sum();
+    let why = format!("all else is judged by these; of {further} further samples {rows} rows are learnt from");
+    let at_hand = format!("{} samples", prepared.demonstrations.n_samples());
+    (!digests.is_empty()).then(|| decision("at once", at_hand, why, "--at-once"))
+}
+
+pub(super) fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {
+    let given = |learner| decision("learner", learner, "given", "--learner");
+    match options.learner {
+        LearnerChoice::PolicyAlign => given("policy-align"),
+        LearnerChoice::Slope => given("slope GP"),
+        LearnerChoice::Direct => given("direct GP"),
+        LearnerChoice::Auto => {
+            let (numbers, reading) = (readings.numbers(), readings.reading());
+            let learner = if readings.takes_slope() { "slope GP" } else { "direct GP" };
+            let why = match options.reading {
+                Some(reading) => format!("reading given: {reading:?}").to_lowercase(),
+                None => format!(
+                    "{}: held-out error {} with direction, {} without",
+                    found(reading),
+                    squared_error(numbers.a_s),
+                    squared_error(numbers.a_d)
+                ),
+            };
+            decision("learner", learner, why, "--reading")
+        }
+    }
+}
+
+/// Whether the data show constraints.
+fn found(reading: Hypothesis) -> &'static str {
+    match reading {
+        Hypothesis::Free => "no constraints detected",
+        Hypothesis::Constrained => "constraints detected",
+        Hypothesis::Ambiguous => "free or constrained, both readings fit",
+        Hypothesis::Unexplained => "neither reading fits",
+        Hypothesis::TooFew => "too few movements to detect constraints",
+    }
 }

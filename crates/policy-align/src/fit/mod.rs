@@ -4,6 +4,7 @@ mod actions;
 mod aligning;
 mod context;
 mod decision;
+mod digest;
 mod halves;
 mod inertia;
 mod links;
@@ -13,13 +14,13 @@ mod recorded_rows;
 mod units;
 
 pub(crate) use aligning::held_out;
+pub use digest::{Digest, Digester};
 pub use options::{FitOptions, LearnerChoice};
 pub use progress::{Progress, Step};
 pub(crate) use recorded_rows::{averaged, cleaning, least_noisy_rows, rows};
 
-use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Hypothesis, PushTest, RowsDropped, SlopeGp, TrajectoryErrors};
-use motion::{LearntPolicy, Policy, upper_median};
-use prepare::numbers::squared_error;
+use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, PushTest, SlopeGp, TrajectoryErrors};
+use motion::{LearntPolicy, Policy};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -29,7 +30,8 @@ use crate::trust::{
 };
 use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, Prepared};
 use aligning::AlignedFit;
-use decision::decision;
+use decision::{digests_decision, learner_decision, rows_decision};
+use digest::with_digests;
 use links::LinkNames;
 
 /// Rows that amplitudes are chosen on, as a share of those learnt from.
@@ -41,12 +43,32 @@ const HYPER_SHARE: f64 = 0.5;
 /// # Errors
 /// [`FitError`]: options out of range, too few movements for the learner, or [`FitError::Cancelled`].
 pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_>) -> Result<Model, FitError> {
+    fit_with(prepared, &[], options, progress)
+}
+
+/// Learns a policy from these movements and from digests of further ones, in their order: Gaussian processes learn from all, whatever
+/// takes whole movements (constraints that push, units, the verdict's findings) from those at hand.
+///
+/// # Errors
+/// As [`fit()`], and [`FitError::Digest`] for digests that are damaged or do not belong together, and where a robot or PolicyAlign asks for
+/// whole movements.
+pub fn fit_with(
+    prepared: &Prepared,
+    digests: &[Digest],
+    options: &FitOptions,
+    progress: &mut Progress<'_>,
+) -> Result<Model, FitError> {
     options.check()?;
+    if !digests.is_empty() && (options.robot.is_some() || options.learner == LearnerChoice::PolicyAlign) {
+        let reason = "a robot and the learner policy-align need all samples at once".to_owned();
+        return Err(FitError::Digest { reason });
+    }
     let steps = if options.learner == LearnerChoice::PolicyAlign { 4 } else { 2 };
     progress.begin(0, steps, "cleaning the recordings")?;
     let comparable = if prepared.context.is_empty() { None } else { Some(context::comparable(prepared, options)?) };
     let prepared = comparable.as_ref().unwrap_or(prepared);
-    let (rows, links) = LinkNames::with_spaces(rows(prepared)?, prepared, options)?;
+    let rows = with_digests(rows(prepared)?, prepared, digests)?;
+    let (rows, links) = LinkNames::with_spaces(rows, prepared, options)?;
     progress.begin(1, steps, "learning with and without constraints")?;
     let readings = learn(&rows, options)?;
     let weighed = inertia::weighed(prepared, &rows, &readings, options)?;
@@ -58,7 +80,8 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
     let (prepared, rows, readings) = match (weighed, &rescaled) {
         (Some(inertia::Weighed { rows, readings, .. }), _) => (prepared, rows, readings),
         (None, Some(rescaled)) => {
-            let (rows, _) = LinkNames::with_spaces(recorded_rows::rows(rescaled)?, rescaled, options)?;
+            let rows = with_digests(recorded_rows::rows(rescaled)?, rescaled, digests)?;
+            let (rows, _) = LinkNames::with_spaces(rows, rescaled, options)?;
             let readings = learn(&rows, options)?;
             (rescaled, rows, readings)
         }
@@ -66,6 +89,7 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
     };
     let mut decisions: Vec<Decision> = prepared.decisions.iter().cloned().chain(metric).collect();
     decisions.extend(links.decision(&readings));
+    decisions.extend(digests_decision(prepared, digests));
     decisions.push(learner_decision(options, &readings));
     decisions.extend(rows_decision(&readings));
     let aligned = match options.learner {
@@ -75,9 +99,16 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
         }
         _ => None,
     };
-    let numbers = numbers(prepared, options, &readings, aligned.as_ref(), &rows);
+    let mut numbers = numbers(prepared, options, &readings, aligned.as_ref(), &rows);
+    numbers.episodes += digests.iter().map(|digest| digest.data.episodes).sum::<usize>();
     let policy = policy(options, &readings, aligned.as_ref());
     let mut findings = prepared.findings.clone();
+    for finding in digests.iter().flat_map(|digest| &digest.findings) {
+        // Every file says the same of its columns.
+        if !findings.contains(finding) {
+            findings.push(finding.clone());
+        }
+    }
     if let Some(push) = readings.slope().report().push {
         let learnt = options.learner != LearnerChoice::PolicyAlign && takes_slope(&readings, options.learner);
         pushed(push, learnt, prepared, &mut findings);
@@ -99,15 +130,8 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
         (LearnerChoice::Direct, _) => Learnt::Direct(Box::new(readings.direct().clone())),
         _ => Learnt::Auto(Box::new(readings)),
     };
-    let movements = prepared.demonstrations.trajectories();
-    let data = DataSummary {
-        files: vec![],
-        episodes: movements.len(),
-        samples: prepared.demonstrations.n_samples(),
-        longest: movements.iter().map(|movement| movement.seconds(0, movement.n_samples() - 1)).fold(0.0, f64::max),
-        speed: upper_median(rows.velocities().column_iter().map(|velocity| velocity.norm()).collect()).unwrap_or(0.0),
-        left_out: prepared.left_out.clone(),
-    };
+    let data = DataSummary::of(prepared, rows.velocities());
+    let data = digests.iter().fold(data, |data, digest| data.and(&digest.data));
     let (state, context, time_step) = (prepared.state.clone(), prepared.context.clone(), prepared.time_step);
     let chosen_context = crate::model::nowhere();
     let made_by = MadeBy::this();
@@ -145,59 +169,6 @@ fn plane(prepared: &Prepared, numbers: &TrustNumbers) -> Option<Finding> {
     let unseen = numbers.direction_coverage < TrustNumbers::GOOD_COVERAGE;
     let plane = unseen.then(|| CommonPlane::of(&prepared.demonstrations, &prepared.state)).flatten()?;
     Some(plane.finding(&prepared.state))
-}
-
-/// What was made of samples before a Gaussian process learnt from them; none if each is a row.
-fn rows_decision(readings: &AutoFit) -> Option<Decision> {
-    let gp::TrustReport { rows, inducing, rows_dropped, task_space, .. } = readings.slope().report();
-    let RowsDropped { averaged, thinned, still, noisy } = *rows_dropped;
-    let found = rows + still + noisy + thinned;
-    let mut why = Vec::new();
-    if averaged > 0 {
-        why.push(format!("means of {} samples where velocities differ by noise alone", found + averaged));
-    }
-    why.extend(inducing.map(|inducing| format!("{inducing} of them stand for all")));
-    if thinned > 0 {
-        // In a task space a sample has several equations.
-        let others = if task_space.is_some() { "other equations" } else { "others" };
-        why.push(format!("{thinned} {others}, evenly spread, are not learnt from"));
-    }
-    let flag = if thinned == 0 && inducing.is_none() { "--max-rows" } else { "--inducing" };
-    (!why.is_empty()).then(|| decision("rows", rows.to_string(), why.join("; "), flag))
-}
-
-fn learner_decision(options: &FitOptions, readings: &AutoFit) -> Decision {
-    let given = |learner| decision("learner", learner, "given", "--learner");
-    match options.learner {
-        LearnerChoice::PolicyAlign => given("policy-align"),
-        LearnerChoice::Slope => given("slope GP"),
-        LearnerChoice::Direct => given("direct GP"),
-        LearnerChoice::Auto => {
-            let (numbers, reading) = (readings.numbers(), readings.reading());
-            let learner = if readings.takes_slope() { "slope GP" } else { "direct GP" };
-            let why = match options.reading {
-                Some(reading) => format!("reading given: {reading:?}").to_lowercase(),
-                None => format!(
-                    "{}: held-out error {} with direction, {} without",
-                    found(reading),
-                    squared_error(numbers.a_s),
-                    squared_error(numbers.a_d)
-                ),
-            };
-            decision("learner", learner, why, "--reading")
-        }
-    }
-}
-
-/// Whether the data show constraints.
-fn found(reading: Hypothesis) -> &'static str {
-    match reading {
-        Hypothesis::Free => "no constraints detected",
-        Hypothesis::Constrained => "constraints detected",
-        Hypothesis::Ambiguous => "free or constrained, both readings fit",
-        Hypothesis::Unexplained => "neither reading fits",
-        Hypothesis::TooFew => "too few movements to detect constraints",
-    }
 }
 
 /// The policy handed out.
@@ -244,7 +215,7 @@ fn numbers(
         episodes: prepared.demonstrations.n_trajectories(),
         reading: readings.reading(),
         held_out_error,
-        episode_errors: episode_errors(readings, takes_slope),
+        episode_errors: episode_errors(readings, takes_slope, prepared.episodes.len()),
         held_out_error_direct: of.a_d,
         direct_error: of.p_d,
         gap: of.gap,
@@ -282,11 +253,12 @@ fn unknown(readings: &AutoFit, prepared: &Prepared, rows: &gp::Rows) -> f64 {
     share_unknown(readings, &prepared.demonstrations, variance).unwrap_or(1.0)
 }
 
-/// E′ of every movement left out, as if it were as fast as all are.
-fn episode_errors(readings: &AutoFit, takes_slope: bool) -> Vec<(usize, f64)> {
+/// E′ of every movement at hand left out, as if it were as fast as all are.
+fn episode_errors(readings: &AutoFit, takes_slope: bool, at_hand: usize) -> Vec<(usize, f64)> {
     let left_out = readings.left_out();
     let observed = left_out.iter().map(|errors| errors.seen).sum::<f64>() / left_out.len() as f64;
     let hidden = if takes_slope { readings.numbers().hidden } else { 0.0 };
     let error = |errors: &TrajectoryErrors| if takes_slope { errors.slope } else { errors.direct };
-    left_out.iter().map(|errors| (errors.trajectory, error(errors) / observed * (1.0 - hidden))).collect()
+    let own = left_out.iter().filter(|errors| errors.trajectory < at_hand);
+    own.map(|errors| (errors.trajectory, error(errors) / observed * (1.0 - hidden))).collect()
 }

@@ -173,6 +173,9 @@ pub(crate) struct FitFlags {
     /// Robot with these joints: tries its links and its masses
     #[arg(long, value_name = "FILE.urdf")]
     robot: Option<PathBuf>,
+    /// Files to hold together, as 2GB or all; of others means stay [default: 256MB]
+    #[arg(long, value_name = "SIZE")]
+    pub(crate) at_once: Option<String>,
     /// Episodes to evaluate on instead of learning from them
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) hold_out: Vec<String>,

@@ -1,16 +1,17 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use clap::Args;
 use motion::anomalies::duplicates;
 use motion::{Episode, Recordings};
 use policy_align::{
-    Decision, Evaluation, Finding, Model, PrepareOptions, Prepared, Progress, Verdict, checksum_of, evaluate, fit,
-    prepare,
+    Decision, Digester, Evaluation, Finding, Model, PrepareOptions, Prepared, Progress, Verdict, checksum_of, evaluate,
+    fit_with, prepare,
 };
 use serde_json::json;
 use text::quoted;
 
+use crate::cli::at_once::{digests, division, files_of, shard, write_part};
 use crate::cli::clock::now;
 use crate::cli::describe::verdict;
 use crate::cli::failure::{Exit, Failure};
@@ -19,10 +20,13 @@ use crate::cli::lines::{Lines, amount, counted, size, squared_error};
 use crate::cli::options::config::{Config, printed};
 use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags};
 use crate::cli::pages::trust_page::trust_page;
-use crate::cli::recorded::{base_name, known_episode, named, read, summaries, unreported};
+use crate::cli::recorded::{base_name, known_episode, named, read, unreported};
 use crate::cli::session::{Output, Session, write_together};
 use crate::cli::trust_files::{MEMBER, trust_files, warn_of_others};
 use crate::cli::verbs::check::{findings, left_out};
+
+/// Where the model goes, unless a name is given.
+const MODEL: &str = "model.json";
 
 /// Learn a policy and report how far to trust it
 #[derive(Debug, Args)]
@@ -38,11 +42,17 @@ pub(crate) struct Fit {
     #[arg(required_unless_present = "print_config")]
     files: Vec<PathBuf>,
     /// The model to write
-    #[arg(long, short, value_name = "MODEL.json", default_value = "model.json")]
+    #[arg(long, short, value_name = "MODEL.json", default_value = MODEL)]
     output: PathBuf,
     /// Write no trust report
     #[arg(long)]
     no_report: bool,
+    /// Make the I-th of N parts of a fit to larger files, and stop
+    #[arg(long, value_name = "I/N", conflicts_with = "merge")]
+    shard: Option<String>,
+    /// The parts of all shares, for the same files
+    #[arg(long, value_name = "PARTS", num_args = 1..)]
+    merge: Vec<PathBuf>,
     /// Print all flags as a file for --config, and stop
     #[arg(long)]
     print_config: bool,
@@ -65,11 +75,19 @@ impl Fit {
         no_input(&self.output, &self.files)?;
         let (mut prepare_options, fit_options) = (preparing.options(reading.dt)?, learning.options()?);
         let place = || named(&self.files);
-        let recordings = read(session, &self.files, &reading)?;
+        let shard = self.shard.as_deref().map(shard).transpose()?;
+        let division = division(&self.files, &learning, &fit_options)?;
+        let recordings = read(session, &division.at_once, &reading)?;
         prepare_options.context = reading.context_of(&recordings)?;
         let (recordings, held_out) = divided(recordings, &learning.hold_out, &place())?;
         let reported = recordings.findings.clone();
         let prepared = prepare(recordings, &prepare_options).map_err(|error| Failure::prepare(&error, place()))?;
+        let digester = Digester::new(&prepared, &prepare_options);
+        let (further, read_options) = ((&division, &digester), (&reading.options()?, reading.trim_still));
+        if let Some(shard) = shard {
+            return write_part(session, further, shard, (read_options, &self.part(shard)));
+        }
+        let digests = digests(session, further, &self.merge, read_options)?;
         let bar = session.bar(4, "{msg}  {bar:30} step {pos} of {len}, {elapsed} elapsed");
         let never = AtomicBool::new(false);
         let mut report = |step: policy_align::Step| {
@@ -77,11 +95,12 @@ impl Fit {
             bar.set_position(step.done as u64);
             bar.set_message(step.what);
         };
-        let model = fit(&prepared, &fit_options, &mut Progress { cancelled: &never, report: &mut report });
+        let mut progress = Progress { cancelled: &never, report: &mut report };
+        let model = fit_with(&prepared, &digests, &fit_options, &mut progress);
         bar.finish_and_clear();
         let mut model = model.map_err(|error| Failure::fit(&error, place()))?;
         model.made_by.time = now();
-        model.data.files = summaries(&self.files)?;
+        model.data.files = files_of(&self.files, &division, std::mem::take(&mut model.data.files))?;
         let judged = held_out.map(|held_out| judged(&held_out, &prepare_options, &model)).transpose()?;
         let text = model.to_json().map_err(|error| {
             Failure::new(Exit::Refused, error.to_string(), place(), "`policy-align check` to examine the recordings")
@@ -96,6 +115,12 @@ impl Fit {
         let report: Vec<PathBuf> = files.into_iter().skip(1).map(|(path, _)| path).collect();
         let unreported = unreported(&model.trust.findings, &reported);
         Ok(self.output(session, (&model, &unreported), &report, judged.as_ref()))
+    }
+
+    /// Where a part is written, unless a name is given.
+    fn part(&self, (this, of): (usize, usize)) -> PathBuf {
+        let is_given = self.output != Path::new(MODEL);
+        if is_given { self.output.clone() } else { PathBuf::from(format!("part-{this}-of-{of}.json")) }
     }
 
     /// The page and its numbers.
@@ -132,7 +157,7 @@ impl Fit {
             lines.add("left out", &left_out);
         }
         let is_major = |of: &&Decision| {
-            ["rows", "learner"].contains(&of.what.as_str()) || (of.what == "scale" && of.why != "given")
+            ["at once", "rows", "learner"].contains(&of.what.as_str()) || (of.what == "scale" && of.why != "given")
         };
         for Decision { what, value, why, .. } in model.decisions.iter().filter(is_major) {
             lines.add(what, &format!("{value} ({why})"));

@@ -1,0 +1,37 @@
+"""One fit on the workers of a Dask cluster.
+
+>>> from dask.distributed import Client                                # doctest: +SKIP
+>>> from policy_align import dask                                      # doctest: +SKIP
+>>> model = dask.fit(files, Client("tcp://scheduler:8786"))            # doctest: +SKIP
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+from ._learner import Learner
+from ._learners import AutoGp
+
+__all__ = ["fit"]
+
+
+def fit(
+    files: Sequence[str | os.PathLike[str]],
+    client: Any,
+    learner: Learner | None = None,
+    *,
+    at_once: str = "256MB",
+    **options: Any,
+) -> Learner:
+    """Learns from files that all workers see: they read the files that are not held together (``Learner.fit_files``), this process the
+    others. The work of a worker that dies is done by another; the model is that of one process. ``learner``: AutoGp() if not given.
+    """
+
+    def on_workers(function: Callable[[Any], bytes], items: list[Any]) -> Iterable[bytes]:
+        found: Iterable[bytes] = client.gather(client.map(function, items))
+        return found
+
+    learner = AutoGp() if learner is None else learner
+    return learner.fit_files(*files, at_once=at_once, map=on_workers, **options)

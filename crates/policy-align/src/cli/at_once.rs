@@ -1,0 +1,131 @@
+//! Files that `fit` does not hold together: digests of them, made here, in parts on other machines, or read from such parts.
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+use demo_io::ReadOptions;
+use policy_align::{Digest, Digester, Division, FileSummary, FitOptions, LearnerChoice, Part, PartError};
+use text::quoted;
+
+use crate::cli::failure::{Exit, Failure, displayed};
+use crate::cli::given::again;
+use crate::cli::lines::{Lines, counted, size};
+use crate::cli::options::flags::FitFlags;
+use crate::cli::recorded::{base_name, summaries};
+use crate::cli::session::{Output, Session, write};
+
+/// Bytes of a part at most.
+const PART: u64 = 1 << 31;
+
+/// Which files are read at once.
+pub(crate) fn division(files: &[PathBuf], flags: &FitFlags, options: &FitOptions) -> Result<Division, Failure> {
+    let whole = match (options.learner, &options.robot) {
+        _ if !flags.hold_out.is_empty() => Some("--hold-out"),
+        (LearnerChoice::PolicyAlign, _) => Some("--learner policy-align"),
+        (_, Some(_)) => Some("--robot"),
+        _ => None,
+    };
+    let most = match (flags.at_once.as_deref(), whole) {
+        (None, Some(_)) | (Some(Division::ALL), _) => return Ok(Division::none(files)),
+        (Some(_), Some(flag)) => {
+            let what = format!("{flag} needs all files at once");
+            return Err(Failure::usage(what, "--at-once", format!("no {flag}, or --at-once {}", Division::ALL)));
+        }
+        (None, None) => Division::AT_ONCE,
+        (Some(text), None) => Division::bytes(text).ok_or_else(|| {
+            let remedy = format!("--at-once 256MB, 2GB or {}", Division::ALL);
+            Failure::usage(format!("'{text}' is no size of files"), "--at-once", remedy)
+        })?,
+    };
+    Ok(Division::of(files, most)?)
+}
+
+/// The I-th of N shares.
+pub(crate) fn shard(text: &str) -> Result<(usize, usize), Failure> {
+    let numbers = text.split_once('/').and_then(|(this, of)| Some((this.parse().ok()?, of.parse().ok()?)));
+    let shard = numbers.filter(|&(this, of): &(usize, usize)| (1..=of).contains(&this));
+    shard.ok_or_else(|| Failure::usage(format!("'{text}' is no share I/N with I up to N"), "--shard", "--shard 1/4"))
+}
+
+/// Digests of all further files.
+pub(crate) fn digests(
+    session: &Session,
+    (division, digester): (&Division, &Digester),
+    parts: &[PathBuf],
+    reading: (&ReadOptions, bool),
+) -> Result<Vec<Digest>, Failure> {
+    let found = if parts.is_empty() {
+        vec![part(session, (division, digester), (1, 1), reading)?]
+    } else {
+        parts.iter().map(|path| read(path)).collect::<Result<_, _>>()?
+    };
+    Part::merged(found, division, digester).map_err(|error| {
+        let remedy = "the parts of all shares, made with the same files and flags";
+        Failure::new(Exit::Refused, error.to_string(), counted(parts.len(), "part"), remedy)
+    })
+}
+
+fn read(path: &Path) -> Result<Part, Failure> {
+    let bytes = demo_io::read_bytes(path, PART).map_err(|error| Failure::reading(path, error))?;
+    Part::of_json(&bytes)
+        .map_err(|error| Failure::new(Exit::File, error.to_string(), displayed(path), "the part again, by --shard"))
+}
+
+/// Digests of a share of the files.
+fn part(
+    session: &Session,
+    (division, digester): (&Division, &Digester),
+    shard: (usize, usize),
+    reading: (&ReadOptions, bool),
+) -> Result<Part, Failure> {
+    let bytes = division.further.iter().map(|file| file.bytes).sum::<u64>() / shard.1 as u64;
+    let bar = session.bar(bytes, "further files  {bar:30} {bytes} of {total_bytes}, {eta} left");
+    let part = Part::of(division, digester, shard, reading, &|read| bar.inc(read));
+    bar.finish_and_clear();
+    part.map_err(|error| match error {
+        PartError::Read(error) => Failure::from(error),
+        error => {
+            let remedy = format!("fix or leave out this file, or --at-once {}", Division::ALL);
+            Failure::new(Exit::Refused, error.to_string(), "files that are not read at once", remedy)
+        }
+    })
+}
+
+/// Writes a share of the digests.
+pub(crate) fn write_part(
+    session: &Session,
+    (division, digester): (&Division, &Digester),
+    shard: (usize, usize),
+    (reading, output): ((&ReadOptions, bool), &Path),
+) -> Result<Output, Failure> {
+    if division.further.is_empty() {
+        let what = "all files are read at once: there is nothing to share";
+        return Err(Failure::usage(what, "--shard", "--at-once with a size below that of all files, or no --shard"));
+    }
+    let text = part(session, (division, digester), shard, reading)?.to_json();
+    let text =
+        text.map_err(|error| Failure::new(Exit::Refused, error.to_string(), displayed(output), "other files"))?;
+    write(output, &text)?;
+    let (this, of) = shard;
+    let mut lines = Lines::default();
+    let files = (this - 1..division.further.len()).step_by(of).count();
+    lines.add("part", &format!("{this} of {of}: {} of {}", counted(files, "file"), division.further.len()));
+    lines.add("written", &format!("{} ({})", displayed(output), size(text.len())));
+    let parts = format!("--merge {}", quoted(output));
+    let next = again("fit", &["--shard", "-o", "--output"], &parts);
+    let next = format!("policy-align fit {next} (and the other {})", of - 1);
+    Ok(Output::done(if of == 1 { lines.next(next.split(" (and").next().unwrap_or(&next)) } else { lines.next(&next) }))
+}
+
+/// The files that were named, those read at once first.
+pub(crate) fn files_of(
+    named: &[PathBuf],
+    division: &Division,
+    of_digests: Vec<FileSummary>,
+) -> Result<Vec<FileSummary>, Failure> {
+    let named_ones: HashSet<&PathBuf> = named.iter().collect();
+    let at_once: Vec<PathBuf> = division.at_once.iter().filter(|path| named_ones.contains(path)).cloned().collect();
+    let names: HashSet<String> = named.iter().map(|path| base_name(path)).collect();
+    let further = of_digests.into_iter().filter(|file| names.contains(&file.name));
+    Ok(summaries(&at_once)?.into_iter().chain(further).collect())
+}

@@ -1,0 +1,142 @@
+//! Which files are read at once.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use demo_io::ReadError;
+
+/// Rows of all digests together, at most: so many in seven dimensions take 60 MB.
+const ROWS: u64 = 500_000;
+/// Rows of a digest, at least.
+const LEAST_ROWS: u64 = 100;
+
+/// Files that are read at once, and those of which digests are made.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Division {
+    /// Evenly spread over all files; all of them if they are small enough.
+    pub at_once: Vec<PathBuf>,
+    /// The others, in their order.
+    pub further: Vec<FurtherFile>,
+}
+
+/// A file of which a digest is made.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FurtherFile {
+    /// Where it is.
+    pub path: PathBuf,
+    /// Its size.
+    pub bytes: u64,
+    /// Rows of its digest at most: its share of all bytes.
+    pub rows: usize,
+}
+
+impl Division {
+    /// Bytes of files that are read at once, unless told otherwise: four million samples in the plane as text.
+    pub const AT_ONCE: u64 = 256_000_000;
+    /// The word for all files.
+    pub const ALL: &str = "all";
+
+    /// A size as users write it: "256MB", "1.5 GB", or "all".
+    pub fn bytes(text: &str) -> Option<u64> {
+        if text == Self::ALL {
+            return Some(u64::MAX);
+        }
+        let text = text.to_lowercase();
+        let units = [("kb", 1e3), ("mb", 1e6), ("gb", 1e9), ("tb", 1e12)];
+        let (number, unit) = units.iter().find_map(|(unit, factor)| Some((text.strip_suffix(unit)?, factor)))?;
+        let bytes = number.trim().parse::<f64>().ok()? * unit;
+        (1.0..1e18).contains(&bytes).then_some(bytes as u64)
+    }
+
+    /// All files at once.
+    pub fn none(files: &[PathBuf]) -> Division {
+        Division { at_once: files.to_vec(), further: vec![] }
+    }
+
+    /// Every so many of the files, so that they have at most so many bytes together; the first alone if none is smaller. Of folders that
+    /// hold a file for each movement the files count, a data set counts as one. Depends on the order and the sizes alone.
+    ///
+    /// # Errors
+    /// [`ReadError`] for a folder that cannot be read.
+    pub fn of(files: &[PathBuf], most_bytes: u64) -> Result<Division, ReadError> {
+        let all = files.iter().map(|path| bytes_in(path)).sum::<u64>();
+        if all <= most_bytes {
+            return Ok(Division::none(files));
+        }
+        let files = files.iter().map(|path| demo_io::files_of(path)).collect::<Result<Vec<_>, _>>()?.concat();
+        let sizes: Vec<u64> = files.iter().map(|path| bytes_in(path)).collect();
+        let fits = |every: &usize| sizes.iter().step_by(*every).sum::<u64>() <= most_bytes;
+        let every = (2..files.len()).find(fits).unwrap_or(files.len().max(1));
+        let further: u64 = all - sizes.iter().step_by(every).sum::<u64>();
+        let mut division = Division { at_once: vec![], further: vec![] };
+        for (at, (path, bytes)) in files.into_iter().zip(sizes).enumerate() {
+            if at % every == 0 {
+                division.at_once.push(path);
+            } else {
+                let share = u128::from(ROWS) * u128::from(bytes) / u128::from(further.max(1));
+                let rows = (share as usize).max(LEAST_ROWS as usize);
+                division.further.push(FurtherFile { path, bytes, rows });
+            }
+        }
+        Ok(division)
+    }
+}
+
+/// Of a file, or of all files in a folder; nothing of what cannot be read, which the reader complains of.
+fn bytes_in(path: &Path) -> u64 {
+    match fs::metadata(path) {
+        Ok(found) if found.is_dir() => {
+            let entries = fs::read_dir(path).into_iter().flatten().flatten();
+            // Links may lead round in a circle.
+            let inside = entries.filter(|entry| entry.file_type().is_ok_and(|kind| !kind.is_symlink()));
+            inside.map(|entry| bytes_in(&entry.path())).sum()
+        }
+        Ok(found) => found.len(),
+        Err(_) => 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn sizes_have_units() {
+        let sizes = ["256MB", "1.5 gb", "all", "256", "MB", "-1kB", "infGB", "1e30TB", ""].map(Division::bytes);
+        let (more, none) = ([Some(256_000_000), Some(1_500_000_000), Some(u64::MAX)], [None; 6]);
+        assert_eq!(sizes.to_vec(), [&more[..], &none[..]].concat());
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(32))]
+
+        /// Every file is in one part, in order; those at once are few enough unless that is a single one; and rows are shared out by bytes.
+        #[test]
+        fn every_file_is_read_once(sizes in prop::collection::vec(0usize..3000, 1..12), most in 1u64..20_000) {
+            let folder = tempfile::tempdir().expect("a folder");
+            let files: Vec<PathBuf> = (0..sizes.len()).map(|at| folder.path().join(format!("{at}.csv"))).collect();
+            for (path, &size) in files.iter().zip(&sizes) {
+                fs::write(path, vec![b'0'; size]).expect("a file");
+            }
+            let division = Division::of(&files, most).expect("a division");
+            let further = || division.further.iter();
+            let found: BTreeSet<&PathBuf> = division.at_once.iter().chain(further().map(|file| &file.path)).collect();
+            prop_assert_eq!(found.len(), files.len());
+            prop_assert_eq!(division.at_once.len() + division.further.len(), files.len());
+            let at_once: u64 = division.at_once.iter().map(|path| bytes_in(path)).sum();
+            prop_assert!(at_once <= most || division.at_once.len() == 1);
+            prop_assert!(further().all(|file| file.bytes == bytes_in(&file.path) && file.rows >= LEAST_ROWS as usize));
+            let rows: usize = further().map(|file| file.rows).sum();
+            prop_assert!(rows as u64 <= ROWS + LEAST_ROWS * division.further.len() as u64);
+            // The folder is its files.
+            let of_folder = Division::of(&[folder.path().to_owned()], most).expect("a division");
+            if !of_folder.further.is_empty() {
+                prop_assert_eq!(of_folder.at_once.len() + of_folder.further.len(), files.len());
+            }
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! Files that are not held together: digests of them, in one process or in parts of several, give one model.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+mod running;
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use running::{Ran, command, examples, run_in};
+use serde_json::Value;
+
+const FILES: usize = 5;
+/// Of these files two are read at once.
+const AT_ONCE: &str = "--at-once 40kB";
+
+/// The toy's movements in several files; `noise`: of velocities, as a share of their size.
+fn folder(noise: f64) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let text = std::fs::read_to_string(examples().join("toy.csv")).unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    let mut files = vec![format!("{header}\n"); FILES];
+    for (at, row) in rows.lines().enumerate() {
+        let fields: Vec<&str> = row.split(',').collect();
+        let numbers: Vec<f64> = fields[1..].iter().map(|field| field.parse().unwrap()).collect();
+        let file = &mut files[fields[0].parse::<usize>().unwrap() % FILES];
+        let wave = |k: usize| ((at * 7 + k * 3) as f64 * 12.9898).sin() * 43_758.545_3;
+        let off = |k: usize| noise * (wave(k) - wave(k).floor() - 0.5);
+        let [t, x, y, vx, vy] = numbers[..] else { panic!("{row}") };
+        writeln!(file, "{},{t},{x},{y},{},{}", fields[0], vx + off(0), vy + off(1)).unwrap();
+    }
+    for (at, file) in files.iter().enumerate() {
+        std::fs::write(folder.path().join(format!("{at}.csv")), file).unwrap();
+    }
+    folder
+}
+
+fn done(ran: &Ran) {
+    assert_eq!(ran.code, Some(0), "{}{}", ran.out, ran.err);
+}
+
+/// A model without the time it was made at.
+fn model(path: &Path) -> Value {
+    let mut model: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
+    model["made_by"]["time"] = Value::Null;
+    model["checksum"] = Value::Null;
+    model
+}
+
+fn all_files() -> String {
+    (0..FILES).map(|at| format!("{at}.csv")).collect::<Vec<_>>().join(" ")
+}
+
+/// Digests of exact velocities and of noisy ones: in one process with one thread or more, in parts made in any order, the same bits; and a
+/// policy as good as that of all files at once.
+#[test]
+fn parts_give_the_model_of_one_process() {
+    for noise in [0.0, 0.1] {
+        let folder = folder(noise);
+        let path = folder.path();
+        let files = all_files();
+        let fit = |threads: &str, rest: &str| {
+            let line = format!("fit {files} {rest}");
+            let ran: Ran =
+                command(path).env("RAYON_NUM_THREADS", threads).args(line.split_whitespace()).output().unwrap().into();
+            done(&ran);
+            ran
+        };
+        let said = fit("1", &format!("{AT_ONCE} -o one.json"));
+        assert!(said.out.contains("at once") && said.out.contains("40 episodes, 1600 samples"), "{}", said.out);
+        fit("3", &format!("{AT_ONCE} -o three.json"));
+        for part in ["3/3", "1/3", "2/3"] {
+            fit("2", &format!("{AT_ONCE} --shard {part}"));
+        }
+        fit("2", &format!("{AT_ONCE} --merge part-2-of-3.json part-3-of-3.json part-1-of-3.json -o merged.json"));
+        let one = model(&path.join("one.json"));
+        assert_eq!(one, model(&path.join("three.json")));
+        assert_eq!(one, model(&path.join("merged.json")));
+        assert_eq!(one["data"]["episodes"], 40);
+        assert_eq!(one["data"]["files"].as_array().unwrap().len(), FILES);
+        fit("2", "--at-once all -o all.json");
+        let error = |model: &Value| model["trust"]["numbers"]["expected_error"].as_f64().unwrap();
+        let all = model(&path.join("all.json"));
+        assert!(error(&one) < 2.0 * error(&all) + 1e-6, "{} {}", error(&one), error(&all));
+    }
+}
+
+/// What each wrong line says.
+#[test]
+fn parts_that_do_not_fit_are_refused() {
+    let folder = folder(0.0);
+    let path = folder.path();
+    let files = all_files();
+    let refused = |line: &str, expected: &str| {
+        let ran = run_in(path, line);
+        assert!(ran.code.is_some_and(|code| (1..4).contains(&code)), "{line}: {}{}", ran.out, ran.err);
+        assert!(ran.err.contains(expected) && ran.err.lines().count() == 3, "{line}: {}", ran.err);
+    };
+    for part in ["1/2", "2/2"] {
+        done(&run_in(path, &format!("fit {files} {AT_ONCE} --shard {part}")));
+    }
+    let merge = |parts: &str| format!("fit {files} {AT_ONCE} --merge {parts} -o m.json");
+    done(&run_in(path, &merge("part-1-of-2.json part-2-of-2.json")));
+    refused(&merge("part-1-of-2.json"), "no part has");
+    refused(&merge("part-1-of-2.json part-1-of-2.json"), "another part has");
+    refused(
+        &format!("fit {files} {AT_ONCE} --scale x=2 --merge part-1-of-2.json part-2-of-2.json"),
+        "other files, options",
+    );
+    let text = std::fs::read(path.join("part-2-of-2.json")).unwrap();
+    std::fs::write(path.join("cut.json"), &text[..text.len() / 2]).unwrap();
+    refused(&merge("part-1-of-2.json cut.json"), "no part of a fit");
+    refused(&merge("part-1-of-2.json m.json"), "no part of a fit");
+    refused(&format!("fit {files} {AT_ONCE} --shard 3/2"), "no share");
+    refused(&format!("fit {files} --shard 1/2"), "nothing to share");
+    refused(&format!("fit {files} --at-once 5apples"), "no size");
+    refused(&format!("fit {files} {AT_ONCE} --hold-out 1"), "all files at once");
+    refused(&format!("fit {files} {AT_ONCE} --learner policy-align"), "all files at once");
+    let text = std::fs::read_to_string(path.join("1.csv")).unwrap();
+    std::fs::write(path.join("1.csv"), text.replace("x,y,vx,vy", "x,z,vx,vz")).unwrap();
+    refused(&format!("fit {files} {AT_ONCE}"), "channels are");
+}
