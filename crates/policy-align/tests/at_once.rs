@@ -96,11 +96,16 @@ fn parts_that_do_not_fit_are_refused() {
         assert!(ran.code.is_some_and(|code| (1..4).contains(&code)), "{line}: {}{}", ran.out, ran.err);
         assert!(ran.err.contains(expected) && ran.err.lines().count() == 3, "{line}: {}", ran.err);
     };
-    for part in ["1/2", "2/2"] {
-        done(&run_in(path, &format!("fit {files} {AT_ONCE} --shard {part}")));
+    // What each line proposes leads to the model.
+    let mut line = format!("fit {files} {AT_ONCE} --shard 1/2");
+    for next in ["--shard 2/2", "--merge part-1-of-2.json part-2-of-2.json", "plot model.json -o model.svg"] {
+        let ran = run_in(path, &line);
+        done(&ran);
+        let (_, proposed) = ran.out.split_once("policy-align ").unwrap();
+        assert!(proposed.trim().ends_with(next), "{}", ran.out);
+        line = proposed.trim().to_owned();
     }
     let merge = |parts: &str| format!("fit {files} {AT_ONCE} --merge {parts} -o m.json");
-    done(&run_in(path, &merge("part-1-of-2.json part-2-of-2.json")));
     refused(&merge("part-1-of-2.json"), "no part has");
     refused(&merge("part-1-of-2.json part-1-of-2.json"), "another part has");
     refused(

@@ -111,10 +111,19 @@ pub(crate) fn write_part(
     let files = (this - 1..division.further.len()).step_by(of).count();
     lines.add("part", &format!("{this} of {of}: {} of {}", counted(files, "file"), division.further.len()));
     lines.add("written", &format!("{} ({})", displayed(output), size(text.len())));
-    let parts = format!("--merge {}", quoted(output));
-    let next = again("fit", &["--shard", "-o", "--output"], &parts);
-    let next = format!("policy-align fit {next} (and the other {})", of - 1);
-    Ok(Output::done(if of == 1 { lines.next(next.split(" (and").next().unwrap_or(&next)) } else { lines.next(&next) }))
+    let added = if this < of {
+        format!("--shard {}/{of}", this + 1)
+    } else {
+        let parts = (1..=of).map(|this| if this == of { quoted(output) } else { quoted(&part_file((this, of))) });
+        format!("--merge {}", parts.collect::<Vec<_>>().join(" "))
+    };
+    let next = again("fit", &["--shard", "-o", "--output"], &added);
+    Ok(Output::done(lines.next(&format!("policy-align fit {next}"))))
+}
+
+/// Where a part is written, unless a name is given.
+pub(crate) fn part_file((this, of): (usize, usize)) -> PathBuf {
+    PathBuf::from(format!("part-{this}-of-{of}.json"))
 }
 
 /// The files that were named, those read at once first.

@@ -11,7 +11,7 @@ use policy_align::{
 use serde_json::json;
 use text::quoted;
 
-use crate::cli::at_once::{digests, division, files_of, shard, write_part};
+use crate::cli::at_once::{digests, division, files_of, part_file, shard, write_part};
 use crate::cli::clock::now;
 use crate::cli::describe::verdict;
 use crate::cli::failure::{Exit, Failure};
@@ -117,10 +117,10 @@ impl Fit {
         Ok(self.output(session, (&model, &unreported), &report, judged.as_ref()))
     }
 
-    /// Where a part is written, unless a name is given.
-    fn part(&self, (this, of): (usize, usize)) -> PathBuf {
+    /// Where a part is written.
+    fn part(&self, shard: (usize, usize)) -> PathBuf {
         let is_given = self.output != Path::new(MODEL);
-        if is_given { self.output.clone() } else { PathBuf::from(format!("part-{this}-of-{of}.json")) }
+        if is_given { self.output.clone() } else { part_file(shard) }
     }
 
     /// The page and its numbers.
