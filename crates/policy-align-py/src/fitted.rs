@@ -13,7 +13,7 @@ use pyo3::types::PyBytes;
 
 use crate::arrays::{array, matrix};
 use crate::interruptible::interruptible;
-use crate::large::digests;
+use crate::large::{Further, digests};
 use crate::options::{Learning, Preparing};
 use crate::parts::in_parts;
 use crate::recordings::{Recorded, Recordings, names_of};
@@ -40,7 +40,7 @@ impl Fitted {
         preparing: Preparing,
         learning: Learning,
         threads_made_at: (usize, String),
-        further: Vec<Vec<u8>>,
+        further: (Vec<Further>, Vec<Vec<u8>>, String),
     ) -> PyResult<Self> {
         let (threads, made_at) = threads_made_at;
         let inner = Arc::clone(&recordings.inner);
@@ -51,7 +51,7 @@ impl Fitted {
                 let prepared = prepare(recordings, &preparing)
                     .map_err(|error| Refusal::prepare(&error, place, &names_of(recordings)))?;
                 let mut progress = Progress { cancelled, report: &mut |_| () };
-                let mut model = fit_with(&prepared, &digests(&further)?, &learning, &mut progress)
+                let mut model = fit_with(&prepared, &digests(further)?, &learning, &mut progress)
                     .map_err(|error| Refusal::fit(&error, place))?;
                 model.made_by.time = made_at;
                 model.data.files = files.iter().chain(&model.data.files).cloned().collect();

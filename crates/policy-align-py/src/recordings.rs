@@ -14,6 +14,7 @@ use crate::arrays::{array, matrix};
 use crate::hints::{document_in_python, in_python};
 use crate::interruptible::interruptible;
 use crate::options::Preparing;
+use crate::pool;
 use crate::refusal::Refusal;
 
 /// Movements, as they were read or given.
@@ -170,15 +171,19 @@ impl Recordings {
         self.inner.recordings.time_step()
     }
 
-    /// What makes digests of files like these, as JSON.
-    fn digester(&self, py: Python<'_>, preparing: Preparing) -> PyResult<String> {
-        let (inner, options) = (Arc::clone(&self.inner), preparing.options(&self.inner.context)?);
-        let prepared = interruptible(py, move |_: &_| {
-            let prepared = prepare(&inner.recordings, &options)
-                .map_err(|error| Refusal::prepare(&error, &inner.place, &names_of(&inner.recordings)))?;
-            Ok(json!(Digester::new(&prepared, &options)).to_string())
-        })?;
-        let text: Result<String, Refusal> = prepared;
+    /// What makes digests of files like these, which were read with these options, as JSON.
+    fn digester(&self, py: Python<'_>, preparing: Preparing, options: &str, trim_still: bool) -> PyResult<String> {
+        let (inner, preparing) = (Arc::clone(&self.inner), preparing.options(&self.inner.context)?);
+        let reading: ReadOptions =
+            serde_json::from_str(options).map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let make = move |_: &_| {
+            pool::on(0, || {
+                let prepared = prepare(&inner.recordings, &preparing)
+                    .map_err(|error| Refusal::prepare(&error, &inner.place, &names_of(&inner.recordings)))?;
+                Ok(json!(Digester::new(&prepared, &preparing, (&reading, trim_still))).to_string())
+            })
+        };
+        let text: Result<String, Refusal> = interruptible(py, make)??;
         Ok(text?)
     }
 

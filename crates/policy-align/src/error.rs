@@ -2,8 +2,6 @@ use align::AlignError;
 use gp::GpError;
 use thiserror::Error;
 
-use crate::PrepareError;
-
 /// Why nothing was learnt.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -48,26 +46,4 @@ pub enum FitError {
     /// Positions cannot be smoothed.
     #[error(transparent)]
     Smoothing(#[from] smoothing::SmoothingError),
-}
-
-/// Why there is no digest of some recordings.
-#[derive(Debug, Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum DigestError {
-    /// They cannot be prepared.
-    #[error(transparent)]
-    Prepare(#[from] PrepareError),
-    /// Their samples do not become rows.
-    #[error(transparent)]
-    Gp(#[from] GpError),
-    /// They are not like those that they are to be learnt from with.
-    #[error("{what} are {here} here, but {before} in the others")]
-    Differs {
-        /// In what.
-        what: String,
-        /// What it is here.
-        here: String,
-        /// What it is in the others.
-        before: String,
-    },
 }

@@ -107,7 +107,7 @@ fn parts_that_do_not_fit_are_refused() {
     }
     let merge = |parts: &str| format!("fit {files} {AT_ONCE} --merge {parts} -o m.json");
     refused(&merge("part-1-of-2.json"), "no part has");
-    refused(&merge("part-1-of-2.json part-1-of-2.json"), "another part has");
+    refused(&merge("part-1-of-2.json part-1-of-2.json"), "is in two parts");
     refused(
         &format!("fit {files} {AT_ONCE} --scale x=2 --merge part-1-of-2.json part-2-of-2.json"),
         "other files, options",

@@ -68,7 +68,10 @@ impl Stretches {
         let index = |at: usize| rows.indices()[equations[at].row];
         let same = |&a: &usize, &b: &usize| index(a).trajectory == index(b).trajectory;
         let groups: Vec<Vec<usize>> = all.chunk_by(same).map(<[usize]>::to_vec).collect();
-        if groups.len() < 3 || (groups.len() as f64) < COVERED * kept.groups.len() as f64 {
+        // Further trajectories have no samples to look for stretches in.
+        let last = rows.indices().iter().map(|index| index.trajectory).max();
+        let at_hand = kept.trajectories.iter().filter(|&&trajectory| Some(trajectory) <= last).count();
+        if groups.len() < 3 || (groups.len() as f64) < COVERED * at_hand as f64 {
             return None;
         }
         let columns: Vec<DVector<f64>> = equations.iter().map(|of| of.direction * of.part).collect();

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
-from typing import Any
 
 from . import _native
+
+#: Place, path, bytes and rows at most of a file.
+File = tuple[int, str | os.PathLike[str], int, int]
 
 
 @dataclass(frozen=True)
 class Digesting:
     """Reads a file and keeps means of its samples; can be pickled."""
 
-    options: str
-    trim_still: bool
     digester: str
 
-    def __call__(self, file: tuple[Any, int, int]) -> bytes:
+    def __call__(self, file: File) -> bytes:
         """What is left of a file."""
-        return _native.digest(file, self.options, self.trim_still, self.digester)
+        return _native.digest(file, self.digester)

@@ -19,7 +19,7 @@ from . import _native
 from ._arrays import Floats, floats, samples
 from ._constraints import ConstraintStretch, stretches
 from ._demonstrations import Demonstrations, preparing, reading
-from ._digesting import Digesting
+from ._digesting import Digesting, File
 from ._errors import NotFittedError, PolicyAlignError, PolicyAlignWarning
 from ._estimator import Estimator
 from ._rollout import Constraint, Path, follow
@@ -99,13 +99,14 @@ class Learner(Estimator):
         better than differences of positions. ``constraints``: names as of ``Demonstrations``, which tell where constraints
         switch. ``y`` is ignored. Ctrl-C ends it.
         """
-        return self._learn(_demonstrations(X, dt, times, velocities, lengths, constraints), [])
+        threads = _threads(self.n_jobs)
+        return self._learn(_demonstrations(X, dt, times, velocities, lengths, constraints), threads)
 
     def fit_files(
         self,
         *paths: str | os.PathLike[str],
         at_once: str = "256MB",
-        map: Callable[[Callable[[Any], bytes], list[Any]], Iterable[bytes]] = map,
+        map: Callable[[Callable[[File], bytes], list[File]], Iterable[bytes]] = map,
         **options: Any,
     ) -> Self:
         """Learns from files that are too large to be held together, or that several machines read.
@@ -114,15 +115,22 @@ class Learner(Estimator):
         that, as the builtin function: that of a pool of processes, or of an engine (``policy_align.dask.fit``), gives the same model. What
         it is given can be pickled. ``options`` as of ``Demonstrations.read``; the program's ``fit --at-once`` does the same.
         """
+        threads = _threads(self.n_jobs)
         at_hand, further = _native.divide([os.fspath(path) for path in paths], at_once)
+        if further and (self._learner == "policy-align" or self.robot is not None):
+            what = "the learner policy-align" if self.robot is None else "a robot"
+            raise PolicyAlignError(f"{what} needs all files at once", "at_once", 'at_once="all"')
         demonstrations = Demonstrations.read(*at_hand, **options)
         if not further:
-            return self._learn(demonstrations, [])
-        digester = demonstrations._native.digester(self._preparing())
-        return self._learn(demonstrations, list(map(Digesting(*reading(options), digester), further)))
+            return self._learn(demonstrations, threads)
+        digester = demonstrations._native.digester(self._preparing(), *reading(options))
+        parts = [bytes(part) for part in map(Digesting(digester), further)]
+        return self._learn(demonstrations, threads, (further, parts, digester))
 
-    def _learn(self, demonstrations: Demonstrations, further: list[bytes]) -> Self:
-        threads_made_at = (_threads(self.n_jobs), time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()))
+    def _learn(
+        self, demonstrations: Demonstrations, threads: int, further: tuple[list[File], list[bytes], str] = ([], [], "")
+    ) -> Self:
+        threads_made_at = (threads, time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()))
         given = (demonstrations._native, self._preparing(), self._learning())
         self._take(_native.Fitted.fit(*given, threads_made_at, further))
         self._learnt_from = demonstrations

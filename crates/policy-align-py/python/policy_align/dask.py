@@ -11,6 +11,7 @@ import os
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
+from ._digesting import File
 from ._learner import Learner
 from ._learners import AutoGp
 
@@ -29,7 +30,7 @@ def fit(
     others. The work of a worker that dies is done by another; the model is that of one process. ``learner``: AutoGp() if not given.
     """
 
-    def on_workers(function: Callable[[Any], bytes], items: list[Any]) -> Iterable[bytes]:
+    def on_workers(function: Callable[[File], bytes], items: list[File]) -> Iterable[bytes]:
         found: Iterable[bytes] = client.gather(client.map(function, items))
         return found
 

@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use demo_io::ReadOptions;
-use policy_align::{Digest, Digester, Division, FileSummary, FitOptions, LearnerChoice, Part, PartError};
+use policy_align::{Digest, Digester, Division, FileSummary, FitOptions, FurtherFile, LearnerChoice, Part, PartError};
+use serde_json::json;
 use text::quoted;
 
 use crate::cli::failure::{Exit, Failure, displayed};
@@ -52,14 +52,13 @@ pub(crate) fn digests(
     session: &Session,
     (division, digester): (&Division, &Digester),
     parts: &[PathBuf],
-    reading: (&ReadOptions, bool),
 ) -> Result<Vec<Digest>, Failure> {
     let found = if parts.is_empty() {
-        vec![part(session, (division, digester), (1, 1), reading)?]
+        vec![part(session, &division.further, digester)?]
     } else {
         parts.iter().map(|path| read(path)).collect::<Result<_, _>>()?
     };
-    Part::merged(found, division, digester).map_err(|error| {
+    Part::merged(found, &division.further, digester).map_err(|error| {
         let remedy = "the parts of all shares, made with the same files and flags";
         Failure::new(Exit::Refused, error.to_string(), counted(parts.len(), "part"), remedy)
     })
@@ -71,45 +70,44 @@ fn read(path: &Path) -> Result<Part, Failure> {
         .map_err(|error| Failure::new(Exit::File, error.to_string(), displayed(path), "the part again, by --shard"))
 }
 
-/// Digests of a share of the files.
-fn part(
-    session: &Session,
-    (division, digester): (&Division, &Digester),
-    shard: (usize, usize),
-    reading: (&ReadOptions, bool),
-) -> Result<Part, Failure> {
-    let bytes = division.further.iter().map(|file| file.bytes).sum::<u64>() / shard.1 as u64;
+fn part(session: &Session, files: &[FurtherFile], digester: &Digester) -> Result<Part, Failure> {
+    let bytes = files.iter().map(|file| file.bytes).sum();
     let bar = session.bar(bytes, "further files  {bar:30} {bytes} of {total_bytes}, {eta} left");
-    let part = Part::of(division, digester, shard, reading, &|read| bar.inc(read));
+    let part = Part::of(files, digester, &|read| bar.inc(read));
     bar.finish_and_clear();
     part.map_err(|error| match error {
         PartError::Read(error) => Failure::from(error),
         error => {
-            let remedy = format!("fix or leave out this file, or --at-once {}", Division::ALL);
-            Failure::new(Exit::Refused, error.to_string(), "files that are not read at once", remedy)
+            let remedy = format!("--at-once {} or a larger size, or leave out this file", Division::ALL);
+            Failure::of_text(Exit::Refused, &error.to_string(), "files that are not read at once", &remedy)
         }
     })
 }
 
-/// Writes a share of the digests.
+/// Writes a share of the digests, to `output` if there is one.
 pub(crate) fn write_part(
     session: &Session,
     (division, digester): (&Division, &Digester),
     shard: (usize, usize),
-    (reading, output): ((&ReadOptions, bool), &Path),
+    output: Option<&Path>,
 ) -> Result<Output, Failure> {
     if division.further.is_empty() {
         let what = "all files are read at once: there is nothing to share";
         return Err(Failure::usage(what, "--shard", "--at-once with a size below that of all files, or no --shard"));
     }
-    let text = part(session, (division, digester), shard, reading)?.to_json();
+    let ((this, of), own) = (shard, part_file(shard));
+    let output = output.unwrap_or(&own);
+    let files = division.share(shard);
+    let text = part(session, &files, digester)?.to_json();
     let text =
         text.map_err(|error| Failure::new(Exit::Refused, error.to_string(), displayed(output), "other files"))?;
     write(output, &text)?;
-    let (this, of) = shard;
+    if session.json {
+        let document = json!({ "written": [displayed(output)], "files": files.len(), "of": division.further.len() });
+        return Ok(Output::json(&document, Exit::Done));
+    }
     let mut lines = Lines::default();
-    let files = (this - 1..division.further.len()).step_by(of).count();
-    lines.add("part", &format!("{this} of {of}: {} of {}", counted(files, "file"), division.further.len()));
+    lines.add("part", &format!("{this} of {of}: {} of {}", counted(files.len(), "file"), division.further.len()));
     lines.add("written", &format!("{} ({})", displayed(output), size(text.len())));
     let added = if this < of {
         format!("--shard {}/{of}", this + 1)
@@ -122,7 +120,7 @@ pub(crate) fn write_part(
 }
 
 /// Where a part is written, unless a name is given.
-pub(crate) fn part_file((this, of): (usize, usize)) -> PathBuf {
+fn part_file((this, of): (usize, usize)) -> PathBuf {
     PathBuf::from(format!("part-{this}-of-{of}.json"))
 }
 

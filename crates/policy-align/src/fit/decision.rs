@@ -32,10 +32,14 @@ pub(super) fn rows_decision(readings: &AutoFit) -> Option<Decision> {
 }
 
 /// How many movements were held together; none if all were.
-pub(super) fn digests_decision(prepared: &Prepared, digests: &[Digest]) -> Option<Decision> {
+pub(super) fn digests_decision(prepared: &Prepared, digests: &[Digest], readings: &AutoFit) -> Option<Decision> {
     let further: usize = digests.iter().map(|digest| digest.data.samples).sum();
     let rows: usize = digests.iter().map(|digest| digest.indices.len()).sum();
-    let why = format!("all else is judged by these; of {further} further samples {rows} rows are learnt from");
+    let why = match readings.slope().report().push {
+        // Stretches are found in samples.
+        Some(_) => format!("constraints push, which {further} further samples, of which means are kept, do not tell"),
+        None => format!("all else is judged by these; of {further} further samples {rows} rows are learnt from"),
+    };
     let at_hand = format!("{} samples", prepared.demonstrations.n_samples());
     (!digests.is_empty()).then(|| decision("at once", at_hand, why, "--at-once"))
 }

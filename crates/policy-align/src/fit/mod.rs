@@ -14,7 +14,8 @@ mod recorded_rows;
 mod units;
 
 pub(crate) use aligning::held_out;
-pub use digest::{Digest, Digester};
+pub use digest::Digest;
+pub(crate) use digest::made_beside;
 pub use options::{FitOptions, LearnerChoice};
 pub use progress::{Progress, Step};
 pub(crate) use recorded_rows::{averaged, cleaning, least_noisy_rows, rows};
@@ -31,7 +32,7 @@ use crate::trust::{
 use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, Prepared};
 use aligning::AlignedFit;
 use decision::{digests_decision, learner_decision, rows_decision};
-use digest::with_digests;
+use digest::{widened, with_digests};
 use links::LinkNames;
 
 /// Rows that amplitudes are chosen on, as a share of those learnt from.
@@ -47,7 +48,7 @@ pub fn fit(prepared: &Prepared, options: &FitOptions, progress: &mut Progress<'_
 }
 
 /// Learns a policy from these movements and from digests of further ones, in their order: Gaussian processes learn from all, whatever
-/// takes whole movements (constraints that push, units, the verdict's findings) from those at hand.
+/// takes whole movements (constraints that push, the verdict's findings) from those at hand.
 ///
 /// # Errors
 /// As [`fit()`], and [`FitError::Digest`] for digests that are damaged or do not belong together, and where a robot or PolicyAlign asks for
@@ -61,6 +62,11 @@ pub fn fit_with(
     options.check()?;
     if !digests.is_empty() && (options.robot.is_some() || options.learner == LearnerChoice::PolicyAlign) {
         let reason = "a robot and the learner policy-align need all samples at once".to_owned();
+        return Err(FitError::Digest { reason });
+    }
+    let beside = if digests.is_empty() { String::new() } else { made_beside(prepared) };
+    if digests.iter().any(|digest| !digest.made_for.starts_with(&beside) || digest.made_for != digests[0].made_for) {
+        let reason = "digests were made for other recordings or options".to_owned();
         return Err(FitError::Digest { reason });
     }
     let steps = if options.learner == LearnerChoice::PolicyAlign { 4 } else { 2 };
@@ -89,7 +95,7 @@ pub fn fit_with(
     };
     let mut decisions: Vec<Decision> = prepared.decisions.iter().cloned().chain(metric).collect();
     decisions.extend(links.decision(&readings));
-    decisions.extend(digests_decision(prepared, digests));
+    decisions.extend(digests_decision(prepared, digests, &readings));
     decisions.push(learner_decision(options, &readings));
     decisions.extend(rows_decision(&readings));
     let aligned = match options.learner {
@@ -132,7 +138,9 @@ pub fn fit_with(
     };
     let data = DataSummary::of(prepared, rows.velocities());
     let data = digests.iter().fold(data, |data, digest| data.and(&digest.data));
-    let (state, context, time_step) = (prepared.state.clone(), prepared.context.clone(), prepared.time_step);
+    let state = widened(&prepared.state, 0, digests);
+    let context = widened(&prepared.context, state.len(), digests);
+    let time_step = prepared.time_step;
     let chosen_context = crate::model::nowhere();
     let made_by = MadeBy::this();
     Ok(Model { made_by, state, context, chosen_context, time_step, data, decisions, seed: options.seed, trust, learnt })

@@ -5,10 +5,8 @@ use std::path::{Path, PathBuf};
 
 use demo_io::ReadError;
 
-/// Rows of all digests together, at most: so many in seven dimensions take 60 MB.
+/// Rows of all digests together, about: so many in seven dimensions take 60 MB.
 const ROWS: u64 = 500_000;
-/// Rows of a digest, at least.
-const LEAST_ROWS: u64 = 100;
 
 /// Files that are read at once, and those of which digests are made.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -22,11 +20,13 @@ pub struct Division {
 /// A file of which a digest is made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FurtherFile {
+    /// Its place among them.
+    pub at: usize,
     /// Where it is.
     pub path: PathBuf,
     /// Its size.
     pub bytes: u64,
-    /// Rows of its digest at most: its share of all bytes.
+    /// Rows of its digest at most, by its share of all bytes.
     pub rows: usize,
 }
 
@@ -38,14 +38,19 @@ impl Division {
 
     /// A size as users write it: "256MB", "1.5 GB", or "all".
     pub fn bytes(text: &str) -> Option<u64> {
+        let text = text.to_lowercase();
         if text == Self::ALL {
             return Some(u64::MAX);
         }
-        let text = text.to_lowercase();
         let units = [("kb", 1e3), ("mb", 1e6), ("gb", 1e9), ("tb", 1e12)];
         let (number, unit) = units.iter().find_map(|(unit, factor)| Some((text.strip_suffix(unit)?, factor)))?;
         let bytes = number.trim().parse::<f64>().ok()? * unit;
         (1.0..1e18).contains(&bytes).then_some(bytes as u64)
+    }
+
+    /// The I-th of N shares of the further files, counted from 1, dealt out in turn.
+    pub fn share(&self, (this, of): (usize, usize)) -> Vec<FurtherFile> {
+        self.further.iter().skip(this.saturating_sub(1)).step_by(of.max(1)).cloned().collect()
     }
 
     /// All files at once.
@@ -59,23 +64,23 @@ impl Division {
     /// # Errors
     /// [`ReadError`] for a folder that cannot be read.
     pub fn of(files: &[PathBuf], most_bytes: u64) -> Result<Division, ReadError> {
-        let all = files.iter().map(|path| bytes_in(path)).sum::<u64>();
-        if all <= most_bytes {
+        let listed = files.iter().map(|path| demo_io::files_of(path)).collect::<Result<Vec<_>, _>>()?.concat();
+        let sizes: Vec<u64> = listed.iter().map(|path| bytes_in(path)).collect();
+        if sizes.iter().sum::<u64>() <= most_bytes {
             return Ok(Division::none(files));
         }
-        let files = files.iter().map(|path| demo_io::files_of(path)).collect::<Result<Vec<_>, _>>()?.concat();
-        let sizes: Vec<u64> = files.iter().map(|path| bytes_in(path)).collect();
         let fits = |every: &usize| sizes.iter().step_by(*every).sum::<u64>() <= most_bytes;
-        let every = (2..files.len()).find(fits).unwrap_or(files.len().max(1));
-        let further: u64 = all - sizes.iter().step_by(every).sum::<u64>();
+        let every = (2..listed.len()).find(fits).unwrap_or(listed.len().max(1));
+        let is_at_once = |at: usize| at % every == 0;
+        let of_others: u64 = sizes.iter().enumerate().filter(|(at, _)| !is_at_once(*at)).map(|(_, bytes)| bytes).sum();
         let mut division = Division { at_once: vec![], further: vec![] };
-        for (at, (path, bytes)) in files.into_iter().zip(sizes).enumerate() {
-            if at % every == 0 {
+        for (place, (path, bytes)) in listed.into_iter().zip(sizes).enumerate() {
+            if is_at_once(place) {
                 division.at_once.push(path);
             } else {
-                let share = u128::from(ROWS) * u128::from(bytes) / u128::from(further.max(1));
-                let rows = (share as usize).max(LEAST_ROWS as usize);
-                division.further.push(FurtherFile { path, bytes, rows });
+                let share = u128::from(ROWS) * u128::from(bytes) / u128::from(of_others.max(1));
+                let (at, rows) = (division.further.len(), (share as usize).max(1));
+                division.further.push(FurtherFile { at, path, bytes, rows });
             }
         }
         Ok(division)
@@ -87,8 +92,9 @@ fn bytes_in(path: &Path) -> u64 {
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => {
             let entries = fs::read_dir(path).into_iter().flatten().flatten();
-            // Links may lead round in a circle.
-            let inside = entries.filter(|entry| entry.file_type().is_ok_and(|kind| !kind.is_symlink()));
+            // Links to folders may lead round in a circle.
+            let is_link = |entry: &fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_symlink());
+            let inside = entries.filter(|entry| !is_link(entry) || entry.path().is_file());
             inside.map(|entry| bytes_in(&entry.path())).sum()
         }
         Ok(found) => found.len(),
@@ -129,9 +135,13 @@ mod tests {
             prop_assert_eq!(division.at_once.len() + division.further.len(), files.len());
             let at_once: u64 = division.at_once.iter().map(|path| bytes_in(path)).sum();
             prop_assert!(at_once <= most || division.at_once.len() == 1);
-            prop_assert!(further().all(|file| file.bytes == bytes_in(&file.path) && file.rows >= LEAST_ROWS as usize));
+            prop_assert!(further().all(|file| file.bytes == bytes_in(&file.path) && file.rows > 0));
             let rows: usize = further().map(|file| file.rows).sum();
-            prop_assert!(rows as u64 <= ROWS + LEAST_ROWS * division.further.len() as u64);
+            prop_assert!(rows as u64 <= ROWS + division.further.len() as u64);
+            let shares = [1, 2, 3].map(|this| division.share((this, 3)));
+            let mut shared: Vec<FurtherFile> = shares.concat();
+            shared.sort_by_key(|file| file.at);
+            prop_assert_eq!(&shared, &division.further);
             // The folder is its files.
             let of_folder = Division::of(&[folder.path().to_owned()], most).expect("a division");
             if !of_folder.further.is_empty() {

@@ -1,12 +1,12 @@
 //! Recordings that are too large to be held together: some files are read at once, of each other file a digest is made, here or on
 //! another machine.
 
+mod digester;
 mod division;
 mod error;
-mod file_digest;
 mod part;
 
+pub use digester::Digester;
 pub use division::{Division, FurtherFile};
-pub use error::PartError;
-pub use file_digest::digest_file;
+pub use error::{DigestError, PartError};
 pub use part::Part;

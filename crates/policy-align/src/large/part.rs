@@ -1,23 +1,20 @@
-//! Digests of a share of the files, as a file that other machines hand over.
+//! Digests of some files, as a file that other machines hand over.
 
-use demo_io::ReadOptions;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::large::{Division, FurtherFile, PartError, digest_file};
-use crate::{Digest, Digester};
+use crate::Digest;
+use crate::large::{Digester, FurtherFile, PartError};
 
 const FORMAT: &str = "policy-align part";
 const VERSION: u32 = 1;
 
-/// Digests of the I-th of N shares of all further files.
+/// Digests of some of the further files.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Part {
     format: String,
     version: u32,
-    /// I and N.
-    shard: (usize, usize),
     digests: Vec<OfFile>,
 }
 
@@ -27,37 +24,30 @@ pub struct Part {
 struct OfFile {
     /// Its place among them.
     at: usize,
+    name: String,
+    bytes: u64,
     digest: Digest,
 }
 
 impl Part {
-    /// Digests of a share of the further files, dealt out in turn: the I-th of N, counted from 1. Several files are read at a time, one on
-    /// each thread; each digest is the same whatever else is read. `progress` takes the number of bytes read since the last call.
+    /// Digests of these files, of which several are read at a time, one on each thread; each digest is the same whatever else is read.
+    /// `progress` takes the number of bytes read since the last call.
     ///
     /// # Errors
-    /// [`PartError`] of the first file that cannot be used.
-    pub fn of(
-        division: &Division,
-        digester: &Digester,
-        shard: (usize, usize),
-        reading: (&ReadOptions, bool),
-        progress: &(dyn Fn(u64) + Sync),
-    ) -> Result<Part, PartError> {
-        let (this, of) = shard;
-        let is_own = |(at, _): &(usize, &FurtherFile)| at % of == this - 1;
-        let own: Vec<(usize, &FurtherFile)> = division.further.iter().enumerate().filter(is_own).collect();
-        let digest = |(at, file): &(usize, &FurtherFile)| {
-            Ok(OfFile { at: *at, digest: digest_file(file, digester, reading, &mut |bytes| progress(bytes))? })
+    /// [`PartError`] of a file that cannot be used; others are then not read.
+    pub fn of(files: &[FurtherFile], digester: &Digester, progress: &(dyn Fn(u64) + Sync)) -> Result<Part, PartError> {
+        let digest = |file: &FurtherFile| {
+            let digest = digester.digest_file(file, &mut |bytes| progress(bytes))?;
+            Ok(OfFile { at: file.at, name: name(file), bytes: file.bytes, digest })
         };
-        let found: Vec<Result<OfFile, PartError>> = own.par_iter().map(digest).collect();
-        let digests = found.into_iter().collect::<Result<_, _>>()?;
-        Ok(Part { format: FORMAT.to_owned(), version: VERSION, shard, digests })
+        let digests = files.par_iter().map(digest).collect::<Result<_, PartError>>()?;
+        Ok(Part { format: FORMAT.to_owned(), version: VERSION, digests })
     }
 
     /// As a file.
     ///
     /// # Errors
-    /// [`PartError::Parts`] for numbers that JSON has no word for.
+    /// [`PartError::Parts`] where there is no memory for it.
     pub fn to_json(&self) -> Result<Vec<u8>, PartError> {
         serde_json::to_vec(self).map_err(|error| PartError::Parts { reason: error.to_string() })
     }
@@ -79,31 +69,29 @@ impl Part {
     /// The digests of all further files, in their order, from parts in any order.
     ///
     /// # Errors
-    /// [`PartError::Parts`] where a file is in no part or in several, or parts were made for other recordings or options.
-    pub fn merged(parts: Vec<Part>, division: &Division, digester: &Digester) -> Result<Vec<Digest>, PartError> {
+    /// [`PartError::Parts`] where a file is in no part or in several, has changed, or parts were made for other recordings or options.
+    pub fn merged(parts: Vec<Part>, files: &[FurtherFile], digester: &Digester) -> Result<Vec<Digest>, PartError> {
         let wrong = |reason: String| Err(PartError::Parts { reason });
-        let mut merged: Vec<Option<Digest>> = vec![None; division.further.len()];
-        for Part { shard: (this, of), digests, .. } in parts {
-            for OfFile { at, digest } in digests {
-                if digest.made_for != digester.made_for() {
-                    return wrong(format!("part {this}/{of} was made with other files, options or by another version"));
-                }
-                match merged.get_mut(at) {
-                    Some(place @ None) => *place = Some(digest),
-                    _ => {
-                        return wrong(format!(
-                            "part {this}/{of} has a file that another part has, or that is not given"
-                        ));
-                    }
-                }
+        let mut merged: Vec<Option<Digest>> = vec![None; files.len()];
+        for OfFile { at, name: of, bytes, digest } in parts.into_iter().flat_map(|part| part.digests) {
+            if digest.made_for != digester.made_for() {
+                return wrong(format!("the digest of {of} was made with other files, options or by another version"));
+            }
+            match files.get(at) {
+                Some(file) if name(file) == of && file.bytes == bytes => {}
+                _ => return wrong(format!("the digest of {of} is of another file, or of this one before it changed")),
+            }
+            if merged[at].replace(digest).is_some() {
+                return wrong(format!("{of} is in two parts"));
             }
         }
         match merged.iter().position(Option::is_none) {
-            Some(missing) => {
-                let file = division.further[missing].path.display();
-                wrong(format!("no part has {file}, the {}. file that is not read at once", missing + 1))
-            }
+            Some(missing) => wrong(format!("no part has {}", files[missing].path.display())),
             None => Ok(merged.into_iter().flatten().collect()),
         }
     }
+}
+
+fn name(file: &FurtherFile) -> String {
+    file.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }

@@ -1,4 +1,4 @@
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use clap::Args;
@@ -11,7 +11,7 @@ use policy_align::{
 use serde_json::json;
 use text::quoted;
 
-use crate::cli::at_once::{digests, division, files_of, part_file, shard, write_part};
+use crate::cli::at_once::{digests, division, files_of, shard, write_part};
 use crate::cli::clock::now;
 use crate::cli::describe::verdict;
 use crate::cli::failure::{Exit, Failure};
@@ -41,9 +41,9 @@ pub(crate) struct Fit {
     /// Recordings: CSV, NPZ, JSON lines, LeRobot, HDF5, MCAP, MAT
     #[arg(required_unless_present = "print_config")]
     files: Vec<PathBuf>,
-    /// The model to write
-    #[arg(long, short, value_name = "MODEL.json", default_value = MODEL)]
-    output: PathBuf,
+    /// The model to write [default: model.json]
+    #[arg(long, short, value_name = "MODEL.json")]
+    output: Option<PathBuf>,
     /// Write no trust report
     #[arg(long)]
     no_report: bool,
@@ -72,7 +72,8 @@ impl Fit {
         if self.print_config {
             return Ok(Output::done(printed(&reading, &preparing, &learning)?));
         }
-        no_input(&self.output, &self.files)?;
+        let inputs = [&self.files[..], &self.merge].concat();
+        no_input(&self.output(), &inputs)?;
         let (mut prepare_options, fit_options) = (preparing.options(reading.dt)?, learning.options()?);
         let place = || named(&self.files);
         let shard = self.shard.as_deref().map(shard).transpose()?;
@@ -82,12 +83,11 @@ impl Fit {
         let (recordings, held_out) = divided(recordings, &learning.hold_out, &place())?;
         let reported = recordings.findings.clone();
         let prepared = prepare(recordings, &prepare_options).map_err(|error| Failure::prepare(&error, place()))?;
-        let digester = Digester::new(&prepared, &prepare_options);
-        let (further, read_options) = ((&division, &digester), (&reading.options()?, reading.trim_still));
+        let digester = Digester::new(&prepared, &prepare_options, (&reading.options()?, reading.trim_still));
         if let Some(shard) = shard {
-            return write_part(session, further, shard, (read_options, &self.part(shard)));
+            return write_part(session, (&division, &digester), shard, self.output.as_deref());
         }
-        let digests = digests(session, further, &self.merge, read_options)?;
+        let digests = digests(session, (&division, &digester), &self.merge)?;
         let bar = session.bar(4, "{msg}  {bar:30} step {pos} of {len}, {elapsed} elapsed");
         let never = AtomicBool::new(false);
         let mut report = |step: policy_align::Step| {
@@ -106,44 +106,43 @@ impl Fit {
             Failure::new(Exit::Refused, error.to_string(), place(), "`policy-align check` to examine the recordings")
         })?;
         let checksum = checksum_of(text.as_bytes()).unwrap_or_default();
-        let mut files = vec![(self.output.clone(), text)];
+        let mut files = vec![(self.output(), text)];
         if !self.no_report {
             files.extend(self.report(&model, &prepared, &checksum));
         }
         write_together(&files)?;
-        warn_of_others(session, &self.output, &checksum);
+        warn_of_others(session, &self.output(), &checksum);
         let report: Vec<PathBuf> = files.into_iter().skip(1).map(|(path, _)| path).collect();
         let unreported = unreported(&model.trust.findings, &reported);
-        Ok(self.output(session, (&model, &unreported), &report, judged.as_ref()))
+        Ok(self.said(session, (&model, &unreported), &report, judged.as_ref()))
     }
 
-    /// Where a part is written.
-    fn part(&self, shard: (usize, usize)) -> PathBuf {
-        let is_given = self.output != Path::new(MODEL);
-        if is_given { self.output.clone() } else { part_file(shard) }
+    fn output(&self) -> PathBuf {
+        self.output.clone().unwrap_or_else(|| PathBuf::from(MODEL))
     }
 
     /// The page and its numbers.
     fn report(&self, model: &Model, prepared: &Prepared, checksum: &str) -> [(PathBuf, String); 2] {
-        let [page, numbers] = trust_files(&self.output);
-        let html = trust_page(model, &base_name(&self.output), checksum, prepared);
+        let [page, numbers] = trust_files(&self.output());
+        let html = trust_page(model, &base_name(&self.output()), checksum, prepared);
         let document = json!({
             MEMBER: checksum, "trust": model.trust, "decisions": model.decisions, "left_out": model.data.left_out,
         });
         [(page, html), (numbers, format!("{document:#}\n"))]
     }
 
-    fn output(
+    fn said(
         &self,
         session: &Session,
         (model, unreported): (&Model, &[Finding]),
         written: &[PathBuf],
         held_out: Option<&Evaluation>,
     ) -> Output {
+        let output = self.output();
         let exit = if model.trust.verdict == Verdict::DoNotUse { Exit::Refused } else { Exit::Done };
         if session.json {
             let files: Vec<String> =
-                std::iter::once(&self.output).chain(written).map(|path| path.display().to_string()).collect();
+                std::iter::once(&output).chain(written).map(|path| path.display().to_string()).collect();
             let document = json!({
                 "written": files, "trust": model.trust, "decisions": model.decisions, "data": model.data,
                 "hold_out": held_out,
@@ -171,17 +170,17 @@ impl Fit {
         }
         lines.add("trust", verdict(model));
         findings(unreported, 3, &mut lines);
-        let bytes = std::fs::metadata(&self.output).map_or(0, |found| found.len() as usize);
+        let bytes = std::fs::metadata(&output).map_or(0, |found| found.len() as usize);
         let report = written.iter().map(|path| format!(", {}", path.display())).collect::<Vec<_>>().concat();
-        lines.add("written", &format!("{} ({}){report}", self.output.display(), size(bytes)));
+        lines.add("written", &format!("{} ({}){report}", output.display(), size(bytes)));
         let next = match written.first() {
             // A picture needs two channels.
             _ if exit == Exit::Done && model.state.len() > 1 => {
-                let picture = quoted(&self.output.with_extension("svg"));
-                format!("policy-align plot {} -o {picture}", quoted(&self.output))
+                let picture = quoted(&output.with_extension("svg"));
+                format!("policy-align plot {} -o {picture}", quoted(&output))
             }
             Some(page) if exit != Exit::Done => format!("open {}", quoted(page)),
-            _ => format!("policy-align info {}", quoted(&self.output)),
+            _ => format!("policy-align info {}", quoted(&output)),
         };
         Output { text: lines.next(&next), exit }
     }

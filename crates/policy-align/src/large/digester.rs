@@ -1,0 +1,167 @@
+use demo_io::{ReadError, ReadOptions, read};
+use motion::{LeftOut, Recordings};
+use serde::{Deserialize, Serialize};
+
+use crate::fit::{made_beside, rows};
+use crate::large::{DigestError, FurtherFile, PartError};
+use crate::stored::sha256;
+use crate::{
+    ContextUse, DataSummary, Digest, FileSummary, PrepareError, PrepareOptions, Prepared, StateChannel, VelocitySource,
+    prepare, trim_still,
+};
+
+/// Makes digests of further files, read and prepared like the recordings at hand. It is small, so that other machines can have it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Digester {
+    reading: ReadOptions,
+    /// Whether samples at rest at either end are removed.
+    trim: bool,
+    preparing: PrepareOptions,
+    /// At hand: of the state, then of the context.
+    channels: Vec<StateChannel>,
+    velocities: VelocitySource,
+    averaged: usize,
+    /// How velocities came about, in words.
+    decision: String,
+    made_for: String,
+}
+
+impl Digester {
+    /// For files like those that these recordings at hand were read from with `reading`, `trim`med of samples at rest at either end or not,
+    /// and prepared with `preparing`.
+    pub fn new(prepared: &Prepared, preparing: &PrepareOptions, (reading, trim): (&ReadOptions, bool)) -> Digester {
+        let channels: Vec<StateChannel> = prepared.state.iter().chain(&prepared.context).cloned().collect();
+        let scaled = channels.iter().filter(|channel| channel.scale != 1.0);
+        let scale = scaled.map(|channel| (channel.name.clone(), channel.scale)).collect();
+        let context: Vec<String> = prepared.context.iter().map(|channel| channel.name.clone()).collect();
+        let context = if context.is_empty() { ContextUse::Ignored } else { ContextUse::Named(context) };
+        let preparing = PrepareOptions { scale, context, ..preparing.clone() };
+        let options = format!("{} {reading:?} {trim} {preparing:?}", env!("CARGO_PKG_VERSION"));
+        Digester {
+            reading: reading.clone(),
+            trim,
+            preparing,
+            channels,
+            velocities: prepared.velocities,
+            averaged: prepared.averaged,
+            decision: how(prepared),
+            made_for: format!("{} {}", made_beside(prepared), sha256(options.as_bytes())),
+        }
+    }
+
+    /// What digests for the same fit have in common.
+    pub(super) fn made_for(&self) -> &str {
+        &self.made_for
+    }
+
+    /// Reads a file and makes its digest; holds this file alone. Calls `progress` with the number of bytes read since the last call. The bits
+    /// depend on nothing but this file and the recordings at hand.
+    ///
+    /// # Errors
+    /// [`PartError`], which names the file.
+    pub fn digest_file(&self, file: &FurtherFile, progress: &mut dyn FnMut(u64)) -> Result<Digest, PartError> {
+        let name = |of: Option<&std::ffi::OsStr>| of.unwrap_or_default().to_string_lossy().into_owned();
+        let (stem, name) = (name(file.path.file_stem()), name(file.path.file_name()));
+        let mut digest = match read(&file.path, &self.reading, progress) {
+            Ok(recordings) => self
+                .digest(recordings, file.rows)
+                .map_err(|source| PartError::Digest { file: name.clone(), source: Box::new(source) })?,
+            Err(ReadError::Empty(fault)) => self.empty(vec![LeftOut { episode: String::new(), why: fault.what }]),
+            Err(error) => return Err(error.into()),
+        };
+        for left_out in &mut digest.data.left_out {
+            // As if the file were one of several that are read at once.
+            if left_out.episode.is_empty() {
+                left_out.episode.clone_from(&stem);
+            } else if left_out.episode != stem {
+                left_out.episode = format!("{stem}/{}", left_out.episode);
+            }
+        }
+        if file.path.is_file() {
+            let summary = FileSummary::of(&file.path);
+            let summary = summary.map_err(|error| PartError::File { file: name, reason: error.to_string() })?;
+            digest.data.files = vec![summary];
+        }
+        Ok(digest)
+    }
+
+    /// A digest of at most so many rows.
+    fn digest(&self, mut recordings: Recordings, most: usize) -> Result<Digest, DigestError> {
+        if self.trim {
+            trim_still(&mut recordings);
+        }
+        let findings = recordings.findings.clone();
+        let names: Vec<String> = recordings.episodes.iter().map(|episode| episode.name.clone()).collect();
+        let prepared = match prepare(recordings, &self.preparing) {
+            Err(PrepareError::NothingLeft { why, .. }) => {
+                let left_out = |episode| LeftOut { episode, why: why.clone() };
+                return Ok(Digest { findings, ..self.empty(names.into_iter().map(left_out).collect()) });
+            }
+            prepared => prepared?,
+        };
+        let channels: Vec<StateChannel> = prepared.state.iter().chain(&prepared.context).cloned().collect();
+        self.require_alike(&channels, how(&prepared))?;
+        // As noisy as those at hand: few movements tell less of noise.
+        let prepared = Prepared { velocities: self.velocities, averaged: self.averaged, ..prepared };
+        let rows = rows(&prepared)?;
+        let means = rows.averaged();
+        let few = means.at_most(most);
+        Ok(Digest {
+            made_for: self.made_for.clone(),
+            data: DataSummary::of(&prepared, rows.velocities()),
+            findings,
+            channels,
+            rows: rows.len(),
+            thinned: means.len() - few.len(),
+            indices: few.indices().iter().map(|index| (index.trajectory, index.sample)).collect(),
+            states: few.states().as_slice().to_vec(),
+            velocities: few.velocities().as_slice().to_vec(),
+            variances: few.variances().map(<[f64]>::to_vec),
+        })
+    }
+
+    /// Of what cannot be learnt from.
+    fn empty(&self, left_out: Vec<LeftOut>) -> Digest {
+        let data = DataSummary { files: vec![], episodes: 0, samples: 0, longest: 0.0, speed: 0.0, left_out };
+        Digest {
+            made_for: self.made_for.clone(),
+            data,
+            findings: vec![],
+            channels: self.channels.clone(),
+            rows: 0,
+            thinned: 0,
+            indices: vec![],
+            states: vec![],
+            velocities: vec![],
+            variances: None,
+        }
+    }
+
+    fn require_alike(&self, channels: &[StateChannel], decision: String) -> Result<(), DigestError> {
+        let differ = |what: &str, here: String, before: String| {
+            Err(DigestError::Differs { what: what.to_owned(), here, before })
+        };
+        let names = |of: &[StateChannel]| of.iter().map(|channel| &*channel.name).collect::<Vec<_>>().join(", ");
+        if names(channels) != names(&self.channels) {
+            return differ("channels", names(channels), names(&self.channels));
+        }
+        if decision != self.decision {
+            return differ("velocities", decision, self.decision.clone());
+        }
+        // A goal that is the same in all files at hand looks like a state that never moves.
+        let range = |of: &StateChannel| {
+            if of.low == of.high { of.low.to_string() } else { format!("{} … {}", of.low, of.high) }
+        };
+        let moves = |(own, found): &(&StateChannel, &StateChannel)| own.low == own.high && range(own) != range(found);
+        match self.channels.iter().zip(channels).find(moves) {
+            Some((own, found)) => differ(&format!("values of '{}'", own.name), range(found), range(own)),
+            None => Ok(()),
+        }
+    }
+}
+
+/// How velocities came about, in words.
+fn how(prepared: &Prepared) -> String {
+    let decision = prepared.decisions.iter().find(|decision| decision.what == "velocities");
+    decision.map_or_else(String::new, |decision| decision.value.clone())
+}
