@@ -12,7 +12,7 @@ use crate::cli::lines::{Lines, counted, short};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
 use crate::cli::pages::check_page::check_page;
-use crate::cli::recorded::{named, read, unreported};
+use crate::cli::recorded::{named, read_with_context, unreported};
 use crate::cli::session::{Output, Session, write};
 
 /// Episodes left out that are named.
@@ -47,8 +47,8 @@ impl Check {
         if let Some(path) = &self.html {
             no_input(path, &self.files)?;
         }
-        let recordings = read(session, &self.files, &flags)?;
-        options.context = flags.context_of(&recordings)?;
+        let recordings;
+        (recordings, options.context) = read_with_context(session, &self.files, &flags)?;
         let reported = recordings.findings.clone();
         let prepared = prepare(recordings, &options).map_err(|error| Failure::prepare(&error, named(&self.files)))?;
         let refused = prepared.findings.iter().any(|finding| finding.verdict == Verdict::DoNotUse);
