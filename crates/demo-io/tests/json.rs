@@ -120,7 +120,7 @@ fn contexts_are_named_by_number() {
         let options =
             ReadOptions { context: given(context), state: given(state), episode, time, ..ReadOptions::default() };
         let path = files.add(name, text);
-        let (found, context) = read_with_context(&[path.clone()], &options, &mut |_| ()).unwrap();
+        let (found, context) = read_with_context(std::slice::from_ref(&path), &options, &mut |_| ()).unwrap();
         assert_eq!(context.join(" "), named, "{name}");
         let channels = names(&found);
         assert_eq!(channels[channels.len() - context.len()..], context, "contexts follow the state");

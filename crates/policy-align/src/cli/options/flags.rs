@@ -172,7 +172,7 @@ pub(crate) struct FitFlags {
     /// Robot with these joints: tries its links and its masses
     #[arg(long, value_name = "FILE.urdf")]
     robot: Option<PathBuf>,
-    /// Episodes to evaluate on instead of learning from them
+    /// Episodes to evaluate on, not to learn from: names, or a share as 20%
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) hold_out: Vec<String>,
 }

@@ -81,13 +81,31 @@ impl Check {
             lines.add("written", &path.display().to_string());
         }
         if refused {
-            return Ok(Output { text: lines.into_text(), exit });
+            let text = match reading_otherwise(&prepared.findings) {
+                Some(next) => lines.next(&next),
+                None => lines.into_text(),
+            };
+            return Ok(Output { text, exit });
         }
         Ok(Output {
             text: lines.next(&format!("policy-align fit {}", again("check", &["--html"], "-o model.json"))),
             exit,
         })
     }
+}
+
+/// The same command with other flags of reading, where these are all that is wrong.
+fn reading_otherwise(findings: &[Finding]) -> Option<String> {
+    let mut wrong = findings.iter().filter(|finding| finding.verdict == Verdict::DoNotUse);
+    let (finding, None) = (wrong.next()?, wrong.next()) else { return None };
+    let flags = Some(&finding.next[..]).filter(|next| next.starts_with("--"))?;
+    // A step that is given takes the place of stamps.
+    let dropped = flags.split(' ').filter(|word| word.starts_with("--"));
+    let dropped: Vec<&str> = dropped
+        .flat_map(|flag| if flag == "--time" { vec![flag, "--dt"] } else { vec![flag] })
+        .chain(["--html"])
+        .collect();
+    Some(format!("policy-align check {}", again("check", &dropped, flags)))
 }
 
 /// What was recorded.

@@ -167,8 +167,12 @@ fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Rec
     if names.is_empty() {
         return Ok((recordings, None));
     }
-    let known: Vec<&str> = recordings.episodes.iter().map(|episode| episode.name.as_str()).collect();
-    for name in names {
+    let known: Vec<String> = recordings.episodes.iter().map(|episode| episode.name.clone()).collect();
+    let names = match names {
+        [share] if share.ends_with('%') && !known.contains(share) => spread(share, &known)?,
+        names => names.to_vec(),
+    };
+    for name in &names {
         known_episode(name, &known, ("--hold-out", place))?;
     }
     let (held, mut others): (Vec<Episode>, Vec<Episode>) =
@@ -177,6 +181,17 @@ fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Rec
     findings.extend(without_copies(&mut others, &held));
     let of = |episodes, findings| Recordings { state: recordings.state.clone(), episodes, findings };
     Ok((of(others, findings), Some(of(held, vec![]))))
+}
+
+/// A share of the episodes, at least one and not all, evenly spread over them.
+fn spread(share: &str, known: &[String]) -> Result<Vec<String>, Failure> {
+    let percent: Option<f64> = share.trim_end_matches('%').trim().parse().ok();
+    let Some(percent) = percent.filter(|percent| *percent > 0.0 && *percent < 100.0 && known.len() > 1) else {
+        let what = format!("'{share}' is no share of {}", counted(known.len(), "episode"));
+        return Err(Failure::usage(what, "--hold-out", "between 0 and 100 %, as 20%, or names of episodes"));
+    };
+    let count = ((known.len() as f64 * percent / 100.0).round() as usize).clamp(1, known.len() - 1);
+    Ok((0..count).map(|at| known[(2 * at + 1) * known.len() / (2 * count)].clone()).collect())
 }
 
 /// Leaves out copies of what is held out: they would make the error on it too small.

@@ -41,6 +41,12 @@ pub(crate) struct Plot {
     /// Channels across and up [default: the first two]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     dims: Vec<String>,
+    /// Words above it [default: the model's name]
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+    /// Pixels across and up
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "640x660", value_parser = size)]
+    size: (f64, f64),
     /// Recordings to plot
     #[arg(long, value_name = "FILES", num_args = 1..)]
     files: Vec<PathBuf>,
@@ -82,10 +88,13 @@ impl Plot {
             let start = DVector::from_vec(numbers(from, "--rollout")?);
             Ok(followed(&flags, &model, &start, from)?.states)
         });
-        let title = format!("Policy of {} (grey: outside the demonstrations)", base_name(&self.model));
+        let title = self
+            .title
+            .clone()
+            .unwrap_or_else(|| format!("Policy of {} (grey: outside the demonstrations)", base_name(&self.model)));
         let followed = paths.collect::<Result<_, Failure>>()?;
         let picture = Picture { title, model: &model, dims, demonstrated, held, followed };
-        write(&self.output, &draw(&self.output, &picture)?)?;
+        write(&self.output, &draw(&self.output, &picture, self.size)?)?;
         let mut lines = Lines::default();
         let [across, up] = dims.map(|dim| &model.state[dim].name);
         lines.written(&self.output, &format!("{across} across, {up} up"));
@@ -113,6 +122,13 @@ impl Plot {
         let (model, from, others) = (quoted(&self.model), value_word(&from), flag_words(&self.follow));
         format!("policy-align rollout {model} --from {from}{context}{others}{config}")
     }
+}
+
+/// `800x600`, each from 200 to 10,000.
+fn size(text: &str) -> Result<(f64, f64), String> {
+    let length = |text: &str| text.trim().parse().ok().filter(|length| (200..=10_000).contains(length)).map(f64::from);
+    let sides = text.split_once('x').and_then(|(width, height)| Some((length(width)?, length(height)?)));
+    sides.ok_or_else(|| "two whole numbers from 200 to 10000 with an x between, as 800x600".to_owned())
 }
 
 /// The channels to draw, by name.
