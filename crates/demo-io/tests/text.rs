@@ -410,6 +410,8 @@ fn lines_may_be_channels() {
     let found = parsed("a.txt", text, &every).unwrap();
     assert_eq!((names(&found), lengths(&found)), (vec!["x0", "x1"], vec![4]));
     assert_eq!(found.episodes[0].positions.as_slice(), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]);
+    let ends = text.replace('\n', ",\n").replace(' ', ",");
+    assert_eq!(parsed("a.txt", ends, &every).unwrap().episodes[0].positions, found.episodes[0].positions);
     let timed = ReadOptions { dt: None, time: Some("0".to_owned()), ..every.clone() };
     let found = parsed("a.txt", "0 2 4\n5 6 7\n", &timed).unwrap();
     assert_eq!((names(&found), found.time_step()), (vec!["x1"], 2.0));

@@ -113,7 +113,13 @@ fn transposed<R: std::io::Read>(
         push(line, &record)?;
         lines += 1;
     }
-    let shape = vec![lines, rows.fields];
+    let mut samples = rows.fields;
+    // A separator at the end of each line.
+    if samples > 1 && numbers.chunks_exact(samples).all(|line| line[samples - 1].is_nan()) {
+        numbers = numbers.chunks_exact(samples).flat_map(|line| &line[..samples - 1]).copied().collect();
+        samples -= 1;
+    }
+    let shape = vec![lines, samples];
     let described = [ArraySpec { name: input.stem.clone(), shape, kind: Kind::Number("float64") }];
     flat::drafts(input, &described, &mut |_| Ok(Data::Numbers(numbers.clone())))
 }

@@ -23,6 +23,9 @@ use crate::cli::verbs::rollout::followed;
 /// Starts that are tried for the next command, at most, beside those given.
 const STARTS: usize = 8;
 
+/// Pixels around a plot, of both sides together.
+const FRAME: f64 = 20.0;
+
 /// Plot a policy, its potential and recordings
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -45,7 +48,7 @@ pub(crate) struct Plot {
     #[arg(long, value_name = "TEXT")]
     title: Option<String>,
     /// Pixels across and up
-    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "640x660", value_parser = size)]
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "660x680", value_parser = size)]
     size: (f64, f64),
     /// Recordings to plot
     #[arg(long, value_name = "FILES", num_args = 1..)]
@@ -124,10 +127,11 @@ impl Plot {
     }
 }
 
-/// `800x600`, each from 200 to 10,000.
+/// Of `800x600`, each from 200 to 10,000, what is left within the frame.
 fn size(text: &str) -> Result<(f64, f64), String> {
     let length = |text: &str| text.trim().parse().ok().filter(|length| (200..=10_000).contains(length)).map(f64::from);
-    let sides = text.split_once('x').and_then(|(width, height)| Some((length(width)?, length(height)?)));
+    let sides =
+        text.split_once('x').and_then(|(width, height)| Some((length(width)? - FRAME, length(height)? - FRAME)));
     sides.ok_or_else(|| "two whole numbers from 200 to 10000 with an x between, as 800x600".to_owned())
 }
 
