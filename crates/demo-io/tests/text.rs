@@ -404,6 +404,18 @@ fn words_that_never_change_are_left_out() {
 }
 
 #[test]
+fn where_no_stamps_are_found_columns_are_named() {
+    let text = "Uhrzeit,x,y\n0,1,2\n1,3,4\n";
+    refused(
+        "a.csv",
+        text,
+        &plain(),
+        "NoTime",
+        &["--dt SECONDS", "--time with the column of stamps, of: Uhrzeit, x, y"],
+    );
+}
+
+#[test]
 fn lines_may_be_channels() {
     let every = ReadOptions { dt: Some(0.5), samples_are: Some(SamplesAre::Columns), ..ReadOptions::default() };
     let text = "1 3 5 7\n2 4 6 8\n";

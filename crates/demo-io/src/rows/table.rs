@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use crate::raw::{
     Clock, MOST_CHANNELS, MOST_EPISODES, RawEpisode, RawRecordings, Rows, Unknown, no_time, period, unused,
 };
-use crate::rows::roles::{Column, Content, Roles, assign, unit};
+use crate::rows::roles::{Column, Content, Roles, assign, shortened, unit};
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use crate::{Fault, ReadError, ReadOptions};
 use motion::{Channel, Labels};
@@ -62,7 +62,8 @@ impl Table {
         let asked = if options.context.is_empty() { &[][..] } else { &roles.context };
         let period = period(options)?;
         if roles.time.is_none() && period.is_none() {
-            return Err(no_time(file, "the column of stamps"));
+            let names: Vec<&str> = columns.iter().map(|column| &column.name[..]).collect();
+            return Err(no_time(file, &format!("the column of stamps, of: {}", shortened(&names))));
         }
         if roles.state.len() > MOST_CHANNELS {
             let what = format!("{} columns of state, more than {MOST_CHANNELS}", roles.state.len());
