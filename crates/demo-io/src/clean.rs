@@ -276,6 +276,7 @@ mod tests {
             word: "row",
             drop_constant: false,
             unknown: Unknown::default(),
+            context: vec![],
         }
     }
 

@@ -20,6 +20,8 @@ pub(crate) struct RawRecordings {
     pub(crate) drop_constant: bool,
     /// What `--ignore` names and is not there.
     pub(crate) unknown: Unknown,
+    /// Names of the channels that the user takes as context.
+    pub(crate) context: Vec<String>,
 }
 
 /// Patterns that name nothing, and the names that there are.

@@ -36,6 +36,19 @@ pub fn read_all(
     options: &ReadOptions,
     progress: &mut dyn FnMut(u64),
 ) -> Result<Recordings, ReadError> {
+    Ok(read_with_context(paths, options, progress)?.0)
+}
+
+/// As [`read_all`], with the names of the channels that [`ReadOptions::context`] names, which may also be numbers of columns.
+///
+/// # Errors
+///
+/// As [`read_all`].
+pub fn read_with_context(
+    paths: &[PathBuf],
+    options: &ReadOptions,
+    progress: &mut dyn FnMut(u64),
+) -> Result<(Recordings, Vec<String>), ReadError> {
     let joined = joined(paths, |path| {
         let drafts = drafts(path, options, progress)?;
         Ok(if paths.len() > 1 { named_by_file(drafts, path) } else { drafts })
@@ -53,28 +66,13 @@ pub fn read_all(
     if drafts.episodes.iter().all(|raw| raw.len() < 2) {
         return Err(nothing("there is no episode of two samples or more"));
     }
-    Ok(drafts.checked())
-}
-
-/// Names of the channels that patterns name; a list of a Parquet file names its elements.
-///
-/// # Errors
-///
-/// [`ReadError::NoColumn`].
-pub fn channels_named(patterns: &[String], recordings: &Recordings) -> Result<Vec<String>, ReadError> {
-    let names: Vec<&str> = recordings.state.iter().map(|channel| channel.name.as_str()).collect();
-    let mut found = Vec::new();
-    for pattern in patterns.iter().flat_map(|pattern| pattern.split(',')).map(str::trim) {
-        let element = |name: &&str| name.strip_prefix(pattern).is_some_and(|rest| rest.starts_with('_'));
-        let elements: Vec<&str> = names.iter().copied().filter(element).collect();
-        if names.contains(&pattern) || elements.is_empty() {
-            let own = roles::named(&[pattern.to_owned()], &names, "--context, among the channels that were read")?;
-            found.extend(own.into_iter().map(|at| names[at].to_owned()));
-        } else {
-            found.extend(elements.into_iter().map(str::to_owned));
-        }
+    let context = if options.context.is_empty() { Vec::new() } else { std::mem::take(&mut drafts.context) };
+    // What never changes is no channel any more.
+    let names = drafts.names();
+    if let Some(constant) = context.iter().find(|name| !names.contains(name)) {
+        return Err(roles::no_column(constant, &names, "--context, among the channels that were read"));
     }
-    Ok(found)
+    Ok((drafts.checked(), context))
 }
 
 /// Reads with a library that a feature brings, and that may panic at damaged files.

@@ -7,7 +7,7 @@ mod common;
 
 use std::path::{Path, PathBuf};
 
-use common::{Files, names, read_with};
+use common::{Files, names, read_with, said};
 use demo_io::{ReadOptions, write};
 use motion::Recordings;
 
@@ -16,7 +16,7 @@ fn kept(name: &str) -> PathBuf {
 }
 
 /// Samples of the same three movements.
-const FILES: [&str; 3] = ["lists.parquet", "robomimic.hdf5", "cell.mat"];
+const FILES: [&str; 4] = ["lists.parquet", "robomimic.hdf5", "robosuite.hdf5", "cell.mat"];
 
 /// (cos(k + 2t), sin(k + 1.5t) + 0.3t) at t = 0, 0.05, …, 0.55.
 fn formula(episode: usize, sample: usize) -> [f64; 2] {
@@ -42,6 +42,36 @@ fn files_of_other_tools_hold_what_was_put_in() {
             }
         }
     }
+}
+
+/// An element of a MAT-file of version 5, little-endian.
+fn element(kind: u32, bytes: &[u8]) -> Vec<u8> {
+    let mut element = [kind.to_le_bytes(), (bytes.len() as u32).to_le_bytes()].concat();
+    element.extend(bytes);
+    element.resize(element.len().next_multiple_of(8), 0);
+    element
+}
+
+/// A string of MATLAB, or any other of its objects, has no size and holds its numbers elsewhere.
+#[test]
+fn objects_of_matlab_are_passed_over() {
+    let mut bytes = std::fs::read(kept("cell.mat")).unwrap();
+    let flags = element(6, &[17u32.to_le_bytes(), [0; 4]].concat());
+    let texts = ["about", "MCOS", "string"].map(|text| element(1, text.as_bytes())).concat();
+    let numbers =
+        element(14, &[element(6, &[13, 0, 0, 0, 0, 0, 0, 0]), element(5, &[1, 0, 0, 0, 1, 0, 0, 0])].concat());
+    bytes.splice(128..128, element(14, &[flags, texts, numbers].concat()));
+    let files = Files::new();
+    let found = read_with(&files.add("object.mat", &bytes), &ReadOptions::default()).unwrap();
+    let plain = read_with(&kept("cell.mat"), &ReadOptions::default()).unwrap();
+    assert_eq!((&found.state, found.episodes.len()), (&plain.state, 3));
+    assert!(said(&found).contains("arrays not used: about"), "{}", said(&found));
+    for (found, plain) in found.episodes.iter().zip(&plain.episodes) {
+        assert_eq!((&found.positions, &found.times), (&plain.positions, &plain.times));
+    }
+    let asked = ReadOptions { state: vec!["about".to_owned()], ..ReadOptions::default() };
+    let error = read_with(&files.path().join("object.mat"), &asked).unwrap_err();
+    assert!(error.to_string().contains("'about' holds an object of MATLAB"), "{error}");
 }
 
 #[test]

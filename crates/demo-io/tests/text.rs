@@ -5,7 +5,7 @@
 mod common;
 
 use common::{Files, lengths, names, parsed, read_with, refused, said};
-use demo_io::{Nan, ReadOptions};
+use demo_io::{Nan, ReadOptions, SamplesAre};
 use motion::Rows;
 use proptest::prelude::*;
 use std::fmt::Write as _;
@@ -379,6 +379,54 @@ fn json_that_is_one_list_is_read() {
     refused("a.json", "[[1, 2], [3]]", &every, "Ragged", &["entry 0"]);
     refused("a.json", "[[1, 2], [3, 4]", &every, "Json", &["line 1"]);
     refused("a.json", "[1, 2, 3]", &every, "Json", &["entry 0", "lines like"]);
-    let huge = format!("{{\"a\": [{}]}}", vec!["[1, 2]"; 5000].join(", "));
-    refused("a.txt", huge, &every, "Json", &["10000 values", "one line per movement"]);
+    let many: Vec<String> = (0..5000).map(|at| format!("\"b{at}\": 0")).collect();
+    let huge = format!("{{\"a\": {{{}}}}}", many.join(", "));
+    refused("a.txt", huge, &every, "Json", &["5000 values", "one line per movement"]);
+}
+
+#[test]
+fn words_that_never_change_are_left_out() {
+    let rows = |frame: &dyn Fn(usize) -> &'static str| -> String {
+        let row = |at: usize| format!("{at},{},{},{}\n", frame(at), at * at, 3 * at);
+        "t,frame_id,x,y\n".to_owned() + &(0..200).map(row).collect::<String>()
+    };
+    let found = parsed("a.csv", rows(&|_| "base"), &plain()).unwrap();
+    assert_eq!(names(&found), ["x", "y"]);
+    assert!(said(&found).contains("columns not used: frame_id"), "{}", said(&found));
+    // Beyond the rows by which columns are judged.
+    let changing = rows(&|at| if at < 150 { "Trial 1" } else { "Trial 2" });
+    let words = ["'Trial 2' is not a number", "line 152", "--episode 'frame_id'", "--ignore 'frame_id'"];
+    refused("a.csv", &changing, &plain(), "NotANumber", &words);
+    let episode = Some("frame_id".to_owned());
+    assert_eq!(lengths(&parsed("a.csv", changing, &ReadOptions { episode, ..plain() }).unwrap()), [150, 50]);
+    let damaged = rows(&|at| if at == 9 { "base" } else { "1.5" });
+    refused("a.csv", damaged, &plain(), "NotANumber", &["'base'", "line 11", "correct the file"]);
+}
+
+#[test]
+fn where_no_stamps_are_found_columns_are_named() {
+    let text = "Uhrzeit,x,y\n0,1,2\n1,3,4\n";
+    refused(
+        "a.csv",
+        text,
+        &plain(),
+        "NoTime",
+        &["--dt SECONDS", "--time with the column of stamps, of: Uhrzeit, x, y"],
+    );
+}
+
+#[test]
+fn lines_may_be_channels() {
+    let every = ReadOptions { dt: Some(0.5), samples_are: Some(SamplesAre::Columns), ..ReadOptions::default() };
+    let text = "1 3 5 7\n2 4 6 8\n";
+    let found = parsed("a.txt", text, &every).unwrap();
+    assert_eq!((names(&found), lengths(&found)), (vec!["x0", "x1"], vec![4]));
+    assert_eq!(found.episodes[0].positions.as_slice(), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]);
+    let ends = text.replace('\n', ",\n").replace(' ', ",");
+    assert_eq!(parsed("a.txt", ends, &every).unwrap().episodes[0].positions, found.episodes[0].positions);
+    let timed = ReadOptions { dt: None, time: Some("0".to_owned()), ..every.clone() };
+    let found = parsed("a.txt", "0 2 4\n5 6 7\n", &timed).unwrap();
+    assert_eq!((names(&found), found.time_step()), (vec!["x1"], 2.0));
+    refused("a.txt", text, &plain(), "NoRoles", &["--samples-are columns if each line is a channel", "--state 2,3"]);
+    refused("a.txt", "1 3 5\n2 a 6\n", &every, "NotANumber", &["'a'", "line 2, column 1"]);
 }

@@ -72,6 +72,7 @@ mod formula;
 mod inducing;
 mod kernel;
 mod left_out;
+mod outline;
 mod reading;
 mod report;
 mod rows;

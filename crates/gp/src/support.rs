@@ -81,6 +81,36 @@ impl Variances {
     }
 }
 
+/// Whether states (n + p, N) have lost at least this share of their prior variance, `least`: by `some`, which answers for a block of states
+/// where few rows suffice, else by `all`, which gives the variances.
+pub(crate) fn supported(
+    states: DMatrixView<'_, f64>,
+    components: usize,
+    least: f64,
+    some: impl Fn(DMatrixView<'_, f64>) -> Vec<bool> + Sync,
+    all: impl Fn(DMatrixView<'_, f64>) -> Variances,
+) -> Vec<bool> {
+    let together = (COLUMNS / components).max(1);
+    let blocks = states.ncols().div_ceil(together);
+    let block = |part: usize| {
+        let first = part * together;
+        some(states.columns(first, together.min(states.ncols() - first)))
+    };
+    let mut supported: Vec<bool> = if blocks <= 1 {
+        (0..blocks).flat_map(block).collect()
+    } else {
+        (0..blocks).into_par_iter().flat_map_iter(block).collect()
+    };
+    let open: Vec<usize> = (0..supported.len()).filter(|&at| !supported[at]).collect();
+    if !open.is_empty() {
+        let Certainty { support, .. } = all(states.select_columns(&open).as_view()).certainty(1.0, 0, 0);
+        for (at, support) in open.into_iter().zip(support) {
+            supported[at] = support >= least;
+        }
+    }
+    supported
+}
+
 /// The deviations at the one state that was asked for.
 pub(crate) fn only_deviation_into(certainty: &Certainty, mut deviation: DVectorViewMut<'_, f64>) -> bool {
     let Some(deviations) = &certainty.deviations else { return false };

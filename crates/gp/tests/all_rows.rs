@@ -5,7 +5,7 @@ mod drawn;
 use drawn::movement::{Constraint, Integration, Movement};
 use drawn::{normal, nupe};
 use gp::{AutoGp, Rows, SlopeFit, SlopeGp};
-use motion::{LearntPolicy as _, Policy as _, SampleIndex};
+use motion::{LearntPolicy, Policy as _, SampleIndex};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -130,6 +130,31 @@ fn a_model_of_inducing_rows_is_stored() {
     triangle.pop();
     let refused = serde_json::from_value::<SlopeFit>(record).unwrap_err().to_string();
     assert!(refused.contains("triangle"), "{refused}");
+}
+
+/// Some rows tell of most states whether all support them, and the answer is that of all, with and without noise and inducing rows.
+#[test]
+fn support_is_told_as_by_variances() {
+    let (mut induced, mut answers) = (0, [0; 2]);
+    for (most, noise) in [(300, 0.0), (300, 0.2), (0, 0.0), (0, 0.2)] {
+        let set = set(wells, 3, (30, 60), noise, 8);
+        let fit = AutoGp { slope: gp(most), ..AutoGp::default() }.fit(&set.rows, &mut drawn::rng(1)).unwrap();
+        induced += usize::from(fit.slope().report().inducing.is_some());
+        let near = &set.fresh.0;
+        let states = DMatrix::from_fn(3, 3 * near.ncols(), |k, at| near[(k, at / 3)] * [1.0, 2.0, 5.0][at % 3]);
+        for policy in [fit.slope() as &dyn LearntPolicy, fit.direct()] {
+            let support = policy.certainty(states.as_view()).support;
+            for least in [0.2, 0.5, 0.8] {
+                let expected: Vec<bool> = support.iter().map(|support| *support >= least).collect();
+                assert_eq!(policy.supported(states.as_view(), least), expected, "{most} {noise} {least}");
+                for supported in expected {
+                    answers[usize::from(supported)] += 1;
+                }
+            }
+        }
+    }
+    assert!((1..=2).contains(&induced), "{induced} of four have inducing rows");
+    assert!(answers.iter().all(|&count| count > 1000), "{answers:?}");
 }
 
 /// Uncertainty is small where movements were, grows to the prior's away from them, and is never negative.

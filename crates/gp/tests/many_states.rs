@@ -143,6 +143,10 @@ proptest! {
             let (actions, deviations, support) = one_by_one(policy, &states);
             let (together, certainty) = pool.install(|| (policy.actions(states.as_view()), policy.certainty(states.as_view())));
             prop_assert_eq!(together, actions);
+            for least in [0.0, 0.1, 0.5, 0.9, 0.999] {
+                let supported: Vec<bool> = support.iter().map(|support| *support >= least).collect();
+                prop_assert_eq!(pool.install(|| policy.supported(states.as_view(), least)), supported, "{}", least);
+            }
             prop_assert_eq!(certainty.support, support);
             prop_assert_eq!(certainty.deviations, Some(deviations));
         }
@@ -157,6 +161,7 @@ fn no_states_have_no_answers() {
         assert_eq!(policy.actions(none.as_view()).shape(), (2, 0));
         let certainty = policy.certainty(none.as_view());
         assert_eq!((certainty.support.len(), certainty.deviations.unwrap().shape()), (0, (2, 0)));
+        assert_eq!(policy.supported(none.as_view(), 0.5), [false; 0]);
     }
 }
 

@@ -67,6 +67,12 @@ pub trait LearntPolicy: Policy + Debug {
         Certainty { support, deviations: known.then_some(deviations) }
     }
 
+    /// Whether [`support`](Self::support) is at least `least` at each of some states (n, N), as [`certainty`](Self::certainty) says. For a
+    /// Gaussian process this is several times faster: where some of its rows support a state, so do all.
+    fn supported(&self, states: DMatrixView<'_, f64>, least: f64) -> Vec<bool> {
+        self.certainty(states).support.into_iter().map(|support| support >= least).collect()
+    }
+
     /// The trajectories used for learning, ascending; none if all were.
     fn kept(&self) -> Option<&[usize]> {
         None

@@ -192,9 +192,10 @@ impl Fitted {
         py: Python<'py>,
         states: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        let least = self.model.policy().least_support();
-        let support = self.certainty(py, &states)?.support;
-        Ok(PyArray1::from_iter(py, support.into_iter().map(|support| support >= least)))
+        let states = self.states(&states)?;
+        let mut supported = Vec::with_capacity(states.ncols());
+        in_parts(py, &states, |states| self.model.policy().are_supported(states), |_, found| supported.extend(found))?;
+        Ok(PyArray1::from_vec(py, supported))
     }
 
     /// Evaluates the policy on movements; as JSON.

@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use demo_io::{ReadOptions, read_all};
+use demo_io::{ReadOptions, read_with_context};
 use motion::{Channel, Episode, Finding, Labels, MotionError, Source, Times, Trajectory};
 use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
@@ -50,12 +50,11 @@ impl Recordings {
             Refusal::new(text.split(" at line").next().unwrap_or(&text), "read()", "help(Demonstrations.read)")
         })?;
         let read = move |_: &_| {
-            let mut recordings = read_all(&paths, &options, &mut |_bytes| ()).map_err(|error| Refusal::read(&error))?;
+            let read = read_with_context(&paths, &options, &mut |_bytes| ());
+            let (mut recordings, context) = read.map_err(|error| Refusal::read(&error))?;
             if trim_still {
                 policy_align::trim_still(&mut recordings);
             }
-            let context =
-                demo_io::channels_named(&options.context, &recordings).map_err(|error| Refusal::read(&error))?;
             let plain = paths.iter().filter(|path| path.is_file());
             let files: Result<Vec<_>, _> = plain.map(|path| FileSummary::of(path)).collect();
             let unread =

@@ -98,7 +98,15 @@ impl Refusal {
     }
 
     pub(crate) fn roll_out(error: &RollOutError) -> Self {
-        Refusal::new(error.to_string(), "rollout()", error.remedy())
+        let hint = match error {
+            RollOutError::Context { names } => format!(
+                "context={{{}}}",
+                names.iter().map(|name| format!("'{name}': …")).collect::<Vec<_>>().join(", ")
+            ),
+            RollOutError::Unsupported { .. } => format!("{}: supports([x0]) is True there", error.remedy()),
+            _ => error.remedy().into_owned(),
+        };
+        Refusal::new(error.to_string(), "rollout()", hint)
     }
 
     pub(crate) fn constraints(error: &ConstraintFileError, place: &str) -> Self {

@@ -7,12 +7,13 @@ import io
 import pickle
 import subprocess
 import sys
+import warnings
 
 import numpy as np
 import pytest
 from conftest import DT, on_rails
 
-from policy_align import AutoGp, DirectGp, PolicyAlign, PolicyAlignError, SlopeGp, load
+from policy_align import AutoGp, DirectGp, PolicyAlign, PolicyAlignError, PolicyAlignWarning, SlopeGp, load
 
 LEARNERS = [PolicyAlign, SlopeGp, DirectGp, AutoGp]
 STATES = np.random.default_rng(5).uniform(-1, 1, (30, 2))
@@ -137,6 +138,27 @@ def test_scikit_learn_takes_it() -> None:
     assert np.array_equal(pipeline.predict(STATES), pipeline["learn"].predict(STATES))
     with pytest.raises(sklearn.exceptions.NotFittedError):
         check_is_fitted(SlopeGp())
+
+
+def test_a_scaler_before_it_is_warned_of() -> None:
+    pytest.importorskip("sklearn")
+    from sklearn.pipeline import make_pipeline
+    from sklearn.preprocessing import MinMaxScaler, StandardScaler
+
+    positions = on_rails()[0]
+    flat, lengths = np.concatenate(positions), [len(x) for x in positions]
+    for scaler, said in (
+        (StandardScaler(), "the mean 0 and the deviation 1"),
+        (MinMaxScaler(), "values from 0 to 1"),
+        (MinMaxScaler((-1, 1)), "values from -1 to 1"),
+    ):
+        pipeline = make_pipeline(scaler, SlopeGp(max_rows=60))
+        with pytest.warns(PolicyAlignWarning, match=f"every channel has {said}, as from a scaler.*leave the scaler out"):
+            pipeline.fit(flat, slopegp__dt=DT, slopegp__lengths=lengths)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        SlopeGp(max_rows=60).fit(flat, dt=DT, lengths=lengths)
+    assert not [warning for warning in caught if "scaler" in str(warning.message)]
 
 
 def test_scikit_learn_is_not_needed() -> None:

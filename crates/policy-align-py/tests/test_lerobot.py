@@ -76,12 +76,14 @@ def observed(states: np.ndarray, dtype: torch.dtype = torch.float64) -> dict[str
 
 
 def configured(folder: Path, **settings: Any) -> AlignPolicy:
+    """With velocities as actions, which are the model's own, unless ``settings`` say otherwise."""
+    settings = {"action": "velocity", **settings}
     config = PreTrainedConfig.from_pretrained(folder, cli_overrides=[f"--{key}={value}" for key, value in settings.items()])
     return AlignPolicy.from_pretrained(folder, config=config)
 
 
 def test_actions_are_the_models_to_the_bit(folder: Path, slope: SlopeGp, states: np.ndarray) -> None:
-    policy = AlignPolicy.from_pretrained(folder)
+    policy = configured(folder)
     known = slope.supports(states)
     assert 30 < known.sum() < 270
     actions = policy.select_action(observed(states)).numpy()
@@ -128,8 +130,10 @@ def test_settings(folder: Path, slope: SlopeGp, states: np.ndarray) -> None:
     actions = slope.predict(inside)
     targets = configured(folder, action="position", time_step=0.01).select_action(observed(inside)).numpy()
     assert np.array_equal(targets, inside + 0.01 * actions)
-    own_step = configured(folder, action="position").select_action(observed(inside)).numpy()
-    assert np.array_equal(own_step, inside + slope.time_step_ * actions)
+    usual = AlignPolicy.from_pretrained(folder).select_action(observed(inside)).numpy()
+    assert np.array_equal(usual, inside + slope.time_step_ * actions)
+    beyond = np.array([[9.0, -9.0]])
+    assert np.array_equal(AlignPolicy.from_pretrained(folder).select_action(observed(beyond)).numpy(), beyond), "it stays"
     for outside in ("nan", "extrapolate"):
         found = configured(folder, outside=outside).select_action(observed(states)).numpy()
         assert np.array_equal(found, slope.predict(states, outside=outside), equal_nan=True)
@@ -156,7 +160,7 @@ def test_a_context_is_the_environments_state(export: Export, tmp_path: Path) -> 
     goals = SlopeGp(max_rows=150).fit(Demonstrations.read(GOALS))
     assert goals.context_names_ == ["goal_x", "goal_y"]
     goals.save(tmp_path / "goals.json")
-    policy = AlignPolicy.from_pretrained(export(tmp_path / "goals.json"))
+    policy = configured(export(tmp_path / "goals.json"))
     about = json.loads((tmp_path / "goals.json").read_text())
     contexts = np.array([[channel["median"] for channel in about["context"]]] * 4)
     contexts[1:3] += 0.05
@@ -262,7 +266,7 @@ def test_from_a_data_set_of_lerobot_to_its_policy(tmp_path: Path) -> None:
 
 
 class Bowl(gymnasium.Env):
-    """The action is a velocity for 0.05 s; done within 0.1 of (0, 0)."""
+    """The action is the next position, as for the robots of LeRobot; done within 0.1 of (0, 0)."""
 
     observation_space = gymnasium.spaces.Dict({"agent_pos": gymnasium.spaces.Box(-9, 9, (2,), np.float32)})
     action_space = gymnasium.spaces.Box(-99, 99, (2,), np.float32)
@@ -275,7 +279,7 @@ class Bowl(gymnasium.Env):
         return {"agent_pos": self.x.astype(np.float32)}, {}
 
     def step(self, action: np.ndarray) -> Any:
-        self.x = self.x + 0.05 * action
+        self.x = np.array(action, dtype=np.float64)
         there = bool(np.linalg.norm(self.x) < 0.1)
         return {"agent_pos": self.x.astype(np.float32)}, float(there), there, False, {"is_success": there}
 

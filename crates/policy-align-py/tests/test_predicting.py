@@ -30,6 +30,20 @@ def test_there_is_no_action_outside_of_the_data(name: str, request: pytest.Fixtu
         model.predict(FAR, outside="none")
 
 
+@pytest.mark.parametrize("name", ["slope", "aligned"])
+def test_states_are_supported_as_their_support_says(name: str, request: pytest.FixtureRequest) -> None:
+    model: SlopeGp = request.getfixturevalue(name)
+    states = np.random.default_rng(4).uniform(-4, 4, (3000, 2))
+    support, supports = model.support(states), model.supports(states)
+    assert np.array_equal(supports, support >= (0.5 if name == "slope" else np.finfo(float).tiny))
+    assert 100 < supports.sum() < 2900
+    # Not of the deviations that are asked for.
+    actions = model.predict(states, outside="nan")
+    assert np.array_equal(np.isnan(actions[:, 0]), ~supports)
+    if name == "slope":
+        assert np.array_equal(actions, model.predict(states, return_std=True, outside="nan")[0], equal_nan=True)
+
+
 def test_deviations_are_not_known_outside_of_the_data(slope: SlopeGp) -> None:
     actions, deviations = slope.predict(FAR, return_std=True)
     assert np.array_equal(actions, slope.predict(FAR))

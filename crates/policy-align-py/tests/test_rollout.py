@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -76,6 +78,14 @@ def test_starts_and_times_are_looked_at(arguments: tuple, words: str, slope: Slo
     with pytest.raises(PolicyAlignError) as error:
         slope.rollout(*arguments)
     assert words in str(error.value)
+    hint = str(error.value.hint)
+    assert "--" not in hint and "policy-align" not in hint
+
+
+def test_a_start_outside_the_data_is_told_where_they_are(slope: SlopeGp) -> None:
+    with pytest.raises(PolicyAlignError) as error:
+        slope.rollout([90.0, 0.0])
+    assert re.fullmatch(r"start near a demonstration, within x -.* … .*, y -.* … .*: supports\(\[x0\]\) is True there", error.value.hint)
 
 
 def test_constraints_are_looked_at(slope: SlopeGp, tmp_path) -> None:

@@ -73,12 +73,12 @@ impl ModelPolicy<'_> {
     /// receptive field there, a Gaussian process has lost half of its prior variance; and no channel is beyond
     /// [`Model::bounds`].
     pub fn is_supported(&self, state: DVectorView<'_, f64>) -> bool {
-        self.support(state) >= self.least_support
+        self.supported(state.as_view(), self.least_support)[0]
     }
 
-    /// Whether each of some states (n, N) is, by [`LearntPolicy::certainty`].
+    /// Whether each of some states (n, N) is, by [`LearntPolicy::supported`].
     pub fn are_supported(&self, states: DMatrixView<'_, f64>) -> Vec<bool> {
-        self.certainty(states).support.into_iter().map(|support| support >= self.least_support).collect()
+        self.supported(states, self.least_support)
     }
 
     /// Whether no channel of a state (n) is beyond [`Model::bounds`].
@@ -138,6 +138,16 @@ impl LearntPolicy for ModelPolicy<'_> {
         }
         certainty.deviations = certainty.deviations.map(|deviations| self.inputs.unscaled(deviations));
         certainty
+    }
+
+    fn supported(&self, states: DMatrixView<'_, f64>, least: f64) -> Vec<bool> {
+        let within: Vec<bool> = states.column_iter().map(|state| self.is_within(state) || least <= 0.0).collect();
+        let asked: Vec<usize> = (0..within.len()).filter(|&at| within[at]).collect();
+        let mut found = self
+            .learnt
+            .supported(self.inputs.scaled_columns(states.select_columns(&asked).as_view()).as_view(), least)
+            .into_iter();
+        within.into_iter().map(|within| within && found.next().unwrap_or_default()).collect()
     }
 
     fn kept(&self) -> Option<&[usize]> {

@@ -146,6 +146,36 @@ fn flags_stay() {
     }
 }
 
+/// Where only the roles of columns are wrong, the next command gives them others.
+#[test]
+fn columns_in_wrong_roles_lead_to_the_right_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, header: &str, order: [usize; 4]| {
+        let row = |take: usize, at: usize, [x, y]: [f64; 2]| {
+            let values = [x, y, -0.5 * x - 0.8 * y, 0.8 * x - 0.5 * y];
+            let [a, b, c, d] = order.map(|at| values[at]);
+            format!("{take} {} {a} {b} {c} {d}\n", 0.1 * at as f64)
+        };
+        std::fs::write(folder.path().join(name), spirals(header, row)).unwrap();
+    };
+    write("after.txt", "take t s0 s1 s2 s3\n", [0, 1, 2, 3]);
+    write("beside.txt", "take t s0 s1 s2 s3\n", [0, 2, 1, 3]);
+    write("bare.txt", "", [0, 1, 2, 3]);
+    for (line, next) in [
+        ("after.txt --smooth off", "after.txt --smooth off --state s0-1 --velocity s2-3"),
+        ("beside.txt --html page.html", "beside.txt --state s0,s2 --velocity s1,s3"),
+        ("after.txt --state 't,s*' --dt=0.1", "after.txt --dt=0.1 --state s0-1 --velocity s2-3"),
+        ("bare.txt --episode 0 --dt 0.1 --state 1-5", "bare.txt --episode 0 --time c1 --state c2-3 --velocity c4-5"),
+    ] {
+        let ran = pasted(folder.path(), &format!("policy-align check {line}"));
+        assert_eq!(ran.code, Some(1), "{line}\n{}{}", ran.out, ran.err);
+        let found = ran.out.lines().find_map(|line| line.strip_prefix("Next:  policy-align check ")).unwrap_or("");
+        assert_eq!(found, next, "{}", ran.out);
+        let lines = followed(folder.path(), &format!("check {found}"));
+        assert!(lines[1].starts_with(&format!("policy-align fit {next}")), "{lines:#?}");
+    }
+}
+
 /// A plot proposes a roll-out that starts within the data, with its own flags.
 #[test]
 fn a_plot_proposes_a_roll_out_that_works() {

@@ -77,6 +77,13 @@ fn pages_and_their_pictures_are_light_or_dark_as_the_reader_prefers() {
 fn the_picture_of_a_policy_says_what_it_shows() {
     assert_eq!(run("plot toy.json -o field.svg --files toy.csv --rollout 1.5,1").code, Some(0));
     let svg = std::fs::read_to_string(folder().join("field.svg")).unwrap();
+    assert!(svg.contains("width=\"660\" height=\"680\""));
+    let ran = run("plot toy.json -o wide.svg --size 900x500 --title Rails --dims y,x");
+    assert_eq!(ran.code, Some(0), "{}", ran.err);
+    let wide = std::fs::read_to_string(folder().join("wide.svg")).unwrap();
+    assert!(
+        wide.contains(">Rails</text>") && wide.contains("width=\"900\" height=\"500\"") && !wide.contains("Policy of")
+    );
     for words in [
         "Policy of toy.json (grey: outside the demonstrations)",
         "x (no unit given)",

@@ -156,6 +156,10 @@ fn errors_have_three_lines_and_a_code() {
         ("fit toy.csv --learner avto", 2, "auto"),
         ("fit toy.csv --bandwidth big", 2, "--bandwidth auto"),
         ("fit toy.csv --hold-out nobody", 2, "there is no episode 'nobody'"),
+        ("fit toy.csv --hold-out 0%", 2, "'0%' is no share of 40 episodes"),
+        ("fit toy.csv --hold-out x%", 2, "as 20%"),
+        ("plot toy.json --size 800", 2, "as 800x600"),
+        ("plot toy.json --size 800x60", 2, "from 200 to 10000"),
         ("fit toy.csv --scale q=2", 2, "'q'"),
         ("fit toy.csv -o none/model.json", 3, "cannot be written"),
         ("predict toy.json --at 1", 2, "one for each of x, y"),
@@ -378,6 +382,18 @@ fn held_out_episodes_are_in_learnt_units() {
     let scale = document["decisions"].as_array().unwrap().iter().find(|decision| decision["what"] == "scale").unwrap();
     assert_eq!(scale["value"], "y times 0.001");
     assert!(document["hold_out"]["policy_error"].as_f64().unwrap() < 1e-3, "{}", document["hold_out"]);
+}
+
+#[test]
+fn a_share_of_the_episodes_is_held_out() {
+    let ran = run("fit toy.csv -o share.json --hold-out 20% --json");
+    assert_eq!(ran.code, Some(0), "{}{}", ran.out, ran.err);
+    let document: Value = serde_json::from_str(&ran.out).unwrap();
+    assert_eq!(document["hold_out"]["episodes"].as_array().unwrap().len(), 8);
+    let names = "fit toy.csv -o named.json --hold-out 2,7,12,17,22,27,32,37 --json";
+    let named: Value = serde_json::from_str(&run(names).out).unwrap();
+    assert_eq!(document["hold_out"], named["hold_out"], "evenly spread");
+    assert!(run("info share.json").out.contains("32 episodes"));
 }
 
 #[test]

@@ -228,7 +228,10 @@ fn what_cannot_be_followed_is_refused() {
     let error = refused(RollOut::default(), &dvector![1.0]);
     assert_eq!(error.to_string(), "the start has 1 number, the state 2: x, y");
     assert!(matches!(refused(RollOut::default(), &dvector![1.0, f64::NAN]), RollOutError::StartNotFinite { .. }));
-    assert!(matches!(refused(RollOut::default(), &dvector![80.0, 80.0]), RollOutError::Unsupported { .. }));
+    let outside = refused(RollOut::default(), &dvector![80.0, 80.0]);
+    assert!(matches!(outside, RollOutError::Unsupported { .. }));
+    let remedy = outside.remedy();
+    assert!(remedy.starts_with("start near a demonstration, within x -") && remedy.contains(", y -"), "{remedy}");
     let ball = constraints("[[constraint]]\npoint = [1, 1.1]\nradius = 0.3");
     let error = refused(RollOut { constraints: ball, ..RollOut::default() }, &good);
     assert_eq!(error.to_string(), "the start breaks constraint 1 by 2.000e-1");

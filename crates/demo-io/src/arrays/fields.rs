@@ -150,6 +150,8 @@ pub(crate) fn assign(described: &[ArraySpec], options: &ReadOptions, place: &str
     }
     fields.beside = fields.within.beside(&fields.state, described);
     if options.velocity.is_empty() {
+        // What is empty is no velocity, whatever its name.
+        ignored.iter_mut().zip(described).for_each(|(ignored, array)| *ignored |= array.shape.contains(&0));
         fields.velocity = fields.guess_velocities(&names, &ignored);
     }
     for &index in fields.state.iter().chain(&fields.velocity).chain(&fields.beside) {

@@ -45,7 +45,7 @@ impl Columns<'_> {
             let place = format!("{}, which holds {}", input.name, shortened(&listed));
             return Err(no_time(place, "the array of stamps"));
         }
-        let ReadState { stack: state, velocities, channels, stamps, unused, unknown } = self.0.state(load)?;
+        let ReadState { stack: state, velocities, channels, stamps, unused, unknown, context } = self.0.state(load)?;
         let ranges = self.ranges(&state, load)?;
         let times = match (&step, stamps) {
             (None, Some((stamps, name))) => {
@@ -71,7 +71,7 @@ impl Columns<'_> {
             constraint: labels[index].take(),
         });
         let (episodes, findings) = (episodes.collect(), self.0.findings(&unused));
-        Ok(RawRecordings { channels, episodes, findings, word: "sample", drop_constant: false, unknown })
+        Ok(RawRecordings { channels, episodes, findings, word: "sample", drop_constant: false, unknown, context })
     }
 
     /// Which samples each episode has.

@@ -5,12 +5,9 @@ use crate::arrays::demo::Demo;
 use crate::arrays::fields::assign;
 use crate::arrays::reader::{ArrayReader, ReadState};
 use crate::input::Input;
-use crate::raw::{
-    MOST_EPISODES, RawEpisode, RawRecordings, Rows, Unknown, even_times, no_time, period, seconds_since_first,
-};
+use crate::raw::{MOST_EPISODES, RawEpisode, RawRecordings, Rows, even_times, no_time, period, seconds_since_first};
 use crate::rows::stamps::Stamp;
 use crate::{Fault, ReadError};
-use motion::Channel;
 
 /// All demonstrations of a file.
 pub(crate) struct GroupedArrays<'a> {
@@ -39,11 +36,13 @@ impl GroupedArrays<'_> {
         let fields = &assign(&arrays, input.options, &format!("{file}, {}", first.name))?;
         let reader = |demo| ArrayReader { input, described, demo: Some(demo), arrays: &arrays, fields, named_by_array };
         let step = period(input.options)?;
-        let mut first_state: Option<(Vec<Channel>, Vec<String>, Unknown)> = None;
+        // Without numbers.
+        let mut first_state: Option<ReadState> = None;
         let mut episodes = Vec::with_capacity(self.demos.len());
         for demo in &self.demos {
             let arrays = reader(demo);
-            let ReadState { stack: state, velocities, channels, stamps, unused, unknown } = arrays.state(load)?;
+            let ReadState { stack: state, velocities, channels, stamps, unused, unknown, context } =
+                arrays.state(load)?;
             let times = match (step, stamps) {
                 (None, Some((stamps, name))) => {
                     let stamps = stamps.iter().map(|&stamp| (Stamp::number(stamp), None));
@@ -54,8 +53,8 @@ impl GroupedArrays<'_> {
             let rows: Vec<usize> = (0..state.samples).collect();
             let label = arrays.constraints(&[&rows], state.samples, load)?.pop().flatten();
             match &first_state {
-                None => first_state = Some((channels, unused, unknown)),
-                Some((channels, ..)) if channels.len() != state.channels => {
+                None => first_state = Some(ReadState { channels, unused, unknown, context, ..ReadState::default() }),
+                Some(ReadState { channels, .. }) if channels.len() != state.channels => {
                     let (found, expected) = (state.channels, channels.len());
                     let what = format!("{found} channels where the first demonstration has {expected}");
                     let remedy = "--state with an array of one width";
@@ -73,9 +72,9 @@ impl GroupedArrays<'_> {
                 constraint: label,
             });
         }
-        let (channels, unused, unknown) = first_state.unwrap_or_default();
+        let ReadState { channels, unused, unknown, context, .. } = first_state.unwrap_or_default();
         let findings = reader(first).findings(&unused);
-        Ok(RawRecordings { channels, episodes, findings, word: "sample", drop_constant: false, unknown })
+        Ok(RawRecordings { channels, episodes, findings, word: "sample", drop_constant: false, unknown, context })
     }
 
     /// Seconds of `len` samples: by the step that the user gave, else by stamps, else by a step in the file.

@@ -48,16 +48,16 @@ fn demos(tree: &mut Tree<'_>, parent: &Folder) -> Result<Vec<Demo>, ReadError> {
     let mut demos = Vec::new();
     for name in names {
         let group = tree.ok(parent.group(&name))?;
-        let mut fields = Vec::new();
+        let (mut fields, mut observed) = (Vec::new(), false);
         for folder in tree.ok(group.groups())? {
             let inner = tree.ok(group.group(&folder))?;
             if folder == "obs" {
+                observed = true;
                 fields.extend(tree.arrays(&inner, "")?);
             } else if folder != "next_obs" {
                 fields.extend(tree.arrays(&inner, &format!("{folder}/"))?);
             }
         }
-        let observed = !fields.is_empty();
         let own = tree.arrays(&group, "")?;
         // Next to observations, the simulator's whole state is used only on request.
         let asked = |name: &str| !observed || name != "states" || !tree.input.options.state.is_empty();

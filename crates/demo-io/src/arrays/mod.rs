@@ -1,10 +1,10 @@
 //! Files of arrays: what is described before it is read, and which array is what.
 
 pub(crate) mod array;
-mod demo;
+pub(crate) mod demo;
 pub(crate) mod fields;
 pub(crate) mod flat;
-mod grouped;
+pub(crate) mod grouped;
 #[cfg(feature = "hdf5")]
 pub(crate) mod hdf5;
 pub(crate) mod layout;

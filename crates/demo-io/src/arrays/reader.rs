@@ -27,6 +27,8 @@ pub(crate) struct ReadState {
     /// Columns without a role.
     pub(crate) unused: Vec<String>,
     pub(crate) unknown: Unknown,
+    /// Channels that the user takes as context.
+    pub(crate) context: Vec<String>,
 }
 
 /// The arrays of a file, or those of one demonstration in it.
@@ -92,6 +94,7 @@ impl ArrayReader<'_> {
             stamps: chosen.stamps(&stack.numbers).zip(chosen.time.map(|time| names[time].clone())),
             unused: chosen.unused().filter(|&column| !ignored[column]).map(|column| names[column].clone()).collect(),
             unknown: Unknown::of(&asked.ignore, &names),
+            context: chosen.context.iter().map(|&column| names[column].clone()).collect(),
             channels: chosen.channels().map(|column| channels[column].clone()).collect(),
             stack: Stack { channels: chosen.channels().count(), numbers: chosen.positions(&stack.numbers), ..stack },
         };

@@ -11,11 +11,13 @@ use csv::ByteRecord;
 
 use self::dialect::Dialect;
 use self::source::TextSource;
+use crate::arrays::array::{ArraySpec, Data, Kind};
+use crate::arrays::flat;
 use crate::input::Input;
 use crate::raw::{RawRecordings, remark};
 use crate::rows::roles::Column;
 use crate::rows::table::{HEAD_ROWS, Row as _, Table, content};
-use crate::{Fault, ReadError};
+use crate::{Fault, ReadError, SamplesAre};
 
 pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<RawRecordings, ReadError> {
     let dialect = Dialect::of(input)?;
@@ -42,6 +44,9 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
         let Some(line) = rows.next(&mut record)? else { break };
         head.push((line, record.clone()));
     }
+    if header.is_none() && input.options.samples_are == Some(SamplesAre::Columns) {
+        return transposed(input, &dialect, &mut rows, &head);
+    }
     let Some((first_line, first)) = head.first() else {
         let what = if header.is_some() { "there is a header but no row" } else { "there is no row" };
         return Err(ReadError::Empty(Fault::new(what, &input.name, "a file with samples")));
@@ -52,6 +57,11 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
         let n = names.len();
         let what = format!("there is no header: line {first_line} begins with numbers, and {n} columns have no name");
         let remedy = "--state 2,3 --time 1 (columns count from 0; also --episode 0, --velocity 4,5), or write a first line with names";
+        let remedy = if n > head.len() {
+            format!("--samples-are columns if each line is a channel; else {remedy}")
+        } else {
+            remedy.to_owned()
+        };
         return Err(ReadError::NoRoles(Fault::new(what, &input.name, remedy)));
     }
     let column = |(column, name): (usize, String)| Column {
@@ -74,6 +84,44 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
         drafts.findings.push(remark(what, "--decimal . if they are something else"));
     }
     Ok(drafts)
+}
+
+/// Text without names that holds a channel a line: an array whose samples are columns.
+fn transposed<R: std::io::Read>(
+    input: &Input<'_>,
+    dialect: &Dialect,
+    rows: &mut Rows<'_, R>,
+    head: &[(u64, ByteRecord)],
+) -> Result<RawRecordings, ReadError> {
+    let mut numbers = Vec::new();
+    let mut push = |line: u64, record: &ByteRecord| {
+        input.charge(8 * record.len() as u64)?;
+        for column in 0..record.len() {
+            let number = dialect.fields(record).number(column);
+            numbers.push(number.map_err(|text| {
+                let what = format!("'{}' is not a number", text.chars().take(40).collect::<String>());
+                let place = format!("{}, line {line}, column {column}", input.name);
+                ReadError::NotANumber(Fault::new(what, place, "lines of numbers only, or a first line with names"))
+            })?);
+        }
+        Ok(())
+    };
+    head.iter().try_for_each(|(line, record)| push(*line, record))?;
+    let mut lines = head.len();
+    let mut record = ByteRecord::new();
+    while let Some(line) = rows.next(&mut record)? {
+        push(line, &record)?;
+        lines += 1;
+    }
+    let mut samples = rows.fields;
+    // A separator at the end of each line.
+    if samples > 1 && numbers.chunks_exact(samples).all(|line| line[samples - 1].is_nan()) {
+        numbers = numbers.chunks_exact(samples).flat_map(|line| &line[..samples - 1]).copied().collect();
+        samples -= 1;
+    }
+    let shape = vec![lines, samples];
+    let described = [ArraySpec { name: input.stem.clone(), shape, kind: Kind::Number("float64") }];
+    flat::drafts(input, &described, &mut |_| Ok(Data::Numbers(numbers.clone())))
 }
 
 /// Records of equal length, with their lines.

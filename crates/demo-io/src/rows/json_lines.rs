@@ -1,10 +1,15 @@
-//! JSON lines: a line an episode, as [`crate::write`] makes them, or a line a sample; or one list of either, over any lines.
+//! JSON lines: a line an episode, as [`crate::write`] makes them or with lists by name, or a line a sample; or one list of either, or one
+//! object that holds episodes, over any lines.
 
+mod entry_arrays;
 mod episode_line;
+mod movements;
 
 use std::io::{BufRead, BufReader, Read as _};
 
+use self::entry_arrays::EntryArrays;
 use self::episode_line::EpisodeLines;
+use self::movements::{Form, rows_of_columns, within};
 use crate::input::Input;
 use crate::raw::RawRecordings;
 use crate::rows::documents::Documents;
@@ -17,28 +22,35 @@ const LONGEST_LINE: u64 = 1 << 30;
 pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<RawRecordings, ReadError> {
     let mut lines = Lines { file: BufReader::with_capacity(1 << 16, input.open()?), line: 0, text: Vec::new() };
     let mut reader: Option<Reader<'_>> = None;
-    let mut add = |place: u64, word: &'static str, document: &Json| {
-        let reader = reader.get_or_insert_with(|| Reader::of(document, input, word));
-        match reader {
-            Reader::Episodes(episodes) => episodes.push(place, document),
-            Reader::Samples(rows) => rows.push(place, document),
-        }
+    let mut add = |place: u64, word: &'static str, alone: bool, document: &Json| {
+        let form = || Form::of(document, alone);
+        reader.get_or_insert_with(|| Reader::of(form(), alone, input, word)).push(place, document)
     };
-    let mut first = true;
-    while let Some(document) = lines.next(&input.name, first, progress)? {
-        match document {
-            Json::List(entries) if first => {
-                let listed = episodes_of(entries).into_iter().enumerate();
-                listed.into_iter().try_for_each(|(at, entry)| add(at as u64, "entry", &entry))?;
-            }
-            document => add(lines.line, "line", &document)?,
-        }
-        first = false;
+    let mut add_all = |entries: Vec<Json>| {
+        entries.into_iter().enumerate().try_for_each(|(at, entry)| add(at as u64, "entry", false, &entry))
+    };
+    let Some(first) = lines.next(&input.name, true, progress)? else {
+        return Err(ReadError::Empty(Fault::new("there is no line", &input.name, "a file that is not empty")));
+    };
+    let place = lines.line;
+    let second = lines.next(&input.name, false, progress)?;
+    match first {
+        Json::List(entries) => add_all(episodes_of(entries))?,
+        first => match within(&first).filter(|_| second.is_none()) {
+            Some(entries) => add_all(entries)?,
+            None => add(place, "line", second.is_none(), &first)?,
+        },
+    }
+    let mut next = second;
+    while let Some(document) = next {
+        add(lines.line, "line", false, &document)?;
+        next = lines.next(&input.name, false, progress)?;
     }
     match reader {
-        Some(Reader::Episodes(episodes)) => episodes.finish(),
-        Some(Reader::Samples(rows)) => rows.finish(),
-        None => Err(ReadError::Empty(Fault::new("there is no line", &input.name, "a file that is not empty"))),
+        Some(reader) => reader.finish(),
+        None => {
+            Err(ReadError::Empty(Fault::new("there is no entry", &input.name, "a list of movements or of samples")))
+        }
     }
 }
 
@@ -61,14 +73,44 @@ fn episodes_of(entries: Vec<Json>) -> Vec<Json> {
 /// What a line is, judged by the first.
 enum Reader<'a> {
     Episodes(EpisodeLines<'a>),
+    Arrays(EntryArrays<'a>),
+    /// Objects of columns, of which each is an episode if there are several.
+    Columns {
+        rows: Box<Documents<'a>>,
+        alone: bool,
+    },
     Samples(Box<Documents<'a>>),
 }
 
 impl<'a> Reader<'a> {
-    fn of(first: &Json, input: &'a Input<'a>, word: &'static str) -> Self {
-        match episode_line::state(first) {
-            Some(_) => Reader::Episodes(EpisodeLines::new(input, word)),
-            None => Reader::Samples(Box::new(Documents::new(input, word))),
+    fn of(form: Form, alone: bool, input: &'a Input<'a>, word: &'static str) -> Self {
+        let rows = || Box::new(Documents::new(input, word));
+        match form {
+            Form::Episode => Reader::Episodes(EpisodeLines::new(input, word)),
+            Form::Arrays => Reader::Arrays(EntryArrays::new(input, word)),
+            Form::Columns => Reader::Columns { rows: rows(), alone },
+            Form::Other => Reader::Samples(rows()),
+        }
+    }
+
+    fn push(&mut self, place: u64, document: &Json) -> Result<(), ReadError> {
+        match self {
+            Reader::Episodes(episodes) => episodes.push(place, document),
+            Reader::Arrays(arrays) => arrays.push(place, document),
+            Reader::Columns { rows, alone } => {
+                let label = place.to_string();
+                let label = Some(&label[..]).filter(|_| !*alone);
+                rows_of_columns(document, label).iter().try_for_each(|row| rows.push(place, row))
+            }
+            Reader::Samples(rows) => rows.push(place, document),
+        }
+    }
+
+    fn finish(self) -> Result<RawRecordings, ReadError> {
+        match self {
+            Reader::Episodes(episodes) => episodes.finish(),
+            Reader::Arrays(arrays) => arrays.finish(),
+            Reader::Columns { rows, .. } | Reader::Samples(rows) => rows.finish(),
         }
     }
 }

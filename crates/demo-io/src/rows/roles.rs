@@ -25,6 +25,8 @@ pub(crate) enum Content {
     Counting,
     /// Numbers, or nothing.
     Numbers,
+    /// Words that begin with a letter, throughout.
+    Words,
     /// Anything else.
     Text,
 }
@@ -42,6 +44,8 @@ pub(crate) struct Roles {
     pub(crate) velocity: Vec<usize>,
     /// What follows the state and has no velocity.
     pub(crate) context: Vec<usize>,
+    /// Words, which are expected to be the same everywhere: a frame, a device. Not used.
+    pub(crate) words: Vec<usize>,
     /// Not used, and not named by `--ignore` either.
     pub(crate) ignored: Vec<usize>,
     /// Whether the state was found here rather than named by the user.
@@ -110,6 +114,8 @@ pub(crate) fn assign(columns: &[Column], options: &ReadOptions, place: &str) -> 
     roles.ignored.extend(free.extract_if(.., |index| pointless(names[*index])));
     roles.state_guessed = options.state.is_empty();
     if roles.state_guessed {
+        roles.words = free.extract_if(.., |index| columns[*index].content == Content::Words).collect();
+        roles.ignored.extend(&roles.words);
         roles.guess_state(&names, &mut free, options, place)?;
     }
     if roles.velocity.is_empty() && options.velocity.is_empty() {

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use crate::raw::{
     Clock, MOST_CHANNELS, MOST_EPISODES, RawEpisode, RawRecordings, Rows, Unknown, no_time, period, unused,
 };
-use crate::rows::roles::{Column, Content, Roles, assign, unit};
+use crate::rows::roles::{Column, Content, Roles, assign, shortened, unit};
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use crate::{Fault, ReadError, ReadOptions};
 use motion::{Channel, Labels};
@@ -41,6 +41,10 @@ pub(crate) struct Table {
     current: Option<usize>,
     label: String,
     unknown: Unknown,
+    /// What columns of words hold, as [`Roles::words`].
+    words: Vec<String>,
+    /// Names of the columns that the user takes as context.
+    context: Vec<String>,
     /// As [`ReadOptions::elsewhere`].
     elsewhere: Vec<String>,
     /// Advice on a field that is no number.
@@ -55,9 +59,11 @@ impl Table {
         options: &ReadOptions,
     ) -> Result<Self, ReadError> {
         let roles = assign(columns, options, file)?;
+        let asked = if options.context.is_empty() { &[][..] } else { &roles.context };
         let period = period(options)?;
         if roles.time.is_none() && period.is_none() {
-            return Err(no_time(file, "the column of stamps"));
+            let names: Vec<&str> = columns.iter().map(|column| &column.name[..]).collect();
+            return Err(no_time(file, &format!("the column of stamps, of: {}", shortened(&names))));
         }
         if roles.state.len() > MOST_CHANNELS {
             let what = format!("{} columns of state, more than {MOST_CHANNELS}", roles.state.len());
@@ -78,7 +84,9 @@ impl Table {
             by_label: HashMap::new(),
             current: None,
             label: String::new(),
+            words: Vec::new(),
             elsewhere: options.elsewhere.clone(),
+            context: asked.iter().map(|&column| columns[column].name.clone()).collect(),
             unknown: Unknown::of(&options.ignore, &columns.iter().map(|column| &column.name[..]).collect::<Vec<_>>()),
             roles,
             hint: |_| None,
@@ -88,8 +96,8 @@ impl Table {
     /// The columns that have a role.
     #[cfg(feature = "parquet")]
     pub(crate) fn used(&self) -> std::collections::HashSet<usize> {
-        let Roles { time, nanoseconds, episode, constraint, state, velocity, context, .. } = &self.roles;
-        let columns = state.iter().chain(velocity).chain(context).copied();
+        let Roles { time, nanoseconds, episode, constraint, state, velocity, context, words, .. } = &self.roles;
+        let columns = state.iter().chain(velocity).chain(context).chain(words).copied();
         [*time, *nanoseconds, *episode, *constraint].into_iter().flatten().chain(columns).collect()
     }
 
@@ -113,6 +121,7 @@ impl Table {
             row.label(column, &mut self.label);
             self.label_constraint(episode);
         }
+        self.expect_the_same_words(place, row)?;
         let raw = &mut self.episodes[episode];
         raw.rows.push(place);
         let Roles { state, velocity, context, .. } = &self.roles;
@@ -153,6 +162,19 @@ impl Table {
         Ok(episode)
     }
 
+    /// Columns of words tell movements apart, it seems, where they change.
+    fn expect_the_same_words(&mut self, place: u64, row: &impl Row) -> Result<(), ReadError> {
+        for (at, &column) in self.roles.words.iter().enumerate() {
+            row.label(column, &mut self.label);
+            match self.words.get(at) {
+                None => self.words.push(self.label.clone()),
+                Some(before) if *before == self.label => {}
+                Some(_) => return Err(self.not_a_number(&self.label, column, place)),
+            }
+        }
+        Ok(())
+    }
+
     fn begin(&mut self, name: String) {
         self.clocks.push(Clock::new(self.period));
         self.episodes.push(RawEpisode {
@@ -187,6 +209,9 @@ impl Table {
                         of stamps"
                     .to_owned();
             }
+            if self.roles.words.contains(&column) {
+                return format!("--episode '{name}' if it tells movements apart, or --ignore '{name}'");
+            }
             format!("correct the file, or --ignore '{name}' if the column does not belong to the state")
         });
         ReadError::NotANumber(Fault::new(what, place, remedy))
@@ -217,7 +242,15 @@ impl Table {
             raw.constraint.take_if(|labels| !labels_vary || labels.is_blank());
         }
         let (episodes, word, drop_constant) = (self.episodes, self.word, self.roles.state_guessed);
-        RawRecordings { channels, episodes, findings, word, drop_constant, unknown: self.unknown }
+        RawRecordings {
+            channels,
+            episodes,
+            findings,
+            word,
+            drop_constant,
+            unknown: self.unknown,
+            context: self.context,
+        }
     }
 }
 
@@ -241,11 +274,22 @@ pub(crate) const HEAD_ROWS: usize = 64;
 /// What a column holds, judged by its numbers in the first rows.
 pub(crate) fn content(numbers: impl Iterator<Item = Result<f64, String>>) -> Content {
     let mut last: Option<f64> = None;
-    let mut counting = true;
+    let (mut counting, mut words, mut rows) = (true, 0, 0);
     for number in numbers {
-        let Ok(value) = number else { return Content::Text };
+        rows += 1;
+        let value = match number {
+            Ok(value) => value,
+            Err(text) if text.starts_with(char::is_alphabetic) => {
+                words += 1;
+                continue;
+            }
+            Err(_) => return Content::Text,
+        };
         counting &= value.fract() == 0.0 && last.is_none_or(|last| value == last + 1.0 || value < last);
         last = Some(value);
+    }
+    if words > 0 {
+        return if words == rows { Content::Words } else { Content::Text };
     }
     if counting { Content::Counting } else { Content::Numbers }
 }

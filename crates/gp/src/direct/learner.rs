@@ -58,6 +58,11 @@ impl LearntPolicy for DirectFit {
         self.model.variances(states).certainty(self.z_squared.max(1.0), self.model.weights.nrows(), self.dim())
     }
 
+    fn supported(&self, states: DMatrixView<'_, f64>, least: f64) -> Vec<bool> {
+        require(self.dim(), &[states.nrows()]);
+        self.model.supported(states, least)
+    }
+
     fn warnings(&self) -> Vec<String> {
         self.doubts()
     }

@@ -74,6 +74,18 @@ impl Upper {
         (0..self.len).flat_map(move |column| (0..=column).map(move |row| entry(row, column)))
     }
 
+    /// Tᵀ, zero above the diagonal.
+    pub(crate) fn transposed(&self) -> DMatrix<f64> {
+        let mut entries = self.entries();
+        let mut transposed = DMatrix::zeros(self.len, self.len);
+        for row in 0..self.len {
+            for column in 0..=row {
+                transposed[(row, column)] = entries.next().unwrap_or_default();
+            }
+        }
+        transposed
+    }
+
     /// Replaces B, (M, k), by TB.
     pub(crate) fn apply(&self, panel: &mut Panel) {
         let mut rest = &self.tiles[..];

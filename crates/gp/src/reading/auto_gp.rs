@@ -232,6 +232,10 @@ impl LearntPolicy for AutoFit {
         self.handed_out().certainty(states)
     }
 
+    fn supported(&self, states: DMatrixView<'_, f64>, least: f64) -> Vec<bool> {
+        self.handed_out().supported(states, least)
+    }
+
     fn warnings(&self) -> Vec<String> {
         let doubtful = matches!(self.reading(), Hypothesis::Ambiguous | Hypothesis::Unexplained | Hypothesis::TooFew);
         let text = doubtful.then(|| self.text());

@@ -64,6 +64,11 @@ impl LearntPolicy for SlopeFit {
         self.model.variances(states).certainty(self.report.variance_factor(), moving, self.dim())
     }
 
+    fn supported(&self, states: DMatrixView<'_, f64>, least: f64) -> Vec<bool> {
+        require(self.dim(), &[states.nrows()]);
+        self.model.supported(states, least)
+    }
+
     fn warnings(&self) -> Vec<String> {
         self.report.warnings()
     }

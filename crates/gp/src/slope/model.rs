@@ -5,9 +5,10 @@ use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView};
 use crate::kernel::panel::Panel;
 use crate::kernel::slope_covariance::SlopeCovariance;
 use crate::kernel::whitening::Whitening;
+use crate::outline::Outline;
 use crate::slope::expansion::Expansion;
 use crate::slope::policy::{SlopePolicy, SlopePotential};
-use crate::support::Variances;
+use crate::support::{Variances, supported};
 
 /// The slope GP conditioned on rows: mean (S7) and uncertainty (S13), (S14).
 #[derive(Debug, Clone)]
@@ -17,6 +18,7 @@ pub struct SlopeModel {
     /// σ² without the floor.
     pub(crate) noise: f64,
     pub(crate) whitening: Whitening,
+    outline: Outline<Expansion>,
 }
 
 impl SlopeModel {
@@ -24,7 +26,7 @@ impl SlopeModel {
         let has_potential = expansion.blocks.iter().all(|block| block.has_potential());
         let expansion = Arc::new(expansion);
         let potential = has_potential.then(|| SlopePotential { expansion: Arc::clone(&expansion) });
-        SlopeModel { policy: SlopePolicy { expansion }, potential, noise, whitening }
+        SlopeModel { policy: SlopePolicy { expansion }, potential, noise, whitening, outline: Outline::default() }
     }
 
     /// π̂.
@@ -84,14 +86,7 @@ impl SlopeModel {
 
     /// C_x of (S13) at several states, what the rows explain of it: n columns a state.
     fn whitened(&self, states: &[DVectorView<'_, f64>]) -> Panel {
-        let (expansion, dim) = (self.expansion(), self.expansion().moving());
-        let mut panel = Panel::zeros(self.weights().len(), dim * states.len());
-        for (at, state) in states.iter().enumerate() {
-            let covariances = expansion.policy_with_rows(state.as_slice());
-            for (axis, column) in covariances.as_slice().chunks_exact(covariances.nrows()).enumerate() {
-                panel.set_column(at * dim + axis, &column[..self.weights().len()]);
-            }
-        }
+        let mut panel = self.expansion().policy_with_rows_at(states);
         self.whiten(&mut panel);
         panel
     }
@@ -103,17 +98,49 @@ impl SlopeModel {
         Variances::of(states, dim, |states, prior, posterior| {
             let known = self.whitened(&states.column_iter().collect::<Vec<_>>()).squared_norms();
             for (state, prior) in states.column_iter().zip(prior.chunks_exact_mut(dim)) {
-                self.expansion().scaling.with_coordinates(state.as_slice(), |z| {
-                    let (along, beside) = self.expansion().prior(z);
-                    for (prior, z) in prior.iter_mut().zip(z) {
-                        *prior = (z * z * beside + along) * speed.powi(2);
-                    }
-                });
+                self.prior_variances(state, prior);
             }
             for ((posterior, prior), known) in posterior.iter_mut().zip(prior).zip(known) {
                 *posterior = *prior - known * speed.powi(2);
             }
         })
+    }
+
+    /// Prior variance of every component at a state with its context, (n), in squared units of the state per second.
+    fn prior_variances(&self, state: DVectorView<'_, f64>, variances: &mut [f64]) {
+        let speed = self.expansion().speed;
+        self.expansion().scaling.with_coordinates(state.as_slice(), |z| {
+            let (along, beside) = self.expansion().prior(z);
+            for (variance, z) in variances.iter_mut().zip(z) {
+                *variance = (z * z * beside + along) * speed.powi(2);
+            }
+        });
+    }
+
+    /// Whether the support of states with their contexts (n + p, N) is at least `least`, as their [`variances`](Self::variances) say.
+    pub(crate) fn supported(&self, states: DMatrixView<'_, f64>, least: f64) -> Vec<bool> {
+        let (dim, speed) = (self.expansion().moving(), self.expansion().speed);
+        let Expansion { blocks, z, n, amplitudes, scaling, weights, .. } = self.expansion();
+        let part = |rows: &[usize]| {
+            let (prior, of_rows) =
+                ((blocks.clone(), amplitudes.clone()), (z.select_columns(rows), n.select_columns(rows)));
+            Expansion::new((scaling.clone(), speed), prior, of_rows, vec![0.0; rows.len()])
+        };
+        let prior_of = (&SlopeCovariance { blocks, z, n }, &amplitudes[..], self.noise);
+        let some = |states: DMatrixView<'_, f64>| {
+            let Some((part, factor)) = self.outline.part(weights.len(), &self.whitening, prior_of, part) else {
+                return vec![false; states.ncols()];
+            };
+            let mut each = vec![0.0; dim];
+            let prior = |state| {
+                self.prior_variances(state, &mut each);
+                each.iter().sum::<f64>()
+            };
+            let prior: Vec<f64> = states.column_iter().map(prior).collect();
+            let covariances = part.policy_with_rows_at(&states.column_iter().collect::<Vec<_>>());
+            self.outline.told(factor, covariances, &prior, (speed.powi(2), least))
+        };
+        supported(states, dim, least, some, |states| self.variances(states))
     }
 
     /// φ̂(x) − φ̂(x₀) and its variance (S14), in units of the state squared per second, and their square; none if there

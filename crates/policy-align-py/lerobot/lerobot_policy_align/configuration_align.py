@@ -16,13 +16,13 @@ CLOSED_FORM = "policies of the type 'align' are learnt in closed form: `policy-a
 @PreTrainedConfig.register_subclass("align")
 @dataclass
 class AlignConfig(PreTrainedConfig):
-    """``action``: "velocity", in units of the state per second, or "position", the state after one ``time_step`` at that
-    velocity, for robots that take targets. ``time_step``: seconds between two actions; that of the recordings if None.
-    ``outside`` of the data the velocity is "zero" or "nan", or it is an "error"; "extrapolate" follows the learner there.
+    """``action``: "position", the state after one ``time_step``, as the robots and data sets of LeRobot have targets, or
+    "velocity", in units of the state per second. ``time_step``: seconds between two actions; that of the recordings if None.
+    ``outside`` of the data the velocity, of which a position is the sum with the state, is "zero" or "nan", or it is an "error"; "extrapolate" follows the learner there.
     ``chunk_size``: actions of ``predict_action_chunk``, each a time step after the one before.
     """
 
-    action: str = "velocity"
+    action: str = "position"
     outside: str = "zero"
     time_step: float | None = None
     chunk_size: int = 1
@@ -31,7 +31,7 @@ class AlignConfig(PreTrainedConfig):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for name, known in {"action": ("velocity", "position"), "outside": ("zero", "nan", "error", "extrapolate")}.items():
+        for name, known in {"action": ("position", "velocity"), "outside": ("zero", "nan", "error", "extrapolate")}.items():
             if getattr(self, name) not in known:
                 raise PolicyAlignError(f"{getattr(self, name)!r} is none of the choices", name, f"one of {', '.join(known)}")
         if self.time_step is not None and not 0 < self.time_step < float("inf"):

@@ -79,3 +79,18 @@ def episodes(values: Any, lengths: Sequence[int] | None, name: str) -> list[Any]
     if isinstance(values, (str, bytes)) or not hasattr(values, "__iter__") or hasattr(values, "columns"):
         raise TypeError(f"{name} must be a list of movements, not {type(values).__name__}")
     return list(values)
+
+
+def scaler_of(movements: Sequence[Floats]) -> str | None:
+    """What StandardScaler or MinMaxScaler has made of all channels, as rounding leaves it; None of recorded ones."""
+    rows = np.concatenate(movements) if len(movements) else np.empty((0, 0))
+    if len(rows) < 3 or rows.shape[1] < 2:
+        return None
+    low, high = rows.min(axis=0), rows.max(axis=0)
+    for ends in ((0.0, 1.0), (-1.0, 1.0)):
+        if np.allclose([low, high], np.reshape(ends, (2, 1)), rtol=0, atol=1e-12):
+            return f"values from {ends[0]:g} to {ends[1]:g}"
+    # Rounding adds up over the rows.
+    if np.allclose(rows.mean(axis=0), 0, atol=1e-9) and np.allclose(rows.std(axis=0), 1, rtol=0, atol=1e-9):
+        return "the mean 0 and the deviation 1"
+    return None

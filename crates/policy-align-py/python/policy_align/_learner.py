@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from ._arrays import Floats, floats, samples
+from ._arrays import Floats, floats, samples, scaler_of
 from ._constraints import ConstraintStretch, stretches
 from ._demonstrations import Demonstrations, preparing, reading
 from ._digesting import Digesting, File
@@ -100,7 +100,12 @@ class Learner(Estimator):
         switch. ``y`` is ignored. Ctrl-C ends it.
         """
         threads = _threads(self.n_jobs)
-        return self._learn(_demonstrations(X, dt, times, velocities, lengths, constraints), threads)
+        demonstrations = _demonstrations(X, dt, times, velocities, lengths, constraints)
+        scaled = scaler_of(demonstrations.trajectories)
+        if scaled:
+            what = f"every channel has {scaled}, as from a scaler of scikit-learn: constraints are at right angles in one unit for all"
+            warnings.warn(f"{what}: leave the scaler out, and name other units by scale={{…}}", PolicyAlignWarning, stacklevel=2)
+        return self._learn(demonstrations, threads)
 
     def fit_files(
         self,
@@ -170,10 +175,14 @@ class Learner(Estimator):
             raise PolicyAlignError(f"{outside!r} is none of the choices", "outside", hint)
         if outside == "extrapolate" and not return_std:
             return fitted.predict(states)
-        deviation, known = fitted.certainty(states)
-        if return_std and deviation is None:
-            hint = "SlopeGp or AutoGp; supports(X) tells where PolicyAlign has data"
-            raise PolicyAlignError(f"{type(self).__name__} estimates no standard deviation", "return_std=True", hint)
+        deviation = None
+        if return_std:
+            deviation, known = fitted.certainty(states)
+            if deviation is None:
+                hint = "SlopeGp or AutoGp; supports(X) tells where PolicyAlign has data"
+                raise PolicyAlignError(f"{type(self).__name__} estimates no standard deviation", "return_std=True", hint)
+        else:
+            known = fitted.supports(states)
         actions = fitted.predict(states)
         if outside != "extrapolate" and not known.all():
             if outside == "error":
@@ -183,7 +192,7 @@ class Learner(Estimator):
             actions[~known] = 0.0 if outside == "zero" else np.nan
             if deviation is not None:
                 deviation[~known] = np.nan
-        return actions if not return_std or deviation is None else (actions, deviation)
+        return actions if deviation is None else (actions, deviation)
 
     def act(self, x: Any, *, context: Context = None, outside: Outside = "zero") -> Floats:
         """The action (n) at one state (n); arguments as of ``predict``."""

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use motion::{Finding, Recordings};
-use policy_align::{ConstraintStretch, FileSummary, Model, Prepared, TaskLinks, estimate_constraints, prepare};
+use policy_align::{
+    ConstraintStretch, ContextUse, FileSummary, Model, Prepared, TaskLinks, estimate_constraints, prepare,
+};
 use text::quoted;
 
 use crate::cli::failure::{Exit, Failure, displayed};
@@ -17,16 +19,25 @@ const PRINTED: usize = 6;
 
 /// Reads them, with a bar if it takes long; warns of what was found meanwhile.
 pub(crate) fn read(session: &Session, files: &[PathBuf], flags: &ReadFlags) -> Result<Recordings, Failure> {
+    Ok(read_with_context(session, files, flags)?.0)
+}
+
+/// As [`read`], with what is to be done with contexts.
+pub(crate) fn read_with_context(
+    session: &Session,
+    files: &[PathBuf],
+    flags: &ReadFlags,
+) -> Result<(Recordings, ContextUse), Failure> {
     let bytes = files.iter().filter_map(|file| std::fs::metadata(file).ok()).map(|found| found.len()).sum();
     let bar = session.bar(bytes, "reading  {bar:30} {bytes} of {total_bytes}, {eta} left");
-    let recordings = demo_io::read_all(files, &flags.options()?, &mut |read| bar.inc(read));
+    let recordings = demo_io::read_with_context(files, &flags.options()?, &mut |read| bar.inc(read));
     bar.finish_and_clear();
-    let mut recordings = recordings?;
+    let (mut recordings, context) = recordings?;
     warn(session, &recordings.findings);
     if flags.trim_still {
         prepare::trim_still(&mut recordings);
     }
-    Ok(recordings)
+    Ok((recordings, flags.context_use(context)))
 }
 
 /// Reads and prepares recordings in the channels and units of a model; also with which flags they were read.

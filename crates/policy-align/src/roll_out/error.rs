@@ -1,3 +1,5 @@
+use std::borrow::Cow;
+
 use prepare::numbers::{counted, short};
 use thiserror::Error;
 
@@ -34,6 +36,8 @@ pub enum RollOutError {
         support: f64,
         /// The support needed.
         least: f64,
+        /// The demonstrated range of each channel, by name.
+        ranges: Vec<(String, [f64; 2])>,
     },
     /// A constraint does not allow the start.
     #[error("the start breaks constraint {constraint} by {by:.3e}")]
@@ -103,12 +107,17 @@ pub(crate) const LONGEST: usize = 10_000_000;
 
 impl RollOutError {
     /// The next step.
-    pub fn remedy(&self) -> &'static str {
-        match self {
+    pub fn remedy(&self) -> Cow<'static, str> {
+        Cow::Borrowed(match self {
+            RollOutError::Unsupported { ranges, .. } => {
+                let range =
+                    |(name, [low, high]): &(String, [f64; 2])| format!("{name} {} … {}", short(*low), short(*high));
+                let ranges: Vec<String> = ranges.iter().map(range).collect();
+                return Cow::Owned(format!("start near a demonstration, within {}", ranges.join(", ")));
+            }
             RollOutError::Context { .. } => "--context with NAME=VALUE for each",
             RollOutError::Start { .. } => "give one number for each channel, in this order",
             RollOutError::StartNotFinite { .. } => "give finite numbers",
-            RollOutError::Unsupported { .. } => "start within the range that `policy-align info` lists",
             RollOutError::StartBreaks { .. } => "start outside the ball, or make it smaller",
             RollOutError::StartBeyondLimit { .. } => "start within the limits, in radians or metres",
             RollOutError::NotPositive { .. } => "give a time in seconds",
@@ -118,6 +127,6 @@ impl RollOutError {
                 "fewer seconds; if that is not enough, larger balls, or fit again: actions change too fast to be followed"
             }
             RollOutError::Constraint { .. } => "correct the constraint file or the robot description",
-        }
+        })
     }
 }

@@ -171,7 +171,9 @@ impl RollOut {
         }
         if !policy.is_supported(start.as_view()) {
             let (support, least) = (policy.support(start.as_view()), policy.least_support());
-            return Err(RollOutError::Unsupported { support, least });
+            let ranges =
+                model.state.iter().map(|channel| (channel.name.clone(), [channel.low, channel.high])).collect();
+            return Err(RollOutError::Unsupported { support, least, ranges });
         }
         if let Some(joint) = self.limits.as_ref().and_then(|limits| limits.beyond(start.as_view())) {
             return Err(RollOutError::StartBeyondLimit { joint: joint.to_owned() });

@@ -70,7 +70,7 @@ impl Integrals {
         Integrals { steps, over_time: integrals, stretches }
     }
 
-    /// Pairs of a channel and its velocity, in the order of the channels; none but for a block of each. `clock` is no velocity.
+    /// Pairs of a channel and its velocity, in the order of the channels; none but for a block of each, or all alternating. `clock` is no velocity.
     pub(super) fn velocities(&self, clock: Option<usize>) -> Vec<(usize, usize)> {
         let all = 0..self.stretches.len();
         self.blocks(std::slice::from_ref(&all), clock)
@@ -114,7 +114,12 @@ impl Integrals {
             .filter(|&(_, j)| clock != Some(j))
             .filter_map(|(i, j)| pair(i, j))
             .collect();
-        pairs.iter().map(|unit| block(unit, &pairs, n)).max_by_key(Vec::len).unwrap_or_default()
+        let blocks = pairs.iter().map(|unit| block(unit, &pairs, n)).max_by_key(Vec::len).unwrap_or_default();
+        if !blocks.is_empty() {
+            return blocks;
+        }
+        let channels: Vec<usize> = (0..n).filter(|&i| clock != Some(i)).collect();
+        pairs.first().and_then(|unit| alternating(unit, &pairs, &channels)).unwrap_or_default()
     }
 
     fn sums(&self, group: &Range<usize>) -> Sums {
@@ -130,12 +135,23 @@ impl Integrals {
     }
 }
 
+/// Whether velocities have one unit, in each group of stretches.
+fn alike(a: &Pair, b: &Pair) -> bool {
+    a.factors.iter().zip(&b.factors).all(|(a, b)| (a / b - 1.0).abs() <= ALIKE)
+}
+
+/// Each channel followed by its velocity, with the factors of `unit`: at least two pairs, of all `channels`.
+fn alternating(unit: &Pair, all: &[Pair], channels: &[usize]) -> Option<Vec<(usize, usize)>> {
+    let (pairs, []) = channels.as_chunks::<2>() else { return None };
+    let found = |&[i, j]: &[usize; 2]| all.iter().any(|of| of.channels == (i, j) && alike(of, unit));
+    (pairs.len() > 1 && pairs.iter().all(found)).then(|| pairs.iter().map(|&[i, j]| (i, j)).collect())
+}
+
 /// The pairs with the factors of `unit`, the velocities in the order of the channels and behind all of these.
 fn block(unit: &Pair, all: &[Pair], n: usize) -> Vec<(usize, usize)> {
-    let alike = |of: &&Pair| of.factors.iter().zip(&unit.factors).all(|(a, b)| (a / b - 1.0).abs() <= ALIKE);
     let mut pairs: Vec<(usize, usize)> = Vec::new();
     for i in 0..n {
-        let own = all.iter().filter(|of| of.channels.0 == i).filter(alike);
+        let own = all.iter().filter(|of| of.channels.0 == i).filter(|of| alike(of, unit));
         let after = own.filter(|of| pairs.last().is_none_or(|&(_, before)| of.channels.1 > before));
         pairs.extend(after.max_by(|a, b| a.explained.total_cmp(&b.explained)).map(|of| of.channels));
     }

@@ -11,7 +11,7 @@ const EVEN: f64 = 1e-3;
 
 /// Says which channels are velocities of others, or time, and the flags that read them as such.
 ///
-/// A block of velocities follows a block of positions, at least two of them with one unit. A clock has no name of its own, begins at one
+/// A block of velocities follows a block of positions, at least two of them with one unit, or each channel is followed by its velocity. A clock has no name of its own, begins at one
 /// value in each of several movements and rises as time does. O(n² stretches + n samples) for n channels.
 pub(crate) fn no_state(demonstrations: &Demonstrations, channels: &[Channel]) -> Option<Finding> {
     let n = channels.len();
@@ -175,6 +175,18 @@ mod tests {
             let (end, last) = (first + n - 1, first + 2 * n - 1);
             let flags = format!("--state s_{first}-{end} --velocity s_{}-{last}", end + 1);
             let expected = if clock { format!("--time s_0 {flags}") } else { flags };
+            prop_assert_eq!(found.map(|finding| finding.next), Some(expected));
+            // Each channel beside its velocity, and then all channels are such pairs.
+            let alternating = |k: usize, t: f64| -> Vec<f64> {
+                let own = (0..n).flat_map(|axis| [place(k, axis, t), rate(k, axis, t)]);
+                std::iter::once(t).filter(|_| clock).chain(own).collect()
+            };
+            let names: Vec<String> = (0..2 * n + first).map(|at| format!("c{at}")).collect();
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            let every_second = |from: usize| (0..n).map(|at| names[first + 2 * at + from]).collect::<Vec<_>>().join(",");
+            let flags = format!("--state {} --velocity {}", every_second(0), every_second(1));
+            let expected = if clock { format!("--time c0 {flags}") } else { flags };
+            let found = no_state(&movements(8, 0.05, alternating), &channels(&names));
             prop_assert_eq!(found.map(|finding| finding.next), Some(expected));
             // Positions alone are a state.
             let places = |k: usize, t: f64| (0..n).map(|axis| place(k, axis, t)).collect();

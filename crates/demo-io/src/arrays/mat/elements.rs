@@ -9,6 +9,9 @@ use crate::{Fault, ReadError};
 
 const COMPRESSED: u32 = 15;
 const MATRIX: u32 = 14;
+/// The class of an object whose numbers are elsewhere in the file, in a form that MATLAB keeps to itself: its name follows its flags,
+/// without a size.
+const OPAQUE: u32 = 17;
 
 /// Most structures within each other.
 const DEEPEST: usize = 16;
@@ -109,13 +112,17 @@ impl<'a> Elements<'a> {
         }
         let flags = self.next()?;
         let flags = self.within(flags.bytes).u32_at(0).ok_or_else(|| self.corrupt("a variable has no type"))?;
+        if flags & 0xff == OPAQUE {
+            let name = self.name()?;
+            return Ok((name, Value::Other("an object of MATLAB, as a table or a string".to_owned())));
+        }
         let dimensions = self.next()?;
         let dimensions = self.whole(&dimensions)?;
         let shape: Option<Vec<usize>> = dimensions.iter().map(|&length| usize::try_from(length).ok()).collect();
         let count =
             shape.as_ref().and_then(|shape| shape.iter().try_fold(1usize, |count, &length| count.checked_mul(length)));
         let (Some(shape), Some(count)) = (shape, count) else { return Err(self.corrupt("a variable has no size")) };
-        let name = String::from_utf8_lossy(self.next()?.bytes).trim_end_matches('\0').to_owned();
+        let name = self.name()?;
         let complex = flags & 0x0800 != 0;
         let value = match flags & 0xff {
             1 => Value::Cell(self.matrices(count, depth)?),
@@ -131,6 +138,10 @@ impl<'a> Elements<'a> {
             _ => Value::Other("an object of MATLAB".to_owned()),
         };
         Ok((name, value))
+    }
+
+    fn name(&mut self) -> Result<String, ReadError> {
+        Ok(String::from_utf8_lossy(self.next()?.bytes).trim_end_matches('\0').to_owned())
     }
 
     fn matrices(&mut self, count: usize, depth: usize) -> Result<Vec<Value>, ReadError> {

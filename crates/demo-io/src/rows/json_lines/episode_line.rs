@@ -107,16 +107,17 @@ impl<'a> EpisodeLines<'a> {
         let names: Vec<String> = channels.iter().map(|channel| channel.name.clone()).collect();
         let unknown = Unknown::of(&ignore, &names);
         let asked = Asked { state, velocity, context, ignore, time: None };
-        let drafts = |channels, findings, episodes| RawRecordings {
+        let drafts = |channels, findings, episodes, context| RawRecordings {
             channels,
             episodes,
             findings,
             word: "sample",
             drop_constant: false,
             unknown: unknown.clone(),
+            context,
         };
         if asked.is_empty() {
-            return Ok(drafts(channels, Vec::new(), episodes));
+            return Ok(drafts(channels, Vec::new(), episodes, Vec::new()));
         }
         let chosen = Chosen::of(&names, &asked, &[], &self.input.name)?;
         for raw in &mut episodes {
@@ -126,7 +127,9 @@ impl<'a> EpisodeLines<'a> {
         let ignored = flags(&asked.ignore, &names);
         let left: Vec<&str> = chosen.unused().filter(|&column| !ignored[column]).map(|at| &names[at][..]).collect();
         let channels = chosen.channels().map(|column| channels[column].clone()).collect();
-        Ok(drafts(channels, unused("columns", &left, &self.input.options.elsewhere).into_iter().collect(), episodes))
+        let findings = unused("columns", &left, &self.input.options.elsewhere).into_iter().collect();
+        let context = chosen.context.iter().map(|&column| names[column].clone()).collect();
+        Ok(drafts(channels, findings, episodes, context))
     }
 }
 

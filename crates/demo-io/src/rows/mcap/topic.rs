@@ -213,9 +213,12 @@ impl<'a> Topic<'a> {
             let name = set.names[column].clone();
             Channel { unit: metadata.get(&format!("unit/{name}")).cloned(), name }
         };
-        let channels = columns.iter().map(channel).collect();
+        let channels: Vec<Channel> = columns.iter().map(channel).collect();
+        let names: Vec<&str> = channels.iter().map(|channel| &channel.name[..]).collect();
+        let context = named(&self.input.options.context, &names, &self.input.name)?;
+        let context = context.into_iter().map(|at| names[at].to_owned()).collect();
         let episodes = episodes(draft, metadata);
-        Ok(RawRecordings { channels, episodes, findings, word: "message", drop_constant: false, unknown })
+        Ok(RawRecordings { channels, episodes, findings, word: "message", drop_constant: false, unknown, context })
     }
 
     /// The set of messages to take, and which of its names are the state.

@@ -8,13 +8,15 @@ use pulp::Arch;
 
 use crate::dimension::require;
 use crate::kernel::direct_block::{DirectBlock, DirectCovariance, trend};
+use crate::kernel::factor::LazyFactor;
 use crate::kernel::falling::Falling;
 use crate::kernel::panel::Panel;
 use crate::kernel::row_table::{RowTable, TOGETHER};
 use crate::kernel::term::Term;
 use crate::kernel::whitening::Whitening;
+use crate::outline::Outline;
 use crate::rows::scaling::Scaling;
-use crate::support::{Variances, each_action};
+use crate::support::{Variances, each_action, supported};
 use sums::{Action, CovariancesWithRows};
 
 /// The direct GP conditioned on rows: û and its variance (R4).
@@ -34,6 +36,7 @@ pub struct DirectModel {
     pub(crate) falling: Falling,
     /// Of [`trend`].
     trend: [f64; 3],
+    outline: Outline<Box<DirectModel>>,
 }
 
 impl DirectModel {
@@ -47,7 +50,8 @@ impl DirectModel {
         let table = RowTable::new(&[&z, &weights]);
         let falling = Falling::of_values(&Term::of_velocities(&blocks, &amplitudes, z.nrows()));
         let trend = trend(&blocks, &amplitudes, z.nrows());
-        DirectModel { scaling, unit, blocks, amplitudes, z, weights, noise, whitening, table, falling, trend }
+        let outline = Outline::default();
+        DirectModel { scaling, unit, blocks, amplitudes, z, weights, noise, whitening, table, falling, trend, outline }
     }
 
     /// (R4): variance of every component at a state, in squared units of the state per second. Costs M².
@@ -68,14 +72,7 @@ impl DirectModel {
     /// parallel. A state alone gets the same bits as among others. Costs M² a state.
     pub(crate) fn variances(&self, states: DMatrixView<'_, f64>) -> Variances {
         Variances::of(states, 1, |states, prior, posterior| {
-            let mut known = Panel::zeros(self.z.ncols(), states.ncols());
-            let mut covariances = vec![0.0; self.z.ncols().next_multiple_of(TOGETHER)];
-            for (at, state) in states.column_iter().enumerate() {
-                self.scaling.with_coordinates(state.as_slice(), |z| {
-                    Arch::new().dispatch(CovariancesWithRows { model: self, z, covariances: &mut covariances });
-                });
-                known.set_column(at, &covariances[..self.z.ncols()]);
-            }
+            let mut known = self.with_rows(states);
             let covariance = DirectCovariance { blocks: &self.blocks, z: &self.z };
             self.whitening.apply(&mut known, &covariance, &self.amplitudes, self.noise);
             for (at, known) in known.squared_norms().into_iter().enumerate() {
@@ -83,6 +80,40 @@ impl DirectModel {
                 posterior[at] = prior[at] - self.unit.powi(2) * known;
             }
         })
+    }
+
+    /// k of (R4) at states: a column each, (M, N).
+    fn with_rows(&self, states: DMatrixView<'_, f64>) -> Panel {
+        let mut panel = Panel::zeros(self.z.ncols(), states.ncols());
+        let mut covariances = vec![0.0; self.z.ncols().next_multiple_of(TOGETHER)];
+        for (at, state) in states.column_iter().enumerate() {
+            self.scaling.with_coordinates(state.as_slice(), |z| {
+                Arch::new().dispatch(CovariancesWithRows { model: self, z, covariances: &mut covariances });
+            });
+            panel.set_column(at, &covariances[..self.z.ncols()]);
+        }
+        panel
+    }
+
+    /// Whether the support of states with their contexts (n + p, N) is at least `least`, as their [`variances`](Self::variances) say.
+    pub(crate) fn supported(&self, states: DMatrixView<'_, f64>, least: f64) -> Vec<bool> {
+        let DirectModel { scaling, unit, blocks, amplitudes, z, weights, noise, whitening, .. } = self;
+        let part = |rows: &[usize]| {
+            // It is never whitened as a whole.
+            let unused = Whitening::Rows { noise_weights: vec![1.0; rows.len()], factor: LazyFactor::default() };
+            let (prior, noise) = ((blocks.clone(), amplitudes.clone()), (*noise, unused));
+            let [z, weights] = [z, weights].map(|of| of.select_columns(rows));
+            Box::new(DirectModel::new((scaling.clone(), *unit), prior, z, weights, noise))
+        };
+        let prior_of = (&DirectCovariance { blocks, z }, &amplitudes[..], *noise);
+        let some = |states: DMatrixView<'_, f64>| {
+            let Some((part, factor)) = self.outline.part(z.ncols(), whitening, prior_of, part) else {
+                return vec![false; states.ncols()];
+            };
+            let prior: Vec<f64> = states.column_iter().map(|state| self.prior_variance(state)).collect();
+            self.outline.told(factor, part.with_rows(states), &prior, (unit.powi(2), least))
+        };
+        supported(states, 1, least, some, |states| self.variances(states))
     }
 
     /// û at each of the states with their contexts (n + p, N), (n, N), in parallel: the same bits as one by one.

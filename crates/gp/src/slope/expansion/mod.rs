@@ -2,11 +2,12 @@
 
 mod sums;
 
-use nalgebra::{DMatrix, DMatrixView, DVector};
+use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView};
 use pulp::Arch;
 
 use crate::kernel::block::Block;
 use crate::kernel::falling::Falling;
+use crate::kernel::panel::Panel;
 use crate::kernel::row_table::{RowTable, TOGETHER};
 use crate::kernel::slope_covariance::trend;
 use crate::kernel::term::Term;
@@ -128,6 +129,18 @@ impl Expansion {
             Arch::new().dispatch(PolicyWithRows { expansion: self, z, covariances: &mut covariances });
         });
         covariances
+    }
+
+    /// [`policy_with_rows`](Self::policy_with_rows) at several states: n columns a state, (M, n N).
+    pub(crate) fn policy_with_rows_at(&self, states: &[DVectorView<'_, f64>]) -> Panel {
+        let mut panel = Panel::zeros(self.weights.len(), self.moving() * states.len());
+        for (at, state) in states.iter().enumerate() {
+            let covariances = self.policy_with_rows(state.as_slice());
+            for (axis, column) in covariances.as_slice().chunks_exact(covariances.nrows()).enumerate() {
+                panel.set_column(at * self.moving() + axis, &column[..self.weights.len()]);
+            }
+        }
+        panel
     }
 
     /// Element k of Qz.

@@ -8,7 +8,6 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, Args, Command, Id};
 use demo_io::ReadOptions;
 use gp::Hypothesis;
-use motion::Recordings;
 use policy_align::{
     Choice, ContextUse, FitOptions, LearnerChoice, Model, PrepareOptions, Repair, Smoothing, VelocityUse,
 };
@@ -176,7 +175,7 @@ pub(crate) struct FitFlags {
     /// Files to hold together, as 2GB or all; of others means stay [default: 256MB]
     #[arg(long, value_name = "SIZE")]
     pub(crate) at_once: Option<String>,
-    /// Episodes to evaluate on instead of learning from them
+    /// Episodes to evaluate on, not to learn from: names, or a share as 20%
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) hold_out: Vec<String>,
 }
@@ -205,11 +204,11 @@ impl ReadFlags {
     }
 
     /// Which of the channels that were read are context.
-    pub(crate) fn context_of(&self, recordings: &Recordings) -> Result<ContextUse, Failure> {
+    pub(crate) fn context_use(&self, named: Vec<String>) -> ContextUse {
         match &self.context[..] {
-            [] => Ok(ContextUse::Auto),
-            [word] if word == NO_CONTEXT => Ok(ContextUse::Ignored),
-            patterns => Ok(ContextUse::Named(demo_io::channels_named(patterns, recordings)?)),
+            [] => ContextUse::Auto,
+            [word] if word == NO_CONTEXT => ContextUse::Ignored,
+            _ => ContextUse::Named(named),
         }
     }
 

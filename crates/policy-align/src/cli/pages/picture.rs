@@ -25,7 +25,7 @@ pub(crate) const MARKED: usize = 30;
 const FEW_MARKED: usize = 10;
 /// Empty space around the data, as a share of its range.
 const MARGIN: f64 = 0.12;
-const SIZE: (f64, f64) = (640.0, 660.0);
+pub(crate) const SIZE: (f64, f64) = (640.0, 660.0);
 /// How much neighbouring rectangles overlap, as a share of a cell: a line of paper shows between those that only touch.
 const OVERLAP: f64 = 0.25;
 const UNKNOWN: &str = "#dcdcdc";
@@ -238,8 +238,8 @@ fn rectangles(x: &[f64], y: &[f64], known: &[Vec<bool>]) -> Vec<[f64; 4]> {
 }
 
 /// As SVG or PNG, by the extension.
-pub(crate) fn draw(path: &Path, picture: &Picture<'_>) -> Result<Vec<u8>, Failure> {
-    let plane = picture.plane();
+pub(crate) fn draw(path: &Path, picture: &Picture<'_>, size: (f64, f64)) -> Result<Vec<u8>, Failure> {
+    let plane = Plane { size, ..picture.plane() };
     let drawn = plot::Picture::rows(&[&[&plane]]);
     match path.extension().and_then(|extension| extension.to_str()) {
         Some("svg") => Ok(drawn.svg().into_bytes()),

@@ -12,7 +12,7 @@ use crate::cli::lines::{Lines, counted, short};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::{PrepareFlags, ReadFlags};
 use crate::cli::pages::check_page::check_page;
-use crate::cli::recorded::{named, read, unreported};
+use crate::cli::recorded::{named, read_with_context, unreported};
 use crate::cli::session::{Output, Session, write};
 
 /// Episodes left out that are named.
@@ -47,8 +47,8 @@ impl Check {
         if let Some(path) = &self.html {
             no_input(path, &self.files)?;
         }
-        let recordings = read(session, &self.files, &flags)?;
-        options.context = flags.context_of(&recordings)?;
+        let recordings;
+        (recordings, options.context) = read_with_context(session, &self.files, &flags)?;
         let reported = recordings.findings.clone();
         let prepared = prepare(recordings, &options).map_err(|error| Failure::prepare(&error, named(&self.files)))?;
         let refused = prepared.findings.iter().any(|finding| finding.verdict == Verdict::DoNotUse);
@@ -81,13 +81,31 @@ impl Check {
             lines.add("written", &path.display().to_string());
         }
         if refused {
-            return Ok(Output { text: lines.into_text(), exit });
+            let text = match reading_otherwise(&prepared.findings) {
+                Some(next) => lines.next(&next),
+                None => lines.into_text(),
+            };
+            return Ok(Output { text, exit });
         }
         Ok(Output {
             text: lines.next(&format!("policy-align fit {}", again("check", &["--html"], "-o model.json"))),
             exit,
         })
     }
+}
+
+/// The same command with other flags of reading, where these are all that is wrong.
+fn reading_otherwise(findings: &[Finding]) -> Option<String> {
+    let mut wrong = findings.iter().filter(|finding| finding.verdict == Verdict::DoNotUse);
+    let (finding, None) = (wrong.next()?, wrong.next()) else { return None };
+    let flags = Some(&finding.next[..]).filter(|next| next.starts_with("--"))?;
+    // A step that is given takes the place of stamps.
+    let dropped = flags.split(' ').filter(|word| word.starts_with("--"));
+    let dropped: Vec<&str> = dropped
+        .flat_map(|flag| if flag == "--time" { vec![flag, "--dt"] } else { vec![flag] })
+        .chain(["--html"])
+        .collect();
+    Some(format!("policy-align check {}", again("check", &dropped, flags)))
 }
 
 /// What was recorded.

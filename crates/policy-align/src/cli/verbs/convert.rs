@@ -9,7 +9,7 @@ use crate::cli::given::{flag_words, no_input};
 use crate::cli::lines::{Lines, amount};
 use crate::cli::options::config::Config;
 use crate::cli::options::flags::ReadFlags;
-use crate::cli::recorded::read;
+use crate::cli::recorded::read_with_context;
 use crate::cli::session::{Output, Session};
 use crate::cli::written::RobotFlag;
 
@@ -44,14 +44,14 @@ impl Convert {
         let reading = Config::of(session)?.under("read", &self.read)?;
         let robot = self.robot.path().map(Into::into);
         no_input(&self.output, &self.files.iter().cloned().chain(robot).collect::<Vec<_>>())?;
-        let mut recordings = read(session, &self.files, &reading)?;
+        let (mut recordings, context) = read_with_context(session, &self.files, &reading)?;
         if let Some(rate) = self.resample {
             recordings = demo_io::resampled(&recordings, rate).map_err(|error| {
                 Failure::of_text(Exit::Usage, &error.to_string(), format!("--resample {rate}"), "another rate")
             })?;
         }
         // Which channels are context stands in no file; all else is written as it was read.
-        let context = match reading.context_of(&recordings)? {
+        let context = match context {
             ContextUse::Named(names) => names,
             _ => reading.context,
         };

@@ -20,7 +20,7 @@ use crate::cli::lines::{Lines, amount, counted, size, squared_error};
 use crate::cli::options::config::{Config, printed};
 use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags};
 use crate::cli::pages::trust_page::trust_page;
-use crate::cli::recorded::{base_name, known_episode, named, read, unreported};
+use crate::cli::recorded::{base_name, known_episode, named, read_with_context, unreported};
 use crate::cli::session::{Output, Session, write_together};
 use crate::cli::trust_files::{MEMBER, trust_files, warn_of_others};
 use crate::cli::verbs::check::{findings, left_out};
@@ -78,8 +78,8 @@ impl Fit {
         let place = || named(&self.files);
         let shard = self.shard.as_deref().map(shard).transpose()?;
         let division = division(&self.files, &learning, &fit_options)?;
-        let recordings = read(session, &division.at_once, &reading)?;
-        prepare_options.context = reading.context_of(&recordings)?;
+        let recordings;
+        (recordings, prepare_options.context) = read_with_context(session, &division.at_once, &reading)?;
         let (recordings, held_out) = divided(recordings, &learning.hold_out, &place())?;
         let reported = recordings.findings.clone();
         let prepared = prepare(recordings, &prepare_options).map_err(|error| Failure::prepare(&error, place()))?;
@@ -191,8 +191,12 @@ fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Rec
     if names.is_empty() {
         return Ok((recordings, None));
     }
-    let known: Vec<&str> = recordings.episodes.iter().map(|episode| episode.name.as_str()).collect();
-    for name in names {
+    let known: Vec<String> = recordings.episodes.iter().map(|episode| episode.name.clone()).collect();
+    let names = match names {
+        [share] if share.ends_with('%') && !known.contains(share) => spread(share, &known)?,
+        names => names.to_vec(),
+    };
+    for name in &names {
         known_episode(name, &known, ("--hold-out", place))?;
     }
     let (held, mut others): (Vec<Episode>, Vec<Episode>) =
@@ -201,6 +205,17 @@ fn divided(recordings: Recordings, names: &[String], place: &str) -> Result<(Rec
     findings.extend(without_copies(&mut others, &held));
     let of = |episodes, findings| Recordings { state: recordings.state.clone(), episodes, findings };
     Ok((of(others, findings), Some(of(held, vec![]))))
+}
+
+/// A share of the episodes, at least one and not all, evenly spread over them.
+fn spread(share: &str, known: &[String]) -> Result<Vec<String>, Failure> {
+    let percent: Option<f64> = share.trim_end_matches('%').trim().parse().ok();
+    let Some(percent) = percent.filter(|percent| *percent > 0.0 && *percent < 100.0 && known.len() > 1) else {
+        let what = format!("'{share}' is no share of {}", counted(known.len(), "episode"));
+        return Err(Failure::usage(what, "--hold-out", "between 0 and 100 %, as 20%, or names of episodes"));
+    };
+    let count = ((known.len() as f64 * percent / 100.0).round() as usize).clamp(1, known.len() - 1);
+    Ok((0..count).map(|at| known[(2 * at + 1) * known.len() / (2 * count)].clone()).collect())
 }
 
 /// Leaves out copies of what is held out: they would make the error on it too small.

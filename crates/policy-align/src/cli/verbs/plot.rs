@@ -23,6 +23,9 @@ use crate::cli::verbs::rollout::followed;
 /// Starts that are tried for the next command, at most, beside those given.
 const STARTS: usize = 8;
 
+/// Pixels around a plot, of both sides together.
+const FRAME: f64 = 20.0;
+
 /// Plot a policy, its potential and recordings
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -41,6 +44,12 @@ pub(crate) struct Plot {
     /// Channels across and up [default: the first two]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     dims: Vec<String>,
+    /// Words above it [default: the model's name]
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+    /// Pixels across and up
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "660x680", value_parser = size)]
+    size: (f64, f64),
     /// Recordings to plot
     #[arg(long, value_name = "FILES", num_args = 1..)]
     files: Vec<PathBuf>,
@@ -82,10 +91,13 @@ impl Plot {
             let start = DVector::from_vec(numbers(from, "--rollout")?);
             Ok(followed(&flags, &model, &start, from)?.states)
         });
-        let title = format!("Policy of {} (grey: outside the demonstrations)", base_name(&self.model));
+        let title = self
+            .title
+            .clone()
+            .unwrap_or_else(|| format!("Policy of {} (grey: outside the demonstrations)", base_name(&self.model)));
         let followed = paths.collect::<Result<_, Failure>>()?;
         let picture = Picture { title, model: &model, dims, demonstrated, held, followed };
-        write(&self.output, &draw(&self.output, &picture)?)?;
+        write(&self.output, &draw(&self.output, &picture, self.size)?)?;
         let mut lines = Lines::default();
         let [across, up] = dims.map(|dim| &model.state[dim].name);
         lines.written(&self.output, &format!("{across} across, {up} up"));
@@ -113,6 +125,14 @@ impl Plot {
         let (model, from, others) = (quoted(&self.model), value_word(&from), flag_words(&self.follow));
         format!("policy-align rollout {model} --from {from}{context}{others}{config}")
     }
+}
+
+/// Of `800x600`, each from 200 to 10,000, what is left within the frame.
+fn size(text: &str) -> Result<(f64, f64), String> {
+    let length = |text: &str| text.trim().parse().ok().filter(|length| (200..=10_000).contains(length)).map(f64::from);
+    let sides =
+        text.split_once('x').and_then(|(width, height)| Some((length(width)? - FRAME, length(height)? - FRAME)));
+    sides.ok_or_else(|| "two whole numbers from 200 to 10000 with an x between, as 800x600".to_owned())
 }
 
 /// The channels to draw, by name.

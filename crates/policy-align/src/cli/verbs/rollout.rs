@@ -13,7 +13,7 @@ use crate::cli::lines::{Lines, counted, list, short};
 use crate::cli::options::config::Config;
 use crate::cli::options::rollout_flags::RollOutFlags;
 use crate::cli::options::values::{in_context, numbers};
-use crate::cli::pages::picture::{Picture, draw};
+use crate::cli::pages::picture::{Picture, SIZE, draw};
 use crate::cli::recorded::base_name;
 use crate::cli::session::{Output, Session, write};
 use crate::cli::trust_files::load;
@@ -86,7 +86,7 @@ impl RollOut {
             let title = format!("Rollout of {} (grey: outside the demonstrations)", base_name(&self.model));
             let (dims, followed) = ([0, 1.min(model.state.len() - 1)], vec![followed.states.clone()]);
             let picture = Picture { title, model: &model, dims, demonstrated: vec![], held: vec![], followed };
-            write(plot, &draw(plot, &picture)?)?;
+            write(plot, &draw(plot, &picture, SIZE)?)?;
         }
         if session.json {
             let columns = |matrix: &nalgebra::DMatrix<f64>| {

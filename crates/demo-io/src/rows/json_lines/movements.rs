@@ -1,0 +1,174 @@
+//! Movements within JSON documents that are neither a sample nor an episode in our own form: objects of lists, alone, one a line, in a
+//! list, or within one object of all.
+
+use crate::rows::json::Json;
+use crate::rows::json_lines::episode_line;
+use crate::rows::roles::is_time;
+
+/// What an object holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Form {
+    /// An episode as [`crate::write`] makes it.
+    Episode,
+    /// Lists of samples, by name: `{"t": [0, 0.1], "pos": [[0, 1], [2, 3]]}`.
+    Arrays,
+    /// Lists of numbers, by name: `{"t": [0, 0.1], "x": [0, 2], "y": [1, 3]}`.
+    Columns,
+    /// Anything else, as one sample.
+    Other,
+}
+
+impl Form {
+    /// Of an object that is `alone` in its file, or one of many. One sample alone is no recording.
+    pub(super) fn of(entry: &Json, alone: bool) -> Self {
+        let Json::Map(values) = entry else { return Form::Other };
+        if episode_line::state(entry).is_some() {
+            return Form::Episode;
+        }
+        if values.iter().any(|(_, value)| depth(value) == 2) {
+            return Form::Arrays;
+        }
+        let is_list = |value: &Json| depth(value) == 1;
+        let of_columns = if alone {
+            values.iter().any(|(_, value)| is_list(value))
+        } else {
+            values.iter().any(|(name, value)| is_time(name) && is_list(value))
+        };
+        if of_columns { Form::Columns } else { Form::Other }
+    }
+
+    fn is_movement(self) -> bool {
+        self != Form::Other
+    }
+}
+
+/// How deep lists nest, by the first of each; 0 of what is no list, or an empty one.
+fn depth(value: &Json) -> usize {
+    match value.list() {
+        Some([first, ..]) if !matches!(first, Json::Map(_)) => 1 + depth(first),
+        _ => 0,
+    }
+}
+
+/// The movements in one object of all: a list of objects or of lists of samples, or objects by name, each with what stands beside them
+/// (`dt`, `names`); none if there are none.
+pub(super) fn within(document: &Json) -> Option<Vec<Json>> {
+    let Json::Map(values) = document else { return None };
+    if Form::of(document, true) == Form::Episode {
+        return None;
+    }
+    let is_movement = |value: &Json| matches!(value, Json::Map(_)) && Form::of(value, true).is_movement();
+    let listed = |value: &Json| value.list().is_some_and(|list| !list.is_empty() && list.iter().all(is_movement));
+    let beside = |taken: &dyn Fn(&Json) -> bool| -> Vec<(String, Json)> {
+        values.iter().filter(|(_, value)| !taken(value)).cloned().collect()
+    };
+    if let Some((_, list)) = values.iter().find(|(_, value)| listed(value)) {
+        let shared = beside(&listed);
+        return Some(list.list()?.iter().map(|entry| joined(entry.clone(), None, &shared)).collect());
+    }
+    let named: Vec<&(String, Json)> = values.iter().filter(|(_, value)| is_movement(value)).collect();
+    if !named.is_empty() {
+        let shared = beside(&is_movement);
+        return Some(named.into_iter().map(|(name, entry)| joined(entry.clone(), Some(name), &shared)).collect());
+    }
+    let stacked = |value: &Json| depth(value) == 3;
+    let stacks: Vec<(&str, &[Json])> = values
+        .iter()
+        .filter(|(_, value)| stacked(value))
+        .filter_map(|(name, value)| Some((&name[..], value.list()?)))
+        .collect();
+    let (_, first) = stacks.first()?;
+    let shared = beside(&stacked);
+    let movement = |at: usize| {
+        let own = stacks.iter().filter_map(|(name, list)| Some(((*name).to_owned(), list.get(at)?.clone())));
+        joined(Json::Map(own.collect()), None, &shared)
+    };
+    Some((0..first.len()).map(movement).collect())
+}
+
+/// An entry with what it shares with others, and its name, unless it says so itself.
+fn joined(entry: Json, name: Option<&str>, shared: &[(String, Json)]) -> Json {
+    let Json::Map(mut own) = entry else { return entry };
+    let name = name.map(|name| ("episode".to_owned(), Json::Text(name.to_owned())));
+    for (key, value) in shared.iter().cloned().chain(name) {
+        if own.iter().all(|(other, _)| *other != key) {
+            own.push((key, value));
+        }
+    }
+    Json::Map(own)
+}
+
+/// The samples of an object of lists, as objects, each with what is no list: `{"t": 0, "x": 0}`. Lists of another length than the
+/// longest are left out.
+pub(super) fn rows_of_columns(entry: &Json, episode: Option<&str>) -> Vec<Json> {
+    let Json::Map(values) = entry else { return Vec::new() };
+    let length = values.iter().filter_map(|(_, value)| value.list()).map(<[Json]>::len).max().unwrap_or(0);
+    let columns = values.iter().filter(|(_, value)| value.list().is_none_or(|list| list.len() == length));
+    let columns: Vec<&(String, Json)> = columns.collect();
+    let row = |at: usize| {
+        let own = columns.iter().map(|(name, value)| {
+            let value = value.list().map_or(value, |list| &list[at]);
+            (name.clone(), value.clone())
+        });
+        let label = episode.filter(|_| columns.iter().all(|(name, _)| name != "episode"));
+        Json::Map(own.chain(label.map(|label| ("episode".to_owned(), Json::Text(label.to_owned())))).collect())
+    };
+    (0..length).map(row).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn json(text: &str) -> Json {
+        serde_json::from_str(text).unwrap()
+    }
+
+    #[test]
+    fn forms_are_told_apart() {
+        for (text, alone, form) in [
+            (r#"{"state": [[1], [2]]}"#, false, Form::Episode),
+            (r#"{"t": [0, 1], "pos": [[1, 2], [3, 4]]}"#, false, Form::Arrays),
+            (r#"{"t": [0, 1], "x": [1, 2]}"#, false, Form::Columns),
+            (r#"{"x": [1, 2]}"#, false, Form::Other),
+            (r#"{"x": [1, 2]}"#, true, Form::Columns),
+            (r#"{"t": 0.1, "pos": [1, 2]}"#, false, Form::Other),
+            (r#"{"a": {"x": [[1]]}}"#, true, Form::Other),
+            ("[1, 2]", true, Form::Other),
+        ] {
+            assert_eq!(Form::of(&json(text), alone), form, "{text}");
+        }
+    }
+
+    #[test]
+    fn movements_are_found_within_one_object() {
+        for (text, found) in [
+            (r#"{"state": [[1]], "more": {"x": [[1]]}}"#, None),
+            (r#"{"t": [0, 1], "pos": [[1, 2], [3, 4]]}"#, None),
+            (r#"{"a": 1, "b": {"c": 2}}"#, None),
+            (
+                r#"{"dt": 0.5, "demos": [{"x": [[1]]}, {"x": [[2]], "dt": 1}]}"#,
+                Some(r#"[{"x": [[1]], "dt": 0.5}, {"x": [[2]], "dt": 1}]"#),
+            ),
+            (
+                r#"{"dt": 0.5, "b": {"x": [[1]]}, "a": {"x": [[2]], "episode": "c"}}"#,
+                Some(r#"[{"x": [[1]], "dt": 0.5, "episode": "b"}, {"x": [[2]], "episode": "c", "dt": 0.5}]"#),
+            ),
+            (
+                r#"{"x": [[[1], [2]], [[3]]], "v": [[[4], [5]], [[6]]], "dt": 0.5}"#,
+                Some(r#"[{"x": [[1], [2]], "v": [[4], [5]], "dt": 0.5}, {"x": [[3]], "v": [[6]], "dt": 0.5}]"#),
+            ),
+        ] {
+            let found = found.map(|found| json(found).list().unwrap().to_vec());
+            assert_eq!(within(&json(text)), found, "{text}");
+        }
+    }
+
+    #[test]
+    fn columns_are_rows() {
+        let entry = json(r#"{"t": [0, 1], "x": [2, 3], "goal": 4, "short": [5]}"#);
+        let expected =
+            json(r#"[{"t": 0, "x": 2, "goal": 4, "episode": "a"}, {"t": 1, "x": 3, "goal": 4, "episode": "a"}]"#);
+        assert_eq!(rows_of_columns(&entry, Some("a")), expected.list().unwrap());
+    }
+}

@@ -1,0 +1,120 @@
+//! Some rows of a model that already show where it knows enough.
+
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use nalgebra::DMatrix;
+
+use crate::inducing::pivots::pivots;
+use crate::kernel::covariance::{Covariance, NOISE_FLOOR, among, jittered};
+use crate::kernel::factor::Factor;
+use crate::kernel::panel::Panel;
+use crate::kernel::triangle::InverseOfLower;
+use crate::kernel::whitening::Whitening;
+
+/// One of so many rows is taken, and at most [`MOST`].
+const ONE_OF: usize = 4;
+const MOST: usize = 96;
+/// Share of a covariance's mean diagonal that is added, so that rounding never makes these rows say more than all do.
+const CAUTION: f64 = 1e-8;
+/// A triangle whose diagonal falls below this share of its largest entry is not inverted.
+const SINGULAR: f64 = 1e-7;
+/// Share of a prior variance by which some rows must explain more of it than is needed, whatever rounding does.
+const MARGIN: f64 = 1e-3;
+/// After so many states it is clear whether it is worth asking, which it is if one in [`ONE_OF`] is told.
+const TRIED: usize = 256;
+
+/// A part P of a model: rows S and the factor of G_SS, where bᵀG⁻¹b is what all rows explain of a variance and b its covariances with them. G
+/// is their covariance with noise (S6), or of inducing rows L(TᵀT)⁻¹Lᵀ of (S37). b_SᵀG_SS⁻¹b_S ≤ bᵀG⁻¹b for every S, as for every positive
+/// matrix.
+#[derive(Debug)]
+pub(crate) struct Outline<P> {
+    part: OnceLock<Option<(P, InverseOfLower)>>,
+    /// States that were tried, and those of them that have enough support by these rows.
+    tried: AtomicUsize,
+    told: AtomicUsize,
+}
+
+impl<P> Default for Outline<P> {
+    fn default() -> Self {
+        Self { part: OnceLock::new(), tried: AtomicUsize::new(0), told: AtomicUsize::new(0) }
+    }
+}
+
+/// What was found out is found out again.
+impl<P> Clone for Outline<P> {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl<P> Outline<P> {
+    /// The part of the model of `rows` rows, which `part` makes of some; none if no rows can be taken apart, or if it told too little so far.
+    pub(crate) fn part(
+        &self,
+        rows: usize,
+        whitening: &Whitening,
+        (covariance, amplitudes, noise): (&impl Covariance, &[f64], f64),
+        part: impl FnOnce(&[usize]) -> P,
+    ) -> Option<&(P, InverseOfLower)> {
+        let (tried, told) = (self.tried.load(Ordering::Relaxed), self.told.load(Ordering::Relaxed));
+        if tried >= TRIED && told < tried / ONE_OF {
+            return None;
+        }
+        let new = || {
+            let every: Vec<usize> = (0..rows).collect();
+            let groups = [every.clone()];
+            let chosen = pivots(covariance, amplitudes, &groups, MOST.min(rows / ONE_OF)).rows;
+            let mut matrix = match whitening {
+                Whitening::Rows { noise_weights, .. } => {
+                    let mut matrix = among(covariance, &chosen, amplitudes);
+                    for (at, &row) in chosen.iter().enumerate() {
+                        matrix[(at, at)] += (noise + NOISE_FLOOR) * noise_weights[row];
+                    }
+                    matrix
+                }
+                Whitening::Inducing { shrinkage, .. } => {
+                    let factor = Factor::new(jittered(among(covariance, &every, amplitudes)))?.into_matrix();
+                    let triangle = shrinkage.transposed();
+                    if triangle.diagonal().iter().any(|entry| entry.abs() <= SINGULAR * triangle.amax()) {
+                        return None;
+                    }
+                    let lower = |column: usize, at: usize| {
+                        if column <= chosen[at] { factor[(chosen[at], column)] } else { 0.0 }
+                    };
+                    let root = triangle.solve_lower_triangular(&DMatrix::from_fn(rows, chosen.len(), lower))?;
+                    root.tr_mul(&root)
+                }
+            };
+            if chosen.is_empty() {
+                return None;
+            }
+            let caution = CAUTION * matrix.diagonal().mean();
+            (0..chosen.len()).for_each(|at| matrix[(at, at)] += caution);
+            let factor = InverseOfLower::new(&Factor::new(matrix)?.into_matrix());
+            Some((part(&chosen), factor))
+        };
+        self.part.get_or_init(new).as_ref()
+    }
+
+    /// Which states have the share `least` of their prior variances explained by these rows: covariances `b`, (S, k c), of c components a
+    /// state, `unit` being what squares of theirs are multiplied by. Infinite numbers tell nothing.
+    pub(crate) fn told(
+        &self,
+        factor: &InverseOfLower,
+        mut b: Panel,
+        prior: &[f64],
+        (unit, least): (f64, f64),
+    ) -> Vec<bool> {
+        factor.apply(&mut b);
+        let norms = b.squared_norms();
+        let components = norms.len().checked_div(prior.len()).unwrap_or(0).max(1);
+        let enough = |(norms, prior): (&[f64], &f64)| {
+            prior.is_finite() && unit * norms.iter().sum::<f64>() >= (least + MARGIN) * prior
+        };
+        let told: Vec<bool> = norms.chunks_exact(components).zip(prior).map(enough).collect();
+        self.tried.fetch_add(told.len(), Ordering::Relaxed);
+        self.told.fetch_add(told.iter().filter(|told| **told).count(), Ordering::Relaxed);
+        told
+    }
+}
