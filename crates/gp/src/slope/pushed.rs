@@ -101,15 +101,17 @@ impl Pushed {
         Some(Pushed { outcome: outcome(gp, &kept).ok()?, kept })
     }
 
-    /// Held-out squared error on each of these trajectories, as a share of what was to predict; on one without stretches the
-    /// share of all others together.
+    /// Held-out squared error of one row a sample on each of these trajectories, as a share of what was to predict in all of its rows: along
+    /// the velocity itself all of it is in one. On a trajectory without stretches the share of all others together.
     pub(crate) fn shares(&self, trajectories: &[usize]) -> Vec<f64> {
         let Outcome { data, taken, .. } = &self.outcome;
         let weighed = |rows: &[usize], of: &dyn Fn(usize) -> f64| -> f64 {
             rows.iter().map(|&row| of(row).powi(2) / data.noise_weights[row]).sum()
         };
+        let of_sample = self.kept.of_stretches.as_ref().map_or(1.0, |of| of.of_sample);
         let share = |rows: &[usize]| {
-            weighed(rows, &|row| taken.left_out.residuals[(row, 0)]) / weighed(rows, &|row| data.targets[(row, 0)])
+            let error = weighed(rows, &|row| taken.left_out.residuals[(row, 0)]);
+            error / (of_sample * weighed(rows, &|row| data.targets[(row, 0)]))
         };
         let all = share(&data.groups.concat());
         let place = |trajectory: &usize| self.kept.trajectories.iter().position(|of| of == trajectory);

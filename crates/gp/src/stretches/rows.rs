@@ -59,6 +59,7 @@ impl Stretches {
         let of_rows: Vec<usize> = moving().map(|equation| equation.row).collect();
         let taken = few(&of_rows, rows, selection.max_rows);
         let found = of_rows.len();
+        let samples = of_rows.chunk_by(|a, b| a == b).count();
         let chosen = moving().enumerate().filter(|(at, _)| taken.contains(at));
         let equations: Vec<Equation<'_>> = chosen.map(|(_, equation)| equation).collect();
         let lengths: Vec<f64> = equations.iter().map(|of| of.part.abs()).collect();
@@ -83,6 +84,7 @@ impl Stretches {
                 weights: relative(equations.iter().map(variance).collect()),
                 push: self.pushed.then(|| self.push()),
                 space: self.through.as_ref().map(|through| through.space),
+                of_sample: found as f64 / samples as f64,
             }),
             trajectories: groups.iter().map(|rows_of| index(rows_of[0]).trajectory).collect(),
             groups,
