@@ -4,7 +4,7 @@ use crate::Rows;
 use crate::rows::kept::Kept;
 use crate::slope::judgement::{CrossPathEvidence, ReportInput, report};
 use crate::slope::push_test::PushTest;
-use crate::slope::search::{Outcome, outcome};
+use crate::slope::search::{Outcome, outcome, outcome_of_nearly_best};
 use crate::slope::slope_gp::SlopeGp;
 use crate::stretches::view::View;
 use crate::stretches::{Stretches, Switches};
@@ -56,15 +56,16 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
     let means = rows.averaged();
     let tried = found.filter_map(|found| {
         let tried = Pushed::search(gp, &means, kept, &found)?;
-        Some((expected(rows, &tried.outcome, &tried.kept), found))
+        Some((expected(rows, &tried.outcome, &tried.kept), found, tried.outcome))
     });
-    let mut tried: Vec<(f64, Stretches)> = tried.collect();
-    tried.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let mut tried: Vec<(f64, Stretches, Outcome)> = tried.collect();
+    tried.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
     let more = |rows: usize, times: usize, most: usize| rows.max((times * rows).min(most));
     let (max_rows, hyper_rows) = (more(gp.max_rows, TIMES.0, MOST.0), more(gp.hyper_rows, TIMES.1, MOST.1));
     let larger = SlopeGp { max_rows, hyper_rows, ..gp.clone() };
-    let finals = tried.iter().take(FINALISTS).filter_map(|(_, found)| {
-        let pushed = Pushed::search(&larger, &means, kept, found)?;
+    let finals = tried.iter().take(FINALISTS).filter_map(|(_, found, fewer)| {
+        let kept = found.rows(&means, kept, &larger.selection().ok()?)?;
+        let pushed = Pushed { outcome: outcome_of_nearly_best(&larger, &kept, fewer).ok()?, kept };
         Some((expected(rows, &pushed.outcome, &pushed.kept), pushed))
     });
     let best = finals.min_by(|(a, _), (b, _)| a.total_cmp(b));
