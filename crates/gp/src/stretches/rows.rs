@@ -17,6 +17,8 @@ use motion::{SampleIndex, upper_median};
 const LEAST: f64 = 1e-12;
 /// (S24): mean square of pushes, in units of what noise alone gives, below which nothing pushes.
 const LEAST_SIGNIFICANCE: f64 = 4.0;
+/// Largest square of one push that counts, for each of its normals: a straight movement looks pushed, and one alone must not tell.
+const MOST_OF_ONE: f64 = 40.0;
 /// Share of the movements that must have stretches: models of different movements are not compared.
 const COVERED: f64 = 0.5;
 
@@ -146,8 +148,10 @@ impl Stretches {
     /// Mean square of the pushes along normals, in units of what noise would give: about 1 where nothing pushes.
     fn significance(&self) -> f64 {
         let all = self.all.iter().map(|stretch| stretch.significance);
-        let (squares, normals) =
-            all.fold((0.0, 0), |(squares, normals), (square, count)| (squares + square, normals + count));
-        squares / normals as f64
+        let (squares, normals) = all.fold((0.0, 0.0), |(squares, normals), (square, count)| {
+            let count = count as f64;
+            (squares + square.min(MOST_OF_ONE * count), normals + count)
+        });
+        squares / normals
     }
 }
