@@ -31,7 +31,9 @@ pub(crate) fn pushed(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) ->
 const TIMES: (usize, usize) = (6, 2);
 const MOST: (usize, usize) = (2400, 400);
 /// Of those that expect least on few rows, so many are fitted to more: few rows do not show a wrong stretch among many.
-const FINALISTS: usize = 2;
+const FINALISTS: usize = 3;
+/// They expect at most so many times what the first of them does.
+const NEARLY: f64 = 2.0;
 /// Expected error up to which task spaces are not tried.
 const NEARLY_EXACT: f64 = 1e-3;
 
@@ -63,7 +65,9 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
     let more = |rows: usize, times: usize, most: usize| rows.max((times * rows).min(most));
     let (max_rows, hyper_rows) = (more(gp.max_rows, TIMES.0, MOST.0), more(gp.hyper_rows, TIMES.1, MOST.1));
     let larger = SlopeGp { max_rows, hyper_rows, ..gp.clone() };
-    let finals = tried.iter().take(FINALISTS).filter_map(|(_, found, fewer)| {
+    let least = tried.first()?.0;
+    let finalists = tried.iter().take(FINALISTS).take_while(|(error, ..)| *error <= NEARLY * least);
+    let finals = finalists.filter_map(|(_, found, fewer)| {
         let kept = found.rows(&means, kept, &larger.selection().ok()?)?;
         let pushed = Pushed { outcome: outcome_of_nearly_best(&larger, &kept, fewer).ok()?, kept };
         Some((expected(rows, &pushed.outcome, &pushed.kept), pushed))

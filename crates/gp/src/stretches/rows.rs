@@ -155,3 +155,41 @@ impl Stretches {
         squares / normals
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn stretch((square, normals): (f64, usize)) -> Stretch {
+        Stretch {
+            trajectory: 0,
+            samples: (0, 0),
+            directions: DMatrix::zeros(3, 0),
+            lengths: Vec::new(),
+            push: DVector::zeros(3),
+            significance: (square, normals),
+            rank: 3 - normals,
+            whole: None,
+        }
+    }
+
+    proptest! {
+        /// (S24): without a push one stretch, however far it seems to be pushed, does not tell; a tenth of all do.
+        #[test]
+        fn one_stretch_does_not_tell_a_push(
+            normals in 1usize..3,
+            count in 20usize..100,
+            noise in 0.0f64..1.9,
+            apparent in 41.0f64..1e9,
+        ) {
+            let of = |pushed: usize| {
+                let square = |at: usize| normals as f64 * if at < pushed { apparent } else { noise };
+                let all = (0..count).map(|at| stretch((square(at), normals))).collect();
+                Stretches { all, noise: 1.0, pushed: true, through: None }.push_is_significant()
+            };
+            prop_assert!(!of(0) && !of(1) && of(count.div_ceil(10)) && of(count));
+        }
+    }
+}
