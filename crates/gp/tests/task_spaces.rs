@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use demo_gen::Recording;
 use demo_gen::tasks::{Contact, Wiping};
-use gp::{AutoFit, AutoGp, DirectGp, GpError, Hypothesis, PushTest, Rows, SlopeGp, TaskSpace};
+use demo_gen::{Recording, demonstrations, with_velocity_noise};
+use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, GpError, Hypothesis, PushTest, Rows, SlopeGp, TaskSpace};
 use kinematics::Workspace;
 use motion::{Policy, SampleIndex};
 use nalgebra::{DMatrix, DVector, Matrix6xX};
@@ -112,6 +112,23 @@ fn constraints_of_a_hand_are_learnt_from() {
     assert!((0.3..3.0).contains(&(with.expected_nupe() / wiped.error(&with))), "{}", with.expected_nupe());
     let without = learnt(&rows);
     assert!(wiped.error(&without) > 0.02 && without.slope().report().task_space.is_none());
+}
+
+/// Noise of a tenth of the velocities is a larger share of each of a sample's many rows than of the one along its velocity.
+#[test]
+#[ignore = "half a minute"]
+fn constraints_of_a_hand_are_learnt_from_in_noise() {
+    for set in [3, 7] {
+        let mut wiped = wiped(set);
+        wiped.shown = with_velocity_noise(&wiped.shown, 20.0, &mut ChaCha8Rng::seed_from_u64(set)).unwrap();
+        let shown = demonstrations(&wiped.shown).unwrap();
+        let rows = FrontEnd::of_velocities(&shown).rows(&shown).unwrap();
+        let with = learnt(&rows.clone().with_task_spaces(wiped.spaces()).unwrap());
+        let (error, report) = (wiped.error(&with), with.slope().report());
+        assert!(error < 0.012, "{set}: {error}");
+        assert!(matches!(report.task_space, Some(0 | 2)) && report.push.is_none(), "{set}: {report:?}");
+        assert!((0.3..3.0).contains(&(with.expected_nupe() / error)), "{set}: {error} {}", with.expected_nupe());
+    }
 }
 
 /// A press of a third of the tool's speed.

@@ -59,6 +59,8 @@ pub(crate) struct OfStretches {
     pub(crate) push: Option<f64>,
     /// The task space that they are of, by its place among those of the rows; none: the recorded coordinates.
     pub(crate) space: Option<usize>,
+    /// How many of them a sample gives, on average.
+    pub(crate) of_sample: f64,
 }
 
 /// Rows kept, in the order of trajectories and samples.

@@ -14,7 +14,7 @@ use crate::rows::thinning::every_so_many;
 use crate::slope::candidate::Candidate;
 use crate::slope::data::SlopeData;
 use crate::slope::expansion::Expansion;
-use crate::slope::search::{Outcome, best_of, candidate};
+use crate::slope::search::{Outcome, best_of, candidate, nearly_best};
 use crate::slope::slope_gp::SlopeGp;
 
 /// Rows, for each that was kept, up to which the others say nearly the same as those kept.
@@ -26,8 +26,6 @@ const UNRESOLVED: f64 = 100.0;
 /// Rows of that model, for each inducing one, and the share of them that sets amplitudes.
 const EXACT: usize = 2;
 const HYPER: f64 = 2.0 / 3.0;
-/// Families with at most so many times the least error on the rows kept may have less on all.
-const NEARLY: f64 = 4.0;
 
 /// All rows, and the outcome on them.
 pub(crate) struct OnAllRows {
@@ -58,7 +56,7 @@ pub(crate) fn on_all_rows(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outc
     };
     let mut families = Vec::new();
     let mut best = |kind| {
-        let tried = nearly_best(&thinned.families, kind).into_par_iter().map(|(family, prior)| {
+        let tried = nearly_best_of(&thinned.families, kind).into_par_iter().map(|(family, prior)| {
             let candidate = if unresolved {
                 candidate(gp, &data, &all, family, kind)
             } else {
@@ -104,12 +102,9 @@ fn more(gp: &SlopeGp, rows: &Rows, kept: &Kept) -> Option<Kept> {
 }
 
 /// Families of one kind that predict movements left out nearly as well as the best of them, with their amplitudes.
-fn nearly_best(families: &[FamilyReport], kind: ModelKind) -> Vec<(Family, &[(Block, f64)])> {
-    let of_kind = || families.iter().filter(|report| report.model == kind);
-    let fitted = of_kind().filter_map(|report| Some((report.family, report.fit.as_ref()?)));
-    let least = fitted.clone().map(|(_, fit)| 1.0 - fit.r_squared).fold(f64::INFINITY, f64::min);
-    let nearly = fitted.filter(|(_, fit)| 1.0 - fit.r_squared <= NEARLY * least);
-    nearly.map(|(family, fit)| (family, &*fit.amplitudes)).collect()
+fn nearly_best_of(families: &[FamilyReport], kind: ModelKind) -> Vec<(Family, &[(Block, f64)])> {
+    let nearly = nearly_best(families.iter().filter(|report| report.model == kind));
+    nearly.into_iter().filter_map(|report| Some((report.family, &*report.fit.as_ref()?.amplitudes))).collect()
 }
 
 /// D of all rows as it was of those kept.

@@ -17,13 +17,14 @@ use crate::slope::data::SlopeData;
 pub(crate) fn least_hidden(
     data: &SlopeData,
     kept: &Kept,
-    potential: &Candidate,
+    potential: Option<&Candidate>,
     rotation: &Candidate,
 ) -> Option<Candidate> {
     let predicts = |candidate: &Candidate| candidate.left_out.is_nearly_exact();
-    let rival = if predicts(potential) { potential } else { rotation };
+    let potential = potential.filter(|potential| predicts(potential));
+    let rival = potential.unwrap_or(rotation);
     let differs = |candidate: &Candidate| difference(&rival.actions, &candidate.actions) > DIFFERS;
-    if !predicts(rotation) || (predicts(potential) && !differs(rotation)) {
+    if !predicts(rotation) || (potential.is_some() && !differs(rotation)) {
         return None;
     }
     let length = |candidate: &Candidate| candidate.actions.norm_squared();

@@ -4,7 +4,7 @@ use crate::Rows;
 use crate::rows::kept::Kept;
 use crate::slope::judgement::{CrossPathEvidence, ReportInput, report};
 use crate::slope::push_test::PushTest;
-use crate::slope::search::{Outcome, outcome};
+use crate::slope::search::{Outcome, outcome, outcome_of_nearly_best};
 use crate::slope::slope_gp::SlopeGp;
 use crate::stretches::view::View;
 use crate::stretches::{Stretches, Switches};
@@ -31,7 +31,9 @@ pub(crate) fn pushed(gp: &SlopeGp, rows: &Rows, kept: &Kept, plain: &Outcome) ->
 const TIMES: (usize, usize) = (6, 2);
 const MOST: (usize, usize) = (2400, 400);
 /// Of those that expect least on few rows, so many are fitted to more: few rows do not show a wrong stretch among many.
-const FINALISTS: usize = 2;
+const FINALISTS: usize = 3;
+/// They expect at most so many times what the first of them does.
+const NEARLY: f64 = 2.0;
 /// Expected error up to which task spaces are not tried.
 const NEARLY_EXACT: f64 = 1e-3;
 
@@ -56,15 +58,18 @@ fn in_task_space(gp: &SlopeGp, rows: &Rows, (kept, own): (&Kept, &Kept), outcome
     let means = rows.averaged();
     let tried = found.filter_map(|found| {
         let tried = Pushed::search(gp, &means, kept, &found)?;
-        Some((expected(rows, &tried.outcome, &tried.kept), found))
+        Some((expected(rows, &tried.outcome, &tried.kept), found, tried.outcome))
     });
-    let mut tried: Vec<(f64, Stretches)> = tried.collect();
-    tried.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let mut tried: Vec<(f64, Stretches, Outcome)> = tried.collect();
+    tried.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
     let more = |rows: usize, times: usize, most: usize| rows.max((times * rows).min(most));
     let (max_rows, hyper_rows) = (more(gp.max_rows, TIMES.0, MOST.0), more(gp.hyper_rows, TIMES.1, MOST.1));
     let larger = SlopeGp { max_rows, hyper_rows, ..gp.clone() };
-    let finals = tried.iter().take(FINALISTS).filter_map(|(_, found)| {
-        let pushed = Pushed::search(&larger, &means, kept, found)?;
+    let least = tried.first()?.0;
+    let finalists = tried.iter().take(FINALISTS).take_while(|(error, ..)| *error <= NEARLY * least);
+    let finals = finalists.filter_map(|(_, found, fewer)| {
+        let kept = found.rows(&means, kept, &larger.selection().ok()?)?;
+        let pushed = Pushed { outcome: outcome_of_nearly_best(&larger, &kept, fewer).ok()?, kept };
         Some((expected(rows, &pushed.outcome, &pushed.kept), pushed))
     });
     let best = finals.min_by(|(a, _), (b, _)| a.total_cmp(b));
@@ -101,15 +106,17 @@ impl Pushed {
         Some(Pushed { outcome: outcome(gp, &kept).ok()?, kept })
     }
 
-    /// Held-out squared error on each of these trajectories, as a share of what was to predict; on one without stretches the
-    /// share of all others together.
+    /// Held-out squared error of one row a sample on each of these trajectories, as a share of what was to predict in all of its rows: along
+    /// the velocity itself all of it is in one. On a trajectory without stretches the share of all others together.
     pub(crate) fn shares(&self, trajectories: &[usize]) -> Vec<f64> {
         let Outcome { data, taken, .. } = &self.outcome;
         let weighed = |rows: &[usize], of: &dyn Fn(usize) -> f64| -> f64 {
             rows.iter().map(|&row| of(row).powi(2) / data.noise_weights[row]).sum()
         };
+        let of_sample = self.kept.of_stretches.as_ref().map_or(1.0, |of| of.of_sample);
         let share = |rows: &[usize]| {
-            weighed(rows, &|row| taken.left_out.residuals[(row, 0)]) / weighed(rows, &|row| data.targets[(row, 0)])
+            let error = weighed(rows, &|row| taken.left_out.residuals[(row, 0)]);
+            error / (of_sample * weighed(rows, &|row| data.targets[(row, 0)]))
         };
         let all = share(&data.groups.concat());
         let place = |trajectory: &usize| self.kept.trajectories.iter().position(|of| of == trajectory);

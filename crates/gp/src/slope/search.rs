@@ -1,5 +1,7 @@
 //! Families and rotation tried one after the other: steps 3 to 9 of a fit.
 
+use rayon::prelude::*;
+
 use crate::GpError;
 use crate::evidence::family_fit::each_until_exact;
 use crate::kernel::family::Family;
@@ -17,6 +19,8 @@ use crate::slope::slope_gp::SlopeGp;
 const HIDDEN: f64 = 1.3;
 /// How often noise weights are taken anew from a policy with rotation.
 const ROUNDS: usize = 3;
+/// Models with at most so many times the least error on some rows may have less on more.
+const NEARLY: f64 = 4.0;
 
 /// The model taken, the one not taken, and everything tried.
 pub(crate) struct Outcome {
@@ -50,18 +54,61 @@ fn searched(gp: &SlopeGp, kept: &Kept, data: SlopeData) -> Result<Outcome, GpErr
     let Some(rotation) = rotation(gp, &data, kept, &potential, &mut families) else {
         return Ok(Outcome { data, taken: potential, other: None, curl_t: None, families, least_hidden: false });
     };
-    let t = curl_t(&potential.left_out, &rotation.left_out, &data.noise_weights, &data.groups);
-    let rotates = takes_rotation(t, &potential.contender(), &rotation.contender());
+    compared(gp, kept, data, (Some(potential), rotation), families)
+}
+
+/// Steps 7 and 8 of the best models with a potential, if there is one, and with rotation.
+fn compared(
+    gp: &SlopeGp,
+    kept: &Kept,
+    data: SlopeData,
+    (potential, rotation): (Option<Candidate>, Candidate),
+    mut families: Vec<FamilyReport>,
+) -> Result<Outcome, GpError> {
+    let t = potential
+        .as_ref()
+        .map(|potential| curl_t(&potential.left_out, &rotation.left_out, &data.noise_weights, &data.groups));
+    let rotates = match (&potential, t) {
+        (Some(potential), Some(t)) => takes_rotation(t, &potential.contender(), &rotation.contender()),
+        _ => true,
+    };
     let (data, rotation) = if rotates { reweighted(gp, kept, data, rotation)? } else { (data, rotation) };
-    let hides_least = least_hidden(&data, kept, &potential, &rotation);
+    let hides_least = least_hidden(&data, kept, potential.as_ref(), &rotation);
     families.extend(hides_least.as_ref().map(Candidate::report));
     let least_hidden = hides_least.is_some();
-    let (taken, other) = match hides_least {
-        Some(hides_least) => (hides_least, potential),
-        None if rotates => (rotation, potential),
-        None => (potential, rotation),
+    let (taken, other) = match (hides_least, potential) {
+        (Some(hides_least), potential) => (hides_least, potential),
+        (None, Some(potential)) if !rotates => (potential, Some(rotation)),
+        (None, potential) => (rotation, potential),
     };
-    Ok(Outcome { data, taken, other: Some(other), curl_t: Some(t), families, least_hidden })
+    Ok(Outcome { data, taken, other, curl_t: t, families, least_hidden })
+}
+
+/// The search on more rows of stretches than `fewer`, of the models alone that nearly were the best ones there.
+pub(crate) fn outcome_of_nearly_best(gp: &SlopeGp, kept: &Kept, fewer: &Outcome) -> Result<Outcome, GpError> {
+    let data = weighted(gp, kept)?;
+    let nearly_best = nearly_best(fewer.families.iter());
+    let mut families = Vec::new();
+    let mut best = |kind| {
+        let is_one =
+            |family: &Family| nearly_best.iter().any(|report| (report.family, report.model) == (*family, kind));
+        let tried: Vec<Family> = Family::ALL.into_iter().filter(is_one).collect();
+        let tried = tried.into_par_iter().map(|family| (family, candidate(gp, &data, kept, family, kind)));
+        best_of(tried.collect::<Vec<_>>().into_iter(), kind, &mut families)
+    };
+    match (best(ModelKind::Potential), best(ModelKind::Helmholtz)) {
+        (potential, Some(rotation)) => compared(gp, kept, data, (potential, rotation), families),
+        (Some(taken), None) => Ok(Outcome { data, taken, other: None, curl_t: None, families, least_hidden: false }),
+        (None, None) => Err(GpError::NoFactor),
+    }
+}
+
+/// Of models of the same rows those that leave at most four times as much of the movements left out as the best of them: on more rows they may leave
+/// less.
+pub(super) fn nearly_best<'a>(reports: impl Iterator<Item = &'a FamilyReport> + Clone) -> Vec<&'a FamilyReport> {
+    let left = |report: &FamilyReport| report.fit.as_ref().map_or(f64::INFINITY, |fit| 1.0 - fit.r_squared);
+    let least = reports.clone().map(left).fold(f64::INFINITY, f64::min);
+    reports.filter(|report| report.fit.is_some() && left(report) <= NEARLY * least).collect()
 }
 
 /// Step 9: the search again with the weights (S18) of a pilot policy, which was itself fitted with those of the model taken;

@@ -17,6 +17,8 @@ use motion::{SampleIndex, upper_median};
 const LEAST: f64 = 1e-12;
 /// (S24): mean square of pushes, in units of what noise alone gives, below which nothing pushes.
 const LEAST_SIGNIFICANCE: f64 = 4.0;
+/// Largest square of one push that counts, for each of its normals: a straight movement looks pushed, and one alone must not tell.
+const MOST_OF_ONE: f64 = 40.0;
 /// Share of the movements that must have stretches: models of different movements are not compared.
 const COVERED: f64 = 0.5;
 
@@ -59,6 +61,7 @@ impl Stretches {
         let of_rows: Vec<usize> = moving().map(|equation| equation.row).collect();
         let taken = few(&of_rows, rows, selection.max_rows);
         let found = of_rows.len();
+        let samples = of_rows.chunk_by(|a, b| a == b).count();
         let chosen = moving().enumerate().filter(|(at, _)| taken.contains(at));
         let equations: Vec<Equation<'_>> = chosen.map(|(_, equation)| equation).collect();
         let lengths: Vec<f64> = equations.iter().map(|of| of.part.abs()).collect();
@@ -86,6 +89,7 @@ impl Stretches {
                 weights: relative(equations.iter().map(variance).collect()),
                 push: self.pushed.then(|| self.push()),
                 space: self.through.as_ref().map(|through| through.space),
+                of_sample: found as f64 / samples as f64,
             }),
             trajectories: groups.iter().map(|rows_of| index(rows_of[0]).trajectory).collect(),
             groups,
@@ -147,8 +151,48 @@ impl Stretches {
     /// Mean square of the pushes along normals, in units of what noise would give: about 1 where nothing pushes.
     fn significance(&self) -> f64 {
         let all = self.all.iter().map(|stretch| stretch.significance);
-        let (squares, normals) =
-            all.fold((0.0, 0), |(squares, normals), (square, count)| (squares + square, normals + count));
-        squares / normals as f64
+        let (squares, normals) = all.fold((0.0, 0.0), |(squares, normals), (square, count)| {
+            let count = count as f64;
+            (squares + square.min(MOST_OF_ONE * count), normals + count)
+        });
+        squares / normals
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn stretch((square, normals): (f64, usize)) -> Stretch {
+        Stretch {
+            trajectory: 0,
+            samples: (0, 0),
+            directions: DMatrix::zeros(3, 0),
+            lengths: Vec::new(),
+            push: DVector::zeros(3),
+            significance: (square, normals),
+            rank: 3 - normals,
+            whole: None,
+        }
+    }
+
+    proptest! {
+        /// (S24): without a push one stretch, however far it seems to be pushed, does not tell; a tenth of all do.
+        #[test]
+        fn one_stretch_does_not_tell_a_push(
+            normals in 1usize..3,
+            count in 20usize..100,
+            noise in 0.0f64..1.9,
+            apparent in 41.0f64..1e9,
+        ) {
+            let of = |pushed: usize| {
+                let square = |at: usize| normals as f64 * if at < pushed { apparent } else { noise };
+                let all = (0..count).map(|at| stretch((square(at), normals))).collect();
+                Stretches { all, noise: 1.0, pushed: true, through: None }.push_is_significant()
+            };
+            prop_assert!(!of(0) && !of(1) && of(count.div_ceil(10)) && of(count));
+        }
     }
 }

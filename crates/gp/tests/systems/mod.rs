@@ -44,9 +44,28 @@ fn wells(x: &[f64]) -> f64 {
     bowl + drawn::WELLS.iter().map(well).sum::<f64>()
 }
 
+/// Four masses between springs, each in two wells.
+fn chain(x: &[f64]) -> f64 {
+    let own: f64 = x.iter().map(|x| x.powi(4) / 4.0 - x * x / 2.0).sum();
+    own + x.windows(2).map(|pair| 0.25 * (pair[0] - pair[1]).powi(2)).sum::<f64>()
+}
+
+/// Three wells, narrower along some axes, in a bowl.
+fn uneven_wells(x: &[f64]) -> f64 {
+    let widths = [0.6, 1.2, 0.9, 1.5, 0.75];
+    let bowl: f64 = x.iter().map(|x| 0.3 * x * x).sum();
+    let well = |c: &[f64; 6]| {
+        let squares = x.iter().zip(c).zip(widths).map(|((x, c), width)| ((x - c) / width).powi(2));
+        -(-squares.sum::<f64>()).exp()
+    };
+    bowl + drawn::WELLS.iter().map(well).sum::<f64>()
+}
+
 pub(crate) const HIMMELBLAU: System = System { dim: 2, span: 4.0, rank: 1, potential: himmelblau };
 pub(crate) const ANGLES: System = System { dim: 3, span: 2.0, rank: 1, potential: angles };
 pub(crate) const WELLS: System = System { dim: 6, span: 1.0, rank: 2, potential: wells };
+pub(crate) const CHAIN: System = System { dim: 4, span: 1.5, rank: 1, potential: chain };
+pub(crate) const UNEVEN_WELLS: System = System { dim: 5, span: 1.2, rank: 2, potential: uneven_wells };
 
 impl System {
     /// The same potential, without constraints.
