@@ -64,7 +64,7 @@ impl<P> Outline<P> {
         let new = || {
             let every: Vec<usize> = (0..rows).collect();
             let groups = [every.clone()];
-            let chosen = pivots(covariance, amplitudes, &groups, MOST.min(rows / ONE_OF)).rows;
+            let chosen = pivots(covariance, amplitudes, &groups, MOST.min(rows / ONE_OF));
             let mut matrix = match whitening {
                 Whitening::Rows { noise_weights, .. } => {
                     let mut matrix = among(covariance, &chosen, amplitudes);

@@ -1,6 +1,6 @@
 //! Leave-one-trajectory-out prediction of a model that was conditioned on all rows through some of them: closed form (S36).
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DMatrixView};
 use rayon::prelude::*;
 
 use crate::inducing::features::Features;
@@ -24,16 +24,43 @@ pub(crate) struct Leaving<'a, C> {
     pub(crate) coefficients: &'a DMatrix<f64>,
 }
 
+/// Groups of rows, with ΦV of each where that is computed once for several levels of noise.
+pub(crate) struct Groups<'a> {
+    pub(crate) rows: Vec<&'a [usize]>,
+    products: Option<Vec<DMatrix<f64>>>,
+}
+
+impl<'a> Groups<'a> {
+    pub(crate) fn new(rows: Vec<&'a [usize]>) -> Self {
+        Groups { rows, products: None }
+    }
+
+    /// Number of rows.
+    pub(crate) fn len(&self) -> usize {
+        self.rows.iter().map(|rows| rows.len()).sum()
+    }
+
+    /// Keeps ΦV of every row: m numbers each.
+    pub(crate) fn with_products<C: Covariance>(self, features: &Features<'_, C>, spectrum: &Spectrum) -> Self {
+        let products = self.rows.par_iter().map(|rows| features.times(rows, &spectrum.w)).collect();
+        Groups { products: Some(products), ..self }
+    }
+}
+
 /// Residuals and variances of one group, in the units of its rows.
 type Group = (DMatrix<f64>, Vec<f64>);
+/// ΦV of the rows of a group, if it is at hand.
+type Products<'a> = Option<&'a DMatrix<f64>>;
 
 impl<C: Covariance> Leaving<'_, C> {
     /// Each of these groups predicted without itself; the numbers are of their rows, in this order. `spread` is Σ w|y|² of them, or
     /// about whatever is predicted without a model. Costs min(m, n_t) n_t m for each, with all features computed once or, of long
     /// groups, twice.
-    pub(crate) fn each(&self, groups: &[&[usize]], spread: f64) -> Option<LeftOut> {
-        let each: Vec<Group> = groups.par_iter().map(|rows| self.group(rows)).collect::<Option<_>>()?;
-        let rows: Vec<usize> = groups.concat();
+    pub(crate) fn each(&self, groups: &Groups<'_>, spread: f64) -> Option<LeftOut> {
+        let products = |at: usize| groups.products.as_ref().map(|products| &products[at]);
+        let group = |(at, rows): (usize, &&[usize])| self.group(rows, products(at));
+        let each: Vec<Group> = groups.rows.par_iter().enumerate().map(group).collect::<Option<_>>()?;
+        let rows: Vec<usize> = groups.rows.concat();
         let targets = self.features.conditions.targets.ncols();
         let (mut residuals, mut variances) = (DMatrix::zeros(rows.len(), targets), Vec::with_capacity(rows.len()));
         for (errors, of) in each {
@@ -44,9 +71,9 @@ impl<C: Covariance> Leaving<'_, C> {
         LeftOut::of(residuals, variances, &weights, spread)
     }
 
-    fn group(&self, rows: &[usize]) -> Option<Group> {
-        let (mut residuals, mut variances) =
-            if rows.len() <= self.spectrum.singular.len().min(TOGETHER) { self.few(rows)? } else { self.many(rows)? };
+    fn group(&self, rows: &[usize], products: Products<'_>) -> Option<Group> {
+        let few = rows.len() <= self.spectrum.singular.len().min(TOGETHER);
+        let (mut residuals, mut variances) = if few { self.few(rows, products) } else { self.many(rows, products) }?;
         for (at, &row) in rows.iter().enumerate() {
             let weight = self.features.conditions.noise_weights[row];
             residuals.row_mut(at).scale_mut(weight.sqrt());
@@ -56,8 +83,8 @@ impl<C: Covariance> Leaving<'_, C> {
     }
 
     /// Through I − H_tt, (n_t, n_t).
-    fn few(&self, rows: &[usize]) -> Option<Group> {
-        let (mut errors, known, b) = self.own(rows);
+    fn few(&self, rows: &[usize], products: Products<'_>) -> Option<Group> {
+        let (mut errors, known, b) = self.own(rows, products.map(DMatrix::as_view));
         let mut rest = DMatrix::identity(rows.len(), rows.len());
         add_product_below(&mut rest, -1.0, view(&b), view(&b).transpose());
         let factor = Factor::new(rest)?;
@@ -71,12 +98,14 @@ impl<C: Covariance> Leaving<'_, C> {
     }
 
     /// Through I − BᵀB, (m, m), by Woodbury: (I − BBᵀ)⁻¹ = I + B (I − BᵀB)⁻¹ Bᵀ.
-    fn many(&self, rows: &[usize]) -> Option<Group> {
+    fn many(&self, rows: &[usize], products: Products<'_>) -> Option<Group> {
+        let of = |begin, count| products.map(|products| products.rows(begin, count));
+        let own = |begin: usize, part: &[usize]| self.own(part, of(begin, part.len()));
         let count = self.spectrum.singular.len();
         let mut rest = DMatrix::identity(count, count);
         let mut along = DMatrix::zeros(count, self.coefficients.ncols());
-        for part in rows.chunks(TOGETHER) {
-            let (errors, _, b) = self.own(part);
+        for (at, part) in rows.chunks(TOGETHER).enumerate() {
+            let (errors, _, b) = own(at * TOGETHER, part);
             add_product_below(&mut rest, -1.0, view(&b).transpose(), view(&b));
             along += b.tr_mul(&errors);
         }
@@ -85,7 +114,7 @@ impl<C: Covariance> Leaving<'_, C> {
         let mut residuals = DMatrix::zeros(rows.len(), self.coefficients.ncols());
         let mut variances = Vec::with_capacity(rows.len());
         for part in rows.chunks(TOGETHER) {
-            let (errors, known, b) = self.own(part);
+            let (errors, known, b) = own(variances.len(), part);
             residuals.rows_mut(variances.len(), part.len()).copy_from(&(errors + &b * &along));
             let mut whitened = b.transpose();
             factor.whiten(&mut whitened);
@@ -124,8 +153,9 @@ impl<C: Covariance> Leaving<'_, C> {
     }
 
     /// z − Φŵ, the squares of the rows of Φ, and B with H = BBᵀ.
-    fn own(&self, rows: &[usize]) -> (DMatrix<f64>, Vec<f64>, DMatrix<f64>) {
-        let mut b = self.features.times(rows, &self.spectrum.w);
+    fn own(&self, rows: &[usize], products: Option<DMatrixView<'_, f64>>) -> (DMatrix<f64>, Vec<f64>, DMatrix<f64>) {
+        let product = || self.features.times(rows, &self.spectrum.w);
+        let mut b = products.map_or_else(product, DMatrixView::into_owned);
         let errors = self.features.targets(rows) - &b * self.coefficients;
         let known = b.row_iter().map(|row| row.norm_squared()).collect();
         self.scale(&mut b);

@@ -9,7 +9,7 @@ mod tree;
 use nalgebra::DMatrix;
 
 use crate::inducing::features::Features;
-use crate::inducing::left_out::Leaving;
+use crate::inducing::left_out::{Groups, Leaving};
 use crate::inducing::pivots::pivots;
 use crate::inducing::spectrum::Spectrum;
 use crate::kernel::covariance::{Covariance, NOISE_FLOOR, among, jittered};
@@ -43,27 +43,29 @@ impl Induced {
     /// At these amplitudes, σ² of the highest marginal likelihood, and the κ that predicts left-out groups best. None if there is no
     /// factor.
     ///
-    /// Costs 4 n m² operations and n m covariances for n rows and m inducing ones, and the memory of a few rows at a time.
+    /// Costs 4 n m² operations and n m covariances for n rows and m inducing ones, and the memory of the features of 20,000 rows.
     pub(crate) fn new(
         covariance: &impl Covariance,
         amplitudes: &[f64],
         conditions: &Conditions<'_>,
         most: usize,
     ) -> Option<Induced> {
-        let inducing = pivots(covariance, amplitudes, conditions.groups, most).rows;
+        let inducing = pivots(covariance, amplitudes, conditions.groups, most);
         let features = Features { covariance, amplitudes, inducing, conditions };
         let factor = Factor::new(jittered(among(covariance, &features.inducing, amplitudes)))?;
         let spectrum = Spectrum::of(&features, &factor)?;
         let found = spectrum.noise();
         let own = found + NOISE_FLOOR;
-        let level = |noise, own, groups: &[&[usize]], spread| {
+        let level = |noise, own, groups: &Groups<'_>, spread| {
             let coefficients = &spectrum.coefficients(noise);
             Leaving { features: &features, spectrum: &spectrum, noise, own, coefficients }.each(groups, spread)
         };
         let with_kappa = |kappa| raised(found, kappa) + NOISE_FLOOR;
+        let count = conditions.noise_weights.len();
         let all: Vec<&[usize]> = conditions.groups.iter().map(Vec::as_slice).collect();
-        let some = evenly(&all, COMPARED);
-        let share = some.concat().len() as f64 / conditions.noise_weights.len() as f64;
+        let some = Groups::new(evenly(&all, COMPARED));
+        let some = if some.len() <= COMPARED { some.with_products(&features, &spectrum) } else { some };
+        let share = some.len() as f64 / count as f64;
         let at = |kappa| {
             let noise = with_kappa(kappa);
             Some((kappa, level(noise, noise, &some, share * conditions.spread)?))
@@ -72,9 +74,10 @@ impl Induced {
         let mut levels = kappas().map(at).skip_while(Option::is_none).peekable();
         let least = levels.peek()?.as_ref()?.0;
         let (best, compared) = climb(levels, |(_, left_out)| left_out)?;
-        let known = with_kappa(best) == own && some.len() == all.len();
-        let left_out = if known { compared } else { level(with_kappa(best), own, &all, conditions.spread)? };
-        let left_out = left_out.at(&all.concat());
+        let known = with_kappa(best) == own && some.len() == count;
+        let every = if some.len() == count { some } else { Groups::new(all) };
+        let left_out = if known { compared } else { level(with_kappa(best), own, &every, conditions.spread)? };
+        let left_out = left_out.at(&every.rows.concat());
         // Where the least noise at which groups can be left out is the best, so would less be.
         let kappa = if best == least { 1.0 } else { best };
         let weights = &spectrum.w * spectrum.coefficients(with_kappa(kappa));
@@ -257,7 +260,7 @@ mod tests {
         ) {
             let drawn = Drawn::new(&groups, seed);
             let (covariance, conditions) = (drawn.covariance(), drawn.conditions());
-            let inducing = pivots(&covariance, &amplitudes, &drawn.groups, most).rows;
+            let inducing = pivots(&covariance, &amplitudes, &drawn.groups, most);
             let features = Features { covariance: &covariance, amplitudes: &amplitudes, inducing, conditions: &conditions };
             let factor = Factor::new(jittered(among(&covariance, &features.inducing, &amplitudes))).expect("a factor");
             let spectrum = Spectrum::of(&features, &factor).expect("a decomposition");

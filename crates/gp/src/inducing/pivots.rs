@@ -1,36 +1,37 @@
 //! Which rows stand for all: pivoted Cholesky (S34).
 
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatRef, Par};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::kernel::covariance::Covariance;
+use crate::kernel::factor::{view, view_mut};
+use crate::rows::thinning::scattered;
 
 /// Rows that are candidates, for each that is chosen.
 const CANDIDATES: usize = 8;
+/// Candidates whose variances are lowered together.
+const TOGETHER: usize = 256;
 /// Share of the largest prior variance below which a row follows from those chosen.
 const DEPENDENT: f64 = 1e-13;
-/// (√5 − 1)/2: its multiples meet no period of a recording.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Rows that stand for others.
-#[derive(Debug)]
-pub(crate) struct Pivots {
-    /// In the order of the choice.
-    pub(crate) rows: Vec<usize>,
-    /// Largest prior variance that is left, given them.
-    pub(crate) remaining: f64,
-}
-
-/// At most `most` rows, the one with the largest variance given those before it first, ties to the earlier one.
+/// In the order of the choice, at most `most` rows that stand for all, the one with the largest variance given those before it first, ties to the earlier one.
 ///
 /// Candidates are the first rows of trajectories, which are at the rim of what was recorded, as far as they are not more than
 /// half of all candidates, and one row of each of equally many stretches of the others. Costs most² times as many candidates.
-pub(crate) fn pivots(covariance: &impl Covariance, amplitudes: &[f64], groups: &[Vec<usize>], most: usize) -> Pivots {
+pub(crate) fn pivots(
+    covariance: &impl Covariance,
+    amplitudes: &[f64],
+    groups: &[Vec<usize>],
+    most: usize,
+) -> Vec<usize> {
     let candidates = candidates(groups, CANDIDATES * most);
     let with = covariance.with(&candidates, amplitudes);
     let mut remaining: Vec<f64> = candidates.iter().map(|&row| covariance.variance(row, amplitudes)).collect();
     let least = DEPENDENT * remaining.iter().copied().fold(0.0, f64::max);
-    // Row by row the columns of the factor found so far.
-    let mut factor = vec![0.0; candidates.len() * most];
+    // Row by row the columns of the factor found so far, one column a candidate.
+    let mut factor = DMatrix::zeros(most, candidates.len());
     let mut covariances = vec![0.0; candidates.len()];
     let mut chosen = Vec::new();
     while chosen.len() < most {
@@ -38,17 +39,24 @@ pub(crate) fn pivots(covariance: &impl Covariance, amplitudes: &[f64], groups: &
         let Some(pivot) = largest.filter(|&pivot| remaining[pivot] > least) else { break };
         with(candidates[pivot], &mut covariances);
         let (done, root) = (chosen.len(), remaining[pivot].sqrt());
-        let own = factor[pivot * most..][..done].to_vec();
-        let each = factor.par_chunks_mut(most).zip(remaining.par_iter_mut()).zip(&covariances);
-        each.for_each(|((row, remaining), covariance)| {
-            let known: f64 = row.iter().zip(&own).map(|(a, b)| a * b).sum();
-            row[done] = (covariance - known) / root;
-            *remaining -= row[done].powi(2);
+        let own = factor.view((0, pivot), (done, 1)).into_owned();
+        let parts = factor.as_mut_slice().par_chunks_mut(most * TOGETHER);
+        let each = parts.zip(remaining.par_chunks_mut(TOGETHER)).zip(covariances.par_chunks(TOGETHER));
+        each.for_each(|((columns, remaining), covariances)| {
+            let count = remaining.len();
+            let mut known = DMatrix::zeros(count, 1);
+            let so_far = MatRef::from_column_major_slice(columns, most, count).subrows(0, done);
+            matmul(view_mut(&mut known), Accum::Replace, so_far.transpose(), view(&own), 1.0, Par::Seq);
+            for (at, remaining) in remaining.iter_mut().enumerate() {
+                let next = (covariances[at] - known[at]) / root;
+                columns[at * most + done] = next;
+                *remaining -= next.powi(2);
+            }
         });
         remaining[pivot] = f64::NEG_INFINITY;
         chosen.push(candidates[pivot]);
     }
-    Pivots { rows: chosen, remaining: remaining.into_iter().fold(0.0, f64::max) }
+    chosen
 }
 
 /// At most so many rows, in their order.
@@ -63,13 +71,10 @@ fn candidates(groups: &[Vec<usize>], most: usize) -> Vec<usize> {
     let others: Vec<usize> = groups.iter().flat_map(|rows| &rows[1..]).copied().collect();
     let of_starts = starts.len().min(most / 2);
     let of_others = others.len().min(most - of_starts);
-    let mut candidates: Vec<usize> = spread(&starts, of_starts).chain(spread(&others, of_others)).collect();
+    let mut candidates: Vec<usize> = scattered(starts.len(), of_starts, 0.0)
+        .map(|at| starts[at])
+        .chain(scattered(others.len(), of_others, 0.0).map(|at| others[at]))
+        .collect();
     candidates.sort_unstable();
     candidates
-}
-
-/// One of each of `count` equally long parts, at another place in each.
-fn spread(rows: &[usize], count: usize) -> impl Iterator<Item = usize> {
-    let apart = rows.len() as f64 / count as f64;
-    (0..count).map(move |part| rows[((part as f64 + (GOLDEN * part as f64).fract()) * apart) as usize])
 }

@@ -1,5 +1,7 @@
 //! Which rows to learn from where there are more than a fit can take.
 
+/// (√5 − 1)/2: its multiples meet no period of a recording.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Of [`thinned`], where nothing is drawn.
 pub(crate) const MIDDLE: f64 = 0.5;
 
@@ -7,8 +9,9 @@ pub(crate) const MIDDLE: f64 = 0.5;
 ///
 /// The first row of every movement, and of the others evenly many of every stretch of time. Drawn at random, rows leave gaps,
 /// and most of all at the starts: a movement is fast there, and its first sample is often the only one at the rim of
-/// where anything was recorded. Where starts alone would be more than half of the rows, they count as any other. `offset`, in
-/// [0, 1), is asked for where there are more, and says where to begin.
+/// where anything was recorded. Where starts alone would be more than half of the rows, half are starts, and neither these nor the
+/// others are at equal distances, which may be those of movements. `offset`, in [0, 1), is asked for where there are more, and says
+/// where to begin.
 pub(crate) fn thinned<'a>(
     movements: impl Iterator<Item = &'a [usize]> + Clone,
     most: usize,
@@ -19,18 +22,29 @@ pub(crate) fn thinned<'a>(
         return all().collect();
     }
     let starts: Vec<usize> = movements.clone().map(|rows| rows[0]).collect();
-    if 2 * starts.len() > most {
-        return evenly(&all().collect::<Vec<_>>(), most, offset()).collect();
-    }
     let others: Vec<usize> = movements.flat_map(|rows| &rows[1..]).copied().collect();
-    let room = most - starts.len();
-    starts.into_iter().chain(evenly(&others, room, offset())).collect()
+    let offset = offset();
+    if 2 * starts.len() <= most {
+        let room = most - starts.len();
+        return starts.into_iter().chain(evenly(&others, room, offset)).collect();
+    }
+    let of_others = (most - most / 2).min(others.len());
+    let some = |of: &[usize], count| scattered(of.len(), count, offset).map(|at| of[at]).collect::<Vec<_>>();
+    [some(&starts, most - of_others), some(&others, of_others)].concat()
 }
 
 /// At most `most` of so many places, evenly spaced from the first on.
 pub(crate) fn every_so_many(count: usize, most: usize) -> Vec<usize> {
     let taken = count.min(most);
     (0..taken).map(|at| at * count / taken).collect()
+}
+
+/// One of each of `taken` parts, equally long but for rounding, of at least as many places, at another place in each: `offset` of the
+/// first.
+pub(crate) fn scattered(count: usize, taken: usize, offset: f64) -> impl Iterator<Item = usize> {
+    let begin = move |part: usize| part * count / taken;
+    let within = move |part: usize| (GOLDEN * part as f64 + offset).fract() * (begin(part + 1) - begin(part)) as f64;
+    (0..taken).map(move |part| begin(part) + within(part) as usize)
 }
 
 /// So many of the rows, equally far from each other, from `offset` of that distance on.
@@ -57,8 +71,8 @@ mod tests {
     }
 
     proptest! {
-        /// As many as asked for, none twice, every start, and no stretch left out that is longer than the others by more than
-        /// a row or a start between.
+        /// As many as asked for, none twice, every start or half of all rows, and no stretch left out that is longer than the others by more
+        /// than a row or a start between, or twice as long where starts are many.
         #[test]
         fn starts_and_every_stretch_of_time_are_kept(
             lengths in prop::collection::vec(1usize..40, 1..12),
@@ -76,12 +90,13 @@ mod tests {
             let starts: BTreeSet<usize> = movements.iter().map(|rows| rows[0]).collect();
             let all_starts = 2 * starts.len() <= most || count <= most;
             prop_assert!(!all_starts || starts.is_subset(&kept));
-            let regular = |row: &usize| !(all_starts && starts.contains(row));
-            let candidates: Vec<usize> = (0..count).filter(regular).collect();
+            prop_assert!(all_starts || starts.intersection(&kept).count() >= most / 2);
+            let candidates: Vec<usize> = (0..count).filter(|row| !starts.contains(row)).collect();
             let of_them = candidates.iter().filter(|row| kept.contains(row)).count();
             let apart = candidates.len() as f64 / of_them.max(1) as f64;
             for left_out in candidates.split(|row| kept.contains(row)) {
-                prop_assert!(of_them == 0 || (left_out.len() as f64) < apart + 1.0, "{} of {}", left_out.len(), apart);
+                let longest = if all_starts { apart + 1.0 } else { 2.0 * apart + 1.0 };
+                prop_assert!(of_them == 0 || (left_out.len() as f64) < longest, "{} of {}", left_out.len(), apart);
             }
         }
 

@@ -1,69 +1,103 @@
-//! Step 10: the models of a search conditioned on all rows, also on those that were thinned.
+//! Step 10: the models of a search on more rows than those that were kept: exactly on some, through inducing rows on all.
 
 use rayon::prelude::*;
 
 use crate::Rows;
 use crate::kernel::block::Block;
 use crate::kernel::family::Family;
-use crate::left_out::LeftOut;
 use crate::left_out::curl_test::{curl_t, takes_rotation};
 use crate::report::trust_report::{FamilyReport, ModelKind};
 use crate::rows::kept::{Kept, positions};
 use crate::rows::noise_weights::{certain_weights, slope_weights};
-use crate::rows::thinning::every_so_many;
+use crate::rows::thinning::scattered;
 use crate::slope::candidate::Candidate;
 use crate::slope::data::SlopeData;
-use crate::slope::expansion::Expansion;
 use crate::slope::search::{Outcome, best_of, candidate, nearly_best};
 use crate::slope::slope_gp::SlopeGp;
 
-/// Rows, for each that was kept, up to which the others say nearly the same as those kept.
+/// Rows of certain velocities, for each that was kept, up to which the others say nearly the same as those kept.
 const MANY: usize = 4;
+/// Rows of an exact model beside those kept, and how many of both set amplitudes, at least.
+const EXACT: usize = 1500;
+const HYPER: usize = 400;
 /// Rows, for each inducing one, beyond which they are thinned.
 const MOST: usize = 64;
-/// Prior variance that inducing rows leave open, in variances of noise, from which more rows of an exact model say more.
-const UNRESOLVED: f64 = 100.0;
-/// Rows of that model, for each inducing one, and the share of them that sets amplitudes.
-const EXACT: usize = 2;
-const HYPER: f64 = 2.0 / 3.0;
 
-/// All rows, and the outcome on them.
+/// More rows, and the outcome on them.
 pub(crate) struct OnAllRows {
     pub(crate) kept: Kept,
     pub(crate) outcome: Outcome,
 }
 
-/// The families and amplitudes of `thinned`, a search on the rows `kept`, compared anew on all rows through inducing ones, or, almost
-/// without noise, on more rows. None where not many rows were thinned, where what hides least was chosen, or where held-out movements
-/// are predicted worse.
+/// `thinned`, a search on the rows `kept`, on more rows: the best families again, first exactly with amplitudes anew, then those of
+/// them that are still good on all rows through inducing ones. None where not many rows were thinned, where what hides least was
+/// chosen, or where the movements of `kept` are predicted best without these rows.
 pub(crate) fn on_all_rows(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outcome) -> Option<OnAllRows> {
     if gp.inducing_rows == 0 || thinned.least_hidden {
         return None;
     }
-    let all = gp.selection().ok()?.keep_all(rows, kept, MOST * gp.inducing_rows)?;
-    if all.rows.len() <= MANY * kept.rows.len() {
+    let of_most = |most| gp.selection().ok()?.keep_all(rows, kept, most);
+    let more = of_most(EXACT)?;
+    let beyond = more.dropped.thinned;
+    if kept.variances.is_none() && more.rows.len() + beyond <= MANY * kept.rows.len() {
         return None;
     }
-    let of = |kept: &Kept| thinned.data.of_others(kept, noise_weights(kept, thinned));
-    let data = of(&all);
-    let unresolved = unresolved(gp, &data, thinned);
-    let (all, data) = if unresolved {
-        let more = more(gp, rows, kept)?;
-        let data = of(&more);
-        (more, data)
-    } else {
-        (all, data)
+    let error = |tried: &OnAllRows| {
+        let at_kept = positions(&tried.kept.rows, &kept.rows);
+        left(thinned, &tried.outcome, |at| at_kept[at])
     };
+    let best_of =
+        |tried: Vec<Option<OnAllRows>>| tried.into_iter().flatten().min_by(|a, b| error(a).total_cmp(&error(b)));
+    let own_units: &[bool] = match thinned.taken.left_out.is_nearly_exact() {
+        _ if gp.max_rows >= EXACT => &[],
+        true => &[false, true],
+        false => &[false],
+    };
+    let exact = best_of(own_units.iter().map(|&own_units| exact(gp, &more, thinned, own_units)).collect());
+    let induced = (beyond > 0).then(|| {
+        let before = exact.as_ref().map_or(thinned, |exact| &exact.outcome);
+        induced(gp, of_most(MOST * gp.inducing_rows)?, before)
+    });
+    best_of(vec![exact, induced.flatten()]).filter(|best| error(best) <= left(thinned, thinned, |at| at))
+}
+
+/// Σ w e² of the rows kept in squared units of speed, left out of a model in which row i is row `place(i)`.
+fn left(thinned: &Outcome, of: &Outcome, place: impl Fn(usize) -> usize) -> f64 {
+    let residuals = &of.taken.left_out.residuals;
+    let each = thinned.data.noise_weights.iter().enumerate();
+    each.map(|(at, weight)| (of.data.speed * residuals[(place(at), 0)]).powi(2) / weight).sum()
+}
+
+/// Models of few enough rows to be exact, with amplitudes of those; z and y in units of `thinned` or of their own, of which prediction
+/// without noise depends.
+fn exact(gp: &SlopeGp, more: &Kept, thinned: &Outcome, own_units: bool) -> Option<OnAllRows> {
+    let count = more.rows.len();
+    let hyper = scattered(count, count.min(gp.hyper_rows.max(HYPER)), 0.0).collect();
+    let kept = Kept { hyper, ..more.clone() };
+    let weights = noise_weights(&kept, thinned);
+    let data =
+        if own_units { SlopeData::from_kept(&kept, weights).ok()? } else { thinned.data.of_others(&kept, weights) };
+    compared((kept, data), thinned, |data, kept, (family, kind), _| candidate(gp, data, kept, family, kind))
+}
+
+/// Models of all rows, through the inducing ones.
+fn induced(gp: &SlopeGp, all: Kept, before: &Outcome) -> Option<OnAllRows> {
+    let data = before.data.of_others(&all, noise_weights(&all, before));
+    let most = gp.inducing_rows;
+    compared((all, data), before, |data, all, of, prior| Candidate::induced(data, all, of, prior, most))
+}
+
+/// Steps 6 and 7 on other rows, with the families that were good before.
+fn compared(
+    (kept, data): (Kept, SlopeData),
+    before: &Outcome,
+    fit: impl Fn(&SlopeData, &Kept, (Family, ModelKind), &[(Block, f64)]) -> Option<Candidate> + Sync,
+) -> Option<OnAllRows> {
     let mut families = Vec::new();
     let mut best = |kind| {
-        let tried = nearly_best_of(&thinned.families, kind).into_par_iter().map(|(family, prior)| {
-            let candidate = if unresolved {
-                candidate(gp, &data, &all, family, kind)
-            } else {
-                Candidate::induced(&data, &all, (family, kind), prior, gp.inducing_rows)
-            };
-            (family, candidate)
-        });
+        let tried = nearly_best_of(&before.families, kind)
+            .into_par_iter()
+            .map(|(family, prior)| (family, fit(&data, &kept, (family, kind), prior)));
         best_of(tried.collect::<Vec<_>>().into_iter(), kind, &mut families)
     };
     let potential = best(ModelKind::Potential)?;
@@ -77,28 +111,8 @@ pub(crate) fn on_all_rows(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outc
             (taken, Some(other), Some(t))
         }
     };
-    let at_kept = positions(&all.rows, &kept.rows);
-    let error = |left_out: &LeftOut, row: usize| left_out.residuals[(row, 0)].powi(2);
-    let weighed = |of: &dyn Fn(usize) -> f64| -> f64 {
-        (0..kept.rows.len()).map(|at| of(at) / thinned.data.noise_weights[at]).sum()
-    };
-    let before = weighed(&|at| error(&thinned.taken.left_out, at));
-    let after = weighed(&|at| error(&taken.left_out, at_kept[at]));
     let outcome = Outcome { data, taken, other, curl_t, families, least_hidden: false };
-    (after <= before).then_some(OnAllRows { kept: all, outcome })
-}
-
-/// Whether noise is so small that inducing rows leave more open than it does.
-fn unresolved(gp: &SlopeGp, data: &SlopeData, thinned: &Outcome) -> bool {
-    let Expansion { blocks, amplitudes, .. } = thinned.taken.model.expansion();
-    data.open(blocks, amplitudes, gp.inducing_rows) > UNRESOLVED * thinned.taken.model.noise
-}
-
-/// The rows kept and others, few enough for an exact model, most of them for amplitudes.
-fn more(gp: &SlopeGp, rows: &Rows, kept: &Kept) -> Option<Kept> {
-    let more = gp.selection().ok()?.keep_all(rows, kept, EXACT * gp.inducing_rows)?;
-    let count = more.rows.len();
-    Some(Kept { hyper: every_so_many(count, (HYPER * count as f64) as usize), ..more })
+    Some(OnAllRows { kept, outcome })
 }
 
 /// Families of one kind that predict movements left out nearly as well as the best of them, with their amplitudes.
@@ -107,13 +121,13 @@ fn nearly_best_of(families: &[FamilyReport], kind: ModelKind) -> Vec<(Family, &[
     nearly.into_iter().filter_map(|report| Some((report.family, &*report.fit.as_ref()?.amplitudes))).collect()
 }
 
-/// D of all rows as it was of those kept.
-fn noise_weights(all: &Kept, thinned: &Outcome) -> Vec<f64> {
+/// D of other rows as it was of those before.
+fn noise_weights(all: &Kept, before: &Outcome) -> Vec<f64> {
     let lengths =
-        || thinned.taken.model.actions(&all.states).column_iter().map(|action| action.norm()).collect::<Vec<_>>();
+        || before.taken.model.actions(&all.states).column_iter().map(|action| action.norm()).collect::<Vec<_>>();
     match &all.variances {
         Some(variances) => slope_weights(variances, &all.speeds, &lengths()),
-        None if thinned.data.noise_weights.iter().any(|&weight| weight != 1.0) => {
+        None if before.data.noise_weights.iter().any(|&weight| weight != 1.0) => {
             certain_weights(&all.speeds, &lengths())
         }
         None => vec![1.0; all.speeds.len()],

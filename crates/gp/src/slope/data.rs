@@ -3,7 +3,6 @@ use nalgebra::{DMatrix, DVector};
 use crate::evidence::family_fit::{FamilyFit, fit_family};
 use crate::evidence::{Evidence, Task, Workspace};
 use crate::inducing::Induced;
-use crate::inducing::pivots::pivots;
 use crate::kernel::block::Block;
 use crate::kernel::covariance::Covariance;
 use crate::kernel::slope_covariance::SlopeCovariance;
@@ -189,11 +188,6 @@ impl SlopeData {
         let expansion = Expansion::new(scaled, (blocks, amplitudes), (self.z.clone(), self.n.clone()), weights);
         let whitening = Whitening::Rows { noise_weights: self.noise_weights.clone(), factor: level.factor.into() };
         SlopeModel::new(expansion, level.noise, whitening)
-    }
-
-    /// Largest prior variance at these amplitudes that at most so many rows leave open.
-    pub(crate) fn open(&self, blocks: &[Block], amplitudes: &[f64], most: usize) -> f64 {
-        pivots(&self.covariance(blocks), amplitudes, &self.groups, most).remaining
     }
 
     /// The model of these amplitudes, conditioned on all rows through at most so many of them; none without factor.

@@ -71,7 +71,7 @@ impl Division {
         }
         let fits = |every: &usize| sizes.iter().step_by(*every).sum::<u64>() <= most_bytes;
         let every = (2..listed.len()).find(fits).unwrap_or(listed.len().max(1));
-        let is_at_once = |at: usize| at % every == 0;
+        let is_at_once = |at: usize| at.is_multiple_of(every);
         let of_others: u64 = sizes.iter().enumerate().filter(|(at, _)| !is_at_once(*at)).map(|(_, bytes)| bytes).sum();
         let mut division = Division { at_once: vec![], further: vec![] };
         for (place, (path, bytes)) in listed.into_iter().zip(sizes).enumerate() {
