@@ -73,9 +73,12 @@ fn kinds() -> Vec<Kind> {
     kinds
 }
 
+/// Rows to learn from, states to compare at, and the policy there.
+type Drawn = (Rows, DMatrix<f64>, DMatrix<f64>);
+
 impl Kind {
     /// Rows to learn from, and states of other movements with the policy there, (n, Q) each.
-    fn draw(&self, seed: u64) -> Result<(Rows, DMatrix<f64>, DMatrix<f64>), Box<dyn Error>> {
+    fn draw(&self, seed: u64) -> Result<Drawn, Box<dyn Error>> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let (samples, sub_steps) = (self.samples, STEPS / self.samples);
         let system = BeyondSystem {
