@@ -154,8 +154,8 @@ fn a_model_of_inducing_rows_is_stored() {
 #[test]
 fn support_is_told_as_by_variances() {
     let (mut induced, mut answers) = (0, [0; 2]);
-    for (most, noise) in [(300, 0.0), (300, 0.2), (0, 0.0), (0, 0.2)] {
-        let set = set(wells, 3, (30, 60), noise, 8);
+    for (most, noise, movements) in [(300, 0.0, 30), (300, 0.05, 200), (0, 0.0, 30), (0, 0.2, 30)] {
+        let set = set(wells, 3, (movements, 60), noise, 8);
         let fit = AutoGp { slope: gp(most), ..AutoGp::default() }.fit(&set.rows, &mut drawn::rng(1)).unwrap();
         induced += usize::from(fit.slope().report().inducing.is_some());
         let near = &set.fresh.0;

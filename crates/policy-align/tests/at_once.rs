@@ -85,6 +85,73 @@ fn parts_give_the_model_of_one_process() {
     }
 }
 
+/// Files of movements of π(x) = −2x along a line of its own each, which moves at `push`; the first file's movements begin nearer to the goal.
+fn rails(files: usize, nearer: f64, push: f64) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for file in 0..files {
+        let mut text = "episode,t,x,y,vx,vy\n".to_owned();
+        for episode in 0..8 {
+            let angle = (file * 8 + episode) as f64 * 2.399_963;
+            let size = if file == 0 { nearer } else { 1.0 };
+            let mut x = [(3.0 * angle).cos() * size, (5.0 * angle).sin() * size];
+            let along = [angle.cos(), angle.sin()];
+            for sample in 0..40 {
+                let speed = -2.0 * (x[0] * along[0] + x[1] * along[1]);
+                let u = [speed * along[0] - push * along[1], speed * along[1] + push * along[0]];
+                let t = f64::from(sample) * 0.05;
+                writeln!(text, "{episode},{t:.2},{:.9},{:.9},{:.9},{:.9}", x[0], x[1], u[0], u[1]).unwrap();
+                // The velocity changes with the speed alone.
+                let way = -(-2.0f64 * 0.05).exp_m1() / 2.0;
+                x = [0, 1].map(|axis| x[axis] + along[axis] * speed * way + [-along[1], along[0]][axis] * push * 0.05);
+            }
+        }
+        std::fs::write(folder.path().join(format!("{file}.csv")), text).unwrap();
+    }
+    folder
+}
+
+/// Where only files that are not held together have movements, the model acts.
+#[test]
+fn the_places_of_all_files_are_known() {
+    let folder = rails(5, 0.3, 0.0);
+    let fitted = run_in(folder.path(), &format!("fit {} --at-once 20kB -o m.json", all_files()));
+    done(&fitted);
+    assert!(fitted.out.contains("at once      320 samples"), "{}", fitted.out);
+    let ran = run_in(folder.path(), "predict m.json --at 0.8,-0.2 --json");
+    done(&ran);
+    let said: Value = serde_json::from_str(&ran.out).unwrap();
+    let action = &said["predictions"][0]["action"];
+    let errors =
+        [(0, -1.6), (1, 0.4)].map(|(axis, wanted): (usize, f64)| (action[axis].as_f64().unwrap() - wanted).abs());
+    assert!(errors.iter().all(|error| *error < 1e-3) && said["predictions"][0]["known"] == true, "{}", ran.out);
+}
+
+/// A push is found in the files that are held together, however few of all they are.
+#[test]
+fn pushes_are_found_at_hand() {
+    let folder = rails(5, 1.0, 0.2);
+    for at_once in ["20kB", "all"] {
+        let fitted = run_in(folder.path(), &format!("fit {} --at-once {at_once} -o m.json", all_files()));
+        done(&fitted);
+        let model = model(&folder.path().join("m.json"));
+        let error = model["trust"]["numbers"]["held_out_error"].as_f64().unwrap();
+        assert!(error < 1e-3, "{at_once}: {}", fitted.out);
+    }
+}
+
+/// Positions alone, and a file of which nothing is learnt.
+#[test]
+fn positions_and_empty_files_are_read() {
+    let folder = rails(5, 1.0, 0.0);
+    let path = folder.path();
+    std::fs::write(path.join("3.csv"), "episode,t,x,y,vx,vy\n0,0,0,0,0,0\n0,0.05,0,0,0,0\n0,0.1,0,0,0,0\n").unwrap();
+    let fitted = run_in(path, &format!("fit {} --at-once 40kB --ignore vx,vy -o m.json", all_files()));
+    done(&fitted);
+    let model = model(&path.join("m.json"));
+    assert_eq!(model["data"]["episodes"], 32);
+    assert_eq!(model["data"]["left_out"][0]["episode"], "3/0");
+}
+
 /// What each wrong line says.
 #[test]
 fn parts_that_do_not_fit_are_refused() {
@@ -115,7 +182,7 @@ fn parts_that_do_not_fit_are_refused() {
     let text = std::fs::read(path.join("part-2-of-2.json")).unwrap();
     std::fs::write(path.join("cut.json"), &text[..text.len() / 2]).unwrap();
     refused(&merge("part-1-of-2.json cut.json"), "no part of a fit");
-    refused(&merge("part-1-of-2.json m.json"), "no part of a fit");
+    refused(&merge("part-1-of-2.json model.json"), "no part of a fit");
     refused(&format!("fit {files} {AT_ONCE} --shard 3/2"), "no share");
     refused(&format!("fit {files} --shard 1/2"), "nothing to share");
     refused(&format!("fit {files} --at-once 5apples"), "no size");

@@ -20,6 +20,8 @@ const MANY: usize = 4;
 /// Rows of an exact model beside those kept, and how many of both set amplitudes, at least.
 const EXACT: usize = 1500;
 const HYPER: usize = 400;
+/// Left-out error of a model of more noisy rows, in errors of one of fewer, up to which it is taken.
+const ALLOWED: f64 = 1.05;
 /// Rows, for each inducing one, beyond which they are thinned.
 const MOST: usize = 64;
 
@@ -58,7 +60,11 @@ pub(crate) fn on_all_rows(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outc
         let before = exact.as_ref().map_or(thinned, |exact| &exact.outcome);
         induced(gp, of_most(MOST * gp.inducing_rows)?, before)
     });
-    best_of(vec![exact, induced.flatten()]).filter(|best| error(best) <= left(thinned, thinned, |at| at))
+    // Of noisy rows too few are kept to tell nearly equal models apart: the one of more rows knows more.
+    let allowed = if kept.variances.is_some() { ALLOWED } else { 1.0 };
+    let least = exact.as_ref().map_or(f64::INFINITY, error).min(left(thinned, thinned, |at| at));
+    let induced = induced.flatten().filter(|induced| error(induced) <= allowed * least);
+    induced.or_else(|| exact.filter(|exact| error(exact) <= allowed * left(thinned, thinned, |at| at)))
 }
 
 /// Σ w e² of the rows kept in squared units of speed, left out of a model in which row i is row `place(i)`.
