@@ -13,7 +13,7 @@ use crate::{DataSummary, FitError, Prepared, StateChannel};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Digest {
-    /// Of the recordings at hand, and of all options: those of [`made_beside`].
+    /// Tells the recordings at hand and all options apart.
     pub made_for: String,
     /// What it is of.
     pub data: DataSummary,
