@@ -49,9 +49,31 @@ pub fn read_with_context(
     options: &ReadOptions,
     progress: &mut dyn FnMut(u64),
 ) -> Result<(Recordings, Vec<String>), ReadError> {
+    set(paths, paths.len() > 1, options, progress)
+}
+
+/// Reads one of several files that [`read_all`] would read as one set: episodes have the names that they have there.
+///
+/// # Errors
+///
+/// As [`read`].
+pub fn read_one_of_several(
+    path: &Path,
+    options: &ReadOptions,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Recordings, ReadError> {
+    Ok(set(&[path.to_owned()], true, options, progress)?.0)
+}
+
+fn set(
+    paths: &[PathBuf],
+    is_named_by_file: bool,
+    options: &ReadOptions,
+    progress: &mut dyn FnMut(u64),
+) -> Result<(Recordings, Vec<String>), ReadError> {
     let joined = joined(paths, |path| {
         let drafts = drafts(path, options, progress)?;
-        Ok(if paths.len() > 1 { named_by_file(drafts, path) } else { drafts })
+        Ok(if is_named_by_file { named_by_file(drafts, path) } else { drafts })
     })?;
     let place = || paths.first().map(|path| name_of(path)).unwrap_or_default();
     let nothing = |what: &str| ReadError::Empty(Fault::new(what, place(), "recordings with movements"));

@@ -6,20 +6,27 @@ use policy_align::{Digest, Digester, Division, FurtherFile, Part, PartError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
+use crate::hints::in_python;
 use crate::interruptible::interruptible;
+use crate::options::Learning;
 use crate::pool;
 use crate::refusal::Refusal;
 
 /// A file of which a digest is made: its place, its path, its bytes, and rows at most.
 pub(crate) type Further = (usize, PathBuf, u64, usize);
 
-/// Which of these files are read at once, and the others. `at_once` is the program's.
+/// Which of these files are read at once to learn like this, and the others. `at_once` is the program's.
 #[pyfunction]
-pub(crate) fn divide(paths: Vec<PathBuf>, at_once: &str) -> PyResult<(Vec<PathBuf>, Vec<Further>)> {
+pub(crate) fn divide(paths: Vec<PathBuf>, at_once: &str, learning: Learning) -> PyResult<(Vec<PathBuf>, Vec<Further>)> {
+    let options = learning.options()?;
     let hint = "at_once=\"2GB\" or \"all\"";
     let bytes = Division::bytes(at_once)
         .ok_or_else(|| Refusal::new(format!("'{at_once}' is no size of files"), "at_once", hint))?;
     let division = Division::of(&paths, bytes).map_err(|error| Refusal::read(&error))?;
+    if let (false, Some(flag)) = (division.further.is_empty(), options.needs_whole_recordings()) {
+        let what = format!("{} needs all files at once", in_python(flag));
+        return Err(Refusal::new(what, "at_once", "at_once=\"all\"").into());
+    }
     let further = division.further.into_iter().map(|FurtherFile { at, path, bytes, rows }| (at, path, bytes, rows));
     Ok((division.at_once, further.collect()))
 }

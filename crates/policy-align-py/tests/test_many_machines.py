@@ -151,6 +151,8 @@ def test_one_fit_is_shared_out(tmp_path: Path) -> None:
     assert model(learner.fit_files(*files, at_once="all")) != alone
     with pytest.raises(PolicyAlignError, match="no size"):
         learner.fit_files(*files, at_once="much")
+    with pytest.raises(PolicyAlignError, match="all files at once"):
+        PolicyAlign().fit_files(*files, at_once=at_once)
     (tmp_path / "damaged.csv").write_text("episode,t,x,y\n0,0.0,1.0,none\n" * 2)
     with pytest.raises(PolicyAlignError, match="damaged.csv"):
         learner.fit_files(files[0], tmp_path / "damaged.csv", *files[1:], at_once=at_once)

@@ -80,7 +80,7 @@ impl Model {
 
     /// To prepare other recordings as those that were learnt from.
     pub fn context_use(&self) -> ContextUse {
-        if self.context.is_empty() { ContextUse::Ignored } else { ContextUse::Named(self.context_names()) }
+        ContextUse::of(&self.context)
     }
 
     /// Names of the context's channels, (p).

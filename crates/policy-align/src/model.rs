@@ -121,8 +121,7 @@ impl Model {
     /// Factors by which recordings are multiplied as those learnt from were, as
     /// [`PrepareOptions::scale`](crate::PrepareOptions::scale) takes them: of channels that have one.
     pub fn scale(&self) -> Vec<(String, f64)> {
-        let scaled = self.inputs().filter(|channel| channel.scale != 1.0);
-        scaled.map(|channel| (channel.name.clone(), channel.scale)).collect()
+        StateChannel::factors(self.inputs())
     }
 }
 

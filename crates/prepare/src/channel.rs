@@ -17,3 +17,11 @@ pub struct StateChannel {
     /// Median of the values learnt from.
     pub median: f64,
 }
+
+impl StateChannel {
+    /// Factors of those of these channels that have one, as [`PrepareOptions::scale`](crate::PrepareOptions::scale) takes them.
+    pub fn factors<'a>(channels: impl IntoIterator<Item = &'a StateChannel>) -> Vec<(String, f64)> {
+        let scaled = channels.into_iter().filter(|channel| channel.scale != 1.0);
+        scaled.map(|channel| (channel.name.clone(), channel.scale)).collect()
+    }
+}

@@ -2,6 +2,8 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use crate::StateChannel;
+
 /// Options of preparation; by default everything is decided from the data.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct PrepareOptions {
@@ -32,6 +34,16 @@ pub enum ContextUse {
     Named(Vec<String>),
     /// None.
     Ignored,
+}
+
+impl ContextUse {
+    /// That of recordings with this context.
+    pub fn of(channels: &[StateChannel]) -> ContextUse {
+        match channels {
+            [] => ContextUse::Ignored,
+            channels => ContextUse::Named(channels.iter().map(|channel| channel.name.clone()).collect()),
+        }
+    }
 }
 
 /// The use of recorded velocities.

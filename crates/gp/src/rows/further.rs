@@ -19,9 +19,9 @@ pub(crate) struct Further {
 
 impl Rows {
     /// Adds rows of further trajectories, in the units of these: what is left of recordings that are too large to be held together, such as
-    /// their [means](Rows::averaged), [some of them](Rows::at_most). They are learnt from as all others are, but neither stretches nor
-    /// scales are found on them. Their trajectories count from 0 and follow those of these rows. `samples` and `thinned` tell how many
-    /// samples they were made of, and how many rows of these are left out.
+    /// their [means](Rows::averaged), [some of them](Rows::at_most). They are learnt from as all others are, but no stretches are found in
+    /// them. Their trajectories count from 0 and follow those of these rows. `samples` and `thinned` tell how many samples they were made
+    /// of, and how many rows of these are left out.
     ///
     /// # Errors
     /// [`GpError::Lengths`] where dimensions differ, or only one has variances. Momenta and task spaces do not go together with further rows.

@@ -121,10 +121,7 @@ class Learner(Estimator):
         it is given can be pickled. ``options`` as of ``Demonstrations.read``; the program's ``fit --at-once`` does the same.
         """
         threads = _threads(self.n_jobs)
-        at_hand, further = _native.divide([os.fspath(path) for path in paths], at_once)
-        if further and (self._learner == "policy-align" or self.robot is not None):
-            what = "the learner policy-align" if self.robot is None else "a robot"
-            raise PolicyAlignError(f"{what} needs all files at once", "at_once", 'at_once="all"')
+        at_hand, further = _native.divide([os.fspath(path) for path in paths], at_once, self._learning())
         demonstrations = Demonstrations.read(*at_hand, **options)
         if not further:
             return self._learn(demonstrations, threads)

@@ -13,7 +13,7 @@ __all__ = ["Fitted", "Path", "Recordings", "__version__", "digest", "divide"]
 _File = tuple[int, str | os.PathLike[str], int, int]
 
 def divide(
-    paths: Sequence[str | os.PathLike[str]], at_once: str
+    paths: Sequence[str | os.PathLike[str]], at_once: str, learning: dict[str, Any]
 ) -> tuple[list[str | os.PathLike[str]], list[_File]]: ...
 def digest(file: _File, digester: str) -> bytes: ...
 

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use policy_align::{Digest, Digester, Division, FileSummary, FitOptions, FurtherFile, LearnerChoice, Part, PartError};
+use policy_align::{Digest, Digester, Division, FileSummary, FitOptions, FurtherFile, Part, PartError};
 use serde_json::json;
 use text::quoted;
 
@@ -19,25 +19,21 @@ const PART: u64 = 1 << 31;
 
 /// Which files are read at once.
 pub(crate) fn division(files: &[PathBuf], flags: &FitFlags, options: &FitOptions) -> Result<Division, Failure> {
-    let whole = match (options.learner, &options.robot) {
-        _ if !flags.hold_out.is_empty() => Some("--hold-out"),
-        (LearnerChoice::PolicyAlign, _) => Some("--learner policy-align"),
-        (_, Some(_)) => Some("--robot"),
-        _ => None,
+    let size = |text: &str| {
+        let remedy = format!("--at-once 256MB, 2GB or {}", Division::ALL);
+        Division::bytes(text)
+            .ok_or_else(|| Failure::usage(format!("'{text}' is no size of files"), "--at-once", remedy))
     };
-    let most = match (flags.at_once.as_deref(), whole) {
-        (None, Some(_)) | (Some(Division::ALL), _) => return Ok(Division::none(files)),
-        (Some(_), Some(flag)) => {
+    let most = flags.at_once.as_deref().map(size).transpose()?;
+    let whole = if flags.hold_out.is_empty() { options.needs_whole_recordings() } else { Some("--hold-out") };
+    let division = Division::of(files, most.unwrap_or(if whole.is_some() { u64::MAX } else { Division::AT_ONCE }))?;
+    match whole {
+        Some(flag) if !division.further.is_empty() => {
             let what = format!("{flag} needs all files at once");
-            return Err(Failure::usage(what, "--at-once", format!("no {flag}, or --at-once {}", Division::ALL)));
+            Err(Failure::usage(what, "--at-once", format!("no {flag}, or --at-once {}", Division::ALL)))
         }
-        (None, None) => Division::AT_ONCE,
-        (Some(text), None) => Division::bytes(text).ok_or_else(|| {
-            let remedy = format!("--at-once 256MB, 2GB or {}", Division::ALL);
-            Failure::usage(format!("'{text}' is no size of files"), "--at-once", remedy)
-        })?,
-    };
-    Ok(Division::of(files, most)?)
+        _ => Ok(division),
+    }
 }
 
 /// The I-th of N shares.

@@ -60,9 +60,8 @@ pub fn fit_with(
     progress: &mut Progress<'_>,
 ) -> Result<Model, FitError> {
     options.check()?;
-    if !digests.is_empty() && (options.robot.is_some() || options.learner == LearnerChoice::PolicyAlign) {
-        let reason = "a robot and the learner policy-align need all samples at once".to_owned();
-        return Err(FitError::Digest { reason });
+    if let (false, Some(flag)) = (digests.is_empty(), options.needs_whole_recordings()) {
+        return Err(FitError::Digest { reason: format!("{flag} needs whole recordings") });
     }
     let beside = if digests.is_empty() { String::new() } else { made_beside(prepared) };
     if digests.iter().any(|digest| !digest.made_for.starts_with(&beside) || digest.made_for != digests[0].made_for) {

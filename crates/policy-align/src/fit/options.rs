@@ -60,6 +60,15 @@ impl Default for FitOptions {
 }
 
 impl FitOptions {
+    /// The option that asks for whole recordings, if one does, as a flag: then there can be no [`Digest`](crate::Digest).
+    pub fn needs_whole_recordings(&self) -> Option<&'static str> {
+        match (self.learner, &self.robot) {
+            (LearnerChoice::PolicyAlign, _) => Some("--learner policy-align"),
+            (_, Some(_)) => Some("--robot"),
+            _ => None,
+        }
+    }
+
     pub(super) fn check(&self) -> Result<(), FitError> {
         let wrong = |name, value, requirement| Err(FitError::Option { name, value, requirement });
         if self.folds < 2 {

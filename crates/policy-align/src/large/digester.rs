@@ -1,4 +1,4 @@
-use demo_io::{ReadError, ReadOptions, read};
+use demo_io::{ReadError, ReadOptions, read_one_of_several};
 use motion::{LeftOut, Recordings};
 use serde::{Deserialize, Serialize};
 
@@ -31,10 +31,7 @@ impl Digester {
     /// and prepared with `preparing`.
     pub fn new(prepared: &Prepared, preparing: &PrepareOptions, (reading, trim): (&ReadOptions, bool)) -> Digester {
         let channels: Vec<StateChannel> = prepared.state.iter().chain(&prepared.context).cloned().collect();
-        let scaled = channels.iter().filter(|channel| channel.scale != 1.0);
-        let scale = scaled.map(|channel| (channel.name.clone(), channel.scale)).collect();
-        let context: Vec<String> = prepared.context.iter().map(|channel| channel.name.clone()).collect();
-        let context = if context.is_empty() { ContextUse::Ignored } else { ContextUse::Named(context) };
+        let (scale, context) = (StateChannel::factors(&channels), ContextUse::of(&prepared.context));
         let preparing = PrepareOptions { scale, context, ..preparing.clone() };
         let options = format!("{} {reading:?} {trim} {preparing:?}", env!("CARGO_PKG_VERSION"));
         Digester {
@@ -60,23 +57,14 @@ impl Digester {
     /// # Errors
     /// [`PartError`], which names the file.
     pub fn digest_file(&self, file: &FurtherFile, progress: &mut dyn FnMut(u64)) -> Result<Digest, PartError> {
-        let name = |of: Option<&std::ffi::OsStr>| of.unwrap_or_default().to_string_lossy().into_owned();
-        let (stem, name) = (name(file.path.file_stem()), name(file.path.file_name()));
-        let mut digest = match read(&file.path, &self.reading, progress) {
+        let name = file.name();
+        let mut digest = match read_one_of_several(&file.path, &self.reading, progress) {
             Ok(recordings) => self
                 .digest(recordings, file.rows)
                 .map_err(|source| PartError::Digest { file: name.clone(), source: Box::new(source) })?,
-            Err(ReadError::Empty(fault)) => self.empty(vec![LeftOut { episode: String::new(), why: fault.what }]),
+            Err(ReadError::Empty(fault)) => self.empty(vec![LeftOut { episode: name.clone(), why: fault.what }]),
             Err(error) => return Err(error.into()),
         };
-        for left_out in &mut digest.data.left_out {
-            // As if the file were one of several that are read at once.
-            if left_out.episode.is_empty() {
-                left_out.episode.clone_from(&stem);
-            } else if left_out.episode != stem {
-                left_out.episode = format!("{stem}/{}", left_out.episode);
-            }
-        }
         if file.path.is_file() {
             let summary = FileSummary::of(&file.path);
             let summary = summary.map_err(|error| PartError::File { file: name, reason: error.to_string() })?;

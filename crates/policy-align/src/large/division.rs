@@ -30,6 +30,13 @@ pub struct FurtherFile {
     pub rows: usize,
 }
 
+impl FurtherFile {
+    /// Its name without folders.
+    pub(super) fn name(&self) -> String {
+        self.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    }
+}
+
 impl Division {
     /// Bytes of files that are read at once, unless told otherwise: four million samples in the plane as text.
     pub const AT_ONCE: u64 = 256_000_000;

@@ -38,7 +38,7 @@ impl Part {
     pub fn of(files: &[FurtherFile], digester: &Digester, progress: &(dyn Fn(u64) + Sync)) -> Result<Part, PartError> {
         let digest = |file: &FurtherFile| {
             let digest = digester.digest_file(file, &mut |bytes| progress(bytes))?;
-            Ok(OfFile { at: file.at, name: name(file), bytes: file.bytes, digest })
+            Ok(OfFile { at: file.at, name: file.name(), bytes: file.bytes, digest })
         };
         let digests = files.par_iter().map(digest).collect::<Result<_, PartError>>()?;
         Ok(Part { format: FORMAT.to_owned(), version: VERSION, digests })
@@ -78,7 +78,7 @@ impl Part {
                 return wrong(format!("the digest of {of} was made with other files, options or by another version"));
             }
             match files.get(at) {
-                Some(file) if name(file) == of && file.bytes == bytes => {}
+                Some(file) if file.name() == of && file.bytes == bytes => {}
                 _ => return wrong(format!("the digest of {of} is of another file, or of this one before it changed")),
             }
             if merged[at].replace(digest).is_some() {
@@ -90,8 +90,4 @@ impl Part {
             None => Ok(merged.into_iter().flatten().collect()),
         }
     }
-}
-
-fn name(file: &FurtherFile) -> String {
-    file.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
