@@ -187,19 +187,20 @@ fn uncertainty_of_inducing_rows_grows_away_from_them() {
     assert!(traces.is_sorted() && traces[0] >= 0.0 && traces[0] < 0.1 * traces[3], "{traces:?}");
 }
 
-/// Movements of 500 samples, five times and fifty times as many: medians of five data sets as a table. The settings are the
-/// program's.
+/// Movements of 500 samples, five times and fifty times as many: medians of five data sets, or of `SETS`, as a table. The settings are
+/// the program's.
 #[test]
-#[ignore = "an hour of a release build; prints"]
+#[ignore = "six minutes of a release build; prints"]
 fn more_movements_are_never_worse() {
     let systems: [(&str, Gradient, usize); 3] = [("sinusoid", sinusoid, 2), ("wells", wells, 3), ("wells", wells, 6)];
+    let sets = std::env::var("SETS").map_or(5, |sets| sets.parse().expect("a number of data sets"));
     let mut worse = Vec::new();
     println!("| | noise | movements | nUPE | expected within ten times |\n|---|---|---|---|---|");
     for (name, gradient, dim) in systems {
         for noise in [0.0, 0.05, 0.2] {
             let (mut before, percent) = (f64::INFINITY, 100.0 * noise);
             for movements in [40, 200, 2000] {
-                let fits = (0..5).map(|seed| {
+                let fits = (0..sets).map(|seed| {
                     let set = set(gradient, dim, (movements, 500), noise, 11 + seed);
                     let gp = SlopeGp { max_rows: 400, hyper_rows: 200, inducing_rows: 500, ..SlopeGp::default() };
                     let fit = gp.fit(&set.rows, &mut drawn::rng(3)).expect("a fit");
@@ -208,7 +209,7 @@ fn more_movements_are_never_worse() {
                 let fits: Vec<_> = fits.collect();
                 let error = motion::upper_median(fits.iter().map(|(error, _)| *error).collect()).expect("errors");
                 let near = fits.iter().filter(|(error, expected)| (0.1..10.0).contains(&(expected / error))).count();
-                println!("| {name}, {dim}-D | {percent} % | {movements} | {error:.1e} | {near} of 5 |");
+                println!("| {name}, {dim}-D | {percent} % | {movements} | {error:.1e} | {near} of {sets} |");
                 if error > 1.1 * before {
                     worse.push(format!("{name}, {dim}-D, {percent} %: {before:.1e}, {error:.1e} of {movements}"));
                 }

@@ -1,7 +1,5 @@
 //! Step 10: the models of a search on more rows than those that were kept: exactly on some, through inducing rows on all.
 
-use rayon::prelude::*;
-
 use crate::Rows;
 use crate::kernel::block::Block;
 use crate::kernel::family::Family;
@@ -97,14 +95,15 @@ fn induced(gp: &SlopeGp, all: Kept, before: &Outcome) -> Option<OnAllRows> {
 fn compared(
     (kept, data): (Kept, SlopeData),
     before: &Outcome,
-    fit: impl Fn(&SlopeData, &Kept, (Family, ModelKind), &[(Block, f64)]) -> Option<Candidate> + Sync,
+    fit: impl Fn(&SlopeData, &Kept, (Family, ModelKind), &[(Block, f64)]) -> Option<Candidate>,
 ) -> Option<OnAllRows> {
     let mut families = Vec::new();
+    // One after the other: each is parallel in itself, and together they would take several times the memory.
     let mut best = |kind| {
         let tried = nearly_best_of(&before.families, kind)
-            .into_par_iter()
+            .into_iter()
             .map(|(family, prior)| (family, fit(&data, &kept, (family, kind), prior)));
-        best_of(tried.collect::<Vec<_>>().into_iter(), kind, &mut families)
+        best_of(tried, kind, &mut families)
     };
     let potential = best(ModelKind::Potential)?;
     let rotation = best(ModelKind::Helmholtz);

@@ -31,7 +31,10 @@ impl Info {
         }
         let mut lines = Lines::default();
         lines.add("made by", &format!("{}, {}", model.made_by.program, model.made_by.time));
-        let files: Vec<&str> = model.data.files.iter().take(3).map(|file| file.name.as_str()).collect();
+        let mut files: Vec<String> = model.data.files.iter().take(3).map(|file| file.name.clone()).collect();
+        if model.data.files.len() > files.len() {
+            files.push(format!("and {} more", model.data.files.len() - files.len()));
+        }
         let data = amount(model.data.episodes, model.data.samples);
         lines.add("recorded", &format!("{data} ({})", files.join(", ")));
         if let Some(left_out) = left_out(&model.data.left_out) {
