@@ -16,12 +16,20 @@ pub(crate) struct Along {
     pub(crate) wanted: f64,
 }
 
+/// So many states are asked for together.
+const BLOCK: usize = 4096;
+
 /// Every row that moves.
 pub(crate) fn along<'a>(policy: &'a dyn Policy, rows: &'a Rows) -> impl Iterator<Item = Along> + 'a {
-    let each = rows.states().column_iter().zip(rows.velocities().column_iter()).zip(rows.indices());
-    each.filter_map(|((state, velocity), index)| {
-        let direction = velocity.try_normalize(0.0)?;
-        let wanted = direction.dot(&policy.action(state).rows(0, direction.len()));
-        Some(Along { trajectory: index.trajectory, direction, speed: velocity.norm(), wanted })
+    (0..rows.len()).step_by(BLOCK).flat_map(move |first| {
+        let count = BLOCK.min(rows.len() - first);
+        let actions = policy.actions(rows.states().columns(first, count));
+        (0..count).filter_map(move |at| {
+            let velocity = rows.velocities().column(first + at);
+            let direction = velocity.try_normalize(0.0)?;
+            let wanted = direction.dot(&actions.view((0, at), (direction.len(), 1)));
+            let trajectory = rows.indices()[first + at].trajectory;
+            Some(Along { trajectory, direction, speed: velocity.norm(), wanted })
+        })
     })
 }

@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | positions | [`Smoother`] | velocities with their variance, and where constraints may have switched |
 //! | noisy positions, exact velocities or commands | [`Fusion`] | states that integrate the velocities |
+//! | positions with hardly any noise | [`slopes`], [`slopes_between_switches`] | velocities |
 //! | positions, for a rule that takes steps between them | [`SavitzkyGolay`] | a simple, fast polynomial filter |
 //!
 //! [`PositionNoise`] estimates whether any of them is needed. Nothing here knows a policy, so every learner may use it.
@@ -50,6 +51,7 @@ mod kalman;
 mod noise;
 mod piecewise;
 mod savitzky_golay;
+mod slopes;
 
 pub use error::SmoothingError;
 pub use fusion::{Fused, FusedMovement, Fusion};
@@ -59,6 +61,7 @@ pub use piecewise::scaled::AxisScale;
 pub use piecewise::smoothed::{Smoothed, SmoothedMovement};
 pub use piecewise::smoother::{NoiseVariance, Smoother};
 pub use savitzky_golay::SavitzkyGolay;
+pub use slopes::{slopes, slopes_between_switches};
 
 /// The program of the README, compiled.
 #[cfg(doctest)]

@@ -1,7 +1,6 @@
 //! Policies compared at states that were recorded.
 
 use gp::Rows;
-use motion::Policy;
 use nalgebra::DMatrix;
 
 /// States that policies are compared at, at most.
@@ -12,15 +11,6 @@ pub(super) fn states(rows: &Rows) -> DMatrix<f64> {
     let every = rows.len().div_ceil(STATES);
     let chosen: Vec<usize> = (0..rows.len()).step_by(every).collect();
     rows.states().select_columns(&chosen)
-}
-
-/// π at states (n, M), (n, M).
-pub(super) fn actions(policy: &dyn Policy, states: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut actions = states.clone();
-    for (state, action) in states.column_iter().zip(actions.column_iter_mut()) {
-        policy.action_into(state, action);
-    }
-    actions
 }
 
 /// Σ‖u − mean u‖² over columns.

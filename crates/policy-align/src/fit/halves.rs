@@ -7,7 +7,7 @@ use motion::Policy;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::actions::{actions, spread, states};
+use super::actions::{spread, states};
 
 /// How halves are learnt from: rows at most that the whole was learnt from, and the seed of its choices.
 #[derive(Debug, Clone, Copy)]
@@ -68,7 +68,7 @@ fn disagreement<P: Policy + Send>(
     let half = |odd: usize| learn(&learnt_from.without(|trajectory, _| trajectory % 2 == odd));
     let (even, odd) = rayon::join(|| half(1), || half(0));
     let states = states(rows);
-    let apart = (actions(&even.ok()?, &states) - actions(&odd.ok()?, &states)).norm_squared();
-    let disagreement = apart / spread(&actions(whole, &states));
+    let apart = (even.ok()?.actions(states.as_view()) - odd.ok()?.actions(states.as_view())).norm_squared();
+    let disagreement = apart / spread(&whole.actions(states.as_view()));
     disagreement.is_finite().then_some(disagreement)
 }

@@ -99,7 +99,7 @@ pub fn fit_with(
     decisions.extend(rows_decision(&readings));
     let aligned = match options.learner {
         LearnerChoice::PolicyAlign => {
-            let reference = actions::actions(&readings, rows.states());
+            let reference = readings.actions(rows.states().as_view());
             Some(aligning::fit(prepared, &rows, &reference, options, progress)?)
         }
         _ => None,
@@ -212,7 +212,7 @@ fn numbers(
             discarded: prepared.demonstrations.n_trajectories() - aligned_count,
             residual: aligned.residual,
             unsupported: aligned.held_out.unsupported as f64 / aligned.held_out.samples.max(1) as f64,
-            difference: aligned.held_out.differences / actions::spread(&actions::actions(readings, rows.states()))
+            difference: aligned.held_out.differences / actions::spread(&readings.actions(rows.states().as_view()))
                 * rows.len() as f64
                 / aligned.held_out.samples.max(1) as f64,
         }
@@ -256,7 +256,7 @@ fn numbers(
 /// Uncertainty of the policy between the demonstrated movements.
 fn unknown(readings: &AutoFit, prepared: &Prepared, rows: &gp::Rows) -> f64 {
     let states = actions::states(rows);
-    let variance = actions::spread(&actions::actions(readings, &states)) / states.ncols() as f64;
+    let variance = actions::spread(&readings.actions(states.as_view())) / states.ncols() as f64;
     share_unknown(readings, &prepared.demonstrations, variance).unwrap_or(1.0)
 }
 

@@ -1,5 +1,6 @@
 //! The noise of samples, and what is done about it.
 
+pub(crate) mod least_noisy;
 pub(crate) mod noise;
 pub(crate) mod smooth;
 pub(crate) mod still;

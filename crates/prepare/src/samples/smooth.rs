@@ -1,8 +1,7 @@
 //! Smoothing of positions as requested by the user.
 
 use motion::{Demonstrations, MotionError, Trajectory};
-use nalgebra::DMatrix;
-use smoothing::{SavitzkyGolay, SmoothingError};
+use smoothing::{SavitzkyGolay, SmoothingError, slopes};
 
 use crate::PrepareError;
 use crate::notes::Notes;
@@ -10,6 +9,8 @@ use crate::options::Smoothing;
 
 /// Fewer samples in a window than this smooth nothing: a parabola goes through three.
 const LEAST: usize = 5;
+/// Samples that a parabola goes through.
+const PARABOLA: usize = 3;
 
 /// The movements as requested; none if nothing was.
 pub(crate) fn as_requested(
@@ -50,51 +51,13 @@ fn nearest_odd(samples: f64) -> usize {
 /// # Errors
 /// Where slopes overflow.
 pub fn with_slopes(demonstrations: &Demonstrations) -> Result<Demonstrations, MotionError> {
-    let with = |movement: &Trajectory| movement.clone().with_velocities(slopes(movement));
+    let with = |movement: &Trajectory| movement.clone().with_velocities(slopes(movement, PARABOLA));
     Demonstrations::new(demonstrations.trajectories().iter().map(with).collect::<Result<_, _>>()?)
-}
-
-/// (n, N).
-fn slopes(movement: &Trajectory) -> DMatrix<f64> {
-    let steps = movement.step_velocities();
-    let last = steps.ncols() - 1;
-    let seconds = |step: usize| movement.seconds(step, step + 1);
-    // The slope at a time between two steps' middles, and a little beyond at the ends, lies on the line through theirs.
-    let slope = |axis: usize, sample: usize| {
-        if last == 0 {
-            return steps[(axis, 0)];
-        }
-        let before = sample.saturating_sub(1).min(last - 1);
-        let (h, k) = (seconds(before), seconds(before + 1));
-        let (s, t) = (steps[(axis, before)], steps[(axis, before + 1)]);
-        let curve = (t - s) / (h + k);
-        match sample - before {
-            0 => s - h * curve,
-            1 => s + h * curve,
-            _ => t + k * curve,
-        }
-    };
-    DMatrix::from_fn(steps.nrows(), last + 2, slope)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn slopes_of_parabolas_are_exact() {
-        for times in [vec![0.0, 0.1, 0.2, 0.3], vec![0.0, 0.3, 0.4, 1.0, 1.5], vec![0.0, 2.0, 3.0], vec![1.0, 2.0]] {
-            let degree = if times.len() > 2 { 1.0 } else { 0.0 };
-            let at = |t: f64| [1.0 - 2.0 * t + degree * 3.0 * t * t, 0.5 * t];
-            let states = DMatrix::from_fn(2, times.len(), |axis, i| at(times[i])[axis]);
-            let movement = Trajectory::new(states, 1.0).unwrap().with_times(times.clone()).unwrap();
-            let slopes = slopes(&movement);
-            for (i, t) in times.iter().enumerate() {
-                assert!((slopes[(0, i)] - (-2.0 + degree * 6.0 * t)).abs() < 1e-12, "{times:?} {i}");
-                assert!((slopes[(1, i)] - 0.5).abs() < 1e-12);
-            }
-        }
-    }
 
     #[test]
     fn windows_are_odd() {
