@@ -45,7 +45,7 @@ mod urdf;
 #[cfg(feature = "collision")]
 pub use collision::{Clearance, MeshShape, Nearby, SelfCollision};
 pub use error::KinematicsError;
-pub use forward::{Chain, LinkPoses, Workspace};
+pub use forward::{Chain, LinkPoses, LinkPosesBatch, Workspace};
 pub use model::{Attachment, CollisionShape, Inertial, Joint, JointMotion, LinkId, MotionKind, RobotModel};
 pub use resolved_rate::ResolvedRate;
 pub use urdf::{Element, Geometry, JointKind, UrdfProblem, UrdfWarning};

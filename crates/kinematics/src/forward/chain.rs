@@ -19,9 +19,9 @@ use crate::{
 /// the chain are zero.
 #[derive(Debug, Clone)]
 pub struct Chain {
-    joints: Arc<[Joint]>,
-    nodes: Vec<Node>,
-    couplings: Vec<Coupling>,
+    pub(super) joints: Arc<[Joint]>,
+    pub(super) nodes: Vec<Node>,
+    pub(super) couplings: Vec<Coupling>,
 }
 
 impl RobotModel {
