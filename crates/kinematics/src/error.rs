@@ -103,6 +103,17 @@ pub enum KinematicsError {
         /// The number of active joints.
         joints: usize,
     },
+    /// Velocities have not one value for each active joint in each configuration.
+    #[error(
+        "the velocities have the shape ({}, {}); give ({}, {}), active joints by configurations",
+        found.0, found.1, expected.0, expected.1
+    )]
+    VelocitiesShape {
+        /// Rows and columns given.
+        found: (usize, usize),
+        /// Active joints and configurations.
+        expected: (usize, usize),
+    },
     /// Collision geometry was requested, and the resolver does not have these meshes.
     #[error(
         "{} mesh(es) are missing: {}; resolve them, or leave them out on purpose",

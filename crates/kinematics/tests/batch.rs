@@ -47,6 +47,21 @@ proptest! {
     }
 
     #[test]
+    fn momenta_are_the_product_with_the_mass_matrix((tree, q) in configurations()) {
+        let robot = RobotModel::from_urdf(&tree.urdf()).unwrap();
+        let (mut one, mut several) = (Workspace::new(), Workspace::new());
+        let velocities = DMatrix::from_fn(q.nrows(), q.ncols(), |joint, index| ((3 * joint + 7 * index) as f64).sin());
+        let momenta = robot.forward_kinematics_batch(q.as_view(), &mut several).unwrap().momenta(velocities.as_view()).unwrap();
+        prop_assert_eq!(momenta.shape(), q.shape());
+        for (index, q) in q.column_iter().enumerate() {
+            let mass = robot.forward_kinematics(q.as_view(), &mut one).unwrap().mass_matrix().unwrap();
+            let expected = &mass * velocities.column(index);
+            // Prismatic joints of this range put links as far as 1e7 m away.
+            prop_assert!((momenta.column(index) - expected).amax() <= 1e-12 * mass.amax());
+        }
+    }
+
+    #[test]
     fn chains((tree, q) in configurations()) {
         let robot = RobotModel::from_urdf(&tree.urdf()).unwrap();
         // One workspace for both, and for chains of different lengths.
@@ -109,6 +124,18 @@ fn jacobians_have_a_column_for_each_joint_in_each_configuration() {
         expected.to_string(),
         "the Jacobians have 8 columns together; give 9 (9 configurations of 1 active joints)"
     );
+}
+
+#[test]
+fn velocities_have_a_value_for_each_joint_in_each_configuration() {
+    let robot = RobotModel::from_urdf(DOOR).unwrap();
+    let (mut workspace, q) = (Workspace::new(), DMatrix::zeros(1, 9));
+    let batch = robot.forward_kinematics_batch(q.as_view(), &mut workspace).unwrap();
+    let error = batch.momenta(DMatrix::zeros(1, 8).as_view()).unwrap_err();
+    assert_eq!(error, KinematicsError::VelocitiesShape { found: (1, 8), expected: (1, 9) });
+    let sentence = "the velocities have the shape (1, 8); give (1, 9), active joints by configurations";
+    assert_eq!(error.to_string(), sentence);
+    assert_eq!(batch.momenta(DMatrix::repeat(1, 9, 2.0).as_view()).unwrap(), DMatrix::zeros(1, 9));
 }
 
 #[test]

@@ -36,11 +36,9 @@ impl Workspace {
     ) {
         let Workspace { values, sines, cosines, groups, .. } = self;
         for (values, Coupling { column, multiplier, offset }) in values.iter_mut().zip(couplings) {
-            for (value, q) in values.iter_mut().zip(q) {
-                *value = q[*column];
-            }
-            for value in values {
-                *value = multiplier * *value + offset;
+            let coordinates: Lanes = std::array::from_fn(|lane| q[lane][*column]);
+            for part in 0..Register::<S>::parts() {
+                (Register::load(simd, &coordinates, part) * *multiplier + *offset).store(values, part);
             }
         }
         sin_cos_all(values, sines, cosines);

@@ -81,6 +81,16 @@ impl LinkPosesBatch<'_> {
         Ok(())
     }
 
+    pub(super) fn robot(&self) -> &RobotModel {
+        self.robot
+    }
+
+    /// The placements of all nodes in each group of configurations.
+    #[inline(always)]
+    pub(super) fn groups(&self) -> impl Iterator<Item = &[PlacementGroup]> {
+        self.groups.chunks_exact(self.robot.nodes.len())
+    }
+
     fn placement(&self, link: LinkId, index: usize) -> Placement {
         assert!(index < self.len, "configuration {index} of {}", self.len);
         self.groups[index / LANES * self.robot.nodes.len() + link.0].lane(index % LANES)
@@ -118,12 +128,12 @@ impl WithSimd for Fill<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Fill { poses: LinkPosesBatch { robot, groups, .. }, link, columns } = self;
-        let n = robot.n_joints();
+        let Fill { poses, link, columns } = self;
+        let (robot, n) = (poses.robot, poses.robot.n_joints());
         if n == 0 {
             return;
         }
-        for (placements, jacobians) in groups.chunks_exact(robot.nodes.len()).zip(columns.chunks_mut(LANES * n)) {
+        for (placements, jacobians) in poses.groups().zip(columns.chunks_mut(LANES * n)) {
             jacobians.as_flattened_mut().fill(0.0);
             let mut index = link.0;
             while index != 0 {

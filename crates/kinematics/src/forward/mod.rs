@@ -1,5 +1,6 @@
 //! Where links are and how they move: all of a robot's ([`LinkPoses`]), or one by the joints that lead to it
-//! ([`Chain`]), in one configuration or several at once (`group`); the mass matrix; columns of Jacobians (`jacobian`);
+//! ([`Chain`]), in one configuration or several at once (`group`); the mass matrix and
+//! momenta; columns of Jacobians (`jacobian`);
 //! the memory for it ([`Workspace`]).
 
 mod chain;
@@ -9,6 +10,7 @@ mod jacobian;
 mod link_poses;
 mod link_poses_batch;
 mod mass_matrix;
+mod momenta;
 mod workspace;
 
 pub use chain::Chain;
