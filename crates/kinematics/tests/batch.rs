@@ -33,7 +33,7 @@ proptest! {
         let (n, mut one, mut several) = (robot.n_joints(), Workspace::new(), Workspace::new());
         let (mut single, mut together) = (Matrix6xX::zeros(n), Matrix6xX::repeat(n * q.ncols(), f64::NAN));
         let batch = robot.forward_kinematics_batch(q.as_view(), &mut several).unwrap();
-        prop_assert_eq!((batch.len(), batch.is_empty()), (q.ncols(), q.is_empty() && q.ncols() == 0));
+        prop_assert_eq!((batch.len(), batch.is_empty()), (q.ncols(), q.ncols() == 0));
         for link in robot.links() {
             batch.jacobians(link, &mut together).unwrap();
             for (index, q) in q.column_iter().enumerate() {
