@@ -3,9 +3,9 @@
 
 use std::hint::black_box;
 
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use kinematics::{RobotModel, Workspace};
-use nalgebra::{DVector, Isometry3, Matrix3xX, Matrix6xX, Translation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, DVector, Isometry3, Matrix3xX, Matrix6xX, Translation3, Unit, UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use urdf_rs::JointType;
@@ -104,6 +104,17 @@ fn upper_body(criterion: &mut Criterion) {
         chain.position_jacobian(q.as_view(), &mut workspace, &mut three).unwrap();
         assert!((&six - &plain_six).amax() < 1e-14 && (&three - plain_six.fixed_rows::<3>(0)).amax() < 1e-14);
     }
+    let together = DMatrix::from_columns(&configurations);
+    let mut jacobians = Matrix6xX::zeros(n * configurations.len());
+    robot
+        .forward_kinematics_batch(together.as_view(), &mut workspace)
+        .unwrap()
+        .jacobians(hand, &mut jacobians)
+        .unwrap();
+    for (index, q) in configurations.iter().enumerate() {
+        robot.forward_kinematics(q.as_view(), &mut workspace).unwrap().jacobian(hand, &mut six).unwrap();
+        assert_eq!(jacobians.columns(index * n, n), six);
+    }
 
     let mut group = criterion.benchmark_group("upper_body");
     let mut cycle = configurations.iter().cycle();
@@ -135,6 +146,21 @@ fn upper_body(criterion: &mut Criterion) {
             let q = cycle.next().unwrap();
             black_box(chain.jacobian(q.as_view(), &mut workspace, &mut six).unwrap());
             black_box(&mut six);
+        });
+    });
+    // Times of these are of all configurations, their rates of one.
+    group.throughput(Throughput::Elements(configurations.len() as u64));
+    group.bench_function("all_links_and_jacobian_6x22_batch_of_64", |bencher| {
+        bencher.iter(|| {
+            let poses = robot.forward_kinematics_batch(together.as_view(), &mut workspace).unwrap();
+            poses.jacobians(hand, &mut jacobians).unwrap();
+            black_box(&mut jacobians);
+        });
+    });
+    group.bench_function("hand_chain_6x22_batch_of_64", |bencher| {
+        bencher.iter(|| {
+            black_box(chain.jacobians(together.as_view(), &mut workspace, &mut jacobians).unwrap());
+            black_box(&mut jacobians);
         });
     });
     group.finish();

@@ -82,6 +82,38 @@ pub enum KinematicsError {
         /// The number of active joints.
         expected: usize,
     },
+    /// One of several configurations cannot be placed.
+    #[error("configuration {index}: {reason}")]
+    InBatch {
+        /// The column of the first such configuration, counted from 0.
+        index: usize,
+        /// What is wrong with it.
+        reason: Box<KinematicsError>,
+    },
+    /// Jacobians to be filled side by side have not one column for each active joint in each configuration.
+    #[error(
+        "the Jacobians have {found} columns together; give {} ({configurations} configurations of {joints} active joints)",
+        configurations * joints
+    )]
+    BatchColumns {
+        /// The number of columns given.
+        found: usize,
+        /// The number of configurations.
+        configurations: usize,
+        /// The number of active joints.
+        joints: usize,
+    },
+    /// Velocities have not one value for each active joint in each configuration.
+    #[error(
+        "the velocities have the shape ({}, {}); give ({}, {}), active joints by configurations",
+        found.0, found.1, expected.0, expected.1
+    )]
+    VelocitiesShape {
+        /// Rows and columns given.
+        found: (usize, usize),
+        /// Active joints and configurations.
+        expected: (usize, usize),
+    },
     /// Collision geometry was requested, and the resolver does not have these meshes.
     #[error(
         "{} mesh(es) are missing: {}; resolve them, or leave them out on purpose",

@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use kinematics::{RobotModel, Workspace};
-//! use nalgebra::{DVector, Matrix6xX};
+//! use nalgebra::{DMatrix, DVector, Matrix6xX};
 //!
 //! let robot = RobotModel::from_urdf(
 //!     r#"<robot name="door"><link name="frame"/><link name="leaf"/><link name="handle"/>
@@ -24,6 +24,12 @@
 //! let mut jacobian = Matrix6xX::zeros(robot.n_joints());
 //! poses.jacobian(handle, &mut jacobian)?;
 //! assert!((jacobian[(0, 0)] + 0.8).abs() < 1e-15);
+//!
+//! // Several configurations at once, in columns: the same numbers in less time.
+//! let q = DMatrix::from_row_slice(1, 3, &[0.0, 0.5, std::f64::consts::FRAC_PI_2]);
+//! let mut jacobians = Matrix6xX::zeros(3 * robot.n_joints());
+//! let poses = robot.chain(handle).jacobians(q.as_view(), &mut workspace, &mut jacobians)?;
+//! assert!((poses[2].translation.y - 0.8).abs() < 1e-15 && (jacobians[(0, 2)] + 0.8).abs() < 1e-15);
 //! # Ok::<(), kinematics::KinematicsError>(())
 //! ```
 //!
@@ -45,7 +51,7 @@ mod urdf;
 #[cfg(feature = "collision")]
 pub use collision::{Clearance, MeshShape, Nearby, SelfCollision};
 pub use error::KinematicsError;
-pub use forward::{Chain, LinkPoses, Workspace};
+pub use forward::{Chain, LinkPoses, LinkPosesBatch, Workspace};
 pub use model::{Attachment, CollisionShape, Inertial, Joint, JointMotion, LinkId, MotionKind, RobotModel};
 pub use resolved_rate::ResolvedRate;
 pub use urdf::{Element, Geometry, JointKind, UrdfProblem, UrdfWarning};

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a robot that does not load fails the test")]
 
 use kinematics::{ResolvedRate, RobotModel, SelfCollision, Workspace};
-use nalgebra::{DVector, Matrix3xX, Matrix6xX};
+use nalgebra::{DMatrix, DVector, Matrix3xX, Matrix6xX};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 
 fn allocations(mut of: impl FnMut()) -> u64 {
@@ -38,6 +38,21 @@ fn nothing_is_allocated_per_call() {
         std::hint::black_box(chain.pose(q.as_view(), &mut in_chain).unwrap());
     });
     assert_eq!(count, 0, "chain");
+    let several = DMatrix::from_fn(22, 11, |joint, index| 0.1 * (joint * index) as f64);
+    let mut jacobians = Matrix6xX::zeros(22 * 11);
+    let count = allocations(|| {
+        robot
+            .forward_kinematics_batch(several.as_view(), &mut workspace)
+            .unwrap()
+            .jacobians(hand, &mut jacobians)
+            .unwrap();
+        chain.jacobians(several.as_view(), &mut in_chain, &mut jacobians).unwrap();
+        std::hint::black_box(chain.poses(several.as_view(), &mut in_chain).unwrap());
+        // One configuration again, in the same workspaces.
+        std::hint::black_box(robot.forward_kinematics(q.as_view(), &mut workspace).unwrap().pose(hand));
+        std::hint::black_box(chain.pose(q.as_view(), &mut in_chain).unwrap());
+    });
+    assert_eq!(count, 0, "several configurations");
     let count = allocations(|| {
         control.velocity(&three, task.as_view(), q.as_view(), velocity.as_view_mut()).unwrap();
         robot.clip(q.as_view_mut()).unwrap();

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, AddAssign, Mul, Sub, SubAssign};
 
-use pulp::Simd;
+use pulp::{Interleave, Simd};
 
 use crate::{LANES, Lanes, Number};
 
@@ -66,6 +66,28 @@ impl<S: Simd> Register<S> {
             self.numbers()[..start].fill(f64::INFINITY);
         }
         self.simd.first_true_m64s(limit.above(self))
+    }
+
+    /// Calls `each` once for every lane with its number and what `rows` hold there, from the first row on; in any order of lanes.
+    #[inline(always)]
+    pub fn each_lane<const N: usize>(rows: [Self; N], mut each: impl FnMut(usize, &[f64; N]))
+    where
+        [S::f64s; N]: Interleave,
+    {
+        let simd = rows[0].simd;
+        // In which order lanes leave the shuffle depends on the processor; their numbers, shuffled likewise, say it.
+        let order =
+            simd.interleave_shfl_f64s([Self::load(simd, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0], 0).value; N]);
+        let mut columns = [rows[0].value; N];
+        for (column, row) in columns.iter_mut().zip(rows) {
+            *column = row.value;
+        }
+        let columns = simd.interleave_shfl_f64s(columns);
+        let (order, _) = pulp::bytemuck::cast_slice::<S::f64s, f64>(&order).as_chunks::<N>();
+        let (columns, _) = pulp::bytemuck::cast_slice::<S::f64s, f64>(&columns).as_chunks::<N>();
+        for (lane, column) in order.iter().zip(columns) {
+            each(lane[0] as usize, column);
+        }
     }
 
     /// The number of lane `lane`.
@@ -205,5 +227,44 @@ impl<S: Simd> Number for Register<S> {
     #[inline(always)]
     fn any(simd: S, mask: S::m64s) -> bool {
         simd.first_true_m64s(mask) < S::F64_LANES
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use pulp::{Arch, WithSimd};
+
+    use super::*;
+    use crate::dispatch_avx2;
+
+    /// What `each_lane` hands over of four rows and of two: ten times the row plus the lane.
+    struct Lanewise;
+
+    impl WithSimd for Lanewise {
+        type Output = ();
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) {
+            let row = |row: usize| -> Register<S> {
+                Register::load(simd, &std::array::from_fn(|lane| (10 * row + lane) as f64), 0)
+            };
+            let mut seen = vec![0; S::F64_LANES];
+            Register::each_lane([row(0), row(1), row(2), row(3)], |lane, &numbers| {
+                assert_eq!(numbers, [0, 10, 20, 30].map(|ten| (ten + lane) as f64));
+                seen[lane] += 1;
+            });
+            Register::each_lane([row(4), row(5)], |lane, &numbers| {
+                assert_eq!(numbers, [40, 50].map(|ten| (ten + lane) as f64));
+                seen[lane] += 1;
+            });
+            assert_eq!(seen, vec![2; S::F64_LANES]);
+        }
+    }
+
+    #[test]
+    fn each_lane_comes_once_with_its_own_numbers() {
+        Arch::Scalar.dispatch(Lanewise);
+        dispatch_avx2(Lanewise);
+        Arch::new().dispatch(Lanewise);
     }
 }

@@ -38,6 +38,15 @@ impl ChannelJoints {
         }
         q
     }
+
+    /// [`ChannelJoints::configuration`] of each of these states (n, N), and likewise of velocities.
+    pub(crate) fn configurations(&self, states: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut q = DMatrix::zeros(self.n_joints, states.ncols());
+        for (&place, row) in self.places.iter().zip(states.row_iter()) {
+            q.row_mut(place).copy_from(&row);
+        }
+        q
+    }
 }
 
 /// What divides the numbers that are learnt from, of channels that are joints, into radians and metres, (n).

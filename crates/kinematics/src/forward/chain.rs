@@ -19,9 +19,9 @@ use crate::{
 /// the chain are zero.
 #[derive(Debug, Clone)]
 pub struct Chain {
-    joints: Arc<[Joint]>,
-    nodes: Vec<Node>,
-    couplings: Vec<Coupling>,
+    pub(super) joints: Arc<[Joint]>,
+    pub(super) nodes: Vec<Node>,
+    pub(super) couplings: Vec<Coupling>,
 }
 
 impl RobotModel {
@@ -122,7 +122,7 @@ impl<const ROWS: usize> WithSimd for Fill<'_, ROWS> {
         let Fill { chain: Chain { nodes, couplings, .. }, q, workspace, columns } = self;
         let placements = workspace.place_inline(nodes, couplings, q);
         let end = placements[nodes.len() - 1];
-        columns.fill([0.0; ROWS]);
+        columns.as_flattened_mut().fill(0.0);
         for (node, placement) in nodes.iter().zip(placements) {
             add_column(node, couplings, placement, end.origin, columns);
         }

@@ -109,7 +109,7 @@ impl<const ROWS: usize> WithSimd for Fill<'_, ROWS> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let Fill { poses: LinkPoses { robot, placements }, link, tip, columns } = self;
-        columns.fill([0.0; ROWS]);
+        columns.as_flattened_mut().fill(0.0);
         let mut index = link.0;
         while index != 0 {
             let node = &robot.nodes[index];

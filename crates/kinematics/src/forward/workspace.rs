@@ -1,16 +1,19 @@
 use lanes::{Lanes, dispatch_avx2, groups_of, sin_cos_all};
+use nalgebra::IsometryMatrix3;
 use pulp::{Simd, WithSimd};
 
-use crate::nodes::{Coupling, Node, Placement, Position};
+use crate::nodes::{Coupling, Node, Placement, PlacementGroup, Position};
 
 /// Memory that the computations write to; after the first use with a robot nothing is allocated any more. One
 /// workspace serves any number of robots and chains, one at a time.
 #[derive(Debug, Clone, Default)]
 pub struct Workspace {
-    values: Vec<Lanes>,
-    sines: Vec<Lanes>,
-    cosines: Vec<Lanes>,
+    pub(super) values: Vec<Lanes>,
+    pub(super) sines: Vec<Lanes>,
+    pub(super) cosines: Vec<Lanes>,
     placements: Vec<Placement>,
+    pub(super) groups: Vec<PlacementGroup>,
+    pub(super) poses: Vec<IsometryMatrix3<f64>>,
 }
 
 impl Workspace {
@@ -51,7 +54,7 @@ impl Workspace {
                 Some(coupling) => {
                     Position { value: values[coupling], sine: sines[coupling], cosine: cosines[coupling] }
                 }
-                None => Position::ZERO,
+                None => Position::zero(()),
             };
             previous = node.placed(parent, position);
             self.placements[index] = previous;

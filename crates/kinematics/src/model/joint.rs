@@ -1,4 +1,4 @@
-use nalgebra::DVectorView;
+use nalgebra::{DMatrixView, DVectorView};
 
 use crate::{JointKind, KinematicsError, error::FARTHEST};
 
@@ -43,6 +43,14 @@ pub(crate) fn checked<'q>(q: &'q DVectorView<'_, f64>, joints: &[Joint]) -> Resu
 #[inline]
 pub(crate) fn placeable<'q>(q: &'q DVectorView<'_, f64>, joints: &[Joint]) -> Result<&'q [f64], KinematicsError> {
     within(q, joints, FARTHEST)
+}
+
+/// Checks configurations (n, N) that links are to be placed by.
+pub(crate) fn all_placeable(q: &DMatrixView<'_, f64>, joints: &[Joint]) -> Result<(), KinematicsError> {
+    for (index, column) in q.column_iter().enumerate() {
+        placeable(&column, joints).map_err(|error| KinematicsError::InBatch { index, reason: Box::new(error) })?;
+    }
+    Ok(())
 }
 
 #[inline]

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 pub use attachment::{Attachment, JointMotion, MotionKind};
 pub use joint::Joint;
-pub(crate) use joint::placeable;
+pub(crate) use joint::{all_placeable, placeable};
 use nalgebra::{IsometryMatrix3, Matrix3};
 
 use crate::{

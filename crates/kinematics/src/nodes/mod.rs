@@ -6,4 +6,4 @@ mod placement;
 
 pub(crate) use coupling::Coupling;
 pub(crate) use node::{Motion, Node, Position};
-pub(crate) use placement::{Padded, Placement, cross, padded};
+pub(crate) use placement::{Padded, Placement, PlacementGroup, cross, padded};

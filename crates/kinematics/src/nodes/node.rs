@@ -1,3 +1,4 @@
+use lanes::Number;
 use nalgebra::{IsometryMatrix3, Rotation3, Unit, Vector3};
 
 use super::placement::{Padded, Placement, padded};
@@ -29,14 +30,19 @@ pub(crate) enum Motion {
 
 /// Value, sine and cosine of one moving joint.
 #[derive(Clone, Copy)]
-pub(crate) struct Position {
-    pub(crate) value: f64,
-    pub(crate) sine: f64,
-    pub(crate) cosine: f64,
+pub(crate) struct Position<T> {
+    pub(crate) value: T,
+    pub(crate) sine: T,
+    pub(crate) cosine: T,
 }
 
-impl Position {
-    pub(crate) const ZERO: Position = Position { value: 0.0, sine: 0.0, cosine: 1.0 };
+impl<T: Number> Position<T> {
+    /// A joint at zero.
+    #[inline(always)]
+    pub(crate) fn zero(token: T::Token) -> Self {
+        let zero = T::splat(token, 0.0);
+        Position { value: zero, sine: zero, cosine: T::splat(token, 1.0) }
+    }
 }
 
 impl Motion {
@@ -67,7 +73,11 @@ impl Node {
 
     /// Where the link is, when its parent link is at `parent`.
     #[inline(always)]
-    pub(crate) fn placed(&self, parent: Placement, joint: Position) -> Placement {
+    pub(crate) fn placed<T: Number, const W: usize>(
+        &self,
+        parent: Placement<T, W>,
+        joint: Position<T>,
+    ) -> Placement<T, W> {
         let mut placement = parent;
         if let Some(translation) = self.translation {
             placement = placement.translated(translation);
@@ -82,15 +92,15 @@ impl Node {
             Motion::RotationY => placement.turned(2, 0, sine, cosine),
             Motion::RotationZ => placement.turned(0, 1, sine, cosine),
             Motion::Rotation(axis) => placement.rotated(&about(axis, sine, cosine)),
-            Motion::Translation(axis) => placement.translated(axis.map(|part| part * value)),
+            Motion::Translation(axis) => placement.translated([value * axis[0], value * axis[1], value * axis[2]]),
         }
     }
 
     /// The joint's axis in root axes, when its link is at `placement`; a motion leaves its own axis alone.
     #[inline(always)]
-    pub(crate) fn axis(&self, placement: &Placement) -> Padded {
+    pub(crate) fn axis<T: Number, const W: usize>(&self, placement: &Placement<T, W>) -> [T; W] {
         match self.motion {
-            Motion::Fixed => [0.0; 4],
+            Motion::Fixed => [placement.origin[0].like(0.0); W],
             Motion::RotationX => placement.axes[0],
             Motion::RotationY => placement.axes[1],
             Motion::RotationZ => placement.axes[2],
@@ -101,12 +111,12 @@ impl Node {
 
 /// The columns of the rotation about a unit axis (Rodrigues).
 #[inline(always)]
-fn about([x, y, z, _]: Padded, sine: f64, cosine: f64) -> [Padded; 3] {
-    let rest = 1.0 - cosine;
+fn about<T: Number>([x, y, z, _]: Padded, sine: T, cosine: T) -> [[T; 3]; 3] {
+    let rest = cosine.like(1.0) - cosine;
     let (xy, yz, zx) = (rest * x * y, rest * y * z, rest * z * x);
     [
-        [cosine + rest * x * x, xy + sine * z, zx - sine * y, 0.0],
-        [xy - sine * z, cosine + rest * y * y, yz + sine * x, 0.0],
-        [zx + sine * y, yz - sine * x, cosine + rest * z * z, 0.0],
+        [cosine + rest * x * x, xy + sine * z, zx - sine * y],
+        [xy - sine * z, cosine + rest * y * y, yz + sine * x],
+        [zx + sine * y, yz - sine * x, cosine + rest * z * z],
     ]
 }

@@ -1,38 +1,73 @@
+use std::ops::Mul;
+
+use lanes::{Lanes, Number, Register};
 use nalgebra::{IsometryMatrix3, Matrix3, Point3, Rotation3, Translation3, Vector3};
+use pulp::Simd;
 
 /// A vector with a fourth number that means nothing: four fill a vector register.
 pub(crate) type Padded = [f64; 4];
 
-/// Where a frame is: the columns of its rotation, and its origin, in root axes and metres.
+/// Where a frame is: the columns of its rotation, and its origin, in root axes and metres. Of one configuration, vectors
+/// are [`Padded`]; of several, each of the three parts of a vector is a number for every one of them.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
-pub(crate) struct Placement {
-    pub(crate) axes: [Padded; 3],
-    pub(crate) origin: Padded,
+pub(crate) struct Placement<T = f64, const W: usize = 4> {
+    pub(crate) axes: [[T; W]; 3],
+    pub(crate) origin: [T; W],
 }
+
+/// Placements of one frame in as many configurations as there are lanes.
+pub(crate) type PlacementGroup = Placement<Lanes, 3>;
 
 impl Placement {
     pub(crate) const IDENTITY: Placement =
         Placement { axes: [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]], origin: [0.0; 4] };
+}
+
+impl<T: Number, const W: usize> Placement<T, W> {
+    /// The root's.
+    #[inline(always)]
+    pub(crate) fn identity(token: T::Token) -> Self {
+        let (zero, one) = (T::splat(token, 0.0), T::splat(token, 1.0));
+        let mut axes = [[zero; W]; 3];
+        for (i, axis) in axes.iter_mut().enumerate() {
+            axis[i] = one;
+        }
+        Placement { axes, origin: [zero; W] }
+    }
 
     /// `Σ axes[i] · part[i]`: a vector given in this frame's axes, in root axes.
     #[inline(always)]
-    pub(crate) fn direction(&self, part: Padded) -> Padded {
-        let [x, y, z] = self.axes;
-        std::array::from_fn(|i| x[i] * part[0] + y[i] * part[1] + z[i] * part[2])
+    pub(crate) fn direction<F: Copy, const P: usize>(&self, part: [F; P]) -> [T; W]
+    where
+        T: Mul<F, Output = T>,
+    {
+        let [mut x, y, z] = self.axes;
+        for i in 0..W {
+            x[i] = x[i] * part[0] + y[i] * part[1] + z[i] * part[2];
+        }
+        x
     }
 
     /// Moves the origin by a vector given in this frame's axes.
     #[inline(always)]
-    pub(crate) fn translated(mut self, by: Padded) -> Self {
+    pub(crate) fn translated<F: Copy, const P: usize>(mut self, by: [F; P]) -> Self
+    where
+        T: Mul<F, Output = T>,
+    {
         let step = self.direction(by);
-        self.origin = std::array::from_fn(|i| self.origin[i] + step[i]);
+        for (part, step) in self.origin.iter_mut().zip(step) {
+            *part += step;
+        }
         self
     }
 
     /// Turns the frame on the spot by a rotation given by its columns.
     #[inline(always)]
-    pub(crate) fn rotated(mut self, by: &[Padded; 3]) -> Self {
+    pub(crate) fn rotated<F: Copy, const P: usize>(mut self, by: &[[F; P]; 3]) -> Self
+    where
+        T: Mul<F, Output = T>,
+    {
         self.axes = [self.direction(by[0]), self.direction(by[1]), self.direction(by[2])];
         self
     }
@@ -40,13 +75,17 @@ impl Placement {
     /// Turns the frame on the spot about one of its own axes: only the two other columns change, `first` towards
     /// `second`.
     #[inline(always)]
-    pub(crate) fn turned(mut self, first: usize, second: usize, sine: f64, cosine: f64) -> Self {
+    pub(crate) fn turned(mut self, first: usize, second: usize, sine: T, cosine: T) -> Self {
         let (a, b) = (self.axes[first], self.axes[second]);
-        self.axes[first] = std::array::from_fn(|i| cosine * a[i] + sine * b[i]);
-        self.axes[second] = std::array::from_fn(|i| cosine * b[i] - sine * a[i]);
+        for i in 0..W {
+            self.axes[first][i] = cosine * a[i] + sine * b[i];
+            self.axes[second][i] = cosine * b[i] - sine * a[i];
+        }
         self
     }
+}
 
+impl Placement {
     pub(crate) fn position(&self) -> Point3<f64> {
         let [x, y, z, _] = self.origin;
         Point3::new(x, y, z)
@@ -59,12 +98,59 @@ impl Placement {
     }
 }
 
+impl PlacementGroup {
+    pub(crate) const IDENTITIES: PlacementGroup = {
+        let (zero, one) = ([0.0; lanes::LANES], [1.0; lanes::LANES]);
+        Placement { axes: [[one, zero, zero], [zero, one, zero], [zero, zero, one]], origin: [zero; 3] }
+    };
+
+    /// The lanes of register number `part`.
+    #[inline(always)]
+    pub(crate) fn load<S: Simd>(&self, simd: S, part: usize) -> Placement<Register<S>, 3> {
+        let mut placement = Placement::identity(simd);
+        for i in 0..3 {
+            for column in 0..3 {
+                placement.axes[column][i] = Register::load(simd, &self.axes[column][i], part);
+            }
+            placement.origin[i] = Register::load(simd, &self.origin[i], part);
+        }
+        placement
+    }
+
+    /// Puts the lanes of register number `part` back.
+    #[inline(always)]
+    pub(crate) fn store<S: Simd>(&mut self, placement: &Placement<Register<S>, 3>, part: usize) {
+        for i in 0..3 {
+            for column in 0..3 {
+                placement.axes[column][i].store(&mut self.axes[column][i], part);
+            }
+            placement.origin[i].store(&mut self.origin[i], part);
+        }
+    }
+
+    /// The placement in one of the configurations.
+    #[inline]
+    pub(crate) fn lane(&self, lane: usize) -> Placement {
+        let vector = |of: &[Lanes; 3]| [of[0][lane], of[1][lane], of[2][lane], 0.0];
+        let [x, y, z] = &self.axes;
+        Placement { axes: [vector(x), vector(y), vector(z)], origin: vector(&self.origin) }
+    }
+}
+
 /// A vector with its padding.
 pub(crate) fn padded(vector: &Vector3<f64>) -> Padded {
     [vector.x, vector.y, vector.z, 0.0]
 }
 
+/// A vector of three parts, padded with zeros.
 #[inline(always)]
-pub(crate) fn cross(a: Padded, b: Padded) -> Padded {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0], 0.0]
+pub(crate) fn vector<T: Number, const W: usize>(parts: [T; 3]) -> [T; W] {
+    let mut vector = [parts[0].like(0.0); W];
+    vector[..3].copy_from_slice(&parts);
+    vector
+}
+
+#[inline(always)]
+pub(crate) fn cross<T: Number, const W: usize>(a: [T; W], b: [T; W]) -> [T; W] {
+    vector([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 }

@@ -98,7 +98,15 @@ impl RandomTree {
                 write!(text, r#"<mimic joint="j{target}" multiplier="{multiplier:?}" offset="{offset:?}"/>"#)
                     .expect("a string takes any text");
             }
-            write!(text, "</joint><link name=\"l{}\"/>", i + 1).expect("a string takes any text");
+            // Links of different masses, with centres off their frames.
+            let mass = 0.5 + i as f64;
+            write!(
+                text,
+                r#"</joint><link name="l{}"><inertial><origin xyz="0.1 -0.2 0.05" rpy="{i} 0.4 -0.3"/><mass value="{mass:?}"/>
+                   <inertia ixx="0.03" ixy="0.01" ixz="-0.002" iyy="0.02" iyz="0.004" izz="0.04"/></inertial></link>"#,
+                i + 1
+            )
+            .expect("a string takes any text");
         }
         text + "<link name=\"l0\"/></robot>"
     }

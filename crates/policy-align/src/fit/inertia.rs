@@ -8,7 +8,7 @@ use prepare::numbers::squared_error;
 
 use super::decision::decision;
 use super::{FitOptions, learn};
-use crate::channel_joints::{ChannelJoints, scales_of_joints};
+use crate::channel_joints::{ChannelJoints, scales_of_joints, unscaled};
 use crate::{FitError, Prepared};
 
 /// What was learnt in the metric of inertia.
@@ -51,7 +51,11 @@ pub(super) fn weighed(
     Ok(Some(Weighed { rows, readings, decision }))
 }
 
-/// M(q)u of every row, (n, M), with other joints than the recorded ones at zero, in the channels' scaled units.
+/// Configurations that are placed at once; their links fit into the processor's cache.
+const AT_ONCE: usize = 64;
+
+/// M(q)u of every row, (n, M), with other joints than the recorded ones at zero, in the channels' scaled units: as S⁻¹M(q)S⁻¹u with
+/// the scales S.
 fn momenta(
     robot: &RobotModel,
     joints: &ChannelJoints,
@@ -59,14 +63,18 @@ fn momenta(
     rows: &Rows,
 ) -> Result<DMatrix<f64>, KinematicsError> {
     let mut workspace = Workspace::new();
-    let mut momenta = rows.velocities().clone();
-    let (n, places) = (scales.len(), &joints.places);
-    for (state, mut momentum) in rows.states().column_iter().zip(momenta.column_iter_mut()) {
-        let q = joints.configuration(state.rows(0, n).component_div(scales).as_view());
-        let mass = robot.forward_kinematics(q.as_view(), &mut workspace)?.mass_matrix()?;
-        let scaled = DMatrix::from_fn(n, n, |i, j| mass[(places[i], places[j])] / (scales[i] * scales[j]));
-        let product = scaled * &momentum;
-        momentum.copy_from(&product);
+    let n = scales.len();
+    let q = joints.configurations(&unscaled(&rows.states().rows(0, n).into_owned(), scales));
+    let velocities = joints.configurations(&unscaled(rows.velocities(), scales));
+    let mut momenta = DMatrix::zeros(n, q.ncols());
+    for first in (0..q.ncols()).step_by(AT_ONCE) {
+        let count = AT_ONCE.min(q.ncols() - first);
+        let poses = robot.forward_kinematics_batch(q.columns(first, count), &mut workspace)?;
+        let of_joints = poses.momenta(velocities.columns(first, count))?;
+        for (channel, &place) in joints.places.iter().enumerate() {
+            let scaled = of_joints.row(place) / scales[channel];
+            momenta.row_mut(channel).columns_mut(first, count).copy_from(&scaled);
+        }
     }
     Ok(momenta)
 }

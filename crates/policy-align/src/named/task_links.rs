@@ -1,6 +1,6 @@
 use gp::TaskSpace;
 use kinematics::{LinkId, RobotModel};
-use nalgebra::{DMatrix, DVector, DVectorView};
+use nalgebra::DMatrix;
 
 use super::constraint_stretch::ConstraintOn;
 use crate::channel_joints::ChannelJoints;
@@ -51,12 +51,8 @@ impl TaskLinks {
     pub(crate) fn poses(&self, states: &DMatrix<f64>) -> Result<Vec<(String, TaskSpace)>, String> {
         let mut spaces = Vec::new();
         for (name, link) in &self.links {
-            let [positions, orientations] = jacobians(link, states)?;
-            let both = |(position, orientation): (&DMatrix<f64>, &DMatrix<f64>)| {
-                let rows: Vec<_> = position.row_iter().chain(orientation.row_iter()).collect();
-                DMatrix::from_rows(&rows)
-            };
-            let poses = positions.iter().zip(&orientations).map(both).collect();
+            let poses = link.jacobians(states)?;
+            let [positions, orientations] = [0, 3].map(|first| rows_from(first, &poses));
             for (what, of) in [("position", positions), ("orientation", orientations), ("pose", poses)] {
                 spaces.push((format!("{what} of {name}"), TaskSpace::of_jacobians(of)));
             }
@@ -68,7 +64,8 @@ impl TaskLinks {
     pub(super) fn spaces(&self, states: &DMatrix<f64>) -> Result<Vec<(ConstraintOn, TaskSpace)>, String> {
         let mut spaces = Vec::new();
         for (name, link) in &self.links {
-            let [positions, orientations] = jacobians(link, states)?.map(TaskSpace::of_jacobians);
+            let poses = link.jacobians(states)?;
+            let [positions, orientations] = [0, 3].map(|first| TaskSpace::of_jacobians(rows_from(first, &poses)));
             spaces.push((ConstraintOn::Position(name.clone()), positions));
             spaces.push((ConstraintOn::Orientation(name.clone()), orientations));
         }
@@ -77,18 +74,14 @@ impl TaskLinks {
 
     /// Where a link is in each of these states (n, N), (3, N), in metres; none for one that is not among them.
     pub(super) fn places(&self, link: &str, states: &DMatrix<f64>) -> Result<Option<DMatrix<f64>>, String> {
-        let Some((_, point)) = self.links.iter().find(|(name, _)| name == link) else { return Ok(None) };
-        let place = |state: DVectorView<'_, f64>| Ok(DVector::from_column_slice(point.at(state)?.0.coords.as_slice()));
-        let places = states.column_iter().map(place).collect::<Result<Vec<_>, String>>()?;
-        Ok(Some(DMatrix::from_columns(&places)))
+        let point = self.links.iter().find(|(name, _)| name == link);
+        point.map(|(_, point)| point.places(states)).transpose()
     }
 }
 
-/// Of a link's position and of its orientation at each of these states (n) in columns, (3, n) each.
-fn jacobians(link: &LinkPoint, states: &DMatrix<f64>) -> Result<[Vec<DMatrix<f64>>; 2], String> {
-    let positions = states.column_iter().map(|state| Ok(link.at(state)?.1)).collect::<Result<_, String>>()?;
-    let orientations = states.column_iter().map(|state| link.turning(state)).collect::<Result<_, String>>()?;
-    Ok([positions, orientations])
+/// Three rows of each Jacobian (6, n), from row `first` on.
+fn rows_from(first: usize, jacobians: &[DMatrix<f64>]) -> Vec<DMatrix<f64>> {
+    jacobians.iter().map(|jacobian| jacobian.rows(first, 3).into_owned()).collect()
 }
 
 /// Links that move and carry no other.

@@ -45,18 +45,69 @@ impl LinkPoint {
         ))
     }
 
-    /// The derivative of the link's orientation by the state, (3, n): what velocities of the state make of its angular velocity,
-    /// in the root link's axes.
+    /// Where the point is in each of these states (n, N), (3, N), metres in the root link's frame.
     ///
     /// # Errors
-    /// What the robot says of the configuration.
-    pub(crate) fn turning(&self, state: DVectorView<'_, f64>) -> Result<DMatrix<f64>, String> {
-        let q = self.joints.configuration(state);
-        let mut jacobian = Matrix6xX::zeros(self.joints.n_joints());
-        let pose = self.chain.jacobian(q.as_view(), &mut Workspace::new(), &mut jacobian);
-        pose.map_err(|error| error.to_string())?;
-        Ok(DMatrix::from_fn(3, self.joints.places.len(), |row, channel| {
-            jacobian[(3 + row, self.joints.places[channel])]
-        }))
+    /// What the robot says of the first configuration that it cannot place.
+    pub(crate) fn places(&self, states: &DMatrix<f64>) -> Result<DMatrix<f64>, String> {
+        let (q, mut workspace) = (self.joints.configurations(states), Workspace::new());
+        let poses = self.chain.poses(q.as_view(), &mut workspace).map_err(|error| error.to_string())?;
+        let coordinates = poses.iter().flat_map(|pose| pose.translation.vector.iter().copied());
+        Ok(DMatrix::from_iterator(3, poses.len(), coordinates))
+    }
+
+    /// The derivative of the link's pose by the state in each of these states (n, N): of each (6, n), what velocities of the state make of
+    /// the velocity vx vy vz of the link's origin and of its angular velocity wx wy wz, in the root link's axes.
+    ///
+    /// # Errors
+    /// What the robot says of the first configuration that it cannot place.
+    pub(crate) fn jacobians(&self, states: &DMatrix<f64>) -> Result<Vec<DMatrix<f64>>, String> {
+        let (n, q) = (self.joints.n_joints(), self.joints.configurations(states));
+        let mut jacobians = Matrix6xX::zeros(n * q.ncols());
+        let poses = self.chain.jacobians(q.as_view(), &mut Workspace::new(), &mut jacobians).map(<[_]>::len);
+        poses.map_err(|error| error.to_string())?;
+        let of_channels = |index: usize| {
+            DMatrix::from_fn(6, self.joints.places.len(), |row, channel| {
+                jacobians[(row, index * n + self.joints.places[channel])]
+            })
+        };
+        Ok((0..states.ncols()).map(of_channels).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ARM: &str = include_str!("../../../../robots/seven_joint_arm.urdf");
+
+    /// The tool, and states whose channels are in another order than the joints.
+    fn tool() -> (LinkPoint, DMatrix<f64>) {
+        let robot = RobotModel::from_urdf(ARM).expect("the robot of this project loads");
+        let names: Vec<String> = robot.joints().iter().rev().map(|joint| joint.name().to_owned()).collect();
+        let point = LinkPoint::new(&robot, "tool", &names).expect("the tool is moved by all joints");
+        (point, DMatrix::from_fn(names.len(), 11, |joint, index| ((5 * joint + 3 * index) as f64).sin()))
+    }
+
+    #[test]
+    fn many_states_are_each_of_them() {
+        let (point, states) = tool();
+        let places = point.places(&states).expect("all states are finite");
+        let jacobians = point.jacobians(&states).expect("all states are finite");
+        assert_eq!(jacobians.len(), states.ncols());
+        for (index, state) in states.column_iter().enumerate() {
+            let (place, derivative) = point.at(state).expect("all states are finite");
+            assert_eq!(places.column(index), place.coords);
+            assert_eq!(jacobians[index].rows(0, 3), derivative);
+        }
+    }
+
+    #[test]
+    fn the_first_state_at_fault_is_named() {
+        let (point, mut states) = tool();
+        states[(0, 9)] = f64::NAN;
+        let wrong = point.jacobians(&states).expect_err("a state is not finite");
+        assert!(wrong.starts_with("configuration 9: joint \""), "{wrong}");
+        assert_eq!(point.places(&states).expect_err("a state is not finite"), wrong);
     }
 }
