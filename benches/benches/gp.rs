@@ -9,7 +9,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use demo_gen::beyond::{BeyondSystem, PolicyKind};
 use demo_gen::{ToyPotential, ToySystem, demonstrations};
 use gp::{CurlTest, DirectFit, DirectGp, Family, FrontEnd, Rows, SlopeFit, SlopeGp};
-use motion::{LearntPolicy, Policy, Potential};
+use motion::{LearntPolicy, Potential};
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

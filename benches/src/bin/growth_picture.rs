@@ -56,7 +56,8 @@ const SIZE: (f64, f64) = (600.0, 400.0);
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let [points, picture] = &words[..] else { return Err("usage: growth_picture POINTS.json PICTURE.svg".into()) };
-    let rows: Vec<Vec<Drawn>> = serde_json::from_str(&fs::read_to_string(points)?)?;
+    let text = fs::read_to_string(points).map_err(|error| format!("{points}: {error}"))?;
+    let rows: Vec<Vec<Drawn>> = serde_json::from_str(&text).map_err(|error| format!("{points}: {error}"))?;
     let rows: Vec<Vec<Curves>> = rows.into_iter().map(|row| row.into_iter().map(panel).collect()).collect();
     let rows: Vec<Vec<&dyn Panel>> =
         rows.iter().map(|row| row.iter().map(|panel| panel as &dyn Panel).collect()).collect();
