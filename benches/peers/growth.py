@@ -5,7 +5,8 @@ usage: growth.py [--large] [--threads 1] [--seconds 120] [--gigabytes 8] [--only
 
 Needs Linux or macOS, `pip install numpy scipy scikit-learn`, and Rust: it builds the programs. Progress goes to standard error, tables in
 Markdown to standard output. Each point has a process for itself; the least of three counts where ours takes less than five seconds. A peer
-gets no more data once it has needed more than so many CPU seconds or gigabytes. About 8 minutes; with --large, ten million samples, 5 more.
+gets no more data once it has needed more than so many CPU seconds or gigabytes. About 6 minutes, twice as long on a busy machine; with
+--large, ten million samples, half as long again.
 
 Fits: movements of 500 samples among wells in the plane, 5 % noise on velocities, in a CSV file. Ours is `policy-align fit` from start to
 end, with cross-validation and trust page. scikit-learn's GaussianProcessRegressor (squared exponential with a length for each axis, white
