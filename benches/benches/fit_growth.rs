@@ -13,16 +13,12 @@ use std::time::Instant;
 
 use benches::{Wells, cpu_seconds, peak_megabytes, write_noisy};
 use motion::Policy as _;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use policy_align::demo_io::{self, ReadOptions};
 use policy_align::{FitOptions, Model, PrepareOptions, Progress, fit, prepare};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 const SAMPLES: usize = 500;
 const NOISE: f64 = 0.05;
-/// States at which the error is measured, uniform in [−1.5, 1.5)ⁿ.
-const STATES: usize = 500;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let numbers: Vec<usize> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
@@ -47,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let exponent = before.map(|(fewer, less)| (cpu / less).ln() / (count as f64 / fewer as f64).ln());
         let exponent = exponent.map_or(String::new(), |exponent| format!("{exponent:.2}"));
         let rows = model.decisions.iter().find(|decision| decision.what == "rows").map_or("all", |rows| &rows.value);
-        let (error, expected) = (error(&model, &wells, dim), model.trust.numbers.expected_error);
+        let (error, expected) = (error(&model, &wells), model.trust.numbers.expected_error);
         let peak = peak_megabytes();
         println!("{count:9} {cpu:8.2} {wall:8.2} {exponent:>6} {peak:8.0} {rows:>7} {error:9.2e} {expected:9.2e}");
         before = Some((count, cpu));
@@ -63,14 +59,10 @@ fn learn(file: &std::path::Path) -> Result<Model, Box<dyn Error>> {
 }
 
 /// nUPE: the mean squared error of the policy over its variance.
-fn error(model: &Model, wells: &Wells, dim: usize) -> f64 {
-    let mut rng = ChaCha8Rng::seed_from_u64(2);
-    let states = DMatrix::from_fn(dim, STATES, |_, _| rng.random_range(-1.5..1.5));
-    let each = |of: &dyn Fn(DVector<f64>) -> DVector<f64>| {
-        DMatrix::from_columns(&states.column_iter().map(|state| of(state.into_owned())).collect::<Vec<_>>())
-    };
+fn error(model: &Model, wells: &Wells) -> f64 {
+    let (states, wanted) = wells.truth();
     let policy = model.policy();
-    let (learnt, wanted) = (each(&|x| policy.action(x.as_view())), each(&|x| wells.action(&x)));
+    let learnt = DMatrix::from_columns(&states.column_iter().map(|state| policy.action(state)).collect::<Vec<_>>());
     let mean = wanted.column_mean();
     let spread: f64 = wanted.column_iter().map(|action| (action - &mean).norm_squared()).sum();
     (learnt - wanted).norm_squared() / spread

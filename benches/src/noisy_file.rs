@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
@@ -15,6 +15,8 @@ pub struct Wells {
 /// w², and twice the height of the bowl at a distance of 1.
 const WIDTH: f64 = 0.64;
 const BOWL: f64 = 0.3;
+
+const STATES: usize = 500;
 
 impl Wells {
     /// Wells within [−1, 1)ⁿ.
@@ -32,6 +34,14 @@ impl Wells {
             apart * -slope
         });
         wells.fold(x * -BOWL, |sum, well| sum + well)
+    }
+
+    /// States at which errors are measured, uniform in [−1.5, 1.5)ⁿ, and π(x) there: (n, 500) each.
+    pub fn truth(&self) -> (DMatrix<f64>, DMatrix<f64>) {
+        let mut rng = ChaCha8Rng::seed_from_u64(2);
+        let states = DMatrix::from_fn(self.centres[0].len(), STATES, |_, _| rng.random_range(-1.5..1.5));
+        let actions: Vec<_> = states.column_iter().map(|state| self.action(&state.into_owned())).collect();
+        (states, DMatrix::from_columns(&actions))
     }
 }
 

@@ -20,8 +20,8 @@ pub struct Curve {
     pub points: Vec<(f64, f64, f64)>,
     /// Of the line through the means; the band has its colour.
     pub stroke: Stroke,
-    /// At each point.
-    pub sign: Sign,
+    /// At each point, if at all.
+    pub sign: Option<Sign>,
     /// Next to its last point, where that is on the axis.
     pub name: String,
 }
@@ -37,13 +37,15 @@ pub struct Curves {
     pub x_label: String,
     /// What is measured, with its unit.
     pub y_label: String,
+    /// How x is spaced; a logarithmic axis is not broken, whatever its `lowest`.
+    pub x_axis: Axis,
     /// How y is spaced.
     pub y_axis: Axis,
     /// From and to.
     pub x: [f64; 2],
     /// From and to.
     pub y: [f64; 2],
-    /// From tick to tick.
+    /// From tick to tick: in units of x, or in decades of a logarithmic axis.
     pub x_step: f64,
     /// Later ones lie on top.
     pub lines: Vec<Curve>,
@@ -76,13 +78,15 @@ impl Panel for Curves {
         let lines = self.lines.iter().flat_map(|curve| self.line(curve).into_iter().chain(self.marks(curve)));
         let plots: Vec<Plot> = bands.chain(lines).collect();
         let range = self.y_axis.places(self.y);
-        let (x, y) = (Edge { label: &self.x_label, range: self.x }, Edge { label: &self.y_label, range });
+        let across = [0, 1].map(|end| self.x_axis.place(self.x[end], self.x[0]));
+        let (x, y) = (Edge { label: &self.x_label, range: across }, Edge { label: &self.y_label, range });
         let layout = with_axes(titled(&plots, &self.title, (self.size.0 - self.room, self.size.1)), &x, &y);
         let mut layout = layout.with_x_tick_step(self.x_step).with_grid_line_width(0.6);
+        if let Axis::Logarithmic { .. } = self.x_axis {
+            layout = layout.with_x_tick_format(plainly(self.x[0]));
+        }
         if let Axis::Logarithmic { .. } = self.y_axis {
-            let from = self.y[0];
-            let plainly = TickFormat::Custom(Arc::new(move |place| tick(place, from)));
-            layout = layout.with_y_tick_step(1.0).with_y_tick_format(plainly);
+            layout = layout.with_y_tick_step(1.0).with_y_tick_format(plainly(self.y[0]));
         }
         layout.annotations = self.notes.iter().map(|note| self.words(note)).collect();
         let drawn = ComputedLayout::from_layout(&layout);
@@ -93,7 +97,7 @@ impl Panel for Curves {
         let end = |curve: &Curve| {
             let &(x, mean, _) = curve.points.last()?;
             let place = self.place(mean);
-            self.is_on_axis(place).then(|| (drawn.map_x(x), drawn.map_y(place)))
+            self.is_on_axis(place).then(|| (drawn.map_x(self.across(x)), drawn.map_y(place)))
         };
         let named = self.lines.iter().filter(|curve| !curve.name.is_empty());
         let named =
@@ -108,8 +112,14 @@ impl Panel for Curves {
 const NAME_GAP: f64 = 14.0;
 
 impl Curves {
+    /// Where a value of y is.
     fn place(&self, value: f64) -> f64 {
         self.y_axis.place(value, self.y[0])
+    }
+
+    /// Where a value of x is.
+    fn across(&self, value: f64) -> f64 {
+        self.x_axis.place(value, self.x[0])
     }
 
     fn is_on_axis(&self, place: f64) -> bool {
@@ -121,7 +131,7 @@ impl Curves {
     fn band(&self, curve: &Curve) -> Plot {
         let [low, high] = self.y_axis.places(self.y);
         let edge = |end: usize| {
-            let at = |&(x, mean, sd): &(f64, f64, f64)| (x, self.place(self.y_axis.band(mean, sd)[end]));
+            let at = |&(x, mean, sd): &(f64, f64, f64)| (self.across(x), self.place(self.y_axis.band(mean, sd)[end]));
             fine(&curve.points.iter().map(at).collect::<Vec<_>>())
         };
         let (lower, upper) = (edge(0), edge(1));
@@ -132,7 +142,7 @@ impl Curves {
 
     /// The line through the means, in pieces where it leaves the axis and comes back.
     fn line(&self, curve: &Curve) -> Vec<Plot> {
-        let points: Vec<_> = curve.points.iter().map(|&(x, mean, _)| (x, self.place(mean))).collect();
+        let points: Vec<_> = curve.points.iter().map(|&(x, mean, _)| (self.across(x), self.place(mean))).collect();
         let line = |piece: Vec<(f64, f64)>| {
             let line = LinePlot::new().with_data(piece).with_color(curve.stroke.color);
             Plot::Line(line.with_stroke_width(curve.stroke.width).with_line_style(curve.stroke.dash.into()))
@@ -141,14 +151,19 @@ impl Curves {
     }
 
     fn marks(&self, curve: &Curve) -> Vec<Plot> {
-        let places = curve.points.iter().map(|&(x, mean, _)| (x, self.place(mean)));
+        let places = curve.points.iter().map(|&(x, mean, _)| (self.across(x), self.place(mean)));
         let points: Vec<_> = places.filter(|point| self.is_on_axis(point.1)).collect();
-        curve.sign.plots(&points, curve.stroke.color)
+        curve.sign.map_or(vec![], |sign| sign.plots(&points, curve.stroke.color))
     }
 
     fn words(&self, Note { at, text }: &Note) -> TextAnnotation {
-        TextAnnotation::new(text, at.0, self.place(at.1)).with_font_size(13)
+        TextAnnotation::new(text, self.across(at.0), self.place(at.1)).with_font_size(13)
     }
+}
+
+/// Whole places of a logarithmic axis, written by [`tick`].
+fn plainly(from: f64) -> TickFormat {
+    TickFormat::Custom(Arc::new(move |place| tick(place, from)))
 }
 
 /// The points, and others evenly between them.
@@ -207,11 +222,11 @@ mod tests {
 
     fn panel(points: Vec<(f64, f64, f64)>, y_axis: Axis, y: [f64; 2]) -> Curves {
         let stroke = Stroke { color: "#d55e00", width: 1.8, dash: Dash::Solid };
-        let sign = Sign { mark: Mark::Circle, filling: Filling::Hollow };
+        let sign = Some(Sign { mark: Mark::Circle, filling: Filling::Hollow });
         let lines = vec![Curve { points, stroke, sign, name: "here".to_owned() }];
         let (title, x_label, y_label) = (String::new(), "x".to_owned(), "y".to_owned());
-        let (x, x_step, room, size) = ([0.0, 100.0], 20.0, 80.0, (580.0, 400.0));
-        Curves { title, x_label, y_label, y_axis, x, y, x_step, lines, notes: vec![], room, size }
+        let (x_axis, x, x_step, room, size) = (Axis::Linear, [0.0, 100.0], 20.0, 80.0, (580.0, 400.0));
+        Curves { title, x_label, y_label, x_axis, y_axis, x, y, x_step, lines, notes: vec![], room, size }
     }
 
     /// Middles of all round marks.
@@ -244,6 +259,39 @@ mod tests {
         assert!((b.1 - a.1 - (c.1 - b.1)).abs() < 0.05 && b.1 < a.1 - 50.0, "{circles:?}");
         let (x, y) = name(&scene).unwrap();
         assert!(x > c.0 && x < 580.0 && (y - c.1).abs() < 6.0, "{x} {y} beside {c:?}");
+    }
+
+    #[test]
+    fn a_power_of_x_is_straight_where_both_axes_are_logarithmic() {
+        let points: Vec<_> = [10.0_f64, 1e3, 1e4].iter().map(|x| (*x, 1e-3 * x * x.sqrt(), 0.0)).collect();
+        let logarithmic = Axis::Logarithmic { lowest: 1e-3 };
+        let across =
+            Curves { x_axis: logarithmic, x: [10.0, 1e5], x_step: 1.0, ..panel(points, logarithmic, [1e-3, 1e5]) };
+        let scene = across.sketch().scene;
+        let [a, b, c] = circles(&scene)[..3] else { panic!("three points") };
+        assert!(
+            (b.0 - a.0 - 2.0 * (c.0 - b.0)).abs() < 0.1 && c.0 > b.0 + 40.0,
+            "two decades, then one: {a:?} {b:?} {c:?}"
+        );
+        assert!(((a.1 - b.1) / (b.0 - a.0) - (b.1 - c.1) / (c.0 - b.0)).abs() < 1e-3, "{a:?} {b:?} {c:?}");
+        assert!(name(&scene).unwrap().0 > c.0);
+        for tick in ["100", "1000", "10⁴", "10⁵"] {
+            let is = |element: &&Primitive| matches!(element, Primitive::Text { content, .. } if content == tick);
+            assert!(scene.elements.iter().any(|element| is(&element)), "{tick}");
+        }
+    }
+
+    #[test]
+    fn a_curve_without_a_sign_has_its_line_alone() {
+        let mut bare = panel(vec![(0.0, 0.1, 0.0), (100.0, 1.0, 0.0)], Axis::Linear, [0.0, 2.0]);
+        let lines =
+            |scene: &Scene| scene.elements.iter().filter(|element| matches!(element, Primitive::Path(_))).count();
+        let with = bare.sketch().scene;
+        bare.lines[0].sign = None;
+        let without = bare.sketch().scene;
+        assert_eq!((circles(&with).len(), circles(&without).len()), (4, 0));
+        assert_eq!(lines(&with), lines(&without));
+        assert!(lines(&without) > 0 && name(&without).is_some());
     }
 
     #[test]

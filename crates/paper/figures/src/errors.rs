@@ -75,7 +75,7 @@ impl Series<'_> {
         };
         let points = self.rows.iter().filter_map(point).collect();
         let name = format!("{}{}", error.name, self.of);
-        Curve { points, stroke: error.stroke(self.style), sign: error.sign(self.style), name }
+        Curve { points, stroke: error.stroke(self.style), sign: Some(error.sign(self.style)), name }
     }
 
     /// Nothing where no data set has a value.
@@ -121,7 +121,7 @@ mod tests {
         let curve = |means: &[f64]| Curve {
             points: means.iter().map(|&mean| (0.0, mean, 0.0)).collect(),
             stroke: ERRORS[0].stroke(FIRST),
-            sign: ERRORS[0].sign(FIRST),
+            sign: Some(ERRORS[0].sign(FIRST)),
             name: String::new(),
         };
         let axis = axis_down_to(&[curve(&[0.5, 3.4e-20]), curve(&[0.0, 2.0])], 1e-3);

@@ -107,6 +107,7 @@ fn panel(lines: Vec<Curve>) -> Curves {
         title: String::new(),
         x_label: String::new(),
         y_label: "Normalised error".to_owned(),
+        x_axis: Axis::Linear,
         y_axis: Axis::Linear,
         x: [0.0; 2],
         y: [0.0; 2],

@@ -175,7 +175,7 @@ impl Distances {
         let last = self.over_time.len().saturating_sub(1);
         let marked = self.over_time.iter().enumerate().filter(|(at, _)| at.is_multiple_of(every) || *at == last);
         let points = marked.map(|(_, &(time, mean, sd))| (time, CENTIMETRES * mean, CENTIMETRES * sd)).collect();
-        Curve { points, stroke: stroke(self.who), sign: sign(self.who), name: self.name() }
+        Curve { points, stroke: stroke(self.who), sign: Some(sign(self.who)), name: self.name() }
     }
 
     /// Who, and how far the hands are away at the end.
@@ -190,6 +190,7 @@ fn curves(distances: &[Distances], time_step: f64) -> Curves {
         title: "Distance from the ball's sides (right: at the end)".to_owned(),
         x_label: "Time (s)".to_owned(),
         y_label: "Distance (cm)".to_owned(),
+        x_axis: Axis::Linear,
         y_axis: Axis::Linear,
         x: [0.0, 1.02 * end],
         y: [0.0, 80.0],

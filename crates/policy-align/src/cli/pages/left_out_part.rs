@@ -93,7 +93,7 @@ fn curves(without: &Model, movement: &Trajectory, prepared: &Prepared, title: &s
         Curve {
             points: simplified(&places, FLAT).into_iter().map(|(x, y)| (wide * x, tall * y, 0.0)).collect(),
             stroke,
-            sign: Sign { mark: Mark::Circle, filling: Filling::Full },
+            sign: Some(Sign { mark: Mark::Circle, filling: Filling::Full }),
             name: String::new(),
         }
     };
@@ -101,6 +101,7 @@ fn curves(without: &Model, movement: &Trajectory, prepared: &Prepared, title: &s
         title: title.to_owned(),
         x_label: "time (s)".to_owned(),
         y_label: format!("speed ({})", unit(without)),
+        x_axis: Axis::Linear,
         y_axis: Axis::Linear,
         x: [0.0, duration],
         y: [if low < 0.0 { low - MARGIN * tall } else { 0.0 }, if high > low { high + MARGIN * tall } else { 1.0 }],

@@ -2,7 +2,7 @@
 
 use anyhow::Context as _;
 use experiments::{Distance, TENTHS};
-use plot::{Curve, Curves};
+use plot::{Axis, Curve, Curves};
 
 use crate::errors::{BASELINES, FIRST, Series, axis_down_to};
 use crate::{Csv, Sources};
@@ -49,6 +49,7 @@ fn panel(title: &str, x_label: &str, series: &Series<'_>, baselines: Curve) -> C
         title: title.to_owned(),
         x_label: x_label.to_owned(),
         y_label: "Normalised error, cumulative".to_owned(),
+        x_axis: Axis::Linear,
         y_axis: axis_down_to(&lines, Y[0]),
         x: [0.0, 1.02],
         x_step: 0.2,
