@@ -1,6 +1,6 @@
 //! Leave-one-trajectory-out prediction. It selects the noise and tests for a potential.
 
-pub(crate) mod common;
+pub(crate) mod common_error;
 pub(crate) mod comparison;
 pub(crate) mod curl_test;
 pub(crate) mod level;

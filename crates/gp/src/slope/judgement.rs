@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::Rows;
 use crate::kernel::covariance::NOISE_FLOOR;
 use crate::left_out::LeftOut;
-use crate::left_out::common::common_error;
+use crate::left_out::common_error::common_error;
 use crate::left_out::comparison::{difference, spread};
 use crate::left_out::typical::typical_mean;
 use crate::report::identifiability::{Identifiability, LeastSeen};
