@@ -1,8 +1,10 @@
 //! Leave-one-trajectory-out prediction. It selects the noise and tests for a potential.
 
+pub(crate) mod common_error;
 pub(crate) mod comparison;
 pub(crate) mod curl_test;
 pub(crate) mod level;
+pub(crate) mod typical;
 pub(crate) mod weights_test;
 
 use faer::linalg::matmul::matmul;

@@ -3,7 +3,8 @@ use rand::Rng;
 
 use crate::report::trust_report::TrustReport;
 use crate::slope::all_rows::{OnAllRows, on_all_rows};
-use crate::slope::judgement::{CrossPathEvidence, ReportInput, report};
+use crate::slope::cross_path::CrossPathEvidence;
+use crate::slope::judgement::{ReportInput, report};
 use crate::slope::model::SlopeModel;
 use crate::slope::policy::{SlopePolicy, SlopePotential};
 use crate::slope::pushed::pushed;
@@ -35,7 +36,7 @@ impl SlopeGp {
                 None => (plain, kept),
             },
         };
-        let across = CrossPathEvidence::Untested;
+        let across = CrossPathEvidence::of_neighbours(&outcome.data);
         let report = report(&ReportInput { outcome: &outcome, kept: &kept, rows, across });
         Ok(SlopeFit { model: outcome.taken.model, report })
     }

@@ -2,6 +2,7 @@
 
 pub(crate) mod all_rows;
 pub(crate) mod candidate;
+pub(crate) mod cross_path;
 pub(crate) mod data;
 pub(crate) mod expansion;
 pub(crate) mod fit;

@@ -2,7 +2,8 @@
 
 use crate::Rows;
 use crate::rows::kept::Kept;
-use crate::slope::judgement::{CrossPathEvidence, ReportInput, report};
+use crate::slope::cross_path::CrossPathEvidence;
+use crate::slope::judgement::{ReportInput, report};
 use crate::slope::push_test::PushTest;
 use crate::slope::search::{Outcome, outcome, outcome_of_nearly_best};
 use crate::slope::slope_gp::SlopeGp;
