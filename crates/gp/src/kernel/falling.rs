@@ -238,13 +238,15 @@ mod tests {
                 g += term.amplitude * own_g;
                 h += term.amplitude * own_h;
                 value += term.amplitude * own_value;
-                scale[0] += (term.amplitude * own_g).abs() + if term.fall == Fall::DivergenceFree {
-                    term.amplitude * own_value * (1.0 + moving / term.length.powi(2))
+                // An exponent is rounded in proportion to its size.
+                let rounding = 1.0 - 0.01 * own_value.clamp(f64::MIN_POSITIVE, 1.0).ln();
+                scale[0] += rounding * (term.amplitude * own_g).abs() + if term.fall == Fall::DivergenceFree {
+                    rounding * term.amplitude * own_value * (1.0 + moving / term.length.powi(2))
                 } else {
                     0.0
                 };
-                scale[1] += (term.amplitude * own_h).abs();
-                scale[2] += term.amplitude * own_value;
+                scale[1] += rounding * (term.amplitude * own_h).abs();
+                scale[2] += rounding * term.amplitude * own_value;
             }
             let ([fast_g], [fast_h]) = Falling::of_slopes(&terms, dim).slopes([squared], [moving]);
             let [fast_value] = Falling::of_values(&terms).values([squared]);
