@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`SlopeGp`] | learns a potential from slopes along the observed motion: for unknown constraints that vary |
 //! | [`DirectGp`] | learns the velocities: for unconstrained motion |
-//! | [`AutoGp`] | fits both and hands out the one that the data support |
+//! | [`AutoGp`] | fits both and returns the one that the data support |
 //! | [`FrontEnd`] | turns demonstrations into [`Rows`] of states and velocities |
 //! | [`ConstraintEstimates`] | the constraints that acted, once the policy is known |
 //! | [`TrustReport`] | warnings and numbers about a [`SlopeFit`] |
@@ -48,7 +48,7 @@
 //! # When it fails
 //!
 //! - **The same constraint in every demonstration** makes the velocity a function of the state, like an unconstrained
-//!   policy. The data cannot tell the two apart: [`Hypothesis::Ambiguous`], and [`TrustReport::least_seen`] names the
+//!   policy. The data cannot distinguish the two: [`Hypothesis::Ambiguous`], and [`TrustReport::least_seen`] names the
 //!   direction that never moved.
 //! - **Constraints that push** (A u = b, b ≠ 0) with A or b changing from sample to sample, or that project obliquely.
 //!   While A and b are constant, directions in which velocities differ are learnt from ([`TrustReport::push`]); so they may be for a

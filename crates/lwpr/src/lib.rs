@@ -28,7 +28,7 @@
 //!
 //! # What to choose
 //!
-//! - `norm_in`, `norm_out`: the spread of each dimension. All other numbers speak of data divided by these.
+//! - `norm_in`, `norm_out`: the spread of each dimension. All other settings refer to data divided by these.
 //! - `init_d`: the one that matters most. Fields are about 2/√`init_d` wide; start with a few tens in 2 dimensions,
 //!   less in more, double it while a validation error falls. Too small, and one field covers everything; too large, and
 //!   fields multiply until each knows only a few samples.

@@ -58,7 +58,7 @@
 //!   samples, and oblique projections not at all.
 //! - **Motion that depends on more than the recorded state** (time, a moving target): "do not use". What stays as it is during a
 //!   movement, such as a goal or a load, can be context: [`Model::in_context`].
-//! - **Mixed units**: constraints act at right angles in some unit. [`fit()`] learns it where the data tell;
+//! - **Mixed units**: constraints act at right angles in some unit. [`fit()`] learns it if the data determine it;
 //!   [`PrepareOptions::scale`] chooses it.
 //! - **Outside the demonstrated region** a policy extrapolates: [`ModelPolicy::is_supported`] is false there.
 //! - [`PrepareError`], [`FitError`], [`ModelError`], [`RollOutError`] and [`ExportError`] say what was refused and what

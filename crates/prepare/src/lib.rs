@@ -43,7 +43,7 @@
 //! - **Time stamps in the wrong unit without velocities** look like a slower policy; only the time step reveals it.
 //! - **Noise of more than a few per cent in positions alone** cannot be removed without losing the velocity. Record
 //!   velocities or commands.
-//! - **A press, a speed limit, late velocities or quaternions** hide a part of the policy. They are found and named, not repaired, except for
+//! - **A push, a speed limit, late velocities or quaternions** hide a part of the policy. They are found and named, not repaired, except for
 //!   the signs of quaternions.
 //! - **Mixed units** (metres and radians): [`PrepareOptions::scale`] sets a factor; learners may find
 //!   one ([`Prepared::rescaled`]).
