@@ -13,7 +13,7 @@ use crate::left_out::comparison::{difference, spread};
 use crate::left_out::typical::typical_mean;
 use crate::report::identifiability::{Identifiability, LeastSeen};
 use crate::report::trust_report::{ModelKind, TrustReport};
-use crate::rows::kept::Kept;
+use crate::rows::kept::{Grouping, Kept};
 use crate::rows::thinning::every_so_many;
 use crate::slope::candidate::Candidate;
 use crate::slope::cross_path::CrossPathEvidence;
@@ -29,6 +29,8 @@ const STATES: usize = 200;
 const TOGETHER: usize = 10;
 /// The other model counts if it predicts at most so much worse.
 const NEARLY_AS_GOOD: f64 = 1.5;
+/// Share of the motion along the least observed direction, times n, below which nothing tested the policy along it.
+const SEEN: f64 = 0.1;
 /// Probability from which a switch is counted.
 const SWITCHED: f64 = 0.5;
 
@@ -47,7 +49,10 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
     let ambiguity = other.as_ref().map_or(0.0, |other| ambiguity(taken, other));
     let noise = noise(data, taken);
     let common = common_error(&taken.left_out, &data.n, (taken.model.noise, &data.noise_weights), &data.groups);
-    let calibration = calibration((standardised(data, taken), common), noise_share(data, taken), *across);
+    let least_seen = LeastSeen::of(&data.n);
+    let blind = kept.grouping == Grouping::BlocksOfTime || least_seen.share * (data.n.nrows() as f64) < SEEN;
+    let across = if blind { CrossPathEvidence::Untested } else { *across };
+    let calibration = calibration((standardised(data, taken), common), noise_share(data, taken), across);
     let variance = spread(&taken.actions) / kept.speeds.len() as f64;
     let error = calibration * traces.max(on_new_movements(data, taken, &noise)) / variance;
     // Before its first sample every movement begins.
@@ -60,7 +65,7 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
         expected_nupe: (error + ambiguity + rows.step_change().unwrap_or(0.0)).min(NOTHING_KNOWN),
         ambiguity,
         identifiability: Identifiability::of(&posterior, &prior),
-        least_seen: LeastSeen::of(&data.n),
+        least_seen,
         curl_t: *curl_t,
         rotational_share: rotational_share(taken, &kept.states),
         model: taken.kind,
