@@ -1,6 +1,9 @@
 use kinematics::{JointKind, KinematicsError, RobotModel};
-use nalgebra::{DMatrix, DVector, DVectorView};
+use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView};
 use prepare::StateChannel;
+
+/// Configurations that are placed at once; their links fit into the processor's cache.
+const AT_ONCE: usize = 64;
 
 /// The joints of a robot that the channels of a state are.
 #[derive(Debug, Clone)]
@@ -40,12 +43,30 @@ impl ChannelJoints {
     }
 
     /// [`ChannelJoints::configuration`] of each of these states (n, N), and likewise of velocities.
-    pub(crate) fn configurations(&self, states: &DMatrix<f64>) -> DMatrix<f64> {
+    pub(crate) fn configurations(&self, states: DMatrixView<'_, f64>) -> DMatrix<f64> {
         let mut q = DMatrix::zeros(self.n_joints, states.ncols());
         for (&place, row) in self.places.iter().zip(states.row_iter()) {
             q.row_mut(place).copy_from(&row);
         }
         q
+    }
+
+    /// Hands over the configurations of these states (n, N) by groups that are placed at once, each with the number of its first state.
+    ///
+    /// # Errors
+    /// What `each` answers, [`KinematicsError::InBatch`] with the number of the state among all.
+    pub(crate) fn by_groups(
+        &self,
+        states: &DMatrix<f64>,
+        mut each: impl FnMut(usize, DMatrix<f64>) -> Result<(), KinematicsError>,
+    ) -> Result<(), KinematicsError> {
+        (0..states.ncols()).step_by(AT_ONCE).try_for_each(|first| {
+            let group = states.columns(first, AT_ONCE.min(states.ncols() - first));
+            each(first, self.configurations(group)).map_err(|error| match error {
+                KinematicsError::InBatch { index, reason } => KinematicsError::InBatch { index: first + index, reason },
+                error => error,
+            })
+        })
     }
 }
 

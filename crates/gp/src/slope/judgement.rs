@@ -1,7 +1,5 @@
 //! The trust report of a slope GP, with the error to expect on new movements (R6), (S19).
 
-use std::collections::HashMap;
-
 use nalgebra::{DMatrix, DVectorView};
 use rayon::prelude::*;
 
@@ -87,25 +85,26 @@ pub(crate) fn report(chosen: &ReportInput<'_>) -> TrustReport {
 fn on_new_movements(data: &SlopeData, taken: &Candidate, noise: &[f64]) -> f64 {
     let along = |row: usize| (taken.left_out.variances[row] - noise[row]).max(0.0);
     let rows = 0..noise.len();
-    data.n.nrows() as f64 * data.speed.powi(2) * of_movements(rows.map(|row| (row, along(row))), &data.groups)
+    data.n.nrows() as f64 * data.speed.powi(2) * of_movements(rows.map(|row| (row, along(row))), data)
 }
 
 /// z² (S11) to expect on new movements (S43).
 fn standardised(data: &SlopeData, taken: &Candidate) -> f64 {
     let LeftOut { residuals, variances, .. } = &taken.left_out;
     let each = residuals.iter().zip(variances).map(|(residual, variance)| residual * residual / variance);
-    of_movements(each.enumerate(), &data.groups)
+    of_movements(each.enumerate(), data)
 }
 
 /// (S43) of the means of movements, of numbers at some rows.
-fn of_movements(numbers: impl Iterator<Item = (usize, f64)>, groups: &[Vec<usize>]) -> f64 {
-    let of_row: HashMap<usize, f64> = numbers.collect();
+fn of_movements(numbers: impl Iterator<Item = (usize, f64)>, data: &SlopeData) -> f64 {
+    let mut of_row = vec![None; data.n.ncols()];
+    numbers.for_each(|(row, number)| of_row[row] = Some(number));
     let of_group = |rows: &Vec<usize>| {
-        let numbers: Vec<f64> = rows.iter().filter_map(|row| of_row.get(row).copied()).collect();
+        let numbers: Vec<f64> = rows.iter().filter_map(|&row| of_row[row]).collect();
         let count = numbers.len() as f64;
         (count > 0.0).then(|| (numbers.iter().sum::<f64>() / count, count))
     };
-    let (means, counts): (Vec<f64>, Vec<f64>) = groups.iter().filter_map(of_group).unzip();
+    let (means, counts): (Vec<f64>, Vec<f64>) = data.groups.iter().filter_map(of_group).unzip();
     typical_mean(&means, &counts)
 }
 
@@ -170,7 +169,7 @@ fn covariances_at_rows(taken: &Candidate, kept: &Kept, data: &SlopeData) -> Cova
         prior += part.2;
     }
     let count = at.len() as f64;
-    let traces = of_movements(at.into_iter().zip(traces.into_iter().map(|trace| trace.max(0.0))), &data.groups);
+    let traces = of_movements(at.into_iter().zip(traces.into_iter().map(|trace| trace.max(0.0))), data);
     CovariancesAtRows { traces, posterior: posterior / count, prior: prior / count }
 }
 

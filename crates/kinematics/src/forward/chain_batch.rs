@@ -94,13 +94,12 @@ mod tests {
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 
     use super::*;
-    use crate::RobotModel;
+    use crate::forward::upper_body;
 
     /// Registers of every width, and none, give the same bits.
     #[test]
     fn dispatch_changes_no_bit() {
-        let robot = RobotModel::from_urdf(include_str!("../../../../robots/asimo_upper_body.urdf"))
-            .expect("the robot of this project loads");
+        let robot = upper_body();
         let chain = robot.chain(robot.link("l_palm").expect("the robot has hands"));
         let mut rng = ChaCha8Rng::seed_from_u64(5);
         let columns: Vec<_> = (0..21).map(|_| robot.random_configuration(&mut rng)).collect();

@@ -85,13 +85,12 @@ mod tests {
     use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 
     use super::*;
-    use crate::RobotModel;
+    use crate::forward::upper_body;
 
     /// The vector code and its plain twin give the same bits.
     #[test]
     fn dispatch_changes_no_bit() {
-        let robot = RobotModel::from_urdf(include_str!("../../../../robots/asimo_upper_body.urdf"))
-            .expect("the robot of this project loads");
+        let robot = upper_body();
         let mut rng = ChaCha8Rng::seed_from_u64(4);
         let (mut fast, mut plain) = (Workspace::new(), Workspace::new());
         plain.fit(robot.nodes.len(), robot.couplings.len());

@@ -51,9 +51,6 @@ pub(super) fn weighed(
     Ok(Some(Weighed { rows, readings, decision }))
 }
 
-/// Configurations that are placed at once; their links fit into the processor's cache.
-const AT_ONCE: usize = 64;
-
 /// M(q)u of every row, (n, M), with other joints than the recorded ones at zero, in the channels' scaled units: as S⁻¹M(q)S⁻¹u with
 /// the scales S.
 fn momenta(
@@ -64,17 +61,16 @@ fn momenta(
 ) -> Result<DMatrix<f64>, KinematicsError> {
     let mut workspace = Workspace::new();
     let n = scales.len();
-    let q = joints.configurations(&unscaled(&rows.states().rows(0, n).into_owned(), scales));
-    let velocities = joints.configurations(&unscaled(rows.velocities(), scales));
-    let mut momenta = DMatrix::zeros(n, q.ncols());
-    for first in (0..q.ncols()).step_by(AT_ONCE) {
-        let count = AT_ONCE.min(q.ncols() - first);
-        let poses = robot.forward_kinematics_batch(q.columns(first, count), &mut workspace)?;
-        let of_joints = poses.momenta(velocities.columns(first, count))?;
+    let mut momenta = DMatrix::zeros(n, rows.len());
+    joints.by_groups(&unscaled(&rows.states().rows(0, n).into_owned(), scales), |first, q| {
+        let velocities = unscaled(&rows.velocities().columns(first, q.ncols()).into_owned(), scales);
+        let poses = robot.forward_kinematics_batch(q.as_view(), &mut workspace)?;
+        let of_joints = poses.momenta(joints.configurations(velocities.as_view()).as_view())?;
         for (channel, &place) in joints.places.iter().enumerate() {
             let scaled = of_joints.row(place) / scales[channel];
-            momenta.row_mut(channel).columns_mut(first, count).copy_from(&scaled);
+            momenta.row_mut(channel).columns_mut(first, q.ncols()).copy_from(&scaled);
         }
-    }
+        Ok(())
+    })?;
     Ok(momenta)
 }

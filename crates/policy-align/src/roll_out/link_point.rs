@@ -50,10 +50,14 @@ impl LinkPoint {
     /// # Errors
     /// What the robot says of the first configuration that it cannot place.
     pub(crate) fn places(&self, states: &DMatrix<f64>) -> Result<DMatrix<f64>, String> {
-        let (q, mut workspace) = (self.joints.configurations(states), Workspace::new());
-        let poses = self.chain.poses(q.as_view(), &mut workspace).map_err(|error| error.to_string())?;
-        let coordinates = poses.iter().flat_map(|pose| pose.translation.vector.iter().copied());
-        Ok(DMatrix::from_iterator(3, poses.len(), coordinates))
+        let (mut places, mut workspace) = (DMatrix::zeros(3, states.ncols()), Workspace::new());
+        let placed = self.joints.by_groups(states, |first, q| {
+            for (index, pose) in self.chain.poses(q.as_view(), &mut workspace)?.iter().enumerate() {
+                places.set_column(first + index, &pose.translation.vector);
+            }
+            Ok(())
+        });
+        placed.map(|()| places).map_err(|error| error.to_string())
     }
 
     /// The derivative of the link's pose by the state in each of these states (n, N): of each (6, n), what velocities of the state make of
@@ -62,16 +66,18 @@ impl LinkPoint {
     /// # Errors
     /// What the robot says of the first configuration that it cannot place.
     pub(crate) fn jacobians(&self, states: &DMatrix<f64>) -> Result<Vec<DMatrix<f64>>, String> {
-        let (n, q) = (self.joints.n_joints(), self.joints.configurations(states));
-        let mut jacobians = Matrix6xX::zeros(n * q.ncols());
-        let poses = self.chain.jacobians(q.as_view(), &mut Workspace::new(), &mut jacobians).map(<[_]>::len);
-        poses.map_err(|error| error.to_string())?;
-        let of_channels = |index: usize| {
-            DMatrix::from_fn(6, self.joints.places.len(), |row, channel| {
-                jacobians[(row, index * n + self.joints.places[channel])]
-            })
-        };
-        Ok((0..states.ncols()).map(of_channels).collect())
+        let (n, places) = (self.joints.n_joints(), &self.joints.places);
+        let (mut all, mut workspace) = (Vec::with_capacity(states.ncols()), Workspace::new());
+        let placed = self.joints.by_groups(states, |_, q| {
+            let mut jacobians = Matrix6xX::zeros(n * q.ncols());
+            self.chain.jacobians(q.as_view(), &mut workspace, &mut jacobians)?;
+            let of_channels = |index: usize| {
+                DMatrix::from_fn(6, places.len(), |row, channel| jacobians[(row, index * n + places[channel])])
+            };
+            all.extend((0..q.ncols()).map(of_channels));
+            Ok(())
+        });
+        placed.map(|()| all).map_err(|error| error.to_string())
     }
 }
 
@@ -86,7 +92,7 @@ mod tests {
         let robot = RobotModel::from_urdf(ARM).expect("the robot of this project loads");
         let names: Vec<String> = robot.joints().iter().rev().map(|joint| joint.name().to_owned()).collect();
         let point = LinkPoint::new(&robot, "tool", &names).expect("the tool is moved by all joints");
-        (point, DMatrix::from_fn(names.len(), 11, |joint, index| ((5 * joint + 3 * index) as f64).sin()))
+        (point, DMatrix::from_fn(names.len(), 150, |joint, index| ((5 * joint + 3 * index) as f64).sin()))
     }
 
     #[test]
@@ -105,9 +111,9 @@ mod tests {
     #[test]
     fn the_first_state_at_fault_is_named() {
         let (point, mut states) = tool();
-        states[(0, 9)] = f64::NAN;
+        states[(0, 109)] = f64::NAN;
         let wrong = point.jacobians(&states).expect_err("a state is not finite");
-        assert!(wrong.starts_with("configuration 9: joint \""), "{wrong}");
+        assert!(wrong.starts_with("configuration 109: joint \""), "{wrong}");
         assert_eq!(point.places(&states).expect_err("a state is not finite"), wrong);
     }
 }
