@@ -54,6 +54,16 @@ pub enum GpError {
     /// Every row is at the same state.
     #[error("all rows are at one state; movements must pass through several")]
     OneState,
+    /// Movements too short for what is asked.
+    #[error(
+        "no movement has {needed} samples, the longest has {longest}; record longer movements or more samples a second"
+    )]
+    ShortMovements {
+        /// Samples of the longest.
+        longest: usize,
+        /// Samples needed in at least one.
+        needed: usize,
+    },
     /// Too few groups for leaving one out.
     #[error("only {found} trajectories have rows that can be used, at least 3 are needed; record more")]
     TooFewTrajectories {

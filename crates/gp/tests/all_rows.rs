@@ -2,80 +2,11 @@
 
 mod drawn;
 
-use drawn::movement::{Constraint, Integration, Movement};
-use drawn::{normal, nupe};
-use gp::{AutoGp, Rows, SlopeFit, SlopeGp};
-use motion::{LearntPolicy, Policy as _, SampleIndex};
+use drawn::many::{Set, set, sinusoid, wells};
+use drawn::nupe;
+use gp::{AutoGp, SlopeFit, SlopeGp};
+use motion::{LearntPolicy, Policy as _};
 use nalgebra::{DMatrix, DVector};
-use rand::{RngExt as _, SeedableRng as _};
-use rand_chacha::ChaCha8Rng;
-
-/// A gradient of a potential on [−1, 1]ⁿ.
-type Gradient = fn(&[f64]) -> Vec<f64>;
-
-fn wells(x: &[f64]) -> Vec<f64> {
-    let mut gradient: Vec<f64> = x.iter().map(|x| 0.6 * x).collect();
-    for centre in drawn::WELLS {
-        let well = (-x.iter().zip(&centre).map(|(x, c)| (x - c).powi(2)).sum::<f64>() * 2.0).exp();
-        for (k, gradient) in gradient.iter_mut().enumerate() {
-            *gradient += 4.0 * (x[k] - centre[k]) * well;
-        }
-    }
-    gradient
-}
-
-fn sinusoid(x: &[f64]) -> Vec<f64> {
-    vec![2.0 * (2.0 * x[0]).cos() * (x[1]).cos(), -(2.0 * x[0]).sin() * x[1].sin()]
-}
-
-/// Rows, and states of other movements with the policy there, (n, Q) each.
-struct Set {
-    rows: Rows,
-    fresh: (DMatrix<f64>, DMatrix<f64>),
-}
-
-/// Movements under a plane that changes once in each, with noise on velocities as a share of their root mean square.
-fn set(gradient: Gradient, dim: usize, (movements, samples): (usize, usize), noise: f64, seed: u64) -> Set {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let step = 2.0 / samples as f64;
-    let policy = |x: &DVector<f64>| -DVector::from_vec(gradient(x.as_slice()));
-    let mut record = |count: usize| {
-        let (mut states, mut velocities) = (Vec::new(), Vec::new());
-        for _ in 0..count {
-            let mut movement = Movement {
-                policy: &policy,
-                integration: Integration::Euler,
-                time_step: step,
-                state: DVector::from_fn(dim, |_, _| rng.random_range(-1.0..1.0)),
-                constraint: Constraint::none(dim),
-            };
-            for sample in 0..samples {
-                if sample == 0 || sample == samples / 2 {
-                    let basis = DMatrix::from_fn(dim, 1, |_, _| normal(&mut rng)).normalize();
-                    movement.constraint = Constraint::Fixed { basis, push: DVector::zeros(dim) };
-                }
-                let (x, u) = movement.sample();
-                states.push(x);
-                velocities.push(u);
-            }
-        }
-        (states, velocities)
-    };
-    let (fresh, _) = record(20);
-    let (states, mut velocities) = record(movements);
-    let rms = (velocities.iter().map(DVector::norm_squared).sum::<f64>() / velocities.len() as f64).sqrt();
-    for velocity in &mut velocities {
-        velocity.apply(|u| *u += noise * rms * normal(&mut rng));
-    }
-    let count = states.len();
-    let indices = (0..count).map(|row| SampleIndex { trajectory: row / samples, sample: row % samples }).collect();
-    let rows =
-        Rows::new(DMatrix::from_columns(&states), DMatrix::from_columns(&velocities), indices).expect("finite rows");
-    let rows =
-        if noise > 0.0 { rows.with_variances(vec![(noise * rms).powi(2); count]).expect("variances") } else { rows };
-    let truth: Vec<_> = fresh.iter().map(policy).collect();
-    Set { rows, fresh: (DMatrix::from_columns(&fresh), DMatrix::from_columns(&truth)) }
-}
 
 fn gp(inducing_rows: usize) -> SlopeGp {
     SlopeGp { max_rows: 200, hyper_rows: 150, inducing_rows, ..SlopeGp::default() }
@@ -185,83 +116,4 @@ fn uncertainty_of_inducing_rows_grows_away_from_them() {
     let here = set.rows.states().column(40).into_owned();
     let traces: Vec<f64> = [1.0, 2.0, 4.0, 8.0].iter().map(|by| trace(&(&here * *by))).collect();
     assert!(traces.is_sorted() && traces[0] >= 0.0 && traces[0] < 0.1 * traces[3], "{traces:?}");
-}
-
-/// Of a fit on states of new movements: nUPE, the one expected over it, and z², the mean square of errors over error bars.
-struct Told {
-    nupe: f64,
-    expected: f64,
-    z_squared: f64,
-}
-
-fn told(fit: &SlopeFit, fresh: &(DMatrix<f64>, DMatrix<f64>)) -> Told {
-    let nupe = nupe(fit.policy(), fresh);
-    let (states, truth) = fresh;
-    let (mut sum, mut count) = (0.0, 0.0);
-    let mut bars = DVector::zeros(states.nrows());
-    for at in (0..states.ncols()).step_by(33) {
-        assert!(fit.action_sd_into(states.column(at), bars.as_view_mut()));
-        let off = fit.action(states.column(at)) - truth.column(at);
-        sum += off.component_div(&bars).norm_squared();
-        count += bars.len() as f64;
-    }
-    Told { nupe, expected: fit.report().expected_nupe / nupe, z_squared: sum / count }
-}
-
-/// Movements of 500 samples, five times and fifty times as many: medians of five data sets, or of `SETS`, as a table, and what the fit
-/// expects of itself, least and most. The settings are the program's.
-#[test]
-#[ignore = "ten minutes of a release build; prints"]
-fn more_movements_are_never_worse() {
-    let systems: [(&str, Gradient, usize); 3] = [("sinusoid", sinusoid, 2), ("wells", wells, 3), ("wells", wells, 6)];
-    let sets = std::env::var("SETS").map_or(5_u64, |sets| sets.parse().expect("a number of data sets"));
-    let (mut worse, mut near, mut noisy, mut all) = (Vec::new(), [0; 2], Vec::new(), Vec::new());
-    println!(
-        "| | noise | movements | nUPE | expected over true | within ten times | z² at new states | left out: 1 − R², z² |"
-    );
-    println!("|---|---|---|---|---|---|---|---|");
-    for (name, gradient, dim) in systems {
-        for noise in [0.0, 0.05, 0.2] {
-            let (mut before, percent) = (f64::INFINITY, 100.0 * noise);
-            for movements in [40, 200, 2000] {
-                let fit = |seed: u64| {
-                    let set = set(gradient, dim, (movements, 500), noise, 11 + seed);
-                    let gp = SlopeGp { max_rows: 400, hyper_rows: 200, inducing_rows: 500, ..SlopeGp::default() };
-                    let fit = gp.fit(&set.rows, &mut drawn::rng(3)).expect("a fit");
-                    (told(&fit, &set.fresh), 1.0 - fit.report().r_squared, fit.report().z_squared)
-                };
-                let fits: Vec<_> = (0..sets).map(fit).collect();
-                let median = |of: &dyn Fn(&(Told, f64, f64)) -> f64| {
-                    motion::upper_median(fits.iter().map(of).collect()).expect("fits")
-                };
-                let range = |of: &dyn Fn(&Told) -> f64| {
-                    let each = || fits.iter().map(|(told, ..)| of(told));
-                    format!("{:.2} … {:.2}", each().fold(f64::INFINITY, f64::min), each().fold(0.0, f64::max))
-                };
-                let (error, left, z) = (median(&|fit| fit.0.nupe), median(&|fit| fit.1), median(&|fit| fit.2));
-                let within =
-                    fits.iter().map(|(told, ..)| u64::from((0.1..=10.0).contains(&told.expected))).sum::<u64>();
-                near[usize::from(noise > 0.0)] += within;
-                if noise > 0.0 {
-                    noisy.extend(fits.iter().map(|(told, ..)| told.expected));
-                }
-                let (expected, bars) = (range(&|told| told.expected), range(&|told| told.z_squared));
-                println!(
-                    "| {name}, {dim}-D | {percent} % | {movements} | {error:.1e} | {expected} | {within} of {sets} | {bars} | {left:.1e}, {z:.2e} |"
-                );
-                if error > 1.1 * before {
-                    worse.push(format!("{name}, {dim}-D, {percent} %: {before:.1e}, {error:.1e} of {movements}"));
-                }
-                before = error;
-                all.extend(fits.into_iter().map(|(told, ..)| told));
-            }
-        }
-    }
-    assert!(worse.is_empty(), "{worse:#?}");
-    // Of noisy velocities never far too little, and as a rule not far too much. Of clean ones right more seldom, and once far too little: true
-    // errors on twenty movements are often those of one of them. Bars are most too small where noise hides what inducing rows lack (z² 10 at
-    // 20 %, 2,000 movements).
-    let least = noisy.iter().fold(f64::INFINITY, |least, &expected| expected.min(least));
-    assert!(least >= 0.1 && all.iter().all(|told| told.z_squared <= 30.0), "{least}");
-    assert!(10 * near[0] >= 63 * sets && 10 * near[1] >= 162 * sets, "{near:?} of {} and {}", 9 * sets, 18 * sets);
 }

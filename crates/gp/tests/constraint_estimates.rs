@@ -236,6 +236,9 @@ fn wrong_input_is_refused() {
     assert!(matches!(refused(&policy, wide), GpError::Lengths { .. }));
     let nan = TaskSpace::of_jacobians(vec![DMatrix::from_element(2, 2, f64::NAN); rows.len()]);
     assert!(matches!(refused(&policy, nan), GpError::Lengths { .. }));
+    let short = rows.without(|_, sample| sample > 2);
+    let refused = ConstraintEstimates::of(&short, &policy, &[TaskSpace::recorded()]).unwrap_err();
+    assert_eq!(refused, GpError::ShortMovements { longest: 3, needed: 4 });
 }
 
 /// Prints what is found of what there is.

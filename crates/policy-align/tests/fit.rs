@@ -172,7 +172,7 @@ fn options_out_of_range() {
     }
 }
 
-/// Half of the movements of one are none.
+/// Halves of one short noisy movement have too few rows to learn from: nothing shows its error.
 #[test]
 fn one_noisy_movement() {
     let roll_out = demo_gen::RollOut { n_samples: 200, time_step: 0.2, ..demo_gen::RollOut::default() };
@@ -183,7 +183,30 @@ fn one_noisy_movement() {
     velocities.iter_mut().for_each(|velocity| *velocity += rng.random_range(-0.02..0.02));
     let options = PrepareOptions { smoothing: Smoothing::Off, ..PrepareOptions::default() };
     let learnt = fit(&prepare(&case.recordings, &options).unwrap(), &small(LearnerChoice::Auto)).unwrap();
-    assert_eq!((learnt.data.episodes, learnt.trust.numbers.halves), (1, None));
+    let numbers = learnt.trust.numbers;
+    assert_eq!((learnt.data.episodes, numbers.halves), (1, None));
+    assert!(numbers.expected_error >= 1.0, "{numbers:?}");
+}
+
+/// Parts of one movement, or of two, do not show how wrong the policy is elsewhere; what both halves make of it does. A limit cycle that is
+/// passed many times shows itself in each half.
+#[test]
+fn one_or_two_movements_expect_what_their_halves_show() {
+    for count in [1, 2] {
+        let case = Case::of(&Plane { count: 12, ..Plane::default() }.potential(&parabola(), 5), count, Has::Velocities);
+        let numbers = fit(&prepared(&case), &small(LearnerChoice::Auto)).unwrap().trust.numbers;
+        let halves = numbers.halves.expect("both halves are learnt from");
+        assert!(numbers.expected_error >= halves.min(1.0) && numbers.expected_error > 0.2, "{count}: {numbers:?}");
+    }
+    let cycle = DMatrix::from_fn(2, 400, |axis, i| (0.1 * i as f64 + [0.0, 1.57][axis]).sin());
+    let times = motion::Times::Even { step: 0.1, len: 400 };
+    let mut case = few();
+    case.recordings.episodes.truncate(1);
+    let episode = &mut case.recordings.episodes[0];
+    (episode.positions, episode.times) = (cycle.clone(), times);
+    episode.velocities = Some(DMatrix::from_fn(2, 400, |axis, i| (0.1 * i as f64 + [0.0, 1.57][axis]).cos()));
+    let numbers = fit(&prepared(&case), &small(LearnerChoice::Auto)).unwrap().trust.numbers;
+    assert!(numbers.halves.expect("both halves") < 0.01 && numbers.expected_error < 0.05, "{numbers:?}");
 }
 
 #[test]

@@ -439,11 +439,9 @@ fn what_looks_like_a_fault_may_stay() {
     assert_eq!(kept.demonstrations.trajectories()[0].states(), &spiked.episodes[0].positions);
 }
 
+/// Few samples of many channels may be rows taken for columns, or a recording of few samples.
 #[test]
-fn what_cannot_be_learnt_from() {
-    let refused = |recordings: &Recordings| prepare(recordings, &PrepareOptions::default()).unwrap_err();
-    let none = Recordings { episodes: Vec::new(), ..recordings() };
-    assert_eq!(refused(&none), PrepareError::Empty);
+fn more_channels_than_samples_are_doubtful() {
     let turned = Recordings {
         state: (0..SAMPLES).map(|i| Channel { name: i.to_string(), unit: None }).collect(),
         ..changed(|episode| {
@@ -452,7 +450,38 @@ fn what_cannot_be_learnt_from() {
             episode.times.stamps_mut().truncate(2);
         })
     };
-    assert_eq!(refused(&turned), PrepareError::LooksTransposed { dim: SAMPLES, samples: 2 });
+    let what = "the state has 40 dimensions and the longest episode 2 samples: rows and columns may be exchanged";
+    assert_eq!(verdict(&prepared(&turned), what), Verdict::Doubtful);
+}
+
+/// A channel that is held has velocities of noise alone: they are no mistake of units. Large ones are.
+#[test]
+fn velocities_of_a_held_channel_are_noise_or_do_not_belong_to_it() {
+    let held = |size: f64| {
+        changed(|episode| {
+            let (n, velocities) = (episode.n_samples(), episode.velocities.take().expect("recorded"));
+            let usual = velocities.norm() / (n as f64).sqrt();
+            episode.positions = episode.positions.clone().insert_row(2, 0.3);
+            let noisy = DMatrix::from_fn(3, n, |k, i| {
+                if k < 2 { velocities[(k, i)] } else { size * usual * (1.0 + 0.5 * (7.0 * i as f64).sin()) }
+            });
+            episode.velocities = Some(noisy);
+        })
+    };
+    let of = |size: f64| {
+        let mut recordings = held(size);
+        recordings.state.push(Channel { name: "z".to_owned(), unit: None });
+        prepared(&recordings)
+    };
+    assert_eq!(decided(&of(0.1), "velocities"), "recorded");
+    assert_eq!(verdict(&of(0.6), "velocities of channel z are not 0, although it never moves"), Verdict::Doubtful);
+}
+
+#[test]
+fn what_cannot_be_learnt_from() {
+    let refused = |recordings: &Recordings| prepare(recordings, &PrepareOptions::default()).unwrap_err();
+    let none = Recordings { episodes: Vec::new(), ..recordings() };
+    assert_eq!(refused(&none), PrepareError::Empty);
     let still = changed(|episode| episode.positions.fill(1.0));
     let why = "the same samples as episode e0".to_owned();
     assert_eq!(refused(&still), PrepareError::NothingLeft { of: 12, why });

@@ -16,16 +16,6 @@ pub enum PrepareError {
         /// Why the first was left out.
         why: String,
     },
-    /// Rows and columns seem to be exchanged.
-    #[error(
-        "the state has {dim} dimensions and the longest episode {samples} samples: rows and columns seem to be exchanged; --samples-are with the other orientation"
-    )]
-    LooksTransposed {
-        /// Dimensions of the state.
-        dim: usize,
-        /// Samples of the longest episode.
-        samples: usize,
-    },
     /// A scale for something that is not there.
     #[error("--scale names '{name}', but the state has {known}; use one of these names")]
     UnknownChannel {

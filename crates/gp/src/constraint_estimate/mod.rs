@@ -54,7 +54,7 @@ impl ConstraintEstimates {
     /// dimensions are not searched.
     ///
     /// # Errors
-    /// [`GpError::Lengths`] for a policy or Jacobians that do not fit the rows, or movements of fewer than four samples.
+    /// [`GpError::Lengths`] for a policy or Jacobians that do not fit the rows, [`GpError::ShortMovements`] if no movement has four samples.
     pub fn of(rows: &Rows, policy: &dyn LearntPolicy, spaces: &[TaskSpace]) -> Result<Self, GpError> {
         let lengths = |what, found, expected| Err(GpError::Lengths { what, found, expected });
         if policy.dim() != rows.states().nrows() {
@@ -67,7 +67,8 @@ impl ConstraintEstimates {
         let movements = parts(rows, &at);
         let bases: Vec<Option<DMatrix<f64>>> = spaces.iter().map(|space| basis(space, rows.dim())).collect();
         let Some(noise) = noise(rows, &movements, spaces) else {
-            return lengths("samples next to each other", 0, 4);
+            let longest = movements.iter().map(|movement| movement.len()).max().unwrap_or(0);
+            return Err(GpError::ShortMovements { longest, needed: 4 });
         };
         let wanted = Wanted::of(rows, policy);
         let rarity = vec![0.0; spaces.len()];

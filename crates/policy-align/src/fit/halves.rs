@@ -1,8 +1,8 @@
-//! Split-half agreement: do halves of the movements give the same policy?
+//! Split-half agreement: do halves of the movements, or of a single one, give the same policy?
 
 use std::borrow::Cow;
 
-use gp::{AutoFit, CurlTest, DirectGp, GpError, ModelKind, PushTest, Rows, SlopeGp};
+use gp::{AutoFit, CurlTest, DirectGp, GpError, Grouping, ModelKind, PushTest, Rows, SlopeGp};
 use motion::Policy;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -17,7 +17,7 @@ pub(super) struct Limits {
 }
 
 /// Σ‖π̂_even − π̂_odd‖² over Σ‖π̂ − mean π̂‖² at the rows' states, of the slope policies that every other movement alone
-/// would give; none if halves are too few to learn from.
+/// would give, or both halves of a single one; none if halves are too few to learn from.
 ///
 /// The error to expect is a quarter of it at most, if each half has twice the error of the whole and the errors of both
 /// have nothing to do with each other. What both lack, it cannot detect.
@@ -45,7 +45,7 @@ pub(super) fn of_slope(readings: &AutoFit, rows: &Rows, limits: Limits) -> Optio
         None if rows.task_spaces().is_empty() => Cow::Borrowed(rows),
         None => with_spaces(Vec::new()).ok()?,
     };
-    disagreement(readings.slope(), (rows, &learnt_from), &learn)
+    disagreement((readings, readings.slope()), (rows, &learnt_from), &learn)
 }
 
 /// The same of direct policies.
@@ -57,16 +57,26 @@ pub(super) fn of_direct(readings: &AutoFit, rows: &Rows, limits: Limits) -> Opti
         ..DirectGp::default()
     };
     let learn = |rows: &Rows| gp.fit(rows, &mut ChaCha8Rng::seed_from_u64(limits.seed));
-    disagreement(readings.direct(), (rows, &rows.averaged()), &learn)
+    disagreement((readings, readings.direct()), (rows, &rows.averaged()), &learn)
+}
+
+/// Samples of the only movement, if there is one alone.
+fn only_movement(readings: &AutoFit, rows: &Rows) -> Option<usize> {
+    let first = rows.indices().first()?.trajectory;
+    let alone = rows.indices().iter().all(|index| index.trajectory == first);
+    let last = rows.indices().iter().map(|index| index.sample).max()?;
+    (alone && readings.numbers().grouping == Grouping::BlocksOfTime).then_some(last + 1)
 }
 
 fn disagreement<P: Policy + Send>(
-    whole: &dyn Policy,
+    (readings, whole): (&AutoFit, &dyn Policy),
     (rows, learnt_from): (&Rows, &Rows),
     learn: &(dyn Fn(&Rows) -> Result<P, GpError> + Sync),
 ) -> Option<f64> {
-    let half = |odd: usize| learn(&learnt_from.without(|trajectory, _| trajectory % 2 == odd));
-    let (even, odd) = rayon::join(|| half(1), || half(0));
+    let middle = only_movement(readings, learnt_from).map(|samples| samples / 2);
+    let is_odd = |trajectory: usize, sample: usize| middle.map_or(trajectory % 2 == 1, |middle| sample >= middle);
+    let half = |odd: bool| learn(&learnt_from.without(|trajectory, sample| is_odd(trajectory, sample) == odd));
+    let (even, odd) = rayon::join(|| half(true), || half(false));
     let states = states(rows);
     let apart = (even.ok()?.actions(states.as_view()) - odd.ok()?.actions(states.as_view())).norm_squared();
     let disagreement = apart / spread(&whole.actions(states.as_view()));

@@ -20,7 +20,7 @@ pub use options::{FitOptions, LearnerChoice};
 pub use progress::{Progress, Step};
 pub(crate) use recorded_rows::{averaged, cleaning, least_noisy_rows, rows};
 
-use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, PushTest, SlopeGp, TrajectoryErrors};
+use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Grouping, PushTest, SlopeGp, TrajectoryErrors};
 use motion::{LearntPolicy, Policy};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -203,7 +203,15 @@ fn numbers(
         None if takes_slope => slope_error,
         None => of.a_d,
     };
-    let own = if takes_slope { report.expected_nupe } else { readings.expected_nupe() };
+    let limits = halves::Limits { max_rows: options.max_rows, seed: options.seed };
+    let halves =
+        if takes_slope { halves::of_slope(readings, rows, limits) } else { halves::of_direct(readings, rows, limits) };
+    let expected = if takes_slope { report.expected_nupe } else { readings.expected_nupe() };
+    // Parts of the same movements test how a policy goes on along them, not how it is elsewhere; halves show that.
+    let own = match of.grouping {
+        Grouping::BlocksOfTime => expected.max(halves.unwrap_or(1.0).min(1.0)),
+        Grouping::Trajectories => expected,
+    };
     let aligned_numbers = aligned.map(|aligned| {
         let aligned_count = aligned.policy.kept().map_or(prepared.demonstrations.n_trajectories(), <[usize]>::len);
         AlignedNumbers {
@@ -217,7 +225,6 @@ fn numbers(
                 / aligned.held_out.samples.max(1) as f64,
         }
     });
-    let limits = halves::Limits { max_rows: options.max_rows, seed: options.seed };
     TrustNumbers {
         episodes: prepared.demonstrations.n_trajectories(),
         reading: readings.reading(),
@@ -240,11 +247,7 @@ fn numbers(
         rotation_share: report.rotational_share,
         rotation_t: report.curl_t,
         model: report.model,
-        halves: if takes_slope {
-            halves::of_slope(readings, rows, limits)
-        } else {
-            halves::of_direct(readings, rows, limits)
-        },
+        halves,
         unknown: unknown(readings, prepared, rows),
         leaving: share_leaving(policy(options, readings, aligned), &prepared.demonstrations),
         step_noise: prepared.noise.step_share,

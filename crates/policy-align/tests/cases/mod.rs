@@ -71,6 +71,10 @@ impl Case {
         }
     }
 
+    pub(crate) fn dim(&self) -> usize {
+        self.states.nrows()
+    }
+
     /// nUPE at the fresh states, in true units. `scales`: what the learner multiplied states with.
     pub(crate) fn error(&self, policy: &dyn LearntPolicy, scales: &DVector<f64>) -> f64 {
         let factor = self.units.component_mul(scales);

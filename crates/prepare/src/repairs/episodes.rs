@@ -3,7 +3,7 @@
 use std::{iter, mem};
 
 use motion::anomalies::stands_still;
-use motion::{Demonstrations, Episode};
+use motion::{Demonstrations, Episode, Verdict};
 use nalgebra::DVector;
 
 use crate::PrepareError;
@@ -18,7 +18,10 @@ pub(crate) fn movements(
     let longest = movements.iter().map(Episode::n_samples).max().ok_or(PrepareError::Empty)?;
     let dim = scales.len();
     if longest > 1 && 2 * longest < dim {
-        return Err(PrepareError::LooksTransposed { dim, samples: longest });
+        let what = format!(
+            "the state has {dim} dimensions and the longest episode {longest} samples: rows and columns may be exchanged"
+        );
+        notes.found(Verdict::Doubtful, what, "check that each row of the file is a sample");
     }
     for values in movements.iter_mut().flat_map(|of| iter::once(&mut of.positions).chain(&mut of.velocities)) {
         values.column_iter_mut().for_each(|mut column| column.component_mul_assign(scales));

@@ -18,6 +18,10 @@ const UNRELATED: f64 = 0.5;
 const NEAR: f64 = 0.1;
 /// Largest residual of the velocities, in multiples of the noise.
 const NOISE: f64 = 1.5;
+/// Share of all squared steps below which a channel hardly moves.
+const STILL: f64 = 1e-6;
+/// Share of all squared steps by velocities up to which those of a channel that hardly moves may be noise.
+const NOISE_OF_STILL: f64 = 0.04;
 /// Parts of a movement that are compared.
 const PARTS: usize = 4;
 /// Velocities that are differences of positions up to this share are made of them.
@@ -96,16 +100,17 @@ impl Steps {
         let sum = |of: &dyn Fn(&Part) -> f64| pairs.iter().map(of).sum::<f64>();
         let power = sum(&|(_, s)| s.norm_squared());
         let common = sum(&|(d, s)| d.dot(s)) / power;
+        let moved = sum(&|(d, _)| d.norm_squared());
         let factor = |axis: usize| {
-            let own = sum(&|(_, s)| s[axis].powi(2));
-            // A channel that hardly moves does not determine its factor.
-            if own > 1e-6 * power { sum(&|(d, s)| d[axis] * s[axis]) / own } else { common }
+            let (own, own_moved) = (sum(&|(_, s)| s[axis].powi(2)), sum(&|(d, _)| d[axis].powi(2)));
+            // A channel that hardly moves does not determine its factor: its velocities may be noise.
+            let still = own <= STILL * power || own_moved <= STILL * moved && own <= NOISE_OF_STILL * power;
+            if still { common } else { sum(&|(d, s)| d[axis] * s[axis]) / own }
         };
         let factors = DVector::from_fn(dim, |axis, _| factor(axis));
         let left = sum(&|(d, s)| (d - s.component_mul(&factors)).norm_squared());
         // Both ends of a part carry the positions' noise.
         let noise = 2.0 * noise.positions.iter().flatten().map(|sd| sd * sd).sum::<f64>() * pairs.len() as f64;
-        let moved = sum(&|(d, _)| d.norm_squared());
         let explained = if left <= NOISE * noise { 1.0 } else { 1.0 - (left - noise) / (moved - noise) };
         Steps { factors, explained: if explained.is_finite() { explained } else { 0.0 } }
     }
@@ -180,8 +185,12 @@ fn rescale(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &
         (format!("velocities are {} times the steps", short(times)), times)
     } else {
         let odd = (0..channels.len()).max_by(|&a, &b| off(fit.factors[a]).total_cmp(&off(fit.factors[b]))).unwrap_or(0);
-        let (name, times) = (&channels[odd].name, 1.0 / fit.factors[odd]);
-        (format!("velocities of channel {name} are {} times its steps, unlike the others", short(times)), times)
+        let (name, factor) = (&channels[odd].name, fit.factors[odd]);
+        let what = match factor {
+            0.0 => format!("velocities of channel {name} are not 0, although it never moves"),
+            _ => format!("velocities of channel {name} are {} times its steps, unlike the others", short(1.0 / factor)),
+        };
+        (what, 1.0 / factor)
     };
     let next = mistake(times, step).map_or("check units and time step (--dt)", |(_, words)| words);
     notes.decided("velocities", "recorded, rescaled to agree with the steps", what.clone(), "--integration");
