@@ -37,7 +37,7 @@ pub(crate) fn digest<'py>(py: Python<'py>, file: Further, digester: &str) -> PyR
     let digester: Digester = serde_json::from_str(digester).map_err(|error| damaged(&error.to_string()))?;
     let make = move |_: &_| {
         pool::on(0, || {
-            let part = Part::of(&[of_tuple(file)], &digester, &|_bytes| ()).and_then(|part| part.to_json());
+            let part = Part::of(&[of_tuple(file)], &digester, None, &|_bytes| ()).and_then(|part| part.to_json());
             part.map_err(|error| match error {
                 PartError::Read(error) => Refusal::read(&error),
                 error => {

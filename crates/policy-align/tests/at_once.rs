@@ -11,7 +11,7 @@ use running::{Ran, command, examples, run_in};
 use serde_json::Value;
 
 const FILES: usize = 5;
-/// Of these files two are read at once.
+/// Of these files one is read at once.
 const AT_ONCE: &str = "--at-once 40kB";
 
 /// The toy's movements in several files; `noise`: of velocities, as a share of their size.
@@ -191,4 +191,63 @@ fn parts_that_do_not_fit_are_refused() {
     let text = std::fs::read_to_string(path.join("1.csv")).unwrap();
     std::fs::write(path.join("1.csv"), text.replace("x,y,vx,vy", "x,z,vx,vz")).unwrap();
     refused(&format!("fit {files} {AT_ONCE}"), "channels are");
+}
+
+/// A fit that could not be ended goes on with the files that it had not read, and gives the same model; files that have changed since and
+/// other options are read anew.
+#[test]
+fn an_interrupted_fit_goes_on() {
+    let folder = folder(0.1);
+    let path = folder.path();
+    let files = all_files();
+    let line = format!("fit {files} {AT_ONCE} -o m.json");
+    done(&run_in(path, &format!("fit {files} {AT_ONCE} -o whole.json")));
+    let kept = path.join("m.json.unfinished");
+    assert!(!path.join("whole.json.unfinished").exists() && !kept.exists());
+
+    // The last of the further files cannot be read; one after the other, so that the others have been.
+    let last = std::fs::read(path.join("4.csv")).unwrap();
+    let damage = || {
+        let text = String::from_utf8(last.clone()).unwrap();
+        std::fs::write(path.join("4.csv"), text.replace("x,y,vx,vy", "x,z,vx,vz")).unwrap();
+    };
+    damage();
+    let alone = || {
+        let ran: Ran =
+            command(path).env("RAYON_NUM_THREADS", "1").args(line.split_whitespace()).output().unwrap().into();
+        ran
+    };
+    let refused = alone();
+    assert!(refused.code != Some(0) && !path.join("m.json").exists(), "{}", refused.out);
+    let lines = || std::fs::read_to_string(&kept).unwrap().lines().filter(|line| !line.is_empty()).count();
+    assert_eq!(lines(), 3, "three of four further files were read");
+
+    // An interrupt may cut the last line.
+    let text = std::fs::read(&kept).unwrap();
+    std::fs::write(&kept, &text[..text.len() - 30]).unwrap();
+    assert!(alone().err.contains("goes on where it was interrupted: 2 of 4 further files had been read"));
+    std::fs::write(path.join("4.csv"), &last).unwrap();
+    let went_on = run_in(path, &line);
+    done(&went_on);
+    assert!(went_on.err.contains("3 of 4 further files had been read"), "{}", went_on.err);
+    assert_eq!(model(&path.join("m.json")), model(&path.join("whole.json")));
+    assert!(!kept.exists());
+
+    // What was kept is of other options, or of a file that has changed.
+    damage();
+    let _ = alone();
+    std::fs::write(path.join("4.csv"), &last).unwrap();
+    let other = run_in(path, &format!("{line} --scale x=2"));
+    assert!(other.code == Some(0) && !other.err.contains("interrupted"), "{}", other.err);
+    damage();
+    let _ = alone();
+    std::fs::write(path.join("4.csv"), &last).unwrap();
+    // Of the same size.
+    let text = std::fs::read_to_string(path.join("1.csv")).unwrap();
+    let digit = |line: &str| format!("{}1\n", &line[..line.len() - 1]);
+    let (header, rows) = text.split_once('\n').unwrap();
+    std::fs::write(path.join("1.csv"), format!("{header}\n{}", rows.lines().map(digit).collect::<String>())).unwrap();
+    done(&run_in(path, &format!("fit {files} {AT_ONCE} -o changed.json")));
+    done(&run_in(path, &line));
+    assert_eq!(model(&path.join("m.json")), model(&path.join("changed.json")));
 }

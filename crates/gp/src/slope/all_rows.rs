@@ -20,6 +20,8 @@ const EXACT: usize = 1500;
 const HYPER: usize = 400;
 /// Left-out error of a model of more noisy rows, in errors of one of fewer, up to which it is taken.
 const ALLOWED: f64 = 1.05;
+/// The same in errors of the best one so far from which no other model through inducing rows is tried.
+const HOPELESS: f64 = 2.0;
 /// Rows, for each inducing one, beyond which they are thinned.
 const MOST: usize = 64;
 
@@ -42,10 +44,8 @@ pub(crate) fn on_all_rows(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outc
     if kept.variances.is_none() && more.rows.len() + beyond <= MANY * kept.rows.len() {
         return None;
     }
-    let error = |tried: &OnAllRows| {
-        let at_kept = positions(&tried.kept.rows, &kept.rows);
-        left(thinned, &tried.outcome, |at| at_kept[at])
-    };
+    let judge = Judge { weights: &thinned.data.noise_weights, rows: &kept.rows };
+    let error = |tried: &OnAllRows| judge.error(&tried.kept, &tried.outcome.data, &tried.outcome.taken);
     let best_of =
         |tried: Vec<Option<OnAllRows>>| tried.into_iter().flatten().min_by(|a, b| error(a).total_cmp(&error(b)));
     let own_units: &[bool] = match thinned.taken.left_out.is_nearly_exact() {
@@ -54,22 +54,34 @@ pub(crate) fn on_all_rows(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outc
         false => &[false],
     };
     let exact = best_of(own_units.iter().map(|&own_units| exact(gp, &more, thinned, own_units)).collect());
+    let thinned_error = judge.error(kept, &thinned.data, &thinned.taken);
+    let least = exact.as_ref().map_or(thinned_error, |exact| error(exact).min(thinned_error));
     let induced = (beyond > 0).then(|| {
         let before = exact.as_ref().map_or(thinned, |exact| &exact.outcome);
-        induced(gp, of_most(MOST * gp.inducing_rows)?, before)
+        induced(gp, of_most(MOST * gp.inducing_rows)?, before, |all, data, of| {
+            judge.error(all, data, of) <= HOPELESS * least
+        })
     });
     // Of noisy rows too few are kept to tell nearly equal models apart: the one of more rows knows more.
     let allowed = if kept.variances.is_some() { ALLOWED } else { 1.0 };
-    let least = exact.as_ref().map_or(f64::INFINITY, error).min(left(thinned, thinned, |at| at));
     let induced = induced.flatten().filter(|induced| error(induced) <= allowed * least);
-    induced.or_else(|| exact.filter(|exact| error(exact) <= allowed * left(thinned, thinned, |at| at)))
+    induced.or_else(|| exact.filter(|exact| error(exact) <= allowed * thinned_error))
 }
 
-/// Σ w e² of the rows kept in squared units of speed, left out of a model in which row i is row `place(i)`.
-fn left(thinned: &Outcome, of: &Outcome, place: impl Fn(usize) -> usize) -> f64 {
-    let residuals = &of.taken.left_out.residuals;
-    let each = thinned.data.noise_weights.iter().enumerate();
-    each.map(|(at, weight)| (of.data.speed * residuals[(place(at), 0)]).powi(2) / weight).sum()
+/// Compares models on the rows that were kept, which all of them have.
+struct Judge<'a> {
+    /// D of these rows.
+    weights: &'a [f64],
+    rows: &'a [usize],
+}
+
+impl Judge<'_> {
+    /// Σ e²/D in squared units of speed, each movement left out of a model of `all` rows.
+    fn error(&self, all: &Kept, data: &SlopeData, of: &Candidate) -> f64 {
+        let places = positions(&all.rows, self.rows);
+        let each = places.into_iter().zip(self.weights);
+        each.map(|(at, weight)| (data.speed * of.left_out.residuals[(at, 0)]).powi(2) / weight).sum()
+    }
 }
 
 /// Models of few enough rows to be exact, with amplitudes of those; z and y in units of `thinned` or of their own, of which prediction
@@ -81,32 +93,48 @@ fn exact(gp: &SlopeGp, more: &Kept, thinned: &Outcome, own_units: bool) -> Optio
     let weights = noise_weights(&kept, thinned);
     let data =
         if own_units { SlopeData::from_kept(&kept, weights).ok()? } else { thinned.data.of_others(&kept, weights) };
-    compared((kept, data), thinned, |data, kept, (family, kind), _| candidate(gp, data, kept, family, kind))
+    let fit = |data: &SlopeData, kept: &Kept, (family, kind), _: &_| candidate(gp, data, kept, family, kind);
+    compared((kept, data), thinned, fit, |_, _, _| true)
 }
 
-/// Models of all rows, through the inducing ones.
-fn induced(gp: &SlopeGp, all: Kept, before: &Outcome) -> Option<OnAllRows> {
+/// Models of all rows, through the inducing ones; none if those like the one taken before are not `worth` more.
+fn induced(
+    gp: &SlopeGp,
+    all: Kept,
+    before: &Outcome,
+    worth: impl Fn(&Kept, &SlopeData, &Candidate) -> bool,
+) -> Option<OnAllRows> {
     let data = before.data.of_others(&all, noise_weights(&all, before));
     let most = gp.inducing_rows;
-    compared((all, data), before, |data, all, of, prior| Candidate::induced(data, all, of, prior, most))
+    compared((all, data), before, |data, all, of, prior| Candidate::induced(data, all, of, prior, most), worth)
 }
 
-/// Steps 6 and 7 on other rows, with the families that were good before.
+/// Steps 6 and 7 on other rows, with the families that were good before; none if the best model of the kind taken before is not `worth`
+/// the other kind.
 fn compared(
     (kept, data): (Kept, SlopeData),
     before: &Outcome,
     fit: impl Fn(&SlopeData, &Kept, (Family, ModelKind), &[(Block, f64)]) -> Option<Candidate>,
+    worth: impl Fn(&Kept, &SlopeData, &Candidate) -> bool,
 ) -> Option<OnAllRows> {
-    let mut families = Vec::new();
     // One after the other: each is parallel in itself, and together they would take several times the memory.
-    let mut best = |kind| {
+    let best = |kind| {
         let tried = nearly_best_of(&before.families, kind)
             .into_iter()
             .map(|(family, prior)| (family, fit(&data, &kept, (family, kind), prior)));
-        best_of(tried, kind, &mut families)
+        let mut families = Vec::new();
+        (best_of(tried, kind, &mut families), families)
     };
-    let potential = best(ModelKind::Potential)?;
-    let rotation = best(ModelKind::Helmholtz);
+    let first = best(before.taken.kind);
+    if first.0.as_ref().is_some_and(|first| !worth(&kept, &data, first)) {
+        return None;
+    }
+    let ((potential, mut families), (rotation, rotating)) = match before.taken.kind {
+        ModelKind::Potential => (first, best(ModelKind::Helmholtz)),
+        ModelKind::Helmholtz => (best(ModelKind::Potential), first),
+    };
+    families.extend(rotating);
+    let potential = potential?;
     let (taken, other, curl_t) = match rotation {
         None => (potential, None, None),
         Some(rotation) => {

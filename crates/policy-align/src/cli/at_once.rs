@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use policy_align::{Digest, Digester, Division, FileSummary, FitOptions, FurtherFile, Part, PartError};
+use policy_align::{Digest, Digester, Division, FileSummary, FitOptions, FurtherFile, Part, PartError, Unfinished};
 use serde_json::json;
 use text::quoted;
 
@@ -12,7 +12,7 @@ use crate::cli::given::again;
 use crate::cli::lines::{Lines, counted, size};
 use crate::cli::options::flags::FitFlags;
 use crate::cli::recorded::{base_name, summaries};
-use crate::cli::session::{Output, Session, write};
+use crate::cli::session::{Output, Session, complain, write};
 
 /// Bytes of a part at most.
 const PART: u64 = 1 << 31;
@@ -43,14 +43,15 @@ pub(crate) fn shard(text: &str) -> Result<(usize, usize), Failure> {
     shard.ok_or_else(|| Failure::usage(format!("'{text}' is no share I/N with I up to N"), "--shard", "--shard 1/4"))
 }
 
-/// Digests of all further files.
+/// Digests of all further files; those made here are kept in `unfinished`.
 pub(crate) fn digests(
     session: &Session,
     (division, digester): (&Division, &Digester),
+    unfinished: Option<&Unfinished>,
     parts: &[PathBuf],
 ) -> Result<Vec<Digest>, Failure> {
     let found = if parts.is_empty() {
-        vec![part(session, &division.further, digester)?]
+        vec![part(session, (&division.further, digester), unfinished)?]
     } else {
         parts.iter().map(|path| read(path)).collect::<Result<_, _>>()?
     };
@@ -66,10 +67,19 @@ fn read(path: &Path) -> Result<Part, Failure> {
         .map_err(|error| Failure::new(Exit::File, error.to_string(), displayed(path), "the part again, by --shard"))
 }
 
-fn part(session: &Session, files: &[FurtherFile], digester: &Digester) -> Result<Part, Failure> {
+fn part(
+    session: &Session,
+    (files, digester): (&[FurtherFile], &Digester),
+    unfinished: Option<&Unfinished>,
+) -> Result<Part, Failure> {
+    let found = unfinished.map_or(0, Unfinished::found);
+    if found > 0 && !session.quiet {
+        let of = counted(files.len(), "further file");
+        complain(&format!("goes on where it was interrupted: {found} of {of} had been read"));
+    }
     let bytes = files.iter().map(|file| file.bytes).sum();
     let bar = session.bar(bytes, "further files  {bar:30} {bytes} of {total_bytes}, {eta} left");
-    let part = Part::of(files, digester, &|read| bar.inc(read));
+    let part = Part::of(files, digester, unfinished, &|read| bar.inc(read));
     bar.finish_and_clear();
     part.map_err(|error| match error {
         PartError::Read(error) => Failure::from(error),
@@ -94,10 +104,12 @@ pub(crate) fn write_part(
     let ((this, of), own) = (shard, part_file(shard));
     let output = output.unwrap_or(&own);
     let files = division.share(shard);
-    let text = part(session, &files, digester)?.to_json();
+    let unfinished = Unfinished::of(output, digester);
+    let text = part(session, (&files, digester), Some(&unfinished))?.to_json();
     let text =
         text.map_err(|error| Failure::new(Exit::Refused, error.to_string(), displayed(output), "other files"))?;
     write(output, &text)?;
+    unfinished.finished();
     if session.json {
         let document = json!({ "written": [displayed(output)], "files": files.len(), "of": division.further.len() });
         return Ok(Output::json(&document, Exit::Done));

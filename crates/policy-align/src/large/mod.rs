@@ -4,9 +4,12 @@
 mod digester;
 mod division;
 mod error;
+mod file_digest;
 mod part;
+mod unfinished;
 
 pub use digester::Digester;
 pub use division::{Division, FurtherFile};
 pub use error::{DigestError, PartError};
 pub use part::Part;
+pub use unfinished::Unfinished;

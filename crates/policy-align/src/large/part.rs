@@ -4,7 +4,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::Digest;
-use crate::large::{Digester, FurtherFile, PartError};
+use crate::large::file_digest::FileDigest;
+use crate::large::{Digester, FurtherFile, PartError, Unfinished};
 
 const FORMAT: &str = "policy-align part";
 const VERSION: u32 = 1;
@@ -15,30 +16,36 @@ const VERSION: u32 = 1;
 pub struct Part {
     format: String,
     version: u32,
-    digests: Vec<OfFile>,
-}
-
-/// The digest of one of the further files.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct OfFile {
-    /// Its place among them.
-    at: usize,
-    name: String,
-    bytes: u64,
-    digest: Digest,
+    digests: Vec<FileDigest>,
 }
 
 impl Part {
     /// Digests of these files, of which several are read at a time, one on each thread; each digest is the same whatever else is read.
-    /// `progress` takes the number of bytes read since the last call.
+    /// `progress` takes the number of bytes read since the last call. With `unfinished`, files that an earlier run has read are not read again.
     ///
     /// # Errors
     /// [`PartError`] of a file that cannot be used; others are then not read.
-    pub fn of(files: &[FurtherFile], digester: &Digester, progress: &(dyn Fn(u64) + Sync)) -> Result<Part, PartError> {
+    pub fn of(
+        files: &[FurtherFile],
+        digester: &Digester,
+        unfinished: Option<&Unfinished>,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> Result<Part, PartError> {
         let digest = |file: &FurtherFile| {
-            let digest = digester.digest_file(file, &mut |bytes| progress(bytes))?;
-            Ok(OfFile { at: file.at, name: file.name(), bytes: file.bytes, digest })
+            let mut is_read = false;
+            let mut make = || {
+                is_read = true;
+                let digest = digester.digest_file(file, &mut |bytes| progress(bytes))?;
+                Ok(FileDigest { at: file.at, name: file.name(), bytes: file.bytes, digest })
+            };
+            let digest = match unfinished {
+                Some(unfinished) => unfinished.or_make(file, make),
+                None => make(),
+            };
+            if !is_read {
+                progress(file.bytes);
+            }
+            digest
         };
         let digests = files.par_iter().map(digest).collect::<Result<_, PartError>>()?;
         Ok(Part { format: FORMAT.to_owned(), version: VERSION, digests })
@@ -73,7 +80,7 @@ impl Part {
     pub fn merged(parts: Vec<Part>, files: &[FurtherFile], digester: &Digester) -> Result<Vec<Digest>, PartError> {
         let wrong = |reason: String| Err(PartError::Parts { reason });
         let mut merged: Vec<Option<Digest>> = vec![None; files.len()];
-        for OfFile { at, name: of, bytes, digest } in parts.into_iter().flat_map(|part| part.digests) {
+        for FileDigest { at, name: of, bytes, digest } in parts.into_iter().flat_map(|part| part.digests) {
             if digest.made_for != digester.made_for() {
                 return wrong(format!("the digest of {of} was made with other files, options or by another version"));
             }

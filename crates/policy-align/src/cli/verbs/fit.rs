@@ -5,8 +5,8 @@ use clap::Args;
 use motion::anomalies::duplicates;
 use motion::{Episode, Recordings};
 use policy_align::{
-    Decision, Digester, Evaluation, Finding, Model, PrepareOptions, Prepared, Progress, Verdict, checksum_of, evaluate,
-    fit_with, prepare,
+    Decision, Digester, Evaluation, Finding, Model, PrepareOptions, Prepared, Progress, Unfinished, Verdict,
+    checksum_of, evaluate, fit_with, prepare,
 };
 use serde_json::json;
 use text::quoted;
@@ -87,7 +87,9 @@ impl Fit {
         if let Some(shard) = shard {
             return write_part(session, (&division, &digester), shard, self.output.as_deref());
         }
-        let digests = digests(session, (&division, &digester), &self.merge)?;
+        let makes_digests = !division.further.is_empty() && self.merge.is_empty();
+        let unfinished = makes_digests.then(|| Unfinished::of(&self.output(), &digester));
+        let digests = digests(session, (&division, &digester), unfinished.as_ref(), &self.merge)?;
         let bar = session.bar(4, "{msg}  {bar:30} step {pos} of {len}, {elapsed} elapsed");
         let never = AtomicBool::new(false);
         let mut report = |step: policy_align::Step| {
@@ -111,6 +113,9 @@ impl Fit {
             files.extend(self.report(&model, &prepared, &checksum));
         }
         write_together(&files)?;
+        if let Some(unfinished) = unfinished {
+            unfinished.finished();
+        }
         warn_of_others(session, &self.output(), &checksum);
         let report: Vec<PathBuf> = files.into_iter().skip(1).map(|(path, _)| path).collect();
         let unreported = unreported(&model.trust.findings, &reported);
