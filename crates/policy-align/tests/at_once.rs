@@ -219,28 +219,28 @@ fn an_interrupted_fit_goes_on() {
     };
     let refused = alone();
     assert!(refused.code != Some(0) && !path.join("m.json").exists(), "{}", refused.out);
-    let lines = || std::fs::read_to_string(&kept).unwrap().lines().filter(|line| !line.is_empty()).count();
+    let lines = || std::fs::read_to_string(&kept).unwrap().lines().filter(|line| line.ends_with('}')).count();
     assert_eq!(lines(), 3, "three of four further files were read");
 
     // An interrupt may cut the last line.
     let text = std::fs::read(&kept).unwrap();
     std::fs::write(&kept, &text[..text.len() - 30]).unwrap();
-    assert!(alone().err.contains("goes on where it was interrupted: 2 of 4 further files had been read"));
+    assert!(alone().err.contains("goes on: 2 of 4 further files were read by an earlier run"));
     std::fs::write(path.join("4.csv"), &last).unwrap();
     let went_on = run_in(path, &line);
     done(&went_on);
-    assert!(went_on.err.contains("3 of 4 further files had been read"), "{}", went_on.err);
+    assert!(went_on.err.contains("3 of 4 further files were read by an earlier run"), "{}", went_on.err);
     assert_eq!(model(&path.join("m.json")), model(&path.join("whole.json")));
     assert!(!kept.exists());
 
     // What was kept is of other options, or of a file that has changed.
     damage();
-    let _ = alone();
+    assert!(alone().code != Some(0) && lines() == 3);
     std::fs::write(path.join("4.csv"), &last).unwrap();
     let other = run_in(path, &format!("{line} --scale x=2"));
-    assert!(other.code == Some(0) && !other.err.contains("interrupted"), "{}", other.err);
+    assert!(other.code == Some(0) && !other.err.contains("goes on"), "{}", other.err);
     damage();
-    let _ = alone();
+    assert!(alone().code != Some(0) && lines() == 3);
     std::fs::write(path.join("4.csv"), &last).unwrap();
     // Of the same size.
     let text = std::fs::read_to_string(path.join("1.csv")).unwrap();
@@ -250,4 +250,37 @@ fn an_interrupted_fit_goes_on() {
     done(&run_in(path, &format!("fit {files} {AT_ONCE} -o changed.json")));
     done(&run_in(path, &line));
     assert_eq!(model(&path.join("m.json")), model(&path.join("changed.json")));
+
+    // Shares of rows follow from the sizes of all files: where one grows, digests of the others are others.
+    damage();
+    assert!(alone().code != Some(0) && lines() == 3);
+    let longer = String::from_utf8(last).unwrap() + "99,0.0,0.1,0.1,0.1,0.1\n99,0.05,0.105,0.105,0.1,0.1\n";
+    std::fs::write(path.join("4.csv"), longer).unwrap();
+    let grown = run_in(path, &line);
+    assert!(grown.code == Some(0) && !grown.err.contains("goes on"), "{}", grown.err);
+}
+
+/// What a fit has not made it does not write over, follow or remove; and a folder that cannot be written to is found before anything is read.
+#[test]
+fn files_of_others_are_left_alone() {
+    let folder = folder(0.0);
+    let path = folder.path();
+    let line = format!("fit {} {AT_ONCE} -o m.json", all_files());
+    let kept = path.join("m.json.unfinished");
+    std::fs::write(&kept, "notes").unwrap();
+    let refused = run_in(path, &line);
+    assert!(refused.code == Some(3) && refused.err.contains("not of a fit"), "{}", refused.err);
+    assert_eq!(std::fs::read_to_string(&kept).unwrap(), "notes");
+    std::fs::remove_file(&kept).unwrap();
+    #[cfg(unix)]
+    {
+        std::fs::write(path.join("precious"), "policy-align unfinished 1\n").unwrap();
+        std::os::unix::fs::symlink("precious", &kept).unwrap();
+        assert_eq!(run_in(path, &line).code, Some(3));
+        std::fs::remove_file(&kept).unwrap();
+    }
+    let nowhere = run_in(path, &line.replace("m.json", "nowhere/m.json"));
+    assert!(nowhere.code == Some(3) && nowhere.err.contains("cannot be written"), "{}", nowhere.err);
+    done(&run_in(path, &line));
+    assert!(!kept.exists());
 }

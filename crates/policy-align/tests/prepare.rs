@@ -439,42 +439,61 @@ fn what_looks_like_a_fault_may_stay() {
     assert_eq!(kept.demonstrations.trajectories()[0].states(), &spiked.episodes[0].positions);
 }
 
-/// Few samples of many channels may be rows taken for columns, or a recording of few samples.
+/// Few samples of many channels may be rows taken for columns, or a recording of few samples, which are enough together.
 #[test]
-fn more_channels_than_samples_are_doubtful() {
-    let turned = Recordings {
-        state: (0..SAMPLES).map(|i| Channel { name: i.to_string(), unit: None }).collect(),
-        ..changed(|episode| {
-            episode.positions = episode.positions.transpose();
-            episode.velocities = None;
-            episode.times.stamps_mut().truncate(2);
-        })
+fn more_channels_than_samples_are_refused_or_doubtful() {
+    let turned = |times: usize| {
+        let mut recordings = Recordings {
+            state: (0..SAMPLES).map(|i| Channel { name: i.to_string(), unit: None }).collect(),
+            ..changed(|episode| {
+                episode.positions = episode.positions.transpose();
+                episode.velocities = None;
+                episode.times.stamps_mut().truncate(2);
+            })
+        };
+        let once = recordings.episodes.clone();
+        for time in 1..times {
+            recordings.episodes.extend(once.iter().cloned().map(|mut episode| {
+                episode.name = format!("{} again {time}", episode.name);
+                episode.positions *= time as f64 + 1.0;
+                episode
+            }));
+        }
+        recordings
     };
+    let refused = prepare(turned(1), &PrepareOptions::default()).unwrap_err();
+    assert_eq!(refused, PrepareError::LooksTransposed { dim: SAMPLES, longest: 2, samples: 24 });
     let what = "the state has 40 dimensions and the longest episode 2 samples: rows and columns may be exchanged";
-    assert_eq!(verdict(&prepared(&turned), what), Verdict::Doubtful);
+    assert_eq!(verdict(&prepared(&turned(5)), what), Verdict::Doubtful);
 }
 
 /// A channel that is held has velocities of noise alone: they are no mistake of units. Large ones are.
 #[test]
 fn velocities_of_a_held_channel_are_noise_or_do_not_belong_to_it() {
-    let held = |size: f64| {
+    let held = |size: f64, jitter: f64| {
         changed(|episode| {
             let (n, velocities) = (episode.n_samples(), episode.velocities.take().expect("recorded"));
             let usual = velocities.norm() / (n as f64).sqrt();
             episode.positions = episode.positions.clone().insert_row(2, 0.3);
+            for (i, mut x) in episode.positions.column_iter_mut().enumerate() {
+                x[2] += jitter * (13.0 * i as f64).sin();
+            }
             let noisy = DMatrix::from_fn(3, n, |k, i| {
                 if k < 2 { velocities[(k, i)] } else { size * usual * (1.0 + 0.5 * (7.0 * i as f64).sin()) }
             });
             episode.velocities = Some(noisy);
         })
     };
-    let of = |size: f64| {
-        let mut recordings = held(size);
+    let of = |size: f64, jitter: f64| {
+        let mut recordings = held(size, jitter);
         recordings.state.push(Channel { name: "z".to_owned(), unit: None });
         prepared(&recordings)
     };
-    assert_eq!(decided(&of(0.1), "velocities"), "recorded");
-    assert_eq!(verdict(&of(0.6), "velocities of channel z are not 0, although it never moves"), Verdict::Doubtful);
+    for jitter in [0.0, 1e-4] {
+        assert_eq!(decided(&of(0.1, jitter), "velocities"), "recorded");
+        let what = "velocities of channel z are not 0, although it never moves; they were set to 0";
+        assert_eq!(verdict(&of(0.6, jitter), what), Verdict::Doubtful);
+    }
 }
 
 #[test]

@@ -16,6 +16,18 @@ pub enum PrepareError {
         /// Why the first was left out.
         why: String,
     },
+    /// Few samples of many dimensions: rows and columns may be exchanged, and otherwise there is hardly anything to learn from.
+    #[error(
+        "the state has {dim} dimensions and the longest episode {longest} samples, {samples} in all: rows and columns seem to be exchanged, or samples are too few; --samples-are with the other orientation, or record more"
+    )]
+    LooksTransposed {
+        /// Dimensions of the state.
+        dim: usize,
+        /// Samples of the longest episode.
+        longest: usize,
+        /// Samples of all episodes.
+        samples: usize,
+    },
     /// A scale for something that is not there.
     #[error("--scale names '{name}', but the state has {known}; use one of these names")]
     UnknownChannel {

@@ -38,7 +38,7 @@
 //!
 //! # When it fails
 //!
-//! - [`PrepareError`]: no episodes, no motion, or an option that does not fit the data.
+//! - [`PrepareError`]: no episodes, no motion, rows and columns exchanged, or an option that does not fit the data.
 //! - **Episodes that are duplicates or stand still** are dropped and listed in [`Prepared::left_out`].
 //! - **Time stamps in the wrong unit without velocities** look like a slower policy; only the time step reveals it.
 //! - **Noise of more than a few per cent in positions alone** cannot be removed without losing the velocity. Record
@@ -88,7 +88,8 @@ use notes::Notes;
 /// not lent, become the demonstrations without a copy.
 ///
 /// # Errors
-/// [`PrepareError`] where nothing can be learnt: no episode, no motion, or an option that does not fit.
+/// [`PrepareError`] where nothing can be learnt: no episode, no motion, rows and columns exchanged, or an option that
+/// does not fit.
 pub fn prepare<'a>(
     recordings: impl Into<Cow<'a, Recordings>>,
     options: &PrepareOptions,

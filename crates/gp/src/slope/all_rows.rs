@@ -20,7 +20,7 @@ const EXACT: usize = 1500;
 const HYPER: usize = 400;
 /// Left-out error of a model of more noisy rows, in errors of one of fewer, up to which it is taken.
 const ALLOWED: f64 = 1.05;
-/// The same in errors of the best one so far from which no other model through inducing rows is tried.
+/// Multiple of the least error so far above which the other kind of model is not tried through inducing rows.
 const HOPELESS: f64 = 2.0;
 /// Rows, for each inducing one, beyond which they are thinned.
 const MOST: usize = 64;
@@ -76,7 +76,7 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    /// Σ e²/D in squared units of speed, each movement left out of a model of `all` rows.
+    /// Σ w e² in squared units of speed, each movement left out of a model of `all` rows.
     fn error(&self, all: &Kept, data: &SlopeData, of: &Candidate) -> f64 {
         let places = positions(&all.rows, self.rows);
         let each = places.into_iter().zip(self.weights);
@@ -126,7 +126,7 @@ fn compared(
         (best_of(tried, kind, &mut families), families)
     };
     let first = best(before.taken.kind);
-    if first.0.as_ref().is_some_and(|first| !worth(&kept, &data, first)) {
+    if first.0.as_ref().is_none_or(|first| !worth(&kept, &data, first)) {
         return None;
     }
     let ((potential, mut families), (rotation, rotating)) = match before.taken.kind {

@@ -61,6 +61,12 @@ pub(crate) fn digests(
     })
 }
 
+/// Where digests are kept until `output` is written.
+pub(crate) fn unfinished(output: &Path, files: &[FurtherFile], digester: &Digester) -> Result<Unfinished, Failure> {
+    let failed = |error| Failure::writing(&Unfinished::beside(output), error);
+    Unfinished::open(output, files, digester).map_err(failed)
+}
+
 fn read(path: &Path) -> Result<Part, Failure> {
     let bytes = demo_io::read_bytes(path, PART).map_err(|error| Failure::reading(path, error))?;
     Part::of_json(&bytes)
@@ -72,10 +78,10 @@ fn part(
     (files, digester): (&[FurtherFile], &Digester),
     unfinished: Option<&Unfinished>,
 ) -> Result<Part, Failure> {
-    let found = unfinished.map_or(0, Unfinished::found);
+    let found = unfinished.map_or(0, Unfinished::remaining);
     if found > 0 && !session.quiet {
         let of = counted(files.len(), "further file");
-        complain(&format!("goes on where it was interrupted: {found} of {of} had been read"));
+        complain(&format!("goes on: {found} of {of} were read by an earlier run"));
     }
     let bytes = files.iter().map(|file| file.bytes).sum();
     let bar = session.bar(bytes, "further files  {bar:30} {bytes} of {total_bytes}, {eta} left");
@@ -104,12 +110,12 @@ pub(crate) fn write_part(
     let ((this, of), own) = (shard, part_file(shard));
     let output = output.unwrap_or(&own);
     let files = division.share(shard);
-    let unfinished = Unfinished::of(output, digester);
+    let unfinished = unfinished(output, &files, digester)?;
     let text = part(session, (&files, digester), Some(&unfinished))?.to_json();
     let text =
         text.map_err(|error| Failure::new(Exit::Refused, error.to_string(), displayed(output), "other files"))?;
     write(output, &text)?;
-    unfinished.finished();
+    Unfinished::remove(output);
     if session.json {
         let document = json!({ "written": [displayed(output)], "files": files.len(), "of": division.further.len() });
         return Ok(Output::json(&document, Exit::Done));

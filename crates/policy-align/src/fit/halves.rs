@@ -19,8 +19,8 @@ pub(super) struct Limits {
 /// Σ‖π̂_even − π̂_odd‖² over Σ‖π̂ − mean π̂‖² at the rows' states, of the slope policies that every other movement alone
 /// would give, or both halves of a single one; none if halves are too few to learn from.
 ///
-/// The error to expect is a quarter of it at most, if each half has twice the error of the whole and the errors of both
-/// have nothing to do with each other. What both lack, it cannot detect.
+/// The error to expect of many movements is a quarter of it at most, if each half has twice the error of the whole and the errors of both
+/// have nothing to do with each other. Of one or two movements all of it is expected. What both halves lack, it cannot detect.
 pub(super) fn of_slope(readings: &AutoFit, rows: &Rows, limits: Limits) -> Option<f64> {
     let report = readings.slope().report();
     let curl_test = if report.model == ModelKind::Potential { CurlTest::AssumePotential } else { CurlTest::Fit };

@@ -207,8 +207,11 @@ fn numbers(
     let halves =
         if takes_slope { halves::of_slope(readings, rows, limits) } else { halves::of_direct(readings, rows, limits) };
     let expected = if takes_slope { report.expected_nupe } else { readings.expected_nupe() };
-    // Parts of the same movements test how a policy goes on along them, not how it is elsewhere; halves show that.
+    let direction_coverage = of.least_seen.share * of.least_seen.direction.len() as f64;
+    // Parts of the same movements test how a policy goes on along them, not how it is elsewhere. Halves show that, where movements go in
+    // all directions.
     let own = match of.grouping {
+        Grouping::BlocksOfTime if direction_coverage < TrustNumbers::GOOD_COVERAGE => expected.max(1.0),
         Grouping::BlocksOfTime => expected.max(halves.unwrap_or(1.0).min(1.0)),
         Grouping::Trajectories => expected,
     };
@@ -240,7 +243,7 @@ fn numbers(
         ambiguity: report.ambiguity,
         slope_r_squared: report.r_squared,
         z_squared: report.z_squared,
-        direction_coverage: of.least_seen.share * of.least_seen.direction.len() as f64,
+        direction_coverage,
         unseen_direction: of.least_seen.direction.clone(),
         least_known: report.identifiability.least,
         least_known_direction: report.identifiability.direction.clone(),

@@ -52,7 +52,7 @@ impl Digester {
     }
 
     /// Reads a file and makes its digest; holds this file alone. Calls `progress` with the number of bytes read since the last call. The bits
-    /// depend on nothing but this file and the recordings at hand.
+    /// depend on nothing but this file, its share of rows and the recordings at hand.
     ///
     /// # Errors
     /// [`PartError`], which names the file.

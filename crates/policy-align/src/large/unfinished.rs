@@ -1,8 +1,8 @@
 //! Digests of a fit that was interrupted, kept beside what it was to write.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufRead as _, BufReader, Write as _};
+use std::fs::{self, File, Metadata, OpenOptions};
+use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::SystemTime;
@@ -11,92 +11,144 @@ use serde::{Deserialize, Serialize};
 
 use crate::large::file_digest::FileDigest;
 use crate::large::{Digester, FurtherFile};
+use crate::stored::sha256;
 
-/// Digests that are kept as they are made, a line of JSON for each, so that the same command goes on where it was interrupted.
+/// First line.
+const HEADER: &str = "policy-align unfinished 1";
+
+/// Digests that are kept as they are made, so that the same command goes on where it was interrupted: a line each, a checksum and JSON.
 #[derive(Debug)]
 pub struct Unfinished {
     path: PathBuf,
     /// Of an earlier run, by place among the further files.
     found: Mutex<BTreeMap<usize, Kept>>,
-    /// None if nothing can be written: a fit does not fail for that.
+    /// None once nothing can be written any more: a fit does not fail for that.
     file: Mutex<Option<File>>,
 }
 
-/// A line.
+/// A digest, and of what.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Kept {
-    /// When the file had been changed last before it was read.
-    modified: SystemTime,
+    source: Source,
     of: FileDigest,
 }
 
+/// What a digest depends on beside the recordings at hand: the file as it was before it was read, and its share of all rows.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Source {
+    path: PathBuf,
+    bytes: u64,
+    modified: SystemTime,
+    rows: usize,
+}
+
+impl Source {
+    /// None for a folder, or if the system does not tell.
+    fn of(file: &FurtherFile) -> Option<Source> {
+        let found = fs::metadata(&file.path).ok().filter(Metadata::is_file)?;
+        let (path, modified) = (fs::canonicalize(&file.path).ok()?, found.modified().ok()?);
+        Some(Source { path, bytes: found.len(), modified, rows: file.rows })
+    }
+}
+
 impl Unfinished {
-    /// Of the fit or part that is written to `output`: in the file `output.unfinished`. Digests of an earlier run are found again if they were
-    /// made for the same recordings at hand and the same options; a line that was not ended is none.
-    pub fn of(output: &Path, digester: &Digester) -> Unfinished {
+    /// Where digests are kept of the fit or part that is written to `output`: `output.unfinished`.
+    pub fn beside(output: &Path) -> PathBuf {
         let mut path = output.as_os_str().to_owned();
         path.push(".unfinished");
-        let path = PathBuf::from(path);
-        let found = read(&path, digester).unwrap_or_default();
-        let mut options = OpenOptions::new();
-        let options = if found.is_empty() { options.write(true).truncate(true) } else { options.append(true) };
-        // Ends a line that an interrupt cut.
-        let begun = options.create(true).open(&path).and_then(|mut file| file.write_all(b"\n").map(|()| file));
-        Unfinished { path, found: Mutex::new(found), file: Mutex::new(begun.ok()) }
+        PathBuf::from(path)
     }
 
-    /// Digests of an earlier run that were not asked for yet.
-    pub fn found(&self) -> usize {
+    /// For digests of these files. Those that an earlier run kept are found again if they were made for the same recordings at hand, options and
+    /// version, and the file has not changed.
+    ///
+    /// # Errors
+    /// If nothing can be written there, or the file is none of these.
+    pub fn open(output: &Path, files: &[FurtherFile], digester: &Digester) -> io::Result<Unfinished> {
+        let path = Self::beside(output);
+        let exists = match fs::symlink_metadata(&path) {
+            Ok(found) if is_own(&path, &found) => true,
+            Ok(_) => return Err(io::Error::new(io::ErrorKind::AlreadyExists, "it exists and is not of a fit")),
+            Err(_) => false,
+        };
+        let found = if exists { read(&path, files, digester).unwrap_or_default() } else { BTreeMap::new() };
+        let mut file = OpenOptions::new().append(true).create_new(!exists).open(&path)?;
+        if found.is_empty() {
+            file.set_len(0)?;
+            writeln!(file, "{HEADER}")?;
+        } else {
+            // Ends a line that an interrupt cut.
+            writeln!(file)?;
+        }
+        Ok(Unfinished { path, found: Mutex::new(found), file: Mutex::new(Some(file)) })
+    }
+
+    /// Digests of an earlier run that have not been taken yet.
+    pub fn remaining(&self) -> usize {
         self.found.lock().map_or(0, |found| found.len())
     }
 
-    /// The digest of an earlier run if the file has not changed since; otherwise what `make` makes, which is kept.
+    /// The digest of an earlier run, or what `make` makes, which is kept.
     pub(super) fn or_make<E>(
         &self,
         file: &FurtherFile,
         make: impl FnOnce() -> Result<FileDigest, E>,
     ) -> Result<FileDigest, E> {
-        let modified = fs::metadata(&file.path).ok().filter(fs::Metadata::is_file).and_then(|of| of.modified().ok());
         let found = self.found.lock().ok().and_then(|mut found| found.remove(&file.at));
-        if let Some(Kept { modified: before, of }) = found
-            && Some(before) == modified
-            && (of.bytes, &of.name) == (file.bytes, &file.name())
-        {
+        if let Some(Kept { of, .. }) = found {
             return Ok(of);
         }
-        let mut of = make()?;
-        if let Some(modified) = modified {
-            of = self.keep(Kept { modified, of });
-        }
-        Ok(of)
+        let source = Source::of(file);
+        let of = make()?;
+        Ok(match source {
+            Some(source) => self.keep(Kept { source, of }),
+            None => of,
+        })
     }
 
     fn keep(&self, kept: Kept) -> FileDigest {
-        if let Ok(mut line) = serde_json::to_vec(&kept)
+        if let Ok(json) = serde_json::to_string(&kept)
             && let Ok(mut file) = self.file.lock()
         {
-            line.push(b'\n');
-            if file.as_mut().is_some_and(|file| file.write_all(&line).is_err()) {
+            let line = format!("{} {json}\n", sha256(json.as_bytes()));
+            if file.as_mut().is_some_and(|file| file.write_all(line.as_bytes()).is_err()) {
                 *file = None;
+                // The model needs the room.
+                let _ = fs::remove_file(&self.path);
             }
         }
         kept.of
     }
 
-    /// Removes the file, once what it was for is written.
-    pub fn finished(self) {
-        drop(self.file);
-        // Without it there is nothing to remove.
-        let _ = fs::remove_file(self.path);
+    /// Removes what is kept for `output`, once that is written.
+    pub fn remove(output: &Path) {
+        let path = Self::beside(output);
+        if fs::symlink_metadata(&path).is_ok_and(|found| is_own(&path, &found)) {
+            // Without it there is nothing to remove.
+            let _ = fs::remove_file(path);
+        }
     }
 }
 
-fn read(path: &Path, digester: &Digester) -> io::Result<BTreeMap<usize, Kept>> {
+/// Whether it was made here.
+fn is_own(path: &Path, found: &Metadata) -> bool {
+    let first = || BufReader::new(File::open(path).ok()?.take(HEADER.len() as u64)).lines().next()?.ok();
+    found.is_file() && (found.len() == 0 || first().is_some_and(|first| first == HEADER))
+}
+
+fn read(path: &Path, files: &[FurtherFile], digester: &Digester) -> io::Result<BTreeMap<usize, Kept>> {
+    let sources: BTreeMap<usize, Source> = files.iter().filter_map(|file| Some((file.at, Source::of(file)?))).collect();
+    let is_valid =
+        |kept: &Kept| sources.get(&kept.of.at) == Some(&kept.source) && kept.of.digest.made_for == digester.made_for();
     let mut found = BTreeMap::new();
-    for line in BufReader::new(File::open(path)?).split(b'\n') {
-        if let Ok(kept) = serde_json::from_slice::<Kept>(&line?)
-            && kept.of.digest.made_for == digester.made_for()
+    for line in BufReader::new(File::open(path)?).lines() {
+        let line = line?;
+        let Some((checksum, json)) = line.split_once(' ') else { continue };
+        if checksum == sha256(json.as_bytes())
+            && let Ok(kept) = serde_json::from_str::<Kept>(json)
+            && is_valid(&kept)
         {
             found.insert(kept.of.at, kept);
         }

@@ -19,7 +19,8 @@ pub struct TrustNumbers {
     pub direct_error: f64,
     /// Difference of slope and direct policy.
     pub gap: f64,
-    /// Expected error (nUPE) of the Gaussian process's policy on new movements.
+    /// Expected error (nUPE) of the Gaussian process's policy on new movements; of one or two, at least `halves`, or 1 if some direction is
+    /// hardly seen.
     pub expected_error: f64,
     /// Difference of the slope policies with and without rotation, where both predict about as well.
     pub ambiguity: f64,
@@ -41,8 +42,8 @@ pub struct TrustNumbers {
     pub rotation_t: Option<f64>,
     /// Whether the slope policy has a potential.
     pub model: ModelKind,
-    /// Difference of the Gaussian processes' policies that every other movement alone would give, as a share of the
-    /// policy's variance; none where halves are too few.
+    /// Difference of the Gaussian processes' policies that every other movement alone would give, or both halves of a single one, as a
+    /// share of the policy's variance; none where halves are too few.
     pub halves: Option<f64>,
     /// Share of the states on unconstrained roll-outs from starts between the demonstrated ones at which the Gaussian process's error bars are
     /// as large as half of what its policy varies by.

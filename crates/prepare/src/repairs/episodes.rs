@@ -9,6 +9,9 @@ use nalgebra::DVector;
 use crate::PrepareError;
 use crate::notes::Notes;
 
+/// Samples for each dimension below which hardly anything can be learnt.
+const FEW: usize = 3;
+
 /// Every episode that is a movement, in scaled units.
 pub(crate) fn movements(
     mut movements: Vec<Episode>,
@@ -18,6 +21,10 @@ pub(crate) fn movements(
     let longest = movements.iter().map(Episode::n_samples).max().ok_or(PrepareError::Empty)?;
     let dim = scales.len();
     if longest > 1 && 2 * longest < dim {
+        let samples = movements.iter().map(Episode::n_samples).sum();
+        if samples < FEW * dim {
+            return Err(PrepareError::LooksTransposed { dim, longest, samples });
+        }
         let what = format!(
             "the state has {dim} dimensions and the longest episode {longest} samples: rows and columns may be exchanged"
         );

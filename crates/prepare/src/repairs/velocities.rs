@@ -101,16 +101,21 @@ impl Steps {
         let power = sum(&|(_, s)| s.norm_squared());
         let common = sum(&|(d, s)| d.dot(s)) / power;
         let moved = sum(&|(d, _)| d.norm_squared());
+        let variance = |axis: usize| noise.positions.as_ref().map_or(0.0, |sd| sd[axis] * sd[axis]);
         let factor = |axis: usize| {
             let (own, own_moved) = (sum(&|(_, s)| s[axis].powi(2)), sum(&|(d, _)| d[axis].powi(2)));
-            // A channel that hardly moves does not determine its factor: its velocities may be noise.
-            let still = own <= STILL * power || own_moved <= STILL * moved && own <= NOISE_OF_STILL * power;
-            if still { common } else { sum(&|(d, s)| d[axis] * s[axis]) / own }
+            let still = own_moved <= STILL * moved + NOISE * 2.0 * variance(axis) * pairs.len() as f64;
+            match own / power {
+                // What hardly moves does not determine a factor: its velocities may be noise.
+                share if share <= STILL || still && share <= NOISE_OF_STILL => common,
+                _ if still => 0.0,
+                _ => sum(&|(d, s)| d[axis] * s[axis]) / own,
+            }
         };
         let factors = DVector::from_fn(dim, |axis, _| factor(axis));
         let left = sum(&|(d, s)| (d - s.component_mul(&factors)).norm_squared());
         // Both ends of a part carry the positions' noise.
-        let noise = 2.0 * noise.positions.iter().flatten().map(|sd| sd * sd).sum::<f64>() * pairs.len() as f64;
+        let noise = 2.0 * (0..dim).map(variance).sum::<f64>() * pairs.len() as f64;
         let explained = if left <= NOISE * noise { 1.0 } else { 1.0 - (left - noise) / (moved - noise) };
         Steps { factors, explained: if explained.is_finite() { explained } else { 0.0 } }
     }
@@ -186,11 +191,15 @@ fn rescale(episodes: &mut [Episode], fit: &Steps, channels: &[Channel], notes: &
     } else {
         let odd = (0..channels.len()).max_by(|&a, &b| off(fit.factors[a]).total_cmp(&off(fit.factors[b]))).unwrap_or(0);
         let (name, factor) = (&channels[odd].name, fit.factors[odd]);
-        let what = match factor {
-            0.0 => format!("velocities of channel {name} are not 0, although it never moves"),
-            _ => format!("velocities of channel {name} are {} times its steps, unlike the others", short(1.0 / factor)),
-        };
-        (what, 1.0 / factor)
+        if factor == 0.0 {
+            let what = format!("velocities of channel {name} are not 0, although it never moves");
+            notes.decided("velocities", "recorded, 0 where a channel never moves", what.clone(), "--integration");
+            let next = "check that the column of velocities belongs to this channel (--velocity)";
+            notes.found(Verdict::Doubtful, format!("{what}; they were set to 0"), next);
+            return;
+        }
+        let times = 1.0 / factor;
+        (format!("velocities of channel {name} are {} times its steps, unlike the others", short(times)), times)
     };
     let next = mistake(times, step).map_or("check units and time step (--dt)", |(_, words)| words);
     notes.decided("velocities", "recorded, rescaled to agree with the steps", what.clone(), "--integration");

@@ -11,7 +11,7 @@ use policy_align::{
 use serde_json::json;
 use text::quoted;
 
-use crate::cli::at_once::{digests, division, files_of, shard, write_part};
+use crate::cli::at_once::{digests, division, files_of, shard, unfinished, write_part};
 use crate::cli::clock::now;
 use crate::cli::describe::verdict;
 use crate::cli::failure::{Exit, Failure};
@@ -33,6 +33,7 @@ const MODEL: &str = "model.json";
 #[command(after_help = "\
 Writes a trust report next to the model: MODEL.trust.html and MODEL.trust.json.
 Exit code 1 if its verdict is \"do not use\".
+After an interrupt the same command goes on; finished files are not read again.
 All flags of reading files: policy-align check --help
 
 Example:
@@ -88,7 +89,7 @@ impl Fit {
             return write_part(session, (&division, &digester), shard, self.output.as_deref());
         }
         let makes_digests = !division.further.is_empty() && self.merge.is_empty();
-        let unfinished = makes_digests.then(|| Unfinished::of(&self.output(), &digester));
+        let unfinished = makes_digests.then(|| unfinished(&self.output(), &division.further, &digester)).transpose()?;
         let digests = digests(session, (&division, &digester), unfinished.as_ref(), &self.merge)?;
         let bar = session.bar(4, "{msg}  {bar:30} step {pos} of {len}, {elapsed} elapsed");
         let never = AtomicBool::new(false);
@@ -113,9 +114,7 @@ impl Fit {
             files.extend(self.report(&model, &prepared, &checksum));
         }
         write_together(&files)?;
-        if let Some(unfinished) = unfinished {
-            unfinished.finished();
-        }
+        Unfinished::remove(&self.output());
         warn_of_others(session, &self.output(), &checksum);
         let report: Vec<PathBuf> = files.into_iter().skip(1).map(|(path, _)| path).collect();
         let unreported = unreported(&model.trust.findings, &reported);
