@@ -467,6 +467,30 @@ fn more_channels_than_samples_are_refused_or_doubtful() {
     assert_eq!(verdict(&prepared(&turned(5)), what), Verdict::Doubtful);
 }
 
+/// A joint that is held shakes with the noise of its encoder; a slow drift three times as large is motion.
+#[test]
+fn held_channels_are_named() {
+    let words = "z is held: noise is all that changes there";
+    let jittery = |jitter: f64, motion: f64| {
+        let mut recordings = changed(|episode| {
+            let n = episode.n_samples();
+            episode.velocities = None;
+            episode.positions = episode.positions.clone().insert_row(2, 0.3);
+            for i in 0..n {
+                let noise = (1e4 * (i as f64 + 1.7).sin()).rem_euclid(1.0);
+                episode.positions[(2, i)] += jitter * noise + motion * i as f64 / n as f64;
+            }
+        });
+        recordings.state.push(Channel { name: "z".to_owned(), unit: None });
+        prepared(&recordings)
+    };
+    for jitter in [1e-9, 1e-4, 0.1] {
+        assert_eq!(verdict(&jittery(jitter, 0.0), words), Verdict::Doubtful);
+        let moving = jittery(jitter, 3.0 * jitter);
+        assert!(!moving.findings.iter().any(|finding| finding.what.contains(words)), "{jitter}");
+    }
+}
+
 /// A channel that is held has velocities of noise alone: they are no mistake of units. Large ones are.
 #[test]
 fn velocities_of_a_held_channel_are_noise_or_do_not_belong_to_it() {

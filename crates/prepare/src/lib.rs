@@ -125,6 +125,7 @@ pub fn prepare<'a>(
     let demonstrations = repairs::episodes::demonstrations(episodes)?;
     let recorded = demonstrations.clone();
     notes.findings.extend(remarks::no_state(&demonstrations, &state_channels));
+    notes.findings.extend(remarks::held(&demonstrations, &state_channels));
     let smoothed = samples::smooth::as_requested(&demonstrations, options.smoothing, &mut notes)?;
     let (demonstrations, velocities) = if let Some(smoothed) = smoothed {
         (smoothed, samples::noise::as_requested(&demonstrations, &noise, agreement))

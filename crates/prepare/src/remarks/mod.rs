@@ -1,12 +1,14 @@
 //! Further findings before learning.
 
 mod end_places;
+mod held;
 mod integrals;
 mod no_state;
 mod pressing;
 mod speed_limit;
 
 pub use end_places::end_places;
+pub(crate) use held::held;
 use motion::{Demonstrations, Finding, Trajectory, Verdict};
 pub(crate) use no_state::no_state;
 pub use pressing::pressing;
