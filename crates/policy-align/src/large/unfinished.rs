@@ -143,10 +143,11 @@ fn read(path: &Path, files: &[FurtherFile], digester: &Digester) -> io::Result<B
     let is_valid =
         |kept: &Kept| sources.get(&kept.of.at) == Some(&kept.source) && kept.of.digest.made_for == digester.made_for();
     let mut found = BTreeMap::new();
-    for line in BufReader::new(File::open(path)?).lines() {
-        let line = line?;
-        let Some((checksum, json)) = line.split_once(' ') else { continue };
-        if checksum == sha256(json.as_bytes())
+    for line in BufReader::new(File::open(path)?).split(b'\n') {
+        // A line that was cut may end within a letter.
+        if let Ok(line) = String::from_utf8(line?)
+            && let Some((checksum, json)) = line.split_once(' ')
+            && checksum == sha256(json.as_bytes())
             && let Ok(kept) = serde_json::from_str::<Kept>(json)
             && is_valid(&kept)
         {
