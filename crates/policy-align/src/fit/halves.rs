@@ -62,10 +62,9 @@ pub(super) fn of_direct(readings: &AutoFit, rows: &Rows, limits: Limits) -> Opti
 
 /// Samples of the only movement, if there is one alone.
 fn only_movement(readings: &AutoFit, rows: &Rows) -> Option<usize> {
-    let first = rows.indices().first()?.trajectory;
-    let alone = rows.indices().iter().all(|index| index.trajectory == first);
-    let last = rows.indices().iter().map(|index| index.sample).max()?;
-    (alone && readings.numbers().grouping == Grouping::BlocksOfTime).then_some(last + 1)
+    let (first, last) = (rows.indices().first()?, rows.indices().last()?);
+    let alone = readings.numbers().grouping == Grouping::BlocksOfTime && first.trajectory == last.trajectory;
+    alone.then_some(last.sample + 1)
 }
 
 fn disagreement<P: Policy + Send>(

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Digest;
 use crate::large::file_digest::FileDigest;
+use crate::large::unfinished::Source;
 use crate::large::{Digester, FurtherFile, PartError, Unfinished};
 
 const FORMAT: &str = "policy-align part";
@@ -32,20 +33,17 @@ impl Part {
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Part, PartError> {
         let digest = |file: &FurtherFile| {
-            let mut is_read = false;
-            let mut make = || {
-                is_read = true;
-                let digest = digester.digest_file(file, &mut |bytes| progress(bytes))?;
-                Ok(FileDigest { at: file.at, name: file.name(), bytes: file.bytes, digest })
-            };
-            let digest = match unfinished {
-                Some(unfinished) => unfinished.or_make(file, make),
-                None => make(),
-            };
-            if !is_read {
+            if let Some(found) = unfinished.and_then(|unfinished| unfinished.take(file)) {
                 progress(file.bytes);
+                return Ok(found);
             }
-            digest
+            let keeper = unfinished.and_then(|unfinished| Some((unfinished, Source::of(file)?)));
+            let digest = digester.digest_file(file, &mut |bytes| progress(bytes))?;
+            let digest = FileDigest { at: file.at, name: file.name(), bytes: file.bytes, digest };
+            if let Some((unfinished, source)) = keeper {
+                unfinished.keep(&source, &digest);
+            }
+            Ok(digest)
         };
         let digests = files.par_iter().map(digest).collect::<Result<_, PartError>>()?;
         Ok(Part { format: FORMAT.to_owned(), version: VERSION, digests })

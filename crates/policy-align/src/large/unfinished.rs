@@ -21,32 +21,32 @@ const HEADER: &str = "policy-align unfinished 1";
 pub struct Unfinished {
     path: PathBuf,
     /// Of an earlier run, by place among the further files.
-    found: Mutex<BTreeMap<usize, Kept>>,
+    found: Mutex<BTreeMap<usize, FileDigest>>,
     /// None once nothing can be written any more: a fit does not fail for that.
     file: Mutex<Option<File>>,
-}
-
-/// A digest, and of what.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Kept {
-    source: Source,
-    of: FileDigest,
 }
 
 /// What a digest depends on beside the recordings at hand: the file as it was before it was read, and its share of all rows.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Source {
+pub(super) struct Source {
     path: PathBuf,
     bytes: u64,
     modified: SystemTime,
     rows: usize,
 }
 
+/// What a line says behind its checksum.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Line<S, D> {
+    source: S,
+    of: D,
+}
+
 impl Source {
     /// None for a folder, or if the system does not tell.
-    fn of(file: &FurtherFile) -> Option<Source> {
+    pub(super) fn of(file: &FurtherFile) -> Option<Source> {
         let found = fs::metadata(&file.path).ok().filter(Metadata::is_file)?;
         let (path, modified) = (fs::canonicalize(&file.path).ok()?, found.modified().ok()?);
         Some(Source { path, bytes: found.len(), modified, rows: file.rows })
@@ -90,26 +90,14 @@ impl Unfinished {
         self.found.lock().map_or(0, |found| found.len())
     }
 
-    /// The digest of an earlier run, or what `make` makes, which is kept.
-    pub(super) fn or_make<E>(
-        &self,
-        file: &FurtherFile,
-        make: impl FnOnce() -> Result<FileDigest, E>,
-    ) -> Result<FileDigest, E> {
-        let found = self.found.lock().ok().and_then(|mut found| found.remove(&file.at));
-        if let Some(Kept { of, .. }) = found {
-            return Ok(of);
-        }
-        let source = Source::of(file);
-        let of = make()?;
-        Ok(match source {
-            Some(source) => self.keep(Kept { source, of }),
-            None => of,
-        })
+    /// The digest of an earlier run.
+    pub(super) fn take(&self, file: &FurtherFile) -> Option<FileDigest> {
+        self.found.lock().ok()?.remove(&file.at)
     }
 
-    fn keep(&self, kept: Kept) -> FileDigest {
-        if let Ok(json) = serde_json::to_string(&kept)
+    /// Keeps a digest of a file as it was before it was read.
+    pub(super) fn keep(&self, source: &Source, digest: &FileDigest) {
+        if let Ok(json) = serde_json::to_string(&Line { source, of: digest })
             && let Ok(mut file) = self.file.lock()
         {
             let line = format!("{} {json}\n", sha256(json.as_bytes()));
@@ -119,7 +107,6 @@ impl Unfinished {
                 let _ = fs::remove_file(&self.path);
             }
         }
-        kept.of
     }
 
     /// Removes what is kept for `output`, once that is written.
@@ -138,20 +125,19 @@ fn is_own(path: &Path, found: &Metadata) -> bool {
     found.is_file() && (found.len() == 0 || first().is_some_and(|first| first == HEADER))
 }
 
-fn read(path: &Path, files: &[FurtherFile], digester: &Digester) -> io::Result<BTreeMap<usize, Kept>> {
+fn read(path: &Path, files: &[FurtherFile], digester: &Digester) -> io::Result<BTreeMap<usize, FileDigest>> {
     let sources: BTreeMap<usize, Source> = files.iter().filter_map(|file| Some((file.at, Source::of(file)?))).collect();
-    let is_valid =
-        |kept: &Kept| sources.get(&kept.of.at) == Some(&kept.source) && kept.of.digest.made_for == digester.made_for();
     let mut found = BTreeMap::new();
     for line in BufReader::new(File::open(path)?).split(b'\n') {
         // A line that was cut may end within a letter.
         if let Ok(line) = String::from_utf8(line?)
             && let Some((checksum, json)) = line.split_once(' ')
             && checksum == sha256(json.as_bytes())
-            && let Ok(kept) = serde_json::from_str::<Kept>(json)
-            && is_valid(&kept)
+            && let Ok(Line::<Source, FileDigest> { source, of }) = serde_json::from_str(json)
+            && sources.get(&of.at) == Some(&source)
+            && of.digest.made_for == digester.made_for()
         {
-            found.insert(kept.of.at, kept);
+            found.insert(of.at, of);
         }
     }
     Ok(found)

@@ -27,10 +27,13 @@ pub(crate) fn held(demonstrations: &Demonstrations, channels: &[Channel]) -> Opt
         return None;
     }
     let names: Vec<&str> = held.iter().map(|&axis| &*channels[axis].name).collect();
-    let (names, verb) = (names.join(", "), if held.len() == 1 { "is" } else { "are" });
+    let verb = if held.len() == 1 { "is" } else { "are" };
     Some(Finding {
         verdict: Verdict::Doubtful,
-        what: format!("{names} {verb} held: noise is all that changes there, and would be taken for motion"),
-        next: format!("leave out what does not move: --ignore {}", names.replace(", ", ",")),
+        what: format!(
+            "{} {verb} held: noise is all that changes there, and would be taken for motion",
+            names.join(", ")
+        ),
+        next: format!("leave out what does not move: --ignore {}", names.join(",")),
     })
 }
