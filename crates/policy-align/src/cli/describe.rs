@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use gp::Hypothesis;
 use policy_align::{Learnt, Model, Verdict};
 use text::quoted;
 
@@ -35,7 +36,11 @@ pub(crate) fn learner(model: &Model) -> String {
         Learnt::Auto(both) => {
             let reading = both.overridden().unwrap_or(both.reading());
             let taken = if both.takes_slope() { "slope GP" } else { "direct GP" };
-            format!("{taken}, chosen automatically (reading: {reading:?})").to_lowercase().replace("gp", "GP")
+            let reading = match reading {
+                Hypothesis::TooFew => "too few movements".to_owned(),
+                reading => format!("{reading:?}").to_lowercase(),
+            };
+            format!("{taken}, chosen automatically (reading: {reading})")
         }
     }
 }
