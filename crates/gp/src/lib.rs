@@ -101,7 +101,7 @@ pub use left_out::curl_test::CurlTest;
 pub use reading::Hypothesis;
 pub use reading::auto_gp::{AutoFit, AutoGp};
 pub use reading::near_passes::NearPasses;
-pub use reading::numbers::{ReadingNumbers, TrajectoryErrors};
+pub use reading::numbers::{LeftOutRow, ReadingNumbers, TrajectoryErrors};
 pub use report::identifiability::{Identifiability, LeastSeen};
 pub use report::trust_report::{FamilyNumbers, FamilyReport, ModelKind, TrustReport};
 pub use rows::front_end::FrontEnd;

@@ -197,3 +197,27 @@ fn noise_across_one_constraint_for_all_is_no_freedom() {
     assert!(fit.numbers().gap <= 0.1 && fit.numbers().p_d < 0.1, "{:?}", fit.numbers());
     assert_eq!(fit.reading(), Hypothesis::Ambiguous, "{:?}", fit.numbers());
 }
+
+/// Of certain velocities, which all weigh the same, errors of a movement are those of its rows.
+#[test]
+fn errors_of_movements_are_those_of_their_rows() {
+    let fit = learnt(PolicyKind::Sinusoidal, ConstraintKind::Free, 8, None);
+    assert_eq!(fit.left_out().len(), 8);
+    for errors in fit.left_out() {
+        let own = fit.left_out_rows().iter().filter(|row| row.index.trajectory == errors.trajectory);
+        let [mut seen, mut slope, mut direct, mut sample] = [0.0, 0.0, 0.0, -1.0];
+        for row in own {
+            seen += row.seen.powi(2);
+            slope += (row.seen - row.slope.expect("no stretches")).powi(2);
+            direct += (row.seen - row.direct).powi(2);
+            assert!(row.index.sample as f64 > sample, "rows in time");
+            sample = row.index.sample as f64;
+        }
+        for (own, of_movement) in [(seen, errors.seen), (slope, errors.slope), (direct, errors.direct)] {
+            assert!((own - of_movement).abs() <= 1e-9 * of_movement, "{own} {of_movement}");
+        }
+    }
+    let stored = serde_json::to_string(&fit).expect("JSON");
+    let read: AutoFit = serde_json::from_str(&stored).expect("a fit");
+    assert!(read.left_out_rows().is_empty());
+}

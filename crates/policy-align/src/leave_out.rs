@@ -1,17 +1,13 @@
 //! Cross-validation over constraints: does a policy learnt under some hold under another?
 
 use std::collections::BTreeSet;
-use std::sync::atomic::AtomicBool;
 
-use gp::GpError;
 use motion::Demonstrations;
 use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
 use crate::fit::cleaning;
-use crate::{
-    EvaluateError, Evaluation, FitError, FitOptions, LearnerChoice, Learnt, Model, Prepared, Progress, evaluate, fit,
-};
+use crate::{EvaluateError, Evaluation, FitError, FitOptions, Model, Prepared, Progress, evaluate, fit};
 
 /// Movements under one constraint, predicted by what was learnt under all others.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -48,28 +44,6 @@ pub fn leave_constraints_out(
         Ok(ConstraintLeftOut { constraint: label.clone(), learnt_from: others.len(), evaluation })
     };
     labels.into_iter().map(without).collect()
-}
-
-/// Learns without some of the movements, given by their places, as a model was learnt from all: in its units, with the Gaussian
-/// process that it hands out, or with the one that the data support where it is PolicyAlign's. The same seed gives the same
-/// bits.
-///
-/// # Errors
-/// [`FitError`] if the remainder is too little to learn from.
-pub fn without_movements(model: &Model, prepared: &Prepared, out: &[usize]) -> Result<Model, FitError> {
-    let learner = match &model.learnt {
-        Learnt::Auto(both) if both.takes_slope() => LearnerChoice::Slope,
-        Learnt::Auto(_) | Learnt::Direct(_) => LearnerChoice::Direct,
-        Learnt::Slope(_) => LearnerChoice::Slope,
-        Learnt::PolicyAlign(_) => LearnerChoice::Auto,
-    };
-    let options = FitOptions { learner, seed: model.seed, ..FitOptions::default() };
-    let others: Vec<usize> = (0..prepared.episodes.len()).filter(|at| !out.contains(at)).collect();
-    if others.is_empty() {
-        return Err(GpError::TooFewTrajectories { found: 0 }.into());
-    }
-    let mut progress = Progress { cancelled: &AtomicBool::new(false), report: &mut |_| () };
-    fit(&only(&in_units_of(model, prepared)?, &others), &options, &mut progress)
 }
 
 /// Movements in the units of a model, which may have learnt them.

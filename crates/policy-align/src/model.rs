@@ -1,7 +1,7 @@
 use std::io;
 use std::path::Path;
 
-use motion::upper_median;
+use motion::{SampleIndex, upper_median};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
@@ -31,6 +31,9 @@ pub struct Model {
     pub seed: u64,
     /// How far to trust it.
     pub trust: Trust,
+    /// Rows learnt from, each predicted without its movement. They are not stored.
+    #[serde(skip)]
+    pub predicted: Vec<PredictedSpeed>,
     /// The policy, of states and contexts that were multiplied by [`StateChannel::scale`].
     pub learnt: Learnt,
 }
@@ -38,6 +41,18 @@ pub struct Model {
 /// No context.
 pub(crate) fn nowhere() -> DVector<f64> {
     DVector::zeros(0)
+}
+
+/// Speed along a movement, as it was seen and as the Gaussian process predicts it from all other movements, in scaled units of the state
+/// per second.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PredictedSpeed {
+    /// Where it was seen.
+    pub index: SampleIndex,
+    /// As it was recorded.
+    pub seen: f64,
+    /// As it is predicted.
+    pub predicted: f64,
 }
 
 /// The program that made a model, and when.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::direct::direct_gp::{DirectFit, DirectGp, DirectOutcome};
 use crate::left_out::comparison::{difference, much_better};
 use crate::reading::Hypothesis;
-use crate::reading::numbers::{Compared, ReadingNumbers, TrajectoryErrors};
+use crate::reading::numbers::{Compared, LeftOutRow, ReadingNumbers, TrajectoryErrors};
 use crate::rows::kept::Kept;
 use crate::slope::all_rows::{OnAllRows, on_all_rows};
 use crate::slope::cross_path::CrossPathEvidence;
@@ -45,6 +45,9 @@ pub struct AutoFit {
     /// Models that were stored before this was kept have none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) left_out: Vec<TrajectoryErrors>,
+    /// Not stored.
+    #[serde(skip)]
+    pub(crate) left_out_rows: Vec<LeftOutRow>,
 }
 
 impl AutoGp {
@@ -60,24 +63,24 @@ impl AutoGp {
         let compared = Compared {
             speeds: &kept.speeds,
             grouping: kept.grouping,
-            trajectories: &kept.trajectories,
+            indices: &kept.indices,
             data: &slope.data,
             slope: (&slope.taken.left_out, &slope.taken.actions),
             direct: (&direct.left_out, &direct.actions),
             direct_unit: direct.fit.model.unit,
             shares: None,
         };
-        let (numbers, left_out) = (ReadingNumbers::compared(&compared), compared.errors());
+        let (numbers, left_out) = (ReadingNumbers::compared(&compared), (compared.errors(), compared.rows()));
         let reading = numbers.reading();
         let pushed = if reading == Hypothesis::Free { None } else { pushed(&self.slope, rows, &kept, &slope) };
         // Where directions of stretches do not tell, nothing pushed.
         let telling = pushed.and_then(|pushed| {
             let actions = pushed.outcome.taken.model.actions(&kept.states);
-            let shares = pushed.shares(&kept.trajectories);
+            let shares = pushed.shares(&kept.trajectories());
             let slope = (&pushed.outcome.taken.left_out, &actions);
             let compared = Compared { slope, shares: Some(&shares), ..compared };
             let numbers = ReadingNumbers::compared(&compared);
-            let left_out = compared.errors();
+            let left_out = (compared.errors(), compared.rows());
             numbers.stretches_tell().then_some((pushed, numbers, left_out))
         });
         let (slope, kept, numbers, left_out, reading) = match telling {
@@ -95,7 +98,9 @@ impl AutoGp {
             report.expected_nupe = expected_beside((reading, numbers.gap, numbers.p_d), away, report.expected_nupe);
         }
         let slope = SlopeFit { model: slope.taken.model, report };
-        Ok(AutoFit { slope, direct: direct.fit, numbers, reading: Some(reading), overridden: self.reading, left_out })
+        let (direct, (left_out, left_out_rows)) = (direct.fit, left_out);
+        let (reading, overridden) = (Some(reading), self.reading);
+        Ok(AutoFit { slope, direct, numbers, reading, overridden, left_out, left_out_rows })
     }
 }
 
@@ -157,6 +162,11 @@ impl AutoFit {
             self.left_out.iter().zip(&other.left_out).map(|(own, of)| share(own) - share(of)).collect();
         let unexplained = |of: &AutoFit| 1.0 - of.slope.report.r_squared;
         much_better(&gains, (unexplained(self), unexplained(other))).is_some()
+    }
+
+    /// Rows that both policies learnt from, each predicted without its trajectory; none of what was stored and read back.
+    pub fn left_out_rows(&self) -> &[LeftOutRow] {
+        &self.left_out_rows
     }
 
     /// The policy for constrained movement.

@@ -1,3 +1,4 @@
+use motion::SampleIndex;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
@@ -56,13 +57,27 @@ pub struct TrajectoryErrors {
     pub seen: f64,
 }
 
+/// Speed along the direction in which a movement went, as it was seen and as it is predicted from all other movements, in units of the
+/// state per second.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LeftOutRow {
+    /// Where it was recorded; of a mean (S33) its first sample.
+    pub index: SampleIndex,
+    /// r, what was seen.
+    pub seen: f64,
+    /// What the slope GP predicts; none where it learnt from rows of stretches.
+    pub slope: Option<f64>,
+    /// What the direct GP predicts.
+    pub direct: f64,
+}
+
 /// Two models of the same rows.
 #[derive(Clone, Copy)]
 pub(crate) struct Compared<'a> {
     pub(crate) speeds: &'a [f64],
     pub(crate) grouping: Grouping,
-    /// The trajectory that each group of the data is of.
-    pub(crate) trajectories: &'a [usize],
+    /// Where each row was recorded.
+    pub(crate) indices: &'a [SampleIndex],
     pub(crate) data: &'a SlopeData,
     /// Held-out predictions of the slope GP, and its policy at the rows, (n, M).
     pub(crate) slope: (&'a LeftOut, &'a DMatrix<f64>),
@@ -77,23 +92,44 @@ pub(crate) struct Compared<'a> {
 impl Compared<'_> {
     /// E^s_T, E^d_T and R_T of (R7).
     pub(crate) fn errors(&self) -> Vec<TrajectoryErrors> {
-        let &Compared { speeds, data, slope, direct, direct_unit, .. } = self;
+        let &Compared { speeds, indices, data, .. } = self;
         let mean_weight = data.noise_weights.iter().map(|d| 1.0 / d).sum::<f64>() / data.noise_weights.len() as f64;
         let weight = |row: usize| 1.0 / (data.noise_weights[row] * mean_weight);
-        let errors = |(group, (rows, &trajectory)): (usize, (&Vec<usize>, &usize))| {
+        let errors = |(group, rows): (usize, &Vec<usize>)| {
             let power = |of: &dyn Fn(usize) -> f64| rows.iter().map(|&row| weight(row) * of(row).powi(2)).sum::<f64>();
             let seen = power(&|row| speeds[row]);
             TrajectoryErrors {
-                trajectory,
+                trajectory: indices[rows[0]].trajectory,
                 slope: match self.shares {
                     Some(shares) => shares[group] * seen,
-                    None => power(&|row| data.speed * slope.0.residuals[(row, 0)]),
+                    None => power(&|row| self.slope_residual(row)),
                 },
-                direct: power(&|row| direct_unit * (direct.0.residuals.row(row) * data.n.column(row)).x),
+                direct: power(&|row| self.direct_residual(row)),
                 seen,
             }
         };
-        data.groups.iter().zip(self.trajectories).enumerate().map(errors).collect()
+        data.groups.iter().enumerate().map(errors).collect()
+    }
+
+    /// What is predicted of every row.
+    pub(crate) fn rows(&self) -> Vec<LeftOutRow> {
+        let row = |(row, (&seen, &index)): (usize, (&f64, &SampleIndex))| LeftOutRow {
+            index,
+            seen,
+            slope: self.shares.is_none().then(|| seen - self.slope_residual(row)),
+            direct: seen - self.direct_residual(row),
+        };
+        self.speeds.iter().zip(self.indices).enumerate().map(row).collect()
+    }
+
+    /// e^s of (R7).
+    fn slope_residual(&self, row: usize) -> f64 {
+        self.data.speed * self.slope.0.residuals[(row, 0)]
+    }
+
+    /// e^d of (R7).
+    fn direct_residual(&self, row: usize) -> f64 {
+        self.direct_unit * (self.direct.0.residuals.row(row) * self.data.n.column(row)).x
     }
 }
 
@@ -105,13 +141,11 @@ impl ReadingNumbers {
         (slope, slope_left_out): (&SlopeModel, &LeftOut),
         (direct, direct_left_out): (&DirectModel, &LeftOut),
     ) -> Self {
-        let trajectories: Vec<usize> =
-            data.groups.iter().map(|rows_of| rows.indices()[rows_of[0]].trajectory).collect();
         let speeds: Vec<f64> = rows.velocities().column_iter().map(|velocity| velocity.norm()).collect();
         Self::compared(&Compared {
             speeds: &speeds,
             grouping: Grouping::Trajectories,
-            trajectories: &trajectories,
+            indices: rows.indices(),
             data,
             slope: (slope_left_out, &slope.actions(rows.states())),
             direct: (direct_left_out, &direct.moving_actions(rows.states().as_view())),

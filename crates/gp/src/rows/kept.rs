@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use motion::scaled;
+use motion::{SampleIndex, scaled};
 use nalgebra::{DMatrix, DVector};
 use rand::seq::SliceRandom;
 use rand::{Rng, RngExt};
@@ -66,8 +66,9 @@ pub(crate) struct OfStretches {
 /// Rows kept, in the order of trajectories and samples.
 #[derive(Debug, Clone)]
 pub(crate) struct Kept {
-    /// Which of the rows each is, (M).
+    /// Which of the rows each is, (M), and where that was recorded.
     pub(crate) rows: Vec<usize>,
+    pub(crate) indices: Vec<SampleIndex>,
     /// States with their contexts, (n + p, M).
     pub(crate) states: DMatrix<f64>,
     /// The part of the velocity along the direction of each row, (n, M): the whole but in rows of stretches and of momenta.
@@ -80,8 +81,6 @@ pub(crate) struct Kept {
     /// Where they are of stretches.
     pub(crate) of_stretches: Option<OfStretches>,
     pub(crate) groups: Vec<Vec<usize>>,
-    /// The trajectory that each group is of.
-    pub(crate) trajectories: Vec<usize>,
     /// Rows whose marginal likelihood sets the amplitudes: random ones, since contiguous rows would make it take errors
     /// that are correlated along a trajectory for signal.
     pub(crate) hyper: Vec<usize>,
@@ -90,6 +89,11 @@ pub(crate) struct Kept {
 }
 
 impl Kept {
+    /// The trajectory that each group is of.
+    pub(crate) fn trajectories(&self) -> Vec<usize> {
+        self.groups.iter().map(|rows| self.indices[rows[0]].trajectory).collect()
+    }
+
     /// Whole velocities u, (n, M).
     pub(crate) fn observed(&self) -> &DMatrix<f64> {
         self.whole.as_ref().unwrap_or(&self.velocities)
@@ -232,7 +236,7 @@ fn kept(rows: &Rows, usable: Vec<usize>, grouped: &Grouped) -> Kept {
         variances: rows.variances().map(|variances| usable.iter().map(|&row| variances[row]).collect()),
         of_stretches: None,
         hyper: Vec::new(),
-        trajectories: groups.iter().map(|rows_of| rows.indices()[usable[rows_of[0]]].trajectory).collect(),
+        indices: usable.iter().map(|&row| rows.indices()[row]).collect(),
         groups,
         grouping: grouped.grouping,
         dropped: RowsDropped::default(),

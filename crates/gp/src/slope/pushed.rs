@@ -120,7 +120,8 @@ impl Pushed {
             error / (of_sample * weighed(rows, &|row| data.targets[(row, 0)]))
         };
         let all = share(&data.groups.concat());
-        let place = |trajectory: &usize| self.kept.trajectories.iter().position(|of| of == trajectory);
+        let own = self.kept.trajectories();
+        let place = |trajectory: &usize| own.iter().position(|of| of == trajectory);
         trajectories
             .iter()
             .map(|trajectory| place(trajectory).map_or(all, |group| share(&data.groups[group])))

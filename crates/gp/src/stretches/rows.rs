@@ -73,7 +73,7 @@ impl Stretches {
         let groups: Vec<Vec<usize>> = all.chunk_by(same).map(<[usize]>::to_vec).collect();
         // Further trajectories have no samples to look for stretches in.
         let last = rows.indices().iter().map(|index| index.trajectory).max();
-        let at_hand = kept.trajectories.iter().filter(|&&trajectory| Some(trajectory) <= last).count();
+        let at_hand = kept.trajectories().into_iter().filter(|&trajectory| Some(trajectory) <= last).count();
         if groups.len() < 3 || (groups.len() as f64) < COVERED * at_hand as f64 {
             return None;
         }
@@ -91,7 +91,7 @@ impl Stretches {
                 space: self.through.as_ref().map(|through| through.space),
                 of_sample: found as f64 / samples as f64,
             }),
-            trajectories: groups.iter().map(|rows_of| index(rows_of[0]).trajectory).collect(),
+            indices: used.iter().map(|&row| rows.indices()[row]).collect(),
             groups,
             hyper: all.iter().copied().step_by(all.len().div_ceil(selection.hyper_rows).max(1)).collect(),
             grouping: kept.grouping,

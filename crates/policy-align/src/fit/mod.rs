@@ -20,7 +20,7 @@ pub use options::{FitOptions, LearnerChoice};
 pub use progress::{Progress, Step};
 pub(crate) use recorded_rows::{averaged, cleaning, least_noisy_rows, rows};
 
-use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Grouping, PushTest, SlopeGp, TrajectoryErrors};
+use gp::{AutoFit, AutoGp, DirectGp, FrontEnd, Grouping, LeftOutRow, PushTest, SlopeGp, TrajectoryErrors};
 use motion::{LearntPolicy, Policy};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -29,7 +29,7 @@ use crate::trust::{
     AlignedNumbers, CommonPlane, TrustNumbers, VerdictInput, differing_goals, friction, judge, pushed, share_leaving,
     share_unknown,
 };
-use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, Prepared};
+use crate::{DataSummary, Decision, Finding, FitError, Learnt, MadeBy, Model, PredictedSpeed, Prepared};
 use aligning::AlignedFit;
 use decision::{digests_decision, learner_decision, rows_decision};
 use digest::{widened, with_digests};
@@ -126,6 +126,8 @@ pub fn fit_with(
     findings.extend(plane(prepared, &numbers));
     let trust =
         judge(VerdictInput { numbers, findings: &findings, state: &prepared.state, episodes: &prepared.episodes });
+    // With a robot's inertia, parts along a movement are not lengths.
+    let predicted = if rows.momenta().is_none() { predicted(&readings, options.learner) } else { vec![] };
     let learnt = match (options.learner, aligned) {
         (_, Some(aligned)) => {
             decisions.extend(aligned.decisions);
@@ -142,7 +144,8 @@ pub fn fit_with(
     let time_step = prepared.time_step;
     let chosen_context = crate::model::nowhere();
     let made_by = MadeBy::this();
-    Ok(Model { made_by, state, context, chosen_context, time_step, data, decisions, seed: options.seed, trust, learnt })
+    let seed = options.seed;
+    Ok(Model { made_by, state, context, chosen_context, time_step, data, decisions, seed, trust, predicted, learnt })
 }
 
 fn learn(rows: &gp::Rows, options: &FitOptions) -> Result<AutoFit, FitError> {
@@ -264,6 +267,16 @@ fn unknown(readings: &AutoFit, prepared: &Prepared, rows: &gp::Rows) -> f64 {
     let states = actions::states(rows);
     let variance = actions::spread(&readings.actions(states.as_view())) / states.ncols() as f64;
     share_unknown(readings, &prepared.demonstrations, variance).unwrap_or(1.0)
+}
+
+/// What the Gaussian process predicts of left-out movements.
+fn predicted(readings: &AutoFit, learner: LearnerChoice) -> Vec<PredictedSpeed> {
+    let takes_slope = takes_slope(readings, learner);
+    let speed = |row: &LeftOutRow| {
+        let predicted = if takes_slope { row.slope? } else { row.direct };
+        Some(PredictedSpeed { index: row.index, seen: row.seen, predicted })
+    };
+    readings.left_out_rows().iter().filter_map(speed).collect()
 }
 
 /// E′ of every movement at hand left out, as if it were as fast as all are.

@@ -109,6 +109,7 @@ pub(crate) fn model(learnt: Learnt, demonstrations: &Demonstrations) -> Model {
         made_by: MadeBy { program: "policy-align 0.1.0".to_owned(), time: "2026-11-22T00:12:05Z".to_owned() },
         context: vec![],
         chosen_context: nalgebra::DVector::zeros(0),
+        predicted: vec![],
         state: (0..demonstrations.dim()).map(channel).collect(),
         time_step: demonstrations.trajectories()[0].time_step(),
         data: DataSummary {

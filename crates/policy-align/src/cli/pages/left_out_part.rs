@@ -1,89 +1,73 @@
-//! Movements that were left out, and the speed that a policy learnt from the others predicts along them.
+//! Movements that were left out, and the speed that the policy of the others predicts along them.
 
 use maud::html;
-use motion::{Policy as _, Trajectory};
+use motion::Trajectory;
 use page::{Card, Part};
 use plot::{Axis, Curve, Curves, Dash, Filling, Mark, Sign, Stroke};
-use policy_align::{Learnt, Model, Prepared, StateChannel, without_movements};
+use policy_align::{Learnt, Model, PredictedSpeed, Prepared, StateChannel};
 use text::plain;
 
-use crate::cli::pages::constraint_marks::as_recorded;
 use crate::cli::pages::movements::simplified;
 use crate::cli::pages::page_parts::part;
 
-/// Samples of a movement that are drawn, at most.
+/// Rows of a movement that are drawn, at most.
 const DRAWN: usize = 60;
 /// How far curves of fewer points may be from these, as a share of the axes.
 const FLAT: f64 = 4e-3;
 /// Empty space above and below, as a share of the range.
 const MARGIN: f64 = 0.08;
-/// Fewer movements are too few to leave three out.
-const LEAST: usize = 8;
-/// Samples times the square of the dimension from which learning again takes longer than a page may.
-const MOST: usize = 300_000;
+/// One or two movements are not left out.
+const LEAST: usize = 3;
 const SIZE: (f64, f64) = (370.0, 280.0);
 const TITLE: &str = "Left out and predicted";
 const SEEN: Stroke = Stroke { color: "#56a0d3", width: 2.0, dash: Dash::Solid };
 const PREDICTED: Stroke = Stroke { color: "#d55e00", width: 1.6, dash: Dash::Dashed };
 
 /// Of the movements with the largest, the median and the least error when left out, the speed that was seen and the one that is
-/// predicted along it from the others; none where there are too few to leave three out, where a context or a robot is learnt
-/// with, or where learning again would take long.
+/// predicted along it from all others; none where movements were not left out, or their parts along the motion are not known.
 pub(crate) fn left_out_part(model: &Model, prepared: &Prepared) -> Option<Part> {
-    let effort = model.data.samples * model.state.len().pow(2);
-    let of_robot = model.decisions.iter().any(|decision| ["metric", "task space"].contains(&decision.what.as_str()));
-    if prepared.episodes.len() < LEAST || !model.context.is_empty() || of_robot || effort > MOST {
+    if prepared.episodes.len() < LEAST {
         return None;
     }
     let mut errors = model.trust.numbers.episode_errors.clone();
     errors.sort_by(|(_, a), (_, b)| b.total_cmp(a));
     let chosen = [("Largest", 0), ("Median", errors.len() / 2), ("Least", errors.len().checked_sub(1)?)];
-    let chosen = chosen.map(|(name, at)| (name, errors[at]));
-    let places: Vec<usize> = chosen.iter().map(|(_, (episode, _))| *episode).collect();
-    let without = without_movements(model, prepared, &places).ok()?;
-    let card = |&(name, (episode, _)): &(&str, (usize, f64))| {
-        let movement = &prepared.demonstrations.trajectories()[episode];
+    let drawn = chosen.map(|(name, at)| {
+        let episode = errors[at].0;
+        let rows: Vec<&PredictedSpeed> = model.predicted.iter().filter(|row| row.index.trajectory == episode).collect();
+        (name, episode, rows)
+    });
+    if drawn.iter().any(|(.., rows)| rows.len() < 2) {
+        return None;
+    }
+    let card = |(name, episode, rows): &(&str, usize, Vec<&PredictedSpeed>)| {
+        let movement = &prepared.demonstrations.trajectories()[*episode];
         // Names may be long: they stand below the picture, where they are broken.
-        let (title, own) = (format!("{name} error"), format!("Episode {}.", prepared.episodes[episode]));
-        let svg = plot::Picture::rows(&[&[&curves(&without, movement, prepared, &title)]]).svg();
+        let (title, own) = (format!("{name} error"), format!("Episode {}.", prepared.episodes[*episode]));
+        let svg = plot::Picture::rows(&[&[&curves(model, movement, rows, &title)]]).svg();
         let id = format!("left-out-{}", name.to_lowercase());
         Card { id: &id, title: &title, caption: &own, remark: None, svg: &svg }.under(&title)
     };
     let which = match model.learnt {
-        Learnt::PolicyAlign(_) => "the Gaussian process that PolicyAlign's policy is compared with, learnt from",
-        _ => "a policy learnt from",
+        Learnt::PolicyAlign(_) => "the Gaussian process that PolicyAlign's policy is compared with",
+        _ => "the policy",
     };
     let body = html! {
         p {
-            "Blue: the speed of three movements along their own direction, as recorded. Orange and dashed: what " (which) " all other \
-             movements predicts there. Where both agree, the movement shows nothing that the others do not. All three were left out \
-             together; the numbers above leave out one after another, and are usually smaller."
+            "Blue: the speed of three movements along their own direction, as recorded. Orange and dashed: what " (which) " predicts \
+             there if it learns from all other movements, with the same parameters. Where both agree, the movement shows nothing that the \
+             others do not."
         }
-        div .small-multiples { @for of in &chosen { (card(of)) } }
+        div .small-multiples { @for of in &drawn { (card(of)) } }
     };
     Some(part("left-out", TITLE, &body))
 }
 
 /// Speed along a movement over time, seen and predicted, in units of the recording.
-fn curves(without: &Model, movement: &Trajectory, prepared: &Prepared, title: &str) -> Curves {
-    // Steps have a velocity each, between two samples.
-    let velocities = movement.velocities().cloned().unwrap_or_else(|| movement.step_velocities());
-    let (states, velocities) = (as_recorded(movement.states(), prepared), as_recorded(&velocities, prepared));
-    let (policy, scales) = (without.policy(), without.scales());
-    let n = velocities.ncols();
-    let at = |sample: usize| {
-        let state = match movement.velocities() {
-            Some(_) => states.column(sample).into_owned(),
-            None => 0.5 * (states.column(sample) + states.column(sample + 1)),
-        };
-        // Along the movement at right angles in the units in which the policy was learnt.
-        let seen = velocities.column(sample).component_mul(&scales);
-        let speed = seen.norm();
-        let predicted = policy.action(state.as_view()).component_mul(&scales);
-        let along = if speed == 0.0 { 0.0 } else { seen.dot(&predicted) / speed };
-        (movement.seconds(0, sample), speed, along)
-    };
-    let points: Vec<(f64, f64, f64)> = (0..n).step_by(n.div_ceil(DRAWN).max(1)).map(at).collect();
+fn curves(model: &Model, movement: &Trajectory, rows: &[&PredictedSpeed], title: &str) -> Curves {
+    let every = rows.len().div_ceil(DRAWN).max(1);
+    let point = |row: &&PredictedSpeed| (movement.seconds(0, row.index.sample), row.seen, row.predicted);
+    let points: Vec<(f64, f64, f64)> = rows.iter().step_by(every).map(point).collect();
     let values = points.iter().flat_map(|&(_, seen, along)| [seen, along]);
     let (low, high) = values.fold((0.0, 0.0), |(low, high): (f64, f64), value| (low.min(value), high.max(value)));
     let duration = points.last().map_or(1.0, |point| point.0).max(f64::MIN_POSITIVE);
@@ -100,7 +84,7 @@ fn curves(without: &Model, movement: &Trajectory, prepared: &Prepared, title: &s
     Curves {
         title: title.to_owned(),
         x_label: "time (s)".to_owned(),
-        y_label: format!("speed ({})", unit(without)),
+        y_label: format!("speed ({})", unit(model)),
         x_axis: Axis::Linear,
         y_axis: Axis::Linear,
         x: [0.0, duration],
