@@ -18,8 +18,10 @@ use crate::left_out::LeftOut;
 use crate::left_out::level::{Conditions, climb, kappas, raised};
 use crate::rows::thinning::every_so_many;
 
-/// Rows on which levels of noise are compared; whole groups of them.
-const COMPARED: usize = 20_000;
+/// Rows on which levels of noise are compared, about; whole groups of them, at least three.
+const COMPARED: usize = 8000;
+/// Rows whose features stay at hand from level to level, at most.
+const AT_HAND: usize = 20_000;
 
 /// A model of all rows.
 #[derive(Debug)]
@@ -43,7 +45,8 @@ impl Induced {
     /// At these amplitudes, σ² of the highest marginal likelihood, and the κ that predicts left-out groups best. None if there is no
     /// factor.
     ///
-    /// Costs 4 n m² operations and n m covariances for n rows and m inducing ones, and the memory of the features of 20,000 rows.
+    /// Costs 4 n m² operations and n m covariances for n rows and m inducing ones, and the memory of the features of the rows on which levels
+    /// are compared.
     pub(crate) fn new(
         covariance: &impl Covariance,
         amplitudes: &[f64],
@@ -64,7 +67,7 @@ impl Induced {
         let count = conditions.noise_weights.len();
         let all: Vec<&[usize]> = conditions.groups.iter().map(Vec::as_slice).collect();
         let some = Groups::new(evenly(&all, COMPARED));
-        let some = if some.len() <= COMPARED { some.with_products(&features, &spectrum) } else { some };
+        let some = if some.len() <= AT_HAND { some.with_products(&features, &spectrum) } else { some };
         let share = some.len() as f64 / count as f64;
         let at = |kappa| {
             let noise = with_kappa(kappa);

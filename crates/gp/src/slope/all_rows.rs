@@ -10,7 +10,7 @@ use crate::rows::noise_weights::{certain_weights, slope_weights};
 use crate::rows::thinning::scattered;
 use crate::slope::candidate::Candidate;
 use crate::slope::data::SlopeData;
-use crate::slope::search::{Outcome, best_of, candidate, nearly_best};
+use crate::slope::search::{NEARLY, Outcome, best_of, candidate, nearly_best};
 use crate::slope::slope_gp::SlopeGp;
 
 /// Rows of certain velocities, for each that was kept, up to which the others say nearly the same as those kept.
@@ -22,7 +22,9 @@ const HYPER: usize = 400;
 const ALLOWED: f64 = 1.05;
 /// Multiple of the least error so far above which the other kind of model is not tried through inducing rows.
 const HOPELESS: f64 = 2.0;
-/// Rows, for each inducing one, beyond which they are thinned.
+/// Rows, for each inducing one, on which families are compared where there are several times as many, and beyond which they are thinned.
+const FEW: usize = 16;
+const SEVERAL: usize = 3;
 const MOST: usize = 64;
 
 /// More rows, and the outcome on them.
@@ -32,7 +34,7 @@ pub(crate) struct OnAllRows {
 }
 
 /// `thinned`, a search on the rows `kept`, on more rows: the best families again, first exactly with amplitudes anew, then those of
-/// them that are still good on all rows through inducing ones. None where not many rows were thinned, where what hides least was
+/// them that are still good on rows through inducing ones, and the best of these on all rows. None where not many rows were thinned, where what hides least was
 /// chosen, or where the movements of `kept` are predicted best without these rows.
 pub(crate) fn on_all_rows(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outcome) -> Option<OnAllRows> {
     if gp.inducing_rows == 0 || thinned.least_hidden {
@@ -56,11 +58,16 @@ pub(crate) fn on_all_rows(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outc
     let exact = best_of(own_units.iter().map(|&own_units| exact(gp, &more, thinned, own_units)).collect());
     let thinned_error = judge.error(kept, &thinned.data, &thinned.taken);
     let least = exact.as_ref().map_or(thinned_error, |exact| error(exact).min(thinned_error));
+    let worth = |all: &Kept, data: &SlopeData, of: &Candidate| judge.error(all, data, of) <= HOPELESS * least;
     let induced = (beyond > 0).then(|| {
         let before = exact.as_ref().map_or(thinned, |exact| &exact.outcome);
-        induced(gp, of_most(MOST * gp.inducing_rows)?, before, |all, data, of| {
-            judge.error(all, data, of) <= HOPELESS * least
-        })
+        let [some, all] = [FEW, MOST].map(|rows| of_most(rows * gp.inducing_rows));
+        let (some, all) = (some?, all?);
+        if all.rows.len() < SEVERAL * some.rows.len() {
+            return induced(gp, all, (before, NEARLY), worth);
+        }
+        let some = induced(gp, some, (before, NEARLY), worth)?;
+        induced(gp, all, (&some.outcome, 1.0), worth)
     });
     // Of noisy rows too few are kept to tell nearly equal models apart: the one of more rows knows more.
     let allowed = if kept.variances.is_some() { ALLOWED } else { 1.0 };
@@ -94,32 +101,34 @@ fn exact(gp: &SlopeGp, more: &Kept, thinned: &Outcome, own_units: bool) -> Optio
     let data =
         if own_units { SlopeData::from_kept(&kept, weights).ok()? } else { thinned.data.of_others(&kept, weights) };
     let fit = |data: &SlopeData, kept: &Kept, (family, kind), _: &_| candidate(gp, data, kept, family, kind);
-    compared((kept, data), thinned, fit, |_, _, _| true)
+    compared((kept, data), (thinned, NEARLY), fit, |_, _, _| true)
 }
 
-/// Models of all rows, through the inducing ones; none if those like the one taken before are not `worth` more.
+/// Models of these rows through inducing ones, with the families that were nearly the best before; none if those like the one taken
+/// then are not `worth` more.
 fn induced(
     gp: &SlopeGp,
     all: Kept,
-    before: &Outcome,
+    (before, nearly): (&Outcome, f64),
     worth: impl Fn(&Kept, &SlopeData, &Candidate) -> bool,
 ) -> Option<OnAllRows> {
     let data = before.data.of_others(&all, noise_weights(&all, before));
     let most = gp.inducing_rows;
-    compared((all, data), before, |data, all, of, prior| Candidate::induced(data, all, of, prior, most), worth)
+    let fit = |data: &SlopeData, all: &Kept, of, prior: &_| Candidate::induced(data, all, of, prior, most);
+    compared((all, data), (before, nearly), fit, worth)
 }
 
-/// Steps 6 and 7 on other rows, with the families that were good before; none if the best model of the kind taken before is not `worth`
+/// Steps 6 and 7 on other rows, with the families that were nearly the best before; none if the best model of the kind taken before is not `worth`
 /// the other kind.
 fn compared(
     (kept, data): (Kept, SlopeData),
-    before: &Outcome,
+    (before, nearly): (&Outcome, f64),
     fit: impl Fn(&SlopeData, &Kept, (Family, ModelKind), &[(Block, f64)]) -> Option<Candidate>,
     worth: impl Fn(&Kept, &SlopeData, &Candidate) -> bool,
 ) -> Option<OnAllRows> {
     // One after the other: each is parallel in itself, and together they would take several times the memory.
     let best = |kind| {
-        let tried = nearly_best_of(&before.families, kind)
+        let tried = nearly_best_of(&before.families, kind, nearly)
             .into_iter()
             .map(|(family, prior)| (family, fit(&data, &kept, (family, kind), prior)));
         let mut families = Vec::new();
@@ -149,8 +158,8 @@ fn compared(
 }
 
 /// Families of one kind that predict movements left out nearly as well as the best of them, with their amplitudes.
-fn nearly_best_of(families: &[FamilyReport], kind: ModelKind) -> Vec<(Family, &[(Block, f64)])> {
-    let nearly = nearly_best(families.iter().filter(|report| report.model == kind));
+fn nearly_best_of(families: &[FamilyReport], kind: ModelKind, nearly: f64) -> Vec<(Family, &[(Block, f64)])> {
+    let nearly = nearly_best(families.iter().filter(|report| report.model == kind), nearly);
     nearly.into_iter().filter_map(|report| Some((report.family, &*report.fit.as_ref()?.amplitudes))).collect()
 }
 

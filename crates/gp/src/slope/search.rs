@@ -20,7 +20,7 @@ const HIDDEN: f64 = 1.3;
 /// How often noise weights are taken anew from a policy with rotation.
 const ROUNDS: usize = 3;
 /// Models with at most so many times the least error on some rows may have less on more.
-const NEARLY: f64 = 4.0;
+pub(super) const NEARLY: f64 = 4.0;
 
 /// The model taken, the one not taken, and everything tried.
 pub(crate) struct Outcome {
@@ -87,7 +87,7 @@ fn compared(
 /// The search on more rows of stretches than `fewer`, of the models alone that nearly were the best ones there.
 pub(crate) fn outcome_of_nearly_best(gp: &SlopeGp, kept: &Kept, fewer: &Outcome) -> Result<Outcome, GpError> {
     let data = weighted(gp, kept)?;
-    let nearly_best = nearly_best(fewer.families.iter());
+    let nearly_best = nearly_best(fewer.families.iter(), NEARLY);
     let mut families = Vec::new();
     let mut best = |kind| {
         let is_one =
@@ -103,12 +103,14 @@ pub(crate) fn outcome_of_nearly_best(gp: &SlopeGp, kept: &Kept, fewer: &Outcome)
     }
 }
 
-/// Of models of the same rows those that leave at most four times as much of the movements left out as the best of them: on more rows they may leave
-/// less.
-pub(super) fn nearly_best<'a>(reports: impl Iterator<Item = &'a FamilyReport> + Clone) -> Vec<&'a FamilyReport> {
+/// Of models of the same rows those that leave at most `nearly` times as much of the movements left out as the best of them.
+pub(super) fn nearly_best<'a>(
+    reports: impl Iterator<Item = &'a FamilyReport> + Clone,
+    nearly: f64,
+) -> Vec<&'a FamilyReport> {
     let left = |report: &FamilyReport| report.fit.as_ref().map_or(f64::INFINITY, |fit| 1.0 - fit.r_squared);
     let least = reports.clone().map(left).fold(f64::INFINITY, f64::min);
-    reports.filter(|report| report.fit.is_some() && left(report) <= NEARLY * least).collect()
+    reports.filter(|report| report.fit.is_some() && left(report) <= nearly * least).collect()
 }
 
 /// Step 9: the search again with the weights (S18) of a pilot policy, which was itself fitted with those of the model taken;
