@@ -21,7 +21,7 @@ use page::markdown_table;
 
 use crate::files::{repository, write};
 use crate::progress::say;
-use crate::records::{Earlier, Records};
+use crate::runner::records::{Earlier, Records};
 use crate::runner::{Plan, Work};
 
 /// What is written: what was measured, its page of documentation, and what texts quote.

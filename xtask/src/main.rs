@@ -9,7 +9,6 @@ mod leverage;
 mod notices;
 mod progress;
 mod publish;
-mod records;
 mod report;
 mod reproduce;
 mod revision;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use anyhow::Context as _;
 
 use crate::progress::say;
-use crate::records::Records;
+use crate::runner::records::Records;
 
 /// Exit status of a run that was stopped.
 const INTERRUPTED: i32 = 130;

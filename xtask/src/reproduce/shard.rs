@@ -13,9 +13,9 @@ use serde::{Deserialize, Serialize};
 use crate::failure::Failure;
 use crate::files::{relative, repository, typed, write};
 use crate::progress::say;
-use crate::records::Records;
 use crate::run_folder::RunFolder;
 use crate::runner::Work;
+use crate::runner::records::Records;
 
 /// What a shard leaves beside its records.
 const FILE: &str = "shard.json";

@@ -1,5 +1,7 @@
 //! Runs the selected setups over their data sets, in parallel, keeping every finished one.
 
+pub(crate) mod records;
+
 use std::sync::Arc;
 
 use experiments::outcome::{Outcome, Outcomes};
@@ -8,7 +10,7 @@ use experiments::{Experiment, Setup};
 use rayon::prelude::*;
 
 use crate::progress::Progress;
-use crate::records::{DataSet, Records};
+use records::{DataSet, Records};
 
 /// What to run: how many data sets a setup, from which seed.
 #[derive(Debug, Clone, Copy)]

@@ -1,19 +1,21 @@
-//! Finished data sets, kept one JSON line each so that nothing but what is in flight is ever lost.
-
-mod line;
+//! Finished data sets, kept one line each so that nothing but what is in flight is ever lost.
 
 use std::collections::HashMap;
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
-use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
-use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::io::ErrorKind;
+use std::path::Path;
+use std::sync::MutexGuard;
 
 use anyhow::Context as _;
 use experiments::outcome::Outcome;
+use journal::{Contents, Journal};
+use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
-use line::Record;
+
+/// The first line of the file.
+pub(crate) const KIND: &str = "policy-align records 1";
 
 /// Names one data set of one setup of an experiment.
 #[derive(Debug, Clone, Copy)]
@@ -33,11 +35,20 @@ pub(crate) struct DataSet<'a> {
 /// The file of finished data sets, open for appending.
 #[derive(Debug)]
 pub(crate) struct Records {
-    path: PathBuf,
+    journal: Journal,
     code: u64,
     finished: HashMap<String, Outcome>,
     unreadable: usize,
-    file: Mutex<File>,
+}
+
+/// What is kept of one data set of one setup.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Record {
+    key: String,
+    experiment: String,
+    setup: String,
+    number: u32,
+    outcome: Outcome,
 }
 
 /// Whether the outcomes of earlier runs are used.
@@ -53,24 +64,34 @@ impl Records {
     /// Opens the records at `path`, creating them where there are none. Lines that cannot be believed, such as the torn
     /// last line of a killed run, are passed over; their data sets are computed again.
     pub(crate) fn open(path: &Path, earlier: Earlier) -> anyhow::Result<Records> {
-        let (file, bytes) = open(path, earlier).map_err(|error| {
-            let remedy = "wait for the other run, or choose another --out";
-            Failure::new(format!("the records cannot be opened: {error:#}"), path.display().to_string(), remedy)
+        let (journal, found) = Journal::open(path, KIND).map_err(|error| {
+            let remedy = match error.kind() {
+                ErrorKind::WouldBlock => "wait for the other run, or choose another --out",
+                _ => "delete it if an older version wrote it, or choose another --out",
+            };
+            Failure::new(format!("the records cannot be opened: {error}"), path.display().to_string(), remedy)
         })?;
-        let (finished, unreadable) = read(&bytes);
-        Ok(Records { path: path.to_owned(), code: code_identity()?, finished, unreadable, file: Mutex::new(file) })
+        let mut records = Records { journal, code: code_identity()?, finished: HashMap::new(), unreadable: 0 };
+        match earlier {
+            Earlier::Resume => records.take(found),
+            Earlier::Forget => records.clear()?,
+        }
+        Ok(records)
     }
 
     /// Adds what another file holds, which stays as it is.
     pub(crate) fn add(&mut self, path: &Path) -> anyhow::Result<()> {
-        let bytes = std::fs::read(path).map_err(|error| {
+        let found = journal::read(path, KIND).map_err(|error| {
             let remedy = "--merge with the folder of each shard";
             Failure::new(format!("the records of a shard cannot be read: {error}"), path.display().to_string(), remedy)
         })?;
-        let (records, unreadable) = read(&bytes);
-        self.finished.extend(records);
-        self.unreadable += unreadable;
+        self.take(found);
         Ok(())
+    }
+
+    fn take(&mut self, found: Contents<Record>) {
+        self.finished.extend(found.records.into_iter().map(|record| (record.key, record.outcome)));
+        self.unreadable += found.damaged;
     }
 
     /// How many lines were passed over.
@@ -92,13 +113,20 @@ impl Records {
             number: data_set.number,
             outcome: outcome.clone(),
         };
-        let line = record.line()?;
-        self.writing().write_all(&line).with_context(|| format!("cannot write to {}", self.path.display()))
+        self.journal.append(&record).with_context(|| self.unwritten())
+    }
+
+    fn clear(&self) -> anyhow::Result<()> {
+        self.journal.clear().with_context(|| self.unwritten())
+    }
+
+    fn unwritten(&self) -> String {
+        format!("cannot write to {}", self.journal.path().display())
     }
 
     /// Holds back every write while the guard lives, so that a process may end without tearing a line.
     pub(crate) fn writing(&self) -> MutexGuard<'_, File> {
-        self.file.lock().unwrap_or_else(PoisonError::into_inner)
+        self.journal.writing()
     }
 
     fn key(&self, data_set: &DataSet<'_>) -> String {
@@ -109,30 +137,6 @@ impl Records {
         let definition = hasher.finish();
         format!("{}/{}/{}/{definition:016x}", data_set.experiment, data_set.setup, data_set.number)
     }
-}
-
-/// What the lines of a file hold, and how many are torn or damaged.
-fn read(bytes: &[u8]) -> (HashMap<String, Outcome>, usize) {
-    let lines = bytes.split(|&byte| byte == b'\n').filter(|line| !line.is_empty());
-    let records: Vec<Option<Record>> = lines.map(Record::read).collect();
-    let unreadable = records.iter().filter(|record| record.is_none()).count();
-    (records.into_iter().flatten().map(|record| (record.key, record.outcome)).collect(), unreadable)
-}
-
-/// Opens a file that no other run has open, and reads it; a last line that was torn is ended.
-fn open(path: &Path, earlier: Earlier) -> anyhow::Result<(File, Vec<u8>)> {
-    let mut file = OpenOptions::new().read(true).append(true).create(true).open(path)?;
-    file.try_lock().context("another run is writing there")?;
-    if earlier == Earlier::Forget {
-        file.set_len(0)?;
-    }
-    let mut bytes = Vec::new();
-    file.seek(SeekFrom::Start(0))?;
-    file.read_to_end(&mut bytes)?;
-    if bytes.last().is_some_and(|&last| last != b'\n') {
-        file.write_all(b"\n")?;
-    }
-    Ok((file, bytes))
 }
 
 /// A hash of the running program itself: whatever changes the program, be it a source line, a dependency or a compiler
@@ -191,32 +195,12 @@ mod tests {
     }
 
     #[test]
-    fn a_torn_last_line_costs_only_itself() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("records.jsonl");
-        let records = Records::open(&path, Earlier::Resume).unwrap();
-        records.append(&DATA_SET, &measured(1.0)).unwrap();
-        records.append(&DataSet { number: 8, ..DATA_SET }, &measured(2.0)).unwrap();
-        drop(records);
-        let length = std::fs::metadata(&path).unwrap().len();
-        OpenOptions::new().write(true).open(&path).unwrap().set_len(length - 5).unwrap();
-
-        let records = Records::open(&path, Earlier::Resume).unwrap();
-        assert_eq!(records.finished(&DATA_SET), Some(&measured(1.0)));
-        assert_eq!((records.finished(&DataSet { number: 8, ..DATA_SET }), records.unreadable()), (None, 1));
-        records.append(&DataSet { number: 9, ..DATA_SET }, &measured(3.0)).unwrap();
-        drop(records);
-        let records = Records::open(&path, Earlier::Resume).unwrap();
-        assert_eq!(records.finished(&DataSet { number: 9, ..DATA_SET }), Some(&measured(3.0)));
-    }
-
-    #[test]
     fn two_runs_cannot_write_to_one_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("records.jsonl");
         let _first = Records::open(&path, Earlier::Resume).unwrap();
         let error = format!("{:#}", Records::open(&path, Earlier::Forget).unwrap_err());
-        assert!(error.contains("another run") && error.contains("--out"), "{error}");
+        assert!(error.contains("another process") && error.contains("--out"), "{error}");
     }
 
     #[test]

@@ -1,0 +1,227 @@
+//! Finished work, kept in a file as it is finished, so that a program that was interrupted or killed goes on.
+//!
+//! The first line says what kind of journal it is. Every other line is one record: the SHA-256 of its text, and JSON. A torn or
+//! changed line is counted and passed over; it costs that record alone.
+
+mod line;
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufRead as _, BufReader, ErrorKind, Read as _, Seek as _, SeekFrom, Write as _};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+/// A journal that is open for appending. No other process can open it meanwhile.
+#[derive(Debug)]
+pub struct Journal {
+    path: PathBuf,
+    kind: String,
+    file: Mutex<File>,
+}
+
+/// What a journal holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Contents<T> {
+    /// In the order in which they were appended.
+    pub records: Vec<T>,
+    /// Lines that are torn, changed, or records of another form.
+    pub damaged: usize,
+}
+
+impl Journal {
+    /// Opens a journal of this `kind`, a line of text, or begins one, and reads what it holds. A last line that was torn is ended.
+    ///
+    /// # Errors
+    /// [`ErrorKind::WouldBlock`] if another process has it open, [`ErrorKind::AlreadyExists`] for a link, a folder or a file that is no
+    /// journal of this kind, which stays as it is, and what the system says.
+    pub fn open<T: DeserializeOwned>(path: &Path, kind: &str) -> io::Result<(Journal, Contents<T>)> {
+        if fs::symlink_metadata(path).is_ok_and(|found| !found.is_file()) {
+            return Err(of_another_kind());
+        }
+        let mut file = OpenOptions::new().read(true).append(true).create(true).open(path)?;
+        file.try_lock().map_err(|error| match error {
+            fs::TryLockError::WouldBlock => io::Error::new(ErrorKind::WouldBlock, "another process is writing it"),
+            fs::TryLockError::Error(error) => error,
+        })?;
+        let contents = records(&file, kind)?;
+        // Also of one that was interrupted at once, which has a part of the first line.
+        if file.metadata()?.len() <= kind.len() as u64 {
+            file.set_len(0)?;
+            writeln!(file, "{kind}")?;
+        } else {
+            file.seek(SeekFrom::End(-1))?;
+            let mut last = [0];
+            file.read_exact(&mut last)?;
+            if last != *b"\n" {
+                file.write_all(b"\n")?;
+            }
+        }
+        let (path, kind) = (path.to_owned(), kind.to_owned());
+        Ok((Journal { path, kind, file: Mutex::new(file) }, contents))
+    }
+
+    /// Writes a record to the file at once.
+    ///
+    /// # Errors
+    /// What the system says, and a record that is not JSON.
+    pub fn append(&self, record: &impl Serialize) -> io::Result<()> {
+        let line = line::of(record)?;
+        self.writing().write_all(&line)
+    }
+
+    /// Forgets all records.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn clear(&self) -> io::Result<()> {
+        let mut file = self.writing();
+        file.set_len(0)?;
+        writeln!(file, "{}", self.kind)
+    }
+
+    /// Holds back every write while the guard lives, so that the process may end without tearing a line.
+    pub fn writing(&self) -> MutexGuard<'_, File> {
+        self.file.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+/// What a journal of this `kind` holds, which may be open elsewhere.
+///
+/// # Errors
+/// [`ErrorKind::AlreadyExists`] if it is of another kind, and what the system says.
+pub fn read<T: DeserializeOwned>(path: &Path, kind: &str) -> io::Result<Contents<T>> {
+    records(&File::open(path)?, kind)
+}
+
+/// Removes a journal of this `kind` that no process has open; what is none stays.
+pub fn remove(path: &Path, kind: &str) {
+    // Without it there is nothing to remove.
+    if path.exists() && Journal::open::<serde::de::IgnoredAny>(path, kind).is_ok() {
+        let _ = fs::remove_file(path);
+    }
+}
+
+fn records<T: DeserializeOwned>(file: &File, kind: &str) -> io::Result<Contents<T>> {
+    let mut reader = BufReader::new(file);
+    let mut first = Vec::new();
+    reader.by_ref().take(kind.len() as u64 + 1).read_until(b'\n', &mut first)?;
+    let whole = [kind.as_bytes(), b"\n"].concat();
+    if !whole.starts_with(&first) {
+        return Err(of_another_kind());
+    }
+    let mut contents = Contents { records: Vec::new(), damaged: 0 };
+    for line in reader.split(b'\n') {
+        let line = line?;
+        match line::read(&line) {
+            Some(record) => contents.records.push(record),
+            None if line.is_empty() => {}
+            None => contents.damaged += 1,
+        }
+    }
+    Ok(contents)
+}
+
+fn of_another_kind() -> io::Error {
+    io::Error::new(ErrorKind::AlreadyExists, "it exists and is something else")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KIND: &str = "numbers 1";
+
+    fn open(path: &Path) -> (Journal, Contents<f64>) {
+        Journal::open(path, KIND).expect("a journal")
+    }
+
+    #[test]
+    fn what_was_written_is_found_again_bit_for_bit() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.journal");
+        let (journal, found) = open(&path);
+        assert_eq!(found, Contents { records: vec![], damaged: 0 });
+        for number in [0.1 + 0.2, f64::MIN_POSITIVE] {
+            journal.append(&number).expect("a line");
+        }
+        drop(journal);
+        let both = Contents { records: vec![0.1 + 0.2, f64::MIN_POSITIVE], damaged: 0 };
+        assert_eq!(read(&path, KIND).expect("records"), both);
+        let (journal, found) = open(&path);
+        assert_eq!(found, both);
+        journal.clear().expect("an empty journal");
+        journal.append(&2.0).expect("a line");
+        drop(journal);
+        assert_eq!(open(&path).1.records, [2.0]);
+    }
+
+    /// Cut anywhere, by a kill, a journal loses the record that is cut and no other, before or after.
+    #[test]
+    fn a_torn_line_costs_only_itself() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.journal");
+        let whole = {
+            let (journal, _) = open(&path);
+            for number in [1.0, 2.0] {
+                journal.append(&number).expect("a line");
+            }
+            fs::read(&path).expect("bytes")
+        };
+        let ends: Vec<usize> = (0..whole.len()).filter(|&at| whole[at] == b'\n').collect();
+        for cut in 0..whole.len() {
+            fs::write(&path, &whole[..cut]).expect("a file");
+            let (journal, found) = open(&path);
+            // Without its end a line may still be whole.
+            let kept = ends[1..].iter().filter(|&&end| cut >= end).count();
+            assert_eq!(found.records, &[1.0, 2.0][..kept], "cut at {cut}");
+            journal.append(&3.0).expect("a line");
+            drop(journal);
+            let again = open(&path).1.records;
+            assert_eq!(again, [&[1.0, 2.0][..kept], &[3.0]].concat(), "cut at {cut}");
+        }
+    }
+
+    #[test]
+    fn two_cannot_write_one_and_what_is_something_else_stays() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.journal");
+        let first = open(&path).0;
+        let kind_of = |path: &Path| Journal::open::<f64>(path, KIND).expect_err("refused").kind();
+        assert_eq!(kind_of(&path), ErrorKind::WouldBlock);
+        remove(&path, KIND);
+        assert_eq!(first.path(), path);
+        assert!(path.exists(), "another process writes it");
+        drop(first);
+        let other = folder.path().join("model.json");
+        for text in ["{}", "numbers 10\n", "numbers 1", "\n"] {
+            fs::write(&other, text).expect("a file");
+            let opened = Journal::open::<f64>(&other, KIND);
+            assert_eq!(opened.is_ok(), KIND.starts_with(text), "{text:?}");
+            if opened.is_err() {
+                remove(&other, KIND);
+                assert_eq!(fs::read_to_string(&other).expect("text"), text);
+            }
+        }
+        assert_eq!(kind_of(folder.path()), ErrorKind::AlreadyExists);
+        assert_eq!(read::<f64>(&other, KIND).expect_err("refused").kind(), ErrorKind::AlreadyExists);
+        remove(&path, KIND);
+        assert!(!path.exists());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_not_followed() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let [file, link] = ["file", "link"].map(|name| folder.path().join(name));
+        std::os::unix::fs::symlink(&file, &link).expect("a link");
+        assert!(Journal::open::<f64>(&link, KIND).is_err());
+        assert!(!file.exists());
+    }
+}
