@@ -6,16 +6,16 @@ use crate::input::name_of;
 use crate::raw::RawRecordings;
 use crate::{Fault, ReadError};
 
-/// What `read` finds in each of some files, in their order; none without a file.
+/// What `read` finds in each of some files or pieces of files, in their order; none without a file.
 pub(crate) fn joined<P: AsRef<Path>>(
-    paths: &[P],
-    mut read: impl FnMut(&Path) -> Result<RawRecordings, ReadError>,
+    files: &[P],
+    mut read: impl FnMut(&P) -> Result<RawRecordings, ReadError>,
 ) -> Result<Option<RawRecordings>, ReadError> {
     let mut joined: Option<RawRecordings> = None;
-    for path in paths.iter().map(AsRef::as_ref) {
-        let more = read(path)?;
+    for file in files {
+        let more = read(file)?;
         match &mut joined {
-            Some(joined) => join(joined, more, &name_of(path))?,
+            Some(joined) => join(joined, more, &name_of(file.as_ref()))?,
             None => joined = Some(more),
         }
     }
