@@ -198,10 +198,12 @@ fn what_cannot_be_cut_stays_whole() {
     let plain = ReadOptions::default();
     let same = |_: usize, _: usize| "a".to_owned();
     let text = movements(6, "note", same);
-    let pieces = |name: &str, text: &str, options: &ReadOptions| cut(&files.add(name, text), 500, options).unwrap().len();
+    let pieces =
+        |name: &str, text: &str, options: &ReadOptions| cut(&files.add(name, text), 500, options).unwrap().len();
     assert!(pieces("a.csv", &text, &plain) >= 6);
     let rows: Vec<&str> = text.lines().collect();
-    let alternately = |(at, row): (usize, &&str)| if at == 0 { (*row).to_owned() } else { format!("{}{}", at % 2, &row[1..]) };
+    let alternately =
+        |(at, row): (usize, &&str)| if at == 0 { (*row).to_owned() } else { format!("{}{}", at % 2, &row[1..]) };
     let interleaved: Vec<String> = rows.iter().enumerate().map(alternately).collect();
     let back = format!("{text}{}\n", rows[1].replace("0.00", "9.00"));
     let alone: Vec<&str> = rows.iter().map(|row| row.split_once(',').unwrap().1).collect();
@@ -223,7 +225,8 @@ fn what_cannot_be_cut_stays_whole() {
     assert_eq!(pieces("stamps.csv", &stamps.collect::<Vec<_>>().join("\n"), &drop), 1);
     let columns = ReadOptions { samples_are: Some(SamplesAre::Columns), dt: Some(0.1), ..plain.clone() };
     // A mark in a comment turns outside and inside of quotation marks round, for blanks.
-    let marked: Vec<String> = text.lines().skip(1).map(|row| format!("\"take  {}\" {}", &row[..1], row[2..].replace(',', " "))).collect();
+    let marked: Vec<String> =
+        text.lines().skip(1).map(|row| format!("\"take  {}\" {}", &row[..1], row[2..].replace(',', " "))).collect();
     let text = format!("# 5\" pipe\nepisode t x y note\n{}\n", marked.join("\n"));
     assert_eq!(pieces("marked.dat", &text, &plain), 1);
     assert_eq!(read_with(&files.path().join("marked.dat"), &plain).unwrap().episodes[1].name, "take 1");
@@ -245,7 +248,10 @@ fn what_cannot_be_cut_stays_whole() {
 fn pieces_are_read_as_the_file_is() {
     let files = Files::new();
     let plain = ReadOptions::default();
-    let path = files.add("a.csv", movements(6, "z", |episode, sample| if episode < 3 { "1".to_owned() } else { sample.to_string() }));
+    let path = files.add(
+        "a.csv",
+        movements(6, "z", |episode, sample| if episode < 3 { "1".to_owned() } else { sample.to_string() }),
+    );
     let pieces = cut(&path, 500, &plain).unwrap();
     let whole = read_with(&path, &plain).unwrap();
     assert_eq!(names(&whole), ["x", "y", "z"]);
@@ -253,7 +259,8 @@ fn pieces_are_read_as_the_file_is() {
     let channels: Vec<String> = names(&whole).into_iter().map(str::to_owned).collect();
     assert_eq!(read_further(&pieces[0], &channels, &plain, &mut |_| ()).unwrap().episodes[0], whole.episodes[0]);
     // A stamp of the last movement alone would be in nanoseconds.
-    let path = files.add("b.csv", movements(6, "note", |_, _| "a".to_owned()).replace("\n5,", "\n5,170000000000000000"));
+    let path =
+        files.add("b.csv", movements(6, "note", |_, _| "a".to_owned()).replace("\n5,", "\n5,170000000000000000"));
     let pieces = cut(&path, 500, &plain).unwrap();
     let (whole, parts) = (read_with(&path, &plain).unwrap(), joined(&pieces, &plain));
     assert_eq!(whole, parts);

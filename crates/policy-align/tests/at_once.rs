@@ -303,7 +303,8 @@ fn large(name: &str) -> tempfile::TempDir {
             let t = sample as f64 * 0.02;
             let here = size * (-2.0 * t).exp();
             let x = [0, 1].map(|axis| start[axis] + along[axis] * (here - size));
-            let wave = |k: usize| ((episode * SAMPLES + sample) as f64 * 12.9898 + k as f64 * 78.233).sin() * 43_758.545_3;
+            let wave =
+                |k: usize| ((episode * SAMPLES + sample) as f64 * 12.9898 + k as f64 * 78.233).sin() * 43_758.545_3;
             let u = [0, 1].map(|axis| -2.0 * here * along[axis] + 0.1 * (wave(axis) - wave(axis).floor() - 0.5));
             writeln!(text, "{episode},{t:.2},{:.9},{:.9},{:.9},{:.9}", x[0], x[1], u[0], u[1]).unwrap();
         }
@@ -358,7 +359,8 @@ fn pieces_of_one_file_give_one_model() {
     assert_eq!(lines.len(), 3);
     let header = text.lines().next().unwrap();
     let cut = |lines: &[&str]| {
-        std::fs::write(&kept, format!("{header}\n{}\n{}", lines[..2].join("\n"), &lines[2][..lines[2].len() / 2])).unwrap();
+        std::fs::write(&kept, format!("{header}\n{}\n{}", lines[..2].join("\n"), &lines[2][..lines[2].len() / 2]))
+            .unwrap();
     };
     cut(&lines);
     let went_on = fit("2", &format!("{PIECES} -o m.json"));
@@ -394,12 +396,14 @@ fn pieces_say_what_the_files_say() {
     let at = text.find("\n150,0.00").unwrap() + 1;
     std::fs::write(path.join("b.csv"), format!("{}{still}{}", &text[..at], &text[at..])).unwrap();
     std::fs::copy(path.join("a.csv"), path.join("c.csv")).unwrap();
-    let fit = |rest: &str| run_in(path, &format!("fit a.csv b.csv c.csv --max-rows 60 --inducing 0 --at-once 1MB {rest}"));
+    let fit =
+        |rest: &str| run_in(path, &format!("fit a.csv b.csv c.csv --max-rows 60 --inducing 0 --at-once 1MB {rest}"));
     done(&fit("-o m.json"));
     let model = model(&path.join("m.json"));
     let data = &model["data"];
     assert_eq!((&data["episodes"], &data["left_out"][0]["episode"]), (&630.into(), &"b/still".into()));
-    let mut names: Vec<&str> = data["files"].as_array().unwrap().iter().map(|file| file["name"].as_str().unwrap()).collect();
+    let mut names: Vec<&str> =
+        data["files"].as_array().unwrap().iter().map(|file| file["name"].as_str().unwrap()).collect();
     names.sort_unstable();
     assert_eq!(names, ["a.csv", "b.csv", "c.csv"]);
     for (episode, line) in [(0, 2), (150, 15_002), (209, 20_902)] {

@@ -138,7 +138,10 @@ pub(crate) fn write_part(
         return Ok(Output::json(&document, Exit::Done));
     }
     let mut lines = Lines::default();
-    lines.add("part", &format!("{this} of {of}: {} of {}", counted(pieces.len(), word(&division.further)), division.further.len()));
+    lines.add(
+        "part",
+        &format!("{this} of {of}: {} of {}", counted(pieces.len(), word(&division.further)), division.further.len()),
+    );
     lines.add("written", &format!("{} ({})", displayed(output), size(text.len())));
     let added = if this < of {
         format!("--shard {}/{of}", this + 1)

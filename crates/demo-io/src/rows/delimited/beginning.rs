@@ -53,7 +53,8 @@ impl<'a> Beginning<'a> {
         };
         if header.is_none() && input.options.state.is_empty() {
             let n = first.len();
-            let what = format!("there is no header: line {first_line} begins with numbers, and {n} columns have no name");
+            let what =
+                format!("there is no header: line {first_line} begins with numbers, and {n} columns have no name");
             let remedy = "--state 2,3 --time 1 (columns count from 0; also --episode 0, --velocity 4,5), or write a first line with names";
             let remedy = if n > head.len() {
                 format!("--samples-are columns if each line is a channel; else {remedy}")
