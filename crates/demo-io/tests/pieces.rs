@@ -23,6 +23,7 @@ fn joined(pieces: &[Piece], options: &ReadOptions) -> Recordings {
 
 /// A text of movements, and how to read it.
 #[derive(Debug, Clone)]
+#[allow(clippy::struct_excessive_bools, reason = "each is tried with all others")]
 struct Table {
     separator: &'static str,
     end: &'static str,
@@ -94,7 +95,7 @@ impl Table {
             0 => {}
             1 => text += &(names + self.end),
             // Comments end with lines as most have them.
-            _ => text += &(format!("# made by hand\n# {names}\n")),
+            _ => text.extend(["# made by hand\n# ", &names, "\n"]),
         }
         let mut row = 0;
         for (number_of, &(kind, samples)) in self.movements.iter().enumerate() {
@@ -109,8 +110,8 @@ impl Table {
                 match self.before[row % self.before.len()] {
                     1 => text += self.end,
                     2 => text += "# a comment, with 'marks'\n",
-                    3 if self.header > 0 => text += &format!("   {}", self.end),
-                    4 => text += &format!("{}{}", self.end, self.end),
+                    3 if self.header > 0 => text.extend(["   ", self.end]),
+                    4 => text.extend([self.end, self.end]),
                     // Where blanks separate, a mark opens a quotation even in a comment.
                     5 => text += "# a comment, with a \" in it\n",
                     _ => {}
@@ -119,9 +120,9 @@ impl Table {
                 let x = [(row as f64 * 0.37).sin(), (row as f64 * 0.11).cos()];
                 text += &[label.clone(), number(t), number(x[0]), number(x[1])].join(sep);
                 match self.extra {
-                    1 => text += &format!("{sep}all{sep}").trim_end_matches(sep).to_owned(),
-                    2 => text += &format!("{sep}5"),
-                    3 => text += &format!("{sep}rail{}", number_of % 2),
+                    1 => text.extend([sep, "all"]),
+                    2 => text.extend([sep, "5"]),
+                    3 => text.extend([sep, ["rail0", "rail1"][number_of % 2]]),
                     _ => {}
                 }
                 text += self.end;
