@@ -412,6 +412,26 @@ fn pieces_say_what_the_files_say() {
         let refused = fit("-o wrong.json");
         assert!(refused.code != Some(0) && refused.err.contains(&format!("a.csv, line {line}, ")), "{}", refused.err);
     }
+    // Lines of episodes, and a coordinate that changes in few movements.
+    let level = |(at, row): (usize, &str)| match at {
+        0 => "episode,t,x,y,z\n".to_owned(),
+        at => {
+            let fields: Vec<&str> = row.split(',').take(4).collect();
+            let episode = (at - 1) / SAMPLES;
+            let z = if episode < 80 && episode % 20 == 0 { fields[2] } else { "0" };
+            format!("{},{z}\n", fields.join(","))
+        }
+    };
+    std::fs::write(path.join("level.csv"), text.lines().enumerate().map(level).collect::<String>()).unwrap();
+    done(&run_in(path, "convert level.csv -o level.jsonl"));
+    for (name, of) in [("level.csv", "level"), ("level.jsonl", "lines")] {
+        let said = run_in(path, &format!("fit {name} --max-rows 60 --inducing 0 --at-once 600kB -o {of}.json"));
+        done(&said);
+        assert!(said.out.contains("at once") && said.out.contains("210 episodes, 21000 samples"), "{}", said.out);
+        let model = self::model(&path.join(format!("{of}.json")));
+        assert_eq!(model["data"]["files"][0]["name"], name);
+        assert_eq!(model["state"].as_array().unwrap().len(), 3);
+    }
     // One that cannot be cut is read as it is.
     let rows: Vec<&str> = text.lines().collect();
     let (first, second) = rows[1..].split_at(SAMPLES);
