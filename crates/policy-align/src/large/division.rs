@@ -9,7 +9,7 @@ use demo_io::{Piece, ReadError, ReadOptions, pieces_of};
 const ROWS: u64 = 500_000;
 
 /// Pieces of a large file, of what is read at once: enough to be evenly spread over it.
-const PIECES: u64 = 8;
+const PIECES: u64 = 16;
 
 /// Bytes that a piece may always have: the beginning of the file is looked at with each.
 const SMALLEST: u64 = 256 << 10;
