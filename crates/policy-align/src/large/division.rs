@@ -66,7 +66,7 @@ impl Division {
     }
 
     /// Every so many of the files, so that they have at most so many bytes together; the first alone if none is smaller. Of folders that
-    /// hold a file for each movement the files count, a data set counts as one. In place of a text that has more than an eighth of these
+    /// hold a file for each movement the files count, a data set counts as one. In place of a text that has more than a sixteenth of these
     /// bytes its pieces count ([`pieces_of`]), which is read once for that; `progress` takes the number of bytes read since the last call.
     /// Depends on the order, the sizes and what is read with `options` alone.
     ///
