@@ -418,7 +418,7 @@ fn pieces_say_what_the_files_say() {
         at => {
             let fields: Vec<&str> = row.split(',').take(4).collect();
             let episode = (at - 1) / SAMPLES;
-            let z = if episode < 80 && episode % 20 == 0 { fields[2] } else { "0" };
+            let z = if episode < 80 && episode.is_multiple_of(20) { fields[2] } else { "0" };
             format!("{},{z}\n", fields.join(","))
         }
     };

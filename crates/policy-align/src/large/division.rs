@@ -8,7 +8,7 @@ use demo_io::{Piece, ReadError, ReadOptions, pieces_of};
 /// Rows of all digests together, about: so many in seven dimensions take 60 MB.
 const ROWS: u64 = 500_000;
 
-/// Pieces of a large file, of what is read at once: enough to be evenly spread over it.
+/// Pieces that have the size of what is read at once: enough to be evenly spread over a file, and small beside it on each thread.
 const PIECES: u64 = 16;
 
 /// Bytes that a piece may always have: the beginning of the file is looked at with each.
