@@ -12,11 +12,11 @@ use motion::{Channel, Finding, is_called_context};
 /// What LeRobot calls the places of objects.
 pub(crate) const ENVIRONMENT: &str = "observation.environment_state";
 
-/// Checks and repairs every episode, as the options say.
-pub(crate) fn clean(drafts: &mut RawRecordings, options: &ReadOptions) -> Result<(), ReadError> {
+/// Checks and repairs every episode, as the options say. Some `channels` are those of other recordings of the set.
+pub(crate) fn clean(drafts: &mut RawRecordings, channels: &[String], options: &ReadOptions) -> Result<(), ReadError> {
     positive(options.split_gap, "--split-gap")?;
     if drafts.drop_constant {
-        leave_out_constant(drafts);
+        leave_out_constant(drafts, channels);
     }
     if options.context.is_empty() {
         leave_out_moving_environment(drafts);
@@ -49,11 +49,12 @@ pub(crate) fn clean(drafts: &mut RawRecordings, options: &ReadOptions) -> Result
     Ok(())
 }
 
-/// Columns that never change and were not named are no state: a counter that does not run, a sensor that is off.
-fn leave_out_constant(drafts: &mut RawRecordings) {
+/// Columns that never change and were not named are no state: a counter that does not run, a sensor that is off. `known` are channels
+/// elsewhere.
+fn leave_out_constant(drafts: &mut RawRecordings, known: &[String]) {
     let n = drafts.channels.len();
     let mut first: Vec<f64> = vec![f64::NAN; n];
-    let mut changes = vec![false; n];
+    let mut changes: Vec<bool> = drafts.channels.iter().map(|channel| known.contains(&channel.name)).collect();
     for draft in &drafts.episodes {
         for sample in draft.positions.chunks_exact(n) {
             for ((first, changes), &value) in first.iter_mut().zip(&mut changes).zip(sample) {

@@ -6,31 +6,33 @@ use crate::input::name_of;
 use crate::raw::RawRecordings;
 use crate::{Fault, ReadError};
 
-/// What `read` finds in each of some files, in their order; none without a file.
+/// What `read` finds in each of some files or pieces of files, in their order; none without a file.
 pub(crate) fn joined<P: AsRef<Path>>(
-    paths: &[P],
-    mut read: impl FnMut(&Path) -> Result<RawRecordings, ReadError>,
+    files: &[P],
+    mut read: impl FnMut(&P) -> Result<RawRecordings, ReadError>,
 ) -> Result<Option<RawRecordings>, ReadError> {
     let mut joined: Option<RawRecordings> = None;
-    for path in paths.iter().map(AsRef::as_ref) {
-        let more = read(path)?;
+    let mut last: Option<&Path> = None;
+    for file in files {
+        let (more, path) = (read(file)?, file.as_ref());
         match &mut joined {
-            Some(joined) => join(joined, more, &name_of(path))?,
+            Some(joined) => join(joined, more, &name_of(path), last == Some(path))?,
             None => joined = Some(more),
         }
+        last = Some(path);
     }
     Ok(joined)
 }
 
-/// Appends the episodes of another file.
-fn join(joined: &mut RawRecordings, more: RawRecordings, file: &str) -> Result<(), ReadError> {
+/// Appends the episodes of another file, or of more of the last one.
+fn join(joined: &mut RawRecordings, more: RawRecordings, file: &str, is_last: bool) -> Result<(), ReadError> {
     if joined.channels != more.channels {
         let what = format!("channels differ: {} here, {} before", more.names().join(", "), joined.names().join(", "));
         let remedy = "--state with channels that all files have, or files of one kind";
         return Err(ReadError::Lengths(Fault::new(what, file, remedy)));
     }
     let recorded = |drafts: &RawRecordings| drafts.episodes.iter().any(|draft| !draft.velocities.is_empty());
-    if recorded(joined) != recorded(&more) {
+    if !is_last && recorded(joined) != recorded(&more) {
         let what = "velocities are recorded in some of the files only";
         let remedy = "--ignore with the names of the velocities, or files of one kind";
         return Err(ReadError::Lengths(Fault::new(what, file, remedy)));

@@ -59,9 +59,10 @@ mod write;
 pub use error::{Fault, ReadError};
 pub use guard::catches_panics;
 pub use options::{Format, Nan, ReadOptions, SamplesAre, TimeUnit};
-pub use read::{files_of, read, read_all, read_one_of_several, read_with_context};
-pub use regular_file::{read_bounded, read_bytes, read_text};
+pub use read::{files_of, pieces_of, read, read_all, read_further, read_pieces, read_with_context};
+pub use regular_file::{FileState, read_bounded, read_bytes, read_text};
 pub use resample::{ResampleError, resampled};
+pub use rows::piece::{Piece, Span};
 pub use whole_file::{Sink, TempFile, abandon_drafts, write_whole};
 pub use write::{LinkFrames, WriteError, write, write_with_robot};
 

@@ -9,6 +9,8 @@ use crate::input::{Input, name_of, unreadable};
 use crate::joined::joined;
 use crate::names::natural;
 use crate::raw::RawRecordings;
+use crate::regular_file::FileState;
+use crate::rows::piece::{Piece, Span};
 use crate::rows::{delimited, json_lines, roles};
 use crate::sniff::{self, Folder};
 use crate::{Fault, Format, ReadError, ReadOptions};
@@ -49,39 +51,57 @@ pub fn read_with_context(
     options: &ReadOptions,
     progress: &mut dyn FnMut(u64),
 ) -> Result<(Recordings, Vec<String>), ReadError> {
-    set(paths, paths.len() > 1, options, progress)
+    let pieces: Vec<Piece> = paths.iter().map(|path| Piece::whole(path, paths.len() > 1)).collect();
+    read_pieces(&pieces, options, progress)
 }
 
-/// Reads one of several files that [`read_all`] would read as one set: episodes have the names that they have there.
+/// As [`read_with_context`], of files of which some may be read in part.
 ///
 /// # Errors
 ///
-/// As [`read`].
-pub fn read_one_of_several(
-    path: &Path,
-    options: &ReadOptions,
-    progress: &mut dyn FnMut(u64),
-) -> Result<Recordings, ReadError> {
-    Ok(set(&[path.to_owned()], true, options, progress)?.0)
-}
-
-fn set(
-    paths: &[PathBuf],
-    is_named_by_file: bool,
+/// As [`read_all`], and [`ReadError::Corrupt`] if a file has changed since it was cut.
+pub fn read_pieces(
+    pieces: &[Piece],
     options: &ReadOptions,
     progress: &mut dyn FnMut(u64),
 ) -> Result<(Recordings, Vec<String>), ReadError> {
-    let joined = joined(paths, |path| {
-        let drafts = drafts(path, options, progress)?;
-        Ok(if is_named_by_file { named_by_file(drafts, path) } else { drafts })
+    set(pieces, &[], options, progress)
+}
+
+/// Reads a piece of a set of which other pieces have been read before: their `channels` are channels here even if they never change.
+///
+/// # Errors
+///
+/// As [`read_pieces`].
+pub fn read_further(
+    piece: &Piece,
+    channels: &[String],
+    options: &ReadOptions,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Recordings, ReadError> {
+    Ok(set(std::slice::from_ref(piece), channels, options, progress)?.0)
+}
+
+fn set(
+    pieces: &[Piece],
+    channels: &[String],
+    options: &ReadOptions,
+    progress: &mut dyn FnMut(u64),
+) -> Result<(Recordings, Vec<String>), ReadError> {
+    let joined = joined(pieces, |piece| {
+        let drafts = match &piece.span {
+            Some(span) => part(&piece.path, span, options, progress),
+            None => drafts(&piece.path, options, progress),
+        }?;
+        Ok(if piece.named_by_file { named_by_file(drafts, &piece.path) } else { drafts })
     })?;
-    let place = || paths.first().map(|path| name_of(path)).unwrap_or_default();
+    let place = || pieces.first().map(Piece::name).unwrap_or_default();
     let nothing = |what: &str| ReadError::Empty(Fault::new(what, place(), "recordings with movements"));
     let mut drafts = joined.ok_or_else(|| nothing("no file was given"))?;
     if let Some(pattern) = drafts.unknown.patterns.first() {
         return Err(roles::no_column(pattern, &drafts.unknown.names, &format!("--ignore, {}", place())));
     }
-    clean(&mut drafts, options)?;
+    clean(&mut drafts, channels, options)?;
     if drafts.channels.is_empty() {
         return Err(nothing("there is no state of one number or more"));
     }
@@ -120,8 +140,8 @@ fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> 
     let format = sniff::format(&input)?;
     input.columns_first = format == Format::Mat;
     match format {
-        Format::Csv | Format::Tsv => delimited::read(&input, progress),
-        Format::Jsonl => json_lines::read(&input, progress),
+        Format::Csv | Format::Tsv => delimited::read(&input, None, progress),
+        Format::Jsonl => json_lines::read(&input, None, progress),
         Format::Npy => npy::read(&input, progress),
         Format::Npz => npz::read(&input, progress),
         Format::LeRobot | Format::Parquet => {
@@ -135,6 +155,49 @@ fn drafts(path: &Path, options: &ReadOptions, progress: &mut dyn FnMut(u64)) -> 
         Format::Mcap => with_feature!("mcap", &name, crate::rows::mcap::read(&input, progress)),
         Format::Mat => with_feature!("mat", &name, crate::arrays::mat::read(&input, progress)),
     }
+}
+
+/// Records of a part of a text.
+fn part(
+    path: &Path,
+    span: &Span,
+    options: &ReadOptions,
+    progress: &mut dyn FnMut(u64),
+) -> Result<RawRecordings, ReadError> {
+    let input = Input::new(path, options)?;
+    let drafts = sniff::format(&input).and_then(|format| match format {
+        Format::Jsonl => json_lines::read(&input, Some(span), progress),
+        _ => delimited::read(&input, Some(span), progress),
+    });
+    // What it says of a file that has changed is of no use.
+    span.require_unchanged(path)?;
+    drafts
+}
+
+/// A file in pieces of whole movements, of at most so many bytes unless a movement has more: some of CSV, TSV and columns of blanks, and of JSON
+/// lines with an episode each. Joined, their recordings are those of the whole file. One piece if the file is small or cannot be cut: of
+/// another format, without a column of episodes, or with episodes that others interrupt. It is read once for that, piece by piece.
+///
+/// # Errors
+///
+/// What reading the whole file would refuse, as far as it has been read.
+pub fn pieces_of(
+    file: Piece,
+    most: u64,
+    options: &ReadOptions,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Vec<Piece>, ReadError> {
+    let Some(state) = FileState::of(&file.path).ok().filter(|state| state.bytes > most) else { return Ok(vec![file]) };
+    let input = Input::new(&file.path, options)?;
+    let spans = match sniff::format(&input)? {
+        Format::Csv | Format::Tsv => delimited::cut(&input, (most, state), progress)?,
+        Format::Jsonl => json_lines::cut(&input, (most, state), progress)?,
+        _ => Vec::new(),
+    };
+    if spans.len() < 2 {
+        return Ok(vec![file]);
+    }
+    Ok(spans.into_iter().map(|span| Piece { span: Some(span), ..file.clone() }).collect())
 }
 
 #[cfg(not(all(feature = "parquet", feature = "hdf5", feature = "mcap", feature = "mat")))]

@@ -1,8 +1,32 @@
 //! Files with an end. Devices have none, and a pipe is waited for.
 
-use std::fs::{self, File};
+use std::fs::{self, File, Metadata};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
+use std::time::SystemTime;
+
+use serde::{Deserialize, Serialize};
+
+/// What tells that a file has changed.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FileState {
+    /// Its size.
+    pub bytes: u64,
+    /// When it was written to.
+    pub modified: SystemTime,
+}
+
+impl FileState {
+    /// As it is now.
+    ///
+    /// # Errors
+    /// What the system says, and what is not a plain file.
+    pub fn of(path: &Path) -> io::Result<FileState> {
+        let found = plain(path)?;
+        Ok(FileState { bytes: found.len(), modified: found.modified()? })
+    }
+}
 
 /// Most bytes of a text written by hand, such as a configuration or the description of a robot.
 const TEXT: u64 = 16 << 20;
@@ -44,14 +68,19 @@ fn too_large(most: u64) -> io::Error {
 /// Opens a file, and says how many bytes it has now.
 pub(crate) fn open(path: &Path) -> io::Result<(File, u64)> {
     // Before it is opened: that would wait for the other end of a pipe.
-    let found = fs::metadata(path)?;
-    if !found.is_file() {
-        let what = if found.is_dir() { "it is a folder" } else { "it is a pipe or a device; name a file" };
-        return Err(io::Error::new(ErrorKind::InvalidInput, what));
-    }
+    plain(path)?;
     let file = File::open(path)?;
     let len = file.metadata()?.len();
     Ok((file, len))
+}
+
+fn plain(path: &Path) -> io::Result<Metadata> {
+    let found = fs::metadata(path)?;
+    if found.is_file() {
+        return Ok(found);
+    }
+    let what = if found.is_dir() { "it is a folder" } else { "it is a pipe or a device; name a file" };
+    Err(io::Error::new(ErrorKind::InvalidInput, what))
 }
 
 #[cfg(test)]

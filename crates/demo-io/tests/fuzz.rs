@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use common::{Files, read_with};
 use cpu_time::ThreadTime;
-use demo_io::{ReadOptions, SamplesAre, write};
+use demo_io::{Piece, ReadError, ReadOptions, SamplesAre, pieces_of, read_pieces, write};
 use motion::{Channel, Episode, Recordings, Source};
 use nalgebra::DMatrix;
 use rand::rngs::StdRng;
@@ -164,6 +164,7 @@ fn damaged_files_are_read_or_refused() {
                 sample.name
             );
             let Ok(outcome) = outcome else { panic!("{} panics with seed {seed}", sample.name) };
+            in_pieces(&path, &sample.options, &outcome, seed);
             assert!(taken < Duration::from_secs(5), "{} takes {taken:?} with seed {seed}", sample.name);
             match outcome {
                 Ok(found) => {
@@ -181,6 +182,18 @@ fn damaged_files_are_read_or_refused() {
             grown()
         );
     }
+}
+
+/// In the smallest pieces, a file is what it is whole.
+fn in_pieces(path: &Path, options: &ReadOptions, whole: &Result<Recordings, ReadError>, seed: u64) {
+    let pieces = pieces_of(Piece::whole(path, false), 1, options, &mut |_| ());
+    let joined = pieces.and_then(|pieces| Ok(read_pieces(&pieces, options, &mut |_| ())?.0));
+    let is_same = match (whole, &joined) {
+        (Ok(whole), Ok(joined)) => whole == joined,
+        (Err(_), Err(_)) => true,
+        _ => false,
+    };
+    assert!(is_same, "{} with seed {seed}: {whole:?}, but {joined:?} in pieces", path.display());
 }
 
 /// What every reader promises.

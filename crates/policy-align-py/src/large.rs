@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
-use policy_align::{Digest, Digester, Division, FurtherFile, Part, PartError};
+use demo_io::{Piece, ReadOptions};
+use policy_align::{Digest, Digester, Division, FurtherPiece, Part, PartError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
+use serde_json::json;
 
 use crate::hints::in_python;
 use crate::interruptible::interruptible;
@@ -12,32 +14,62 @@ use crate::options::Learning;
 use crate::pool;
 use crate::refusal::Refusal;
 
-/// A file of which a digest is made: its place, its path, its bytes, and rows at most.
-pub(crate) type Further = (usize, PathBuf, u64, usize);
+/// A file, or a piece of one: its path, whether movements carry its name, and which part of it, as JSON.
+pub(crate) type Given = (PathBuf, bool, Option<String>);
 
-/// Which of these files are read at once to learn like this, and the others. `at_once` is the program's.
+/// Of what a digest is made: its place, what it is, its bytes, and rows at most.
+pub(crate) type Further = (usize, Given, u64, usize);
+
+/// Which of these files, and which pieces of large ones, are read at once to learn like this, and the others. `at_once` and `reading` are the
+/// program's, the latter as JSON.
 #[pyfunction]
-pub(crate) fn divide(paths: Vec<PathBuf>, at_once: &str, learning: Learning) -> PyResult<(Vec<PathBuf>, Vec<Further>)> {
-    let options = learning.options()?;
+pub(crate) fn divide(
+    py: Python<'_>,
+    paths: Vec<PathBuf>,
+    at_once: &str,
+    learning: Learning,
+    reading: &str,
+) -> PyResult<(Vec<Given>, Vec<Further>)> {
+    let (options, reading) = (learning.options()?, reading_of(reading)?);
     let hint = "at_once=\"2GB\" or \"all\"";
     let bytes = Division::bytes(at_once)
         .ok_or_else(|| Refusal::new(format!("'{at_once}' is no size of files"), "at_once", hint))?;
-    let division = Division::of(&paths, bytes).map_err(|error| Refusal::read(&error))?;
+    let division = interruptible(py, move |_: &_| Division::of(&paths, &reading, bytes, &mut |_bytes| ()))?;
+    let division = division.map_err(|error| Refusal::read(&error))?;
     if let (false, Some(flag)) = (division.further.is_empty(), options.needs_whole_recordings()) {
         let what = format!("{} needs all files at once", in_python(flag));
         return Err(Refusal::new(what, "at_once", "at_once=\"all\"").into());
     }
-    let further = division.further.into_iter().map(|FurtherFile { at, path, bytes, rows }| (at, path, bytes, rows));
-    Ok((division.at_once, further.collect()))
+    let given = |FurtherPiece { at, piece, bytes, rows }| (at, given(piece), bytes, rows);
+    Ok((division.at_once.into_iter().map(self::given).collect(), division.further.into_iter().map(given).collect()))
 }
 
-/// A part of a fit that has one file's digest, as the program writes it; the digester is JSON.
+/// The program's options of reading, as JSON.
+pub(crate) fn reading_of(options: &str) -> Result<ReadOptions, Refusal> {
+    serde_json::from_str(options).map_err(|error| {
+        let text = error.to_string();
+        Refusal::new(text.split(" at line").next().unwrap_or(&text), "read()", "help(Demonstrations.read)")
+    })
+}
+
+fn given(Piece { path, named_by_file, span }: Piece) -> Given {
+    (path, named_by_file, span.map(|span| json!(span).to_string()))
+}
+
+/// What is given.
+pub(crate) fn piece((path, named_by_file, span): Given) -> Result<Piece, Refusal> {
+    let span = span.map(|text| serde_json::from_str(&text)).transpose();
+    Ok(Piece { path, named_by_file, span: span.map_err(|error| damaged(&error.to_string()))? })
+}
+
+/// A part of a fit that has one digest, as the program writes it; the digester is JSON.
 #[pyfunction]
-pub(crate) fn digest<'py>(py: Python<'py>, file: Further, digester: &str) -> PyResult<Bound<'py, PyBytes>> {
+pub(crate) fn digest<'py>(py: Python<'py>, further: Further, digester: &str) -> PyResult<Bound<'py, PyBytes>> {
     let digester: Digester = serde_json::from_str(digester).map_err(|error| damaged(&error.to_string()))?;
+    let further = of_tuple(further)?;
     let make = move |_: &_| {
         pool::on(0, || {
-            let part = Part::of(&[of_tuple(file)], &digester, None, &|_bytes| ()).and_then(|part| part.to_json());
+            let part = Part::of(&[further], &digester, None, &|_bytes| ()).and_then(|part| part.to_json());
             part.map_err(|error| match error {
                 PartError::Read(error) => Refusal::read(&error),
                 error => {
@@ -50,19 +82,19 @@ pub(crate) fn digest<'py>(py: Python<'py>, file: Further, digester: &str) -> PyR
     Ok(PyBytes::new(py, &bytes?))
 }
 
-/// The digests of these files, from parts as they came from elsewhere; the digester is JSON.
-pub(crate) fn digests((files, parts, digester): (Vec<Further>, Vec<Vec<u8>>, String)) -> Result<Vec<Digest>, Refusal> {
-    if files.is_empty() {
+/// The digests of these pieces, from parts as they came from elsewhere; the digester is JSON.
+pub(crate) fn digests((pieces, parts, digester): (Vec<Further>, Vec<Vec<u8>>, String)) -> Result<Vec<Digest>, Refusal> {
+    if pieces.is_empty() {
         return Ok(Vec::new());
     }
     let digester: Digester = serde_json::from_str(&digester).map_err(|error| damaged(&error.to_string()))?;
-    let files: Vec<FurtherFile> = files.into_iter().map(of_tuple).collect();
+    let pieces = pieces.into_iter().map(of_tuple).collect::<Result<Vec<_>, _>>()?;
     let parts = parts.iter().map(|text| Part::of_json(text)).collect::<Result<_, _>>();
-    parts.and_then(|parts| Part::merged(parts, &files, &digester)).map_err(|error| damaged(&error.to_string()))
+    parts.and_then(|parts| Part::merged(parts, &pieces, &digester)).map_err(|error| damaged(&error.to_string()))
 }
 
-fn of_tuple((at, path, bytes, rows): Further) -> FurtherFile {
-    FurtherFile { at, path, bytes, rows }
+fn of_tuple((at, given, bytes, rows): Further) -> Result<FurtherPiece, Refusal> {
+    Ok(FurtherPiece { at, piece: piece(given)?, bytes, rows })
 }
 
 fn damaged(what: &str) -> Refusal {

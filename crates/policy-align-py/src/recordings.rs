@@ -1,7 +1,8 @@
-use std::path::PathBuf;
+use std::collections::BTreeSet;
+use std::path::Path;
 use std::sync::Arc;
 
-use demo_io::{ReadOptions, read_with_context};
+use demo_io::{Piece, read_pieces};
 use motion::{Channel, Episode, Finding, Labels, MotionError, Source, Times, Trajectory};
 use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
@@ -13,6 +14,7 @@ use serde_json::json;
 use crate::arrays::{array, matrix};
 use crate::hints::{document_in_python, in_python};
 use crate::interruptible::interruptible;
+use crate::large::{Given, piece, reading_of};
 use crate::options::Preparing;
 use crate::pool;
 use crate::refusal::Refusal;
@@ -38,25 +40,24 @@ type Samples<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>, Optio
 
 #[pymethods]
 impl Recordings {
-    /// Reads files as one set; `options` are the program's, as JSON.
+    /// Reads files, or pieces of files, as one set; `options` are the program's, as JSON.
     #[staticmethod]
-    fn read(py: Python<'_>, paths: Vec<PathBuf>, options: &str, trim_still: bool) -> PyResult<Self> {
-        let place = match &paths[..] {
-            [path] => path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-            paths => format!("{} files", paths.len()),
+    fn read(py: Python<'_>, pieces: Vec<Given>, options: &str, trim_still: bool) -> PyResult<Self> {
+        let pieces = pieces.into_iter().map(piece).collect::<Result<Vec<Piece>, Refusal>>()?;
+        let paths: BTreeSet<&Path> = pieces.iter().map(|piece| &*piece.path).collect();
+        let place = match paths.first() {
+            Some(path) if paths.len() == 1 => path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            _ => format!("{} files", paths.len()),
         };
-        let options: ReadOptions = serde_json::from_str(options).map_err(|error| {
-            let text = error.to_string();
-            Refusal::new(text.split(" at line").next().unwrap_or(&text), "read()", "help(Demonstrations.read)")
-        })?;
+        let options = reading_of(options)?;
         let read = move |_: &_| {
-            let read = read_with_context(&paths, &options, &mut |_bytes| ());
+            let read = read_pieces(&pieces, &options, &mut |_bytes| ());
             let (mut recordings, context) = read.map_err(|error| Refusal::read(&error))?;
             if trim_still {
                 policy_align::trim_still(&mut recordings);
             }
-            let plain = paths.iter().filter(|path| path.is_file());
-            let files: Result<Vec<_>, _> = plain.map(|path| FileSummary::of(path)).collect();
+            let plain = pieces.iter().filter(|piece| piece.is_first() && piece.path.is_file());
+            let files: Result<Vec<_>, _> = plain.map(|piece| FileSummary::of(&piece.path)).collect();
             let unread =
                 |error: std::io::Error| Refusal::new(format!("cannot be read: {error}"), &place, "another file");
             Ok(Recorded { recordings, files: files.map_err(unread)?, place, context })
@@ -173,8 +174,7 @@ impl Recordings {
     /// What makes digests of files like these, which were read with these options, as JSON.
     fn digester(&self, py: Python<'_>, preparing: Preparing, options: &str, trim_still: bool) -> PyResult<String> {
         let (inner, preparing) = (Arc::clone(&self.inner), preparing.options(&self.inner.context)?);
-        let reading: ReadOptions =
-            serde_json::from_str(options).map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let reading = reading_of(options)?;
         let make = move |_: &_| {
             pool::on(0, || {
                 let prepared = prepare(&inner.recordings, &preparing)

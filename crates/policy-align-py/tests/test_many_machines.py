@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
+import pickle
 import runpy
 import signal
 import subprocess
@@ -24,10 +26,10 @@ from policy_align import AutoGp, Demonstrations, PolicyAlign, PolicyAlignError, 
 SWEEP = ROOT / "docs/examples/sweep.py"
 
 
-def rails_file(folder: Path, count: int, first: int = 0) -> Path:
-    """A small recording of movements from the first to the last of so many."""
+def rails_file(folder: Path, count: int, first: int = 0, samples: int = 10) -> Path:
+    """A recording of movements from the first to the last of so many."""
     lines = ["episode,t,x,y,vx,vy"]
-    for k, (x, u) in enumerate(zip(*on_rails(count, 10), strict=True)):
+    for k, (x, u) in enumerate(zip(*on_rails(count, samples), strict=True)):
         lines += [] if k < first else [",".join(map(repr, [k, DT * i, *x[i].tolist(), *u[i].tolist()])) for i in range(len(x))]
     path = folder / f"rails{count}.csv"
     path.write_text("\n".join(lines))
@@ -161,3 +163,36 @@ def test_one_fit_is_shared_out(tmp_path: Path) -> None:
         dying: Any = Dying(client, tmp_path / "died")
         assert model(dask.fit(files, dying, learner, at_once=at_once)) == alone
         assert len(client.scheduler_info()["workers"]) == 1
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_one_large_file_is_shared_out(tmp_path: Path) -> None:
+    file = rails_file(tmp_path, 300, samples=40)
+    learner = AutoGp(max_rows=60, inducing=0, n_jobs=1)
+
+    def model(learnt: AutoGp) -> str:
+        learnt.save(tmp_path / "model.json")
+        return without_time((tmp_path / "model.json").read_text())
+
+    taken: list[Any] = []
+
+    def backwards(function: Callable[[Any], bytes], items: list[Any]) -> list[bytes]:
+        taken.extend(items)
+        return [function(item) for item in pickle.loads(pickle.dumps(items))[::-1]][::-1]
+
+    alone = model(learner.fit_files(file, at_once="600kB"))
+    about = json.loads(alone)["data"]
+    assert about["episodes"] == 300
+    summary = {"name": file.name, "sha256": hashlib.sha256(file.read_bytes()).hexdigest(), "bytes": file.stat().st_size}
+    assert about["files"] == [summary]
+    assert model(learner.fit_files(file, at_once="600kB", map=backwards)) == alone
+    assert len(taken) > 1
+    with ThreadPool(2) as pool:
+        assert model(learner.fit_files(file, at_once="600kB", map=pool.map)) == alone
+
+    def changed(function: Callable[[Any], bytes], items: list[Any]) -> list[bytes]:
+        file.write_text(file.read_text() + "\n")
+        return list(map(function, items))
+
+    with pytest.raises(PolicyAlignError, match="has changed"):
+        learner.fit_files(file, at_once="600kB", map=changed)

@@ -93,7 +93,7 @@ pub use error::FitError;
 pub use evaluate::{EvaluateError, Evaluation, Truth, evaluate};
 pub use export::{CSource, ExportError, Precision, to_lerobot, to_onnx};
 pub use fit::{Digest, FitOptions, LearnerChoice, Progress, Step, fit, fit_with};
-pub use large::{DigestError, Digester, Division, FurtherFile, Part, PartError, Unfinished};
+pub use large::{DigestError, Digester, Division, FurtherPiece, Part, PartError, Unfinished};
 pub use learnt::Learnt;
 pub use leave_out::{ConstraintLeftOut, leave_constraints_out};
 pub use model::{DataSummary, FileSummary, MadeBy, Model, PredictedSpeed};

@@ -284,3 +284,160 @@ fn files_of_others_are_left_alone() {
     done(&run_in(path, &line));
     assert!(!kept.exists());
 }
+
+/// Of this file, five pieces of 256 kB, two are read at once.
+const PIECES: &str = "--at-once 600kB";
+const MOVEMENTS: usize = 210;
+const SAMPLES: usize = 100;
+
+/// Movements of π(x) = −2x with noise, along a line of its own each, in one file.
+fn large(name: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = "episode,t,x,y,vx,vy\n".to_owned();
+    for episode in 0..MOVEMENTS {
+        let angle = episode as f64 * 2.399_963;
+        let start = [(3.0 * angle).cos(), (5.0 * angle).sin()];
+        let along = [angle.cos(), angle.sin()];
+        let size = start[0] * along[0] + start[1] * along[1];
+        for sample in 0..SAMPLES {
+            let t = sample as f64 * 0.02;
+            let here = size * (-2.0 * t).exp();
+            let x = [0, 1].map(|axis| start[axis] + along[axis] * (here - size));
+            let wave =
+                |k: usize| ((episode * SAMPLES + sample) as f64 * 12.9898 + k as f64 * 78.233).sin() * 43_758.545_3;
+            let u = [0, 1].map(|axis| -2.0 * here * along[axis] + 0.1 * (wave(axis) - wave(axis).floor() - 0.5));
+            writeln!(text, "{episode},{t:.2},{:.9},{:.9},{:.9},{:.9}", x[0], x[1], u[0], u[1]).unwrap();
+        }
+    }
+    std::fs::write(folder.path().join(name), text).unwrap();
+    folder
+}
+
+/// One file that is larger than what is held at once: with one thread or more, in parts made in any order, and after an interrupt, the same
+/// bits; and a policy as good as that of the whole file.
+#[test]
+fn pieces_of_one_file_give_one_model() {
+    let folder = large("large.csv");
+    let path = folder.path();
+    let fit = |threads: &str, rest: &str| {
+        let line = format!("fit large.csv --learner slope --max-rows 60 --inducing 0 {rest}");
+        let ran: Ran =
+            command(path).env("RAYON_NUM_THREADS", threads).args(line.split_whitespace()).output().unwrap().into();
+        ran
+    };
+    let said = fit("1", &format!("{PIECES} -o one.json"));
+    done(&said);
+    assert!(said.out.contains("at once") && said.out.contains("210 episodes, 21000 samples"), "{}", said.out);
+    done(&fit("3", &format!("{PIECES} -o three.json")));
+    let part = fit("2", &format!("{PIECES} --shard 2/2"));
+    assert!(part.out.contains("2 of 2: 1 piece of 3"), "{}", part.out);
+    done(&fit("3", &format!("{PIECES} --shard 1/2")));
+    done(&fit("2", &format!("{PIECES} --merge part-2-of-2.json part-1-of-2.json -o merged.json")));
+    let one = model(&path.join("one.json"));
+    assert_eq!(one, model(&path.join("three.json")));
+    assert_eq!(one, model(&path.join("merged.json")));
+    done(&fit("2", "--at-once all -o all.json"));
+    let all = model(&path.join("all.json"));
+    assert_eq!(one["data"]["files"], all["data"]["files"]);
+    assert_eq!(one["data"]["files"].as_array().unwrap().len(), 1);
+    let error = |model: &Value| model["trust"]["numbers"]["expected_error"].as_f64().unwrap();
+    assert!(error(&one) < 2.0 * error(&all) + 1e-6, "{} {}", error(&one), error(&all));
+    let missing = fit("2", &format!("{PIECES} --merge part-1-of-2.json -o none.json"));
+    assert!(missing.err.contains("no part has large.csv from line"), "{}", missing.err);
+
+    // A fit that cannot write its model has kept all digests; what an interrupt leaves of them is taken.
+    let kept = path.join("m.json.unfinished");
+    let not_written = || {
+        std::fs::create_dir(path.join("m.trust.html")).unwrap();
+        let ran = fit("1", &format!("{PIECES} -o m.json"));
+        std::fs::remove_dir(path.join("m.trust.html")).unwrap();
+        assert!(ran.code != Some(0) && !path.join("m.json").exists(), "{}", ran.out);
+        std::fs::read_to_string(&kept).unwrap()
+    };
+    let text = not_written();
+    let lines: Vec<&str> = text.lines().filter(|line| line.ends_with('}')).collect();
+    assert_eq!(lines.len(), 3);
+    let header = text.lines().next().unwrap();
+    let cut = |lines: &[&str]| {
+        std::fs::write(&kept, format!("{header}\n{}\n{}", lines[..2].join("\n"), &lines[2][..lines[2].len() / 2]))
+            .unwrap();
+    };
+    cut(&lines);
+    let went_on = fit("2", &format!("{PIECES} -o m.json"));
+    done(&went_on);
+    assert!(went_on.err.contains("2 of 3 further pieces were read by an earlier run"), "{}", went_on.err);
+    assert_eq!(one, model(&path.join("m.json")));
+    assert!(!kept.exists());
+
+    // Digests are of the file as it was.
+    for name in ["m.json", "m.trust.html", "m.trust.json"] {
+        std::fs::remove_file(path.join(name)).unwrap();
+    }
+    let text = not_written();
+    cut(&text.lines().filter(|line| line.ends_with('}')).collect::<Vec<_>>());
+    let file = path.join("large.csv");
+    let content = std::fs::read_to_string(&file).unwrap();
+    std::fs::write(&file, content.replace("\n209,1.98,", "\n209,1.99,")).unwrap();
+    let anew = fit("2", &format!("{PIECES} -o m.json"));
+    assert!(anew.code == Some(0) && !anew.err.contains("goes on"), "{}", anew.err);
+}
+
+/// Movements are called as in the whole file, messages name its lines, and each file is listed once.
+#[test]
+fn pieces_say_what_the_files_say() {
+    let folder = large("a.csv");
+    let path = folder.path();
+    let text = std::fs::read_to_string(path.join("a.csv")).unwrap();
+    let still = text.lines().skip(1).take(SAMPLES).map(|row| {
+        let stamp = row.split(',').nth(1).unwrap();
+        format!("still,{stamp},0.1,0.1,0,0\n")
+    });
+    let still: String = still.collect();
+    let at = text.find("\n150,0.00").unwrap() + 1;
+    std::fs::write(path.join("b.csv"), format!("{}{still}{}", &text[..at], &text[at..])).unwrap();
+    std::fs::copy(path.join("a.csv"), path.join("c.csv")).unwrap();
+    let fit =
+        |rest: &str| run_in(path, &format!("fit a.csv b.csv c.csv --max-rows 60 --inducing 0 --at-once 1MB {rest}"));
+    done(&fit("-o m.json"));
+    let model = model(&path.join("m.json"));
+    let data = &model["data"];
+    assert_eq!((&data["episodes"], &data["left_out"][0]["episode"]), (&630.into(), &"b/still".into()));
+    let mut names: Vec<&str> =
+        data["files"].as_array().unwrap().iter().map(|file| file["name"].as_str().unwrap()).collect();
+    names.sort_unstable();
+    assert_eq!(names, ["a.csv", "b.csv", "c.csv"]);
+    for (episode, line) in [(0, 2), (150, 15_002), (209, 20_902)] {
+        let wrong = text.replace(&format!("\n{episode},0.00,"), &format!("\n{episode},0.00,wrong"));
+        std::fs::write(path.join("a.csv"), wrong).unwrap();
+        let refused = fit("-o wrong.json");
+        assert!(refused.code != Some(0) && refused.err.contains(&format!("a.csv, line {line}, ")), "{}", refused.err);
+    }
+    // Lines of episodes, and a coordinate that changes in few movements.
+    let level = |(at, row): (usize, &str)| match at {
+        0 => "episode,t,x,y,z\n".to_owned(),
+        at => {
+            let fields: Vec<&str> = row.split(',').take(4).collect();
+            let episode = (at - 1) / SAMPLES;
+            let z = if episode < 80 && episode.is_multiple_of(20) { fields[2] } else { "0" };
+            format!("{},{z}\n", fields.join(","))
+        }
+    };
+    std::fs::write(path.join("level.csv"), text.lines().enumerate().map(level).collect::<String>()).unwrap();
+    done(&run_in(path, "convert level.csv -o level.jsonl"));
+    for (name, of) in [("level.csv", "level"), ("level.jsonl", "lines")] {
+        let said = run_in(path, &format!("fit {name} --max-rows 60 --inducing 0 --at-once 600kB -o {of}.json"));
+        done(&said);
+        assert!(said.out.contains("at once") && said.out.contains("210 episodes, 21000 samples"), "{}", said.out);
+        let model = self::model(&path.join(format!("{of}.json")));
+        assert_eq!(model["data"]["files"][0]["name"], name);
+        assert_eq!(model["state"].as_array().unwrap().len(), 3);
+    }
+    // One that cannot be cut is read as it is.
+    let rows: Vec<&str> = text.lines().collect();
+    let (first, second) = rows[1..].split_at(SAMPLES);
+    let together = first.iter().zip(second).flat_map(|(a, b)| [*a, *b]).chain(second[SAMPLES..].iter().copied());
+    std::fs::write(path.join("a.csv"), format!("{}\n{}\n", rows[0], together.collect::<Vec<_>>().join("\n"))).unwrap();
+    let whole = run_in(path, "fit a.csv --max-rows 60 --inducing 0 --at-once 600kB -o whole.json");
+    assert!(whole.code == Some(0) && !whole.out.contains("at once"), "{}{}", whole.out, whole.err);
+    assert!(whole.out.contains("210 episodes, 21000 samples"), "{}", whole.out);
+}

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use crate::input::Input;
 use crate::raw::{MOST_CHANNELS, RawRecordings};
 use crate::rows::json::{Json, MOST_LEAVES};
-use crate::rows::roles::Column;
-use crate::rows::table::{HEAD_ROWS, Row as _, Table, content};
+use crate::rows::roles::{Column, HEAD_ROWS, content};
+use crate::rows::table::{Row as _, Table};
 use crate::{Fault, ReadError};
 
 /// Rows of documents whose columns are the paths of the first.

@@ -1,26 +1,43 @@
 //! JSON lines: a line an episode, as [`crate::write`] makes them or with lists by name, or a line a sample; or one list of either, or one
 //! object that holds episodes, over any lines.
 
+mod cut;
 mod entry_arrays;
 mod episode_line;
+mod lines;
 mod movements;
 
-use std::io::{BufRead, BufReader, Read as _};
-
+pub(crate) use self::cut::cut;
 use self::entry_arrays::EntryArrays;
 use self::episode_line::EpisodeLines;
+use self::lines::Lines;
 use self::movements::{Form, rows_of_columns, within};
 use crate::input::Input;
 use crate::raw::RawRecordings;
 use crate::rows::documents::Documents;
 use crate::rows::json::Json;
+use crate::rows::piece::Span;
 use crate::{Fault, ReadError};
 
-/// A line of more bytes is not read.
-const LONGEST_LINE: u64 = 1 << 30;
-
-pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<RawRecordings, ReadError> {
-    let mut lines = Lines { file: BufReader::with_capacity(1 << 16, input.open()?), line: 0, text: Vec::new() };
+/// All lines, or those of a part, which hold an episode each.
+pub(crate) fn read(
+    input: &Input<'_>,
+    part: Option<&Span>,
+    progress: &mut dyn FnMut(u64),
+) -> Result<RawRecordings, ReadError> {
+    let mut lines = Lines::new(input)?;
+    if let Some(part) = part {
+        let mut episodes = EpisodeLines::new(input, "line");
+        if let Some(first) = lines.next(true, &mut |_| ())? {
+            episodes.push(lines.line, &first)?;
+        }
+        episodes.forget(part.movements);
+        let mut lines = Lines::within(input, part)?;
+        while let Some(document) = lines.next(false, progress)? {
+            episodes.push(lines.line, &document)?;
+        }
+        return episodes.finish();
+    }
     let mut reader: Option<Reader<'_>> = None;
     let mut add = |place: u64, word: &'static str, alone: bool, document: &Json| {
         let form = || Form::of(document, alone);
@@ -29,11 +46,11 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
     let mut add_all = |entries: Vec<Json>| {
         entries.into_iter().enumerate().try_for_each(|(at, entry)| add(at as u64, "entry", false, &entry))
     };
-    let Some(first) = lines.next(&input.name, true, progress)? else {
+    let Some(first) = lines.next(true, progress)? else {
         return Err(ReadError::Empty(Fault::new("there is no line", &input.name, "a file that is not empty")));
     };
     let place = lines.line;
-    let second = lines.next(&input.name, false, progress)?;
+    let second = lines.next(false, progress)?;
     match first {
         Json::List(entries) => add_all(episodes_of(entries))?,
         first => match within(&first).filter(|_| second.is_none()) {
@@ -44,7 +61,7 @@ pub(crate) fn read(input: &Input<'_>, progress: &mut dyn FnMut(u64)) -> Result<R
     let mut next = second;
     while let Some(document) = next {
         add(lines.line, "line", false, &document)?;
-        next = lines.next(&input.name, false, progress)?;
+        next = lines.next(false, progress)?;
     }
     match reader {
         Some(reader) => reader.finish(),
@@ -112,61 +129,5 @@ impl<'a> Reader<'a> {
             Reader::Arrays(arrays) => arrays.finish(),
             Reader::Columns { rows, .. } | Reader::Samples(rows) => rows.finish(),
         }
-    }
-}
-
-struct Lines<R> {
-    file: R,
-    line: u64,
-    text: Vec<u8>,
-}
-
-impl<R: BufRead> Lines<R> {
-    /// The next line that is not blank; the `first` document may take all lines.
-    fn next(&mut self, file: &str, first: bool, progress: &mut dyn FnMut(u64)) -> Result<Option<Json>, ReadError> {
-        loop {
-            self.text.clear();
-            let read = (&mut self.file).take(LONGEST_LINE).read_until(b'\n', &mut self.text);
-            let read = read.map_err(|error| crate::input::unreadable(&error, file))? as u64;
-            if read == 0 {
-                return Ok(None);
-            }
-            self.line += 1;
-            progress(read);
-            if read == LONGEST_LINE {
-                let place = format!("{file}, line {}", self.line);
-                let remedy = "one line per episode, or per sample";
-                return Err(ReadError::TooLarge(Fault::new("a line of more than 1 GB", place, remedy)));
-            }
-            let text = self.text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&self.text);
-            if text.trim_ascii().is_empty() {
-                continue;
-            }
-            let error = match serde_json::from_slice(text) {
-                Ok(document) => return Ok(Some(document)),
-                Err(error) => error,
-            };
-            if first && error.is_eof() {
-                let mut whole = text.to_owned();
-                let rest = (&mut self.file).take(LONGEST_LINE).read_to_end(&mut whole);
-                progress(rest.map_err(|error| crate::input::unreadable(&error, file))? as u64);
-                if let Ok(document) = serde_json::from_slice(&whole) {
-                    return Ok(Some(document));
-                }
-            }
-            return Err(self.malformed(&error, file));
-        }
-    }
-
-    fn malformed(&self, error: &serde_json::Error, file: &str) -> ReadError {
-        let place = format!("{file}, line {}, column {}", self.line, error.column());
-        let text = error.to_string();
-        let what = text.rsplit_once(" at line").map_or(&text[..], |(what, _)| what);
-        let remedy = if self.text.windows(3).any(|letters| letters == b"NaN") {
-            "null where a number is missing: NaN is not JSON"
-        } else {
-            "correct the line: each must be one JSON document"
-        };
-        ReadError::Json(Fault::new(format!("this is not JSON: {what}"), place, remedy))
     }
 }

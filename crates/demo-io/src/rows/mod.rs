@@ -12,6 +12,7 @@ pub(crate) mod mcap;
 pub(crate) mod packed;
 #[cfg(feature = "parquet")]
 pub(crate) mod parquet;
+pub(crate) mod piece;
 pub(crate) mod roles;
 pub(crate) mod stamps;
 mod table;

@@ -1,9 +1,11 @@
 //! Roles of columns, from their names.
 
+mod content;
 mod names;
 
 use std::collections::HashMap;
 
+pub(crate) use self::content::{Content, HEAD_ROWS, content};
 use self::names::{base, is_one_of, nanoseconds_of};
 pub(crate) use self::names::{is_time, unit, velocity_names};
 
@@ -16,19 +18,6 @@ use motion::is_called_context;
 pub(crate) struct Column {
     pub(crate) name: String,
     pub(crate) content: Content,
-}
-
-/// What the first rows of a column hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Content {
-    /// Whole numbers, each one more than the last, or starting again.
-    Counting,
-    /// Numbers, or nothing.
-    Numbers,
-    /// Words that begin with a letter, throughout.
-    Words,
-    /// Anything else.
-    Text,
 }
 
 /// Indices of columns by role.

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use crate::raw::{
     Clock, MOST_CHANNELS, MOST_EPISODES, RawEpisode, RawRecordings, Rows, Unknown, no_time, period, unused,
 };
-use crate::rows::roles::{Column, Content, Roles, assign, shortened, unit};
+use crate::rows::roles::{Column, Roles, assign, shortened, unit};
 use crate::rows::stamps::{Stamp, TicksPerSecond};
 use crate::{Fault, ReadError, ReadOptions};
 use motion::{Channel, Labels};
@@ -18,6 +18,15 @@ pub(crate) trait Row {
     fn stamp(&self, column: usize) -> Result<(Stamp, Option<TicksPerSecond>), String>;
     /// Written to `label`.
     fn label(&self, column: usize, label: &mut String);
+}
+
+/// Columns that tell where a table may be cut.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cutting {
+    /// Where its labels change.
+    pub(crate) episode: usize,
+    /// If its labels do not: what they mean depends on all rows.
+    pub(crate) constraint: Option<usize>,
 }
 
 /// Collects rows into episodes, in the order in which their labels appear.
@@ -99,6 +108,21 @@ impl Table {
         let Roles { time, nanoseconds, episode, constraint, state, velocity, context, words, .. } = &self.roles;
         let columns = state.iter().chain(velocity).chain(context).chain(words).copied();
         [*time, *nanoseconds, *episode, *constraint].into_iter().flatten().chain(columns).collect()
+    }
+
+    /// Forgets the episodes of the first rows, and keeps what they say of all others: the unit of stamps, what columns of words hold.
+    pub(crate) fn forget_episodes(&mut self) {
+        self.episodes.clear();
+        self.clocks.clear();
+        self.by_label.clear();
+        self.current = None;
+    }
+
+    /// The columns that tell where a table may be cut, after its first rows; none if its parts could not be read as the whole is.
+    pub(crate) fn cutting(&self) -> Option<Cutting> {
+        let has_unit = self.ticks.is_some() || self.period.is_some();
+        let constraint = self.roles.constraint.filter(|&column| !says(&self.names[column]));
+        Some(Cutting { episode: self.roles.episode?, constraint }).filter(|_| has_unit)
     }
 
     /// Adds the row at `place`.
@@ -266,30 +290,4 @@ fn fill(row: &impl Row, columns: &[usize], numbers: &mut Vec<f64>) -> Result<(),
         numbers.push(row.number(column).map_err(|text| (column, text))?);
     }
     Ok(())
-}
-
-/// Columns are judged by so many rows.
-pub(crate) const HEAD_ROWS: usize = 64;
-
-/// What a column holds, judged by its numbers in the first rows.
-pub(crate) fn content(numbers: impl Iterator<Item = Result<f64, String>>) -> Content {
-    let mut last: Option<f64> = None;
-    let (mut counting, mut words, mut rows) = (true, 0, 0);
-    for number in numbers {
-        rows += 1;
-        let value = match number {
-            Ok(value) => value,
-            Err(text) if text.starts_with(char::is_alphabetic) => {
-                words += 1;
-                continue;
-            }
-            Err(_) => return Content::Text,
-        };
-        counting &= value.fract() == 0.0 && last.is_none_or(|last| value == last + 1.0 || value < last);
-        last = Some(value);
-    }
-    if words > 0 {
-        return if words == rows { Content::Words } else { Content::Text };
-    }
-    if counting { Content::Counting } else { Content::Numbers }
 }

@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from . import _native
 from ._arrays import Floats, episodes, floats, samples
+from ._digesting import Piece
 from ._errors import PolicyAlignError, PolicyAlignWarning
 from ._trust import Decision, Finding, decisions, findings
 
@@ -119,11 +120,7 @@ class Demonstrations:
         ``filter``, ``samples_are``, ``separator``, ``decimal``, ``topic``, ``format`` and ``trust``. What was noticed is
         warned of, and stays in ``notes``.
         """
-        native = _native.Recordings.read([os.fspath(path) for path in paths], *reading(options))
-        found = cls._of(native)
-        for note in found.notes:
-            warnings.warn(note, PolicyAlignWarning, stacklevel=2)
-        return found
+        return cls._of_pieces([(os.fspath(path), len(paths) > 1, None) for path in paths], options)
 
     @classmethod
     def from_frame(cls, frame: Any, **options: Any) -> Demonstrations:
@@ -286,6 +283,13 @@ class Demonstrations:
         channels, units = (list(listed) for listed in zip(*native.channels, strict=True))
         state = (list(positions), list(velocities), (None, list(times)), (native.names, channels))
         return _restored, ((*state, native.constraints, units), native.origin)
+
+    @classmethod
+    def _of_pieces(cls, pieces: Sequence[Piece], options: Mapping[str, Any]) -> Demonstrations:
+        found = cls._of(_native.Recordings.read(pieces, *reading(options)))
+        for note in found.notes:
+            warnings.warn(note, PolicyAlignWarning, stacklevel=3)
+        return found
 
     @classmethod
     def _of(cls, native: _native.Recordings) -> Demonstrations:

@@ -19,7 +19,7 @@ from . import _native
 from ._arrays import Floats, floats, samples, scaler_of
 from ._constraints import ConstraintStretch, stretches
 from ._demonstrations import Demonstrations, preparing, reading
-from ._digesting import Digesting, File
+from ._digesting import Digesting, Further
 from ._errors import NotFittedError, PolicyAlignError, PolicyAlignWarning
 from ._estimator import Estimator
 from ._rollout import Constraint, Path, follow
@@ -111,18 +111,19 @@ class Learner(Estimator):
         self,
         *paths: str | os.PathLike[str],
         at_once: str = "256MB",
-        map: Callable[[Callable[[File], bytes], list[File]], Iterable[bytes]] = map,
+        map: Callable[[Callable[[Further], bytes], list[Further]], Iterable[bytes]] = map,
         **options: Any,
     ) -> Self:
         """Learns from files that are too large to be held together, or that several machines read.
 
-        Files of ``at_once``, evenly spread, are read together; every other file is read alone, and means of its samples stay. ``map`` does
-        that, as the builtin function: that of a pool of processes, or of an engine (``policy_align.dask.fit``), gives the same model. What
+        Files of ``at_once``, evenly spread, are read together; every other file is read alone, and means of its samples stay. A text that
+        is large counts as pieces of whole movements. ``map`` does that, as the builtin function: that of a pool of processes, or of an engine (``policy_align.dask.fit``), gives the same model. What
         it is given can be pickled. ``options`` as of ``Demonstrations.read``; the program's ``fit --at-once`` does the same.
         """
         threads = _threads(self.n_jobs)
-        at_hand, further = _native.divide([os.fspath(path) for path in paths], at_once, self._learning())
-        demonstrations = Demonstrations.read(*at_hand, **options)
+        paths_given = [os.fspath(path) for path in paths]
+        at_hand, further = _native.divide(paths_given, at_once, self._learning(), reading(options)[0])
+        demonstrations = Demonstrations._of_pieces(at_hand, options)
         if not further:
             return self._learn(demonstrations, threads)
         digester = demonstrations._native.digester(self._preparing(), *reading(options))
@@ -130,7 +131,7 @@ class Learner(Estimator):
         return self._learn(demonstrations, threads, (further, parts, digester))
 
     def _learn(
-        self, demonstrations: Demonstrations, threads: int, further: tuple[list[File], list[bytes], str] = ([], [], "")
+        self, demonstrations: Demonstrations, threads: int, further: tuple[list[Further], list[bytes], str] = ([], [], "")
     ) -> Self:
         threads_made_at = (threads, time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()))
         given = (demonstrations._native, self._preparing(), self._learning())

@@ -10,17 +10,18 @@ _Floats = npt.NDArray[np.float64]
 __version__: str
 __all__ = ["Fitted", "Path", "Recordings", "__version__", "digest", "divide"]
 
-_File = tuple[int, str | os.PathLike[str], int, int]
+_Piece = tuple[str | os.PathLike[str], bool, str | None]
+_Further = tuple[int, _Piece, int, int]
 
 def divide(
-    paths: Sequence[str | os.PathLike[str]], at_once: str, learning: dict[str, Any]
-) -> tuple[list[str | os.PathLike[str]], list[_File]]: ...
-def digest(file: _File, digester: str) -> bytes: ...
+    paths: Sequence[str | os.PathLike[str]], at_once: str, learning: dict[str, Any], reading: str
+) -> tuple[list[_Piece], list[_Further]]: ...
+def digest(further: _Further, digester: str) -> bytes: ...
 
 @final
 class Recordings:
     @staticmethod
-    def read(paths: Sequence[str | os.PathLike[str]], options: str, trim_still: bool) -> Recordings: ...
+    def read(pieces: Sequence[_Piece], options: str, trim_still: bool) -> Recordings: ...
     @staticmethod
     def of(
         positions: Sequence[_Floats],
@@ -56,7 +57,7 @@ class Fitted:
         preparing: dict[str, Any],
         learning: dict[str, Any],
         threads_made_at: tuple[int, str],
-        further: tuple[Sequence[_File], Sequence[bytes], str],
+        further: tuple[Sequence[_Further], Sequence[bytes], str],
     ) -> Fitted: ...
     @staticmethod
     def from_json(text: bytes, place: str) -> Fitted: ...

@@ -11,7 +11,7 @@ import os
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from ._digesting import File
+from ._digesting import Further
 from ._learner import Learner
 from ._learners import AutoGp
 
@@ -26,11 +26,11 @@ def fit(
     at_once: str = "256MB",
     **options: Any,
 ) -> Learner:
-    """Learns from files that all workers see: they read the files that are not held together (``Learner.fit_files``), this process the
-    others. The work of a worker that dies is done by another; the model is that of one process. ``learner``: AutoGp() if not given.
+    """Learns from files that all workers see: they read the files and pieces that are not held together (``Learner.fit_files``), this process
+    the others. The work of a worker that dies is done by another; the model is that of one process. ``learner``: AutoGp() if not given.
     """
 
-    def on_workers(function: Callable[[File], bytes], items: list[File]) -> Iterable[bytes]:
+    def on_workers(function: Callable[[Further], bytes], items: list[Further]) -> Iterable[bytes]:
         found: Iterable[bytes] = client.gather(client.map(function, items))
         return found
 

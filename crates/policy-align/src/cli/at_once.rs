@@ -1,24 +1,31 @@
-//! Files that `fit` does not hold together: digests of them, made here, in parts on other machines, or read from such parts.
+//! Files, and pieces of files, that `fit` does not hold together: digests of them, made here, in parts on other machines, or read from such
+//! parts.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use policy_align::{Digest, Digester, Division, FileSummary, FitOptions, FurtherFile, Part, PartError, Unfinished};
+use demo_io::Piece;
+use policy_align::{Digest, Digester, Division, FileSummary, FitOptions, FurtherPiece, Part, PartError, Unfinished};
 use serde_json::json;
 use text::quoted;
 
 use crate::cli::failure::{Exit, Failure, displayed};
 use crate::cli::given::again;
 use crate::cli::lines::{Lines, counted, size};
-use crate::cli::options::flags::FitFlags;
+use crate::cli::options::flags::{FitFlags, ReadFlags};
 use crate::cli::recorded::{base_name, summaries};
 use crate::cli::session::{Output, Session, complain, write};
 
 /// Bytes of a part at most.
 const PART: u64 = 1 << 31;
 
-/// Which files are read at once.
-pub(crate) fn division(files: &[PathBuf], flags: &FitFlags, options: &FitOptions) -> Result<Division, Failure> {
+/// Which files, and which pieces of large ones, are read at once.
+pub(crate) fn division(
+    session: &Session,
+    files: &[PathBuf],
+    (reading, flags): (&ReadFlags, &FitFlags),
+    options: &FitOptions,
+) -> Result<Division, Failure> {
     let size = |text: &str| {
         let remedy = format!("--at-once 256MB, 2GB or {}", Division::ALL);
         Division::bytes(text)
@@ -26,7 +33,11 @@ pub(crate) fn division(files: &[PathBuf], flags: &FitFlags, options: &FitOptions
     };
     let most = flags.at_once.as_deref().map(size).transpose()?;
     let whole = if flags.hold_out.is_empty() { options.needs_whole_recordings() } else { Some("--hold-out") };
-    let division = Division::of(files, most.unwrap_or(if whole.is_some() { u64::MAX } else { Division::AT_ONCE }))?;
+    let most = most.unwrap_or(if whole.is_some() { u64::MAX } else { Division::AT_ONCE });
+    let bar = session.bar(0, "looking for movements  {bytes}, {elapsed} elapsed");
+    let division = Division::of(files, &reading.options()?, most, &mut |read| bar.inc(read));
+    bar.finish_and_clear();
+    let division = division?;
     match whole {
         Some(flag) if !division.further.is_empty() => {
             let what = format!("{flag} needs all files at once");
@@ -43,7 +54,7 @@ pub(crate) fn shard(text: &str) -> Result<(usize, usize), Failure> {
     shard.ok_or_else(|| Failure::usage(format!("'{text}' is no share I/N with I up to N"), "--shard", "--shard 1/4"))
 }
 
-/// Digests of all further files; those made here are kept in `unfinished`.
+/// Digests of all further pieces; those made here are kept in `unfinished`.
 pub(crate) fn digests(
     session: &Session,
     (division, digester): (&Division, &Digester),
@@ -62,9 +73,9 @@ pub(crate) fn digests(
 }
 
 /// Where digests are kept until `output` is written.
-pub(crate) fn unfinished(output: &Path, files: &[FurtherFile], digester: &Digester) -> Result<Unfinished, Failure> {
+pub(crate) fn unfinished(output: &Path, pieces: &[FurtherPiece], digester: &Digester) -> Result<Unfinished, Failure> {
     let failed = |error| Failure::writing(&Unfinished::beside(output), error);
-    Unfinished::open(output, files, digester).map_err(failed)
+    Unfinished::open(output, pieces, digester).map_err(failed)
 }
 
 fn read(path: &Path) -> Result<Part, Failure> {
@@ -75,17 +86,18 @@ fn read(path: &Path) -> Result<Part, Failure> {
 
 fn part(
     session: &Session,
-    (files, digester): (&[FurtherFile], &Digester),
+    (pieces, digester): (&[FurtherPiece], &Digester),
     unfinished: Option<&Unfinished>,
 ) -> Result<Part, Failure> {
     let found = unfinished.map_or(0, Unfinished::remaining);
     if found > 0 && !session.quiet {
-        let of = counted(files.len(), "further file");
+        let of = counted(pieces.len(), &format!("further {}", word(pieces)));
         complain(&format!("goes on: {found} of {of} were read by an earlier run"));
     }
-    let bytes = files.iter().map(|file| file.bytes).sum();
-    let bar = session.bar(bytes, "further files  {bar:30} {bytes} of {total_bytes}, {eta} left");
-    let part = Part::of(files, digester, unfinished, &|read| bar.inc(read));
+    let bytes = pieces.iter().map(|piece| piece.bytes).sum();
+    let template = format!("further {}s  {{bar:30}} {{bytes}} of {{total_bytes}}, {{eta}} left", word(pieces));
+    let bar = session.bar(bytes, &template);
+    let part = Part::of(pieces, digester, unfinished, &|read| bar.inc(read));
     bar.finish_and_clear();
     part.map_err(|error| match error {
         PartError::Read(error) => Failure::from(error),
@@ -94,6 +106,11 @@ fn part(
             Failure::of_text(Exit::Refused, &error.to_string(), "files that are not read at once", &remedy)
         }
     })
+}
+
+/// What they are: "file", or "piece" if there are pieces of files among them.
+fn word(pieces: &[FurtherPiece]) -> &'static str {
+    if pieces.iter().all(|further| further.piece.span.is_none()) { "file" } else { "piece" }
 }
 
 /// Writes a share of the digests, to `output` if there is one.
@@ -109,19 +126,22 @@ pub(crate) fn write_part(
     }
     let ((this, of), own) = (shard, part_file(shard));
     let output = output.unwrap_or(&own);
-    let files = division.share(shard);
-    let unfinished = unfinished(output, &files, digester)?;
-    let text = part(session, (&files, digester), Some(&unfinished))?.to_json();
+    let pieces = division.share(shard);
+    let unfinished = unfinished(output, &pieces, digester)?;
+    let text = part(session, (&pieces, digester), Some(&unfinished))?.to_json();
     let text =
         text.map_err(|error| Failure::new(Exit::Refused, error.to_string(), displayed(output), "other files"))?;
     write(output, &text)?;
     Unfinished::remove(output);
     if session.json {
-        let document = json!({ "written": [displayed(output)], "files": files.len(), "of": division.further.len() });
+        let document = json!({ "written": [displayed(output)], "digests": pieces.len(), "of": division.further.len() });
         return Ok(Output::json(&document, Exit::Done));
     }
     let mut lines = Lines::default();
-    lines.add("part", &format!("{this} of {of}: {} of {}", counted(files.len(), "file"), division.further.len()));
+    lines.add(
+        "part",
+        &format!("{this} of {of}: {} of {}", counted(pieces.len(), word(&division.further)), division.further.len()),
+    );
     lines.add("written", &format!("{} ({})", displayed(output), size(text.len())));
     let added = if this < of {
         format!("--shard {}/{of}", this + 1)
@@ -145,7 +165,8 @@ pub(crate) fn files_of(
     of_digests: Vec<FileSummary>,
 ) -> Result<Vec<FileSummary>, Failure> {
     let named_ones: HashSet<&PathBuf> = named.iter().collect();
-    let at_once: Vec<PathBuf> = division.at_once.iter().filter(|path| named_ones.contains(path)).cloned().collect();
+    let is_listed = |piece: &&Piece| piece.is_first() && named_ones.contains(&piece.path);
+    let at_once: Vec<PathBuf> = division.at_once.iter().filter(is_listed).map(|piece| piece.path.clone()).collect();
     let names: HashSet<String> = named.iter().map(|path| base_name(path)).collect();
     let further = of_digests.into_iter().filter(|file| names.contains(&file.name));
     Ok(summaries(&at_once)?.into_iter().chain(further).collect())

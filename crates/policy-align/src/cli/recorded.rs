@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use demo_io::Piece;
 use motion::{Finding, Recordings};
 use policy_align::{
     ConstraintStretch, ContextUse, FileSummary, Model, Prepared, TaskLinks, estimate_constraints, prepare,
@@ -28,9 +29,18 @@ pub(crate) fn read_with_context(
     files: &[PathBuf],
     flags: &ReadFlags,
 ) -> Result<(Recordings, ContextUse), Failure> {
-    let bytes = files.iter().filter_map(|file| std::fs::metadata(file).ok()).map(|found| found.len()).sum();
-    let bar = session.bar(bytes, "reading  {bar:30} {bytes} of {total_bytes}, {eta} left");
-    let recordings = demo_io::read_with_context(files, &flags.options()?, &mut |read| bar.inc(read));
+    let pieces: Vec<Piece> = files.iter().map(|file| Piece::whole(file, files.len() > 1)).collect();
+    read_pieces(session, &pieces, flags)
+}
+
+/// As [`read_with_context`], of files of which some are read in part.
+pub(crate) fn read_pieces(
+    session: &Session,
+    pieces: &[Piece],
+    flags: &ReadFlags,
+) -> Result<(Recordings, ContextUse), Failure> {
+    let bar = session.bar(pieces.iter().map(bytes_of).sum(), "reading  {bar:30} {bytes} of {total_bytes}, {eta} left");
+    let recordings = demo_io::read_pieces(pieces, &flags.options()?, &mut |read| bar.inc(read));
     bar.finish_and_clear();
     let (mut recordings, context) = recordings?;
     warn(session, &recordings.findings);
@@ -91,6 +101,12 @@ pub(crate) fn known_episode<S: AsRef<str>>(
     let some: Vec<&str> = known.iter().take(5).map(AsRef::as_ref).collect();
     let remedy = format!("one of {}, …", some.join(", "));
     Err(Failure::usage(format!("there is no episode '{name}'"), format!("{flag}, {place}"), remedy))
+}
+
+/// Of a piece, or of a file; what cannot be read has none.
+fn bytes_of(Piece { path, span, .. }: &Piece) -> u64 {
+    let whole = || std::fs::metadata(path).map_or(0, |found| found.len());
+    span.as_ref().map_or_else(whole, |span| span.bytes.end.saturating_sub(span.bytes.start))
 }
 
 fn warn(session: &Session, findings: &[Finding]) {

@@ -63,7 +63,7 @@ impl Digest {
         for digest in digests {
             let names = digest.channels.iter().map(|channel| &channel.name);
             if !digest.is_sound(dim) || !names.eq(channels.iter().map(|channel| &channel.name)) {
-                let file = digest.data.files.first().map_or("of a folder", |file| &file.name);
+                let file = digest.data.files.first().map_or("of a folder or a piece", |file| &file.name);
                 return Err(FitError::Digest { reason: format!("the digest {file} is damaged") });
             }
             let factors = channels.iter().zip(&digest.channels).map(|(now, then)| now.scale / then.scale);

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use gp::{AutoFit, CurlTest, DirectGp, GpError, Grouping, ModelKind, PushTest, Rows, SlopeGp};
-use motion::Policy;
+use motion::{Policy, SampleIndex};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -41,11 +41,13 @@ pub(super) fn of_slope(readings: &AutoFit, rows: &Rows, limits: Limits) -> Optio
     let with_spaces = |spaces| rows.clone().with_task_spaces(spaces).map(Cow::Owned);
     let learnt_from = match report.task_space {
         Some(space) => with_spaces(vec![rows.task_spaces()[space].clone()]).ok()?,
-        None if report.push.is_none() => rows.averaged(),
+        None if report.push.is_none() => return of_means((readings, readings.slope()), rows, &learn),
         None if rows.task_spaces().is_empty() => Cow::Borrowed(rows),
         None => with_spaces(Vec::new()).ok()?,
     };
-    disagreement((readings, readings.slope()), (rows, &learnt_from), &learn)
+    let halves = halves(readings, &learnt_from);
+    drop(learnt_from);
+    disagreement(readings.slope(), rows, &halves, &learn)
 }
 
 /// The same of direct policies.
@@ -57,7 +59,7 @@ pub(super) fn of_direct(readings: &AutoFit, rows: &Rows, limits: Limits) -> Opti
         ..DirectGp::default()
     };
     let learn = |rows: &Rows| gp.fit(rows, &mut ChaCha8Rng::seed_from_u64(limits.seed));
-    disagreement((readings, readings.direct()), (rows, &rows.averaged()), &learn)
+    of_means((readings, readings.direct()), rows, &learn)
 }
 
 /// Samples of the only movement, if there is one alone.
@@ -67,15 +69,36 @@ fn only_movement(readings: &AutoFit, rows: &Rows) -> Option<usize> {
     alone.then_some(last.sample + 1)
 }
 
-fn disagreement<P: Policy + Send>(
+/// Of policies that are learnt from means.
+fn of_means<P: Policy + Send>(
     (readings, whole): (&AutoFit, &dyn Policy),
-    (rows, learnt_from): (&Rows, &Rows),
+    rows: &Rows,
     learn: &(dyn Fn(&Rows) -> Result<P, GpError> + Sync),
 ) -> Option<f64> {
-    let middle = only_movement(readings, learnt_from).map(|samples| samples / 2);
+    let trajectory = |index: Option<&SampleIndex>| index.map(|index| index.trajectory);
+    let halves = if trajectory(rows.indices().first()) == trajectory(rows.indices().last()) {
+        halves(readings, &rows.averaged())
+    } else {
+        // Means are of one movement each. All of them would take as much memory again as the rows.
+        [false, true].map(|odd| rows.without(|trajectory, _| (trajectory % 2 == 1) != odd).averaged().into_owned())
+    };
+    disagreement(whole, rows, &halves, learn)
+}
+
+/// Every other movement and the others, or both halves of a single one.
+fn halves(readings: &AutoFit, rows: &Rows) -> [Rows; 2] {
+    let middle = only_movement(readings, rows).map(|samples| samples / 2);
     let is_odd = |trajectory: usize, sample: usize| middle.map_or(trajectory % 2 == 1, |middle| sample >= middle);
-    let half = |odd: bool| learn(&learnt_from.without(|trajectory, sample| is_odd(trajectory, sample) == odd));
-    let (even, odd) = rayon::join(|| half(true), || half(false));
+    [false, true].map(|odd| rows.without(|trajectory, sample| is_odd(trajectory, sample) != odd))
+}
+
+fn disagreement<P: Policy + Send>(
+    whole: &dyn Policy,
+    rows: &Rows,
+    [even, odd]: &[Rows; 2],
+    learn: &(dyn Fn(&Rows) -> Result<P, GpError> + Sync),
+) -> Option<f64> {
+    let (even, odd) = rayon::join(|| learn(even), || learn(odd));
     let states = states(rows);
     let apart = (even.ok()?.actions(states.as_view()) - odd.ok()?.actions(states.as_view())).norm_squared();
     let disagreement = apart / spread(&whole.actions(states.as_view()));

@@ -85,6 +85,8 @@ pub fn fit_with(
     let (prepared, rows, readings) = match (weighed, &rescaled) {
         (Some(inertia::Weighed { rows, readings, .. }), _) => (prepared, rows, readings),
         (None, Some(rescaled)) => {
+            // Both would take twice the memory.
+            drop((rows, readings));
             let rows = with_digests(recorded_rows::rows(rescaled)?, rescaled, digests)?;
             let (rows, _) = LinkNames::with_spaces(rows, rescaled, options)?;
             let readings = learn(&rows, options)?;

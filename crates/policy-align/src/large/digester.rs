@@ -1,16 +1,16 @@
-use demo_io::{ReadError, ReadOptions, read_one_of_several};
+use demo_io::{ReadError, ReadOptions, read_further};
 use motion::{LeftOut, Recordings};
 use serde::{Deserialize, Serialize};
 
 use crate::fit::{made_beside, rows};
-use crate::large::{DigestError, FurtherFile, PartError};
+use crate::large::{DigestError, FurtherPiece, PartError};
 use crate::stored::sha256;
 use crate::{
     ContextUse, DataSummary, Digest, FileSummary, PrepareError, PrepareOptions, Prepared, StateChannel, VelocitySource,
     prepare, trim_still,
 };
 
-/// Makes digests of further files, read and prepared like the recordings at hand. It is small, so that other machines can have it.
+/// Makes digests of further files and pieces, read and prepared like the recordings at hand. It is small, so that other machines can have it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Digester {
     reading: ReadOptions,
@@ -51,22 +51,24 @@ impl Digester {
         &self.made_for
     }
 
-    /// Reads a file and makes its digest; holds this file alone. Calls `progress` with the number of bytes read since the last call. The bits
-    /// depend on nothing but this file, its share of rows and the recordings at hand.
+    /// Reads a file or piece and makes its digest; holds it alone. Calls `progress` with the number of bytes read since the last call. The bits
+    /// depend on nothing but this piece, its share of rows and the recordings at hand.
     ///
     /// # Errors
     /// [`PartError`], which names the file.
-    pub fn digest_file(&self, file: &FurtherFile, progress: &mut dyn FnMut(u64)) -> Result<Digest, PartError> {
-        let name = file.name();
-        let mut digest = match read_one_of_several(&file.path, &self.reading, progress) {
+    pub fn digest_piece(&self, further: &FurtherPiece, progress: &mut dyn FnMut(u64)) -> Result<Digest, PartError> {
+        let (piece, name) = (&further.piece, further.piece.name());
+        let channels: Vec<String> = self.channels.iter().map(|channel| channel.name.clone()).collect();
+        let mut digest = match read_further(piece, &channels, &self.reading, progress) {
             Ok(recordings) => self
-                .digest(recordings, file.rows)
+                .digest(recordings, further.rows)
                 .map_err(|source| PartError::Digest { file: name.clone(), source: Box::new(source) })?,
             Err(ReadError::Empty(fault)) => self.empty(vec![LeftOut { episode: name.clone(), why: fault.what }]),
             Err(error) => return Err(error.into()),
         };
-        if file.path.is_file() {
-            let summary = FileSummary::of(&file.path);
+        // A file is listed once.
+        if piece.is_first() && piece.path.is_file() {
+            let summary = FileSummary::of(&piece.path);
             let summary = summary.map_err(|error| PartError::File { file: name, reason: error.to_string() })?;
             digest.data.files = vec![summary];
         }

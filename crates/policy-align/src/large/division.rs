@@ -1,40 +1,39 @@
-//! Which files are read at once.
+//! Which files, and which pieces of large ones, are read at once.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use demo_io::ReadError;
+use demo_io::{Piece, ReadError, ReadOptions, pieces_of};
 
 /// Rows of all digests together, about: so many in seven dimensions take 60 MB.
 const ROWS: u64 = 500_000;
 
-/// Files that are read at once, and those of which digests are made.
+/// Pieces that have the size of what is read at once: enough to be evenly spread over a file, and small beside it on each thread.
+const PIECES: u64 = 16;
+
+/// Bytes that a piece may always have: the beginning of the file is looked at with each.
+const SMALLEST: u64 = 256 << 10;
+
+/// Files that are read at once, and those of which digests are made; of large files pieces.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Division {
-    /// Evenly spread over all files; all of them if they are small enough.
-    pub at_once: Vec<PathBuf>,
+    /// Evenly spread over all; all of them if they are small enough.
+    pub at_once: Vec<Piece>,
     /// The others, in their order.
-    pub further: Vec<FurtherFile>,
+    pub further: Vec<FurtherPiece>,
 }
 
-/// A file of which a digest is made.
+/// A file, or a piece of one, of which a digest is made.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct FurtherFile {
+pub struct FurtherPiece {
     /// Its place among them.
     pub at: usize,
-    /// Where it is.
-    pub path: PathBuf,
+    /// Which it is.
+    pub piece: Piece,
     /// Its size.
     pub bytes: u64,
     /// Rows of its digest at most, by its share of all bytes.
     pub rows: usize,
-}
-
-impl FurtherFile {
-    /// Its name without folders.
-    pub(super) fn name(&self) -> String {
-        self.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
-    }
 }
 
 impl Division {
@@ -56,42 +55,61 @@ impl Division {
     }
 
     /// The I-th of N shares of the further files, counted from 1, dealt out in turn.
-    pub fn share(&self, (this, of): (usize, usize)) -> Vec<FurtherFile> {
+    pub fn share(&self, (this, of): (usize, usize)) -> Vec<FurtherPiece> {
         self.further.iter().skip(this.saturating_sub(1)).step_by(of.max(1)).cloned().collect()
     }
 
     /// All files at once.
     pub fn none(files: &[PathBuf]) -> Division {
-        Division { at_once: files.to_vec(), further: vec![] }
+        let whole = |path| Piece::whole(path, files.len() > 1);
+        Division { at_once: files.iter().map(whole).collect(), further: vec![] }
     }
 
     /// Every so many of the files, so that they have at most so many bytes together; the first alone if none is smaller. Of folders that
-    /// hold a file for each movement the files count, a data set counts as one. Depends on the order and the sizes alone.
+    /// hold a file for each movement the files count, a data set counts as one. In place of a text that has more than a sixteenth of these
+    /// bytes its pieces count ([`pieces_of`]), which is read once for that; `progress` takes the number of bytes read since the last call.
+    /// Depends on the order, the sizes and what is read with `options` alone.
     ///
     /// # Errors
-    /// [`ReadError`] for a folder that cannot be read.
-    pub fn of(files: &[PathBuf], most_bytes: u64) -> Result<Division, ReadError> {
+    /// [`ReadError`] for a folder that cannot be read, and of files that are cut.
+    pub fn of(
+        files: &[PathBuf],
+        options: &ReadOptions,
+        most_bytes: u64,
+        progress: &mut dyn FnMut(u64),
+    ) -> Result<Division, ReadError> {
         let listed = files.iter().map(|path| demo_io::files_of(path)).collect::<Result<Vec<_>, _>>()?.concat();
-        let sizes: Vec<u64> = listed.iter().map(|path| bytes_in(path)).collect();
-        if sizes.iter().sum::<u64>() <= most_bytes {
+        if listed.iter().map(|path| bytes_in(path)).sum::<u64>() <= most_bytes {
             return Ok(Division::none(files));
         }
+        let named_by_file = listed.len() > 1 || listed != files;
+        let most_of_one = (most_bytes / PIECES).max(SMALLEST);
+        let mut pieces = vec![];
+        for path in listed {
+            pieces.extend(pieces_of(Piece::whole(path, named_by_file), most_of_one, options, progress)?);
+        }
+        let sizes: Vec<u64> = pieces.iter().map(bytes_of).collect();
         let fits = |every: &usize| sizes.iter().step_by(*every).sum::<u64>() <= most_bytes;
-        let every = (2..listed.len()).find(fits).unwrap_or(listed.len().max(1));
+        let every = (1..pieces.len()).find(fits).unwrap_or(pieces.len().max(1));
         let is_at_once = |at: usize| at.is_multiple_of(every);
         let of_others: u64 = sizes.iter().enumerate().filter(|(at, _)| !is_at_once(*at)).map(|(_, bytes)| bytes).sum();
         let mut division = Division { at_once: vec![], further: vec![] };
-        for (place, (path, bytes)) in listed.into_iter().zip(sizes).enumerate() {
+        for (place, (piece, bytes)) in pieces.into_iter().zip(sizes).enumerate() {
             if is_at_once(place) {
-                division.at_once.push(path);
+                division.at_once.push(piece);
             } else {
                 let share = u128::from(ROWS) * u128::from(bytes) / u128::from(of_others.max(1));
                 let (at, rows) = (division.further.len(), (share as usize).max(1));
-                division.further.push(FurtherFile { at, path, bytes, rows });
+                division.further.push(FurtherPiece { at, piece, bytes, rows });
             }
         }
         Ok(division)
     }
+}
+
+/// Of a file, a piece of one, or all files in a folder.
+fn bytes_of(piece: &Piece) -> u64 {
+    piece.span.as_ref().map_or_else(|| bytes_in(&piece.path), |span| span.bytes.end.saturating_sub(span.bytes.start))
 }
 
 /// Of a file, or of all files in a folder; nothing of what cannot be read, which the reader complains of.
@@ -135,25 +153,58 @@ mod tests {
             for (path, &size) in files.iter().zip(&sizes) {
                 fs::write(path, vec![b'0'; size]).expect("a file");
             }
-            let division = Division::of(&files, most).expect("a division");
+            let of = |files: &[PathBuf]| {
+                Division::of(files, &ReadOptions::default(), most, &mut |_| ()).expect("a division")
+            };
+            let division = of(&files);
             let further = || division.further.iter();
-            let found: BTreeSet<&PathBuf> = division.at_once.iter().chain(further().map(|file| &file.path)).collect();
+            let found: BTreeSet<&PathBuf> =
+                division.at_once.iter().chain(further().map(|further| &further.piece)).map(|piece| &piece.path).collect();
             prop_assert_eq!(found.len(), files.len());
             prop_assert_eq!(division.at_once.len() + division.further.len(), files.len());
-            let at_once: u64 = division.at_once.iter().map(|path| bytes_in(path)).sum();
+            let at_once: u64 = division.at_once.iter().map(bytes_of).sum();
             prop_assert!(at_once <= most || division.at_once.len() == 1);
-            prop_assert!(further().all(|file| file.bytes == bytes_in(&file.path) && file.rows > 0));
+            prop_assert!(further().all(|file| file.bytes == bytes_in(&file.piece.path) && file.rows > 0));
             let rows: usize = further().map(|file| file.rows).sum();
             prop_assert!(rows as u64 <= ROWS + division.further.len() as u64);
             let shares = [1, 2, 3].map(|this| division.share((this, 3)));
-            let mut shared: Vec<FurtherFile> = shares.concat();
+            let mut shared: Vec<FurtherPiece> = shares.concat();
             shared.sort_by_key(|file| file.at);
             prop_assert_eq!(&shared, &division.further);
             // The folder is its files.
-            let of_folder = Division::of(&[folder.path().to_owned()], most).expect("a division");
+            let of_folder = of(&[folder.path().to_owned()]);
             if !of_folder.further.is_empty() {
                 prop_assert_eq!(of_folder.at_once.len() + of_folder.further.len(), files.len());
             }
         }
+    }
+
+    /// A large file counts as its pieces, which are evenly spread over it; small ones beside it stay whole.
+    #[test]
+    fn a_large_file_is_divided() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let [large, small] = ["large.csv", "small.csv"].map(|name| folder.path().join(name));
+        let header = "episode,t,x,y\n";
+        let movement = |episode: usize| (0..100).map(move |at| format!("{episode},{at},{},{}\n", at * 2, at * 3));
+        let rows: String = (0..3000).flat_map(movement).collect();
+        let bytes = rows.len() as u64;
+        fs::write(&large, format!("{header}{rows}")).expect("a file");
+        fs::write(&small, format!("{header}{}", movement(0).collect::<String>())).expect("a file");
+        let most = bytes / 3;
+        let files = [large.clone(), small.clone()];
+        let division = Division::of(&files, &ReadOptions::default(), most, &mut |_| ()).expect("a division");
+        let further = division.further.iter().map(|further| &further.piece);
+        let mut pieces: Vec<&Piece> = division.at_once.iter().chain(further).collect();
+        pieces.sort_by_key(|piece| (piece.path.clone(), piece.span.as_ref().map(|span| span.number)));
+        assert_eq!(pieces.pop(), Some(&Piece::whole(small, true)));
+        let mut end = header.len() as u64;
+        for piece in pieces {
+            let span = piece.span.as_ref().expect("a part").bytes.clone();
+            assert!(piece.path == large && piece.named_by_file && span.start == end);
+            assert!(span.end - span.start <= (most / PIECES).max(SMALLEST));
+            end = span.end;
+        }
+        assert_eq!(end, header.len() as u64 + bytes);
+        assert!(division.at_once.len() > 2 && division.at_once.iter().map(bytes_of).sum::<u64>() <= most);
     }
 }

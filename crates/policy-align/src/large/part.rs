@@ -4,48 +4,47 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::Digest;
-use crate::large::file_digest::FileDigest;
+use crate::large::piece_digest::PieceDigest;
 use crate::large::unfinished::Source;
-use crate::large::{Digester, FurtherFile, PartError, Unfinished};
+use crate::large::{Digester, FurtherPiece, PartError, Unfinished};
 
 const FORMAT: &str = "policy-align part";
 const VERSION: u32 = 1;
 
-/// Digests of some of the further files.
+/// Digests of some of the further files and pieces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Part {
     format: String,
     version: u32,
-    digests: Vec<FileDigest>,
+    digests: Vec<PieceDigest>,
 }
 
 impl Part {
-    /// Digests of these files, of which several are read at a time, one on each thread; each digest is the same whatever else is read.
-    /// `progress` takes the number of bytes read since the last call. With `unfinished`, files that an earlier run has read are not read again.
+    /// Digests of these pieces, of which several are read at a time, one on each thread; each digest is the same whatever else is read.
+    /// `progress` takes the number of bytes read since the last call. With `unfinished`, pieces that an earlier run has read are not read again.
     ///
     /// # Errors
-    /// [`PartError`] of a file that cannot be used; others are then not read.
+    /// [`PartError`] of a piece that cannot be used; others are then not read.
     pub fn of(
-        files: &[FurtherFile],
+        pieces: &[FurtherPiece],
         digester: &Digester,
         unfinished: Option<&Unfinished>,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Part, PartError> {
-        let digest = |file: &FurtherFile| {
-            if let Some(found) = unfinished.and_then(|unfinished| unfinished.take(file)) {
-                progress(file.bytes);
+        let digest = |piece: &FurtherPiece| {
+            if let Some(found) = unfinished.and_then(|unfinished| unfinished.take(piece)) {
+                progress(piece.bytes);
                 return Ok(found);
             }
-            let keeper = unfinished.and_then(|unfinished| Some((unfinished, Source::of(file)?)));
-            let digest = digester.digest_file(file, &mut |bytes| progress(bytes))?;
-            let digest = FileDigest { at: file.at, name: file.name(), bytes: file.bytes, digest };
+            let keeper = unfinished.and_then(|unfinished| Some((unfinished, Source::of(piece)?)));
+            let digest = PieceDigest::new(piece, digester.digest_piece(piece, &mut |bytes| progress(bytes))?);
             if let Some((unfinished, source)) = keeper {
                 unfinished.keep(&source, &digest);
             }
             Ok(digest)
         };
-        let digests = files.par_iter().map(digest).collect::<Result<_, PartError>>()?;
+        let digests = pieces.par_iter().map(digest).collect::<Result<_, PartError>>()?;
         Ok(Part { format: FORMAT.to_owned(), version: VERSION, digests })
     }
 
@@ -71,27 +70,29 @@ impl Part {
         }
     }
 
-    /// The digests of all further files, in their order, from parts in any order.
+    /// The digests of all further pieces, in their order, from parts in any order.
     ///
     /// # Errors
-    /// [`PartError::Parts`] where a file is in no part or in several, has changed, or parts were made for other recordings or options.
-    pub fn merged(parts: Vec<Part>, files: &[FurtherFile], digester: &Digester) -> Result<Vec<Digest>, PartError> {
+    /// [`PartError::Parts`] where a piece is in no part or in several, has changed, or parts were made for other recordings or options.
+    pub fn merged(parts: Vec<Part>, pieces: &[FurtherPiece], digester: &Digester) -> Result<Vec<Digest>, PartError> {
         let wrong = |reason: String| Err(PartError::Parts { reason });
-        let mut merged: Vec<Option<Digest>> = vec![None; files.len()];
-        for FileDigest { at, name: of, bytes, digest } in parts.into_iter().flat_map(|part| part.digests) {
-            if digest.made_for != digester.made_for() {
+        let mut merged: Vec<Option<Digest>> = vec![None; pieces.len()];
+        for found in parts.into_iter().flat_map(|part| part.digests) {
+            let (at, of) = (found.at, &found.name);
+            if found.digest.made_for != digester.made_for() {
                 return wrong(format!("the digest of {of} was made with other files, options or by another version"));
             }
-            match files.get(at) {
-                Some(file) if file.name() == of && file.bytes == bytes => {}
+            match pieces.get(at) {
+                Some(piece) if found.is_of(piece) => {}
                 _ => return wrong(format!("the digest of {of} is of another file, or of this one before it changed")),
             }
-            if merged[at].replace(digest).is_some() {
+            if merged[at].is_some() {
                 return wrong(format!("{of} is in two parts"));
             }
+            merged[at] = Some(found.digest);
         }
         match merged.iter().position(Option::is_none) {
-            Some(missing) => wrong(format!("no part has {}", files[missing].path.display())),
+            Some(missing) => wrong(format!("no part has {}", pieces[missing].piece.name())),
             None => Ok(merged.into_iter().flatten().collect()),
         }
     }

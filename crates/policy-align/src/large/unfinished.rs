@@ -3,14 +3,15 @@
 use std::collections::BTreeMap;
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::time::SystemTime;
 
+use demo_io::FileState;
 use serde::{Deserialize, Serialize};
 
-use crate::large::file_digest::FileDigest;
-use crate::large::{Digester, FurtherFile};
+use crate::large::piece_digest::PieceDigest;
+use crate::large::{Digester, FurtherPiece};
 use crate::stored::sha256;
 
 /// First line.
@@ -20,19 +21,19 @@ const HEADER: &str = "policy-align unfinished 1";
 #[derive(Debug)]
 pub struct Unfinished {
     path: PathBuf,
-    /// Of an earlier run, by place among the further files.
-    found: Mutex<BTreeMap<usize, FileDigest>>,
+    /// Of an earlier run, by place among the further pieces.
+    found: Mutex<BTreeMap<usize, PieceDigest>>,
     /// None once nothing can be written any more: a fit does not fail for that.
     file: Mutex<Option<File>>,
 }
 
-/// What a digest depends on beside the recordings at hand: the file as it was before it was read, and its share of all rows.
+/// What a digest depends on beside the recordings at hand: the file as it was before it was read, the part of it, and its share of all rows.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Source {
     path: PathBuf,
-    bytes: u64,
-    modified: SystemTime,
+    state: FileState,
+    part: Option<Range<u64>>,
     rows: usize,
 }
 
@@ -46,10 +47,10 @@ struct Line<S, D> {
 
 impl Source {
     /// None for a folder, or if the system does not tell.
-    pub(super) fn of(file: &FurtherFile) -> Option<Source> {
-        let found = fs::metadata(&file.path).ok().filter(Metadata::is_file)?;
-        let (path, modified) = (fs::canonicalize(&file.path).ok()?, found.modified().ok()?);
-        Some(Source { path, bytes: found.len(), modified, rows: file.rows })
+    pub(super) fn of(FurtherPiece { piece, rows, .. }: &FurtherPiece) -> Option<Source> {
+        let (state, path) = (FileState::of(&piece.path).ok()?, fs::canonicalize(&piece.path).ok()?);
+        let part = piece.span.as_ref().map(|span| span.bytes.clone());
+        Some(Source { path, state, part, rows: *rows })
     }
 }
 
@@ -61,19 +62,19 @@ impl Unfinished {
         PathBuf::from(path)
     }
 
-    /// For digests of these files. Those that an earlier run kept are found again if they were made for the same recordings at hand, options and
+    /// For digests of these pieces. Those that an earlier run kept are found again if they were made for the same recordings at hand, options and
     /// version, and the file has not changed.
     ///
     /// # Errors
     /// If nothing can be written there, or the file is none of these.
-    pub fn open(output: &Path, files: &[FurtherFile], digester: &Digester) -> io::Result<Unfinished> {
+    pub fn open(output: &Path, pieces: &[FurtherPiece], digester: &Digester) -> io::Result<Unfinished> {
         let path = Self::beside(output);
         let exists = match fs::symlink_metadata(&path) {
             Ok(found) if is_own(&path, &found) => true,
             Ok(_) => return Err(io::Error::new(io::ErrorKind::AlreadyExists, "it exists and is not of a fit")),
             Err(_) => false,
         };
-        let found = if exists { read(&path, files, digester).unwrap_or_default() } else { BTreeMap::new() };
+        let found = if exists { read(&path, pieces, digester).unwrap_or_default() } else { BTreeMap::new() };
         let mut file = OpenOptions::new().append(true).create_new(!exists).open(&path)?;
         if found.is_empty() {
             file.set_len(0)?;
@@ -91,12 +92,12 @@ impl Unfinished {
     }
 
     /// The digest of an earlier run.
-    pub(super) fn take(&self, file: &FurtherFile) -> Option<FileDigest> {
-        self.found.lock().ok()?.remove(&file.at)
+    pub(super) fn take(&self, piece: &FurtherPiece) -> Option<PieceDigest> {
+        self.found.lock().ok()?.remove(&piece.at)
     }
 
-    /// Keeps a digest of a file as it was before it was read.
-    pub(super) fn keep(&self, source: &Source, digest: &FileDigest) {
+    /// Keeps a digest, of a file as it was before it was read.
+    pub(super) fn keep(&self, source: &Source, digest: &PieceDigest) {
         if let Ok(json) = serde_json::to_string(&Line { source, of: digest })
             && let Ok(mut file) = self.file.lock()
         {
@@ -125,15 +126,16 @@ fn is_own(path: &Path, found: &Metadata) -> bool {
     found.is_file() && (found.len() == 0 || first().is_some_and(|first| first == HEADER))
 }
 
-fn read(path: &Path, files: &[FurtherFile], digester: &Digester) -> io::Result<BTreeMap<usize, FileDigest>> {
-    let sources: BTreeMap<usize, Source> = files.iter().filter_map(|file| Some((file.at, Source::of(file)?))).collect();
+fn read(path: &Path, pieces: &[FurtherPiece], digester: &Digester) -> io::Result<BTreeMap<usize, PieceDigest>> {
+    let source = |piece: &FurtherPiece| Some((piece.at, Source::of(piece)?));
+    let sources: BTreeMap<usize, Source> = pieces.iter().filter_map(source).collect();
     let mut found = BTreeMap::new();
     for line in BufReader::new(File::open(path)?).split(b'\n') {
         // A line that was cut may end within a letter.
         if let Ok(line) = String::from_utf8(line?)
             && let Some((checksum, json)) = line.split_once(' ')
             && checksum == sha256(json.as_bytes())
-            && let Ok(Line::<Source, FileDigest> { source, of }) = serde_json::from_str(json)
+            && let Ok(Line::<Source, PieceDigest> { source, of }) = serde_json::from_str(json)
             && sources.get(&of.at) == Some(&source)
             && of.digest.made_for == digester.made_for()
         {

@@ -18,6 +18,8 @@ pub(super) struct EpisodeLines<'a> {
     /// What episodes are: "line".
     word: &'static str,
     channels: Option<Vec<Channel>>,
+    /// Before the first of `episodes`.
+    before: usize,
     episodes: Vec<RawEpisode>,
 }
 
@@ -34,7 +36,13 @@ pub(super) fn state(line: &Json) -> Option<&[Json]> {
 
 impl<'a> EpisodeLines<'a> {
     pub(super) fn new(input: &'a Input<'a>, word: &'static str) -> Self {
-        Self { input, word, channels: None, episodes: Vec::new() }
+        Self { input, word, channels: None, before: 0, episodes: Vec::new() }
+    }
+
+    /// Forgets all episodes, and goes on with those that follow so many; channels stay those of the first.
+    pub(super) fn forget(&mut self, before: usize) {
+        self.episodes.clear();
+        self.before = before;
     }
 
     pub(super) fn push(&mut self, number: u64, line: &Json) -> Result<(), ReadError> {
@@ -73,7 +81,7 @@ impl<'a> EpisodeLines<'a> {
         }
         let label = |keys: &[&str]| one_of(line, keys).map(Json::to_string);
         self.episodes.push(RawEpisode {
-            name: label(&["episode", "name"]).unwrap_or_else(|| self.episodes.len().to_string()),
+            name: label(&["episode", "name"]).unwrap_or_else(|| (self.before + self.episodes.len()).to_string()),
             file: self.input.name.clone(),
             rows: Rows::consecutive(0, samples.len()),
             times: self.times(line, samples.len(), &place)?,

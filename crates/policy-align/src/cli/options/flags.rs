@@ -172,7 +172,7 @@ pub(crate) struct FitFlags {
     /// Robot with these joints: tries its links and its masses
     #[arg(long, value_name = "FILE.urdf")]
     robot: Option<PathBuf>,
-    /// Size of files that are held together, as 2GB or all [default: 256MB]
+    /// Size of files and pieces held together, as 2GB or all [default: 256MB]
     #[arg(long, value_name = "SIZE")]
     pub(crate) at_once: Option<String>,
     /// Episodes to evaluate on, not to learn from: names, or a share as 20%

@@ -20,7 +20,7 @@ use crate::cli::lines::{Lines, amount, counted, size, squared_error};
 use crate::cli::options::config::{Config, printed};
 use crate::cli::options::flags::{FitFlags, PrepareFlags, ReadFlags};
 use crate::cli::pages::trust_page::trust_page;
-use crate::cli::recorded::{base_name, known_episode, named, read_with_context, unreported};
+use crate::cli::recorded::{base_name, known_episode, named, read_pieces, unreported};
 use crate::cli::session::{Output, Session, write_together};
 use crate::cli::trust_files::{MEMBER, trust_files, warn_of_others};
 use crate::cli::verbs::check::{findings, left_out};
@@ -33,7 +33,7 @@ const MODEL: &str = "model.json";
 #[command(after_help = "\
 Writes a trust report next to the model: MODEL.trust.html and MODEL.trust.json.
 Exit code 1 if its verdict is \"do not use\".
-After an interrupt the same command goes on; finished files are not read again.
+After an interrupt the same command goes on; what was read is not read again.
 All flags of reading files: policy-align check --help
 
 Example:
@@ -78,9 +78,9 @@ impl Fit {
         let (mut prepare_options, fit_options) = (preparing.options(reading.dt)?, learning.options()?);
         let place = || named(&self.files);
         let shard = self.shard.as_deref().map(shard).transpose()?;
-        let division = division(&self.files, &learning, &fit_options)?;
+        let division = division(session, &self.files, (&reading, &learning), &fit_options)?;
         let recordings;
-        (recordings, prepare_options.context) = read_with_context(session, &division.at_once, &reading)?;
+        (recordings, prepare_options.context) = read_pieces(session, &division.at_once, &reading)?;
         let (recordings, held_out) = divided(recordings, &learning.hold_out, &place())?;
         let reported = recordings.findings.clone();
         let prepared = prepare(recordings, &prepare_options).map_err(|error| Failure::prepare(&error, place()))?;

@@ -1,0 +1,114 @@
+use std::collections::HashSet;
+
+use csv::ByteRecord;
+
+use super::beginning::Beginning;
+use super::dialect::Dialect;
+use crate::ReadError;
+use crate::input::Input;
+use crate::raw::MOST_EPISODES;
+use crate::regular_file::FileState;
+use crate::rows::piece::{Cuts, Span, Start};
+use crate::rows::table::{Cutting, Row as _};
+
+/// Where a part begins, its reader would take it for none of the text.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// Parts of whole movements, of at most so many bytes unless a movement has more; none of a text that cannot be cut: without a column of
+/// episodes, or with one whose labels come back.
+pub(crate) fn cut(
+    input: &Input<'_>,
+    (most, of): (u64, FileState),
+    progress: &mut dyn FnMut(u64),
+) -> Result<Vec<Span>, ReadError> {
+    let beginning = Beginning::of(input, progress, true)?;
+    if beginning.is_transposed(input) {
+        return Ok(Vec::new());
+    }
+    let Some(cutting) = beginning.table(input)?.cutting() else { return Ok(Vec::new()) };
+    let Beginning { dialect, mut records, head, .. } = beginning;
+    let (mut labels, mut cuts) = (Labels::new(cutting), Cuts::new(most, of));
+    let (mut head, mut record) = (head.into_iter(), ByteRecord::new());
+    loop {
+        let line = match head.next() {
+            Some((line, first)) => {
+                record = first;
+                line
+            }
+            None => match records.next(&mut record)? {
+                Some(line) => line,
+                None => return Ok(cuts.finish()),
+            },
+        };
+        let byte = records.byte_of(&record);
+        match (labels.look(&record, &dialect), labels.seen.len().saturating_sub(1)) {
+            (Label::Same, _) => {}
+            (Label::New, movements) => match byte.filter(|_| !record[0].starts_with(BYTE_ORDER_MARK)) {
+                Some(byte) => cuts.push(Start { byte, line, movements }),
+                None if movements == 0 => return Ok(Vec::new()),
+                None => {}
+            },
+            (Label::InTheWay, _) => return Ok(Vec::new()),
+        }
+    }
+}
+
+/// Labels of episodes so far.
+struct Labels {
+    cutting: Cutting,
+    seen: HashSet<String>,
+    /// The last record's label, as it is written and as it is meant.
+    written: Vec<u8>,
+    label: String,
+    /// The first record's label of a constraint, likewise.
+    constraint: Option<(Vec<u8>, String)>,
+}
+
+/// What a record's label says.
+enum Label {
+    Same,
+    /// A movement begins.
+    New,
+    /// There are no parts that could be read alone.
+    InTheWay,
+}
+
+impl Labels {
+    fn new(cutting: Cutting) -> Labels {
+        Labels { cutting, seen: HashSet::new(), written: Vec::new(), label: String::new(), constraint: None }
+    }
+
+    fn look(&mut self, record: &ByteRecord, dialect: &Dialect) -> Label {
+        if self.cutting.constraint.is_some_and(|column| self.is_other_constraint(column, record, dialect)) {
+            return Label::InTheWay;
+        }
+        let written = &record[self.cutting.episode];
+        if !self.seen.is_empty() && written == self.written {
+            return Label::Same;
+        }
+        self.written.clear();
+        self.written.extend_from_slice(written);
+        let mut label = String::new();
+        dialect.fields(record).label(self.cutting.episode, &mut label);
+        if !self.seen.is_empty() && label == self.label {
+            return Label::Same;
+        }
+        self.label.clone_from(&label);
+        // More are refused by who reads the whole.
+        if self.seen.insert(label) && self.seen.len() <= MOST_EPISODES { Label::New } else { Label::InTheWay }
+    }
+
+    fn is_other_constraint(&mut self, column: usize, record: &ByteRecord, dialect: &Dialect) -> bool {
+        let meant = || {
+            let mut label = String::new();
+            dialect.fields(record).label(column, &mut label);
+            label
+        };
+        match &self.constraint {
+            None => self.constraint = Some((record[column].to_vec(), meant())),
+            Some((written, _)) if *written == record[column] => {}
+            Some((_, label)) => return *label != meant(),
+        }
+        false
+    }
+}
