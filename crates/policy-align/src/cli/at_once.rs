@@ -132,6 +132,7 @@ pub(crate) fn write_part(
     let text =
         text.map_err(|error| Failure::new(Exit::Refused, error.to_string(), displayed(output), "other files"))?;
     write(output, &text)?;
+    drop(unfinished);
     Unfinished::remove(output);
     if session.json {
         let document = json!({ "written": [displayed(output)], "digests": pieces.len(), "of": division.further.len() });

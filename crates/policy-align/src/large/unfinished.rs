@@ -1,30 +1,28 @@
 //! Digests of a fit that was interrupted, kept beside what it was to write.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File, Metadata, OpenOptions};
-use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+use std::{fs, io};
 
 use demo_io::FileState;
+use journal::Journal;
 use serde::{Deserialize, Serialize};
 
 use crate::large::piece_digest::PieceDigest;
 use crate::large::{Digester, FurtherPiece};
-use crate::stored::sha256;
 
-/// First line.
-const HEADER: &str = "policy-align unfinished 1";
+/// The first line of the file.
+const KIND: &str = "policy-align unfinished 1";
 
-/// Digests that are kept as they are made, so that the same command goes on where it was interrupted: a line each, a checksum and JSON.
+/// Digests that are kept as they are made, so that the same command goes on where it was interrupted.
 #[derive(Debug)]
 pub struct Unfinished {
-    path: PathBuf,
     /// Of an earlier run, by place among the further pieces.
     found: Mutex<BTreeMap<usize, PieceDigest>>,
     /// None once nothing can be written any more: a fit does not fail for that.
-    file: Mutex<Option<File>>,
+    journal: Mutex<Option<Journal>>,
 }
 
 /// What a digest depends on beside the recordings at hand: the file as it was before it was read, the part of it, and its share of all rows.
@@ -37,10 +35,10 @@ pub(super) struct Source {
     rows: usize,
 }
 
-/// What a line says behind its checksum.
+/// What is kept of a piece.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Line<S, D> {
+struct Record<S, D> {
     source: S,
     of: D,
 }
@@ -66,24 +64,20 @@ impl Unfinished {
     /// version, and the file has not changed.
     ///
     /// # Errors
-    /// If nothing can be written there, or the file is none of these.
+    /// If nothing can be written there, another process does, or the file is none of these.
     pub fn open(output: &Path, pieces: &[FurtherPiece], digester: &Digester) -> io::Result<Unfinished> {
-        let path = Self::beside(output);
-        let exists = match fs::symlink_metadata(&path) {
-            Ok(found) if is_own(&path, &found) => true,
-            Ok(_) => return Err(io::Error::new(io::ErrorKind::AlreadyExists, "it exists and is not of a fit")),
-            Err(_) => false,
+        let (journal, kept) = Journal::open::<Record<Source, PieceDigest>>(&Self::beside(output), KIND)?;
+        let source = |piece: &FurtherPiece| Some((piece.at, Source::of(piece)?));
+        let sources: BTreeMap<usize, Source> = pieces.iter().filter_map(source).collect();
+        let is_of = |Record { source, of }: &Record<Source, PieceDigest>| {
+            sources.get(&of.at) == Some(source) && of.digest.made_for == digester.made_for()
         };
-        let found = if exists { read(&path, pieces, digester).unwrap_or_default() } else { BTreeMap::new() };
-        let mut file = OpenOptions::new().append(true).create_new(!exists).open(&path)?;
+        let found: BTreeMap<usize, PieceDigest> =
+            kept.records.into_iter().filter(is_of).map(|Record { of, .. }| (of.at, of)).collect();
         if found.is_empty() {
-            file.set_len(0)?;
-            writeln!(file, "{HEADER}")?;
-        } else {
-            // Ends a line that an interrupt cut.
-            writeln!(file)?;
+            journal.clear()?;
         }
-        Ok(Unfinished { path, found: Mutex::new(found), file: Mutex::new(Some(file)) })
+        Ok(Unfinished { found: Mutex::new(found), journal: Mutex::new(Some(journal)) })
     }
 
     /// Digests of an earlier run that have not been taken yet.
@@ -98,49 +92,16 @@ impl Unfinished {
 
     /// Keeps a digest, of a file as it was before it was read.
     pub(super) fn keep(&self, source: &Source, digest: &PieceDigest) {
-        if let Ok(json) = serde_json::to_string(&Line { source, of: digest })
-            && let Ok(mut file) = self.file.lock()
+        if let Ok(mut journal) = self.journal.lock()
+            && let Some(full) = journal.take_if(|journal| journal.append(&Record { source, of: digest }).is_err())
         {
-            let line = format!("{} {json}\n", sha256(json.as_bytes()));
-            if file.as_mut().is_some_and(|file| file.write_all(line.as_bytes()).is_err()) {
-                *file = None;
-                // The model needs the room.
-                let _ = fs::remove_file(&self.path);
-            }
+            // The model needs the room.
+            let _ = fs::remove_file(full.path());
         }
     }
 
-    /// Removes what is kept for `output`, once that is written.
+    /// Removes what is kept for `output`, once that is written and nothing keeps digests any more.
     pub fn remove(output: &Path) {
-        let path = Self::beside(output);
-        if fs::symlink_metadata(&path).is_ok_and(|found| is_own(&path, &found)) {
-            // Without it there is nothing to remove.
-            let _ = fs::remove_file(path);
-        }
+        journal::remove(&Self::beside(output), KIND);
     }
-}
-
-/// Whether it was made here.
-fn is_own(path: &Path, found: &Metadata) -> bool {
-    let first = || BufReader::new(File::open(path).ok()?.take(HEADER.len() as u64)).lines().next()?.ok();
-    found.is_file() && (found.len() == 0 || first().is_some_and(|first| first == HEADER))
-}
-
-fn read(path: &Path, pieces: &[FurtherPiece], digester: &Digester) -> io::Result<BTreeMap<usize, PieceDigest>> {
-    let source = |piece: &FurtherPiece| Some((piece.at, Source::of(piece)?));
-    let sources: BTreeMap<usize, Source> = pieces.iter().filter_map(source).collect();
-    let mut found = BTreeMap::new();
-    for line in BufReader::new(File::open(path)?).split(b'\n') {
-        // A line that was cut may end within a letter.
-        if let Ok(line) = String::from_utf8(line?)
-            && let Some((checksum, json)) = line.split_once(' ')
-            && checksum == sha256(json.as_bytes())
-            && let Ok(Line::<Source, PieceDigest> { source, of }) = serde_json::from_str(json)
-            && sources.get(&of.at) == Some(&source)
-            && of.digest.made_for == digester.made_for()
-        {
-            found.insert(of.at, of);
-        }
-    }
-    Ok(found)
 }

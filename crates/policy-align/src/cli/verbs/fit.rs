@@ -91,6 +91,7 @@ impl Fit {
         let makes_digests = !division.further.is_empty() && self.merge.is_empty();
         let unfinished = makes_digests.then(|| unfinished(&self.output(), &division.further, &digester)).transpose()?;
         let digests = digests(session, (&division, &digester), unfinished.as_ref(), &self.merge)?;
+        drop(unfinished);
         let bar = session.bar(4, "{msg}  {bar:30} step {pos} of {len}, {elapsed} elapsed");
         let never = AtomicBool::new(false);
         let mut report = |step: policy_align::Step| {
