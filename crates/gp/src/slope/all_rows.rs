@@ -59,20 +59,32 @@ pub(crate) fn on_all_rows(gp: &SlopeGp, rows: &Rows, kept: &Kept, thinned: &Outc
     let thinned_error = judge.error(kept, &thinned.data, &thinned.taken);
     let least = exact.as_ref().map_or(thinned_error, |exact| error(exact).min(thinned_error));
     let worth = |all: &Kept, data: &SlopeData, of: &Candidate| judge.error(all, data, of) <= HOPELESS * least;
-    let induced = (beyond > 0).then(|| {
-        let before = exact.as_ref().map_or(thinned, |exact| &exact.outcome);
-        let [some, all] = [FEW, MOST].map(|rows| of_most(rows * gp.inducing_rows));
-        let (some, all) = (some?, all?);
-        if all.rows.len() < SEVERAL * some.rows.len() {
-            return induced(gp, all, (before, NEARLY), worth);
-        }
-        let some = induced(gp, some, (before, NEARLY), worth)?;
-        induced(gp, all, (&some.outcome, 1.0), worth)
-    });
+    let before = exact.as_ref().map_or(thinned, |exact| &exact.outcome);
+    let (some, all) = if beyond == 0 { (None, None) } else { all_induced(gp, of_most, before, worth) };
     // Of noisy rows too few are kept to tell nearly equal models apart: the one of more rows knows more.
-    let allowed = if kept.variances.is_some() { ALLOWED } else { 1.0 };
-    let induced = induced.flatten().filter(|induced| error(induced) <= allowed * least);
+    let noisy = kept.variances.is_some();
+    let allowed = if noisy { ALLOWED } else { 1.0 };
+    let good = |induced: &OnAllRows| error(induced) <= allowed * least;
+    let induced = if noisy { all.filter(good).or(some.filter(good)) } else { best_of(vec![some, all]).filter(good) };
     induced.or_else(|| exact.filter(|exact| error(exact) <= allowed * thinned_error))
+}
+
+/// Models through inducing rows: of some rows where there are several times as many, with the families that were nearly the best before,
+/// and of all with those that are the best then.
+fn all_induced(
+    gp: &SlopeGp,
+    of_most: impl Fn(usize) -> Option<Kept>,
+    before: &Outcome,
+    worth: impl Fn(&Kept, &SlopeData, &Candidate) -> bool,
+) -> (Option<OnAllRows>, Option<OnAllRows>) {
+    let [some, all] = [FEW, MOST].map(|rows| of_most(rows * gp.inducing_rows));
+    let (Some(some), Some(all)) = (some, all) else { return (None, None) };
+    if all.rows.len() < SEVERAL * some.rows.len() {
+        return (None, induced(gp, all, (before, NEARLY), worth));
+    }
+    let some = induced(gp, some, (before, NEARLY), &worth);
+    let all = some.as_ref().and_then(|some| induced(gp, all, (&some.outcome, 1.0), worth));
+    (some, all)
 }
 
 /// Compares models on the rows that were kept, which all of them have.
