@@ -1,6 +1,7 @@
 //! Files that are too large to be held together.
 
 use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
 
 use demo_io::{Piece, ReadOptions};
 use policy_align::{Digest, Digester, Division, FurtherPiece, Part, PartError};
@@ -40,8 +41,7 @@ pub(crate) fn divide(
         let what = format!("{} needs all files at once", in_python(flag));
         return Err(Refusal::new(what, "at_once", "at_once=\"all\"").into());
     }
-    let given = |FurtherPiece { at, piece, bytes, rows }| (at, given(piece), bytes, rows);
-    Ok((division.at_once.into_iter().map(self::given).collect(), division.further.into_iter().map(given).collect()))
+    Ok((division.at_once.into_iter().map(given).collect(), division.further.into_iter().map(tuple).collect()))
 }
 
 /// The program's options of reading, as JSON.
@@ -91,6 +91,62 @@ pub(crate) fn digests((pieces, parts, digester): (Vec<Further>, Vec<Vec<u8>>, St
     let pieces = pieces.into_iter().map(of_tuple).collect::<Result<Vec<_>, _>>()?;
     let parts = parts.iter().map(|text| Part::of_json(text)).collect::<Result<_, _>>();
     parts.and_then(|parts| Part::merged(parts, &pieces, &digester)).map_err(|error| damaged(&error.to_string()))
+}
+
+/// Digests that are kept as they are made, so that a fit that was interrupted goes on.
+#[pyclass(frozen, module = "policy_align._native")]
+pub(crate) struct Unfinished {
+    pieces: Vec<FurtherPiece>,
+    /// None once it is closed.
+    kept: Mutex<Option<policy_align::Unfinished>>,
+}
+
+#[pymethods]
+impl Unfinished {
+    /// Opens or begins such a file; the digester is JSON.
+    #[staticmethod]
+    fn open(path: PathBuf, pieces: Vec<Further>, digester: &str) -> PyResult<Self> {
+        let digester: Digester = serde_json::from_str(digester).map_err(|error| damaged(&error.to_string()))?;
+        let pieces = pieces.into_iter().map(of_tuple).collect::<Result<Vec<_>, _>>()?;
+        let kept = policy_align::Unfinished::open(&path, &pieces, &digester).map_err(|error| {
+            let (what, place) = (format!("cannot be written: {error}"), path.display().to_string());
+            Refusal::new(what, place, "unfinished= with another file, or without it")
+        })?;
+        Ok(Unfinished { pieces, kept: Mutex::new(Some(kept)) })
+    }
+
+    /// A part of all digests that an earlier run kept, as [`digest`] gives one, and what is not in it.
+    fn found<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyBytes>, Vec<Further>)> {
+        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let Some(kept) = &*kept else { return Err(damaged("closed already").into()) };
+        let (part, others) = kept.take_all(&self.pieces);
+        let bytes = part.to_json().map_err(|error| damaged(&error.to_string()))?;
+        Ok((PyBytes::new(py, &bytes), others.into_iter().map(tuple).collect()))
+    }
+
+    /// Keeps a part that [`digest`] gave.
+    fn keep(&self, part: &[u8]) -> PyResult<()> {
+        let part = Part::of_json(part).map_err(|error| damaged(&error.to_string()))?;
+        if let Some(kept) = &*self.kept.lock().unwrap_or_else(PoisonError::into_inner) {
+            kept.keep_all(&part);
+        }
+        Ok(())
+    }
+
+    /// Lets another process have the file.
+    fn close(&self) {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner).take();
+    }
+
+    /// Removes such a file, which nothing has open.
+    #[staticmethod]
+    fn remove(path: PathBuf) {
+        policy_align::Unfinished::remove(&path);
+    }
+}
+
+fn tuple(FurtherPiece { at, piece, bytes, rows }: FurtherPiece) -> Further {
+    (at, given(piece), bytes, rows)
 }
 
 fn of_tuple((at, given, bytes, rows): Further) -> Result<FurtherPiece, Refusal> {

@@ -27,7 +27,7 @@ mod _native {
     #[pymodule_export]
     use crate::fitted::Fitted;
     #[pymodule_export]
-    use crate::large::{digest, divide};
+    use crate::large::{Unfinished, digest, divide};
     #[pymodule_export]
     use crate::recordings::Recordings;
     #[pymodule_export]

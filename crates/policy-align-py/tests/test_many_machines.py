@@ -196,3 +196,41 @@ def test_one_large_file_is_shared_out(tmp_path: Path) -> None:
 
     with pytest.raises(PolicyAlignError, match="has changed"):
         learner.fit_files(file, at_once="600kB", map=changed)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_an_interrupted_fit_goes_on(tmp_path: Path) -> None:
+    files = [rails_file(tmp_path, 10 * k + 10, 10 * k) for k in range(8)]
+    options: dict[str, Any] = {"at_once": f"{2.1 * files[-1].stat().st_size / 1e3}kB"}
+    learner, unfinished = AutoGp(max_rows=60, n_jobs=1), tmp_path / "fit.unfinished"
+
+    def model(learnt: AutoGp) -> str:
+        learnt.save(tmp_path / "model.json")
+        return without_time((tmp_path / "model.json").read_text())
+
+    alone = model(learner.fit_files(*files, **options))
+    counts: list[int] = []
+
+    def two_at_most(function: Callable[[Any], bytes], items: list[Any]) -> Iterator[bytes]:
+        counts.append(len(items))
+        for at, item in enumerate(items):
+            if at == 2:
+                raise KeyboardInterrupt
+            yield function(item)
+
+    for _ in range(2):
+        with pytest.raises(KeyboardInterrupt):
+            learner.fit_files(*files, map=two_at_most, unfinished=unfinished, **options)
+    with ThreadPool(2) as pool:
+
+        def counted(function: Callable[[Any], bytes], items: list[Any]) -> Any:
+            counts.append(len(items))
+            return pool.imap(function, items)
+
+        assert model(learner.fit_files(*files, map=counted, unfinished=unfinished, **options)) == alone
+    assert counts == [counts[0], counts[0] - 2, counts[0] - 4] and not unfinished.exists()
+    # A file that is something else is left alone.
+    unfinished.write_text("notes")
+    with pytest.raises(PolicyAlignError, match="something else"):
+        learner.fit_files(*files, unfinished=unfinished, **options)
+    assert unfinished.read_text() == "notes"

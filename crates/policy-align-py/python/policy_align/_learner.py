@@ -7,7 +7,7 @@ import operator
 import os
 import time
 import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from html import escape
 from typing import Any, ClassVar, Literal, Self, overload
@@ -19,7 +19,7 @@ from . import _native
 from ._arrays import Floats, floats, samples, scaler_of
 from ._constraints import ConstraintStretch, stretches
 from ._demonstrations import Demonstrations, preparing, reading
-from ._digesting import Digesting, Further
+from ._digesting import Further, Map, parts
 from ._errors import NotFittedError, PolicyAlignError, PolicyAlignWarning
 from ._estimator import Estimator
 from ._rollout import Constraint, Path, follow
@@ -111,14 +111,17 @@ class Learner(Estimator):
         self,
         *paths: str | os.PathLike[str],
         at_once: str = "256MB",
-        map: Callable[[Callable[[Further], bytes], list[Further]], Iterable[bytes]] = map,
+        map: Map = map,
+        unfinished: str | os.PathLike[str] | None = None,
         **options: Any,
     ) -> Self:
         """Learns from files that are too large to be held together, or that several machines read.
 
         Files of ``at_once``, evenly spread, are read together; every other file is read alone, and means of its samples stay. A text that
-        is large counts as pieces of whole movements. ``map`` does that, as the builtin function: that of a pool of processes, or of an engine (``policy_align.dask.fit``), gives the same model. What
-        it is given can be pickled. ``options`` as of ``Demonstrations.read``; the program's ``fit --at-once`` does the same.
+        is large counts as pieces of whole movements. ``map`` does that, as the builtin function: that of a pool of processes, or of an
+        engine (``policy_align.dask.fit``), gives the same model. What it is given can be pickled. With a file ``unfinished``, which is made
+        and in the end removed, a call that was interrupted goes on when it is made again. ``options`` as of ``Demonstrations.read``; the
+        program's ``fit --at-once`` does the same.
         """
         threads = _threads(self.n_jobs)
         paths_given = [os.fspath(path) for path in paths]
@@ -127,8 +130,10 @@ class Learner(Estimator):
         if not further:
             return self._learn(demonstrations, threads)
         digester = demonstrations._native.digester(self._preparing(), *reading(options))
-        parts = [bytes(part) for part in map(Digesting(digester), further)]
-        return self._learn(demonstrations, threads, (further, parts, digester))
+        learnt = self._learn(demonstrations, threads, (further, parts(further, digester, map, unfinished), digester))
+        if unfinished is not None:
+            _native.Unfinished.remove(os.fspath(unfinished))
+        return learnt
 
     def _learn(
         self, demonstrations: Demonstrations, threads: int, further: tuple[list[Further], list[bytes], str] = ([], [], "")

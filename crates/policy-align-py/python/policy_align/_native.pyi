@@ -8,7 +8,7 @@ import numpy.typing as npt
 _Floats = npt.NDArray[np.float64]
 
 __version__: str
-__all__ = ["Fitted", "Path", "Recordings", "__version__", "digest", "divide"]
+__all__ = ["Fitted", "Path", "Recordings", "Unfinished", "__version__", "digest", "divide"]
 
 _Piece = tuple[str | os.PathLike[str], bool, str | None]
 _Further = tuple[int, _Piece, int, int]
@@ -17,6 +17,16 @@ def divide(
     paths: Sequence[str | os.PathLike[str]], at_once: str, learning: dict[str, Any], reading: str
 ) -> tuple[list[_Piece], list[_Further]]: ...
 def digest(further: _Further, digester: str) -> bytes: ...
+
+@final
+class Unfinished:
+    @staticmethod
+    def open(path: str | os.PathLike[str], pieces: Sequence[_Further], digester: str) -> Unfinished: ...
+    def found(self) -> tuple[bytes, list[_Further]]: ...
+    def keep(self, part: bytes) -> None: ...
+    def close(self) -> None: ...
+    @staticmethod
+    def remove(path: str | os.PathLike[str]) -> None: ...
 
 @final
 class Recordings:

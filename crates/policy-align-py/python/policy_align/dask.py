@@ -8,7 +8,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from ._digesting import Further
@@ -28,11 +28,12 @@ def fit(
 ) -> Learner:
     """Learns from files that all workers see: they read the files and pieces that are not held together (``Learner.fit_files``), this process
     the others. The work of a worker that dies is done by another; the model is that of one process. ``learner``: AutoGp() if not given.
+    ``options`` as of ``Learner.fit_files``, such as ``unfinished``.
     """
 
-    def on_workers(function: Callable[[Further], bytes], items: list[Further]) -> Iterable[bytes]:
-        found: Iterable[bytes] = client.gather(client.map(function, items))
-        return found
+    def on_workers(function: Callable[[Further], bytes], items: list[Further]) -> Iterator[bytes]:
+        for future in client.map(function, items):  # all at once; what is done is kept as it comes
+            yield client.gather(future)
 
     learner = AutoGp() if learner is None else learner
     return learner.fit_files(*files, at_once=at_once, map=on_workers, **options)

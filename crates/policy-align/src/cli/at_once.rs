@@ -74,8 +74,8 @@ pub(crate) fn digests(
 
 /// Where digests are kept until `output` is written.
 pub(crate) fn unfinished(output: &Path, pieces: &[FurtherPiece], digester: &Digester) -> Result<Unfinished, Failure> {
-    let failed = |error| Failure::writing(&Unfinished::beside(output), error);
-    Unfinished::open(output, pieces, digester).map_err(failed)
+    let path = Unfinished::beside(output);
+    Unfinished::open(&path, pieces, digester).map_err(|error| Failure::writing(&path, error))
 }
 
 fn read(path: &Path) -> Result<Part, Failure> {
@@ -133,7 +133,7 @@ pub(crate) fn write_part(
         text.map_err(|error| Failure::new(Exit::Refused, error.to_string(), displayed(output), "other files"))?;
     write(output, &text)?;
     drop(unfinished);
-    Unfinished::remove(output);
+    Unfinished::remove(&Unfinished::beside(output));
     if session.json {
         let document = json!({ "written": [displayed(output)], "digests": pieces.len(), "of": division.further.len() });
         return Ok(Output::json(&document, Exit::Done));

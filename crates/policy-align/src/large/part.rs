@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::Digest;
 use crate::large::piece_digest::PieceDigest;
-use crate::large::unfinished::Source;
 use crate::large::{Digester, FurtherPiece, PartError, Unfinished};
 
 const FORMAT: &str = "policy-align part";
@@ -18,6 +17,12 @@ pub struct Part {
     format: String,
     version: u32,
     digests: Vec<PieceDigest>,
+}
+
+impl From<Vec<PieceDigest>> for Part {
+    fn from(digests: Vec<PieceDigest>) -> Part {
+        Part { format: FORMAT.to_owned(), version: VERSION, digests }
+    }
 }
 
 impl Part {
@@ -37,15 +42,17 @@ impl Part {
                 progress(piece.bytes);
                 return Ok(found);
             }
-            let keeper = unfinished.and_then(|unfinished| Some((unfinished, Source::of(piece)?)));
             let digest = PieceDigest::new(piece, digester.digest_piece(piece, &mut |bytes| progress(bytes))?);
-            if let Some((unfinished, source)) = keeper {
-                unfinished.keep(&source, &digest);
+            if let Some(unfinished) = unfinished {
+                unfinished.keep(&digest);
             }
             Ok(digest)
         };
-        let digests = pieces.par_iter().map(digest).collect::<Result<_, PartError>>()?;
-        Ok(Part { format: FORMAT.to_owned(), version: VERSION, digests })
+        Ok(Part::from(pieces.par_iter().map(digest).collect::<Result<Vec<_>, PartError>>()?))
+    }
+
+    pub(super) fn digests(&self) -> &[PieceDigest] {
+        &self.digests
     }
 
     /// As a file.

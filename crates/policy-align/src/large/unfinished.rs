@@ -11,7 +11,7 @@ use journal::Journal;
 use serde::{Deserialize, Serialize};
 
 use crate::large::piece_digest::PieceDigest;
-use crate::large::{Digester, FurtherPiece};
+use crate::large::{Digester, FurtherPiece, Part};
 
 /// The first line of the file.
 const KIND: &str = "policy-align unfinished 1";
@@ -19,16 +19,19 @@ const KIND: &str = "policy-align unfinished 1";
 /// Digests that are kept as they are made, so that the same command goes on where it was interrupted.
 #[derive(Debug)]
 pub struct Unfinished {
-    /// Of an earlier run, by place among the further pieces.
+    /// Of every further piece that is a file or a part of one, by its place.
+    sources: BTreeMap<usize, Source>,
+    /// Of an earlier run.
     found: Mutex<BTreeMap<usize, PieceDigest>>,
     /// None once nothing can be written any more: a fit does not fail for that.
     journal: Mutex<Option<Journal>>,
 }
 
-/// What a digest depends on beside the recordings at hand: the file as it was before it was read, the part of it, and its share of all rows.
+/// What a digest depends on beside the recordings at hand: the file as it was before anything was read, the part of it, and its share of
+/// all rows.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Source {
+struct Source {
     path: PathBuf,
     state: FileState,
     part: Option<Range<u64>>,
@@ -45,7 +48,7 @@ struct Record<S, D> {
 
 impl Source {
     /// None for a folder, or if the system does not tell.
-    pub(super) fn of(FurtherPiece { piece, rows, .. }: &FurtherPiece) -> Option<Source> {
+    fn of(FurtherPiece { piece, rows, .. }: &FurtherPiece) -> Option<Source> {
         let (state, path) = (FileState::of(&piece.path).ok()?, fs::canonicalize(&piece.path).ok()?);
         let part = piece.span.as_ref().map(|span| span.bytes.clone());
         Some(Source { path, state, part, rows: *rows })
@@ -60,13 +63,13 @@ impl Unfinished {
         PathBuf::from(path)
     }
 
-    /// For digests of these pieces. Those that an earlier run kept are found again if they were made for the same recordings at hand, options and
-    /// version, and the file has not changed.
+    /// For digests of these pieces, in this file. Those that an earlier run kept are found again if they were made for the same recordings at
+    /// hand, options and version, and the file that was read has not changed.
     ///
     /// # Errors
     /// If nothing can be written there, another process does, or the file is none of these.
-    pub fn open(output: &Path, pieces: &[FurtherPiece], digester: &Digester) -> io::Result<Unfinished> {
-        let (journal, kept) = Journal::open::<Record<Source, PieceDigest>>(&Self::beside(output), KIND)?;
+    pub fn open(path: &Path, pieces: &[FurtherPiece], digester: &Digester) -> io::Result<Unfinished> {
+        let (journal, kept) = Journal::open::<Record<Source, PieceDigest>>(path, KIND)?;
         let source = |piece: &FurtherPiece| Some((piece.at, Source::of(piece)?));
         let sources: BTreeMap<usize, Source> = pieces.iter().filter_map(source).collect();
         let is_of = |Record { source, of }: &Record<Source, PieceDigest>| {
@@ -77,7 +80,7 @@ impl Unfinished {
         if found.is_empty() {
             journal.clear()?;
         }
-        Ok(Unfinished { found: Mutex::new(found), journal: Mutex::new(Some(journal)) })
+        Ok(Unfinished { sources, found: Mutex::new(found), journal: Mutex::new(Some(journal)) })
     }
 
     /// Digests of an earlier run that have not been taken yet.
@@ -90,9 +93,22 @@ impl Unfinished {
         self.found.lock().ok()?.remove(&piece.at)
     }
 
-    /// Keeps a digest, of a file as it was before it was read.
-    pub(super) fn keep(&self, source: &Source, digest: &PieceDigest) {
-        if let Ok(mut journal) = self.journal.lock()
+    /// Takes all digests of an earlier run, and says which of these pieces they are not of.
+    pub fn take_all(&self, pieces: &[FurtherPiece]) -> (Part, Vec<FurtherPiece>) {
+        let found: Vec<PieceDigest> = pieces.iter().filter_map(|piece| self.take(piece)).collect();
+        let is_found = |piece: &FurtherPiece| found.iter().any(|digest| digest.at == piece.at);
+        let others = pieces.iter().filter(|piece| !is_found(piece)).cloned().collect();
+        (Part::from(found), others)
+    }
+
+    /// Keeps all digests of a part.
+    pub fn keep_all(&self, part: &Part) {
+        part.digests().iter().for_each(|digest| self.keep(digest));
+    }
+
+    pub(super) fn keep(&self, digest: &PieceDigest) {
+        if let Some(source) = self.sources.get(&digest.at)
+            && let Ok(mut journal) = self.journal.lock()
             && let Some(full) = journal.take_if(|journal| journal.append(&Record { source, of: digest }).is_err())
         {
             // The model needs the room.
@@ -100,8 +116,8 @@ impl Unfinished {
         }
     }
 
-    /// Removes what is kept for `output`, once that is written and nothing keeps digests any more.
-    pub fn remove(output: &Path) {
-        journal::remove(&Self::beside(output), KIND);
+    /// Removes such a file, once it is not needed and nothing keeps digests there any more.
+    pub fn remove(path: &Path) {
+        journal::remove(path, KIND);
     }
 }

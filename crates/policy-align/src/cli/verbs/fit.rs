@@ -115,7 +115,7 @@ impl Fit {
             files.extend(self.report(&model, &prepared, &checksum));
         }
         write_together(&files)?;
-        Unfinished::remove(&self.output());
+        Unfinished::remove(&Unfinished::beside(&self.output()));
         warn_of_others(session, &self.output(), &checksum);
         let report: Vec<PathBuf> = files.into_iter().skip(1).map(|(path, _)| path).collect();
         let unreported = unreported(&model.trust.findings, &reported);
