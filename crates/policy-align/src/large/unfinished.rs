@@ -95,9 +95,13 @@ impl Unfinished {
 
     /// Takes all digests of an earlier run, and says which of these pieces they are not of.
     pub fn take_all(&self, pieces: &[FurtherPiece]) -> (Part, Vec<FurtherPiece>) {
-        let found: Vec<PieceDigest> = pieces.iter().filter_map(|piece| self.take(piece)).collect();
-        let is_found = |piece: &FurtherPiece| found.iter().any(|digest| digest.at == piece.at);
-        let others = pieces.iter().filter(|piece| !is_found(piece)).cloned().collect();
+        let (mut found, mut others) = (Vec::new(), Vec::new());
+        for piece in pieces {
+            match self.take(piece) {
+                Some(digest) => found.push(digest),
+                None => others.push(piece.clone()),
+            }
+        }
         (Part::from(found), others)
     }
 
@@ -106,6 +110,7 @@ impl Unfinished {
         part.digests().iter().for_each(|digest| self.keep(digest));
     }
 
+    /// Keeps a digest; of a folder none is kept.
     pub(super) fn keep(&self, digest: &PieceDigest) {
         if let Some(source) = self.sources.get(&digest.at)
             && let Ok(mut journal) = self.journal.lock()
