@@ -147,7 +147,7 @@ fn damaged_files_are_read_or_refused() {
         assert!(read.episodes.iter().any(|episode| episode.times.len() > 1));
         let before = peak_memory();
         let bound = ((64 * sample.content.len() as u64) >> 20) + 64;
-        let grown = || peak_memory().zip(before).map(|(after, before)| (after - before) >> 20);
+        let grown = || peak_memory().zip(before).map(|(after, before)| after.saturating_sub(before) >> 20);
         let (mut readable, mut slowest) = (0, (Duration::ZERO, 0));
         for seed in from..from + count {
             let content = damaged(&sample.content, &mut StdRng::seed_from_u64(seed));
